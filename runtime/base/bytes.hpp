@@ -1,0 +1,105 @@
+// Writing and reading snapshot images: little-endian scalars, length-prefixed strings, every read checked.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "runtime/base/error.hpp"
+#include "runtime/base/math.hpp"
+
+namespace breve {
+
+static_assert(std::endian::native == std::endian::little, "images are written in the machine's own order");
+
+class ByteWriter {
+ public:
+  template <class T>
+    requires(std::is_arithmetic_v<T> || std::is_enum_v<T>)
+  void put(T value) {
+    raw(&value, sizeof value);
+  }
+  void put(const Vector3& v) { raw(v.data(), 3 * sizeof(double)); }
+  void put(const Matrix3& m) { raw(m.data(), 9 * sizeof(double)); }
+  void put(const Quaternion& q) { raw(q.coeffs().data(), 4 * sizeof(double)); }
+  void put(std::string_view text) {
+    put(static_cast<std::uint64_t>(text.size()));
+    raw(text.data(), text.size());
+  }
+  void raw(const void* data, std::size_t size) {
+    const auto* bytes = static_cast<const std::uint8_t*>(data);
+    bytes_.insert(bytes_.end(), bytes, bytes + size);
+  }
+  const std::vector<std::uint8_t>& bytes() const { return bytes_; }
+  std::vector<std::uint8_t> take() { return std::move(bytes_); }
+
+ private:
+  std::vector<std::uint8_t> bytes_;
+};
+
+/// Reads what ByteWriter wrote. Throws Error{Image} when the image ends early; never reads outside it.
+class ByteReader {
+ public:
+  ByteReader(const std::uint8_t* data, std::size_t size) : next_(data), left_(size) {}
+
+  template <class T>
+    requires(std::is_arithmetic_v<T> || std::is_enum_v<T>)
+  T get() {
+    T value;
+    raw(&value, sizeof value);
+    return value;
+  }
+  bool get_bool() { return get<std::uint8_t>() != 0; }
+  Vector3 get_vector() {
+    Vector3 v;
+    raw(v.data(), 3 * sizeof(double));
+    return v;
+  }
+  Matrix3 get_matrix() {
+    Matrix3 m;
+    raw(m.data(), 9 * sizeof(double));
+    return m;
+  }
+  Quaternion get_quaternion() {
+    Quaternion q;
+    raw(q.coeffs().data(), 4 * sizeof(double));
+    return q;
+  }
+  std::string get_string() {
+    const auto size = get<std::uint64_t>();
+    need(size);
+    std::string text(reinterpret_cast<const char*>(next_), static_cast<std::size_t>(size));
+    skip(static_cast<std::size_t>(size));
+    return text;
+  }
+  /// A count of things of at least `least` bytes each: a damaged count cannot ask for more than the image holds.
+  std::size_t get_count(std::size_t least = 1) {
+    const auto count = get<std::uint64_t>();
+    if (least != 0 && count > left_ / least) fail();
+    return static_cast<std::size_t>(count);
+  }
+  void raw(void* out, std::size_t size) {
+    need(size);
+    if (size != 0) std::memcpy(out, next_, size);
+    skip(size);
+  }
+  std::size_t left() const { return left_; }
+  [[noreturn]] static void fail() { throw Error(ErrorCode::Image, "the image is damaged or cut off"); }
+
+ private:
+  void need(std::uint64_t size) const {
+    if (size > left_) fail();
+  }
+  void skip(std::size_t size) {
+    next_ += size;
+    left_ -= size;
+  }
+  const std::uint8_t* next_;
+  std::size_t left_;
+};
+
+}  // namespace breve

@@ -1,0 +1,40 @@
+// Counted memory: every container and heap object of a world takes its bytes here, so that a limit is a limit.
+#pragma once
+
+#include <cstddef>
+#include <memory_resource>
+#include <new>
+
+namespace breve {
+
+/// A memory resource that counts the bytes in use and refuses to go beyond a limit (std::bad_alloc).
+class MemoryMeter final : public std::pmr::memory_resource {
+ public:
+  explicit MemoryMeter(std::pmr::memory_resource* upstream = std::pmr::new_delete_resource()) : upstream_(upstream) {}
+
+  std::size_t used() const { return used_; }
+  std::size_t peak() const { return peak_; }
+  std::size_t limit() const { return limit_; }
+  void set_limit(std::size_t bytes) { limit_ = bytes; }  // 0: none
+
+ private:
+  void* do_allocate(std::size_t bytes, std::size_t alignment) override {
+    if (limit_ != 0 && (bytes > limit_ || used_ > limit_ - bytes)) throw std::bad_alloc();
+    void* memory = upstream_->allocate(bytes, alignment);
+    used_ += bytes;
+    if (used_ > peak_) peak_ = used_;
+    return memory;
+  }
+  void do_deallocate(void* memory, std::size_t bytes, std::size_t alignment) override {
+    used_ -= bytes;
+    upstream_->deallocate(memory, bytes, alignment);
+  }
+  bool do_is_equal(const std::pmr::memory_resource& other) const noexcept override { return this == &other; }
+
+  std::pmr::memory_resource* upstream_;
+  std::size_t used_ = 0;
+  std::size_t peak_ = 0;
+  std::size_t limit_ = 0;
+};
+
+}  // namespace breve

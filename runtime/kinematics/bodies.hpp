@@ -1,0 +1,101 @@
+// Every body of a world as arrays: pose, velocity, acceleration, shape, material. A script object holds an index.
+// Kinematic motion is explicit Euler from the values at the start of a sub-step; free rigid motion is in free_motion.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <memory_resource>
+
+#include "runtime/base/bytes.hpp"
+#include "runtime/base/hasher.hpp"
+#include "runtime/base/ids.hpp"
+#include "runtime/base/math.hpp"
+#include "runtime/solid/shape.hpp"
+
+namespace breve {
+
+using BodyIndex = std::uint32_t;
+inline constexpr BodyIndex kNoBody = 0xffffffffU;
+
+enum class BodyKind : std::uint8_t { Mobile, Stationary, Link };
+
+/// Coulomb friction and restitution as scripts set them. Defaults: an object that nobody configured (CLASSES 2.5).
+struct Material {
+  double restitution = 0.4;
+  double friction = 0.15;
+  double static_friction = -1;      // >= 0: set exactly by set-friction
+  double dynamic_friction = -1;
+  double normal_restitution = -1;   // >= 0: set exactly by set-restitution
+  double tangential_restitution = 0;
+  double restitution_threshold = 0;
+};
+
+/// How a body is drawn; kept and readable whether or not anything draws.
+struct Appearance {
+  Vector3 color{1, 1, 1};
+  double alpha = 1;
+  ObjectId texture, bitmap, lightmap;  // Image objects or null
+  double texture_scale_x = 16, texture_scale_y = 16;
+  double bitmap_heading = 0;  // rad
+  std::string label;
+  bool visible = true, shadows = true, as_point = false;
+  bool bounding_box = false, axis = false, neighbor_lines = false;
+};
+
+class Bodies {
+ public:
+  explicit Bodies(std::pmr::memory_resource* memory);
+  ~Bodies();
+
+  BodyIndex add(BodyKind kind, ObjectId owner);
+  void remove(BodyIndex body);
+  std::size_t size() const;
+  BodyKind kind(BodyIndex body) const;
+  ObjectId owner(BodyIndex body) const;
+
+  // Poses. A setter throws Error{Argument} naming the property if a value is not finite; nothing is changed then.
+  const Vector3& location(BodyIndex body) const;
+  Matrix3 rotation(BodyIndex body) const;
+  Quaternion orientation(BodyIndex body) const;
+  void set_location(BodyIndex body, const Vector3& location);
+  void set_rotation(BodyIndex body, const Matrix3& rotation);  // made orthonormal; Error{Argument} if it is singular
+  void set_orientation(BodyIndex body, const Quaternion& orientation);
+
+  // Motion, world frame; the rotational velocity of a kinematic body is in its own frame (CLASSES 2.3).
+  const Vector3& velocity(BodyIndex body) const;
+  const Vector3& acceleration(BodyIndex body) const;
+  const Vector3& rotational_velocity(BodyIndex body) const;
+  const Vector3& rotational_acceleration(BodyIndex body) const;
+  void set_velocity(BodyIndex body, const Vector3& value);
+  void set_acceleration(BodyIndex body, const Vector3& value);
+  void set_rotational_velocity(BodyIndex body, const Vector3& value);
+  void set_rotational_acceleration(BodyIndex body, const Vector3& value);
+
+  // Rigid motion: on after enable_physics. Force and torque act at the centre of mass, world frame, until replaced.
+  bool physics(BodyIndex body) const;
+  void set_physics(BodyIndex body, bool enabled);
+  const Vector3& force(BodyIndex body) const;
+  const Vector3& torque(BodyIndex body) const;
+  void set_force(BodyIndex body, const Vector3& newtons);
+  void set_torque(BodyIndex body, const Vector3& newton_metres);
+
+  const std::shared_ptr<Shape>& collision_shape(BodyIndex body) const;
+  const std::shared_ptr<Shape>& display_shape(BodyIndex body) const;
+  void set_collision_shape(BodyIndex body, std::shared_ptr<Shape> shape);  // never null
+  void set_display_shape(BodyIndex body, std::shared_ptr<Shape> shape);
+  /// World-aligned bounds of the collision shape at the body's pose.
+  Eigen::AlignedBox3d bounds(BodyIndex body) const;
+  double mass(BodyIndex body) const;
+
+  double neighborhood_size(BodyIndex body) const;  // 0 until set
+  void set_neighborhood_size(BodyIndex body, double radius);
+  Material& material(BodyIndex body);
+  Appearance& appearance(BodyIndex body);  // made on first use
+  const Appearance& appearance(BodyIndex body) const;
+
+ private:
+  struct Arrays;
+  std::unique_ptr<Arrays> arrays_;
+};
+
+}  // namespace breve

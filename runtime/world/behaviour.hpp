@@ -1,0 +1,46 @@
+// What the world asks of whatever scripts its agents. The runtime knows no language: this is its whole view of one.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "runtime/base/bytes.hpp"
+#include "runtime/base/hasher.hpp"
+#include "runtime/base/ids.hpp"
+#include "runtime/base/math.hpp"
+
+namespace breve {
+
+/// Input that the host queued; delivered at the start of the next step, in the order of arrival.
+struct InputEvent {
+  enum class Kind : std::uint8_t { KeyDown, KeyUp, Click, Menu } kind = Kind::KeyDown;
+  std::string key;  // one character, or "up", "down", "left", "right"
+  ObjectId object;  // Click: the object hit or null. Menu: the menu item
+};
+
+/// Every call may run script code and may throw breve::Error{Script, Budget, Depth, Memory}.
+class Behaviour {
+ public:
+  virtual ~Behaviour() = default;
+
+  virtual void iterate(ObjectId agent) = 0;
+  virtual void post_iterate(ObjectId agent) = 0;
+  /// A scheduled call is due. The clock reads the scheduled time.
+  virtual void scheduled(ObjectId agent, std::string_view method) = 0;
+  /// `agent` has a handler `method` for this contact. `normal` is a unit vector from `other` toward `agent`.
+  /// Returns true if the remaining handlers of this contact are to be skipped.
+  virtual bool collided(ObjectId agent, ObjectId other, std::string_view method, const Vector3& point,
+                        const Vector3& normal) = 0;
+  virtual void notified(ObjectId observer, std::string_view method, ObjectId announcer, std::string_view message) = 0;
+  virtual void input(const InputEvent& event) = 0;
+  /// The last act of an iteration: a slice of garbage collection.
+  virtual void end_of_iteration() = 0;
+
+  /// Snapshot of the whole script side: heap, variables, serial numbers. Called between iterations only.
+  virtual void save(ByteWriter& out) const = 0;
+  virtual void load(ByteReader& in) = 0;
+  virtual void hash(Hasher& hasher) const = 0;
+};
+
+}  // namespace breve

@@ -1,0 +1,133 @@
+// One running simulation: objects, bodies, clock, schedule, observers, collision handlers, input, random numbers.
+// It owns every part and orders the step; the parts do not know it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <memory_resource>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/base/ids.hpp"
+#include "runtime/base/math.hpp"
+#include "runtime/base/memory.hpp"
+#include "runtime/base/random.hpp"
+#include "runtime/kinematics/bodies.hpp"
+#include "runtime/world/behaviour.hpp"
+#include "runtime/world/effects.hpp"
+#include "runtime/world/resource.hpp"
+#include "runtime/world/view.hpp"
+
+namespace breve {
+
+class World {
+ public:
+  /// @param memory  where every container of the world takes its bytes; outlives the world
+  explicit World(std::pmr::memory_resource* memory, std::uint64_t seed = 1);
+  ~World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  void set_behaviour(Behaviour* behaviour);  // not owned; outlives stepping
+
+  // --- objects ---------------------------------------------------------------------------------------------------
+  /// A new live instance. It joins the iteration lists at the start of the next step, in order of creation.
+  /// @param user  what the script side wants back from `user(id)`
+  ObjectId create(ClassId cls, std::uint64_t user, bool iterates, bool post_iterates);
+  /// Forget everything about a live object: body, resource, schedule, observers. Its id is stale from now on.
+  void release(ObjectId id);
+  bool alive(ObjectId id) const;
+  std::uint64_t user(ObjectId id) const;  // Error{Stale} if not alive
+  void set_user(ObjectId id, std::uint64_t user);
+  ClassId class_of(ObjectId id) const;
+  /// Live objects in order of creation.
+  std::vector<ObjectId> objects() const;
+  std::size_t object_count() const;
+
+  // --- native data of an object ----------------------------------------------------------------------------------
+  void attach(ObjectId id, std::unique_ptr<Resource> resource);  // replaces an earlier one
+  Resource* resource(ObjectId id) const;                         // null if none or not alive
+  void add_resource_kind(std::string_view kind, ResourceLoader loader);
+
+  // --- bodies ----------------------------------------------------------------------------------------------------
+  /// Give a live object a body at the origin. One per object.
+  void embody(ObjectId id, BodyKind kind);
+  bool has_body(ObjectId id) const;
+  BodyIndex body(ObjectId id) const;  // Error{Stale} if not alive, Error{Argument} if it has no body
+  ObjectId object_of(BodyIndex body) const;
+  Bodies& bodies() { return *bodies_; }
+  const Bodies& bodies() const { return *bodies_; }
+  /// Objects whose shapes intersect this one's now and that are solvable (physics-enabled, Stationary), creation order.
+  std::vector<ObjectId> touching(ObjectId id) const;
+
+  // --- neighbours (centres only; see docs/language.md) -------------------------------------------------------------
+  /// Record where everything is: neighbours are asked of this moment until the next call.
+  void update_neighbors();
+  /// Live objects strictly within `id`'s neighbourhood size of its centre at the last update, order of creation.
+  /// The span is valid until the next call on this world.
+  const std::pmr::vector<ObjectId>& neighbors(ObjectId id);
+
+  // --- clock and step ----------------------------------------------------------------------------------------------
+  double time() const { return time_; }
+  double iteration_step() const { return iteration_step_; }
+  double integration_step() const { return integration_step_; }
+  void set_iteration_step(double seconds);    // raised to the integration step if smaller; must be finite and > 0
+  void set_integration_step(double seconds);  // finite and > 0
+  std::uint64_t iteration() const { return iteration_; }
+  /// One iteration (DESIGN section 4). Errors of scripts pass through; the rest of the iteration is then not run.
+  void step();
+  /// Advance every body by one iteration step, in sub-steps, with collision handlers. Called by the controller's iterate.
+  void advance_bodies();
+  bool stepping() const { return stepping_; }
+  void request_end() { end_requested_ = true; }
+  bool end_requested() const { return end_requested_; }
+  void set_paused(bool paused) { paused_ = paused; }
+  bool paused() const { return paused_; }
+
+  // --- schedule ----------------------------------------------------------------------------------------------------
+  /// Call `method` of `target` at absolute time `when`; again every `interval` seconds if it is > 0.
+  /// Returns false, and queues nothing, if `when` is not in the future.
+  bool schedule(ObjectId target, std::string_view method, double when, double interval = 0);
+  /// Remove queued calls: those of `method` ("" = any) at time `when` (0 = any). Returns how many.
+  std::size_t unschedule(ObjectId target, std::string_view method, double when);
+
+  // --- notifications -----------------------------------------------------------------------------------------------
+  void observe(ObjectId observer, ObjectId announcer, std::string_view message, std::string_view method);
+  std::size_t unobserve(ObjectId observer, ObjectId announcer, std::string_view message);  // all matching; how many
+  void announce(ObjectId announcer, std::string_view message);  // calls at once, order of registration
+
+  // --- collision handlers, by exact class on both sides --------------------------------------------------------------
+  void handle_collisions(ClassId owner, ClassId other, std::string_view method, ObjectId asked_by);
+  void ignore_collisions(ClassId owner, ClassId other);
+  /// "impact" (first touch at its time of impact, the default) or "step" (calls at the end of the sub-step).
+  void set_impact_timing(bool at_impact);
+
+  // --- input, random numbers, view -----------------------------------------------------------------------------------
+  void queue_input(InputEvent event);
+  Random& random() { return random_; }
+  ViewState& view() { return view_; }
+  const ViewState& view() const { return view_; }
+
+  // --- what it cost, what it is --------------------------------------------------------------------------------------
+  const Effects& effects() const;
+  std::uint64_t hash() const;
+  /// The whole world with its script side, as a checked, versioned image. Error{Busy} inside a step.
+  std::vector<std::uint8_t> save(std::uint64_t program_fingerprint) const;
+  /// Replace this world's state by an image's. Error{Image} for a damaged or foreign image; the world is then unchanged.
+  void load(const std::uint8_t* data, std::size_t size, std::uint64_t program_fingerprint);
+
+ private:
+  std::unique_ptr<Bodies> bodies_;
+  Random random_;
+  ViewState view_;
+  double time_ = 0;
+  double iteration_step_ = 0.06;
+  double integration_step_ = 0.02;
+  std::uint64_t iteration_ = 0;
+  bool stepping_ = false;
+  bool end_requested_ = false;
+  bool paused_ = false;
+};
+
+}  // namespace breve

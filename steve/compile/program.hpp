@@ -1,0 +1,158 @@
+// A compiled program: classes, methods, bytecode, constants. Never changes once made; shared by any number of worlds.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "runtime/base/ids.hpp"
+#include "steve/machine/native.hpp"
+#include "steve/machine/value.hpp"
+#include "steve/syntax/diagnostic.hpp"
+#include "steve/syntax/parser.hpp"
+
+namespace breve::steve {
+
+using Symbol = std::uint32_t;
+inline constexpr Symbol kNoSymbol = 0xffffffffU;
+
+/// Names to numbers, in order of first use.
+class SymbolTable {
+ public:
+  Symbol intern(std::string_view name);
+  Symbol find(std::string_view name) const;  // kNoSymbol if it was never interned
+  const std::string& name(Symbol symbol) const { return *names_[symbol]; }
+  std::size_t size() const { return names_.size(); }
+
+ private:
+  std::unordered_map<std::string, Symbol> by_name_;
+  std::vector<const std::string*> names_;
+};
+
+struct ClassInfo;
+
+/// A type as the compiler knows it. Any: a dynamic value with its tag.
+enum class StaticType : std::uint8_t { Null, Int, Double, Vector, Matrix, String, Object, List, Hash, Pointer, Data, Any };
+
+int slot_count(StaticType type);
+
+struct VariableInfo {
+  Symbol name = kNoSymbol;
+  StaticType type = StaticType::Int;
+  std::int32_t array_size = -1;    // >= 0: an array
+  Symbol class_name = kNoSymbol;   // (ClassName object): instances of that class or a descendant only
+  std::uint32_t slot = 0;          // first slot in the instance
+  Span span;
+};
+
+struct ParameterInfo {
+  Symbol keyword = kNoSymbol, variable = kNoSymbol;
+  StaticType type = StaticType::Int;
+  Symbol class_name = kNoSymbol;
+  std::uint32_t slot = 0;          // first slot in the frame
+  bool has_default = false;
+  Value default_value;             // converted to `type`; strings and matrices by constant index in default_constant
+  std::uint32_t default_constant = 0;
+};
+
+struct Function;  // bytecode; steve/compile/bytecode.hpp
+
+struct MethodInfo {
+  Symbol name = kNoSymbol;
+  const ClassInfo* owner = nullptr;
+  std::vector<ParameterInfo> parameters;
+  std::unique_ptr<Function> function;  // null for a native method
+  NativeFunction native = nullptr;
+  StaticType native_result = StaticType::Null;
+  std::string doc;
+  Span span;  // of the header
+  MethodInfo();
+  ~MethodInfo();
+  MethodInfo(MethodInfo&&) noexcept;
+};
+
+struct ClassInfo {
+  ClassId id = kNoClass;
+  std::string name, alias, doc;
+  const ClassInfo* parent = nullptr;
+  double version = 1.0;
+  std::vector<VariableInfo> variables;        // its own; ancestors' come before in the instance
+  std::uint32_t slot_count = 0;               // with ancestors
+  std::vector<std::uint16_t> reference_slots; // with ancestors: slots that hold a Cell*
+  std::vector<std::unique_ptr<MethodInfo>> methods;  // its own
+  std::vector<const MethodInfo*> init_chain, delete_chain;  // root first
+  const MethodInfo* iterate = nullptr;        // inherited ones too; null if there is none
+  const MethodInfo* post_iterate = nullptr;
+  const MethodInfo* destroy = nullptr;
+  const MethodInfo* get_description = nullptr;
+  Span span;
+
+  bool derives_from(const ClassInfo& other) const {
+    for (const ClassInfo* c = this; c; c = c->parent)
+      if (c == &other) return true;
+    return false;
+  }
+  const VariableInfo* find_variable(Symbol name) const;  // own or inherited; the most derived wins
+};
+
+class Program {
+ public:
+  ~Program();
+  const ClassInfo* find_class(std::string_view name_or_alias) const;  // null if there is none
+  const ClassInfo& cls(ClassId id) const { return *classes_[id]; }
+  const std::vector<std::unique_ptr<ClassInfo>>& classes() const { return classes_; }
+  const ClassInfo* controller_class() const { return controller_; }
+  const SymbolTable& symbols() const { return symbols_; }
+  const Sources& sources() const { return sources_; }
+  std::uint64_t fingerprint() const { return fingerprint_; }  // of all sources, for snapshots
+  const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }  // warnings
+
+ private:
+  friend class ProgramBuilder;
+  Program();
+  std::vector<std::unique_ptr<ClassInfo>> classes_;
+  std::unordered_map<std::string, ClassInfo*> class_names_;  // names and aliases
+  const ClassInfo* controller_ = nullptr;
+  SymbolTable symbols_;
+  Sources sources_;
+  Defines defines_;
+  std::vector<Diagnostic> diagnostics_;
+  std::uint64_t fingerprint_ = 0;
+};
+
+/// Finds the text of a module for the compiler. The command reads files; a host decides for itself.
+struct ModuleSource {
+  std::string name;  // as messages show it; two directives that give the same name mean the same file
+  std::string text;
+};
+class ModuleResolver {
+ public:
+  virtual ~ModuleResolver() = default;
+  /// @param name      as spelled in the directive ("Control.tz" for `@use Control.`)
+  /// @param from      name of the file that asks, "" for the main file
+  virtual std::optional<ModuleSource> resolve(std::string_view name, std::string_view from) = 0;
+  virtual void add_path(std::string_view) {}  // @path
+};
+
+struct CompileResult {
+  std::shared_ptr<const Program> program;  // null if there were errors
+  Diagnostics diagnostics;
+  Sources sources;  // for formatting diagnostics when there is no program
+};
+
+/// Compile a main file and all that it loads. The class library is always there for @use, without a search path.
+CompileResult compile(ModuleSource main, ModuleResolver& resolver);
+
+/// A file of the embedded class library: the one named "NAME.tz", or the one that defines class NAME. Null if none.
+struct LibraryFile {
+  std::string_view name;  // "Shape.tz"
+  std::string_view text;
+  std::string_view classes;  // names and aliases defined in it, space-separated
+};
+const LibraryFile* find_library_file(std::string_view name);
+
+}  // namespace breve::steve

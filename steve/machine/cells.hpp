@@ -1,0 +1,93 @@
+// The cells of the heap: strings, matrices, lists, hashes, instances, pointers, data.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <memory_resource>
+#include <vector>
+
+#include "runtime/base/math.hpp"
+#include "steve/machine/value.hpp"
+
+namespace breve::steve {
+
+class Heap;
+struct ClassInfo;
+
+/// Immutable bytes; never empty (the empty string is the null reference).
+struct StringCell : Cell {
+  std::uint32_t size;
+  mutable std::uint32_t hash_cache = 0;  // 0: not computed yet
+  char bytes[8];                         // really `size`, with a zero byte behind
+
+  explicit StringCell(std::uint32_t n) : Cell(Tag::String), size(n) {}
+  std::string_view view() const { return {bytes, size}; }
+};
+inline std::string_view view(const StringCell* s) { return s ? s->view() : std::string_view{}; }
+
+struct MatrixCell : Cell {
+  Matrix3 m;
+  explicit MatrixCell(const Matrix3& value) : Cell(Tag::Matrix), m(value) {}
+};
+
+/// A growable array with room at both ends: push, pop, prepend and unprepend are O(1) amortised.
+struct ListCell : Cell {
+  std::uint64_t serial;
+  std::uint32_t first = 0, size = 0, capacity = 0;
+  Value* store = nullptr;
+
+  explicit ListCell(std::uint64_t s) : Cell(Tag::List), serial(s) {}
+  Value* begin() { return store + first; }
+  Value* end() { return store + first + size; }
+  const Value* begin() const { return store + first; }
+  const Value* end() const { return store + first + size; }
+  Value& operator[](std::uint32_t i) { return store[first + i]; }
+  const Value& operator[](std::uint32_t i) const { return store[first + i]; }
+};
+
+/// Open addressing over entries kept in order of insertion. Keys compare with type (language, section 8.2).
+struct HashCell : Cell {
+  struct Entry {
+    Value key;  // Tag::Null with hash 0xffffffff: a removed entry
+    Value value;
+    std::uint32_t hash;
+  };
+  std::uint64_t serial;
+  std::uint32_t count_live = 0, used = 0, entry_capacity = 0, index_capacity = 0;
+  Entry* entries = nullptr;
+  std::uint32_t* index = nullptr;  // entry number + 1; 0 = free
+
+  explicit HashCell(std::uint64_t s) : Cell(Tag::Hash), serial(s) {}
+};
+
+/// What a pointer value refers to: an open file and the like. Closed by its destructor.
+class NativePointer {
+ public:
+  virtual ~NativePointer() = default;
+};
+struct PointerCell : Cell {
+  std::uint64_t serial;
+  std::unique_ptr<NativePointer> native;
+  explicit PointerCell(std::uint64_t s) : Cell(Tag::Pointer), serial(s) {}
+};
+
+struct DataCell : Cell {
+  std::pmr::vector<std::uint8_t> bytes;
+  explicit DataCell(std::pmr::memory_resource* memory) : Cell(Tag::Data), bytes(memory) {}
+};
+
+/// An object of a steve class. Its slots are laid out by its class; a freed one stays as a husk while it is referred to.
+struct Instance : Cell {
+  enum class State : std::uint8_t { Live, BeingFreed, Freed };
+  State state = State::Live;
+  bool auto_free = false;
+  const ClassInfo* cls;
+  ObjectId id;
+  std::uint64_t serial;  // what `print` shows as the address
+  Slot* slots;           // cls->slot_count of them, right behind this head
+
+  explicit Instance(const ClassInfo* c) : Cell(Tag::Object), cls(c), serial(0), slots(nullptr) {}
+  bool live() const { return state != State::Freed; }
+};
+
+}  // namespace breve::steve

@@ -1,0 +1,99 @@
+// What a steve value is: untagged slots where the type is known, a tagged Value where it is not, cells for the rest.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include "runtime/base/error.hpp"
+#include "runtime/base/ids.hpp"
+#include "runtime/base/math.hpp"
+
+namespace breve::steve {
+
+enum class Tag : std::uint8_t { Null, Int, Double, Vector, Matrix, String, Object, List, Hash, Pointer, Data };
+
+/// The name of a type as `typeof` gives it: "NULL", "int", "double", ...
+std::string_view type_name(Tag tag);
+
+/// The head of everything on the heap. `count` counts references from heap cells and from the table of objects, not
+/// those from frames: a cell with count 0 is freed at the next safe point unless a frame still refers to it.
+struct Cell {
+  std::uint32_t count = 0;
+  Tag tag;
+  std::uint8_t mark = 0;         // colour of the cycle collector
+  bool listed = false;           // in the table of zero counts
+  bool immortal = false;         // a literal of the program: never freed, never counted
+  explicit Cell(Tag t) : tag(t) {}
+};
+
+/// Eight untagged bytes of a frame or of an instance. int, double and references take one, a vector three, a matrix
+/// nine, a dynamic value four (laid out as Value). All zero bits are the default value of every type.
+union Slot {
+  std::uint64_t bits;
+  std::int32_t i;
+  double d;
+  Cell* ref;
+};
+static_assert(sizeof(Slot) == 8);
+
+struct StringCell;
+struct MatrixCell;
+struct ListCell;
+struct HashCell;
+struct PointerCell;
+struct DataCell;
+struct Instance;
+
+/// A dynamic value: a tag and what it tags. Vectors stand in place; matrices and strings are immutable cells. The null
+/// reference is the empty string, the null object, a list or hash not made yet, the null pointer, empty data.
+struct Value {
+  Tag tag;
+  union {
+    std::int32_t i;
+    double d;
+    double v[3];
+    Cell* ref;
+    std::uint64_t bits[3];
+  };
+
+  Value() : tag(Tag::Null), bits{0, 0, 0} {}
+  static Value of(std::int32_t i) { Value r(Tag::Int); r.i = i; return r; }
+  static Value of(double d) { Value r(Tag::Double); r.d = d; return r; }
+  static Value of(const Vector3& v) { Value r(Tag::Vector); std::memcpy(r.v, v.data(), sizeof r.v); return r; }
+  static Value of(Tag tag, Cell* ref) { Value r(tag); r.ref = ref; return r; }
+
+  bool is_reference() const { return tag >= Tag::Matrix; }
+  Vector3 vector() const { return {v[0], v[1], v[2]}; }
+  // Unchecked: the caller has looked at the tag. Null where the reference is null.
+  StringCell* string() const { return reinterpret_cast<StringCell*>(ref); }
+  MatrixCell* matrix() const { return reinterpret_cast<MatrixCell*>(ref); }
+  ListCell* list() const { return reinterpret_cast<ListCell*>(ref); }
+  HashCell* hash() const { return reinterpret_cast<HashCell*>(ref); }
+  Instance* object() const { return reinterpret_cast<Instance*>(ref); }
+  PointerCell* pointer() const { return reinterpret_cast<PointerCell*>(ref); }
+  DataCell* data() const { return reinterpret_cast<DataCell*>(ref); }
+
+ private:
+  explicit Value(Tag t) : tag(t), bits{0, 0, 0} {}
+};
+static_assert(sizeof(Value) == 32);
+
+/// The kinds of run-time errors (language, section 11.2).
+enum class RunErrorKind : std::uint8_t {
+  User, Internal, Type, Array, Conversion, FreedObject, NullObject, Math, World, Bounds,
+  UnknownClass, UnknownMethod, UnknownKeyword, MissingKeyword, Depth, Budget,
+};
+
+/// Thrown by everything under the interpreter; the interpreter adds the place and the chain of calls.
+class RunError : public Error {
+ public:
+  RunError(RunErrorKind kind, const std::string& message) : Error(ErrorCode::Script, message), kind_(kind) {}
+  RunErrorKind kind() const { return kind_; }
+
+ private:
+  RunErrorKind kind_;
+};
+
+}  // namespace breve::steve

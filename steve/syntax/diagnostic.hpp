@@ -1,0 +1,39 @@
+// What the compiler has to say: errors and warnings with their place and their remedy.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "steve/syntax/source.hpp"
+
+namespace breve::steve {
+
+enum class Severity : std::uint8_t { Error, Warning, Note };
+
+struct Diagnostic {
+  Severity severity = Severity::Error;
+  std::string code;     // stable, kebab-case: "unknown-variable", "lint-precedence"
+  std::string message;  // what is wrong, lower case, no full stop
+  std::string help;     // what to do; may be empty
+  Span span;
+};
+
+class Diagnostics {
+ public:
+  void error(const Span& span, std::string code, std::string message, std::string help = {});
+  void warning(const Span& span, std::string code, std::string message, std::string help = {});
+  const std::vector<Diagnostic>& all() const { return all_; }
+  std::size_t error_count() const { return errors_; }
+
+ private:
+  std::vector<Diagnostic> all_;
+  std::size_t errors_ = 0;
+};
+
+/// "file:line:col: error: message", the source line with a caret under the span, and "help: ..." on a line of its own.
+std::string format(const Diagnostic& diagnostic, const Sources& sources);
+
+/// The candidate nearest to `name` (edit distance at most a third of its length), or "" if none is near.
+std::string nearest(std::string_view name, const std::vector<std::string_view>& candidates);
+
+}  // namespace breve::steve
