@@ -4,9 +4,13 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <typeinfo>
+#include <utility>
 #include <vector>
 
 #include "runtime/base/error.hpp"
@@ -19,10 +23,7 @@ static_assert(std::endian::native == std::endian::little, "images are written in
 class ByteWriter {
  public:
   template <class T>
-    requires(std::is_arithmetic_v<T> || std::is_enum_v<T>)
-  void put(T value) {
-    raw(&value, sizeof value);
-  }
+  requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void put(T value) { raw(&value, sizeof value); }
   void put(const Vector3& v) { raw(v.data(), 3 * sizeof(double)); }
   void put(const Matrix3& m) { raw(m.data(), 9 * sizeof(double)); }
   void put(const Quaternion& q) { raw(q.coeffs().data(), 4 * sizeof(double)); }
@@ -31,14 +32,26 @@ class ByteWriter {
     raw(text.data(), text.size());
   }
   void raw(const void* data, std::size_t size) {
-    const auto* bytes = static_cast<const std::uint8_t*>(data);
-    bytes_.insert(bytes_.end(), bytes, bytes + size);
+    if (size == 0) return;
+    const std::size_t at = bytes_.size();
+    bytes_.resize(at + size);
+    std::memcpy(bytes_.data() + at, data, size);
+  }
+  /// Something that several owners share (or null): written once per writer, named by a number afterwards, so that
+  /// it is shared again after reading. T has save(ByteWriter&) const and static shared_ptr<T> load(ByteReader&).
+  template <class T>
+  void put_shared(const std::shared_ptr<T>& thing) {
+    if (!thing) return put(std::uint32_t{0});
+    const auto [entry, fresh] = shared_.try_emplace(thing.get(), static_cast<std::uint32_t>(shared_.size() + 1));
+    put(entry->second);
+    if (fresh) thing->save(*this);
   }
   const std::vector<std::uint8_t>& bytes() const { return bytes_; }
   std::vector<std::uint8_t> take() { return std::move(bytes_); }
 
  private:
   std::vector<std::uint8_t> bytes_;
+  std::map<const void*, std::uint32_t> shared_;  // looked up, never walked: addresses do not reach the image
 };
 
 /// Reads what ByteWriter wrote. Throws Error{Image} when the image ends early; never reads outside it.
@@ -47,8 +60,7 @@ class ByteReader {
   ByteReader(const std::uint8_t* data, std::size_t size) : next_(data), left_(size) {}
 
   template <class T>
-    requires(std::is_arithmetic_v<T> || std::is_enum_v<T>)
-  T get() {
+  requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) T get() {
     T value;
     raw(&value, sizeof value);
     return value;
@@ -82,6 +94,22 @@ class ByteReader {
     if (least != 0 && count > left_ / least) fail();
     return static_cast<std::size_t>(count);
   }
+  /// What put_shared wrote; null if it was null.
+  template <class T>
+  std::shared_ptr<T> get_shared() {
+    const auto number = get<std::uint32_t>();
+    if (number == 0) return nullptr;
+    if (number <= shared_.size()) {
+      const auto& [thing, type] = shared_[number - 1];
+      if (*type != typeid(T) || !thing) fail();
+      return std::static_pointer_cast<T>(thing);
+    }
+    if (number != shared_.size() + 1) fail();
+    shared_.emplace_back(nullptr, &typeid(T));
+    std::shared_ptr<T> thing = T::load(*this);
+    shared_[number - 1].first = thing;
+    return thing;
+  }
   void raw(void* out, std::size_t size) {
     need(size);
     if (size != 0) std::memcpy(out, next_, size);
@@ -100,6 +128,7 @@ class ByteReader {
   }
   const std::uint8_t* next_;
   std::size_t left_;
+  std::vector<std::pair<std::shared_ptr<void>, const std::type_info*>> shared_;
 };
 
 }  // namespace breve

@@ -15,8 +15,13 @@ class Random {
   explicit Random(std::uint64_t seed = 1) { seed_with(seed); }
 
   void seed_with(std::uint64_t seed);
+  /// uniform() in steps of 1/32767, as the original drew its floats (language, F37). Off by default.
+  void set_coarse(bool coarse) { coarse_ = coarse; }
+  bool coarse() const { return coarse_; }
   std::uint64_t seed() const { return seed_; }
   std::uint64_t next();
+  /// Uniform integer in [0, bound), bound > 0. No modulo bias.
+  std::uint64_t below(std::uint64_t bound);
 
   /// Uniform in [0, 1], both ends reachable, 53 bits.
   double uniform();
@@ -27,6 +32,7 @@ class Random {
   /// Mean 1.
   double exponential();
   /// Gamma distributed of integer order >= 1 (waiting time to the order-th event of a unit Poisson process).
+  /// Error{Argument} for an order below 1.
   double gamma(std::int32_t order);
 
   void save(ByteWriter& out) const;
@@ -34,10 +40,13 @@ class Random {
   void hash(Hasher& hasher) const;
 
  private:
+  double open_uniform();  // in (0, 1), 53 bits: safe under a logarithm
+
   std::array<std::uint64_t, 4> state_{};
   std::uint64_t seed_ = 0;
   double spare_ = 0;  // gauss makes two at a time
   bool has_spare_ = false;
+  bool coarse_ = false;
 };
 
 }  // namespace breve

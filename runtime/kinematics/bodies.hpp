@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <memory>
 #include <memory_resource>
+#include <string>
+#include <vector>
 
 #include "runtime/base/bytes.hpp"
 #include "runtime/base/hasher.hpp"
@@ -23,9 +25,9 @@ enum class BodyKind : std::uint8_t { Mobile, Stationary, Link };
 struct Material {
   double restitution = 0.4;
   double friction = 0.15;
-  double static_friction = -1;      // >= 0: set exactly by set-friction
+  double static_friction = -1;  // >= 0: set exactly by set-friction
   double dynamic_friction = -1;
-  double normal_restitution = -1;   // >= 0: set exactly by set-restitution
+  double normal_restitution = -1;  // >= 0: set exactly by set-restitution
   double tangential_restitution = 0;
   double restitution_threshold = 0;
 };
@@ -42,14 +44,29 @@ struct Appearance {
   bool bounding_box = false, axis = false, neighbor_lines = false;
 };
 
+/// All that decides how a body moves on.
+struct BodyState {
+  Vector3 location, velocity, acceleration, rotational_velocity, rotational_acceleration, force, torque;
+  Quaternion orientation;
+  const Shape* shape = nullptr;
+  bool physics = false;
+};
+
 class Bodies {
  public:
   explicit Bodies(std::pmr::memory_resource* memory);
   ~Bodies();
+  Bodies(const Bodies&) = delete;
+  Bodies& operator=(const Bodies&) = delete;
 
   BodyIndex add(BodyKind kind, ObjectId owner);
   void remove(BodyIndex body);
   std::size_t size() const;
+  std::size_t index_end() const;  // every index is below this
+  bool used(BodyIndex body) const;
+  std::uint64_t revision() const;  // grows when a body is added or removed
+  std::size_t bytes() const;
+  void swap(Bodies& other);
   BodyKind kind(BodyIndex body) const;
   ObjectId owner(BodyIndex body) const;
 
@@ -89,12 +106,41 @@ class Bodies {
 
   double neighborhood_size(BodyIndex body) const;  // 0 until set
   void set_neighborhood_size(BodyIndex body, double radius);
-  Material& material(BodyIndex body);
+  Material& material(BodyIndex body);  // made on first use
+  const Material& material(BodyIndex body) const;
   Appearance& appearance(BodyIndex body);  // made on first use
   const Appearance& appearance(BodyIndex body) const;
 
+  // --- the stages of a sub-step of h seconds, each over its own active bodies only (CLASSES 2.3, 2.4) ----------------
+  std::size_t translating() const;     // kinematic bodies with a velocity or an acceleration
+  std::size_t turning() const;         // kinematic bodies with a rotational velocity or acceleration
+  std::size_t rigid() const;           // physics-enabled bodies
+  ObjectId first_translating() const;  // null if there is none; so the other two
+  ObjectId first_turning() const;
+  ObjectId first_rigid() const;
+  void translate(double h);
+  void turn(double h);
+  void move_rigid(double h, const Vector3& gravity);
+
+  // --- for the stage that stops bodies at their time of impact -------------------------------------------------------
+  bool active(BodyIndex body) const;  // some stage moves it
+  BodyState state(BodyIndex body) const;
+  /// Put it there, moving so, without a note in the log.
+  void place(BodyIndex body, const Vector3& location, const Quaternion& orientation, const Vector3& velocity,
+             const Vector3& rotational_velocity);
+  void advance(BodyIndex body, double h, const Vector3& gravity);  // one body through the stages above
+  /// While a log is set, each setter that changes how a body moves notes the body there. Null: no log.
+  void set_log(std::pmr::vector<BodyIndex>* log);
+
+  // --- snapshot -----------------------------------------------------------------------------------------------------
+  void save(ByteWriter& out) const;
+  void load(ByteReader& in);  // into fresh bodies; Error{Image}
+  void hash(Hasher& hasher, BodyIndex body) const;
+
  private:
   struct Arrays;
+  Arrays& arrays();  // made with the first body: a world without bodies has none
+  std::pmr::memory_resource* memory_;
   std::unique_ptr<Arrays> arrays_;
 };
 

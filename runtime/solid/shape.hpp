@@ -7,6 +7,7 @@
 #include "runtime/base/bytes.hpp"
 #include "runtime/base/hasher.hpp"
 #include "runtime/base/math.hpp"
+#include "runtime/solid/polyhedron.hpp"
 
 namespace breve {
 
@@ -14,47 +15,56 @@ enum class ShapeKind : std::uint8_t { Sphere, Box, Convex };
 
 class Shape {
  public:
-  // Builders. Error{Argument} names what is wrong: a size or density that is not finite and > 0, fewer than 3 sides.
+  // Builders, density 1. Error{Argument} names what is wrong: a size or density that is not finite and > 0, or so large
+  // or small that mass or inertia overflow; fewer than 3 sides (or more than 1000); faces that enclose no convex solid.
   static std::shared_ptr<Shape> sphere(double radius);
-  static std::shared_ptr<Shape> box(const Vector3& size);                              // full edge lengths
-  static std::shared_ptr<Shape> prism(int sides, double height, double radius);        // PolygonDisk
-  static std::shared_ptr<Shape> cone(int sides, double height, double radius);         // PolygonCone, apex at +height/2
+  static std::shared_ptr<Shape> box(const Vector3& size);                        // full edge lengths
+  static std::shared_ptr<Shape> prism(int sides, double height, double radius);  // PolygonDisk
+  static std::shared_ptr<Shape> cone(int sides, double height, double radius);   // PolygonCone, apex at +height/2
   static std::shared_ptr<Shape> convex(const std::vector<std::vector<Vector3>>& faces, double density);  // CustomShape
 
   ~Shape();
   ShapeKind kind() const;
-  double radius() const;                        // Sphere
-  Vector3 size() const;                         // Box: full edge lengths after scaling
-  const std::vector<Vector3>& vertices() const; // Box, Convex: after scaling, own frame
+  double radius() const;                               // Sphere
+  Vector3 size() const;                                // Box: full edge lengths after scaling
+  const std::vector<Vector3>& vertices() const;        // Box, Convex: after scaling, own frame
   const std::vector<std::vector<int>>& faces() const;  // indices into vertices, counter-clockwise from outside
-  double bounding_radius() const;               // of the sphere about the origin that holds it
+  const Polyhedron& polyhedron() const;  // Box, Convex: the same with planes and edges; empty for a Sphere
+  double bounding_radius() const;        // of the sphere about the origin that holds it
   Eigen::AlignedBox3d bounds(const Matrix3& rotation) const;  // about the origin
 
   double volume() const;
-  double mass() const;     // kg
-  double density() const;  // kg per cubic length unit
-  void set_mass(double mass);
-  void set_density(double density);
-  const Matrix3& inertia() const;  // about the centre, own frame
+  double mass() const;               // kg
+  double density() const;            // kg per cubic length unit
+  void set_mass(double mass);        // density = mass / volume; the inertia follows
+  void set_density(double density);  // mass and inertia follow
+  Vector3 center_of_mass() const;    // own frame; the origin, but for a cone and some convex shapes
+  const Matrix3& inertia() const;    // about the origin, own frame
+  /// Replace the inertia; later changes of mass and scale carry it along. Error{Argument} unless it is finite,
+  /// symmetric, positive definite, and no principal moment exceeds the sum of the other two (no solid has such).
   void set_inertia(const Matrix3& inertia);
 
-  /// Absolute factors of the original size per axis; a sphere uses x only.
+  /// Absolute factors of the original size per axis, finite and > 0; a sphere uses x only. The density stays.
   void set_scale(const Vector3& factors);
   const Vector3& scale() const;
   const Vector3& last_scale() const;  // the scale before the last change
 
   /// Where a ray from the centre along `direction` leaves the surface; (0,0,0) for a zero direction.
   Vector3 point_on(const Vector3& direction) const;
-  /// First hit of a ray with the solid at a pose. False on a miss. `fraction` is in lengths of `direction`.
-  bool raycast(const Vector3& origin, const Vector3& direction, double& fraction) const;  // own frame
+  /// First point of the solid on a ray, both in the shape's own frame. False on a miss. `fraction` is in lengths of
+  /// `direction`, and 0 if the ray starts inside.
+  bool raycast(const Vector3& origin, const Vector3& direction, double& fraction) const;
 
+  /// The image keeps every bit; sharing between owners is the affair of whoever saves them.
   void save(ByteWriter& out) const;
+  /// Error{Image} if the image is damaged.
   static std::shared_ptr<Shape> load(ByteReader& in);
   void hash(Hasher& hasher) const;
 
  private:
-  Shape();
   struct Geometry;
+  explicit Shape(std::unique_ptr<Geometry> geometry);
+  static std::shared_ptr<Shape> of(ShapeKind kind, Polyhedron solid, double density);
   std::unique_ptr<Geometry> geometry_;
 };
 

@@ -19,6 +19,8 @@ class Resource {
   virtual void hash(Hasher& hasher) const = 0;
 };
 
+/// A resource that shares a Shape (or the like) with bodies writes it with out.put_shared(shape) and reads it with
+/// in.get_shared<Shape>(), so that it is the same shape again after loading.
 /// Registered once per kind with World::add_resource_kind.
 using ResourceLoader = std::unique_ptr<Resource> (*)(ByteReader& in);
 

@@ -69,28 +69,41 @@ class World {
   const std::pmr::vector<ObjectId>& neighbors(ObjectId id);
 
   // --- clock and step ----------------------------------------------------------------------------------------------
-  double time() const { return time_; }
-  double iteration_step() const { return iteration_step_; }
-  double integration_step() const { return integration_step_; }
+  double time() const { return clock_.time; }
+  double iteration_step() const { return clock_.iteration_step; }
+  double integration_step() const { return clock_.integration_step; }
   void set_iteration_step(double seconds);    // raised to the integration step if smaller; must be finite and > 0
   void set_integration_step(double seconds);  // finite and > 0
-  std::uint64_t iteration() const { return iteration_; }
-  /// One iteration (DESIGN section 4). Errors of scripts pass through; the rest of the iteration is then not run.
+  std::uint64_t iteration() const { return clock_.iteration; }
+  /// One iteration: input, iterate, post-iterate, scheduled calls, the script side's own end. Errors of scripts pass
+  /// through; the rest of the iteration is then not run and not counted, and the world may be stepped, saved or
+  /// destroyed. Error{Busy} from inside a step.
   void step();
-  /// Advance every body by one iteration step, in sub-steps, with collision handlers. Called by the controller's iterate.
+  /// Advance every body by one iteration step, in sub-steps, with collision handlers. Called by the controller's
+  /// iterate. The clock moves once, at the end; while a handler runs it reads the moment of the contact.
+  /// Error{Busy} from inside itself; Error{Argument} if an iteration step has too many sub-steps.
   void advance_bodies();
+  /// Acts on physics-enabled bodies, (0, -9.81, 0) until set. Error{Argument} if not finite.
+  void set_gravity(const Vector3& gravity);
+  const Vector3& gravity() const;
   bool stepping() const { return stepping_; }
-  void request_end() { end_requested_ = true; }
-  bool end_requested() const { return end_requested_; }
-  void set_paused(bool paused) { paused_ = paused; }
-  bool paused() const { return paused_; }
+  void request_end() { clock_.end_requested = true; }
+  bool end_requested() const { return clock_.end_requested; }
+  void set_paused(bool paused) { clock_.paused = paused; }
+  bool paused() const { return clock_.paused; }
 
   // --- schedule ----------------------------------------------------------------------------------------------------
   /// Call `method` of `target` at absolute time `when`; again every `interval` seconds if it is > 0.
-  /// Returns false, and queues nothing, if `when` is not in the future.
+  /// Returns false, and queues nothing, if `when` is not in the future; a repeating one starts an interval from now
+  /// then. Error{Argument} for a time or an interval that is not finite, Error{Stale} for a target that is not alive.
   bool schedule(ObjectId target, std::string_view method, double when, double interval = 0);
   /// Remove queued calls: those of `method` ("" = any) at time `when` (0 = any). Returns how many.
   std::size_t unschedule(ObjectId target, std::string_view method, double when);
+  /// Among calls due at the same time the last scheduled goes first (default), or the first (F33).
+  void set_stable_schedule(bool stable);
+  /// Calls run up to one iteration step early (default, as programs observed), or only once their time has come.
+  void set_exact_schedule(bool exact);
+  std::size_t scheduled_count() const;
 
   // --- notifications -----------------------------------------------------------------------------------------------
   void observe(ObjectId observer, ObjectId announcer, std::string_view message, std::string_view method);
@@ -102,6 +115,7 @@ class World {
   void ignore_collisions(ClassId owner, ClassId other);
   /// "impact" (first touch at its time of impact, the default) or "step" (calls at the end of the sub-step).
   void set_impact_timing(bool at_impact);
+  bool impact_timing() const;
 
   // --- input, random numbers, view -----------------------------------------------------------------------------------
   void queue_input(InputEvent event);
@@ -114,20 +128,42 @@ class World {
   std::uint64_t hash() const;
   /// The whole world with its script side, as a checked, versioned image. Error{Busy} inside a step.
   std::vector<std::uint8_t> save(std::uint64_t program_fingerprint) const;
-  /// Replace this world's state by an image's. Error{Image} for a damaged or foreign image; the world is then unchanged.
+  /// Replace this world's state by an image's. Error{Image} for a damaged or foreign image; the world is then
+  /// unchanged.
   void load(const std::uint8_t* data, std::size_t size, std::uint64_t program_fingerprint);
 
  private:
+  struct Parts;
+  struct Clock {
+    double time = 0;     // s
+    double residue = 0;  // what rounding kept out of `time` (Kahan): a thousand steps of 0.06 make 60
+    double iteration_step = 0.06;
+    double integration_step = 0.02;
+    std::uint64_t iteration = 0;
+    bool end_requested = false;
+    bool paused = false;
+    void advance(double seconds);
+  };
+
+  // step.cpp
+  void deliver_input();
+  void run_scheduled();
+  void run_substeps(double h, std::uint64_t count);
+  void count_bytes();
+  // snapshot.cpp
+  void write_image(ByteWriter& out) const;
+  void read_image(ByteReader& in, World& fresh) const;
+  void swap_state(World& other);
+
+  std::pmr::memory_resource* memory_;
+  Behaviour* behaviour_ = nullptr;
   std::unique_ptr<Bodies> bodies_;
+  std::unique_ptr<Parts> parts_;
   Random random_;
   ViewState view_;
-  double time_ = 0;
-  double iteration_step_ = 0.06;
-  double integration_step_ = 0.02;
-  std::uint64_t iteration_ = 0;
+  Clock clock_;
   bool stepping_ = false;
-  bool end_requested_ = false;
-  bool paused_ = false;
+  bool advancing_ = false;
 };
 
 }  // namespace breve

@@ -1,6 +1,7 @@
 // A compiled program: classes, methods, bytecode, constants. Never changes once made; shared by any number of worlds.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -34,11 +35,17 @@ class SymbolTable {
 };
 
 struct ClassInfo;
+struct CodeTables;
 
 /// A type as the compiler knows it. Any: a dynamic value with its tag.
 enum class StaticType : std::uint8_t { Null, Int, Double, Vector, Matrix, String, Object, List, Hash, Pointer, Data, Any };
 
 int slot_count(StaticType type);
+inline StaticType static_type(ast::TypeKind kind) {
+  return static_cast<StaticType>(static_cast<int>(kind) + 1);  // KEEP IN STEP: ast::TypeKind, StaticType
+}
+static_assert(static_cast<int>(ast::TypeKind::Int) + 1 == static_cast<int>(StaticType::Int));
+static_assert(static_cast<int>(ast::TypeKind::Data) + 1 == static_cast<int>(StaticType::Data));
 
 struct VariableInfo {
   Symbol name = kNoSymbol;
@@ -55,8 +62,9 @@ struct ParameterInfo {
   Symbol class_name = kNoSymbol;
   std::uint32_t slot = 0;          // first slot in the frame
   bool has_default = false;
-  Value default_value;             // converted to `type`; strings and matrices by constant index in default_constant
-  std::uint32_t default_constant = 0;
+  bool default_fails = false;      // a default that cannot be converted to the type: an error when it is needed
+  std::array<double, 9> default_numbers{};  // int, double, vector, matrix; references start as null
+  std::uint32_t default_string = 0;         // string: number of the constant + 1; 0 = empty
 };
 
 struct Function;  // bytecode; steve/compile/bytecode.hpp
@@ -97,11 +105,15 @@ struct ClassInfo {
     return false;
   }
   const VariableInfo* find_variable(Symbol name) const;  // own or inherited; the most derived wins
+  const MethodInfo* find_method(Symbol name, std::size_t count) const;  // own or inherited, exactly `count` parameters
+  bool responds(Symbol name) const;                                     // any number of parameters
 };
 
 class Program {
  public:
   ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
   const ClassInfo* find_class(std::string_view name_or_alias) const;  // null if there is none
   const ClassInfo& cls(ClassId id) const { return *classes_[id]; }
   const std::vector<std::unique_ptr<ClassInfo>>& classes() const { return classes_; }
@@ -110,6 +122,7 @@ class Program {
   const Sources& sources() const { return sources_; }
   std::uint64_t fingerprint() const { return fingerprint_; }  // of all sources, for snapshots
   const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }  // warnings
+  const CodeTables& code() const { return *code_; }
 
  private:
   friend class ProgramBuilder;
@@ -120,6 +133,7 @@ class Program {
   SymbolTable symbols_;
   Sources sources_;
   Defines defines_;
+  std::unique_ptr<CodeTables> code_;
   std::vector<Diagnostic> diagnostics_;
   std::uint64_t fingerprint_ = 0;
 };

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <memory_resource>
+#include <string_view>
 #include <vector>
 
 #include "runtime/base/math.hpp"
@@ -14,10 +15,17 @@ namespace breve::steve {
 class Heap;
 struct ClassInfo;
 
+/// A cell that refers to other cells, so that it can be part of a cycle: list, hash, instance.
+struct Container : Cell {
+  std::uint32_t place = 0;  // index in the heap's table of containers
+  explicit Container(Tag t) : Cell(t) {}
+};
+inline bool is_container(Tag tag) { return tag >= Tag::Object && tag <= Tag::Hash; }
+
 /// Immutable bytes; never empty (the empty string is the null reference).
 struct StringCell : Cell {
   std::uint32_t size;
-  mutable std::uint32_t hash_cache = 0;  // 0: not computed yet
+  mutable std::uint32_t hash_cache = 0;  // 0: not computed yet. Computed beforehand in immortal strings (shared by threads)
   char bytes[8];                         // really `size`, with a zero byte behind
 
   explicit StringCell(std::uint32_t n) : Cell(Tag::String), size(n) {}
@@ -25,18 +33,25 @@ struct StringCell : Cell {
 };
 inline std::string_view view(const StringCell* s) { return s ? s->view() : std::string_view{}; }
 
+/// The bytes that a string of `size` bytes takes with its head, a multiple of 8.
+constexpr std::size_t string_cell_bytes(std::size_t size) { return (sizeof(Cell) + 8 + size + 1 + 7) & ~std::size_t{7}; }
+static_assert(sizeof(StringCell) == sizeof(Cell) + 16);
+/// Make a literal of a program in `memory`, which holds string_cell_bytes(text.size()) bytes: immortal, hash computed.
+StringCell* make_immortal_string(void* memory, std::string_view text);
+std::uint32_t string_hash(std::string_view text);  // never 0 nor 0xffffffff
+
 struct MatrixCell : Cell {
   Matrix3 m;
   explicit MatrixCell(const Matrix3& value) : Cell(Tag::Matrix), m(value) {}
 };
 
 /// A growable array with room at both ends: push, pop, prepend and unprepend are O(1) amortised.
-struct ListCell : Cell {
-  std::uint64_t serial;
+struct ListCell : Container {
   std::uint32_t first = 0, size = 0, capacity = 0;
+  std::uint64_t serial;
   Value* store = nullptr;
 
-  explicit ListCell(std::uint64_t s) : Cell(Tag::List), serial(s) {}
+  explicit ListCell(std::uint64_t s) : Container(Tag::List), serial(s) {}
   Value* begin() { return store + first; }
   Value* end() { return store + first + size; }
   const Value* begin() const { return store + first; }
@@ -46,18 +61,20 @@ struct ListCell : Cell {
 };
 
 /// Open addressing over entries kept in order of insertion. Keys compare with type (language, section 8.2).
-struct HashCell : Cell {
+struct HashCell : Container {
   struct Entry {
-    Value key;  // Tag::Null with hash 0xffffffff: a removed entry
+    Value key;  // Tag::Null with hash kRemoved: a removed entry
     Value value;
     std::uint32_t hash;
+    bool live() const { return hash != kRemoved; }
   };
+  static constexpr std::uint32_t kRemoved = 0xffffffffU;
   std::uint64_t serial;
   std::uint32_t count_live = 0, used = 0, entry_capacity = 0, index_capacity = 0;
   Entry* entries = nullptr;
   std::uint32_t* index = nullptr;  // entry number + 1; 0 = free
 
-  explicit HashCell(std::uint64_t s) : Cell(Tag::Hash), serial(s) {}
+  explicit HashCell(std::uint64_t s) : Container(Tag::Hash), serial(s) {}
 };
 
 /// What a pointer value refers to: an open file and the like. Closed by its destructor.
@@ -72,21 +89,23 @@ struct PointerCell : Cell {
 };
 
 struct DataCell : Cell {
+  std::uint64_t serial;
   std::pmr::vector<std::uint8_t> bytes;
-  explicit DataCell(std::pmr::memory_resource* memory) : Cell(Tag::Data), bytes(memory) {}
+  DataCell(std::uint64_t s, std::pmr::memory_resource* memory) : Cell(Tag::Data), serial(s), bytes(memory) {}
 };
 
 /// An object of a steve class. Its slots are laid out by its class; a freed one stays as a husk while it is referred to.
-struct Instance : Cell {
+struct Instance : Container {
   enum class State : std::uint8_t { Live, BeingFreed, Freed };
   State state = State::Live;
   bool auto_free = false;
+  std::uint16_t units = 0;  // size class of this cell in the heap; 0: taken singly
   const ClassInfo* cls;
   ObjectId id;
   std::uint64_t serial;  // what `print` shows as the address
   Slot* slots;           // cls->slot_count of them, right behind this head
 
-  explicit Instance(const ClassInfo* c) : Cell(Tag::Object), cls(c), serial(0), slots(nullptr) {}
+  explicit Instance(const ClassInfo* c) : Container(Tag::Object), cls(c), serial(0), slots(nullptr) {}
   bool live() const { return state != State::Freed; }
 };
 

@@ -1,15 +1,20 @@
 // The script heap of one world: deferred reference counts for what dies young, an incremental mark and sweep, bounded
 // by counted work, for cycles. Frames are not counted: a cell whose count is 0 waits in a table until a safe point.
 //
-// Sources: Deutsch and Bobrow 1976 (deferred counting); Yuasa 1990 (snapshot-at-the-beginning marking).
+// Sources: Deutsch and Bobrow 1976 (deferred counting); Yuasa 1990 (snapshot-at-the-beginning marking); Baker 1992
+// (colours as regions of one table instead of bits in cells).
 #pragma once
 
+#include <array>
+#include <cassert>
 #include <cstdint>
 #include <functional>
 #include <memory_resource>
+#include <span>
 #include <string_view>
 #include <vector>
 
+#include "runtime/base/bytes.hpp"
 #include "steve/machine/cells.hpp"
 
 namespace breve::steve {
@@ -18,9 +23,11 @@ namespace breve::steve {
 class RootSource {
  public:
   virtual ~RootSource() = default;
-  /// References held by running frames and natives (uncounted). Called at a safe point.
+  /// References held by running frames and natives (uncounted). Called at a safe point. The same cells must be visited
+  /// when it is called twice without anything in between; null and immortal ones are welcome.
   virtual void visit_frames(const std::function<void(Cell*)>& visit) = 0;
-  /// Instances that live until they are freed (those without auto-free), and pinned values (counted).
+  /// Counted references from outside the heap: pinned values. Instances without auto-free are roots by themselves, the
+  /// heap knows them; visiting them too is harmless but costs time in one slice.
   virtual void visit_roots(const std::function<void(Cell*)>& visit) = 0;
   /// An auto-free instance that nothing refers to any more: run `destroy`, then free it as `free` would.
   virtual void free_unreachable(Instance& instance) = 0;
@@ -33,7 +40,7 @@ class Heap {
   Heap(const Heap&) = delete;
   Heap& operator=(const Heap&) = delete;
 
-  // --- making cells; each may throw std::bad_alloc, none collects ---------------------------------------------------
+  // --- making cells; each may throw std::bad_alloc (then nothing has changed), none collects -----------------------
   StringCell* string(std::string_view bytes);  // null for the empty string
   StringCell* concat(std::string_view a, std::string_view b);
   MatrixCell* matrix(const Matrix3& m);
@@ -47,7 +54,18 @@ class Heap {
   void retain(Cell* cell) {
     if (cell && !cell->immortal) ++cell->count;
   }
-  void release(Cell* cell);  // the write barrier: call for every reference that a heap slot loses
+  /// The write barrier: call for every reference that a heap slot loses.
+  void release(Cell* cell) {
+    if (!cell || cell->immortal) return;
+    if (phase_ == Phase::Mark) [[unlikely]]
+      shade(cell);
+    assert(cell->count > 0);
+    if (--cell->count == 0) {
+      if (!cell->listed) enlist(cell);
+    } else if (is_container(cell->tag)) {
+      note_survivor(static_cast<Container*>(cell));
+    }
+  }
   void retain(const Value& v) {
     if (v.is_reference()) retain(v.ref);
   }
@@ -57,8 +75,9 @@ class Heap {
   /// slot = value with counting, for slots inside cells.
   void store(Value& slot, const Value& value) {
     const Value old = slot;
-    retain(value);
-    slot = value;
+    const Value fresh = value;
+    retain(fresh);
+    slot = fresh;
     release(old);
   }
   void store(Slot& slot, Cell* ref) {
@@ -67,18 +86,40 @@ class Heap {
     slot.ref = ref;
     release(old);
   }
-  /// Release every reference in the slots of an instance and zero them (what `free` does to variables).
+  /// Release every reference in the slots of an instance and zero all its slots (what `free` does to variables).
   void clear_slots(Instance& instance);
 
   // --- lists; positions are checked by the caller -----------------------------------------------------------------------
-  void push(ListCell& list, const Value& value);
-  void prepend(ListCell& list, const Value& value);
+  // Adding to a list of 2^31 - 1 elements is RunError{Bounds}.
+  void push(ListCell& list, const Value& value) {
+    const Value copy = value;
+    if (list.first + list.size == list.capacity) make_room_behind(list);
+    retain(copy);
+    list.store[list.first + list.size++] = copy;
+  }
+  void prepend(ListCell& list, const Value& value) {
+    const Value copy = value;
+    if (list.first == 0) make_room_before(list);
+    retain(copy);
+    list.store[--list.first] = copy;
+    ++list.size;
+  }
   void insert(ListCell& list, std::uint32_t position, const Value& value);
-  Value pop(ListCell& list);        // the list is not empty
-  Value unprepend(ListCell& list);  // the list is not empty
+  Value pop(ListCell& list) {  // the list is not empty
+    const Value value = list.store[list.first + --list.size];
+    release(value);
+    return value;
+  }
+  Value unprepend(ListCell& list) {  // the list is not empty
+    const Value value = list.store[list.first++];
+    --list.size;
+    release(value);
+    return value;
+  }
   Value remove(ListCell& list, std::uint32_t position);
   ListCell* copy(const ListCell& list);  // and all nested lists, sharing and cycles preserved; no recursion
   void resize(ListCell& list, std::uint32_t size);  // shrink, or grow with NULL values
+  void reserve(ListCell& list, std::uint32_t capacity);  // room for that many elements in all
 
   // --- hashes -----------------------------------------------------------------------------------------------------------
   const Value* find(const HashCell& hash, const Value& key) const;  // null if absent
@@ -99,13 +140,134 @@ class Heap {
   std::uint64_t live_cells() const { return cells_; }
   std::pmr::memory_resource* memory() const { return memory_; }
 
+  // --- snapshots ----------------------------------------------------------------------------------------------------------
+  // A snapshot writes the cells in the order of containers() (garbage not yet collected included), then those of
+  // waiting() that are no containers, then save_state. Restoring makes the containers in the same order in an empty
+  // heap, gives them their serials and contents (retaining), and calls load_state last: the restored heap then collects
+  // at the same iterations and safe points as the saved one.
+
+  /// Every list, hash and instance, in the order of the collector's table.
+  std::span<Container* const> containers() const { return containers_; }
+  /// Every cell whose count is or was 0 and that waits for `reclaim`; may be of any type.
+  std::span<Cell* const> waiting() const { return zero_; }
+  /// @param number  the number under which the snapshot wrote a cell
+  void save_state(ByteWriter& out, const std::function<std::uint64_t(const Cell*)>& number) const;
+  /// @param cell  the cell with that number; throws Error{Image} for a number that was never written
+  /// @throws Error{Image} if the state cannot be that of this heap
+  void load_state(ByteReader& in, const std::function<Cell*(std::uint64_t)>& cell);
+
  private:
+  // The colours of the collector are regions of containers_: ends_[r] is the end of region r, region 3 is the rest.
+  //   Mark:     0 scanned, 1 reached but not scanned, 2 looked at and not a root, 3 not looked at
+  //   Examine:  0 live, 1 unreachable instances with auto-free, 2 other garbage, 3 not looked at
+  //   Sweep:    0 live, 2 and 3 garbage to take apart
+  // Idle: all ends are 0. New cells of a running collection join region 0.
+  enum class Phase : std::uint8_t { Idle, Mark, Examine, Sweep };
+  struct FreeSlot {
+    FreeSlot* next;
+  };
+  struct alignas(16) Chunk {
+    Chunk* next;
+    std::size_t bytes;
+  };
+  struct alignas(16) Single {  // stands before a cell that is not in a size class
+    Single* previous;
+    Single* next;
+    std::size_t bytes;
+  };
+  struct Doomed {
+    Instance* instance;
+    bool cyclic;
+  };
+  static constexpr std::size_t kUnit = 16;     // bytes; size classes are multiples
+  static constexpr std::size_t kClasses = 32;  // up to 512 bytes
+  static constexpr std::size_t kReclaimAt = 8192;
+
+  // heap.cpp
+  void* take(std::size_t bytes);
+  void* take_single(std::size_t bytes);
+  void give(void* memory, std::size_t bytes);
+  void give_single(void* memory);
+  void* carve(std::size_t units);
+  void reserve_tables(bool container);
+  template <class T> T* enter(T* cell);
+  StringCell* raw_string(std::size_t size);
+  void enlist(Cell* cell) {
+    cell->listed = true;
+    zero_.push_back(cell);  // never grows: reserve_tables keeps room for every cell
+  }
+  void destroy(Cell* cell);
+  void release_children(Container& cell);
+  void free_arrays(Container& cell);
+  bool reclaim_round();  // true if a destroy method may have run
+  void reclaim_all();
+  void doom_waiting(std::size_t kept);
+  bool free_doomed();
+
+  // collector.cpp
+  void note_survivor(Container* cell) {
+    if (cell->tag != Tag::Object || static_cast<Instance*>(cell)->auto_free) suspicion_ = true;
+  }
+  static bool may_close_cycle(const Container& cell);
+  std::size_t region(const Container& cell) const;
+  void swap_places(std::uint32_t a, std::uint32_t b);
+  void promote(Container& cell, std::size_t target);
+  void enrol(Container& cell);
+  void strike(Container& cell);
+  void shade(Cell* cell);
+  void shade(const Value& v) {
+    if (v.is_reference()) shade(v.ref);
+  }
+  void begin_collection();
+  void end_collection();
+  void mark(std::int64_t& work);
+  void scan(Container& cell, std::int64_t& work);
+  void scan_part(std::int64_t& work);
+  void examine(std::int64_t& work);
+  void doom_unreachable();
+  void sweep(std::int64_t& work);
+  /// Before the elements of a half-scanned list or hash move: finish scanning it.
+  void settle(const Container& cell) {
+    if (partial_ == &cell) [[unlikely]]
+      finish_partial();
+  }
+  void finish_partial();
+
+  // lists.cpp, hashes.cpp
+  Value* new_store(std::uint32_t capacity);
+  void move_store(ListCell& list, std::uint32_t capacity, std::uint32_t first);
+  void make_room_behind(ListCell& list);
+  void make_room_before(ListCell& list);
+  void copy_elements(const ListCell& from, ListCell& to, std::pmr::vector<const ListCell*>& pending,
+                     const std::function<ListCell*(const ListCell*)>& twin);
+  void regrow(HashCell& hash);
+
   std::pmr::memory_resource* memory_;
   RootSource& roots_;
+  std::array<FreeSlot*, kClasses + 1> free_{};
+  Chunk* chunks_ = nullptr;
+  std::array<std::size_t, kClasses + 1> chunk_bytes_{};
+  Single* singles_ = nullptr;
+
   std::pmr::vector<Cell*> zero_;
-  std::size_t reclaim_at_ = 65536;
+  std::pmr::vector<Container*> containers_;
+  std::pmr::vector<Doomed> doomed_;
+  std::size_t reclaim_at_ = kReclaimAt;
   std::uint64_t serial_ = 0x1000;
   std::uint64_t cells_ = 0;
+  bool freeing_doomed_ = false;
+
+  Phase phase_ = Phase::Idle;
+  bool suspicion_ = false;  // since the last collection began, something happened that can leave a cycle behind
+  bool held_by_frames_ = false;  // the last collection began while frames held something that can be in a cycle
+  std::array<std::uint32_t, 3> ends_{};
+  Container* partial_ = nullptr;  // the list or hash whose scan was cut by the end of a slice
+  std::uint32_t position_ = 0;    // where: index into its store or entries
 };
+
+/// Sort in place, stable: `before(a, b)` is true if a must come before b. Works on a copy of the elements, so that
+/// `before` may run script, change the list, or throw (then the list stays as `before` left it). The elements are kept
+/// alive meanwhile. A list that `before` has changed is replaced by the sorted elements.
+void merge_sort(Heap& heap, ListCell& list, const std::function<bool(const Value&, const Value&)>& before);
 
 }  // namespace breve::steve

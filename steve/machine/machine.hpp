@@ -7,9 +7,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_set>
 #include <vector>
 
 #include "runtime/world/world.hpp"
+#include "steve/compile/bytecode.hpp"
 #include "steve/compile/program.hpp"
 #include "steve/machine/heap.hpp"
 #include "steve/machine/native.hpp"
@@ -22,11 +24,38 @@ struct MachineHost {
   std::function<void(std::string_view text)> warn;             // one warning, one or more whole lines
   std::function<void(std::string_view text)> error;            // a run-time error that did not stop the run (F27)
   std::function<std::string(std::string_view name)> find_file; // path of a data file (images, sounds), "" if none
+  std::function<std::string(std::string_view command)> system; // run a shell command; empty: not allowed
   std::vector<std::string> arguments;                          // [0] is the program file
   bool verbose = false;                                        // say once when an obsolete selector is used
   bool strict = false;
   std::uint32_t depth_limit = 5000;                            // nested calls
   std::uint64_t budget = 0;  // loop back-edges and calls per call from the host or iteration; 0 = none
+};
+
+/// One active method, for reports.
+struct TraceLine {
+  std::string class_name, method, file;
+  std::uint64_t address = 0;
+  std::uint32_t line = 0;  // of the statement that was running
+};
+
+/// A run-time error with everything that is known about it.
+struct ErrorReport {
+  RunErrorKind kind = RunErrorKind::Internal;
+  std::string message, file;
+  std::uint32_t line = 0, column = 0;
+  std::vector<TraceLine> trace;  // outermost first
+  std::string text;              // all of it, formatted for people: ends with a newline
+};
+
+/// A run-time error on its way out of the interpreter.
+class ScriptError : public Error {
+ public:
+  ScriptError(ErrorCode code, ErrorReport report) : Error(code, report.message), report_(std::move(report)) {}
+  const ErrorReport& report() const { return report_; }
+
+ private:
+  ErrorReport report_;
 };
 
 class Machine final : public Behaviour, public RootSource {
@@ -35,7 +64,7 @@ class Machine final : public Behaviour, public RootSource {
   ~Machine() override;
 
   World& world() { return world_; }
-  Heap& heap() { return heap_; }
+  Heap& heap() { return *heap_; }
   const Program& program() const { return *program_; }
   MachineHost& host() { return host_; }
 
@@ -80,6 +109,8 @@ class Machine final : public Behaviour, public RootSource {
   [[noreturn]] static void fail(RunErrorKind kind, const std::string& message) { throw RunError(kind, message); }
   std::string text(const Value& v);  // as `print` shows it, asking objects for their get-description
   std::string stack_trace() const;   // one line per active method, outermost first
+  /// Errors reported that did not stop the run (F27).
+  std::uint64_t survived_errors() const { return survived_errors_; }
 
   // --- Behaviour, RootSource ---------------------------------------------------------------------------------------------
   void iterate(ObjectId agent) override;
@@ -98,11 +129,149 @@ class Machine final : public Behaviour, public RootSource {
   void free_unreachable(Instance& instance) override;
 
  private:
+  friend class Pin;
+
+  /// What a call site does with its arguments for one class of receiver.
+  struct PlanStep {
+    enum class Kind : std::uint8_t { Copy1, Copy3, Copy9, IntToDouble, DoubleToInt, Convert, Default } kind;
+    StaticType from_type;
+    std::uint16_t from, to;
+    bool checked;  // the parameter names a class
+    const ParameterInfo* parameter;
+  };
+  struct Plan {
+    const ClassInfo* cls = nullptr;
+    const MethodInfo* method = nullptr;  // null: `iterate`, which nobody has to have
+    std::vector<PlanStep> steps;
+    std::vector<std::uint16_t> order;  // arguments in the order of the parameters
+  };
+  struct SiteCache {
+    const ClassInfo* cls = nullptr;
+    const Plan* plan = nullptr;
+    std::vector<std::unique_ptr<Plan>> plans;
+  };
+  struct Frame {
+    const MethodInfo* method;
+    const Instruction* pc;  // as of the last call or slow instruction
+    Slot* base;
+    Slot* saved_top;
+    Instance* self;
+    std::uint32_t saved_segment;
+  };
+
+  static constexpr std::size_t kNativeRoom = 64;  // slots for a native's arguments
+
+  /// Restores the top of the stack and the pins at the end of a call into native code.
+  class StackMark {
+   public:
+    explicit StackMark(Machine& m) : machine_(m), top_(m.top_), limit_(m.limit_), segment_(m.segment_), pins_(m.pins_.size()) {}
+    ~StackMark() {
+      machine_.top_ = top_;
+      machine_.limit_ = limit_;
+      machine_.segment_ = segment_;
+      machine_.pins_.resize(pins_);
+    }
+    StackMark(const StackMark&) = delete;
+    StackMark& operator=(const StackMark&) = delete;
+
+   private:
+    Machine& machine_;
+    Slot* top_;
+    Slot* limit_;
+    std::uint32_t segment_;
+    std::size_t pins_;
+  };
+
+  // frames (frames.cpp)
+  Slot* enter(const MethodInfo& method, Instance& self);  // a new frame; parameters are still to be written
+  void leave();
+  void unwind(std::size_t depth);
+  void need_room(std::size_t slots);
+  void execute(std::size_t depth);  // run the top frame until `depth` frames are left
+  Value invoke(Instance& receiver, const MethodInfo& method, std::span<const Value> arguments);
+  void write_parameter(Slot* base, const ParameterInfo& parameter, const Value& value, std::string_view what);
+  void write_default(Slot* to, const ParameterInfo& parameter);
+  void write_value(Slot* to, StaticType type, const Value& value, std::string_view what);
+
+  // calls (calls.cpp)
+  const Plan& plan_for(std::uint32_t site, const ClassInfo& cls);
+  const Plan& make_plan(std::uint32_t site, const ClassInfo& cls);
+  const MethodInfo* choose(const CallSite& site, const ClassInfo& cls) const;
+  static bool accepts(const MethodInfo& method, const CallSite& site);
+  [[noreturn]] void fail_call(const CallSite& site, const ClassInfo& cls, const MethodInfo* best) const;
+  void apply(const Plan& plan, const Slot* caller, Slot* callee);
+  void convert_argument(const PlanStep& step, const Slot* caller, Slot* callee);
+  void call_native(const Plan& plan, Instance& receiver, const Slot* caller);
+  void check_class(Instance* object, const ClassInfo& cls, std::string_view what);
+  [[noreturn]] void fail_receiver(const Instance* receiver, std::uint32_t site) const;
+
+  // slow instructions (slow_paths.cpp)
+  Value null_default(StaticType type, std::uint32_t what, const Instruction* pc);
+  Slot converted_reference(StaticType type, const Value& value, std::uint32_t what, bool strict, const Instruction* pc);
+  Value read_member(const Value& base, const MemberSite& site);
+  bool write_member(Value& base, const MemberSite& site, const Value& value);  // true: a container, changed in place
+  bool write_index(Value& base, const Value& key, const Value& value);
+  Value read_index(const Value& base, const Value& key);
+  Value guarded_index(const Value& base, const Value& key);
+  std::string describe(Instance& instance);
+  Value make_many(const Value& count, const ClassInfo& cls);
+  ListCell* all_of(const ClassInfo& cls);
+  void free_value(const Value& value);
+  void sort(ListCell& list, Symbol method, Instance& self);
+  StringCell* interpolate(const std::vector<std::string>& texts, const Value* values, std::size_t count);
+  void print_value(const Value& value, int ending);
+  Value random(const Value& bound);
+  const VariableInfo* member_variable(const Instance& instance, Symbol name) const;
+  Instance* instance_of(const Value& value) const;
+
+  // errors (errors.cpp)
+  ErrorReport report(RunErrorKind kind, const std::string& message, const Instruction* pc) const;
+  [[noreturn]] void rethrow(std::size_t depth, const Instruction* pc);  // from inside a catch block
+  void survive(const ScriptError& error);
+  Span span_of(const Frame& frame, const Instruction* pc) const;
+  void input_key(const InputEvent& event);
+  void call_if_present(Instance& receiver, std::string_view method, std::span<const Value> arguments = {});
+  void begin_top_level();
+  std::vector<StringCell*> make_constants(Heap& heap) const;
+  void choose_menu(ObjectId item);
+  void forget(Instance& instance);
+  Value default_value(const ParameterInfo& parameter);
+  Instance* broadcast_member(const Value& element) const;
+  [[noreturn]] void fail_call_on(const Value& value) const;
+
   std::shared_ptr<const Program> program_;
   World& world_;
   MachineHost host_;
-  Heap heap_;
+  std::pmr::memory_resource* memory_;
+  std::unique_ptr<Heap> heap_;
   Instance* controller_ = nullptr;
+  Value result_;  // of the last call
+  std::pmr::vector<Frame> frames_;
+  std::pmr::vector<std::pair<Slot*, std::size_t>> segments_;
+  std::uint32_t segment_ = 0;
+  Slot* top_ = nullptr;
+  Slot* limit_ = nullptr;
+  std::pmr::vector<Value> pins_;
+  std::vector<SiteCache> caches_;
+  std::vector<StringCell*> strings_;  // the program's constants
+  std::span<const Native> functions_;
+  std::unordered_set<const Instruction*> warned_sites_;
+  std::unordered_set<std::string> warned_;
+  std::uint64_t survived_errors_ = 0;
+  std::uint64_t budget_left_ = 0;
+  std::uint32_t nesting_ = 0;  // interpreter loops on the C++ stack
+};
+
+/// Keeps a value alive while native code that holds it calls back into script.
+class Pin {
+ public:
+  Pin(Machine& machine, const Value& value) : machine_(machine) { machine_.pins_.push_back(value); }
+  ~Pin() { machine_.pins_.pop_back(); }
+  Pin(const Pin&) = delete;
+  Pin& operator=(const Pin&) = delete;
+
+ private:
+  Machine& machine_;
 };
 
 }  // namespace breve::steve

@@ -81,8 +81,8 @@ template <auto F, class R, class... A> struct Binder {
                                                                     result_letter<R>(), '\0'};
   template <std::size_t... I>
   static R apply(Machine& machine, Instance& self, const Slot* args, std::index_sequence<I...>) {
-    constexpr std::array<int, sizeof...(A) + 1> sizes = {SlotType<Plain<A>>::slots..., 0};
-    constexpr auto offset = [](std::size_t n, const auto& s) {
+    [[maybe_unused]] constexpr std::array<int, sizeof...(A) + 1> sizes = {SlotType<Plain<A>>::slots..., 0};
+    [[maybe_unused]] constexpr auto offset = [](std::size_t n, const auto& s) {
       int sum = 0;
       for (std::size_t i = 0; i < n; ++i) sum += s[i];
       return sum;

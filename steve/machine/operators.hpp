@@ -2,6 +2,9 @@
 // Language document, sections 5, 6.4, 6.6, 8.4 and 9, with the fixes of section 14. Every function throws RunError.
 #pragma once
 
+#include <bit>
+#include <cmath>
+#include <limits>
 #include <string>
 
 #include "steve/machine/heap.hpp"
@@ -10,6 +13,7 @@
 namespace breve::steve {
 
 // Conversion on assignment (5.2). `what` names the place for the error: "variable 'n'", "keyword 'to'".
+// The NULL value converts to nothing: F14's zero value and its warning are the caller's.
 std::int32_t to_int(const Value& v, std::string_view what = {});
 double to_double(const Value& v, std::string_view what = {});
 Vector3 to_vector(const Value& v, std::string_view what = {});
@@ -21,16 +25,49 @@ HashCell* to_hash(const Value& v, std::string_view what = {});
 PointerCell* to_pointer(const Value& v, std::string_view what = {});
 DataCell* to_data(const Value& v, std::string_view what = {});
 
+/// double to int: toward 0; beyond the range of int the nearest int; NaN gives 0.
+inline std::int32_t truncate_to_int(double d) {
+  if (d > -2147483649.0 && d < 2147483648.0) return static_cast<std::int32_t>(d);
+  if (std::isnan(d)) return 0;
+  return d < 0 ? std::numeric_limits<std::int32_t>::min() : std::numeric_limits<std::int32_t>::max();
+}
+std::int32_t leading_int(std::string_view text);   // 0 if there is none; the nearest int if it is out of range
+double leading_double(std::string_view text);      // C rules without locale; 0.0 if there is none
+
+// Integer arithmetic that wraps (F20).
+inline std::int32_t wrap_add(std::int32_t a, std::int32_t b) {
+  return std::bit_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
+}
+inline std::int32_t wrap_sub(std::int32_t a, std::int32_t b) {
+  return std::bit_cast<std::int32_t>(static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b));
+}
+inline std::int32_t wrap_mul(std::int32_t a, std::int32_t b) {
+  return std::bit_cast<std::int32_t>(static_cast<std::uint32_t>(a) * static_cast<std::uint32_t>(b));
+}
+inline std::int32_t wrap_negate(std::int32_t a) { return wrap_sub(0, a); }
+std::int32_t divide(std::int32_t a, std::int32_t b);     // RunError{Math} for 0 and for INT_MIN / -1
+std::int32_t remainder(std::int32_t a, std::int32_t b);  // sign of a; RunError{Math} for 0
+inline std::int32_t power(std::int32_t a, std::int32_t b) {
+  return truncate_to_int(std::pow(static_cast<double>(a), static_cast<double>(b)));
+}
+double divide(double a, double b);     // RunError{Math} for 0.0
+double remainder(double a, double b);  // sign of a; RunError{Math} for 0.0
+/// RunError{Math} if |det m| < 1e-21.
+Matrix3 inverse(const Matrix3& m);
+[[noreturn]] void fail_division_by_zero();
+
+inline double length(const Vector3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
 bool truth(const Value& v);  // 5.3
 
 /// Binary operators but && and || (5.4 to 5.6). Never changes its operands.
 Value binary(Heap& heap, ast::BinaryOp op, const Value& a, const Value& b);
-bool equal(const Value& a, const Value& b);  // `==` as lists compare their elements
+bool equal(const Value& a, const Value& b);  // `==` as lists compare their elements: what cannot be compared differs
 Value negate(const Value& v);
 Value magnitude(const Value& v);  // |e|
 /// Same type and value, as hash keys compare (8.2).
 bool same_key(const Value& a, const Value& b);
-std::uint32_t key_hash(const Value& v);
+std::uint32_t key_hash(const Value& v);  // never 0xffffffff; needs no address
 
 /// base{index} for list, hash, vector, matrix, string (objects are the interpreter's business). A missing hash key is NULL.
 Value index(Heap& heap, const Value& base, const Value& key);
@@ -39,11 +76,40 @@ void set_index(Heap& heap, const Value& base, const Value& key, const Value& val
 /// A vector, matrix or string with one element replaced (6.6, 8.4): the caller stores the result where it came from.
 Value with_index(Heap& heap, const Value& base, const Value& key, const Value& value);
 
+/// base::name for hashes and, with the names x, y, z, vectors (F43; objects are the interpreter's business).
+Value member(Heap& heap, const Value& base, StringCell* name);
+/// hash::name = v.
+void set_member(Heap& heap, const Value& base, StringCell* name, const Value& value);
+/// A vector with component x, y or z replaced.
+Value with_member(const Value& base, StringCell* name, const Value& value);
+
+// The list operations of 8.1 with their conversions and errors (F14, F21). A null list is an empty one.
+/// @return  false if the index is beyond the end: nothing is inserted, the caller warns
+bool insert_at(Heap& heap, ListCell& list, const Value& index, const Value& value);
+/// remove list{i}, remove hash{k}: the element, or NULL with `found` false (for a list: the caller warns).
+Value remove_at(Heap& heap, const Value& base, const Value& index, bool& found);
+/// A position of list{i} that exists. RunError{Bounds} otherwise.
+inline std::uint32_t list_position(const ListCell& list, std::int32_t i);
+[[noreturn]] void fail_list_bounds(std::int64_t i, std::size_t size);
+inline std::uint32_t list_position(const ListCell& list, std::int32_t i) {
+  if (static_cast<std::uint32_t>(i) >= list.size) fail_list_bounds(i, list.size);
+  return static_cast<std::uint32_t>(i);
+}
+
+/// "an int", "a vector", "no value (NULL)": for messages.
+std::string a_type(Tag tag);
+
 /// The text of a value as `print` shows it (9). No recursion limit is reached by deep lists: nesting beyond 1,000 is
 /// shown as "{ ... }".
 /// @param describe  asked for the text behind an object's address (its get-description); may be empty
+/// @param heap      needed if `describe` may run script: keeps nested lists alive across it
 using Describe = std::function<std::string(Instance&)>;
-void append_text(std::string& out, const Value& v, const Describe& describe = {});
-std::string text(const Value& v, const Describe& describe = {});
+void append_text(std::string& out, const Value& v, const Describe& describe = {}, Heap* heap = nullptr);
+std::string text(const Value& v, const Describe& describe = {}, Heap* heap = nullptr);
+void append_int(std::string& out, std::int32_t i);
+void append_double(std::string& out, double d);  // %f
+void append_vector(std::string& out, const Vector3& v);
+StringCell* number_to_string(Heap& heap, std::int32_t i);
+StringCell* number_to_string(Heap& heap, double d);
 
 }  // namespace breve::steve

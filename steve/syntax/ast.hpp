@@ -64,7 +64,8 @@ struct ListLit { std::vector<ExprPtr> elements; };
 struct Name { std::string name; };
 struct ArrayItem { std::string name; ExprPtr index; };   // name[index]
 struct IndexExpr { ExprPtr base, index; };               // base{index}
-struct Member { ExprPtr base; std::string name; };       // base::name; x, y, z (and X, Y, Z given in lower case) too
+/// base::name; x, y, z (and X, Y, Z given in lower case) too: then `letter` is the letter as written, else 0.
+struct Member { ExprPtr base; std::string name; char letter = 0; };
 struct Self {};
 struct Super {};
 struct Keyword { std::string name; Span span; ExprPtr value; };
@@ -138,6 +139,7 @@ struct Method {
   /// Embedded library only: `@native "name" (type).` in place of a body. The type is that of the result; none: no value.
   std::optional<std::string> native;
   std::optional<TypeRef> native_result;
+  bool native_dynamic = false;  // `(?)`: the result's type varies
   Span span, name_span;
 };
 

@@ -1,7 +1,10 @@
 // What the compiler has to say: errors and warnings with their place and their remedy.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "steve/syntax/source.hpp"
@@ -22,6 +25,7 @@ class Diagnostics {
  public:
   void error(const Span& span, std::string code, std::string message, std::string help = {});
   void warning(const Span& span, std::string code, std::string message, std::string help = {});
+  void add(Diagnostic diagnostic);
   const std::vector<Diagnostic>& all() const { return all_; }
   std::size_t error_count() const { return errors_; }
 

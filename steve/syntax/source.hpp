@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,17 +25,20 @@ struct SourceFile {
   std::vector<std::uint32_t> lines;  // offset of each line's first byte
 };
 
-/// All files of one program. Indices stay valid.
+/// All files of one program. Indices, and references to a file and its text, stay valid.
 class Sources {
  public:
+  /// @throws std::length_error if the text has 4 GiB or more
   std::uint32_t add(std::string name, std::string text, bool embedded = false);
   const SourceFile& file(std::uint32_t index) const { return files_[index]; }
   std::size_t size() const { return files_.size(); }
   /// The text of the line of `span`, without its line end.
   std::string_view line_text(const Span& span) const;
+  /// The place of `length` bytes at `offset`, with line and column worked out.
+  Span span_at(std::uint32_t file, std::uint32_t offset, std::uint32_t length) const;
 
  private:
-  std::vector<SourceFile> files_;
+  std::deque<SourceFile> files_;
 };
 
 }  // namespace breve::steve

@@ -1,0 +1,139 @@
+// The `breve` command: what the words on the command line mean.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <csignal>
+#include <functional>
+#include <iostream>
+#include <limits>
+#include <optional>
+
+#include "check.hpp"
+#include "run.hpp"
+#include "session.hpp"
+
+namespace {
+
+using breve::command::CheckOptions;
+using breve::command::Output;
+using breve::command::RunOptions;
+
+constexpr const char* kExitStatuses =
+    "Exit status: 0 ended well, 1 compile or run-time error, 2 wrong usage, 3 a limit was hit.";
+
+/// A number, all of it; anything else is an error that says so.
+template <class Number>
+std::function<std::string(const std::string&)> parser(std::optional<Number>& out, const char* what) {
+  return [&out, what](const std::string& text) -> std::string {
+    Number number{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || end != text.data() + text.size() || !(number >= 0) ||
+        number > std::numeric_limits<Number>::max())
+      return fmt::format("'{}' is no {}", text, what);
+    out = number;
+    return {};
+  };
+}
+
+/// An option with a number. CLI11's own conversions accept signs and say little.
+template <class Number>
+CLI::Option* number(CLI::App& app, const char* name, const char* type, std::optional<Number>& out, const char* what,
+                    const char* help) {
+  return app
+      .add_option_function<std::string>(
+          name, [](const std::string&) {}, help)
+      ->type_name(type)
+      ->check(CLI::Validator(parser(out, what), ""));
+}
+
+void describe_run(CLI::App& app, RunOptions& o) {
+  constexpr const char* kWhole = "whole number (0 or more)";
+  app.add_option("FILE", o.file, "The program (.tz)")->required();
+  app.add_option("ARGS", o.arguments,
+                 "What the program reads as its arguments, after its own name. After -- they may look like options");
+  auto* iterations = number(app, "--iterations", "N", o.iterations, kWhole, "End after N iterations");
+  number(app, "--seconds", "S", o.seconds, "number of seconds (0 or more)", "End when S simulated seconds have passed")
+      ->excludes(iterations);
+  number(app, "--seed", "K", o.seed, kWhole, "Seed of the random numbers. Without it one is drawn and shown");
+  app.add_option("--path", o.paths, "Also search DIR for modules and data files; may be repeated")
+      ->type_name("DIR")
+      ->expected(1)
+      ->take_all();
+  app.add_flag("--strict", o.strict, "Treat doubtful things as errors");
+  app.add_flag("--quiet", o.quiet, "No warnings, no progress");
+  app.add_flag("--verbose", o.verbose, "Say when an obsolete method is used");
+  app.add_flag("--stats", o.stats,
+               "End with one line of JSON on standard error: iterations, sim_seconds, wall_seconds, cpu_seconds, "
+               "objects, seed, hash");
+  app.add_flag("--effects", o.effects,
+               "At the end, list the effects of the simulation: which were active, why, what they cost");
+  app.add_flag("--hash", o.hash, "As the last line of the output, the hash of the world's state");
+  app.add_option("--positions", o.positions, "At the end, write where every object is: class,x,y,z,qw,qx,qy,qz")
+      ->type_name("OUT.csv");
+  app.footer("Without --iterations and --seconds the program runs until it ends the simulation or is interrupted.\n" +
+             std::string(kExitStatuses));
+}
+
+void describe_check(CLI::App& app, CheckOptions& o) {
+  app.add_option("FILE", o.files, "Programs (.tz)")->required();
+  app.add_option("--path", o.paths, "Also search DIR for modules; may be repeated")
+      ->type_name("DIR")
+      ->expected(1)
+      ->take_all();
+  app.footer(kExitStatuses);
+}
+
+bool is_command(const CLI::App& app, const std::string& word) {
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    if (command->get_name() == word) return true;
+  return false;
+}
+
+int main_guarded(int argc, char** argv) {
+  // A reader of the output who goes away is seen as an error of write().
+  std::signal(SIGPIPE, SIG_IGN);
+  CLI::App app("breve: worlds of agents", "breve");
+  app.set_version_flag("--version", std::string("breve ") + breve_version());
+  app.require_subcommand(1);
+  app.footer("`breve help` shows this text, `breve run --help` the options of a command.");
+  RunOptions run_options;
+  CheckOptions check_options;
+  auto* run = app.add_subcommand("run", "Run a program");
+  auto* check = app.add_subcommand("check", "Compile programs and show what the compiler has to say");
+  auto* help = app.add_subcommand("help", "Show this text");
+  describe_run(*run, run_options);
+  describe_check(*check, check_options);
+  if (argc > 1 && *argv[1] != '-' && !is_command(app, argv[1])) {
+    std::cerr << "breve: there is no command '" << argv[1] << "': it must be run, check or help\n";
+    return breve::command::kWrongUsage;
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    const bool asked = e.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);
+    if (asked) {
+      app.exit(e, std::cout, std::cerr);
+      return breve::command::kEndedWell;
+    }
+    std::cerr << "breve: " << e.what() << "\nTry `breve help` or `breve run --help`.\n";
+    return breve::command::kWrongUsage;
+  }
+  if (help->parsed()) {
+    std::cout << app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal);
+    return breve::command::kEndedWell;
+  }
+  Output output;
+  return run->parsed() ? breve::command::run(run_options, output) : breve::command::check(check_options, output);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return main_guarded(argc, argv);
+  } catch (const std::exception& e) {
+    std::cerr << "breve: " << e.what() << "\n";
+    return breve::command::kFailed;
+  }
+}

@@ -1,0 +1,80 @@
+// Writing to file descriptors with a buffer of our own, so that a reader who goes away is a fact and not a signal.
+#include "output.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+
+namespace breve::command {
+
+namespace {
+
+constexpr std::size_t kBufferSize = 1 << 16;
+constexpr auto kPatience = std::chrono::milliseconds(100);
+
+/// False if it could not all be written.
+bool write_all(int descriptor, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(descriptor, text.data(), text.size());
+    if (written < 0) {
+      if (errno == EINTR) continue;
+      return false;
+    }
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+}  // namespace
+
+Output::Output()
+    : flushed_(std::chrono::steady_clock::now()),
+      terminal_(::isatty(STDOUT_FILENO) != 0),
+      error_terminal_(::isatty(STDERR_FILENO) != 0) {
+  buffer_.reserve(kBufferSize);
+}
+
+Output::~Output() {
+  flush();
+  clear_progress();
+}
+
+void Output::print(std::string_view text) {
+  if (!open_) return;
+  buffer_ += text;
+  if (buffer_.size() >= kBufferSize || (terminal_ && text.find('\n') != std::string_view::npos)) flush();
+}
+
+void Output::complain(std::string_view text) {
+  flush();
+  clear_progress();
+  write_all(STDERR_FILENO, text);
+}
+
+void Output::flush() {
+  if (!buffer_.empty() && open_) {
+    if (terminal_) clear_progress();
+    open_ = write_all(STDOUT_FILENO, buffer_);
+  }
+  buffer_.clear();
+  flushed_ = std::chrono::steady_clock::now();
+}
+
+void Output::flush_sometimes() {
+  if (!buffer_.empty() && std::chrono::steady_clock::now() - flushed_ > kPatience) flush();
+}
+
+void Output::progress(std::string_view line) {
+  if (!error_terminal_) return;
+  flush();
+  write_all(STDERR_FILENO, "\r\x1b[K" + std::string(line));
+  progress_shown_ = true;
+}
+
+void Output::clear_progress() {
+  if (!progress_shown_) return;
+  progress_shown_ = false;
+  write_all(STDERR_FILENO, "\r\x1b[K");
+}
+
+}  // namespace breve::command

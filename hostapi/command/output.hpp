@@ -1,0 +1,39 @@
+// Standard output and standard error in one order: buffered output, flushed before anything goes to standard error.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <string_view>
+
+namespace breve::command {
+
+class Output {
+ public:
+  Output();
+  ~Output();
+  Output(const Output&) = delete;
+  Output& operator=(const Output&) = delete;
+
+  void print(std::string_view text);     // standard output
+  void complain(std::string_view text);  // standard error, at once
+  void flush();
+  /// Flush if the last time was long enough ago that somebody may be waiting.
+  void flush_sometimes();
+  /// False once the reader of standard output has gone away: there is no point in going on.
+  bool open() const { return open_; }
+
+  /// A line on the terminal that replaces the one before; nothing if standard error is no terminal.
+  void progress(std::string_view line);
+  bool shows_progress() const { return error_terminal_; }
+
+ private:
+  void clear_progress();
+
+  std::string buffer_;
+  std::chrono::steady_clock::time_point flushed_;
+  bool open_ = true;
+  bool terminal_, error_terminal_;
+  bool progress_shown_ = false;
+};
+
+}  // namespace breve::command

@@ -1,0 +1,158 @@
+// The loop of `breve run`, and what it tells before, during and after.
+#include "run.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <csignal>
+#include <ctime>
+#include <random>
+#include <stdexcept>
+
+#include "report.hpp"
+#include "session.hpp"
+
+namespace breve::command {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// A signal handler can reach nothing but a global of this type.
+volatile std::sig_atomic_t interrupted = 0;
+
+/// The first SIGINT asks for an end after the iteration; a second one ends the process.
+void watch_for_interrupt() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { interrupted = 1; };
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+}
+
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+ExitStatus exit_status(breve_status status) {
+  switch (status) {
+    case BREVE_OK: return kEndedWell;
+    case BREVE_ERROR_MEMORY:
+    case BREVE_ERROR_BUDGET:
+    case BREVE_ERROR_DEPTH: return kLimitHit;
+    default: return kFailed;
+  }
+}
+
+/// A line on the terminal about a run that takes long.
+class Progress {
+ public:
+  Progress(const RunOptions& options, Output& output) : options_(options), output_(output) {}
+
+  void show(const breve_world* world) {
+    if (options_.quiet || !output_.shows_progress()) return;
+    const auto now = Clock::now();
+    if (now < next_) return;
+    next_ = now + kEvery;
+    const auto iteration = breve_world_iteration(world);
+    const double elapsed = std::chrono::duration<double>(now - start_).count();
+    std::string of;
+    if (options_.iterations) of = fmt::format(" of {}", *options_.iterations);
+    if (options_.seconds)
+      of = fmt::format(", {:.0f} % of {} s", 100 * breve_world_time(world) / *options_.seconds, *options_.seconds);
+    output_.progress(fmt::format("iteration {}{}, {:.2f} s simulated, {:.0f} iterations/s", iteration, of,
+                                 breve_world_time(world), static_cast<double>(iteration) / elapsed));
+  }
+
+ private:
+  static constexpr auto kPatience = std::chrono::seconds(2);  // a shorter run shows nothing
+  static constexpr auto kEvery = std::chrono::milliseconds(250);
+  const RunOptions& options_;
+  Output& output_;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point next_ = start_ + kPatience;
+};
+
+bool is_over(const breve_world* world, const RunOptions& options, const Output& output) {
+  if (breve_world_ended(world) || interrupted != 0 || !output.open()) return true;
+  if (options.iterations && breve_world_iteration(world) >= *options.iterations) return true;
+  // Sums of a decimal step fall short by rounding: that is no reason for one iteration more.
+  constexpr double kRounding = 1e-6;  // of a step
+  return options.seconds && breve_world_time(world) >= *options.seconds - kRounding * breve_world_iteration_step(world);
+}
+
+breve_status iterate(breve_world* world, const RunOptions& options, Output& output) {
+  Progress progress(options, output);
+  while (!is_over(world, options, output)) {
+    if (const breve_status status = breve_world_step(world); status != BREVE_OK) return status;
+    output.flush_sometimes();
+    progress.show(world);
+  }
+  return BREVE_OK;
+}
+
+std::uint64_t draw_seed() { return std::random_device()(); }
+
+WorldHandle make_world(const Session& session, const breve_program* program, const RunOptions& options,
+                       std::uint64_t seed, breve_status& status) {
+  std::vector<const char*> arguments{options.file.c_str()};
+  for (const auto& argument : options.arguments) arguments.push_back(argument.c_str());
+  breve_world_config config = breve_world_config_default();
+  config.seed = seed;
+  config.arguments = arguments.data();
+  config.argument_count = arguments.size();
+  config.strict = options.strict;
+  config.verbose = options.verbose;
+  breve_world* world = nullptr;
+  status = breve_world_create(session.runtime(), program, &config, &world);
+  return WorldHandle(world);
+}
+
+void say_what_went_on(const breve_world* world, const RunOptions& options, Output& output) {
+  breve_stats stats{};
+  stats.struct_size = sizeof stats;
+  if (options.quiet || breve_world_stats(world, &stats) != BREVE_OK || stats.errors == 0) return;
+  output.complain(
+      fmt::format("breve: {} run-time error{} did not stop the run\n", stats.errors, stats.errors == 1 ? "" : "s"));
+}
+
+}  // namespace
+
+int run(const RunOptions& options, Output& output) {
+  Session session(output, options.paths, options.quiet);
+  ProgramHandle program;
+  if (const ExitStatus loaded = session.load(options.file, program); loaded != kEndedWell) return loaded;
+
+  const std::uint64_t seed = options.seed ? *options.seed : draw_seed();
+  if (!options.seed && !options.quiet) output.complain(fmt::format("breve: seed {}\n", seed));
+  watch_for_interrupt();
+  const auto wall_start = Clock::now();
+  const double cpu_start = cpu_seconds();
+
+  breve_status status = BREVE_OK;
+  const WorldHandle world = make_world(session, program.get(), options, seed, status);
+  if (!world) {
+    const breve_error* error = breve_runtime_last_error(session.runtime());
+    output.complain(error ? error->text : "breve: cannot make the world\n");
+    return exit_status(status);
+  }
+  status = iterate(world.get(), options, output);
+  const RunTimes times{std::chrono::duration<double>(Clock::now() - wall_start).count(), cpu_seconds() - cpu_start};
+  if (const breve_error* error = breve_world_last_error(world.get()); status != BREVE_OK && error)
+    output.complain(error->text);
+
+  int result = exit_status(status);
+  say_what_went_on(world.get(), options, output);
+  if (!options.positions.empty()) {
+    try {
+      write_positions(world.get(), options.positions);
+    } catch (const std::exception& e) {
+      output.complain(fmt::format("breve: {}\n", e.what()));
+      if (result == kEndedWell) result = kFailed;
+    }
+  }
+  if (options.effects) output.print(effects_table(world.get()));
+  if (options.hash) output.print(hash_line(world.get()));
+  output.flush();
+  if (options.stats) output.complain(stats_line(world.get(), times, seed));
+  return result;
+}
+
+}  // namespace breve::command

@@ -1,0 +1,26 @@
+// `breve run`: a program from its first iteration to its last.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "output.hpp"
+
+namespace breve::command {
+
+struct RunOptions {
+  std::string file;
+  std::vector<std::string> arguments, paths;
+  std::optional<std::uint64_t> iterations;  // until the program ends if neither is given
+  std::optional<double> seconds;            // simulated
+  std::optional<std::uint64_t> seed;        // drawn if not given
+  bool strict = false, quiet = false, verbose = false, stats = false, effects = false, hash = false;
+  std::string positions;  // CSV file, "" for none
+};
+
+/// @return  the exit status
+int run(const RunOptions& options, Output& output);
+
+}  // namespace breve::command

@@ -1,0 +1,101 @@
+// The callbacks of the command's runtime.
+#include "session.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+
+namespace breve::command {
+
+namespace {
+
+struct ClosePipe {
+  void operator()(std::FILE* pipe) const { pclose(pipe); }
+};
+
+bool run_command(const char* command, breve_write_fn write, void* sink) {
+  const std::unique_ptr<std::FILE, ClosePipe> pipe(popen(command, "r"));
+  if (!pipe) return false;
+  std::array<char, 4096> chunk;
+  while (const std::size_t size = std::fread(chunk.data(), 1, chunk.size(), pipe.get()))
+    write(sink, chunk.data(), size);
+  return true;
+}
+
+}  // namespace
+
+void Session::print(void* user, breve_world*, breve_channel channel, const char* text, std::size_t size) {
+  auto& session = *static_cast<Session*>(user);
+  switch (channel) {
+    case BREVE_CHANNEL_PRINT: session.output_.print({text, size}); break;
+    case BREVE_CHANNEL_WARNING:
+      if (!session.quiet_) session.output_.complain({text, size});
+      break;
+    case BREVE_CHANNEL_ERROR: session.output_.complain({text, size}); break;
+  }
+}
+
+Session::Session(Output& output, const std::vector<std::string>& paths, bool quiet)
+    : output_(output), loader_(paths), quiet_(quiet) {
+  breve_runtime_config config = breve_runtime_config_default();
+  config.user = this;
+  config.print = &Session::print;
+  config.resolve_module = [](void* user, const char* name, const char* from, breve_module* module) {
+    return static_cast<Session*>(user)->loader_.resolve(name, from, *module);
+  };
+  config.add_path = [](void* user, const char* directory) { static_cast<Session*>(user)->loader_.add_path(directory); };
+  config.find_file = [](void* user, breve_world*, const char* name, breve_write_fn write, void* sink) {
+    const std::string path = static_cast<Session*>(user)->loader_.find(name);
+    write(sink, path.data(), path.size());
+    return !path.empty();
+  };
+  config.system = [](void* user, breve_world*, const char* command, breve_write_fn write, void* sink) {
+    static_cast<Session*>(user)->output_.flush();  // what the program printed comes before what the command prints
+    return run_command(command, write, sink);
+  };
+  if (breve_runtime_create(&config, &runtime_) != BREVE_OK) throw std::runtime_error("cannot make a runtime");
+}
+
+Session::~Session() { breve_runtime_destroy(runtime_); }
+
+void Session::show_diagnostics() {
+  for (std::size_t i = 0; i < breve_runtime_diagnostic_count(runtime_); ++i) {
+    breve_diagnostic d;
+    if (breve_runtime_diagnostic(runtime_, i, &d) != BREVE_OK) continue;
+    if (d.severity == BREVE_SEVERITY_ERROR) ++errors_;
+    if (d.severity == BREVE_SEVERITY_WARNING) ++warnings_;
+    if (d.severity == BREVE_SEVERITY_ERROR || !quiet_) output_.complain(d.text);
+  }
+}
+
+ExitStatus Session::load(const std::string& file, ProgramHandle& program) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) {
+    output_.complain(fmt::format("breve: there is no file '{}'\n", file));
+    return kWrongUsage;
+  }
+  const LoadedFile* main = loader_.open(file);
+  if (!main) {
+    output_.complain(fmt::format("breve: {}\n", loader_.complaint()));
+    return kWrongUsage;
+  }
+  breve_program* compiled = nullptr;
+  const breve_status status =
+      breve_program_compile(runtime_, main->name.c_str(), main->text.data(), main->text.size(), &compiled);
+  show_diagnostics();
+  if (!loader_.complaint().empty()) output_.complain(fmt::format("breve: {}\n", loader_.complaint()));
+  if (status == BREVE_OK) {
+    program.reset(compiled);
+    return kEndedWell;
+  }
+  // The diagnostics have said it all, unless there is none.
+  const breve_error* error = breve_runtime_last_error(runtime_);
+  if (status != BREVE_ERROR_COMPILE && error) output_.complain(error->text);
+  return kFailed;
+}
+
+}  // namespace breve::command

@@ -1,0 +1,653 @@
+/* breve.h: worlds of agents for a host program. This header is the manual.
+ *
+ *     breve_runtime* runtime;  breve_program* program;  breve_world* world;
+ *     breve_runtime_create(NULL, &runtime);
+ *     breve_program_compile(runtime, "hello.tz", text, size, &program);
+ *     breve_world_create(runtime, program, NULL, &world);
+ *     while (!breve_world_ended(world) && breve_world_step(world) == BREVE_OK) draw(world);
+ *
+ * A runtime is what the host gives: memory, callbacks, modules. A program is compiled classes; it never changes. A
+ * world is one running simulation of a program. An object is one instance in a world. There is nothing to initialise
+ * and no state outside these: two runtimes in one process share nothing.
+ *
+ * Rules that hold for every function, unless its comment says otherwise:
+ * - Errors are values. A function that can fail returns a breve_status; results go through out-parameters, which are
+ *   written only on BREVE_OK. The text of an error is in breve_world_last_error or breve_runtime_last_error. The
+ *   library never aborts, never prints and never exits.
+ * - A NULL handle, NULL text or NULL out-parameter gives BREVE_ERROR_ARGUMENT, or 0, false or NULL from a function that
+ *   returns its result. Numbers that are NaN or infinite where a finite one is needed give BREVE_ERROR_ARGUMENT.
+ * - An id of an object that is gone gives BREVE_ERROR_STALE; it never names another object. The null object, where a
+ *   live one is needed, gives BREVE_ERROR_ARGUMENT.
+ * - Any function may run out of memory and give BREVE_ERROR_MEMORY.
+ * - Texts are UTF-8 or plain bytes, ended by a zero byte; a text given with a size may hold zero bytes.
+ * - Threads: a world, with all its objects, is used by one thread at a time; so is a runtime while it compiles or makes
+ *   a world. A program may be used by any number of threads. Different worlds may be used by different threads; then
+ *   the runtime's callbacks are called by those threads.
+ * - Functions marked "Runs script" may call the callbacks of the runtime. A callback may call any function of this
+ *   header; one that cannot work inside a running script says so and gives BREVE_ERROR_BUSY there.
+ * - Units: lengths, masses and angles are the program's own (length units, kg, rad); times are simulated seconds.
+ */
+#ifndef BREVE_BREVE_H
+#define BREVE_BREVE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(_WIN32) && defined(BREVE_SHARED)
+#ifdef BREVE_BUILDING
+#define BREVE_API __declspec(dllexport)
+#else
+#define BREVE_API __declspec(dllimport)
+#endif
+#elif defined(__GNUC__)
+#define BREVE_API __attribute__((visibility("default")))
+#else
+#define BREVE_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- versions ---------------------------------------------------------------------------------------------------- */
+
+/* Number of the binary interface that this header describes. A library with another number is another interface. */
+#define BREVE_ABI 1
+
+/* "major.minor.patch" of the library. Never NULL. */
+BREVE_API const char* breve_version(void);
+
+/* BREVE_ABI of the library, to compare with that of the header. */
+BREVE_API uint32_t breve_abi(void);
+
+/* ---- statuses ---------------------------------------------------------------------------------------------------- */
+
+typedef enum breve_status {
+  BREVE_OK = 0,
+  BREVE_ERROR_ARGUMENT = 1,     /* a value that the function cannot accept: NULL, NaN, a wrong struct_size */
+  BREVE_ERROR_STALE = 2,        /* an id or reference of something that is gone */
+  BREVE_ERROR_BUSY = 3,         /* may not be called while a script of that world runs */
+  BREVE_ERROR_MEMORY = 4,       /* the memory limit of the world, or the allocator's end */
+  BREVE_ERROR_SCRIPT = 5,       /* a run-time error in a script */
+  BREVE_ERROR_COMPILE = 6,      /* a program that does not compile: see breve_runtime_diagnostic */
+  BREVE_ERROR_BUDGET = 7,       /* a call or an iteration that used up its budget */
+  BREVE_ERROR_DEPTH = 8,        /* calls nested beyond the depth limit */
+  BREVE_ERROR_IMAGE = 9,        /* a snapshot that is damaged, or of another program or version */
+  BREVE_ERROR_FILE = 10,        /* a module or file that cannot be found or read */
+  BREVE_ERROR_UNSUPPORTED = 11, /* something that this build cannot do */
+  BREVE_ERROR_NOT_FOUND = 12,   /* no class, method, keyword, variable, element or key of that name */
+  BREVE_ERROR_TYPE = 13,        /* a value that does not convert to the type it is needed in */
+  BREVE_ERROR_NO_BODY = 14,     /* an object without a place in space, as the controller, asked for its pose */
+  BREVE_ERROR_INTERNAL = 15     /* a defect of the library itself; please report it */
+} breve_status;
+
+/* "BREVE_ERROR_STALE" and so on; "BREVE_ERROR_INTERNAL" for a number that is no status. Never NULL. */
+BREVE_API const char* breve_status_name(breve_status status);
+
+/* ---- names of things --------------------------------------------------------------------------------------------- */
+
+typedef struct breve_runtime breve_runtime;
+typedef struct breve_program breve_program;
+typedef struct breve_world breve_world;
+
+/* One instance in a world. All zero is the null object. Compare both fields to compare objects. */
+typedef struct breve_object {
+  uint32_t index, generation;
+} breve_object;
+
+/* A list or hash that a breve_value refers to; good until script runs in its world again (see breve_value). */
+typedef struct breve_ref {
+  uint32_t index, epoch;
+} breve_ref;
+
+/* A method name with its keywords, prepared by breve_world_prepare; good for the life of that world. */
+typedef struct breve_selector {
+  uint32_t index, generation;
+} breve_selector;
+
+/* ---- what went wrong --------------------------------------------------------------------------------------------- */
+
+/* One active method when an error happened. */
+typedef struct breve_frame {
+  const char* class_name; /* class of the receiver */
+  const char* method;
+  const char* file;      /* of the statement that was running, or "" */
+  uint32_t line, column; /* of that statement, from 1; 0 if not known */
+} breve_frame;
+
+/* The last error of a world or runtime. Everything in it is owned by that world or runtime until its next call. */
+typedef struct breve_error {
+  breve_status status;
+  const char* message;   /* what is wrong and what to do, one line or more; never NULL */
+  const char* file;      /* the script file, or "" if the error has no place in one */
+  uint32_t line, column; /* from 1; 0 if not known */
+  size_t frame_count;
+  const breve_frame* frames; /* the chain of calls, innermost first; NULL if frame_count is 0 */
+  const char* text;          /* all of the above, laid out for people to read; ends with a newline */
+} breve_error;
+
+/* ---- runtime ----------------------------------------------------------------------------------------------------- */
+
+/* Where a text for people comes from. */
+typedef enum breve_channel {
+  BREVE_CHANNEL_PRINT = 0,   /* a script's own output, as it wrote it */
+  BREVE_CHANNEL_WARNING = 1, /* whole lines: something doubtful; the run goes on as usual */
+  BREVE_CHANNEL_ERROR = 2    /* whole lines: a run-time error in a callback of a script, which was abandoned;
+                                the run goes on */
+} breve_channel;
+
+/* @param user   breve_runtime_config.user
+   @param world  who speaks; the world is usable, also while breve_world_create has not returned it yet
+   @param text   `size` bytes, ended by a zero byte behind them; owned by the library until the function returns */
+typedef void (*breve_print_fn)(void* user, breve_world* world, breve_channel channel, const char* text, size_t size);
+
+/* Memory of `size` bytes aligned to `alignment` (a power of two), or NULL: the call in progress fails with
+   BREVE_ERROR_MEMORY. */
+typedef void* (*breve_allocate_fn)(void* user, size_t size, size_t alignment);
+
+/* Give back what breve_allocate_fn gave, with the same size and alignment. */
+typedef void (*breve_release_fn)(void* user, void* memory, size_t size, size_t alignment);
+
+/* The text of a module, given by the host. */
+typedef struct breve_module {
+  const char* name; /* as messages show it; each name is loaded once. NULL: the name that was asked for */
+  const char* text; /* not NULL unless size is 0 */
+  size_t size;
+  void* cookie; /* the host's own, for breve_release_module_fn */
+} breve_module;
+
+/* Find the module that a directive names: "Boids.tz" for `@use Boids.`, the spelled name for `@include`.
+   Classes of the class library are always there; a module that the host finds under their name wins.
+   @param from    name of the file that asks; "" for the file given to breve_program_load
+   @param module  zeroed; to be filled
+   Returns false if there is no such module; that is an error only where no library class answers to it. */
+typedef bool (*breve_resolve_module_fn)(void* user, const char* name, const char* from, breve_module* module);
+
+/* The library has copied the module and the host may free it. Called once for each module that was resolved. */
+typedef void (*breve_release_module_fn)(void* user, const breve_module* module);
+
+/* A program says `@path "directory".`, or the library was asked to search there. */
+typedef void (*breve_add_path_fn)(void* user, const char* directory);
+
+/* Given to callbacks that answer with bytes: call it with `sink` as often as needed; the pieces are put together. */
+typedef void (*breve_write_fn)(void* sink, const char* bytes, size_t size);
+
+/* Find a data file (image, mesh, text) by the name that a script used, and write its path. False: there is none. */
+typedef bool (*breve_find_file_fn)(void* user, breve_world* world, const char* name, breve_write_fn write, void* sink);
+
+/* Run a shell command for a script (`system`), and write what it printed. False: it could not be run. */
+typedef bool (*breve_system_fn)(void* user, breve_world* world, const char* command, breve_write_fn write, void* sink);
+
+typedef struct breve_runtime_config {
+  size_t struct_size; /* as breve_runtime_config_default gives it; a smaller one of an older header is accepted */
+  void* user;         /* handed to every callback. Default NULL */
+  breve_allocate_fn allocate; /* memory of worlds; NULL with `release` NULL: the C++ allocator. Default NULL */
+  breve_release_fn release;   /* both or none. Default NULL */
+  breve_print_fn print;       /* output, warnings, errors that did not stop the run; NULL: dropped. Default NULL */
+  breve_resolve_module_fn resolve_module; /* NULL: only the class library. Default NULL */
+  breve_release_module_fn release_module; /* NULL: modules need no release. Default NULL */
+  breve_add_path_fn add_path;             /* NULL: @path does nothing. Default NULL */
+  breve_find_file_fn find_file; /* NULL: data files are not found, which is a warning to the script. Default NULL */
+  breve_system_fn system;       /* NULL: scripts may not run commands; it is an error in them. Default NULL */
+  uint32_t worker_threads;      /* reserved: must be 0. Default 0 */
+  uint32_t reserved;            /* must be 0 */
+} breve_runtime_config;
+
+/* The defaults named above. */
+BREVE_API breve_runtime_config breve_runtime_config_default(void);
+
+/* Make a runtime. Runs no script, calls no callback.
+   @param config  copied; NULL: the defaults
+   @param runtime to be given back to breve_runtime_destroy
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, allocate without release or release without
+   allocate, a reserved field that is not 0. */
+BREVE_API breve_status breve_runtime_create(const breve_runtime_config* config, breve_runtime** runtime);
+
+/* Let go of a runtime. Programs and worlds made with it live on, with its callbacks, until they are destroyed.
+   BREVE_OK, also for NULL; BREVE_ERROR_BUSY from a callback of a compilation or of breve_world_create on it. */
+BREVE_API breve_status breve_runtime_destroy(breve_runtime* runtime);
+
+/* The error of the last call on this runtime that failed (runtime, program and world creation); NULL if none did. */
+BREVE_API const breve_error* breve_runtime_last_error(const breve_runtime* runtime);
+
+/* ---- program ----------------------------------------------------------------------------------------------------- */
+
+/* Compile the module `name`, which is asked of the runtime's resolve_module, and all that it loads. Runs no script.
+   @param program to be given back to breve_program_destroy
+   BREVE_OK, perhaps with warnings: see breve_runtime_diagnostic; BREVE_ERROR_FILE: no such module;
+   BREVE_ERROR_COMPILE: all errors are diagnostics; BREVE_ERROR_BUSY from a callback of another compilation. */
+BREVE_API breve_status breve_program_load(breve_runtime* runtime, const char* name, breve_program** program);
+
+/* Compile a program given as text, and all that it loads. As breve_program_load.
+   @param name  as messages show it
+   @param text  `size` bytes, copied; NULL only if size is 0 */
+BREVE_API breve_status breve_program_compile(breve_runtime* runtime, const char* name, const char* text, size_t size,
+                                             breve_program** program);
+
+/* Let go of a program; NULL is nothing. Worlds of it live on. */
+BREVE_API void breve_program_destroy(breve_program* program);
+
+typedef enum breve_severity {
+  BREVE_SEVERITY_ERROR = 0,
+  BREVE_SEVERITY_WARNING = 1,
+  BREVE_SEVERITY_NOTE = 2
+} breve_severity;
+
+/* One thing that the compiler has to say. Owned by the runtime until it compiles again. */
+typedef struct breve_diagnostic {
+  breve_severity severity;
+  const char* code;      /* stable, for machines: "unknown-variable" */
+  const char* message;   /* what is wrong */
+  const char* help;      /* what to do, or "" */
+  const char* file;      /* "" if it has no place */
+  uint32_t line, column; /* from 1, column in bytes; 0 if it has no place */
+  uint32_t length;       /* bytes from there on that are meant */
+  const char* text;      /* all of the above with the source line and a caret, for people; ends with a newline */
+} breve_diagnostic;
+
+/* How many diagnostics the last compilation on this runtime left, whether it succeeded or not. */
+BREVE_API size_t breve_runtime_diagnostic_count(const breve_runtime* runtime);
+
+/* The diagnostic at `index`, in order of report.
+   BREVE_OK; BREVE_ERROR_NOT_FOUND if index is not below the count. */
+BREVE_API breve_status breve_runtime_diagnostic(const breve_runtime* runtime, size_t index,
+                                                breve_diagnostic* diagnostic);
+
+/* A class of a program. Texts are owned by the program. */
+typedef struct breve_class_info {
+  const char* name;
+  const char* alias;  /* "" if it has none */
+  const char* parent; /* name, or "" for a root class */
+} breve_class_info;
+
+/* How many classes a program has, those of the class library that it uses included. */
+BREVE_API size_t breve_program_class_count(const breve_program* program);
+
+/* The class at `index`; parents come before their descendants.
+   BREVE_OK; BREVE_ERROR_NOT_FOUND if index is not below the count. */
+BREVE_API breve_status breve_program_class(const breve_program* program, size_t index, breve_class_info* info);
+
+/* ---- world ------------------------------------------------------------------------------------------------------- */
+
+typedef struct breve_world_config {
+  size_t struct_size; /* as breve_world_config_default gives it; a smaller one of an older header is accepted */
+  uint64_t seed;      /* of the world's generator of random numbers: any number. Default 1 */
+  const char* const* arguments; /* what scripts read as arguments, copied; [0] is the program's name. Default NULL */
+  size_t argument_count;        /* 0 if arguments is NULL. Default 0 */
+  size_t memory_limit;          /* bytes; 0: none. Beyond it: BREVE_ERROR_MEMORY. Default 0 */
+  uint64_t budget;              /* loop turns and calls in one call by the host or one iteration; 0: none.
+                                   Beyond it: BREVE_ERROR_BUDGET. Default 0 */
+  uint32_t depth_limit;         /* nested calls; 0: the default of 5000. Beyond it: BREVE_ERROR_DEPTH */
+  uint32_t advance_limit;       /* iterations that one breve_world_advance may run; time that is left over is then
+                                   dropped; 0: none. Default 0 */
+  double iteration_step;        /* s, set after the controller's init; 0: the script's own. Default 0 */
+  double integration_step;      /* s, set after the controller's init; 0: the script's own. Default 0 */
+  bool strict;                  /* doubtful things that are warnings become errors. Default false */
+  bool verbose;                 /* say more: once for each obsolete method that is used. Default false */
+  bool reserved[6];             /* must be false */
+  void* user;                   /* the host's own, for breve_world_user. Default NULL */
+} breve_world_config;
+
+/* The defaults named above. */
+BREVE_API breve_world_config breve_world_config_default(void);
+
+/* Make a world of `program`, its controller, and run the controller's `init`. Runs script.
+   @param config  copied; NULL: the defaults
+   @param world   to be given back to breve_world_destroy
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, a step that is negative or not finite, a reserved field;
+   BREVE_ERROR_SCRIPT, _BUDGET, _DEPTH, _MEMORY: `init` failed; no world is made; see breve_runtime_last_error. */
+BREVE_API breve_status breve_world_create(breve_runtime* runtime, const breve_program* program,
+                                          const breve_world_config* config, breve_world** world);
+
+/* End a world and free all that it holds. Runs no script: no object's `destroy` is called.
+   BREVE_OK, also for NULL; BREVE_ERROR_BUSY while a script of it runs: nothing is done then. */
+BREVE_API breve_status breve_world_destroy(breve_world* world);
+
+/* breve_world_config.user. */
+BREVE_API void* breve_world_user(const breve_world* world);
+
+/* The error of the last call on this world that failed; NULL if none did. */
+BREVE_API const breve_error* breve_world_last_error(const breve_world* world);
+
+/* Run one iteration: input, `iterate`, motion and collisions, `post-iterate`, scheduled calls. Runs script.
+   A world that has ended or is paused is stepped all the same: that is for the host to decide.
+   BREVE_OK; BREVE_ERROR_BUSY while a script of it runs; BREVE_ERROR_SCRIPT, _BUDGET, _DEPTH, _MEMORY: the failing call
+   is abandoned, the rest of the iteration is not run; the world is consistent and may be stepped, snapshotted or
+   destroyed (restore a snapshot to undo). */
+BREVE_API breve_status breve_world_step(breve_world* world);
+
+/* For a game loop: let `seconds` of simulated time pass. Runs as many whole iterations as fit, keeps the rest for the
+   next call, and stops when the program ends the simulation. While the world is paused nothing passes. Runs script.
+   @param seconds   finite, >= 0
+   @param fraction  may be NULL. How far the kept rest reaches into the next iteration, in [0, 1): draw poses at
+                    pose before the last iteration * (1 - fraction) + pose now * fraction
+   As breve_world_step. After an error the time that was not run is dropped. */
+BREVE_API breve_status breve_world_advance(breve_world* world, double seconds, double* fraction);
+
+/* Simulated seconds since the start. */
+BREVE_API double breve_world_time(const breve_world* world);
+
+/* Iterations completed since the start; one that an error cut short does not count. */
+BREVE_API uint64_t breve_world_iteration(const breve_world* world);
+
+/* Length of one iteration, s. */
+BREVE_API double breve_world_iteration_step(const breve_world* world);
+
+/* Has the program asked for the end of the simulation? */
+BREVE_API bool breve_world_ended(const breve_world* world);
+
+/* Has the program or the host paused the simulation? See breve_world_advance. */
+BREVE_API bool breve_world_paused(const breve_world* world);
+
+/* Pause or go on. */
+BREVE_API breve_status breve_world_set_paused(breve_world* world, bool paused);
+
+/* The seed that the world's generator was last seeded with. */
+BREVE_API uint64_t breve_world_seed(const breve_world* world);
+
+/* Draw a number from [0, 1] from the world's own generator, as a script would. This changes the run that follows. */
+BREVE_API breve_status breve_world_random(breve_world* world, double* number);
+
+/* ---- objects ----------------------------------------------------------------------------------------------------- */
+
+/* The controller; null if the program freed it. */
+BREVE_API breve_object breve_world_controller(const breve_world* world);
+
+/* The live objects of a class and its descendants, in order of creation.
+   @param class_name  name or alias; NULL: every object
+   @param objects     room for `capacity` ids; NULL only if capacity is 0
+   @param count       how many there are, also where that is more than capacity: at most capacity ids are written
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: the program has no such class. */
+BREVE_API breve_status breve_world_objects(const breve_world* world, const char* class_name, breve_object* objects,
+                                           size_t capacity, size_t* count);
+
+/* Does the id name a live object? False for the null object. */
+BREVE_API bool breve_object_alive(const breve_world* world, breve_object object);
+
+/* The name of the object's class, owned by the program; NULL if the object is null or gone. */
+BREVE_API const char* breve_object_class(const breve_world* world, breve_object object);
+
+/* Is the object an instance of `class_name` (name or alias) or of a descendant?
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: the program has no such class. */
+BREVE_API breve_status breve_object_is_a(const breve_world* world, breve_object object, const char* class_name,
+                                         bool* result);
+
+/* Make an object, as `new` does in a script. Runs script (`init`).
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: no such class; BREVE_ERROR_SCRIPT, _BUDGET, _DEPTH, _MEMORY: `init` failed. */
+BREVE_API breve_status breve_object_create(breve_world* world, const char* class_name, breve_object* object);
+
+/* Free an object, as `free` does in a script. Runs script (`destroy`, `delete`).
+   BREVE_OK; BREVE_ERROR_SCRIPT, _BUDGET, _DEPTH: a `destroy` or `delete` failed; the object is gone all the same. */
+BREVE_API breve_status breve_object_free(breve_world* world, breve_object object);
+
+typedef struct breve_pose {
+  double location[3]; /* of the centre, world frame */
+  double rotation[4]; /* unit quaternion (w, x, y, z): world = rotation * own frame */
+} breve_pose;
+
+/* Where an object is. BREVE_OK; BREVE_ERROR_NO_BODY. */
+BREVE_API breve_status breve_object_pose(const breve_world* world, breve_object object, breve_pose* pose);
+
+/* Put an object somewhere at once. The quaternion may be of any length but 0.
+   BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: not finite, or a quaternion of length 0; nothing is changed. */
+BREVE_API breve_status breve_object_set_pose(breve_world* world, breve_object object, const breve_pose* pose);
+
+/* Velocity of the centre, length units a second, world frame. BREVE_OK; BREVE_ERROR_NO_BODY. */
+BREVE_API breve_status breve_object_velocity(const breve_world* world, breve_object object, double velocity[3]);
+
+/* BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: not finite. */
+BREVE_API breve_status breve_object_set_velocity(breve_world* world, breve_object object, const double velocity[3]);
+
+/* Rotational velocity, rad/s; a kinematic object's is in its own frame. BREVE_OK; BREVE_ERROR_NO_BODY. */
+BREVE_API breve_status breve_object_rotational_velocity(const breve_world* world, breve_object object,
+                                                        double velocity[3]);
+
+/* BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: not finite. */
+BREVE_API breve_status breve_object_set_rotational_velocity(breve_world* world, breve_object object,
+                                                            const double velocity[3]);
+
+/* Red, green, blue and alpha, each from 0 to 1; alpha 0 is invisible. BREVE_OK; BREVE_ERROR_NO_BODY. */
+BREVE_API breve_status breve_object_color(const breve_world* world, breve_object object, double rgba[4]);
+
+/* BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: not finite. */
+BREVE_API breve_status breve_object_set_color(breve_world* world, breve_object object, const double rgba[4]);
+
+typedef enum breve_shape_kind { BREVE_SHAPE_SPHERE = 0, BREVE_SHAPE_BOX = 1, BREVE_SHAPE_CONVEX = 2 } breve_shape_kind;
+
+/* The shape that an object is drawn with, in its own frame about its centre. */
+typedef struct breve_shape {
+  breve_shape_kind kind;
+  double radius;  /* of the sphere about the centre that holds the shape; a sphere's own radius */
+  double size[3]; /* edges of the box about the centre, along the own axes, that holds the shape; a box's own edges */
+  size_t vertex_count; /* 0 for a sphere */
+  size_t face_count;   /* polygons; 0 for a sphere */
+  size_t index_count;  /* sum of the faces' vertices */
+} breve_shape;
+
+/* BREVE_OK; BREVE_ERROR_NO_BODY. */
+BREVE_API breve_status breve_object_shape(const breve_world* world, breve_object object, breve_shape* shape);
+
+/* The corners of the shape: x, y, z of each, own frame.
+   @param vertices  room for 3 * `capacity` numbers; NULL only if capacity is 0. At most capacity corners are written
+   BREVE_OK; BREVE_ERROR_NO_BODY. */
+BREVE_API breve_status breve_object_shape_vertices(const breve_world* world, breve_object object, double* vertices,
+                                                   size_t capacity);
+
+/* The faces of the shape, each a convex polygon with its corners counter-clockwise as seen from outside.
+   @param sizes    number of corners of each face; room for `face_capacity`, NULL only if that is 0
+   @param indices  the corners of one face after the other; room for `index_capacity`, NULL only if that is 0
+   At most that many are written. BREVE_OK; BREVE_ERROR_NO_BODY. */
+BREVE_API breve_status breve_object_shape_faces(const breve_world* world, breve_object object, uint32_t* sizes,
+                                                size_t face_capacity, uint32_t* indices, size_t index_capacity);
+
+/* ---- values ------------------------------------------------------------------------------------------------------ */
+
+typedef enum breve_type {
+  BREVE_NULL = 0, /* no value */
+  BREVE_INT = 1,
+  BREVE_DOUBLE = 2,
+  BREVE_VECTOR = 3,
+  BREVE_MATRIX = 4,
+  BREVE_STRING = 5,
+  BREVE_OBJECT = 6,
+  BREVE_LIST = 7,
+  BREVE_HASH = 8,
+  BREVE_POINTER = 9, /* opaque: can be looked at by nobody, and not be passed in */
+  BREVE_DATA = 10    /* bytes */
+} breve_type;
+
+/* A value of a script. Numbers, vectors, matrices and objects stand in place. Bytes that the library gives are its own,
+   and a list or hash is a reference: both are good until script runs in that world again, that is until the next
+   function marked "Runs script", or, in a callback, until it returns. An older reference gives BREVE_ERROR_STALE; copy
+   bytes that are needed longer. Bytes that the host gives are copied by the call. */
+typedef struct breve_value {
+  uint32_t type; /* breve_type */
+  uint32_t reserved;
+  union {
+    int32_t integer;
+    double number;
+    double vector[3];
+    double matrix[9]; /* row by row */
+    struct {
+      const char* bytes; /* a string that the library gives has a zero byte behind it */
+      size_t size;
+    } string;            /* BREVE_STRING, BREVE_DATA */
+    breve_object object; /* null, or perhaps gone */
+    breve_ref ref;       /* BREVE_LIST, BREVE_HASH; all zero: one that the script has not made yet, empty */
+  } as;
+} breve_value;
+
+/* Values to pass in. breve_value_string refers to `text` until the call is made; NULL is the empty string. */
+BREVE_API breve_value breve_value_null(void);
+BREVE_API breve_value breve_value_int(int32_t integer);
+BREVE_API breve_value breve_value_double(double number);
+BREVE_API breve_value breve_value_vector(double x, double y, double z);
+BREVE_API breve_value breve_value_matrix(const double rows[9]); /* NULL: all zero */
+BREVE_API breve_value breve_value_string(const char* text);
+BREVE_API breve_value breve_value_object(breve_object object);
+
+/* The text of a value as `print` shows it, owned by the world until the next call of this function on it. Runs script
+   (objects describe themselves).
+   BREVE_OK; BREVE_ERROR_STALE: the value is a list or hash from before script ran. */
+BREVE_API breve_status breve_value_text(breve_world* world, const breve_value* value, const char** text);
+
+/* A new empty list. */
+BREVE_API breve_status breve_list_create(breve_world* world, breve_value* list);
+
+/* BREVE_OK; BREVE_ERROR_TYPE: `list` is no list; BREVE_ERROR_STALE. The same for the functions below. */
+BREVE_API breve_status breve_list_size(const breve_world* world, const breve_value* list, size_t* size);
+
+/* The element at `index`, from 0. BREVE_ERROR_NOT_FOUND if index is not below the size. */
+BREVE_API breve_status breve_list_get(breve_world* world, const breve_value* list, size_t index, breve_value* element);
+
+/* Append. BREVE_ERROR_ARGUMENT for a list that the script has not made yet (all-zero reference). */
+BREVE_API breve_status breve_list_push(breve_world* world, const breve_value* list, const breve_value* element);
+
+/* A new empty hash. */
+BREVE_API breve_status breve_hash_create(breve_world* world, breve_value* hash);
+
+/* How many keys it has. BREVE_OK; BREVE_ERROR_TYPE: `hash` is no hash; BREVE_ERROR_STALE. The same below. */
+BREVE_API breve_status breve_hash_size(const breve_world* world, const breve_value* hash, size_t* size);
+
+/* The value of a key; keys compare with their type. BREVE_ERROR_NOT_FOUND if it has no such key. */
+BREVE_API breve_status breve_hash_get(breve_world* world, const breve_value* hash, const breve_value* key,
+                                      breve_value* element);
+
+/* Set the value of a key. BREVE_ERROR_ARGUMENT for a hash that the script has not made yet (all-zero reference). */
+BREVE_API breve_status breve_hash_set(breve_world* world, const breve_value* hash, const breve_value* key,
+                                      const breve_value* element);
+
+/* A new list of the keys, in order of insertion. */
+BREVE_API breve_status breve_hash_keys(breve_world* world, const breve_value* hash, breve_value* keys);
+
+/* ---- variables and calls ----------------------------------------------------------------------------------------- */
+
+/* Read an instance variable, its own or inherited.
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: no such variable; BREVE_ERROR_UNSUPPORTED: an array. */
+BREVE_API breve_status breve_object_get(breve_world* world, breve_object object, const char* name, breve_value* value);
+
+/* Write an instance variable. The value converts to the variable's type as an assignment in a script does.
+   BREVE_OK; BREVE_ERROR_NOT_FOUND; BREVE_ERROR_TYPE: it does not convert, or is an object of another class than the
+   variable's; BREVE_ERROR_UNSUPPORTED: an array, or a pointer. */
+BREVE_API breve_status breve_object_set(breve_world* world, breve_object object, const char* name,
+                                        const breve_value* value);
+
+/* One keyword with its argument: `to v` in `set-velocity to v`. */
+typedef struct breve_keyword {
+  const char* name;
+  breve_value value;
+} breve_keyword;
+
+/* Call a method by its name and keywords, in any order; those that have defaults may be left out. Runs script.
+   @param keywords  NULL only if count is 0
+   @param result    may be NULL
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: no such method; BREVE_ERROR_SCRIPT: a run-time error, also for a keyword that the
+   method does not know or that is missing; BREVE_ERROR_BUDGET, _MEMORY; BREVE_ERROR_DEPTH: also where calls of host and
+   script nest too deeply. The world is consistent after an error. */
+BREVE_API breve_status breve_object_call(breve_world* world, breve_object object, const char* method,
+                                         const breve_keyword* keywords, size_t count, breve_value* result);
+
+/* Resolve a method name and its keywords once, for many fast calls. It is for any class; the world owns it.
+   @param keywords  names in the order in which the arguments will be given; NULL only if count is 0 */
+BREVE_API breve_status breve_world_prepare(breve_world* world, const char* method, const char* const* keywords,
+                                           size_t count, breve_selector* selector);
+
+/* Call a prepared method. Runs script.
+   @param arguments  in the order of the prepared keywords; NULL only if count is 0
+   @param count      must be the prepared count
+   @param result     may be NULL
+   As breve_object_call; BREVE_ERROR_STALE also for a selector that this world has not prepared. */
+BREVE_API breve_status breve_object_call_prepared(breve_world* world, breve_object object, breve_selector selector,
+                                                  const breve_value* arguments, size_t count, breve_value* result);
+
+/* ---- input ------------------------------------------------------------------------------------------------------- */
+
+/* Queue the press (down) or release of a key; the controller's handler runs at the start of the next iteration.
+   @param key  one character, or "up", "down", "left", "right" for the arrows; else BREVE_ERROR_ARGUMENT */
+BREVE_API breve_status breve_world_key(breve_world* world, const char* key, bool down);
+
+/* Queue a click on an object; the null object is a click on nothing. */
+BREVE_API breve_status breve_world_click(breve_world* world, breve_object object);
+
+/* An entry of a menu. Texts are owned by the world, good until script runs in it again. */
+typedef struct breve_menu_item {
+  breve_object item;
+  breve_object owner; /* the controller: the main menu; else the context menu of that object */
+  const char* title;  /* "" for a separator */
+  const char* method; /* what choosing it calls on the owner */
+  bool separator, enabled, checked;
+} breve_menu_item;
+
+/* The entries of all menus, in order of creation.
+   @param items  room for `capacity`; NULL only if capacity is 0
+   @param count  how many there are, also where that is more than capacity: at most capacity are written */
+BREVE_API breve_status breve_world_menu_items(breve_world* world, breve_menu_item* items, size_t capacity,
+                                              size_t* count);
+
+/* Queue the choice of a menu item. A disabled one or a separator then does nothing.
+   BREVE_OK; BREVE_ERROR_ARGUMENT: the object is no menu item. */
+BREVE_API breve_status breve_world_choose(breve_world* world, breve_object item);
+
+/* ---- snapshots --------------------------------------------------------------------------------------------------- */
+
+/* A number that two worlds share if their whole state is the same, bit for bit: objects, bodies, scripts, schedule,
+   generator. BREVE_OK; BREVE_ERROR_BUSY while a script of it runs. */
+BREVE_API breve_status breve_world_hash(const breve_world* world, uint64_t* hash);
+
+/* Write the whole state as an image: portable between runs of one library version on one kind of machine.
+   @param image  room for `capacity` bytes; NULL only if capacity is 0
+   @param size   the image's size. Where it is more than capacity nothing is written to image: call again with room
+   BREVE_OK, also for that size query; BREVE_ERROR_BUSY while a script of it runs. Nothing in the world changes. The
+   time that breve_world_advance keeps is the host loop's, and is not part of the image. */
+BREVE_API breve_status breve_world_snapshot(const breve_world* world, void* image, size_t capacity, size_t* size);
+
+/* Put a world of the same program back to a snapshot's state. Ids of the snapshot's moment are good again, those made
+   since are stale; the time that breve_world_advance keeps is dropped. Runs no script.
+   BREVE_OK; BREVE_ERROR_IMAGE: damaged, or of another program or version: the world is unchanged;
+   BREVE_ERROR_BUSY while a script of it runs. */
+BREVE_API breve_status breve_world_restore(breve_world* world, const void* image, size_t size);
+
+/* ---- what it costs ----------------------------------------------------------------------------------------------- */
+
+/* One effect of the simulation: active only if something in the scene calls for it. Texts are owned by
+   the world until the next call of breve_world_effects on it. */
+typedef struct breve_effect {
+  const char* name;
+  const char* reason; /* why it is active, in words; "" if it is not */
+  bool active;
+  uint64_t since;        /* iteration at which it became active */
+  breve_object asked_by; /* the object that called for it first; null: the world itself, or gone by now */
+  uint64_t items, calls; /* handled in the last iteration */
+  uint64_t bytes;        /* memory that it holds now */
+  double seconds;        /* processor time in the last iteration */
+} breve_effect;
+
+/* All effects, active or not, in the order of the step.
+   @param effects  room for `capacity`; NULL only if capacity is 0
+   @param count    how many there are, also where that is more than capacity: at most capacity are written */
+BREVE_API breve_status breve_world_effects(const breve_world* world, breve_effect* effects, size_t capacity,
+                                           size_t* count);
+
+typedef struct breve_stats {
+  size_t struct_size; /* to be set to sizeof(breve_stats); a smaller one of an older header is filled in part */
+  uint64_t iterations;
+  double time;         /* simulated, s */
+  uint64_t objects;    /* live */
+  uint64_t bodies;     /* those with a place in space */
+  uint64_t heap_cells; /* strings, lists, hashes, objects on the script heap */
+  size_t memory_used;  /* bytes, of this world */
+  size_t memory_peak;  /* the most it was */
+  size_t memory_limit; /* 0: none */
+  uint64_t errors;     /* run-time errors that did not stop the run */
+  uint64_t warnings;
+} breve_stats;
+
+/* BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
+BREVE_API breve_status breve_world_stats(const breve_world* world, breve_stats* stats);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

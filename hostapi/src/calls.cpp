@@ -1,0 +1,162 @@
+// Variables by name, methods by name and keywords, prepared selectors.
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "internal.hpp"
+#include "runtime/base/hasher.hpp"
+
+namespace breve::host {
+
+using steve::ClassInfo;
+using steve::Instance;
+using steve::MethodInfo;
+using steve::Value;
+
+namespace {
+
+const steve::VariableInfo& variable_named(const breve_world& world, const Instance& instance, const char* name) {
+  need(name, "name");
+  const steve::Symbol symbol = world.program->symbols().find(name);
+  const auto* variable = symbol == steve::kNoSymbol ? nullptr : instance.cls->find_variable(symbol);
+  if (!variable) fail(BREVE_ERROR_NOT_FOUND, "class " + instance.cls->name + " has no variable '" + name + "'");
+  if (variable->array_size >= 0)
+    fail(BREVE_ERROR_UNSUPPORTED,
+         "variable '" + std::string(name) + "' of class " + instance.cls->name + " is an array");
+  return *variable;
+}
+
+void need_method(const breve_world& world, const Instance& instance, const std::string& method) {
+  if (!world.machine->responds(*instance.cls, method))
+    fail(BREVE_ERROR_NOT_FOUND, "class " + instance.cls->name + " has no method '" + method + "'");
+}
+
+/// Find what `selector` means for `cls`: a method with exactly its keywords can be called by position.
+void resolve(const breve_world& world, Selector& selector, const ClassInfo& cls) {
+  selector.cls = &cls;
+  selector.resolved = world.machine->find_method(cls, selector.method, selector.keywords.size());
+  selector.order.clear();
+  if (!selector.resolved) return;
+  for (const auto& parameter : selector.resolved->parameters) {
+    const auto& keyword = world.program->symbols().name(parameter.keyword);
+    const auto found = std::find(selector.keywords.begin(), selector.keywords.end(), keyword);
+    if (found == selector.keywords.end()) {
+      selector.resolved = nullptr;  // has other keywords: the machine finds the right overload or says what is wrong
+      return;
+    }
+    selector.order.push_back(static_cast<std::uint32_t>(found - selector.keywords.begin()));
+  }
+}
+
+Value call_by_keywords(breve_world& world, Instance& receiver, const std::string& method,
+                       std::span<const std::pair<std::string_view, Value>> keywords) {
+  need_method(world, receiver, method);
+  const ScriptScope script(world);
+  return world.machine->call_with_keywords(receiver, method, keywords);
+}
+
+Value call_prepared(breve_world& world, Instance& receiver, Selector& selector, const breve_value* arguments) {
+  constexpr std::size_t kInPlace = 8;  // arguments that need no allocation
+  const std::size_t count = selector.keywords.size();
+  if (selector.cls != receiver.cls) resolve(world, selector, *receiver.cls);
+  if (!selector.resolved || count > kInPlace) {
+    std::vector<std::pair<std::string_view, Value>> keywords;
+    for (std::size_t i = 0; i < count; ++i) keywords.emplace_back(selector.keywords[i], from_host(world, arguments[i]));
+    return call_by_keywords(world, receiver, selector.method, keywords);
+  }
+  std::array<Value, kInPlace> values;
+  for (std::size_t i = 0; i < count; ++i) values[i] = from_host(world, arguments[selector.order[i]]);
+  const ScriptScope script(world);
+  return world.machine->call(receiver, *selector.resolved, std::span<const Value>(values.data(), count));
+}
+
+std::uint32_t digest(const Selector& selector) {
+  Hasher hasher;
+  hasher.add(std::string_view(selector.method));
+  for (const auto& keyword : selector.keywords) hasher.add(std::string_view(keyword));
+  return static_cast<std::uint32_t>(hasher.value() >> 32) | 1U;  // the all-zero selector is none
+}
+
+}  // namespace
+}  // namespace breve::host
+
+using namespace breve::host;
+using breve::steve::Value;
+
+breve_status breve_object_get(breve_world* world, breve_object object, const char* name, breve_value* value) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need(value, "value");
+    const auto& instance = live_instance(*world, object);
+    *value = to_host(*world, world->machine->get_variable(instance, variable_named(*world, instance, name)));
+  });
+}
+
+breve_status breve_object_set(breve_world* world, breve_object object, const char* name, const breve_value* value) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need(value, "value");
+    auto& instance = live_instance(*world, object);
+    const auto& variable = variable_named(*world, instance, name);
+    const Value v = from_host(*world, *value);
+    try {
+      world->machine->set_variable(instance, variable, v);
+    } catch (const breve::steve::RunError& e) {
+      fail(BREVE_ERROR_TYPE, e.what());
+    }
+  });
+}
+
+breve_status breve_object_call(breve_world* world, breve_object object, const char* method,
+                               const breve_keyword* keywords, size_t count, breve_value* result) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need(method, "method");
+    if (count != 0) need(keywords, "keywords");
+    auto& instance = live_instance(*world, object);
+    std::vector<std::pair<std::string_view, Value>> values;
+    for (std::size_t i = 0; i < count; ++i) {
+      need(keywords[i].name, "the name of a keyword");
+      values.emplace_back(keywords[i].name, from_host(*world, keywords[i].value));
+    }
+    const Value value = call_by_keywords(*world, instance, method, values);
+    if (result) *result = to_host(*world, value);
+  });
+}
+
+breve_status breve_world_prepare(breve_world* world, const char* method, const char* const* keywords, size_t count,
+                                 breve_selector* selector) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need(method, "method");
+    need(selector, "selector");
+    if (count != 0) need(keywords, "keywords");
+    Selector made;
+    made.method = method;
+    for (std::size_t i = 0; i < count; ++i) {
+      need(keywords[i], "the name of a keyword");
+      made.keywords.emplace_back(keywords[i]);
+    }
+    made.check = digest(made);
+    const breve_selector handle{static_cast<std::uint32_t>(world->selectors.size()), made.check};
+    world->selectors.push_back(std::move(made));
+    *selector = handle;
+  });
+}
+
+breve_status breve_object_call_prepared(breve_world* world, breve_object object, breve_selector selector,
+                                        const breve_value* arguments, size_t count, breve_value* result) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    if (selector.index >= world->selectors.size() || world->selectors[selector.index].check != selector.generation)
+      fail(BREVE_ERROR_STALE, "this world has not prepared that selector");
+    Selector& prepared = world->selectors[selector.index];
+    if (count != prepared.keywords.size())
+      fail(BREVE_ERROR_ARGUMENT, std::to_string(count) + " arguments for the " +
+                                     std::to_string(prepared.keywords.size()) + " keywords of '" + prepared.method +
+                                     "'");
+    if (count != 0) need(arguments, "arguments");
+    const Value value = call_prepared(*world, live_instance(*world, object), prepared, arguments);
+    if (result) *result = to_host(*world, value);
+  });
+}

@@ -1,0 +1,56 @@
+// What a world does and what it costs: effects and counters.
+#include <algorithm>
+#include <cstring>
+
+#include "internal.hpp"
+
+using namespace breve::host;
+
+breve_status breve_world_effects(const breve_world* world, breve_effect* effects, size_t capacity, size_t* count) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    if (capacity != 0) need(effects, "effects");
+    need(count, "count");
+    const auto& all = world->world->effects().all();
+    std::vector<std::pair<std::string, std::string>> texts;
+    for (const auto& e : all) texts.emplace_back(e.name, e.active ? e.reason : std::string_view());
+    world->effect_texts = std::move(texts);
+    for (std::size_t i = 0; i < std::min(capacity, all.size()); ++i) {
+      const auto& e = all[i];
+      const auto asked_by = world->world->alive(e.asked_by) ? e.asked_by : breve::ObjectId{};
+      effects[i] = {world->effect_texts[i].first.c_str(),
+                    world->effect_texts[i].second.c_str(),
+                    e.active,
+                    e.since,
+                    handle_of(asked_by),
+                    e.items,
+                    e.calls,
+                    e.bytes,
+                    e.seconds};
+    }
+    *count = all.size();
+  });
+}
+
+breve_status breve_world_stats(const breve_world* world, breve_stats* stats) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need(stats, "stats");
+    const std::size_t room = stats->struct_size;
+    read_config(stats, breve_stats{}, "breve_stats");  // for its check of struct_size
+    const auto& w = std::as_const(*world->world);
+    breve_stats s{};
+    s.struct_size = room;
+    s.iterations = w.iteration();
+    s.time = w.time();
+    s.objects = w.object_count();
+    s.bodies = w.bodies().size();
+    s.heap_cells = world->machine->heap().live_cells();
+    s.memory_used = world->meter.used();
+    s.memory_peak = world->meter.peak();
+    s.memory_limit = world->meter.limit();
+    s.errors = world->errors;
+    s.warnings = world->warnings;
+    std::memcpy(stats, &s, room);
+  });
+}

@@ -1,0 +1,72 @@
+// Input of the user, queued for the next iteration, and the menus that scripts offer.
+#include <cstring>
+
+#include "internal.hpp"
+#include "runtime/world/menu.hpp"
+
+using namespace breve::host;
+using breve::InputEvent;
+using breve::ObjectId;
+
+namespace {
+
+bool is_key(const char* key) {
+  if (key[0] != '\0' && key[1] == '\0') return true;
+  for (const char* arrow : {"up", "down", "left", "right"})
+    if (std::strcmp(key, arrow) == 0) return true;
+  return false;
+}
+
+}  // namespace
+
+breve_status breve_world_key(breve_world* world, const char* key, bool down) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need(key, "key");
+    if (!is_key(key))
+      fail(BREVE_ERROR_ARGUMENT,
+           "'" + std::string(key) + "' is no key: it must be one character, or up, down, left, right");
+    world->world->queue_input({down ? InputEvent::Kind::KeyDown : InputEvent::Kind::KeyUp, key, {}});
+  });
+}
+
+breve_status breve_world_click(breve_world* world, breve_object object) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    const ObjectId id = id_of(object) ? live_id(*world, object) : ObjectId{};
+    world->world->queue_input({InputEvent::Kind::Click, {}, id});
+  });
+}
+
+breve_status breve_world_menu_items(breve_world* world, breve_menu_item* items, size_t capacity, size_t* count) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    if (capacity != 0) need(items, "items");
+    need(count, "count");
+    std::vector<breve_menu_item> found;
+    std::vector<std::pair<std::string, std::string>> texts;
+    for (const ObjectId id : world->world->objects()) {
+      const auto* item = breve::menu_item(std::as_const(*world->world), id);
+      if (!item) continue;
+      texts.emplace_back(item->name, item->method);
+      found.push_back(
+          {handle_of(id), handle_of(item->owner), nullptr, nullptr, item->separator(), item->enabled, item->checked});
+    }
+    world->menu_texts = std::move(texts);
+    for (std::size_t i = 0; i < std::min(capacity, found.size()); ++i) {
+      items[i] = found[i];
+      items[i].title = world->menu_texts[i].first.c_str();
+      items[i].method = world->menu_texts[i].second.c_str();
+    }
+    *count = found.size();
+  });
+}
+
+breve_status breve_world_choose(breve_world* world, breve_object item) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    const ObjectId id = live_id(*world, item);
+    if (!breve::menu_item(std::as_const(*world->world), id)) fail(BREVE_ERROR_ARGUMENT, "the object is no menu item");
+    world->world->queue_input({InputEvent::Kind::Menu, {}, id});
+  });
+}

@@ -1,0 +1,151 @@
+// What the handles of breve.h are made of.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <memory_resource>
+#include <string>
+#include <vector>
+
+#include "guard.hpp"
+#include "runtime/base/memory.hpp"
+#include "runtime/world/world.hpp"
+#include "steve/compile/program.hpp"
+#include "steve/machine/machine.hpp"
+
+namespace breve::host {
+
+/// The host's allocation callbacks as a memory resource.
+class HostAllocator final : public std::pmr::memory_resource {
+ public:
+  explicit HostAllocator(const breve_runtime_config& config) : config_(config) {}
+
+ private:
+  void* do_allocate(std::size_t bytes, std::size_t alignment) override;
+  void do_deallocate(void* memory, std::size_t bytes, std::size_t alignment) override;
+  bool do_is_equal(const std::pmr::memory_resource& other) const noexcept override { return this == &other; }
+
+  const breve_runtime_config& config_;
+};
+
+/// What programs and worlds keep of a runtime after its handle is gone.
+struct RuntimeState {
+  explicit RuntimeState(const breve_runtime_config& c) : config(c), allocator(config) {}
+  RuntimeState(const RuntimeState&) = delete;
+  RuntimeState& operator=(const RuntimeState&) = delete;
+  std::pmr::memory_resource* memory() {
+    return config.allocate ? static_cast<std::pmr::memory_resource*>(&allocator) : std::pmr::new_delete_resource();
+  }
+
+  const breve_runtime_config config;
+  HostAllocator allocator;
+};
+
+struct DiagnosticText {
+  breve_severity severity = BREVE_SEVERITY_ERROR;
+  std::string code, message, help, file, text;
+  std::uint32_t line = 0, column = 0, length = 0;
+};
+
+/// Lists and hashes that the host refers to. Only valid between two runs of script: the heap does not know of them.
+class References {
+ public:
+  breve_ref add(steve::Cell* cell);                        // the null cell is the all-zero reference
+  steve::Cell* find(breve_ref ref, steve::Tag tag) const;  // BREVE_ERROR_STALE, BREVE_ERROR_TYPE
+  void forget_all();
+
+ private:
+  std::vector<steve::Cell*> cells_;
+  std::uint32_t epoch_ = 1;
+};
+
+/// A method name with keywords, and what they mean for the class that was called last.
+struct Selector {
+  std::string method;
+  std::vector<std::string> keywords;
+  std::uint32_t check = 0;                      // breve_selector.generation: a digest of the names
+  const steve::ClassInfo* cls = nullptr;        // the cache below is for this class
+  const steve::MethodInfo* resolved = nullptr;  // takes exactly these keywords; null: ask by keywords
+  std::vector<std::uint32_t> order;             // parameter -> argument
+};
+
+/// A copy of a versioned struct that an older header may have made smaller: fields that it lacks take the defaults.
+/// @throws  StatusError if its struct_size is none that any header gave
+template <class Config>
+Config read_config(const Config* given, const Config& defaults, const char* name) {
+  if (!given) return defaults;
+  const std::size_t size = given->struct_size;
+  if (size < 2 * sizeof(std::size_t) || size > sizeof(Config) || size % alignof(Config) != 0)
+    fail(BREVE_ERROR_ARGUMENT, std::string(name) + ".struct_size is " + std::to_string(size) + " (must be as " + name +
+                                   "_default gives it, " + std::to_string(sizeof(Config)) + ")");
+  Config config = defaults;
+  std::memcpy(&config, given, size);
+  config.struct_size = sizeof(Config);
+  return config;
+}
+
+}  // namespace breve::host
+
+struct breve_runtime {
+  std::shared_ptr<breve::host::RuntimeState> state;
+  std::vector<breve::host::DiagnosticText> diagnostics;
+  mutable breve::host::ErrorRecord error;
+  int busy = 0;  // compilations and world creations in progress
+};
+
+struct breve_program {
+  std::shared_ptr<const breve::steve::Program> program;
+};
+
+struct breve_world {
+  std::shared_ptr<breve::host::RuntimeState> runtime;
+  std::shared_ptr<const breve::steve::Program> program;
+  breve_world_config config{};
+  breve::MemoryMeter meter;
+  std::unique_ptr<breve::World> world;
+  std::unique_ptr<breve::steve::Machine> machine;  // goes before the world
+  mutable breve::host::ErrorRecord error;
+  breve::host::References references;
+  std::deque<breve::host::Selector> selectors;  // a callback may add some while one is in use
+  std::string text;                             // of breve_value_text
+  std::vector<std::pair<std::string, std::string>> menu_texts;
+  mutable std::vector<std::pair<std::string, std::string>> effect_texts;
+  double remainder = 0;  // s, kept by breve_world_advance; in [0, iteration step)
+  int running = 0;       // calls of the host that run script, one inside the other
+  std::uint64_t errors = 0, warnings = 0;
+
+  explicit breve_world(std::shared_ptr<breve::host::RuntimeState> r)
+      : runtime(std::move(r)), meter(runtime->memory()) {}
+};
+
+namespace breve::host {
+
+/// Script runs while this stands. References that hosts hold die at both ends.
+class ScriptScope {
+ public:
+  explicit ScriptScope(breve_world& world);  // BREVE_ERROR_DEPTH if host and script nest too deeply
+  ~ScriptScope();
+  ScriptScope(const ScriptScope&) = delete;
+  ScriptScope& operator=(const ScriptScope&) = delete;
+
+ private:
+  breve_world& world_;
+};
+
+/// BREVE_ERROR_BUSY if script of `world` runs now.
+void need_idle(const breve_world& world, const char* what);
+
+inline ObjectId id_of(breve_object object) { return {object.index, object.generation}; }
+inline breve_object handle_of(ObjectId id) { return {id.index, id.generation}; }
+
+/// A live object's id: BREVE_ERROR_ARGUMENT for null, BREVE_ERROR_STALE for one that is gone.
+ObjectId live_id(const breve_world& world, breve_object object);
+steve::Instance& live_instance(const breve_world& world, breve_object object);
+BodyIndex live_body(const breve_world& world, breve_object object);               // also BREVE_ERROR_NO_BODY
+const steve::ClassInfo& class_named(const breve_world& world, const char* name);  // BREVE_ERROR_NOT_FOUND
+
+/// Between breve_value and the machine's values. Strings are copied in; lists and hashes become references.
+breve_value to_host(breve_world& world, const steve::Value& value);
+steve::Value from_host(breve_world& world, const breve_value& value);
+
+}  // namespace breve::host

@@ -1,0 +1,224 @@
+// Worlds: making, stepping, ending; the clock; what the machine is told about its host.
+#include <cmath>
+
+#include "internal.hpp"
+#include "steve/library/library.hpp"
+
+namespace breve::host {
+
+namespace {
+
+// Calls of the host inside callbacks inside calls of the host: each takes C++ stack, so there is an end.
+constexpr int kMaxNestedCalls = 64;
+
+void speak(breve_world& world, breve_channel channel, std::string_view text) {
+  if (channel == BREVE_CHANNEL_WARNING) ++world.warnings;
+  if (channel == BREVE_CHANNEL_ERROR) ++world.errors;
+  const auto& config = world.runtime->config;
+  if (!config.print) return;
+  std::string ended(text);
+  const bool lines = channel != BREVE_CHANNEL_PRINT;
+  if (lines && !ended.empty() && ended.back() != '\n') ended += '\n';
+  config.print(config.user, &world, channel, ended.c_str(), ended.size());
+  world.references.forget_all();
+}
+
+/// What a callback of this kind writes; "" if it says no.
+template <class Callback>
+std::string answer(breve_world& world, Callback callback, std::string_view question) {
+  const std::string asked(question);
+  std::string written;
+  const breve_write_fn write = [](void* sink, const char* bytes, std::size_t size) {
+    if (bytes && size != 0) static_cast<std::string*>(sink)->append(bytes, size);
+  };
+  const bool found = callback(world.runtime->config.user, &world, asked.c_str(), write, &written);
+  world.references.forget_all();
+  return found ? written : std::string();
+}
+
+steve::MachineHost machine_host(breve_world& world) {
+  const auto& config = world.config;
+  steve::MachineHost host;
+  host.print = [&world](std::string_view text) { speak(world, BREVE_CHANNEL_PRINT, text); };
+  host.warn = [&world](std::string_view text) { speak(world, BREVE_CHANNEL_WARNING, text); };
+  host.error = [&world](std::string_view text) { speak(world, BREVE_CHANNEL_ERROR, text); };
+  const auto& callbacks = world.runtime->config;
+  if (callbacks.find_file)
+    host.find_file = [&world](std::string_view name) { return answer(world, world.runtime->config.find_file, name); };
+  if (callbacks.system)
+    host.system = [&world](std::string_view text) { return answer(world, world.runtime->config.system, text); };
+  for (std::size_t i = 0; i < config.argument_count; ++i) {
+    need(config.arguments, "breve_world_config.arguments");
+    need(config.arguments[i], "one of breve_world_config.arguments");
+    host.arguments.emplace_back(config.arguments[i]);
+  }
+  host.verbose = config.verbose;
+  host.strict = config.strict;
+  host.budget = config.budget;
+  if (config.depth_limit != 0) host.depth_limit = config.depth_limit;
+  return host;
+}
+
+void check(const breve_world_config& config) {
+  for (const double step : {config.iteration_step, config.integration_step})
+    if (!std::isfinite(step) || step < 0)
+      fail(BREVE_ERROR_ARGUMENT, "iteration_step and integration_step must be finite and >= 0");
+  for (const bool reserved : config.reserved)
+    if (reserved) fail(BREVE_ERROR_ARGUMENT, "a reserved field is not false");
+}
+
+/// While it stands the runtime is not to be destroyed.
+class CreationScope {
+ public:
+  explicit CreationScope(breve_runtime& runtime) : runtime_(runtime) { ++runtime_.busy; }
+  ~CreationScope() { --runtime_.busy; }
+  CreationScope(const CreationScope&) = delete;
+  CreationScope& operator=(const CreationScope&) = delete;
+
+ private:
+  breve_runtime& runtime_;
+};
+
+void start(breve_world& world) {
+  const ScriptScope script(world);
+  world.machine->start();
+  if (world.config.integration_step > 0) world.world->set_integration_step(world.config.integration_step);
+  if (world.config.iteration_step > 0) world.world->set_iteration_step(world.config.iteration_step);
+}
+
+void step(breve_world& world) {
+  const ScriptScope script(world);
+  world.world->step();
+}
+
+/// Whole iterations that fit, and the rest kept. Decimal steps that do not add up in binary must not lose an iteration.
+void advance(breve_world& world, double seconds) {
+  constexpr double kRounding = 1e-9;  // of a step
+  World& w = *world.world;
+  double left = world.remainder + seconds;
+  world.remainder = 0;  // unless everything goes well
+  std::uint32_t done = 0;
+  while (left >= w.iteration_step() * (1 - kRounding) && !w.end_requested() && !w.paused()) {
+    if (world.config.advance_limit != 0 && done++ == world.config.advance_limit) {
+      left = std::fmod(left, w.iteration_step());
+      break;
+    }
+    step(world);
+    left = std::max(0.0, left - w.iteration_step());
+  }
+  world.remainder = left < w.iteration_step() ? left : 0;
+}
+
+}  // namespace
+
+ScriptScope::ScriptScope(breve_world& world) : world_(world) {
+  if (world_.running >= kMaxNestedCalls) fail(BREVE_ERROR_DEPTH, "calls of host and script are nested too deeply");
+  world_.references.forget_all();
+  ++world_.running;
+}
+
+ScriptScope::~ScriptScope() {
+  --world_.running;
+  world_.references.forget_all();
+}
+
+void need_idle(const breve_world& world, const char* what) {
+  if (world.running != 0)
+    fail(BREVE_ERROR_BUSY, std::string(what) + " may not be called while a script of this world runs");
+}
+
+}  // namespace breve::host
+
+using namespace breve::host;
+
+breve_world_config breve_world_config_default(void) {
+  breve_world_config config{};
+  config.struct_size = sizeof config;
+  config.seed = 1;
+  return config;
+}
+
+breve_status breve_world_create(breve_runtime* runtime, const breve_program* program, const breve_world_config* config,
+                                breve_world** world) {
+  if (!runtime) return BREVE_ERROR_ARGUMENT;
+  std::unique_ptr<breve_world> handle;
+  const breve_status status = guard(runtime->error, [&] {
+    need(program, "program");
+    need(world, "world");
+    const auto c = read_config(config, breve_world_config_default(), "breve_world_config");
+    check(c);
+    handle = std::make_unique<breve_world>(runtime->state);
+    handle->config = c;
+    handle->program = program->program;
+    handle->meter.set_limit(c.memory_limit);
+    auto host = machine_host(*handle);
+    handle->config.arguments = nullptr;  // copied; the host's array may go
+    handle->world = std::make_unique<breve::World>(&handle->meter, c.seed);
+    breve::steve::register_resource_kinds(*handle->world);
+    handle->machine =
+        std::make_unique<breve::steve::Machine>(handle->program, *handle->world, &handle->meter, std::move(host));
+  });
+  if (status != BREVE_OK) return status;
+  const CreationScope busy(*runtime);
+  const breve_status started = guard(handle->error, [&] { start(*handle); });
+  if (started != BREVE_OK) {
+    runtime->error.take(std::move(handle->error));
+    return started;
+  }
+  *world = handle.release();
+  return BREVE_OK;
+}
+
+breve_status breve_world_destroy(breve_world* world) {
+  if (!world) return BREVE_OK;
+  const breve_status status = guard(world->error, [&] { need_idle(*world, "breve_world_destroy"); });
+  if (status == BREVE_OK) delete world;
+  return status;
+}
+
+void* breve_world_user(const breve_world* world) { return world ? world->config.user : nullptr; }
+
+const breve_error* breve_world_last_error(const breve_world* world) { return world ? world->error.view() : nullptr; }
+
+breve_status breve_world_step(breve_world* world) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need_idle(*world, "breve_world_step");
+    step(*world);
+  });
+}
+
+breve_status breve_world_advance(breve_world* world, double seconds, double* fraction) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need_idle(*world, "breve_world_advance");
+    if (!std::isfinite(seconds) || seconds < 0) fail(BREVE_ERROR_ARGUMENT, "seconds must be finite and >= 0");
+    if (!world->world->paused()) advance(*world, seconds);
+    if (fraction) *fraction = std::min(world->remainder / world->world->iteration_step(), std::nextafter(1.0, 0.0));
+  });
+}
+
+double breve_world_time(const breve_world* world) { return world ? world->world->time() : 0; }
+
+uint64_t breve_world_iteration(const breve_world* world) { return world ? world->world->iteration() : 0; }
+
+double breve_world_iteration_step(const breve_world* world) { return world ? world->world->iteration_step() : 0; }
+
+bool breve_world_ended(const breve_world* world) { return world && world->world->end_requested(); }
+
+bool breve_world_paused(const breve_world* world) { return world && world->world->paused(); }
+
+breve_status breve_world_set_paused(breve_world* world, bool paused) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] { world->world->set_paused(paused); });
+}
+
+uint64_t breve_world_seed(const breve_world* world) { return world ? world->world->random().seed() : 0; }
+
+breve_status breve_world_random(breve_world* world, double* number) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need(number, "number");
+    *number = world->world->random().uniform();
+  });
+}

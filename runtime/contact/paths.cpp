@@ -1,0 +1,75 @@
+// Straight pieces of paths. They are read off from where the stages of motion took each body, whatever rule moved it.
+#include <cmath>
+
+#include "runtime/contact/collision_stage.hpp"
+
+namespace breve {
+
+void CollisionStage::start_paths() {
+  paths_.clear();
+  for (const ProxyIndex index : order_) {
+    Proxy& proxy = proxies_[index];
+    proxy.path = kNoPath;
+    proxy.impacts = 0;
+    if (!bodies_->active(proxy.body)) continue;
+    proxy.path = static_cast<std::uint32_t>(paths_.size());
+    paths_.emplace_back();
+    paths_.back().from = bodies_->state(proxy.body);
+  }
+}
+
+void CollisionStage::finish_path(Path& path) {
+  const double length = path.end - path.begin;
+  path.velocity = path.rotational_velocity = Vector3::Zero();
+  if (!(length > 0)) return;
+  // A kinematic body moves with the velocity it had at the start; reading it off would only add rounding.
+  path.velocity = path.from.physics ? Vector3((path.to.location - path.from.location) / length) : path.from.velocity;
+  if (path.to.orientation.coeffs() == path.from.orientation.coeffs()) return;
+  Quaternion turn = path.to.orientation * path.from.orientation.conjugate();
+  if (turn.w() < 0) turn.coeffs() = -turn.coeffs();
+  const double sine = turn.vec().norm();
+  if (sine > 0) path.rotational_velocity = turn.vec() * (2 * std::atan2(sine, turn.w()) / (sine * length));
+}
+
+BodyState CollisionStage::state_at(const Path& path, double time) {
+  if (time <= path.begin) return path.from;
+  if (time >= path.end) return path.to;
+  const double elapsed = time - path.begin;
+  const double fraction = elapsed / (path.end - path.begin);
+  BodyState state = path.from;
+  const Pose pose =
+      pose_at({{path.from.location, path.from.orientation}, path.velocity, path.rotational_velocity}, elapsed);
+  state.location = pose.location;
+  state.orientation = pose.orientation;
+  state.velocity += fraction * (path.to.velocity - path.from.velocity);
+  state.rotational_velocity += fraction * (path.to.rotational_velocity - path.from.rotational_velocity);
+  return state;
+}
+
+Motion CollisionStage::motion_from(const Proxy& proxy, double time) const {
+  if (proxy.path == kNoPath) return {pose_now(proxy), Vector3::Zero(), Vector3::Zero()};
+  const Path& path = paths_[proxy.path];
+  const BodyState state = state_at(path, time);
+  return {{state.location, state.orientation}, path.velocity, path.rotational_velocity};
+}
+
+Pose CollisionStage::pose_now(const Proxy& proxy) const {
+  return {bodies_->location(proxy.body), bodies_->orientation(proxy.body)};
+}
+
+void CollisionStage::place(BodyIndex body, const BodyState& state) {
+  bodies_->place(body, state.location, state.orientation, state.velocity, state.rotational_velocity);
+}
+
+bool CollisionStage::touching(const Pair& pair, const Pose& pose_a, const Pose& pose_b, Contact& contact) const {
+  const Shape& a = *bodies_->collision_shape(proxies_[pair.a].body);
+  const Shape& b = *bodies_->collision_shape(proxies_[pair.b].body);
+  const double tolerance = touch_tolerance(a, pose_a, b, pose_b);
+  // Spheres around both that are apart settle it; also refuses what is not finite.
+  const double reach = a.bounding_radius() + b.bounding_radius() + tolerance;
+  if (!((pose_a.location - pose_b.location).squaredNorm() <= reach * reach)) return false;
+  contact = closest(a, pose_a, b, pose_b);
+  return contact.distance <= tolerance;
+}
+
+}  // namespace breve

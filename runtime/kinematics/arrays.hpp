@@ -1,0 +1,140 @@
+// The arrays behind Bodies. What every body has is a column; what few have (a rotation, rigid motion, a material, an
+// appearance) is a row of its own that the body points to, so that a world of points pays for points.
+#pragma once
+
+#include <deque>
+#include <memory_resource>
+#include <vector>
+
+#include "runtime/kinematics/bodies.hpp"
+
+namespace breve {
+
+using RowIndex = std::uint32_t;
+inline constexpr RowIndex kNoRow = 0xffffffffU;
+
+/// Rows that are made on demand and reused; references stay valid while others are made.
+template <class Row>
+class Rows {
+ public:
+  explicit Rows(std::pmr::memory_resource* memory) : rows_(memory), free_(memory) {}
+  RowIndex make() {
+    if (free_.empty()) {
+      rows_.emplace_back();
+      return static_cast<RowIndex>(rows_.size() - 1);
+    }
+    const RowIndex row = free_.back();
+    free_.pop_back();
+    rows_[row] = Row();
+    return row;
+  }
+  void drop(RowIndex& row) {
+    if (row != kNoRow) free_.push_back(row);
+    row = kNoRow;
+  }
+  Row& operator[](RowIndex row) { return rows_[row]; }
+  const Row& operator[](RowIndex row) const { return rows_[row]; }
+  std::size_t bytes() const { return rows_.size() * sizeof(Row); }
+
+ private:
+  std::pmr::deque<Row> rows_;
+  std::pmr::vector<RowIndex> free_;
+};
+
+/// A set of bodies to loop over: dense, with constant-time insertion and removal.
+class ActiveSet {
+ public:
+  explicit ActiveSet(std::pmr::memory_resource* memory) : members_(memory), place_(memory) {}
+  void set(BodyIndex body, bool active) {
+    if (body >= place_.size()) {
+      if (!active) return;
+      place_.resize(body + 1, kNoBody);
+    }
+    const bool member = place_[body] != kNoBody;
+    if (member == active) return;
+    if (active) {
+      place_[body] = static_cast<BodyIndex>(members_.size());
+      members_.push_back(body);
+      return;
+    }
+    members_[place_[body]] = members_.back();
+    place_[members_.back()] = place_[body];
+    members_.pop_back();
+    place_[body] = kNoBody;
+  }
+  bool has(BodyIndex body) const { return body < place_.size() && place_[body] != kNoBody; }
+  const std::pmr::vector<BodyIndex>& members() const { return members_; }
+  std::size_t bytes() const { return (members_.capacity() + place_.capacity()) * sizeof(BodyIndex); }
+
+ private:
+  std::pmr::vector<BodyIndex> members_;
+  std::pmr::vector<BodyIndex> place_;  // by body; kNoBody: not a member
+};
+
+/// Of a body that was ever rotated or set turning.
+struct TurnRow {
+  Quaternion orientation = Quaternion::Identity();
+  Vector3 velocity = Vector3::Zero();  // rad/s: own frame if kinematic, world frame if physical
+  Vector3 acceleration = Vector3::Zero();
+};
+
+/// Of a body that was ever physics-enabled or pushed.
+struct RigidRow {
+  Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // N, N*m; world frame
+  Vector3 kinematic_velocity = Vector3::Zero();               // what applies again when physics is disabled
+  Vector3 kinematic_rotational_velocity = Vector3::Zero();
+  double mass = 1;                           // kg; copied from the shape, as is all below
+  Matrix3 inertia = Matrix3::Identity();     // about the centre of mass, own frame
+  Vector3 center_of_mass = Vector3::Zero();  // own frame
+  bool physics = false;
+  bool round = true;  // equal moments of inertia: no gyroscopic term
+};
+
+struct Bodies::Arrays {
+  explicit Arrays(std::pmr::memory_resource* memory);
+
+  // Columns, by body.
+  std::pmr::vector<ObjectId> owner;  // null: the index is free
+  std::pmr::vector<BodyKind> kind;
+  std::pmr::vector<Vector3> location, velocity, acceleration;
+  std::pmr::vector<RowIndex> turn_row, rigid_row, material_row, appearance_row;
+  std::pmr::vector<std::shared_ptr<Shape>> collision_shape, display_shape;
+  std::pmr::vector<double> neighborhood;
+
+  Rows<TurnRow> turn_rows;
+  Rows<RigidRow> rigid_rows;
+  Rows<Material> materials;
+  Rows<Appearance> appearances;
+
+  ActiveSet translating, turning, rigid;
+  std::pmr::vector<BodyIndex> free;  // last removed, first reused
+  std::shared_ptr<Shape> default_shape;
+  std::size_t used = 0;
+  std::uint64_t revision = 0;
+  std::pmr::vector<BodyIndex>* log = nullptr;
+
+  BodyIndex grow();
+  bool physics(BodyIndex body) const { return rigid_row[body] != kNoRow && rigid_rows[rigid_row[body]].physics; }
+  TurnRow& turn(BodyIndex body) {
+    if (turn_row[body] == kNoRow) turn_row[body] = turn_rows.make();
+    return turn_rows[turn_row[body]];
+  }
+  RigidRow& make_rigid(BodyIndex body) {
+    if (rigid_row[body] == kNoRow) rigid_row[body] = rigid_rows.make();
+    return rigid_rows[rigid_row[body]];
+  }
+  /// Which stages move this body follows from its state.
+  void classify(BodyIndex body);
+  void copy_mass(BodyIndex body);
+  void note(BodyIndex body) {
+    if (log) log->push_back(body);
+  }
+  void translate_one(BodyIndex body, double h) {
+    location[body] += h * velocity[body];
+    velocity[body] += h * acceleration[body];
+  }
+  void turn_one(BodyIndex body, double h);
+  void move_rigid_one(BodyIndex body, double h, const Vector3& gravity);
+};
+
+}  // namespace breve

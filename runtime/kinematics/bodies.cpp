@@ -1,0 +1,373 @@
+// Bodies: making, removing and setting. Every setter refuses what is not finite before anything changes.
+#include "runtime/kinematics/bodies.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "runtime/base/error.hpp"
+#include "runtime/kinematics/arrays.hpp"
+
+namespace breve {
+
+namespace {
+
+const Vector3 kZero = Vector3::Zero();
+const Appearance kPlainAppearance{};
+const Material kPlainMaterial{};
+
+void require_finite(std::string_view property, const Vector3& value) {
+  if (value.allFinite()) return;
+  throw Error(ErrorCode::Argument,
+              fmt::format("{} must be finite, but is ({}, {}, {})", property, value.x(), value.y(), value.z()));
+}
+
+/// The rotation nearest to a matrix that is one up to round-off or drift.
+Quaternion rotation_of(const Matrix3& matrix) {
+  if (!matrix.allFinite()) throw Error(ErrorCode::Argument, "rotation must be finite");
+  constexpr double kOrthonormal = 1e-12;  // what chains of products by scripts leave
+  if ((matrix * matrix.transpose() - Matrix3::Identity()).cwiseAbs().maxCoeff() < kOrthonormal &&
+      matrix.determinant() > 0) {
+    return Quaternion(Eigen::Matrix3d(matrix)).normalized();
+  }
+  Eigen::Matrix3d nearest = matrix / std::max(matrix.cwiseAbs().maxCoeff(), 1e-300);
+  constexpr double kSingular = 1e-9;  // determinant of a matrix of size 1 whose rows still are three directions
+  const double determinant = nearest.determinant();
+  if (std::abs(determinant) < kSingular) {
+    throw Error(ErrorCode::Argument, "rotation is a singular matrix: its rows must be three independent directions");
+  }
+  if (determinant < 0) {
+    throw Error(ErrorCode::Argument, "rotation is a mirror image: its determinant must be positive");
+  }
+  // Newton's iteration for the polar decomposition (Higham, 1986): quadratic; the bound is far beyond any use of it.
+  for (int i = 0; i < 60; ++i) {
+    const Eigen::Matrix3d next = 0.5 * (nearest + nearest.inverse().transpose());
+    const double change = (next - nearest).cwiseAbs().maxCoeff();
+    nearest = next;
+    if (change < 1e-15) break;
+  }
+  return Quaternion(nearest).normalized();
+}
+
+}  // namespace
+
+Bodies::Arrays::Arrays(std::pmr::memory_resource* memory)
+    : owner(memory),
+      kind(memory),
+      location(memory),
+      velocity(memory),
+      acceleration(memory),
+      turn_row(memory),
+      rigid_row(memory),
+      material_row(memory),
+      appearance_row(memory),
+      collision_shape(memory),
+      display_shape(memory),
+      neighborhood(memory),
+      turn_rows(memory),
+      rigid_rows(memory),
+      materials(memory),
+      appearances(memory),
+      translating(memory),
+      turning(memory),
+      rigid(memory),
+      free(memory) {}
+
+BodyIndex Bodies::Arrays::grow() {
+  const std::size_t size = owner.size() + 1;
+  // The owner's column comes last: if memory runs out before, the index does not exist.
+  kind.resize(size);
+  location.resize(size);
+  velocity.resize(size);
+  acceleration.resize(size);
+  turn_row.resize(size, kNoRow);
+  rigid_row.resize(size, kNoRow);
+  material_row.resize(size, kNoRow);
+  appearance_row.resize(size, kNoRow);
+  collision_shape.resize(size);
+  display_shape.resize(size);
+  neighborhood.resize(size);
+  if (free.capacity() < size) free.reserve(2 * size);  // so that remove() never allocates
+  owner.resize(size);
+  return static_cast<BodyIndex>(size - 1);
+}
+
+void Bodies::Arrays::classify(BodyIndex body) {
+  const bool physical = physics(body);
+  const bool pushed = velocity[body] != kZero || acceleration[body] != kZero;
+  const RowIndex row = turn_row[body];
+  const bool spun = row != kNoRow && (turn_rows[row].velocity != kZero || turn_rows[row].acceleration != kZero);
+  translating.set(body, !physical && pushed);
+  turning.set(body, !physical && spun);
+  rigid.set(body, physical && kind[body] != BodyKind::Stationary);
+}
+
+void Bodies::Arrays::copy_mass(BodyIndex body) {
+  RigidRow& row = rigid_rows[rigid_row[body]];
+  const Shape& shape = *collision_shape[body];
+  row.mass = shape.mass();
+  row.center_of_mass = shape.center_of_mass();
+  const Vector3& c = row.center_of_mass;
+  // Steiner: from the origin of the shape to its centre of mass.
+  row.inertia = shape.inertia() - row.mass * (c.squaredNorm() * Matrix3::Identity() - Matrix3(c * c.transpose()));
+  const double moment = row.inertia(0, 0);
+  constexpr double kRound = 1e-14;  // a sphere's inertia is round up to the last digits
+  row.round = (row.inertia - moment * Matrix3::Identity()).cwiseAbs().maxCoeff() <= kRound * moment;
+}
+
+Bodies::Bodies(std::pmr::memory_resource* memory) : memory_(memory) {}
+Bodies::~Bodies() {
+  // Made by hand in memory of the world; see arrays().
+  if (Arrays* arrays = arrays_.release()) {
+    arrays->~Arrays();
+    memory_->deallocate(arrays, sizeof(Arrays), alignof(Arrays));
+  }
+}
+
+Bodies::Arrays& Bodies::arrays() {
+  if (!arrays_) {
+    void* place = memory_->allocate(sizeof(Arrays), alignof(Arrays));
+    try {
+      arrays_.reset(new (place) Arrays(memory_));
+    } catch (...) {
+      memory_->deallocate(place, sizeof(Arrays), alignof(Arrays));
+      throw;
+    }
+  }
+  return *arrays_;
+}
+
+void Bodies::swap(Bodies& other) {
+  std::swap(arrays_, other.arrays_);
+  std::swap(memory_, other.memory_);
+}
+
+BodyIndex Bodies::add(BodyKind kind, ObjectId owner) {
+  Arrays& a = arrays();
+  if (!a.default_shape) a.default_shape = Shape::sphere(1);
+  BodyIndex body;
+  if (a.free.empty()) {
+    body = a.grow();
+  } else {
+    body = a.free.back();
+    a.free.pop_back();
+  }
+  a.owner[body] = owner;
+  a.kind[body] = kind;
+  a.location[body] = a.velocity[body] = a.acceleration[body] = kZero;
+  a.collision_shape[body] = a.display_shape[body] = a.default_shape;
+  a.neighborhood[body] = 0;
+  ++a.used;
+  ++a.revision;
+  return body;
+}
+
+void Bodies::remove(BodyIndex body) {
+  Arrays& a = *arrays_;
+  assert(used(body));
+  a.translating.set(body, false);
+  a.turning.set(body, false);
+  a.rigid.set(body, false);
+  a.turn_rows.drop(a.turn_row[body]);
+  a.rigid_rows.drop(a.rigid_row[body]);
+  a.materials.drop(a.material_row[body]);
+  a.appearances.drop(a.appearance_row[body]);
+  a.collision_shape[body].reset();
+  a.display_shape[body].reset();
+  a.owner[body] = {};
+  a.free.push_back(body);
+  --a.used;
+  ++a.revision;
+}
+
+std::size_t Bodies::size() const { return arrays_ ? arrays_->used : 0; }
+std::size_t Bodies::index_end() const { return arrays_ ? arrays_->owner.size() : 0; }
+bool Bodies::used(BodyIndex body) const { return body < index_end() && arrays_->owner[body]; }
+std::uint64_t Bodies::revision() const { return arrays_ ? arrays_->revision : 0; }
+
+std::size_t Bodies::bytes() const {
+  if (!arrays_) return 0;
+  constexpr std::size_t kColumns = sizeof(ObjectId) + sizeof(BodyKind) + 3 * sizeof(Vector3) + 4 * sizeof(RowIndex) +
+                                   2 * sizeof(std::shared_ptr<Shape>) + sizeof(double);
+  const Arrays& a = *arrays_;
+  return sizeof(Arrays) + a.owner.capacity() * kColumns + a.turn_rows.bytes() + a.rigid_rows.bytes() +
+         a.materials.bytes() + a.appearances.bytes() + a.translating.bytes() + a.turning.bytes() + a.rigid.bytes();
+}
+
+BodyKind Bodies::kind(BodyIndex body) const { return arrays_->kind[body]; }
+ObjectId Bodies::owner(BodyIndex body) const { return arrays_->owner[body]; }
+
+const Vector3& Bodies::location(BodyIndex body) const { return arrays_->location[body]; }
+
+Matrix3 Bodies::rotation(BodyIndex body) const { return orientation(body).toRotationMatrix(); }
+
+Quaternion Bodies::orientation(BodyIndex body) const {
+  const RowIndex row = arrays_->turn_row[body];
+  return row == kNoRow ? Quaternion::Identity() : arrays_->turn_rows[row].orientation;
+}
+
+void Bodies::set_location(BodyIndex body, const Vector3& location) {
+  require_finite("location", location);
+  arrays_->location[body] = location;
+  arrays_->note(body);
+}
+
+void Bodies::set_rotation(BodyIndex body, const Matrix3& rotation) { set_orientation(body, rotation_of(rotation)); }
+
+void Bodies::set_orientation(BodyIndex body, const Quaternion& orientation) {
+  const double norm = orientation.norm();
+  if (!std::isfinite(norm) || norm == 0) {
+    throw Error(ErrorCode::Argument, "orientation must be a finite quaternion of non-zero length");
+  }
+  if (arrays_->turn_row[body] == kNoRow && orientation.vec() == kZero) return;
+  arrays_->turn(body).orientation = orientation.normalized();
+  arrays_->note(body);
+}
+
+const Vector3& Bodies::velocity(BodyIndex body) const { return arrays_->velocity[body]; }
+const Vector3& Bodies::acceleration(BodyIndex body) const { return arrays_->acceleration[body]; }
+
+const Vector3& Bodies::rotational_velocity(BodyIndex body) const {
+  const RowIndex row = arrays_->turn_row[body];
+  return row == kNoRow ? kZero : arrays_->turn_rows[row].velocity;
+}
+
+const Vector3& Bodies::rotational_acceleration(BodyIndex body) const {
+  const RowIndex row = arrays_->turn_row[body];
+  return row == kNoRow ? kZero : arrays_->turn_rows[row].acceleration;
+}
+
+void Bodies::set_velocity(BodyIndex body, const Vector3& value) {
+  require_finite("velocity", value);
+  arrays_->velocity[body] = value;
+  arrays_->classify(body);
+  arrays_->note(body);
+}
+
+void Bodies::set_acceleration(BodyIndex body, const Vector3& value) {
+  require_finite("acceleration", value);
+  arrays_->acceleration[body] = value;
+  arrays_->classify(body);
+  arrays_->note(body);
+}
+
+void Bodies::set_rotational_velocity(BodyIndex body, const Vector3& value) {
+  require_finite("rotational velocity", value);
+  if (arrays_->turn_row[body] == kNoRow && value == kZero) return;
+  arrays_->turn(body).velocity = value;
+  arrays_->classify(body);
+  arrays_->note(body);
+}
+
+void Bodies::set_rotational_acceleration(BodyIndex body, const Vector3& value) {
+  require_finite("rotational acceleration", value);
+  if (arrays_->turn_row[body] == kNoRow && value == kZero) return;
+  arrays_->turn(body).acceleration = value;
+  arrays_->classify(body);
+  arrays_->note(body);
+}
+
+bool Bodies::physics(BodyIndex body) const { return arrays_->physics(body); }
+
+void Bodies::set_physics(BodyIndex body, bool enabled) {
+  Arrays& a = *arrays_;
+  if (a.physics(body) == enabled) return;
+  RigidRow& row = a.make_rigid(body);
+  row.physics = enabled;
+  if (enabled) {
+    a.copy_mass(body);
+    row.kinematic_velocity = a.velocity[body];
+    row.kinematic_rotational_velocity = rotational_velocity(body);
+    // The rotational velocity of a rigid body is in the world frame.
+    if (a.turn_row[body] != kNoRow) {
+      TurnRow& turn = a.turn_rows[a.turn_row[body]];
+      turn.velocity = turn.orientation * turn.velocity;
+    }
+  } else {
+    a.velocity[body] = row.kinematic_velocity;
+    if (a.turn_row[body] != kNoRow) a.turn_rows[a.turn_row[body]].velocity = row.kinematic_rotational_velocity;
+  }
+  a.classify(body);
+  a.note(body);
+}
+
+const Vector3& Bodies::force(BodyIndex body) const {
+  const RowIndex row = arrays_->rigid_row[body];
+  return row == kNoRow ? kZero : arrays_->rigid_rows[row].force;
+}
+
+const Vector3& Bodies::torque(BodyIndex body) const {
+  const RowIndex row = arrays_->rigid_row[body];
+  return row == kNoRow ? kZero : arrays_->rigid_rows[row].torque;
+}
+
+void Bodies::set_force(BodyIndex body, const Vector3& newtons) {
+  require_finite("force", newtons);
+  arrays_->make_rigid(body).force = newtons;
+  arrays_->note(body);
+}
+
+void Bodies::set_torque(BodyIndex body, const Vector3& newton_metres) {
+  require_finite("torque", newton_metres);
+  arrays_->make_rigid(body).torque = newton_metres;
+  if (newton_metres != kZero) arrays_->turn(body);
+  arrays_->note(body);
+}
+
+const std::shared_ptr<Shape>& Bodies::collision_shape(BodyIndex body) const { return arrays_->collision_shape[body]; }
+const std::shared_ptr<Shape>& Bodies::display_shape(BodyIndex body) const { return arrays_->display_shape[body]; }
+
+void Bodies::set_collision_shape(BodyIndex body, std::shared_ptr<Shape> shape) {
+  if (!shape) throw Error(ErrorCode::Argument, "a body needs a shape: the one given is null");
+  arrays_->collision_shape[body] = std::move(shape);
+  if (arrays_->rigid_row[body] != kNoRow) arrays_->copy_mass(body);
+  arrays_->note(body);
+}
+
+void Bodies::set_display_shape(BodyIndex body, std::shared_ptr<Shape> shape) {
+  if (!shape) throw Error(ErrorCode::Argument, "a body needs a shape: the one given is null");
+  arrays_->display_shape[body] = std::move(shape);
+}
+
+Eigen::AlignedBox3d Bodies::bounds(BodyIndex body) const {
+  Eigen::AlignedBox3d box = arrays_->collision_shape[body]->bounds(rotation(body));
+  return box.translate(arrays_->location[body]);
+}
+
+double Bodies::mass(BodyIndex body) const { return arrays_->collision_shape[body]->mass(); }
+
+double Bodies::neighborhood_size(BodyIndex body) const { return arrays_->neighborhood[body]; }
+
+void Bodies::set_neighborhood_size(BodyIndex body, double radius) {
+  if (!std::isfinite(radius)) {
+    throw Error(ErrorCode::Argument, fmt::format("neighborhood size must be finite, but is {}", radius));
+  }
+  arrays_->neighborhood[body] = radius;
+}
+
+Material& Bodies::material(BodyIndex body) {
+  RowIndex& row = arrays_->material_row[body];
+  if (row == kNoRow) row = arrays_->materials.make();
+  return arrays_->materials[row];
+}
+
+const Material& Bodies::material(BodyIndex body) const {
+  const RowIndex row = arrays_->material_row[body];
+  return row == kNoRow ? kPlainMaterial : std::as_const(arrays_->materials)[row];
+}
+
+Appearance& Bodies::appearance(BodyIndex body) {
+  RowIndex& row = arrays_->appearance_row[body];
+  if (row == kNoRow) row = arrays_->appearances.make();
+  return arrays_->appearances[row];
+}
+
+const Appearance& Bodies::appearance(BodyIndex body) const {
+  const RowIndex row = arrays_->appearance_row[body];
+  return row == kNoRow ? kPlainAppearance : std::as_const(arrays_->appearances)[row];
+}
+
+}  // namespace breve

@@ -1,0 +1,125 @@
+// The stages that move bodies: kinematic translation and rotation by explicit Euler, and free rigid motion.
+#include <cmath>
+
+#include "runtime/kinematics/arrays.hpp"
+#include "runtime/kinematics/free_motion.hpp"
+
+namespace breve {
+
+void Bodies::Arrays::turn_one(BodyIndex body, double h) {
+  TurnRow& row = turn_rows[turn_row[body]];
+  // q' = q (0, w) / 2 with w in the body's own frame; all from the values at the start (CLASSES 2.3).
+  const Vector3& w = row.velocity;
+  const Quaternion rate = row.orientation * Quaternion(0, w.x(), w.y(), w.z());
+  row.orientation.coeffs() += 0.5 * h * rate.coeffs();
+  row.orientation.normalize();
+  row.velocity += h * row.acceleration;
+}
+
+void Bodies::Arrays::move_rigid_one(BodyIndex body, double h, const Vector3& gravity) {
+  const RigidRow& rigid = rigid_rows[rigid_row[body]];
+  const Vector3 pull = gravity + rigid.force / rigid.mass;
+  if (turn_row[body] == kNoRow) {
+    velocity[body] += h * pull;
+    location[body] += h * velocity[body];
+    return;
+  }
+  TurnRow& turn = turn_rows[turn_row[body]];
+  // The centre of mass moves like a point; the body turns about it.
+  const Vector3 arm = turn.orientation * rigid.center_of_mass;
+  const Vector3 center_velocity = velocity[body] + turn.velocity.cross(arm) + h * pull;
+  const Vector3 center = location[body] + arm + h * center_velocity;
+  const Quaternion to_own = turn.orientation.conjugate();
+  const Vector3 own_spin = to_own * turn.velocity;
+  const Vector3 own_torque = to_own * rigid.torque;
+  Vector3 middle;
+  Vector3 spin;
+  if (rigid.round) {
+    spin = own_spin + (h / rigid.inertia(0, 0)) * own_torque;
+    middle = 0.5 * (own_spin + spin);
+  } else {
+    spin = advance_spin(rigid.inertia, own_spin, own_torque, h, middle);
+  }
+  turn.orientation = (turn.orientation * rotation_by(h * middle)).normalized();
+  turn.velocity = turn.orientation * spin;
+  const Vector3 new_arm = turn.orientation * rigid.center_of_mass;
+  location[body] = center - new_arm;
+  velocity[body] = center_velocity - turn.velocity.cross(new_arm);
+}
+
+namespace {
+
+ObjectId first_of(const ActiveSet& set, const std::pmr::vector<ObjectId>& owner) {
+  return set.members().empty() ? ObjectId{} : owner[set.members().front()];
+}
+
+}  // namespace
+
+std::size_t Bodies::translating() const { return arrays_ ? arrays_->translating.members().size() : 0; }
+std::size_t Bodies::turning() const { return arrays_ ? arrays_->turning.members().size() : 0; }
+std::size_t Bodies::rigid() const { return arrays_ ? arrays_->rigid.members().size() : 0; }
+ObjectId Bodies::first_translating() const {
+  return arrays_ ? first_of(arrays_->translating, arrays_->owner) : ObjectId{};
+}
+ObjectId Bodies::first_turning() const { return arrays_ ? first_of(arrays_->turning, arrays_->owner) : ObjectId{}; }
+ObjectId Bodies::first_rigid() const { return arrays_ ? first_of(arrays_->rigid, arrays_->owner) : ObjectId{}; }
+
+void Bodies::translate(double h) {
+  if (!arrays_) return;
+  for (const BodyIndex body : arrays_->translating.members()) arrays_->translate_one(body, h);
+}
+
+void Bodies::turn(double h) {
+  if (!arrays_) return;
+  for (const BodyIndex body : arrays_->turning.members()) arrays_->turn_one(body, h);
+}
+
+void Bodies::move_rigid(double h, const Vector3& gravity) {
+  if (!arrays_) return;
+  for (const BodyIndex body : arrays_->rigid.members()) arrays_->move_rigid_one(body, h, gravity);
+}
+
+bool Bodies::active(BodyIndex body) const {
+  return arrays_->translating.has(body) || arrays_->turning.has(body) || arrays_->rigid.has(body);
+}
+
+BodyState Bodies::state(BodyIndex body) const {
+  BodyState s;
+  s.location = location(body);
+  s.orientation = orientation(body);
+  s.velocity = velocity(body);
+  s.acceleration = acceleration(body);
+  s.rotational_velocity = rotational_velocity(body);
+  s.rotational_acceleration = rotational_acceleration(body);
+  s.force = force(body);
+  s.torque = torque(body);
+  s.shape = collision_shape(body).get();
+  s.physics = physics(body);
+  return s;
+}
+
+void Bodies::place(BodyIndex body, const Vector3& location, const Quaternion& orientation, const Vector3& velocity,
+                   const Vector3& rotational_velocity) {
+  Arrays& a = *arrays_;
+  a.location[body] = location;
+  a.velocity[body] = velocity;
+  if (a.turn_row[body] != kNoRow) {
+    TurnRow& row = a.turn_rows[a.turn_row[body]];
+    row.orientation = orientation;
+    row.velocity = rotational_velocity;
+  }
+  a.classify(body);
+}
+
+void Bodies::advance(BodyIndex body, double h, const Vector3& gravity) {
+  Arrays& a = *arrays_;
+  if (a.rigid.has(body)) a.move_rigid_one(body, h, gravity);
+  if (a.translating.has(body)) a.translate_one(body, h);
+  if (a.turning.has(body)) a.turn_one(body, h);
+}
+
+void Bodies::set_log(std::pmr::vector<BodyIndex>* log) {
+  if (arrays_) arrays_->log = log;
+}
+
+}  // namespace breve

@@ -1,0 +1,199 @@
+// Bodies in a snapshot and in the world hash. Which stages move a body, and which rows it has, follow from its values.
+#include "runtime/base/error.hpp"
+#include "runtime/kinematics/arrays.hpp"
+
+namespace breve {
+
+namespace {
+
+void put_object(ByteWriter& out, ObjectId id) {
+  out.put(id.index);
+  out.put(id.generation);
+}
+
+ObjectId get_object(ByteReader& in) {
+  ObjectId id;
+  id.index = in.get<std::uint32_t>();
+  id.generation = in.get<std::uint32_t>();
+  return id;
+}
+
+void save(ByteWriter& out, const Material& m) {
+  for (const double value : {m.restitution, m.friction, m.static_friction, m.dynamic_friction, m.normal_restitution,
+                             m.tangential_restitution, m.restitution_threshold}) {
+    out.put(value);
+  }
+}
+
+void load(ByteReader& in, Material& m) {
+  for (double* value : {&m.restitution, &m.friction, &m.static_friction, &m.dynamic_friction, &m.normal_restitution,
+                        &m.tangential_restitution, &m.restitution_threshold}) {
+    *value = in.get<double>();
+  }
+}
+
+void save(ByteWriter& out, const Appearance& a) {
+  out.put(a.color);
+  out.put(a.alpha);
+  put_object(out, a.texture);
+  put_object(out, a.bitmap);
+  put_object(out, a.lightmap);
+  out.put(a.texture_scale_x);
+  out.put(a.texture_scale_y);
+  out.put(a.bitmap_heading);
+  out.put(std::string_view(a.label));
+  for (const bool flag : {a.visible, a.shadows, a.as_point, a.bounding_box, a.axis, a.neighbor_lines}) out.put(flag);
+}
+
+void load(ByteReader& in, Appearance& a) {
+  a.color = in.get_vector();
+  a.alpha = in.get<double>();
+  a.texture = get_object(in);
+  a.bitmap = get_object(in);
+  a.lightmap = get_object(in);
+  a.texture_scale_x = in.get<double>();
+  a.texture_scale_y = in.get<double>();
+  a.bitmap_heading = in.get<double>();
+  a.label = in.get_string();
+  for (bool* flag : {&a.visible, &a.shadows, &a.as_point, &a.bounding_box, &a.axis, &a.neighbor_lines}) {
+    *flag = in.get_bool();
+  }
+}
+
+void save(ByteWriter& out, const TurnRow& row) {
+  out.put(row.orientation);
+  out.put(row.velocity);
+  out.put(row.acceleration);
+}
+
+void load(ByteReader& in, TurnRow& row) {
+  row.orientation = in.get_quaternion();
+  row.velocity = in.get_vector();
+  row.acceleration = in.get_vector();
+}
+
+void save(ByteWriter& out, const RigidRow& row) {
+  for (const Vector3* v :
+       {&row.force, &row.torque, &row.kinematic_velocity, &row.kinematic_rotational_velocity, &row.center_of_mass}) {
+    out.put(*v);
+  }
+  out.put(row.mass);
+  out.put(row.inertia);
+  out.put(row.physics);
+  out.put(row.round);
+}
+
+void load(ByteReader& in, RigidRow& row) {
+  for (Vector3* v :
+       {&row.force, &row.torque, &row.kinematic_velocity, &row.kinematic_rotational_velocity, &row.center_of_mass}) {
+    *v = in.get_vector();
+  }
+  row.mass = in.get<double>();
+  row.inertia = in.get_matrix();
+  row.physics = in.get_bool();
+  row.round = in.get_bool();
+}
+
+template <class Row>
+void save_row(ByteWriter& out, const Rows<Row>& rows, RowIndex row) {
+  out.put(row != kNoRow);
+  if (row != kNoRow) save(out, rows[row]);
+}
+
+template <class Row>
+void load_row(ByteReader& in, Rows<Row>& rows, RowIndex& row) {
+  if (!in.get_bool()) return;
+  row = rows.make();
+  load(in, rows[row]);
+}
+
+}  // namespace
+
+void Bodies::save(ByteWriter& out) const {
+  out.put(static_cast<std::uint64_t>(index_end()));
+  if (!arrays_) return;
+  const Arrays& a = *arrays_;
+  out.put_shared(a.default_shape);
+  for (BodyIndex body = 0; body < a.owner.size(); ++body) {
+    put_object(out, a.owner[body]);
+    if (!a.owner[body]) continue;
+    out.put(a.kind[body]);
+    out.put(a.location[body]);
+    out.put(a.velocity[body]);
+    out.put(a.acceleration[body]);
+    out.put(a.neighborhood[body]);
+    out.put_shared(a.collision_shape[body]);
+    out.put_shared(a.display_shape[body]);
+    save_row(out, a.turn_rows, a.turn_row[body]);
+    save_row(out, a.rigid_rows, a.rigid_row[body]);
+    save_row(out, a.materials, a.material_row[body]);
+    save_row(out, a.appearances, a.appearance_row[body]);
+  }
+  out.put(static_cast<std::uint64_t>(a.free.size()));
+  for (const BodyIndex body : a.free) out.put(body);
+}
+
+void Bodies::load(ByteReader& in) {
+  const std::size_t count = in.get_count(2 * sizeof(std::uint32_t));
+  if (count == 0) return;
+  Arrays& a = arrays();
+  a.default_shape = in.get_shared<Shape>();
+  for (std::size_t i = 0; i < count; ++i) {
+    const BodyIndex body = a.grow();
+    a.owner[body] = get_object(in);
+    if (!a.owner[body]) continue;
+    ++a.used;
+    a.kind[body] = in.get<BodyKind>();
+    a.location[body] = in.get_vector();
+    a.velocity[body] = in.get_vector();
+    a.acceleration[body] = in.get_vector();
+    a.neighborhood[body] = in.get<double>();
+    a.collision_shape[body] = in.get_shared<Shape>();
+    a.display_shape[body] = in.get_shared<Shape>();
+    if (!a.collision_shape[body] || !a.display_shape[body] || a.kind[body] > BodyKind::Link) ByteReader::fail();
+    load_row(in, a.turn_rows, a.turn_row[body]);
+    load_row(in, a.rigid_rows, a.rigid_row[body]);
+    load_row(in, a.materials, a.material_row[body]);
+    load_row(in, a.appearances, a.appearance_row[body]);
+    a.classify(body);
+  }
+  const std::size_t free_count = in.get_count(sizeof(BodyIndex));
+  if (free_count + a.used != count) ByteReader::fail();
+  for (std::size_t i = 0; i < free_count; ++i) {
+    const auto body = in.get<BodyIndex>();
+    if (body >= count || a.owner[body]) ByteReader::fail();
+    a.free.push_back(body);
+  }
+}
+
+void Bodies::hash(Hasher& hasher, BodyIndex body) const {
+  const Arrays& a = *arrays_;
+  hasher.add(std::uint64_t{body} << 8 | static_cast<std::uint64_t>(a.kind[body]));
+  hasher.add(a.location[body]);
+  hasher.add(a.velocity[body]);
+  hasher.add(a.acceleration[body]);
+  hasher.add(orientation(body));
+  hasher.add(rotational_velocity(body));
+  hasher.add(rotational_acceleration(body));
+  hasher.add(force(body));
+  hasher.add(torque(body));
+  hasher.add(static_cast<std::uint64_t>(physics(body)));
+  if (physics(body)) {
+    const RigidRow& row = a.rigid_rows[a.rigid_row[body]];
+    hasher.add(row.mass);
+    hasher.add(row.inertia);
+    hasher.add(row.kinematic_velocity);
+    hasher.add(row.kinematic_rotational_velocity);
+  }
+  hasher.add(a.neighborhood[body]);
+  a.collision_shape[body]->hash(hasher);
+  if (a.display_shape[body] != a.collision_shape[body]) a.display_shape[body]->hash(hasher);
+  if (a.material_row[body] == kNoRow && a.appearance_row[body] == kNoRow) return;
+  // What a body looks like, and how it rubs, is part of the world: as the bytes that a snapshot holds.
+  ByteWriter look;
+  breve::save(look, material(body));
+  breve::save(look, appearance(body));
+  hasher.add(std::string_view(reinterpret_cast<const char*>(look.bytes().data()), look.bytes().size()));
+}
+
+}  // namespace breve

@@ -1,0 +1,180 @@
+// Grids of numbers: arithmetic is Eigen's, row by row where neighbours are needed.
+#include "runtime/patches/field.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/base/error.hpp"
+
+namespace breve {
+
+namespace {
+
+void check_size(const char* name, int size) {
+  if (size < 1)
+    throw Error(ErrorCode::Argument, fmt::format("the {} size of a matrix is {} (must be > 0)", name, size));
+}
+
+}  // namespace
+
+Field::Field(int dimensions, int nx, int ny, int nz) : dimensions_(dimensions), nx_(nx), ny_(ny), nz_(nz) {
+  check_size("x", nx);
+  check_size("y", ny);
+  check_size("z", nz);
+  const std::size_t across = static_cast<std::size_t>(ny) * static_cast<std::size_t>(nz);
+  if (across > kMaxElements / static_cast<std::size_t>(nx)) {
+    throw Error(ErrorCode::Argument,
+                fmt::format("a matrix of {} has too many elements (at most {})", size_text(), kMaxElements));
+  }
+  values_.setZero(static_cast<Eigen::Index>(across) * nx);
+}
+
+Field Field::line(int size) { return {1, size, 1, 1}; }
+Field Field::plane(int nx, int ny) { return {2, nx, ny, 1}; }
+Field Field::space(int nx, int ny, int nz) { return {3, nx, ny, nz}; }
+
+std::string Field::size_text() const {
+  switch (dimensions_) {
+    case 1: return fmt::format("{}", nx_);
+    case 2: return fmt::format("{} x {}", nx_, ny_);
+    default: return fmt::format("{} x {} x {}", nx_, ny_, nz_);
+  }
+}
+
+Eigen::Index Field::at(int x, int y, int z) const {
+  if (x < 0 || x >= nx_ || y < 0 || y >= ny_ || z < 0 || z >= nz_) {
+    const std::string index = dimensions_ == 1   ? fmt::format("{}", x)
+                              : dimensions_ == 2 ? fmt::format("({}, {})", x, y)
+                                                 : fmt::format("({}, {}, {})", x, y, z);
+    throw Error(ErrorCode::Argument,
+                fmt::format("index {} is outside a matrix of {} (indices start at 0)", index, size_text()));
+  }
+  return (static_cast<Eigen::Index>(x) * ny_ + y) * nz_ + z;
+}
+
+void Field::check_same_size(const Field& other, const char* what) const {
+  if (other.dimensions_ == dimensions_ && other.nx_ == nx_ && other.ny_ == ny_ && other.nz_ == nz_) return;
+  throw Error(ErrorCode::Argument, fmt::format("cannot {} a matrix of {} and one of {}: the sizes must agree", what,
+                                               size_text(), other.size_text()));
+}
+
+void Field::add(const Field& other, double factor) {
+  check_same_size(other, "add");
+  values_ += factor * other.values_;
+}
+
+void Field::subtract(const Field& other, double factor) {
+  check_same_size(other, "subtract");
+  values_ -= factor * other.values_;
+}
+
+void Field::multiply(const Field& other) {
+  check_same_size(other, "multiply");
+  values_ *= other.values_;
+}
+
+void Field::copy(const Field& other) {
+  check_same_size(other, "copy");
+  values_ = other.values_;
+}
+
+double Field::absolute_sum() const {
+  double sum = 0;
+  for (const double value : values_) sum += std::abs(value);
+  return sum;
+}
+
+double Field::max() const {
+  double largest = values_[0];
+  for (const double value : values_) largest = std::max(largest, value);
+  return largest;
+}
+
+template <bool kPeriodic>
+void Field::laplacian(const Field& other, double factor) {
+  check_same_size(other, "diffuse");
+  const Eigen::ArrayXd& from = other.values_;
+  Eigen::ArrayXd sum = (-2.0 * dimensions_) * from;
+  // Along each axis the grid is a stack of slabs of `slab` elements that touch the next along the axis.
+  const auto along = [&](Eigen::Index count, Eigen::Index slab) {
+    const Eigen::Index block = count * slab;
+    for (Eigen::Index start = 0; start < from.size(); start += block) {
+      const Eigen::Index inner = block - slab;
+      sum.segment(start, inner) += from.segment(start + slab, inner);
+      sum.segment(start + slab, inner) += from.segment(start, inner);
+      if constexpr (kPeriodic) {
+        sum.segment(start + inner, slab) += from.segment(start, slab);
+        sum.segment(start, slab) += from.segment(start + inner, slab);
+      }
+    }
+  };
+  along(nx_, static_cast<Eigen::Index>(ny_) * nz_);
+  if (dimensions_ > 1) along(ny_, nz_);
+  if (dimensions_ > 2) along(nz_, 1);
+  values_ = factor * sum;
+}
+
+void Field::diffuse(const Field& other, double factor) { laplacian<false>(other, factor); }
+void Field::diffuse_periodic(const Field& other, double factor) { laplacian<true>(other, factor); }
+
+void Field::transform(const Field& matrix, Field& result) const {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  if (matrix.dimensions_ != 2 || dimensions_ > 2 || matrix.ny_ != nx_) {
+    throw Error(ErrorCode::Argument,
+                fmt::format("cannot multiply a matrix of {} by one of {}: the columns of the first "
+                            "must be as many as the rows of the second",
+                            matrix.size_text(), size_text()));
+  }
+  if (result.dimensions_ != dimensions_ || result.nx_ != matrix.nx_ || result.ny_ != ny_) {
+    throw Error(ErrorCode::Argument, fmt::format("the product of matrices of {} and {} does not fit into one of {}",
+                                                 matrix.size_text(), size_text(), result.size_text()));
+  }
+  const Eigen::Map<const RowMajor> left(matrix.values_.data(), matrix.nx_, matrix.ny_);
+  const Eigen::Map<const RowMajor> right(values_.data(), nx_, ny_);
+  const RowMajor product = left * right;
+  result.values_ = Eigen::Map<const Eigen::ArrayXd>(product.data(), product.size());
+}
+
+std::uint8_t Field::channel_byte(double value, double factor) {
+  const double level = 255 * factor * value;
+  if (!(level > 0)) return 0;
+  return static_cast<std::uint8_t>(std::min(level, 255.0));
+}
+
+std::string Field::matlab() const {
+  if (dimensions_ > 2) throw Error(ErrorCode::Argument, "a 3D matrix has no rows to print");
+  std::string text = "[";
+  for (int x = 0; x < nx_; ++x) {
+    if (x > 0 && dimensions_ == 2) text += ";";
+    for (int y = 0; y < ny_; ++y) text += fmt::format(" {}", get(x, y));
+  }
+  return text + " ]";
+}
+
+void Field::save(ByteWriter& out) const {
+  for (const int n : {dimensions_, nx_, ny_, nz_}) out.put(static_cast<std::int32_t>(n));
+  out.raw(values_.data(), size() * sizeof(double));
+}
+
+Field Field::load(ByteReader& in) {
+  std::int32_t n[4];
+  for (std::int32_t& value : n) value = in.get<std::int32_t>();
+  const bool flat = (n[0] > 1 || n[2] == 1) && (n[0] > 2 || n[3] == 1);
+  if (n[0] < 1 || n[0] > 3 || n[1] < 1 || n[2] < 1 || n[3] < 1 || !flat) ByteReader::fail();
+  // Divided, not multiplied: a damaged size cannot overflow nor ask for more than the image holds.
+  const auto held = in.left() / sizeof(double);
+  const auto sizes = [&](int i) { return static_cast<std::size_t>(n[i]); };
+  if (sizes(1) > held || sizes(2) > held / sizes(1) || sizes(3) > held / sizes(1) / sizes(2)) ByteReader::fail();
+  Field field(n[0], n[1], n[2], n[3]);
+  in.raw(field.values_.data(), field.size() * sizeof(double));
+  return field;
+}
+
+void Field::hash(Hasher& hasher) const {
+  for (const int n : {dimensions_, nx_, ny_, nz_}) hasher.add(static_cast<std::uint64_t>(n));
+  for (const double value : values_) hasher.add(value);
+}
+
+}  // namespace breve

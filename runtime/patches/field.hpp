@@ -1,0 +1,77 @@
+// A dense grid of numbers in one, two or three dimensions: what scripts call Vector, Matrix2D and Matrix3D.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "runtime/base/bytes.hpp"
+#include "runtime/base/hasher.hpp"
+
+namespace breve {
+
+/// Element (x, y, z) is at index (x * ny + y) * nz + z. Every failing call throws Error{Argument} and changes nothing.
+class Field {
+ public:
+  static constexpr std::size_t kMaxElements = std::size_t{1} << 28;  // 2 GiB of doubles
+
+  /// Zeros. Sizes from 1; at most kMaxElements in all.
+  static Field line(int size);
+  static Field plane(int nx, int ny);
+  static Field space(int nx, int ny, int nz);
+
+  int dimensions() const { return dimensions_; }
+  int nx() const { return nx_; }
+  int ny() const { return ny_; }  // 1 for a line
+  int nz() const { return nz_; }  // 1 for a line or a plane
+  std::size_t size() const { return static_cast<std::size_t>(values_.size()); }
+  const Eigen::ArrayXd& values() const { return values_; }
+
+  // Elements; an index out of range is named in the error.
+  double get(int x, int y = 0, int z = 0) const { return values_[at(x, y, z)]; }
+  void set(int x, int y, int z, double value) { values_[at(x, y, z)] = value; }
+
+  // Whole fields; the other field must have the same sizes.
+  void fill(double value) { values_.setConstant(value); }
+  void scale(double factor) { values_ *= factor; }
+  void add_scalar(double value) { values_ += value; }
+  void add(const Field& other, double factor = 1);
+  void subtract(const Field& other, double factor = 1);
+  void multiply(const Field& other);  // element by element
+  void copy(const Field& other);
+
+  double absolute_sum() const;  // in the order of the elements: the same on every machine
+  double max() const;
+
+  /// this = factor * (sum of the 2 d neighbours - 2 d * other), d dimensions. `other` may be this field.
+  void diffuse(const Field& other, double factor = 1);           // outside is 0
+  void diffuse_periodic(const Field& other, double factor = 1);  // edges wrap, for every size
+
+  /// result = matrix * this. For a plane this is the product of matrices with x as row and y as column; for a line the
+  /// product with a column. `result` must have the sizes of the product and may be either operand.
+  void transform(const Field& matrix, Field& result) const;
+
+  /// Channel bytes as an image takes them: floor(255 * factor * value), not below 0 nor above 255; NaN gives 0.
+  static std::uint8_t channel_byte(double value, double factor);
+
+  /// Rows as a matrix is typed into MATLAB: "[ 1 2; 3 4 ]"; a line or a plane.
+  std::string matlab() const;
+
+  void save(ByteWriter& out) const;
+  static Field load(ByteReader& in);  // Error{Image}
+  void hash(Hasher& hasher) const;
+
+ private:
+  Field(int dimensions, int nx, int ny, int nz);
+  Eigen::Index at(int x, int y, int z) const;
+  void check_same_size(const Field& other, const char* what) const;
+  std::string size_text() const;
+  template <bool kPeriodic>
+  void laplacian(const Field& other, double factor);
+
+  int dimensions_, nx_, ny_, nz_;
+  Eigen::ArrayXd values_;
+};
+
+}  // namespace breve

@@ -1,0 +1,95 @@
+// Closest points of two solids: which method serves which pair.
+#include "runtime/solid/contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "runtime/solid/gap.hpp"
+#include "runtime/solid/place.hpp"
+
+namespace breve {
+
+namespace {
+
+// Closer than this fraction of the sizes, the direction between closest points loses digits to cancellation; the
+// normal of the facing features keeps them all.
+constexpr double kClose = 1e-5;
+constexpr double kAgree = 1e-14;  // round-off of either, relative to the sizes
+
+Gap flipped(const Gap& gap) {
+  Gap other = gap;
+  std::swap(other.on_a, other.on_b);
+  std::swap(other.edge_a, other.edge_b);
+  other.normal = -gap.normal;
+  return other;
+}
+
+/// Witness points of an overlap: of the two solids moved apart along the normal, then brought back.
+void place_witnesses(const Placed& a, const Placed& b, Gap& gap) {
+  const double lift = 0.25 * std::min(a.radius, b.radius) - gap.distance;
+  Placed lowered = b;
+  lowered.location -= lift * gap.normal;
+  Gap apart;
+  if (separated(a, lowered, apart)) {
+    gap.on_a = apart.on_a;
+    gap.on_b = apart.on_b + lift * gap.normal;
+  } else {
+    gap.on_a = gap.on_b = a.vertex(a.support(-gap.normal));
+  }
+}
+
+Gap polyhedra_gap(const Placed& a, const Placed& b) {
+  const double size = a.radius + b.radius;
+  Gap gap;
+  const bool apart = separated(a, b, gap);
+  if (apart && gap.distance > kClose * size) return gap;
+  Gap axis = best_axis(a, b);
+  if (apart && axis.distance < gap.distance - kAgree * size) return gap;
+  place_witnesses(a, b, axis);
+  return axis;
+}
+
+}  // namespace
+
+Placed place(const Shape& shape, const Pose& pose) {
+  const bool round = shape.kind() == ShapeKind::Sphere;
+  return {round ? nullptr : &shape.polyhedron(), shape.bounding_radius(), pose.location,
+          pose.orientation.toRotationMatrix()};
+}
+
+Gap find_gap(const Placed& a, const Placed& b) {
+  if (a.solid == nullptr && b.solid == nullptr) return balls_gap(a, b);
+  if (a.solid == nullptr) return ball_gap(a, b);
+  if (b.solid == nullptr) return flipped(ball_gap(b, a));
+  return polyhedra_gap(a, b);
+}
+
+Contact closest(const Shape& a, const Pose& pa, const Shape& b, const Pose& pb) {
+  // Coordinates relative to a keep digits far from the origin.
+  Placed at = place(a, pa), other = place(b, pb);
+  other.location = pb.location - pa.location;
+  at.location.setZero();
+  const Gap gap = find_gap(at, other);
+  return {pa.location + (gap.on_a + gap.on_b) / 2, gap.normal, gap.distance};
+}
+
+Pose pose_at(const Motion& motion, double t) {
+  Pose pose{motion.start.location + t * motion.velocity, motion.start.orientation};
+  const double rate = motion.rotational_velocity_world.stableNorm();
+  if (rate > 0) {
+    const Quaternion turn(Eigen::AngleAxisd(rate * t, motion.rotational_velocity_world / rate));
+    pose.orientation = (turn * pose.orientation).normalized();
+  }
+  return pose;
+}
+
+double touch_tolerance(const Shape& a, const Pose& pa, const Shape& b, const Pose& pb) {
+  // Sizes: the geometry's own round-off. Places: that of poses that were rounded after a step.
+  constexpr double kOfSize = 1e-12, kOfPlace = 16 * std::numeric_limits<double>::epsilon();
+  const double place = std::max(pa.location.cwiseAbs().maxCoeff(), pb.location.cwiseAbs().maxCoeff());
+  return kOfSize * (a.bounding_radius() + b.bounding_radius()) + kOfPlace * place;
+}
+
+}  // namespace breve

@@ -1,0 +1,160 @@
+// Regular solids, their planes and edges, and exact moments.
+#include "runtime/solid/polyhedron.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "runtime/base/error.hpp"
+
+namespace breve {
+
+namespace {
+
+// Tests of pairs of edges are quadratic in the number of sides; beyond this a sphere or a coarser polygon is meant.
+constexpr int kMaxSides = 1000;
+
+void check_length(const char* what, double value) {
+  if (!std::isfinite(value) || value <= 0) {
+    throw Error(ErrorCode::Argument, fmt::format("{} is {} (must be finite and > 0)", what, value));
+  }
+}
+
+void check_polygon(const char* what, int sides, double height, double radius) {
+  if (sides < 3 || sides > kMaxSides) {
+    throw Error(ErrorCode::Argument, fmt::format("a {} has {} sides (must be from 3 to {})", what, sides, kMaxSides));
+  }
+  check_length(fmt::format("the height of a {}", what).c_str(), height);
+  check_length(fmt::format("the radius of a {}", what).c_str(), radius);
+}
+
+/// `sides` points of the circle about the y axis at height y, the first `offset` steps past +x.
+void add_ring(std::vector<Vector3>& out, int sides, double y, double radius, double offset) {
+  for (int i = 0; i < sides; ++i) {
+    const double angle = (i + offset) * 2 * std::numbers::pi / sides;
+    out.emplace_back(radius * std::cos(angle), y, radius * std::sin(angle));
+  }
+}
+
+/// Twice the vector area of a polygon (Newell's method): robust for polygons that are only nearly planar.
+Vector3 doubled_area(const Polyhedron& solid, const std::vector<int>& face) {
+  const Vector3& origin = solid.vertices[static_cast<std::size_t>(face[0])];
+  Vector3 sum = Vector3::Zero();
+  for (std::size_t i = 1; i + 1 < face.size(); ++i) {
+    const Vector3 p = solid.vertices[static_cast<std::size_t>(face[i])] - origin;
+    const Vector3 q = solid.vertices[static_cast<std::size_t>(face[i + 1])] - origin;
+    sum += p.cross(q);
+  }
+  return sum;
+}
+
+void finish(Polyhedron& solid) {
+  connect(solid);
+  update_planes(solid);
+}
+
+}  // namespace
+
+Polyhedron make_box(const Vector3& size) {
+  static constexpr const char* kWhat[] = {"a box's size along x", "a box's size along y", "a box's size along z"};
+  for (int i = 0; i < 3; ++i) check_length(kWhat[i], size[i]);
+  Polyhedron box;
+  for (int i = 0; i < 8; ++i) {
+    const Vector3 corner((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1);
+    box.vertices.emplace_back(corner.cwiseProduct(size) * 0.5);
+  }
+  box.faces = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+  finish(box);
+  return box;
+}
+
+Polyhedron make_prism(int sides, double height, double radius) {
+  check_polygon("polygon disk", sides, height, radius);
+  Polyhedron prism;
+  add_ring(prism.vertices, sides, -height / 2, radius, 0.5);
+  add_ring(prism.vertices, sides, height / 2, radius, 0.5);
+  std::vector<int> bottom, top;
+  // Rising angles turn from +x to +z: clockwise seen from +y.
+  for (int i = 0; i < sides; ++i) bottom.push_back(i);
+  for (int i = sides - 1; i >= 0; --i) top.push_back(sides + i);
+  prism.faces = {bottom, top};
+  for (int i = 0; i < sides; ++i) {
+    const int next = (i + 1) % sides;
+    prism.faces.push_back({i, sides + i, sides + next, next});
+  }
+  finish(prism);
+  return prism;
+}
+
+Polyhedron make_cone(int sides, double height, double radius) {
+  check_polygon("polygon cone", sides, height, radius);
+  Polyhedron cone;
+  add_ring(cone.vertices, sides, -height / 2, radius, 0);
+  cone.vertices.emplace_back(0, height / 2, 0);
+  std::vector<int> base;
+  for (int i = 0; i < sides; ++i) base.push_back(i);
+  cone.faces = {base};
+  for (int i = 0; i < sides; ++i) cone.faces.push_back({i, sides, (i + 1) % sides});
+  finish(cone);
+  return cone;
+}
+
+void connect(Polyhedron& solid) {
+  solid.edges.clear();
+  std::map<std::pair<int, int>, std::size_t> open;  // directed edge as its left face runs it
+  for (std::size_t f = 0; f < solid.faces.size(); ++f) {
+    const auto& face = solid.faces[f];
+    for (std::size_t i = 0; i < face.size(); ++i) {
+      const int a = face[i], b = face[(i + 1) % face.size()];
+      const auto twin = open.find({b, a});
+      if (twin != open.end() && solid.edges[twin->second].right < 0) {
+        solid.edges[twin->second].right = static_cast<int>(f);
+      } else if (twin != open.end() || !open.emplace(std::pair{a, b}, solid.edges.size()).second) {
+        throw Error(ErrorCode::Argument,
+                    fmt::format("face {} of a convex shape uses an edge that two faces share already", f));
+      } else {
+        solid.edges.push_back({a, b, static_cast<int>(f), -1});
+      }
+    }
+  }
+  for (const Edge& edge : solid.edges) {
+    if (edge.right < 0) {
+      throw Error(ErrorCode::Argument,
+                  fmt::format("a convex shape is not closed: an edge of face {} belongs to no other face", edge.left));
+    }
+  }
+}
+
+void update_planes(Polyhedron& solid) {
+  solid.planes.clear();
+  for (const auto& face : solid.faces) {
+    const Vector3 normal = doubled_area(solid, face).stableNormalized();
+    double offset = normal.dot(solid.vertices[static_cast<std::size_t>(face[0])]);
+    // Slightly warped faces get the outermost plane, so that no vertex is outside its own face.
+    for (const int v : face) offset = std::max(offset, normal.dot(solid.vertices[static_cast<std::size_t>(v)]));
+    solid.planes.push_back({normal, offset});
+  }
+}
+
+Moments moments(const Polyhedron& solid) {
+  Moments sum{0, Vector3::Zero(), Matrix3::Zero()};
+  for (const auto& face : solid.faces) {
+    const Vector3& a = solid.vertices[static_cast<std::size_t>(face[0])];
+    for (std::size_t i = 1; i + 1 < face.size(); ++i) {
+      const Vector3& b = solid.vertices[static_cast<std::size_t>(face[i])];
+      const Vector3& c = solid.vertices[static_cast<std::size_t>(face[i + 1])];
+      const double six_volumes = a.dot(b.cross(c));
+      const Vector3 s = a + b + c;
+      sum.volume += six_volumes / 6;
+      sum.first += six_volumes / 24 * s;
+      sum.second += six_volumes / 120 * (s * s.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
+    }
+  }
+  return sum;
+}
+
+}  // namespace breve

@@ -1,0 +1,57 @@
+// A convex polyhedron as vertices, faces, planes and edges, and its exact moments: the geometry behind every shape
+// that is not a sphere. Faces run counter-clockwise seen from outside.
+#pragma once
+
+#include <vector>
+
+#include "runtime/base/math.hpp"
+
+namespace breve {
+
+/// The outer side of a face: points p with normal . p > offset are outside. `normal` has unit length.
+struct Plane {
+  Vector3 normal;
+  double offset;
+};
+
+/// An edge between two faces: it runs from vertex a to vertex b in `left` and from b to a in `right`.
+struct Edge {
+  int a, b;
+  int left, right;
+};
+
+struct Polyhedron {
+  std::vector<Vector3> vertices;
+  std::vector<std::vector<int>> faces;
+  std::vector<Plane> planes;  // one a face
+  std::vector<Edge> edges;    // in the order in which the faces first name them
+};
+
+/// Integrals of 1, x and x x^T over the solid at density 1.
+struct Moments {
+  double volume;
+  Vector3 first;
+  Matrix3 second;
+};
+
+/// The builders give the origin as centre. Error{Argument} names the value that is not finite and > 0.
+Polyhedron make_box(const Vector3& size);
+Polyhedron make_prism(int sides, double height, double radius);
+Polyhedron make_cone(int sides, double height, double radius);
+
+/// The convex solid that `faces` enclose; each face is a planar convex polygon given in either sense.
+/// Error{Argument} says which face or vertex keeps it from being closed, convex, or around the origin.
+Polyhedron make_convex(const std::vector<std::vector<Vector3>>& faces);
+
+/// Find the edges from the faces. Error{Argument} if some edge is not shared by exactly two faces, once in each sense.
+void connect(Polyhedron& solid);
+/// Recompute the planes after the vertices moved.
+void update_planes(Polyhedron& solid);
+
+/// Exact moments of a closed polyhedron about the origin.
+/// Source: the divergence theorem turns each volume integral into a sum over triangles (Mirtich 1996, "Fast and
+/// accurate computation of polyhedral mass properties"; Eberly 2002, "Polyhedral mass properties"); here as signed
+/// tetrahedra from the origin. Cost O(corners).
+Moments moments(const Polyhedron& solid);
+
+}  // namespace breve

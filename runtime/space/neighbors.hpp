@@ -1,0 +1,67 @@
+// Who is near whom, by centres, at one recorded moment. Recording is cheap; search structures are built when asked for.
+#pragma once
+
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+#include <vector>
+
+#include "runtime/base/math.hpp"
+#include "runtime/space/cell_grid.hpp"
+#include "runtime/space/point_tree.hpp"
+
+namespace breve {
+
+class Neighbors {
+ public:
+  explicit Neighbors(std::pmr::memory_resource* memory);
+
+  /// Forget the last moment; points of the next one follow in order of creation.
+  void clear();
+  void add(const Vector3& location, double radius) {
+    points_.push_back(location);
+    radii_.push_back(radius);
+  }
+  std::size_t size() const { return points_.size(); }
+  const std::pmr::vector<Vector3>& points() const { return points_; }
+  const std::pmr::vector<double>& radii() const { return radii_; }
+
+  /// Indices of the points strictly nearer to point `self` than its radius, without it, ascending. Valid until the next
+  /// call. Expected cost proportional to the answer and the like-dense surroundings; no allocation after warm-up.
+  std::span<const std::uint32_t> query(std::uint32_t self);
+  std::size_t bytes() const;
+  std::uint64_t visited() const { return visited_; }  // points looked at since clear()
+
+ private:
+  CellGrid* grid_for(double radius);
+  void search(std::uint32_t self, std::pmr::vector<std::uint32_t>& out);
+  bool most_ask() const;
+  void answer_all();
+
+  // Each grid serves the radii from half its cell to its cell; more kinds of radii than this go to the tree.
+  static constexpr std::size_t kMostGrids = 6;
+  // A query that would look at more points in cells than this asks the tree, which leaves out what is far.
+  static constexpr std::size_t kMostCandidates = 512;
+  // Answers kept in advance take at most this many numbers for each point.
+  static constexpr std::size_t kMostKept = 64;
+
+  struct Answer {
+    std::uint32_t begin = 0, count = 0;
+  };
+
+  std::pmr::vector<Vector3> points_;
+  std::pmr::vector<double> radii_;
+  std::pmr::vector<CellGrid> grids_;  // kept for their memory; the first `grid_count_` are of this moment
+  std::size_t grid_count_ = 0;
+  PointTree tree_;
+  bool tree_built_ = false;
+  std::pmr::vector<std::uint32_t> result_;
+  // Once it shows that most points ask, all are answered in the order of space, which is kind to caches.
+  std::pmr::vector<std::uint32_t> kept_;
+  std::pmr::vector<Answer> answers_;  // by point, into kept_
+  std::size_t asked_ = 0, asked_last_time_ = 0;
+  bool answered_ = false, too_many_ = false;
+  std::uint64_t visited_ = 0;
+};
+
+}  // namespace breve

@@ -1,0 +1,66 @@
+// A picture of 8-bit RGBA pixels, row 0 on top; scripts see the channels as 0 ... 1.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/base/bytes.hpp"
+#include "runtime/base/hasher.hpp"
+
+namespace breve {
+
+enum class Channel : std::uint8_t { Red, Green, Blue, Alpha };
+
+class Image {
+ public:
+  static constexpr int kMaxSide = 32768;
+
+  Image() = default;  // empty
+  /// Black and opaque. Error{Argument} unless both sides are from 1 to kMaxSide.
+  Image(int width, int height);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  bool empty() const { return pixels_.empty(); }
+  bool holds(int x, int y) const { return x >= 0 && x < width_ && y >= 0 && y < height_; }
+
+  /// Error{Argument} naming the place if it is outside. A written value is clamped to 0 ... 1 and rounded; NaN gives 0.
+  double get(int x, int y, Channel channel) const { return byte(x, y, channel) / 255.0; }
+  void set(int x, int y, Channel channel, double value);
+  std::uint8_t byte(int x, int y, Channel channel) const { return pixels_[at(x, y, channel)]; }
+  void set_byte(int x, int y, Channel channel, std::uint8_t value);
+
+  /// Pixels changed since the flag was last cleared; whoever draws clears it.
+  bool changed() const { return changed_; }
+  void clear_changed() { changed_ = false; }
+
+  /// Rows from the top, 4 bytes a pixel.
+  const std::vector<std::uint8_t>& bytes() const { return pixels_; }
+  /// Replace all pixels; Error{Argument} unless there are 4 * width * height bytes.
+  void set_bytes(std::span<const std::uint8_t> bytes);
+
+  /// PNG, JPEG or TGA. Error{File} names the file and says why.
+  static Image read(const std::string& path);
+  void write_png(const std::string& path) const;
+  /// Bytes of the pixels after deflation: a measure of how regular the picture is.
+  std::size_t deflated_size() const;
+
+  void save(ByteWriter& out) const;
+  static Image load(ByteReader& in);  // Error{Image}
+  void hash(Hasher& hasher) const;
+
+ private:
+  std::size_t at(int x, int y, Channel channel) const;
+
+  int width_ = 0, height_ = 0;
+  bool changed_ = false;
+  std::vector<std::uint8_t> pixels_;
+};
+
+/// A 16-bit grayscale PNG, rows from the top: 0 is black, 1 white; values are clamped, NaN is black.
+/// Error{Argument} unless there are width * height values (sides as for Image); Error{File} names the file.
+void write_gray16_png(const std::string& path, int width, int height, std::span<const double> values);
+
+}  // namespace breve

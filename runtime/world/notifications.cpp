@@ -1,0 +1,92 @@
+// Registrations of observers. Delivery itself is the world's: it works on a copy, so handlers may change the lists.
+#include "runtime/world/notifications.hpp"
+
+#include <algorithm>
+
+namespace breve {
+
+void Notifications::observe(const ObjectTable& objects, ObjectId announcer, const Registration& registration) {
+  auto* memory = by_announcer_.get_allocator().resource();
+  auto& list = by_announcer_.try_emplace(announcer.index, List{std::pmr::vector<Registration>(memory)}).first->second;
+  if (list.entries.size() >= list.sweep_at) {
+    std::erase_if(list.entries, [&](const Registration& r) { return !objects.alive(r.observer); });
+    list.sweep_at = std::max<std::size_t>(16, 2 * list.entries.size());
+  }
+  list.entries.push_back(registration);
+}
+
+std::size_t Notifications::unobserve(ObjectId observer, ObjectId announcer, NameId message) {
+  const auto list = by_announcer_.find(announcer.index);
+  if (list == by_announcer_.end()) return 0;
+  return std::erase_if(list->second.entries,
+                       [&](const Registration& r) { return r.observer == observer && r.message == message; });
+}
+
+void Notifications::collect(const ObjectTable& objects, ObjectId announcer, NameId message,
+                            std::pmr::vector<Registration>& out) const {
+  const List* list = find(announcer);
+  if (!list) return;
+  for (const Registration& r : list->entries) {
+    if (r.message == message && objects.alive(r.observer)) out.push_back(r);
+  }
+}
+
+std::size_t Notifications::bytes() const {
+  return by_announcer_.size() * (sizeof(List) + 4 * sizeof(void*)) + by_announcer_.bucket_count() * sizeof(void*);
+}
+
+const Notifications::List* Notifications::find(ObjectId announcer) const {
+  const auto list = by_announcer_.find(announcer.index);
+  return list == by_announcer_.end() ? nullptr : &list->second;
+}
+
+void Notifications::save(ByteWriter& out, const ObjectTable& objects) const {
+  for (const ObjectId announcer : objects.order()) {
+    if (!objects.alive(announcer)) continue;
+    const List* list = find(announcer);
+    // Those of observers that went are swept out sooner or later: they are not state.
+    std::uint64_t count = 0;
+    if (list) {
+      for (const Registration& r : list->entries) count += objects.alive(r.observer) ? 1 : 0;
+    }
+    out.put(count);
+    if (count == 0) continue;
+    for (const Registration& r : list->entries) {
+      if (!objects.alive(r.observer)) continue;
+      put(out, r.observer);
+      out.put(r.message);
+      out.put(r.method);
+    }
+  }
+}
+
+void Notifications::load(ByteReader& in, const ObjectTable& objects, std::size_t names) {
+  for (const ObjectId announcer : objects.order()) {
+    if (!objects.alive(announcer)) continue;
+    const std::size_t count = in.get_count(4 * sizeof(std::uint32_t));
+    for (std::size_t i = 0; i < count; ++i) {
+      Registration r;
+      r.observer = get_object(in);
+      r.message = in.get<NameId>();
+      r.method = in.get<NameId>();
+      if (r.message >= names || r.method >= names) ByteReader::fail();
+      observe(objects, announcer, r);
+    }
+  }
+}
+
+void Notifications::hash(Hasher& hasher, const NameTable& names, const ObjectTable& objects) const {
+  if (by_announcer_.empty()) return;
+  for (const ObjectId announcer : objects.order()) {
+    const List* list = objects.alive(announcer) ? find(announcer) : nullptr;
+    if (!list) continue;
+    for (const Registration& r : list->entries) {
+      if (!objects.alive(r.observer)) continue;
+      hasher.add(std::uint64_t{announcer.index} << 32 | r.observer.index);
+      hasher.add(names.text(r.message));
+      hasher.add(names.text(r.method));
+    }
+  }
+}
+
+}  // namespace breve

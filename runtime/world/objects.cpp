@@ -1,0 +1,196 @@
+// The table of instances. A released slot is reused with the next generation, so an old id stays stale.
+#include "runtime/world/objects.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "runtime/base/error.hpp"
+
+namespace breve {
+
+void put(ByteWriter& out, ObjectId id) {
+  out.put(id.index);
+  out.put(id.generation);
+}
+
+ObjectId get_object(ByteReader& in) {
+  ObjectId id;
+  id.index = in.get<std::uint32_t>();
+  id.generation = in.get<std::uint32_t>();
+  return id;
+}
+
+namespace {
+
+void save_ids(ByteWriter& out, const std::pmr::vector<ObjectId>& ids) {
+  out.put(static_cast<std::uint64_t>(ids.size()));
+  for (const ObjectId id : ids) put(out, id);
+}
+
+void load_ids(ByteReader& in, std::pmr::vector<ObjectId>& ids) {
+  ids.resize(in.get_count(2 * sizeof(std::uint32_t)));
+  for (ObjectId& id : ids) id = get_object(in);
+}
+
+}  // namespace
+
+ObjectTable::ObjectTable(std::pmr::memory_resource* memory)
+    : slots_(memory), free_(memory), order_(memory), iterating_(memory), post_iterating_(memory), joining_(memory) {}
+
+ObjectId ObjectTable::create(ClassId cls, std::uint64_t user, bool iterates, bool post_iterates) {
+  // Everything that can run out of memory comes first: a failed creation leaves no trace.
+  order_.push_back({});
+  try {
+    joining_.push_back({});
+    if (free_.empty()) {
+      slots_.emplace_back();
+      free_.reserve(slots_.capacity());
+      free_.push_back(static_cast<std::uint32_t>(slots_.size() - 1));
+    }
+  } catch (...) {
+    order_.pop_back();
+    if (joining_.size() > 0 && !joining_.back()) joining_.pop_back();
+    throw;
+  }
+  const std::uint32_t index = free_.back();
+  free_.pop_back();
+  Slot& slot = slots_[index];
+  const std::uint32_t generation = slot.generation + 1;
+  slot = Slot{};
+  slot.generation = generation;
+  slot.cls = cls;
+  slot.user = user;
+  slot.serial = ++serials_;
+  slot.live = true;
+  slot.iterates = iterates;
+  slot.post_iterates = post_iterates;
+  ++live_;
+  const ObjectId id{index, generation};
+  order_.back() = id;
+  joining_.back() = id;
+  return id;
+}
+
+void ObjectTable::release(ObjectId id) {
+  Slot& slot = at(id);
+  slot.live = false;
+  const std::unique_ptr<Resource> last_act = std::move(slot.resource);
+  // A slot whose generations are used up is never reused: a stale id must not come alive again.
+  if (slot.generation != std::numeric_limits<std::uint32_t>::max()) free_.push_back(id.index);
+  --live_;
+  ++released_since_join_;
+  ++releases_;
+}
+
+ObjectTable::Slot& ObjectTable::at(ObjectId id) {
+  if (!alive(id)) throw Error(ErrorCode::Stale, id ? "the object has been freed" : "the object is null");
+  return slots_[id.index];
+}
+
+const ObjectTable::Slot& ObjectTable::at(ObjectId id) const { return const_cast<ObjectTable*>(this)->at(id); }
+
+std::size_t ObjectTable::bytes() const {
+  return slots_.capacity() * sizeof(Slot) +
+         (order_.capacity() + iterating_.capacity() + post_iterating_.capacity() + joining_.capacity()) *
+             sizeof(ObjectId);
+}
+
+void ObjectTable::join() {
+  if (released_since_join_ != 0) {
+    drop_dead(order_);
+    drop_dead(iterating_);
+    drop_dead(post_iterating_);
+    released_since_join_ = 0;
+  }
+  for (const ObjectId id : joining_) {
+    if (!alive(id)) continue;
+    if (slots_[id.index].iterates) iterating_.push_back(id);
+    if (slots_[id.index].post_iterates) post_iterating_.push_back(id);
+  }
+  joining_.clear();
+}
+
+void ObjectTable::drop_dead(std::pmr::vector<ObjectId>& list) const {
+  std::erase_if(list, [this](ObjectId id) { return !alive(id); });
+}
+
+void ObjectTable::save(ByteWriter& out) const {
+  out.put(static_cast<std::uint64_t>(slots_.size()));
+  for (const Slot& slot : slots_) {
+    out.put(slot.generation);
+    out.put(slot.live);
+    if (!slot.live) continue;
+    out.put(slot.cls);
+    out.put(slot.user);
+    out.put(slot.serial);
+    out.put(slot.body);
+    out.put(slot.events);
+    out.put(slot.iterates);
+    out.put(slot.post_iterates);
+    out.put(slot.resource ? slot.resource->kind() : std::string_view());
+    if (slot.resource) slot.resource->save(out);
+  }
+  out.put(static_cast<std::uint64_t>(free_.size()));
+  for (const auto index : free_) out.put(index);
+  save_ids(out, order_);
+  save_ids(out, iterating_);
+  save_ids(out, post_iterating_);
+  save_ids(out, joining_);
+  out.put(serials_);
+  out.put(static_cast<std::uint64_t>(released_since_join_));
+}
+
+void ObjectTable::load_slot(ByteReader& in, Slot& slot, FindLoader find_loader, const void* context) {
+  slot.generation = in.get<std::uint32_t>();
+  slot.live = in.get_bool();
+  if (!slot.live) return;
+  slot.cls = in.get<ClassId>();
+  slot.user = in.get<std::uint64_t>();
+  slot.serial = in.get<std::uint64_t>();
+  slot.body = in.get<BodyIndex>();
+  slot.events = in.get<std::uint32_t>();
+  slot.iterates = in.get_bool();
+  slot.post_iterates = in.get_bool();
+  const std::string kind = in.get_string();
+  if (!kind.empty()) {
+    const ResourceLoader loader = find_loader(context, kind);
+    if (!loader) throw Error(ErrorCode::Image, "the image holds a '" + kind + "', which this program does not know");
+    slot.resource = loader(in);
+  }
+  ++live_;
+}
+
+void ObjectTable::load(ByteReader& in, FindLoader find_loader, const void* context) {
+  slots_.resize(in.get_count(sizeof(std::uint32_t) + 1));
+  for (Slot& slot : slots_) load_slot(in, slot, find_loader, context);
+  free_.resize(in.get_count(sizeof(std::uint32_t)));
+  for (auto& index : free_) {
+    index = in.get<std::uint32_t>();
+    if (index >= slots_.size() || slots_[index].live) ByteReader::fail();
+  }
+  load_ids(in, order_);
+  load_ids(in, iterating_);
+  load_ids(in, post_iterating_);
+  load_ids(in, joining_);
+  serials_ = in.get<std::uint64_t>();
+  released_since_join_ = static_cast<std::size_t>(in.get<std::uint64_t>());
+}
+
+void ObjectTable::hash(Hasher& hasher) const {
+  hasher.add(static_cast<std::uint64_t>(live_));
+  hasher.add(serials_);
+  for (const ObjectId id : order_) {
+    if (!alive(id)) continue;
+    const Slot& slot = slots_[id.index];
+    hasher.add(std::uint64_t{id.index} << 32 | id.generation);
+    hasher.add(std::uint64_t{slot.cls} << 2 | std::uint64_t{slot.iterates} << 1 | std::uint64_t{slot.post_iterates});
+    hasher.add(slot.serial);
+    if (slot.resource) {
+      hasher.add(slot.resource->kind());
+      slot.resource->hash(hasher);
+    }
+  }
+  for (const ObjectId id : joining_) hasher.add(alive(id) ? std::uint64_t{id.index} : 0);
+}
+
+}  // namespace breve

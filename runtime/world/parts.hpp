@@ -1,0 +1,74 @@
+// What a world is made of, beside bodies, clock and generator. World orders them; they do not know each other's world.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <memory_resource>
+#include <string>
+#include <vector>
+
+#include "runtime/contact/collision_stage.hpp"
+#include "runtime/space/neighbors.hpp"
+#include "runtime/world/collision_handlers.hpp"
+#include "runtime/world/names.hpp"
+#include "runtime/world/notifications.hpp"
+#include "runtime/world/objects.hpp"
+#include "runtime/world/schedule.hpp"
+#include "runtime/world/world.hpp"
+
+namespace breve {
+
+struct World::Parts final : CollisionClient {
+  Parts(World& world, std::pmr::memory_resource* memory);
+
+  /// These parts now belong to `owner`, whose bodies they use.
+  void rebind(World& owner) {
+    world = &owner;
+    collisions.rebind(*owner.bodies_);
+  }
+
+  // --- the stages of a sub-step: a list, rebuilt only when the scene calls for other effects -------------------------
+  struct Stage {
+    EffectId effect;
+    void (*run)(Parts& parts, double h);
+    std::size_t (*items)(const Parts& parts);
+  };
+  /// Which effects the bodies and handlers call for now, one bit for each EffectId.
+  std::uint32_t signature() const;
+  void rebuild_stages(std::uint32_t signature);
+  ObjectId who_asked(EffectId effect) const;
+
+  // --- CollisionClient ----------------------------------------------------------------------------------------------
+  bool takes_part(BodyIndex body) const override;
+  bool reported(BodyIndex a, BodyIndex b) const override;
+  std::uint64_t serial(BodyIndex body) const override;
+  void touched(BodyIndex a, BodyIndex b, const Contact& contact, double moment) override;
+
+  World* world;
+  ObjectTable objects;
+  NameTable names;
+  Schedule schedule;
+  Notifications notifications;
+  CollisionHandlers handlers;
+  CollisionStage collisions;
+  std::pmr::vector<Stage> stages;
+  std::uint32_t stage_signature = 0;
+  Effects effects;
+  Vector3 gravity{0, -9.81, 0};
+  bool exact_schedule = false;
+  bool at_impact = true;
+  ObjectId first_handler;  // who registered the first collision handler
+  double substep_start = 0;
+
+  // --- the last update of neighbours --------------------------------------------------------------------------------
+  Neighbors near;
+  std::pmr::vector<ObjectId> near_ids;         // in order of creation
+  std::pmr::vector<std::uint32_t> near_place;  // by object slot: position in near_ids
+  std::pmr::vector<ObjectId> near_result;
+  std::uint64_t near_releases = 0;  // of the object table, at the update
+
+  std::deque<InputEvent> input;
+  std::map<std::string, ResourceLoader, std::less<>> loaders;  // not state: the program's own
+};
+
+}  // namespace breve

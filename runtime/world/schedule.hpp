@@ -1,0 +1,64 @@
+// Calls that wait for their time: a binary heap, so that a million of them cost n log n.
+#pragma once
+
+#include <cstdint>
+#include <memory_resource>
+#include <vector>
+
+#include "runtime/base/bytes.hpp"
+#include "runtime/base/hasher.hpp"
+#include "runtime/base/ids.hpp"
+#include "runtime/world/names.hpp"
+#include "runtime/world/objects.hpp"
+
+namespace breve {
+
+class Schedule {
+ public:
+  struct Entry {
+    double when = 0;
+    double interval = 0;         // > 0: again and again
+    std::uint64_t sequence = 0;  // order of scheduling
+    ObjectId target;
+    NameId method = kNoName;
+  };
+
+  explicit Schedule(std::pmr::memory_resource* memory) : heap_(memory) {}
+
+  void add(ObjectTable& objects, ObjectId target, NameId method, double when, double interval);
+  /// The next entry due at `until` whose target lives, taken out; a repeating one is queued again at once.
+  /// @return false if none is due
+  bool take_due(ObjectTable& objects, double until, Entry& entry);
+  /// Remove entries of a target: those of `method` (kNoName: any) at `when` (0: any). Returns how many.
+  std::size_t remove(ObjectTable& objects, ObjectId target, NameId method, double when);
+  /// A target with waiting entries is going: they are dropped when met, or together once they are the majority.
+  void forget(ObjectTable& objects, ObjectId target);
+
+  /// Among equal times: false (default) the last scheduled goes first, as programs observed; true the first.
+  void set_stable(bool stable);
+  bool stable() const { return stable_; }
+  std::size_t size() const { return heap_.size() - dead_; }
+  std::size_t bytes() const { return heap_.capacity() * sizeof(Entry); }
+
+  void save(ByteWriter& out) const;
+  void load(ByteReader& in, std::size_t names);
+  void hash(Hasher& hasher, const NameTable& names, const ObjectTable& objects) const;
+
+ private:
+  struct Later {
+    bool stable;
+    bool operator()(const Entry& a, const Entry& b) const {
+      if (a.when != b.when) return a.when > b.when;
+      return stable ? a.sequence > b.sequence : a.sequence < b.sequence;
+    }
+  };
+  void push(const Entry& entry);
+  Entry pop();
+
+  std::pmr::vector<Entry> heap_;
+  std::uint64_t sequences_ = 0;
+  std::size_t dead_ = 0;  // entries whose target is gone
+  bool stable_ = false;
+};
+
+}  // namespace breve

@@ -1,0 +1,289 @@
+// One iteration of a world, and the stages of a sub-step within it (DESIGN 4, CLASSES 2.1 and 2.2).
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "runtime/base/error.hpp"
+#include "runtime/world/parts.hpp"
+
+namespace breve {
+
+namespace {
+
+/// Sets a flag for a scope.
+class Flag {
+ public:
+  explicit Flag(bool& flag) : flag_(flag) { flag_ = true; }
+  ~Flag() { flag_ = false; }
+  Flag(const Flag&) = delete;
+  Flag& operator=(const Flag&) = delete;
+
+ private:
+  bool& flag_;
+};
+
+/// Lets the clock read another time for a scope.
+class MomentOf {
+ public:
+  MomentOf(double& clock, double moment) : clock_(clock), before_(clock) { clock_ = moment; }
+  ~MomentOf() { clock_ = before_; }
+  MomentOf(const MomentOf&) = delete;
+  MomentOf& operator=(const MomentOf&) = delete;
+
+ private:
+  double& clock_;
+  double before_;
+};
+
+/// Adds the wall time of a scope to a counter. Time is reported, never read by the simulation.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& seconds) : seconds_(seconds), start_(Time::now()) {}
+  ~Stopwatch() { seconds_ += std::chrono::duration<double>(Time::now() - start_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  using Time = std::chrono::steady_clock;
+  double& seconds_;
+  Time::time_point start_;
+};
+
+constexpr std::uint32_t bit(EffectId id) { return 1U << static_cast<unsigned>(id); }
+
+void require_step(std::string_view name, double seconds) {
+  if (std::isfinite(seconds) && seconds > 0) return;
+  throw Error(ErrorCode::Argument, fmt::format("the {} must be finite and > 0, but is {}", name, seconds));
+}
+
+}  // namespace
+
+void World::Clock::advance(double seconds) {
+  const double step = seconds - residue;
+  const double sum = time + step;
+  residue = (sum - time) - step;
+  time = sum;
+}
+
+void World::set_iteration_step(double seconds) {
+  require_step("iteration step", seconds);
+  clock_.iteration_step = std::max(seconds, clock_.integration_step);
+}
+
+void World::set_integration_step(double seconds) {
+  require_step("integration step", seconds);
+  clock_.integration_step = seconds;
+}
+
+void World::step() {
+  if (stepping_) throw Error(ErrorCode::Busy, "a step cannot be taken from inside a step");
+  const Flag stepping(stepping_);
+  Parts& parts = *parts_;
+  parts.effects.begin_step();
+  deliver_input();
+  parts.objects.join();
+  if (behaviour_) {
+    Effect& script = parts.effects[EffectId::Script];
+    const Stopwatch watch(script.seconds);
+    const auto& first = parts.objects.iterating();
+    const auto& second = parts.objects.post_iterating();
+    const bool any = !first.empty() || !second.empty();
+    if (any) parts.effects.turn_on(EffectId::Script, clock_.iteration, first.empty() ? second[0] : first[0]);
+    for (const ObjectId id : first) {
+      if (!alive(id)) continue;
+      ++script.calls;
+      behaviour_->iterate(id);
+    }
+    for (const ObjectId id : second) {
+      if (!alive(id)) continue;
+      ++script.calls;
+      behaviour_->post_iterate(id);
+    }
+    script.items = first.size() + second.size();
+  }
+  run_scheduled();
+  if (behaviour_) behaviour_->end_of_iteration();
+  ++clock_.iteration;
+  count_bytes();
+}
+
+void World::deliver_input() {
+  // What arrives from inside a handler waits for the next step; what an error leaves behind, too.
+  for (std::size_t left = parts_->input.size(); left > 0; --left) {
+    InputEvent event = std::move(parts_->input.front());
+    parts_->input.pop_front();
+    if (!alive(event.object)) {
+      if (event.kind == InputEvent::Kind::Menu) continue;
+      event.object = {};
+    }
+    ++parts_->effects[EffectId::Input].calls;
+    if (behaviour_) behaviour_->input(event);
+  }
+}
+
+void World::run_scheduled() {
+  Parts& parts = *parts_;
+  if (parts.schedule.size() == 0) return;
+  Effect& effect = parts.effects[EffectId::Schedule];
+  const Stopwatch watch(effect.seconds);
+  const double until = parts.exact_schedule ? clock_.time : clock_.time + clock_.iteration_step;
+  Schedule::Entry entry;
+  while (parts.schedule.take_due(parts.objects, until, entry)) {
+    ++effect.calls;
+    const MomentOf moment(clock_.time, entry.when);
+    if (behaviour_) behaviour_->scheduled(entry.target, parts.names.text(entry.method));
+  }
+  effect.items = parts.schedule.size();
+}
+
+void World::count_bytes() {
+  Effects& effects = parts_->effects;
+  effects[EffectId::Motion].bytes = bodies_->bytes();
+  effects[EffectId::Collision].bytes = parts_->collisions.bytes();
+  effects[EffectId::Neighbors].bytes = parts_->near.bytes();
+  effects[EffectId::Schedule].bytes = parts_->schedule.bytes();
+  effects[EffectId::Notifications].bytes = parts_->notifications.bytes();
+  effects[EffectId::Script].bytes = parts_->objects.bytes();
+}
+
+// --- bodies ---------------------------------------------------------------------------------------------------------
+
+void World::advance_bodies() {
+  if (advancing_) throw Error(ErrorCode::Busy, "the bodies cannot be advanced from inside a collision handler");
+  const Flag advancing(advancing_);
+  // 0.06 / 0.02 is a little more than 3: the tolerance keeps rounding from making a sub-step.
+  constexpr double kTolerance = 1e-9;
+  constexpr double kMostSubsteps = 1e9;
+  const double h = clock_.integration_step;
+  const double exact = clock_.iteration_step / h;
+  if (!(exact <= kMostSubsteps)) {
+    throw Error(ErrorCode::Argument, fmt::format("an iteration step of {} s has too many integration steps of {} s",
+                                                 clock_.iteration_step, h));
+  }
+  const auto count = static_cast<std::uint64_t>(std::max(1.0, std::ceil(exact - kTolerance)));
+  run_substeps(h, count);
+  clock_.advance(static_cast<double>(count) * h);
+}
+
+void World::run_substeps(double h, std::uint64_t count) {
+  Parts& parts = *parts_;
+  try {
+    for (std::uint64_t i = 0; i < count; ++i) {
+      parts.substep_start = clock_.time + static_cast<double>(i) * h;
+      const std::uint32_t signature = parts.signature();
+      if (signature != parts.stage_signature) parts.rebuild_stages(signature);
+      for (const Parts::Stage& stage : parts.stages) {
+        Effect& effect = parts.effects[stage.effect];
+        const Stopwatch watch(effect.seconds);
+        ++effect.calls;
+        effect.items += stage.items(parts);
+        stage.run(parts, h);
+      }
+    }
+  } catch (...) {
+    parts.collisions.abandon();
+    throw;
+  }
+}
+
+std::uint32_t World::Parts::signature() const {
+  const Bodies& bodies = *world->bodies_;
+  std::uint32_t bits = 0;
+  if (bodies.translating() != 0) bits |= bit(EffectId::Motion);
+  if (bodies.turning() != 0) bits |= bit(EffectId::Rotation);
+  if (bodies.rigid() != 0) bits |= bit(EffectId::Rigid);
+  if (bodies.rigid() != 0 && gravity != Vector3::Zero()) bits |= bit(EffectId::Gravity);
+  if (handlers.any_handler() && bodies.size() != 0) {
+    bits |= bit(EffectId::Collision);
+    if (at_impact) bits |= bit(EffectId::TimeOfImpact);
+  }
+  return bits;
+}
+
+ObjectId World::Parts::who_asked(EffectId effect) const {
+  switch (effect) {
+    case EffectId::Motion: return world->bodies_->first_translating();
+    case EffectId::Rotation: return world->bodies_->first_turning();
+    case EffectId::Rigid:
+    case EffectId::Gravity: return world->bodies_->first_rigid();
+    default: return first_handler;
+  }
+}
+
+void World::Parts::rebuild_stages(std::uint32_t signature) {
+  for (const EffectId id : {EffectId::Motion, EffectId::Rotation, EffectId::Rigid, EffectId::Gravity,
+                            EffectId::Collision, EffectId::TimeOfImpact}) {
+    if ((signature & bit(id)) != 0) {
+      effects.turn_on(id, world->clock_.iteration, who_asked(id));
+    } else {
+      effects.turn_off(id);
+    }
+  }
+  stages.clear();
+  const bool collide = (signature & bit(EffectId::Collision)) != 0;
+  if (collide) {
+    stages.push_back({EffectId::Collision,
+                      [](World::Parts& p, double) { p.collisions.begin(p, p.handlers.revision()); },
+                      [](const World::Parts&) { return std::size_t{0}; }});
+  }
+  if ((signature & bit(EffectId::Motion)) != 0) {
+    stages.push_back({EffectId::Motion, [](World::Parts& p, double h) { p.world->bodies_->translate(h); },
+                      [](const World::Parts& p) { return p.world->bodies_->translating(); }});
+  }
+  if ((signature & bit(EffectId::Rotation)) != 0) {
+    stages.push_back({EffectId::Rotation, [](World::Parts& p, double h) { p.world->bodies_->turn(h); },
+                      [](const World::Parts& p) { return p.world->bodies_->turning(); }});
+  }
+  if ((signature & bit(EffectId::Rigid)) != 0) {
+    stages.push_back({EffectId::Rigid, [](World::Parts& p, double h) { p.world->bodies_->move_rigid(h, p.gravity); },
+                      [](const World::Parts& p) { return p.world->bodies_->rigid(); }});
+  }
+  if (collide) {
+    stages.push_back({EffectId::Collision,
+                      [](World::Parts& p, double h) {
+                        p.collisions.finish(p, p.substep_start, h, p.gravity, p.at_impact);
+                        const CollisionStage::Counters counted = p.collisions.take_counters();
+                        p.effects[EffectId::TimeOfImpact].calls += counted.searches;
+                        p.effects[EffectId::TimeOfImpact].items += counted.impacts;
+                        p.effects[EffectId::TimeOfImpact].held += counted.held;
+                        p.effects[EffectId::Collision].items += counted.pairs;
+                      },
+                      [](const World::Parts&) { return std::size_t{0}; }});
+  }
+  stage_signature = signature;
+}
+
+// --- the world as the collision stage sees it -----------------------------------------------------------------------
+
+bool World::Parts::takes_part(BodyIndex body) const {
+  return handlers.takes_part(objects.at(world->bodies_->owner(body)).cls);
+}
+
+bool World::Parts::reported(BodyIndex a, BodyIndex b) const {
+  return handlers.handled(objects.at(world->bodies_->owner(a)).cls, objects.at(world->bodies_->owner(b)).cls);
+}
+
+std::uint64_t World::Parts::serial(BodyIndex body) const { return objects.at(world->bodies_->owner(body)).serial; }
+
+void World::Parts::touched(BodyIndex a, BodyIndex b, const Contact& contact, double moment) {
+  if (!world->behaviour_) return;
+  const ObjectId first = world->bodies_->owner(a);
+  const ObjectId second = world->bodies_->owner(b);
+  const ClassId first_class = objects.at(first).cls;
+  const ClassId second_class = objects.at(second).cls;
+  const MomentOf clock(world->clock_.time, moment);
+  const NameId of_first = handlers.method(first_class, second_class);
+  if (of_first != kNoName &&
+      world->behaviour_->collided(first, second, names.text(of_first), contact.point, contact.normal)) {
+    return;
+  }
+  if (!objects.alive(first) || !objects.alive(second)) return;
+  const NameId of_second = handlers.method(second_class, first_class);
+  // Between two of one class both sides have the same method, and each is told about the other.
+  if (of_second != kNoName) {
+    world->behaviour_->collided(second, first, names.text(of_second), contact.point, -contact.normal);
+  }
+}
+
+}  // namespace breve

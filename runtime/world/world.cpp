@@ -1,0 +1,241 @@
+// World: objects, bodies and the registries around them. The step is in step.cpp, images are in snapshot.cpp.
+#include "runtime/world/world.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "runtime/base/error.hpp"
+#include "runtime/world/parts.hpp"
+
+namespace breve {
+
+World::Parts::Parts(World& owner, std::pmr::memory_resource* memory)
+    : world(&owner),
+      objects(memory),
+      names(memory),
+      schedule(memory),
+      notifications(memory),
+      handlers(memory),
+      collisions(memory, *owner.bodies_),
+      stages(memory),
+      near(memory),
+      near_ids(memory),
+      near_place(memory),
+      near_result(memory) {}
+
+World::World(std::pmr::memory_resource* memory, std::uint64_t seed)
+    : memory_(memory),
+      bodies_(std::make_unique<Bodies>(memory)),
+      parts_(std::make_unique<Parts>(*this, memory)),
+      random_(seed) {}
+
+World::~World() = default;
+
+void World::set_behaviour(Behaviour* behaviour) { behaviour_ = behaviour; }
+
+// --- objects --------------------------------------------------------------------------------------------------------
+
+ObjectId World::create(ClassId cls, std::uint64_t user, bool iterates, bool post_iterates) {
+  return parts_->objects.create(cls, user, iterates, post_iterates);
+}
+
+void World::release(ObjectId id) {
+  Parts& parts = *parts_;
+  ObjectTable::Slot& slot = parts.objects.at(id);
+  if (slot.body != kNoBody) {
+    parts.collisions.forget(slot.body);
+    bodies_->remove(slot.body);
+    slot.body = kNoBody;
+  }
+  if (slot.events != 0) parts.schedule.forget(parts.objects, id);
+  parts.notifications.forget(id);
+  parts.objects.release(id);
+}
+
+bool World::alive(ObjectId id) const { return parts_->objects.alive(id); }
+std::uint64_t World::user(ObjectId id) const { return parts_->objects.at(id).user; }
+void World::set_user(ObjectId id, std::uint64_t user) { parts_->objects.at(id).user = user; }
+ClassId World::class_of(ObjectId id) const { return parts_->objects.at(id).cls; }
+std::size_t World::object_count() const { return parts_->objects.count(); }
+
+std::vector<ObjectId> World::objects() const {
+  std::vector<ObjectId> live;
+  live.reserve(parts_->objects.count());
+  for (const ObjectId id : parts_->objects.order()) {
+    if (parts_->objects.alive(id)) live.push_back(id);
+  }
+  return live;
+}
+
+void World::attach(ObjectId id, std::unique_ptr<Resource> resource) {
+  // The old one goes after the new one is in place: its destructor may look at the world.
+  std::swap(parts_->objects.at(id).resource, resource);
+}
+
+Resource* World::resource(ObjectId id) const {
+  return parts_->objects.alive(id) ? parts_->objects.at(id).resource.get() : nullptr;
+}
+
+void World::add_resource_kind(std::string_view kind, ResourceLoader loader) {
+  parts_->loaders.insert_or_assign(std::string(kind), loader);
+}
+
+// --- bodies ---------------------------------------------------------------------------------------------------------
+
+void World::embody(ObjectId id, BodyKind kind) {
+  ObjectTable::Slot& slot = parts_->objects.at(id);
+  if (slot.body != kNoBody) throw Error(ErrorCode::Argument, "the object has a body already");
+  slot.body = bodies_->add(kind, id);
+}
+
+bool World::has_body(ObjectId id) const { return parts_->objects.alive(id) && parts_->objects.at(id).body != kNoBody; }
+
+BodyIndex World::body(ObjectId id) const {
+  const BodyIndex body = parts_->objects.at(id).body;
+  if (body == kNoBody) throw Error(ErrorCode::Argument, "the object has no body in the world");
+  return body;
+}
+
+ObjectId World::object_of(BodyIndex body) const { return bodies_->used(body) ? bodies_->owner(body) : ObjectId{}; }
+
+std::vector<ObjectId> World::touching(ObjectId id) const {
+  const BodyIndex self = body(id);
+  const Pose pose{bodies_->location(self), bodies_->orientation(self)};
+  const Eigen::AlignedBox3d box = bodies_->bounds(self);
+  std::vector<ObjectId> found;
+  for (const ObjectId other : parts_->objects.order()) {
+    if (other == id || !has_body(other)) continue;
+    const BodyIndex b = body(other);
+    const bool solvable = bodies_->kind(b) == BodyKind::Stationary || bodies_->physics(b);
+    if (!solvable || !bodies_->bounds(b).intersects(box)) continue;
+    const Pose other_pose{bodies_->location(b), bodies_->orientation(b)};
+    if (closest(*bodies_->collision_shape(self), pose, *bodies_->collision_shape(b), other_pose).distance <= 0) {
+      found.push_back(other);
+    }
+  }
+  return found;
+}
+
+// --- neighbours -----------------------------------------------------------------------------------------------------
+
+void World::update_neighbors() {
+  Parts& parts = *parts_;
+  parts.near.clear();
+  parts.near_ids.clear();
+  parts.near_place.resize(parts.objects.slot_count());
+  parts.near_releases = parts.objects.releases();
+  parts.effects.turn_on(EffectId::Neighbors, clock_.iteration, {});
+  for (const ObjectId id : parts.objects.order()) {
+    if (!parts.objects.alive(id)) continue;
+    const BodyIndex body = parts.objects.at(id).body;
+    if (body == kNoBody || !bodies_->location(body).allFinite()) continue;
+    constexpr double kUnset = 0.00001;  // what a radius nobody set counts as (CLASSES 2.6)
+    const double radius = bodies_->neighborhood_size(body);
+    parts.near_place[id.index] = static_cast<std::uint32_t>(parts.near_ids.size());
+    parts.near.add(bodies_->location(body), radius == 0 ? kUnset : radius);
+    parts.near_ids.push_back(id);
+  }
+  ++parts.effects[EffectId::Neighbors].calls;
+}
+
+const std::pmr::vector<ObjectId>& World::neighbors(ObjectId id) {
+  Parts& parts = *parts_;
+  parts.near_result.clear();
+  if (id.index >= parts.near_place.size()) return parts.near_result;
+  const std::uint32_t place = parts.near_place[id.index];
+  // Of an object that was not there at the update the table holds nothing or another's place.
+  if (place >= parts.near_ids.size() || parts.near_ids[place] != id) return parts.near_result;
+  // Where nobody was freed since the update, nobody need be asked whether it lives.
+  const bool all_live = parts.near_releases == parts.objects.releases();
+  for (const std::uint32_t other : parts.near.query(place)) {
+    const ObjectId found = parts.near_ids[other];
+    if (all_live || parts.objects.alive(found)) parts.near_result.push_back(found);
+  }
+  ++parts.effects[EffectId::Neighbors].items;
+  return parts.near_result;
+}
+
+// --- schedule -------------------------------------------------------------------------------------------------------
+
+bool World::schedule(ObjectId target, std::string_view method, double when, double interval) {
+  if (!std::isfinite(when) || !std::isfinite(interval) || interval < 0) {
+    throw Error(ErrorCode::Argument,
+                fmt::format("a call of '{}' cannot be scheduled at time {} with interval {}", method, when, interval));
+  }
+  parts_->objects.at(target);
+  if (when <= clock_.time) {
+    if (!(interval > 0)) return false;
+    when = clock_.time + interval;
+  }
+  parts_->schedule.add(parts_->objects, target, parts_->names.intern(method), when, interval);
+  parts_->effects.turn_on(EffectId::Schedule, clock_.iteration, target);
+  return true;
+}
+
+std::size_t World::unschedule(ObjectId target, std::string_view method, double when) {
+  const NameId name = method.empty() ? kNoName : parts_->names.find(method);
+  if (!method.empty() && name == kNoName) return 0;
+  return parts_->schedule.remove(parts_->objects, target, name, when);
+}
+
+void World::set_stable_schedule(bool stable) { parts_->schedule.set_stable(stable); }
+void World::set_exact_schedule(bool exact) { parts_->exact_schedule = exact; }
+std::size_t World::scheduled_count() const { return parts_->schedule.size(); }
+
+// --- notifications --------------------------------------------------------------------------------------------------
+
+void World::observe(ObjectId observer, ObjectId announcer, std::string_view message, std::string_view method) {
+  parts_->objects.at(observer);
+  parts_->objects.at(announcer);
+  const NameId text = parts_->names.intern(message);
+  parts_->notifications.observe(parts_->objects, announcer, {observer, text, parts_->names.intern(method)});
+  parts_->effects.turn_on(EffectId::Notifications, clock_.iteration, observer);
+}
+
+std::size_t World::unobserve(ObjectId observer, ObjectId announcer, std::string_view message) {
+  const NameId text = parts_->names.find(message);
+  if (text == kNoName || !alive(announcer)) return 0;
+  return parts_->notifications.unobserve(observer, announcer, text);
+}
+
+void World::announce(ObjectId announcer, std::string_view message) {
+  parts_->objects.at(announcer);
+  const NameId text = parts_->names.find(message);
+  if (text == kNoName || !behaviour_) return;
+  // A copy: handlers may observe, unobserve, free anyone, and announce again.
+  std::pmr::vector<Notifications::Registration> wanted(memory_);
+  parts_->notifications.collect(parts_->objects, announcer, text, wanted);
+  for (const auto& registration : wanted) {
+    if (!alive(registration.observer)) continue;
+    ++parts_->effects[EffectId::Notifications].calls;
+    behaviour_->notified(registration.observer, parts_->names.text(registration.method), announcer, message);
+  }
+}
+
+// --- collision handlers, input, effects -----------------------------------------------------------------------------
+
+void World::handle_collisions(ClassId owner, ClassId other, std::string_view method, ObjectId asked_by) {
+  parts_->handlers.handle(owner, other, parts_->names.intern(method));
+  if (!parts_->first_handler) parts_->first_handler = asked_by;
+}
+
+void World::ignore_collisions(ClassId owner, ClassId other) { parts_->handlers.ignore(owner, other); }
+void World::set_impact_timing(bool at_impact) { parts_->at_impact = at_impact; }
+bool World::impact_timing() const { return parts_->at_impact; }
+
+void World::set_gravity(const Vector3& gravity) {
+  if (!gravity.allFinite()) throw Error(ErrorCode::Argument, "gravity must be finite");
+  parts_->gravity = gravity;
+}
+
+const Vector3& World::gravity() const { return parts_->gravity; }
+
+void World::queue_input(InputEvent event) {
+  parts_->input.push_back(std::move(event));
+  parts_->effects.turn_on(EffectId::Input, clock_.iteration, {});
+}
+
+const Effects& World::effects() const { return parts_->effects; }
+
+}  // namespace breve

@@ -1,0 +1,224 @@
+// Loads a program's files: directives before the text of the file that holds them, each file once, the class library
+// when it is named.
+#include <algorithm>
+
+#include "runtime/base/hasher.hpp"
+#include "steve/compile/builder.hpp"
+#include "steve/library/library.hpp"
+
+namespace breve::steve {
+
+namespace {
+constexpr int kMaxIncludeDepth = 100;
+
+std::string stem(std::string_view name) {
+  if (const auto slash = name.rfind('/'); slash != std::string_view::npos) name.remove_prefix(slash + 1);
+  if (name.ends_with(".tz")) name.remove_suffix(3);
+  return std::string(name);
+}
+
+bool mentions(const LibraryFile& file, std::string_view name) {
+  auto classes = file.classes;
+  while (!classes.empty()) {
+    const auto end = std::min(classes.find(' '), classes.size());
+    if (classes.substr(0, end) == name) return true;
+    classes.remove_prefix(std::min(end + 1, classes.size()));
+  }
+  return false;
+}
+}  // namespace
+
+ProgramBuilder::ProgramBuilder(ModuleResolver& resolver) : program_(new Program), resolver_(resolver) {
+  std::uint32_t number = 0;
+  for (const auto& native : functions()) functions_.emplace(native.name, FunctionEntry{number++, &native});
+  for (const auto& native : library_natives()) natives_.emplace(native.name, &native);
+}
+
+CompileResult ProgramBuilder::build(ModuleSource main) {
+  loaded_.insert(main.name);
+  load(std::move(main), false);
+  compile_methods();
+  check_versions();
+  choose_controller();
+  if (diagnostics_.error_count() == 0) {
+    check_calls();
+    check_unused_variables();
+    check_iterate();
+  }
+  Hasher hasher;
+  for (std::uint32_t i = 0; i < program_->sources_.size(); ++i) {
+    hasher.add(program_->sources_.file(i).name);
+    hasher.add(program_->sources_.file(i).text);
+  }
+  program_->fingerprint_ = hasher.value();
+  program_->diagnostics_ = diagnostics_.all();
+  CompileResult result;
+  result.diagnostics = diagnostics_;
+  result.sources = program_->sources_;
+  if (diagnostics_.error_count() == 0) result.program = program_;
+  return result;
+}
+
+void ProgramBuilder::load(ModuleSource module, bool embedded) {
+  if (depth_ >= kMaxIncludeDepth) {
+    diagnostics_.error({}, "include-depth", "files include one another more than " + std::to_string(kMaxIncludeDepth) + " deep");
+    return;
+  }
+  ++depth_;
+  const auto name = module.name;
+  const auto file = program_->sources_.add(std::move(module.name), std::move(module.text), embedded);
+  const auto tokens = lex(program_->sources_, file, diagnostics_);
+  for (const auto& directive : scan_directives(tokens)) load_directive(directive, name, embedded);
+  auto tree = parse(tokens, program_->defines_, diagnostics_, program_->sources_, embedded);
+  for (const auto& directive : tree.directives) late_directive(directive);
+  for (auto& cls : tree.classes) declare(std::move(cls));
+  --depth_;
+}
+
+void ProgramBuilder::load_directive(const ast::Directive& directive, const std::string& from, bool embedded) {
+  using enum ast::Directive::Kind;
+  switch (directive.kind) {
+    case Path: resolver_.add_path(directive.text); break;
+    case Include: load_named(directive.text, directive, from, embedded); break;
+    case Use:
+      load_named(directive.text + ".tz", directive, from, embedded);
+      if (!directive.version_op.empty()) versions_.emplace_back(directive, embedded);
+      break;
+    default: break;
+  }
+}
+
+void ProgramBuilder::load_named(const std::string& name, const ast::Directive& directive, const std::string& from, bool embedded) {
+  if (!embedded) {
+    if (auto module = resolver_.resolve(name, from)) {
+      if (loaded_.insert(module->name).second) load(std::move(*module), false);
+      return;
+    }
+  }
+  if (load_library(stem(name))) return;
+  const auto wanted = stem(name);
+  if (is_later_class(wanted)) {
+    diagnostics_.error(directive.span, "later-class", "class " + wanted + " is part of a later version of the class library");
+    return;
+  }
+  diagnostics_.error(directive.span, "file-not-found", "cannot find the file '" + name + "'",
+                     "check its spelling, or add the directory it is in to the search path");
+}
+
+bool ProgramBuilder::load_library(std::string_view name) {
+  const auto* file = find_library_file(name);
+  if (!file) return false;
+  const auto key = "library:" + std::string(file->name);
+  if (loaded_.insert(key).second) load({key, std::string(file->text)}, true);
+  return true;
+}
+
+void ProgramBuilder::late_directive(const ast::Directive& directive) {
+  using enum ast::Directive::Kind;
+  switch (directive.kind) {
+    case Controller:
+      if (!controller_name_.empty()) {
+        diagnostics_.error(directive.span, "second-controller", "the controller is chosen twice: '" + controller_name_ + "' and '" +
+                           directive.text + "'", "keep one Controller line");
+        break;
+      }
+      controller_name_ = directive.text;
+      controller_span_ = directive.span;
+      break;
+    case Plugin:
+      diagnostics_.error(directive.span, "plugins-disabled", "plugins are not available: cannot load '" + directive.text + "'");
+      break;
+    case NibFile: lint(directive.span, "nib-file", "the interface file '" + directive.text + "' is ignored"); break;
+    default: break;
+  }
+}
+
+const ClassInfo* ProgramBuilder::class_named(std::string_view name) {
+  if (const auto* cls = program_->find_class(name)) return cls;
+  const auto* file = find_library_file(name);
+  if (!file || !mentions(*file, name)) return nullptr;
+  load_library(name);
+  return program_->find_class(name);
+}
+
+void ProgramBuilder::report_unknown_class(std::string_view name, const Span& span) {
+  if (is_later_class(name)) {
+    diagnostics_.error(span, "later-class", "class " + std::string(name) + " is part of a later version of the class library");
+    return;
+  }
+  std::vector<std::string_view> names;
+  for (const auto& cls : program_->classes_) names.push_back(cls->name);
+  const auto near = nearest(name, names);
+  lint(span, "unknown-class", "unknown class '" + std::string(name) + "'",
+       near.empty() ? "define it, or load its file with @use" : "did you mean '" + near + "'?");
+}
+
+std::uint32_t ProgramBuilder::string_number(std::string_view text) {
+  if (const auto at = strings_.find(text); at != strings_.end()) return at->second;
+  const auto number = static_cast<std::uint32_t>(code().strings.size());
+  code().strings.emplace_back(text);
+  strings_.emplace(std::string(text), number);
+  return number;
+}
+
+std::uint32_t ProgramBuilder::text_number(std::string_view text) {
+  if (const auto at = texts_.find(text); at != texts_.end()) return at->second;
+  if (code().texts.empty()) code().texts.emplace_back("value");  // number 0 also stands for those beyond 16 bits
+  if (code().texts.size() > 0xffff) return 0;
+  const auto number = static_cast<std::uint32_t>(code().texts.size());
+  code().texts.emplace_back(text);
+  texts_.emplace(std::string(text), number);
+  return number;
+}
+
+std::optional<ProgramBuilder::FunctionEntry> ProgramBuilder::find_function(std::string_view name, std::size_t arguments) const {
+  const auto [first, last] = functions_.equal_range(name);
+  for (auto at = first; at != last; ++at)
+    if (at->second.native->signature.find(':') == arguments) return at->second;
+  return std::nullopt;
+}
+
+std::vector<std::string_view> ProgramBuilder::function_names() const {
+  std::vector<std::string_view> names;
+  for (const auto& [name, entry] : functions_) names.push_back(name);
+  return names;
+}
+
+void ProgramBuilder::lint(const Span& span, std::string code, std::string message, std::string help) {
+  if (!embedded(span)) diagnostics_.warning(span, std::move(code), std::move(message), std::move(help));
+}
+
+void ProgramBuilder::check_versions() {
+  for (const auto& [directive, embedded] : versions_) {
+    const auto* cls = program_->find_class(directive.text);
+    if (!cls) {
+      diagnostics_.error(directive.span, "version", "the file defines no class '" + directive.text + "' whose version could be checked");
+      continue;
+    }
+    const float have = static_cast<float>(cls->version), want = static_cast<float>(directive.version);
+    const auto& op = directive.version_op;
+    const bool holds = op == "==" ? have == want : op == "!=" ? have != want : op == "<" ? have < want
+                     : op == "<=" ? have <= want : op == ">" ? have > want : have >= want;
+    if (!holds)
+      diagnostics_.error(directive.span, "version", "class " + cls->name + " has version " + std::to_string(cls->version) +
+                         ", but " + op + " " + std::to_string(directive.version) + " is required");
+  }
+}
+
+void ProgramBuilder::choose_controller() {
+  if (controller_name_.empty()) {
+    if (diagnostics_.error_count() == 0)
+      diagnostics_.error({0, 0, 0, 1, 1}, "missing-controller", "the program names no controller", "add a line: Controller NAME.");
+    return;
+  }
+  const auto* cls = class_named(controller_name_);
+  if (cls) program_->controller_ = cls;
+  else if (diagnostics_.error_count() == 0) {
+    if (is_later_class(controller_name_)) report_unknown_class(controller_name_, controller_span_);
+    else diagnostics_.error(controller_span_, "unknown-class", "the controller class '" + controller_name_ + "' is not defined");
+  }
+}
+
+CompileResult compile(ModuleSource main, ModuleResolver& resolver) { return ProgramBuilder(resolver).build(std::move(main)); }
+
+}  // namespace breve::steve

@@ -1,0 +1,302 @@
+// Statements to bytecode, and the value that a method without `return` ends with.
+#include <algorithm>
+
+#include "steve/compile/builder.hpp"
+#include "steve/compile/function_compiler.hpp"
+
+namespace breve::steve {
+
+namespace {
+
+template <class... F> struct Overloaded : F... { using F::operator()...; };
+template <class... F> Overloaded(F...) -> Overloaded<F...>;
+
+}  // namespace
+
+FunctionCompiler::FunctionCompiler(ProgramBuilder& builder, const ClassInfo& cls, const ast::Method& method, MethodInfo& info)
+    : builder_(builder), class_(cls), method_(method), info_(info), emit_(*info.function, builder.diagnostics()) {}
+
+void FunctionCompiler::compile() {
+  emit_.at(method_.span);
+  declare_locals();
+  const auto& body = method_.body;
+  if (!body.empty() && std::holds_alternative<ast::ExprStmt>(body.back()->node)) {
+    // The last statement's value is the method's: earlier ones matter only to a bare `return` in front of it.
+    bool keep = false;
+    for (const auto& s : body) keep = keep || contains_return(*s);
+    for (std::size_t i = 0; i + 1 < body.size(); ++i) statement(*body[i], keep);
+    emit_.at(body.back()->span);
+    tail(*std::get<ast::ExprStmt>(body.back()->node).expr);
+  } else {
+    statements(body, true);
+    if (has_last_) emit_.emit(Op::ReturnAny, last_.slot);
+  }
+  emit_.finish();
+  for (const auto& local : method_.locals) {
+    const auto found = locals_.find(local.name);
+    if (found != locals_.end() && !found->second.used)
+      builder_.lint(local.span, "lint-unused-local", "local variable '" + local.name + "' is never used");
+  }
+}
+
+void FunctionCompiler::declare_locals() {
+  for (std::size_t i = 0; i < method_.parameters.size(); ++i) {
+    const auto& p = method_.parameters[i];
+    auto& info = info_.parameters[i];
+    info.slot = emit_.reserve(info.type);
+    locals_[p.variable] = {info.type, static_cast<std::uint16_t>(info.slot), -1, info.class_name, p.variable_span, true};
+  }
+  for (const auto& v : method_.locals) {
+    const auto type = static_type(v.type.kind);
+    if (const auto found = locals_.find(v.name); found != locals_.end()) {
+      builder_.diagnostics().error(v.span, "redefinition",
+                                   found->second.parameter ? "local variable '" + v.name + "' has the name of a parameter"
+                                                           : "local variable '" + v.name + "' is declared twice",
+                                   "rename one of them");
+      continue;
+    }
+    const auto name = builder_.symbol(v.name);
+    if (class_.find_variable(name))
+      builder_.lint(v.span, "lint-shadow", "local variable '" + v.name + "' hides the instance variable of the same name");
+    const auto count = v.type.array_size >= 0 ? static_cast<std::uint32_t>(v.type.array_size) : 1;
+    emit_.at(v.span);
+    Symbol class_name = kNoSymbol;
+    if (!v.type.class_name.empty()) {
+      class_name = builder_.symbol(v.type.class_name);
+      if (!builder_.class_named(v.type.class_name)) builder_.report_unknown_class(v.type.class_name, v.type.span);
+    }
+    locals_[v.name] = {type, emit_.reserve(type, count), v.type.array_size, class_name, v.span, false};
+  }
+}
+
+std::optional<FunctionCompiler::Variable> FunctionCompiler::find(std::string_view name) {
+  if (const auto found = locals_.find(std::string(name)); found != locals_.end()) return Variable{&found->second, nullptr};
+  if (const auto* member = class_.find_variable(builder_.symbol(name))) return Variable{nullptr, member};
+  return std::nullopt;
+}
+
+std::optional<FunctionCompiler::Variable> FunctionCompiler::need(std::string_view name, const Span& span) {
+  if (const auto variable = find(name)) return variable;
+  std::vector<std::string_view> candidates;
+  for (const auto& [local, unused] : locals_) candidates.push_back(local);
+  std::sort(candidates.begin(), candidates.end());
+  for (const ClassInfo* c = &class_; c; c = c->parent)
+    for (const auto& v : c->variables) candidates.push_back(builder_.symbol_name(v.name));
+  std::string help;
+  if (const auto dash = name.find('-'); dash != std::string_view::npos && find(name.substr(0, dash)))
+    help = "a dash belongs to a name: for a subtraction write spaces, '" + std::string(name.substr(0, dash)) + " - " +
+           std::string(name.substr(dash + 1)) + "'";
+  else if (const auto near = nearest(name, candidates); !near.empty()) help = "did you mean '" + near + "'?";
+  else if (const auto* cls = builder_.class_named(name)) help = "'" + cls->name + "' is a class: write new " + cls->name + " for an instance";
+  else help = "declare it under '+ variables:' of the class or at the head of the method";
+  builder_.diagnostics().error(span, "unknown-variable", "unknown variable '" + std::string(name) + "'", help);
+  // Declared here, so that each unknown name is reported once in a method.
+  locals_[std::string(name)] = {StaticType::Any, emit_.reserve(StaticType::Any), -1, kNoSymbol, span, false, true};
+  return std::nullopt;
+}
+
+std::int32_t FunctionCompiler::text(std::string what) { return static_cast<std::int32_t>(builder_.text_number(what)); }
+
+std::int32_t FunctionCompiler::text_for(const Variable& variable, std::string_view name) {
+  return text((variable.local && variable.local->parameter ? "parameter '" : "variable '") + std::string(name) + "'");
+}
+
+// --- statements ------------------------------------------------------------------------------------------------------------------
+
+void FunctionCompiler::statements(const std::vector<ast::StmtPtr>& list, bool keep) {
+  std::vector<bool> keeps(list.size());
+  for (std::size_t i = list.size(); i-- > 0;) {
+    keeps[i] = keep;
+    if (always_has_value(*list[i])) keep = false;
+    if (contains_return(*list[i])) keep = true;
+  }
+  for (std::size_t i = 0; i < list.size(); ++i) statement(*list[i], keeps[i]);
+}
+
+void FunctionCompiler::statement(const ast::Stmt& s, bool keep) {
+  const Span outer = emit_.span();
+  emit_.at(s.span);
+  std::visit(Overloaded{
+                 [&](const ast::Block& b) { statements(b.body, keep); },
+                 [&](const ast::If& i) { if_statement(i, keep); },
+                 [&](const ast::While& w) { while_statement(w, keep || contains_return(*w.body)); },
+                 [&](const ast::For& f) { for_statement(f, keep || contains_return(*f.body)); },
+                 [&](const ast::Foreach& f) { foreach_statement(f, s.span, keep || contains_return(*f.body)); },
+                 [&](const ast::ExprStmt& x) { expression_statement(*x.expr, keep); },
+                 [&](const ast::Print& p) { print(p); },
+                 [&](const ast::Return& r) { return_statement(r); },
+                 [&](const ast::Free& f) {
+                   const auto value = any(*f.value);
+                   emit_.at(s.span);
+                   emit_.emit(Op::Free, value.slot);
+                   emit_.release(value);
+                 },
+                 [&](const ast::Die& d) {
+                   const auto value = any(*d.value);
+                   emit_.at(s.span);
+                   emit_.emit(Op::Die, value.slot);
+                   emit_.release(value);
+                 },
+             },
+             s.node);
+  emit_.at(outer);
+}
+
+void FunctionCompiler::expression_statement(const ast::Expr& e, bool keep) {
+  if (const auto* s = std::get_if<ast::Sort>(&e.node)) {
+    emit_.at(e.span);
+    sort(*s);
+    return;
+  }
+  if (const auto* c = std::get_if<ast::Call>(&e.node)) {
+    call(*c, e);
+    if (keep) keep_result();
+    return;
+  }
+  const auto value = expr(e);
+  if (keep) keep_value(value);
+  else emit_.release(value);
+}
+
+void FunctionCompiler::keep_value(const Operand& value) {
+  if (!has_last_) {
+    last_ = {StaticType::Any, emit_.reserve(StaticType::Any), false};
+    has_last_ = true;
+  }
+  const auto box = boxed(value);
+  move(last_, box);
+  emit_.release(box);
+}
+
+void FunctionCompiler::keep_result() {
+  if (!has_last_) {
+    last_ = {StaticType::Any, emit_.reserve(StaticType::Any), false};
+    has_last_ = true;
+  }
+  emit_.emit(Op::ToAny, last_.slot, kResult);
+}
+
+void FunctionCompiler::tail(const ast::Expr& e) {
+  if (const auto* s = std::get_if<ast::Sort>(&e.node)) {
+    emit_.at(e.span);
+    sort(*s);
+    if (has_last_) emit_.emit(Op::ReturnAny, last_.slot);
+    return;
+  }
+  if (const auto* c = std::get_if<ast::Call>(&e.node)) {
+    call(*c, e);
+    emit_.emit(Op::ReturnResult);
+    return;
+  }
+  const auto value = expr(e);
+  emit_return(value);
+  emit_.release(value);
+}
+
+void FunctionCompiler::if_statement(const ast::If& s, bool keep) {
+  Label end;
+  for (std::size_t i = 0; i < s.branches.size(); ++i) {
+    Label next;
+    condition(*s.branches[i].first, false, next);
+    statement(*s.branches[i].second, keep);
+    if (s.otherwise || i + 1 < s.branches.size()) emit_.jump(Op::Jump, 0, end);
+    emit_.place(next);
+  }
+  if (s.otherwise) statement(*s.otherwise, keep);
+  emit_.place(end);
+}
+
+void FunctionCompiler::while_statement(const ast::While& s, bool keep) {
+  Label top, end;
+  emit_.place(top);
+  condition(*s.condition, false, end);
+  statement(*s.body, keep);
+  emit_.jump(Op::Loop, 0, top);
+  emit_.place(end);
+}
+
+void FunctionCompiler::for_statement(const ast::For& s, bool keep) {
+  Label top, end;
+  emit_.release(expr(*s.start));
+  emit_.place(top);
+  condition(*s.condition, false, end);
+  statement(*s.body, keep);
+  emit_.release(expr(*s.step));
+  emit_.jump(Op::Loop, 0, top);
+  emit_.place(end);
+}
+
+void FunctionCompiler::foreach_statement(const ast::Foreach& s, const Span& span, bool keep) {
+  const auto variable = need(s.variable, s.variable_span.line != 0 ? s.variable_span : span);
+  if (!variable) return;
+  if (variable->array_size() >= 0) {
+    builder_.diagnostics().error(s.variable_span, "whole-array", "'" + s.variable + "' is an array and cannot be a loop variable");
+    return;
+  }
+  if (variable->local) variable->local->used = true;
+  auto list = list_operand(*s.list, "what foreach goes through");
+  if (!list.temporary) list = copy(list);
+  const auto counter = emit_.temporary(StaticType::Int);
+  zero(counter);
+  Label top, end;
+  emit_.place(top);
+  emit_.at(span);
+  if (variable->local && variable->type() == StaticType::Object && variable->class_name() == kNoSymbol) {
+    emit_.emit(Op::ForeachObject, list.slot, counter.slot, variable->local->slot);
+    emit_.jump_ext(end);
+    emit_.ext(0, text_for(*variable, s.variable));
+  } else {
+    const auto element = emit_.temporary(StaticType::Any);
+    emit_.emit(Op::Foreach, list.slot, counter.slot, element.slot);
+    emit_.jump_ext(end);
+    emit_.release(store_variable(*variable, s.variable, element));
+  }
+  statement(*s.body, keep);
+  emit_.jump(Op::Loop, 0, top);
+  emit_.place(end);
+  emit_.release(counter);
+  emit_.release(list);
+}
+
+void FunctionCompiler::print(const ast::Print& p) {
+  for (std::size_t i = 0; i < p.items.size(); ++i) {
+    const auto value = any(*p.items[i]);
+    const bool last = i + 1 == p.items.size();
+    emit_.at(p.items[i]->span);
+    emit_.emit(Op::Print, value.slot, last ? (p.newline ? 2 : 0) : 1);
+    emit_.release(value);
+  }
+}
+
+void FunctionCompiler::return_statement(const ast::Return& r) {
+  if (!r.value) {
+    if (!has_last_) {
+      last_ = {StaticType::Any, emit_.reserve(StaticType::Any), false};
+      has_last_ = true;
+    }
+    emit_.emit(Op::ReturnAny, last_.slot);
+    return;
+  }
+  if (const auto* c = std::get_if<ast::Call>(&r.value->node)) {
+    call(*c, *r.value);
+    emit_.emit(Op::ReturnResult);
+    return;
+  }
+  const auto value = expr(*r.value);
+  emit_return(value);
+  emit_.release(value);
+}
+
+void FunctionCompiler::emit_return(const Operand& value) {
+  switch (value.type) {
+    case StaticType::Int: emit_.emit(Op::ReturnInt, value.slot); break;
+    case StaticType::Double: emit_.emit(Op::ReturnDouble, value.slot); break;
+    case StaticType::Vector: emit_.emit(Op::ReturnVector, value.slot); break;
+    case StaticType::Matrix: emit_.emit(Op::ReturnMatrix, value.slot); break;
+    case StaticType::Any: emit_.emit(Op::ReturnAny, value.slot); break;
+    case StaticType::Null: emit_.emit(Op::ReturnNull); break;
+    default: emit_.emit(Op::ReturnRef, value.slot, static_cast<std::uint16_t>(value.type)); break;
+  }
+}
+
+}  // namespace breve::steve

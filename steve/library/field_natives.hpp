@@ -1,0 +1,65 @@
+// Natives that Vector, Matrix2D and Matrix3D have in common: all of them are fields of numbers.
+#pragma once
+
+#include "steve/library/resources.hpp"
+#include "steve/library/support.hpp"
+
+namespace breve::steve {
+
+/// The field of an object that must have been given a size.
+/// @throws RunError{NullObject} if it has none, or if it is no object with a field
+inline Field& field_of(Machine& machine, Instance* object, std::string_view what) {
+  Instance& live = must_live(object, what);
+  FieldResource* resource = resource_of<FieldResource>(machine, &live);
+  if (!resource || !resource->field)
+    Machine::fail(RunErrorKind::NullObject, std::string(what) + ": " + name_of(live) + " has no size yet");
+  return *resource->field;
+}
+
+inline Field& own_field(Machine& machine, Instance& self) { return field_of(machine, &self, "this object"); }
+
+namespace fields {
+
+inline void set_all_values(Machine& machine, Instance& self, double value) { own_field(machine, self).fill(value); }
+inline double get_absolute_sum(Machine& machine, Instance& self) { return own_field(machine, self).absolute_sum(); }
+inline void add_scalar(Machine& machine, Instance& self, double value) { own_field(machine, self).add_scalar(value); }
+inline void scale(Machine& machine, Instance& self, double factor) { own_field(machine, self).scale(factor); }
+
+inline void add_values(Machine& machine, Instance& self, Instance* other, double factor) {
+  own_field(machine, self).add(field_of(machine, other, "add-values"), factor);
+}
+
+inline void subtract_values(Machine& machine, Instance& self, Instance* other, double factor) {
+  own_field(machine, self).subtract(field_of(machine, other, "subtract-values"), factor);
+}
+
+inline void multiply_with_values(Machine& machine, Instance& self, Instance* other) {
+  own_field(machine, self).multiply(field_of(machine, other, "multiply-with-values"));
+}
+
+/// Takes the other's size as well.
+inline void copy(Machine& machine, Instance& self, Instance* other) {
+  const Field source = field_of(machine, other, "copy");
+  resource_made<FieldResource>(machine, self).field = source;
+}
+
+inline void compute_diffusion(Machine& machine, Instance& self, Instance* source, double factor) {
+  own_field(machine, self).diffuse(field_of(machine, source, "compute-diffusion-matrix"), factor);
+}
+
+inline void compute_periodic_diffusion(Machine& machine, Instance& self, Instance* source, double factor) {
+  own_field(machine, self).diffuse_periodic(field_of(machine, source, "compute-periodic-diffusion-matrix"), factor);
+}
+
+inline void transform(Machine& machine, Instance& self, Instance* matrix, Instance* result) {
+  const Field& left = field_of(machine, matrix, "transform: the matrix");
+  own_field(machine, self).transform(left, field_of(machine, result, "transform: the result"));
+}
+
+inline void print_matlab_style(Machine& machine, Instance& self) {
+  machine.print(own_field(machine, self).matlab() + "\n");
+}
+
+}  // namespace fields
+
+}  // namespace breve::steve

@@ -1,0 +1,209 @@
+// Natives of Image: pixels, files, and the library's own pictures.
+#include <algorithm>
+#include <vector>
+
+#include "steve/library/image_access.hpp"
+#include "steve/library/tables.hpp"
+
+namespace breve::steve {
+
+namespace {
+
+using Text = StringCell*;
+
+Image& image(Machine& machine, Instance& self) { return image_of(machine, &self, "the image"); }
+
+void image_init(Machine& machine, Instance& self) { image(machine, self); }
+
+/// Changed pixels are marked as they are written and taken by whoever draws: an iteration has nothing to add.
+void image_iterate(Machine&, Instance&) {}
+
+// --- size and files --------------------------------------------------------------------------------------------------
+
+Instance* image_set_size(Machine& machine, Instance& self, std::int32_t width, std::int32_t height) {
+  image(machine, self) = Image(width, height);
+  return &self;
+}
+
+/// The path of a file to read: what the host finds, or the name itself where there is no host to ask.
+std::string path_of(Machine& machine, const std::string& name) {
+  return machine.host().find_file ? machine.host().find_file(name) : name;
+}
+
+Instance* image_load(Machine& machine, Instance& self, Text file) {
+  const std::string name(view(file));
+  const std::string path = path_of(machine, name);
+  if (path.empty()) {
+    machine.warn_once("image:" + name, "image '" + name + "' not found");
+    return nullptr;
+  }
+  try {
+    image(machine, self) = Image::read(path);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::File) throw;
+    machine.warn_once("image:" + name, "image '" + name + "' not loaded: " + error.what());
+    return nullptr;
+  }
+  return &self;
+}
+
+/// Run something that writes a file: 1, or 0 with a message.
+template <class Write> std::int32_t try_to_write(Machine& machine, const std::string& name, Write write) {
+  try {
+    write();
+    return 1;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::File && error.code() != ErrorCode::Argument) throw;
+    machine.warn("image '" + name + "' not written: " + error.what());
+    return 0;
+  }
+}
+
+std::int32_t image_write(Machine& machine, Instance& self, Text file) {
+  const std::string name(view(file));
+  return try_to_write(machine, name, [&] { image(machine, self).write_png(name); });
+}
+
+std::int32_t image_write_16_bit(Machine& machine, Instance& self, Text file) {
+  const std::string name(view(file));
+  const Image& picture = image(machine, self);
+  constexpr double kHighest = 65535;
+  std::vector<double> greys;
+  greys.reserve(picture.bytes().size() / 4);
+  for (int y = 0; y < picture.height(); ++y)
+    for (int x = 0; x < picture.width(); ++x)
+      greys.push_back((picture.byte(x, y, Channel::Red) * 256 + picture.byte(x, y, Channel::Green)) / kHighest);
+  return try_to_write(machine, name, [&] { write_gray16_png(name, picture.width(), picture.height(), greys); });
+}
+
+// --- the library's own pictures --------------------------------------------------------------------------------------
+
+constexpr int kPatternSide = 64;
+
+void set_grey(Image& picture, int x, int y, std::uint8_t level) {
+  for (Channel channel : {Channel::Red, Channel::Green, Channel::Blue}) picture.set_byte(x, y, channel, level);
+}
+
+Image checker() {
+  constexpr int kField = kPatternSide / 8;
+  constexpr std::uint8_t kLight = 255, kDark = 192;
+  Image picture(kPatternSide, kPatternSide);
+  for (int y = 0; y < kPatternSide; ++y)
+    for (int x = 0; x < kPatternSide; ++x) set_grey(picture, x, y, (x / kField + y / kField) % 2 == 0 ? kLight : kDark);
+  return picture;
+}
+
+/// A coarse grain, the same every time: a hash of the place, not a draw from the world's random numbers.
+Image ground() {
+  constexpr std::uint8_t kDarkest = 176;
+  constexpr std::uint32_t kGrains = 80;
+  Image picture(kPatternSide, kPatternSide);
+  for (int y = 0; y < kPatternSide; ++y)
+    for (int x = 0; x < kPatternSide; ++x) {
+      std::uint32_t mixed = static_cast<std::uint32_t>(x) * 0x9e3779b1U + static_cast<std::uint32_t>(y) * 0x85ebca77U;
+      mixed = (mixed ^ (mixed >> 15)) * 0x2c1b3c6dU;
+      set_grey(picture, x, y, static_cast<std::uint8_t>(kDarkest + (mixed >> 16) % kGrains));
+    }
+  return picture;
+}
+
+void image_paint_pattern(Machine& machine, Instance& self, Text name) {
+  if (view(name) == "checker") image(machine, self) = checker();
+  else if (view(name) == "ground") image(machine, self) = ground();
+  else throw Error(ErrorCode::Argument, "there is no pattern '" + std::string(view(name)) + "'");
+}
+
+// --- pixels ----------------------------------------------------------------------------------------------------------
+
+std::int32_t image_get_width(Machine& machine, Instance& self) { return image(machine, self).width(); }
+std::int32_t image_get_height(Machine& machine, Instance& self) { return image(machine, self).height(); }
+
+/// Reading outside gives a message; the caller then yields 0.
+bool readable(Machine& machine, const Image& picture, std::int32_t x, std::int32_t y) {
+  if (picture.holds(x, y)) return true;
+  machine.warn("pixel (" + std::to_string(x) + ", " + std::to_string(y) + ") is outside an image of " +
+               std::to_string(picture.width()) + " x " + std::to_string(picture.height()));
+  return false;
+}
+
+template <Channel C> double get_channel(Machine& machine, Instance& self, std::int32_t x, std::int32_t y) {
+  const Image& picture = image(machine, self);
+  return readable(machine, picture, x, y) ? picture.get(x, y, C) : 0.0;
+}
+
+template <Channel C> void set_channel(Machine& machine, Instance& self, double value, std::int32_t x, std::int32_t y) {
+  Image& picture = image(machine, self);
+  if (picture.holds(x, y)) picture.set(x, y, C, value);
+}
+
+Vector3 get_rgb(Machine& machine, Instance& self, std::int32_t x, std::int32_t y) {
+  const Image& picture = image(machine, self);
+  if (!readable(machine, picture, x, y)) return {0, 0, 0};
+  return {picture.get(x, y, Channel::Red), picture.get(x, y, Channel::Green), picture.get(x, y, Channel::Blue)};
+}
+
+void set_rgb(Machine& machine, Instance& self, Vector3 color, std::int32_t x, std::int32_t y) {
+  Image& picture = image(machine, self);
+  if (!picture.holds(x, y)) return;
+  picture.set(x, y, Channel::Red, color.x());
+  picture.set(x, y, Channel::Green, color.y());
+  picture.set(x, y, Channel::Blue, color.z());
+}
+
+DataCell* image_get_data(Machine& machine, Instance& self) {
+  const std::vector<std::uint8_t>& bytes = image(machine, self).bytes();
+  return machine.heap().data({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+std::int32_t image_get_texture_number(Machine&, Instance& self) { return static_cast<std::int32_t>(self.id.index); }
+
+std::int32_t image_get_compression_size(Machine& machine, Instance& self) {
+  return static_cast<std::int32_t>(image(machine, self).deflated_size());
+}
+
+// --- the view --------------------------------------------------------------------------------------------------------
+
+void image_read_pixels(Machine& machine, Instance& self, std::int32_t, std::int32_t) {
+  Image& picture = image(machine, self);
+  if (!picture.empty()) picture = Image(picture.width(), picture.height());
+  machine.warn_once("renderer:read-pixels", "read-pixels: nothing draws this world; the image is black");
+}
+
+void image_read_depth(Machine& machine, Instance&, std::int32_t, std::int32_t, std::int32_t, double) {
+  machine.warn_once("renderer:read-depth", "read-depth: the depth of the view cannot be read");
+}
+
+constexpr Native kImageNatives[] = {
+    native<image_init>("image.init"),
+    native<image_iterate>("image.iterate"),
+    native<image_load>("image.load"),
+    native<image_set_size>("image.init-with"),
+    native<image_set_size>("image.set-size"),
+    native<image_paint_pattern>("image.paint-pattern"),
+    native<image_get_data>("image.get-image-data"),
+    native<image_get_texture_number>("image.get-texture-number"),
+    native<image_get_width>("image.get-width"),
+    native<image_get_height>("image.get-height"),
+    native<get_channel<Channel::Red>>("image.get-red-pixel"),
+    native<get_channel<Channel::Green>>("image.get-green-pixel"),
+    native<get_channel<Channel::Blue>>("image.get-blue-pixel"),
+    native<get_channel<Channel::Alpha>>("image.get-alpha-pixel"),
+    native<get_rgb>("image.get-rgb-pixel"),
+    native<image_get_compression_size>("image.get-compression-size"),
+    native<set_channel<Channel::Red>>("image.set-red-pixel"),
+    native<set_channel<Channel::Green>>("image.set-green-pixel"),
+    native<set_channel<Channel::Blue>>("image.set-blue-pixel"),
+    native<set_channel<Channel::Alpha>>("image.set-alpha-pixel"),
+    native<set_rgb>("image.set-pixel"),
+    native<set_rgb>("image.set-rgb-pixel"),
+    native<image_read_pixels>("image.read-pixels"),
+    native<image_read_depth>("image.read-depth"),
+    native<image_write>("image.write"),
+    native<image_write_16_bit>("image.write-16-bit-grayscale"),
+};
+
+}  // namespace
+
+std::span<const Native> image_natives() { return kImageNatives; }
+
+}  // namespace breve::steve

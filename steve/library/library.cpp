@@ -1,0 +1,69 @@
+// Finding a library file by its name or by a class in it; what is not there yet; kinds of native data.
+#include "steve/library/library.hpp"
+
+#include <algorithm>
+
+#include "runtime/store/image_resource.hpp"
+#include "runtime/world/camera.hpp"
+#include "runtime/world/drawing.hpp"
+#include "runtime/world/menu.hpp"
+#include "steve/library/resources.hpp"
+
+namespace breve::steve {
+
+namespace {
+
+constexpr std::string_view kLaterClasses[] = {
+    "BallJoint", "BallJoints", "BraitenbergControl", "BraitenbergHeavyVehicle", "BraitenbergHeavyVehicles",
+    "BraitenbergLight", "BraitenbergLights", "BraitenbergSensor", "BraitenbergSensors", "BraitenbergVehicle",
+    "BraitenbergVehicles", "BraitenbergWheel", "BraitenbergWheels", "FFNetwork", "FixedJoint", "FixedJoints",
+    "GADirectedGraph", "GADirectedGraphConnection", "GADirectedGraphConnections", "GADirectedGraphNode",
+    "GADirectedGraphNodes", "GADirectedGraphParameterObject", "GADirectedGraphParameterObjects",
+    "GAIndividualTransporter", "GeneticAlgorithm", "GeneticAlgorithmIndividual", "Graph", "IRSensor", "IRSensors",
+    "Joint", "Joints", "Link", "Links", "MeshShape", "Movie", "MultiBodies", "MultiBody", "NetworkServer",
+    "NetworkServers", "NeuralNetwork", "Patch", "PatchChemical", "PatchGrid", "PatchGrids", "PatchToroid",
+    "PatchToroids", "Patches", "PhysicalControl", "PrismaticJoint", "PrismaticJoints", "PushClusterGP",
+    "PushDiversityPool", "PushGP", "PushGPIndividual", "PushGPIndividuals", "PushInterpreter", "PushInterpreters",
+    "PushProgram", "PushProgramTransporter", "PushPrograms", "QProgram", "QSystem", "RevoluteJoint", "RevoluteJoints",
+    "Sound", "Sounds", "Spring", "Springs", "Terrain", "Tone", "Tones", "URL", "UniversalJoint", "UniversalJoints"};
+
+/// Is `word` one of the space-separated words of `list`?
+bool holds_word(std::string_view list, std::string_view word) {
+  while (!list.empty()) {
+    const std::size_t space = std::min(list.find(' '), list.size());
+    if (list.substr(0, space) == word) return true;
+    list.remove_prefix(std::min(space + 1, list.size()));
+  }
+  return false;
+}
+
+}  // namespace
+
+const LibraryFile* find_library_file(std::string_view name) {
+  std::string_view stem = name;
+  if (stem.ends_with(".tz")) stem.remove_suffix(3);
+  if (stem.empty()) return nullptr;
+  for (const LibraryFile& file : library_files())
+    if (file.name.substr(0, file.name.size() - 3) == stem) return &file;
+  for (const LibraryFile& file : library_files())
+    if (holds_word(file.classes, stem)) return &file;
+  return nullptr;
+}
+
+std::span<const std::string_view> later_classes() { return kLaterClasses; }
+
+bool is_later_class(std::string_view name_or_alias) {
+  return std::find(std::begin(kLaterClasses), std::end(kLaterClasses), name_or_alias) != std::end(kLaterClasses);
+}
+
+void register_resource_kinds(World& world) {
+  world.add_resource_kind(CameraResource::kKind, &CameraResource::load);
+  world.add_resource_kind(MenuItemResource::kKind, &MenuItemResource::load);
+  world.add_resource_kind(DrawingResource::kKind, &DrawingResource::load);
+  world.add_resource_kind(LineResource::kKind, &LineResource::load);
+  world.add_resource_kind(ShapeResource::kKind, &ShapeResource::load);
+  world.add_resource_kind(ImageResource::kKind, &ImageResource::load);
+  world.add_resource_kind(FieldResource::kKind, &FieldResource::load);
+}
+
+}  // namespace breve::steve

@@ -1,0 +1,23 @@
+// The class library as the compiler and the machine see it: embedded files, native methods, kinds of native data.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "runtime/world/world.hpp"
+#include "steve/compile/program.hpp"
+#include "steve/machine/native.hpp"
+
+namespace breve::steve {
+
+/// Every file of the embedded library, in alphabetical order.
+std::span<const LibraryFile> library_files();
+
+/// Classes that the documents name and that this version does not have, aliases too.
+std::span<const std::string_view> later_classes();
+bool is_later_class(std::string_view name_or_alias);
+
+/// Teach a world to load the native data of library objects from snapshots. Once per world, before the first load.
+void register_resource_kinds(World& world);
+
+}  // namespace breve::steve

@@ -1,0 +1,154 @@
+// Natives of Mobile: motion, physics, geometry of a body that moves.
+#include <cmath>
+
+#include "steve/library/support.hpp"
+#include "steve/library/tables.hpp"
+
+namespace breve::steve {
+
+namespace {
+
+Bodies& bodies_of(Machine& machine) { return machine.world().bodies(); }
+
+void mobile_init(Machine& machine, Instance& self) { embody(machine, self, BodyKind::Mobile); }
+
+Instance* mobile_register(Machine& machine, Instance& self, Instance* shape) {
+  machine.warn_once("mobile.register", "'register' of Mobile is the old name of 'set-shape'");
+  const Value argument = Value::of(Tag::Object, shape);
+  machine.call(self, "set-shape", std::span(&argument, 1));
+  return &self;
+}
+
+// --- motion ----------------------------------------------------------------------------------------------------------
+
+using Getter = const Vector3& (Bodies::*)(BodyIndex) const;
+using Setter = void (Bodies::*)(BodyIndex, const Vector3&);
+
+template <Getter Get> Vector3 get(Machine& machine, Instance& self) {
+  return (bodies_of(machine).*Get)(body_of(machine, self));
+}
+
+template <Setter Set> void set(Machine& machine, Instance& self, Vector3 value) {
+  (bodies_of(machine).*Set)(body_of(machine, self), value);
+}
+
+/// The turn about an axis of any length; the identity for a zero axis.
+Quaternion turn_about(const Vector3& axis, double radians) {
+  finite(axis, "a rotation's axis");
+  finite(radians, "a rotation's angle");
+  const double length = axis.stableNorm();
+  return length == 0 ? Quaternion::Identity() : Quaternion(Eigen::AngleAxisd(radians, axis / length));
+}
+
+void mobile_rotate(Machine& machine, Instance& self, Vector3 axis, double radians) {
+  const Quaternion turn = turn_about(axis, radians);
+  const BodyIndex body = body_of(machine, self);
+  if (!axis.isZero(0)) bodies_of(machine).set_orientation(body, turn);
+}
+
+void mobile_relative_rotate(Machine& machine, Instance& self, Vector3 axis, double radians) {
+  const Quaternion turn = turn_about(axis, radians);
+  const BodyIndex body = body_of(machine, self);
+  bodies_of(machine).set_orientation(body, turn * bodies_of(machine).orientation(body));
+}
+
+void mobile_offset(Machine& machine, Instance& self, Vector3 displacement) {
+  const BodyIndex body = body_of(machine, self);
+  bodies_of(machine).set_location(body, bodies_of(machine).location(body) + displacement);
+}
+
+// --- physics ---------------------------------------------------------------------------------------------------------
+
+template <bool On> void set_physics(Machine& machine, Instance& self) {
+  bodies_of(machine).set_physics(body_of(machine, self), On);
+}
+
+/// Hooks around dragging: physics does not move a body that the user holds.
+void mobile_suspend_physics(Machine& machine, Instance& self) {
+  const BodyIndex body = body_of(machine, self);
+  Slot* suspended = library_slot(machine, self, "Mobile", "physicsSuspended");
+  if (!suspended || !bodies_of(machine).physics(body)) return;
+  bodies_of(machine).set_physics(body, false);
+  suspended->i = 1;
+}
+
+void mobile_resume_physics(Machine& machine, Instance& self) {
+  const BodyIndex body = body_of(machine, self);
+  Slot* suspended = library_slot(machine, self, "Mobile", "physicsSuspended");
+  if (!suspended || suspended->i == 0) return;
+  suspended->i = 0;
+  bodies_of(machine).set_physics(body, true);
+}
+
+double mobile_get_mass(Machine& machine, Instance& self) { return bodies_of(machine).mass(body_of(machine, self)); }
+
+// --- geometry --------------------------------------------------------------------------------------------------------
+
+double mobile_get_distance(Machine& machine, Instance& self, Instance* other) {
+  const BodyIndex body = body_of(machine, self);
+  const BodyIndex to = body_of(machine, must_live(other, "get-distance: the object"));
+  return (bodies_of(machine).location(to) - bodies_of(machine).location(body)).norm();
+}
+
+Vector3 mobile_transform(Machine& machine, Instance& self, Vector3 v) {
+  return bodies_of(machine).rotation(body_of(machine, self)).transpose() * v;
+}
+
+Vector3 mobile_get_bound_maximum(Machine& machine, Instance& self) {
+  return bodies_of(machine).bounds(body_of(machine, self)).max();
+}
+
+Vector3 mobile_get_bound_minimum(Machine& machine, Instance& self) {
+  return bodies_of(machine).bounds(body_of(machine, self)).min();
+}
+
+ListCell* mobile_get_colliding_objects(Machine& machine, Instance& self) {
+  body_of(machine, self);
+  const std::vector<ObjectId> touching = machine.world().touching(self.id);
+  ListCell* list = machine.heap().list(static_cast<std::uint32_t>(touching.size()));
+  for (ObjectId id : touching) machine.heap().push(*list, Value::of(Tag::Object, machine.instance(id)));
+  return list;
+}
+
+/// Links of one assembly are what could intersect; a body without joints has none.
+std::int32_t mobile_check_for_self_penetrations(Machine& machine, Instance& self) {
+  body_of(machine, self);
+  return 0;
+}
+
+constexpr Native kMobileNatives[] = {
+    native<mobile_init>("mobile.init"),
+    native<mobile_register>("mobile.register"),
+    native<set_physics<true>>("mobile.enable-physics"),
+    native<set_physics<false>>("mobile.disable-physics"),
+    native<mobile_suspend_physics>("mobile.suspend-physics"),
+    native<mobile_resume_physics>("mobile.resume-physics"),
+    native<mobile_get_mass>("mobile.get-mass"),
+    native<set<&Bodies::set_force>>("mobile.set-force"),
+    native<get<&Bodies::force>>("mobile.get-force"),
+    native<set<&Bodies::set_torque>>("mobile.set-torque"),
+    native<get<&Bodies::torque>>("mobile.get-torque"),
+    native<mobile_rotate>("mobile.rotate"),
+    native<mobile_relative_rotate>("mobile.relative-rotate"),
+    native<mobile_offset>("mobile.offset"),
+    native<set<&Bodies::set_velocity>>("mobile.set-velocity"),
+    native<get<&Bodies::velocity>>("mobile.get-velocity"),
+    native<set<&Bodies::set_acceleration>>("mobile.set-acceleration"),
+    native<get<&Bodies::acceleration>>("mobile.get-acceleration"),
+    native<set<&Bodies::set_rotational_velocity>>("mobile.set-rotational-velocity"),
+    native<get<&Bodies::rotational_velocity>>("mobile.get-rotational-velocity"),
+    native<set<&Bodies::set_rotational_acceleration>>("mobile.set-rotational-acceleration"),
+    native<mobile_get_distance>("mobile.get-distance"),
+    native<mobile_transform>("mobile.transform"),
+    native<mobile_get_bound_maximum>("mobile.get-bound-maximum"),
+    native<mobile_get_bound_minimum>("mobile.get-bound-minimum"),
+    native<mobile_get_colliding_objects>("mobile.check-for-penetrations"),
+    native<mobile_get_colliding_objects>("mobile.get-colliding-objects"),
+    native<mobile_check_for_self_penetrations>("mobile.check-for-self-penetrations"),
+};
+
+}  // namespace
+
+std::span<const Native> mobile_natives() { return kMobileNatives; }
+
+}  // namespace breve::steve

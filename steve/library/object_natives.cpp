@@ -1,0 +1,179 @@
+// Natives of Object: identity, schedule, notifications, calls by name; and the obsolete selectors of every class.
+#include <cmath>
+
+#include "steve/library/obsolete.hpp"
+#include "steve/library/support.hpp"
+#include "steve/library/tables.hpp"
+
+namespace breve::steve {
+
+namespace {
+
+using Text = StringCell*;
+
+// --- identity --------------------------------------------------------------------------------------------------------
+
+// KEEP IN STEP: Object.tz declares `controller` and `birthTime` first, so that creating an object looks nothing up.
+constexpr std::uint32_t kControllerSlot = 0, kBirthTimeSlot = 1;
+
+void object_init(Machine& machine, Instance& self) {
+  machine.heap().store(self.slots[kControllerSlot], machine.controller());
+  self.slots[kBirthTimeSlot].d = machine.world().time();
+}
+
+double object_get_age(Machine& machine, Instance& self) {
+  return machine.world().time() - self.slots[kBirthTimeSlot].d;
+}
+
+Text object_get_type(Machine& machine, Instance& self) { return machine.heap().string(self.cls->name); }
+
+std::int32_t object_is(Machine&, Instance& self, Text name) {
+  for (const ClassInfo* cls = self.cls; cls; cls = cls->parent)
+    if (cls->name == view(name) || (!cls->alias.empty() && cls->alias == view(name))) return 1;
+  return 0;
+}
+
+std::int32_t object_can_respond(Machine& machine, Instance& self, Text method) {
+  return machine.responds(*self.cls, view(method));
+}
+
+// --- schedule --------------------------------------------------------------------------------------------------------
+
+void object_schedule(Machine& machine, Instance& self, Text method, double when) {
+  if (!std::isfinite(when) || !machine.world().schedule(self.id, view(method), when))
+    machine.warn("schedule: time " + std::to_string(when) + " is not in the future; '" + std::string(view(method)) +
+                 "' will not be called");
+}
+
+void object_schedule_repeating(Machine& machine, Instance& self, Text method, double interval) {
+  World& world = machine.world();
+  if (!(interval > 0) || !std::isfinite(interval)) {
+    machine.warn("schedule-repeating: interval " + std::to_string(interval) + " is not more than 0; '" +
+                 std::string(view(method)) + "' will not be called");
+    return;
+  }
+  // First at the absolute time `interval`; the world starts an interval from now instead if that is past.
+  world.schedule(self.id, view(method), interval, interval);
+}
+
+void object_unschedule(Machine& machine, Instance& self, Text method, double when) {
+  machine.world().unschedule(self.id, view(method), when);
+}
+
+// --- notifications ---------------------------------------------------------------------------------------------------
+
+std::int32_t object_observe(Machine& machine, Instance& self, Instance* announcer, Text message, Text method) {
+  const Instance& source = must_live(announcer, "observe: the instance");
+  const std::string name(view(method));
+  for (std::size_t count : {2, 1, 0}) {
+    if (!machine.find_method(*self.cls, name, count)) continue;
+    machine.world().observe(self.id, source.id, view(message), name);
+    return 0;
+  }
+  machine.warn("observe: " + name_of(self) + " has no method '" + name + "' with 0, 1 or 2 keywords; nothing registered");
+  return -1;
+}
+
+void object_unobserve(Machine& machine, Instance& self, Instance* announcer, Text message) {
+  machine.world().unobserve(self.id, machine.id_of(announcer), view(message));
+}
+
+void object_announce(Machine& machine, Instance& self, Text message) {
+  machine.world().announce(self.id, view(message));
+}
+
+// --- calls by name ---------------------------------------------------------------------------------------------------
+
+Value call_named(Machine& machine, Instance& self, Text name, std::span<const Value> arguments) {
+  const MethodInfo* method = machine.find_method(*self.cls, view(name), arguments.size());
+  if (!method) {
+    const std::string message = "call-method: " + name_of(self) + " has no method '" + std::string(view(name)) +
+                                "' with " + std::to_string(arguments.size()) + " keywords";
+    if (machine.host().strict) Machine::fail(RunErrorKind::UnknownMethod, message);
+    if (machine.host().error) machine.host().error(message);
+    return {};
+  }
+  if (machine.host().strict) return machine.call(self, *method, arguments);
+  Value result;
+  if (!machine.call_guarded(self, *method, arguments, result)) return {};
+  return result;
+}
+
+Value object_call_method(Machine& machine, Instance& self, Text name) { return call_named(machine, self, name, {}); }
+
+Value object_call_method_with(Machine& machine, Instance& self, Text name, ListCell* arguments) {
+  if (!arguments) return call_named(machine, self, name, {});
+  // A copy: the method may change the list. The list itself, in the caller's frame, keeps the elements alive only
+  // until then; the callee's frame holds them from the moment it starts.
+  const std::vector<Value> values(arguments->begin(), arguments->end());
+  return call_named(machine, self, name, values);
+}
+
+// --- network ---------------------------------------------------------------------------------------------------------
+
+[[noreturn]] void no_network(std::string_view selector) {
+  Machine::fail(RunErrorKind::World, std::string(selector) + ": networking is not available in this build");
+}
+
+Instance* object_send_over_network(Machine&, Instance&, Text, std::int32_t) { no_network("send-over-network"); }
+Instance* data_send(Machine&, Instance&, Text, std::int32_t) { no_network("send"); }
+
+// --- obsolete --------------------------------------------------------------------------------------------------------
+
+/// What a program gets that asks for a dialog where there is none: 1.
+template <Selector S> std::int32_t obsolete_dialog(Machine& machine, Instance& self) {
+  obsolete<S>(machine, self);
+  return 1;
+}
+
+constexpr Native kObjectNatives[] = {
+    native<object_init>("object.init"),
+    native<object_get_age>("object.get-age"),
+    native<object_get_type>("object.get-type"),
+    native<object_is>("object.is"),
+    native<object_is>("object.is-a"),
+    native<object_is>("object.is-a-subclass"),
+    native<object_can_respond>("object.can-respond"),
+    native<object_schedule>("object.schedule"),
+    native<object_schedule_repeating>("object.schedule-repeating"),
+    native<object_unschedule>("object.unschedule"),
+    native<object_observe>("object.observe"),
+    native<object_unobserve>("object.unobserve"),
+    native<object_announce>("object.announce"),
+    native<object_call_method>("object.call-method"),
+    native<object_call_method_with>("object.call-method-with"),
+    native<object_send_over_network>("object.send-over-network"),
+    native<data_send>("data.send"),
+};
+
+constexpr Native kObsoleteNatives[] = {
+    native<obsolete<"beep">>("obsolete.beep"),
+    native<obsolete<"disable-smooth-drawing">>("obsolete.disable-smooth-drawing"),
+    native<obsolete<"enable-smooth-drawing">>("obsolete.enable-smooth-drawing"),
+    native<obsolete<"get-data-for-shape", DataCell*>>("obsolete.get-data-for-shape"),
+    native<obsolete<"get-interface-version", Text>>("obsolete.get-interface-version"),
+    native<obsolete<"get-link-pointer", PointerCell*>>("obsolete.get-link-pointer"),
+    native<obsolete<"get-matrix-pointer", PointerCell*>>("obsolete.get-matrix-pointer"),
+    native<obsolete<"get-pixel-pointer", PointerCell*>>("obsolete.get-pixel-pointer"),
+    native<obsolete<"get-pointer", PointerCell*>>("obsolete.get-pointer"),
+    native<obsolete<"get-vector-pointer", PointerCell*>>("obsolete.get-vector-pointer"),
+    native<obsolete<"get-world-object-pointer", PointerCell*>>("obsolete.get-world-object-pointer"),
+    native<obsolete<"report-object-allocation">>("obsolete.report-object-allocation"),
+    native<obsolete<"set-camera-pointer", void, PointerCell*>>("obsolete.set-camera-pointer"),
+    native<obsolete<"set-interface-item", std::int32_t, std::int32_t, Text>>("obsolete.set-interface-item"),
+    native<obsolete<"set-matrix-pointer", void, PointerCell*, std::int32_t, std::int32_t>>(
+        "obsolete.set-matrix-pointer"),
+    native<obsolete<"set-output-filter", void, std::int32_t>>("obsolete.set-output-filter"),
+    native<obsolete<"set-vector-pointer", void, PointerCell*, std::int32_t>>("obsolete.set-vector-pointer"),
+    native<obsolete<"show-dialog", std::int32_t, Text, Text, Text, Text>>("obsolete.show-dialog"),
+    native<obsolete<"toggle-smooth">>("obsolete.toggle-smooth"),
+    native<obsolete_dialog<"save-with-dialog">>("obsolete.save-with-dialog"),
+    native<obsolete_dialog<"load-with-dialog">>("obsolete.load-with-dialog"),
+};
+
+}  // namespace
+
+std::span<const Native> object_natives() { return kObjectNatives; }
+std::span<const Native> obsolete_natives() { return kObsoleteNatives; }
+
+}  // namespace breve::steve

@@ -1,0 +1,38 @@
+// Native data in snapshots and hashes.
+#include "steve/library/resources.hpp"
+
+namespace breve::steve {
+
+void ShapeResource::save(ByteWriter& out) const {
+  out.put(density);
+  out.put_shared(shape);
+}
+
+void ShapeResource::hash(Hasher& hasher) const {
+  hasher.add(density);
+  if (shape) shape->hash(hasher);
+}
+
+std::unique_ptr<Resource> ShapeResource::load(ByteReader& in) {
+  auto resource = std::make_unique<ShapeResource>();
+  resource->density = in.get<double>();
+  resource->shape = in.get_shared<Shape>();
+  return resource;
+}
+
+void FieldResource::save(ByteWriter& out) const {
+  out.put(field.has_value());
+  if (field) field->save(out);
+}
+
+void FieldResource::hash(Hasher& hasher) const {
+  if (field) field->hash(hasher);
+}
+
+std::unique_ptr<Resource> FieldResource::load(ByteReader& in) {
+  auto resource = std::make_unique<FieldResource>();
+  if (in.get_bool()) resource->field = Field::load(in);
+  return resource;
+}
+
+}  // namespace breve::steve

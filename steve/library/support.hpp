@@ -1,0 +1,74 @@
+// What the native methods of the class library share: how they reach a body, a resource, a variable of a library class.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <typeinfo>
+#include <utility>
+
+#include "runtime/world/world.hpp"
+#include "steve/machine/machine.hpp"
+
+namespace breve::steve {
+
+/// The body of an object. Error{Argument} if it has none, Error{Stale} if it is freed.
+inline BodyIndex body_of(Machine& machine, const Instance& self) { return machine.world().body(self.id); }
+
+/// An object argument that must be there. `what` names it: "set-shape: the shape".
+/// @throws RunError{NullObject, FreedObject}
+inline Instance& must_live(Instance* object, std::string_view what) {
+  if (!object) Machine::fail(RunErrorKind::NullObject, std::string(what) + " is null (an uninitialised object)");
+  if (!object->live()) Machine::fail(RunErrorKind::FreedObject, std::string(what) + " has been freed");
+  return *object;
+}
+
+/// The value itself. @throws Error{Argument} "`what` must be finite"
+inline double finite(double value, std::string_view what) {
+  if (!std::isfinite(value)) throw Error(ErrorCode::Argument, std::string(what) + " must be finite");
+  return value;
+}
+inline const Vector3& finite(const Vector3& value, std::string_view what) {
+  if (!value.allFinite()) throw Error(ErrorCode::Argument, std::string(what) + " must be finite");
+  return value;
+}
+
+/// The native data of an object if it is exactly an R, else null. A null or freed object: null.
+template <class R> R* resource_of(Machine& machine, const Instance* object) {
+  if (!object || !object->live()) return nullptr;
+  Resource* resource = machine.world().resource(object->id);
+  if (!resource || typeid(*resource) != typeid(R)) return nullptr;
+  return static_cast<R*>(resource);
+}
+
+/// The native data of an object, made and attached on first use.
+template <class R> R& resource_made(Machine& machine, const Instance& self) {
+  if (R* found = resource_of<R>(machine, &self)) return *found;
+  auto made = std::make_unique<R>();
+  R& resource = *made;
+  machine.world().attach(self.id, std::move(made));
+  return resource;
+}
+
+/// The slot of the variable `name` that the library class `owner` declares, in an instance of it or of a descendant; a
+/// variable of the same name in a descendant is another one. Null if `self` is no such instance.
+Slot* library_slot(Machine& machine, Instance& self, std::string_view owner, std::string_view name);
+
+/// An object variable of a library class as library_slot finds it; null if there is none or its object is not live.
+Instance* library_object(Machine& machine, Instance& self, std::string_view owner, std::string_view name);
+
+/// Store an object in a variable of a library class, with counting. Nothing if there is no such variable.
+void set_library_object(Machine& machine, Instance& self, std::string_view owner, std::string_view name,
+                        Instance* object);
+
+/// Give an object a body at the origin with the controller's generic shape, a sphere of radius 1 (a box for a link).
+void embody(Machine& machine, Instance& self, BodyKind kind);
+
+/// `class (0xaddress)`, as messages name an object.
+std::string name_of(const Instance& object);
+
+/// The texture number of an image is the index of its object: 0 is none. Null if no live object has it.
+ObjectId object_with_index(Machine& machine, std::int32_t index);
+
+}  // namespace breve::steve

@@ -1,0 +1,27 @@
+// The tables of native methods, one for each file of natives; library_natives() joins them.
+#pragma once
+
+#include <span>
+
+#include "steve/machine/native.hpp"
+
+namespace breve::steve {
+
+std::span<const Native> object_natives();
+std::span<const Native> obsolete_natives();
+std::span<const Native> archive_natives();
+std::span<const Native> control_natives();
+std::span<const Native> view_natives();
+std::span<const Native> camera_natives();
+std::span<const Native> real_natives();
+std::span<const Native> look_natives();
+std::span<const Native> mobile_natives();
+std::span<const Native> shape_natives();
+std::span<const Native> image_natives();
+std::span<const Native> menu_natives();
+std::span<const Native> drawing_natives();
+std::span<const Native> data_natives();
+std::span<const Native> matrix_natives();
+std::span<const Native> vector_natives();
+
+}  // namespace breve::steve

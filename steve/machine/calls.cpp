@@ -1,0 +1,207 @@
+// Which method a call runs, and how its arguments get into the callee's registers. Settled once for each call site and
+// class of receiver; afterwards a call copies slots.
+#include <algorithm>
+#include <cstring>
+
+#include "steve/machine/machine.hpp"
+#include "steve/machine/operators.hpp"
+
+namespace breve::steve {
+
+bool Machine::accepts(const MethodInfo& method, const CallSite& site) {
+  for (std::size_t i = 0; i < site.arguments.size(); ++i) {
+    const auto keyword = site.arguments[i].keyword;
+    const bool known = std::any_of(method.parameters.begin(), method.parameters.end(), [&](const auto& p) { return p.keyword == keyword; });
+    if (!known) return false;
+    for (std::size_t j = 0; j < i; ++j)
+      if (site.arguments[j].keyword == keyword) return false;
+  }
+  return std::all_of(method.parameters.begin(), method.parameters.end(), [&](const auto& p) {
+    return p.has_default || std::any_of(site.arguments.begin(), site.arguments.end(), [&](const auto& a) { return a.keyword == p.keyword; });
+  });
+}
+
+const MethodInfo* Machine::choose(const CallSite& site, const ClassInfo& cls) const {
+  // Fewest parameters first, among equals the most derived: language 4.3, and F15 when the keywords do not fit.
+  std::vector<const MethodInfo*> candidates;
+  const ClassInfo* start = site.super_of ? site.super_of->parent : &cls;
+  for (const ClassInfo* c = start; c; c = c->parent)
+    for (const auto& method : c->methods)
+      if (method->name == site.selector && method->parameters.size() >= site.arguments.size()) candidates.push_back(method.get());
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const auto* a, const auto* b) { return a->parameters.size() < b->parameters.size(); });
+  for (const auto* candidate : candidates)
+    if (accepts(*candidate, site)) return candidate;
+  const auto& name = program_->symbols().name(site.selector);
+  if (candidates.empty() && name == "iterate") return nullptr;
+  fail_call(site, cls, candidates.empty() ? nullptr : candidates.front());
+}
+
+void Machine::fail_call(const CallSite& site, const ClassInfo& cls, const MethodInfo* best) const {
+  const auto& symbols = program_->symbols();
+  const auto& name = symbols.name(site.selector);
+  const ClassInfo* start = site.super_of ? site.super_of->parent : &cls;
+  if (!best) {
+    std::vector<std::string_view> names;
+    const MethodInfo* fewer = nullptr;
+    for (const ClassInfo* c = start; c; c = c->parent)
+      for (const auto& method : c->methods) {
+        names.push_back(symbols.name(method->name));
+        if (method->name == site.selector && !fewer) fewer = method.get();
+      }
+    if (fewer) best = fewer;
+    else {
+      const auto near = nearest(name, names);
+      throw RunError(RunErrorKind::UnknownMethod, "unknown method: class " + (start ? start->name : cls.name) + " has no method '" + name +
+                                                      "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+    }
+  }
+  for (const auto& argument : site.arguments) {
+    std::vector<std::string_view> keywords;
+    bool known = false;
+    for (const auto& p : best->parameters) {
+      keywords.push_back(symbols.name(p.keyword));
+      known = known || p.keyword == argument.keyword;
+    }
+    if (known) continue;
+    const auto near = nearest(symbols.name(argument.keyword), keywords);
+    std::string list;
+    for (const auto keyword : keywords) list += (list.empty() ? "" : ", ") + std::string(keyword);
+    throw RunError(RunErrorKind::UnknownKeyword, "unknown keyword '" + symbols.name(argument.keyword) + "' for method '" + name + "' of class " +
+                       best->owner->name + (near.empty() ? (list.empty() ? "; it takes none" : "; it takes: " + list) : "; did you mean '" + near + "'?"));
+  }
+  for (const auto& p : best->parameters) {
+    const bool given = std::any_of(site.arguments.begin(), site.arguments.end(), [&](const auto& a) { return a.keyword == p.keyword; });
+    if (!given && !p.has_default)
+      throw RunError(RunErrorKind::MissingKeyword, "missing keyword '" + symbols.name(p.keyword) + "' for method '" + name + "' of class " + best->owner->name);
+  }
+  throw RunError(RunErrorKind::UnknownKeyword, "a keyword is given twice to method '" + name + "'");
+}
+
+const Machine::Plan& Machine::plan_for(std::uint32_t number, const ClassInfo& cls) {
+  auto& cache = caches_[number];
+  if (cache.cls == &cls) return *cache.plan;
+  for (const auto& plan : cache.plans) {
+    if (plan->cls != &cls) continue;
+    cache.cls = &cls;
+    cache.plan = plan.get();
+    return *plan;
+  }
+  return make_plan(number, cls);
+}
+
+const Machine::Plan& Machine::make_plan(std::uint32_t number, const ClassInfo& cls) {
+  const auto& site = program_->code().sites[number];
+  auto plan = std::make_unique<Plan>();
+  plan->cls = &cls;
+  plan->method = choose(site, cls);
+  if (plan->method) {
+    for (const auto& p : plan->method->parameters) {
+      const auto at = std::find_if(site.arguments.begin(), site.arguments.end(), [&](const auto& a) { return a.keyword == p.keyword; });
+      const auto to = static_cast<std::uint16_t>(p.slot);
+      const bool checked = p.class_name != kNoSymbol;
+      if (at == site.arguments.end()) {
+        plan->steps.push_back({PlanStep::Kind::Default, p.type, 0, to, checked, &p});
+        continue;
+      }
+      plan->order.push_back(static_cast<std::uint16_t>(at - site.arguments.begin()));
+      auto kind = PlanStep::Kind::Convert;
+      if (at->type == p.type) {
+        const int n = slot_count(p.type);
+        kind = n == 1 ? PlanStep::Kind::Copy1 : n == 3 ? PlanStep::Kind::Copy3 : PlanStep::Kind::Copy9;
+      } else if (at->type == StaticType::Int && p.type == StaticType::Double) {
+        kind = PlanStep::Kind::IntToDouble;
+      } else if (at->type == StaticType::Double && p.type == StaticType::Int) {
+        kind = PlanStep::Kind::DoubleToInt;
+      }
+      plan->steps.push_back({kind, at->type, at->slot, to, checked, &p});
+    }
+  }
+  auto& cache = caches_[number];
+  cache.cls = &cls;
+  cache.plan = plan.get();
+  cache.plans.push_back(std::move(plan));
+  return *cache.plan;
+}
+
+void Machine::apply(const Plan& plan, const Slot* caller, Slot* callee) {
+  for (const auto& step : plan.steps) {
+    const Slot* from = caller + step.from;
+    Slot* to = callee + step.to;
+    switch (step.kind) {
+      case PlanStep::Kind::Copy1: to->bits = from->bits; break;
+      case PlanStep::Kind::Copy3: std::memcpy(static_cast<void*>(to), from, 3 * sizeof(Slot)); break;
+      case PlanStep::Kind::Copy9: std::memcpy(static_cast<void*>(to), from, 9 * sizeof(Slot)); break;
+      case PlanStep::Kind::IntToDouble: to->d = from->i; break;
+      case PlanStep::Kind::DoubleToInt: to->i = truncate_to_int(from->d); break;
+      case PlanStep::Kind::Convert: convert_argument(step, from, to); break;
+      case PlanStep::Kind::Default: write_default(to, *step.parameter); break;
+    }
+    if (step.checked) [[unlikely]] {
+      const auto& p = *step.parameter;
+      if (const auto* cls = program_->find_class(program_->symbols().name(p.class_name)))
+        check_class(static_cast<Instance*>(to->ref), *cls, "keyword '" + program_->symbols().name(p.keyword) + "'");
+    }
+  }
+}
+
+void Machine::convert_argument(const PlanStep& step, const Slot* from, Slot* to) {
+  Value value;
+  switch (step.from_type) {
+    case StaticType::Any: case StaticType::Null: std::memcpy(static_cast<void*>(&value), from, sizeof value); break;
+    case StaticType::Int: value = Value::of(from->i); break;
+    case StaticType::Double: value = Value::of(from->d); break;
+    case StaticType::Vector: value = Value::of(Vector3(from[0].d, from[1].d, from[2].d)); break;
+    case StaticType::Matrix: value = Value::of(Tag::Matrix, heap_->matrix(SlotType<Matrix3>::from(from))); break;
+    default: value = Value::of(static_cast<Tag>(step.from_type), from->ref); break;
+  }
+  const auto& p = *step.parameter;
+  switch (p.type) {  // what is right already, without building a text for an error that does not come
+    case StaticType::Double:
+      if (value.tag == Tag::Double) { to->d = value.d; return; }
+      break;
+    case StaticType::Int:
+      if (value.tag == Tag::Int) { to->i = value.i; return; }
+      break;
+    case StaticType::Vector:
+      if (value.tag == Tag::Vector) { std::memcpy(static_cast<void*>(to), value.v, sizeof value.v); return; }
+      break;
+    case StaticType::Any: case StaticType::Null: case StaticType::Matrix: break;
+    default:
+      if (static_cast<int>(value.tag) == static_cast<int>(p.type)) { to->ref = value.ref; return; }
+      break;
+  }
+  const auto what = "keyword '" + program_->symbols().name(p.keyword) + "'";
+  if (value.tag == Tag::Null && p.type != StaticType::Any) {
+    value = null_default(p.type, 0, frames_.empty() ? nullptr : frames_.back().pc);
+    if (value.tag == Tag::Null) { to->ref = nullptr; return; }
+  }
+  write_value(to, p.type, value, what);
+  if (p.type == StaticType::String) pins_.push_back(Value::of(Tag::String, to->ref));
+}
+
+void Machine::call_native(const Plan& plan, Instance& receiver, const Slot* caller) {
+  const StackMark mark(*this);
+  need_room(kNativeRoom);
+  Slot* args = top_;
+  apply(plan, caller, args);
+  top_ = args + kNativeRoom;
+  result_ = Value();
+  Value result;
+  plan.method->native(*this, receiver, args, result);
+  result_ = result;
+}
+
+void Machine::check_class(Instance* object, const ClassInfo& cls, std::string_view what) {
+  if (!object || object->cls->derives_from(cls)) return;
+  throw RunError(RunErrorKind::Type, std::string(what) + " takes an object of class " + cls.name + ", not one of class " + object->cls->name);
+}
+
+void Machine::fail_receiver(const Instance* receiver, std::uint32_t number) const {
+  const auto& name = program_->symbols().name(program_->code().sites[number].selector);
+  if (!receiver)
+    throw RunError(RunErrorKind::NullObject, "method '" + name + "' is called on a null (uninitialised) object: nothing has been assigned to it yet");
+  throw RunError(RunErrorKind::FreedObject, "method '" + name + "' is called on a freed (uninitialised) object of class " + receiver->cls->name);
+}
+
+}  // namespace breve::steve

@@ -1,0 +1,18 @@
+// Joins the tables of functions. Kept apart so that each table stands in the file of its topic.
+#include "steve/machine/functions.hpp"
+
+#include <vector>
+
+namespace breve::steve {
+
+std::span<const Native> functions() {
+  static const std::vector<Native> kAll = [] {
+    std::vector<Native> all;
+    for (const auto table : {math_functions(), object_functions(), world_functions(), file_functions()})
+      all.insert(all.end(), table.begin(), table.end());
+    return all;
+  }();
+  return kAll;
+}
+
+}  // namespace breve::steve

@@ -1,0 +1,117 @@
+// Functions on the clock, the schedule, the run, the host and its user (language, section 13).
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "steve/machine/functions.hpp"
+#include "steve/machine/machine.hpp"
+
+namespace breve::steve {
+
+namespace {
+
+double get_time(Machine& machine, Instance&) { return machine.world().time(); }
+
+double get_real_time(Machine&, Instance&) {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration<double>(now).count();
+}
+
+/// Wall-clock seconds since the embedder made the machine's host, if it notes that; else processor time.
+template <class Host>
+double seconds_since_start(const Host& host) {
+  if constexpr (requires { host.started; })
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - host.started).count();
+  else
+    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+double get_running_time(Machine& machine, Instance&) { return seconds_since_start(machine.host()); }
+
+/// Once at `time`, or again and again from then on. A repeated call whose first time has passed starts one interval
+/// from now (F33).
+void add_event(Machine& machine, Instance& self, StringCell* method, double time, double interval) {
+  World& world = machine.world();
+  const ObjectId id = machine.id_of(&self);
+  if (!id) return;
+  if (interval > 0 && time <= world.time()) time = world.time() + interval;
+  if (world.schedule(id, view(method), time, interval)) return;
+  machine.warn(fmt::format("'{}' is not scheduled: the time {:f} is not in the future, the clock reads {:f}",
+                           view(method), time, world.time()));
+}
+
+void remove_event(Machine& machine, Instance& self, StringCell* method, double time) {
+  if (self.live()) machine.world().unschedule(self.id, view(method), time);
+}
+
+void end_simulation(Machine& machine, Instance&) { machine.world().request_end(); }
+void pause_simulation(Machine& machine, Instance&) { machine.world().set_paused(true); }
+void unpause_simulation(Machine& machine, Instance&) { machine.world().set_paused(false); }
+
+void sleep_for(Machine&, Instance&, double seconds) {
+  constexpr double kLongest = 86400;  // a day: keeps the conversion to the clock's integer sound
+  if (seconds > 0) std::this_thread::sleep_for(std::chrono::duration<double>(std::fmin(seconds, kLongest)));
+}
+
+StringCell* run_command(Machine& machine, Instance&, StringCell* command) {
+  if (!machine.host().system)
+    Machine::fail(RunErrorKind::World,
+                  "system: the host does not allow scripts to run commands of the operating system");
+  return machine.heap().string(machine.host().system(view(command)));
+}
+
+std::int32_t argument_count(Machine& machine, Instance&) {
+  return static_cast<std::int32_t>(machine.host().arguments.size());
+}
+
+StringCell* argument_at(Machine& machine, Instance&, std::int32_t i) {
+  const auto& arguments = machine.host().arguments;
+  if (i < 0 || static_cast<std::size_t>(i) >= arguments.size())
+    Machine::fail(RunErrorKind::Bounds,
+                  fmt::format("getArgv({}): there are {} arguments, 0 is the program", i, arguments.size()));
+  return machine.heap().string(arguments[static_cast<std::size_t>(i)]);
+}
+
+StringCell* find_file(Machine& machine, Instance&, StringCell* name) {
+  if (!machine.host().find_file) return nullptr;
+  return machine.heap().string(machine.host().find_file(view(name)));
+}
+
+void show_stack_trace(Machine& machine, Instance&) { machine.warn("stacktrace\n" + machine.stack_trace()); }
+
+// Without a view there is no mouse, no keyboard, no bell and nobody to ask.
+std::int32_t no_mouse(Machine&, Instance&) { return 0; }
+StringCell* no_keys(Machine&, Instance&) { return nullptr; }
+void no_sound(Machine&, Instance&) {}
+std::int32_t no_dialog(Machine&, Instance&, StringCell*, StringCell*, StringCell*, StringCell*) { return 0; }
+
+constexpr std::array kFunctions = {
+    native<get_time>("getTime"),
+    native<get_real_time>("getRealTime"),
+    native<get_running_time>("getRunningTime"),
+    native<add_event>("addEvent"),
+    native<remove_event>("removeEvent"),
+    native<end_simulation>("endSimulation"),
+    native<pause_simulation>("pauseSimulation"),
+    native<unpause_simulation>("unpauseSimulation"),
+    native<sleep_for>("sleep"),
+    native<run_command>("system"),
+    native<argument_count>("getArgc"),
+    native<argument_at>("getArgv"),
+    native<find_file>("findFile"),
+    native<show_stack_trace>("stacktrace"),
+    native<no_mouse>("getMouseX"),
+    native<no_mouse>("getMouseY"),
+    native<no_keys>("getAllPressedKeys"),
+    native<no_sound>("playSound"),
+    native<no_dialog>("dialogBox"),
+};
+
+}  // namespace
+
+std::span<const Native> world_functions() { return kFunctions; }
+
+}  // namespace breve::steve

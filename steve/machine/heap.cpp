@@ -1,0 +1,381 @@
+// Cells: where their bytes come from, how they are made, and how they go when nothing refers to them.
+#include "steve/machine/heap.hpp"
+
+#include <algorithm>
+
+#include "steve/compile/program.hpp"
+
+#if defined(__SANITIZE_ADDRESS__)
+#include <sanitizer/asan_interface.h>
+#endif
+
+namespace breve::steve {
+
+namespace {
+
+// A freed slot of a size class stays ours: the address sanitizer is told, so that it sees uses of dead cells.
+void poison([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
+#if defined(__SANITIZE_ADDRESS__)
+  ASAN_POISON_MEMORY_REGION(memory, bytes);
+#endif
+}
+void unpoison([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
+#if defined(__SANITIZE_ADDRESS__)
+  ASAN_UNPOISON_MEMORY_REGION(memory, bytes);
+#endif
+}
+
+constexpr std::size_t kFirstChunk = 2048;
+constexpr std::size_t kLargestChunk = 65536;
+
+}  // namespace
+
+Heap::Heap(std::pmr::memory_resource* memory, RootSource& roots)
+    : memory_(memory), roots_(roots), zero_(memory), containers_(memory), doomed_(memory) {}
+
+Heap::~Heap() {
+  for (Container* cell : containers_) free_arrays(*cell);
+  while (singles_ != nullptr) {
+    Single* single = singles_;
+    auto* cell = reinterpret_cast<Cell*>(single + 1);
+    if (cell->tag == Tag::Pointer) static_cast<PointerCell*>(cell)->~PointerCell();
+    if (cell->tag == Tag::Data) static_cast<DataCell*>(cell)->~DataCell();
+    singles_ = single->next;
+    memory_->deallocate(single, single->bytes, alignof(Single));
+  }
+  while (chunks_ != nullptr) {
+    Chunk* chunk = chunks_;
+    chunks_ = chunk->next;
+    unpoison(chunk, chunk->bytes);
+    memory_->deallocate(chunk, chunk->bytes, alignof(Chunk));
+  }
+}
+
+// --- bytes -----------------------------------------------------------------------------------------------------------
+
+void* Heap::carve(std::size_t units) {
+  const std::size_t size = units * kUnit;
+  std::size_t& next = chunk_bytes_[units];
+  const std::size_t bytes = std::max(next, kFirstChunk);
+  auto* chunk = static_cast<Chunk*>(memory_->allocate(bytes, alignof(Chunk)));
+  next = std::min(bytes * 2, kLargestChunk);
+  chunk->next = chunks_;
+  chunk->bytes = bytes;
+  chunks_ = chunk;
+  // Thread the slots so that they are handed out in rising order of address.
+  char* base = reinterpret_cast<char*>(chunk + 1);
+  const std::size_t slots = (bytes - sizeof(Chunk)) / size;
+  FreeSlot* head = free_[units];
+  for (std::size_t i = slots; i-- > 0;) {
+    auto* slot = reinterpret_cast<FreeSlot*>(base + i * size);
+    slot->next = head;
+    head = slot;
+    poison(slot + 1, size - sizeof(FreeSlot));
+  }
+  free_[units] = head->next;
+  unpoison(head, size);
+  return head;
+}
+
+void* Heap::take(std::size_t bytes) {
+  const std::size_t units = (bytes + kUnit - 1) / kUnit;
+  if (units > kClasses) return take_single(bytes);
+  FreeSlot* slot = free_[units];
+  if (slot == nullptr) return carve(units);
+  free_[units] = slot->next;
+  unpoison(slot, units * kUnit);
+  return slot;
+}
+
+void Heap::give(void* memory, std::size_t bytes) {
+  const std::size_t units = (bytes + kUnit - 1) / kUnit;
+  if (units > kClasses) return give_single(memory);
+  auto* slot = static_cast<FreeSlot*>(memory);
+  slot->next = free_[units];
+  free_[units] = slot;
+  poison(slot + 1, units * kUnit - sizeof(FreeSlot));
+}
+
+void* Heap::take_single(std::size_t bytes) {
+  bytes += sizeof(Single);
+  auto* single = static_cast<Single*>(memory_->allocate(bytes, alignof(Single)));
+  *single = {nullptr, singles_, bytes};
+  if (singles_ != nullptr) singles_->previous = single;
+  singles_ = single;
+  return single + 1;
+}
+
+void Heap::give_single(void* memory) {
+  Single* single = static_cast<Single*>(memory) - 1;
+  (single->previous != nullptr ? single->previous->next : singles_) = single->next;
+  if (single->next != nullptr) single->next->previous = single->previous;
+  memory_->deallocate(single, single->bytes, alignof(Single));
+}
+
+// --- making cells ----------------------------------------------------------------------------------------------------
+
+void Heap::reserve_tables(bool container) {
+  constexpr std::size_t kLeast = 64;
+  if (cells_ >= zero_.capacity()) zero_.reserve(std::max(kLeast, zero_.capacity() * 2));
+  if (container && containers_.size() == containers_.capacity())
+    containers_.reserve(std::max(kLeast, containers_.capacity() * 2));
+}
+
+template <class T>
+T* Heap::enter(T* cell) {
+  ++cells_;
+  if constexpr (std::is_base_of_v<Container, T>) enrol(*cell);
+  enlist(cell);
+  return cell;
+}
+
+StringCell* Heap::raw_string(std::size_t size) {
+  if (size > 0x7fffffffU) throw RunError(RunErrorKind::Bounds, "a string cannot be longer than 2147483647 bytes");
+  reserve_tables(false);
+  auto* cell = new (take(string_cell_bytes(size))) StringCell(static_cast<std::uint32_t>(size));
+  char* bytes = cell->bytes;
+  bytes[size] = 0;
+  return enter(cell);
+}
+
+StringCell* Heap::string(std::string_view bytes) {
+  if (bytes.empty()) return nullptr;
+  StringCell* cell = raw_string(bytes.size());
+  char* to = cell->bytes;
+  std::memcpy(to, bytes.data(), bytes.size());
+  return cell;
+}
+
+StringCell* Heap::concat(std::string_view a, std::string_view b) {
+  if (a.empty()) return string(b);
+  if (b.empty()) return string(a);
+  StringCell* cell = raw_string(a.size() + b.size());
+  char* to = cell->bytes;
+  std::memcpy(to, a.data(), a.size());
+  std::memcpy(to + a.size(), b.data(), b.size());
+  return cell;
+}
+
+MatrixCell* Heap::matrix(const Matrix3& m) {
+  reserve_tables(false);
+  return enter(new (take(sizeof(MatrixCell))) MatrixCell(m));
+}
+
+ListCell* Heap::list(std::uint32_t capacity) {
+  reserve_tables(true);
+  Value* store = capacity != 0 ? new_store(capacity) : nullptr;
+  void* memory = nullptr;
+  try {
+    memory = take(sizeof(ListCell));
+  } catch (...) {
+    if (store != nullptr) memory_->deallocate(store, capacity * sizeof(Value), alignof(Value));
+    throw;
+  }
+  auto* cell = new (memory) ListCell(next_serial());
+  cell->store = store;
+  cell->capacity = capacity;
+  return enter(cell);
+}
+
+HashCell* Heap::hash() {
+  reserve_tables(true);
+  void* memory = take(sizeof(HashCell));
+  return enter(new (memory) HashCell(next_serial()));
+}
+
+PointerCell* Heap::pointer(std::unique_ptr<NativePointer> native) {
+  reserve_tables(false);
+  void* memory = take_single(sizeof(PointerCell));
+  auto* cell = new (memory) PointerCell(next_serial());
+  cell->native = std::move(native);
+  return enter(cell);
+}
+
+DataCell* Heap::data(std::string_view bytes) {
+  reserve_tables(false);
+  std::pmr::vector<std::uint8_t> copy(bytes.begin(), bytes.end(), memory_);
+  void* memory = take_single(sizeof(DataCell));
+  auto* cell = new (memory) DataCell(next_serial(), memory_);
+  cell->bytes = std::move(copy);
+  return enter(cell);
+}
+
+Instance* Heap::instance(const ClassInfo& cls) {
+  reserve_tables(true);
+  const std::size_t bytes = sizeof(Instance) + cls.slot_count * sizeof(Slot);
+  auto* cell = new (take(bytes)) Instance(&cls);
+  const std::size_t units = (bytes + kUnit - 1) / kUnit;
+  cell->units = units > kClasses ? std::uint16_t{0} : static_cast<std::uint16_t>(units);
+  cell->serial = next_serial();
+  cell->slots = reinterpret_cast<Slot*>(cell + 1);
+  std::memset(static_cast<void*>(cell->slots), 0, cls.slot_count * sizeof(Slot));
+  return enter(cell);
+}
+
+// --- the end of cells ------------------------------------------------------------------------------------------------
+
+void Heap::clear_slots(Instance& instance) {
+  for (const std::uint16_t slot : instance.cls->reference_slots) {
+    Cell* ref = instance.slots[slot].ref;
+    instance.slots[slot].ref = nullptr;
+    release(ref);
+  }
+  std::memset(static_cast<void*>(instance.slots), 0, instance.cls->slot_count * sizeof(Slot));
+}
+
+void Heap::release_children(Container& cell) {
+  if (cell.tag == Tag::Object) return clear_slots(static_cast<Instance&>(cell));
+  if (cell.tag == Tag::List) {
+    auto& list = static_cast<ListCell&>(cell);
+    for (const Value& v : list) release(v);
+    list.size = 0;
+    return;
+  }
+  auto& hash = static_cast<HashCell&>(cell);
+  for (std::uint32_t i = 0; i < hash.used; ++i) {
+    release(hash.entries[i].key);
+    release(hash.entries[i].value);
+  }
+  hash.used = hash.count_live = 0;
+  if (hash.index != nullptr) std::memset(hash.index, 0, hash.index_capacity * sizeof(std::uint32_t));
+}
+
+void Heap::free_arrays(Container& cell) {
+  if (cell.tag == Tag::List) {
+    auto& list = static_cast<ListCell&>(cell);
+    if (list.store != nullptr) memory_->deallocate(list.store, list.capacity * sizeof(Value), alignof(Value));
+  } else if (cell.tag == Tag::Hash) {
+    auto& hash = static_cast<HashCell&>(cell);
+    if (hash.entries != nullptr) {
+      memory_->deallocate(hash.entries, hash.entry_capacity * sizeof(HashCell::Entry), alignof(HashCell::Entry));
+      memory_->deallocate(hash.index, hash.index_capacity * sizeof(std::uint32_t), alignof(std::uint32_t));
+    }
+  }
+}
+
+void Heap::destroy(Cell* cell) {
+  --cells_;
+  switch (cell->tag) {
+    case Tag::String: return give(cell, string_cell_bytes(static_cast<StringCell*>(cell)->size));
+    case Tag::Matrix: return give(cell, sizeof(MatrixCell));
+    case Tag::Pointer: static_cast<PointerCell*>(cell)->~PointerCell(); return give_single(cell);
+    case Tag::Data: static_cast<DataCell*>(cell)->~DataCell(); return give_single(cell);
+    default: break;
+  }
+  auto& container = static_cast<Container&>(*cell);
+  release_children(container);
+  free_arrays(container);
+  strike(container);
+  if (cell->tag == Tag::List) return give(cell, sizeof(ListCell));
+  if (cell->tag == Tag::Hash) return give(cell, sizeof(HashCell));
+  const std::size_t units = static_cast<Instance*>(cell)->units;
+  return units != 0 ? give(cell, units * kUnit) : give_single(cell);
+}
+
+// --- safe points -----------------------------------------------------------------------------------------------------
+
+// A live instance is never freed silently: with auto-free it is doomed (destroy runs first), without it waits.
+static bool waits(const Cell& cell) {
+  return cell.mark != 0 || (cell.tag == Tag::Object && static_cast<const Instance&>(cell).live());
+}
+
+void Heap::reclaim() { reclaim_round(); }
+
+bool Heap::reclaim_round() {
+  std::size_t visited = 0;
+  if (!zero_.empty()) {
+    roots_.visit_frames([&visited](Cell* cell) {
+      if (cell == nullptr || cell->immortal) return;
+      cell->mark = 1;
+      ++visited;
+    });
+    // Last in, first out: freeing a cell puts its children at the end, so the table never outgrows the heap, and a
+    // structure however deep goes without recursion. What must stay gathers at the front.
+    std::size_t kept = 0;
+    while (zero_.size() > kept) {
+      Cell* cell = zero_.back();
+      if (cell->count == 0 && waits(*cell)) {
+        std::swap(zero_.back(), zero_[kept++]);
+        continue;
+      }
+      zero_.pop_back();
+      cell->listed = false;
+      if (cell->count == 0) {
+        destroy(cell);
+      } else if (!suspicion_ && is_container(cell->tag)) {
+        suspicion_ = may_close_cycle(*static_cast<Container*>(cell));
+      }
+    }
+    doom_waiting(kept);
+    roots_.visit_frames([](Cell* cell) {
+      if (cell != nullptr && !cell->immortal) cell->mark = 0;
+    });
+  }
+  // Cells that stay because frames hold them are looked at again only when as many new ones have come.
+  reclaim_at_ = std::max(kReclaimAt, zero_.size() * 2 + visited);
+  return free_doomed();
+}
+
+// A destroy method may leave new garbage, and auto-free instances among it: these go in the same iteration too. The
+// limit is for a destroy that makes its own successor.
+void Heap::reclaim_all() {
+  constexpr int kRounds = 1000;
+  for (int round = 0; round < kRounds && reclaim_round(); ++round) {
+  }
+}
+
+// Move the unreachable auto-free instances out of the waiting table. If there is no memory for it, they wait.
+void Heap::doom_waiting(std::size_t kept) {
+  const auto doomed = [](const Cell* cell) {
+    if (cell->tag != Tag::Object || cell->mark != 0) return false;
+    const auto* instance = static_cast<const Instance*>(cell);
+    return instance->auto_free && instance->state == Instance::State::Live;
+  };
+  const auto end = zero_.begin() + static_cast<std::ptrdiff_t>(kept);
+  const auto count = static_cast<std::size_t>(std::count_if(zero_.begin(), end, doomed));
+  if (count == 0) return;
+  try {
+    doomed_.reserve(doomed_.size() + count);
+  } catch (const std::bad_alloc&) {
+    return;
+  }
+  const std::size_t old = doomed_.size();
+  for (Cell* cell : zero_) {
+    if (!doomed(cell)) continue;
+    doomed_.push_back({static_cast<Instance*>(cell), false});
+    cell->listed = false;
+  }
+  std::erase_if(zero_, [](const Cell* cell) { return !cell->listed; });
+  for (std::size_t i = old; i < doomed_.size(); ++i) retain(doomed_[i].instance);
+  std::sort(doomed_.begin() + static_cast<std::ptrdiff_t>(old), doomed_.end(),
+            [](const Doomed& a, const Doomed& b) { return a.instance->serial < b.instance->serial; });
+}
+
+// Run the destroy methods of what is doomed. They may run anything, even this function: then the outer call goes on
+// with what the inner one added. An instance that an earlier destroy has stored somewhere again lives on.
+bool Heap::free_doomed() {
+  if (freeing_doomed_ || doomed_.empty()) return false;
+  struct Guard {
+    Heap& heap;
+    std::size_t next = 0;
+    explicit Guard(Heap& h) : heap(h) { heap.freeing_doomed_ = true; }
+    ~Guard() {
+      heap.freeing_doomed_ = false;
+      heap.doomed_.erase(heap.doomed_.begin(), heap.doomed_.begin() + static_cast<std::ptrdiff_t>(next));
+    }
+  } guard(*this);
+  while (guard.next < doomed_.size()) {
+    const Doomed doomed = doomed_[guard.next++];
+    struct Unpin {
+      Heap& heap;
+      Instance* instance;
+      ~Unpin() { heap.release(instance); }
+    } unpin{*this, doomed.instance};
+    const bool lives_on = !doomed.cyclic && doomed.instance->count > 1;
+    if (!lives_on && doomed.instance->state == Instance::State::Live && doomed.instance->auto_free)
+      roots_.free_unreachable(*doomed.instance);
+  }
+  return true;
+}
+
+}  // namespace breve::steve

@@ -1,0 +1,76 @@
+// What a snapshot keeps of a heap besides its cells: serial numbers, waiting cells, the state of the collector.
+#include "steve/machine/heap.hpp"
+
+namespace breve::steve {
+
+void Heap::save_state(ByteWriter& out, const std::function<std::uint64_t(const Cell*)>& number) const {
+  out.put(serial_);
+  out.put(static_cast<std::uint64_t>(reclaim_at_));
+  out.put(phase_);
+  out.put(static_cast<std::uint8_t>(suspicion_));
+  out.put(static_cast<std::uint8_t>(held_by_frames_));
+  for (const std::uint32_t end : ends_) out.put(end);
+  // The rest of a cut scan, relative to the first element: restored lists start elsewhere in their stores.
+  out.put(partial_ == nullptr ? std::uint64_t{0} : number(partial_) + 1);
+  std::uint32_t position = position_;
+  if (partial_ != nullptr && partial_->tag == Tag::List) {
+    const auto& list = static_cast<const ListCell&>(*partial_);
+    position = position_ > list.first ? position_ - list.first : 0;
+  } else if (partial_ != nullptr) {
+    const auto& hash = static_cast<const HashCell&>(*partial_);
+    position = 0;
+    for (std::uint32_t i = 0; i < position_ && i < hash.used; ++i) position += hash.entries[i].live() ? 1U : 0U;
+  }
+  out.put(position);
+  out.put(static_cast<std::uint64_t>(zero_.size()));
+  for (const Cell* cell : zero_) out.put(number(cell));
+  out.put(static_cast<std::uint64_t>(doomed_.size()));
+  for (const Doomed& doomed : doomed_) {
+    out.put(number(doomed.instance));
+    out.put(static_cast<std::uint8_t>(doomed.cyclic));
+  }
+}
+
+void Heap::load_state(ByteReader& in, const std::function<Cell*(std::uint64_t)>& cell) {
+  serial_ = in.get<std::uint64_t>();
+  reclaim_at_ = static_cast<std::size_t>(in.get<std::uint64_t>());
+  const auto phase = in.get<std::uint8_t>();
+  suspicion_ = in.get_bool();
+  held_by_frames_ = in.get_bool();
+  std::array<std::uint32_t, 3> ends{};
+  for (std::uint32_t& end : ends) end = in.get<std::uint32_t>();
+  if (phase > static_cast<std::uint8_t>(Phase::Sweep) || ends[0] > ends[1] || ends[1] > ends[2] ||
+      ends[2] > containers_.size())
+    ByteReader::fail();
+  const auto partial = in.get<std::uint64_t>();
+  position_ = in.get<std::uint32_t>();
+  partial_ = nullptr;
+  if (partial != 0) {
+    Cell* half_scanned = cell(partial - 1);
+    if (half_scanned->tag != Tag::List && half_scanned->tag != Tag::Hash) ByteReader::fail();
+    partial_ = static_cast<Container*>(half_scanned);
+    if (partial_->tag == Tag::List) position_ += static_cast<ListCell*>(partial_)->first;
+  }
+
+  for (Cell* waiting : zero_) waiting->listed = false;
+  zero_.clear();
+  std::size_t unlisted = 0;
+  for (std::size_t n = in.get_count(sizeof(std::uint64_t)); n > 0; --n) {
+    Cell* waiting = cell(in.get<std::uint64_t>());
+    if (waiting->listed) ByteReader::fail();
+    enlist(waiting);
+  }
+  for (std::size_t n = in.get_count(sizeof(std::uint64_t)); n > 0; --n) {
+    Cell* doomed = cell(in.get<std::uint64_t>());
+    if (doomed->tag != Tag::Object) ByteReader::fail();
+    doomed_.push_back({static_cast<Instance*>(doomed), in.get_bool()});
+    retain(doomed);
+  }
+  // A cell that nothing refers to and that does not wait would never go: only a damaged image has one.
+  for (const Container* container : containers_) unlisted += container->count == 0 && !container->listed ? 1U : 0U;
+  if (unlisted != 0) ByteReader::fail();
+  phase_ = static_cast<Phase>(phase);
+  ends_ = ends;
+}
+
+}  // namespace breve::steve

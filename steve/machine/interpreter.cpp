@@ -1,0 +1,590 @@
+// The interpreter: one loop, direct threaded, untagged registers. Everything that is rare or long is a call away in
+// slow_paths.cpp and calls.cpp. This file is longer than others because it is one function.
+#include <cmath>
+#include <cstring>
+
+#include "steve/machine/machine.hpp"
+#include "steve/machine/operators.hpp"
+
+#pragma GCC diagnostic ignored "-Wpedantic"  // labels as values: GNU C, understood by g++ and clang++
+
+namespace breve::steve {
+
+// Registers and operands of the running instruction.
+#define R(n) base[n]
+#define ANY(n) (*reinterpret_cast<Value*>(base + (n)))
+#define ANY_OR_RESULT(n) ((n) == kResult ? result_ : ANY(n))
+#define LIST(n) static_cast<ListCell*>(R(n).ref)
+#define NEXT() do { in = pc++; goto *kLabels[static_cast<std::size_t>(in->op)]; } while (0)
+#define SAVE() (frames_.back().pc = pc)
+#define EXT(n) (pc[n])
+#define JUMP() (pc += in->imm())
+#define RELOAD()                    \
+  do {                              \
+    auto& top = frames_.back();     \
+    pc = top.pc;                    \
+    base = top.base;                \
+    self = top.self;                \
+    function = top.method->function.get(); \
+  } while (0)
+#define COUNT_CALL()                                                                   \
+  do {                                                                                 \
+    if (budget_left_ != 0 && --budget_left_ == 0) { SAVE(); fail_budget(); }           \
+    if (heap_->wants_reclaim()) [[unlikely]] { SAVE(); heap_->reclaim(); }               \
+  } while (0)
+// A method of an object that was freed meanwhile is left at once (F30).
+#define LEAVE_IF_FREED() do { if (!self->live()) [[unlikely]] { result_ = Value(); goto do_return; } } while (0)
+
+namespace {
+inline bool true_object(const Cell* cell) { return cell && static_cast<const Instance*>(cell)->live(); }
+inline bool true_any(const Value& v) {
+  switch (v.tag) {
+    case Tag::Int: return v.i != 0;
+    case Tag::Double: return v.d != 0;
+    case Tag::Null: return false;
+    case Tag::Object: return true_object(v.ref);
+    default: return truth(v);
+  }
+}
+inline void put_vector(Slot* to, double x, double y, double z) {
+  to[0].d = x;
+  to[1].d = y;
+  to[2].d = z;
+}
+[[noreturn]] void fail_budget() { throw RunError(RunErrorKind::Budget, "the call used up its budget of loop turns and calls"); }
+}  // namespace
+
+void Machine::execute(std::size_t depth) {
+  static const void* const kLabels[] = {
+#define X(name) &&op_##name,
+      BREVE_OPCODES(X)
+#undef X
+  };
+  const Instruction* pc = nullptr;
+  const Instruction* in = nullptr;
+  Slot* base = nullptr;
+  Instance* self = nullptr;
+  const Function* function = nullptr;
+  try {
+    RELOAD();
+    NEXT();
+
+  op_Mov1: R(in->a).bits = R(in->b).bits; NEXT();
+  op_Mov3: std::memmove(static_cast<void*>(&R(in->a)), &R(in->b), 3 * sizeof(Slot)); NEXT();
+  op_Mov9: std::memmove(static_cast<void*>(&R(in->a)), &R(in->b), 9 * sizeof(Slot)); NEXT();
+  op_MovAny: ANY(in->a) = ANY(in->b); NEXT();
+  op_LoadInt: R(in->a).i = in->imm(); NEXT();
+  op_LoadDouble: R(in->a).d = function->numbers[static_cast<std::size_t>(in->imm())]; NEXT();
+  op_LoadVector: std::memcpy(static_cast<void*>(&R(in->a)), &function->numbers[static_cast<std::size_t>(in->imm())], 3 * sizeof(double)); NEXT();
+  op_LoadMatrix: std::memcpy(static_cast<void*>(&R(in->a)), &function->numbers[static_cast<std::size_t>(in->imm())], 9 * sizeof(double)); NEXT();
+  op_LoadString: R(in->a).ref = strings_[static_cast<std::size_t>(in->imm())]; NEXT();
+  op_LoadSelf: R(in->a).ref = self; NEXT();
+  op_ZeroRef: R(in->a).ref = nullptr; NEXT();
+  op_ZeroAny: ANY(in->a) = Value(); NEXT();
+  op_EnsureList: if (!R(in->a).ref) R(in->a).ref = heap_->list(); NEXT();
+  op_EnsureHash: if (!R(in->a).ref) R(in->a).ref = heap_->hash(); NEXT();
+
+  op_GetVar1: R(in->a).bits = self->slots[in->imm()].bits; NEXT();
+  op_GetVar3: std::memcpy(static_cast<void*>(&R(in->a)), self->slots + in->imm(), 3 * sizeof(Slot)); NEXT();
+  op_GetVar9: std::memcpy(static_cast<void*>(&R(in->a)), self->slots + in->imm(), 9 * sizeof(Slot)); NEXT();
+  op_GetVarList: {
+    Slot& slot = self->slots[in->imm()];
+    if (!slot.ref) heap_->store(slot, heap_->list());
+    R(in->a).ref = slot.ref;
+    NEXT();
+  }
+  op_GetVarHash: {
+    Slot& slot = self->slots[in->imm()];
+    if (!slot.ref) heap_->store(slot, heap_->hash());
+    R(in->a).ref = slot.ref;
+    NEXT();
+  }
+  op_SetVar1: self->slots[in->imm()].bits = R(in->a).bits; NEXT();
+  op_SetVar3: std::memcpy(static_cast<void*>(self->slots + in->imm()), &R(in->a), 3 * sizeof(Slot)); NEXT();
+  op_SetVar9: std::memcpy(static_cast<void*>(self->slots + in->imm()), &R(in->a), 9 * sizeof(Slot)); NEXT();
+  op_SetVarRef: heap_->store(self->slots[in->imm()], R(in->a).ref); NEXT();
+
+  op_ArraySlot: {
+    const std::int32_t count = EXT(0).imm(), first = EXT(1).imm(), i = R(in->b).i;
+    pc += 2;
+    if (i < 0 || i >= count)
+      throw RunError(RunErrorKind::Bounds, "array index " + std::to_string(i) + " is out of range: the array has " + std::to_string(count) + " elements, counted from 0");
+    R(in->a).i = first + i * in->c;
+    NEXT();
+  }
+  op_ArrayGet: {
+    const Slot* from = ((in->c & kFrameArray) ? base : self->slots) + R(in->b).i;
+    std::memcpy(static_cast<void*>(&R(in->a)), from, static_cast<std::size_t>(in->c & 0x7f) * sizeof(Slot));
+    NEXT();
+  }
+  op_ArraySet: {
+    Slot* to = ((in->c & kFrameArray) ? base : self->slots) + R(in->b).i;
+    std::memcpy(static_cast<void*>(to), &R(in->a), static_cast<std::size_t>(in->c & 0x7f) * sizeof(Slot));
+    NEXT();
+  }
+  op_ArraySetRef: heap_->store(self->slots[R(in->b).i], R(in->a).ref); NEXT();
+  op_ArrayGetList: op_ArrayGetHash: {
+    const bool local = (in->c & kFrameArray) != 0;
+    Slot& slot = (local ? base : self->slots)[R(in->b).i];
+    if (!slot.ref) {
+      Cell* made = in->op == Op::ArrayGetList ? static_cast<Cell*>(heap_->list()) : static_cast<Cell*>(heap_->hash());
+      if (local) slot.ref = made;
+      else heap_->store(slot, made);
+    }
+    R(in->a).ref = slot.ref;
+    NEXT();
+  }
+
+  op_AddInt: R(in->a).i = wrap_add(R(in->b).i, R(in->c).i); NEXT();
+  op_SubInt: R(in->a).i = wrap_sub(R(in->b).i, R(in->c).i); NEXT();
+  op_MulInt: R(in->a).i = wrap_mul(R(in->b).i, R(in->c).i); NEXT();
+  op_DivInt: R(in->a).i = divide(R(in->b).i, R(in->c).i); NEXT();
+  op_ModInt: R(in->a).i = remainder(R(in->b).i, R(in->c).i); NEXT();
+  op_PowInt: R(in->a).i = power(R(in->b).i, R(in->c).i); NEXT();
+  op_NegInt: R(in->a).i = wrap_negate(R(in->b).i); NEXT();
+  op_AbsInt: R(in->a).i = R(in->b).i < 0 ? wrap_negate(R(in->b).i) : R(in->b).i; NEXT();
+  op_AddIntImm: R(in->a).i = wrap_add(R(in->b).i, static_cast<std::int16_t>(in->c)); NEXT();
+  op_LtInt: R(in->a).i = R(in->b).i < R(in->c).i; NEXT();
+  op_LeInt: R(in->a).i = R(in->b).i <= R(in->c).i; NEXT();
+  op_EqInt: R(in->a).i = R(in->b).i == R(in->c).i; NEXT();
+  op_NeInt: R(in->a).i = R(in->b).i != R(in->c).i; NEXT();
+  op_NotInt: R(in->a).i = !R(in->b).i; NEXT();
+
+  op_AddDouble: R(in->a).d = R(in->b).d + R(in->c).d; NEXT();
+  op_SubDouble: R(in->a).d = R(in->b).d - R(in->c).d; NEXT();
+  op_MulDouble: R(in->a).d = R(in->b).d * R(in->c).d; NEXT();
+  op_DivDouble:
+    if (R(in->c).d == 0) fail_division_by_zero();
+    R(in->a).d = R(in->b).d / R(in->c).d;
+    NEXT();
+  op_ModDouble: R(in->a).d = remainder(R(in->b).d, R(in->c).d); NEXT();
+  op_PowDouble: R(in->a).d = std::pow(R(in->b).d, R(in->c).d); NEXT();
+  op_NegDouble: R(in->a).d = -R(in->b).d; NEXT();
+  op_AbsDouble: R(in->a).d = std::fabs(R(in->b).d); NEXT();
+  op_LtDouble: R(in->a).i = R(in->b).d < R(in->c).d; NEXT();
+  op_LeDouble: R(in->a).i = R(in->b).d <= R(in->c).d; NEXT();
+  op_EqDouble: R(in->a).i = R(in->b).d == R(in->c).d; NEXT();
+  op_NeDouble: R(in->a).i = R(in->b).d != R(in->c).d; NEXT();
+  op_IntToDouble: R(in->a).d = R(in->b).i; NEXT();
+  op_DoubleToInt: R(in->a).i = truncate_to_int(R(in->b).d); NEXT();
+
+  op_AddVector: {
+    const Slot *x = &R(in->b), *y = &R(in->c);
+    put_vector(&R(in->a), x[0].d + y[0].d, x[1].d + y[1].d, x[2].d + y[2].d);
+    NEXT();
+  }
+  op_SubVector: {
+    const Slot *x = &R(in->b), *y = &R(in->c);
+    put_vector(&R(in->a), x[0].d - y[0].d, x[1].d - y[1].d, x[2].d - y[2].d);
+    NEXT();
+  }
+  op_NegVector: {
+    const Slot* x = &R(in->b);
+    put_vector(&R(in->a), -x[0].d, -x[1].d, -x[2].d);
+    NEXT();
+  }
+  op_ScaleVector: {
+    const Slot* x = &R(in->b);
+    const double s = R(in->c).d;
+    put_vector(&R(in->a), x[0].d * s, x[1].d * s, x[2].d * s);
+    NEXT();
+  }
+  op_DivVector: {
+    const Slot* x = &R(in->b);
+    const double s = R(in->c).d;
+    if (s == 0) fail_division_by_zero();
+    put_vector(&R(in->a), x[0].d / s, x[1].d / s, x[2].d / s);
+    NEXT();
+  }
+  op_EqVector: op_NeVector: {
+    const Slot *x = &R(in->b), *y = &R(in->c);
+    const bool same = x[0].d == y[0].d && x[1].d == y[1].d && x[2].d == y[2].d;
+    R(in->a).i = same == (in->op == Op::EqVector);
+    NEXT();
+  }
+  op_Length: {
+    const Slot* x = &R(in->b);
+    R(in->a).d = std::sqrt(x[0].d * x[0].d + x[1].d * x[1].d + x[2].d * x[2].d);
+    NEXT();
+  }
+  op_Dot: {
+    const Slot *x = &R(in->b), *y = &R(in->c);
+    R(in->a).d = x[0].d * y[0].d + x[1].d * y[1].d + x[2].d * y[2].d;
+    NEXT();
+  }
+  op_Cross: {
+    const Slot *x = &R(in->b), *y = &R(in->c);
+    put_vector(&R(in->a), x[1].d * y[2].d - x[2].d * y[1].d, x[2].d * y[0].d - x[0].d * y[2].d, x[0].d * y[1].d - x[1].d * y[0].d);
+    NEXT();
+  }
+  op_EqObject: R(in->a).i = R(in->b).ref == R(in->c).ref; NEXT();
+  op_NeObject: R(in->a).i = R(in->b).ref != R(in->c).ref; NEXT();
+
+  op_BoxInt: ANY(in->a) = Value::of(R(in->b).i); NEXT();
+  op_BoxDouble: ANY(in->a) = Value::of(R(in->b).d); NEXT();
+  op_BoxVector: ANY(in->a) = Value::of(Vector3(R(in->b).d, R(in->b + 1).d, R(in->b + 2).d)); NEXT();
+  op_BoxMatrix: ANY(in->a) = Value::of(Tag::Matrix, heap_->matrix(SlotType<Matrix3>::from(&R(in->b)))); NEXT();
+  op_BoxRef: ANY(in->a) = Value::of(static_cast<Tag>(in->c), R(in->b).ref); NEXT();
+
+  op_ToInt: {
+    const Value& v = ANY_OR_RESULT(in->b);
+    if (v.tag == Tag::Int) R(in->a).i = v.i;
+    else if (v.tag == Tag::Null) { SAVE(); R(in->a).i = null_default(StaticType::Int, in->c, in).i; }
+    else R(in->a).i = to_int(v, program_->code().texts[in->c]);
+    NEXT();
+  }
+  op_ToDouble: {
+    const Value& v = ANY_OR_RESULT(in->b);
+    if (v.tag == Tag::Double) R(in->a).d = v.d;
+    else if (v.tag == Tag::Null) { SAVE(); R(in->a).d = null_default(StaticType::Double, in->c, in).d; }
+    else R(in->a).d = to_double(v, program_->code().texts[in->c]);
+    NEXT();
+  }
+  op_ToVector: {
+    const Value& v = ANY_OR_RESULT(in->b);
+    if (v.tag == Tag::Vector) {
+      put_vector(&R(in->a), v.v[0], v.v[1], v.v[2]);
+    } else if (v.tag == Tag::Null) {
+      SAVE();
+      null_default(StaticType::Vector, in->c, in);
+      put_vector(&R(in->a), 0, 0, 0);
+    } else {
+      to_vector(v, program_->code().texts[in->c]);
+    }
+    NEXT();
+  }
+  op_ToMatrix: {
+    Value v = ANY_OR_RESULT(in->b);
+    if (v.tag == Tag::Null) { SAVE(); v = null_default(StaticType::Matrix, in->c, in); }
+    const auto m = to_matrix(v, program_->code().texts[in->c]);
+    std::memcpy(static_cast<void*>(&R(in->a)), m.data(), 9 * sizeof(double));
+    NEXT();
+  }
+  op_ToRef: {
+    const Instruction& ext = *pc++;
+    const Value& v = ANY_OR_RESULT(in->b);
+    if (static_cast<int>(v.tag) == ext.a && v.ref) {
+      R(in->a).ref = v.ref;
+    } else {
+      SAVE();
+      R(in->a) = converted_reference(static_cast<StaticType>(ext.a), v, in->c, ext.imm() != 0, in);
+    }
+    NEXT();
+  }
+  op_ToAny: ANY(in->a) = result_; NEXT();
+  op_ResultInt: R(in->a).i = result_.i; NEXT();
+  op_ResultDouble: R(in->a).d = result_.d; NEXT();
+  op_ResultVector: put_vector(&R(in->a), result_.v[0], result_.v[1], result_.v[2]); NEXT();
+  op_ResultMatrix: std::memcpy(static_cast<void*>(&R(in->a)), result_.matrix()->m.data(), 9 * sizeof(double)); NEXT();
+  op_ResultRef: R(in->a).ref = result_.ref; NEXT();
+  op_CheckClass: {
+    const Instruction& ext = *pc++;
+    check_class(static_cast<Instance*>(R(in->a).ref), program_->cls(static_cast<ClassId>(in->imm())),
+                program_->code().texts[static_cast<std::size_t>(ext.imm())]);
+    NEXT();
+  }
+  op_Truth: R(in->a).i = true_any(ANY(in->b)); NEXT();
+  op_Binary: {
+    const auto op = static_cast<ast::BinaryOp>((pc++)->a);
+    const Value &x = ANY(in->b), &y = ANY(in->c);
+    if (x.tag == Tag::Vector && y.tag == Tag::Vector && op <= ast::BinaryOp::Sub) {
+      const double s = op == ast::BinaryOp::Add ? 1.0 : -1.0;
+      ANY(in->a) = Value::of(Vector3(x.v[0] + s * y.v[0], x.v[1] + s * y.v[1], x.v[2] + s * y.v[2]));
+    } else {
+      SAVE();
+      ANY(in->a) = binary(*heap_, op, x, y);
+    }
+    NEXT();
+  }
+  op_Negate: ANY(in->a) = negate(ANY(in->b)); NEXT();
+  op_Magnitude: ANY(in->a) = magnitude(ANY(in->b)); NEXT();
+  op_RandomInt: R(in->a).i = world_.random().below_or_equal(R(in->b).i); NEXT();
+  op_RandomDouble: R(in->a).d = R(in->b).d * world_.random().uniform(); NEXT();
+  op_RandomVector: {
+    const Slot* x = &R(in->b);
+    const double r0 = world_.random().uniform(), r1 = world_.random().uniform(), r2 = world_.random().uniform();
+    put_vector(&R(in->a), x[0].d * r0, x[1].d * r1, x[2].d * r2);
+    NEXT();
+  }
+  op_RandomAny: ANY(in->a) = random(ANY(in->b)); NEXT();
+
+  op_Jump: JUMP(); NEXT();
+  op_Loop:
+    COUNT_CALL();
+    JUMP();
+    NEXT();
+  op_JumpIfInt: if (R(in->a).i) JUMP(); NEXT();
+  op_JumpIfNotInt: if (!R(in->a).i) JUMP(); NEXT();
+  op_JumpIfDouble: if (R(in->a).d != 0) JUMP(); NEXT();
+  op_JumpIfNotDouble: if (!(R(in->a).d != 0)) JUMP(); NEXT();
+  op_JumpIfObject: if (true_object(R(in->a).ref)) JUMP(); NEXT();
+  op_JumpIfNotObject: if (!true_object(R(in->a).ref)) JUMP(); NEXT();
+  op_JumpIfAny: if (true_any(ANY_OR_RESULT(in->a))) JUMP(); NEXT();
+  op_JumpIfNotAny: if (!true_any(ANY_OR_RESULT(in->a))) JUMP(); NEXT();
+#define COMPARE_JUMP(name, field, op, wanted) \
+  op_##name: if ((R(in->a).field op R(in->b).field) == wanted) pc += static_cast<std::int16_t>(in->c); NEXT();
+  COMPARE_JUMP(JumpUnlessLtInt, i, <, false)
+  COMPARE_JUMP(JumpUnlessLeInt, i, <=, false)
+  COMPARE_JUMP(JumpUnlessEqInt, i, ==, false)
+  COMPARE_JUMP(JumpUnlessNeInt, i, !=, false)
+  COMPARE_JUMP(JumpUnlessLtDouble, d, <, false)
+  COMPARE_JUMP(JumpUnlessLeDouble, d, <=, false)
+  COMPARE_JUMP(JumpUnlessEqDouble, d, ==, false)
+  COMPARE_JUMP(JumpUnlessNeDouble, d, !=, false)
+  COMPARE_JUMP(JumpIfLtInt, i, <, true)
+  COMPARE_JUMP(JumpIfLeInt, i, <=, true)
+  COMPARE_JUMP(JumpIfEqInt, i, ==, true)
+  COMPARE_JUMP(JumpIfNeInt, i, !=, true)
+  COMPARE_JUMP(JumpIfLtDouble, d, <, true)
+  COMPARE_JUMP(JumpIfLeDouble, d, <=, true)
+  COMPARE_JUMP(JumpIfEqDouble, d, ==, true)
+  COMPARE_JUMP(JumpIfNeDouble, d, !=, true)
+#undef COMPARE_JUMP
+
+  op_NewList: R(in->a).ref = heap_->list(static_cast<std::uint32_t>(in->imm())); NEXT();
+  op_Append: op_Push: heap_->push(*LIST(in->a), ANY(in->b)); NEXT();
+  op_Prepend: heap_->prepend(*LIST(in->a), ANY(in->b)); NEXT();
+  op_Pop: ANY(in->a) = LIST(in->b)->size == 0 ? Value() : heap_->pop(*LIST(in->b)); NEXT();
+  op_Unprepend: ANY(in->a) = LIST(in->b)->size == 0 ? Value() : heap_->unprepend(*LIST(in->b)); NEXT();
+  op_Insert:
+    SAVE();
+    if (!insert_at(*heap_, *LIST(in->a), ANY(in->c), ANY(in->b))) {
+      if (host_.strict) throw RunError(RunErrorKind::Bounds, "insert beyond the end of the list");
+      warn("insert beyond the end of the list: nothing is inserted");
+    }
+    NEXT();
+  op_Remove: {
+    SAVE();
+    bool found = false;
+    ANY(in->a) = remove_at(*heap_, ANY(in->b), ANY(in->c), found);
+    if (!found && ANY(in->b).tag == Tag::List) {
+      if (host_.strict) throw RunError(RunErrorKind::Bounds, "remove beyond the end of the list");
+      warn("remove beyond the end of the list: nothing is removed");
+    }
+    NEXT();
+  }
+  op_CopyList: R(in->a).ref = heap_->copy(*LIST(in->b)); NEXT();
+  op_Sort:
+    SAVE();
+    sort(*LIST(in->a), static_cast<Symbol>(in->imm()), *self);
+    LEAVE_IF_FREED();
+    NEXT();
+  op_Index: SAVE(); ANY(in->a) = read_index(ANY(in->b), ANY(in->c)); NEXT();
+  op_IndexGuarded: SAVE(); ANY(in->a) = guarded_index(ANY(in->b), ANY(in->c)); NEXT();
+  op_IndexList: {
+    const auto& list = *LIST(in->b);
+    ANY(in->a) = list[list_position(list, R(in->c).i)];
+    NEXT();
+  }
+  op_SetIndex: {
+    const Instruction& ext = *pc++;
+    SAVE();
+    if (write_index(ANY(in->a), ANY(in->b), ANY(in->c))) pc += ext.imm();
+    NEXT();
+  }
+  op_SetIndexList: {
+    auto& list = *LIST(in->a);
+    const auto i = static_cast<std::uint32_t>(R(in->b).i);
+    if (i < list.size) heap_->store(list[i], ANY(in->c));
+    else if (i == list.size) heap_->push(list, ANY(in->c));
+    else fail_list_bounds(R(in->b).i, list.size);
+    NEXT();
+  }
+  op_Member: {
+    const auto& site = program_->code().members[static_cast<std::size_t>((pc++)->imm())];
+    SAVE();
+    ANY(in->a) = read_member(ANY(in->b), site);
+    NEXT();
+  }
+  op_SetMember: {
+    const auto& site = program_->code().members[static_cast<std::size_t>(EXT(0).imm())];
+    const Instruction& jump = EXT(1);
+    pc += 2;
+    SAVE();
+    if (write_member(ANY(in->a), site, ANY(in->b))) pc += jump.imm();
+    NEXT();
+  }
+  op_Foreach: {
+    const Instruction& ext = *pc++;
+    const auto& list = *LIST(in->a);
+    const auto i = static_cast<std::uint32_t>(R(in->b).i);
+    if (i >= list.size) {
+      pc += ext.imm();
+    } else {
+      ANY(in->c) = list[i];
+      ++R(in->b).i;
+    }
+    NEXT();
+  }
+  op_ForeachObject: {
+    const Instruction& done = EXT(0);
+    const Instruction& what = EXT(1);
+    const auto& list = *LIST(in->a);
+    const auto i = static_cast<std::uint32_t>(R(in->b).i);
+    if (i >= list.size) {
+      pc += 1 + done.imm();
+    } else {
+      pc += 2;
+      ++R(in->b).i;
+      const Value& element = list[i];
+      if (element.tag == Tag::Object) R(in->c).ref = element.ref;
+      else { SAVE(); R(in->c) = converted_reference(StaticType::Object, element, static_cast<std::uint32_t>(what.imm()), false, in); }
+    }
+    NEXT();
+  }
+
+  op_New: SAVE(); R(in->a).ref = create(program_->cls(static_cast<ClassId>(in->imm()))); COUNT_CALL(); LEAVE_IF_FREED(); NEXT();
+  op_NewCount: {
+    const Instruction& ext = *pc++;
+    SAVE();
+    ANY(in->a) = make_many(ANY(in->b), program_->cls(static_cast<ClassId>(ext.imm())));
+    COUNT_CALL();
+    LEAVE_IF_FREED();
+    NEXT();
+  }
+  op_NewNamed: throw RunError(RunErrorKind::UnknownClass, "unknown class '" + program_->code().strings[static_cast<std::size_t>(in->imm())] + "'");
+  op_All: R(in->a).ref = all_of(program_->cls(static_cast<ClassId>(in->imm()))); NEXT();
+
+  {
+    Instance* receiver;
+    std::uint32_t site;
+    const Plan* plan;
+  op_Call:
+    receiver = static_cast<Instance*>(R(in->a).ref);
+    site = static_cast<std::uint32_t>(in->imm());
+    SAVE();
+    if (!receiver || !receiver->live()) [[unlikely]] fail_receiver(receiver, site);
+    goto do_call;
+  op_CallSelf:
+    receiver = self;
+    site = static_cast<std::uint32_t>(in->imm());
+    SAVE();
+    goto do_call;
+  op_CallSuper:
+    receiver = self;
+    site = static_cast<std::uint32_t>(in->imm());
+    SAVE();
+    if (!program_->code().sites[site].super_of->parent) fail_receiver(nullptr, site);
+  do_call:
+    plan = &plan_for(site, *receiver->cls);
+    COUNT_CALL();
+    if (!plan->method) {
+      result_ = Value();
+      NEXT();
+    }
+    if (plan->method->native) {
+      call_native(*plan, *receiver, base);
+      LEAVE_IF_FREED();
+      NEXT();
+    }
+    const Slot* caller = base;
+    Slot* callee = enter(*plan->method, *receiver);
+    apply(*plan, caller, callee);
+    base = callee;
+    self = receiver;
+    function = plan->method->function.get();
+    pc = function->code.data();
+    NEXT();
+  }
+  op_ResolveCall: {
+    const auto number = static_cast<std::uint32_t>((pc++)->imm());
+    SAVE();
+    Instance* receiver = in->a == kResult ? self : static_cast<Instance*>(R(in->a).ref);
+    if (!receiver || !receiver->live()) fail_receiver(receiver, number);
+    const auto& site = program_->code().sites[number];
+    if (site.super_of && !site.super_of->parent) fail_receiver(nullptr, number);
+    const Plan& plan = plan_for(number, *receiver->cls);
+    R(in->b).i = 0;
+    R(in->b + 1).bits = reinterpret_cast<std::uintptr_t>(&plan);
+    pc = function->code.data() + (plan.order.empty() ? site.call : site.arguments[plan.order[0]].block);
+    NEXT();
+  }
+  op_NextArgument: {
+    const auto& site = program_->code().sites[static_cast<std::size_t>(in->imm())];
+    const auto& order = reinterpret_cast<const Plan*>(static_cast<std::uintptr_t>(R(in->a + 1).bits))->order;
+    const auto next = static_cast<std::size_t>(++R(in->a).i);
+    pc = function->code.data() + (next >= order.size() ? site.call : site.arguments[order[next]].block);
+    NEXT();
+  }
+  op_Broadcast: {
+    const Instruction& ext = *pc++;
+    const Value& value = ANY(in->a);
+    SAVE();
+    if (value.tag == Tag::Object) {
+      R(in->b).ref = value.ref;
+      R(in->c).ref = nullptr;
+    } else if (value.tag == Tag::List) {
+      auto* elements = heap_->list();  // the call goes to those who are in the list now (F41)
+      if (value.ref)
+        for (const auto& element : *value.list()) heap_->push(*elements, element);
+      R(in->c).ref = elements;
+      R(ext.a).i = 0;
+      if (elements->size == 0) {
+        result_ = Value();
+        pc += ext.imm();
+      } else {
+        R(in->b).ref = broadcast_member((*elements)[0]);
+      }
+    } else {
+      fail_call_on(value);
+    }
+    NEXT();
+  }
+  op_BroadcastNext: {
+    const Instruction& ext = *pc++;
+    if (R(in->c).ref) {
+      const auto& elements = *LIST(in->c);
+      const auto i = static_cast<std::uint32_t>(++R(ext.a).i);
+      if (i < elements.size) {
+        SAVE();
+        R(in->b).ref = broadcast_member(elements[i]);
+        pc += ext.imm();
+        COUNT_CALL();
+      }
+    }
+    NEXT();
+  }
+  op_Function: {
+    SAVE();
+    Value value;
+    functions_[static_cast<std::size_t>(in->imm())].function(*this, *self, &R(in->a), value);
+    result_ = value;
+    COUNT_CALL();
+    LEAVE_IF_FREED();
+    NEXT();
+  }
+  op_Interpolate: {
+    const Instruction& ext = *pc++;
+    SAVE();
+    R(in->a).ref = interpolate(program_->code().interpolations[static_cast<std::size_t>(ext.imm())], &ANY(in->b), in->c);
+    NEXT();
+  }
+  op_Print: SAVE(); print_value(ANY(in->a), in->b); NEXT();
+  op_Free:
+    SAVE();
+    free_value(ANY(in->a));
+    LEAVE_IF_FREED();
+    NEXT();
+  op_Die: SAVE(); throw RunError(RunErrorKind::User, text(ANY(in->a)));
+  op_Fail: throw RunError(static_cast<RunErrorKind>(in->a), program_->code().texts[static_cast<std::size_t>(in->imm())]);
+
+  op_ReturnInt: result_ = Value::of(R(in->a).i); goto do_return;
+  op_ReturnDouble: result_ = Value::of(R(in->a).d); goto do_return;
+  op_ReturnVector: result_ = Value::of(Vector3(R(in->a).d, R(in->a + 1).d, R(in->a + 2).d)); goto do_return;
+  op_ReturnMatrix: result_ = Value::of(Tag::Matrix, heap_->matrix(SlotType<Matrix3>::from(&R(in->a)))); goto do_return;
+  op_ReturnRef: result_ = Value::of(static_cast<Tag>(in->b), R(in->a).ref); goto do_return;
+  op_ReturnAny: result_ = ANY(in->a); goto do_return;
+  op_ReturnNull: result_ = Value(); goto do_return;
+  op_ReturnResult:
+  do_return:
+    leave();
+    if (frames_.size() == depth) return;
+    RELOAD();
+    LEAVE_IF_FREED();
+    NEXT();
+  } catch (...) {
+    rethrow(depth, pc);
+  }
+}
+
+}  // namespace breve::steve

@@ -1,0 +1,278 @@
+// One program running in one world: creation and freeing of objects, calls from outside, events of the world.
+#include "steve/machine/machine.hpp"
+
+#include <algorithm>
+
+#include "runtime/world/menu.hpp"
+#include "steve/machine/operators.hpp"
+
+namespace breve::steve {
+
+Machine::Machine(std::shared_ptr<const Program> program, World& world, std::pmr::memory_resource* memory, MachineHost host)
+    : program_(std::move(program)), world_(world), host_(std::move(host)), memory_(memory), heap_(std::make_unique<Heap>(memory, *this)), frames_(memory),
+      segments_(memory), pins_(memory), functions_(steve::functions()) {
+  need_room(kNativeRoom);
+  caches_.resize(program_->code().sites.size());
+  strings_ = make_constants(*heap_);
+  world_.set_behaviour(this);
+}
+
+Machine::~Machine() {
+  world_.set_behaviour(nullptr);
+  for (const auto& [slots, size] : segments_) memory_->deallocate(slots, size * sizeof(Slot), alignof(Slot));
+}
+
+std::vector<StringCell*> Machine::make_constants(Heap& heap) const {
+  std::vector<StringCell*> constants;
+  constants.reserve(program_->code().strings.size());
+  for (const auto& text : program_->code().strings) {
+    auto* cell = heap.string(text);
+    if (cell) cell->immortal = true;
+    constants.push_back(cell);
+  }
+  return constants;
+}
+
+void Machine::start() {
+  begin_top_level();
+  const auto* cls = program_->controller_class();
+  if (!cls) throw Error(ErrorCode::Argument, "the program has no controller");
+  controller_ = create(*cls);
+}
+
+void Machine::begin_top_level() {
+  if (nesting_ == 0) budget_left_ = host_.budget;
+}
+
+// --- objects -------------------------------------------------------------------------------------------------------------------
+
+Instance* Machine::create(const ClassInfo& cls) {
+  auto* instance = heap_->instance(cls);
+  heap_->retain(instance);  // by the table of objects, until it is freed or opts for auto-free
+  instance->id = world_.create(cls.id, reinterpret_cast<std::uint64_t>(instance), cls.iterate != nullptr, cls.post_iterate != nullptr);
+  if (!controller_ && program_->controller_class() == &cls) controller_ = instance;
+  try {
+    for (std::size_t i = 0; i < cls.init_chain.size(); ++i) {
+      invoke(*instance, *cls.init_chain[i], {});
+      if (!instance->live() && i + 1 < cls.init_chain.size())
+        throw RunError(RunErrorKind::FreedObject, "the new object of class " + cls.name + " was freed in its init");
+    }
+  } catch (...) {
+    if (controller_ == instance) controller_ = nullptr;
+    if (instance->live()) forget(*instance);
+    throw;
+  }
+  return instance;
+}
+
+void Machine::free_instance(Instance& instance) {
+  if (instance.state != Instance::State::Live) return;
+  instance.state = Instance::State::BeingFreed;
+  const Pin pin(*this, Value::of(Tag::Object, &instance));
+  Value ignored;
+  if (instance.cls->destroy) call_guarded(instance, *instance.cls->destroy, {}, ignored);
+  for (const auto* method : instance.cls->delete_chain) call_guarded(instance, *method, {}, ignored);
+  forget(instance);
+}
+
+void Machine::forget(Instance& instance) {
+  instance.state = Instance::State::Freed;
+  if (world_.alive(instance.id)) world_.release(instance.id);
+  if (controller_ == &instance) {
+    controller_ = nullptr;
+    world_.request_end();
+  }
+  heap_->clear_slots(instance);
+  if (!instance.auto_free) heap_->release(&instance);
+  instance.auto_free = false;
+}
+
+void Machine::free_unreachable(Instance& instance) { free_instance(instance); }
+
+Instance* Machine::instance(ObjectId id) const {
+  return world_.alive(id) ? reinterpret_cast<Instance*>(world_.user(id)) : nullptr;
+}
+
+// --- calls from native code ------------------------------------------------------------------------------------------------------
+
+const MethodInfo* Machine::find_method(const ClassInfo& cls, std::string_view name, std::size_t count) const {
+  const auto symbol = program_->symbols().find(name);
+  return symbol == kNoSymbol ? nullptr : cls.find_method(symbol, count);
+}
+
+bool Machine::responds(const ClassInfo& cls, std::string_view name) const {
+  const auto symbol = program_->symbols().find(name);
+  return symbol != kNoSymbol && cls.responds(symbol);
+}
+
+Value Machine::call(Instance& receiver, const MethodInfo& method, std::span<const Value> arguments) {
+  begin_top_level();
+  if (!receiver.live()) throw RunError(RunErrorKind::FreedObject, "a method is called on a freed object of class " + receiver.cls->name);
+  if (arguments.size() != method.parameters.size())
+    throw RunError(RunErrorKind::Type, "method '" + program_->symbols().name(method.name) + "' takes " + std::to_string(method.parameters.size()) + " arguments");
+  return invoke(receiver, method, arguments);
+}
+
+Value Machine::call(Instance& receiver, std::string_view name, std::span<const Value> arguments) {
+  const auto* method = find_method(*receiver.cls, name, arguments.size());
+  if (!method)
+    throw RunError(RunErrorKind::UnknownMethod, "unknown method: class " + receiver.cls->name + " has no method '" + std::string(name) + "' with " +
+                                                    std::to_string(arguments.size()) + " parameters");
+  return call(receiver, *method, arguments);
+}
+
+bool Machine::call_guarded(Instance& receiver, const MethodInfo& method, std::span<const Value> arguments, Value& result) {
+  const std::size_t depth = frames_.size();
+  const Instruction* pc = frames_.empty() ? nullptr : frames_.back().pc;
+  try {
+    try {
+      result = call(receiver, method, arguments);
+      return true;
+    } catch (...) {
+      rethrow(depth, pc);
+    }
+  } catch (const ScriptError& error) {
+    if (error.code() != ErrorCode::Script && error.code() != ErrorCode::Depth) throw;
+    survive(error);
+    result = Value();
+    return false;
+  }
+}
+
+Value Machine::call_with_keywords(Instance& receiver, std::string_view name, std::span<const std::pair<std::string_view, Value>> keywords) {
+  CallSite site;
+  site.selector = program_->symbols().find(name);
+  if (site.selector == kNoSymbol)
+    throw RunError(RunErrorKind::UnknownMethod, "unknown method: class " + receiver.cls->name + " has no method '" + std::string(name) + "'");
+  for (const auto& [keyword, value] : keywords) {
+    const auto symbol = program_->symbols().find(keyword);
+    if (symbol == kNoSymbol) throw RunError(RunErrorKind::UnknownKeyword, "unknown keyword '" + std::string(keyword) + "' for method '" + std::string(name) + "'");
+    site.arguments.push_back({symbol, StaticType::Any, 0, -1, {}});
+  }
+  const auto* method = choose(site, *receiver.cls);
+  if (!method) return {};
+  std::vector<Value> values;
+  for (const auto& p : method->parameters) {
+    const auto at = std::find_if(site.arguments.begin(), site.arguments.end(), [&](const auto& a) { return a.keyword == p.keyword; });
+    values.push_back(at != site.arguments.end() ? keywords[static_cast<std::size_t>(at - site.arguments.begin())].second : default_value(p));
+  }
+  return call(receiver, *method, values);
+}
+
+Value Machine::default_value(const ParameterInfo& p) {
+  Slot slots[9] = {};
+  write_default(slots, p);
+  switch (p.type) {
+    case StaticType::Int: return Value::of(slots[0].i);
+    case StaticType::Double: return Value::of(slots[0].d);
+    case StaticType::Vector: return Value::of(SlotType<Vector3>::from(slots));
+    case StaticType::Matrix: return Value::of(Tag::Matrix, heap_->matrix(SlotType<Matrix3>::from(slots)));
+    default: return Value::of(static_cast<Tag>(p.type), slots[0].ref);
+  }
+}
+
+// --- events of the world ------------------------------------------------------------------------------------------------------------
+
+void Machine::iterate(ObjectId agent) {
+  if (auto* object = instance(agent)) call(*object, *object->cls->iterate, {});
+}
+
+void Machine::post_iterate(ObjectId agent) {
+  if (auto* object = instance(agent)) call(*object, *object->cls->post_iterate, {});
+}
+
+void Machine::scheduled(ObjectId agent, std::string_view method) {
+  if (auto* object = instance(agent)) call(*object, method, {});
+}
+
+bool Machine::collided(ObjectId agent, ObjectId other, std::string_view name, const Vector3& point, const Vector3& normal) {
+  for (std::size_t count = 0; count <= 5; ++count) {
+    auto* object = instance(agent);
+    auto* hit = instance(other);
+    if (!object || !hit) return true;
+    const auto* method = find_method(*object->cls, name, count);
+    if (!method) continue;
+    const Value arguments[] = {Value::of(Tag::Object, hit), Value::of(point), Value::of(normal), Value(), Value()};
+    Value result;
+    call_guarded(*object, *method, std::span(arguments, count), result);
+    if (result.tag == Tag::Int && result.i != 0) return true;
+  }
+  return false;
+}
+
+void Machine::notified(ObjectId observer, std::string_view name, ObjectId announcer, std::string_view message) {
+  auto* object = instance(observer);
+  auto* source = instance(announcer);
+  if (!object) return;
+  for (const std::size_t count : {2, 1, 0}) {
+    const auto* method = find_method(*object->cls, name, count);
+    if (!method) continue;
+    const Value text = Value::of(Tag::String, heap_->string(message));
+    const Pin pin(*this, text);
+    const Value arguments[] = {Value::of(Tag::Object, source), text};
+    Value result;
+    call_guarded(*object, *method, std::span(arguments, count), result);
+    return;
+  }
+}
+
+void Machine::call_if_present(Instance& receiver, std::string_view method, std::span<const Value> arguments) {
+  Value result;
+  if (const auto* info = find_method(*receiver.cls, method, arguments.size())) call_guarded(receiver, *info, arguments, result);
+}
+
+void Machine::input(const InputEvent& event) {
+  if (!controller_) return;
+  switch (event.kind) {
+    case InputEvent::Kind::KeyDown: case InputEvent::Kind::KeyUp: input_key(event); break;
+    case InputEvent::Kind::Click: {
+      const Value arguments[] = {Value::of(Tag::Object, instance(event.object))};
+      call_if_present(*controller_, "click", arguments);
+      break;
+    }
+    case InputEvent::Kind::Menu: choose_menu(event.object); break;
+  }
+}
+
+void Machine::input_key(const InputEvent& event) {
+  const std::string ending = event.kind == InputEvent::Kind::KeyDown ? "-down" : "-up";
+  const auto plain = "catch-key-" + event.key + ending;
+  if (find_method(*controller_->cls, plain, 0)) {
+    call_if_present(*controller_, plain);
+    return;
+  }
+  if (event.key.size() != 1) return;
+  static constexpr char kDigits[] = "0123456789ABCDEF";
+  const auto code = static_cast<unsigned char>(event.key[0]);
+  std::string hex;
+  if (code >= 16) hex += kDigits[code >> 4];
+  hex += kDigits[code & 15];
+  call_if_present(*controller_, "catch-key-0x" + hex + ending);
+}
+
+void Machine::choose_menu(ObjectId id) {
+  const auto* item = menu_item(world_, id);
+  if (!item || !item->can_be_chosen()) return;
+  const auto method = item->method;
+  if (auto* owner = instance(item->owner)) call_if_present(*owner, method);
+}
+
+void Machine::end_of_iteration() {
+  result_ = Value();
+  heap_->end_of_iteration();
+}
+
+Instance* Machine::broadcast_member(const Value& element) const {
+  if (element.tag == Tag::Object && element.object() && element.object()->live()) return element.object();
+  throw RunError(element.tag == Tag::Object ? RunErrorKind::NullObject : RunErrorKind::Type,
+                 "a method is called on a list, and an element of it is not a live object but " +
+                     (element.tag != Tag::Object ? a_type(element.tag) : std::string(element.object() ? "a freed one" : "a null one")));
+}
+
+void Machine::fail_call_on(const Value& value) const {
+  if (value.tag == Tag::Null)
+    throw RunError(RunErrorKind::NullObject, "a method is called on no value (NULL): what stands in front of the method name gave nothing");
+  throw RunError(RunErrorKind::Type, "a method is called on " + a_type(value.tag) + "; only objects and lists of objects have methods");
+}
+
+}  // namespace breve::steve

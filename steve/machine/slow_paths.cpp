@@ -1,0 +1,263 @@
+// What instructions do when the short way does not apply: conversions, members, containers, creation, printing.
+#include <algorithm>
+#include <cstring>
+
+#include "steve/machine/machine.hpp"
+#include "steve/machine/operators.hpp"
+
+namespace breve::steve {
+
+Value Machine::null_default(StaticType type, std::uint32_t what, const Instruction* pc) {
+  // F14: NULL assigned to a typed variable stores the type's zero value, with one warning for each place.
+  const auto& name = program_->code().texts.empty() ? std::string("value") : program_->code().texts[what];
+  if (host_.strict) throw RunError(RunErrorKind::Conversion, "no value (NULL) for " + name);
+  if (warned_sites_.insert(pc).second) warn("no value (NULL) is assigned to " + name + "; it becomes its type's zero value");
+  switch (type) {
+    case StaticType::Int: return Value::of(0);
+    case StaticType::Double: return Value::of(0.0);
+    case StaticType::Vector: return Value::of(Vector3(0, 0, 0));
+    case StaticType::Matrix: return Value::of(Tag::Matrix, heap_->matrix(Matrix3::Zero()));
+    case StaticType::List: return Value::of(Tag::List, heap_->list());
+    case StaticType::Hash: return Value::of(Tag::Hash, heap_->hash());
+    case StaticType::Any: case StaticType::Null: return {};
+    default: return Value::of(static_cast<Tag>(type), nullptr);
+  }
+}
+
+Slot Machine::converted_reference(StaticType type, const Value& given, std::uint32_t what, bool strict, const Instruction* pc) {
+  Slot slot{};
+  if (static_cast<int>(given.tag) == static_cast<int>(type)) {
+    slot.ref = given.ref;
+  } else {
+    Value value = given;
+    if (value.tag == Tag::Null && !strict) value = null_default(type, what, pc);
+    const auto& texts = program_->code().texts;
+    write_value(&slot, type, value, texts.empty() ? std::string_view("value") : std::string_view(texts[what]));
+  }
+  if (slot.ref == nullptr && type == StaticType::List) slot.ref = heap_->list();
+  if (slot.ref == nullptr && type == StaticType::Hash) slot.ref = heap_->hash();
+  return slot;
+}
+
+// --- members of objects ------------------------------------------------------------------------------------------------------
+
+Instance* Machine::instance_of(const Value& value) const { return value.tag == Tag::Object ? value.object() : nullptr; }
+
+const VariableInfo* Machine::member_variable(const Instance& instance, Symbol name) const {
+  const auto* variable = instance.cls->find_variable(name);
+  if (variable && variable->array_size < 0) return variable;
+  const auto& text = program_->symbols().name(name);
+  if (variable) throw RunError(RunErrorKind::Type, "'" + text + "' of class " + instance.cls->name + " is an array and cannot be used as a whole");
+  std::vector<std::string_view> names;
+  for (const ClassInfo* c = instance.cls; c; c = c->parent)
+    for (const auto& v : c->variables) names.push_back(program_->symbols().name(v.name));
+  const auto near = nearest(text, names);
+  throw RunError(RunErrorKind::Type, "class " + instance.cls->name + " has no variable '" + text + "'" +
+                                         (near.empty() ? "" : "; did you mean '" + near + "'?"));
+}
+
+namespace {
+Instance& need_live(const Value& base, std::string_view name) {
+  auto* instance = base.object();
+  if (!instance) throw RunError(RunErrorKind::NullObject, "variable '" + std::string(name) + "' of a null object");
+  if (!instance->live()) throw RunError(RunErrorKind::FreedObject, "variable '" + std::string(name) + "' of a freed object of class " + instance->cls->name);
+  return *instance;
+}
+}  // namespace
+
+Value Machine::read_member(const Value& base, const MemberSite& site) {
+  if (base.tag == Tag::Object) {
+    auto& instance = need_live(base, program_->symbols().name(site.name));
+    return get_variable(instance, *member_variable(instance, site.name));
+  }
+  return member(*heap_, base, strings_[site.string]);
+}
+
+bool Machine::write_member(Value& base, const MemberSite& site, const Value& value) {
+  if (base.tag == Tag::Object) {
+    auto& instance = need_live(base, program_->symbols().name(site.name));
+    set_variable(instance, *member_variable(instance, site.name), value);
+    return true;
+  }
+  if (base.tag == Tag::Hash) {
+    set_member(*heap_, base, strings_[site.string], value);
+    return true;
+  }
+  base = with_member(base, strings_[site.string], value);
+  return false;
+}
+
+bool Machine::write_index(Value& base, const Value& key, const Value& value) {
+  if (base.tag == Tag::Object) {
+    if (key.tag != Tag::String) throw RunError(RunErrorKind::Type, "an object's variable is named by a string, not by " + a_type(key.tag));
+    const auto name = program_->symbols().find(view(key.string()));
+    auto& instance = need_live(base, view(key.string()));
+    if (name == kNoSymbol) throw RunError(RunErrorKind::Type, "class " + instance.cls->name + " has no variable '" + std::string(view(key.string())) + "'");
+    set_variable(instance, *member_variable(instance, name), value);
+    return true;
+  }
+  if (base.tag == Tag::List || base.tag == Tag::Hash) {
+    set_index(*heap_, base, key, value);
+    return true;
+  }
+  base = with_index(*heap_, base, key, value);
+  return false;
+}
+
+Value Machine::read_index(const Value& base, const Value& key) {
+  if (base.tag != Tag::Object) return index(*heap_, base, key);
+  if (key.tag != Tag::String) throw RunError(RunErrorKind::Type, "an object's variable is named by a string, not by " + a_type(key.tag));
+  auto& instance = need_live(base, view(key.string()));
+  const auto name = program_->symbols().find(view(key.string()));
+  if (name == kNoSymbol) throw RunError(RunErrorKind::Type, "class " + instance.cls->name + " has no variable '" + std::string(view(key.string())) + "'");
+  return get_variable(instance, *member_variable(instance, name));
+}
+
+Value Machine::guarded_index(const Value& base, const Value& key) {
+  if (host_.strict) return read_index(base, key);
+  try {
+    return read_index(base, key);
+  } catch (const RunError& error) {
+    survive(ScriptError(error.code(), report(error.kind(), error.what(), frames_.empty() ? nullptr : frames_.back().pc)));
+    return {};
+  }
+}
+
+Value Machine::get_variable(const Instance& instance, const VariableInfo& variable) const {
+  Slot* slot = instance.slots + variable.slot;
+  auto& heap = *heap_;
+  switch (variable.type) {
+    case StaticType::Int: return Value::of(slot->i);
+    case StaticType::Double: return Value::of(slot->d);
+    case StaticType::Vector: return Value::of(Vector3(slot[0].d, slot[1].d, slot[2].d));
+    case StaticType::Matrix: return Value::of(Tag::Matrix, heap.matrix(SlotType<Matrix3>::from(slot)));
+    case StaticType::List:
+      if (!slot->ref) heap.store(*slot, heap.list());
+      break;
+    case StaticType::Hash:
+      if (!slot->ref) heap.store(*slot, heap.hash());
+      break;
+    default: break;
+  }
+  return Value::of(static_cast<Tag>(variable.type), slot->ref);
+}
+
+void Machine::set_variable(Instance& instance, const VariableInfo& variable, const Value& given) {
+  if (!instance.live()) throw RunError(RunErrorKind::FreedObject, "a variable of a freed object cannot be set");
+  const auto what = "variable '" + program_->symbols().name(variable.name) + "' of class " + instance.cls->name;
+  if (variable.array_size >= 0) throw RunError(RunErrorKind::Type, what + " is an array and cannot be assigned as a whole");
+  Value value = given;
+  if (value.tag == Tag::Null) value = null_default(variable.type, 0, frames_.empty() ? nullptr : frames_.back().pc);
+  Slot converted[9] = {};
+  write_value(converted, variable.type, value, what);
+  if (variable.class_name != kNoSymbol)
+    if (const auto* cls = program_->find_class(program_->symbols().name(variable.class_name)))
+      check_class(static_cast<Instance*>(converted[0].ref), *cls, what);
+  Slot* slot = instance.slots + variable.slot;
+  if (variable.type >= StaticType::String && variable.type <= StaticType::Data) heap_->store(*slot, converted[0].ref);
+  else std::memcpy(static_cast<void*>(slot), converted, static_cast<std::size_t>(slot_count(variable.type)) * sizeof(Slot));
+}
+
+// --- creation, freeing, enumeration ----------------------------------------------------------------------------------------------
+
+Value Machine::make_many(const Value& count, const ClassInfo& cls) {
+  if (count.tag != Tag::Int) throw RunError(RunErrorKind::Type, "the number of new instances must be an int, not " + a_type(count.tag));
+  if (count.i == 1) return Value::of(Tag::Object, create(cls));
+  auto* list = heap_->list();
+  const Pin pin(*this, Value::of(Tag::List, list));
+  for (std::int32_t i = 0; i < count.i; ++i) heap_->push(*list, Value::of(Tag::Object, create(cls)));
+  return Value::of(Tag::List, list);
+}
+
+ListCell* Machine::all_of(const ClassInfo& cls) {
+  auto* list = heap_->list();
+  for (const auto id : world_.objects()) {
+    if (!program_->cls(world_.class_of(id)).derives_from(cls)) continue;
+    heap_->push(*list, Value::of(Tag::Object, reinterpret_cast<Instance*>(world_.user(id))));
+  }
+  return list;
+}
+
+void Machine::free_value(const Value& value) {
+  if (value.tag == Tag::List && value.list()) {
+    const auto* list = value.list();
+    std::vector<Instance*> objects;
+    for (const auto& element : *list)
+      if (element.tag == Tag::Object && element.object()) objects.push_back(element.object());
+    const Pin pin(*this, value);
+    const StackMark mark(*this);
+    for (auto* object : objects) pins_.push_back(Value::of(Tag::Object, object));
+    for (auto* object : objects) free_instance(*object);
+    return;
+  }
+  if (value.tag != Tag::Object) return;
+  if (!value.object()) {
+    warn("free is given a null object");
+    return;
+  }
+  free_instance(*value.object());
+}
+
+void Machine::sort(ListCell& list, Symbol symbol, Instance& self) {
+  const auto* method = self.cls->find_method(symbol, 2);
+  if (!method)
+    throw RunError(RunErrorKind::UnknownMethod, "unknown method: sort needs a method '" + program_->symbols().name(symbol) + "' with two parameters in class " + self.cls->name);
+  const Pin pin(*this, Value::of(Tag::List, &list));
+  const StackMark mark(*this);
+  for (const auto& element : list) pins_.push_back(element);
+  merge_sort(*heap_, list, [&](const Value& a, const Value& b) {
+    const Value arguments[] = {a, b};
+    Value order;
+    if (!call_guarded(self, *method, arguments, order)) return false;
+    return order.tag != Tag::Null && to_double(order, "the result of the comparison") < 0;
+  });
+}
+
+// --- text --------------------------------------------------------------------------------------------------------------------------
+
+std::string Machine::text(const Value& value) {
+  return steve::text(value, [this](Instance& instance) { return describe(instance); }, heap_.get());
+}
+
+std::string Machine::describe(Instance& instance) {
+  const auto* method = instance.cls->get_description;
+  if (!method || !instance.live()) return {};
+  Value result;
+  if (!call_guarded(instance, *method, {}, result) || result.tag != Tag::String) return {};
+  return std::string(view(result.string()));
+}
+
+StringCell* Machine::interpolate(const std::vector<std::string>& texts, const Value* values, std::size_t count) {
+  std::string out = texts[0];
+  for (std::size_t i = 0; i < count; ++i) {
+    if (values[i].tag == Tag::String) out += view(values[i].string());
+    else if (values[i].tag == Tag::Int) append_int(out, values[i].i);
+    else if (values[i].tag == Tag::Double) append_double(out, values[i].d);
+    else out += text(values[i]);
+    out += texts[i + 1];
+  }
+  return heap_->string(out);
+}
+
+void Machine::print_value(const Value& value, int ending) {
+  auto out = text(value);
+  if (ending == 1) out += ' ';
+  if (ending == 2) out += '\n';
+  print(out);
+}
+
+Value Machine::random(const Value& bound) {
+  auto& generator = world_.random();
+  switch (bound.tag) {
+    case Tag::Int: return Value::of(generator.below_or_equal(bound.i));
+    case Tag::Double: return Value::of(bound.d * generator.uniform());
+    case Tag::Vector: {
+      Vector3 v;
+      for (int i = 0; i < 3; ++i) v[i] = bound.v[i] * generator.uniform();
+      return Value::of(v);
+    }
+    default: throw RunError(RunErrorKind::Type, "random[] takes an int, a double or a vector, not " + a_type(bound.tag));
+  }
+}
+
+}  // namespace breve::steve

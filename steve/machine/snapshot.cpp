@@ -1,0 +1,308 @@
+// The script side of a snapshot and of the world hash: every cell of the heap, by number instead of address.
+#include <cstring>
+#include <unordered_map>
+
+#include "steve/machine/machine.hpp"
+
+namespace breve::steve {
+
+namespace {
+
+constexpr std::uint64_t kNull = ~std::uint64_t{0};
+
+/// Calls `visit` for every value that a container holds, in a fixed order.
+template <class Visit> void for_each_value(const Container& cell, Visit&& visit) {
+  if (cell.tag == Tag::List) {
+    for (const auto& element : static_cast<const ListCell&>(cell)) visit(element);
+  } else if (cell.tag == Tag::Hash) {
+    const auto& hash = static_cast<const HashCell&>(cell);
+    for (std::uint32_t i = 0; i < hash.used; ++i) {
+      if (!hash.entries[i].live()) continue;
+      visit(hash.entries[i].key);
+      visit(hash.entries[i].value);
+    }
+  } else {
+    const auto& instance = static_cast<const Instance&>(cell);
+    for (const ClassInfo* c = instance.cls; c; c = c->parent)
+      for (const auto& v : c->variables) {
+        if (v.type < StaticType::String || v.type > StaticType::Data) continue;
+        const int count = v.array_size < 0 ? 1 : v.array_size;
+        for (int i = 0; i < count; ++i)
+          visit(Value::of(static_cast<Tag>(v.type), instance.slots[v.slot + static_cast<std::uint32_t>(i)].ref));
+      }
+  }
+}
+
+/// Numbers for cells: containers first, the rest as they are met.
+class Numbering {
+ public:
+  std::uint64_t number(const Cell* cell) const { return numbers_.at(cell); }
+  bool add(const Cell* cell) {
+    const bool fresh = numbers_.emplace(cell, numbers_.size()).second;
+    if (fresh) cells_.push_back(cell);
+    return fresh;
+  }
+  const std::vector<const Cell*>& cells() const { return cells_; }
+
+ private:
+  std::unordered_map<const Cell*, std::uint64_t> numbers_;  // looked up only
+  std::vector<const Cell*> cells_;
+};
+
+void put_head(ByteWriter& out, const Container& cell) {
+  out.put(cell.tag);
+  if (cell.tag == Tag::List) {
+    const auto& list = static_cast<const ListCell&>(cell);
+    out.put(list.serial);
+  } else if (cell.tag == Tag::Hash) {
+    out.put(static_cast<const HashCell&>(cell).serial);
+  } else {
+    const auto& instance = static_cast<const Instance&>(cell);
+    out.put(instance.cls->id);
+    out.put(instance.serial);
+    out.put(instance.state);
+    out.put(static_cast<std::uint8_t>(instance.auto_free));
+    out.put(instance.id.index);
+    out.put(instance.id.generation);
+  }
+}
+
+void put_value(ByteWriter& out, const Value& v, const Numbering& numbering) {
+  out.put(v.tag);
+  switch (v.tag) {
+    case Tag::Null: break;
+    case Tag::Int: out.put(v.i); break;
+    case Tag::Double: out.put(v.d); break;
+    case Tag::Vector: out.put(v.vector()); break;
+    default: out.put(v.ref ? numbering.number(v.ref) : kNull); break;
+  }
+}
+
+}  // namespace
+
+void Machine::save(ByteWriter& out) const {
+  Numbering numbering;
+  std::unordered_map<const Cell*, std::uint32_t> constants;
+  for (std::uint32_t i = 0; i < strings_.size(); ++i)
+    if (strings_[i]) constants.emplace(strings_[i], i);
+  const auto containers = heap_->containers();
+  for (const auto* cell : containers) numbering.add(cell);
+  for (const auto* cell : containers)
+    for_each_value(*cell, [&](const Value& v) {
+      if (v.is_reference() && v.ref) numbering.add(v.ref);
+    });
+  for (const auto* cell : heap_->waiting()) numbering.add(cell);
+
+  out.put(static_cast<std::uint64_t>(containers.size()));
+  for (const auto* cell : containers) put_head(out, *cell);
+  out.put(static_cast<std::uint64_t>(numbering.cells().size() - containers.size()));
+  for (std::size_t i = containers.size(); i < numbering.cells().size(); ++i) {
+    const Cell* cell = numbering.cells()[i];
+    out.put(cell->tag);
+    const auto constant = constants.find(cell);
+    if (cell->tag == Tag::String) {
+      out.put(static_cast<std::uint8_t>(constant != constants.end()));
+      if (constant != constants.end()) out.put(constant->second);
+      else out.put(static_cast<const StringCell*>(cell)->view());
+    } else if (cell->tag == Tag::Matrix) {
+      out.put(static_cast<const MatrixCell*>(cell)->m);
+    } else if (cell->tag == Tag::Pointer) {
+      out.put(static_cast<const PointerCell*>(cell)->serial);
+    } else {
+      const auto* data = static_cast<const DataCell*>(cell);
+      out.put(data->serial);
+      out.put(std::string_view(reinterpret_cast<const char*>(data->bytes.data()), data->bytes.size()));
+    }
+  }
+  for (const auto* cell : containers) {
+    if (cell->tag == Tag::List) out.put(static_cast<std::uint64_t>(static_cast<const ListCell*>(cell)->size));
+    if (cell->tag == Tag::Hash) out.put(static_cast<std::uint64_t>(static_cast<const HashCell*>(cell)->count_live));
+    if (cell->tag == Tag::Object) {
+      const auto* instance = static_cast<const Instance*>(cell);
+      out.raw(instance->slots, instance->cls->slot_count * sizeof(Slot));  // references follow, by number
+    }
+    for_each_value(*cell, [&](const Value& v) { put_value(out, v, numbering); });
+  }
+  heap_->save_state(out, [&](const Cell* cell) { return numbering.number(cell); });
+  out.put(controller_ ? numbering.number(controller_) : kNull);
+  out.put(survived_errors_);
+}
+
+void Machine::load(ByteReader& in) {
+  auto heap = std::make_unique<Heap>(memory_, *this);
+  auto constants = make_constants(*heap);
+  std::vector<Cell*> cells;
+  const auto cell_at = [&](std::uint64_t number) {
+    if (number >= cells.size()) ByteReader::fail();
+    return cells[static_cast<std::size_t>(number)];
+  };
+  const auto reference = [&](Tag tag) -> Cell* {
+    const auto number = in.get<std::uint64_t>();
+    if (number == kNull) return nullptr;
+    Cell* cell = cell_at(number);
+    if (cell->tag != tag) ByteReader::fail();
+    return cell;
+  };
+  const auto get_value = [&]() {
+    const auto tag = in.get<Tag>();
+    switch (tag) {
+      case Tag::Null: return Value();
+      case Tag::Int: return Value::of(in.get<std::int32_t>());
+      case Tag::Double: return Value::of(in.get<double>());
+      case Tag::Vector: return Value::of(in.get_vector());
+      default: break;
+    }
+    if (tag > Tag::Data) ByteReader::fail();
+    return Value::of(tag, reference(tag));
+  };
+
+  const auto containers = in.get_count(9);
+  std::vector<Instance*> instances;
+  for (std::size_t i = 0; i < containers; ++i) {
+    const auto tag = in.get<Tag>();
+    if (tag == Tag::List) {
+      auto* list = heap->list();
+      list->serial = in.get<std::uint64_t>();
+      cells.push_back(list);
+    } else if (tag == Tag::Hash) {
+      auto* hash = heap->hash();
+      hash->serial = in.get<std::uint64_t>();
+      cells.push_back(hash);
+    } else if (tag == Tag::Object) {
+      const auto cls = in.get<ClassId>();
+      if (cls >= program_->classes().size()) ByteReader::fail();
+      auto* instance = heap->instance(program_->cls(cls));
+      instance->serial = in.get<std::uint64_t>();
+      instance->state = in.get<Instance::State>();
+      instance->auto_free = in.get_bool();
+      instance->id.index = in.get<std::uint32_t>();
+      instance->id.generation = in.get<std::uint32_t>();
+      if (instance->state > Instance::State::Freed) ByteReader::fail();
+      if (instance->state != Instance::State::Freed && !instance->auto_free) heap->retain(instance);
+      instances.push_back(instance);
+      cells.push_back(instance);
+    } else {
+      ByteReader::fail();
+    }
+  }
+  const auto others = in.get_count(2);
+  for (std::size_t i = 0; i < others; ++i) {
+    const auto tag = in.get<Tag>();
+    if (tag == Tag::String) {
+      if (in.get_bool()) {
+        const auto number = in.get<std::uint32_t>();
+        if (number >= constants.size() || !constants[number]) ByteReader::fail();
+        cells.push_back(constants[number]);
+      } else {
+        auto* string = heap->string(in.get_string());
+        if (!string) ByteReader::fail();
+        cells.push_back(string);
+      }
+    } else if (tag == Tag::Matrix) {
+      cells.push_back(heap->matrix(in.get_matrix()));
+    } else if (tag == Tag::Pointer) {
+      auto* pointer = heap->pointer(nullptr);  // what it pointed to, a file perhaps, is not part of a snapshot
+      pointer->serial = in.get<std::uint64_t>();
+      cells.push_back(pointer);
+    } else if (tag == Tag::Data) {
+      const auto serial = in.get<std::uint64_t>();
+      auto* data = heap->data(in.get_string());
+      if (!data) ByteReader::fail();
+      data->serial = serial;
+      cells.push_back(data);
+    } else {
+      ByteReader::fail();
+    }
+  }
+  for (std::size_t i = 0; i < containers; ++i) {
+    if (cells[i]->tag == Tag::List) {
+      auto& list = static_cast<ListCell&>(*cells[i]);
+      for (auto n = in.get_count(); n > 0; --n) heap->push(list, get_value());
+    } else if (cells[i]->tag == Tag::Hash) {
+      auto& hash = static_cast<HashCell&>(*cells[i]);
+      for (auto n = in.get_count(); n > 0; --n) {
+        const auto key = get_value();
+        heap->set(hash, key, get_value());
+      }
+    } else {
+      auto& instance = static_cast<Instance&>(*cells[i]);
+      in.raw(instance.slots, instance.cls->slot_count * sizeof(Slot));
+      for (const auto slot : instance.cls->reference_slots) instance.slots[slot].ref = nullptr;
+      for (const ClassInfo* c = instance.cls; c; c = c->parent)
+        for (const auto& v : c->variables) {
+          if (v.type < StaticType::String || v.type > StaticType::Data) continue;
+          const int count = v.array_size < 0 ? 1 : v.array_size;
+          for (int k = 0; k < count; ++k) {
+            const auto value = get_value();
+            if (static_cast<int>(value.tag) != static_cast<int>(v.type)) ByteReader::fail();
+            heap->store(instance.slots[v.slot + static_cast<std::uint32_t>(k)], value.ref);
+          }
+        }
+    }
+  }
+  heap->load_state(in, cell_at);
+  auto* controller = static_cast<Instance*>(reference(Tag::Object));
+  const auto survived = in.get<std::uint64_t>();
+  for (auto* instance : instances) {
+    if (instance->state == Instance::State::Freed) continue;
+    if (!world_.alive(instance->id)) ByteReader::fail();
+    world_.set_user(instance->id, reinterpret_cast<std::uint64_t>(instance));
+  }
+  result_ = Value();
+  heap_ = std::move(heap);
+  strings_ = std::move(constants);
+  controller_ = controller;
+  survived_errors_ = survived;
+}
+
+void Machine::hash(Hasher& hasher) const {
+  Numbering numbering;
+  const auto add_reference = [&](const Value& v) {
+    if (!v.ref) {
+      hasher.add(kNull);
+    } else if (is_container(v.tag)) {
+      numbering.add(v.ref);
+      hasher.add(numbering.number(v.ref));
+    } else if (v.tag == Tag::String) {
+      hasher.add(v.string()->view());
+    } else if (v.tag == Tag::Matrix) {
+      hasher.add(v.matrix()->m);
+    } else if (v.tag == Tag::Data) {
+      const auto& bytes = v.data()->bytes;
+      hasher.add(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    } else {
+      hasher.add(v.pointer()->serial);
+    }
+  };
+  const auto add_value = [&](const Value& v) {
+    hasher.add(static_cast<std::uint64_t>(v.tag));
+    switch (v.tag) {
+      case Tag::Null: break;
+      case Tag::Int: hasher.add(static_cast<std::uint64_t>(static_cast<std::uint32_t>(v.i))); break;
+      case Tag::Double: hasher.add(v.d); break;
+      case Tag::Vector: hasher.add(v.vector()); break;
+      default: add_reference(v); break;
+    }
+  };
+  for (const auto id : world_.objects()) numbering.add(reinterpret_cast<const Instance*>(world_.user(id)));
+  for (std::size_t i = 0; i < numbering.cells().size(); ++i) {
+    const auto& cell = static_cast<const Container&>(*numbering.cells()[i]);
+    hasher.add(static_cast<std::uint64_t>(cell.tag));
+    if (cell.tag == Tag::Object) {
+      const auto& instance = static_cast<const Instance&>(cell);
+      hasher.add(static_cast<std::uint64_t>(instance.cls->id));
+      hasher.add(instance.serial);
+      hasher.add(static_cast<std::uint64_t>(instance.state) * 2 + (instance.auto_free ? 1 : 0));
+      std::size_t next = 0;
+      const auto& references = instance.cls->reference_slots;
+      for (std::uint32_t slot = 0; slot < instance.cls->slot_count; ++slot) {
+        if (next < references.size() && references[next] == slot) ++next;
+        else hasher.add(instance.slots[slot].bits);
+      }
+    }
+    for_each_value(cell, add_value);
+  }
+  hasher.add(controller_ ? controller_->serial : 0);
+}
+
+}  // namespace breve::steve

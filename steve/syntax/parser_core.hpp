@@ -1,0 +1,226 @@
+// The recursive-descent parser behind parse(). Its parts: parser.cpp (tokens, errors, recovery, entry points),
+// declarations.cpp, methods.cpp, statements.cpp, expressions.cpp, primaries.cpp, calls.cpp, strings.cpp.
+// Private to this folder.
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "steve/syntax/parser.hpp"
+#include "steve/syntax/words.hpp"
+
+namespace breve::steve {
+
+/// A sign of one or two characters as a number, so that comparing tokens is cheap.
+constexpr std::uint16_t sign(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<std::uint16_t>(static_cast<unsigned char>(text[i])); };
+  return text.size() == 1 ? byte(0) : static_cast<std::uint16_t>(byte(0) | (byte(1) << 8U));
+}
+
+/// Thrown to leave a construct that cannot be parsed; caught where parsing can resume.
+struct SyntaxError {
+  Diagnostic diagnostic;
+  bool too_deep = false;  // resume only at the next method
+};
+
+class Parser {
+ public:
+  Parser(const std::vector<Token>& tokens, const Defines& defines, Defines* new_defines, Diagnostics& diagnostics,
+         const Sources& sources, bool embedded);
+  ast::File file();
+  ast::Method interactive();
+
+ private:
+  struct Item {
+    const Token* token;
+    std::uint16_t sign = 0;   // of punctuation
+    Word word = Word::None;   // of a reserved name
+    bool block_like = false;  // of '{': statements follow, not the items of a list or an index
+    bool has_comma = false;   // of '{': a comma stands directly inside
+    std::uint32_t match = 0;  // of '{': index of its '}', 0 if none
+  };
+  struct Doc {
+    std::size_t before;  // index of the item that follows
+    std::string_view text;
+  };
+  /// One more level of nesting for as long as it lives.
+  class Nest {
+   public:
+    explicit Nest(Parser& parser);
+    Nest(const Nest&) = delete;
+    Nest& operator=(const Nest&) = delete;
+    ~Nest() { --parser_.depth_; }
+
+   private:
+    Parser& parser_;
+  };
+
+  // --- tokens (parser.cpp)
+  const Item& item(std::size_t ahead = 0) const;
+  const Token& token(std::size_t ahead = 0) const { return *item(ahead).token; }
+  const Token& previous() const { return *items_[pos_ > 0 ? pos_ - 1 : 0].token; }
+  bool at(std::string_view text, std::size_t ahead = 0) const { return item(ahead).sign == sign(text); }
+  bool at_word(Word word, std::size_t ahead = 0) const { return item(ahead).word == word; }
+  bool at_text(std::string_view name, std::size_t ahead = 0) const;
+  bool at_name(std::size_t ahead = 0) const;  // a name that is no reserved word
+  bool at_closing() const;
+  bool at_end() const { return token().kind == TokenKind::End; }
+  bool at_kind(TokenKind kind, std::size_t ahead = 0) const { return token(ahead).kind == kind; }
+  void advance();
+  bool accept(std::string_view text);
+  void expect(std::string_view text, std::string_view where);
+  std::string expect_name(std::string_view what, Span& span);
+  bool at_member_header(std::size_t ahead = 0) const;  // `+ to NAME`, `- to NAME`, `= to NAME`
+  bool at_run_on_header() const;
+  bool at_variables_header(std::size_t ahead = 0) const;
+  bool at_class_header(std::size_t ahead = 0) const;
+  bool at_type(std::size_t ahead = 0) const;  // "(" and a type
+  const ast::Constant* constant_named(std::string_view name) const;
+  std::string describe(std::size_t ahead = 0) const;
+  Span span_from(std::size_t start) const;
+  Span after_previous() const;
+  void find_braces();
+
+  // --- errors (parser.cpp)
+  void report(Diagnostic diagnostic);
+  void error(const Span& span, std::string code, std::string message, std::string help = {});
+  void lint(const Span& span, std::string code, std::string message, std::string help = {});
+  [[noreturn]] void fail(const Span& span, std::string code, std::string message, std::string help = {}) const;
+  [[noreturn]] void fail_expected(std::string_view what, std::string help = {}) const;
+  void missing(std::string_view text, std::string_view where, std::string help = {});
+
+  // --- declarations.cpp
+  void top_level(ast::File& file);
+  void skip_to_top_level();
+  void directive(ast::File& file);
+  void directive_period();
+  double version_number();
+  void use_version(ast::Directive& directive);
+  void define();
+  void controller(ast::File& file);
+  void class_declaration(ast::File& file);
+  void class_clauses(ast::Class& result);
+  void class_body(ast::Class& result);
+  void variables(ast::Class& result);
+  bool stray_brace() const;
+  void stray_member();
+  void members(ast::Class& result);
+  std::string docs(std::size_t from, std::size_t to) const;  // before the items from + 1 ... to
+
+  // --- methods.cpp
+  void method(ast::Class& owner);
+  void method_header(ast::Method& result);
+  void parameter(ast::Method& result);
+  void native_body(ast::Method& result);
+  void body(ast::Method& result);
+  bool at_declaration() const;
+  void declaration(std::vector<ast::Variable>& into, std::string_view what);
+  ast::TypeRef type();
+  ast::TypeRef array_type();
+  [[noreturn]] void fail_type();
+  ast::Constant constant();
+  double number(std::string_view where);
+  std::array<double, 3> number_row(std::string_view where);
+
+  // --- statements.cpp
+  ast::StmtPtr statement();
+  ast::StmtPtr statement_proper();
+  ast::StmtPtr block(std::size_t start);
+  ast::StmtPtr if_statement(std::size_t start);
+  ast::StmtPtr while_statement(std::size_t start);
+  ast::StmtPtr for_statement(std::size_t start);
+  ast::StmtPtr foreach_statement(std::size_t start);
+  ast::StmtPtr print_statement(std::size_t start);
+  ast::StmtPtr simple_statement(std::size_t start);
+  ast::ExprPtr condition();
+  ast::ExprPtr header_part();
+  void lint_condition(const ast::Expr& condition);
+  void read_statements(std::vector<ast::StmtPtr>& into);
+  void misplaced_declaration();
+  void expect_colon(std::string_view where);
+  void expect_period();
+  bool brace_opens_block() const;
+  void recover(std::size_t start, const SyntaxError& problem);
+  void skip_statement(std::size_t start);
+  void leave_braces(std::size_t start);
+  bool starts_statement(std::size_t ahead) const;
+  bool at_statement_word(std::size_t ahead) const;
+  std::size_t run_on_line(std::size_t start) const;
+  template <typename Node>
+  ast::StmtPtr make_statement(std::size_t start, Node node);
+
+  // --- expressions.cpp
+  ast::ExprPtr expression();
+  ast::ExprPtr value();  // an expression where a beginner may have forgotten the parentheses of a call
+  ast::ExprPtr assignment(bool statement_level);
+  void check_target(const ast::Expr& target);
+  ast::ExprPtr chain(int level);
+  ast::ExprPtr prefix();
+  ast::ExprPtr negation();
+  ast::ExprPtr list_operation();
+  ast::ExprPtr insert_operation();
+  ast::ExprPtr sort_operation();
+  void lint_chain(const ast::Chain& chain, std::size_t first_end);
+  template <typename Node>
+  ast::ExprPtr make(std::size_t start, Node node);
+
+  // --- primaries.cpp
+  ast::ExprPtr postfix();
+  void deepen();
+  ast::ExprPtr member(std::size_t start, ast::ExprPtr base);
+  ast::ExprPtr counted_new(std::size_t start, ast::ExprPtr count);
+  ast::ExprPtr primary();
+  ast::ExprPtr name_expression(std::size_t start);
+  ast::ExprPtr word_expression(std::size_t start);
+  ast::ExprPtr parenthesised(std::size_t start);
+  ast::ExprPtr vector_rest(std::size_t start, ast::ExprPtr x);
+  ast::ExprPtr magnitude(std::size_t start);
+  ast::ExprPtr list_literal(std::size_t start);
+  ast::ExprPtr matrix_literal(std::size_t start);
+  std::vector<ast::ExprPtr> items(std::string_view close, std::string_view where);
+  std::string class_name(Span& span);
+
+  // --- calls.cpp
+  bool at_call(std::size_t start) const;
+  bool at_stray_call() const;
+  bool at_assignment(std::size_t ahead) const;
+  bool run_on_call() const;
+  ast::ExprPtr call(std::size_t start, ast::ExprPtr receiver);
+  void unparenthesised_call();
+  Diagnostic call_mistake() const;
+
+  // --- strings.cpp
+  ast::ExprPtr string_literal();
+  ast::ExprPtr lone_expression();
+  friend class Interpolation;
+
+  std::vector<Item> items_;
+  std::vector<Doc> docs_;
+  std::size_t pos_ = 0;
+  const Defines& defines_;
+  Defines* new_defines_;  // null: @define is not allowed here
+  Diagnostics& diagnostics_;
+  const Sources& sources_;
+  bool embedded_;
+  bool interactive_ = false;
+  bool in_header_ = false;  // of an if, while or foreach: a block's brace cannot be a list's
+  int depth_ = 0;
+  int deepest_ = 0;                // depth of the deepest node of the primary being parsed
+  std::size_t primary_start_ = 1;  // items [start, end) of the primary that was parsed last
+  std::size_t primary_end_ = 0;
+  std::size_t sign_at_ = 0;  // the item behind the last unary minus
+  std::size_t errors_ = 0;
+  std::size_t lints_ = 0;
+  std::size_t class_close_ = 0;  // the item that closes the class being parsed, 0 if none does
+  std::uint32_t last_error_offset_ = 0;
+  bool cut_off_ = false;                    // the scanner gave up: what the parser misses is no news
+  std::set<std::uint32_t> garbled_lines_;   // lines with errors of the scanner: what the parser says there is no news
+  std::vector<ast::Variable> late_locals_;  // declared after a statement: reported, and yet declared
+  std::set<Word> misused_;                  // reserved words that were reported as names
+};
+
+}  // namespace breve::steve

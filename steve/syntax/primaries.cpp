@@ -1,0 +1,263 @@
+// Primaries and what can follow them: {index}, ::member, and the count of `n new C`.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "steve/syntax/parser_nodes.hpp"
+
+namespace breve::steve {
+
+// The node just made wraps what was parsed before it, which is one level deeper now.
+void Parser::deepen() {
+  if (++deepest_ <= ast::kMaxNesting) return;
+  throw SyntaxError{
+      {Severity::Error, "nesting", "nested too deeply",
+       fmt::format("at most {} levels are possible: split this into several statements", ast::kMaxNesting),
+       token().span},
+      true};
+}
+
+ast::ExprPtr Parser::postfix() {
+  const std::size_t start = pos_;
+  const int outer_deepest = deepest_;
+  deepest_ = depth_;
+  ast::ExprPtr result = primary();
+  for (;;) {
+    if (at("{") && !item().block_like && !at("}", 1)) {
+      deepen();
+      advance();
+      ast::ExprPtr index = value();
+      expect("}", "after the index");
+      result = make(start, ast::IndexExpr{std::move(result), std::move(index)});
+    } else if (at("::")) {
+      deepen();
+      result = member(start, std::move(result));
+    } else if (at_word(Word::New)) {
+      deepen();
+      result = counted_new(start, std::move(result));
+    } else {
+      break;
+    }
+  }
+  if (at("{") && at("}", 1) && !token().starts_line) {
+    fail(token().span, "syntax", "the index between the braces is missing");
+  }
+  deepest_ = std::max(deepest_, outer_deepest);
+  primary_start_ = start;
+  primary_end_ = pos_;
+  return result;
+}
+
+// The letters x, y and z name components in either case.
+ast::ExprPtr Parser::member(std::size_t start, ast::ExprPtr base) {
+  const bool blank = token().space_after;
+  advance();
+  if (!at_kind(TokenKind::Name)) fail_expected("the name of a member after '::'");
+  if (blank) error(previous().span, "syntax", "no blank is allowed after '::'", "write the name directly behind it");
+  const std::string_view name = token().text;
+  char letter = 0;
+  std::string key(name);
+  if (name.size() == 1 && std::string_view("xyzXYZ").find(name[0]) != std::string_view::npos) {
+    letter = name[0];
+    if (letter < 'a') key[0] = static_cast<char>(letter - 'A' + 'a');
+  }
+  advance();
+  return make(start, ast::Member{std::move(base), std::move(key), letter});
+}
+
+ast::ExprPtr Parser::counted_new(std::size_t start, ast::ExprPtr count) {
+  const auto* constant = std::get_if<ast::ConstantExpr>(&count->node);
+  const bool known = std::holds_alternative<ast::IntLit>(count->node) ||
+                     (constant != nullptr && std::holds_alternative<std::int32_t>(constant->constant.value));
+  if (!known) {
+    lint(count->span, "lint-new-count", "the count is not a literal: exactly 1 gives an object, any other count a list",
+         "to get a list always, push single objects onto a list");
+  }
+  advance();
+  Span class_span;
+  std::string name = class_name(class_span);
+  return make(start, ast::NewExpr{std::move(name), class_span, std::move(count)});
+}
+
+std::string Parser::class_name(Span& span) { return expect_name("a class", span); }
+
+ast::ExprPtr Parser::primary() {
+  const std::size_t start = pos_;
+  switch (token().kind) {
+    case TokenKind::Int: {
+      const std::int32_t value = token().int_value;
+      if (value < 0 && sign_at_ != pos_) {
+        error(token().span, "integer-too-large", "2147483648 does not fit in an int of 32 bits (at most 2147483647)",
+              "write a float, for example with '.0' behind it");
+      }
+      advance();
+      return make(start, ast::IntLit{value});
+    }
+    case TokenKind::Double: {
+      const double value = token().double_value;
+      advance();
+      return make(start, ast::DoubleLit{value});
+    }
+    case TokenKind::String: return string_literal();
+    case TokenKind::Name: return item().word == Word::None ? name_expression(start) : word_expression(start);
+    default: break;
+  }
+  switch (item().sign) {
+    case sign("("): return parenthesised(start);
+    case sign("|"): return magnitude(start);
+    case sign("{"):
+      if (in_header_ && item().block_like) fail_expected("an expression");
+      return list_literal(start);
+    case sign("["): return matrix_literal(start);
+    case sign("@@DEBUG@@"):
+      advance();
+      if (!at("(")) fail_expected("'(' after @@DEBUG@@");
+      return parenthesised(pos_);
+    case sign("||"):
+      fail(token().span, "syntax", "'||' means logical or, here an expression is expected",
+           "write a blank between nested bars: | |a| - b |");
+    case sign("@"):
+      fail(token().span, "syntax", fmt::format("'@{}' is a directive, and stands outside of classes", token(1).text));
+    default: fail_expected("an expression");
+  }
+}
+
+ast::ExprPtr Parser::name_expression(std::size_t start) {
+  std::string name(token().text);
+  if (const ast::Constant* constant = constant_named(name)) {
+    advance();
+    return make(start, ast::ConstantExpr{*constant, std::move(name)});
+  }
+  advance();
+  if (accept("(")) {
+    std::vector<ast::ExprPtr> arguments = items(")", "after the arguments");
+    return make(start, ast::FunctionCall{std::move(name), std::move(arguments)});
+  }
+  if (accept("[")) {
+    ast::ExprPtr index = value();
+    expect("]", "after the index");
+    return make(start, ast::ArrayItem{std::move(name), std::move(index)});
+  }
+  return make(start, ast::Name{std::move(name)});
+}
+
+ast::ExprPtr Parser::word_expression(std::size_t start) {
+  const Word word = item().word;
+  if (misused_.contains(word)) return name_expression(start);
+  switch (word) {
+    case Word::Self: advance(); return make(start, ast::Self{});
+    case Word::Super: advance(); return make(start, ast::Super{});
+    case Word::Random: {
+      advance();
+      expect("[", "after 'random'");
+      ast::ExprPtr bound = value();
+      expect("]", "after the bound of 'random'");
+      return make(start, ast::RandomExpr{std::move(bound)});
+    }
+    case Word::All: {
+      advance();
+      Span class_span;
+      std::string name = class_name(class_span);
+      return make(start, ast::AllExpr{std::move(name), class_span});
+    }
+    case Word::New: {
+      advance();
+      if (at_kind(TokenKind::String)) {
+        const Span class_span = token().span;
+        std::string name(token().text);
+        advance();
+        return make(start, ast::NewExpr{std::move(name), class_span, nullptr});
+      }
+      Span class_span;
+      std::string name = class_name(class_span);
+      return make(start, ast::NewExpr{std::move(name), class_span, nullptr});
+    }
+    default: break;
+  }
+  fail(token().span, "syntax", fmt::format("expected an expression, got the reserved word '{}'", token().text),
+       starts_statement(0) ? "if a statement is meant, the one before it is unfinished"
+                           : "reserved words cannot name variables");
+}
+
+// (e), (method call), or the vector (e, e, e).
+ast::ExprPtr Parser::parenthesised(std::size_t start) {
+  advance();
+  const std::size_t inner = pos_;
+  if (at(")")) fail(token().span, "syntax", "there is nothing between the parentheses");
+  ast::ExprPtr result = expression();
+  if (at_call(inner)) {
+    result = call(inner, std::move(result));
+  } else if (at_stray_call()) {
+    unparenthesised_call();
+  }
+  if (at(",")) return vector_rest(start, std::move(result));
+  expect(")", "to close the parenthesis");
+  result->span = span_from(start);
+  result->parenthesised = true;
+  return result;
+}
+
+ast::ExprPtr Parser::vector_rest(std::size_t start, ast::ExprPtr x) {
+  if (std::holds_alternative<ast::Call>(x->node) && !x->parenthesised) {
+    error(x->span, "call-needs-parentheses", "a method call used as a component needs parentheses of its own");
+  }
+  expect(",", "between the components of a vector");
+  ast::ExprPtr y = value();
+  expect(",", "and a third component of the vector");
+  ast::ExprPtr z = value();
+  if (at(","))
+    fail(token().span, "syntax", "a vector has three components", "a list is written in braces: {a, b, c, d}");
+  expect(")", "after the third component of the vector");
+  return make(start, ast::VectorLit{std::move(x), std::move(y), std::move(z)});
+}
+
+ast::ExprPtr Parser::magnitude(std::size_t start) {
+  advance();
+  ast::ExprPtr operand = value();
+  if (at("||")) {
+    fail(token().span, "syntax", "'||' means logical or and closes no bars",
+         "write a blank between nested bars: | |a| - |b| |");
+  }
+  expect("|", "to close the bars");
+  return make(start, ast::Magnitude{std::move(operand)});
+}
+
+ast::ExprPtr Parser::list_literal(std::size_t start) {
+  advance();
+  std::vector<ast::ExprPtr> elements = items("}", "after the elements of the list");
+  return make(start, ast::ListLit{std::move(elements)});
+}
+
+// Values with commas between them, up to the closing sign.
+std::vector<ast::ExprPtr> Parser::items(std::string_view close, std::string_view where) {
+  std::vector<ast::ExprPtr> result;
+  if (accept(close)) return result;
+  do {
+    if (!result.empty() && at(close)) fail_expected("a value after the comma", "leave out the last comma");
+    result.push_back(value());
+  } while (accept(","));
+  if (!accept(close)) fail_expected(fmt::format("',' or '{}' {}", close, where));
+  return result;
+}
+
+ast::ExprPtr Parser::matrix_literal(std::size_t start) {
+  advance();
+  ast::MatrixLit matrix;
+  for (std::size_t row = 0; row < 3; ++row) {
+    if (row > 0) expect(",", "between the rows of a matrix");
+    if (!at("(")) fail_expected("a row of the matrix", "a matrix is [ (a, b, c), (d, e, f), (g, h, i) ]");
+    ast::ExprPtr vector = parenthesised(pos_);
+    auto* components = std::get_if<ast::VectorLit>(&vector->node);
+    if (components == nullptr || vector->parenthesised) {
+      fail(vector->span, "syntax", "a row of a matrix is three numbers in parentheses",
+           "a matrix is [ (a, b, c), (d, e, f), (g, h, i) ]");
+    }
+    matrix.elements[3 * row] = std::move(components->x);
+    matrix.elements[3 * row + 1] = std::move(components->y);
+    matrix.elements[3 * row + 2] = std::move(components->z);
+  }
+  expect("]", "after the third row of the matrix");
+  return make(start, std::move(matrix));
+}
+
+}  // namespace breve::steve

@@ -1,0 +1,213 @@
+// The house of docs/architecture.md, checked from the sources themselves: who includes whom, how long files are, and
+// that each folder and file says what it is. Usage: house SOURCE_DIR. Prints every offence; exits 1 if there is one.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A part of the house: a folder, and which others it may include. Everything may include itself.
+struct Part {
+  std::string_view folder;
+  std::set<std::string_view> may_include;
+};
+
+// KEEP IN STEP: docs/architecture.md, "Arrows".
+const std::vector<Part> kParts = {
+    {"runtime/base", {}},
+    {"runtime/solid", {"runtime/base"}},
+    {"runtime/kinematics", {"runtime/base"}},
+    {"runtime/space", {"runtime/base"}},
+    {"runtime/planar", {"runtime/base"}},
+    {"runtime/articulated", {"runtime/base"}},
+    {"runtime/contact", {"runtime/base", "runtime/kinematics", "runtime/solid", "runtime/space"}},
+    {"runtime/patches", {"runtime/base"}},
+    {"runtime/learn", {"runtime/base"}},
+    {"runtime/render", {"runtime/base"}},
+    {"runtime/store", {"runtime/base"}},
+    {"runtime/world",
+     {"runtime/base", "runtime/solid", "runtime/kinematics", "runtime/space", "runtime/planar", "runtime/articulated",
+      "runtime/contact", "runtime/patches", "runtime/learn", "runtime/render", "runtime/store"}},
+    {"steve/syntax", {"runtime/base"}},
+    {"steve/compile", {"runtime/base", "steve/syntax", "steve/machine"}},
+    {"steve/machine", {"runtime/base", "runtime/world", "steve/syntax", "steve/compile"}},
+    {"steve/library",
+     {"runtime/base", "runtime/world", "runtime/kinematics", "runtime/solid", "runtime/patches", "runtime/learn",
+      "runtime/render", "runtime/store", "steve/machine", "steve/compile"}},
+    {"hostapi/include", {}},
+    {"hostapi/src", {"hostapi/include", "steve/machine", "steve/compile", "steve/syntax", "runtime/base", "runtime/world",
+                     "runtime/kinematics", "runtime/solid"}},
+    {"hostapi/lua", {"hostapi/include"}},
+    {"hostapi/command", {"hostapi/include"}},
+    {"samples/hosts", {"hostapi/include"}},
+};
+
+/// Headers that are words shared within a floor of the house, and the floor. docs/architecture.md says why each is one.
+const std::map<std::string_view, std::string_view> kVocabulary = {
+    {"runtime/solid/shape.hpp", "runtime/"},
+    {"runtime/world/resource.hpp", "runtime/"},
+    {"steve/library/library.hpp", "steve/compile"},
+};
+
+/// Which of the libraries we stand on may be seen where. A library that is not listed is not restricted.
+const std::map<std::string_view, std::vector<std::string_view>> kLibraries = {
+    {"bullet/", {"runtime/solid", "runtime/space", "runtime/contact"}},
+    {"btBullet", {"runtime/solid", "runtime/space", "runtime/contact"}},
+    {"BulletCollision/", {"runtime/solid", "runtime/space", "runtime/contact"}},
+    {"LinearMath/", {"runtime/solid", "runtime/space", "runtime/contact"}},
+    {"box2d/", {"runtime/planar"}},
+    {"lua", {"hostapi/lua"}},
+    {"CLI/", {"hostapi/command"}},
+    {"breve/", {"hostapi/include", "hostapi/src", "hostapi/lua", "hostapi/command", "samples/hosts"}},
+};
+
+constexpr std::size_t kLongest = 500;
+
+/// Files that may be longer, each with its reason.
+const std::map<std::string_view, std::string_view> kMayBeLonger = {
+    {"steve/machine/interpreter.cpp", "the interpreter's loop is one function, alone in its file"},
+    {"hostapi/include/breve/breve.h", "the header is the manual of the library"},
+    {"steve/library/Control.tz", "one class, with a hundred and twenty selectors"},
+};
+
+class House {
+ public:
+  explicit House(fs::path root) : root_(std::move(root)) {}
+
+  int check() {
+    for (const char* top : {"runtime", "steve", "hostapi", "samples"})
+      if (fs::exists(root_ / top))
+        for (const auto& entry : fs::recursive_directory_iterator(root_ / top))
+          if (entry.is_regular_file() && is_source(entry.path())) check_file(entry.path());
+    check_readmes();
+    for (const std::string& offence : offences_) std::cout << offence << '\n';
+    std::cout << files_ << " files, " << includes_ << " includes, " << offences_.size() << " offences\n";
+    if (files_ == 0) std::cout << "no sources under " << root_ << ": wrong folder?\n";
+    return offences_.empty() && files_ > 0 ? 0 : 1;
+  }
+
+ private:
+  static bool is_source(const fs::path& path) {
+    static const std::set<std::string> kExtensions = {".h", ".hpp", ".c", ".cpp", ".tz"};
+    return kExtensions.count(path.extension().string()) > 0;
+  }
+
+  static const Part* part_of(std::string_view file) {
+    const Part* best = nullptr;
+    for (const Part& part : kParts)
+      if (file.size() > part.folder.size() && file.substr(0, part.folder.size()) == part.folder &&
+          file[part.folder.size()] == '/' && (!best || part.folder.size() > best->folder.size()))
+        best = &part;
+    return best;
+  }
+
+  void offend(const std::string& file, std::size_t line, const std::string& what) {
+    offences_.insert(file + ":" + std::to_string(line) + ": " + what);
+  }
+
+  void check_file(const fs::path& path) {
+    const std::string file = fs::relative(path, root_).generic_string();
+    const bool code = path.extension() != ".tz";
+    ++files_;
+    std::ifstream in(path);
+    std::string line;
+    std::size_t number = 0;
+    while (std::getline(in, line)) {
+      ++number;
+      if (number == 1) check_first_line(file, line);
+      if (code) check_include(file, number, line);
+    }
+    if (number > kLongest && kMayBeLonger.find(file) == kMayBeLonger.end())
+      offend(file, number, "longer than " + std::to_string(kLongest) + " lines; split it, or give a reason in house.cpp");
+  }
+
+  void check_first_line(const std::string& file, const std::string& line) {
+    const bool says = line.rfind("//", 0) == 0 || line.rfind("/*", 0) == 0 || line.rfind("%", 0) == 0 ||
+                      line.rfind("#", 0) == 0;
+    if (!says || line.rfind("#include", 0) == 0 || line.rfind("#pragma", 0) == 0)
+      offend(file, 1, "the first line does not say what the file is");
+  }
+
+  void check_include(const std::string& file, std::size_t number, const std::string& line) {
+    std::istringstream words(line);
+    std::string word, name;
+    words >> word;
+    if (word != "#include") return;
+    words >> name;
+    if (name.size() < 3) return;
+    ++includes_;
+    const char kind = name.front();
+    name = name.substr(1, name.size() - 2);
+    const Part* from = part_of(file);
+    if (!from) {
+      offend(file, number, "the file is in no part of the house; see kParts in house.cpp");
+      return;
+    }
+    if (kind == '<' || name.rfind("breve/", 0) == 0) check_library(*from, file, number, name);
+    else check_arrow(*from, file, number, name);
+  }
+
+  void check_library(const Part& from, const std::string& file, std::size_t number, const std::string& name) {
+    for (const auto& [prefix, folders] : kLibraries)
+      if (name.rfind(prefix, 0) == 0 && std::find(folders.begin(), folders.end(), from.folder) == folders.end())
+        offend(file, number, std::string(from.folder) + " may not include <" + name + ">");
+    if (file == "hostapi/include/breve/breve.h" && name != "stdint.h" && name != "stddef.h" && name != "stdbool.h")
+      offend(file, number, "breve.h includes nothing but stdint.h, stddef.h and stdbool.h");
+  }
+
+  void check_arrow(const Part& from, const std::string& file, std::size_t number, const std::string& name) {
+    // A header that the build makes has no file here; it is named after the folder it belongs to.
+    const Part* to = part_of(name);
+    if (!to) {
+      const fs::path beside = (root_ / file).parent_path() / name;
+      if (!fs::exists(beside) || part_of(fs::relative(beside, root_).generic_string()) != &from)
+        offend(file, number, "\"" + name + "\" is not a path from the root of the repository");
+      return;
+    }
+    const auto word = kVocabulary.find(name);
+    const bool shared = word != kVocabulary.end() && from.folder.rfind(word->second, 0) == 0;
+    if (to != &from && !shared && from.may_include.count(to->folder) == 0)
+      offend(file, number, std::string(from.folder) + " may not include " + name);
+  }
+
+  void check_readmes() {
+    for (const Part& part : kParts)
+      if (fs::exists(root_ / part.folder) && has_files(root_ / part.folder) && !has_readme(part.folder))
+        offend(std::string(part.folder), 0, "no README.md");
+  }
+
+  /// A folder that only a compiler looks into (hostapi/include) may be described by its parent's page.
+  bool has_readme(std::string_view folder) const {
+    return fs::exists(root_ / folder / "README.md") ||
+           (folder == "hostapi/include" && fs::exists(root_ / "hostapi/README.md"));
+  }
+
+  static bool has_files(const fs::path& folder) {
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+      if (entry.is_regular_file() && is_source(entry.path())) return true;
+    return false;
+  }
+
+  fs::path root_;
+  std::set<std::string> offences_;
+  std::size_t files_ = 0, includes_ = 0;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::cerr << "usage: house SOURCE_DIR\n";
+    return 2;
+  }
+  return House(argv[1]).check();
+}

@@ -1,0 +1,143 @@
+// breve.hpp: what it adds to breve.h, by the C++ standard that it promises (17).
+#include "breve/breve.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace {
+
+constexpr const char* kText =
+    "@use Control.\n@use Mobile.\n@use Shape.\n@use Stationary.\n"
+    "Controller Stage.\n"
+    "Control : Stage {\n"
+    "  + variables:\n"
+    "    count (int).\n    title (string).\n    things (list).\n    mover (object).\n    item (object).\n"
+    "  + to init:\n"
+    "    title = \"a stage\".\n    things = { 1, \"two\" }.\n    mover = new Mobile.\n"
+    "    item = (self add-menu named \"Go\" for-method \"go\").\n"
+    "  + to go: count += 1.\n"
+    "  + to catch-key-k-down: count += 100.\n"
+    "  + to click on what (object): count += 1000.\n"
+    "  + to add first x (int) second y = 1 (int): return x + y.\n"
+    "  + to join text a (string) with b (string): return \"$a$b\".\n"
+    "  + to fail: die \"as asked\".\n"
+    "}\n"
+    "Stationary : Block {\n"
+    "  + to init: self register with-shape ((new Cube) init-with size (2, 2, 2)) at-location (0, 9, 0).\n"
+    "}\n";
+
+struct Stage {
+  breve::Runtime runtime = breve::Runtime::create().or_throw();
+  breve::Program program = runtime.compile("stage.tz", kText).or_throw();
+  breve::World world = runtime.world(program).or_throw();
+  breve::Object controller = world.controller();
+};
+
+TEST(BreveHpp, HandlesMoveAndCleanUp) {
+  Stage stage;
+  breve::World moved = std::move(stage.world);
+  EXPECT_TRUE(moved.step());
+  EXPECT_EQ(moved.iteration(), 1U);
+  EXPECT_EQ(stage.world.step().code(), BREVE_ERROR_ARGUMENT);
+  stage.runtime = {};
+  stage.program = {};
+  EXPECT_TRUE(moved.step());
+}
+
+TEST(BreveHpp, NothingThrowsUnlessAsked) {
+  Stage stage;
+  const auto bad = stage.runtime.compile("bad.tz", "Controller");
+  EXPECT_FALSE(bad);
+  EXPECT_EQ(bad.status().code(), BREVE_ERROR_COMPILE);
+  EXPECT_FALSE(bad.text().empty());
+  EXPECT_FALSE(stage.runtime.diagnostics().empty());
+  EXPECT_THROW(stage.runtime.compile("bad.tz", "Controller").or_throw(), breve::Failure);
+  auto failed = stage.world.call(stage.controller, "fail");
+  EXPECT_EQ(failed.status().code(), BREVE_ERROR_SCRIPT);
+  EXPECT_NE(failed.text().find("as asked"), std::string::npos);
+  try {
+    stage.world.call(stage.controller, "fly").or_throw();
+    FAIL();
+  } catch (const breve::Failure& e) {
+    EXPECT_EQ(e.status(), BREVE_ERROR_NOT_FOUND);
+    EXPECT_NE(std::string(e.what()).find("fly"), std::string::npos);
+  }
+}
+
+TEST(BreveHpp, ValuesConvertBothWays) {
+  Stage stage;
+  auto& w = stage.world;
+  EXPECT_EQ(w.call(stage.controller, "add", {{"first", 41}}).or_throw().integer(), 42);
+  EXPECT_EQ(w.call(stage.controller, "join", {{"with", std::string("yz")}, {"text", "x"}}).or_throw().string(), "xyz");
+  EXPECT_EQ(w.get(stage.controller, "title").or_throw().string(), "a stage");
+  w.set(stage.controller, "title", "new").or_throw();
+  EXPECT_EQ(w.get(stage.controller, "title").or_throw().string(), "new");
+  const auto things = w.elements(w.get(stage.controller, "things").or_throw()).or_throw();
+  ASSERT_EQ(things.size(), 2U);
+  EXPECT_EQ(things[0].integer(), 1);
+  EXPECT_EQ(things[1].string(), "two");
+  EXPECT_EQ(things[1].number(7), 7);
+  EXPECT_EQ(w.text(breve::Vector{1, 2, 3}).or_throw(), "(1.00000, 2.00000, 3.00000)");
+  const auto add = w.prepare("add", {"second", "first"}).or_throw();
+  EXPECT_EQ(w.call(stage.controller, add, {1, 2}).or_throw().integer(), 3);
+}
+
+TEST(BreveHpp, ObjectsAreReadAndWritten) {
+  Stage stage;
+  auto& w = stage.world;
+  const auto mover = w.get(stage.controller, "mover").or_throw().object();
+  EXPECT_TRUE(w.alive(mover));
+  EXPECT_EQ(w.class_of(mover), "Mobile");
+  EXPECT_TRUE(w.is_a(mover, "Real"));
+  w.set_velocity(mover, {0, 3, 0}).or_throw();
+  EXPECT_EQ(w.velocity(mover).or_throw()[1], 3);
+  w.set_rotational_velocity(mover, {0, 0, 1}).or_throw();
+  EXPECT_EQ(w.rotational_velocity(mover).or_throw()[2], 1);
+  w.set_color(mover, {0, 0.5, 1, 1}).or_throw();
+  EXPECT_EQ(w.color(mover).or_throw()[1], 0.5);
+  w.set_pose(mover, {{1, 2, 3}, {1, 0, 0, 0}}).or_throw();
+  EXPECT_EQ(w.pose(mover).or_throw().location[2], 3);
+  EXPECT_EQ(w.shape(mover).or_throw().kind, BREVE_SHAPE_SPHERE);
+  EXPECT_TRUE(w.shape_vertices(mover).or_throw().empty());
+  const auto block = w.create("Block").or_throw();
+  EXPECT_EQ(w.objects("Block").or_throw().size(), 1U);
+  EXPECT_EQ(w.shape_vertices(block).or_throw().size(), 8U);
+  const auto faces = w.shape_faces(block).or_throw();
+  ASSERT_EQ(faces.size(), 6U);
+  EXPECT_EQ(faces[5].size(), 4U);
+  w.free(block).or_throw();
+  EXPECT_EQ(w.pose(block).status().code(), BREVE_ERROR_STALE);
+  EXPECT_NE(block, mover);
+}
+
+TEST(BreveHpp, InputStepsAndSnapshots) {
+  Stage stage;
+  auto& w = stage.world;
+  const auto count = [&] { return w.get(stage.controller, "count").or_throw().integer(); };
+  w.key("k").or_throw();
+  w.click().or_throw();
+  w.choose(w.get(stage.controller, "item").or_throw().object()).or_throw();
+  EXPECT_GE(w.menu_items().or_throw().size(), 1U);
+  const auto snapshot = w.snapshot().or_throw();
+  const auto hash = w.hash().or_throw();
+  w.step().or_throw();
+  EXPECT_EQ(count(), 1101);
+  EXPECT_NE(w.hash().or_throw(), hash);
+  w.restore(snapshot).or_throw();
+  EXPECT_EQ(w.hash().or_throw(), hash);
+  EXPECT_EQ(count(), 0);
+  EXPECT_NEAR(w.advance(1.5 * w.iteration_step()).or_throw(), 0.5, 1e-9);
+  EXPECT_EQ(w.iteration(), 1U);
+  EXPECT_NEAR(w.time(), w.iteration_step(), 1e-12);
+  EXPECT_EQ(w.seed(), 1U);
+  EXPECT_LE(w.random().or_throw(), 1.0);
+  w.set_paused(true).or_throw();
+  EXPECT_TRUE(w.paused());
+  EXPECT_FALSE(w.ended());
+  EXPECT_FALSE(w.effects().or_throw().empty());
+  EXPECT_EQ(w.stats().or_throw().iterations, 1U);
+  EXPECT_EQ(w.last_error(), nullptr);
+}
+
+}  // namespace

@@ -1,0 +1,246 @@
+#!/bin/bash
+# The command, one case a run: command.sh PATH-OF-BREVE CASE. Each case works in an empty directory of its own.
+set -u
+breve=$(realpath "$1")
+case=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+export HOME="$work/home" BREVE_CLASS_PATH=
+mkdir "$HOME"
+
+fail() {
+  echo "not so: $*"
+  for file in out err; do [ -f $file ] && { echo "--- $file"; cat $file; }; done
+  exit 1
+}
+# expect STATUS ARGS...: run breve; its output is in out and err.
+expect() {
+  local wanted=$1 status
+  shift
+  "$breve" "$@" >out 2>err
+  status=$?
+  [ $status = "$wanted" ] || fail "status $status and not $wanted of: breve $*"
+}
+same() { [ "$1" = "$2" ] || fail "'$1' is '$2'"; }
+has() { grep -q -e "$2" "$1" || fail "$1 has '$2'"; }
+lacks() { ! grep -q -e "$2" "$1" || fail "$1 lacks '$2'"; }
+
+# program NAME INIT ITERATE: a controller with these statements.
+program() {
+  cat >"$1" <<END
+@use Control.
+@use Mobile.
+Controller Main.
+Control : Main {
+  + variables:
+    turns (int).
+    bug (object).
+  + to init:
+    bug = 0.
+    $2
+  + to iterate:
+    turns += 1.
+    $3
+    super iterate.
+}
+END
+}
+
+case $case in
+help)
+  expect 0 help && has out "run" && has out "check"
+  expect 0 --help && has out "run"
+  expect 0 run --help && has out "--iterations" && has out "Exit status"
+  expect 0 --version && same "$(cut -d. -f1 out)" "breve 0"
+  ;;
+wrong_usage)
+  program a.tz "" ""
+  for arguments in "" "fly" "run" "check" "run a.tz --what" "run a.tz --iterations many" "run a.tz --iterations -3" \
+    "run a.tz --iterations 1.5" "run a.tz --seconds inf" "run a.tz --seconds nan" "run a.tz --seconds x" "run a.tz --seconds -1" "run a.tz --seed x" \
+    "run a.tz --iterations 1 --seconds 1" "run a.tz --path" "run --iterations 3"; do
+    expect 2 $arguments
+    same "$(cat out)" ""
+    [ -s err ] || fail "something is said about: breve $arguments"
+  done
+  ;;
+missing_file)
+  expect 2 run nowhere.tz && has err "nowhere.tz"
+  expect 2 run . && has err "directory"
+  program a.tz "" ""
+  expect 2 check a.tz nowhere.tz && has err "nowhere.tz"
+  ;;
+run_to_end)
+  program a.tz 'print "begun".' 'if turns == 5: { print "five". self end-simulation. }'
+  expect 0 run a.tz --quiet
+  same "$(cat out)" "$(printf 'begun\nfive')"
+  same "$(cat err)" ""
+  expect 0 run a.tz --iterations 3 --quiet
+  same "$(cat out)" "begun"
+  expect 0 run a.tz --iterations 0 --quiet
+  same "$(cat out)" "begun"
+  ;;
+seconds)
+  program a.tz "" 'print turns.'
+  expect 0 run a.tz --seconds 0.6 --quiet
+  same "$(tail -n 1 out)" 10
+  expect 0 run a.tz --seconds 0.61 --quiet
+  same "$(tail -n 1 out)" 11
+  ;;
+errors_exit_1)
+  program a.tz 'nowhere = 3.' ''
+  expect 1 run a.tz --iterations 1 && has err '^a.tz:10:' && has err '\^' && same "$(cat out)" ""
+  program a.tz '' 'if turns == 3: die "third".'
+  expect 1 run a.tz --iterations 9 --stats && has err 'a.tz:13' && has err third
+  tail -n 1 err | python3 -c 'import json,sys; assert json.loads(sys.stdin.read())["iterations"] == 2'  || fail "stats are last"
+  program a.tz 'die "at once".' ''
+  expect 1 run a.tz --iterations 1 && has err 'at once'
+  head -c 2000 /dev/urandom >noise.tz
+  expect 1 run noise.tz --iterations 1
+  ;;
+limits_exit_3)
+  program a.tz 'self iterate.' 'self iterate.'
+  expect 3 run a.tz --iterations 1 && [ -s err ]
+  ;;
+args)
+  program a.tz 'print (self get-argument-count). print (self get-argument at-index 0). if (self get-argument-count) > 1: print (self get-argument at-index 1).' ''
+  expect 0 run a.tz --iterations 1 --quiet && same "$(cat out)" "$(printf '1\na.tz')"
+  expect 0 run a.tz one two --iterations 1 --quiet && same "$(cat out)" "$(printf '3\na.tz\none')"
+  expect 0 run a.tz --iterations 1 --quiet -- --seed check && same "$(cat out)" "$(printf '3\na.tz\n--seed')"
+  expect 0 run --iterations 1 --quiet a.tz run && same "$(cat out)" "$(printf '2\na.tz\nrun')"
+  ;;
+seed)
+  program a.tz 'print random[1.0].' ''
+  expect 0 run a.tz --iterations 1 --seed 5 && cp out five && same "$(cat err)" ""
+  expect 0 run a.tz --iterations 1 --seed 5 && cmp -s out five || fail "the same seed gives the same numbers"
+  expect 0 run a.tz --iterations 1 && has err '^breve: seed [0-9]*$' && cp out drawn
+  expect 0 run a.tz --iterations 1 --seed "$(sed 's/.*seed //' err)" && cmp -s out drawn || fail "the drawn seed is shown"
+  expect 0 run a.tz --iterations 1 --quiet && same "$(cat err)" ""
+  ;;
+stats)
+  program a.tz 'bug = new Mobile.' 'print turns.'
+  expect 0 run a.tz --iterations 7 --seed 3 --stats
+  tail -n 1 err | python3 -c '
+import json, sys
+s = json.loads(sys.stdin.read())
+assert list(s) == ["iterations", "sim_seconds", "wall_seconds", "cpu_seconds", "objects", "seed", "hash"], s
+assert s["iterations"] == 7 and abs(s["sim_seconds"] - 0.42) < 1e-12 and s["seed"] == 3 and s["objects"] > 1, s
+assert s["wall_seconds"] > 0 and s["cpu_seconds"] >= 0 and s["hash"].startswith("0x"), s' || fail "the statistics"
+  ;;
+hash)
+  program a.tz 'bug = new Mobile.' 'bug set-velocity to random[(1, 1, 1)].'
+  expect 0 run a.tz --iterations 9 --seed 3 --hash && cp out first
+  tail -n 1 out | grep -q -E '^hash 0x[0-9a-f]{16}$' || fail "the last line is the hash"
+  expect 0 run a.tz --iterations 9 --seed 3 --hash && cmp -s out first || fail "equal runs, equal hashes"
+  expect 0 run a.tz --iterations 9 --seed 4 --hash && ! cmp -s out first || fail "unequal runs, unequal hashes"
+  ;;
+effects)
+  program a.tz 'bug = new Mobile. bug set-velocity to (1, 0, 0).' ''
+  expect 0 run a.tz --iterations 3 --quiet --effects
+  has out '^effect .*why$' && has out '^motion *yes .*Mobile'
+  ;;
+positions)
+  program a.tz 'bug = new Mobile. bug move to (1.5, 0.1, -3).' ''
+  expect 0 run a.tz --iterations 1 --quiet --positions p.csv
+  same "$(head -n 1 p.csv)" "class,x,y,z,qw,qx,qy,qz"
+  same "$(tail -n +2 p.csv)" "Mobile,1.5,0.10000000000000001,-3,1,0,0,0"
+  expect 1 run a.tz --iterations 1 --quiet --positions nowhere/p.csv && has err "nowhere/p.csv"
+  ;;
+quiet)
+  program a.tz 'bug = new Mobile. self schedule method-call "go" at-time -1.' ''
+  expect 0 run a.tz --iterations 1 --seed 1 && [ -s err ] || fail "a warning is shown"
+  expect 0 run a.tz --iterations 1 --seed 1 --quiet && same "$(cat err)" ""
+  ;;
+strict)
+  program a.tz 'turns = (self nothing).' ''
+  sed -i 's/^}$/  + to nothing: return.\n}/' a.tz
+  expect 0 run a.tz --iterations 1
+  expect 1 run a.tz --iterations 1 --strict
+  ;;
+includes)
+  mkdir -p sub/deep elsewhere
+  echo 'Object : Part { + to get: return 42. }' >sub/deep/part.tz
+  printf '@use Object.\n@include "deep/part.tz".\n@include "./deep/../deep/part.tz".\n' >sub/parts.tz
+  program sub/a.tz 'print ((new Part) get).' ''
+  sed -i '1i @include "parts.tz".' sub/a.tz
+  expect 0 run sub/a.tz --iterations 1 --quiet && same "$(cat out)" 42 # next to the program, not the launch directory
+  cd elsewhere || exit 1
+  expect 0 run ../sub/a.tz --iterations 1 --quiet && same "$(cat out)" 42
+  ;;
+paths)
+  mkdir -p one two here there
+  echo 'Object : Part { + to get: return "environment". }' >one/Part.tz
+  echo 'Object : Part { + to get: return "option". }' >two/Part.tz
+  echo 'Object : Part { + to get: return "home". }' >home/Part.tz
+  program here/a.tz 'print ((new Part) get).' ''
+  sed -i '2i @use Part.' here/a.tz
+  expect 0 run here/a.tz --iterations 1 --quiet && same "$(cat out)" home
+  BREVE_CLASS_PATH=nowhere:$PWD/one expect 0 run here/a.tz --iterations 1 --quiet && same "$(cat out)" environment
+  BREVE_CLASS_PATH=$PWD/one expect 0 run here/a.tz --path there --path two --iterations 1 --quiet && same "$(cat out)" option
+  mkdir -p lib/classes
+  echo 'Object : Part { + to get: return "launch". }' >lib/classes/Part.tz
+  expect 0 run here/a.tz --path two --iterations 1 --quiet && same "$(cat out)" launch
+  rm -r lib home/Part.tz
+  sed -i '2i @path "two".' here/a.tz
+  expect 0 run here/a.tz --iterations 1 --quiet && same "$(cat out)" option
+  ;;
+compressed)
+  program a.tz 'print "unpacked".' ''
+  gzip -c a.tz >b.tz
+  expect 0 run b.tz --iterations 1 --quiet && same "$(cat out)" unpacked
+  head -c 60 b.tz >c.tz
+  expect 2 run c.tz --iterations 1 && has err c.tz
+  ;;
+data_files)
+  mkdir sub
+  echo picture >sub/data.txt
+  program sub/a.tz 'print findFile("data.txt"). print findFile("nothing.txt").' ''
+  expect 0 run sub/a.tz --iterations 1 --quiet && same "$(cat out)" "sub/data.txt"
+  ;;
+files_written_here)
+  mkdir sub
+  program sub/a.tz 'bug = (new File) open-for-writing with-file "made.txt". bug write text "content". bug close.' ''
+  sed -i '2i @use File.' sub/a.tz
+  expect 0 run sub/a.tz --iterations 1 --quiet && same "$(cat made.txt)" content
+  ;;
+system)
+  program a.tz 'print "before". print system("echo inside").' ''
+  expect 0 run a.tz --iterations 1 --quiet && has out inside && same "$(head -n 1 out)" before
+  ;;
+order_of_output)
+  program a.tz 'print "one". print "two". die "three".' ''
+  "$breve" run a.tz --iterations 1 --seed 1 >all 2>&1
+  same "$(head -n 2 all)" "$(printf 'one\ntwo')"
+  grep -q three all || fail "the error follows the output"
+  ;;
+closed_output)
+  program a.tz '' 'print "and again: $turns".'
+  (
+    "$breve" run a.tz --seed 1 2>err
+    echo $? >status
+  ) | head -n 2 >out
+  same "$(cat status)" 0
+  same "$(cat err)" ""
+  same "$(wc -l <out)" 2
+  ;;
+interrupt)
+  program a.tz 'print "begun".' ''
+  "$breve" run a.tz --seed 1 --stats >out 2>err &
+  runner=$!
+  for _ in $(seq 100); do
+    grep -q begun out && break
+    sleep 0.1
+  done
+  kill -INT $runner
+  wait $runner
+  same $? 0
+  tail -n 1 err | python3 -c 'import json,sys; assert json.loads(sys.stdin.read())["iterations"] >= 0' || fail "statistics"
+  ;;
+check)
+  program good.tz '' ''
+  program bad.tz 'nowhere = 3. nothing = 4.' ''
+  expect 0 check good.tz && has out '^1 file: 0 errors'
+  expect 1 check good.tz bad.tz && has out '^2 files: 2 errors' && has err '^bad.tz:10:5' && lacks err 'good.tz:.*error'
+  ;;
+*) fail "there is a case '$case'" ;;
+esac

@@ -1,0 +1,203 @@
+/* Hash, snapshot, restore, and images that are not to be trusted. */
+#include <stdlib.h>
+
+#include "scene.h"
+
+/* A program whose run depends on all that an image has to hold: bodies, generator, schedule, heap. */
+static const char* const lively =
+    "@use Control.\n"
+    "@use Mobile.\n"
+    "Controller Crowd.\n"
+    "Control : Crowd {\n"
+    "  + variables:\n"
+    "    bugs (list).\n"
+    "    ticks (int).\n"
+    "    log (hash).\n"
+    "  + to init:\n"
+    "    bugs = 12 new Bug.\n"
+    "    self schedule method-call \"tick\" at-time 0.5.\n"
+    "    self set-neighborhood.\n"
+    "  + to set-neighborhood:\n"
+    "    bugs set-neighborhood-size to 3.0.\n"
+    "  + to tick:\n"
+    "    ticks += 1.\n"
+    "    log{ticks} = \"tick $ticks\".\n"
+    "    push (new Bug) onto bugs.\n"
+    "    self schedule method-call \"tick\" at-time ((self get-time) + 0.3).\n"
+    "  + to iterate:\n"
+    "    self update-neighbors.\n"
+    "    super iterate.\n"
+    "}\n"
+    "Mobile : Bug (aka Bugs) {\n"
+    "  + variables:\n"
+    "    friends (list).\n"
+    "  + to init:\n"
+    "    self move to (random[(10, 10, 10)] - (5, 5, 5)).\n"
+    "  + to iterate:\n"
+    "    friends = (self get-neighbors).\n"
+    "    self set-velocity to (random[(2, 2, 2)] - (1, 1, 1)) * (1 + |friends|).\n"
+    "}\n";
+
+static uint64_t hash_of(const breve_world* world) {
+  uint64_t hash = 0;
+  CHECK_STATUS(BREVE_OK, breve_world_hash(world, &hash));
+  return hash;
+}
+
+static void step_times(breve_world* world, int times) {
+  while (times-- > 0) CHECK_STATUS(BREVE_OK, breve_world_step(world));
+}
+
+/* The image is malloc'ed. */
+static unsigned char* image_of(const breve_world* world, size_t* size) {
+  CHECK_STATUS(BREVE_OK, breve_world_snapshot(world, NULL, 0, size));
+  unsigned char* image = malloc(*size);
+  size_t again = 0;
+  CHECK_STATUS(BREVE_OK, breve_world_snapshot(world, image, *size, &again));
+  CHECK(again == *size);
+  return image;
+}
+
+static void equal_runs_have_equal_hashes_and_unequal_ones_do_not(void) {
+  scene a, b, c;
+  breve_world_config config = breve_world_config_default();
+  if (!scene_open_text(&a, lively, &config) || !scene_open_text(&b, lively, &config)) return;
+  config.seed = 2;
+  if (!scene_open_text(&c, lively, &config)) return;
+  uint64_t last = 0;
+  for (int i = 0; i < 30; ++i) {
+    CHECK(hash_of(a.world) == hash_of(b.world));
+    CHECK(hash_of(a.world) != hash_of(c.world));
+    CHECK(hash_of(a.world) != last);
+    last = hash_of(a.world);
+    step_times(a.world, 1);
+    step_times(b.world, 1);
+    step_times(c.world, 1);
+  }
+  scene_close(&a);
+  scene_close(&b);
+  scene_close(&c);
+}
+
+static void restore_and_go_on_equals_save_and_go_on(void) {
+  scene a, b;
+  if (!scene_open_text(&a, lively, NULL) || !scene_open_text(&b, lively, NULL)) return;
+  step_times(a.world, 20);
+  size_t size = 0;
+  unsigned char* image = image_of(a.world, &size);
+  const uint64_t then = hash_of(a.world);
+  uint64_t hashes[30];
+  for (int i = 0; i < 30; ++i) {
+    step_times(a.world, 1);
+    hashes[i] = hash_of(a.world);
+  }
+  CHECK_STATUS(BREVE_OK, breve_world_restore(a.world, image, size)); /* back in time */
+  step_times(b.world, 3);
+  CHECK_STATUS(BREVE_OK, breve_world_restore(b.world, image, size)); /* and into another world */
+  CHECK(hash_of(a.world) == then && hash_of(b.world) == then);
+  CHECK(breve_world_iteration(a.world) == 20);
+  for (int i = 0; i < 30; ++i) {
+    step_times(a.world, 1);
+    step_times(b.world, 1);
+    CHECK(hash_of(a.world) == hashes[i]);
+    CHECK(hash_of(b.world) == hashes[i]);
+  }
+  free(image);
+  scene_close(&a);
+  scene_close(&b);
+}
+
+static void a_snapshot_changes_nothing(void) {
+  scene a, b;
+  if (!scene_open_text(&a, lively, NULL) || !scene_open_text(&b, lively, NULL)) return;
+  for (int i = 0; i < 20; ++i) {
+    size_t size = 0;
+    free(image_of(a.world, &size));
+    step_times(a.world, 1);
+    step_times(b.world, 1);
+    CHECK(hash_of(a.world) == hash_of(b.world));
+  }
+  scene_close(&a);
+  scene_close(&b);
+}
+
+static void ids_of_the_snapshot_are_good_again_and_later_ones_are_stale(void) {
+  scene s;
+  if (!scene_open(&s)) return;
+  const breve_object ball = ball_of(&s);
+  size_t size = 0;
+  unsigned char* image = image_of(s.world, &size);
+  breve_object later;
+  CHECK_STATUS(BREVE_OK, breve_object_create(s.world, "Ball", &later));
+  CHECK_STATUS(BREVE_OK, breve_object_free(s.world, ball));
+  CHECK_STATUS(BREVE_OK, breve_world_restore(s.world, image, size));
+  CHECK(breve_object_alive(s.world, ball));
+  CHECK(!breve_object_alive(s.world, later));
+  CHECK(int_of(&s, "count") == 7);
+  CHECK_STATUS(BREVE_OK, breve_object_call(s.world, ball, "touch", NULL, 0, NULL));
+  free(image);
+  scene_close(&s);
+}
+
+static void a_room_that_is_too_small_is_not_written_to(void) {
+  scene s;
+  if (!scene_open(&s)) return;
+  unsigned char room[8];
+  size_t size = 0;
+  memset(room, 0x5a, sizeof room);
+  CHECK_STATUS(BREVE_OK, breve_world_snapshot(s.world, room, sizeof room, &size));
+  CHECK(size > sizeof room);
+  for (size_t i = 0; i < sizeof room; ++i) CHECK(room[i] == 0x5a);
+  scene_close(&s);
+}
+
+static void damaged_images_are_refused_and_change_nothing(void) {
+  scene s;
+  if (!scene_open_text(&s, lively, NULL)) return;
+  step_times(s.world, 12);
+  size_t size = 0;
+  unsigned char* image = image_of(s.world, &size);
+  step_times(s.world, 1);
+  const uint64_t before = hash_of(s.world);
+  for (size_t cut = 0; cut < size; cut += 1 + size / 61) /* cut off */
+    CHECK_STATUS(BREVE_ERROR_IMAGE, breve_world_restore(s.world, image, cut));
+  for (size_t at = 0; at < size; at += 1 + size / 251) { /* a byte changed */
+    image[at] ^= 0x41;
+    CHECK_STATUS(BREVE_ERROR_IMAGE, breve_world_restore(s.world, image, size));
+    image[at] ^= 0x41;
+  }
+  CHECK(hash_of(s.world) == before);
+  unsigned char noise[300];
+  for (size_t i = 0; i < sizeof noise; ++i) noise[i] = (unsigned char)(i * 37);
+  CHECK_STATUS(BREVE_ERROR_IMAGE, breve_world_restore(s.world, noise, sizeof noise));
+  CHECK(hash_of(s.world) == before);
+  CHECK_STATUS(BREVE_OK, breve_world_restore(s.world, image, size));
+  CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+  CHECK(hash_of(s.world) == before);
+  free(image);
+  scene_close(&s);
+}
+
+static void an_image_of_another_program_is_refused(void) {
+  scene a, b;
+  if (!scene_open_text(&a, lively, NULL) || !scene_open(&b)) return;
+  size_t size = 0;
+  unsigned char* image = image_of(a.world, &size);
+  const uint64_t before = hash_of(b.world);
+  CHECK_STATUS(BREVE_ERROR_IMAGE, breve_world_restore(b.world, image, size));
+  CHECK(breve_world_last_error(b.world)->status == BREVE_ERROR_IMAGE);
+  CHECK(hash_of(b.world) == before);
+  free(image);
+  scene_close(&a);
+  scene_close(&b);
+}
+
+void snapshot_suite(void) {
+  RUN(equal_runs_have_equal_hashes_and_unequal_ones_do_not);
+  RUN(restore_and_go_on_equals_save_and_go_on);
+  RUN(a_snapshot_changes_nothing);
+  RUN(ids_of_the_snapshot_are_good_again_and_later_ones_are_stale);
+  RUN(a_room_that_is_too_small_is_not_written_to);
+  RUN(damaged_images_are_refused_and_change_nothing);
+  RUN(an_image_of_another_program_is_refused);
+}

@@ -1,0 +1,156 @@
+// Every selector that the table promises exists with its keywords, types and defaults, and is documented.
+#include <fstream>
+#include <sstream>
+
+#include "tests/library/parsed_library.hpp"
+
+namespace breve::steve {
+namespace {
+
+struct Row {
+  std::string cls, alias, parent, selector;
+  std::vector<std::string> keywords;  // "keyword:type=default"
+};
+
+std::vector<Row> rows() {
+  std::ifstream in(BREVE_SELECTORS);
+  std::vector<Row> all;
+  std::string line;
+  std::getline(in, line);
+  while (std::getline(in, line)) {
+    std::vector<std::string> cells;
+    std::stringstream cells_in(line);
+    for (std::string cell; std::getline(cells_in, cell, '\t');) cells.push_back(cell);
+    cells.resize(5);
+    Row row{cells[0], cells[1], cells[2], cells[3], {}};
+    std::stringstream words(cells[4]);
+    for (std::string word; words >> word;) row.keywords.push_back(word);
+    all.push_back(row);
+  }
+  return all;
+}
+
+std::string type_text(const ast::TypeRef& type) {
+  switch (type.kind) {
+    case ast::TypeKind::Int: return "int";
+    case ast::TypeKind::Double: return "float";
+    case ast::TypeKind::Vector: return "vector";
+    case ast::TypeKind::Matrix: return "matrix";
+    case ast::TypeKind::String: return "string";
+    case ast::TypeKind::Object: return type.class_name.empty() ? "object" : "object(" + type.class_name + ")";
+    case ast::TypeKind::List: return "list";
+    case ast::TypeKind::Hash: return "hash";
+    case ast::TypeKind::Pointer: return "pointer";
+    case ast::TypeKind::Data: return "data";
+  }
+  return "?";
+}
+
+/// The numbers of a default as the table writes it, or its text.
+std::vector<double> numbers_in(const std::string& text) {
+  std::string plain = text;
+  for (char& c : plain)
+    if (c == '(' || c == ')' || c == '[' || c == ']' || c == ',') c = ' ';
+  std::stringstream in(plain);
+  std::vector<double> numbers;
+  for (double number; in >> number;) numbers.push_back(number);
+  return numbers;
+}
+
+std::vector<double> numbers_in(const ast::Constant& constant) {
+  if (const auto* i = std::get_if<std::int32_t>(&constant.value)) return {static_cast<double>(*i)};
+  if (const auto* d = std::get_if<double>(&constant.value)) return {*d};
+  if (const auto* v = std::get_if<std::array<double, 3>>(&constant.value)) return {v->begin(), v->end()};
+  if (const auto* m = std::get_if<std::array<double, 9>>(&constant.value)) return {m->begin(), m->end()};
+  return {};
+}
+
+void expect_parameter(const ast::Parameter& parameter, const std::string& promised) {
+  const std::size_t equals = promised.find('=');
+  const std::size_t colon = promised.find(':');
+  std::string type = promised.substr(colon + 1, equals - colon - 1);
+  if (type == "double") type = "float";
+  EXPECT_EQ(parameter.keyword, promised.substr(0, colon));
+  EXPECT_EQ(type_text(parameter.type), type);
+  ASSERT_EQ(parameter.default_value.has_value(), equals != std::string::npos);
+  if (!parameter.default_value) return;
+  const std::string value = promised.substr(equals + 1);
+  if (value.starts_with('"')) {
+    const auto* text = std::get_if<std::string>(&parameter.default_value->value);
+    ASSERT_NE(text, nullptr);
+    EXPECT_EQ('"' + *text + '"', value);
+  } else {
+    EXPECT_EQ(numbers_in(*parameter.default_value), numbers_in(value));
+  }
+}
+
+TEST(Selectors, EveryFileOfTheLibraryParsesWithoutAWordOfComplaint) {
+  const ParsedLibrary& library = ParsedLibrary::get();
+  for (const Diagnostic& diagnostic : library.diagnostics.all()) ADD_FAILURE() << format(diagnostic, library.sources);
+}
+
+TEST(Selectors, EveryRowOfTheTableExistsWithItsKeywordsTypesAndDefaults) {
+  const std::vector<Row> table = rows();
+  ASSERT_GT(table.size(), 450U);
+  for (const Row& row : table) {
+    SCOPED_TRACE(row.cls + " " + row.selector);
+    const ast::Class* cls = ParsedLibrary::get().find(row.cls);
+    ASSERT_NE(cls, nullptr);
+    EXPECT_EQ(cls->alias, row.alias);
+    EXPECT_EQ(cls->parent, row.parent);
+    const ast::Method* found = nullptr;
+    for (const ast::Method& method : cls->methods)
+      if (method.name == row.selector && method.parameters.size() == row.keywords.size()) found = &method;
+    if (!found) {
+      ADD_FAILURE() << "no such method with " << row.keywords.size() << " keywords";
+      continue;
+    }
+    for (std::size_t i = 0; i < row.keywords.size(); ++i) expect_parameter(found->parameters[i], row.keywords[i]);
+  }
+}
+
+TEST(Selectors, EveryClassAndMethodIsDocumented) {
+  for (const ast::File& file : ParsedLibrary::get().files)
+    for (const ast::Class& cls : file.classes) {
+      EXPECT_FALSE(cls.doc.empty()) << cls.name;
+      for (const ast::Method& method : cls.methods) EXPECT_FALSE(method.doc.empty()) << cls.name << " " << method.name;
+    }
+}
+
+TEST(Selectors, AFileIsFoundByItsNameItsClassesAndTheirAliases) {
+  for (const char* name : {"Shape.tz", "Shape", "Shapes", "Cube", "Cubes", "PolygonCones"}) {
+    const LibraryFile* file = find_library_file(name);
+    ASSERT_NE(file, nullptr) << name;
+    EXPECT_EQ(file->name, "Shape.tz");
+  }
+  EXPECT_EQ(find_library_file("Floor")->name, "Stationary.tz");
+  EXPECT_EQ(find_library_file("Tracer.tz")->name, "Drawing.tz");
+  EXPECT_EQ(find_library_file("NoSuchClass"), nullptr);
+  EXPECT_EQ(find_library_file(""), nullptr);
+  EXPECT_EQ(find_library_file(".tz"), nullptr);
+}
+
+TEST(Selectors, TheTableOfFilesNamesEveryClassInThem) {
+  for (const ast::File& file : ParsedLibrary::get().files)
+    for (const ast::Class& cls : file.classes) {
+      EXPECT_NE(find_library_file(cls.name), nullptr) << cls.name;
+      if (!cls.alias.empty()) EXPECT_EQ(find_library_file(cls.alias), find_library_file(cls.name)) << cls.alias;
+    }
+}
+
+TEST(Selectors, NoClassIsBothHereAndPartOfALaterVersion) {
+  for (std::string_view name : later_classes()) EXPECT_EQ(find_library_file(name), nullptr) << name;
+  EXPECT_TRUE(is_later_class("MultiBodies"));
+  EXPECT_FALSE(is_later_class("Mobile"));
+}
+
+TEST(Selectors, ObjectDeclaresControllerAndBirthTimeFirst) {
+  const ast::Class* object = ParsedLibrary::get().find("Object");
+  ASSERT_NE(object, nullptr);
+  ASSERT_GE(object->variables.size(), 2U);
+  EXPECT_EQ(object->variables[0].name, "controller");
+  EXPECT_EQ(object->variables[1].name, "birthTime");
+}
+
+}  // namespace
+}  // namespace breve::steve
