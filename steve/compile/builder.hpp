@@ -23,7 +23,8 @@ class ProgramBuilder {
   const std::string& symbol_name(Symbol symbol) const { return program_->symbols_.name(symbol); }
   /// The class of that name or alias; one of the library's is loaded if the program has none. Null if there is none.
   const ClassInfo* class_named(std::string_view name);
-  void report_unknown_class(std::string_view name, const Span& span);
+  /// @param severity  a warning where the program may never get there, an error where a type names the class
+  void report_unknown_class(std::string_view name, const Span& span, Severity severity = Severity::Warning);
   std::uint32_t string_number(std::string_view text);
   std::uint32_t text_number(std::string_view text);
   CodeTables& code() { return *program_->code_; }
@@ -67,14 +68,16 @@ class ProgramBuilder {
   void check_site(const CallSite& site, const std::vector<std::string_view>& selectors);
   void check_unused_variables();
   void check_iterate();
+  void check_special_methods();
 
   std::shared_ptr<Program> program_;
   ModuleResolver& resolver_;
   Diagnostics diagnostics_;
   std::vector<Declared> declared_;
   std::size_t compiled_ = 0;
+  std::vector<ast::TypeRef> checked_;  // types of parameters, looked at when all files are read
   std::set<std::string, std::less<>> loaded_;
-  std::vector<std::pair<ast::Directive, bool>> versions_;
+  std::vector<ast::Directive> versions_;
   std::string controller_name_;
   Span controller_span_;
   std::map<std::string, std::uint32_t, std::less<>> strings_, texts_;

@@ -96,6 +96,7 @@ namespace breve::steve {
   X(Free) X(Die) \
   X(ReturnInt) X(ReturnDouble) X(ReturnVector) X(ReturnMatrix) X(ReturnRef) /* b: tag */ X(ReturnAny) X(ReturnNull) \
   X(ReturnResult) /* the result register as the last call left it */ \
+  X(FailIfStrict) /* the same, in strict mode only */ \
   X(Fail)         /* a run-time error; imm: text number; a: RunErrorKind */
 // clang-format on
 

@@ -115,6 +115,7 @@ void ProgramBuilder::declare_methods(const ast::Class& tree, ClassInfo& info) {
     if (duplicate)
       diagnostics_.error(m.name_span, "redefinition", "class " + tree.name + " defines method '" + m.name + "' with " +
                          std::to_string(m.parameters.size()) + " parameters twice");
+    for (const auto& p : m.parameters) checked_.push_back(p.type);
     if (m.native) bind_native(m, *method);
     else method->function = std::make_unique<Function>();
     info.methods.push_back(std::move(method));
@@ -188,7 +189,8 @@ void ProgramBuilder::bind_native(const ast::Method& tree, MethodInfo& method) {
 }
 
 void ProgramBuilder::compile_methods() {
-  // Compiling may load further classes of the library: the list grows while it is worked through.
+  // Compiling and checking may load further classes of the library: the lists grow while they are worked through.
+  for (std::size_t i = 0; i < checked_.size(); ++i) checked_class(checked_[i]);
   for (; compiled_ < declared_.size(); ++compiled_) {
     const auto index = compiled_;
     std::size_t n = 0;
@@ -205,7 +207,7 @@ void ProgramBuilder::compile_methods() {
 
 Symbol ProgramBuilder::checked_class(const ast::TypeRef& type) {
   if (type.class_name.empty()) return kNoSymbol;
-  if (!class_named(type.class_name)) report_unknown_class(type.class_name, type.span);
+  if (!class_named(type.class_name) && !embedded(type.span)) report_unknown_class(type.class_name, type.span, Severity::Error);
   return symbol(type.class_name);
 }
 

@@ -162,10 +162,14 @@ class FunctionCompiler {
 // What an expression does, asked of its tree (effects.cpp).
 bool has_effects(const ast::Expr& e);                   // may change something, draw or call
 bool assigns(const ast::Expr& e);                       // may assign a local variable
+std::optional<double> written_number(const ast::Expr& e);  // the value of a number written out, with its sign
+bool is_written_int(const ast::Expr& e);
 bool always_has_value(const ast::Stmt& s);              // every path through it runs an expression statement
 bool contains_return(const ast::Stmt& s);
 /// Calls `visit` for every expression in a tree, outermost first.
 void walk(const ast::Expr& e, const std::function<void(const ast::Expr&)>& visit);
 void walk(const ast::Stmt& s, const std::function<void(const ast::Expr&)>& visit);
+/// Calls `visit` for a statement and every statement inside it.
+void walk_statements(const ast::Stmt& s, const std::function<void(const ast::Stmt&)>& visit);
 
 }  // namespace breve::steve

@@ -49,7 +49,9 @@ void ProgramBuilder::check_unused_variables() {
   for (const auto& [tree, info] : declared_) {
     for (const auto& method : tree.methods) {
       for (const auto& statement : method.body) {
-        if (const auto* loop = std::get_if<ast::Foreach>(&statement->node)) used.insert(loop->variable);
+        walk_statements(*statement, [&](const ast::Stmt& inner) {
+          if (const auto* loop = std::get_if<ast::Foreach>(&inner.node)) used.insert(loop->variable);
+        });
         walk(*statement, [&](const ast::Expr& e) {
           if (const auto* n = std::get_if<ast::Name>(&e.node)) used.insert(n->name);
           if (const auto* a = std::get_if<ast::ArrayItem>(&e.node)) used.insert(a->name);
@@ -75,6 +77,16 @@ void ProgramBuilder::check_iterate() {
     if (site.super_of && site.selector == iterate && site.in_class == cls->iterate->owner) return;
   lint(cls->iterate->span, "lint-no-super-iterate", "the controller's iterate does not call 'super iterate': the world stands still",
        "add: super iterate.");
+}
+
+void ProgramBuilder::check_special_methods() {
+  for (const auto& cls : program_->classes_)
+    for (const auto& method : cls->methods) {
+      const auto& name = symbol_name(method->name);
+      if (method->parameters.empty() || (name != "init" && name != "iterate" && name != "post-iterate" && name != "destroy")) continue;
+      lint(method->span, "lint-special-parameters", "'" + name + "' with parameters is never called by itself",
+           "take the parameters away, or give the method another name");
+    }
 }
 
 }  // namespace breve::steve

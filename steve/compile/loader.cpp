@@ -44,6 +44,7 @@ CompileResult ProgramBuilder::build(ModuleSource main) {
     check_calls();
     check_unused_variables();
     check_iterate();
+    check_special_methods();
   }
   Hasher hasher;
   for (std::uint32_t i = 0; i < program_->sources_.size(); ++i) {
@@ -82,7 +83,6 @@ void ProgramBuilder::load_directive(const ast::Directive& directive, const std::
     case Include: load_named(directive.text, directive, from, embedded); break;
     case Use:
       load_named(directive.text + ".tz", directive, from, embedded);
-      if (!directive.version_op.empty()) versions_.emplace_back(directive, embedded);
       break;
     default: break;
   }
@@ -128,6 +128,9 @@ void ProgramBuilder::late_directive(const ast::Directive& directive) {
     case Plugin:
       diagnostics_.error(directive.span, "plugins-disabled", "plugins are not available: cannot load '" + directive.text + "'");
       break;
+    case Use:
+      if (!directive.version_op.empty()) versions_.push_back(directive);
+      break;
     case NibFile: lint(directive.span, "nib-file", "the interface file '" + directive.text + "' is ignored"); break;
     default: break;
   }
@@ -141,7 +144,7 @@ const ClassInfo* ProgramBuilder::class_named(std::string_view name) {
   return program_->find_class(name);
 }
 
-void ProgramBuilder::report_unknown_class(std::string_view name, const Span& span) {
+void ProgramBuilder::report_unknown_class(std::string_view name, const Span& span, Severity severity) {
   if (is_later_class(name)) {
     diagnostics_.error(span, "later-class", "class " + std::string(name) + " is part of a later version of the class library");
     return;
@@ -149,8 +152,10 @@ void ProgramBuilder::report_unknown_class(std::string_view name, const Span& spa
   std::vector<std::string_view> names;
   for (const auto& cls : program_->classes_) names.push_back(cls->name);
   const auto near = nearest(name, names);
-  lint(span, "unknown-class", "unknown class '" + std::string(name) + "'",
-       near.empty() ? "define it, or load its file with @use" : "did you mean '" + near + "'?");
+  const auto message = "unknown class '" + std::string(name) + "'";
+  const auto help = near.empty() ? "define it, or load its file with @use" : "did you mean '" + near + "'?";
+  if (severity == Severity::Error) diagnostics_.error(span, "unknown-class", message, help);
+  else lint(span, "unknown-class", message, help);
 }
 
 std::uint32_t ProgramBuilder::string_number(std::string_view text) {
@@ -189,7 +194,7 @@ void ProgramBuilder::lint(const Span& span, std::string code, std::string messag
 }
 
 void ProgramBuilder::check_versions() {
-  for (const auto& [directive, embedded] : versions_) {
+  for (const auto& directive : versions_) {
     const auto* cls = program_->find_class(directive.text);
     if (!cls) {
       diagnostics_.error(directive.span, "version", "the file defines no class '" + directive.text + "' whose version could be checked");

@@ -3,15 +3,9 @@
 
 #include "steve/compile/builder.hpp"
 #include "steve/compile/function_compiler.hpp"
+#include "steve/compile/overloaded.hpp"
 
 namespace breve::steve {
-
-namespace {
-
-template <class... F> struct Overloaded : F... { using F::operator()...; };
-template <class... F> Overloaded(F...) -> Overloaded<F...>;
-
-}  // namespace
 
 FunctionCompiler::FunctionCompiler(ProgramBuilder& builder, const ClassInfo& cls, const ast::Method& method, MethodInfo& info)
     : builder_(builder), class_(cls), method_(method), info_(info), emit_(*info.function, builder.diagnostics()) {}
@@ -63,7 +57,7 @@ void FunctionCompiler::declare_locals() {
     Symbol class_name = kNoSymbol;
     if (!v.type.class_name.empty()) {
       class_name = builder_.symbol(v.type.class_name);
-      if (!builder_.class_named(v.type.class_name)) builder_.report_unknown_class(v.type.class_name, v.type.span);
+      if (!builder_.class_named(v.type.class_name)) builder_.report_unknown_class(v.type.class_name, v.type.span, Severity::Error);
     }
     locals_[v.name] = {type, emit_.reserve(type, count), v.type.array_size, class_name, v.span, false};
   }

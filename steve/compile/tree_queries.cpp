@@ -1,12 +1,10 @@
 // Questions about a tree that the compiler asks before it emits code for it.
 #include "steve/compile/function_compiler.hpp"
+#include "steve/compile/overloaded.hpp"
 
 namespace breve::steve {
 
 namespace {
-
-template <class... F> struct Overloaded : F... { using F::operator()...; };
-template <class... F> Overloaded(F...) -> Overloaded<F...>;
 
 using Visit = std::function<void(const ast::Expr&)>;
 
@@ -92,6 +90,27 @@ void walk(const ast::Stmt& s, const Visit& visit) {
              s.node);
 }
 
+void walk_statements(const ast::Stmt& s, const std::function<void(const ast::Stmt&)>& visit) {
+  visit(s);
+  const auto go = [&](const ast::StmtPtr& p) {
+    if (p) walk_statements(*p, visit);
+  };
+  std::visit(Overloaded{
+                 [&](const ast::Block& b) {
+                   for (const auto& inner : b.body) go(inner);
+                 },
+                 [&](const ast::If& i) {
+                   for (const auto& branch : i.branches) go(branch.second);
+                   go(i.otherwise);
+                 },
+                 [&](const ast::While& w) { go(w.body); },
+                 [&](const ast::For& f) { go(f.body); },
+                 [&](const ast::Foreach& f) { go(f.body); },
+                 [](const auto&) {},
+             },
+             s.node);
+}
+
 bool has_effects(const ast::Expr& e) {
   bool found = false;
   walk(e, [&](const ast::Expr& x) {
@@ -120,6 +139,20 @@ bool assigns(const ast::Expr& e) {
     found = found || std::holds_alternative<ast::Assign>(x.node) || std::holds_alternative<ast::Step>(x.node);
   });
   return found;
+}
+
+std::optional<double> written_number(const ast::Expr& e) {
+  if (const auto* n = std::get_if<ast::IntLit>(&e.node)) return n->value;
+  if (const auto* d = std::get_if<ast::DoubleLit>(&e.node)) return d->value;
+  if (const auto* u = std::get_if<ast::Unary>(&e.node); u && u->op == ast::UnaryOp::Negate) {
+    if (const auto inner = written_number(*u->operand)) return -*inner;
+  }
+  return std::nullopt;
+}
+
+bool is_written_int(const ast::Expr& e) {
+  if (const auto* u = std::get_if<ast::Unary>(&e.node)) return u->op == ast::UnaryOp::Negate && is_written_int(*u->operand);
+  return std::holds_alternative<ast::IntLit>(e.node);
 }
 
 bool always_has_value(const ast::Stmt& s) {

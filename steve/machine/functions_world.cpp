@@ -2,7 +2,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <thread>
 
 #include <fmt/format.h>
@@ -21,15 +20,10 @@ double get_real_time(Machine&, Instance&) {
   return std::chrono::duration<double>(now).count();
 }
 
-/// Wall-clock seconds since the embedder made the machine's host, if it notes that; else processor time.
-template <class Host>
-double seconds_since_start(const Host& host) {
-  if constexpr (requires { host.started; })
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - host.started).count();
-  else
-    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+/// Wall-clock seconds since the embedder made the machine's host.
+double get_running_time(Machine& machine, Instance&) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - machine.host().started).count();
 }
-double get_running_time(Machine& machine, Instance&) { return seconds_since_start(machine.host()); }
 
 /// Once at `time`, or again and again from then on. A repeated call whose first time has passed starts one interval
 /// from now (F33).

@@ -566,6 +566,8 @@ void Machine::execute(std::size_t depth) {
     LEAVE_IF_FREED();
     NEXT();
   op_Die: SAVE(); throw RunError(RunErrorKind::User, text(ANY(in->a)));
+  op_FailIfStrict:
+    if (!host_.strict) NEXT();
   op_Fail: throw RunError(static_cast<RunErrorKind>(in->a), program_->code().texts[static_cast<std::size_t>(in->imm())]);
 
   op_ReturnInt: result_ = Value::of(R(in->a).i); goto do_return;

@@ -27,7 +27,10 @@ std::vector<StringCell*> Machine::make_constants(Heap& heap) const {
   constants.reserve(program_->code().strings.size());
   for (const auto& text : program_->code().strings) {
     auto* cell = heap.string(text);
-    if (cell) cell->immortal = true;
+    if (cell) {
+      heap.retain(cell);  // it is not garbage, now or ever
+      cell->immortal = true;
+    }
     constants.push_back(cell);
   }
   return constants;

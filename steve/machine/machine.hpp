@@ -1,6 +1,7 @@
 // One program running in one world: heap, frames, interpreter, and the calls between scripts and native code.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -26,6 +27,7 @@ struct MachineHost {
   std::function<std::string(std::string_view name)> find_file; // path of a data file (images, sounds), "" if none
   std::function<std::string(std::string_view command)> system; // run a shell command; empty: not allowed
   std::vector<std::string> arguments;                          // [0] is the program file
+  std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
   bool verbose = false;                                        // say once when an obsolete selector is used
   bool strict = false;
   std::uint32_t depth_limit = 5000;                            // nested calls

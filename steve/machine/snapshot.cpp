@@ -33,6 +33,20 @@ template <class Visit> void for_each_value(const Container& cell, Visit&& visit)
   }
 }
 
+/// Calls `visit` with the bits of every slot that holds numbers. An int fills half a slot; the rest is not looked at.
+template <class Visit> void for_each_number(const Instance& instance, Visit&& visit) {
+  for (const ClassInfo* c = instance.cls; c; c = c->parent)
+    for (const auto& v : c->variables) {
+      if (v.type >= StaticType::String && v.type <= StaticType::Data) continue;
+      const int count = (v.array_size < 0 ? 1 : v.array_size) * slot_count(v.type);
+      for (int i = 0; i < count; ++i) {
+        Slot& slot = instance.slots[v.slot + static_cast<std::uint32_t>(i)];
+        if (v.type == StaticType::Int) slot.bits = static_cast<std::uint32_t>(slot.i);
+        visit(slot.bits);
+      }
+    }
+}
+
 /// Numbers for cells: containers first, the rest as they are met.
 class Numbering {
  public:
@@ -119,7 +133,7 @@ void Machine::save(ByteWriter& out) const {
     if (cell->tag == Tag::Hash) out.put(static_cast<std::uint64_t>(static_cast<const HashCell*>(cell)->count_live));
     if (cell->tag == Tag::Object) {
       const auto* instance = static_cast<const Instance*>(cell);
-      out.raw(instance->slots, instance->cls->slot_count * sizeof(Slot));  // references follow, by number
+      for_each_number(*instance, [&](std::uint64_t& bits) { out.put(bits); });
     }
     for_each_value(*cell, [&](const Value& v) { put_value(out, v, numbering); });
   }
@@ -226,8 +240,7 @@ void Machine::load(ByteReader& in) {
       }
     } else {
       auto& instance = static_cast<Instance&>(*cells[i]);
-      in.raw(instance.slots, instance.cls->slot_count * sizeof(Slot));
-      for (const auto slot : instance.cls->reference_slots) instance.slots[slot].ref = nullptr;
+      for_each_number(instance, [&](std::uint64_t& bits) { bits = in.get<std::uint64_t>(); });
       for (const ClassInfo* c = instance.cls; c; c = c->parent)
         for (const auto& v : c->variables) {
           if (v.type < StaticType::String || v.type > StaticType::Data) continue;
@@ -293,12 +306,7 @@ void Machine::hash(Hasher& hasher) const {
       hasher.add(static_cast<std::uint64_t>(instance.cls->id));
       hasher.add(instance.serial);
       hasher.add(static_cast<std::uint64_t>(instance.state) * 2 + (instance.auto_free ? 1 : 0));
-      std::size_t next = 0;
-      const auto& references = instance.cls->reference_slots;
-      for (std::uint32_t slot = 0; slot < instance.cls->slot_count; ++slot) {
-        if (next < references.size() && references[next] == slot) ++next;
-        else hasher.add(instance.slots[slot].bits);
-      }
+      for_each_number(instance, [&](std::uint64_t bits) { hasher.add(bits); });
     }
     for_each_value(cell, add_value);
   }

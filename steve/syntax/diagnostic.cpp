@@ -108,6 +108,12 @@ std::size_t distance(std::string_view a, std::string_view b, std::size_t limit) 
   return std::min(above[b.size()], limit + 1);
 }
 
+// A text that quotes something endless keeps its beginning and its end.
+void shorten(std::string& text) {
+  constexpr std::size_t kLongestText = 400, kKept = 180;
+  if (text.size() > kLongestText) text = text.substr(0, kKept) + " ... " + text.substr(text.size() - kKept);
+}
+
 }  // namespace
 
 void Diagnostics::error(const Span& span, std::string code, std::string message, std::string help) {
@@ -119,6 +125,8 @@ void Diagnostics::warning(const Span& span, std::string code, std::string messag
 }
 
 void Diagnostics::add(Diagnostic diagnostic) {
+  shorten(diagnostic.message);
+  shorten(diagnostic.help);
   if (diagnostic.severity == Severity::Error) ++errors_;
   all_.push_back(std::move(diagnostic));
 }

@@ -89,7 +89,8 @@ typedef struct shelf {
 } shelf;
 
 static const char main_module[] =
-    "@path \"some/where\".\n@include \"part.tz\".\nController Main.\nControl : Main { + to init: print (new Part) get. "
+    "@path \"some/where\".\n@include \"part.tz\".\nController Main.\nControl : Main { + to init: print ((new Part) "
+    "get). "
     "}\n";
 static const char part_module[] = "@use Control.\nObject : Part { + to get: return 42. }\n";
 

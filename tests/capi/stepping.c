@@ -118,8 +118,7 @@ static void one_seed_gives_one_run(void) {
 
 static void scripts_read_their_arguments(void) {
   const char* text =
-      "@use Control.\nController Reader.\nControl : Reader {\n  + to init:\n    print (self get-argument-count), \" "
-      "\", "
+      "@use Control.\nController Reader.\nControl : Reader {\n  + to init:\n    print (self get-argument-count), "
       "(self get-argument at-index 1).\n}\n";
   const char* arguments[] = {"reader.tz", "first"};
   breve_world_config config = breve_world_config_default();
