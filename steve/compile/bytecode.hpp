@@ -36,7 +36,9 @@ namespace breve::steve {
   X(AddInt) X(SubInt) X(MulInt) X(DivInt) X(ModInt) X(PowInt) X(NegInt) X(AbsInt) X(AddIntImm) \
   X(LtInt) X(LeInt) X(EqInt) X(NeInt) X(NotInt) \
   /* double */ \
-  X(AddDouble) X(SubDouble) X(MulDouble) X(DivDouble) X(ModDouble) X(PowDouble) X(NegDouble) X(AbsDouble) \
+  X(AddDouble) X(SubDouble) X(MulDouble) X(DivDouble) \
+  X(AddConstant) X(SubConstant) X(MulConstant) X(DivConstant)  /* a = b op numbers[c], double */ \
+  X(ModDouble) X(PowDouble) X(NegDouble) X(AbsDouble) \
   X(LtDouble) X(LeDouble) X(EqDouble) X(NeDouble) \
   X(IntToDouble) X(DoubleToInt) \
   /* vector */ \
@@ -59,8 +61,10 @@ namespace breve::steve {
   X(JumpIfAny) X(JumpIfNotAny) \
   X(JumpUnlessLtInt) X(JumpUnlessLeInt) X(JumpUnlessEqInt) X(JumpUnlessNeInt)  /* a, b; c: signed distance */ \
   X(JumpUnlessLtDouble) X(JumpUnlessLeDouble) X(JumpUnlessEqDouble) X(JumpUnlessNeDouble) \
+  /* a jump back counts as a turn of a loop */ \
   X(JumpIfLtInt) X(JumpIfLeInt) X(JumpIfEqInt) X(JumpIfNeInt) \
   X(JumpIfLtDouble) X(JumpIfLeDouble) X(JumpIfEqDouble) X(JumpIfNeDouble) \
+  X(JumpIfLtSmall) X(JumpIfLeSmall) X(JumpIfGtSmall) X(JumpIfGeSmall) X(JumpIfEqSmall) X(JumpIfNeSmall) /* int a, number b */ \
   /* containers */ \
   X(NewList)      /* a = list; imm: capacity */ \
   X(Append)       /* list a gets any b */ \
@@ -77,7 +81,7 @@ namespace breve::steve {
   X(SetIndexList) /* list a {int b} = any c */ \
   X(Member)       /* any a = any b ::name; ext.imm: member site */ \
   X(SetMember)    /* any a ::name = any b; ext words: member site, jump */ \
-  X(Foreach)      /* any c = next of list a by counter b; ext.imm: jump when done */ \
+  X(Foreach)      /* any c = next of list a by counter b, and jump by ext.imm; no jump when done */ \
   X(ForeachObject)/* object c likewise, falls back to conversion; ext words: jump, text number */ \
   /* objects and calls */ \
   X(New)          /* object a of class imm */ \
@@ -128,7 +132,8 @@ struct Function {
   std::vector<Span> spans;                  // one for each instruction
   std::vector<double> numbers;
   std::uint32_t frame_slots = 0;
-  std::uint32_t zeroed_slots = 0;           // set to zero at entry: parameters, locals, all that the collector looks at
+  std::uint32_t parameter_slots = 0;        // the first ones: written by the caller
+  std::uint32_t zeroed_slots = 0;           // up to here set to zero at entry: locals, all that the collector looks at
   std::vector<std::uint16_t> reference_slots;
   std::vector<std::uint16_t> any_slots;     // first slot of each dynamic value
 };

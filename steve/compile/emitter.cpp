@@ -16,7 +16,7 @@ int slot_count(StaticType type) {
 }
 
 namespace {
-bool is_compare_jump(Op op) { return op >= Op::JumpUnlessLtInt && op <= Op::JumpIfNeDouble; }
+bool is_compare_jump(Op op) { return op >= Op::JumpUnlessLtInt && op <= Op::JumpIfNeSmall; }
 }  // namespace
 
 int Emitter::pool_of(StaticType type) {

@@ -94,6 +94,7 @@ class FunctionCompiler {
   Operand unary(const ast::Unary& u, const ast::Expr& e, const Operand* into);
   Operand chain(const ast::Chain& c, const ast::Expr& e, const Operand* into);
   Operand binary(ast::BinaryOp op, Operand a, Operand b, const Operand* into);
+  std::optional<Operand> with_constant(ast::BinaryOp op, const Operand& left, double number, const Operand* into);
   std::optional<Operand> vector_binary(ast::BinaryOp op, Operand a, Operand b, const Operand* into);
   Operand generic_binary(ast::BinaryOp op, const Operand& a, const Operand& b);
   Operand logical(const ast::Expr& e, const Operand* into);

@@ -76,6 +76,12 @@ Operand FunctionCompiler::chain(const ast::Chain& c, const ast::Expr& e, const O
         left = sum;
         continue;
       }
+      if (number && left.type == StaticType::Double && op <= ast::BinaryOp::Div && *number != 0) {
+        if (const auto value = with_constant(op, left, *number, target)) {
+          left = *value;
+          continue;
+        }
+      }
       if (number && left.type == StaticType::Double) {
         const auto right = literal(ast::DoubleLit{*number}, nullptr);
         emit_.at(e.span);
@@ -95,6 +101,16 @@ Operand FunctionCompiler::chain(const ast::Chain& c, const ast::Expr& e, const O
     left = binary(op, left, right, target);
   }
   return left;
+}
+
+std::optional<Operand> FunctionCompiler::with_constant(ast::BinaryOp op, const Operand& left, double number, const Operand* into) {
+  static constexpr Op kOps[] = {Op::AddConstant, Op::SubConstant, Op::MulConstant, Op::DivConstant};
+  const auto index = emit_.number(number);
+  if (index > 0xffff) return std::nullopt;
+  const auto value = result(StaticType::Double, into);
+  emit_.emit(kOps[static_cast<int>(op)], value.slot, left.slot, static_cast<std::uint16_t>(index));
+  emit_.release(left);
+  return value;
 }
 
 Operand FunctionCompiler::binary(ast::BinaryOp op, Operand a, Operand b, const Operand* into) {
@@ -267,6 +283,15 @@ bool FunctionCompiler::comparison_jump(const ast::Chain& c, bool when, Label& ta
   const auto& right_tree = *c.rest.front().second;
   auto a = stable(expr(*c.first), right_tree);
   const auto number = written_number(right_tree);
+  if (number && a.type == StaticType::Int && is_written_int(right_tree) && std::abs(*number) < 32768) {
+    static constexpr Op kSmall[2][6] = {
+        {Op::JumpIfGeSmall, Op::JumpIfGtSmall, Op::JumpIfLeSmall, Op::JumpIfLtSmall, Op::JumpIfNeSmall, Op::JumpIfEqSmall},
+        {Op::JumpIfLtSmall, Op::JumpIfLeSmall, Op::JumpIfGtSmall, Op::JumpIfGeSmall, Op::JumpIfEqSmall, Op::JumpIfNeSmall}};
+    const auto code = kSmall[when][static_cast<int>(op) - static_cast<int>(Lt)];
+    emit_.compare_jump(code, a.slot, static_cast<std::uint16_t>(static_cast<std::int16_t>(*number)), target);
+    emit_.release(a);
+    return true;
+  }
   auto b = number && a.type == StaticType::Double ? literal(ast::DoubleLit{*number}, nullptr) : expr(right_tree);
   if (!is_number(a.type) || !is_number(b.type)) {
     const auto value = binary(op, a, b, nullptr);

@@ -40,6 +40,7 @@ void FunctionCompiler::declare_locals() {
     info.slot = emit_.reserve(info.type);
     locals_[p.variable] = {info.type, static_cast<std::uint16_t>(info.slot), -1, info.class_name, p.variable_span, true};
   }
+  info_.function->parameter_slots = info_.function->frame_slots;
   for (const auto& v : method_.locals) {
     const auto type = static_type(v.type.kind);
     if (const auto found = locals_.find(v.name); found != locals_.end()) {
@@ -201,23 +202,23 @@ void FunctionCompiler::if_statement(const ast::If& s, bool keep) {
 }
 
 void FunctionCompiler::while_statement(const ast::While& s, bool keep) {
-  Label top, end;
-  emit_.place(top);
-  condition(*s.condition, false, end);
+  Label body, test;
+  emit_.jump(Op::Jump, 0, test);
+  emit_.place(body);
   statement(*s.body, keep);
-  emit_.jump(Op::Loop, 0, top);
-  emit_.place(end);
+  emit_.place(test);
+  condition(*s.condition, true, body);
 }
 
 void FunctionCompiler::for_statement(const ast::For& s, bool keep) {
-  Label top, end;
+  Label body, test;
   emit_.release(expr(*s.start));
-  emit_.place(top);
-  condition(*s.condition, false, end);
+  emit_.jump(Op::Jump, 0, test);
+  emit_.place(body);
   statement(*s.body, keep);
   emit_.release(expr(*s.step));
-  emit_.jump(Op::Loop, 0, top);
-  emit_.place(end);
+  emit_.place(test);
+  condition(*s.condition, true, body);
 }
 
 void FunctionCompiler::foreach_statement(const ast::Foreach& s, const Span& span, bool keep) {
@@ -232,22 +233,29 @@ void FunctionCompiler::foreach_statement(const ast::Foreach& s, const Span& span
   if (!list.temporary) list = copy(list);
   const auto counter = emit_.temporary(StaticType::Int);
   zero(counter);
-  Label top, end;
-  emit_.place(top);
+  Label body, next;
   emit_.at(span);
+  emit_.jump(Op::Jump, 0, next);
+  emit_.place(body);
   if (variable->local && variable->type() == StaticType::Object && variable->class_name() == kNoSymbol) {
+    statement(*s.body, keep);
+    emit_.place(next);
+    emit_.at(span);
     emit_.emit(Op::ForeachObject, list.slot, counter.slot, variable->local->slot);
-    emit_.jump_ext(end);
+    emit_.jump_ext(body);
     emit_.ext(0, text_for(*variable, s.variable));
   } else {
     const auto element = emit_.temporary(StaticType::Any);
+    auto stored = element;
+    stored.temporary = false;
+    emit_.release(store_variable(*variable, s.variable, stored));
+    statement(*s.body, keep);
+    emit_.place(next);
+    emit_.at(span);
     emit_.emit(Op::Foreach, list.slot, counter.slot, element.slot);
-    emit_.jump_ext(end);
-    emit_.release(store_variable(*variable, s.variable, element));
+    emit_.jump_ext(body);
+    emit_.release(element);
   }
-  statement(*s.body, keep);
-  emit_.jump(Op::Loop, 0, top);
-  emit_.place(end);
   emit_.release(counter);
   emit_.release(list);
 }

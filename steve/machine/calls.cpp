@@ -78,9 +78,8 @@ void Machine::fail_call(const CallSite& site, const ClassInfo& cls, const Method
   throw RunError(RunErrorKind::UnknownKeyword, "a keyword is given twice to method '" + name + "'");
 }
 
-const Machine::Plan& Machine::plan_for(std::uint32_t number, const ClassInfo& cls) {
+const Machine::Plan& Machine::find_plan(std::uint32_t number, const ClassInfo& cls) {
   auto& cache = caches_[number];
-  if (cache.cls == &cls) return *cache.plan;
   for (const auto& plan : cache.plans) {
     if (plan->cls != &cls) continue;
     cache.cls = &cls;
@@ -114,7 +113,8 @@ const Machine::Plan& Machine::make_plan(std::uint32_t number, const ClassInfo& c
       } else if (at->type == StaticType::Double && p.type == StaticType::Int) {
         kind = PlanStep::Kind::DoubleToInt;
       }
-      plan->steps.push_back({kind, at->type, at->slot, to, checked, &p});
+      if (kind == PlanStep::Kind::Copy1 && !checked) plan->moves.emplace_back(at->slot, to);
+      else plan->steps.push_back({kind, at->type, at->slot, to, checked, &p});
     }
   }
   auto& cache = caches_[number];
@@ -124,7 +124,7 @@ const Machine::Plan& Machine::make_plan(std::uint32_t number, const ClassInfo& c
   return *cache.plan;
 }
 
-void Machine::apply(const Plan& plan, const Slot* caller, Slot* callee) {
+void Machine::apply_steps(const Plan& plan, const Slot* caller, Slot* callee) {
   for (const auto& step : plan.steps) {
     const Slot* from = caller + step.from;
     Slot* to = callee + step.to;
@@ -173,7 +173,7 @@ void Machine::convert_argument(const PlanStep& step, const Slot* from, Slot* to)
   }
   const auto what = "keyword '" + program_->symbols().name(p.keyword) + "'";
   if (value.tag == Tag::Null && p.type != StaticType::Any) {
-    value = null_default(p.type, 0, frames_.empty() ? nullptr : frames_.back().pc);
+    value = null_default(p.type, 0, running());
     if (value.tag == Tag::Null) { to->ref = nullptr; return; }
   }
   write_value(to, p.type, value, what);
@@ -181,15 +181,16 @@ void Machine::convert_argument(const PlanStep& step, const Slot* from, Slot* to)
 }
 
 void Machine::call_native(const Plan& plan, Instance& receiver, const Slot* caller) {
-  const StackMark mark(*this);
-  need_room(kNativeRoom);
+  // Every frame keeps kNativeRoom slots free above it. After an error the frames are unwound, and the top with them.
   Slot* args = top_;
+  const std::size_t pinned = pins_.size();
   apply(plan, caller, args);
   top_ = args + kNativeRoom;
-  result_ = Value();
   Value result;
   plan.method->native(*this, receiver, args, result);
   result_ = result;
+  top_ = args;
+  if (pins_.size() != pinned) pins_.resize(pinned);
 }
 
 void Machine::check_class(Instance* object, const ClassInfo& cls, std::string_view what) {

@@ -1,6 +1,8 @@
 // Run-time errors: where they happened, through which calls, and what the reader can do about it.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "steve/machine/machine.hpp"
 
 namespace breve::steve {
@@ -13,6 +15,13 @@ Span Machine::span_of(const Frame& frame, const Instruction* pc) const {
   return function.spans[static_cast<std::size_t>(at)];
 }
 
+std::vector<const Machine::Frame*> Machine::active_frames() const {
+  std::vector<const Frame*> frames;
+  for (const Frame* frame = frame_; frame; frame = frame->caller) frames.push_back(frame);
+  std::reverse(frames.begin(), frames.end());
+  return frames;
+}
+
 ErrorReport Machine::report(RunErrorKind kind, const std::string& message, const Instruction* pc) const {
   ErrorReport r;
   r.kind = kind;
@@ -20,9 +29,9 @@ ErrorReport Machine::report(RunErrorKind kind, const std::string& message, const
   const auto& sources = program_->sources();
   // The place shown is the innermost in the user's own files: an error inside the class library is the caller's.
   Span place;
-  for (std::size_t i = 0; i < frames_.size(); ++i) {
-    const auto& frame = frames_[i];
-    const auto span = span_of(frame, i + 1 == frames_.size() && pc ? pc : frame.pc);
+  for (const auto* active : active_frames()) {
+    const auto& frame = *active;
+    const auto span = span_of(frame, active == frame_ && pc ? pc : frame.pc);
     const auto& file = sources.file(span.file);
     if (!file.embedded || place.line == 0) place = span;
     r.trace.push_back({frame.self->cls->name, program_->symbols().name(frame.method->name), file.name, frame.self->serial, span.line});
@@ -81,10 +90,11 @@ void Machine::survive(const ScriptError& error) {
 
 std::string Machine::stack_trace() const {
   std::string out;
-  for (std::size_t i = 0; i < frames_.size(); ++i) {
-    const auto& frame = frames_[i];
+  std::size_t number = 0;
+  for (const auto* active : active_frames()) {
+    const auto& frame = *active;
     const auto span = span_of(frame, frame.pc);
-    out += fmt::format("{}. {} (0x{:x}) {} {}:{}\n", i, frame.self->cls->name, frame.self->serial,
+    out += fmt::format("{}. {} (0x{:x}) {} {}:{}\n", number++, frame.self->cls->name, frame.self->serial,
                        program_->symbols().name(frame.method->name), program_->sources().file(span.file).name, span.line);
   }
   return out;
@@ -92,7 +102,7 @@ std::string Machine::stack_trace() const {
 
 void Machine::warn(std::string_view text) {
   if (!host_.warn) return;
-  for (auto frame = frames_.rbegin(); frame != frames_.rend(); ++frame) {
+  for (const Frame* frame = frame_; frame; frame = frame->caller) {
     const auto span = span_of(*frame, frame->pc);
     if (program_->sources().file(span.file).embedded) continue;
     host_.warn(format({Severity::Warning, "run-time", std::string(text), {}, span}, program_->sources()));

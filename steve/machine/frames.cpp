@@ -13,8 +13,7 @@ constexpr std::size_t kFirstSegment = 4096;   // slots
 constexpr std::uint32_t kMaxNesting = 400;    // interpreter loops on the C++ stack
 }  // namespace
 
-void Machine::need_room(std::size_t slots) {
-  if (static_cast<std::size_t>(limit_ - top_) >= slots) return;
+void Machine::next_segment(std::size_t slots) {
   const std::uint32_t next = segments_.empty() ? 0 : segment_ + 1;
   if (next < segments_.size() && segments_[next].second < slots) {
     for (std::size_t i = next; i < segments_.size(); ++i)
@@ -31,40 +30,19 @@ void Machine::need_room(std::size_t slots) {
   limit_ = top_ + segments_[next].second;
 }
 
-Slot* Machine::enter(const MethodInfo& method, Instance& self) {
-  if (frames_.size() >= host_.depth_limit) {
-    throw RunError(RunErrorKind::Depth, "methods call one another more than " + std::to_string(host_.depth_limit) +
-                                            " deep: does '" + program_->symbols().name(method.name) + "' call itself without end?");
-  }
-  const auto& function = *method.function;
-  Slot* saved_top = top_;
-  const auto saved_segment = segment_;
-  need_room(function.frame_slots + kNativeRoom);
-  frames_.push_back({&method, function.code.data(), top_, saved_top, &self, saved_segment});
-  Slot* base = top_;
-  std::memset(static_cast<void*>(base), 0, function.zeroed_slots * sizeof(Slot));
-  top_ += function.frame_slots;
-  return base;
-}
-
-void Machine::leave() {
-  const auto& frame = frames_.back();
-  if (frame.saved_segment != segment_) {
-    segment_ = frame.saved_segment;
-    limit_ = segments_[segment_].first + segments_[segment_].second;
-  }
-  top_ = frame.saved_top;
-  frames_.pop_back();
+void Machine::fail_depth(const MethodInfo& method) const {
+  throw RunError(RunErrorKind::Depth, "methods call one another more than " + std::to_string(host_.depth_limit) + " deep: does '" +
+                                          program_->symbols().name(method.name) + "' call itself without end?");
 }
 
 void Machine::unwind(std::size_t depth) {
-  while (frames_.size() > depth) leave();
+  while (depth_ > depth) leave();
 }
 
 Value Machine::invoke(Instance& receiver, const MethodInfo& method, std::span<const Value> arguments) {
   if (nesting_ >= kMaxNesting)
     throw RunError(RunErrorKind::Depth, "calls between scripts and the library are nested more than " + std::to_string(kMaxNesting) + " deep");
-  const std::size_t depth = frames_.size();
+  const std::size_t depth = depth_;
   const StackMark mark(*this);
   struct Nest {
     std::uint32_t& nesting;
@@ -86,7 +64,8 @@ Value Machine::invoke(Instance& receiver, const MethodInfo& method, std::span<co
     method.native(*this, receiver, args, result);
     return result;
   }
-  Slot* base = enter(method, receiver);
+  Slot* base = enter(method, receiver)->base();
+  std::memset(static_cast<void*>(base), 0, method.function->parameter_slots * sizeof(Slot));
   try {
     write_all(base);
   } catch (...) {
@@ -143,12 +122,11 @@ void Machine::write_default(Slot* to, const ParameterInfo& p) {
 }
 
 void Machine::visit_frames(const std::function<void(Cell*)>& visit) {
-  for (const auto& frame : frames_) {
-    visit(frame.self);
-    const auto& function = *frame.method->function;
-    for (const auto slot : function.reference_slots) visit(frame.base[slot].ref);
-    for (const auto slot : function.any_slots) {
-      const auto& value = *reinterpret_cast<const Value*>(frame.base + slot);
+  for (Frame* frame = frame_; frame; frame = frame->caller) {
+    visit(frame->self);
+    for (const auto slot : frame->function->reference_slots) visit(frame->base()[slot].ref);
+    for (const auto slot : frame->function->any_slots) {
+      const auto& value = *reinterpret_cast<const Value*>(frame->base() + slot);
       if (value.is_reference()) visit(value.ref);
     }
   }

@@ -16,16 +16,16 @@ namespace breve::steve {
 #define ANY_OR_RESULT(n) ((n) == kResult ? result_ : ANY(n))
 #define LIST(n) static_cast<ListCell*>(R(n).ref)
 #define NEXT() do { in = pc++; goto *kLabels[static_cast<std::size_t>(in->op)]; } while (0)
-#define SAVE() (frames_.back().pc = pc)
+#define SAVE() (frame->pc = pc)
 #define EXT(n) (pc[n])
 #define JUMP() (pc += in->imm())
-#define RELOAD()                    \
-  do {                              \
-    auto& top = frames_.back();     \
-    pc = top.pc;                    \
-    base = top.base;                \
-    self = top.self;                \
-    function = top.method->function.get(); \
+#define RELOAD()                  \
+  do {                            \
+    frame = frame_;               \
+    pc = frame->pc;               \
+    base = frame->base();         \
+    self = frame->self;           \
+    function = frame->function;   \
   } while (0)
 #define COUNT_CALL()                                                                   \
   do {                                                                                 \
@@ -51,6 +51,20 @@ inline void put_vector(Slot* to, double x, double y, double z) {
   to[1].d = y;
   to[2].d = z;
 }
+/// The operators on ints that cannot fail.
+inline std::int32_t int_binary(ast::BinaryOp op, std::int32_t a, std::int32_t b) {
+  switch (op) {
+    case ast::BinaryOp::Add: return wrap_add(a, b);
+    case ast::BinaryOp::Sub: return wrap_sub(a, b);
+    case ast::BinaryOp::Mul: return wrap_mul(a, b);
+    case ast::BinaryOp::Lt: return a < b;
+    case ast::BinaryOp::Le: return a <= b;
+    case ast::BinaryOp::Gt: return a > b;
+    case ast::BinaryOp::Ge: return a >= b;
+    case ast::BinaryOp::Eq: return a == b;
+    default: return a != b;
+  }
+}
 [[noreturn]] void fail_budget() { throw RunError(RunErrorKind::Budget, "the call used up its budget of loop turns and calls"); }
 }  // namespace
 
@@ -62,6 +76,7 @@ void Machine::execute(std::size_t depth) {
   };
   const Instruction* pc = nullptr;
   const Instruction* in = nullptr;
+  Frame* frame = nullptr;
   Slot* base = nullptr;
   Instance* self = nullptr;
   const Function* function = nullptr;
@@ -157,6 +172,10 @@ void Machine::execute(std::size_t depth) {
     if (R(in->c).d == 0) fail_division_by_zero();
     R(in->a).d = R(in->b).d / R(in->c).d;
     NEXT();
+  op_AddConstant: R(in->a).d = R(in->b).d + function->numbers[in->c]; NEXT();
+  op_SubConstant: R(in->a).d = R(in->b).d - function->numbers[in->c]; NEXT();
+  op_MulConstant: R(in->a).d = R(in->b).d * function->numbers[in->c]; NEXT();
+  op_DivConstant: R(in->a).d = R(in->b).d / function->numbers[in->c]; NEXT();
   op_ModDouble: R(in->a).d = remainder(R(in->b).d, R(in->c).d); NEXT();
   op_PowDouble: R(in->a).d = std::pow(R(in->b).d, R(in->c).d); NEXT();
   op_NegDouble: R(in->a).d = -R(in->b).d; NEXT();
@@ -287,7 +306,11 @@ void Machine::execute(std::size_t depth) {
   op_Binary: {
     const auto op = static_cast<ast::BinaryOp>((pc++)->a);
     const Value &x = ANY(in->b), &y = ANY(in->c);
-    if (x.tag == Tag::Vector && y.tag == Tag::Vector && op <= ast::BinaryOp::Sub) {
+    if (x.tag == Tag::Int && y.tag == Tag::Int && (op <= ast::BinaryOp::Mul || op >= ast::BinaryOp::Lt)) {
+      ANY(in->a) = Value::of(int_binary(op, x.i, y.i));
+    } else if (x.tag == Tag::Double && y.tag == Tag::Double && op <= ast::BinaryOp::Mul) {
+      ANY(in->a) = Value::of(op == ast::BinaryOp::Add ? x.d + y.d : op == ast::BinaryOp::Sub ? x.d - y.d : x.d * y.d);
+    } else if (x.tag == Tag::Vector && y.tag == Tag::Vector && op <= ast::BinaryOp::Sub) {
       const double s = op == ast::BinaryOp::Add ? 1.0 : -1.0;
       ANY(in->a) = Value::of(Vector3(x.v[0] + s * y.v[0], x.v[1] + s * y.v[1], x.v[2] + s * y.v[2]));
     } else {
@@ -313,16 +336,22 @@ void Machine::execute(std::size_t depth) {
     COUNT_CALL();
     JUMP();
     NEXT();
-  op_JumpIfInt: if (R(in->a).i) JUMP(); NEXT();
+#define JUMP_BACK(distance)              \
+  do {                                   \
+    const std::int32_t far = (distance); \
+    if (far < 0) COUNT_CALL();           \
+    pc += far;                           \
+  } while (0)
+  op_JumpIfInt: if (R(in->a).i) JUMP_BACK(in->imm()); NEXT();
   op_JumpIfNotInt: if (!R(in->a).i) JUMP(); NEXT();
-  op_JumpIfDouble: if (R(in->a).d != 0) JUMP(); NEXT();
+  op_JumpIfDouble: if (R(in->a).d != 0) JUMP_BACK(in->imm()); NEXT();
   op_JumpIfNotDouble: if (!(R(in->a).d != 0)) JUMP(); NEXT();
-  op_JumpIfObject: if (true_object(R(in->a).ref)) JUMP(); NEXT();
+  op_JumpIfObject: if (true_object(R(in->a).ref)) JUMP_BACK(in->imm()); NEXT();
   op_JumpIfNotObject: if (!true_object(R(in->a).ref)) JUMP(); NEXT();
-  op_JumpIfAny: if (true_any(ANY_OR_RESULT(in->a))) JUMP(); NEXT();
+  op_JumpIfAny: if (true_any(ANY_OR_RESULT(in->a))) JUMP_BACK(in->imm()); NEXT();
   op_JumpIfNotAny: if (!true_any(ANY_OR_RESULT(in->a))) JUMP(); NEXT();
 #define COMPARE_JUMP(name, field, op, wanted) \
-  op_##name: if ((R(in->a).field op R(in->b).field) == wanted) pc += static_cast<std::int16_t>(in->c); NEXT();
+  op_##name: if ((R(in->a).field op R(in->b).field) == wanted) JUMP_BACK(static_cast<std::int16_t>(in->c)); NEXT();
   COMPARE_JUMP(JumpUnlessLtInt, i, <, false)
   COMPARE_JUMP(JumpUnlessLeInt, i, <=, false)
   COMPARE_JUMP(JumpUnlessEqInt, i, ==, false)
@@ -340,6 +369,15 @@ void Machine::execute(std::size_t depth) {
   COMPARE_JUMP(JumpIfEqDouble, d, ==, true)
   COMPARE_JUMP(JumpIfNeDouble, d, !=, true)
 #undef COMPARE_JUMP
+#define SMALL_JUMP(name, op) \
+  op_##name: if (R(in->a).i op static_cast<std::int16_t>(in->b)) JUMP_BACK(static_cast<std::int16_t>(in->c)); NEXT();
+  SMALL_JUMP(JumpIfLtSmall, <)
+  SMALL_JUMP(JumpIfLeSmall, <=)
+  SMALL_JUMP(JumpIfGtSmall, >)
+  SMALL_JUMP(JumpIfGeSmall, >=)
+  SMALL_JUMP(JumpIfEqSmall, ==)
+  SMALL_JUMP(JumpIfNeSmall, !=)
+#undef SMALL_JUMP
 
   op_NewList: R(in->a).ref = heap_->list(static_cast<std::uint32_t>(in->imm())); NEXT();
   op_Append: op_Push: heap_->push(*LIST(in->a), ANY(in->b)); NEXT();
@@ -408,27 +446,27 @@ void Machine::execute(std::size_t depth) {
     const Instruction& ext = *pc++;
     const auto& list = *LIST(in->a);
     const auto i = static_cast<std::uint32_t>(R(in->b).i);
-    if (i >= list.size) {
-      pc += ext.imm();
-    } else {
+    if (i < list.size) {
       ANY(in->c) = list[i];
-      ++R(in->b).i;
+      R(in->b).i = static_cast<std::int32_t>(i + 1);
+      JUMP_BACK(ext.imm());
     }
     NEXT();
   }
   op_ForeachObject: {
-    const Instruction& done = EXT(0);
+    const Instruction& ext = EXT(0);
     const Instruction& what = EXT(1);
     const auto& list = *LIST(in->a);
     const auto i = static_cast<std::uint32_t>(R(in->b).i);
-    if (i >= list.size) {
-      pc += 1 + done.imm();
-    } else {
-      pc += 2;
-      ++R(in->b).i;
+    if (i < list.size) {
+      pc += 1;
+      R(in->b).i = static_cast<std::int32_t>(i + 1);
       const Value& element = list[i];
       if (element.tag == Tag::Object) R(in->c).ref = element.ref;
       else { SAVE(); R(in->c) = converted_reference(StaticType::Object, element, static_cast<std::uint32_t>(what.imm()), false, in); }
+      JUMP_BACK(ext.imm());
+    } else {
+      pc += 2;
     }
     NEXT();
   }
@@ -478,11 +516,11 @@ void Machine::execute(std::size_t depth) {
       NEXT();
     }
     const Slot* caller = base;
-    Slot* callee = enter(*plan->method, *receiver);
-    apply(*plan, caller, callee);
-    base = callee;
+    frame = enter(*plan->method, *receiver);
+    base = frame->base();
+    apply(*plan, caller, base);
     self = receiver;
-    function = plan->method->function.get();
+    function = frame->function;
     pc = function->code.data();
     NEXT();
   }
@@ -580,7 +618,7 @@ void Machine::execute(std::size_t depth) {
   op_ReturnResult:
   do_return:
     leave();
-    if (frames_.size() == depth) return;
+    if (depth_ == depth) return;
     RELOAD();
     LEAVE_IF_FREED();
     NEXT();

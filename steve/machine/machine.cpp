@@ -9,9 +9,8 @@
 namespace breve::steve {
 
 Machine::Machine(std::shared_ptr<const Program> program, World& world, std::pmr::memory_resource* memory, MachineHost host)
-    : program_(std::move(program)), world_(world), host_(std::move(host)), memory_(memory), heap_(std::make_unique<Heap>(memory, *this)), frames_(memory),
-      segments_(memory), pins_(memory), functions_(steve::functions()) {
-  need_room(kNativeRoom);
+    : program_(std::move(program)), world_(world), host_(std::move(host)), memory_(memory), heap_(std::make_unique<Heap>(memory, *this)), segments_(memory), pins_(memory), functions_(steve::functions()) {
+  next_segment(kNativeRoom);
   caches_.resize(program_->code().sites.size());
   strings_ = make_constants(*heap_);
   world_.set_behaviour(this);
@@ -125,8 +124,8 @@ Value Machine::call(Instance& receiver, std::string_view name, std::span<const V
 }
 
 bool Machine::call_guarded(Instance& receiver, const MethodInfo& method, std::span<const Value> arguments, Value& result) {
-  const std::size_t depth = frames_.size();
-  const Instruction* pc = frames_.empty() ? nullptr : frames_.back().pc;
+  const std::size_t depth = depth_;
+  const Instruction* pc = running();
   try {
     try {
       result = call(receiver, method, arguments);

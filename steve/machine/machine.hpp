@@ -144,7 +144,8 @@ class Machine final : public Behaviour, public RootSource {
   struct Plan {
     const ClassInfo* cls = nullptr;
     const MethodInfo* method = nullptr;  // null: `iterate`, which nobody has to have
-    std::vector<PlanStep> steps;
+    std::vector<std::pair<std::uint16_t, std::uint16_t>> moves;  // one slot each: from, to
+    std::vector<PlanStep> steps;                                 // the rest
     std::vector<std::uint16_t> order;  // arguments in the order of the parameters
   };
   struct SiteCache {
@@ -152,15 +153,17 @@ class Machine final : public Behaviour, public RootSource {
     const Plan* plan = nullptr;
     std::vector<std::unique_ptr<Plan>> plans;
   };
+  /// One active method. It stands in the slots right below its registers, so that a call allocates nothing.
   struct Frame {
+    Frame* caller;
     const MethodInfo* method;
+    const Function* function;
     const Instruction* pc;  // as of the last call or slow instruction
-    Slot* base;
-    Slot* saved_top;
     Instance* self;
-    std::uint32_t saved_segment;
+    Slot* saved_top;
+    std::uint64_t saved_segment;
+    Slot* base() { return reinterpret_cast<Slot*>(this + 1); }
   };
-
   static constexpr std::size_t kNativeRoom = 64;  // slots for a native's arguments
 
   /// Restores the top of the stack and the pins at the end of a call into native code.
@@ -185,10 +188,37 @@ class Machine final : public Behaviour, public RootSource {
   };
 
   // frames (frames.cpp)
-  Slot* enter(const MethodInfo& method, Instance& self);  // a new frame; parameters are still to be written
-  void leave();
+  /// A new frame; parameters are still to be written.
+  Frame* enter(const MethodInfo& method, Instance& self) {
+    if (depth_ >= host_.depth_limit) [[unlikely]] fail_depth(method);
+    const auto& function = *method.function;
+    Slot* const saved_top = top_;
+    const auto saved_segment = segment_;
+    need_room(sizeof(Frame) / sizeof(Slot) + function.frame_slots + kNativeRoom);
+    auto* frame = new (static_cast<void*>(top_)) Frame{frame_, &method, &function, function.code.data(), &self, saved_top, saved_segment};
+    frame_ = frame;
+    ++depth_;
+    Slot* base = frame->base();
+    for (std::uint32_t i = function.parameter_slots; i < function.zeroed_slots; ++i) base[i].bits = 0;
+    top_ = base + function.frame_slots;
+    return frame;
+  }
+  void leave() {
+    const Frame* frame = frame_;
+    frame_ = frame->caller;
+    --depth_;
+    top_ = frame->saved_top;
+    if (frame->saved_segment != segment_) [[unlikely]] {
+      segment_ = static_cast<std::uint32_t>(frame->saved_segment);
+      limit_ = segments_[segment_].first + segments_[segment_].second;
+    }
+  }
+  void need_room(std::size_t slots) {
+    if (static_cast<std::size_t>(limit_ - top_) < slots) [[unlikely]] next_segment(slots);
+  }
+  void next_segment(std::size_t slots);
+  [[noreturn]] void fail_depth(const MethodInfo& method) const;
   void unwind(std::size_t depth);
-  void need_room(std::size_t slots);
   void execute(std::size_t depth);  // run the top frame until `depth` frames are left
   Value invoke(Instance& receiver, const MethodInfo& method, std::span<const Value> arguments);
   void write_parameter(Slot* base, const ParameterInfo& parameter, const Value& value, std::string_view what);
@@ -196,12 +226,20 @@ class Machine final : public Behaviour, public RootSource {
   void write_value(Slot* to, StaticType type, const Value& value, std::string_view what);
 
   // calls (calls.cpp)
-  const Plan& plan_for(std::uint32_t site, const ClassInfo& cls);
+  const Plan& plan_for(std::uint32_t site, const ClassInfo& cls) {
+    const auto& cache = caches_[site];
+    return cache.cls == &cls ? *cache.plan : find_plan(site, cls);
+  }
+  const Plan& find_plan(std::uint32_t site, const ClassInfo& cls);
   const Plan& make_plan(std::uint32_t site, const ClassInfo& cls);
   const MethodInfo* choose(const CallSite& site, const ClassInfo& cls) const;
   static bool accepts(const MethodInfo& method, const CallSite& site);
   [[noreturn]] void fail_call(const CallSite& site, const ClassInfo& cls, const MethodInfo* best) const;
-  void apply(const Plan& plan, const Slot* caller, Slot* callee);
+  void apply(const Plan& plan, const Slot* caller, Slot* callee) {
+    for (const auto& [from, to] : plan.moves) callee[to].bits = caller[from].bits;
+    if (!plan.steps.empty()) apply_steps(plan, caller, callee);
+  }
+  void apply_steps(const Plan& plan, const Slot* caller, Slot* callee);
   void convert_argument(const PlanStep& step, const Slot* caller, Slot* callee);
   void call_native(const Plan& plan, Instance& receiver, const Slot* caller);
   void check_class(Instance* object, const ClassInfo& cls, std::string_view what);
@@ -231,6 +269,8 @@ class Machine final : public Behaviour, public RootSource {
   [[noreturn]] void rethrow(std::size_t depth, const Instruction* pc);  // from inside a catch block
   void survive(const ScriptError& error);
   Span span_of(const Frame& frame, const Instruction* pc) const;
+  std::vector<const Frame*> active_frames() const;  // outermost first
+  const Instruction* running() const { return frame_ ? frame_->pc : nullptr; }
   void input_key(const InputEvent& event);
   void call_if_present(Instance& receiver, std::string_view method, std::span<const Value> arguments = {});
   void begin_top_level();
@@ -248,7 +288,8 @@ class Machine final : public Behaviour, public RootSource {
   std::unique_ptr<Heap> heap_;
   Instance* controller_ = nullptr;
   Value result_;  // of the last call
-  std::pmr::vector<Frame> frames_;
+  Frame* frame_ = nullptr;  // the innermost
+  std::size_t depth_ = 0;
   std::pmr::vector<std::pair<Slot*, std::size_t>> segments_;
   std::uint32_t segment_ = 0;
   Slot* top_ = nullptr;

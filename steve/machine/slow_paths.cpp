@@ -118,7 +118,7 @@ Value Machine::guarded_index(const Value& base, const Value& key) {
   try {
     return read_index(base, key);
   } catch (const RunError& error) {
-    survive(ScriptError(error.code(), report(error.kind(), error.what(), frames_.empty() ? nullptr : frames_.back().pc)));
+    survive(ScriptError(error.code(), report(error.kind(), error.what(), running())));
     return {};
   }
 }
@@ -147,7 +147,7 @@ void Machine::set_variable(Instance& instance, const VariableInfo& variable, con
   const auto what = "variable '" + program_->symbols().name(variable.name) + "' of class " + instance.cls->name;
   if (variable.array_size >= 0) throw RunError(RunErrorKind::Type, what + " is an array and cannot be assigned as a whole");
   Value value = given;
-  if (value.tag == Tag::Null) value = null_default(variable.type, 0, frames_.empty() ? nullptr : frames_.back().pc);
+  if (value.tag == Tag::Null) value = null_default(variable.type, 0, running());
   Slot converted[9] = {};
   write_value(converted, variable.type, value, what);
   if (variable.class_name != kNoSymbol)
