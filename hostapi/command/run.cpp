@@ -99,6 +99,7 @@ WorldHandle make_world(const Session& session, const breve_program* program, con
   config.arguments = arguments.data();
   config.argument_count = arguments.size();
   config.strict = options.strict;
+  config.coarse_random = options.coarse_random;
   config.verbose = options.verbose;
   breve_world* world = nullptr;
   status = breve_world_create(session.runtime(), program, &config, &world);

@@ -16,6 +16,7 @@ struct RunOptions {
   std::optional<std::uint64_t> iterations;  // until the program ends if neither is given
   std::optional<double> seconds;            // simulated
   std::optional<std::uint64_t> seed;        // drawn if not given
+  bool coarse_random = false;
   bool strict = false, quiet = false, verbose = false, stats = false, effects = false, hash = false;
   std::string positions;  // CSV file, "" for none
 };

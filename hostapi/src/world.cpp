@@ -154,6 +154,7 @@ breve_status breve_world_create(breve_runtime* runtime, const breve_program* pro
     auto host = machine_host(*handle);
     handle->config.arguments = nullptr;  // copied; the host's array may go
     handle->world = std::make_unique<breve::World>(&handle->meter, c.seed);
+    handle->world->random().set_coarse(c.coarse_random);
     breve::steve::register_resource_kinds(*handle->world);
     handle->machine =
         std::make_unique<breve::steve::Machine>(handle->program, *handle->world, &handle->meter, std::move(host));

@@ -1,14 +1,15 @@
-// Points are counted into cells, the cells are sorted, and a stable counting sort brings the points into their order.
+// The grid as a hash table: points are counted into cells, the cells are sorted, and a stable counting sort brings the
+// points into their order. Cells in a plain array are in cell_array.cpp.
 #include "runtime/space/cell_grid.hpp"
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
 namespace breve {
 
 CellGrid::CellGrid(std::pmr::memory_resource* memory)
-    : cells_(memory),
+    : starts_(memory),
+      cells_(memory),
       table_(memory),
       cell_of_point_(memory),
       renumbered_(memory),
@@ -18,9 +19,11 @@ CellGrid::CellGrid(std::pmr::memory_resource* memory)
 std::int64_t CellGrid::coordinate(double value) const {
   // Beyond 2^52 cells a double no longer tells neighbouring cells apart; what is out there shares the border cell.
   constexpr double kBorder = 4503599627370496.0;
-  const double cell = std::floor(value / cell_size_);
+  const double cell = value / edge_;
   if (!(cell > -kBorder)) return -(std::int64_t{1} << 52);
-  return static_cast<std::int64_t>(std::min(cell, kBorder));
+  if (cell >= kBorder) return std::int64_t{1} << 52;
+  const auto towards_zero = static_cast<std::int64_t>(cell);
+  return towards_zero - (static_cast<double>(towards_zero) > cell ? 1 : 0);
 }
 
 CellGrid::CellKey CellGrid::key_of(const Vector3& point) const {
@@ -69,12 +72,18 @@ void CellGrid::sort_cells() {
 
 void CellGrid::build(const std::pmr::vector<Vector3>& points, double cell_size) {
   cell_size_ = cell_size;
-  cells_.clear();
-  // At most half full, even if every point has a cell of its own.
-  table_.assign(std::bit_ceil(2 * points.size() + 1), 0);
   cell_of_point_.resize(points.size());
   order_.resize(points.size());
   sorted_points_.resize(points.size());
+  in_array_ = fit(points);
+  in_array_ ? scatter(points) : build_table(points);
+}
+
+void CellGrid::build_table(const std::pmr::vector<Vector3>& points) {
+  edge_ = cell_size_;
+  cells_.clear();
+  // At most half full, even if every point has a cell of its own.
+  table_.assign(std::bit_ceil(2 * points.size() + 1), 0);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const CellKey key = key_of(points[i]);
     if (i == 0) low_ = high_ = key;
@@ -97,6 +106,17 @@ void CellGrid::build(const std::pmr::vector<Vector3>& points, double cell_size) 
   }
 }
 
+CellGrid::Run CellGrid::run_in_table(std::int64_t x, std::int64_t y, std::int64_t from, std::int64_t to) const {
+  // The occupied cells of a row stand side by side: the first one leads to the rest.
+  const Cell* first = nullptr;
+  for (std::int64_t z = from; z <= to && !first; ++z) first = find({x, y, z});
+  if (!first) return {0, 0};
+  const Cell* last = first;
+  const Cell* const stop = cells_.data() + cells_.size();
+  while (last + 1 != stop && last[1].key <= CellKey{x, y, to}) ++last;
+  return {first->begin, last->end};
+}
+
 std::size_t CellGrid::around(const Vector3& center, double radius, std::array<Run, kMostRuns>& runs) const {
   std::size_t count = 0;
   const Vector3 reach = Vector3::Constant(radius);
@@ -106,14 +126,14 @@ std::size_t CellGrid::around(const Vector3& center, double radius, std::array<Ru
   to = {std::min(to.x, high_.x), std::min(to.y, high_.y), std::min(to.z, high_.z)};
   for (std::int64_t x = from.x; x <= to.x; ++x) {
     for (std::int64_t y = from.y; y <= to.y; ++y) {
-      // The occupied cells of a row stand side by side: the first one leads to the rest.
-      const Cell* first = nullptr;
-      for (std::int64_t z = from.z; z <= to.z && !first; ++z) first = find({x, y, z});
-      if (!first) continue;
-      const Cell* last = first;
-      const Cell* const stop = cells_.data() + cells_.size();
-      while (last + 1 != stop && last[1].key <= CellKey{x, y, to.z}) ++last;
-      if (count < runs.size()) runs[count++] = {first->begin, last->end};
+      Run run{0, 0};
+      if (in_array_) {
+        const std::uint32_t* const start = starts_.data() + row(x, y);
+        run = {start[from.z - low_.z], start[to.z - low_.z + 1]};
+      } else {
+        run = run_in_table(x, y, from.z, to.z);
+      }
+      if (run.begin != run.end && count < runs.size()) runs[count++] = run;
     }
   }
   return count;
@@ -121,7 +141,8 @@ std::size_t CellGrid::around(const Vector3& center, double radius, std::array<Ru
 
 std::size_t CellGrid::bytes() const {
   return cells_.capacity() * sizeof(Cell) + sorted_points_.capacity() * sizeof(Vector3) +
-         (table_.capacity() + cell_of_point_.capacity() + renumbered_.capacity() + order_.capacity()) *
+         (starts_.capacity() + table_.capacity() + cell_of_point_.capacity() + renumbered_.capacity() +
+          order_.capacity()) *
              sizeof(std::uint32_t);
 }
 

@@ -10,15 +10,19 @@ namespace breve {
 Neighbors::Neighbors(std::pmr::memory_resource* memory)
     : points_(memory),
       radii_(memory),
+      labels_(memory),
       grids_(memory),
       tree_(memory),
       result_(memory),
+      result_labels_(memory),
       kept_(memory),
+      kept_labels_(memory),
       answers_(memory) {}
 
 void Neighbors::clear() {
   points_.clear();
   radii_.clear();
+  labels_.clear();
   asked_last_time_ = asked_;
   asked_ = 0;
   answered_ = too_many_ = false;
@@ -41,11 +45,10 @@ CellGrid* Neighbors::grid_for(double radius) {
   return &grids_[grid_count_++];
 }
 
-void Neighbors::search(std::uint32_t self, std::pmr::vector<std::uint32_t>& out) {
+void Neighbors::search(std::uint32_t self, const Vector3& center, std::pmr::vector<std::uint32_t>& out) {
   const double radius = radii_[self];
   if (!(radius > 0)) return;
   const std::size_t start = out.size();
-  const Vector3& center = points_[self];
   const CellGrid* grid = grid_for(radius);
   std::array<CellGrid::Run, CellGrid::kMostRuns> runs;
   const std::size_t run_count = grid ? grid->around(center, radius, runs) : 0;
@@ -58,27 +61,55 @@ void Neighbors::search(std::uint32_t self, std::pmr::vector<std::uint32_t>& out)
     out.erase(std::remove(out.begin() + static_cast<std::ptrdiff_t>(start), out.end(), self), out.end());
   } else {
     visited_ += candidates;
+    // Room for all; each is written, and kept by stepping on. Which are near is beyond what a processor can guess.
+    out.resize(start + candidates);
+    std::uint32_t* next = out.data() + start;
+    const std::uint32_t* const order = grid->order().data();
+    const Vector3* const points = grid->sorted_points().data();
+    const Nearer nearer(radius);
     for (std::size_t i = 0; i < run_count; ++i) {
       for (std::uint32_t at = runs[i].begin; at < runs[i].end; ++at) {
-        if (nearer_than(grid->sorted_points()[at], center, radius) && grid->order()[at] != self) {
-          out.push_back(grid->order()[at]);
-        }
+        *next = order[at];
+        next += static_cast<int>(nearer(points[at], center)) & static_cast<int>(order[at] != self);
       }
     }
+    out.resize(static_cast<std::size_t>(next - out.data()));
   }
   std::sort(out.begin() + static_cast<std::ptrdiff_t>(start), out.end());
+}
+
+void Neighbors::set_label(std::uint32_t point, std::uint64_t label) {
+  labels_[point] = label;
+  answered_ = false;  // the answers kept have the old one
+}
+
+/// Labels of what was found since `labels` was last as long as `found`.
+void Neighbors::add_labels(const std::pmr::vector<std::uint32_t>& found,
+                           std::pmr::vector<std::uint64_t>& labels) const {
+  for (std::size_t i = labels.size(); i < found.size(); ++i) labels.push_back(labels_[found[i]]);
 }
 
 bool Neighbors::most_ask() const { return asked_last_time_ > points_.size() / 2 || asked_ > points_.size() / 4; }
 
 void Neighbors::answer_all() {
+  constexpr std::size_t kAhead = 8;  // points; about as long as memory takes
   kept_.clear();
+  kept_labels_.clear();
   answers_.resize(points_.size());
   const CellGrid* grid = grid_count_ != 0 ? &grids_.front() : nullptr;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const std::uint32_t point = grid ? grid->order()[i] : static_cast<std::uint32_t>(i);
     const std::size_t begin = kept_.size();
-    search(point, kept_);
+    if (grid && i + kAhead < points_.size()) {
+      const std::uint32_t later = grid->order()[i + kAhead];
+      __builtin_prefetch(radii_.data() + later);
+      __builtin_prefetch(labels_.data() + later);
+      __builtin_prefetch(answers_.data() + later, 1);
+    }
+    // A copy: the search may make another grid.
+    const Vector3 center = grid ? grid->sorted_points()[i] : points_[point];
+    search(point, center, kept_);
+    add_labels(kept_, kept_labels_);
     answers_[point] = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(kept_.size() - begin)};
     if (kept_.size() > kMostKept * points_.size()) {
       too_many_ = true;
@@ -90,19 +121,30 @@ void Neighbors::answer_all() {
   answered_ = true;
 }
 
-std::span<const std::uint32_t> Neighbors::query(std::uint32_t self) {
+Neighbors::Found Neighbors::query(std::uint32_t self) {
   ++asked_;
   if (!answered_ && !too_many_ && most_ask()) answer_all();
-  if (answered_) return {kept_.data() + answers_[self].begin, answers_[self].count};
+  if (answered_) {
+    // Answers lie in the order of space, questions mostly come in that of creation: fetch the next one meanwhile.
+    const Answer& after = answers_[std::min<std::size_t>(self + 1, answers_.size() - 1)];
+    __builtin_prefetch(kept_labels_.data() + after.begin);
+    __builtin_prefetch(kept_labels_.data() + after.begin + after.count);
+    const Answer answer = answers_[self];
+    return {{kept_.data() + answer.begin, answer.count}, {kept_labels_.data() + answer.begin, answer.count}};
+  }
   result_.clear();
-  search(self, result_);
-  return result_;
+  result_labels_.clear();
+  search(self, points_[self], result_);
+  add_labels(result_, result_labels_);
+  return {result_, result_labels_};
 }
 
 std::size_t Neighbors::bytes() const {
-  std::size_t bytes = points_.capacity() * sizeof(Vector3) + tree_.bytes() +
-                      (result_.capacity() + kept_.capacity()) * sizeof(std::uint32_t) +
-                      radii_.capacity() * sizeof(double) + answers_.capacity() * sizeof(Answer);
+  std::size_t bytes =
+      points_.capacity() * sizeof(Vector3) + tree_.bytes() +
+      (result_.capacity() + kept_.capacity()) * sizeof(std::uint32_t) +
+      (labels_.capacity() + result_labels_.capacity() + kept_labels_.capacity()) * sizeof(std::uint64_t) +
+      radii_.capacity() * sizeof(double) + answers_.capacity() * sizeof(Answer);
   for (const CellGrid& grid : grids_) bytes += grid.bytes();
   return bytes;
 }

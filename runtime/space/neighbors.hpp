@@ -18,25 +18,33 @@ class Neighbors {
 
   /// Forget the last moment; points of the next one follow in order of creation.
   void clear();
-  void add(const Vector3& location, double radius) {
+  /// @param label  what answers give for this point, beside its index
+  void add(const Vector3& location, double radius, std::uint64_t label = 0) {
     points_.push_back(location);
     radii_.push_back(radius);
+    labels_.push_back(label);
   }
+  void set_label(std::uint32_t point, std::uint64_t label);
   std::size_t size() const { return points_.size(); }
   const std::pmr::vector<Vector3>& points() const { return points_; }
   const std::pmr::vector<double>& radii() const { return radii_; }
 
-  /// Indices of the points strictly nearer to point `self` than its radius, without it, ascending. Valid until the next
-  /// call. Expected cost proportional to the answer and the like-dense surroundings; no allocation after warm-up.
-  std::span<const std::uint32_t> query(std::uint32_t self);
+  struct Found {
+    std::span<const std::uint32_t> points;  // indices, ascending
+    std::span<const std::uint64_t> labels;  // of the same points
+  };
+  /// The points strictly nearer to point `self` than its radius, without it. Valid until the next call. Expected cost
+  /// proportional to the answer and the like-dense surroundings; no allocation after warm-up.
+  Found query(std::uint32_t self);
   std::size_t bytes() const;
   std::uint64_t visited() const { return visited_; }  // points looked at since clear()
 
  private:
   CellGrid* grid_for(double radius);
-  void search(std::uint32_t self, std::pmr::vector<std::uint32_t>& out);
+  void search(std::uint32_t self, const Vector3& center, std::pmr::vector<std::uint32_t>& out);
   bool most_ask() const;
   void answer_all();
+  void add_labels(const std::pmr::vector<std::uint32_t>& found, std::pmr::vector<std::uint64_t>& labels) const;
 
   // Each grid serves the radii from half its cell to its cell; more kinds of radii than this go to the tree.
   static constexpr std::size_t kMostGrids = 6;
@@ -51,14 +59,17 @@ class Neighbors {
 
   std::pmr::vector<Vector3> points_;
   std::pmr::vector<double> radii_;
+  std::pmr::vector<std::uint64_t> labels_;
   std::pmr::vector<CellGrid> grids_;  // kept for their memory; the first `grid_count_` are of this moment
   std::size_t grid_count_ = 0;
   PointTree tree_;
   bool tree_built_ = false;
   std::pmr::vector<std::uint32_t> result_;
+  std::pmr::vector<std::uint64_t> result_labels_;
   // Once it shows that most points ask, all are answered in the order of space, which is kind to caches.
   std::pmr::vector<std::uint32_t> kept_;
-  std::pmr::vector<Answer> answers_;  // by point, into kept_
+  std::pmr::vector<std::uint64_t> kept_labels_;  // of kept_
+  std::pmr::vector<Answer> answers_;             // by point, into kept_
   std::size_t asked_ = 0, asked_last_time_ = 0;
   bool answered_ = false, too_many_ = false;
   std::uint64_t visited_ = 0;

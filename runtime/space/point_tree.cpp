@@ -3,17 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numeric>
 
 namespace breve {
-
-bool nearer_than(const Vector3& a, const Vector3& b, double radius) {
-  constexpr double kSmallest = 1e-140, kLargest = 1e140;  // squares between stay normal numbers
-  const Vector3 d = a - b;
-  if (radius > kSmallest && radius < kLargest) return d.squaredNorm() < radius * radius;
-  return std::hypot(d.x(), d.y(), d.z()) < radius;
-}
 
 void PointTree::build(const std::pmr::vector<Vector3>& points) {
   nodes_.clear();
@@ -48,6 +40,7 @@ std::uint32_t PointTree::build_node(const std::pmr::vector<Vector3>& points, std
 std::size_t PointTree::within(const std::pmr::vector<Vector3>& points, const Vector3& center, double radius,
                               std::pmr::vector<std::uint32_t>& out) const {
   if (nodes_.empty()) return 0;
+  const Nearer nearer(radius);
   std::size_t looked_at = 0;
   std::array<std::uint32_t, 64> stack;  // depth is at most log2(2^32)
   std::size_t depth = 0;
@@ -66,7 +59,7 @@ std::size_t PointTree::within(const std::pmr::vector<Vector3>& points, const Vec
     }
     looked_at += node.end - node.begin;
     for (std::uint32_t i = node.begin; i < node.end; ++i) {
-      if (nearer_than(points[order_[i]], center, radius)) out.push_back(order_[i]);
+      if (nearer(points[order_[i]], center)) out.push_back(order_[i]);
     }
   }
   return looked_at;

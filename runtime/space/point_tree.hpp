@@ -2,6 +2,7 @@
 // out of reach, and many very different radii.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory_resource>
 #include <vector>
@@ -37,6 +38,19 @@ class PointTree {
 };
 
 /// |a - b| < radius, strictly; by squares where these neither vanish nor overflow.
-bool nearer_than(const Vector3& a, const Vector3& b, double radius);
+class Nearer {
+ public:
+  explicit Nearer(double radius)
+      : radius_(radius), square_(radius * radius), by_squares_(radius > kSmallest && radius < kLargest) {}
+  bool operator()(const Vector3& a, const Vector3& b) const {
+    const Vector3 d = a - b;
+    return by_squares_ ? d.squaredNorm() < square_ : std::hypot(d.x(), d.y(), d.z()) < radius_;
+  }
+
+ private:
+  static constexpr double kSmallest = 1e-140, kLargest = 1e140;  // squares between stay normal numbers
+  double radius_, square_;
+  bool by_squares_;
+};
 
 }  // namespace breve

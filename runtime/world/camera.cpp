@@ -15,7 +15,7 @@ void must_be_finite(bool finite, const char* what) {
 }
 
 Vector3 offset_of(double distance, double pitch, double yaw) {
-  return {distance * std::cos(pitch) * std::sin(yaw), -distance * std::sin(pitch),
+  return {distance * std::cos(pitch) * std::sin(yaw), 0.0 - distance * std::sin(pitch),
           distance * std::cos(pitch) * std::cos(yaw)};
 }
 
@@ -26,7 +26,7 @@ void CameraState::set_offset(const Vector3& o) {
   const double length = o.norm();
   offset = o;
   if (length == 0) return;
-  pitch = -std::asin(std::clamp(o.y() / length, -1.0, 1.0));
+  pitch = std::asin(std::clamp(-o.y() / length, -1.0, 1.0)) + 0.0;  // + 0.0: no negative zero
   const double level = length * std::cos(pitch);
   // Straight above or below the target every yaw fits: the old one stays.
   if (level < 1e-12 * length) return;

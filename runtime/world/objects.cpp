@@ -79,7 +79,6 @@ void ObjectTable::release(ObjectId id) {
   if (slot.generation != std::numeric_limits<std::uint32_t>::max()) free_.push_back(id.index);
   --live_;
   ++released_since_join_;
-  ++releases_;
 }
 
 ObjectTable::Slot& ObjectTable::at(ObjectId id) {

@@ -39,7 +39,6 @@ class ObjectTable {
   Slot& at(ObjectId id);  // Error{Stale} if not alive
   const Slot& at(ObjectId id) const;
   std::size_t count() const { return live_; }
-  std::uint64_t releases() const { return releases_; }  // since the table was made
   std::size_t slot_count() const { return slots_.size(); }
   std::size_t bytes() const;
 
@@ -64,7 +63,6 @@ class ObjectTable {
   std::uint64_t serials_ = 0;
   std::size_t live_ = 0;
   std::size_t released_since_join_ = 0;
-  std::uint64_t releases_ = 0;
 };
 
 void put(ByteWriter& out, ObjectId id);

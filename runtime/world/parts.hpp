@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "runtime/contact/collision_stage.hpp"
-#include "runtime/space/neighbors.hpp"
 #include "runtime/world/collision_handlers.hpp"
 #include "runtime/world/names.hpp"
+#include "runtime/world/neighbor_record.hpp"
 #include "runtime/world/notifications.hpp"
 #include "runtime/world/objects.hpp"
 #include "runtime/world/schedule.hpp"
@@ -60,13 +60,7 @@ struct World::Parts final : CollisionClient {
   ObjectId first_handler;  // who registered the first collision handler
   double substep_start = 0;
 
-  // --- the last update of neighbours --------------------------------------------------------------------------------
-  Neighbors near;
-  std::pmr::vector<ObjectId> near_ids;         // in order of creation
-  std::pmr::vector<std::uint32_t> near_place;  // by object slot: position in near_ids
-  std::pmr::vector<ObjectId> near_result;
-  std::uint64_t near_releases = 0;  // of the object table, at the update
-
+  NeighborRecord near;  // the last update of neighbours
   std::deque<InputEvent> input;
   std::map<std::string, ResourceLoader, std::less<>> loaders;  // not state: the program's own
 };

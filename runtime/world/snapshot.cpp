@@ -96,12 +96,7 @@ void World::write_image(ByteWriter& out) const {
   out.put(parts.exact_schedule);
   out.put(parts.at_impact);
   put(out, parts.first_handler);
-  out.put(static_cast<std::uint64_t>(parts.near_ids.size()));
-  for (std::size_t i = 0; i < parts.near_ids.size(); ++i) {
-    put(out, parts.near_ids[i]);
-    out.put(parts.near.radii()[i]);
-    out.put(parts.near.points()[i]);
-  }
+  parts.near.save(out);
   save_input(out, parts.input);
   out.put(behaviour_ != nullptr);
   if (behaviour_) behaviour_->save(out);
@@ -146,19 +141,7 @@ void World::read_image(ByteReader& in, World& fresh) const {
   parts.exact_schedule = in.get_bool();
   parts.at_impact = in.get_bool();
   parts.first_handler = get_object(in);
-  const std::size_t near = in.get_count(2 * sizeof(std::uint32_t) + 4 * sizeof(double));
-  parts.near_place.resize(parts.objects.slot_count());
-  for (std::size_t i = 0; i < near; ++i) {
-    const ObjectId id = get_object(in);
-    if (id.index >= parts.near_place.size()) ByteReader::fail();
-    parts.near_place[id.index] = static_cast<std::uint32_t>(i);
-    parts.near_ids.push_back(id);
-    const auto radius = in.get<double>();
-    const Vector3 point = in.get_vector();
-    if (!point.allFinite() || !std::isfinite(radius)) ByteReader::fail();
-    parts.near.add(point, radius);
-  }
-  parts.near_releases = ~std::uint64_t{0};  // some of them may be gone
+  parts.near.load(in, parts.objects);
   load_input(in, parts.input);
 }
 
@@ -214,11 +197,7 @@ std::uint64_t World::hash() const {
   parts.collisions.hash(hasher);
   hasher.add(parts.gravity);
   hasher.add(static_cast<std::uint64_t>(parts.exact_schedule) | static_cast<std::uint64_t>(parts.at_impact) << 1);
-  for (std::size_t i = 0; i < parts.near_ids.size(); ++i) {
-    hasher.add(std::uint64_t{parts.near_ids[i].index} << 32 | parts.near_ids[i].generation);
-    hasher.add(parts.near.radii()[i]);
-    hasher.add(parts.near.points()[i]);
-  }
+  parts.near.hash(hasher);
   for (const InputEvent& event : parts.input) {
     hasher.add(std::uint64_t{event.object.index} << 8 | static_cast<std::uint64_t>(event.kind));
     hasher.add(std::string_view(event.key));

@@ -19,10 +19,7 @@ World::Parts::Parts(World& owner, std::pmr::memory_resource* memory)
       handlers(memory),
       collisions(memory, *owner.bodies_),
       stages(memory),
-      near(memory),
-      near_ids(memory),
-      near_place(memory),
-      near_result(memory) {}
+      near(memory) {}
 
 World::World(std::pmr::memory_resource* memory, std::uint64_t seed)
     : memory_(memory),
@@ -50,12 +47,16 @@ void World::release(ObjectId id) {
   }
   if (slot.events != 0) parts.schedule.forget(parts.objects, id);
   parts.notifications.forget(id);
+  parts.near.forget(id);
   parts.objects.release(id);
 }
 
 bool World::alive(ObjectId id) const { return parts_->objects.alive(id); }
 std::uint64_t World::user(ObjectId id) const { return parts_->objects.at(id).user; }
-void World::set_user(ObjectId id, std::uint64_t user) { parts_->objects.at(id).user = user; }
+void World::set_user(ObjectId id, std::uint64_t user) {
+  parts_->objects.at(id).user = user;
+  parts_->near.set_user(id, user);
+}
 ClassId World::class_of(ObjectId id) const { return parts_->objects.at(id).cls; }
 std::size_t World::object_count() const { return parts_->objects.count(); }
 
@@ -121,39 +122,28 @@ std::vector<ObjectId> World::touching(ObjectId id) const {
 
 void World::update_neighbors() {
   Parts& parts = *parts_;
-  parts.near.clear();
-  parts.near_ids.clear();
-  parts.near_place.resize(parts.objects.slot_count());
-  parts.near_releases = parts.objects.releases();
+  parts.near.clear(parts.objects.slot_count());
   parts.effects.turn_on(EffectId::Neighbors, clock_.iteration, {});
   for (const ObjectId id : parts.objects.order()) {
     if (!parts.objects.alive(id)) continue;
-    const BodyIndex body = parts.objects.at(id).body;
+    const ObjectTable::Slot& slot = parts.objects.at(id);
+    const BodyIndex body = slot.body;
     if (body == kNoBody || !bodies_->location(body).allFinite()) continue;
     constexpr double kUnset = 0.00001;  // what a radius nobody set counts as (CLASSES 2.6)
     const double radius = bodies_->neighborhood_size(body);
-    parts.near_place[id.index] = static_cast<std::uint32_t>(parts.near_ids.size());
-    parts.near.add(bodies_->location(body), radius == 0 ? kUnset : radius);
-    parts.near_ids.push_back(id);
+    parts.near.add(id, slot.user, bodies_->location(body), radius == 0 ? kUnset : radius);
   }
   ++parts.effects[EffectId::Neighbors].calls;
 }
 
 const std::pmr::vector<ObjectId>& World::neighbors(ObjectId id) {
-  Parts& parts = *parts_;
-  parts.near_result.clear();
-  if (id.index >= parts.near_place.size()) return parts.near_result;
-  const std::uint32_t place = parts.near_place[id.index];
-  // Of an object that was not there at the update the table holds nothing or another's place.
-  if (place >= parts.near_ids.size() || parts.near_ids[place] != id) return parts.near_result;
-  // Where nobody was freed since the update, nobody need be asked whether it lives.
-  const bool all_live = parts.near_releases == parts.objects.releases();
-  for (const std::uint32_t other : parts.near.query(place)) {
-    const ObjectId found = parts.near_ids[other];
-    if (all_live || parts.objects.alive(found)) parts.near_result.push_back(found);
-  }
-  ++parts.effects[EffectId::Neighbors].items;
-  return parts.near_result;
+  ++parts_->effects[EffectId::Neighbors].items;
+  return parts_->near.neighbors(id);
+}
+
+std::span<const std::uint64_t> World::neighbor_users(ObjectId id) {
+  ++parts_->effects[EffectId::Neighbors].items;
+  return parts_->near.users(id);
 }
 
 // --- schedule -------------------------------------------------------------------------------------------------------

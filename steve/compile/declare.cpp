@@ -143,8 +143,7 @@ void ProgramBuilder::declare_parameter(const ast::Parameter& tree, MethodInfo& m
     };
     const auto& value = tree.default_value->value;
     if (const auto* i = std::get_if<std::int32_t>(&value)) {
-      if (p.type == StaticType::String) p.default_string = string_number(std::to_string(*i)) + 1;
-      else number(*i);
+      number(*i);
     } else if (const auto* d = std::get_if<double>(&value)) {
       number(*d);
     } else if (const auto* s = std::get_if<std::string>(&value)) {

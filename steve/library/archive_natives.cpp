@@ -1,4 +1,6 @@
-// Natives that write objects to XML and read them back.
+// Natives that write objects to XML files and read them back.
+#include "runtime/store/file.hpp"
+#include "steve/library/archive.hpp"
 #include "steve/library/support.hpp"
 #include "steve/library/tables.hpp"
 
@@ -8,24 +10,75 @@ namespace {
 
 using Text = StringCell*;
 
-[[noreturn]] void later(std::string_view selector) {
-  Machine::fail(RunErrorKind::World, std::string(selector) + ": archives are part of a later version");
+/// Run `work`; a failure that is about the archive is a warning with the file's name, not the end of the run.
+template <class Work> bool try_archive(Machine& machine, std::string_view what, Work work) {
+  try {
+    work();
+    return true;
+  } catch (const Error& error) {
+    const ErrorCode code = error.code();
+    if (code != ErrorCode::File && code != ErrorCode::Argument && code != ErrorCode::Image) throw;
+    machine.warn(std::string(what) + ": " + error.what());
+    return false;
+  }
 }
 
-std::int32_t archive_as_xml(Machine&, Instance&, Text) { later("archive-as-xml"); }
-Text archive_as_xml_string(Machine&, Instance&) { later("archive-as-xml-string"); }
-Instance* dearchive_xml(Machine&, Instance&, Text) { later("dearchive-xml"); }
-Instance* parse_request(Machine&, Instance&, Text) { later("parse-xml-network-request"); }
-std::int32_t data_save(Machine&, Instance&, Text) { later("save-to"); }
-std::int32_t data_load(Machine&, Instance&, Text) { later("load-from"); }
+/// Read from the name as it stands, else from where the host finds it.
+std::string read_file(Machine& machine, const std::string& name) {
+  try {
+    return TextFile(name, TextFile::Mode::Read).read_all();
+  } catch (const Error&) {
+    const std::string path = machine.host().find_file ? machine.host().find_file(name) : std::string();
+    if (path.empty()) throw;
+    return TextFile(path, TextFile::Mode::Read).read_all();
+  }
+}
+
+std::int32_t save(Machine& machine, Instance& self, Text file) {
+  const std::string name(view(file));
+  const bool done = try_archive(machine, "archive '" + name + "' not written", [&] {
+    const std::string xml = to_archive(machine, self);
+    TextFile out(name, TextFile::Mode::Write);
+    out.write(xml);
+    out.close();
+  });
+  return done ? 0 : -1;
+}
+
+Text archive_as_xml_string(Machine& machine, Instance& self) {
+  std::string xml;
+  try_archive(machine, "no archive", [&] { xml = to_archive(machine, self); });
+  return machine.heap().string(xml);
+}
+
+Instance* dearchive_xml(Machine& machine, Instance&, Text file) {
+  const std::string name(view(file));
+  Instance* object = nullptr;
+  try_archive(machine, "archive '" + name + "' not read",
+              [&] { object = from_archive(machine, read_file(machine, name)); });
+  return object;
+}
+
+Instance* parse_request(Machine& machine, Instance&, Text xml) {
+  Instance* object = nullptr;
+  try_archive(machine, "request not understood", [&] { object = from_archive(machine, view(xml)); });
+  return object;
+}
+
+std::int32_t data_load(Machine& machine, Instance& self, Text file) {
+  const std::string name(view(file));
+  const bool done = try_archive(machine, "archive '" + name + "' not read",
+                                [&] { variables_from_archive(machine, read_file(machine, name), self); });
+  return done ? 0 : -1;
+}
 
 constexpr Native kArchiveNatives[] = {
-    native<archive_as_xml>("object.archive-as-xml"),
+    native<save>("object.archive-as-xml"),
     native<archive_as_xml_string>("object.archive-as-xml-string"),
     native<dearchive_xml>("control.dearchive-xml"),
     native<parse_request>("control.parse-xml-network-request"),
-    native<data_save>("data.save-to"),
-    native<data_save>("data.save-as-xml"),
+    native<save>("data.save-to"),
+    native<save>("data.save-as-xml"),
     native<data_load>("data.load-from"),
     native<data_load>("data.load-from-xml"),
 };

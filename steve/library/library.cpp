@@ -27,6 +27,17 @@ constexpr std::string_view kLaterClasses[] = {
     "PushProgram", "PushProgramTransporter", "PushPrograms", "QProgram", "QSystem", "RevoluteJoint", "RevoluteJoints",
     "Sound", "Sounds", "Spring", "Springs", "Terrain", "Tone", "Tones", "URL", "UniversalJoint", "UniversalJoints"};
 
+struct Kind {
+  std::string_view name;
+  ResourceLoader loader;
+};
+constexpr Kind kKinds[] = {
+    {CameraResource::kKind, &CameraResource::load},   {MenuItemResource::kKind, &MenuItemResource::load},
+    {DrawingResource::kKind, &DrawingResource::load}, {LineResource::kKind, &LineResource::load},
+    {ShapeResource::kKind, &ShapeResource::load},     {ImageResource::kKind, &ImageResource::load},
+    {FieldResource::kKind, &FieldResource::load},
+};
+
 /// Is `word` one of the space-separated words of `list`?
 bool holds_word(std::string_view list, std::string_view word) {
   while (!list.empty()) {
@@ -57,13 +68,13 @@ bool is_later_class(std::string_view name_or_alias) {
 }
 
 void register_resource_kinds(World& world) {
-  world.add_resource_kind(CameraResource::kKind, &CameraResource::load);
-  world.add_resource_kind(MenuItemResource::kKind, &MenuItemResource::load);
-  world.add_resource_kind(DrawingResource::kKind, &DrawingResource::load);
-  world.add_resource_kind(LineResource::kKind, &LineResource::load);
-  world.add_resource_kind(ShapeResource::kKind, &ShapeResource::load);
-  world.add_resource_kind(ImageResource::kKind, &ImageResource::load);
-  world.add_resource_kind(FieldResource::kKind, &FieldResource::load);
+  for (const Kind& kind : kKinds) world.add_resource_kind(kind.name, kind.loader);
+}
+
+std::unique_ptr<Resource> load_resource(std::string_view name, ByteReader& in) {
+  for (const Kind& kind : kKinds)
+    if (kind.name == name) return kind.loader(in);
+  ByteReader::fail();
 }
 
 }  // namespace breve::steve

@@ -20,4 +20,7 @@ bool is_later_class(std::string_view name_or_alias);
 /// Teach a world to load the native data of library objects from snapshots. Once per world, before the first load.
 void register_resource_kinds(World& world);
 
+/// Native data of that kind out of an image. Error{Image} if there is no such kind or the image is damaged.
+std::unique_ptr<Resource> load_resource(std::string_view kind, ByteReader& in);
+
 }  // namespace breve::steve

@@ -1,5 +1,6 @@
 // Natives of Real, Stationary: pose, shape, material, neighbours, collisions.
 #include <cmath>
+#include <span>
 
 #include "steve/library/library.hpp"
 #include "steve/library/resources.hpp"
@@ -173,9 +174,15 @@ double real_get_neighborhood_size(Machine& machine, Instance& self) {
 
 ListCell* real_get_neighbors(Machine& machine, Instance& self) {
   body_of(machine, self);
-  const auto& neighbors = machine.world().neighbors(self.id);
-  ListCell* list = machine.heap().list(static_cast<std::uint32_t>(neighbors.size()));
-  for (ObjectId id : neighbors) machine.heap().push(*list, Value::of(Tag::Object, machine.instance(id)));
+  const std::span<const std::uint64_t> neighbors = machine.world().neighbor_users(self.id);
+  const auto count = static_cast<std::uint32_t>(neighbors.size());
+  ListCell* list = machine.heap().list(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    auto* neighbor = reinterpret_cast<Instance*>(neighbors[i]);
+    machine.heap().retain(neighbor);
+    list->store[i] = Value::of(Tag::Object, neighbor);
+  }
+  list->size = count;
   return list;
 }
 

@@ -57,7 +57,6 @@ Value Machine::invoke(Instance& receiver, const MethodInfo& method, std::span<co
   if (method.native) {
     need_room(kNativeRoom);
     Slot* args = top_;
-    std::memset(static_cast<void*>(args), 0, kNativeRoom * sizeof(Slot));
     top_ += kNativeRoom;
     write_all(args);
     Value result;

@@ -181,7 +181,7 @@ class Heap {
   };
   static constexpr std::size_t kUnit = 16;     // bytes; size classes are multiples
   static constexpr std::size_t kClasses = 32;  // up to 512 bytes
-  static constexpr std::size_t kReclaimAt = 8192;
+  static constexpr std::size_t kReclaimAt = 1024;  // so little garbage that it is still in the cache when it goes
 
   // heap.cpp
   void* take(std::size_t bytes);

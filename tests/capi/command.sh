@@ -151,6 +151,11 @@ quiet)
   expect 0 run a.tz --iterations 1 --seed 1 && [ -s err ] || fail "a warning is shown"
   expect 0 run a.tz --iterations 1 --seed 1 --quiet && same "$(cat err)" ""
   ;;
+coarse-random)
+  program a.tz 'print ((random[1.0] * 32767.0 + 0.0000005) % 1.0 < 0.000001).' ''
+  expect 0 run a.tz --iterations 1 --seed 1 --quiet --coarse-random && same "$(cat out)" 1
+  expect 0 run a.tz --iterations 1 --seed 1 --quiet && same "$(cat out)" 0
+  ;;
 strict)
   program a.tz 'turns = (self nothing).' ''
   sed -i 's/^}$/  + to nothing: return.\n}/' a.tz

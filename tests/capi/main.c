@@ -48,6 +48,7 @@ void program_suite(void);
 void reentry_suite(void);
 void snapshot_suite(void);
 void stepping_suite(void);
+void threads_suite(void);
 void values_suite(void);
 
 static const struct {
@@ -56,7 +57,7 @@ static const struct {
 } suites[] = {
     {"calls", calls_suite},       {"config", config_suite},   {"input", input_suite},     {"nulls", nulls_suite},
     {"objects", objects_suite},   {"program", program_suite}, {"reentry", reentry_suite}, {"snapshot", snapshot_suite},
-    {"stepping", stepping_suite}, {"values", values_suite},
+    {"stepping", stepping_suite}, {"threads", threads_suite}, {"values", values_suite},
 };
 
 int main(int argc, char** argv) {

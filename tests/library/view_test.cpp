@@ -181,15 +181,15 @@ TEST(Menu, SeparatorsAndDisabledEntriesCannotBeChosen) {
 }
 
 TEST(Menu, ComesBackFromAnImage) {
-  MenuItemResource item;
-  item.owner = {3, 4};
-  item.name = "Go";
-  item.method = "go";
-  item.checked = true;
+  const auto item = std::make_unique<MenuItemResource>();
+  item->owner = {3, 4};
+  item->name = "Go";
+  item->method = "go";
+  item->checked = true;
   ByteWriter out;
-  item.save(out);
+  item->save(out);
   ByteReader in(out.bytes().data(), out.bytes().size());
-  EXPECT_EQ(hash_of(*MenuItemResource::load(in)), hash_of(item));
+  EXPECT_EQ(hash_of(*MenuItemResource::load(in)), hash_of(*item));
 }
 
 }  // namespace

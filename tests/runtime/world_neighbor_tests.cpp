@@ -86,6 +86,33 @@ TEST(Neighbors, AreOfTheLastUpdateAndOnlyTheLiving) {
   EXPECT_TRUE(s.world.neighbors(b).empty()) << "a stale id has none";
 }
 
+TEST(Neighbors, AreKnownByTheirUserWordsInTheSameOrder) {
+  Scene s(3);
+  std::vector<ObjectId> ids;
+  for (int i = 0; i < 300; ++i) {
+    ids.push_back(s.body(1, in_cube(s.world.random(), 6)));
+    s.world.bodies().set_neighborhood_size(s.world.body(ids.back()), 1.5);
+    s.world.set_user(ids.back(), 1000 + static_cast<std::uint64_t>(i));
+  }
+  const auto expect_same = [&](const char* when) {
+    std::size_t all = 0;
+    for (const ObjectId id : ids) {
+      const std::pmr::vector<ObjectId> neighbors = s.world.neighbors(id);
+      const auto users = s.world.neighbor_users(id);
+      ASSERT_EQ(users.size(), neighbors.size()) << when;
+      for (std::size_t i = 0; i < users.size(); ++i) ASSERT_EQ(users[i], s.world.user(neighbors[i])) << when;
+      all += users.size();
+    }
+    EXPECT_GT(all, ids.size()) << when;
+  };
+  s.world.update_neighbors();
+  expect_same("after the update");
+  for (std::size_t i = 0; i < ids.size(); i += 3) s.world.set_user(ids[i], 5000 + i);
+  expect_same("after new user words");
+  for (std::size_t i = 0; i < ids.size(); i += 5) s.world.release(ids[i]);
+  expect_same("after some were released");
+}
+
 TEST(Neighbors, AllocateNothingOnceWarm) {
   Scene s;
   std::vector<ObjectId> ids;

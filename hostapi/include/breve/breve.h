@@ -285,7 +285,9 @@ typedef struct breve_world_config {
   double integration_step;      /* s, set after the controller's init; 0: the script's own. Default 0 */
   bool strict;                  /* doubtful things that are warnings become errors. Default false */
   bool verbose;                 /* say more: once for each obsolete method that is used. Default false */
-  bool reserved[6];             /* must be false */
+  bool coarse_random;           /* random[] of floats and vectors draws from 32,768 values, as programs written for
+                                   the original expect. Default false */
+  bool reserved[5];             /* must be false */
   void* user;                   /* the host's own, for breve_world_user. Default NULL */
 } breve_world_config;
 

@@ -104,4 +104,4 @@ for _ = 1, 50 do
   for _, boid in ipairs(boids) do boid:iterate(grid) end
 end
 
-for _, boid in ipairs(boids) do print(vector.text(boid.location)) end
+for _, boid in ipairs(boids) do print(string.format("%.6f %.6f %.6f", table.unpack(boid.location))) end

@@ -1,0 +1,269 @@
+// Archives: which objects belong to one, their order, writing and reading them.
+#include "steve/library/archive.hpp"
+
+#include <deque>
+#include <functional>
+#include <map>
+#include <pugixml.hpp>
+#include <set>
+#include <sstream>
+#include <vector>
+
+#include "steve/library/archive_body.hpp"
+#include "steve/library/archive_values.hpp"
+#include "steve/library/library.hpp"
+#include "steve/library/support.hpp"
+
+namespace breve::steve {
+
+namespace {
+
+constexpr int kVersion = 1;
+
+[[noreturn]] void refuse(const std::string& why) { throw Error(ErrorCode::File, why); }
+
+/// Variables that are made anew instead of archived: what belongs to the world around the object.
+bool is_archived(const ClassInfo& cls, std::string_view name, const VariableInfo& variable) {
+  if (variable.array_size >= 0 && variable.type == StaticType::Pointer) return false;
+  if (cls.name == "Object") return name == "birthTime" || name == "archiveDependencies";
+  if (cls.name == "Real") return name != "realLines" && name != "realMenus";
+  if (cls.name == "Control") return name == "accuracyRung";
+  return variable.type != StaticType::Pointer;
+}
+
+/// Calls `visit(class, name, variable)` for every archived variable of an object, root class first.
+template <class Visit> void for_each_variable(Machine& machine, const ClassInfo& concrete, Visit visit) {
+  std::vector<const ClassInfo*> classes;
+  for (const ClassInfo* cls = &concrete; cls; cls = cls->parent) classes.insert(classes.begin(), cls);
+  for (const ClassInfo* cls : classes)
+    for (const VariableInfo& variable : cls->variables) {
+      const std::string& name = machine.program().symbols().name(variable.name);
+      if (is_archived(*cls, name, variable)) visit(*cls, name, variable);
+    }
+}
+
+int elements_of(const VariableInfo& variable) { return variable.array_size >= 0 ? variable.array_size : 1; }
+
+/// One element of an array, or the variable itself, as a variable of its own.
+VariableInfo element_of(const VariableInfo& variable, int element) {
+  VariableInfo one = variable;
+  one.array_size = -1;
+  one.slot = variable.slot + static_cast<std::uint32_t>(element * slot_count(variable.type));
+  return one;
+}
+
+// --- writing ---------------------------------------------------------------------------------------------------------
+
+class Writer {
+ public:
+  explicit Writer(Machine& machine) : machine_(machine) {}
+
+  std::string write(Instance& root) {
+    gather(root);
+    pugi::xml_document document;
+    pugi::xml_node archive = document.append_child("breve-archive");
+    archive.append_attribute("version") = kVersion;
+    archive.append_attribute("root") = numbers_.at(root.serial);
+    ValueWriter values(numbers_);
+    for (Instance* object : order_) write_object(archive.append_child("object"), *object, values);
+    std::ostringstream out;
+    document.save(out, " ");
+    return out.str();
+  }
+
+ private:
+  /// What `object` depends on: what it said, and what its body is made of.
+  std::vector<Instance*> needs_of(Instance& object) {
+    std::vector<Instance*> needs;
+    const Slot* listed = library_slot(machine_, object, "Object", "archiveDependencies");
+    if (listed && listed->ref)
+      for (const Value& need : *static_cast<ListCell*>(listed->ref))
+        if (need.tag == Tag::Object && need.object() && need.object()->live()) needs.push_back(need.object());
+    for (const char* name : {"collisionShape", "displayShape", "textureImage", "bitmapImage", "lightmapImage"})
+      if (Instance* need = library_object(machine_, object, "Real", name)) needs.push_back(need);
+    return needs;
+  }
+
+  /// Depth first without recursion, dependencies before what depends on them. The controller is the world's, not an
+  /// object's: it is in an archive only as its root.
+  void gather(Instance& root) {
+    std::vector<std::pair<Instance*, bool>> stack{{&root, false}};
+    while (!stack.empty()) {
+      const auto [object, done] = stack.back();
+      stack.pop_back();
+      if (done) {
+        numbers_.emplace(object->serial, static_cast<int>(order_.size()) + 1);
+        order_.push_back(object);
+        continue;
+      }
+      if (!met_.insert(object->serial).second || (object == machine_.controller() && object != &root)) continue;
+      prepare(*object);
+      stack.emplace_back(object, true);
+      const std::vector<Instance*> needs = needs_of(*object);
+      for (auto need = needs.rbegin(); need != needs.rend(); ++need) stack.emplace_back(*need, false);
+    }
+  }
+
+  void prepare(Instance& object) {
+    pins_.emplace_back(machine_, Value::of(Tag::Object, &object));
+    const MethodInfo* hook = machine_.find_method(*object.cls, "archive", 0);
+    if (!hook) return;
+    const Value answer = machine_.call(object, *hook);
+    if (!object.live()) throw Error(ErrorCode::Argument, name_of(object) + " was freed by its archive method");
+    if (answer.tag == Tag::Int && answer.i == 0)
+      throw Error(ErrorCode::Argument, "archive of " + name_of(object) + " failed");
+  }
+
+  void write_object(pugi::xml_node element, Instance& object, ValueWriter& values) {
+    element.append_attribute("id") = numbers_.at(object.serial);
+    element.append_attribute("class") = object.cls->name.c_str();
+    World& world = machine_.world();
+    if (const Resource* resource = world.resource(object.id)) {
+      ByteWriter out;
+      resource->save(out);
+      const std::vector<std::uint8_t> bytes = out.take();
+      pugi::xml_node native = element.append_child("native");
+      native.append_attribute("kind") = std::string(resource->kind()).c_str();
+      native.text() = to_hex({reinterpret_cast<const char*>(bytes.data()), bytes.size()}).c_str();
+    }
+    if (world.has_body(object.id)) write_body(machine_, object, element.append_child("body"));
+    for_each_variable(machine_, *object.cls, [&](const ClassInfo& cls, const std::string& name, const VariableInfo& v) {
+      pugi::xml_node variable = element.append_child("variable");
+      variable.append_attribute("class") = cls.name.c_str();
+      variable.append_attribute("name") = name.c_str();
+      for (int i = 0; i < elements_of(v); ++i)
+        values.write(variable, machine_.get_variable(object, element_of(v, i)));
+    });
+  }
+
+  Machine& machine_;
+  std::deque<Pin> pins_;
+  std::set<std::uint64_t> met_;
+  std::map<std::uint64_t, int> numbers_;
+  std::vector<Instance*> order_;
+};
+
+// --- reading ---------------------------------------------------------------------------------------------------------
+
+pugi::xml_node parse(pugi::xml_document& document, std::string_view xml) {
+  const auto result = document.load_buffer(xml.data(), xml.size(), pugi::parse_default | pugi::parse_ws_pcdata);
+  const pugi::xml_node archive = document.child("breve-archive");
+  if (!result || !archive) refuse("this is no archive");
+  if (archive.attribute("version").as_int() != kVersion) refuse("this archive is of another version");
+  return archive;
+}
+
+const ClassInfo& class_of(Machine& machine, pugi::xml_node object) {
+  const std::string name = object.attribute("class").value();
+  const ClassInfo* cls = machine.program().find_class(name);
+  if (!cls) refuse("the archive holds an object of class '" + name + "', which this program does not have");
+  return *cls;
+}
+
+void read_variables(Machine& machine, Instance& object, pugi::xml_node element, ValueReader& values) {
+  std::map<std::pair<std::string, std::string>, pugi::xml_node> written;
+  for (const pugi::xml_node variable : element.children("variable"))
+    written[{variable.attribute("class").value(), variable.attribute("name").value()}] = variable;
+  // A variable that the archive does not have keeps its default: the class may have grown since.
+  for_each_variable(machine, *object.cls, [&](const ClassInfo& cls, const std::string& name, const VariableInfo& v) {
+    const auto found = written.find({cls.name, name});
+    if (found == written.end()) return;
+    int i = 0;
+    for (const pugi::xml_node value : found->second.children()) {
+      if (value.type() != pugi::node_element || i >= elements_of(v)) continue;
+      machine.set_variable(object, element_of(v, i++), values.read(value));
+    }
+  });
+}
+
+class Reader {
+ public:
+  Reader(Machine& machine, pugi::xml_node archive) : machine_(machine), archive_(archive) {}
+
+  Instance* read() {
+    try {
+      make_objects();
+      fill_objects();
+      announce_objects();
+    } catch (...) {
+      for (const auto& [id, object] : objects_)
+        if (object->live()) machine_.free_instance(*object);
+      throw;
+    }
+    const auto root = objects_.find(archive_.attribute("root").as_int());
+    return root == objects_.end() ? nullptr : root->second;
+  }
+
+ private:
+  /// As the machine makes an instance, but without `init`.
+  Instance* make(const ClassInfo& cls) {
+    Heap& heap = machine_.heap();
+    Instance* object = heap.instance(cls);
+    heap.retain(object);
+    object->id = machine_.world().create(cls.id, reinterpret_cast<std::uint64_t>(object), cls.iterate != nullptr,
+                                         cls.post_iterate != nullptr);
+    return object;
+  }
+
+  void make_objects() {
+    for (const pugi::xml_node element : archive_.children("object")) {
+      const int id = element.attribute("id").as_int();
+      if (id <= 0 || objects_.contains(id)) refuse("the archive is damaged: an object without a number of its own");
+      objects_.emplace(id, make(class_of(machine_, element)));
+      elements_.emplace_back(objects_.at(id), element);
+    }
+  }
+
+  void fill_objects() {
+    ValueReader values(machine_, objects_);
+    for (const auto& [object, element] : elements_) {
+      if (const pugi::xml_node native = element.child("native")) {
+        const std::string bytes = from_hex(native.text().get());
+        ByteReader in(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+        machine_.world().attach(object->id, load_resource(native.attribute("kind").value(), in));
+      }
+      read_variables(machine_, *object, element, values);
+      if (const pugi::xml_node body = element.child("body")) read_body(machine_, *object, body);
+    }
+  }
+
+  void announce_objects() {
+    for (const auto& [object, element] : elements_) {
+      if (const MethodInfo* hook = machine_.find_method(*object->cls, "post-dearchive-set-controller", 0))
+        machine_.call(*object, *hook);
+      const MethodInfo* hook = object->live() ? machine_.find_method(*object->cls, "dearchive", 0) : nullptr;
+      if (!hook) continue;
+      const Value answer = machine_.call(*object, *hook);
+      if (answer.tag == Tag::Int && answer.i == 0) refuse("dearchive of " + name_of(*object) + " failed");
+    }
+  }
+
+  Machine& machine_;
+  pugi::xml_node archive_;
+  std::map<int, Instance*> objects_;
+  std::vector<std::pair<Instance*, pugi::xml_node>> elements_;
+};
+
+}  // namespace
+
+std::string to_archive(Machine& machine, Instance& root) { return Writer(machine).write(root); }
+
+Instance* from_archive(Machine& machine, std::string_view xml) {
+  pugi::xml_document document;
+  return Reader(machine, parse(document, xml)).read();
+}
+
+void variables_from_archive(Machine& machine, std::string_view xml, Instance& target) {
+  pugi::xml_document document;
+  const pugi::xml_node archive = parse(document, xml);
+  const std::string root = archive.attribute("root").value();
+  const pugi::xml_node element = archive.find_child_by_attribute("object", "id", root.c_str());
+  if (!element) refuse("the archive is damaged: it has no root");
+  const std::string name = element.attribute("class").value();
+  if (name != target.cls->name) refuse("the archive holds an object of class '" + name + "', not " + target.cls->name);
+  const std::map<int, Instance*> none;
+  ValueReader values(machine, none);
+  read_variables(machine, target, element, values);
+}
+
+}  // namespace breve::steve

@@ -1,0 +1,99 @@
+// Bodies in archives. The snapshot form of numbers, in hexadecimal, keeps every bit.
+#include "steve/library/archive_body.hpp"
+
+#include "steve/library/archive_values.hpp"
+#include "steve/library/resources.hpp"
+#include "steve/library/support.hpp"
+
+namespace breve::steve {
+
+namespace {
+
+constexpr const char* kKinds[] = {"mobile", "stationary", "link"};
+
+/// Every number and flag of a body's material and look that is no reference.
+template <class Material, class Look, class Visit> void for_each_setting(Material& material, Look& look, Visit visit) {
+  visit(material.restitution);
+  visit(material.friction);
+  visit(material.static_friction);
+  visit(material.dynamic_friction);
+  visit(material.normal_restitution);
+  visit(material.tangential_restitution);
+  visit(material.restitution_threshold);
+  visit(look.alpha);
+  visit(look.texture_scale_x);
+  visit(look.texture_scale_y);
+  visit(look.bitmap_heading);
+  visit(look.visible);
+  visit(look.shadows);
+  visit(look.as_point);
+  visit(look.bounding_box);
+  visit(look.axis);
+  visit(look.neighbor_lines);
+}
+
+/// The Shape object in that variable gives the body its geometry.
+template <auto Set> void use_shape(Machine& machine, Instance& object, std::string_view variable) {
+  Instance* shape = library_object(machine, object, "Real", variable);
+  if (const ShapeResource* geometry = resource_of<ShapeResource>(machine, shape); geometry && geometry->shape)
+    (machine.world().bodies().*Set)(body_of(machine, object), geometry->shape);
+}
+
+}  // namespace
+
+void write_body(Machine& machine, const Instance& object, pugi::xml_node element) {
+  const Bodies& bodies = machine.world().bodies();
+  const BodyIndex body = body_of(machine, object);
+  const Appearance& look = bodies.appearance(body);
+  ByteWriter out;
+  out.put(bodies.location(body));
+  out.put(bodies.orientation(body));
+  for (const Vector3* v : {&bodies.velocity(body), &bodies.acceleration(body), &bodies.rotational_velocity(body),
+                           &bodies.rotational_acceleration(body), &bodies.force(body), &bodies.torque(body), &look.color})
+    out.put(*v);
+  out.put(bodies.neighborhood_size(body));
+  out.put(bodies.physics(body));
+  for_each_setting(bodies.material(body), look, [&](const auto& setting) { out.put(setting); });
+  out.put(std::string_view(look.label));
+  element.append_attribute("kind") = kKinds[static_cast<std::size_t>(bodies.kind(body))];
+  const std::vector<std::uint8_t> bytes = out.take();
+  element.text() = to_hex({reinterpret_cast<const char*>(bytes.data()), bytes.size()}).c_str();
+}
+
+void read_body(Machine& machine, Instance& object, pugi::xml_node element) {
+  const std::string_view kind = element.attribute("kind").value();
+  std::size_t number = 0;
+  while (number < std::size(kKinds) && kKinds[number] != kind) ++number;
+  if (number == std::size(kKinds)) throw Error(ErrorCode::File, "the archive is damaged: no kind of body");
+  const std::string bytes = from_hex(element.text().get());
+  ByteReader in(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+
+  machine.world().embody(object.id, static_cast<BodyKind>(number));
+  Bodies& bodies = machine.world().bodies();
+  const BodyIndex body = body_of(machine, object);
+  use_shape<&Bodies::set_collision_shape>(machine, object, "collisionShape");
+  use_shape<&Bodies::set_display_shape>(machine, object, "displayShape");
+  Appearance& look = bodies.appearance(body);
+  bodies.set_location(body, in.get_vector());
+  bodies.set_orientation(body, in.get_quaternion());
+  bodies.set_velocity(body, in.get_vector());
+  bodies.set_acceleration(body, in.get_vector());
+  bodies.set_rotational_velocity(body, in.get_vector());
+  bodies.set_rotational_acceleration(body, in.get_vector());
+  bodies.set_force(body, in.get_vector());
+  bodies.set_torque(body, in.get_vector());
+  look.color = in.get_vector();
+  bodies.set_neighborhood_size(body, in.get<double>());
+  const bool physics = in.get_bool();
+  for_each_setting(bodies.material(body), look, [&](auto& setting) {
+    if constexpr (std::is_same_v<std::remove_reference_t<decltype(setting)>, bool>) setting = in.get_bool();
+    else setting = in.get<double>();
+  });
+  look.label = in.get_string();
+  look.texture = machine.id_of(library_object(machine, object, "Real", "textureImage"));
+  look.bitmap = machine.id_of(library_object(machine, object, "Real", "bitmapImage"));
+  look.lightmap = machine.id_of(library_object(machine, object, "Real", "lightmapImage"));
+  if (physics) bodies.set_physics(body, true);
+}
+
+}  // namespace breve::steve
