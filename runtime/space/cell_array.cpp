@@ -37,10 +37,11 @@ bool CellGrid::fit(const std::pmr::vector<Vector3>& points) {
   double cells = measure(low, high);
   const bool wide = cells > std::max(kFewestCells, kCellsPerPoint * count_of_points);
   const double most = std::max(kFewestCells, kCellsPerPointIfWide * count_of_points);
-  // A cube has its answer after one round; a thin world needs a few, as it does not shrink along each side.
-  constexpr double kLeastGrowth = 1.25;
+  // A cube has its answer after a round or two; a thin world needs more, as it does not shrink along each side. Small
+  // steps at the end: two worlds of one density are to have nearly the same crowd in a cell.
+  constexpr double kGrowth = 1.02;
   while (wide && cells > most) {
-    edge_ *= std::max(kLeastGrowth, std::cbrt(cells / most));
+    edge_ *= kGrowth * std::cbrt(cells / most);
     if (!std::isfinite(edge_)) return false;
     cells = measure(low, high);
   }

@@ -91,11 +91,13 @@ void Neighbors::add_labels(const std::pmr::vector<std::uint32_t>& found,
 
 bool Neighbors::most_ask() const { return asked_last_time_ > points_.size() / 2 || asked_ > points_.size() / 4; }
 
-void Neighbors::answer_all() {
+/// @param first  the point whose radius makes the grid that gives the order
+void Neighbors::answer_all(std::uint32_t first) {
   constexpr std::size_t kAhead = 8;  // points; about as long as memory takes
   kept_.clear();
   kept_labels_.clear();
   answers_.resize(points_.size());
+  grid_for(radii_[first]);
   const CellGrid* grid = grid_count_ != 0 ? &grids_.front() : nullptr;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const std::uint32_t point = grid ? grid->order()[i] : static_cast<std::uint32_t>(i);
@@ -121,14 +123,25 @@ void Neighbors::answer_all() {
   answered_ = true;
 }
 
+/// Answers lie in the order of space, questions mostly come in that of creation: begin to fetch what the next two will
+/// want. A label is often the address of what will be counted or written; where it is none, a prefetch does nothing.
+void Neighbors::fetch_ahead(std::uint32_t self) const {
+  if (self + std::size_t{2} >= answers_.size()) return;
+  const Answer& second = answers_[self + 2];
+  __builtin_prefetch(kept_labels_.data() + second.begin);
+  __builtin_prefetch(kept_labels_.data() + second.begin + second.count);
+  constexpr std::uint32_t kMostFetched = 16;  // more would push each other out
+  const Answer& next = answers_[self + 1];
+  for (std::uint32_t i = 0; i < std::min(next.count, kMostFetched); ++i) {
+    __builtin_prefetch(reinterpret_cast<const void*>(kept_labels_[next.begin + i]), 1);
+  }
+}
+
 Neighbors::Found Neighbors::query(std::uint32_t self) {
   ++asked_;
-  if (!answered_ && !too_many_ && most_ask()) answer_all();
+  if (!answered_ && !too_many_ && most_ask()) answer_all(self);
   if (answered_) {
-    // Answers lie in the order of space, questions mostly come in that of creation: fetch the next one meanwhile.
-    const Answer& after = answers_[std::min<std::size_t>(self + 1, answers_.size() - 1)];
-    __builtin_prefetch(kept_labels_.data() + after.begin);
-    __builtin_prefetch(kept_labels_.data() + after.begin + after.count);
+    fetch_ahead(self);
     const Answer answer = answers_[self];
     return {{kept_.data() + answer.begin, answer.count}, {kept_labels_.data() + answer.begin, answer.count}};
   }

@@ -43,7 +43,8 @@ class Neighbors {
   CellGrid* grid_for(double radius);
   void search(std::uint32_t self, const Vector3& center, std::pmr::vector<std::uint32_t>& out);
   bool most_ask() const;
-  void answer_all();
+  void answer_all(std::uint32_t first);
+  void fetch_ahead(std::uint32_t self) const;
   void add_labels(const std::pmr::vector<std::uint32_t>& found, std::pmr::vector<std::uint64_t>& labels) const;
 
   // Each grid serves the radii from half its cell to its cell; more kinds of radii than this go to the tree.

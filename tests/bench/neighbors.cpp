@@ -52,7 +52,7 @@ Mobile : Agent (aka Agents) {
 )";
 
 constexpr double kBound = 2.3;   // of twice the agents, over the agents: the promise
-constexpr int kIterations = 5;   // the fastest of them counts: the others were disturbed
+constexpr int kIterations = 15;  // the fastest of them counts: the others were disturbed
 
 struct Measured {
   double seconds = 0;    // CPU time of one iteration

@@ -33,7 +33,7 @@ static const char* const crowd_text =
     "    names{\"walker $meetings\"} = |(agent get-neighbors)|.\n"
     "    if |heard| > 20: heard = { }.\n"
     "  + to tell:\n"
-    "    push \"at \" + (self get-time) onto heard.\n"
+    "    push \"met $meetings\" onto heard.\n"
     "    print heard, names.\n"
     "    free (agents{0}).\n"
     "    agents{0} = (new Walker).\n"
