@@ -132,6 +132,7 @@ T* Heap::enter(T* cell) {
 StringCell* Heap::raw_string(std::size_t size) {
   if (size > 0x7fffffffU) throw RunError(RunErrorKind::Bounds, "a string cannot be longer than 2147483647 bytes");
   reserve_tables(false);
+  fresh_bytes_ += size;
   auto* cell = new (take(string_cell_bytes(size))) StringCell(static_cast<std::uint32_t>(size));
   char* bytes = cell->bytes;
   bytes[size] = 0;
@@ -283,6 +284,7 @@ void Heap::reclaim() { reclaim_round(); }
 
 bool Heap::reclaim_round() {
   std::size_t visited = 0;
+  fresh_bytes_ = 0;
   if (!zero_.empty()) {
     roots_.visit_frames([&visited](Cell* cell) {
       if (cell == nullptr || cell->immortal) return;

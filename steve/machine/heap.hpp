@@ -128,8 +128,9 @@ class Heap {
   ListCell* keys(const HashCell& hash);                           // in order of insertion
 
   // --- collection -------------------------------------------------------------------------------------------------------
-  /// Safe point inside running code: true when so many zero-count cells wait that `reclaim` is worth its cost.
-  bool wants_reclaim() const { return zero_.size() >= reclaim_at_; }
+  /// Safe point inside running code: true when so many zero-count cells wait, or so many bytes were taken, that
+  /// `reclaim` is worth its cost.
+  bool wants_reclaim() const { return zero_.size() >= reclaim_at_ || fresh_bytes_ >= kReclaimBytes; }
   /// Free the waiting cells that no frame refers to. Runs `destroy` of unreachable auto-free instances, in the order
   /// in which they were made.
   void reclaim();
@@ -181,6 +182,7 @@ class Heap {
   };
   static constexpr std::size_t kUnit = 16;     // bytes; size classes are multiples
   static constexpr std::size_t kClasses = 32;  // up to 512 bytes
+  static constexpr std::size_t kReclaimBytes = 8U << 20;  // a few long strings are much garbage
   static constexpr std::size_t kReclaimAt = 1024;  // so little garbage that it is still in the cache when it goes
 
   // heap.cpp
@@ -253,6 +255,7 @@ class Heap {
   std::pmr::vector<Container*> containers_;
   std::pmr::vector<Doomed> doomed_;
   std::size_t reclaim_at_ = kReclaimAt;
+  std::size_t fresh_bytes_ = 0;  // taken for strings since the last reclaim
   std::uint64_t serial_ = 0x1000;
   std::uint64_t cells_ = 0;
   bool freeing_doomed_ = false;

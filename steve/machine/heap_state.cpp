@@ -6,6 +6,7 @@ namespace breve::steve {
 void Heap::save_state(ByteWriter& out, const std::function<std::uint64_t(const Cell*)>& number) const {
   out.put(serial_);
   out.put(static_cast<std::uint64_t>(reclaim_at_));
+  out.put(static_cast<std::uint64_t>(fresh_bytes_));
   out.put(phase_);
   out.put(static_cast<std::uint8_t>(suspicion_));
   out.put(static_cast<std::uint8_t>(held_by_frames_));
@@ -34,6 +35,7 @@ void Heap::save_state(ByteWriter& out, const std::function<std::uint64_t(const C
 void Heap::load_state(ByteReader& in, const std::function<Cell*(std::uint64_t)>& cell) {
   serial_ = in.get<std::uint64_t>();
   reclaim_at_ = static_cast<std::size_t>(in.get<std::uint64_t>());
+  fresh_bytes_ = static_cast<std::size_t>(in.get<std::uint64_t>());
   const auto phase = in.get<std::uint8_t>();
   suspicion_ = in.get_bool();
   held_by_frames_ = in.get_bool();
