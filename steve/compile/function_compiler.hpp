@@ -91,6 +91,9 @@ class FunctionCompiler {
   Operand member(const ast::Member& m, const ast::Expr& e);
   Operand member_of(const Operand& base, std::uint32_t site);
   std::uint32_t member_site(std::string_view name);
+  /// An operator with one operand: the instruction for its type, or the one for dynamic values.
+  Operand one_operand(const Operand& value, Op of_int, Op of_double, Op of_vector, StaticType vector_gives, Op of_any,
+                      const Operand* into);
   Operand unary(const ast::Unary& u, const ast::Expr& e, const Operand* into);
   Operand chain(const ast::Chain& c, const ast::Expr& e, const Operand* into);
   Operand binary(ast::BinaryOp op, Operand a, Operand b, const Operand* into);

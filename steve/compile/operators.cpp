@@ -12,6 +12,21 @@ bool is_number(StaticType t) { return t == StaticType::Int || t == StaticType::D
 
 }  // namespace
 
+Operand FunctionCompiler::one_operand(const Operand& value, Op of_int, Op of_double, Op of_vector, StaticType vector_gives,
+                                      Op of_any, const Operand* into) {
+  const bool known = value.type >= StaticType::Int && value.type <= StaticType::Vector;
+  const auto operand = known ? value : boxed(value);
+  const auto type = value.type == StaticType::Vector ? vector_gives : known ? value.type : StaticType::Any;
+  const auto target = known ? result(type, into) : emit_.temporary(type);
+  emit_.emit(value.type == StaticType::Int      ? of_int
+             : value.type == StaticType::Double ? of_double
+             : value.type == StaticType::Vector ? of_vector
+                                                : of_any,
+             target.slot, operand.slot);
+  emit_.release(operand);
+  return target;
+}
+
 Operand FunctionCompiler::unary(const ast::Unary& u, const ast::Expr& e, const Operand* into) {
   if (u.op == ast::UnaryOp::Negate) {
     if (const auto number = written_number(e)) {
@@ -20,20 +35,7 @@ Operand FunctionCompiler::unary(const ast::Unary& u, const ast::Expr& e, const O
     }
     const auto value = expr(*u.operand);
     emit_.at(e.span);
-    const auto unary_op = [&](Op op, StaticType type) {
-      const auto target = result(type, into);
-      emit_.emit(op, target.slot, value.slot);
-      emit_.release(value);
-      return target;
-    };
-    if (value.type == StaticType::Int) return unary_op(Op::NegInt, StaticType::Int);
-    if (value.type == StaticType::Double) return unary_op(Op::NegDouble, StaticType::Double);
-    if (value.type == StaticType::Vector) return unary_op(Op::NegVector, StaticType::Vector);
-    const auto box = boxed(value);
-    const auto target = emit_.temporary(StaticType::Any);
-    emit_.emit(Op::Negate, target.slot, box.slot);
-    emit_.release(box);
-    return target;
+    return one_operand(value, Op::NegInt, Op::NegDouble, Op::NegVector, StaticType::Vector, Op::Negate, into);
   }
   const auto value = expr(*u.operand);
   emit_.at(e.span);
@@ -207,21 +209,7 @@ Operand FunctionCompiler::logical(const ast::Expr& e, const Operand* into) {
 }
 
 Operand FunctionCompiler::magnitude(const ast::Magnitude& m, const Operand* into) {
-  const auto value = expr(*m.operand);
-  const auto emit2 = [&](Op op, StaticType type) {
-    const auto target = result(type, into);
-    emit_.emit(op, target.slot, value.slot);
-    emit_.release(value);
-    return target;
-  };
-  if (value.type == StaticType::Int) return emit2(Op::AbsInt, StaticType::Int);
-  if (value.type == StaticType::Double) return emit2(Op::AbsDouble, StaticType::Double);
-  if (value.type == StaticType::Vector) return emit2(Op::Length, StaticType::Double);
-  const auto box = boxed(value);
-  const auto target = emit_.temporary(StaticType::Any);
-  emit_.emit(Op::Magnitude, target.slot, box.slot);
-  emit_.release(box);
-  return target;
+  return one_operand(expr(*m.operand), Op::AbsInt, Op::AbsDouble, Op::Length, StaticType::Double, Op::Magnitude, into);
 }
 
 void FunctionCompiler::condition(const ast::Expr& e, bool when, Label& target) {
