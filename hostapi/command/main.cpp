@@ -60,8 +60,7 @@ void describe_run(CLI::App& app, RunOptions& o) {
       ->type_name("DIR")
       ->expected(1)
       ->take_all();
-  app.add_flag("--coarse-random", o.coarse_random,
-               "Draw random floats from 32,768 values, as the original did");
+  app.add_flag("--coarse-random", o.coarse_random, "Draw random floats from 32,768 values, as the original did");
   app.add_flag("--strict", o.strict, "Treat doubtful things as errors");
   app.add_flag("--quiet", o.quiet, "No warnings, no progress");
   app.add_flag("--verbose", o.verbose, "Say when an obsolete method is used");

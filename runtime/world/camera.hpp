@@ -13,9 +13,9 @@ namespace breve {
 
 struct CameraState {
   Vector3 target{0, 0, 0};
-  Vector3 offset{0, 0, 30};  // of the camera from its target, world frame, length units
-  double pitch = 0;          // rad; positive looks up from below
-  double yaw = 0;            // rad; 0 stands on +z of the target
+  Vector3 offset{0, 0, 30};                            // of the camera from its target, world frame, length units
+  double pitch = 0;                                    // rad; positive looks up from below
+  double yaw = 0;                                      // rad; 0 stands on +z of the target
   double field_of_view = 40 * std::numbers::pi / 180;  // rad, vertical
   double far_plane = 500;                              // length units, at least 1
   double x = 0, y = 0;                                 // window pixels; extra cameras only

@@ -36,8 +36,8 @@ class DrawingResource final : public Resource {
  public:
   static constexpr std::string_view kKind = "drawing";
   std::deque<DrawCommand> commands;
-  std::uint64_t limit = 0;        // commands kept, the oldest dropped; 0: all
-  Vector3 last_point{0, 0, 0};    // where add-line-point goes on from
+  std::uint64_t limit = 0;      // commands kept, the oldest dropped; 0: all
+  Vector3 last_point{0, 0, 0};  // where add-line-point goes on from
   bool has_last_point = false;
 
   void add(const DrawCommand& command);

@@ -60,7 +60,8 @@ struct Mixer {
 };
 
 /// Every field, in the order of the image. `view` is const for saving and hashing.
-template <class Visitor, class View> void visit(Visitor& v, View& view) {
+template <class Visitor, class View>
+void visit(Visitor& v, View& view) {
   v.field(view.camera);
   for (auto* pan : {&view.offset_pan, &view.target_pan}) {
     v.field(pan->goal);

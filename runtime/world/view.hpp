@@ -92,7 +92,7 @@ struct ViewState {
   LightExposureState light_exposure;
   std::array<OverlayText, kOverlayTextCount> texts;
   double text_scale = 1;
-  std::uint64_t clears = 0;            // how often a script asked to clear the screen
+  std::uint64_t clears = 0;               // how often a script asked to clear the screen
   std::int32_t mouse_x = 0, mouse_y = 0;  // window pixels, set by the host
 
   void save(ByteWriter& out) const;

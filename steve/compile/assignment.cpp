@@ -9,7 +9,8 @@ Operand FunctionCompiler::assign(const ast::Assign& a, const ast::Expr& e) {
     const auto variable = need(n->name, a.target->span);
     if (!variable) return expr(*a.value);
     if (variable->array_size() >= 0) {
-      builder_.diagnostics().error(a.target->span, "whole-array", "'" + n->name + "' is an array and can only be assigned element by element",
+      builder_.diagnostics().error(a.target->span, "whole-array",
+                                   "'" + n->name + "' is an array and can only be assigned element by element",
                                    "write " + n->name + "[i] = ...");
       return expr(*a.value);
     }
@@ -51,8 +52,10 @@ Operand FunctionCompiler::step(const ast::Step& s, const ast::Expr& e) {
   auto target = place(*s.target);
   const auto current = load(target);
   emit_.at(e.span);
-  const auto one = current.type == StaticType::Double ? literal(ast::DoubleLit{1.0}, nullptr) : literal(ast::IntLit{1}, nullptr);
-  const auto stored = store(target, binary(s.delta > 0 ? ast::BinaryOp::Add : ast::BinaryOp::Sub, current, one, nullptr));
+  const auto one =
+      current.type == StaticType::Double ? literal(ast::DoubleLit{1.0}, nullptr) : literal(ast::IntLit{1}, nullptr);
+  const auto stored =
+      store(target, binary(s.delta > 0 ? ast::BinaryOp::Add : ast::BinaryOp::Sub, current, one, nullptr));
   release(target);
   return stored;
 }
@@ -112,7 +115,9 @@ FunctionCompiler::Place FunctionCompiler::place(const ast::Expr& target) {
   if (const auto* n = std::get_if<ast::Name>(&target.node)) {
     const auto variable = need(n->name, target.span);
     if (!variable || variable->array_size() >= 0) {
-      if (variable) builder_.diagnostics().error(target.span, "whole-array", "'" + n->name + "' is an array and can only be used element by element");
+      if (variable)
+        builder_.diagnostics().error(target.span, "whole-array",
+                                     "'" + n->name + "' is an array and can only be used element by element");
       p.value = emit_.temporary(StaticType::Any);
       return p;
     }
@@ -227,7 +232,8 @@ Operand FunctionCompiler::store(Place& p, const Operand& value) {
     case Place::Kind::ArrayItem: return store_array(p, value);
     case Place::Kind::Value:
       emit_.emit_imm(Op::Fail, static_cast<std::uint16_t>(RunErrorKind::Type),
-                     text("this is a value without a place of its own, so an element of it cannot be assigned; put it in a variable first"));
+                     text("this is a value without a place of its own, so an element of it cannot be assigned; put it "
+                          "in a variable first"));
       return value;
     default: break;
   }
@@ -277,7 +283,8 @@ Operand FunctionCompiler::store_array(const Place& p, const Operand& value) {
 
 void FunctionCompiler::release(Place& p) {
   emit_.release(p.key);
-  if (p.kind == Place::Kind::Index || p.kind == Place::Kind::Member || p.kind == Place::Kind::Value) emit_.release(p.value);
+  if (p.kind == Place::Kind::Index || p.kind == Place::Kind::Member || p.kind == Place::Kind::Value)
+    emit_.release(p.value);
   p.key.temporary = p.value.temporary = false;
   if (p.base) release(*p.base);
 }

@@ -17,7 +17,8 @@ class ProgramBuilder {
   ProgramBuilder(ModuleResolver& resolver);
   CompileResult build(ModuleSource main);
 
-  // --- for the compiler of functions --------------------------------------------------------------------------------------
+  // --- for the compiler of functions
+  // --------------------------------------------------------------------------------------
   Diagnostics& diagnostics() { return diagnostics_; }
   Symbol symbol(std::string_view name) { return program_->symbols_.intern(name); }
   const std::string& symbol_name(Symbol symbol) const { return program_->symbols_.name(symbol); }

@@ -110,15 +110,17 @@ enum class Op : std::uint16_t {
 #undef X
 };
 
-inline constexpr std::uint16_t kResult = 0xffff;      // operand b of To...: the result register
-inline constexpr std::uint16_t kFrameArray = 0x80;    // flag in c of ArrayGet and ArraySet
+inline constexpr std::uint16_t kResult = 0xffff;    // operand b of To...: the result register
+inline constexpr std::uint16_t kFrameArray = 0x80;  // flag in c of ArrayGet and ArraySet
 inline constexpr std::uint32_t kMaxSlots = 0xfff0;
 
 struct Instruction {
   Op op{};
   std::uint16_t a = 0, b = 0, c = 0;
 
-  std::int32_t imm() const { return static_cast<std::int32_t>(static_cast<std::uint32_t>(b) | static_cast<std::uint32_t>(c) << 16); }
+  std::int32_t imm() const {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(b) | static_cast<std::uint32_t>(c) << 16);
+  }
   void set_imm(std::int32_t v) {
     b = static_cast<std::uint16_t>(static_cast<std::uint32_t>(v) & 0xffff);
     c = static_cast<std::uint16_t>(static_cast<std::uint32_t>(v) >> 16);
@@ -129,13 +131,13 @@ static_assert(sizeof(Instruction) == 8);
 /// One body of code.
 struct Function {
   std::vector<Instruction> code;
-  std::vector<Span> spans;                  // one for each instruction
+  std::vector<Span> spans;  // one for each instruction
   std::vector<double> numbers;
   std::uint32_t frame_slots = 0;
-  std::uint32_t parameter_slots = 0;        // the first ones: written by the caller
-  std::uint32_t zeroed_slots = 0;           // up to here set to zero at entry: locals, all that the collector looks at
+  std::uint32_t parameter_slots = 0;  // the first ones: written by the caller
+  std::uint32_t zeroed_slots = 0;     // up to here set to zero at entry: locals, all that the collector looks at
   std::vector<std::uint16_t> reference_slots;
-  std::vector<std::uint16_t> any_slots;     // first slot of each dynamic value
+  std::vector<std::uint16_t> any_slots;  // first slot of each dynamic value
 };
 
 /// A place in a program from which a method is called. Resolution per receiver class is cached in the world.
@@ -163,8 +165,8 @@ struct MemberSite {
 
 /// Everything that the functions of a program refer to by number.
 struct CodeTables {
-  std::vector<std::string> strings;                    // string constants
-  std::vector<std::string> texts;                      // what conversions name in errors
+  std::vector<std::string> strings;  // string constants
+  std::vector<std::string> texts;    // what conversions name in errors
   std::vector<CallSite> sites;
   std::vector<MemberSite> members;
   std::vector<std::vector<std::string>> interpolations;

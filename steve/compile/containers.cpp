@@ -24,7 +24,8 @@ StaticType type_of_letter(char letter) {
 
 }  // namespace
 
-// --- functions -------------------------------------------------------------------------------------------------------------------
+// --- functions
+// -------------------------------------------------------------------------------------------------------------------
 
 Operand FunctionCompiler::function_call(const ast::FunctionCall& f, const ast::Expr& e, const Operand* into) {
   const auto entry = builder_.find_function(f.name, f.arguments.size());
@@ -35,8 +36,9 @@ Operand FunctionCompiler::function_call(const ast::FunctionCall& f, const ast::E
                                        (f.arguments.size() == 1 ? " argument" : " arguments"));
     } else {
       const auto near = nearest(f.name, builder_.function_names());
-      builder_.diagnostics().error(e.span, "unknown-function", "unknown function '" + f.name + "'",
-                                   near.empty() ? "methods are called as (object " + f.name + ")" : "did you mean '" + near + "'?");
+      builder_.diagnostics().error(
+          e.span, "unknown-function", "unknown function '" + f.name + "'",
+          near.empty() ? "methods are called as (object " + f.name + ")" : "did you mean '" + near + "'?");
     }
     for (const auto& argument : f.arguments) emit_.release(expr(*argument));
     const auto target = emit_.temporary(StaticType::Any);
@@ -61,7 +63,8 @@ Operand FunctionCompiler::function_call(const ast::FunctionCall& f, const ast::E
     emit_.release_block(registers);
     return target;
   }
-  emit_.emit_imm(Op::Function, registers.empty() ? std::uint16_t{0} : registers[0].slot, static_cast<std::int32_t>(entry->number));
+  emit_.emit_imm(Op::Function, registers.empty() ? std::uint16_t{0} : registers[0].slot,
+                 static_cast<std::int32_t>(entry->number));
   emit_.release_block(registers);
   return result_register(type, into);
 }
@@ -118,7 +121,8 @@ Operand FunctionCompiler::all(const ast::AllExpr& a) {
   return target;
 }
 
-// --- lists -------------------------------------------------------------------------------------------------------------------------
+// --- lists
+// -------------------------------------------------------------------------------------------------------------------------
 
 Operand FunctionCompiler::list_operand(const ast::Expr& e, std::string_view what) {
   const auto value = expr(e);
@@ -182,7 +186,8 @@ void FunctionCompiler::sort(const ast::Sort& s) {
   emit_.release(list);
 }
 
-// --- calls -------------------------------------------------------------------------------------------------------------------------
+// --- calls
+// -------------------------------------------------------------------------------------------------------------------------
 
 void FunctionCompiler::call(const ast::Call& c, const ast::Expr& e) {
   const Span outer = emit_.span();
@@ -259,8 +264,10 @@ void FunctionCompiler::arguments_and_call(const ast::Call& c, Op op, const Opera
   }
   emit_.at(place);
   site().call = emit_.here();
-  if (op == Op::Call) emit_.emit_imm(op, receiver.slot, number);
-  else emit_.emit_imm(op, 0, number);
+  if (op == Op::Call)
+    emit_.emit_imm(op, receiver.slot, number);
+  else
+    emit_.emit_imm(op, 0, number);
   if (ordered) emit_.release(counter);
   for (const auto& value : values) emit_.release(value);
 }

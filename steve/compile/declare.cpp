@@ -28,8 +28,9 @@ void ProgramBuilder::declare(ast::Class tree) {
     if (name.empty()) return false;
     const auto* other = program_->find_class(name);
     if (!other) return false;
-    diagnostics_.error(span, "redefinition", "class '" + name + "' is defined twice",
-                       embedded(other->span) ? "the class library has a class of that name; choose another" : "choose another name");
+    diagnostics_.error(
+        span, "redefinition", "class '" + name + "' is defined twice",
+        embedded(other->span) ? "the class library has a class of that name; choose another" : "choose another name");
     return true;
   };
   const ClassInfo* parent = nullptr;
@@ -42,8 +43,9 @@ void ProgramBuilder::declare(ast::Class tree) {
         std::vector<std::string_view> names;
         for (const auto& cls : program_->classes_) names.push_back(cls->name);
         const auto near = nearest(tree.parent, names);
-        diagnostics_.error(tree.parent_span, "unknown-class", "unknown parent class '" + tree.parent + "'",
-                           near.empty() ? "a parent must be defined before its children" : "did you mean '" + near + "'?");
+        diagnostics_.error(
+            tree.parent_span, "unknown-class", "unknown parent class '" + tree.parent + "'",
+            near.empty() ? "a parent must be defined before its children" : "did you mean '" + near + "'?");
       }
       parent = class_named("Object");
     }
@@ -88,7 +90,8 @@ void ProgramBuilder::declare_variables(const ast::Class& tree, ClassInfo& info) 
     const auto count = v.type.array_size >= 0 ? static_cast<std::uint64_t>(v.type.array_size) : 1;
     const auto size = static_cast<std::uint64_t>(slot_count(variable.type));
     if (slot + count * size > 0xffff) {
-      diagnostics_.error(v.span, "class-too-large", "the variables of class " + tree.name + " need more than 65,535 slots",
+      diagnostics_.error(v.span, "class-too-large",
+                         "the variables of class " + tree.name + " need more than 65,535 slots",
                          "keep large arrays in lists");
       continue;
     }
@@ -113,16 +116,20 @@ void ProgramBuilder::declare_methods(const ast::Class& tree, ClassInfo& info) {
     for (const auto& other : info.methods)
       duplicate = duplicate || (other->name == method->name && other->parameters.size() == method->parameters.size());
     if (duplicate)
-      diagnostics_.error(m.name_span, "redefinition", "class " + tree.name + " defines method '" + m.name + "' with " +
-                         std::to_string(m.parameters.size()) + " parameters twice");
+      diagnostics_.error(m.name_span, "redefinition",
+                         "class " + tree.name + " defines method '" + m.name + "' with " +
+                             std::to_string(m.parameters.size()) + " parameters twice");
     for (const auto& p : m.parameters) checked_.push_back(p.type);
-    if (m.native) bind_native(m, *method);
-    else method->function = std::make_unique<Function>();
+    if (m.native)
+      bind_native(m, *method);
+    else
+      method->function = std::make_unique<Function>();
     info.methods.push_back(std::move(method));
   }
 }
 
-void ProgramBuilder::declare_parameter(const ast::Parameter& tree, MethodInfo& method, std::set<std::string>& variables) {
+void ProgramBuilder::declare_parameter(const ast::Parameter& tree, MethodInfo& method,
+                                       std::set<std::string>& variables) {
   if (!variables.insert(tree.variable).second)
     diagnostics_.error(tree.variable_span, "redefinition", "parameter '" + tree.variable + "' is declared twice");
   ParameterInfo p;
@@ -131,15 +138,21 @@ void ProgramBuilder::declare_parameter(const ast::Parameter& tree, MethodInfo& m
   p.type = static_type(tree.type.kind);
   if (!tree.type.class_name.empty()) p.class_name = symbol(tree.type.class_name);
   if (tree.type.array_size >= 0)
-    diagnostics_.error(tree.type.span, "array-parameter", "an array cannot be passed: parameter '" + tree.variable + "'", "pass a list");
+    diagnostics_.error(tree.type.span, "array-parameter",
+                       "an array cannot be passed: parameter '" + tree.variable + "'", "pass a list");
   if (tree.default_value) {
     p.has_default = true;
     const auto number = [&](double d) {
-      if (p.type == StaticType::Int) p.default_numbers[0] = truncate_to_int(d);
-      else if (p.type == StaticType::Double) p.default_numbers[0] = d;
-      else if (p.type == StaticType::String) p.default_string = string_number(number_text(d)) + 1;
-      else if ((p.type == StaticType::Object || p.type == StaticType::Pointer) && d == 0) return;
-      else p.default_fails = true;
+      if (p.type == StaticType::Int)
+        p.default_numbers[0] = truncate_to_int(d);
+      else if (p.type == StaticType::Double)
+        p.default_numbers[0] = d;
+      else if (p.type == StaticType::String)
+        p.default_string = string_number(number_text(d)) + 1;
+      else if ((p.type == StaticType::Object || p.type == StaticType::Pointer) && d == 0)
+        return;
+      else
+        p.default_fails = true;
     };
     const auto& value = tree.default_value->value;
     if (const auto* i = std::get_if<std::int32_t>(&value)) {
@@ -147,16 +160,24 @@ void ProgramBuilder::declare_parameter(const ast::Parameter& tree, MethodInfo& m
     } else if (const auto* d = std::get_if<double>(&value)) {
       number(*d);
     } else if (const auto* s = std::get_if<std::string>(&value)) {
-      if (p.type == StaticType::String) p.default_string = s->empty() ? 0 : string_number(*s) + 1;
-      else if (p.type == StaticType::Int) p.default_numbers[0] = leading_int(*s);
-      else if (p.type == StaticType::Double) p.default_numbers[0] = leading_double(*s);
-      else p.default_fails = true;
+      if (p.type == StaticType::String)
+        p.default_string = s->empty() ? 0 : string_number(*s) + 1;
+      else if (p.type == StaticType::Int)
+        p.default_numbers[0] = leading_int(*s);
+      else if (p.type == StaticType::Double)
+        p.default_numbers[0] = leading_double(*s);
+      else
+        p.default_fails = true;
     } else if (const auto* v = std::get_if<std::array<double, 3>>(&value)) {
-      if (p.type == StaticType::Vector) std::copy(v->begin(), v->end(), p.default_numbers.begin());
-      else p.default_fails = true;
+      if (p.type == StaticType::Vector)
+        std::copy(v->begin(), v->end(), p.default_numbers.begin());
+      else
+        p.default_fails = true;
     } else if (const auto* m = std::get_if<std::array<double, 9>>(&value)) {
-      if (p.type == StaticType::Matrix) p.default_numbers = *m;
-      else p.default_fails = true;
+      if (p.type == StaticType::Matrix)
+        p.default_numbers = *m;
+      else
+        p.default_fails = true;
     }
   }
   method.parameters.push_back(p);
@@ -178,13 +199,16 @@ void ProgramBuilder::bind_native(const ast::Method& tree, MethodInfo& method) {
     return;
   }
   if (at->second->signature != wanted) {
-    diagnostics_.error(tree.name_span, "native", "native '" + *tree.native + "' has the signature " + std::string(at->second->signature) +
-                       ", but is declared as " + wanted);
+    diagnostics_.error(tree.name_span, "native",
+                       "native '" + *tree.native + "' has the signature " + std::string(at->second->signature) +
+                           ", but is declared as " + wanted);
     return;
   }
   method.native = at->second->function;
-  if (tree.native_dynamic) method.native_result = StaticType::Any;
-  else if (tree.native_result) method.native_result = static_type(tree.native_result->kind);
+  if (tree.native_dynamic)
+    method.native_result = StaticType::Any;
+  else if (tree.native_result)
+    method.native_result = static_type(tree.native_result->kind);
 }
 
 void ProgramBuilder::compile_methods() {
@@ -193,7 +217,8 @@ void ProgramBuilder::compile_methods() {
   for (; compiled_ < declared_.size(); ++compiled_) {
     const auto index = compiled_;
     std::size_t n = 0;
-    for (std::size_t m = 0; m < declared_[index].tree.methods.size() && n < declared_[index].info->methods.size(); ++m, ++n) {
+    for (std::size_t m = 0; m < declared_[index].tree.methods.size() && n < declared_[index].info->methods.size();
+         ++m, ++n) {
       auto& info = *declared_[index].info;
       auto& method = *info.methods[n];
       if (!method.function) continue;
@@ -206,7 +231,8 @@ void ProgramBuilder::compile_methods() {
 
 Symbol ProgramBuilder::checked_class(const ast::TypeRef& type) {
   if (type.class_name.empty()) return kNoSymbol;
-  if (!class_named(type.class_name) && !embedded(type.span)) report_unknown_class(type.class_name, type.span, Severity::Error);
+  if (!class_named(type.class_name) && !embedded(type.span))
+    report_unknown_class(type.class_name, type.span, Severity::Error);
   return symbol(type.class_name);
 }
 

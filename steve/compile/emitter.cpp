@@ -10,7 +10,8 @@ int slot_count(StaticType type) {
   switch (type) {
     case StaticType::Vector: return 3;
     case StaticType::Matrix: return 9;
-    case StaticType::Any: case StaticType::Null: return 4;
+    case StaticType::Any:
+    case StaticType::Null: return 4;
     default: return 1;
   }
 }
@@ -21,10 +22,12 @@ bool is_compare_jump(Op op) { return op >= Op::JumpUnlessLtInt && op <= Op::Jump
 
 int Emitter::pool_of(StaticType type) {
   switch (type) {
-    case StaticType::Int: case StaticType::Double: return 0;
+    case StaticType::Int:
+    case StaticType::Double: return 0;
     case StaticType::Vector: return 1;
     case StaticType::Matrix: return 2;
-    case StaticType::Any: case StaticType::Null: return 4;
+    case StaticType::Any:
+    case StaticType::Null: return 4;
     default: return 3;
   }
 }
@@ -33,8 +36,9 @@ std::uint16_t Emitter::fresh(StaticType type, std::uint32_t count) {
   const auto size = static_cast<std::uint32_t>(slot_count(type));
   const std::uint64_t end = function_.frame_slots + static_cast<std::uint64_t>(size) * count;
   if (end > kMaxSlots) {
-    if (!full_) diagnostics_.error(span_, "method-too-large", "this method needs more registers than a method may have",
-                                   "split it, or keep large arrays in instance variables or lists");
+    if (!full_)
+      diagnostics_.error(span_, "method-too-large", "this method needs more registers than a method may have",
+                         "split it, or keep large arrays in instance variables or lists");
     full_ = true;
     return 0;
   }
@@ -118,20 +122,26 @@ std::uint32_t Emitter::numbers(const double* values, std::size_t count) {
 
 void Emitter::jump(Op op, std::uint16_t a, Label& label) {
   const auto at = emit_imm(op, a, 0);
-  if (label.position >= 0) patch(at, label.position);
-  else label.uses.push_back(at);
+  if (label.position >= 0)
+    patch(at, label.position);
+  else
+    label.uses.push_back(at);
 }
 
 void Emitter::jump_ext(Label& label, std::uint16_t a) {
   const auto at = ext(a, 0);
-  if (label.position >= 0) patch(at, label.position);
-  else label.uses.push_back(at);
+  if (label.position >= 0)
+    patch(at, label.position);
+  else
+    label.uses.push_back(at);
 }
 
 void Emitter::compare_jump(Op op, std::uint16_t a, std::uint16_t b, Label& label) {
   const auto at = emit(op, a, b);
-  if (label.position >= 0) patch(at, label.position);
-  else label.uses.push_back(at);
+  if (label.position >= 0)
+    patch(at, label.position);
+  else
+    label.uses.push_back(at);
 }
 
 void Emitter::place(Label& label) {

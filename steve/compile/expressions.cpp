@@ -8,55 +8,54 @@ namespace breve::steve {
 Operand FunctionCompiler::expr(const ast::Expr& e, const Operand* into) {
   const Span outer = emit_.span();
   emit_.at(e.span);
-  const auto value = std::visit(
-      Overloaded{
-          [&](const ast::IntLit& x) { return literal(x, into); },
-          [&](const ast::DoubleLit& x) { return literal(x, into); },
-          [&](const ast::StringLit& x) { return string(x, e, into); },
-          [&](const ast::ConstantExpr& x) { return constant(x.constant, into); },
-          [&](const ast::VectorLit& x) { return vector(x); },
-          [&](const ast::MatrixLit& x) { return matrix(x); },
-          [&](const ast::ListLit& x) { return list(x); },
-          [&](const ast::Name& x) { return name(x, e); },
-          [&](const ast::ArrayItem& x) { return array_item(x, e); },
-          [&](const ast::IndexExpr& x) { return index(x, e); },
-          [&](const ast::Member& x) { return member(x, e); },
-          [&](const ast::Self&) {
-            const auto target = result(StaticType::Object, into);
-            emit_.emit(Op::LoadSelf, target.slot);
-            return target;
-          },
-          [&](const ast::Super&) {
-            const auto target = result(StaticType::Object, into);
-            emit_.emit(class_.parent ? Op::LoadSelf : Op::ZeroRef, target.slot);
-            return target;
-          },
-          [&](const ast::Call& x) {
-            call(x, e);
-            return dynamic_result();
-          },
-          [&](const ast::FunctionCall& x) { return function_call(x, e, into); },
-          [&](const ast::RandomExpr& x) { return random(x); },
-          [&](const ast::NewExpr& x) { return make_new(x); },
-          [&](const ast::AllExpr& x) { return all(x); },
-          [&](const ast::Unary& x) { return unary(x, e, into); },
-          [&](const ast::Chain& x) { return chain(x, e, into); },
-          [&](const ast::Magnitude& x) { return magnitude(x, into); },
-          [&](const ast::Assign& x) { return assign(x, e); },
-          [&](const ast::Step& x) { return step(x, e); },
-          [&](const ast::Push& x) { return push(x); },
-          [&](const ast::Pop& x) { return pop(x); },
-          [&](const ast::Insert& x) { return insert(x); },
-          [&](const ast::Remove& x) { return remove(x); },
-          [&](const ast::CopyList& x) { return copy_list(x); },
-          [&](const ast::Sort& x) {
-            sort(x);
-            const auto target = emit_.temporary(StaticType::Any);
-            zero(target);
-            return target;
-          },
-      },
-      e.node);
+  const auto value = std::visit(Overloaded{
+                                    [&](const ast::IntLit& x) { return literal(x, into); },
+                                    [&](const ast::DoubleLit& x) { return literal(x, into); },
+                                    [&](const ast::StringLit& x) { return string(x, e, into); },
+                                    [&](const ast::ConstantExpr& x) { return constant(x.constant, into); },
+                                    [&](const ast::VectorLit& x) { return vector(x); },
+                                    [&](const ast::MatrixLit& x) { return matrix(x); },
+                                    [&](const ast::ListLit& x) { return list(x); },
+                                    [&](const ast::Name& x) { return name(x, e); },
+                                    [&](const ast::ArrayItem& x) { return array_item(x, e); },
+                                    [&](const ast::IndexExpr& x) { return index(x, e); },
+                                    [&](const ast::Member& x) { return member(x, e); },
+                                    [&](const ast::Self&) {
+                                      const auto target = result(StaticType::Object, into);
+                                      emit_.emit(Op::LoadSelf, target.slot);
+                                      return target;
+                                    },
+                                    [&](const ast::Super&) {
+                                      const auto target = result(StaticType::Object, into);
+                                      emit_.emit(class_.parent ? Op::LoadSelf : Op::ZeroRef, target.slot);
+                                      return target;
+                                    },
+                                    [&](const ast::Call& x) {
+                                      call(x, e);
+                                      return dynamic_result();
+                                    },
+                                    [&](const ast::FunctionCall& x) { return function_call(x, e, into); },
+                                    [&](const ast::RandomExpr& x) { return random(x); },
+                                    [&](const ast::NewExpr& x) { return make_new(x); },
+                                    [&](const ast::AllExpr& x) { return all(x); },
+                                    [&](const ast::Unary& x) { return unary(x, e, into); },
+                                    [&](const ast::Chain& x) { return chain(x, e, into); },
+                                    [&](const ast::Magnitude& x) { return magnitude(x, into); },
+                                    [&](const ast::Assign& x) { return assign(x, e); },
+                                    [&](const ast::Step& x) { return step(x, e); },
+                                    [&](const ast::Push& x) { return push(x); },
+                                    [&](const ast::Pop& x) { return pop(x); },
+                                    [&](const ast::Insert& x) { return insert(x); },
+                                    [&](const ast::Remove& x) { return remove(x); },
+                                    [&](const ast::CopyList& x) { return copy_list(x); },
+                                    [&](const ast::Sort& x) {
+                                      sort(x);
+                                      const auto target = emit_.temporary(StaticType::Any);
+                                      zero(target);
+                                      return target;
+                                    },
+                                },
+                                e.node);
   emit_.at(outer);
   return value;
 }
@@ -69,7 +68,8 @@ Operand FunctionCompiler::name(const ast::Name& n, const ast::Expr& e) {
     return target;
   }
   if (variable->array_size() >= 0) {
-    builder_.diagnostics().error(e.span, "whole-array", "'" + n.name + "' is an array and can only be used element by element",
+    builder_.diagnostics().error(e.span, "whole-array",
+                                 "'" + n.name + "' is an array and can only be used element by element",
                                  "write " + n.name + "[i]");
   }
   return read(*variable);
@@ -123,7 +123,9 @@ Operand FunctionCompiler::read_array(const Variable& variable, const Operand& sl
   const auto type = variable.type();
   const auto target = emit_.temporary(type);
   const auto flags = static_cast<std::uint16_t>(slot_count(type) | (variable.local ? kFrameArray : 0));
-  const Op op = type == StaticType::List ? Op::ArrayGetList : type == StaticType::Hash ? Op::ArrayGetHash : Op::ArrayGet;
+  const Op op = type == StaticType::List   ? Op::ArrayGetList
+                : type == StaticType::Hash ? Op::ArrayGetHash
+                                           : Op::ArrayGet;
   emit_.emit(op, target.slot, slot.slot, flags);
   return target;
 }

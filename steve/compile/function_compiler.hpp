@@ -41,24 +41,26 @@ class FunctionCompiler {
   /// Something that can be assigned to, its parts evaluated once.
   struct Place {
     enum class Kind { Variable, Component, ArrayItem, Index, Member, Value } kind = Kind::Value;
-    Variable variable;           // Variable, Component, ArrayItem
-    std::string name;            // for messages
-    int axis = 0;                // Component: of a vector variable
-    Operand key;                 // ArrayItem: the slot number; Index: the key (any)
-    std::unique_ptr<Place> base; // Index, Member: where the container came from
-    Operand value;               // Index, Member: the container's value (any, or a list)
-    std::uint32_t site = 0;      // Member
+    Variable variable;            // Variable, Component, ArrayItem
+    std::string name;             // for messages
+    int axis = 0;                 // Component: of a vector variable
+    Operand key;                  // ArrayItem: the slot number; Index: the key (any)
+    std::unique_ptr<Place> base;  // Index, Member: where the container came from
+    Operand value;                // Index, Member: the container's value (any, or a list)
+    std::uint32_t site = 0;       // Member
     const ast::Expr* expr = nullptr;
   };
 
-  // --- names ------------------------------------------------------------------------------------------------------------
+  // --- names
+  // ------------------------------------------------------------------------------------------------------------
   void declare_locals();
   std::optional<Variable> find(std::string_view name);
   std::optional<Variable> need(std::string_view name, const Span& span);  // reports an unknown one
   std::int32_t text(std::string what);
   std::int32_t text_for(const Variable& variable, std::string_view name);
 
-  // --- expressions ----------------------------------------------------------------------------------------------------------
+  // --- expressions
+  // ----------------------------------------------------------------------------------------------------------
   /// @param into  a register of exactly the value's type where the result may be put; it is not used before the end
   Operand expr(const ast::Expr& e, const Operand* into = nullptr);
   Operand any(const ast::Expr& e);  // the value as a dynamic one, in a temporary
@@ -114,17 +116,20 @@ class FunctionCompiler {
   Operand copy_list(const ast::CopyList& c);
   void sort(const ast::Sort& s);
 
-  // --- conditions -----------------------------------------------------------------------------------------------------------
+  // --- conditions
+  // -----------------------------------------------------------------------------------------------------------
   /// Jump to `target` if the truth of `e` is `when`; else fall through.
   void condition(const ast::Expr& e, bool when, Label& target);
   void jump_on(const Operand& value, bool when, Label& target);
   bool comparison_jump(const ast::Chain& c, bool when, Label& target);
 
-  // --- calls ------------------------------------------------------------------------------------------------------------------
+  // --- calls
+  // ------------------------------------------------------------------------------------------------------------------
   void call(const ast::Call& c, const ast::Expr& e);  // the value is in the result register
   void arguments_and_call(const ast::Call& c, Op op, const Operand& receiver, std::int32_t site);
 
-  // --- assignment -------------------------------------------------------------------------------------------------------------
+  // --- assignment
+  // -------------------------------------------------------------------------------------------------------------
   Operand assign(const ast::Assign& a, const ast::Expr& e);
   Operand step(const ast::Step& s, const ast::Expr& e);
   Operand assign_to_variable(const Variable& variable, std::string_view name, const ast::Expr& value);
@@ -137,7 +142,8 @@ class FunctionCompiler {
   void release(Place& place);
   void check_class(const Operand& object, Symbol class_name, std::int32_t what, const Span& span);
 
-  // --- statements -------------------------------------------------------------------------------------------------------------
+  // --- statements
+  // -------------------------------------------------------------------------------------------------------------
   /// @param keep  the value of the last expression statement may be the method's: keep it
   void statements(const std::vector<ast::StmtPtr>& list, bool keep);
   void statement(const ast::Stmt& s, bool keep);
@@ -159,16 +165,16 @@ class FunctionCompiler {
   MethodInfo& info_;
   Emitter emit_;
   std::unordered_map<std::string, Local> locals_;
-  Operand last_;              // the value of the last expression statement, if some path needs it
+  Operand last_;  // the value of the last expression statement, if some path needs it
   bool has_last_ = false;
 };
 
 // What an expression does, asked of its tree (effects.cpp).
-bool has_effects(const ast::Expr& e);                   // may change something, draw or call
-bool assigns(const ast::Expr& e);                       // may assign a local variable
+bool has_effects(const ast::Expr& e);                      // may change something, draw or call
+bool assigns(const ast::Expr& e);                          // may assign a local variable
 std::optional<double> written_number(const ast::Expr& e);  // the value of a number written out, with its sign
 bool is_written_int(const ast::Expr& e);
-bool always_has_value(const ast::Stmt& s);              // every path through it runs an expression statement
+bool always_has_value(const ast::Stmt& s);  // every path through it runs an expression statement
 bool contains_return(const ast::Stmt& s);
 /// Calls `visit` for every expression in a tree, outermost first.
 void walk(const ast::Expr& e, const std::function<void(const ast::Expr&)>& visit);

@@ -20,7 +20,8 @@ void ProgramBuilder::check_calls() {
 void ProgramBuilder::check_site(const CallSite& site, const std::vector<std::string_view>& selectors) {
   const auto& name = symbol_name(site.selector);
   if (site.super_of && name == "init")
-    lint(site.span, "lint-super-init", "'super init' runs the parent's init a second time", "init methods are called by themselves, the root's first: remove this call");
+    lint(site.span, "lint-super-init", "'super init' runs the parent's init a second time",
+         "init methods are called by themselves, the root's first: remove this call");
   bool known = name == "iterate", fits = known;
   for (const auto& cls : program_->classes_) {
     for (const auto& method : cls->methods) {
@@ -36,10 +37,12 @@ void ProgramBuilder::check_site(const CallSite& site, const std::vector<std::str
   }
   if (!known) {
     const auto near = nearest(name, selectors);
-    lint(site.span, "lint-unknown-method", "no class has a method '" + name + "'", near.empty() ? "" : "did you mean '" + near + "'?");
+    lint(site.span, "lint-unknown-method", "no class has a method '" + name + "'",
+         near.empty() ? "" : "did you mean '" + near + "'?");
   } else if (!fits) {
     std::string keywords;
-    for (const auto& argument : site.arguments) keywords += (keywords.empty() ? "" : " ") + symbol_name(argument.keyword);
+    for (const auto& argument : site.arguments)
+      keywords += (keywords.empty() ? "" : " ") + symbol_name(argument.keyword);
     lint(site.span, "lint-keywords", "no method '" + name + "' takes the keywords: " + keywords);
   }
 }
@@ -66,7 +69,8 @@ void ProgramBuilder::check_unused_variables() {
   }
   for (const auto& [tree, info] : declared_)
     for (const auto& v : tree.variables)
-      if (!used.contains(v.name)) lint(v.span, "lint-unused-variable", "instance variable '" + v.name + "' is never used");
+      if (!used.contains(v.name))
+        lint(v.span, "lint-unused-variable", "instance variable '" + v.name + "' is never used");
 }
 
 void ProgramBuilder::check_iterate() {
@@ -75,15 +79,17 @@ void ProgramBuilder::check_iterate() {
   const auto iterate = symbol("iterate");
   for (const auto& site : code().sites)
     if (site.super_of && site.selector == iterate && site.in_class == cls->iterate->owner) return;
-  lint(cls->iterate->span, "lint-no-super-iterate", "the controller's iterate does not call 'super iterate': the world stands still",
-       "add: super iterate.");
+  lint(cls->iterate->span, "lint-no-super-iterate",
+       "the controller's iterate does not call 'super iterate': the world stands still", "add: super iterate.");
 }
 
 void ProgramBuilder::check_special_methods() {
   for (const auto& cls : program_->classes_)
     for (const auto& method : cls->methods) {
       const auto& name = symbol_name(method->name);
-      if (method->parameters.empty() || (name != "init" && name != "iterate" && name != "post-iterate" && name != "destroy")) continue;
+      if (method->parameters.empty() ||
+          (name != "init" && name != "iterate" && name != "post-iterate" && name != "destroy"))
+        continue;
       lint(method->span, "lint-special-parameters", "'" + name + "' with parameters is never called by itself",
            "take the parameters away, or give the method another name");
     }

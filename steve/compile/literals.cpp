@@ -23,28 +23,31 @@ Operand FunctionCompiler::literal(const ast::DoubleLit& n, const Operand* into) 
 
 Operand FunctionCompiler::string_constant(std::string_view text, const Operand* into) {
   const auto target = result(StaticType::String, into);
-  if (text.empty()) emit_.emit(Op::ZeroRef, target.slot);
-  else emit_.emit_imm(Op::LoadString, target.slot, static_cast<std::int32_t>(builder_.string_number(text)));
+  if (text.empty())
+    emit_.emit(Op::ZeroRef, target.slot);
+  else
+    emit_.emit_imm(Op::LoadString, target.slot, static_cast<std::int32_t>(builder_.string_number(text)));
   return target;
 }
 
 Operand FunctionCompiler::constant(const ast::Constant& c, const Operand* into) {
-  return std::visit(Overloaded{
-                        [&](std::int32_t n) { return literal(ast::IntLit{n}, into); },
-                        [&](double d) { return literal(ast::DoubleLit{d}, into); },
-                        [&](const std::string& s) { return string_constant(s, into); },
-                        [&](const std::array<double, 3>& v) {
-                          const auto target = result(StaticType::Vector, into);
-                          emit_.emit_imm(Op::LoadVector, target.slot, static_cast<std::int32_t>(emit_.numbers(v.data(), 3)));
-                          return target;
-                        },
-                        [&](const std::array<double, 9>& m) {
-                          const auto target = result(StaticType::Matrix, into);
-                          emit_.emit_imm(Op::LoadMatrix, target.slot, static_cast<std::int32_t>(emit_.numbers(m.data(), 9)));
-                          return target;
-                        },
-                    },
-                    c.value);
+  return std::visit(
+      Overloaded{
+          [&](std::int32_t n) { return literal(ast::IntLit{n}, into); },
+          [&](double d) { return literal(ast::DoubleLit{d}, into); },
+          [&](const std::string& s) { return string_constant(s, into); },
+          [&](const std::array<double, 3>& v) {
+            const auto target = result(StaticType::Vector, into);
+            emit_.emit_imm(Op::LoadVector, target.slot, static_cast<std::int32_t>(emit_.numbers(v.data(), 3)));
+            return target;
+          },
+          [&](const std::array<double, 9>& m) {
+            const auto target = result(StaticType::Matrix, into);
+            emit_.emit_imm(Op::LoadMatrix, target.slot, static_cast<std::int32_t>(emit_.numbers(m.data(), 9)));
+            return target;
+          },
+      },
+      c.value);
 }
 
 Operand FunctionCompiler::string(const ast::StringLit& s, const ast::Expr& e, const Operand* into) {
@@ -121,7 +124,8 @@ Operand FunctionCompiler::matrix(const ast::MatrixLit& m) {
 
 Operand FunctionCompiler::list(const ast::ListLit& l) {
   const auto target = emit_.temporary(StaticType::List);
-  emit_.emit_imm(Op::NewList, target.slot, static_cast<std::int32_t>(std::min<std::size_t>(l.elements.size(), 1 << 20)));
+  emit_.emit_imm(Op::NewList, target.slot,
+                 static_cast<std::int32_t>(std::min<std::size_t>(l.elements.size(), 1 << 20)));
   for (const auto& element : l.elements) {
     const auto value = any(*element);
     emit_.emit(Op::Append, target.slot, value.slot);

@@ -62,7 +62,8 @@ CompileResult ProgramBuilder::build(ModuleSource main) {
 
 void ProgramBuilder::load(ModuleSource module, bool embedded) {
   if (depth_ >= kMaxIncludeDepth) {
-    diagnostics_.error({}, "include-depth", "files include one another more than " + std::to_string(kMaxIncludeDepth) + " deep");
+    diagnostics_.error({}, "include-depth",
+                       "files include one another more than " + std::to_string(kMaxIncludeDepth) + " deep");
     return;
   }
   ++depth_;
@@ -81,14 +82,13 @@ void ProgramBuilder::load_directive(const ast::Directive& directive, const std::
   switch (directive.kind) {
     case Path: resolver_.add_path(directive.text); break;
     case Include: load_named(directive.text, directive, from, embedded); break;
-    case Use:
-      load_named(directive.text + ".tz", directive, from, embedded);
-      break;
+    case Use: load_named(directive.text + ".tz", directive, from, embedded); break;
     default: break;
   }
 }
 
-void ProgramBuilder::load_named(const std::string& name, const ast::Directive& directive, const std::string& from, bool embedded) {
+void ProgramBuilder::load_named(const std::string& name, const ast::Directive& directive, const std::string& from,
+                                bool embedded) {
   if (!embedded) {
     if (auto module = resolver_.resolve(name, from)) {
       if (loaded_.insert(module->name).second) load(std::move(*module), false);
@@ -98,7 +98,8 @@ void ProgramBuilder::load_named(const std::string& name, const ast::Directive& d
   if (load_library(stem(name))) return;
   const auto wanted = stem(name);
   if (is_later_class(wanted)) {
-    diagnostics_.error(directive.span, "later-class", "class " + wanted + " is part of a later version of the class library");
+    diagnostics_.error(directive.span, "later-class",
+                       "class " + wanted + " is part of a later version of the class library");
     return;
   }
   diagnostics_.error(directive.span, "file-not-found", "cannot find the file '" + name + "'",
@@ -118,15 +119,17 @@ void ProgramBuilder::late_directive(const ast::Directive& directive) {
   switch (directive.kind) {
     case Controller:
       if (!controller_name_.empty()) {
-        diagnostics_.error(directive.span, "second-controller", "the controller is chosen twice: '" + controller_name_ + "' and '" +
-                           directive.text + "'", "keep one Controller line");
+        diagnostics_.error(directive.span, "second-controller",
+                           "the controller is chosen twice: '" + controller_name_ + "' and '" + directive.text + "'",
+                           "keep one Controller line");
         break;
       }
       controller_name_ = directive.text;
       controller_span_ = directive.span;
       break;
     case Plugin:
-      diagnostics_.error(directive.span, "plugins-disabled", "plugins are not available: cannot load '" + directive.text + "'");
+      diagnostics_.error(directive.span, "plugins-disabled",
+                         "plugins are not available: cannot load '" + directive.text + "'");
       break;
     case Use:
       if (!directive.version_op.empty()) versions_.push_back(directive);
@@ -146,7 +149,8 @@ const ClassInfo* ProgramBuilder::class_named(std::string_view name) {
 
 void ProgramBuilder::report_unknown_class(std::string_view name, const Span& span, Severity severity) {
   if (is_later_class(name)) {
-    diagnostics_.error(span, "later-class", "class " + std::string(name) + " is part of a later version of the class library");
+    diagnostics_.error(span, "later-class",
+                       "class " + std::string(name) + " is part of a later version of the class library");
     return;
   }
   std::vector<std::string_view> names;
@@ -154,8 +158,10 @@ void ProgramBuilder::report_unknown_class(std::string_view name, const Span& spa
   const auto near = nearest(name, names);
   const auto message = "unknown class '" + std::string(name) + "'";
   const auto help = near.empty() ? "define it, or load its file with @use" : "did you mean '" + near + "'?";
-  if (severity == Severity::Error) diagnostics_.error(span, "unknown-class", message, help);
-  else lint(span, "unknown-class", message, help);
+  if (severity == Severity::Error)
+    diagnostics_.error(span, "unknown-class", message, help);
+  else
+    lint(span, "unknown-class", message, help);
 }
 
 std::uint32_t ProgramBuilder::string_number(std::string_view text) {
@@ -176,7 +182,8 @@ std::uint32_t ProgramBuilder::text_number(std::string_view text) {
   return number;
 }
 
-std::optional<ProgramBuilder::FunctionEntry> ProgramBuilder::find_function(std::string_view name, std::size_t arguments) const {
+std::optional<ProgramBuilder::FunctionEntry> ProgramBuilder::find_function(std::string_view name,
+                                                                           std::size_t arguments) const {
   const auto [first, last] = functions_.equal_range(name);
   for (auto at = first; at != last; ++at)
     if (at->second.native->signature.find(':') == arguments) return at->second;
@@ -197,33 +204,46 @@ void ProgramBuilder::check_versions() {
   for (const auto& directive : versions_) {
     const auto* cls = program_->find_class(directive.text);
     if (!cls) {
-      diagnostics_.error(directive.span, "version", "the file defines no class '" + directive.text + "' whose version could be checked");
+      diagnostics_.error(directive.span, "version",
+                         "the file defines no class '" + directive.text + "' whose version could be checked");
       continue;
     }
     const float have = static_cast<float>(cls->version), want = static_cast<float>(directive.version);
     const auto& op = directive.version_op;
-    const bool holds = op == "==" ? have == want : op == "!=" ? have != want : op == "<" ? have < want
-                     : op == "<=" ? have <= want : op == ">" ? have > want : have >= want;
+    const bool holds = op == "=="   ? have == want
+                       : op == "!=" ? have != want
+                       : op == "<"  ? have < want
+                       : op == "<=" ? have <= want
+                       : op == ">"  ? have > want
+                                    : have >= want;
     if (!holds)
-      diagnostics_.error(directive.span, "version", "class " + cls->name + " has version " + std::to_string(cls->version) +
-                         ", but " + op + " " + std::to_string(directive.version) + " is required");
+      diagnostics_.error(directive.span, "version",
+                         "class " + cls->name + " has version " + std::to_string(cls->version) + ", but " + op + " " +
+                             std::to_string(directive.version) + " is required");
   }
 }
 
 void ProgramBuilder::choose_controller() {
   if (controller_name_.empty()) {
     if (diagnostics_.error_count() == 0)
-      diagnostics_.error({0, 0, 0, 1, 1}, "missing-controller", "the program names no controller", "add a line: Controller NAME.");
+      diagnostics_.error({0, 0, 0, 1, 1}, "missing-controller", "the program names no controller",
+                         "add a line: Controller NAME.");
     return;
   }
   const auto* cls = class_named(controller_name_);
-  if (cls) program_->controller_ = cls;
+  if (cls)
+    program_->controller_ = cls;
   else if (diagnostics_.error_count() == 0) {
-    if (is_later_class(controller_name_)) report_unknown_class(controller_name_, controller_span_);
-    else diagnostics_.error(controller_span_, "unknown-class", "the controller class '" + controller_name_ + "' is not defined");
+    if (is_later_class(controller_name_))
+      report_unknown_class(controller_name_, controller_span_);
+    else
+      diagnostics_.error(controller_span_, "unknown-class",
+                         "the controller class '" + controller_name_ + "' is not defined");
   }
 }
 
-CompileResult compile(ModuleSource main, ModuleResolver& resolver) { return ProgramBuilder(resolver).build(std::move(main)); }
+CompileResult compile(ModuleSource main, ModuleResolver& resolver) {
+  return ProgramBuilder(resolver).build(std::move(main));
+}
 
 }  // namespace breve::steve

@@ -12,8 +12,8 @@ bool is_number(StaticType t) { return t == StaticType::Int || t == StaticType::D
 
 }  // namespace
 
-Operand FunctionCompiler::one_operand(const Operand& value, Op of_int, Op of_double, Op of_vector, StaticType vector_gives,
-                                      Op of_any, const Operand* into) {
+Operand FunctionCompiler::one_operand(const Operand& value, Op of_int, Op of_double, Op of_vector,
+                                      StaticType vector_gives, Op of_any, const Operand* into) {
   const bool known = value.type >= StaticType::Int && value.type <= StaticType::Vector;
   const auto operand = known ? value : boxed(value);
   const auto type = value.type == StaticType::Vector ? vector_gives : known ? value.type : StaticType::Any;
@@ -105,7 +105,8 @@ Operand FunctionCompiler::chain(const ast::Chain& c, const ast::Expr& e, const O
   return left;
 }
 
-std::optional<Operand> FunctionCompiler::with_constant(ast::BinaryOp op, const Operand& left, double number, const Operand* into) {
+std::optional<Operand> FunctionCompiler::with_constant(ast::BinaryOp op, const Operand& left, double number,
+                                                       const Operand* into) {
   static constexpr Op kOps[] = {Op::AddConstant, Op::SubConstant, Op::MulConstant, Op::DivConstant};
   const auto index = emit_.number(number);
   if (index > 0xffff) return std::nullopt;
@@ -174,8 +175,9 @@ std::optional<Operand> FunctionCompiler::vector_binary(ast::BinaryOp op, Operand
     return emit3(op == Mul ? Op::ScaleVector : Op::DivVector, StaticType::Vector, a, b);
   }
   if (vb && is_number(a.type) && (op == Mul || op == Div)) {
-    if (op == Div) builder_.lint(emit_.span(), "lint-scalar-by-vector", "a number divided by a vector means the vector divided by the number",
-                                 "write vector / number");
+    if (op == Div)
+      builder_.lint(emit_.span(), "lint-scalar-by-vector",
+                    "a number divided by a vector means the vector divided by the number", "write vector / number");
     if (op == Div)
       emit_.emit_imm(Op::FailIfStrict, static_cast<std::uint16_t>(RunErrorKind::Type),
                      text("a number cannot be divided by a vector; write vector / number"));
@@ -272,9 +274,10 @@ bool FunctionCompiler::comparison_jump(const ast::Chain& c, bool when, Label& ta
   auto a = stable(expr(*c.first), right_tree);
   const auto number = written_number(right_tree);
   if (number && a.type == StaticType::Int && is_written_int(right_tree) && std::abs(*number) < 32768) {
-    static constexpr Op kSmall[2][6] = {
-        {Op::JumpIfGeSmall, Op::JumpIfGtSmall, Op::JumpIfLeSmall, Op::JumpIfLtSmall, Op::JumpIfNeSmall, Op::JumpIfEqSmall},
-        {Op::JumpIfLtSmall, Op::JumpIfLeSmall, Op::JumpIfGtSmall, Op::JumpIfGeSmall, Op::JumpIfEqSmall, Op::JumpIfNeSmall}};
+    static constexpr Op kSmall[2][6] = {{Op::JumpIfGeSmall, Op::JumpIfGtSmall, Op::JumpIfLeSmall, Op::JumpIfLtSmall,
+                                         Op::JumpIfNeSmall, Op::JumpIfEqSmall},
+                                        {Op::JumpIfLtSmall, Op::JumpIfLeSmall, Op::JumpIfGtSmall, Op::JumpIfGeSmall,
+                                         Op::JumpIfEqSmall, Op::JumpIfNeSmall}};
     const auto code = kSmall[when][static_cast<int>(op) - static_cast<int>(Lt)];
     emit_.compare_jump(code, a.slot, static_cast<std::uint16_t>(static_cast<std::int16_t>(*number)), target);
     emit_.release(a);

@@ -38,7 +38,20 @@ struct ClassInfo;
 struct CodeTables;
 
 /// A type as the compiler knows it. Any: a dynamic value with its tag.
-enum class StaticType : std::uint8_t { Null, Int, Double, Vector, Matrix, String, Object, List, Hash, Pointer, Data, Any };
+enum class StaticType : std::uint8_t {
+  Null,
+  Int,
+  Double,
+  Vector,
+  Matrix,
+  String,
+  Object,
+  List,
+  Hash,
+  Pointer,
+  Data,
+  Any
+};
 
 int slot_count(StaticType type);
 inline StaticType static_type(ast::TypeKind kind) {
@@ -50,9 +63,9 @@ static_assert(static_cast<int>(ast::TypeKind::Data) + 1 == static_cast<int>(Stat
 struct VariableInfo {
   Symbol name = kNoSymbol;
   StaticType type = StaticType::Int;
-  std::int32_t array_size = -1;    // >= 0: an array
-  Symbol class_name = kNoSymbol;   // (ClassName object): instances of that class or a descendant only
-  std::uint32_t slot = 0;          // first slot in the instance
+  std::int32_t array_size = -1;   // >= 0: an array
+  Symbol class_name = kNoSymbol;  // (ClassName object): instances of that class or a descendant only
+  std::uint32_t slot = 0;         // first slot in the instance
   Span span;
 };
 
@@ -60,9 +73,9 @@ struct ParameterInfo {
   Symbol keyword = kNoSymbol, variable = kNoSymbol;
   StaticType type = StaticType::Int;
   Symbol class_name = kNoSymbol;
-  std::uint32_t slot = 0;          // first slot in the frame
+  std::uint32_t slot = 0;  // first slot in the frame
   bool has_default = false;
-  bool default_fails = false;      // a default that cannot be converted to the type: an error when it is needed
+  bool default_fails = false;  // a default that cannot be converted to the type: an error when it is needed
   std::array<double, 9> default_numbers{};  // int, double, vector, matrix; references start as null
   std::uint32_t default_string = 0;         // string: number of the constant + 1; 0 = empty
 };
@@ -88,12 +101,12 @@ struct ClassInfo {
   std::string name, alias, doc;
   const ClassInfo* parent = nullptr;
   double version = 1.0;
-  std::vector<VariableInfo> variables;        // its own; ancestors' come before in the instance
-  std::uint32_t slot_count = 0;               // with ancestors
-  std::vector<std::uint16_t> reference_slots; // with ancestors: slots that hold a Cell*
-  std::vector<std::unique_ptr<MethodInfo>> methods;  // its own
+  std::vector<VariableInfo> variables;                      // its own; ancestors' come before in the instance
+  std::uint32_t slot_count = 0;                             // with ancestors
+  std::vector<std::uint16_t> reference_slots;               // with ancestors: slots that hold a Cell*
+  std::vector<std::unique_ptr<MethodInfo>> methods;         // its own
   std::vector<const MethodInfo*> init_chain, delete_chain;  // root first
-  const MethodInfo* iterate = nullptr;        // inherited ones too; null if there is none
+  const MethodInfo* iterate = nullptr;                      // inherited ones too; null if there is none
   const MethodInfo* post_iterate = nullptr;
   const MethodInfo* destroy = nullptr;
   const MethodInfo* get_description = nullptr;
@@ -104,7 +117,7 @@ struct ClassInfo {
       if (c == &other) return true;
     return false;
   }
-  const VariableInfo* find_variable(Symbol name) const;  // own or inherited; the most derived wins
+  const VariableInfo* find_variable(Symbol name) const;                 // own or inherited; the most derived wins
   const MethodInfo* find_method(Symbol name, std::size_t count) const;  // own or inherited, exactly `count` parameters
   bool responds(Symbol name) const;                                     // any number of parameters
 };
@@ -120,7 +133,7 @@ class Program {
   const ClassInfo* controller_class() const { return controller_; }
   const SymbolTable& symbols() const { return symbols_; }
   const Sources& sources() const { return sources_; }
-  std::uint64_t fingerprint() const { return fingerprint_; }  // of all sources, for snapshots
+  std::uint64_t fingerprint() const { return fingerprint_; }                   // of all sources, for snapshots
   const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }  // warnings
   const CodeTables& code() const { return *code_; }
 

@@ -7,7 +7,8 @@
 
 namespace breve::steve {
 
-FunctionCompiler::FunctionCompiler(ProgramBuilder& builder, const ClassInfo& cls, const ast::Method& method, MethodInfo& info)
+FunctionCompiler::FunctionCompiler(ProgramBuilder& builder, const ClassInfo& cls, const ast::Method& method,
+                                   MethodInfo& info)
     : builder_(builder), class_(cls), method_(method), info_(info), emit_(*info.function, builder.diagnostics()) {}
 
 void FunctionCompiler::compile() {
@@ -38,34 +39,39 @@ void FunctionCompiler::declare_locals() {
     const auto& p = method_.parameters[i];
     auto& info = info_.parameters[i];
     info.slot = emit_.reserve(info.type);
-    locals_[p.variable] = {info.type, static_cast<std::uint16_t>(info.slot), -1, info.class_name, p.variable_span, true};
+    locals_[p.variable] = {info.type, static_cast<std::uint16_t>(info.slot), -1, info.class_name, p.variable_span,
+                           true};
   }
   info_.function->parameter_slots = info_.function->frame_slots;
   for (const auto& v : method_.locals) {
     const auto type = static_type(v.type.kind);
     if (const auto found = locals_.find(v.name); found != locals_.end()) {
       builder_.diagnostics().error(v.span, "redefinition",
-                                   found->second.parameter ? "local variable '" + v.name + "' has the name of a parameter"
-                                                           : "local variable '" + v.name + "' is declared twice",
+                                   found->second.parameter
+                                       ? "local variable '" + v.name + "' has the name of a parameter"
+                                       : "local variable '" + v.name + "' is declared twice",
                                    "rename one of them");
       continue;
     }
     const auto name = builder_.symbol(v.name);
     if (class_.find_variable(name))
-      builder_.lint(v.span, "lint-shadow", "local variable '" + v.name + "' hides the instance variable of the same name");
+      builder_.lint(v.span, "lint-shadow",
+                    "local variable '" + v.name + "' hides the instance variable of the same name");
     const auto count = v.type.array_size >= 0 ? static_cast<std::uint32_t>(v.type.array_size) : 1;
     emit_.at(v.span);
     Symbol class_name = kNoSymbol;
     if (!v.type.class_name.empty()) {
       class_name = builder_.symbol(v.type.class_name);
-      if (!builder_.class_named(v.type.class_name)) builder_.report_unknown_class(v.type.class_name, v.type.span, Severity::Error);
+      if (!builder_.class_named(v.type.class_name))
+        builder_.report_unknown_class(v.type.class_name, v.type.span, Severity::Error);
     }
     locals_[v.name] = {type, emit_.reserve(type, count), v.type.array_size, class_name, v.span, false};
   }
 }
 
 std::optional<FunctionCompiler::Variable> FunctionCompiler::find(std::string_view name) {
-  if (const auto found = locals_.find(std::string(name)); found != locals_.end()) return Variable{&found->second, nullptr};
+  if (const auto found = locals_.find(std::string(name)); found != locals_.end())
+    return Variable{&found->second, nullptr};
   if (const auto* member = class_.find_variable(builder_.symbol(name))) return Variable{nullptr, member};
   return std::nullopt;
 }
@@ -81,9 +87,12 @@ std::optional<FunctionCompiler::Variable> FunctionCompiler::need(std::string_vie
   if (const auto dash = name.find('-'); dash != std::string_view::npos && find(name.substr(0, dash)))
     help = "a dash belongs to a name: for a subtraction write spaces, '" + std::string(name.substr(0, dash)) + " - " +
            std::string(name.substr(dash + 1)) + "'";
-  else if (const auto near = nearest(name, candidates); !near.empty()) help = "did you mean '" + near + "'?";
-  else if (const auto* cls = builder_.class_named(name)) help = "'" + cls->name + "' is a class: write new " + cls->name + " for an instance";
-  else help = "declare it under '+ variables:' of the class or at the head of the method";
+  else if (const auto near = nearest(name, candidates); !near.empty())
+    help = "did you mean '" + near + "'?";
+  else if (const auto* cls = builder_.class_named(name))
+    help = "'" + cls->name + "' is a class: write new " + cls->name + " for an instance";
+  else
+    help = "declare it under '+ variables:' of the class or at the head of the method";
   builder_.diagnostics().error(span, "unknown-variable", "unknown variable '" + std::string(name) + "'", help);
   // Declared here, so that each unknown name is reported once in a method.
   locals_[std::string(name)] = {StaticType::Any, emit_.reserve(StaticType::Any), -1, kNoSymbol, span, false, true};
@@ -96,7 +105,8 @@ std::int32_t FunctionCompiler::text_for(const Variable& variable, std::string_vi
   return text((variable.local && variable.local->parameter ? "parameter '" : "variable '") + std::string(name) + "'");
 }
 
-// --- statements ------------------------------------------------------------------------------------------------------------------
+// --- statements
+// ------------------------------------------------------------------------------------------------------------------
 
 void FunctionCompiler::statements(const std::vector<ast::StmtPtr>& list, bool keep) {
   std::vector<bool> keeps(list.size());
@@ -149,8 +159,10 @@ void FunctionCompiler::expression_statement(const ast::Expr& e, bool keep) {
     return;
   }
   const auto value = expr(e);
-  if (keep) keep_value(value);
-  else emit_.release(value);
+  if (keep)
+    keep_value(value);
+  else
+    emit_.release(value);
 }
 
 void FunctionCompiler::keep_value(const Operand& value) {
@@ -225,7 +237,8 @@ void FunctionCompiler::foreach_statement(const ast::Foreach& s, const Span& span
   const auto variable = need(s.variable, s.variable_span.line != 0 ? s.variable_span : span);
   if (!variable) return;
   if (variable->array_size() >= 0) {
-    builder_.diagnostics().error(s.variable_span, "whole-array", "'" + s.variable + "' is an array and cannot be a loop variable");
+    builder_.diagnostics().error(s.variable_span, "whole-array",
+                                 "'" + s.variable + "' is an array and cannot be a loop variable");
     return;
   }
   if (variable->local) variable->local->used = true;

@@ -151,7 +151,8 @@ std::optional<double> written_number(const ast::Expr& e) {
 }
 
 bool is_written_int(const ast::Expr& e) {
-  if (const auto* u = std::get_if<ast::Unary>(&e.node)) return u->op == ast::UnaryOp::Negate && is_written_int(*u->operand);
+  if (const auto* u = std::get_if<ast::Unary>(&e.node))
+    return u->op == ast::UnaryOp::Negate && is_written_int(*u->operand);
   return std::holds_alternative<ast::IntLit>(e.node);
 }
 

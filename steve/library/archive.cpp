@@ -32,7 +32,8 @@ bool is_archived(const ClassInfo& cls, std::string_view name, const VariableInfo
 }
 
 /// Calls `visit(class, name, variable)` for every archived variable of an object, root class first.
-template <class Visit> void for_each_variable(Machine& machine, const ClassInfo& concrete, Visit visit) {
+template <class Visit>
+void for_each_variable(Machine& machine, const ClassInfo& concrete, Visit visit) {
   std::vector<const ClassInfo*> classes;
   for (const ClassInfo* cls = &concrete; cls; cls = cls->parent) classes.insert(classes.begin(), cls);
   for (const ClassInfo* cls : classes)
@@ -131,8 +132,7 @@ class Writer {
       pugi::xml_node variable = element.append_child("variable");
       variable.append_attribute("class") = cls.name.c_str();
       variable.append_attribute("name") = name.c_str();
-      for (int i = 0; i < elements_of(v); ++i)
-        values.write(variable, machine_.get_variable(object, element_of(v, i)));
+      for (int i = 0; i < elements_of(v); ++i) values.write(variable, machine_.get_variable(object, element_of(v, i)));
     });
   }
 

@@ -8,9 +8,9 @@
 //     </object>
 //   </breve-archive>
 //
-// Dependencies stand before what depends on them. A reference to an object that is not in the archive is null. Values are
-// <int> <double> <vector> <matrix> <string> <object ref> <list> <hash> <data> <null>; a list or hash that was met before
-// is <list same="N"/>.
+// Dependencies stand before what depends on them. A reference to an object that is not in the archive is null. Values
+// are <int> <double> <vector> <matrix> <string> <object ref> <list> <hash> <data> <null>; a list or hash that was met
+// before is <list same="N"/>.
 #pragma once
 
 #include <string>
@@ -27,7 +27,8 @@ std::string to_archive(Machine& machine, Instance& root);
 
 /// New objects out of an archive, made without `init`: variables, native data and bodies are set, then each object gets
 /// `post-dearchive-set-controller` and `dearchive`, dependencies first. Yields the root.
-/// @throws Error{File} for text that is no archive, a class or variable that the program does not have, or a `dearchive`
+/// @throws Error{File} for text that is no archive, a class or variable that the program does not have, or a
+/// `dearchive`
 ///         that yields 0; no object of the archive is left then
 Instance* from_archive(Machine& machine, std::string_view xml);
 

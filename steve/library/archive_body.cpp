@@ -12,7 +12,8 @@ namespace {
 constexpr const char* kKinds[] = {"mobile", "stationary", "link"};
 
 /// Every number and flag of a body's material and look that is no reference.
-template <class Material, class Look, class Visit> void for_each_setting(Material& material, Look& look, Visit visit) {
+template <class Material, class Look, class Visit>
+void for_each_setting(Material& material, Look& look, Visit visit) {
   visit(material.restitution);
   visit(material.friction);
   visit(material.static_friction);
@@ -33,7 +34,8 @@ template <class Material, class Look, class Visit> void for_each_setting(Materia
 }
 
 /// The Shape object in that variable gives the body its geometry.
-template <auto Set> void use_shape(Machine& machine, Instance& object, std::string_view variable) {
+template <auto Set>
+void use_shape(Machine& machine, Instance& object, std::string_view variable) {
   Instance* shape = library_object(machine, object, "Real", variable);
   if (const ShapeResource* geometry = resource_of<ShapeResource>(machine, shape); geometry && geometry->shape)
     (machine.world().bodies().*Set)(body_of(machine, object), geometry->shape);
@@ -48,8 +50,9 @@ void write_body(Machine& machine, const Instance& object, pugi::xml_node element
   ByteWriter out;
   out.put(bodies.location(body));
   out.put(bodies.orientation(body));
-  for (const Vector3* v : {&bodies.velocity(body), &bodies.acceleration(body), &bodies.rotational_velocity(body),
-                           &bodies.rotational_acceleration(body), &bodies.force(body), &bodies.torque(body), &look.color})
+  for (const Vector3* v :
+       {&bodies.velocity(body), &bodies.acceleration(body), &bodies.rotational_velocity(body),
+        &bodies.rotational_acceleration(body), &bodies.force(body), &bodies.torque(body), &look.color})
     out.put(*v);
   out.put(bodies.neighborhood_size(body));
   out.put(bodies.physics(body));
@@ -86,8 +89,10 @@ void read_body(Machine& machine, Instance& object, pugi::xml_node element) {
   bodies.set_neighborhood_size(body, in.get<double>());
   const bool physics = in.get_bool();
   for_each_setting(bodies.material(body), look, [&](auto& setting) {
-    if constexpr (std::is_same_v<std::remove_reference_t<decltype(setting)>, bool>) setting = in.get_bool();
-    else setting = in.get<double>();
+    if constexpr (std::is_same_v<std::remove_reference_t<decltype(setting)>, bool>)
+      setting = in.get_bool();
+    else
+      setting = in.get<double>();
   });
   look.label = in.get_string();
   look.texture = machine.id_of(library_object(machine, object, "Real", "textureImage"));

@@ -11,7 +11,8 @@ namespace {
 using Text = StringCell*;
 
 /// Run `work`; a failure that is about the archive is a warning with the file's name, not the end of the run.
-template <class Work> bool try_archive(Machine& machine, std::string_view what, Work work) {
+template <class Work>
+bool try_archive(Machine& machine, std::string_view what, Work work) {
   try {
     work();
     return true;

@@ -78,10 +78,10 @@ bool ValueWriter::seen_before(pugi::xml_node node, std::uint64_t serial) {
 
 void ValueWriter::write(pugi::xml_node parent, const Value& value, int depth) {
   if (depth > kMaxDepth)
-    throw Error(ErrorCode::Argument, "lists nested more than " + std::to_string(kMaxDepth) + " deep cannot be archived");
-  pugi::xml_node node = parent.append_child(value.tag == Tag::Null || value.tag == Tag::Pointer
-                                                ? "null"
-                                                : std::string(type_name(value.tag)).c_str());
+    throw Error(ErrorCode::Argument,
+                "lists nested more than " + std::to_string(kMaxDepth) + " deep cannot be archived");
+  pugi::xml_node node = parent.append_child(
+      value.tag == Tag::Null || value.tag == Tag::Pointer ? "null" : std::string(type_name(value.tag)).c_str());
   switch (value.tag) {
     case Tag::Null:
     case Tag::Pointer: break;  // a pointer means nothing in another run

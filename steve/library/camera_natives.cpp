@@ -29,7 +29,8 @@ void camera_iterate(Machine& machine, Instance& self) {
   CameraResource& own = resource(machine, self);
   if (own.main || !own.state.watched) return;
   const World& world = machine.world();
-  if (!world.alive(own.state.watched)) own.state.watched = {};
+  if (!world.alive(own.state.watched))
+    own.state.watched = {};
   else if (world.has_body(own.state.watched))
     own.state.set_target(world.bodies().location(world.body(own.state.watched)));
 }

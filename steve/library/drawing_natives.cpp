@@ -34,7 +34,9 @@ void drawing_add_polygon_point(Machine& machine, Instance& self, Vector3 point) 
   drawing(machine, self).add(command);
 }
 
-void drawing_end_polygon(Machine& machine, Instance& self) { drawing(machine, self).add(DrawCommand{Kind::EndPolygon}); }
+void drawing_end_polygon(Machine& machine, Instance& self) {
+  drawing(machine, self).add(DrawCommand{Kind::EndPolygon});
+}
 
 void drawing_draw_line(Machine& machine, Instance& self, Vector3 from, Vector3 to) {
   DrawCommand command{Kind::Line};

@@ -48,7 +48,8 @@ Instance* image_load(Machine& machine, Instance& self, Text file) {
 }
 
 /// Run something that writes a file: 1, or 0 with a message.
-template <class Write> std::int32_t try_to_write(Machine& machine, const std::string& name, Write write) {
+template <class Write>
+std::int32_t try_to_write(Machine& machine, const std::string& name, Write write) {
   try {
     write();
     return 1;
@@ -108,9 +109,12 @@ Image ground() {
 }
 
 void image_paint_pattern(Machine& machine, Instance& self, Text name) {
-  if (view(name) == "checker") image(machine, self) = checker();
-  else if (view(name) == "ground") image(machine, self) = ground();
-  else throw Error(ErrorCode::Argument, "there is no pattern '" + std::string(view(name)) + "'");
+  if (view(name) == "checker")
+    image(machine, self) = checker();
+  else if (view(name) == "ground")
+    image(machine, self) = ground();
+  else
+    throw Error(ErrorCode::Argument, "there is no pattern '" + std::string(view(name)) + "'");
 }
 
 // --- pixels ----------------------------------------------------------------------------------------------------------
@@ -126,12 +130,14 @@ bool readable(Machine& machine, const Image& picture, std::int32_t x, std::int32
   return false;
 }
 
-template <Channel C> double get_channel(Machine& machine, Instance& self, std::int32_t x, std::int32_t y) {
+template <Channel C>
+double get_channel(Machine& machine, Instance& self, std::int32_t x, std::int32_t y) {
   const Image& picture = image(machine, self);
   return readable(machine, picture, x, y) ? picture.get(x, y, C) : 0.0;
 }
 
-template <Channel C> void set_channel(Machine& machine, Instance& self, double value, std::int32_t x, std::int32_t y) {
+template <Channel C>
+void set_channel(Machine& machine, Instance& self, double value, std::int32_t x, std::int32_t y) {
   Image& picture = image(machine, self);
   if (picture.holds(x, y)) picture.set(x, y, C, value);
 }

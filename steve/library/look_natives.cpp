@@ -27,14 +27,16 @@ void set_transparency(Machine& machine, Instance& self, double alpha) {
   look(machine, self).alpha = finite(alpha, "set-transparency: the transparency");
 }
 
-template <bool Appearance::*Flag, bool On> void set_flag(Machine& machine, Instance& self) {
+template <bool Appearance::*Flag, bool On>
+void set_flag(Machine& machine, Instance& self) {
   look(machine, self).*Flag = On;
 }
 
 // --- pictures --------------------------------------------------------------------------------------------------------
 
 /// The picture is kept alive by a variable of Real, and known to the renderer by its id.
-void set_picture(Machine& machine, Instance& self, Instance* image, ObjectId Appearance::*id, std::string_view variable) {
+void set_picture(Machine& machine, Instance& self, Instance* image, ObjectId Appearance::*id,
+                 std::string_view variable) {
   look(machine, self).*id = machine.id_of(image);
   set_library_object(machine, self, "Real", variable, image && image->live() ? image : nullptr);
 }

@@ -17,7 +17,8 @@ Instance* plane_set_size(Machine& machine, Instance& self, std::int32_t nx, std:
 }
 
 /// 0 for a matrix that has no size yet.
-template <int (Field::*Size)() const> std::int32_t dimension(Machine& machine, Instance& self) {
+template <int (Field::*Size)() const>
+std::int32_t dimension(Machine& machine, Instance& self) {
   const FieldResource* resource = resource_of<FieldResource>(machine, &self);
   return resource && resource->field ? ((*resource->field).*Size)() : 0;
 }
@@ -38,11 +39,11 @@ void copy_plane(Machine& machine, const Field& field, int z, Instance* target, d
   const int width = std::min(picture.width(), field.nx());
   const int height = std::min(picture.height(), field.ny());
   for (int x = 0; x < width; ++x)
-    for (int y = 0; y < height; ++y)
-      picture.set_byte(x, y, channel, Field::channel_byte(field.get(x, y, z), factor));
+    for (int y = 0; y < height; ++y) picture.set_byte(x, y, channel, Field::channel_byte(field.get(x, y, z), factor));
 }
 
-template <Channel C> void plane_copy_to_channel(Machine& machine, Instance& self, Instance* target, double factor) {
+template <Channel C>
+void plane_copy_to_channel(Machine& machine, Instance& self, Instance* target, double factor) {
   copy_plane(machine, own_field(machine, self), 0, target, factor, C);
 }
 
@@ -65,8 +66,8 @@ template <Channel C>
 void space_copy_slice(Machine& machine, Instance& self, std::int32_t z, Instance* target, double factor) {
   const Field& field = own_field(machine, self);
   if (z < 0 || z >= field.nz())
-    throw Error(ErrorCode::Argument, "plane " + std::to_string(z) + " is outside a matrix of " +
-                                         std::to_string(field.nz()) + " planes");
+    throw Error(ErrorCode::Argument,
+                "plane " + std::to_string(z) + " is outside a matrix of " + std::to_string(field.nz()) + " planes");
   copy_plane(machine, field, z, target, factor, C);
 }
 

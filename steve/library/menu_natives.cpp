@@ -27,7 +27,8 @@ Instance* menu_create(Machine& machine, Instance& self, Text name, Instance* own
   return &self;
 }
 
-template <bool MenuItemResource::*Flag, bool On> void menu_set(Machine& machine, Instance& self) {
+template <bool MenuItemResource::*Flag, bool On>
+void menu_set(Machine& machine, Instance& self) {
   if (MenuItemResource* item = created(machine, self)) item->*Flag = On;
 }
 

@@ -24,11 +24,13 @@ Instance* mobile_register(Machine& machine, Instance& self, Instance* shape) {
 using Getter = const Vector3& (Bodies::*)(BodyIndex) const;
 using Setter = void (Bodies::*)(BodyIndex, const Vector3&);
 
-template <Getter Get> Vector3 get(Machine& machine, Instance& self) {
+template <Getter Get>
+Vector3 get(Machine& machine, Instance& self) {
   return (bodies_of(machine).*Get)(body_of(machine, self));
 }
 
-template <Setter Set> void set(Machine& machine, Instance& self, Vector3 value) {
+template <Setter Set>
+void set(Machine& machine, Instance& self, Vector3 value) {
   (bodies_of(machine).*Set)(body_of(machine, self), value);
 }
 
@@ -59,7 +61,8 @@ void mobile_offset(Machine& machine, Instance& self, Vector3 displacement) {
 
 // --- physics ---------------------------------------------------------------------------------------------------------
 
-template <bool On> void set_physics(Machine& machine, Instance& self) {
+template <bool On>
+void set_physics(Machine& machine, Instance& self) {
   bodies_of(machine).set_physics(body_of(machine, self), On);
 }
 

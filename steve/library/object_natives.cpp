@@ -70,7 +70,8 @@ std::int32_t object_observe(Machine& machine, Instance& self, Instance* announce
     machine.world().observe(self.id, source.id, view(message), name);
     return 0;
   }
-  machine.warn("observe: " + name_of(self) + " has no method '" + name + "' with 0, 1 or 2 keywords; nothing registered");
+  machine.warn("observe: " + name_of(self) + " has no method '" + name +
+               "' with 0, 1 or 2 keywords; nothing registered");
   return -1;
 }
 
@@ -121,7 +122,8 @@ Instance* data_send(Machine&, Instance&, Text, std::int32_t) { no_network("send"
 // --- obsolete --------------------------------------------------------------------------------------------------------
 
 /// What a program gets that asks for a dialog where there is none: 1.
-template <Selector S> std::int32_t obsolete_dialog(Machine& machine, Instance& self) {
+template <Selector S>
+std::int32_t obsolete_dialog(Machine& machine, Instance& self) {
   obsolete<S>(machine, self);
   return 1;
 }

@@ -201,8 +201,8 @@ const ClassInfo* class_named(Machine& machine, Text name, std::string_view selec
 void real_handle_collisions(Machine& machine, Instance& self, Text type, Text method) {
   const ClassInfo* other = class_named(machine, type, "handle-collisions");
   if (!machine.responds(*self.cls, view(method))) {
-    const std::string message = "handle-collisions: " + name_of(self) + " has no method '" +
-                                std::string(view(method)) + "'; nothing registered";
+    const std::string message = "handle-collisions: " + name_of(self) + " has no method '" + std::string(view(method)) +
+                                "'; nothing registered";
     if (machine.host().error) machine.host().error(message);
     return;
   }

@@ -110,7 +110,8 @@ std::vector<Vector3> corners_of(const Value& face) {
     Machine::fail(RunErrorKind::Type, "add-face: a face is a list of three or more vectors");
   std::vector<Vector3> corners;
   for (const Value& corner : *list) {
-    if (corner.tag != Tag::Vector) Machine::fail(RunErrorKind::Type, "add-face: every corner of a face must be a vector");
+    if (corner.tag != Tag::Vector)
+      Machine::fail(RunErrorKind::Type, "add-face: every corner of a face must be a vector");
     corners.push_back(finite(corner.vector(), "add-face: a corner"));
   }
   return corners;

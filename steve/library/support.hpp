@@ -35,7 +35,8 @@ inline const Vector3& finite(const Vector3& value, std::string_view what) {
 }
 
 /// The native data of an object if it is exactly an R, else null. A null or freed object: null.
-template <class R> R* resource_of(Machine& machine, const Instance* object) {
+template <class R>
+R* resource_of(Machine& machine, const Instance* object) {
   if (!object || !object->live()) return nullptr;
   Resource* resource = machine.world().resource(object->id);
   if (!resource || typeid(*resource) != typeid(R)) return nullptr;
@@ -43,7 +44,8 @@ template <class R> R* resource_of(Machine& machine, const Instance* object) {
 }
 
 /// The native data of an object, made and attached on first use.
-template <class R> R& resource_made(Machine& machine, const Instance& self) {
+template <class R>
+R& resource_made(Machine& machine, const Instance& self) {
   if (R* found = resource_of<R>(machine, &self)) return *found;
   auto made = std::make_unique<R>();
   R& resource = *made;

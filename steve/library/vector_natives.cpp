@@ -24,7 +24,8 @@ void set_value(Machine& machine, Instance& self, double value, std::int32_t i) {
 }
 
 /// Elements fill the pixels row by row, as far as both go.
-template <Channel C> void copy_to_channel(Machine& machine, Instance& self, Instance* target, double factor) {
+template <Channel C>
+void copy_to_channel(Machine& machine, Instance& self, Instance* target, double factor) {
   const Field& field = own_field(machine, self);
   Image& picture = image_of(machine, target, "copy-to-channel: the image");
   const int width = picture.width(), height = picture.height();

@@ -12,26 +12,39 @@ ViewState& view_of(Machine& machine) { return machine.world().view(); }
 
 // --- flags -----------------------------------------------------------------------------------------------------------
 
-template <bool DrawingFlags::*Flag> void enable(Machine& machine, Instance&) { view_of(machine).flags.*Flag = true; }
-template <bool DrawingFlags::*Flag> void disable(Machine& machine, Instance&) { view_of(machine).flags.*Flag = false; }
-template <bool DrawingFlags::*Flag> void toggle(Machine& machine, Instance&) {
+template <bool DrawingFlags::*Flag>
+void enable(Machine& machine, Instance&) {
+  view_of(machine).flags.*Flag = true;
+}
+template <bool DrawingFlags::*Flag>
+void disable(Machine& machine, Instance&) {
+  view_of(machine).flags.*Flag = false;
+}
+template <bool DrawingFlags::*Flag>
+void toggle(Machine& machine, Instance&) {
   view_of(machine).flags.*Flag = !(view_of(machine).flags.*Flag);
 }
 
 /// Shadows and reflections need something that catches them: ignored until there is one.
-template <bool DrawingFlags::*Flag> void enable_caught(Machine& machine, Instance&) {
+template <bool DrawingFlags::*Flag>
+void enable_caught(Machine& machine, Instance&) {
   DrawingFlags& flags = view_of(machine).flags;
   if (flags.shadow_catcher) flags.*Flag = true;
 }
-template <bool DrawingFlags::*Flag> void toggle_caught(Machine& machine, Instance&) {
+template <bool DrawingFlags::*Flag>
+void toggle_caught(Machine& machine, Instance&) {
   DrawingFlags& flags = view_of(machine).flags;
   flags.*Flag = flags.shadow_catcher && !(flags.*Flag);
 }
 
-template <bool On> void fog(Machine& machine, Instance&) { view_of(machine).fog.enabled = On; }
+template <bool On>
+void fog(Machine& machine, Instance&) {
+  view_of(machine).fog.enabled = On;
+}
 void toggle_fog(Machine& machine, Instance&) { view_of(machine).fog.enabled = !view_of(machine).fog.enabled; }
 
-template <bool LightExposureState::*Flag, bool On> void light_exposure(Machine& machine, Instance&) {
+template <bool LightExposureState::*Flag, bool On>
+void light_exposure(Machine& machine, Instance&) {
   view_of(machine).light_exposure.*Flag = On;
 }
 
@@ -129,8 +142,9 @@ void set_text(Machine& machine, Text text, std::int32_t slot, double x, double y
                  std::to_string(kOverlayTextCount - 1));
     return;
   }
-  view_of(machine).texts[static_cast<std::size_t>(slot)] = {
-      std::string(view(text)), finite(x, "a text's place"), finite(y, "a text's place"), finite(color, "a text's colour")};
+  view_of(machine).texts[static_cast<std::size_t>(slot)] = {std::string(view(text)), finite(x, "a text's place"),
+                                                            finite(y, "a text's place"),
+                                                            finite(color, "a text's colour")};
 }
 
 void set_display_text(Machine& machine, Instance&, Text text, double x, double y, std::int32_t slot, Vector3 color) {

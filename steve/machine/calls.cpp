@@ -11,13 +11,15 @@ namespace breve::steve {
 bool Machine::accepts(const MethodInfo& method, const CallSite& site) {
   for (std::size_t i = 0; i < site.arguments.size(); ++i) {
     const auto keyword = site.arguments[i].keyword;
-    const bool known = std::any_of(method.parameters.begin(), method.parameters.end(), [&](const auto& p) { return p.keyword == keyword; });
+    const bool known = std::any_of(method.parameters.begin(), method.parameters.end(),
+                                   [&](const auto& p) { return p.keyword == keyword; });
     if (!known) return false;
     for (std::size_t j = 0; j < i; ++j)
       if (site.arguments[j].keyword == keyword) return false;
   }
   return std::all_of(method.parameters.begin(), method.parameters.end(), [&](const auto& p) {
-    return p.has_default || std::any_of(site.arguments.begin(), site.arguments.end(), [&](const auto& a) { return a.keyword == p.keyword; });
+    return p.has_default || std::any_of(site.arguments.begin(), site.arguments.end(),
+                                        [&](const auto& a) { return a.keyword == p.keyword; });
   });
 }
 
@@ -27,7 +29,8 @@ const MethodInfo* Machine::choose(const CallSite& site, const ClassInfo& cls) co
   const ClassInfo* start = site.super_of ? site.super_of->parent : &cls;
   for (const ClassInfo* c = start; c; c = c->parent)
     for (const auto& method : c->methods)
-      if (method->name == site.selector && method->parameters.size() >= site.arguments.size()) candidates.push_back(method.get());
+      if (method->name == site.selector && method->parameters.size() >= site.arguments.size())
+        candidates.push_back(method.get());
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto* a, const auto* b) { return a->parameters.size() < b->parameters.size(); });
   for (const auto* candidate : candidates)
@@ -49,11 +52,13 @@ void Machine::fail_call(const CallSite& site, const ClassInfo& cls, const Method
         names.push_back(symbols.name(method->name));
         if (method->name == site.selector && !fewer) fewer = method.get();
       }
-    if (fewer) best = fewer;
+    if (fewer)
+      best = fewer;
     else {
       const auto near = nearest(name, names);
-      throw RunError(RunErrorKind::UnknownMethod, "unknown method: class " + (start ? start->name : cls.name) + " has no method '" + name +
-                                                      "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+      throw RunError(RunErrorKind::UnknownMethod, "unknown method: class " + (start ? start->name : cls.name) +
+                                                      " has no method '" + name + "'" +
+                                                      (near.empty() ? "" : "; did you mean '" + near + "'?"));
     }
   }
   for (const auto& argument : site.arguments) {
@@ -67,13 +72,18 @@ void Machine::fail_call(const CallSite& site, const ClassInfo& cls, const Method
     const auto near = nearest(symbols.name(argument.keyword), keywords);
     std::string list;
     for (const auto keyword : keywords) list += (list.empty() ? "" : ", ") + std::string(keyword);
-    throw RunError(RunErrorKind::UnknownKeyword, "unknown keyword '" + symbols.name(argument.keyword) + "' for method '" + name + "' of class " +
-                       best->owner->name + (near.empty() ? (list.empty() ? "; it takes none" : "; it takes: " + list) : "; did you mean '" + near + "'?"));
+    throw RunError(RunErrorKind::UnknownKeyword,
+                   "unknown keyword '" + symbols.name(argument.keyword) + "' for method '" + name + "' of class " +
+                       best->owner->name +
+                       (near.empty() ? (list.empty() ? "; it takes none" : "; it takes: " + list)
+                                     : "; did you mean '" + near + "'?"));
   }
   for (const auto& p : best->parameters) {
-    const bool given = std::any_of(site.arguments.begin(), site.arguments.end(), [&](const auto& a) { return a.keyword == p.keyword; });
+    const bool given = std::any_of(site.arguments.begin(), site.arguments.end(),
+                                   [&](const auto& a) { return a.keyword == p.keyword; });
     if (!given && !p.has_default)
-      throw RunError(RunErrorKind::MissingKeyword, "missing keyword '" + symbols.name(p.keyword) + "' for method '" + name + "' of class " + best->owner->name);
+      throw RunError(RunErrorKind::MissingKeyword, "missing keyword '" + symbols.name(p.keyword) + "' for method '" +
+                                                       name + "' of class " + best->owner->name);
   }
   throw RunError(RunErrorKind::UnknownKeyword, "a keyword is given twice to method '" + name + "'");
 }
@@ -96,7 +106,8 @@ const Machine::Plan& Machine::make_plan(std::uint32_t number, const ClassInfo& c
   plan->method = choose(site, cls);
   if (plan->method) {
     for (const auto& p : plan->method->parameters) {
-      const auto at = std::find_if(site.arguments.begin(), site.arguments.end(), [&](const auto& a) { return a.keyword == p.keyword; });
+      const auto at = std::find_if(site.arguments.begin(), site.arguments.end(),
+                                   [&](const auto& a) { return a.keyword == p.keyword; });
       const auto to = static_cast<std::uint16_t>(p.slot);
       const bool checked = p.class_name != kNoSymbol;
       if (at == site.arguments.end()) {
@@ -113,8 +124,10 @@ const Machine::Plan& Machine::make_plan(std::uint32_t number, const ClassInfo& c
       } else if (at->type == StaticType::Double && p.type == StaticType::Int) {
         kind = PlanStep::Kind::DoubleToInt;
       }
-      if (kind == PlanStep::Kind::Copy1 && !checked) plan->moves.emplace_back(at->slot, to);
-      else plan->steps.push_back({kind, at->type, at->slot, to, checked, &p});
+      if (kind == PlanStep::Kind::Copy1 && !checked)
+        plan->moves.emplace_back(at->slot, to);
+      else
+        plan->steps.push_back({kind, at->type, at->slot, to, checked, &p});
     }
   }
   auto& cache = caches_[number];
@@ -148,7 +161,8 @@ void Machine::apply_steps(const Plan& plan, const Slot* caller, Slot* callee) {
 void Machine::convert_argument(const PlanStep& step, const Slot* from, Slot* to) {
   Value value;
   switch (step.from_type) {
-    case StaticType::Any: case StaticType::Null: std::memcpy(static_cast<void*>(&value), from, sizeof value); break;
+    case StaticType::Any:
+    case StaticType::Null: std::memcpy(static_cast<void*>(&value), from, sizeof value); break;
     case StaticType::Int: value = Value::of(from->i); break;
     case StaticType::Double: value = Value::of(from->d); break;
     case StaticType::Vector: value = Value::of(Vector3(from[0].d, from[1].d, from[2].d)); break;
@@ -158,23 +172,40 @@ void Machine::convert_argument(const PlanStep& step, const Slot* from, Slot* to)
   const auto& p = *step.parameter;
   switch (p.type) {  // what is right already, without building a text for an error that does not come
     case StaticType::Double:
-      if (value.tag == Tag::Double) { to->d = value.d; return; }
+      if (value.tag == Tag::Double) {
+        to->d = value.d;
+        return;
+      }
       break;
     case StaticType::Int:
-      if (value.tag == Tag::Int) { to->i = value.i; return; }
+      if (value.tag == Tag::Int) {
+        to->i = value.i;
+        return;
+      }
       break;
     case StaticType::Vector:
-      if (value.tag == Tag::Vector) { std::memcpy(static_cast<void*>(to), value.v, sizeof value.v); return; }
+      if (value.tag == Tag::Vector) {
+        std::memcpy(static_cast<void*>(to), value.v, sizeof value.v);
+        return;
+      }
       break;
-    case StaticType::Any: case StaticType::Null: case StaticType::Matrix: break;
+    case StaticType::Any:
+    case StaticType::Null:
+    case StaticType::Matrix: break;
     default:
-      if (static_cast<int>(value.tag) == static_cast<int>(p.type)) { to->ref = value.ref; return; }
+      if (static_cast<int>(value.tag) == static_cast<int>(p.type)) {
+        to->ref = value.ref;
+        return;
+      }
       break;
   }
   const auto what = "keyword '" + program_->symbols().name(p.keyword) + "'";
   if (value.tag == Tag::Null && p.type != StaticType::Any) {
     value = null_default(p.type, 0, running());
-    if (value.tag == Tag::Null) { to->ref = nullptr; return; }
+    if (value.tag == Tag::Null) {
+      to->ref = nullptr;
+      return;
+    }
   }
   write_value(to, p.type, value, what);
   if (p.type == StaticType::String) pins_.push_back(Value::of(Tag::String, to->ref));
@@ -195,14 +226,18 @@ void Machine::call_native(const Plan& plan, Instance& receiver, const Slot* call
 
 void Machine::check_class(Instance* object, const ClassInfo& cls, std::string_view what) {
   if (!object || object->cls->derives_from(cls)) return;
-  throw RunError(RunErrorKind::Type, std::string(what) + " takes an object of class " + cls.name + ", not one of class " + object->cls->name);
+  throw RunError(RunErrorKind::Type, std::string(what) + " takes an object of class " + cls.name +
+                                         ", not one of class " + object->cls->name);
 }
 
 void Machine::fail_receiver(const Instance* receiver, std::uint32_t number) const {
   const auto& name = program_->symbols().name(program_->code().sites[number].selector);
   if (!receiver)
-    throw RunError(RunErrorKind::NullObject, "method '" + name + "' is called on a null (uninitialised) object: nothing has been assigned to it yet");
-  throw RunError(RunErrorKind::FreedObject, "method '" + name + "' is called on a freed (uninitialised) object of class " + receiver->cls->name);
+    throw RunError(
+        RunErrorKind::NullObject,
+        "method '" + name + "' is called on a null (uninitialised) object: nothing has been assigned to it yet");
+  throw RunError(RunErrorKind::FreedObject,
+                 "method '" + name + "' is called on a freed (uninitialised) object of class " + receiver->cls->name);
 }
 
 }  // namespace breve::steve

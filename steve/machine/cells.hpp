@@ -25,8 +25,9 @@ inline bool is_container(Tag tag) { return tag >= Tag::Object && tag <= Tag::Has
 /// Immutable bytes; never empty (the empty string is the null reference).
 struct StringCell : Cell {
   std::uint32_t size;
-  mutable std::uint32_t hash_cache = 0;  // 0: not computed yet. Computed beforehand in immortal strings (shared by threads)
-  char bytes[8];                         // really `size`, with a zero byte behind
+  mutable std::uint32_t hash_cache =
+      0;          // 0: not computed yet. Computed beforehand in immortal strings (shared by threads)
+  char bytes[8];  // really `size`, with a zero byte behind
 
   explicit StringCell(std::uint32_t n) : Cell(Tag::String), size(n) {}
   std::string_view view() const { return {bytes, size}; }
@@ -34,7 +35,9 @@ struct StringCell : Cell {
 inline std::string_view view(const StringCell* s) { return s ? s->view() : std::string_view{}; }
 
 /// The bytes that a string of `size` bytes takes with its head, a multiple of 8.
-constexpr std::size_t string_cell_bytes(std::size_t size) { return (sizeof(Cell) + 8 + size + 1 + 7) & ~std::size_t{7}; }
+constexpr std::size_t string_cell_bytes(std::size_t size) {
+  return (sizeof(Cell) + 8 + size + 1 + 7) & ~std::size_t{7};
+}
 static_assert(sizeof(StringCell) == sizeof(Cell) + 16);
 /// Make a literal of a program in `memory`, which holds string_cell_bytes(text.size()) bytes: immortal, hash computed.
 StringCell* make_immortal_string(void* memory, std::string_view text);
@@ -94,7 +97,8 @@ struct DataCell : Cell {
   DataCell(std::uint64_t s, std::pmr::memory_resource* memory) : Cell(Tag::Data), serial(s), bytes(memory) {}
 };
 
-/// An object of a steve class. Its slots are laid out by its class; a freed one stays as a husk while it is referred to.
+/// An object of a steve class. Its slots are laid out by its class; a freed one stays as a husk while it is referred
+/// to.
 struct Instance : Container {
   enum class State : std::uint8_t { Live, BeingFreed, Freed };
   State state = State::Live;

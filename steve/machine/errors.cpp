@@ -34,7 +34,8 @@ ErrorReport Machine::report(RunErrorKind kind, const std::string& message, const
     const auto span = span_of(frame, active == frame_ && pc ? pc : frame.pc);
     const auto& file = sources.file(span.file);
     if (!file.embedded || place.line == 0) place = span;
-    r.trace.push_back({frame.self->cls->name, program_->symbols().name(frame.method->name), file.name, frame.self->serial, span.line});
+    r.trace.push_back({frame.self->cls->name, program_->symbols().name(frame.method->name), file.name,
+                       frame.self->serial, span.line});
   }
   if (place.line != 0) {
     r.file = sources.file(place.file).name;
@@ -50,7 +51,8 @@ ErrorReport Machine::report(RunErrorKind kind, const std::string& message, const
       if (line - r.trace.rbegin() == 12) r.text += fmt::format("  ... {} more calls ...\n", r.trace.rend() - line - 4);
       continue;
     }
-    r.text += fmt::format("  in {} of {} (0x{:x}), {}:{}\n", line->method, line->class_name, line->address, line->file, line->line);
+    r.text += fmt::format("  in {} of {} (0x{:x}), {}:{}\n", line->method, line->class_name, line->address, line->file,
+                          line->line);
   }
   return r;
 }
@@ -67,7 +69,7 @@ void Machine::rethrow(std::size_t depth, const Instruction* pc) {
     unwind(depth);
     throw;
   } catch (const RunError& error) {
-    const auto code = error.kind() == RunErrorKind::Budget ? ErrorCode::Budget
+    const auto code = error.kind() == RunErrorKind::Budget  ? ErrorCode::Budget
                       : error.kind() == RunErrorKind::Depth ? ErrorCode::Depth
                                                             : ErrorCode::Script;
     wrap(code, error.kind(), error.what());
@@ -94,8 +96,9 @@ std::string Machine::stack_trace() const {
   for (const auto* active : active_frames()) {
     const auto& frame = *active;
     const auto span = span_of(frame, frame.pc);
-    out += fmt::format("{}. {} (0x{:x}) {} {}:{}\n", number++, frame.self->cls->name, frame.self->serial,
-                       program_->symbols().name(frame.method->name), program_->sources().file(span.file).name, span.line);
+    out +=
+        fmt::format("{}. {} (0x{:x}) {} {}:{}\n", number++, frame.self->cls->name, frame.self->serial,
+                    program_->symbols().name(frame.method->name), program_->sources().file(span.file).name, span.line);
   }
   return out;
 }

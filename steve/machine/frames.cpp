@@ -9,8 +9,8 @@
 namespace breve::steve {
 
 namespace {
-constexpr std::size_t kFirstSegment = 4096;   // slots
-constexpr std::uint32_t kMaxNesting = 400;    // interpreter loops on the C++ stack
+constexpr std::size_t kFirstSegment = 4096;  // slots
+constexpr std::uint32_t kMaxNesting = 400;   // interpreter loops on the C++ stack
 }  // namespace
 
 void Machine::next_segment(std::size_t slots) {
@@ -31,8 +31,9 @@ void Machine::next_segment(std::size_t slots) {
 }
 
 void Machine::fail_depth(const MethodInfo& method) const {
-  throw RunError(RunErrorKind::Depth, "methods call one another more than " + std::to_string(host_.depth_limit) + " deep: does '" +
-                                          program_->symbols().name(method.name) + "' call itself without end?");
+  throw RunError(RunErrorKind::Depth, "methods call one another more than " + std::to_string(host_.depth_limit) +
+                                          " deep: does '" + program_->symbols().name(method.name) +
+                                          "' call itself without end?");
 }
 
 void Machine::unwind(std::size_t depth) {
@@ -41,7 +42,8 @@ void Machine::unwind(std::size_t depth) {
 
 Value Machine::invoke(Instance& receiver, const MethodInfo& method, std::span<const Value> arguments) {
   if (nesting_ >= kMaxNesting)
-    throw RunError(RunErrorKind::Depth, "calls between scripts and the library are nested more than " + std::to_string(kMaxNesting) + " deep");
+    throw RunError(RunErrorKind::Depth, "calls between scripts and the library are nested more than " +
+                                            std::to_string(kMaxNesting) + " deep");
   const std::size_t depth = depth_;
   const StackMark mark(*this);
   struct Nest {
@@ -103,13 +105,15 @@ void Machine::write_value(Slot* to, StaticType type, const Value& value, std::st
     case StaticType::Hash: to->ref = to_hash(value, what); break;
     case StaticType::Pointer: to->ref = to_pointer(value, what); break;
     case StaticType::Data: to->ref = to_data(value, what); break;
-    case StaticType::Any: case StaticType::Null: std::memcpy(static_cast<void*>(to), &value, sizeof value); break;
+    case StaticType::Any:
+    case StaticType::Null: std::memcpy(static_cast<void*>(to), &value, sizeof value); break;
   }
 }
 
 void Machine::write_default(Slot* to, const ParameterInfo& p) {
   if (p.default_fails)
-    throw RunError(RunErrorKind::Conversion, "the default of keyword '" + program_->symbols().name(p.keyword) + "' does not fit its type");
+    throw RunError(RunErrorKind::Conversion,
+                   "the default of keyword '" + program_->symbols().name(p.keyword) + "' does not fit its type");
   switch (p.type) {
     case StaticType::Int: to->i = static_cast<std::int32_t>(p.default_numbers[0]); break;
     case StaticType::Double: to->d = p.default_numbers[0]; break;

@@ -50,7 +50,8 @@ class Heap {
   DataCell* data(std::string_view bytes);
   Instance* instance(const ClassInfo& cls);  // slots zeroed, serial given, count 0
 
-  // --- counted references ---------------------------------------------------------------------------------------------
+  // --- counted references
+  // ---------------------------------------------------------------------------------------------
   void retain(Cell* cell) {
     if (cell && !cell->immortal) ++cell->count;
   }
@@ -89,8 +90,9 @@ class Heap {
   /// Release every reference in the slots of an instance and zero all its slots (what `free` does to variables).
   void clear_slots(Instance& instance);
 
-  // --- lists; positions are checked by the caller -----------------------------------------------------------------------
-  // Adding to a list of 2^31 - 1 elements is RunError{Bounds}.
+  // --- lists; positions are checked by the caller
+  // ----------------------------------------------------------------------- Adding to a list of 2^31 - 1 elements is
+  // RunError{Bounds}.
   void push(ListCell& list, const Value& value) {
     const Value copy = value;
     if (list.first + list.size == list.capacity) make_room_behind(list);
@@ -117,17 +119,19 @@ class Heap {
     return value;
   }
   Value remove(ListCell& list, std::uint32_t position);
-  ListCell* copy(const ListCell& list);  // and all nested lists, sharing and cycles preserved; no recursion
+  ListCell* copy(const ListCell& list);             // and all nested lists, sharing and cycles preserved; no recursion
   void resize(ListCell& list, std::uint32_t size);  // shrink, or grow with NULL values
   void reserve(ListCell& list, std::uint32_t capacity);  // room for that many elements in all
 
-  // --- hashes -----------------------------------------------------------------------------------------------------------
+  // --- hashes
+  // -----------------------------------------------------------------------------------------------------------
   const Value* find(const HashCell& hash, const Value& key) const;  // null if absent
   void set(HashCell& hash, const Value& key, const Value& value);
   bool remove(HashCell& hash, const Value& key, Value& removed);  // false if absent
   ListCell* keys(const HashCell& hash);                           // in order of insertion
 
-  // --- collection -------------------------------------------------------------------------------------------------------
+  // --- collection
+  // -------------------------------------------------------------------------------------------------------
   /// Safe point inside running code: true when so many zero-count cells wait, or so many bytes were taken, that
   /// `reclaim` is worth its cost.
   bool wants_reclaim() const { return zero_.size() >= reclaim_at_ || fresh_bytes_ >= kReclaimBytes; }
@@ -141,8 +145,9 @@ class Heap {
   std::uint64_t live_cells() const { return cells_; }
   std::pmr::memory_resource* memory() const { return memory_; }
 
-  // --- snapshots ----------------------------------------------------------------------------------------------------------
-  // A snapshot writes the cells in the order of containers() (garbage not yet collected included), then those of
+  // --- snapshots
+  // ---------------------------------------------------------------------------------------------------------- A
+  // snapshot writes the cells in the order of containers() (garbage not yet collected included), then those of
   // waiting() that are no containers, then save_state. Restoring makes the containers in the same order in an empty
   // heap, gives them their serials and contents (retaining), and calls load_state last: the restored heap then collects
   // at the same iterations and safe points as the saved one.
@@ -180,8 +185,8 @@ class Heap {
     Instance* instance;
     bool cyclic;
   };
-  static constexpr std::size_t kUnit = 16;     // bytes; size classes are multiples
-  static constexpr std::size_t kClasses = 32;  // up to 512 bytes
+  static constexpr std::size_t kUnit = 16;                // bytes; size classes are multiples
+  static constexpr std::size_t kClasses = 32;             // up to 512 bytes
   static constexpr std::size_t kReclaimBytes = 8U << 20;  // a few long strings are much garbage
   static constexpr std::size_t kReclaimAt = 1024;  // so little garbage that it is still in the cache when it goes
 
@@ -192,7 +197,8 @@ class Heap {
   void give_single(void* memory);
   void* carve(std::size_t units);
   void reserve_tables(bool container);
-  template <class T> T* enter(T* cell);
+  template <class T>
+  T* enter(T* cell);
   StringCell* raw_string(std::size_t size);
   void enlist(Cell* cell) {
     cell->listed = true;
@@ -261,7 +267,7 @@ class Heap {
   bool freeing_doomed_ = false;
 
   Phase phase_ = Phase::Idle;
-  bool suspicion_ = false;  // since the last collection began, something happened that can leave a cycle behind
+  bool suspicion_ = false;       // since the last collection began, something happened that can leave a cycle behind
   bool held_by_frames_ = false;  // the last collection began while frames held something that can be in a cycle
   std::array<std::uint32_t, 3> ends_{};
   Container* partial_ = nullptr;  // the list or hash whose scan was cut by the end of a slice

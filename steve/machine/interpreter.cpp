@@ -10,6 +10,8 @@
 
 namespace breve::steve {
 
+// A line an instruction, so that the loop reads as a table.
+// clang-format off
 // Registers and operands of the running instruction.
 #define R(n) base[n]
 #define ANY(n) (*reinterpret_cast<Value*>(base + (n)))
@@ -626,5 +628,6 @@ void Machine::execute(std::size_t depth) {
     rethrow(depth, pc);
   }
 }
+// clang-format on
 
 }  // namespace breve::steve

@@ -8,8 +8,16 @@
 
 namespace breve::steve {
 
-Machine::Machine(std::shared_ptr<const Program> program, World& world, std::pmr::memory_resource* memory, MachineHost host)
-    : program_(std::move(program)), world_(world), host_(std::move(host)), memory_(memory), heap_(std::make_unique<Heap>(memory, *this)), segments_(memory), pins_(memory), functions_(steve::functions()) {
+Machine::Machine(std::shared_ptr<const Program> program, World& world, std::pmr::memory_resource* memory,
+                 MachineHost host)
+    : program_(std::move(program)),
+      world_(world),
+      host_(std::move(host)),
+      memory_(memory),
+      heap_(std::make_unique<Heap>(memory, *this)),
+      segments_(memory),
+      pins_(memory),
+      functions_(steve::functions()) {
   next_segment(kNativeRoom);
   caches_.resize(program_->code().sites.size());
   strings_ = make_constants(*heap_);
@@ -46,12 +54,14 @@ void Machine::begin_top_level() {
   if (nesting_ == 0) budget_left_ = host_.budget;
 }
 
-// --- objects -------------------------------------------------------------------------------------------------------------------
+// --- objects
+// -------------------------------------------------------------------------------------------------------------------
 
 Instance* Machine::create(const ClassInfo& cls) {
   auto* instance = heap_->instance(cls);
   heap_->retain(instance);  // by the table of objects, until it is freed or opts for auto-free
-  instance->id = world_.create(cls.id, reinterpret_cast<std::uint64_t>(instance), cls.iterate != nullptr, cls.post_iterate != nullptr);
+  instance->id = world_.create(cls.id, reinterpret_cast<std::uint64_t>(instance), cls.iterate != nullptr,
+                               cls.post_iterate != nullptr);
   if (!controller_ && program_->controller_class() == &cls) controller_ = instance;
   try {
     for (std::size_t i = 0; i < cls.init_chain.size(); ++i) {
@@ -95,7 +105,8 @@ Instance* Machine::instance(ObjectId id) const {
   return world_.alive(id) ? reinterpret_cast<Instance*>(world_.user(id)) : nullptr;
 }
 
-// --- calls from native code ------------------------------------------------------------------------------------------------------
+// --- calls from native code
+// ------------------------------------------------------------------------------------------------------
 
 const MethodInfo* Machine::find_method(const ClassInfo& cls, std::string_view name, std::size_t count) const {
   const auto symbol = program_->symbols().find(name);
@@ -109,21 +120,25 @@ bool Machine::responds(const ClassInfo& cls, std::string_view name) const {
 
 Value Machine::call(Instance& receiver, const MethodInfo& method, std::span<const Value> arguments) {
   begin_top_level();
-  if (!receiver.live()) throw RunError(RunErrorKind::FreedObject, "a method is called on a freed object of class " + receiver.cls->name);
+  if (!receiver.live())
+    throw RunError(RunErrorKind::FreedObject, "a method is called on a freed object of class " + receiver.cls->name);
   if (arguments.size() != method.parameters.size())
-    throw RunError(RunErrorKind::Type, "method '" + program_->symbols().name(method.name) + "' takes " + std::to_string(method.parameters.size()) + " arguments");
+    throw RunError(RunErrorKind::Type, "method '" + program_->symbols().name(method.name) + "' takes " +
+                                           std::to_string(method.parameters.size()) + " arguments");
   return invoke(receiver, method, arguments);
 }
 
 Value Machine::call(Instance& receiver, std::string_view name, std::span<const Value> arguments) {
   const auto* method = find_method(*receiver.cls, name, arguments.size());
   if (!method)
-    throw RunError(RunErrorKind::UnknownMethod, "unknown method: class " + receiver.cls->name + " has no method '" + std::string(name) + "' with " +
-                                                    std::to_string(arguments.size()) + " parameters");
+    throw RunError(RunErrorKind::UnknownMethod, "unknown method: class " + receiver.cls->name + " has no method '" +
+                                                    std::string(name) + "' with " + std::to_string(arguments.size()) +
+                                                    " parameters");
   return call(receiver, *method, arguments);
 }
 
-bool Machine::call_guarded(Instance& receiver, const MethodInfo& method, std::span<const Value> arguments, Value& result) {
+bool Machine::call_guarded(Instance& receiver, const MethodInfo& method, std::span<const Value> arguments,
+                           Value& result) {
   const std::size_t depth = depth_;
   const Instruction* pc = running();
   try {
@@ -141,22 +156,28 @@ bool Machine::call_guarded(Instance& receiver, const MethodInfo& method, std::sp
   }
 }
 
-Value Machine::call_with_keywords(Instance& receiver, std::string_view name, std::span<const std::pair<std::string_view, Value>> keywords) {
+Value Machine::call_with_keywords(Instance& receiver, std::string_view name,
+                                  std::span<const std::pair<std::string_view, Value>> keywords) {
   CallSite site;
   site.selector = program_->symbols().find(name);
   if (site.selector == kNoSymbol)
-    throw RunError(RunErrorKind::UnknownMethod, "unknown method: class " + receiver.cls->name + " has no method '" + std::string(name) + "'");
+    throw RunError(RunErrorKind::UnknownMethod,
+                   "unknown method: class " + receiver.cls->name + " has no method '" + std::string(name) + "'");
   for (const auto& [keyword, value] : keywords) {
     const auto symbol = program_->symbols().find(keyword);
-    if (symbol == kNoSymbol) throw RunError(RunErrorKind::UnknownKeyword, "unknown keyword '" + std::string(keyword) + "' for method '" + std::string(name) + "'");
+    if (symbol == kNoSymbol)
+      throw RunError(RunErrorKind::UnknownKeyword,
+                     "unknown keyword '" + std::string(keyword) + "' for method '" + std::string(name) + "'");
     site.arguments.push_back({symbol, StaticType::Any, 0, -1, {}});
   }
   const auto* method = choose(site, *receiver.cls);
   if (!method) return {};
   std::vector<Value> values;
   for (const auto& p : method->parameters) {
-    const auto at = std::find_if(site.arguments.begin(), site.arguments.end(), [&](const auto& a) { return a.keyword == p.keyword; });
-    values.push_back(at != site.arguments.end() ? keywords[static_cast<std::size_t>(at - site.arguments.begin())].second : default_value(p));
+    const auto at = std::find_if(site.arguments.begin(), site.arguments.end(),
+                                 [&](const auto& a) { return a.keyword == p.keyword; });
+    values.push_back(at != site.arguments.end() ? keywords[static_cast<std::size_t>(at - site.arguments.begin())].second
+                                                : default_value(p));
   }
   return call(receiver, *method, values);
 }
@@ -173,7 +194,8 @@ Value Machine::default_value(const ParameterInfo& p) {
   }
 }
 
-// --- events of the world ------------------------------------------------------------------------------------------------------------
+// --- events of the world
+// ------------------------------------------------------------------------------------------------------------
 
 void Machine::iterate(ObjectId agent) {
   if (auto* object = instance(agent)) call(*object, *object->cls->iterate, {});
@@ -187,7 +209,8 @@ void Machine::scheduled(ObjectId agent, std::string_view method) {
   if (auto* object = instance(agent)) call(*object, method, {});
 }
 
-bool Machine::collided(ObjectId agent, ObjectId other, std::string_view name, const Vector3& point, const Vector3& normal) {
+bool Machine::collided(ObjectId agent, ObjectId other, std::string_view name, const Vector3& point,
+                       const Vector3& normal) {
   for (std::size_t count = 0; count <= 5; ++count) {
     auto* object = instance(agent);
     auto* hit = instance(other);
@@ -220,13 +243,15 @@ void Machine::notified(ObjectId observer, std::string_view name, ObjectId announ
 
 void Machine::call_if_present(Instance& receiver, std::string_view method, std::span<const Value> arguments) {
   Value result;
-  if (const auto* info = find_method(*receiver.cls, method, arguments.size())) call_guarded(receiver, *info, arguments, result);
+  if (const auto* info = find_method(*receiver.cls, method, arguments.size()))
+    call_guarded(receiver, *info, arguments, result);
 }
 
 void Machine::input(const InputEvent& event) {
   if (!controller_) return;
   switch (event.kind) {
-    case InputEvent::Kind::KeyDown: case InputEvent::Kind::KeyUp: input_key(event); break;
+    case InputEvent::Kind::KeyDown:
+    case InputEvent::Kind::KeyUp: input_key(event); break;
     case InputEvent::Kind::Click: {
       const Value arguments[] = {Value::of(Tag::Object, instance(event.object))};
       call_if_present(*controller_, "click", arguments);
@@ -268,13 +293,16 @@ Instance* Machine::broadcast_member(const Value& element) const {
   if (element.tag == Tag::Object && element.object() && element.object()->live()) return element.object();
   throw RunError(element.tag == Tag::Object ? RunErrorKind::NullObject : RunErrorKind::Type,
                  "a method is called on a list, and an element of it is not a live object but " +
-                     (element.tag != Tag::Object ? a_type(element.tag) : std::string(element.object() ? "a freed one" : "a null one")));
+                     (element.tag != Tag::Object ? a_type(element.tag)
+                                                 : std::string(element.object() ? "a freed one" : "a null one")));
 }
 
 void Machine::fail_call_on(const Value& value) const {
   if (value.tag == Tag::Null)
-    throw RunError(RunErrorKind::NullObject, "a method is called on no value (NULL): what stands in front of the method name gave nothing");
-  throw RunError(RunErrorKind::Type, "a method is called on " + a_type(value.tag) + "; only objects and lists of objects have methods");
+    throw RunError(RunErrorKind::NullObject,
+                   "a method is called on no value (NULL): what stands in front of the method name gave nothing");
+  throw RunError(RunErrorKind::Type,
+                 "a method is called on " + a_type(value.tag) + "; only objects and lists of objects have methods");
 }
 
 }  // namespace breve::steve

@@ -21,17 +21,17 @@ namespace breve::steve {
 
 /// What a machine needs from whoever embeds it. Every member may be empty.
 struct MachineHost {
-  std::function<void(std::string_view text)> print;            // what scripts print, as written
-  std::function<void(std::string_view text)> warn;             // one warning, one or more whole lines
-  std::function<void(std::string_view text)> error;            // a run-time error that did not stop the run (F27)
-  std::function<std::string(std::string_view name)> find_file; // path of a data file (images, sounds), "" if none
-  std::function<std::string(std::string_view command)> system; // run a shell command; empty: not allowed
-  std::vector<std::string> arguments;                          // [0] is the program file
+  std::function<void(std::string_view text)> print;             // what scripts print, as written
+  std::function<void(std::string_view text)> warn;              // one warning, one or more whole lines
+  std::function<void(std::string_view text)> error;             // a run-time error that did not stop the run (F27)
+  std::function<std::string(std::string_view name)> find_file;  // path of a data file (images, sounds), "" if none
+  std::function<std::string(std::string_view command)> system;  // run a shell command; empty: not allowed
+  std::vector<std::string> arguments;                           // [0] is the program file
   std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
-  bool verbose = false;                                        // say once when an obsolete selector is used
+  bool verbose = false;  // say once when an obsolete selector is used
   bool strict = false;
-  std::uint32_t depth_limit = 5000;                            // nested calls
-  std::uint64_t budget = 0;  // loop back-edges and calls per call from the host or iteration; 0 = none
+  std::uint32_t depth_limit = 5000;  // nested calls
+  std::uint64_t budget = 0;          // loop back-edges and calls per call from the host or iteration; 0 = none
 };
 
 /// One active method, for reports.
@@ -82,7 +82,8 @@ class Machine final : public Behaviour, public RootSource {
   Instance* instance(ObjectId id) const;  // null if the id is null or stale
   ObjectId id_of(const Instance* instance) const { return instance && instance->live() ? instance->id : ObjectId{}; }
 
-  // --- calls from native code -----------------------------------------------------------------------------------------
+  // --- calls from native code
+  // -----------------------------------------------------------------------------------------
   /// The method of `cls` or an ancestor with this name and exactly `count` parameters; null if there is none.
   const MethodInfo* find_method(const ClassInfo& cls, std::string_view name, std::size_t count) const;
   bool responds(const ClassInfo& cls, std::string_view name) const;  // any number of parameters
@@ -96,11 +97,13 @@ class Machine final : public Behaviour, public RootSource {
   Value call_with_keywords(Instance& receiver, std::string_view method,
                            std::span<const std::pair<std::string_view, Value>> keywords);
 
-  // --- variables of instances ------------------------------------------------------------------------------------------
+  // --- variables of instances
+  // ------------------------------------------------------------------------------------------
   Value get_variable(const Instance& instance, const VariableInfo& variable) const;
   void set_variable(Instance& instance, const VariableInfo& variable, const Value& value);  // converts, checks class
 
-  // --- talking ---------------------------------------------------------------------------------------------------------
+  // --- talking
+  // ---------------------------------------------------------------------------------------------------------
   void print(std::string_view text) {
     if (host_.print) host_.print(text);
   }
@@ -114,7 +117,8 @@ class Machine final : public Behaviour, public RootSource {
   /// Errors reported that did not stop the run (F27).
   std::uint64_t survived_errors() const { return survived_errors_; }
 
-  // --- Behaviour, RootSource ---------------------------------------------------------------------------------------------
+  // --- Behaviour, RootSource
+  // ---------------------------------------------------------------------------------------------
   void iterate(ObjectId agent) override;
   void post_iterate(ObjectId agent) override;
   void scheduled(ObjectId agent, std::string_view method) override;
@@ -143,10 +147,10 @@ class Machine final : public Behaviour, public RootSource {
   };
   struct Plan {
     const ClassInfo* cls = nullptr;
-    const MethodInfo* method = nullptr;  // null: `iterate`, which nobody has to have
+    const MethodInfo* method = nullptr;                          // null: `iterate`, which nobody has to have
     std::vector<std::pair<std::uint16_t, std::uint16_t>> moves;  // one slot each: from, to
     std::vector<PlanStep> steps;                                 // the rest
-    std::vector<std::uint16_t> order;  // arguments in the order of the parameters
+    std::vector<std::uint16_t> order;                            // arguments in the order of the parameters
   };
   struct SiteCache {
     const ClassInfo* cls = nullptr;
@@ -169,7 +173,8 @@ class Machine final : public Behaviour, public RootSource {
   /// Restores the top of the stack and the pins at the end of a call into native code.
   class StackMark {
    public:
-    explicit StackMark(Machine& m) : machine_(m), top_(m.top_), limit_(m.limit_), segment_(m.segment_), pins_(m.pins_.size()) {}
+    explicit StackMark(Machine& m)
+        : machine_(m), top_(m.top_), limit_(m.limit_), segment_(m.segment_), pins_(m.pins_.size()) {}
     ~StackMark() {
       machine_.top_ = top_;
       machine_.limit_ = limit_;
@@ -190,12 +195,14 @@ class Machine final : public Behaviour, public RootSource {
   // frames (frames.cpp)
   /// A new frame; parameters are still to be written.
   Frame* enter(const MethodInfo& method, Instance& self) {
-    if (depth_ >= host_.depth_limit) [[unlikely]] fail_depth(method);
+    if (depth_ >= host_.depth_limit) [[unlikely]]
+      fail_depth(method);
     const auto& function = *method.function;
     Slot* const saved_top = top_;
     const auto saved_segment = segment_;
     need_room(sizeof(Frame) / sizeof(Slot) + function.frame_slots + kNativeRoom);
-    auto* frame = new (static_cast<void*>(top_)) Frame{frame_, &method, &function, function.code.data(), &self, saved_top, saved_segment};
+    auto* frame = new (static_cast<void*>(top_))
+        Frame{frame_, &method, &function, function.code.data(), &self, saved_top, saved_segment};
     frame_ = frame;
     ++depth_;
     Slot* base = frame->base();
@@ -214,7 +221,8 @@ class Machine final : public Behaviour, public RootSource {
     }
   }
   void need_room(std::size_t slots) {
-    if (static_cast<std::size_t>(limit_ - top_) < slots) [[unlikely]] next_segment(slots);
+    if (static_cast<std::size_t>(limit_ - top_) < slots) [[unlikely]]
+      next_segment(slots);
   }
   void next_segment(std::size_t slots);
   [[noreturn]] void fail_depth(const MethodInfo& method) const;
@@ -287,7 +295,7 @@ class Machine final : public Behaviour, public RootSource {
   std::pmr::memory_resource* memory_;
   std::unique_ptr<Heap> heap_;
   Instance* controller_ = nullptr;
-  Value result_;  // of the last call
+  Value result_;            // of the last call
   Frame* frame_ = nullptr;  // the innermost
   std::size_t depth_ = 0;
   std::pmr::vector<std::pair<Slot*, std::size_t>> segments_;

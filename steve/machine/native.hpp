@@ -27,14 +27,16 @@ struct Native {
 };
 
 /// How a C++ type stands in slots. Letters: i d v m s o l h p b(data) a(any) n(nothing).
-template <class T> struct SlotType;
+template <class T>
+struct SlotType;
 
-#define BREVE_SLOT_TYPE(TYPE, LETTER, SLOTS, FROM, TO)             \
-  template <> struct SlotType<TYPE> {                              \
-    static constexpr char letter = LETTER;                         \
-    static constexpr int slots = SLOTS;                            \
-    static TYPE from([[maybe_unused]] const Slot* s) { return FROM; }                        \
-    static Value to([[maybe_unused]] TYPE x) { return TO; } \
+#define BREVE_SLOT_TYPE(TYPE, LETTER, SLOTS, FROM, TO)                \
+  template <>                                                         \
+  struct SlotType<TYPE> {                                             \
+    static constexpr char letter = LETTER;                            \
+    static constexpr int slots = SLOTS;                               \
+    static TYPE from([[maybe_unused]] const Slot* s) { return FROM; } \
+    static Value to([[maybe_unused]] TYPE x) { return TO; }           \
   }
 BREVE_SLOT_TYPE(std::int32_t, 'i', 1, s->i, Value::of(x));
 BREVE_SLOT_TYPE(double, 'd', 1, s->d, Value::of(x));
@@ -47,7 +49,8 @@ BREVE_SLOT_TYPE(PointerCell*, 'p', 1, static_cast<PointerCell*>(s->ref), Value::
 BREVE_SLOT_TYPE(DataCell*, 'b', 1, static_cast<DataCell*>(s->ref), Value::of(Tag::Data, x));
 BREVE_SLOT_TYPE(MatrixCell*, 'm', 9, nullptr, Value::of(Tag::Matrix, x));  // as a result; parameters take Matrix3
 #undef BREVE_SLOT_TYPE
-template <> struct SlotType<Matrix3> {
+template <>
+struct SlotType<Matrix3> {
   static constexpr char letter = 'm';
   static constexpr int slots = 9;
   static Matrix3 from(const Slot* s) {
@@ -56,7 +59,8 @@ template <> struct SlotType<Matrix3> {
     return m;
   }
 };
-template <> struct SlotType<Value> {
+template <>
+struct SlotType<Value> {
   static constexpr char letter = 'a';
   static constexpr int slots = 4;
   static Value from(const Slot* s) {
@@ -69,14 +73,19 @@ template <> struct SlotType<Value> {
 
 namespace detail {
 
-template <class T> using Plain = std::remove_cv_t<std::remove_reference_t<T>>;
+template <class T>
+using Plain = std::remove_cv_t<std::remove_reference_t<T>>;
 
-template <class R> constexpr char result_letter() {
-  if constexpr (std::is_void_v<R>) return 'n';
-  else return SlotType<Plain<R>>::letter;
+template <class R>
+constexpr char result_letter() {
+  if constexpr (std::is_void_v<R>)
+    return 'n';
+  else
+    return SlotType<Plain<R>>::letter;
 }
 
-template <auto F, class R, class... A> struct Binder {
+template <auto F, class R, class... A>
+struct Binder {
   static constexpr std::array<char, sizeof...(A) + 3> kSignature = {SlotType<Plain<A>>::letter..., ':',
                                                                     result_letter<R>(), '\0'};
   template <std::size_t... I>
@@ -91,13 +100,16 @@ template <auto F, class R, class... A> struct Binder {
     return F(machine, self, SlotType<Plain<A>>::from(args + offset(I, sizes))...);
   }
   static void call(Machine& machine, Instance& self, const Slot* args, Value& result) {
-    if constexpr (std::is_void_v<R>) apply(machine, self, args, std::index_sequence_for<A...>());
-    else result = SlotType<Plain<R>>::to(apply(machine, self, args, std::index_sequence_for<A...>()));
+    if constexpr (std::is_void_v<R>)
+      apply(machine, self, args, std::index_sequence_for<A...>());
+    else
+      result = SlotType<Plain<R>>::to(apply(machine, self, args, std::index_sequence_for<A...>()));
     (void)result;
   }
 };
 
-template <auto F, class R, class... A> constexpr Native bind(std::string_view name, R (*)(Machine&, Instance&, A...)) {
+template <auto F, class R, class... A>
+constexpr Native bind(std::string_view name, R (*)(Machine&, Instance&, A...)) {
   using B = Binder<F, R, A...>;
   return {name, &B::call, std::string_view(B::kSignature.data(), sizeof...(A) + 2)};
 }
@@ -106,7 +118,10 @@ template <auto F, class R, class... A> constexpr Native bind(std::string_view na
 
 /// native<f>("real.move"), with `R f(Machine&, Instance& self, parameters...)`. A function that yields a matrix
 /// returns machine.heap().matrix(m); one that yields a string, machine.heap().string(text).
-template <auto F> constexpr Native native(std::string_view name) { return detail::bind<F>(name, F); }
+template <auto F>
+constexpr Native native(std::string_view name) {
+  return detail::bind<F>(name, F);
+}
 
 /// Every native method of the class library, and every function that scripts may call. Tables of the folders that
 /// define them, concatenated.

@@ -31,8 +31,8 @@ inline std::int32_t truncate_to_int(double d) {
   if (std::isnan(d)) return 0;
   return d < 0 ? std::numeric_limits<std::int32_t>::min() : std::numeric_limits<std::int32_t>::max();
 }
-std::int32_t leading_int(std::string_view text);   // 0 if there is none; the nearest int if it is out of range
-double leading_double(std::string_view text);      // C rules without locale; 0.0 if there is none
+std::int32_t leading_int(std::string_view text);  // 0 if there is none; the nearest int if it is out of range
+double leading_double(std::string_view text);     // C rules without locale; 0.0 if there is none
 
 // Integer arithmetic that wraps (F20).
 inline std::int32_t wrap_add(std::int32_t a, std::int32_t b) {
@@ -69,7 +69,8 @@ Value magnitude(const Value& v);  // |e|
 bool same_key(const Value& a, const Value& b);
 std::uint32_t key_hash(const Value& v);  // never 0xffffffff; needs no address
 
-/// base{index} for list, hash, vector, matrix, string (objects are the interpreter's business). A missing hash key is NULL.
+/// base{index} for list, hash, vector, matrix, string (objects are the interpreter's business). A missing hash key is
+/// NULL.
 Value index(Heap& heap, const Value& base, const Value& key);
 /// list{i} = v, hash{k} = v.
 void set_index(Heap& heap, const Value& base, const Value& key, const Value& value);

@@ -11,7 +11,8 @@ Value Machine::null_default(StaticType type, std::uint32_t what, const Instructi
   // F14: NULL assigned to a typed variable stores the type's zero value, with one warning for each place.
   const auto& name = program_->code().texts.empty() ? std::string("value") : program_->code().texts[what];
   if (host_.strict) throw RunError(RunErrorKind::Conversion, "no value (NULL) for " + name);
-  if (warned_sites_.insert(pc).second) warn("no value (NULL) is assigned to " + name + "; it becomes its type's zero value");
+  if (warned_sites_.insert(pc).second)
+    warn("no value (NULL) is assigned to " + name + "; it becomes its type's zero value");
   switch (type) {
     case StaticType::Int: return Value::of(0);
     case StaticType::Double: return Value::of(0.0);
@@ -19,12 +20,14 @@ Value Machine::null_default(StaticType type, std::uint32_t what, const Instructi
     case StaticType::Matrix: return Value::of(Tag::Matrix, heap_->matrix(Matrix3::Zero()));
     case StaticType::List: return Value::of(Tag::List, heap_->list());
     case StaticType::Hash: return Value::of(Tag::Hash, heap_->hash());
-    case StaticType::Any: case StaticType::Null: return {};
+    case StaticType::Any:
+    case StaticType::Null: return {};
     default: return Value::of(static_cast<Tag>(type), nullptr);
   }
 }
 
-Slot Machine::converted_reference(StaticType type, const Value& given, std::uint32_t what, bool strict, const Instruction* pc) {
+Slot Machine::converted_reference(StaticType type, const Value& given, std::uint32_t what, bool strict,
+                                  const Instruction* pc) {
   Slot slot{};
   if (static_cast<int>(given.tag) == static_cast<int>(type)) {
     slot.ref = given.ref;
@@ -39,7 +42,8 @@ Slot Machine::converted_reference(StaticType type, const Value& given, std::uint
   return slot;
 }
 
-// --- members of objects ------------------------------------------------------------------------------------------------------
+// --- members of objects
+// ------------------------------------------------------------------------------------------------------
 
 Instance* Machine::instance_of(const Value& value) const { return value.tag == Tag::Object ? value.object() : nullptr; }
 
@@ -47,7 +51,9 @@ const VariableInfo* Machine::member_variable(const Instance& instance, Symbol na
   const auto* variable = instance.cls->find_variable(name);
   if (variable && variable->array_size < 0) return variable;
   const auto& text = program_->symbols().name(name);
-  if (variable) throw RunError(RunErrorKind::Type, "'" + text + "' of class " + instance.cls->name + " is an array and cannot be used as a whole");
+  if (variable)
+    throw RunError(RunErrorKind::Type,
+                   "'" + text + "' of class " + instance.cls->name + " is an array and cannot be used as a whole");
   std::vector<std::string_view> names;
   for (const ClassInfo* c = instance.cls; c; c = c->parent)
     for (const auto& v : c->variables) names.push_back(program_->symbols().name(v.name));
@@ -60,7 +66,9 @@ namespace {
 Instance& need_live(const Value& base, std::string_view name) {
   auto* instance = base.object();
   if (!instance) throw RunError(RunErrorKind::NullObject, "variable '" + std::string(name) + "' of a null object");
-  if (!instance->live()) throw RunError(RunErrorKind::FreedObject, "variable '" + std::string(name) + "' of a freed object of class " + instance->cls->name);
+  if (!instance->live())
+    throw RunError(RunErrorKind::FreedObject,
+                   "variable '" + std::string(name) + "' of a freed object of class " + instance->cls->name);
   return *instance;
 }
 }  // namespace
@@ -89,10 +97,13 @@ bool Machine::write_member(Value& base, const MemberSite& site, const Value& val
 
 bool Machine::write_index(Value& base, const Value& key, const Value& value) {
   if (base.tag == Tag::Object) {
-    if (key.tag != Tag::String) throw RunError(RunErrorKind::Type, "an object's variable is named by a string, not by " + a_type(key.tag));
+    if (key.tag != Tag::String)
+      throw RunError(RunErrorKind::Type, "an object's variable is named by a string, not by " + a_type(key.tag));
     const auto name = program_->symbols().find(view(key.string()));
     auto& instance = need_live(base, view(key.string()));
-    if (name == kNoSymbol) throw RunError(RunErrorKind::Type, "class " + instance.cls->name + " has no variable '" + std::string(view(key.string())) + "'");
+    if (name == kNoSymbol)
+      throw RunError(RunErrorKind::Type,
+                     "class " + instance.cls->name + " has no variable '" + std::string(view(key.string())) + "'");
     set_variable(instance, *member_variable(instance, name), value);
     return true;
   }
@@ -106,10 +117,13 @@ bool Machine::write_index(Value& base, const Value& key, const Value& value) {
 
 Value Machine::read_index(const Value& base, const Value& key) {
   if (base.tag != Tag::Object) return index(*heap_, base, key);
-  if (key.tag != Tag::String) throw RunError(RunErrorKind::Type, "an object's variable is named by a string, not by " + a_type(key.tag));
+  if (key.tag != Tag::String)
+    throw RunError(RunErrorKind::Type, "an object's variable is named by a string, not by " + a_type(key.tag));
   auto& instance = need_live(base, view(key.string()));
   const auto name = program_->symbols().find(view(key.string()));
-  if (name == kNoSymbol) throw RunError(RunErrorKind::Type, "class " + instance.cls->name + " has no variable '" + std::string(view(key.string())) + "'");
+  if (name == kNoSymbol)
+    throw RunError(RunErrorKind::Type,
+                   "class " + instance.cls->name + " has no variable '" + std::string(view(key.string())) + "'");
   return get_variable(instance, *member_variable(instance, name));
 }
 
@@ -145,7 +159,8 @@ Value Machine::get_variable(const Instance& instance, const VariableInfo& variab
 void Machine::set_variable(Instance& instance, const VariableInfo& variable, const Value& given) {
   if (!instance.live()) throw RunError(RunErrorKind::FreedObject, "a variable of a freed object cannot be set");
   const auto what = "variable '" + program_->symbols().name(variable.name) + "' of class " + instance.cls->name;
-  if (variable.array_size >= 0) throw RunError(RunErrorKind::Type, what + " is an array and cannot be assigned as a whole");
+  if (variable.array_size >= 0)
+    throw RunError(RunErrorKind::Type, what + " is an array and cannot be assigned as a whole");
   Value value = given;
   if (value.tag == Tag::Null) value = null_default(variable.type, 0, running());
   Slot converted[9] = {};
@@ -154,14 +169,19 @@ void Machine::set_variable(Instance& instance, const VariableInfo& variable, con
     if (const auto* cls = program_->find_class(program_->symbols().name(variable.class_name)))
       check_class(static_cast<Instance*>(converted[0].ref), *cls, what);
   Slot* slot = instance.slots + variable.slot;
-  if (variable.type >= StaticType::String && variable.type <= StaticType::Data) heap_->store(*slot, converted[0].ref);
-  else std::memcpy(static_cast<void*>(slot), converted, static_cast<std::size_t>(slot_count(variable.type)) * sizeof(Slot));
+  if (variable.type >= StaticType::String && variable.type <= StaticType::Data)
+    heap_->store(*slot, converted[0].ref);
+  else
+    std::memcpy(static_cast<void*>(slot), converted,
+                static_cast<std::size_t>(slot_count(variable.type)) * sizeof(Slot));
 }
 
-// --- creation, freeing, enumeration ----------------------------------------------------------------------------------------------
+// --- creation, freeing, enumeration
+// ----------------------------------------------------------------------------------------------
 
 Value Machine::make_many(const Value& count, const ClassInfo& cls) {
-  if (count.tag != Tag::Int) throw RunError(RunErrorKind::Type, "the number of new instances must be an int, not " + a_type(count.tag));
+  if (count.tag != Tag::Int)
+    throw RunError(RunErrorKind::Type, "the number of new instances must be an int, not " + a_type(count.tag));
   if (count.i == 1) return Value::of(Tag::Object, create(cls));
   auto* list = heap_->list();
   const Pin pin(*this, Value::of(Tag::List, list));
@@ -201,7 +221,9 @@ void Machine::free_value(const Value& value) {
 void Machine::sort(ListCell& list, Symbol symbol, Instance& self) {
   const auto* method = self.cls->find_method(symbol, 2);
   if (!method)
-    throw RunError(RunErrorKind::UnknownMethod, "unknown method: sort needs a method '" + program_->symbols().name(symbol) + "' with two parameters in class " + self.cls->name);
+    throw RunError(RunErrorKind::UnknownMethod, "unknown method: sort needs a method '" +
+                                                    program_->symbols().name(symbol) +
+                                                    "' with two parameters in class " + self.cls->name);
   const Pin pin(*this, Value::of(Tag::List, &list));
   const StackMark mark(*this);
   for (const auto& element : list) pins_.push_back(element);
@@ -213,10 +235,12 @@ void Machine::sort(ListCell& list, Symbol symbol, Instance& self) {
   });
 }
 
-// --- text --------------------------------------------------------------------------------------------------------------------------
+// --- text
+// --------------------------------------------------------------------------------------------------------------------------
 
 std::string Machine::text(const Value& value) {
-  return steve::text(value, [this](Instance& instance) { return describe(instance); }, heap_.get());
+  return steve::text(
+      value, [this](Instance& instance) { return describe(instance); }, heap_.get());
 }
 
 std::string Machine::describe(Instance& instance) {
@@ -230,10 +254,14 @@ std::string Machine::describe(Instance& instance) {
 StringCell* Machine::interpolate(const std::vector<std::string>& texts, const Value* values, std::size_t count) {
   std::string out = texts[0];
   for (std::size_t i = 0; i < count; ++i) {
-    if (values[i].tag == Tag::String) out += view(values[i].string());
-    else if (values[i].tag == Tag::Int) append_int(out, values[i].i);
-    else if (values[i].tag == Tag::Double) append_double(out, values[i].d);
-    else out += text(values[i]);
+    if (values[i].tag == Tag::String)
+      out += view(values[i].string());
+    else if (values[i].tag == Tag::Int)
+      append_int(out, values[i].i);
+    else if (values[i].tag == Tag::Double)
+      append_double(out, values[i].d);
+    else
+      out += text(values[i]);
     out += texts[i + 1];
   }
   return heap_->string(out);
@@ -256,7 +284,8 @@ Value Machine::random(const Value& bound) {
       for (int i = 0; i < 3; ++i) v[i] = bound.v[i] * generator.uniform();
       return Value::of(v);
     }
-    default: throw RunError(RunErrorKind::Type, "random[] takes an int, a double or a vector, not " + a_type(bound.tag));
+    default:
+      throw RunError(RunErrorKind::Type, "random[] takes an int, a double or a vector, not " + a_type(bound.tag));
   }
 }
 

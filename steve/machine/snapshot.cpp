@@ -11,7 +11,8 @@ namespace {
 constexpr std::uint64_t kNull = ~std::uint64_t{0};
 
 /// Calls `visit` for every value that a container holds, in a fixed order.
-template <class Visit> void for_each_value(const Container& cell, Visit&& visit) {
+template <class Visit>
+void for_each_value(const Container& cell, Visit&& visit) {
   if (cell.tag == Tag::List) {
     for (const auto& element : static_cast<const ListCell&>(cell)) visit(element);
   } else if (cell.tag == Tag::Hash) {
@@ -34,7 +35,8 @@ template <class Visit> void for_each_value(const Container& cell, Visit&& visit)
 }
 
 /// Calls `visit` with the bits of every slot that holds numbers. An int fills half a slot; the rest is not looked at.
-template <class Visit> void for_each_number(const Instance& instance, Visit&& visit) {
+template <class Visit>
+void for_each_number(const Instance& instance, Visit&& visit) {
   for (const ClassInfo* c = instance.cls; c; c = c->parent)
     for (const auto& v : c->variables) {
       if (v.type >= StaticType::String && v.type <= StaticType::Data) continue;
@@ -116,8 +118,10 @@ void Machine::save(ByteWriter& out) const {
     const auto constant = constants.find(cell);
     if (cell->tag == Tag::String) {
       out.put(static_cast<std::uint8_t>(constant != constants.end()));
-      if (constant != constants.end()) out.put(constant->second);
-      else out.put(static_cast<const StringCell*>(cell)->view());
+      if (constant != constants.end())
+        out.put(constant->second);
+      else
+        out.put(static_cast<const StringCell*>(cell)->view());
     } else if (cell->tag == Tag::Matrix) {
       out.put(static_cast<const MatrixCell*>(cell)->m);
     } else if (cell->tag == Tag::Pointer) {

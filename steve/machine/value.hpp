@@ -22,9 +22,9 @@ std::string_view type_name(Tag tag);
 struct Cell {
   std::uint32_t count = 0;
   Tag tag;
-  std::uint8_t mark = 0;         // colour of the cycle collector
-  bool listed = false;           // in the table of zero counts
-  bool immortal = false;         // a literal of the program: never freed, never counted
+  std::uint8_t mark = 0;  // colour of the cycle collector
+  bool listed = false;    // in the table of zero counts
+  bool immortal = false;  // a literal of the program: never freed, never counted
   explicit Cell(Tag t) : tag(t) {}
 };
 
@@ -59,10 +59,26 @@ struct Value {
   };
 
   Value() : tag(Tag::Null), bits{0, 0, 0} {}
-  static Value of(std::int32_t i) { Value r(Tag::Int); r.i = i; return r; }
-  static Value of(double d) { Value r(Tag::Double); r.d = d; return r; }
-  static Value of(const Vector3& v) { Value r(Tag::Vector); std::memcpy(r.v, v.data(), sizeof r.v); return r; }
-  static Value of(Tag tag, Cell* ref) { Value r(tag); r.ref = ref; return r; }
+  static Value of(std::int32_t i) {
+    Value r(Tag::Int);
+    r.i = i;
+    return r;
+  }
+  static Value of(double d) {
+    Value r(Tag::Double);
+    r.d = d;
+    return r;
+  }
+  static Value of(const Vector3& v) {
+    Value r(Tag::Vector);
+    std::memcpy(r.v, v.data(), sizeof r.v);
+    return r;
+  }
+  static Value of(Tag tag, Cell* ref) {
+    Value r(tag);
+    r.ref = ref;
+    return r;
+  }
 
   bool is_reference() const { return tag >= Tag::Matrix; }
   Vector3 vector() const { return {v[0], v[1], v[2]}; }
@@ -82,8 +98,22 @@ static_assert(sizeof(Value) == 32);
 
 /// The kinds of run-time errors (language, section 11.2).
 enum class RunErrorKind : std::uint8_t {
-  User, Internal, Type, Array, Conversion, FreedObject, NullObject, Math, World, Bounds,
-  UnknownClass, UnknownMethod, UnknownKeyword, MissingKeyword, Depth, Budget,
+  User,
+  Internal,
+  Type,
+  Array,
+  Conversion,
+  FreedObject,
+  NullObject,
+  Math,
+  World,
+  Bounds,
+  UnknownClass,
+  UnknownMethod,
+  UnknownKeyword,
+  MissingKeyword,
+  Depth,
+  Budget,
 };
 
 /// Thrown by everything under the interpreter; the interpreter adds the place and the chain of calls.

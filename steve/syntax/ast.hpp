@@ -21,7 +21,7 @@ enum class TypeKind : std::uint8_t { Int, Double, Vector, Matrix, String, Object
 
 struct TypeRef {
   TypeKind kind = TypeKind::Int;
-  std::string class_name;  // Object only: "" = any class
+  std::string class_name;        // Object only: "" = any class
   std::int32_t array_size = -1;  // >= 0: an array of that many
   Span span;
 };
@@ -43,50 +43,128 @@ using StmtPtr = std::unique_ptr<Stmt>;
 enum class BinaryOp : std::uint8_t { Add, Sub, Mul, Div, Mod, Pow, Lt, Le, Gt, Ge, Eq, Ne, And, Or };
 enum class UnaryOp : std::uint8_t { Not, Negate };
 
-struct IntLit { std::int32_t value; };  // character literals too
-struct DoubleLit { double value; };
+struct IntLit {
+  std::int32_t value;
+};  // character literals too
+struct DoubleLit {
+  double value;
+};
 /// A string with its escapes processed and its interpolations split off: texts.size() == parts.size() + 1.
 struct StringLit {
   struct Part {
-    std::string name;                    // "self" for self and super
-    std::optional<std::int32_t> index;   // ${name}{n} or [n]
-    bool array = false;                  // [n] rather than {n}
-    ExprPtr expr;                        // the extension ${expression}; name is then empty
+    std::string name;                   // "self" for self and super
+    std::optional<std::int32_t> index;  // ${name}{n} or [n]
+    bool array = false;                 // [n] rather than {n}
+    ExprPtr expr;                       // the extension ${expression}; name is then empty
     Span span;
   };
   std::vector<std::string> texts;
   std::vector<Part> parts;
 };
-struct ConstantExpr { Constant constant; std::string name; };  // a name introduced by @define
-struct VectorLit { ExprPtr x, y, z; };
-struct MatrixLit { ExprPtr elements[9]; };  // row by row
-struct ListLit { std::vector<ExprPtr> elements; };
-struct Name { std::string name; };
-struct ArrayItem { std::string name; ExprPtr index; };   // name[index]
-struct IndexExpr { ExprPtr base, index; };               // base{index}
+struct ConstantExpr {
+  Constant constant;
+  std::string name;
+};  // a name introduced by @define
+struct VectorLit {
+  ExprPtr x, y, z;
+};
+struct MatrixLit {
+  ExprPtr elements[9];
+};  // row by row
+struct ListLit {
+  std::vector<ExprPtr> elements;
+};
+struct Name {
+  std::string name;
+};
+struct ArrayItem {
+  std::string name;
+  ExprPtr index;
+};  // name[index]
+struct IndexExpr {
+  ExprPtr base, index;
+};  // base{index}
 /// base::name; x, y, z (and X, Y, Z given in lower case) too: then `letter` is the letter as written, else 0.
-struct Member { ExprPtr base; std::string name; char letter = 0; };
+struct Member {
+  ExprPtr base;
+  std::string name;
+  char letter = 0;
+};
 struct Self {};
 struct Super {};
-struct Keyword { std::string name; Span span; ExprPtr value; };
-struct Call { ExprPtr receiver; std::string selector; Span selector_span; std::vector<Keyword> keywords; };
-struct FunctionCall { std::string name; std::vector<ExprPtr> arguments; };
-struct RandomExpr { ExprPtr bound; };
-struct NewExpr { std::string class_name; Span class_span; ExprPtr count; };  // count may be null
-struct AllExpr { std::string class_name; Span class_span; };
-struct Unary { UnaryOp op; ExprPtr operand; };
+struct Keyword {
+  std::string name;
+  Span span;
+  ExprPtr value;
+};
+struct Call {
+  ExprPtr receiver;
+  std::string selector;
+  Span selector_span;
+  std::vector<Keyword> keywords;
+};
+struct FunctionCall {
+  std::string name;
+  std::vector<ExprPtr> arguments;
+};
+struct RandomExpr {
+  ExprPtr bound;
+};
+struct NewExpr {
+  std::string class_name;
+  Span class_span;
+  ExprPtr count;
+};  // count may be null
+struct AllExpr {
+  std::string class_name;
+  Span class_span;
+};
+struct Unary {
+  UnaryOp op;
+  ExprPtr operand;
+};
 /// first op1 e1 op2 e2 ... of one precedence level, left-associative: a long sum is one node, not a deep tree.
-struct Chain { ExprPtr first; std::vector<std::pair<BinaryOp, ExprPtr>> rest; std::vector<Span> operators; };
-struct Magnitude { ExprPtr operand; };                   // |e|
+struct Chain {
+  ExprPtr first;
+  std::vector<std::pair<BinaryOp, ExprPtr>> rest;
+  std::vector<Span> operators;
+};
+struct Magnitude {
+  ExprPtr operand;
+};  // |e|
 /// target = value, or target op= value. The target is a Name, ArrayItem, IndexExpr or Member.
-struct Assign { ExprPtr target; std::optional<BinaryOp> op; ExprPtr value; bool value_is_bare_call = false; };
-struct Step { ExprPtr target; int delta; };              // target++ or target--, yields the new value
-struct Push { ExprPtr value, list; bool front; };        // push/prepend value onto list
-struct Pop { ExprPtr list; bool front; };                // pop/unprepend list
-struct Insert { ExprPtr value, list, index; };
-struct Remove { ExprPtr base, index; };                  // of a list or a hash
-struct CopyList { ExprPtr list; };
-struct Sort { ExprPtr list; std::string selector; Span selector_span; };
+struct Assign {
+  ExprPtr target;
+  std::optional<BinaryOp> op;
+  ExprPtr value;
+  bool value_is_bare_call = false;
+};
+struct Step {
+  ExprPtr target;
+  int delta;
+};  // target++ or target--, yields the new value
+struct Push {
+  ExprPtr value, list;
+  bool front;
+};  // push/prepend value onto list
+struct Pop {
+  ExprPtr list;
+  bool front;
+};  // pop/unprepend list
+struct Insert {
+  ExprPtr value, list, index;
+};
+struct Remove {
+  ExprPtr base, index;
+};  // of a list or a hash
+struct CopyList {
+  ExprPtr list;
+};
+struct Sort {
+  ExprPtr list;
+  std::string selector;
+  Span selector_span;
+};
 
 struct Expr {
   std::variant<IntLit, DoubleLit, StringLit, ConstantExpr, VectorLit, MatrixLit, ListLit, Name, ArrayItem, IndexExpr,
@@ -99,19 +177,43 @@ struct Expr {
 
 // --- statements ------------------------------------------------------------------------------------------------------
 
-struct Block { std::vector<StmtPtr> body; };             // also the empty statement {}
-struct If {                                              // else-if chains are flat
+struct Block {
+  std::vector<StmtPtr> body;
+};           // also the empty statement {}
+struct If {  // else-if chains are flat
   std::vector<std::pair<ExprPtr, StmtPtr>> branches;
   StmtPtr otherwise;  // may be null
 };
-struct While { ExprPtr condition; StmtPtr body; };
-struct For { ExprPtr start, condition, step; StmtPtr body; };
-struct Foreach { std::string variable; Span variable_span; ExprPtr list; StmtPtr body; };
-struct ExprStmt { ExprPtr expr; };
-struct Print { std::vector<ExprPtr> items; bool newline; };
-struct Return { ExprPtr value; };                        // may be null
-struct Free { ExprPtr value; };
-struct Die { ExprPtr value; };
+struct While {
+  ExprPtr condition;
+  StmtPtr body;
+};
+struct For {
+  ExprPtr start, condition, step;
+  StmtPtr body;
+};
+struct Foreach {
+  std::string variable;
+  Span variable_span;
+  ExprPtr list;
+  StmtPtr body;
+};
+struct ExprStmt {
+  ExprPtr expr;
+};
+struct Print {
+  std::vector<ExprPtr> items;
+  bool newline;
+};
+struct Return {
+  ExprPtr value;
+};  // may be null
+struct Free {
+  ExprPtr value;
+};
+struct Die {
+  ExprPtr value;
+};
 
 struct Stmt {
   std::variant<Block, If, While, For, Foreach, ExprStmt, Print, Return, Free, Die> node;
@@ -120,7 +222,11 @@ struct Stmt {
 
 // --- declarations ----------------------------------------------------------------------------------------------------
 
-struct Variable { std::string name; TypeRef type; Span span; };
+struct Variable {
+  std::string name;
+  TypeRef type;
+  Span span;
+};
 
 struct Parameter {
   std::string keyword, variable;
@@ -134,9 +240,10 @@ struct Method {
   std::vector<Parameter> parameters;
   std::vector<Variable> locals;
   std::vector<StmtPtr> body;
-  std::string doc;       // the % lines inside or before it, without the %
-  bool is_public = true; // written with +
-  /// Embedded library only: `@native "name" (type).` in place of a body. The type is that of the result; none: no value.
+  std::string doc;        // the % lines inside or before it, without the %
+  bool is_public = true;  // written with +
+  /// Embedded library only: `@native "name" (type).` in place of a body. The type is that of the result; none: no
+  /// value.
   std::optional<std::string> native;
   std::optional<TypeRef> native_result;
   bool native_dynamic = false;  // `(?)`: the result's type varies

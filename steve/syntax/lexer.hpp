@@ -18,7 +18,7 @@ struct Token {
   std::string_view text;  // into the source. As written; String: without the quotes, escapes as written
   std::int32_t int_value = 0;
   double double_value = 0;
-  bool space_before = false;   // white space or a comment before it
+  bool space_before = false;  // white space or a comment before it
   bool space_after = false;
   bool starts_line = false;
   Span span;

@@ -44,8 +44,9 @@ const std::vector<Part> kParts = {
      {"runtime/base", "runtime/world", "runtime/kinematics", "runtime/solid", "runtime/patches", "runtime/learn",
       "runtime/render", "runtime/store", "steve/machine", "steve/compile"}},
     {"hostapi/include", {}},
-    {"hostapi/src", {"hostapi/include", "steve/library", "steve/machine", "steve/compile", "steve/syntax", "runtime/base",
-                     "runtime/world", "runtime/kinematics", "runtime/solid"}},
+    {"hostapi/src",
+     {"hostapi/include", "steve/library", "steve/machine", "steve/compile", "steve/syntax", "runtime/base",
+      "runtime/world", "runtime/kinematics", "runtime/solid"}},
     {"hostapi/lua", {"hostapi/include"}},
     {"hostapi/command", {"hostapi/include"}},
     {"samples/hosts", {"hostapi/include"}},
@@ -128,12 +129,13 @@ class House {
       if (code) check_include(file, number, line);
     }
     if (number > kLongest && kMayBeLonger.find(file) == kMayBeLonger.end())
-      offend(file, number, "longer than " + std::to_string(kLongest) + " lines; split it, or give a reason in house.cpp");
+      offend(file, number,
+             "longer than " + std::to_string(kLongest) + " lines; split it, or give a reason in house.cpp");
   }
 
   void check_first_line(const std::string& file, const std::string& line) {
-    const bool says = line.rfind("//", 0) == 0 || line.rfind("/*", 0) == 0 || line.rfind("%", 0) == 0 ||
-                      line.rfind("#", 0) == 0;
+    const bool says =
+        line.rfind("//", 0) == 0 || line.rfind("/*", 0) == 0 || line.rfind("%", 0) == 0 || line.rfind("#", 0) == 0;
     if (!says || line.rfind("#include", 0) == 0 || line.rfind("#pragma", 0) == 0)
       offend(file, 1, "the first line does not say what the file is");
   }
@@ -153,8 +155,10 @@ class House {
       offend(file, number, "the file is in no part of the house; see kParts in house.cpp");
       return;
     }
-    if (kind == '<' || name.rfind("breve/", 0) == 0) check_library(*from, file, number, name);
-    else check_arrow(*from, file, number, name);
+    if (kind == '<' || name.rfind("breve/", 0) == 0)
+      check_library(*from, file, number, name);
+    else
+      check_arrow(*from, file, number, name);
   }
 
   void check_library(const Part& from, const std::string& file, std::size_t number, const std::string& name) {

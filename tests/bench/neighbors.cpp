@@ -1,6 +1,6 @@
-// How the cost of neighbours grows: each agent asks for its neighbours once an iteration, in crowds of 12,500 to 100,000
-// at constant density. Claim: twice the agents cost at most 2.3 times as much, also where they crowd in one place or are
-// spread thinly over a wide world. Prints a table; exits 1 if the claim does not hold.
+// How the cost of neighbours grows: each agent asks for its neighbours once an iteration, in crowds of 12,500 to
+// 100,000 at constant density. Claim: twice the agents cost at most 2.3 times as much, also where they crowd in one
+// place or are spread thinly over a wide world. Prints a table; exits 1 if the claim does not hold.
 #include <algorithm>
 #include <breve/breve.hpp>
 #include <cstdio>

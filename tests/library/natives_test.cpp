@@ -62,8 +62,10 @@ TEST(Natives, EveryDeclarationIsBoundWithTheSameSignature) {
     const std::size_t colon = native->signature.find(':');
     EXPECT_EQ(native->signature.substr(0, colon), one.parameters);
     const char result = native->signature.at(colon + 1);
-    if (one.result == '?') EXPECT_TRUE(result == 'n' || result == 'a') << result;
-    else EXPECT_EQ(result, one.result);
+    if (one.result == '?')
+      EXPECT_TRUE(result == 'n' || result == 'a') << result;
+    else
+      EXPECT_EQ(result, one.result);
   }
 }
 

@@ -15,7 +15,8 @@ namespace {
 // Angles pass through asin and back: a few units in the last place of a distance of 30.
 constexpr double kRoundOff = 1e-12;
 
-template <class T> std::uint64_t hash_of(const T& state) {
+template <class T>
+std::uint64_t hash_of(const T& state) {
   Hasher hasher;
   state.hash(hasher);
   return hasher.value();
