@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "session.hpp"
 
@@ -11,22 +12,63 @@ namespace breve::command {
 
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 std::string count(std::size_t n, std::string_view what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
+
+const char* severity_name(breve_severity severity) {
+  switch (severity) {
+    case BREVE_SEVERITY_ERROR: return "error";
+    case BREVE_SEVERITY_WARNING: return "warning";
+    case BREVE_SEVERITY_NOTE: return "note";
+  }
+  return "error";
+}
+
+// Texts of programs may hold any bytes; those that are no UTF-8 are replaced.
+Json json_of(const breve_diagnostic& d) {
+  return {{"file", d.file},
+          {"line", d.line},
+          {"column", d.column},
+          {"length", d.length},
+          {"severity", severity_name(d.severity)},
+          {"code", d.code},
+          {"message", d.message},
+          {"help", d.help}};
+}
 
 }  // namespace
 
 int check(const CheckOptions& options, Output& output) {
   int status = kEndedWell;
-  std::size_t errors = 0, warnings = 0;
+  std::size_t errors = 0, warnings = 0, notes = 0;
+  Json list = Json::array();
   for (const auto& file : options.files) {
     Session session(output, options.paths, false);
+    for (const auto& code : options.allowed) {
+      if (session.allow(code)) continue;
+      output.complain(fmt::format("breve: --allow: {}\n", breve_runtime_last_error(session.runtime())->message));
+      return kWrongUsage;
+    }
+    session.tell([&](const breve_diagnostic& d) {
+      if (d.severity == BREVE_SEVERITY_ERROR) ++errors;
+      if (d.severity == BREVE_SEVERITY_WARNING) ++warnings;
+      if (d.severity == BREVE_SEVERITY_NOTE) ++notes;
+      if (options.json) {
+        list.push_back(json_of(d));
+      } else {
+        output.complain(d.text);
+      }
+    });
     ProgramHandle program;
     status = std::max<int>(status, session.load(file, program));
-    errors += session.errors();
-    warnings += session.warnings();
   }
-  output.print(fmt::format("{}: {}, {}\n", count(options.files.size(), "file"), count(errors, "error"),
-                           count(warnings, "warning")));
+  if (options.json) {
+    output.print(list.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    return status;
+  }
+  output.print(fmt::format("{}: {}, {}{}\n", count(options.files.size(), "file"), count(errors, "error"),
+                           count(warnings, "warning"), notes == 0 ? "" : ", " + count(notes, "note")));
   return status;
 }
 

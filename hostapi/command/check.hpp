@@ -10,6 +10,8 @@ namespace breve::command {
 
 struct CheckOptions {
   std::vector<std::string> files, paths;
+  std::vector<std::string> allowed;  // codes of lints
+  bool json = false;
 };
 
 /// @return  the exit status: 0, 1 if a file has an error, 2 if a file is missing

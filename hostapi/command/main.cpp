@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "check.hpp"
+#include "repl.hpp"
 #include "run.hpp"
 #include "session.hpp"
 
@@ -17,6 +18,7 @@ namespace {
 
 using breve::command::CheckOptions;
 using breve::command::Output;
+using breve::command::ReplOptions;
 using breve::command::RunOptions;
 
 constexpr const char* kExitStatuses =
@@ -60,6 +62,7 @@ void describe_run(CLI::App& app, RunOptions& o) {
       ->type_name("DIR")
       ->expected(1)
       ->take_all();
+  app.add_flag("--watch", o.watch, "When a file of the program changes, go on with the changed program");
   app.add_flag("--coarse-random", o.coarse_random, "Draw random floats from 32,768 values, as the original did");
   app.add_flag("--strict", o.strict, "Treat doubtful things as errors");
   app.add_flag("--quiet", o.quiet, "No warnings, no progress");
@@ -72,6 +75,12 @@ void describe_run(CLI::App& app, RunOptions& o) {
   app.add_flag("--hash", o.hash, "As the last line of the output, the hash of the world's state");
   app.add_option("--positions", o.positions, "At the end, write where every object is: class,x,y,z,qw,qx,qy,qz")
       ->type_name("OUT.csv");
+  app.add_flag("--profile{-}", o.profile,
+               "At the end, where the time went, on standard error; with --profile=OUT.txt, in that file");
+  auto* trace = app.add_option("--trace", o.trace, "Write every call to a file for ui.perfetto.dev or chrome://tracing")
+                    ->type_name("OUT.json");
+  number(app, "--trace-limit", "MB", o.trace_limit, kWhole, "Leave out what comes when the trace has that size (200)")
+      ->needs(trace);
   app.footer("Without --iterations and --seconds the program runs until it ends the simulation or is interrupted.\n" +
              std::string(kExitStatuses));
 }
@@ -82,7 +91,24 @@ void describe_check(CLI::App& app, CheckOptions& o) {
       ->type_name("DIR")
       ->expected(1)
       ->take_all();
+  app.add_option("--allow", o.allowed, "Do not report lints of that code; may be repeated")
+      ->type_name("CODE")
+      ->expected(1)
+      ->take_all();
+  app.add_flag("--json", o.json, "Print an array of file, line, column, length, severity, code, message, help");
   app.footer(kExitStatuses);
+}
+
+void describe_repl(CLI::App& app, ReplOptions& o) {
+  app.add_option("FILE", o.file, "The program (.tz). Without it: a world with an empty controller");
+  number(app, "--seed", "K", o.seed, "whole number (0 or more)", "Seed of the random numbers (1)");
+  app.add_option("--path", o.paths, "Also search DIR for modules and data files; may be repeated")
+      ->type_name("DIR")
+      ->expected(1)
+      ->take_all();
+  app.add_flag("--strict", o.strict, "Treat doubtful things as errors");
+  app.add_flag("--quiet", o.quiet, "No warnings");
+  app.footer("`:help` there tells what can be typed.\n" + std::string(kExitStatuses));
 }
 
 bool is_command(const CLI::App& app, const std::string& word) {
@@ -103,10 +129,13 @@ int main_guarded(int argc, char** argv) {
   auto* run = app.add_subcommand("run", "Run a program");
   auto* check = app.add_subcommand("check", "Compile programs and show what the compiler has to say");
   auto* help = app.add_subcommand("help", "Show this text");
+  auto* repl = app.add_subcommand("repl", "Type statements against a running world");
+  ReplOptions repl_options;
+  describe_repl(*repl, repl_options);
   describe_run(*run, run_options);
   describe_check(*check, check_options);
   if (argc > 1 && *argv[1] != '-' && !is_command(app, argv[1])) {
-    std::cerr << "breve: there is no command '" << argv[1] << "': it must be run, check or help\n";
+    std::cerr << "breve: there is no command '" << argv[1] << "': it must be run, repl, check or help\n";
     return breve::command::kWrongUsage;
   }
   try {
@@ -125,6 +154,7 @@ int main_guarded(int argc, char** argv) {
     return breve::command::kEndedWell;
   }
   Output output;
+  if (repl->parsed()) return breve::command::repl(repl_options, output);
   return run->parsed() ? breve::command::run(run_options, output) : breve::command::check(check_options, output);
 }
 

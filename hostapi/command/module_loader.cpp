@@ -87,6 +87,12 @@ void ModuleLoader::add_path(const std::string& directory) {
   if (std::find(paths_.begin(), paths_.end(), path) == paths_.end()) paths_.push_back(std::move(path));
 }
 
+std::vector<std::string> ModuleLoader::files() const {
+  std::vector<std::string> names;
+  for (const auto& [path, file] : files_) names.push_back(file.name);
+  return names;
+}
+
 bool ModuleLoader::resolve(const char* name, const char* from, breve_module& module) {
   const LoadedFile* file = load(name, from);
   if (!file) return false;

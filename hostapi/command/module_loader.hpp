@@ -33,6 +33,8 @@ class ModuleLoader {
   std::string find(const std::string& name) const;
   void add_path(const std::string& directory);
   const std::string& complaint() const { return complaint_; }
+  /// The files that were read, by the paths by which they were found.
+  std::vector<std::string> files() const;
 
   /// What breve_resolve_module_fn asks for.
   bool resolve(const char* name, const char* from, breve_module& module);

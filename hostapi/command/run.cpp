@@ -7,10 +7,14 @@
 #include <csignal>
 #include <ctime>
 #include <random>
+#include <optional>
 #include <stdexcept>
+#include <thread>
 
+#include "profile.hpp"
 #include "report.hpp"
 #include "session.hpp"
+#include "watch.hpp"
 
 namespace breve::command {
 
@@ -78,10 +82,26 @@ bool is_over(const breve_world* world, const RunOptions& options, const Output& 
   return options.seconds && breve_world_time(world) >= *options.seconds - kRounding * breve_world_iteration_step(world);
 }
 
-breve_status iterate(breve_world* world, const RunOptions& options, Output& output) {
+/// With --watch a program that failed waits for its files to be mended. False: interrupted.
+bool mended(breve_world* world, Reloader& reloader, Output& output) {
+  if (const breve_error* error = breve_world_last_error(world)) output.complain(error->text);
+  output.complain("breve: waiting until the program is changed\n");
+  while (interrupted == 0 && output.open()) {
+    if (reloader.look(world)) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return false;
+}
+
+/// @param reloader  may be null: nothing is watched
+breve_status iterate(breve_world* world, const RunOptions& options, Reloader* reloader, Output& output) {
   Progress progress(options, output);
   while (!is_over(world, options, output)) {
-    if (const breve_status status = breve_world_step(world); status != BREVE_OK) return status;
+    if (reloader) reloader->look(world);
+    if (const breve_status status = breve_world_step(world); status != BREVE_OK) {
+      if (!reloader || status == BREVE_ERROR_MEMORY) return status;
+      if (!mended(world, *reloader, output)) return BREVE_OK;
+    }
     output.flush_sometimes();
     progress.show(world);
   }
@@ -91,7 +111,7 @@ breve_status iterate(breve_world* world, const RunOptions& options, Output& outp
 std::uint64_t draw_seed() { return std::random_device()(); }
 
 WorldHandle make_world(const Session& session, const breve_program* program, const RunOptions& options,
-                       std::uint64_t seed, breve_status& status) {
+                       std::uint64_t seed, Profiling& profiling, breve_status& status) {
   std::vector<const char*> arguments{options.file.c_str()};
   for (const auto& argument : options.arguments) arguments.push_back(argument.c_str());
   breve_world_config config = breve_world_config_default();
@@ -101,6 +121,7 @@ WorldHandle make_world(const Session& session, const breve_program* program, con
   config.strict = options.strict;
   config.coarse_random = options.coarse_random;
   config.verbose = options.verbose;
+  profiling.configure(config);
   breve_world* world = nullptr;
   status = breve_world_create(session.runtime(), program, &config, &world);
   return WorldHandle(world);
@@ -128,16 +149,26 @@ int run(const RunOptions& options, Output& output) {
   const double cpu_start = cpu_seconds();
 
   breve_status status = BREVE_OK;
-  const WorldHandle world = make_world(session, program.get(), options, seed, status);
+  Profiling profiling(options);
+  const WorldHandle world = make_world(session, program.get(), options, seed, profiling, status);
   if (!world) {
     const breve_error* error = breve_runtime_last_error(session.runtime());
     output.complain(error ? error->text : "breve: cannot make the world\n");
+    profiling.finish(nullptr, output);
     return exit_status(status);
   }
-  status = iterate(world.get(), options, output);
+  std::optional<Reloader> reloader;
+  if (options.watch) reloader.emplace(session, output, options.file);
+  status = iterate(world.get(), options, reloader ? &*reloader : nullptr, output);
   const RunTimes times{std::chrono::duration<double>(Clock::now() - wall_start).count(), cpu_seconds() - cpu_start};
-  if (const breve_error* error = breve_world_last_error(world.get()); status != BREVE_OK && error)
+  if (const breve_error* error = breve_world_last_error(world.get()); status != BREVE_OK && error) {
     output.complain(error->text);
+    if (!options.quiet)
+      output.complain(fmt::format("breve: stopped after {} iteration{}, {:.6g} s simulated; --seed {} shows it again\n",
+                                  breve_world_iteration(world.get()),
+                                  breve_world_iteration(world.get()) == 1 ? "" : "s", breve_world_time(world.get()),
+                                  seed));
+  }
 
   int result = exit_status(status);
   say_what_went_on(world.get(), options, output);
@@ -152,6 +183,7 @@ int run(const RunOptions& options, Output& output) {
   if (options.effects) output.print(effects_table(world.get()));
   if (options.hash) output.print(hash_line(world.get()));
   output.flush();
+  if (!profiling.finish(world.get(), output) && result == kEndedWell) result = kFailed;
   if (options.stats) output.complain(stats_line(world.get(), times, seed));
   return result;
 }

@@ -16,9 +16,13 @@ struct RunOptions {
   std::optional<std::uint64_t> iterations;  // until the program ends if neither is given
   std::optional<double> seconds;            // simulated
   std::optional<std::uint64_t> seed;        // drawn if not given
+  bool watch = false;  // reload the program when its files change
   bool coarse_random = false;
   bool strict = false, quiet = false, verbose = false, stats = false, effects = false, hash = false;
-  std::string positions;  // CSV file, "" for none
+  std::string positions;                     // CSV file, "" for none
+  std::string profile;                       // file, "-" for standard error, "" for none
+  std::string trace;                         // JSON file, "" for none
+  std::optional<std::uint64_t> trace_limit;  // MB
 };
 
 /// @return  the exit status

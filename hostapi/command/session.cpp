@@ -40,7 +40,7 @@ void Session::print(void* user, breve_world*, breve_channel channel, const char*
 }
 
 Session::Session(Output& output, const std::vector<std::string>& paths, bool quiet)
-    : output_(output), loader_(paths), quiet_(quiet) {
+    : output_(output), paths_(paths), loader_(paths), quiet_(quiet) {
   breve_runtime_config config = breve_runtime_config_default();
   config.user = this;
   config.print = &Session::print;
@@ -66,11 +66,15 @@ void Session::show_diagnostics() {
   for (std::size_t i = 0; i < breve_runtime_diagnostic_count(runtime_); ++i) {
     breve_diagnostic d;
     if (breve_runtime_diagnostic(runtime_, i, &d) != BREVE_OK) continue;
-    if (d.severity == BREVE_SEVERITY_ERROR) ++errors_;
-    if (d.severity == BREVE_SEVERITY_WARNING) ++warnings_;
-    if (d.severity == BREVE_SEVERITY_ERROR || !quiet_) output_.complain(d.text);
+    if (listener_) {
+      listener_(d);
+    } else if (d.severity == BREVE_SEVERITY_ERROR || (d.severity == BREVE_SEVERITY_WARNING && !quiet_)) {
+      output_.complain(d.text);
+    }
   }
 }
+
+bool Session::allow(const std::string& code) { return breve_runtime_allow(runtime_, code.c_str()) == BREVE_OK; }
 
 ExitStatus Session::load(const std::string& file, ProgramHandle& program) {
   std::error_code ignored;
@@ -86,6 +90,25 @@ ExitStatus Session::load(const std::string& file, ProgramHandle& program) {
   breve_program* compiled = nullptr;
   const breve_status status =
       breve_program_compile(runtime_, main->name.c_str(), main->text.data(), main->text.size(), &compiled);
+  files_ = loader_.files();
+  return finish(status, compiled, program);
+}
+
+ExitStatus Session::load_again(const std::string& file, ProgramHandle& program) {
+  ModuleLoader before(paths_);
+  std::swap(before, loader_);
+  const ExitStatus status = load(file, program);
+  if (status != kEndedWell) std::swap(before, loader_);
+  return status;
+}
+
+ExitStatus Session::compile(const std::string& name, const std::string& text, ProgramHandle& program) {
+  breve_program* compiled = nullptr;
+  const breve_status status = breve_program_compile(runtime_, name.c_str(), text.data(), text.size(), &compiled);
+  return finish(status, compiled, program);
+}
+
+ExitStatus Session::finish(breve_status status, breve_program* compiled, ProgramHandle& program) {
   show_diagnostics();
   if (!loader_.complaint().empty()) output_.complain(fmt::format("breve: {}\n", loader_.complaint()));
   if (status == BREVE_OK) {

@@ -1,6 +1,7 @@
 // A runtime set up for the command: modules from the file system, texts to standard output and standard error.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -36,17 +37,28 @@ class Session {
   /// @param program  set on success
   /// @return         kEndedWell, kFailed if it does not compile, kWrongUsage if there is no such file to read
   ExitStatus load(const std::string& file, ProgramHandle& program);
-  std::size_t errors() const { return errors_; }  // shown by `load` so far
-  std::size_t warnings() const { return warnings_; }
+  /// Compile it again from the files as they are now. If that fails, data files are looked for as before.
+  ExitStatus load_again(const std::string& file, ProgramHandle& program);
+  /// Compile a program that stands in no file.
+  ExitStatus compile(const std::string& name, const std::string& text, ProgramHandle& program);
+  /// The files that the last call of `load` or `load_again` read, also if it failed.
+  const std::vector<std::string>& files() const { return files_; }
+  /// Do not report lints of that code. False: there is no such lint, and the runtime's last error says so.
+  bool allow(const std::string& code);
+  /// Hand every diagnostic to `listener` in place of showing errors and warnings.
+  void tell(std::function<void(const breve_diagnostic&)> listener) { listener_ = std::move(listener); }
 
  private:
   void show_diagnostics();
+  ExitStatus finish(breve_status status, breve_program* compiled, ProgramHandle& program);
   static void print(void* user, breve_world* world, breve_channel channel, const char* text, std::size_t size);
 
   Output& output_;
+  std::vector<std::string> paths_;
   ModuleLoader loader_;
+  std::vector<std::string> files_;
   bool quiet_;
-  std::size_t errors_ = 0, warnings_ = 0;
+  std::function<void(const breve_diagnostic&)> listener_;
   breve_runtime* runtime_ = nullptr;
 };
 

@@ -26,20 +26,21 @@ const steve::VariableInfo& variable_named(const breve_world& world, const Instan
   return *variable;
 }
 
-void need_method(const breve_world& world, const Instance& instance, const std::string& method) {
+void need_method(const breve_world& world, const Instance& instance, std::string_view method) {
   if (!world.machine->responds(*instance.cls, method))
-    fail(BREVE_ERROR_NOT_FOUND, "class " + instance.cls->name + " has no method '" + method + "'");
+    fail(BREVE_ERROR_NOT_FOUND, "class " + instance.cls->name + " has no method '" + std::string(method) + "'");
 }
 
 /// Find what `selector` means for `cls`: a method with exactly its keywords can be called by position.
 void resolve(const breve_world& world, Selector& selector, const ClassInfo& cls) {
+  selector.order.reserve(selector.keywords.size());  // nothing may fail half-way
   selector.cls = &cls;
   selector.resolved = world.machine->find_method(cls, selector.method, selector.keywords.size());
   selector.order.clear();
   if (!selector.resolved) return;
   for (const auto& parameter : selector.resolved->parameters) {
     const auto& keyword = world.program->symbols().name(parameter.keyword);
-    const auto found = std::find(selector.keywords.begin(), selector.keywords.end(), keyword);
+    const auto found = std::find(selector.keywords.begin(), selector.keywords.end(), std::string_view(keyword));
     if (found == selector.keywords.end()) {
       selector.resolved = nullptr;  // has other keywords: the machine finds the right overload or says what is wrong
       return;
@@ -48,7 +49,7 @@ void resolve(const breve_world& world, Selector& selector, const ClassInfo& cls)
   }
 }
 
-Value call_by_keywords(breve_world& world, Instance& receiver, const std::string& method,
+Value call_by_keywords(breve_world& world, Instance& receiver, std::string_view method,
                        std::span<const std::pair<std::string_view, Value>> keywords) {
   need_method(world, receiver, method);
   const ScriptScope script(world);
@@ -60,7 +61,7 @@ Value call_prepared(breve_world& world, Instance& receiver, Selector& selector, 
   const std::size_t count = selector.keywords.size();
   if (selector.cls != receiver.cls) resolve(world, selector, *receiver.cls);
   if (!selector.resolved || count > kInPlace) {
-    std::vector<std::pair<std::string_view, Value>> keywords;
+    std::pmr::vector<std::pair<std::string_view, Value>> keywords(&world.meter);
     for (std::size_t i = 0; i < count; ++i) keywords.emplace_back(selector.keywords[i], from_host(world, arguments[i]));
     return call_by_keywords(world, receiver, selector.method, keywords);
   }
@@ -114,7 +115,7 @@ breve_status breve_object_call(breve_world* world, breve_object object, const ch
     need(method, "method");
     if (count != 0) need(keywords, "keywords");
     auto& instance = live_instance(*world, object);
-    std::vector<std::pair<std::string_view, Value>> values;
+    std::pmr::vector<std::pair<std::string_view, Value>> values(&world->meter);
     for (std::size_t i = 0; i < count; ++i) {
       need(keywords[i].name, "the name of a keyword");
       values.emplace_back(keywords[i].name, from_host(*world, keywords[i].value));
@@ -131,7 +132,7 @@ breve_status breve_world_prepare(breve_world* world, const char* method, const c
     need(method, "method");
     need(selector, "selector");
     if (count != 0) need(keywords, "keywords");
-    Selector made;
+    Selector made(&world->meter);
     made.method = method;
     for (std::size_t i = 0; i < count; ++i) {
       need(keywords[i], "the name of a keyword");
@@ -153,8 +154,8 @@ breve_status breve_object_call_prepared(breve_world* world, breve_object object,
     Selector& prepared = world->selectors[selector.index];
     if (count != prepared.keywords.size())
       fail(BREVE_ERROR_ARGUMENT, std::to_string(count) + " arguments for the " +
-                                     std::to_string(prepared.keywords.size()) + " keywords of '" + prepared.method +
-                                     "'");
+                                     std::to_string(prepared.keywords.size()) + " keywords of '" +
+                                     std::string(prepared.method) + "'");
     if (count != 0) need(arguments, "arguments");
     const Value value = call_prepared(*world, live_instance(*world, object), prepared, arguments);
     if (result) *result = to_host(*world, value);

@@ -12,14 +12,15 @@ breve_status breve_world_effects(const breve_world* world, breve_effect* effects
     if (capacity != 0) need(effects, "effects");
     need(count, "count");
     const auto& all = world->world->effects().all();
-    std::vector<std::pair<std::string, std::string>> texts;
+    auto& kept = world->effect_texts;
+    std::pmr::vector<std::pair<std::pmr::string, std::pmr::string>> texts(kept.get_allocator());
     for (const auto& e : all) texts.emplace_back(e.name, e.active ? e.reason : std::string_view());
-    world->effect_texts = std::move(texts);
+    kept.swap(texts);
     for (std::size_t i = 0; i < std::min(capacity, all.size()); ++i) {
       const auto& e = all[i];
       const auto asked_by = world->world->alive(e.asked_by) ? e.asked_by : breve::ObjectId{};
-      effects[i] = {world->effect_texts[i].first.c_str(),
-                    world->effect_texts[i].second.c_str(),
+      effects[i] = {kept[i].first.c_str(),
+                    kept[i].second.c_str(),
                     e.active,
                     e.since,
                     handle_of(asked_by),

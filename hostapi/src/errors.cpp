@@ -22,6 +22,9 @@ breve_status status_of(ErrorCode code) {
     case ErrorCode::Image: return BREVE_ERROR_IMAGE;
     case ErrorCode::File: return BREVE_ERROR_FILE;
     case ErrorCode::Unsupported: return BREVE_ERROR_UNSUPPORTED;
+    case ErrorCode::Interrupted: return BREVE_ERROR_INTERRUPTED;
+    case ErrorCode::Reload: return BREVE_ERROR_RELOAD;
+    case ErrorCode::Numeric: return BREVE_ERROR_INTERNAL;  // the world's guard deals with it; none may get this far
   }
   return BREVE_ERROR_INTERNAL;
 }
@@ -29,6 +32,7 @@ breve_status status_of(ErrorCode code) {
 breve_status status_of(steve::RunErrorKind kind) {
   if (kind == steve::RunErrorKind::Depth) return BREVE_ERROR_DEPTH;
   if (kind == steve::RunErrorKind::Budget) return BREVE_ERROR_BUDGET;
+  if (kind == steve::RunErrorKind::Interrupted) return BREVE_ERROR_INTERRUPTED;
   return BREVE_ERROR_SCRIPT;
 }
 
@@ -43,6 +47,7 @@ void need_finite(const double* numbers, std::size_t count, const char* what) {
 
 breve_status ErrorRecord::keep(breve_status status, std::string message) {
   message_ = std::move(message);
+  help_.clear();
   file_.clear();
   frames_.clear();
   frame_views_.clear();
@@ -55,20 +60,25 @@ breve_status ErrorRecord::keep(breve_status status, std::string message) {
 
 breve_status ErrorRecord::keep(breve_status status, const steve::ErrorReport& report) {
   keep(status, report.message);
+  help_ = report.help;
   file_ = report.file;
   text_ = report.text;
   view_.line = report.line;
   view_.column = report.column;
+  view_.length = report.length;
   for (auto line = report.trace.rbegin(); line != report.trace.rend(); ++line)
-    frames_.push_back({line->class_name, line->method, line->file, line->line});
+    frames_.push_back(
+        {line->class_name, line->method, line->file, line->receiver, line->arguments, line->line, line->column});
   for (const auto& f : frames_)
-    frame_views_.push_back({f.class_name.c_str(), f.method.c_str(), f.file.c_str(), f.line, 0});
+    frame_views_.push_back({f.class_name.c_str(), f.method.c_str(), f.file.c_str(), f.line, f.column,
+                            f.receiver.c_str(), f.arguments.c_str()});
   point();
   return status;
 }
 
 void ErrorRecord::point() {
   view_.message = message_.c_str();
+  view_.help = help_.c_str();
   view_.file = file_.c_str();
   view_.text = text_.c_str();
   view_.frame_count = frame_views_.size();
@@ -84,7 +94,11 @@ breve_status ErrorRecord::keep_current() noexcept {
     } catch (const steve::ScriptError& e) {
       return keep(status_of(e.code()), e.report());
     } catch (const steve::RunError& e) {
-      return keep(status_of(e.kind()), e.what());
+      const breve_status status = keep(status_of(e.kind()), e.what());
+      help_ = e.help();
+      if (!help_.empty()) text_ += "help: " + help_ + "\n";
+      point();
+      return status;
     } catch (const Error& e) {
       return keep(status_of(e.code()), e.what());
     } catch (const std::bad_alloc&) {
@@ -99,7 +113,7 @@ breve_status ErrorRecord::keep_current() noexcept {
     view_ = {};
     view_.status = BREVE_ERROR_MEMORY;
     view_.message = "out of memory";
-    view_.file = "";
+    view_.help = view_.file = "";
     view_.text = "out of memory\n";
     return BREVE_ERROR_MEMORY;
   }
@@ -107,6 +121,7 @@ breve_status ErrorRecord::keep_current() noexcept {
 
 void ErrorRecord::take(ErrorRecord&& other) noexcept {
   message_ = std::move(other.message_);
+  help_ = std::move(other.help_);
   file_ = std::move(other.file_);
   text_ = std::move(other.text_);
   frames_ = std::move(other.frames_);

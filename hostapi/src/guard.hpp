@@ -34,8 +34,8 @@ void need_finite(const double* numbers, std::size_t count, const char* what);
 
 /// One active method, as kept for breve_frame.
 struct FrameText {
-  std::string class_name, method, file;
-  std::uint32_t line = 0;
+  std::string class_name, method, file, receiver, arguments;
+  std::uint32_t line = 0, column = 0;
 };
 
 /// The last error of a runtime or a world, and the view of it that hosts read.
@@ -52,7 +52,7 @@ class ErrorRecord {
   breve_status keep(breve_status status, const steve::ErrorReport& report);
   void point();
 
-  std::string message_, file_, text_;
+  std::string message_, help_, file_, text_;
   std::vector<FrameText> frames_;
   std::vector<breve_frame> frame_views_;
   breve_error view_{};

@@ -43,8 +43,8 @@ breve_status breve_world_menu_items(breve_world* world, breve_menu_item* items, 
   return guard(world->error, [&] {
     if (capacity != 0) need(items, "items");
     need(count, "count");
-    std::vector<breve_menu_item> found;
-    std::vector<std::pair<std::string, std::string>> texts;
+    std::pmr::vector<breve_menu_item> found(&world->meter);
+    std::pmr::vector<std::pair<std::pmr::string, std::pmr::string>> texts(&world->meter);
     for (const ObjectId id : world->world->objects()) {
       const auto* item = breve::menu_item(std::as_const(*world->world), id);
       if (!item) continue;
@@ -52,7 +52,7 @@ breve_status breve_world_menu_items(breve_world* world, breve_menu_item* items, 
       found.push_back(
           {handle_of(id), handle_of(item->owner), nullptr, nullptr, item->separator(), item->enabled, item->checked});
     }
-    world->menu_texts = std::move(texts);
+    world->menu_texts.swap(texts);
     for (std::size_t i = 0; i < std::min(capacity, found.size()); ++i) {
       items[i] = found[i];
       items[i].title = world->menu_texts[i].first.c_str();

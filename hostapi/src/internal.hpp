@@ -4,6 +4,7 @@
 #include <deque>
 #include <memory>
 #include <memory_resource>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "runtime/world/world.hpp"
 #include "steve/compile/program.hpp"
 #include "steve/machine/machine.hpp"
+#include "steve/machine/profiler.hpp"
 
 namespace breve::host {
 
@@ -50,23 +52,25 @@ struct DiagnosticText {
 /// Lists and hashes that the host refers to. Only valid between two runs of script: the heap does not know of them.
 class References {
  public:
+  explicit References(std::pmr::memory_resource* memory) : cells_(memory) {}
   breve_ref add(steve::Cell* cell);                        // the null cell is the all-zero reference
   steve::Cell* find(breve_ref ref, steve::Tag tag) const;  // BREVE_ERROR_STALE, BREVE_ERROR_TYPE
   void forget_all();
 
  private:
-  std::vector<steve::Cell*> cells_;
+  std::pmr::vector<steve::Cell*> cells_;
   std::uint32_t epoch_ = 1;
 };
 
 /// A method name with keywords, and what they mean for the class that was called last.
 struct Selector {
-  std::string method;
-  std::vector<std::string> keywords;
+  explicit Selector(std::pmr::memory_resource* memory) : method(memory), keywords(memory), order(memory) {}
+  std::pmr::string method;
+  std::pmr::vector<std::pmr::string> keywords;
   std::uint32_t check = 0;                      // breve_selector.generation: a digest of the names
   const steve::ClassInfo* cls = nullptr;        // the cache below is for this class
   const steve::MethodInfo* resolved = nullptr;  // takes exactly these keywords; null: ask by keywords
-  std::vector<std::uint32_t> order;             // parameter -> argument
+  std::pmr::vector<std::uint32_t> order;        // parameter -> argument
 };
 
 /// A copy of a versioned struct that an older header may have made smaller: fields that it lacks take the defaults.
@@ -89,6 +93,7 @@ Config read_config(const Config* given, const Config& defaults, const char* name
 struct breve_runtime {
   std::shared_ptr<breve::host::RuntimeState> state;
   std::vector<breve::host::DiagnosticText> diagnostics;
+  breve::steve::AllowedLints allowed;
   mutable breve::host::ErrorRecord error;
   int busy = 0;  // compilations and world creations in progress
 };
@@ -97,25 +102,34 @@ struct breve_program {
   std::shared_ptr<const breve::steve::Program> program;
 };
 
-struct breve_world {
+/// Stands in the runtime's memory, and all that it holds in its own. Destroy it while a runtime's state is held.
+struct breve_world : breve::InMemory {
   std::shared_ptr<breve::host::RuntimeState> runtime;
   std::shared_ptr<const breve::steve::Program> program;
   breve_world_config config{};
   breve::MemoryMeter meter;
+  std::optional<breve::steve::Profiler> profiler;  // kept when it has stopped, until the next one starts
+  bool tracing = false;                            // a breve_trace_fn runs
   std::unique_ptr<breve::World> world;
   std::unique_ptr<breve::steve::Machine> machine;  // goes before the world
   mutable breve::host::ErrorRecord error;
   breve::host::References references;
-  std::deque<breve::host::Selector> selectors;  // a callback may add some while one is in use
-  std::string text;                             // of breve_value_text
-  std::vector<std::pair<std::string, std::string>> menu_texts;
-  mutable std::vector<std::pair<std::string, std::string>> effect_texts;
+  std::pmr::deque<breve::host::Selector> selectors;  // a callback may add some while one is in use
+  std::pmr::string text;                             // of breve_value_text
+  std::pmr::vector<std::pair<std::pmr::string, std::pmr::string>> menu_texts;
+  mutable std::pmr::vector<std::pair<std::pmr::string, std::pmr::string>> effect_texts;
   double remainder = 0;  // s, kept by breve_world_advance; in [0, iteration step)
   int running = 0;       // calls of the host that run script, one inside the other
   std::uint64_t errors = 0, warnings = 0;
 
   explicit breve_world(std::shared_ptr<breve::host::RuntimeState> r)
-      : runtime(std::move(r)), meter(runtime->memory()) {}
+      : runtime(std::move(r)),
+        meter(runtime->memory()),
+        references(&meter),
+        selectors(&meter),
+        text(&meter),
+        menu_texts(&meter),
+        effect_texts(&meter) {}
 };
 
 namespace breve::host {
@@ -131,6 +145,9 @@ class ScriptScope {
  private:
   breve_world& world_;
 };
+
+/// Begin a profile; an earlier one is gone. Only while nothing runs.
+void start_profile(breve_world& world, breve_trace_fn trace, void* user);
 
 /// BREVE_ERROR_BUSY if script of `world` runs now.
 void need_idle(const breve_world& world, const char* what);

@@ -1,74 +1,11 @@
-// Compilation: modules come from the host, diagnostics go to the runtime.
-#include "internal.hpp"
+// Compilation: programs for the host, diagnostics for its runtime.
+#include "modules.hpp"
 
 namespace breve::host {
 namespace {
 
-/// The host's module callbacks as the compiler sees them.
-class HostModules final : public steve::ModuleResolver {
- public:
-  explicit HostModules(const breve_runtime_config& config) : config_(config) {}
-
-  std::optional<steve::ModuleSource> resolve(std::string_view name, std::string_view from) override {
-    if (!config_.resolve_module) return std::nullopt;
-    const std::string asked(name), asker(from);
-    breve_module module{};
-    if (!config_.resolve_module(config_.user, asked.c_str(), asker.c_str(), &module)) return std::nullopt;
-    const Release release{config_, module};
-    if (!module.text && module.size != 0)
-      fail(BREVE_ERROR_ARGUMENT, "resolve_module gave module '" + asked + "' a size but no text");
-    return steve::ModuleSource{module.name ? module.name : asked,
-                               std::string(module.text ? module.text : "", module.size)};
-  }
-
-  void add_path(std::string_view directory) override {
-    if (config_.add_path) config_.add_path(config_.user, std::string(directory).c_str());
-  }
-
- private:
-  struct Release {
-    const breve_runtime_config& config;
-    const breve_module& module;
-    ~Release() {
-      if (config.release_module) config.release_module(config.user, &module);
-    }
-  };
-  const breve_runtime_config& config_;
-};
-
-breve_severity severity_of(steve::Severity severity) {
-  switch (severity) {
-    case steve::Severity::Error: return BREVE_SEVERITY_ERROR;
-    case steve::Severity::Warning: return BREVE_SEVERITY_WARNING;
-    case steve::Severity::Note: return BREVE_SEVERITY_NOTE;
-  }
-  return BREVE_SEVERITY_ERROR;
-}
-
-DiagnosticText text_of(const steve::Diagnostic& d, const steve::Sources& sources) {
-  DiagnosticText t{severity_of(d.severity), d.code, d.message, d.help, {}, steve::format(d, sources), 0, 0, 0};
-  if (t.text.empty() || t.text.back() != '\n') t.text += '\n';
-  if (d.span.line == 0 || d.span.file >= sources.size()) return t;
-  t.file = sources.file(d.span.file).name;
-  t.line = d.span.line;
-  t.column = d.span.column;
-  t.length = d.span.length;
-  return t;
-}
-
-class BusyScope {
- public:
-  explicit BusyScope(breve_runtime& runtime) : runtime_(runtime) { ++runtime_.busy; }
-  ~BusyScope() { --runtime_.busy; }
-  BusyScope(const BusyScope&) = delete;
-  BusyScope& operator=(const BusyScope&) = delete;
-
- private:
-  breve_runtime& runtime_;
-};
-
 std::unique_ptr<breve_program> compile_module(breve_runtime& runtime, steve::ModuleSource main, HostModules& modules) {
-  auto result = steve::compile(std::move(main), modules);
+  auto result = steve::compile(std::move(main), modules, runtime.allowed);
   // A program owns its sources; without one the result does.
   const steve::Sources& sources = result.program ? result.program->sources() : result.sources;
   for (const auto& d : result.diagnostics.all()) runtime.diagnostics.push_back(text_of(d, sources));
@@ -89,10 +26,6 @@ std::unique_ptr<breve_program> compile_module(breve_runtime& runtime, steve::Mod
   return handle;
 }
 
-void need_free(const breve_runtime& runtime) {
-  if (runtime.busy != 0) fail(BREVE_ERROR_BUSY, "the runtime is compiling or making a world already");
-}
-
 }  // namespace
 }  // namespace breve::host
 
@@ -103,16 +36,10 @@ breve_status breve_program_load(breve_runtime* runtime, const char* name, breve_
   return guard(runtime->error, [&] {
     need(name, "name");
     need(program, "program");
-    need_free(*runtime);
     const BusyScope busy(*runtime);
     runtime->diagnostics.clear();
     HostModules modules(runtime->state->config);
-    auto main = modules.resolve(name, "");
-    if (!main)
-      fail(BREVE_ERROR_FILE, runtime->state->config.resolve_module
-                                 ? "cannot find or read '" + std::string(name) + "'"
-                                 : "cannot load '" + std::string(name) + "': the runtime has no resolve_module");
-    *program = compile_module(*runtime, std::move(*main), modules).release();
+    *program = compile_module(*runtime, main_module(*runtime, modules, name), modules).release();
   });
 }
 
@@ -123,7 +50,6 @@ breve_status breve_program_compile(breve_runtime* runtime, const char* name, con
     need(name, "name");
     need(program, "program");
     if (size != 0) need(text, "text");
-    need_free(*runtime);
     const BusyScope busy(*runtime);
     runtime->diagnostics.clear();
     HostModules modules(runtime->state->config);
@@ -142,9 +68,7 @@ breve_status breve_runtime_diagnostic(const breve_runtime* runtime, size_t index
   return guard(runtime->error, [&] {
     need(diagnostic, "diagnostic");
     if (index >= runtime->diagnostics.size()) fail(BREVE_ERROR_NOT_FOUND, "there is no such diagnostic");
-    const auto& d = runtime->diagnostics[index];
-    *diagnostic = {d.severity, d.code.c_str(), d.message.c_str(), d.help.c_str(), d.file.c_str(),
-                   d.line,     d.column,       d.length,          d.text.c_str()};
+    *diagnostic = view_of(runtime->diagnostics[index]);
   });
 }
 

@@ -39,6 +39,8 @@ const char* breve_status_name(breve_status status) {
     case BREVE_ERROR_TYPE: return "BREVE_ERROR_TYPE";
     case BREVE_ERROR_NO_BODY: return "BREVE_ERROR_NO_BODY";
     case BREVE_ERROR_INTERNAL: return "BREVE_ERROR_INTERNAL";
+    case BREVE_ERROR_INTERRUPTED: return "BREVE_ERROR_INTERRUPTED";
+    case BREVE_ERROR_RELOAD: return "BREVE_ERROR_RELOAD";
   }
   return "BREVE_ERROR_INTERNAL";
 }

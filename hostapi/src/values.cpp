@@ -171,8 +171,7 @@ breve_status breve_value_text(breve_world* world, const breve_value* value, cons
     need(text, "text");
     const Value v = from_host(*world, *value);
     const ScriptScope script(*world);
-    std::string made = world->machine->text(v);
-    world->text = std::move(made);
+    world->text = world->machine->text(v);
     *text = world->text.c_str();
   });
 }

@@ -9,7 +9,8 @@ namespace breve::host {
 namespace {
 
 // Calls of the host inside callbacks inside calls of the host: each takes C++ stack, so there is an end.
-constexpr int kMaxNestedCalls = 64;
+constexpr std::uint32_t kNestingLimit = 64;
+constexpr std::uint32_t kMostNesting = 200;
 
 void speak(breve_world& world, breve_channel channel, std::string_view text) {
   if (channel == BREVE_CHANNEL_WARNING) ++world.warnings;
@@ -27,13 +28,23 @@ void speak(breve_world& world, breve_channel channel, std::string_view text) {
 template <class Callback>
 std::string answer(breve_world& world, Callback callback, std::string_view question) {
   const std::string asked(question);
-  std::string written;
+  struct Sink {
+    std::string text;
+    bool full = false;
+  } written;
+  // No exception may pass through the host's code.
   const breve_write_fn write = [](void* sink, const char* bytes, std::size_t size) {
-    if (bytes && size != 0) static_cast<std::string*>(sink)->append(bytes, size);
+    auto& to = *static_cast<Sink*>(sink);
+    try {
+      if (bytes && size != 0) to.text.append(bytes, size);
+    } catch (...) {
+      to.full = true;
+    }
   };
   const bool found = callback(world.runtime->config.user, &world, asked.c_str(), write, &written);
   world.references.forget_all();
-  return found ? written : std::string();
+  if (written.full) throw std::bad_alloc();
+  return found ? std::move(written.text) : std::string();
 }
 
 steve::MachineHost machine_host(breve_world& world) {
@@ -55,16 +66,20 @@ steve::MachineHost machine_host(breve_world& world) {
   host.verbose = config.verbose;
   host.strict = config.strict;
   host.budget = config.budget;
+  host.call_budget = config.call_budget;
   if (config.depth_limit != 0) host.depth_limit = config.depth_limit;
   return host;
 }
 
 void check(const breve_world_config& config) {
+  if (config.nesting_limit > kMostNesting)
+    fail(BREVE_ERROR_ARGUMENT, "nesting_limit must be at most " + std::to_string(kMostNesting));
   for (const double step : {config.iteration_step, config.integration_step})
     if (!std::isfinite(step) || step < 0)
       fail(BREVE_ERROR_ARGUMENT, "iteration_step and integration_step must be finite and >= 0");
   for (const bool reserved : config.reserved)
     if (reserved) fail(BREVE_ERROR_ARGUMENT, "a reserved field is not false");
+  if (config.reserved_2 != 0) fail(BREVE_ERROR_ARGUMENT, "a reserved field is not 0");
 }
 
 /// While it stands the runtime is not to be destroyed.
@@ -112,9 +127,13 @@ void advance(breve_world& world, double seconds) {
 }  // namespace
 
 ScriptScope::ScriptScope(breve_world& world) : world_(world) {
-  if (world_.running >= kMaxNestedCalls) fail(BREVE_ERROR_DEPTH, "calls of host and script are nested too deeply");
+  if (world_.tracing) fail(BREVE_ERROR_BUSY, "a breve_trace_fn may not run script");
+  const std::uint32_t limit = world_.config.nesting_limit != 0 ? world_.config.nesting_limit : kNestingLimit;
+  if (static_cast<std::uint32_t>(world_.running) >= limit)
+    fail(BREVE_ERROR_DEPTH, "calls of host and script are nested more than " + std::to_string(limit) +
+                                " deep: does a callback call itself?");
   world_.references.forget_all();
-  ++world_.running;
+  if (world_.running++ == 0) world_.machine->begin_run();
 }
 
 ScriptScope::~ScriptScope() {
@@ -147,21 +166,24 @@ breve_status breve_world_create(breve_runtime* runtime, const breve_program* pro
     need(world, "world");
     const auto c = read_config(config, breve_world_config_default(), "breve_world_config");
     check(c);
-    handle = std::make_unique<breve_world>(runtime->state);
+    handle = breve::make_in<breve_world>(runtime->state->memory(), runtime->state);
     handle->config = c;
     handle->program = program->program;
     handle->meter.set_limit(c.memory_limit);
     auto host = machine_host(*handle);
     handle->config.arguments = nullptr;  // copied; the host's array may go
-    handle->world = std::make_unique<breve::World>(&handle->meter, c.seed);
+    handle->world = breve::make_in<breve::World>(&handle->meter, &handle->meter, c.seed);
     handle->world->random().set_coarse(c.coarse_random);
     breve::steve::register_resource_kinds(*handle->world);
-    handle->machine =
-        std::make_unique<breve::steve::Machine>(handle->program, *handle->world, &handle->meter, std::move(host));
+    handle->machine = breve::make_in<breve::steve::Machine>(&handle->meter, handle->program, *handle->world,
+                                                            &handle->meter, std::move(host));
   });
   if (status != BREVE_OK) return status;
   const CreationScope busy(*runtime);
-  const breve_status started = guard(handle->error, [&] { start(*handle); });
+  const breve_status started = guard(handle->error, [&] {
+    if (handle->config.profile) start_profile(*handle, handle->config.trace, handle->config.trace_user);
+    start(*handle);
+  });
   if (started != BREVE_OK) {
     runtime->error.take(std::move(handle->error));
     return started;
@@ -173,7 +195,9 @@ breve_status breve_world_create(breve_runtime* runtime, const breve_program* pro
 breve_status breve_world_destroy(breve_world* world) {
   if (!world) return BREVE_OK;
   const breve_status status = guard(world->error, [&] { need_idle(*world, "breve_world_destroy"); });
-  if (status == BREVE_OK) delete world;
+  if (status != BREVE_OK) return status;
+  const auto memory_outlives_it = world->runtime;
+  delete world;
   return status;
 }
 

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <map>
 #include <memory>
+#include <memory_resource>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "runtime/base/error.hpp"
+#include "runtime/base/ids.hpp"
 #include "runtime/base/math.hpp"
 
 namespace breve {
@@ -22,11 +24,18 @@ static_assert(std::endian::native == std::endian::little, "images are written in
 
 class ByteWriter {
  public:
+  /// @param memory  where the image takes its bytes
+  explicit ByteWriter(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : bytes_(memory), shared_(memory) {}
   template <class T>
   requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void put(T value) { raw(&value, sizeof value); }
   void put(const Vector3& v) { raw(v.data(), 3 * sizeof(double)); }
   void put(const Matrix3& m) { raw(m.data(), 9 * sizeof(double)); }
   void put(const Quaternion& q) { raw(q.coeffs().data(), 4 * sizeof(double)); }
+  void put(ObjectId id) {
+    put(id.index);
+    put(id.generation);
+  }
   void put(std::string_view text) {
     put(static_cast<std::uint64_t>(text.size()));
     raw(text.data(), text.size());
@@ -37,6 +46,8 @@ class ByteWriter {
     bytes_.resize(at + size);
     std::memcpy(bytes_.data() + at, data, size);
   }
+  /// Put another number where one was written.
+  void overwrite(std::size_t at, std::uint64_t value) { std::memcpy(bytes_.data() + at, &value, sizeof value); }
   /// Something that several owners share (or null): written once per writer, named by a number afterwards, so that
   /// it is shared again after reading. T has save(ByteWriter&) const and static shared_ptr<T> load(ByteReader&).
   template <class T>
@@ -46,18 +57,22 @@ class ByteWriter {
     put(entry->second);
     if (fresh) thing->save(*this);
   }
-  const std::vector<std::uint8_t>& bytes() const { return bytes_; }
-  std::vector<std::uint8_t> take() { return std::move(bytes_); }
+  const std::pmr::vector<std::uint8_t>& bytes() const { return bytes_; }
+  std::pmr::vector<std::uint8_t> take() { return std::move(bytes_); }
 
  private:
-  std::vector<std::uint8_t> bytes_;
-  std::map<const void*, std::uint32_t> shared_;  // looked up, never walked: addresses do not reach the image
+  std::pmr::vector<std::uint8_t> bytes_;
+  std::pmr::map<const void*, std::uint32_t> shared_;  // looked up, never walked: addresses do not reach the image
 };
 
 /// Reads what ByteWriter wrote. Throws Error{Image} when the image ends early; never reads outside it.
 class ByteReader {
  public:
-  ByteReader(const std::uint8_t* data, std::size_t size) : next_(data), left_(size) {}
+  /// @param memory  where what is read takes its bytes
+  ByteReader(const std::uint8_t* data, std::size_t size,
+             std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : next_(data), left_(size), memory_(memory), shared_(memory) {}
+  std::pmr::memory_resource* memory() const { return memory_; }
 
   template <class T>
   requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) T get() {
@@ -81,13 +96,19 @@ class ByteReader {
     raw(q.coeffs().data(), 4 * sizeof(double));
     return q;
   }
-  std::string get_string() {
+  ObjectId get_object() {
+    const auto index = get<std::uint32_t>();
+    return {index, get<std::uint32_t>()};
+  }
+  /// A text, as it stands in the image.
+  std::string_view get_text() {
     const auto size = get<std::uint64_t>();
     need(size);
-    std::string text(reinterpret_cast<const char*>(next_), static_cast<std::size_t>(size));
+    const std::string_view text(reinterpret_cast<const char*>(next_), static_cast<std::size_t>(size));
     skip(static_cast<std::size_t>(size));
     return text;
   }
+  std::string get_string() { return std::string(get_text()); }
   /// A count of things of at least `least` bytes each: a damaged count cannot ask for more than the image holds.
   std::size_t get_count(std::size_t least = 1) {
     const auto count = get<std::uint64_t>();
@@ -128,7 +149,8 @@ class ByteReader {
   }
   const std::uint8_t* next_;
   std::size_t left_;
-  std::vector<std::pair<std::shared_ptr<void>, const std::type_info*>> shared_;
+  std::pmr::memory_resource* memory_;
+  std::pmr::vector<std::pair<std::shared_ptr<void>, const std::type_info*>> shared_;
 };
 
 }  // namespace breve

@@ -18,6 +18,9 @@ enum class ErrorCode {
   Image,     // a damaged or foreign snapshot image
   File,      // a file that cannot be read or written
   Unsupported,
+  Interrupted,  // a call that the host asked to stop
+  Reload,       // a program that cannot take the place of the running one
+  Numeric,  // an equation without a usable solution: a singular inertia, a step size that shrinks to nothing
 };
 
 class Error : public std::runtime_error {

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <memory_resource>
 #include <new>
+#include <utility>
 
 namespace breve {
 
@@ -36,5 +38,34 @@ class MemoryMeter final : public std::pmr::memory_resource {
   std::size_t peak_ = 0;
   std::size_t limit_ = 0;
 };
+
+/// A base for what is made one at a time, without a container: it takes its bytes from a memory resource and gives them
+/// back there when it is deleted. `new T` without one takes them from the C++ allocator.
+class InMemory {
+ public:
+  static void* operator new(std::size_t bytes, std::pmr::memory_resource* memory) {
+    void* block = memory->allocate(bytes + sizeof(Head), alignof(Head));
+    return new (block) Head{memory, bytes + sizeof(Head)} + 1;
+  }
+  static void* operator new(std::size_t bytes) { return operator new(bytes, std::pmr::new_delete_resource()); }
+  static void operator delete(void* object) noexcept {
+    if (object == nullptr) return;
+    Head* head = static_cast<Head*>(object) - 1;
+    head->memory->deallocate(head, head->bytes, alignof(Head));
+  }
+  static void operator delete(void* object, std::pmr::memory_resource*) noexcept { operator delete(object); }
+
+ private:
+  struct alignas(std::max_align_t) Head {
+    std::pmr::memory_resource* memory;
+    std::size_t bytes;
+  };
+};
+
+/// A new T that derives from InMemory.
+template <class T, class... Arguments>
+std::unique_ptr<T> make_in(std::pmr::memory_resource* memory, Arguments&&... arguments) {
+  return std::unique_ptr<T>(new (memory) T(std::forward<Arguments>(arguments)...));
+}
 
 }  // namespace breve

@@ -35,13 +35,20 @@ void CollisionStage::purge() {
 void CollisionStage::refresh(const CollisionClient& client, bool rules_changed) {
   proxy_of_.resize(bodies_->index_end(), kNoProxy);
   const std::size_t before = order_.size();
-  for (BodyIndex body = 0; body < proxy_of_.size(); ++body) {
-    if (proxy_of_[body] == kNoProxy && bodies_->used(body) && client.takes_part(body)) enter(client, body);
-  }
-  if (order_.size() != before) {
+  const auto sort_order = [&] {
+    if (order_.size() == before) return;
     std::sort(order_.begin(), order_.end(),
               [this](ProxyIndex x, ProxyIndex y) { return proxies_[x].serial < proxies_[y].serial; });
+  };
+  try {
+    for (BodyIndex body = 0; body < proxy_of_.size(); ++body) {
+      if (proxy_of_[body] == kNoProxy && bodies_->used(body) && client.takes_part(body)) enter(client, body);
+    }
+  } catch (...) {
+    sort_order();
+    throw;
   }
+  sort_order();
   if (!rules_changed) return;
   std::erase_if(pairs_,
                 [&](const Pair& pair) { return !client.reported(proxies_[pair.a].body, proxies_[pair.b].body); });
@@ -51,6 +58,7 @@ void CollisionStage::refresh(const CollisionClient& client, bool rules_changed) 
 void CollisionStage::enter(const CollisionClient& client, BodyIndex body) {
   // Room for all to leave, so that forget() never allocates.
   if (left_.capacity() <= order_.size()) left_.reserve(2 * order_.size() + 16);
+  if (order_.capacity() == order_.size()) order_.reserve(2 * order_.size() + 16);
   ProxyIndex index;
   if (free_proxies_.empty()) {
     proxies_.emplace_back();
@@ -209,7 +217,7 @@ std::size_t CollisionStage::bytes() const {
 }
 
 void CollisionStage::save(ByteWriter& out) const {
-  std::vector<std::pair<BodyIndex, BodyIndex>> touching(loaded_touching_.begin(), loaded_touching_.end());
+  std::pmr::vector<std::pair<BodyIndex, BodyIndex>> touching(loaded_touching_, loaded_touching_.get_allocator());
   for (const Pair& pair : pairs_) {
     const BodyIndex a = proxies_[pair.a].body;
     const BodyIndex b = proxies_[pair.b].body;

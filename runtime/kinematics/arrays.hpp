@@ -20,6 +20,8 @@ class Rows {
   explicit Rows(std::pmr::memory_resource* memory) : rows_(memory), free_(memory) {}
   RowIndex make() {
     if (free_.empty()) {
+      // Room for all to be dropped, so that drop() never allocates.
+      if (free_.capacity() <= rows_.size()) free_.reserve(2 * rows_.size() + 16);
       rows_.emplace_back();
       return static_cast<RowIndex>(rows_.size() - 1);
     }
@@ -90,7 +92,7 @@ struct RigidRow {
   bool round = true;  // equal moments of inertia: no gyroscopic term
 };
 
-struct Bodies::Arrays {
+struct Bodies::Arrays : InMemory {
   explicit Arrays(std::pmr::memory_resource* memory);
 
   // Columns, by body.

@@ -119,24 +119,10 @@ void Bodies::Arrays::copy_mass(BodyIndex body) {
 }
 
 Bodies::Bodies(std::pmr::memory_resource* memory) : memory_(memory) {}
-Bodies::~Bodies() {
-  // Made by hand in memory of the world; see arrays().
-  if (Arrays* arrays = arrays_.release()) {
-    arrays->~Arrays();
-    memory_->deallocate(arrays, sizeof(Arrays), alignof(Arrays));
-  }
-}
+Bodies::~Bodies() = default;
 
 Bodies::Arrays& Bodies::arrays() {
-  if (!arrays_) {
-    void* place = memory_->allocate(sizeof(Arrays), alignof(Arrays));
-    try {
-      arrays_.reset(new (place) Arrays(memory_));
-    } catch (...) {
-      memory_->deallocate(place, sizeof(Arrays), alignof(Arrays));
-      throw;
-    }
-  }
+  if (!arrays_) arrays_ = make_in<Arrays>(memory_, memory_);
   return *arrays_;
 }
 
@@ -147,7 +133,7 @@ void Bodies::swap(Bodies& other) {
 
 BodyIndex Bodies::add(BodyKind kind, ObjectId owner) {
   Arrays& a = arrays();
-  if (!a.default_shape) a.default_shape = Shape::sphere(1);
+  if (!a.default_shape) a.default_shape = Shape::sphere(1, memory_);
   BodyIndex body;
   if (a.free.empty()) {
     body = a.grow();

@@ -52,7 +52,7 @@ struct BodyState {
   bool physics = false;
 };
 
-class Bodies {
+class Bodies : public InMemory {
  public:
   explicit Bodies(std::pmr::memory_resource* memory);
   ~Bodies();

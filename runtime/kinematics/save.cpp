@@ -6,18 +6,6 @@ namespace breve {
 
 namespace {
 
-void put_object(ByteWriter& out, ObjectId id) {
-  out.put(id.index);
-  out.put(id.generation);
-}
-
-ObjectId get_object(ByteReader& in) {
-  ObjectId id;
-  id.index = in.get<std::uint32_t>();
-  id.generation = in.get<std::uint32_t>();
-  return id;
-}
-
 void save(ByteWriter& out, const Material& m) {
   for (const double value : {m.restitution, m.friction, m.static_friction, m.dynamic_friction, m.normal_restitution,
                              m.tangential_restitution, m.restitution_threshold}) {
@@ -35,9 +23,9 @@ void load(ByteReader& in, Material& m) {
 void save(ByteWriter& out, const Appearance& a) {
   out.put(a.color);
   out.put(a.alpha);
-  put_object(out, a.texture);
-  put_object(out, a.bitmap);
-  put_object(out, a.lightmap);
+  out.put(a.texture);
+  out.put(a.bitmap);
+  out.put(a.lightmap);
   out.put(a.texture_scale_x);
   out.put(a.texture_scale_y);
   out.put(a.bitmap_heading);
@@ -48,9 +36,9 @@ void save(ByteWriter& out, const Appearance& a) {
 void load(ByteReader& in, Appearance& a) {
   a.color = in.get_vector();
   a.alpha = in.get<double>();
-  a.texture = get_object(in);
-  a.bitmap = get_object(in);
-  a.lightmap = get_object(in);
+  a.texture = in.get_object();
+  a.bitmap = in.get_object();
+  a.lightmap = in.get_object();
   a.texture_scale_x = in.get<double>();
   a.texture_scale_y = in.get<double>();
   a.bitmap_heading = in.get<double>();
@@ -115,7 +103,7 @@ void Bodies::save(ByteWriter& out) const {
   const Arrays& a = *arrays_;
   out.put_shared(a.default_shape);
   for (BodyIndex body = 0; body < a.owner.size(); ++body) {
-    put_object(out, a.owner[body]);
+    out.put(a.owner[body]);
     if (!a.owner[body]) continue;
     out.put(a.kind[body]);
     out.put(a.location[body]);
@@ -140,7 +128,7 @@ void Bodies::load(ByteReader& in) {
   a.default_shape = in.get_shared<Shape>();
   for (std::size_t i = 0; i < count; ++i) {
     const BodyIndex body = a.grow();
-    a.owner[body] = get_object(in);
+    a.owner[body] = in.get_object();
     if (!a.owner[body]) continue;
     ++a.used;
     a.kind[body] = in.get<BodyKind>();

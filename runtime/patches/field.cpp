@@ -19,7 +19,8 @@ void check_size(const char* name, int size) {
 
 }  // namespace
 
-Field::Field(int dimensions, int nx, int ny, int nz) : dimensions_(dimensions), nx_(nx), ny_(ny), nz_(nz) {
+Field::Field(int dimensions, int nx, int ny, int nz, std::pmr::memory_resource* memory)
+    : dimensions_(dimensions), nx_(nx), ny_(ny), nz_(nz), values_(memory) {
   check_size("x", nx);
   check_size("y", ny);
   check_size("z", nz);
@@ -28,12 +29,15 @@ Field::Field(int dimensions, int nx, int ny, int nz) : dimensions_(dimensions), 
     throw Error(ErrorCode::Argument,
                 fmt::format("a matrix of {} has too many elements (at most {})", size_text(), kMaxElements));
   }
-  values_.setZero(static_cast<Eigen::Index>(across) * nx);
+  values_.resize(across * static_cast<std::size_t>(nx));
 }
 
-Field Field::line(int size) { return {1, size, 1, 1}; }
-Field Field::plane(int nx, int ny) { return {2, nx, ny, 1}; }
-Field Field::space(int nx, int ny, int nz) { return {3, nx, ny, nz}; }
+Field::Field(const Field& other, std::pmr::memory_resource* memory)
+    : dimensions_(other.dimensions_), nx_(other.nx_), ny_(other.ny_), nz_(other.nz_), values_(other.values_, memory) {}
+
+Field Field::line(int size, std::pmr::memory_resource* memory) { return {1, size, 1, 1, memory}; }
+Field Field::plane(int nx, int ny, std::pmr::memory_resource* memory) { return {2, nx, ny, 1, memory}; }
+Field Field::space(int nx, int ny, int nz, std::pmr::memory_resource* memory) { return {3, nx, ny, nz, memory}; }
 
 std::string Field::size_text() const {
   switch (dimensions_) {
@@ -43,7 +47,7 @@ std::string Field::size_text() const {
   }
 }
 
-Eigen::Index Field::at(int x, int y, int z) const {
+std::size_t Field::at(int x, int y, int z) const {
   if (x < 0 || x >= nx_ || y < 0 || y >= ny_ || z < 0 || z >= nz_) {
     const std::string index = dimensions_ == 1   ? fmt::format("{}", x)
                               : dimensions_ == 2 ? fmt::format("({}, {})", x, y)
@@ -51,7 +55,7 @@ Eigen::Index Field::at(int x, int y, int z) const {
     throw Error(ErrorCode::Argument,
                 fmt::format("index {} is outside a matrix of {} (indices start at 0)", index, size_text()));
   }
-  return (static_cast<Eigen::Index>(x) * ny_ + y) * nz_ + z;
+  return static_cast<std::size_t>((static_cast<Eigen::Index>(x) * ny_ + y) * nz_ + z);
 }
 
 void Field::check_same_size(const Field& other, const char* what) const {
@@ -62,17 +66,17 @@ void Field::check_same_size(const Field& other, const char* what) const {
 
 void Field::add(const Field& other, double factor) {
   check_same_size(other, "add");
-  values_ += factor * other.values_;
+  array() += factor * other.values();
 }
 
 void Field::subtract(const Field& other, double factor) {
   check_same_size(other, "subtract");
-  values_ -= factor * other.values_;
+  array() -= factor * other.values();
 }
 
 void Field::multiply(const Field& other) {
   check_same_size(other, "multiply");
-  values_ *= other.values_;
+  array() *= other.values();
 }
 
 void Field::copy(const Field& other) {
@@ -95,8 +99,10 @@ double Field::max() const {
 template <bool kPeriodic>
 void Field::laplacian(const Field& other, double factor) {
   check_same_size(other, "diffuse");
-  const Eigen::ArrayXd& from = other.values_;
-  Eigen::ArrayXd sum = (-2.0 * dimensions_) * from;
+  const auto from = other.values();
+  std::pmr::vector<double> scratch(values_.size(), values_.get_allocator());
+  Eigen::Map<Eigen::ArrayXd> sum(scratch.data(), length());
+  sum = (-2.0 * dimensions_) * from;
   // Along each axis the grid is a stack of slabs of `slab` elements that touch the next along the axis.
   const auto along = [&](Eigen::Index count, Eigen::Index slab) {
     const Eigen::Index block = count * slab;
@@ -113,7 +119,7 @@ void Field::laplacian(const Field& other, double factor) {
   along(nx_, static_cast<Eigen::Index>(ny_) * nz_);
   if (dimensions_ > 1) along(ny_, nz_);
   if (dimensions_ > 2) along(nz_, 1);
-  values_ = factor * sum;
+  array() = factor * sum;
 }
 
 void Field::diffuse(const Field& other, double factor) { laplacian<false>(other, factor); }
@@ -133,8 +139,10 @@ void Field::transform(const Field& matrix, Field& result) const {
   }
   const Eigen::Map<const RowMajor> left(matrix.values_.data(), matrix.nx_, matrix.ny_);
   const Eigen::Map<const RowMajor> right(values_.data(), nx_, ny_);
-  const RowMajor product = left * right;
-  result.values_ = Eigen::Map<const Eigen::ArrayXd>(product.data(), product.size());
+  std::pmr::vector<double> scratch(result.size(), result.values_.get_allocator());
+  Eigen::Map<RowMajor> product(scratch.data(), result.nx_, result.ny_);
+  product.noalias() = left * right;
+  result.values_.swap(scratch);
 }
 
 std::uint8_t Field::channel_byte(double value, double factor) {
@@ -167,7 +175,7 @@ Field Field::load(ByteReader& in) {
   const auto held = in.left() / sizeof(double);
   const auto sizes = [&](int i) { return static_cast<std::size_t>(n[i]); };
   if (sizes(1) > held || sizes(2) > held / sizes(1) || sizes(3) > held / sizes(1) / sizes(2)) ByteReader::fail();
-  Field field(n[0], n[1], n[2], n[3]);
+  Field field(n[0], n[1], n[2], n[3], in.memory());
   in.raw(field.values_.data(), field.size() * sizeof(double));
   return field;
 }

@@ -4,7 +4,9 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <memory_resource>
 #include <string>
+#include <vector>
 
 #include "runtime/base/bytes.hpp"
 #include "runtime/base/hasher.hpp"
@@ -16,26 +18,32 @@ class Field {
  public:
   static constexpr std::size_t kMaxElements = std::size_t{1} << 28;  // 2 GiB of doubles
 
-  /// Zeros. Sizes from 1; at most kMaxElements in all.
-  static Field line(int size);
-  static Field plane(int nx, int ny);
-  static Field space(int nx, int ny, int nz);
+  /// Zeros, in `memory`. Sizes from 1; at most kMaxElements in all.
+  static Field line(int size, std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+  static Field plane(int nx, int ny, std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+  static Field space(int nx, int ny, int nz, std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+  /// A copy in `memory`.
+  Field(const Field& other, std::pmr::memory_resource* memory);
+  Field(const Field&) = default;  // in the default memory
+  Field(Field&&) = default;
+  Field& operator=(const Field&) = default;  // the elements stay in the memory that this field has
+  Field& operator=(Field&&) = default;
 
   int dimensions() const { return dimensions_; }
   int nx() const { return nx_; }
   int ny() const { return ny_; }  // 1 for a line
   int nz() const { return nz_; }  // 1 for a line or a plane
-  std::size_t size() const { return static_cast<std::size_t>(values_.size()); }
-  const Eigen::ArrayXd& values() const { return values_; }
+  std::size_t size() const { return values_.size(); }
+  Eigen::Map<const Eigen::ArrayXd> values() const { return {values_.data(), length()}; }
 
   // Elements; an index out of range is named in the error.
   double get(int x, int y = 0, int z = 0) const { return values_[at(x, y, z)]; }
   void set(int x, int y, int z, double value) { values_[at(x, y, z)] = value; }
 
   // Whole fields; the other field must have the same sizes.
-  void fill(double value) { values_.setConstant(value); }
-  void scale(double factor) { values_ *= factor; }
-  void add_scalar(double value) { values_ += value; }
+  void fill(double value) { array().setConstant(value); }
+  void scale(double factor) { array() *= factor; }
+  void add_scalar(double value) { array() += value; }
   void add(const Field& other, double factor = 1);
   void subtract(const Field& other, double factor = 1);
   void multiply(const Field& other);  // element by element
@@ -63,15 +71,17 @@ class Field {
   void hash(Hasher& hasher) const;
 
  private:
-  Field(int dimensions, int nx, int ny, int nz);
-  Eigen::Index at(int x, int y, int z) const;
+  Field(int dimensions, int nx, int ny, int nz, std::pmr::memory_resource* memory);
+  Eigen::Index length() const { return static_cast<Eigen::Index>(values_.size()); }
+  Eigen::Map<Eigen::ArrayXd> array() { return {values_.data(), length()}; }
+  std::size_t at(int x, int y, int z) const;
   void check_same_size(const Field& other, const char* what) const;
   std::string size_text() const;
   template <bool kPeriodic>
   void laplacian(const Field& other, double factor);
 
   int dimensions_, nx_, ny_, nz_;
-  Eigen::ArrayXd values_;
+  std::pmr::vector<double> values_;
 };
 
 }  // namespace breve

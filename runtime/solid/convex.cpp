@@ -40,7 +40,7 @@ double measure(const std::vector<std::vector<Vector3>>& faces) {
   return extent;
 }
 
-int find_or_add(std::vector<Vector3>& vertices, const Vector3& p, double tolerance) {
+int find_or_add(std::pmr::vector<Vector3>& vertices, const Vector3& p, double tolerance) {
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     if ((vertices[i] - p).cwiseAbs().maxCoeff() <= tolerance) return static_cast<int>(i);
   }
@@ -51,13 +51,13 @@ int find_or_add(std::vector<Vector3>& vertices, const Vector3& p, double toleran
 /// Merge equal corners; drop a corner that repeats the one before it.
 void weld(Polyhedron& solid, const std::vector<std::vector<Vector3>>& faces, double tolerance) {
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    std::vector<int> face;
+    std::pmr::vector<int> face;
     for (const Vector3& p : faces[f]) {
       const int v = find_or_add(solid.vertices, p, tolerance);
       if (face.empty() || face.back() != v) face.push_back(v);
     }
     while (face.size() > 1 && face.front() == face.back()) face.pop_back();
-    std::vector<int> sorted = face;
+    std::pmr::vector<int> sorted = face;
     std::sort(sorted.begin(), sorted.end());
     if (face.size() < 3 || std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
       refuse(fmt::format("has a face {} that meets itself or has fewer than 3 different vertices", f));

@@ -33,7 +33,7 @@ void check_polygon(const char* what, int sides, double height, double radius) {
 }
 
 /// `sides` points of the circle about the y axis at height y, the first `offset` steps past +x.
-void add_ring(std::vector<Vector3>& out, int sides, double y, double radius, double offset) {
+void add_ring(std::pmr::vector<Vector3>& out, int sides, double y, double radius, double offset) {
   for (int i = 0; i < sides; ++i) {
     const double angle = (i + offset) * 2 * std::numbers::pi / sides;
     out.emplace_back(radius * std::cos(angle), y, radius * std::sin(angle));
@@ -41,7 +41,7 @@ void add_ring(std::vector<Vector3>& out, int sides, double y, double radius, dou
 }
 
 /// Twice the vector area of a polygon (Newell's method): robust for polygons that are only nearly planar.
-Vector3 doubled_area(const Polyhedron& solid, const std::vector<int>& face) {
+Vector3 doubled_area(const Polyhedron& solid, const std::pmr::vector<int>& face) {
   const Vector3& origin = solid.vertices[static_cast<std::size_t>(face[0])];
   Vector3 sum = Vector3::Zero();
   for (std::size_t i = 1; i + 1 < face.size(); ++i) {
@@ -77,7 +77,7 @@ Polyhedron make_prism(int sides, double height, double radius) {
   Polyhedron prism;
   add_ring(prism.vertices, sides, -height / 2, radius, 0.5);
   add_ring(prism.vertices, sides, height / 2, radius, 0.5);
-  std::vector<int> bottom, top;
+  std::pmr::vector<int> bottom, top;
   // Rising angles turn from +x to +z: clockwise seen from +y.
   for (int i = 0; i < sides; ++i) bottom.push_back(i);
   for (int i = sides - 1; i >= 0; --i) top.push_back(sides + i);
@@ -95,7 +95,7 @@ Polyhedron make_cone(int sides, double height, double radius) {
   Polyhedron cone;
   add_ring(cone.vertices, sides, -height / 2, radius, 0);
   cone.vertices.emplace_back(0, height / 2, 0);
-  std::vector<int> base;
+  std::pmr::vector<int> base;
   for (int i = 0; i < sides; ++i) base.push_back(i);
   cone.faces = {base};
   for (int i = 0; i < sides; ++i) cone.faces.push_back({i, sides, (i + 1) % sides});

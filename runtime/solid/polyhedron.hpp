@@ -2,6 +2,7 @@
 // that is not a sphere. Faces run counter-clockwise seen from outside.
 #pragma once
 
+#include <memory_resource>
 #include <vector>
 
 #include "runtime/base/math.hpp"
@@ -21,10 +22,19 @@ struct Edge {
 };
 
 struct Polyhedron {
-  std::vector<Vector3> vertices;
-  std::vector<std::vector<int>> faces;
-  std::vector<Plane> planes;  // one a face
-  std::vector<Edge> edges;    // in the order in which the faces first name them
+  std::pmr::vector<Vector3> vertices;
+  std::pmr::vector<std::pmr::vector<int>> faces;
+  std::pmr::vector<Plane> planes;  // one a face
+  std::pmr::vector<Edge> edges;    // in the order in which the faces first name them
+
+  explicit Polyhedron(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : vertices(memory), faces(memory), planes(memory), edges(memory) {}
+  /// A copy in `memory`.
+  Polyhedron(const Polyhedron& other, std::pmr::memory_resource* memory)
+      : vertices(other.vertices, memory),
+        faces(other.faces, memory),
+        planes(other.planes, memory),
+        edges(other.edges, memory) {}
 };
 
 /// Integrals of 1, x and x x^T over the solid at density 1.

@@ -57,11 +57,17 @@ void check_inertia(const Matrix3& inertia) {
 
 }  // namespace
 
-struct Shape::Geometry {
+struct Shape::Geometry : InMemory {
+  explicit Geometry(Memory memory) : original_vertices(memory), solid(memory) {}
+  Geometry(const Geometry& other) = delete;
+  Geometry(Geometry&&) = delete;
+  Geometry& operator=(const Geometry&) = default;  // the arrays stay in the memory that they have
+  Memory memory() const { return original_vertices.get_allocator().resource(); }
+
   ShapeKind kind{};
-  double original_radius = 0;              // Sphere
-  std::vector<Vector3> original_vertices;  // Box, Convex
-  Moments original{};                      // at scale 1 and density 1; set_inertia changes `second`
+  double original_radius = 0;                   // Sphere
+  std::pmr::vector<Vector3> original_vertices;  // Box, Convex
+  Moments original{};                           // at scale 1 and density 1; set_inertia changes `second`
   Vector3 scale = Vector3::Ones();
   Vector3 last_scale = Vector3::Ones();
   double density = 1;
@@ -110,40 +116,49 @@ Shape::Shape(std::unique_ptr<Geometry> geometry) : geometry_(std::move(geometry)
 
 Shape::~Shape() = default;
 
-std::shared_ptr<Shape> Shape::sphere(double radius) {
+std::shared_ptr<Shape> Shape::shared(std::unique_ptr<Geometry> geometry) {
+  const Memory memory = geometry->memory();
+  // The count of owners stands in the same memory.
+  return std::shared_ptr<Shape>(new (memory) Shape(std::move(geometry)), std::default_delete<Shape>(),
+                                std::pmr::polymorphic_allocator<>(memory));
+}
+
+std::shared_ptr<Shape> Shape::sphere(double radius, Memory memory) {
   check_positive("the radius of a sphere", radius);
-  auto g = std::make_unique<Geometry>();
+  auto g = make_in<Geometry>(memory, memory);
   g->kind = ShapeKind::Sphere;
   g->original_radius = radius;
   g->original.volume = 4 * std::numbers::pi / 3 * radius * radius * radius;
   g->original.first.setZero();
   g->original.second = g->original.volume * radius * radius / 5 * Matrix3::Identity();
-  return std::shared_ptr<Shape>(new Shape(std::move(g)));
+  return shared(std::move(g));
 }
 
-std::shared_ptr<Shape> Shape::of(ShapeKind kind, Polyhedron solid, double density) {
-  auto g = std::make_unique<Geometry>();
+std::shared_ptr<Shape> Shape::of(ShapeKind kind, const Polyhedron& solid, double density, Memory memory) {
+  auto g = make_in<Geometry>(memory, memory);
   g->kind = kind;
   g->original = moments(solid);
   g->original_vertices = solid.vertices;
-  g->solid = std::move(solid);
+  g->solid = solid;
   g->density = density;
-  return std::shared_ptr<Shape>(new Shape(std::move(g)));
+  return shared(std::move(g));
 }
 
-std::shared_ptr<Shape> Shape::box(const Vector3& size) { return of(ShapeKind::Box, make_box(size), 1); }
-
-std::shared_ptr<Shape> Shape::prism(int sides, double height, double radius) {
-  return of(ShapeKind::Convex, make_prism(sides, height, radius), 1);
+std::shared_ptr<Shape> Shape::box(const Vector3& size, Memory memory) {
+  return of(ShapeKind::Box, make_box(size), 1, memory);
 }
 
-std::shared_ptr<Shape> Shape::cone(int sides, double height, double radius) {
-  return of(ShapeKind::Convex, make_cone(sides, height, radius), 1);
+std::shared_ptr<Shape> Shape::prism(int sides, double height, double radius, Memory memory) {
+  return of(ShapeKind::Convex, make_prism(sides, height, radius), 1, memory);
 }
 
-std::shared_ptr<Shape> Shape::convex(const std::vector<std::vector<Vector3>>& faces, double density) {
+std::shared_ptr<Shape> Shape::cone(int sides, double height, double radius, Memory memory) {
+  return of(ShapeKind::Convex, make_cone(sides, height, radius), 1, memory);
+}
+
+std::shared_ptr<Shape> Shape::convex(const std::vector<std::vector<Vector3>>& faces, double density, Memory memory) {
   check_positive("the density of a shape", density);
-  return of(ShapeKind::Convex, make_convex(faces), density);
+  return of(ShapeKind::Convex, make_convex(faces), density, memory);
 }
 
 ShapeKind Shape::kind() const { return geometry_->kind; }
@@ -151,8 +166,8 @@ double Shape::radius() const { return geometry_->radius; }
 Vector3 Shape::size() const {
   return geometry_->kind == ShapeKind::Box ? Vector3(geometry_->solid.vertices.back() * 2) : Vector3(Vector3::Zero());
 }
-const std::vector<Vector3>& Shape::vertices() const { return geometry_->solid.vertices; }
-const std::vector<std::vector<int>>& Shape::faces() const { return geometry_->solid.faces; }
+const std::pmr::vector<Vector3>& Shape::vertices() const { return geometry_->solid.vertices; }
+const std::pmr::vector<std::pmr::vector<int>>& Shape::faces() const { return geometry_->solid.faces; }
 const Polyhedron& Shape::polyhedron() const { return geometry_->solid; }
 double Shape::bounding_radius() const { return geometry_->bounding_radius; }
 
@@ -205,7 +220,8 @@ void Shape::set_scale(const Vector3& factors) {
   static constexpr const char* kWhat[] = {"the scale of a shape along x", "the scale of a shape along y",
                                           "the scale of a shape along z"};
   for (int i = 0; i < 3; ++i) check_positive(kWhat[i], factors[i]);
-  auto next = std::make_unique<Geometry>(*geometry_);
+  auto next = make_in<Geometry>(geometry_->memory(), geometry_->memory());
+  *next = *geometry_;
   next->last_scale = next->scale;
   next->scale = factors;
   next->derive_size();
@@ -243,7 +259,7 @@ double enter_ball(double radius, const Vector3& origin, const Vector3& direction
 }
 
 /// The same for the intersection of half-spaces (Cyrus and Beck, 1978).
-double enter_planes(const std::vector<Plane>& planes, const Vector3& origin, const Vector3& direction) {
+double enter_planes(const std::pmr::vector<Plane>& planes, const Vector3& origin, const Vector3& direction) {
   constexpr double kMiss = std::numeric_limits<double>::infinity();
   double first = 0, last = kMiss;
   for (const Plane& plane : planes) {
@@ -328,7 +344,7 @@ std::shared_ptr<Shape> Shape::load(ByteReader& in) {
     const bool round = kind == ShapeKind::Sphere;
     const bool whole = solid.faces.size() >= 4 && (kind != ShapeKind::Box || solid.vertices.size() == 8);
     if (round ? !solid.faces.empty() || !solid.vertices.empty() : !whole) ByteReader::fail();
-    const std::shared_ptr<Shape> shape = round ? sphere(radius) : of(kind, std::move(solid), 1);
+    const std::shared_ptr<Shape> shape = round ? sphere(radius, in.memory()) : of(kind, solid, 1, in.memory());
     Geometry& g = *shape->geometry_;
     g.original.second = in.get_matrix();
     const Matrix3 inertia = in.get_matrix();

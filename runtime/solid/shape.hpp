@@ -2,33 +2,45 @@
 #pragma once
 
 #include <memory>
+#include <memory_resource>
 #include <vector>
 
 #include "runtime/base/bytes.hpp"
 #include "runtime/base/hasher.hpp"
 #include "runtime/base/math.hpp"
+#include "runtime/base/memory.hpp"
 #include "runtime/solid/polyhedron.hpp"
 
 namespace breve {
 
 enum class ShapeKind : std::uint8_t { Sphere, Box, Convex };
 
-class Shape {
+class Shape : public InMemory {
  public:
-  // Builders, density 1. Error{Argument} names what is wrong: a size or density that is not finite and > 0, or so large
-  // or small that mass or inertia overflow; fewer than 3 sides (or more than 1000); faces that enclose no convex solid.
-  static std::shared_ptr<Shape> sphere(double radius);
-  static std::shared_ptr<Shape> box(const Vector3& size);                        // full edge lengths
-  static std::shared_ptr<Shape> prism(int sides, double height, double radius);  // PolygonDisk
-  static std::shared_ptr<Shape> cone(int sides, double height, double radius);   // PolygonCone, apex at +height/2
-  static std::shared_ptr<Shape> convex(const std::vector<std::vector<Vector3>>& faces, double density);  // CustomShape
+  // Builders, density 1; what is built stands in `memory`. Error{Argument} names what is wrong: a size or density that
+  // is not finite and > 0, or so large or small that mass or inertia overflow; fewer than 3 sides (or more than 1000);
+  // faces that enclose no convex solid.
+  using Memory = std::pmr::memory_resource*;
+  static std::shared_ptr<Shape> sphere(double radius, Memory memory = std::pmr::get_default_resource());
+  /// Full edge lengths.
+  static std::shared_ptr<Shape> box(const Vector3& size, Memory memory = std::pmr::get_default_resource());
+  /// PolygonDisk.
+  static std::shared_ptr<Shape> prism(int sides, double height, double radius,
+                                      Memory memory = std::pmr::get_default_resource());
+  /// PolygonCone, apex at +height/2.
+  static std::shared_ptr<Shape> cone(int sides, double height, double radius,
+                                     Memory memory = std::pmr::get_default_resource());
+  /// CustomShape.
+  static std::shared_ptr<Shape> convex(const std::vector<std::vector<Vector3>>& faces, double density,
+                                       Memory memory = std::pmr::get_default_resource());
 
   ~Shape();
   ShapeKind kind() const;
-  double radius() const;                               // Sphere
-  Vector3 size() const;                                // Box: full edge lengths after scaling
-  const std::vector<Vector3>& vertices() const;        // Box, Convex: after scaling, own frame
-  const std::vector<std::vector<int>>& faces() const;  // indices into vertices, counter-clockwise from outside
+  double radius() const;                              // Sphere
+  Vector3 size() const;                               // Box: full edge lengths after scaling
+  const std::pmr::vector<Vector3>& vertices() const;  // Box, Convex: after scaling, own frame
+  /// Indices into vertices, counter-clockwise from outside.
+  const std::pmr::vector<std::pmr::vector<int>>& faces() const;
   const Polyhedron& polyhedron() const;  // Box, Convex: the same with planes and edges; empty for a Sphere
   double bounding_radius() const;        // of the sphere about the origin that holds it
   Eigen::AlignedBox3d bounds(const Matrix3& rotation) const;  // about the origin
@@ -64,7 +76,8 @@ class Shape {
  private:
   struct Geometry;
   explicit Shape(std::unique_ptr<Geometry> geometry);
-  static std::shared_ptr<Shape> of(ShapeKind kind, Polyhedron solid, double density);
+  static std::shared_ptr<Shape> of(ShapeKind kind, const Polyhedron& solid, double density, Memory memory);
+  static std::shared_ptr<Shape> shared(std::unique_ptr<Geometry> geometry);
   std::unique_ptr<Geometry> geometry_;
 };
 

@@ -36,6 +36,7 @@ class Neighbors {
   /// The points strictly nearer to point `self` than its radius, without it. Valid until the next call. Expected cost
   /// proportional to the answer and the like-dense surroundings; no allocation after warm-up.
   Found query(std::uint32_t self);
+  bool answered() const { return answered_; }  // all answers are kept: a query is a look-up
   std::size_t bytes() const;
   std::uint64_t visited() const { return visited_; }  // points looked at since clear()
 

@@ -11,7 +11,7 @@
 
 namespace breve {
 
-Image::Image(int width, int height) {
+Image::Image(int width, int height, std::pmr::memory_resource* memory) : pixels_(memory) {
   if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide) {
     throw Error(ErrorCode::Argument,
                 fmt::format("an image has the size {} x {} (each side must be from 1 to {})", width, height, kMaxSide));
@@ -53,7 +53,7 @@ void Image::set_bytes(std::span<const std::uint8_t> bytes) {
 
 std::size_t Image::deflated_size() const {
   uLongf size = compressBound(static_cast<uLong>(pixels_.size()));
-  std::vector<std::uint8_t> out(size);
+  std::pmr::vector<std::uint8_t> out(size, pixels_.get_allocator());
   if (compress2(out.data(), &size, pixels_.data(), static_cast<uLong>(pixels_.size()), Z_DEFAULT_COMPRESSION) != Z_OK) {
     throw Error(ErrorCode::Memory, fmt::format("no memory to deflate an image of {} x {}", width_, height_));
   }
@@ -70,12 +70,12 @@ void Image::save(ByteWriter& out) const {
 Image Image::load(ByteReader& in) {
   const auto width = in.get<std::int32_t>(), height = in.get<std::int32_t>();
   const bool changed = in.get_bool();
-  Image image;
+  Image image(in.memory());
   if (width != 0 || height != 0) {
     if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide) ByteReader::fail();
     // Asked first: a damaged size must not make us allocate more than the image holds.
     if (static_cast<std::size_t>(width) * static_cast<std::size_t>(height) > in.left() / 4) ByteReader::fail();
-    image = Image(width, height);
+    image = Image(width, height, in.memory());
     in.raw(image.pixels_.data(), image.pixels_.size());
   }
   image.changed_ = changed;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory_resource>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,9 +18,10 @@ class Image {
  public:
   static constexpr int kMaxSide = 32768;
 
-  Image() = default;  // empty
+  /// Empty. Its pixels will stand in `memory`, and so will those of an image assigned to it.
+  explicit Image(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) : pixels_(memory) {}
   /// Black and opaque. Error{Argument} unless both sides are from 1 to kMaxSide.
-  Image(int width, int height);
+  Image(int width, int height, std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
   int width() const { return width_; }
   int height() const { return height_; }
@@ -37,12 +39,12 @@ class Image {
   void clear_changed() { changed_ = false; }
 
   /// Rows from the top, 4 bytes a pixel.
-  const std::vector<std::uint8_t>& bytes() const { return pixels_; }
+  const std::pmr::vector<std::uint8_t>& bytes() const { return pixels_; }
   /// Replace all pixels; Error{Argument} unless there are 4 * width * height bytes.
   void set_bytes(std::span<const std::uint8_t> bytes);
 
   /// PNG, JPEG or TGA. Error{File} names the file and says why.
-  static Image read(const std::string& path);
+  static Image read(const std::string& path, std::pmr::memory_resource* memory = std::pmr::get_default_resource());
   void write_png(const std::string& path) const;
   /// Bytes of the pixels after deflation: a measure of how regular the picture is.
   std::size_t deflated_size() const;
@@ -56,7 +58,7 @@ class Image {
 
   int width_ = 0, height_ = 0;
   bool changed_ = false;
-  std::vector<std::uint8_t> pixels_;
+  std::pmr::vector<std::uint8_t> pixels_;
 };
 
 /// A 16-bit grayscale PNG, rows from the top: 0 is black, 1 white; values are clamped, NaN is black.

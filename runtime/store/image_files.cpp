@@ -78,13 +78,15 @@ std::vector<std::uint8_t> deflated(const std::vector<std::uint8_t>& bytes) {
 
 }  // namespace
 
-Image Image::read(const std::string& path) {
+// The pixels are made before the file is decoded: an image that is too large for its world is refused early.
+Image Image::read(const std::string& path, std::pmr::memory_resource* memory) {
   const File file = open(path, "rb", "read");
   int width = 0, height = 0, channels = 0;
+  if (stbi_info_from_file(file.get(), &width, &height, &channels) == 0) fail("read", path, stbi_failure_reason());
+  Image image(width, height, memory);
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(stbi_load_from_file(file.get(), &width, &height, &channels, 4),
                                                          &stbi_image_free);
   if (!pixels) fail("read", path, stbi_failure_reason());
-  Image image(width, height);
   image.set_bytes({pixels.get(), image.pixels_.size()});
   return image;
 }

@@ -12,14 +12,15 @@ namespace breve {
 class ImageResource final : public Resource {
  public:
   static constexpr std::string_view kKind = "image";
-  explicit ImageResource(Image image_ = {}) : image(std::move(image_)) {}
+  explicit ImageResource(Image image_) : image(std::move(image_)) {}
+  explicit ImageResource(std::pmr::memory_resource* memory) : image(memory) {}
 
   Image image;
 
   std::string_view kind() const override { return kKind; }
   void save(ByteWriter& out) const override { image.save(out); }
   void hash(Hasher& hasher) const override { image.hash(hasher); }
-  static std::unique_ptr<Resource> load(ByteReader& in) { return std::make_unique<ImageResource>(Image::load(in)); }
+  static std::unique_ptr<Resource> load(ByteReader& in) { return make_in<ImageResource>(in.memory(), Image::load(in)); }
 };
 
 }  // namespace breve

@@ -19,6 +19,12 @@ struct InputEvent {
   ObjectId object;  // Click: the object hit or null. Menu: the menu item
 };
 
+/// What becomes of a class when the script side replaces its program.
+struct ClassChange {
+  ClassId to = kNoClass;  // kNoClass: it is gone
+  bool iterates = false, post_iterates = false;
+};
+
 /// Every call may run script code and may throw breve::Error{Script, Budget, Depth, Memory}.
 class Behaviour {
  public:

@@ -65,8 +65,7 @@ void CameraState::save(ByteWriter& out) const {
   for (double value : {pitch, yaw, field_of_view, far_plane, x, y, width, height}) out.put(value);
   out.put(enabled);
   out.put(text);
-  out.put(watched.index);
-  out.put(watched.generation);
+  out.put(watched);
 }
 
 void CameraState::load(ByteReader& in) {
@@ -75,8 +74,7 @@ void CameraState::load(ByteReader& in) {
   for (double* value : {&pitch, &yaw, &field_of_view, &far_plane, &x, &y, &width, &height}) *value = in.get<double>();
   enabled = in.get_bool();
   text = in.get_bool();
-  watched.index = in.get<std::uint32_t>();
-  watched.generation = in.get<std::uint32_t>();
+  watched = in.get_object();
 }
 
 void CameraState::hash(Hasher& hasher) const {
@@ -98,7 +96,7 @@ void CameraResource::hash(Hasher& hasher) const {
 }
 
 std::unique_ptr<Resource> CameraResource::load(ByteReader& in) {
-  auto camera = std::make_unique<CameraResource>();
+  auto camera = make_in<CameraResource>(in.memory());
   camera->main = in.get_bool();
   camera->state.load(in);
   return camera;

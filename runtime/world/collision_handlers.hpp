@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <map>
 #include <memory_resource>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "runtime/base/bytes.hpp"
 #include "runtime/base/hasher.hpp"
 #include "runtime/base/ids.hpp"
+#include "runtime/world/behaviour.hpp"
 #include "runtime/world/names.hpp"
 
 namespace breve {
@@ -32,6 +34,10 @@ class CollisionHandlers {
   bool any_handler() const { return handlers_ != 0; }
   /// Grows with every change that can matter to a pair that was looked at before.
   std::uint64_t revision() const { return revision_; }
+
+  /// The same handlers under other class numbers; those of classes that are gone are left out (reclass.cpp).
+  CollisionHandlers reclassed(std::span<const ClassChange> classes) const;
+  void swap(CollisionHandlers& other) noexcept;  // one with the same memory
 
   void save(ByteWriter& out) const;
   void load(ByteReader& in, std::size_t names);

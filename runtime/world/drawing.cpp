@@ -9,18 +9,6 @@ namespace {
 
 std::uint64_t packed(ObjectId id) { return static_cast<std::uint64_t>(id.index) << 32 | id.generation; }
 
-void put(ByteWriter& out, ObjectId id) {
-  out.put(id.index);
-  out.put(id.generation);
-}
-
-ObjectId get_id(ByteReader& in) {
-  ObjectId id;
-  id.index = in.get<std::uint32_t>();
-  id.generation = in.get<std::uint32_t>();
-  return id;
-}
-
 // Bytes of one command in an image: kind, two vectors, a value, a style.
 constexpr std::size_t kCommandBytes = 1 + 6 * sizeof(double) + sizeof(double) + sizeof(std::uint16_t);
 
@@ -89,7 +77,7 @@ void DrawingResource::hash(Hasher& hasher) const {
 }
 
 std::unique_ptr<Resource> DrawingResource::load(ByteReader& in) {
-  auto drawing = std::make_unique<DrawingResource>();
+  auto drawing = make_in<DrawingResource>(in.memory(), in.memory());
   drawing->limit = in.get<std::uint64_t>();
   drawing->last_point = in.get_vector();
   drawing->has_last_point = in.get_bool();
@@ -108,8 +96,8 @@ std::unique_ptr<Resource> DrawingResource::load(ByteReader& in) {
 }
 
 void LineResource::save(ByteWriter& out) const {
-  put(out, from);
-  put(out, to);
+  out.put(from);
+  out.put(to);
   out.put(color);
   out.put(alpha);
   out.put(style);
@@ -124,9 +112,9 @@ void LineResource::hash(Hasher& hasher) const {
 }
 
 std::unique_ptr<Resource> LineResource::load(ByteReader& in) {
-  auto line = std::make_unique<LineResource>();
-  line->from = get_id(in);
-  line->to = get_id(in);
+  auto line = make_in<LineResource>(in.memory());
+  line->from = in.get_object();
+  line->to = in.get_object();
   line->color = in.get_vector();
   line->alpha = in.get<double>();
   line->style = in.get<std::uint16_t>();

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <memory_resource>
 #include <string_view>
 
 #include "runtime/base/ids.hpp"
@@ -35,7 +36,9 @@ struct DrawCommand {
 class DrawingResource final : public Resource {
  public:
   static constexpr std::string_view kKind = "drawing";
-  std::deque<DrawCommand> commands;
+  explicit DrawingResource(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) : commands(memory) {}
+
+  std::pmr::deque<DrawCommand> commands;
   std::uint64_t limit = 0;      // commands kept, the oldest dropped; 0: all
   Vector3 last_point{0, 0, 0};  // where add-line-point goes on from
   bool has_last_point = false;

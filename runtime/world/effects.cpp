@@ -63,8 +63,7 @@ void Effects::save(ByteWriter& out) const {
   for (const Effect& effect : effects_) {
     out.put(effect.active);
     out.put(effect.since);
-    out.put(effect.asked_by.index);
-    out.put(effect.asked_by.generation);
+    out.put(effect.asked_by);
   }
 }
 
@@ -72,9 +71,7 @@ void Effects::load(ByteReader& in) {
   for (Effect& effect : effects_) {
     const bool active = in.get_bool();
     const auto since = in.get<std::uint64_t>();
-    ObjectId asked_by;
-    asked_by.index = in.get<std::uint32_t>();
-    asked_by.generation = in.get<std::uint32_t>();
+    const ObjectId asked_by = in.get_object();
     turn_off(effect.id);
     if (active) turn_on(effect.id, since, asked_by);
   }

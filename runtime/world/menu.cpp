@@ -6,8 +6,7 @@
 namespace breve {
 
 void MenuItemResource::save(ByteWriter& out) const {
-  out.put(owner.index);
-  out.put(owner.generation);
+  out.put(owner);
   out.put(std::string_view(name));
   out.put(std::string_view(method));
   out.put(checked);
@@ -22,11 +21,10 @@ void MenuItemResource::hash(Hasher& hasher) const {
 }
 
 std::unique_ptr<Resource> MenuItemResource::load(ByteReader& in) {
-  auto item = std::make_unique<MenuItemResource>();
-  item->owner.index = in.get<std::uint32_t>();
-  item->owner.generation = in.get<std::uint32_t>();
-  item->name = in.get_string();
-  item->method = in.get_string();
+  auto item = make_in<MenuItemResource>(in.memory(), in.memory());
+  item->owner = in.get_object();
+  item->name = in.get_text();
+  item->method = in.get_text();
   item->checked = in.get_bool();
   item->enabled = in.get_bool();
   return item;
@@ -40,9 +38,10 @@ MenuItemResource* menu_item(World& world, ObjectId item) {
   return dynamic_cast<MenuItemResource*>(world.resource(item));
 }
 
-std::vector<ObjectId> menu_of(const World& world, ObjectId owner) {
-  std::vector<ObjectId> entries;
-  for (ObjectId id : world.objects()) {
+std::pmr::vector<ObjectId> menu_of(const World& world, ObjectId owner) {
+  const auto objects = world.objects();
+  std::pmr::vector<ObjectId> entries(objects.get_allocator());
+  for (ObjectId id : objects) {
     const MenuItemResource* item = menu_item(world, id);
     if (item && item->owner == owner) entries.push_back(id);
   }

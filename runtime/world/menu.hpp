@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <memory_resource>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,12 @@ class World;
 class MenuItemResource final : public Resource {
  public:
   static constexpr std::string_view kKind = "menu-item";
-  ObjectId owner;      // the object whose menu it is in
-  std::string name;    // as shown; empty for a separator
-  std::string method;  // of the owner, without parameters; called when the entry is chosen
+  explicit MenuItemResource(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : name(memory), method(memory) {}
+
+  ObjectId owner;           // the object whose menu it is in
+  std::pmr::string name;    // as shown; empty for a separator
+  std::pmr::string method;  // of the owner, without parameters; called when the entry is chosen
   bool checked = false;
   bool enabled = true;
 
@@ -38,7 +42,7 @@ const MenuItemResource* menu_item(const World& world, ObjectId item);
 MenuItemResource* menu_item(World& world, ObjectId item);
 
 /// The entries of an object's menu, in the order in which they were made. O(objects in the world).
-std::vector<ObjectId> menu_of(const World& world, ObjectId owner);
+std::pmr::vector<ObjectId> menu_of(const World& world, ObjectId owner);
 
 /// Entries that every body has besides its own. They are not objects: a host that offers them calls the method.
 struct StandardEntry {

@@ -46,7 +46,7 @@ class NameTable {
   void load(ByteReader& in) {
     const std::size_t count = in.get_count(sizeof(std::uint64_t));
     for (std::size_t i = 0; i < count; ++i) {
-      if (intern(in.get_string()) != i) ByteReader::fail();
+      if (intern(in.get_text()) != i) ByteReader::fail();
     }
   }
 

@@ -63,7 +63,7 @@ std::span<const std::uint64_t> NeighborRecord::users(ObjectId id) {
 void NeighborRecord::save(ByteWriter& out) const {
   out.put(static_cast<std::uint64_t>(ids_.size()));
   for (std::size_t i = 0; i < ids_.size(); ++i) {
-    put(out, ids_[i]);
+    out.put(ids_[i]);
     out.put(points_.radii()[i]);
     out.put(points_.points()[i]);
   }
@@ -73,7 +73,7 @@ void NeighborRecord::load(ByteReader& in, const ObjectTable& objects) {
   const std::size_t count = in.get_count(2 * sizeof(std::uint32_t) + 4 * sizeof(double));
   clear(objects.slot_count());
   for (std::size_t i = 0; i < count; ++i) {
-    const ObjectId id = get_object(in);
+    const ObjectId id = in.get_object();
     const auto radius = in.get<double>();
     const Vector3 center = in.get_vector();
     if (id.index >= place_.size() || !center.allFinite() || !std::isfinite(radius)) ByteReader::fail();

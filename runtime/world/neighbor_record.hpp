@@ -31,6 +31,7 @@ class NeighborRecord {
   /// call.
   const std::pmr::vector<ObjectId>& neighbors(ObjectId id);
   std::span<const std::uint64_t> users(ObjectId id);  // the same neighbours' user words
+  bool answered() const { return points_.answered(); }  // all answers are known: a question is a look-up
 
   void save(ByteWriter& out) const;
   /// Into an empty record. @throws Error{Image} for what no record can hold

@@ -53,7 +53,7 @@ void Notifications::save(ByteWriter& out, const ObjectTable& objects) const {
     if (count == 0) continue;
     for (const Registration& r : list->entries) {
       if (!objects.alive(r.observer)) continue;
-      put(out, r.observer);
+      out.put(r.observer);
       out.put(r.message);
       out.put(r.method);
     }
@@ -66,7 +66,7 @@ void Notifications::load(ByteReader& in, const ObjectTable& objects, std::size_t
     const std::size_t count = in.get_count(4 * sizeof(std::uint32_t));
     for (std::size_t i = 0; i < count; ++i) {
       Registration r;
-      r.observer = get_object(in);
+      r.observer = in.get_object();
       r.message = in.get<NameId>();
       r.method = in.get<NameId>();
       if (r.message >= names || r.method >= names) ByteReader::fail();

@@ -8,28 +8,16 @@
 
 namespace breve {
 
-void put(ByteWriter& out, ObjectId id) {
-  out.put(id.index);
-  out.put(id.generation);
-}
-
-ObjectId get_object(ByteReader& in) {
-  ObjectId id;
-  id.index = in.get<std::uint32_t>();
-  id.generation = in.get<std::uint32_t>();
-  return id;
-}
-
 namespace {
 
 void save_ids(ByteWriter& out, const std::pmr::vector<ObjectId>& ids) {
   out.put(static_cast<std::uint64_t>(ids.size()));
-  for (const ObjectId id : ids) put(out, id);
+  for (const ObjectId id : ids) out.put(id);
 }
 
 void load_ids(ByteReader& in, std::pmr::vector<ObjectId>& ids) {
   ids.resize(in.get_count(2 * sizeof(std::uint32_t)));
-  for (ObjectId& id : ids) id = get_object(in);
+  for (ObjectId& id : ids) id = in.get_object();
 }
 
 }  // namespace
@@ -43,8 +31,9 @@ ObjectId ObjectTable::create(ClassId cls, std::uint64_t user, bool iterates, boo
   try {
     joining_.push_back({});
     if (free_.empty()) {
+      // Room for all to be released, so that release() never allocates.
+      if (free_.capacity() <= slots_.size()) free_.reserve(2 * slots_.size() + 16);
       slots_.emplace_back();
-      free_.reserve(slots_.capacity());
       free_.push_back(static_cast<std::uint32_t>(slots_.size() - 1));
     }
   } catch (...) {
@@ -101,6 +90,13 @@ void ObjectTable::join() {
     drop_dead(post_iterating_);
     released_since_join_ = 0;
   }
+  // Room first: nothing may fail half-way.
+  const auto make_room = [this](std::pmr::vector<ObjectId>& list) {
+    const std::size_t needed = list.size() + joining_.size();
+    if (needed > list.capacity()) list.reserve(std::max(needed, 2 * list.capacity()));
+  };
+  make_room(iterating_);
+  make_room(post_iterating_);
   for (const ObjectId id : joining_) {
     if (!alive(id)) continue;
     if (slots_[id.index].iterates) iterating_.push_back(id);

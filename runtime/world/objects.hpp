@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <memory>
 #include <memory_resource>
+#include <span>
 #include <vector>
 
 #include "runtime/base/bytes.hpp"
 #include "runtime/base/hasher.hpp"
 #include "runtime/base/ids.hpp"
 #include "runtime/kinematics/bodies.hpp"
+#include "runtime/world/behaviour.hpp"
 #include "runtime/world/resource.hpp"
 
 namespace breve {
@@ -49,6 +51,14 @@ class ObjectTable {
   const std::pmr::vector<ObjectId>& iterating() const { return iterating_; }
   const std::pmr::vector<ObjectId>& post_iterating() const { return post_iterating_; }
 
+  /// The lists that follow from new classes (reclass.cpp). Error{Argument} if a live object's class is gone.
+  struct Reclassed {
+    std::pmr::vector<ObjectId> iterating, post_iterating;
+    bool changed;
+  };
+  Reclassed prepare_reclass(std::span<const ClassChange> classes) const;
+  void reclass(std::span<const ClassChange> classes, Reclassed& lists) noexcept;
+
   void save(ByteWriter& out) const;
   void load(ByteReader& in, FindLoader find_loader, const void* context);  // into a fresh table
   void hash(Hasher& hasher) const;
@@ -64,8 +74,5 @@ class ObjectTable {
   std::size_t live_ = 0;
   std::size_t released_since_join_ = 0;
 };
-
-void put(ByteWriter& out, ObjectId id);
-ObjectId get_object(ByteReader& in);
 
 }  // namespace breve

@@ -18,7 +18,7 @@
 
 namespace breve {
 
-struct World::Parts final : CollisionClient {
+struct World::Parts final : CollisionClient, InMemory {
   Parts(World& world, std::pmr::memory_resource* memory);
 
   /// These parts now belong to `owner`, whose bodies they use.
@@ -61,8 +61,8 @@ struct World::Parts final : CollisionClient {
   double substep_start = 0;
 
   NeighborRecord near;  // the last update of neighbours
-  std::deque<InputEvent> input;
-  std::map<std::string, ResourceLoader, std::less<>> loaders;  // not state: the program's own
+  std::pmr::deque<InputEvent> input;
+  std::pmr::map<std::pmr::string, ResourceLoader, std::less<>> loaders;  // not state: the program's own
 };
 
 }  // namespace breve

@@ -7,10 +7,11 @@
 
 #include "runtime/base/bytes.hpp"
 #include "runtime/base/hasher.hpp"
+#include "runtime/base/memory.hpp"
 
 namespace breve {
 
-class Resource {
+class Resource : public InMemory {
  public:
   virtual ~Resource() = default;
   /// A constant, unique name of the concrete class; the snapshot finds the loader by it.
@@ -21,6 +22,7 @@ class Resource {
 
 /// A resource that shares a Shape (or the like) with bodies writes it with out.put_shared(shape) and reads it with
 /// in.get_shared<Shape>(), so that it is the same shape again after loading.
+/// What is loaded takes its bytes from in.memory(): make_in<R>(in.memory()).
 /// Registered once per kind with World::add_resource_kind.
 using ResourceLoader = std::unique_ptr<Resource> (*)(ByteReader& in);
 

@@ -74,7 +74,7 @@ void Schedule::save(ByteWriter& out) const {
     out.put(entry.when);
     out.put(entry.interval);
     out.put(entry.sequence);
-    put(out, entry.target);
+    out.put(entry.target);
     out.put(entry.method);
   }
 }
@@ -88,7 +88,7 @@ void Schedule::load(ByteReader& in, std::size_t names) {
     entry.when = in.get<double>();
     entry.interval = in.get<double>();
     entry.sequence = in.get<std::uint64_t>();
-    entry.target = get_object(in);
+    entry.target = in.get_object();
     entry.method = in.get<NameId>();
     if (entry.method >= names || !(entry.when == entry.when)) ByteReader::fail();
   }

@@ -22,8 +22,9 @@ std::uint64_t checksum(const std::uint8_t* data, std::size_t size) {
 [[noreturn]] void refuse(const char* why) { throw Error(ErrorCode::Image, why); }
 
 /// Checks the header and gives a reader of what it covers.
-ByteReader open_image(const std::uint8_t* data, std::size_t size, std::uint64_t fingerprint) {
-  ByteReader in(data, size);
+ByteReader open_image(const std::uint8_t* data, std::size_t size, std::uint64_t fingerprint,
+                      std::pmr::memory_resource* memory) {
+  ByteReader in(data, size, memory);
   std::array<char, 8> magic{};
   in.raw(magic.data(), magic.size());
   if (magic != kMagic) refuse("this is not an image of a world");
@@ -36,40 +37,43 @@ ByteReader open_image(const std::uint8_t* data, std::size_t size, std::uint64_t 
   return in;
 }
 
-void save_input(ByteWriter& out, const std::deque<InputEvent>& events) {
+void save_input(ByteWriter& out, const std::pmr::deque<InputEvent>& events) {
   out.put(static_cast<std::uint64_t>(events.size()));
   for (const InputEvent& event : events) {
     out.put(event.kind);
     out.put(std::string_view(event.key));
-    put(out, event.object);
+    out.put(event.object);
   }
 }
 
-void load_input(ByteReader& in, std::deque<InputEvent>& events) {
+void load_input(ByteReader& in, std::pmr::deque<InputEvent>& events) {
   const std::size_t count = in.get_count(2 * sizeof(std::uint64_t));
   for (std::size_t i = 0; i < count; ++i) {
     InputEvent event;
     event.kind = in.get<InputEvent::Kind>();
     if (event.kind > InputEvent::Kind::Menu) ByteReader::fail();
     event.key = in.get_string();
-    event.object = get_object(in);
+    event.object = in.get_object();
     events.push_back(std::move(event));
   }
 }
 
 }  // namespace
 
-std::vector<std::uint8_t> World::save(std::uint64_t program_fingerprint) const {
+std::pmr::vector<std::uint8_t> World::save(std::uint64_t program_fingerprint) const {
   if (stepping_ || advancing_) throw Error(ErrorCode::Busy, "a world cannot be saved from inside a step");
-  ByteWriter body;
-  write_image(body);
-  ByteWriter out;
+  ByteWriter out(memory_);
   out.raw(kMagic.data(), kMagic.size());
   out.put(kVersion);
   out.put(program_fingerprint);
-  out.put(static_cast<std::uint64_t>(body.bytes().size()));
-  out.put(checksum(body.bytes().data(), body.bytes().size()));
-  out.raw(body.bytes().data(), body.bytes().size());
+  const std::size_t seal = out.bytes().size();  // length and checksum of the rest, known at the end
+  out.put(std::uint64_t{0});
+  out.put(std::uint64_t{0});
+  const std::size_t start = out.bytes().size();
+  write_image(out);
+  const std::uint64_t length = out.bytes().size() - start;
+  out.overwrite(seal, length);
+  out.overwrite(seal + sizeof length, checksum(out.bytes().data() + start, length));
   return out.take();
 }
 
@@ -95,7 +99,7 @@ void World::write_image(ByteWriter& out) const {
   out.put(parts.gravity);
   out.put(parts.exact_schedule);
   out.put(parts.at_impact);
-  put(out, parts.first_handler);
+  out.put(parts.first_handler);
   parts.near.save(out);
   save_input(out, parts.input);
   out.put(behaviour_ != nullptr);
@@ -140,7 +144,7 @@ void World::read_image(ByteReader& in, World& fresh) const {
   parts.gravity = in.get_vector();
   parts.exact_schedule = in.get_bool();
   parts.at_impact = in.get_bool();
-  parts.first_handler = get_object(in);
+  parts.first_handler = in.get_object();
   parts.near.load(in, parts.objects);
   load_input(in, parts.input);
 }
@@ -158,7 +162,7 @@ void World::swap_state(World& other) {
 
 void World::load(const std::uint8_t* data, std::size_t size, std::uint64_t program_fingerprint) {
   if (stepping_ || advancing_) throw Error(ErrorCode::Busy, "a world cannot be loaded from inside a step");
-  ByteReader in = open_image(data, size, program_fingerprint);
+  ByteReader in = open_image(data, size, program_fingerprint, memory_);
   World fresh(memory_);
   read_image(in, fresh);
   const bool scripted = in.get_bool();

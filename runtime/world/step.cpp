@@ -1,7 +1,6 @@
 // One iteration of a world, and the stages of a sub-step within it (DESIGN 4, CLASSES 2.1 and 2.2).
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 
 #include "runtime/base/error.hpp"
@@ -36,20 +35,6 @@ class MomentOf {
   double before_;
 };
 
-/// Adds the wall time of a scope to a counter. Time is reported, never read by the simulation.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& seconds) : seconds_(seconds), start_(Time::now()) {}
-  ~Stopwatch() { seconds_ += std::chrono::duration<double>(Time::now() - start_).count(); }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  using Time = std::chrono::steady_clock;
-  double& seconds_;
-  Time::time_point start_;
-};
-
 constexpr std::uint32_t bit(EffectId id) { return 1U << static_cast<unsigned>(id); }
 
 void require_step(std::string_view name, double seconds) {
@@ -79,13 +64,14 @@ void World::set_integration_step(double seconds) {
 void World::step() {
   if (stepping_) throw Error(ErrorCode::Busy, "a step cannot be taken from inside a step");
   const Flag stepping(stepping_);
+  const StageScope iteration("iteration", observer_);
   Parts& parts = *parts_;
   parts.effects.begin_step();
   deliver_input();
   parts.objects.join();
   if (behaviour_) {
     Effect& script = parts.effects[EffectId::Script];
-    const Stopwatch watch(script.seconds);
+    const StageScope stage(script, observer_);
     const auto& first = parts.objects.iterating();
     const auto& second = parts.objects.post_iterating();
     const bool any = !first.empty() || !second.empty();
@@ -109,6 +95,8 @@ void World::step() {
 }
 
 void World::deliver_input() {
+  if (parts_->input.empty()) return;
+  const StageScope stage(parts_->effects[EffectId::Input], observer_);
   // What arrives from inside a handler waits for the next step; what an error leaves behind, too.
   for (std::size_t left = parts_->input.size(); left > 0; --left) {
     InputEvent event = std::move(parts_->input.front());
@@ -126,7 +114,7 @@ void World::run_scheduled() {
   Parts& parts = *parts_;
   if (parts.schedule.size() == 0) return;
   Effect& effect = parts.effects[EffectId::Schedule];
-  const Stopwatch watch(effect.seconds);
+  const StageScope stage(effect, observer_);
   const double until = parts.exact_schedule ? clock_.time : clock_.time + clock_.iteration_step;
   Schedule::Entry entry;
   while (parts.schedule.take_due(parts.objects, until, entry)) {
@@ -175,7 +163,7 @@ void World::run_substeps(double h, std::uint64_t count) {
       if (signature != parts.stage_signature) parts.rebuild_stages(signature);
       for (const Parts::Stage& stage : parts.stages) {
         Effect& effect = parts.effects[stage.effect];
-        const Stopwatch watch(effect.seconds);
+        const StageScope scope(effect, observer_);
         ++effect.calls;
         effect.items += stage.items(parts);
         stage.run(parts, h);

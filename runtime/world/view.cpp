@@ -12,15 +12,12 @@ struct Saver {
   void field(const std::int32_t& value) { out.put(value); }
   void field(const std::uint64_t& value) { out.put(value); }
   void field(const Vector3& value) { out.put(value); }
-  void field(const std::string& value) { out.put(std::string_view(value)); }
-  void field(const ObjectId& value) {
-    out.put(value.index);
-    out.put(value.generation);
-  }
+  void field(const std::pmr::string& value) { out.put(std::string_view(value)); }
+  void field(const ObjectId& value) { out.put(value); }
   void field(const CameraState& value) { value.save(out); }
-  void field(const std::vector<std::string>& value) {
+  void field(const std::pmr::vector<std::pmr::string>& value) {
     out.put(static_cast<std::uint64_t>(value.size()));
-    for (const std::string& text : value) field(text);
+    for (const std::pmr::string& text : value) field(text);
   }
 };
 
@@ -31,15 +28,12 @@ struct Loader {
   void field(std::int32_t& value) { value = in.get<std::int32_t>(); }
   void field(std::uint64_t& value) { value = in.get<std::uint64_t>(); }
   void field(Vector3& value) { value = in.get_vector(); }
-  void field(std::string& value) { value = in.get_string(); }
-  void field(ObjectId& value) {
-    value.index = in.get<std::uint32_t>();
-    value.generation = in.get<std::uint32_t>();
-  }
+  void field(std::pmr::string& value) { value = in.get_text(); }
+  void field(ObjectId& value) { value = in.get_object(); }
   void field(CameraState& value) { value.load(in); }
-  void field(std::vector<std::string>& value) {
+  void field(std::pmr::vector<std::pmr::string>& value) {
     value.resize(in.get_count(sizeof(std::uint64_t)));
-    for (std::string& text : value) field(text);
+    for (std::pmr::string& text : value) field(text);
   }
 };
 
@@ -50,12 +44,12 @@ struct Mixer {
   void field(const std::int32_t& value) { hasher.add(static_cast<std::uint64_t>(static_cast<std::int64_t>(value))); }
   void field(const std::uint64_t& value) { hasher.add(value); }
   void field(const Vector3& value) { hasher.add(value); }
-  void field(const std::string& value) { hasher.add(std::string_view(value)); }
+  void field(const std::pmr::string& value) { hasher.add(std::string_view(value)); }
   void field(const ObjectId& value) { hasher.add(static_cast<std::uint64_t>(value.index) << 32 | value.generation); }
   void field(const CameraState& value) { value.hash(hasher); }
-  void field(const std::vector<std::string>& value) {
+  void field(const std::pmr::vector<std::pmr::string>& value) {
     hasher.add(static_cast<std::uint64_t>(value.size()));
-    for (const std::string& text : value) field(text);
+    for (const std::pmr::string& text : value) field(text);
   }
 };
 
@@ -111,6 +105,19 @@ Vector3 Pan::advance(const Vector3& now) {
   const Vector3 next = steps == 1 ? goal : Vector3(now + (goal - now) / steps);
   --steps;
   return next;
+}
+
+ViewState::ViewState(std::pmr::memory_resource* memory)
+    : backdrop(memory),
+      texts{{{std::pmr::string(memory)},
+             {std::pmr::string(memory)},
+             {std::pmr::string(memory)},
+             {std::pmr::string(memory)},
+             {std::pmr::string(memory)},
+             {std::pmr::string(memory)},
+             {std::pmr::string(memory)},
+             {std::pmr::string(memory)}}} {
+  static_assert(kOverlayTextCount == 8);
 }
 
 void ViewState::save(ByteWriter& out) const {

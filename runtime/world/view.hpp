@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory_resource>
 #include <string>
 #include <vector>
 
@@ -34,16 +35,18 @@ struct FogState {
 };
 
 struct BackdropState {
+  explicit BackdropState(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) : skybox(memory) {}
+
   Vector3 color{0.5, 0.7, 1};
   ObjectId texture;                            // an Image object or null
   double scroll_x = 0.001, scroll_y = 0.0001;  // texture widths per drawn frame
-  std::vector<std::string> skybox;             // six files: front, back, left, right, top, bottom; empty: none
+  std::pmr::vector<std::pmr::string> skybox;   // six files: front, back, left, right, top, bottom; empty: none
   bool mountains = false;                      // the built-in skybox
 };
 
 /// One line of text over the view; shown while it is not empty.
 struct OverlayText {
-  std::string text;
+  std::pmr::string text;
   double x = -0.95, y = -0.95;  // window coordinates, -1 to 1
   Vector3 color{0, 0, 0};
 };
@@ -80,6 +83,9 @@ struct Pan {
 };
 
 struct ViewState {
+  /// @param memory  where its texts take their bytes
+  explicit ViewState(std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+
   CameraState camera;  // the controller's main one
   Pan offset_pan, target_pan;
   bool frozen = false;  // bodies stand still until `offset_pan` is over

@@ -19,13 +19,16 @@ World::Parts::Parts(World& owner, std::pmr::memory_resource* memory)
       handlers(memory),
       collisions(memory, *owner.bodies_),
       stages(memory),
-      near(memory) {}
+      near(memory),
+      input(memory),
+      loaders(memory) {}
 
 World::World(std::pmr::memory_resource* memory, std::uint64_t seed)
     : memory_(memory),
-      bodies_(std::make_unique<Bodies>(memory)),
-      parts_(std::make_unique<Parts>(*this, memory)),
-      random_(seed) {}
+      bodies_(make_in<Bodies>(memory, memory)),
+      parts_(make_in<Parts>(memory, *this, memory)),
+      random_(seed),
+      view_(memory) {}
 
 World::~World() = default;
 
@@ -60,8 +63,8 @@ void World::set_user(ObjectId id, std::uint64_t user) {
 ClassId World::class_of(ObjectId id) const { return parts_->objects.at(id).cls; }
 std::size_t World::object_count() const { return parts_->objects.count(); }
 
-std::vector<ObjectId> World::objects() const {
-  std::vector<ObjectId> live;
+std::pmr::vector<ObjectId> World::objects() const {
+  std::pmr::vector<ObjectId> live(memory_);
   live.reserve(parts_->objects.count());
   for (const ObjectId id : parts_->objects.order()) {
     if (parts_->objects.alive(id)) live.push_back(id);
@@ -79,7 +82,7 @@ Resource* World::resource(ObjectId id) const {
 }
 
 void World::add_resource_kind(std::string_view kind, ResourceLoader loader) {
-  parts_->loaders.insert_or_assign(std::string(kind), loader);
+  parts_->loaders.insert_or_assign(std::pmr::string(kind, memory_), loader);
 }
 
 // --- bodies ---------------------------------------------------------------------------------------------------------
@@ -100,11 +103,11 @@ BodyIndex World::body(ObjectId id) const {
 
 ObjectId World::object_of(BodyIndex body) const { return bodies_->used(body) ? bodies_->owner(body) : ObjectId{}; }
 
-std::vector<ObjectId> World::touching(ObjectId id) const {
+std::pmr::vector<ObjectId> World::touching(ObjectId id) const {
   const BodyIndex self = body(id);
   const Pose pose{bodies_->location(self), bodies_->orientation(self)};
   const Eigen::AlignedBox3d box = bodies_->bounds(self);
-  std::vector<ObjectId> found;
+  std::pmr::vector<ObjectId> found(memory_);
   for (const ObjectId other : parts_->objects.order()) {
     if (other == id || !has_body(other)) continue;
     const BodyIndex b = body(other);
@@ -122,6 +125,7 @@ std::vector<ObjectId> World::touching(ObjectId id) const {
 
 void World::update_neighbors() {
   Parts& parts = *parts_;
+  const StageScope stage(parts.effects[EffectId::Neighbors], observer_);
   parts.near.clear(parts.objects.slot_count());
   parts.effects.turn_on(EffectId::Neighbors, clock_.iteration, {});
   for (const ObjectId id : parts.objects.order()) {
@@ -136,13 +140,21 @@ void World::update_neighbors() {
   ++parts.effects[EffectId::Neighbors].calls;
 }
 
+// Answers that are only looked up are not timed: reading the clock would cost as much.
+
 const std::pmr::vector<ObjectId>& World::neighbors(ObjectId id) {
-  ++parts_->effects[EffectId::Neighbors].items;
+  Effect& effect = parts_->effects[EffectId::Neighbors];
+  ++effect.items;
+  if (parts_->near.answered()) return parts_->near.neighbors(id);
+  const StageScope stage(effect, observer_);
   return parts_->near.neighbors(id);
 }
 
 std::span<const std::uint64_t> World::neighbor_users(ObjectId id) {
-  ++parts_->effects[EffectId::Neighbors].items;
+  Effect& effect = parts_->effects[EffectId::Neighbors];
+  ++effect.items;
+  if (parts_->near.answered()) return parts_->near.users(id);
+  const StageScope stage(effect, observer_);
   return parts_->near.users(id);
 }
 
@@ -196,6 +208,8 @@ void World::announce(ObjectId announcer, std::string_view message) {
   // A copy: handlers may observe, unobserve, free anyone, and announce again.
   std::pmr::vector<Notifications::Registration> wanted(memory_);
   parts_->notifications.collect(parts_->objects, announcer, text, wanted);
+  if (wanted.empty()) return;
+  const StageScope stage("notifications", observer_);
   for (const auto& registration : wanted) {
     if (!alive(registration.observer)) continue;
     ++parts_->effects[EffectId::Notifications].calls;

@@ -18,11 +18,12 @@
 #include "runtime/world/behaviour.hpp"
 #include "runtime/world/effects.hpp"
 #include "runtime/world/resource.hpp"
+#include "runtime/world/stage_observer.hpp"
 #include "runtime/world/view.hpp"
 
 namespace breve {
 
-class World {
+class World : public InMemory {
  public:
   /// @param memory  where every container of the world takes its bytes; outlives the world
   explicit World(std::pmr::memory_resource* memory, std::uint64_t seed = 1);
@@ -31,6 +32,8 @@ class World {
   World& operator=(const World&) = delete;
 
   void set_behaviour(Behaviour* behaviour);  // not owned; outlives stepping
+  /// Tell `observer` of the stages of the step from now on; null: nobody. Not owned. Not from inside a step.
+  void set_stage_observer(StageObserver* observer) { observer_ = observer; }
 
   // --- objects ---------------------------------------------------------------------------------------------------
   /// A new live instance. It joins the iteration lists at the start of the next step, in order of creation.
@@ -43,8 +46,12 @@ class World {
   void set_user(ObjectId id, std::uint64_t user);
   ClassId class_of(ObjectId id) const;
   /// Live objects in order of creation.
-  std::vector<ObjectId> objects() const;
+  std::pmr::vector<ObjectId> objects() const;
   std::size_t object_count() const;
+  /// The script side has replaced its program: objects and collision handlers go over to other class numbers, and who
+  /// iterates is decided anew. All or nothing. Error{Busy} inside a step, Error{Argument} if a live object's class is gone.
+  /// @param classes  by old number
+  void reclass(std::span<const ClassChange> classes);
 
   // --- native data of an object ----------------------------------------------------------------------------------
   void attach(ObjectId id, std::unique_ptr<Resource> resource);  // replaces an earlier one
@@ -60,7 +67,7 @@ class World {
   Bodies& bodies() { return *bodies_; }
   const Bodies& bodies() const { return *bodies_; }
   /// Objects whose shapes intersect this one's now and that are solvable (physics-enabled, Stationary), creation order.
-  std::vector<ObjectId> touching(ObjectId id) const;
+  std::pmr::vector<ObjectId> touching(ObjectId id) const;
 
   // --- neighbours (centres only; see docs/language.md) -------------------------------------------------------------
   /// Record where everything is: neighbours are asked of this moment until the next call.
@@ -130,7 +137,7 @@ class World {
   const Effects& effects() const;
   std::uint64_t hash() const;
   /// The whole world with its script side, as a checked, versioned image. Error{Busy} inside a step.
-  std::vector<std::uint8_t> save(std::uint64_t program_fingerprint) const;
+  std::pmr::vector<std::uint8_t> save(std::uint64_t program_fingerprint) const;
   /// Replace this world's state by an image's. Error{Image} for a damaged or foreign image; the world is then
   /// unchanged.
   void load(const std::uint8_t* data, std::size_t size, std::uint64_t program_fingerprint);
@@ -160,6 +167,7 @@ class World {
 
   std::pmr::memory_resource* memory_;
   Behaviour* behaviour_ = nullptr;
+  StageObserver* observer_ = nullptr;
   std::unique_ptr<Bodies> bodies_;
   std::unique_ptr<Parts> parts_;
   Random random_;

@@ -31,20 +31,26 @@ Operand FunctionCompiler::function_call(const ast::FunctionCall& f, const ast::E
   const auto entry = builder_.find_function(f.name, f.arguments.size());
   if (!entry) {
     if (builder_.function_exists(f.name)) {
+      std::string counts;
+      for (std::size_t n = 0; n <= 8; ++n)
+        if (builder_.find_function(f.name, n)) counts += (counts.empty() ? "" : " or ") + std::to_string(n);
       builder_.diagnostics().error(e.span, "argument-count",
-                                   "function '" + f.name + "' does not take " + std::to_string(f.arguments.size()) +
-                                       (f.arguments.size() == 1 ? " argument" : " arguments"));
+                                   "function '" + f.name + "' takes " + counts +
+                                       (counts == "1" ? " argument, not " : " arguments, not ") +
+                                       std::to_string(f.arguments.size()),
+                                   "the arguments stand in the parentheses, with commas between them");
     } else {
-      const auto near = nearest(f.name, builder_.function_names());
-      builder_.diagnostics().error(
-          e.span, "unknown-function", "unknown function '" + f.name + "'",
-          near.empty() ? "methods are called as (object " + f.name + ")" : "did you mean '" + near + "'?");
+      builder_.diagnostics().error(e.span, "unknown-function", "unknown function '" + f.name + "'",
+                                   unknown_function_help(f, e.span));
     }
     for (const auto& argument : f.arguments) emit_.release(expr(*argument));
     const auto target = emit_.temporary(StaticType::Any);
     zero(target);
     return target;
   }
+  if (f.name == "atan2" && f.arguments.size() == 1)
+    builder_.lint(e.span, "lint-one-argument-atan2", "atan2 with one argument is atan",
+                  "for an angle in all four quadrants write atan2(y, x)");
   const auto signature = entry->native->signature;
   std::vector<StaticType> types;
   for (std::size_t i = 0; i < f.arguments.size(); ++i) types.push_back(type_of_letter(signature[i]));
@@ -217,6 +223,10 @@ void FunctionCompiler::call(const ast::Call& c, const ast::Expr& e) {
     emit_.at(outer);
     return;
   }
+  if (receiver.type != StaticType::List && receiver.type != StaticType::Any && receiver.type != StaticType::Null)
+    builder_.lint(c.receiver->span, "lint-call-on-value",
+                  "a method is called on a value that has none: only objects and lists of objects have methods",
+                  "declare a variable for objects as (object)");
   // A dynamic receiver may be a list: the call then runs once for each element, arguments evaluated afresh.
   const auto box = boxed(receiver);
   const auto object = emit_.temporary(StaticType::Object);

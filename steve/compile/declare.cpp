@@ -34,20 +34,28 @@ void ProgramBuilder::declare(ast::Class tree) {
     return true;
   };
   const ClassInfo* parent = nullptr;
+  bool reversed = false;
   if (tree.parent != "NULL") {
     parent = class_named(tree.parent);
     if (!parent) {
-      if (is_later_class(tree.parent)) {
+      // `Bird : Mobile` where `Mobile : Bird` is meant: the one that is known is the parent.
+      const ClassInfo* known = class_named(tree.name);
+      reversed = known != nullptr && !is_later_class(tree.parent);
+      if (reversed) {
+        diagnostics_.error(tree.parent_span, "class-header",
+                           "the parent stands before the ':', the new class behind it",
+                           "write: " + tree.name + " : " + tree.parent + " {");
+        std::swap(tree.name, tree.parent);
+        parent = known;
+      } else if (is_later_class(tree.parent)) {
         report_unknown_class(tree.parent, tree.parent_span);
       } else {
-        std::vector<std::string_view> names;
-        for (const auto& cls : program_->classes_) names.push_back(cls->name);
-        const auto near = nearest(tree.parent, names);
+        const auto near = near_class(tree.parent);
         diagnostics_.error(
             tree.parent_span, "unknown-class", "unknown parent class '" + tree.parent + "'",
             near.empty() ? "a parent must be defined before its children" : "did you mean '" + near + "'?");
       }
-      parent = class_named("Object");
+      if (!parent) parent = class_named("Object");
     }
   }
   if (clash(tree.name, tree.name_span) || clash(tree.alias, tree.alias_span)) return;
@@ -77,13 +85,14 @@ void ProgramBuilder::declare_variables(const ast::Class& tree, ClassInfo& info) 
   std::set<std::string> names;
   for (const auto& v : tree.variables) {
     if (!names.insert(v.name).second) {
-      diagnostics_.error(v.span, "redefinition", "variable '" + v.name + "' is declared twice in class " + tree.name);
+      diagnostics_.error(v.span, "redefinition", "variable '" + v.name + "' is declared twice in class " + tree.name,
+                         "remove one of the two");
       continue;
     }
     VariableInfo variable;
     variable.name = symbol(v.name);
     variable.type = static_type(v.type.kind);
-    variable.array_size = v.type.array_size;
+    variable.array_size = v.type.broken ? kBrokenType : v.type.array_size;
     if (!v.type.class_name.empty()) variable.class_name = symbol(v.type.class_name);
     variable.slot = static_cast<std::uint32_t>(slot);
     variable.span = v.span;
@@ -118,7 +127,9 @@ void ProgramBuilder::declare_methods(const ast::Class& tree, ClassInfo& info) {
     if (duplicate)
       diagnostics_.error(m.name_span, "redefinition",
                          "class " + tree.name + " defines method '" + m.name + "' with " +
-                             std::to_string(m.parameters.size()) + " parameters twice");
+                             std::to_string(m.parameters.size()) +
+                             (m.parameters.size() == 1 ? " parameter twice" : " parameters twice"),
+                         "give one of them another name or number of parameters");
     for (const auto& p : m.parameters) checked_.push_back(p.type);
     if (m.native)
       bind_native(m, *method);
@@ -131,7 +142,8 @@ void ProgramBuilder::declare_methods(const ast::Class& tree, ClassInfo& info) {
 void ProgramBuilder::declare_parameter(const ast::Parameter& tree, MethodInfo& method,
                                        std::set<std::string>& variables) {
   if (!variables.insert(tree.variable).second)
-    diagnostics_.error(tree.variable_span, "redefinition", "parameter '" + tree.variable + "' is declared twice");
+    diagnostics_.error(tree.variable_span, "redefinition", "parameter '" + tree.variable + "' is declared twice",
+                       "rename one of the two");
   ParameterInfo p;
   p.keyword = symbol(tree.keyword);
   p.variable = symbol(tree.variable);

@@ -105,8 +105,11 @@ Operand FunctionCompiler::array_item(const ast::ArrayItem& a, const ast::Expr& e
 
 Operand FunctionCompiler::array_slot(const Variable& variable, const ast::Expr& index, std::string_view name) {
   if (variable.array_size() < 0) {
-    builder_.diagnostics().error(emit_.span(), "not-an-array", "'" + std::string(name) + "' is not an array",
-                                 "use " + std::string(name) + "{i} for an element of a list, hash or vector");
+    if (variable.local) variable.local->used = true;
+    if (variable.array_size() != kBrokenType)
+      builder_.diagnostics().error(emit_.span(), "not-an-array", "'" + std::string(name) + "' is not an array",
+                                   "elements of lists, hashes and vectors are taken with braces: " + std::string(name) +
+                                       "{i}");
     return emit_.temporary(StaticType::Int);
   }
   if (variable.local) variable.local->used = true;

@@ -13,11 +13,13 @@
 
 namespace breve::steve {
 
-class ProgramBuilder;
+class CompileScope;
 
 class FunctionCompiler {
  public:
-  FunctionCompiler(ProgramBuilder& builder, const ClassInfo& cls, const ast::Method& method, MethodInfo& info);
+  /// @param dynamic  names of further locals, which hold values of any type: nothing in a file declares such
+  FunctionCompiler(CompileScope& builder, const ClassInfo& cls, const ast::Method& method, MethodInfo& info,
+                   std::vector<std::string> dynamic = {});
   void compile();
 
  private:
@@ -56,6 +58,8 @@ class FunctionCompiler {
   void declare_locals();
   std::optional<Variable> find(std::string_view name);
   std::optional<Variable> need(std::string_view name, const Span& span);  // reports an unknown one
+  std::string unknown_name_help(std::string_view name);
+  std::string unknown_function_help(const ast::FunctionCall& f, const Span& span);
   std::int32_t text(std::string what);
   std::int32_t text_for(const Variable& variable, std::string_view name);
 
@@ -101,6 +105,7 @@ class FunctionCompiler {
   Operand binary(ast::BinaryOp op, Operand a, Operand b, const Operand* into);
   std::optional<Operand> with_constant(ast::BinaryOp op, const Operand& left, double number, const Operand* into);
   std::optional<Operand> vector_binary(ast::BinaryOp op, Operand a, Operand b, const Operand* into);
+  void lint_operands(ast::BinaryOp op, StaticType a, StaticType b);
   Operand generic_binary(ast::BinaryOp op, const Operand& a, const Operand& b);
   Operand logical(const ast::Expr& e, const Operand* into);
   Operand magnitude(const ast::Magnitude& m, const Operand* into);
@@ -159,12 +164,13 @@ class FunctionCompiler {
   void keep_value(const Operand& value);
   void keep_result();
 
-  ProgramBuilder& builder_;
+  CompileScope& builder_;
   const ClassInfo& class_;
   const ast::Method& method_;
   MethodInfo& info_;
   Emitter emit_;
   std::unordered_map<std::string, Local> locals_;
+  std::vector<std::string> dynamic_;
   Operand last_;  // the value of the last expression statement, if some path needs it
   bool has_last_ = false;
 };

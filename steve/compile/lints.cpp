@@ -1,76 +1,129 @@
-// Checks of the whole program after loading: calls that no class answers, variables that nobody uses, controllers
-// that forget their world. All are warnings: old programs that run must go on running.
+// Checks of the whole program after loading: calls that no class answers, controllers that forget their world. All
+// are warnings: old programs that run must go on running. A call is complained of only where no receiver that it can
+// have would answer it.
 #include <algorithm>
-#include <set>
+#include <unordered_map>
 
 #include "steve/compile/builder.hpp"
 #include "steve/compile/function_compiler.hpp"
+#include "steve/compile/wording.hpp"
 
 namespace breve::steve {
 
+namespace {
+
+constexpr std::size_t kMostHeaders = 3;
+
+bool accepts(const MethodInfo& method, const CallSite& site) {
+  if (method.parameters.size() < site.arguments.size()) return false;
+  const auto given = [&](Symbol keyword) {
+    return std::count_if(site.arguments.begin(), site.arguments.end(),
+                         [&](const auto& a) { return a.keyword == keyword; });
+  };
+  std::ptrdiff_t taken = 0;
+  for (const auto& p : method.parameters) {
+    if (given(p.keyword) > 1 || (given(p.keyword) == 0 && !p.has_default)) return false;
+    taken += given(p.keyword);
+  }
+  return taken == static_cast<std::ptrdiff_t>(site.arguments.size());
+}
+
+/// The classes that may answer a call: those above and below the one that the receiver is known to be of.
+struct Receiver {
+  const ClassInfo* cls = nullptr;  // null: any class
+  bool above_only = false;         // super
+  bool reaches(const ClassInfo& owner) const {
+    return cls == nullptr || cls->derives_from(owner) || (!above_only && owner.derives_from(*cls));
+  }
+};
+
+/// The class that an expression is known to give an object of; null if it is not known.
+const ClassInfo* class_of(const ast::Expr& e, const ast::Method& method, const ClassInfo& cls, const Program& program) {
+  if (std::holds_alternative<ast::Self>(e.node)) return &cls;
+  if (const auto* made = std::get_if<ast::NewExpr>(&e.node); made && !made->count)
+    return program.find_class(made->class_name);
+  const auto* name = std::get_if<ast::Name>(&e.node);
+  if (!name) return nullptr;
+  const ast::TypeRef* type = nullptr;
+  for (const auto& p : method.parameters)
+    if (p.variable == name->name) type = &p.type;
+  for (const auto& v : method.locals)
+    if (v.name == name->name) type = &v.type;
+  if (type) return type->class_name.empty() ? nullptr : program.find_class(type->class_name);
+  const Symbol symbol = program.symbols().find(name->name);
+  const auto* variable = symbol == kNoSymbol ? nullptr : cls.find_variable(symbol);
+  if (!variable || variable->class_name == kNoSymbol) return nullptr;
+  return program.find_class(program.symbols().name(variable->class_name));
+}
+
+}  // namespace
+
 void ProgramBuilder::check_calls() {
-  std::set<std::string_view> names;
+  std::unordered_map<Symbol, std::vector<const MethodInfo*>> methods;
   for (const auto& cls : program_->classes_)
-    for (const auto& method : cls->methods) names.insert(symbol_name(method->name));
-  const std::vector<std::string_view> selectors(names.begin(), names.end());
-  for (const auto& site : code().sites)
-    if (!embedded(site.span)) check_site(site, selectors);
-}
-
-void ProgramBuilder::check_site(const CallSite& site, const std::vector<std::string_view>& selectors) {
-  const auto& name = symbol_name(site.selector);
-  if (site.super_of && name == "init")
-    lint(site.span, "lint-super-init", "'super init' runs the parent's init a second time",
-         "init methods are called by themselves, the root's first: remove this call");
-  bool known = name == "iterate", fits = known;
-  for (const auto& cls : program_->classes_) {
-    for (const auto& method : cls->methods) {
-      if (method->name != site.selector) continue;
-      known = true;
-      bool all = method->parameters.size() >= site.arguments.size();
-      for (const auto& argument : site.arguments) {
-        all = all && std::any_of(method->parameters.begin(), method->parameters.end(),
-                                 [&](const auto& p) { return p.keyword == argument.keyword; });
-      }
-      fits = fits || all;
-    }
-  }
-  if (!known) {
-    const auto near = nearest(name, selectors);
-    lint(site.span, "lint-unknown-method", "no class has a method '" + name + "'",
-         near.empty() ? "" : "did you mean '" + near + "'?");
-  } else if (!fits) {
-    std::string keywords;
-    for (const auto& argument : site.arguments)
-      keywords += (keywords.empty() ? "" : " ") + symbol_name(argument.keyword);
-    lint(site.span, "lint-keywords", "no method '" + name + "' takes the keywords: " + keywords);
-  }
-}
-
-void ProgramBuilder::check_unused_variables() {
-  std::set<std::string> used;
+    for (const auto& method : cls->methods) methods[method->name].push_back(method.get());
   for (const auto& [tree, info] : declared_) {
+    if (embedded(info->span)) continue;
     for (const auto& method : tree.methods) {
-      for (const auto& statement : method.body) {
-        walk_statements(*statement, [&](const ast::Stmt& inner) {
-          if (const auto* loop = std::get_if<ast::Foreach>(&inner.node)) used.insert(loop->variable);
-        });
-        walk(*statement, [&](const ast::Expr& e) {
-          if (const auto* n = std::get_if<ast::Name>(&e.node)) used.insert(n->name);
-          if (const auto* a = std::get_if<ast::ArrayItem>(&e.node)) used.insert(a->name);
-          if (const auto* m = std::get_if<ast::Member>(&e.node)) used.insert(m->name);
-          if (const auto* s = std::get_if<ast::StringLit>(&e.node)) {
-            for (const auto& part : s->parts) used.insert(part.name);
-            used.insert(s->texts.begin(), s->texts.end());
-          }
-        });
-      }
+      const auto visit = [&](const ast::Expr& e) {
+        if (const auto* call = std::get_if<ast::Call>(&e.node))
+          check_call(*call, e, method, *info, methods[symbol(call->selector)]);
+      };
+      for (const auto& statement : method.body) walk(*statement, visit);
     }
   }
-  for (const auto& [tree, info] : declared_)
-    for (const auto& v : tree.variables)
-      if (!used.contains(v.name))
-        lint(v.span, "lint-unused-variable", "instance variable '" + v.name + "' is never used");
+}
+
+void ProgramBuilder::check_call(const ast::Call& call, const ast::Expr& e, const ast::Method& method,
+                                const ClassInfo& cls, const std::vector<const MethodInfo*>& named) {
+  const bool super = std::holds_alternative<ast::Super>(call.receiver->node);
+  if (super && call.selector == "init")
+    lint(call.selector_span, "lint-super-init", "'super init' runs the parent's init a second time",
+         "init methods are called by themselves, the root's first: remove this call");
+  if (call.selector == "iterate" && call.keywords.empty()) return;
+  if (super && !cls.parent) return;
+  const Receiver receiver{super ? cls.parent : class_of(*call.receiver, method, cls, *program_), super};
+  std::vector<const MethodInfo*> candidates;
+  for (const auto* candidate : named)
+    if (receiver.reaches(*candidate->owner)) candidates.push_back(candidate);
+  if (candidates.empty()) return report_unknown_method(call, receiver.cls);
+  CallSite site;
+  site.selector = symbol(call.selector);
+  site.span = call.selector_span;
+  if (super) site.super_of = &cls;
+  for (const auto& keyword : call.keywords)
+    site.arguments.push_back({symbol(keyword.name), StaticType::Any, 0, -1, keyword.span});
+  for (const auto* candidate : candidates)
+    if (accepts(*candidate, site)) return;
+  if (candidates.size() == 1) {
+    const auto fault = call_fault(site, *candidates.front(), program_->symbols(), program_->sources(), e.span);
+    lint(fault.span.line != 0 ? fault.span : call.selector_span, "lint-keywords", fault.message, fault.help);
+    return;
+  }
+  std::string help;
+  for (std::size_t i = 0; i < std::min(candidates.size(), kMostHeaders); ++i)
+    help += (i == 0 ? "it takes " : ", or ") + keyword_words(*candidates[i], program_->symbols()) + " (class " +
+            candidates[i]->owner->name + ")";
+  lint(call.selector_span, "lint-keywords",
+       "no method '" + call.selector + "' takes " +
+           (call.keywords.empty() ? std::string("a call without keywords") : "these keywords"),
+       help);
+}
+
+void ProgramBuilder::report_unknown_method(const ast::Call& call, const ClassInfo* cls) {
+  if (cls) {
+    lint(call.selector_span, "lint-unknown-method",
+         "neither class " + cls->name + " nor its parents and children have a method '" + call.selector + "'",
+         unknown_method_help(call.selector, cls, *program_));
+    return;
+  }
+  std::vector<std::string_view> selectors;
+  for (const auto& known : program_->classes_)
+    for (const auto& method : known->methods) selectors.push_back(symbol_name(method->name));
+  std::sort(selectors.begin(), selectors.end());
+  const auto near = nearest(call.selector, selectors);
+  lint(call.selector_span, "lint-unknown-method", "no class has a method '" + call.selector + "'",
+       near.empty() ? "define it with: + to " + call.selector + ":" : "did you mean '" + near + "'?");
 }
 
 void ProgramBuilder::check_iterate() {
@@ -93,6 +146,32 @@ void ProgramBuilder::check_special_methods() {
       lint(method->span, "lint-special-parameters", "'" + name + "' with parameters is never called by itself",
            "take the parameters away, or give the method another name");
     }
+}
+
+// A call looks for the fewest parameters first: a parent's shorter method wins over one that only adds optional ones.
+void ProgramBuilder::check_overrides() {
+  for (const auto& cls : program_->classes_) {
+    if (embedded(cls->span)) continue;
+    for (const auto& method : cls->methods) {
+      const MethodInfo* winner = nullptr;
+      for (const ClassInfo* c = cls->parent; c && !winner; c = c->parent)
+        for (const auto& other : c->methods) {
+          if (other->name != method->name || other->parameters.size() >= method->parameters.size()) continue;
+          const bool extends = std::all_of(method->parameters.begin(), method->parameters.end(), [&](const auto& p) {
+            const bool shared = std::any_of(other->parameters.begin(), other->parameters.end(),
+                                            [&](const auto& q) { return q.keyword == p.keyword; });
+            return shared || p.has_default;
+          });
+          const bool own = cls->find_method(method->name, other->parameters.size()) != other.get();
+          if (extends && !own) winner = other.get();
+        }
+      if (winner)
+        lint(method->span, "lint-bypassed-override",
+             "calls without the optional keywords reach '" + symbol_name(method->name) + "' of class " +
+                 winner->owner->name + ", not this one",
+             "define it here with the parent's parameters too, and call this one from there");
+    }
+  }
 }
 
 }  // namespace breve::steve

@@ -28,13 +28,12 @@ bool mentions(const LibraryFile& file, std::string_view name) {
 }
 }  // namespace
 
-ProgramBuilder::ProgramBuilder(ModuleResolver& resolver) : program_(new Program), resolver_(resolver) {
-  std::uint32_t number = 0;
-  for (const auto& native : functions()) functions_.emplace(native.name, FunctionEntry{number++, &native});
+ProgramBuilder::ProgramBuilder(ModuleResolver& resolver)
+    : CompileScope(std::shared_ptr<Program>(new Program), function_table()), resolver_(resolver) {
   for (const auto& native : library_natives()) natives_.emplace(native.name, &native);
 }
 
-CompileResult ProgramBuilder::build(ModuleSource main) {
+CompileResult ProgramBuilder::build(ModuleSource main, const AllowedLints& allowed) {
   loaded_.insert(main.name);
   load(std::move(main), false);
   compile_methods();
@@ -45,6 +44,8 @@ CompileResult ProgramBuilder::build(ModuleSource main) {
     check_unused_variables();
     check_iterate();
     check_special_methods();
+    check_overrides();
+    check_implicit_returns();
   }
   Hasher hasher;
   for (std::uint32_t i = 0; i < program_->sources_.size(); ++i) {
@@ -52,6 +53,7 @@ CompileResult ProgramBuilder::build(ModuleSource main) {
     hasher.add(program_->sources_.file(i).text);
   }
   program_->fingerprint_ = hasher.value();
+  diagnostics_ = finished(diagnostics_, program_->sources_, allowed);
   program_->diagnostics_ = diagnostics_.all();
   CompileResult result;
   result.diagnostics = diagnostics_;
@@ -63,7 +65,8 @@ CompileResult ProgramBuilder::build(ModuleSource main) {
 void ProgramBuilder::load(ModuleSource module, bool embedded) {
   if (depth_ >= kMaxIncludeDepth) {
     diagnostics_.error({}, "include-depth",
-                       "files include one another more than " + std::to_string(kMaxIncludeDepth) + " deep");
+                       "files include one another more than " + std::to_string(kMaxIncludeDepth) + " deep",
+                       "include fewer files from one another");
     return;
   }
   ++depth_;
@@ -102,8 +105,16 @@ void ProgramBuilder::load_named(const std::string& name, const ast::Directive& d
                        "class " + wanted + " is part of a later version of the class library");
     return;
   }
-  diagnostics_.error(directive.span, "file-not-found", "cannot find the file '" + name + "'",
-                     "check its spelling, or add the directory it is in to the search path");
+  const bool use = directive.kind == ast::Directive::Kind::Use;
+  const auto near = near_class(wanted);
+  const std::string help = near.empty() ? "check its spelling, or add the directory it is in with @path or --path"
+                                        : "did you mean '" + near + "' of the class library?";
+  if (use)
+    diagnostics_.error(
+        directive.span, "file-not-found",
+        "cannot find '" + wanted + "': there is no file '" + name + "', and no such class in the library", help);
+  else
+    diagnostics_.error(directive.span, "file-not-found", "cannot find the file '" + name + "'", help);
 }
 
 bool ProgramBuilder::load_library(std::string_view name) {
@@ -129,12 +140,15 @@ void ProgramBuilder::late_directive(const ast::Directive& directive) {
       break;
     case Plugin:
       diagnostics_.error(directive.span, "plugins-disabled",
-                         "plugins are not available: cannot load '" + directive.text + "'");
+                         "plugins are not available: cannot load '" + directive.text + "'",
+                         "remove the line; a host can give a program what a plugin gave");
       break;
     case Use:
       if (!directive.version_op.empty()) versions_.push_back(directive);
       break;
-    case NibFile: lint(directive.span, "nib-file", "the interface file '" + directive.text + "' is ignored"); break;
+    case NibFile:
+      lint(directive.span, "lint-nib-file", "the interface file '" + directive.text + "' is ignored");
+      break;
     default: break;
   }
 }
@@ -153,51 +167,29 @@ void ProgramBuilder::report_unknown_class(std::string_view name, const Span& spa
                        "class " + std::string(name) + " is part of a later version of the class library");
     return;
   }
-  std::vector<std::string_view> names;
-  for (const auto& cls : program_->classes_) names.push_back(cls->name);
-  const auto near = nearest(name, names);
+  const auto near = near_class(name);
   const auto message = "unknown class '" + std::string(name) + "'";
   const auto help = near.empty() ? "define it, or load its file with @use" : "did you mean '" + near + "'?";
   if (severity == Severity::Error)
     diagnostics_.error(span, "unknown-class", message, help);
   else
-    lint(span, "unknown-class", message, help);
+    lint(span, "lint-unknown-class", message, help);
 }
 
-std::uint32_t ProgramBuilder::string_number(std::string_view text) {
-  if (const auto at = strings_.find(text); at != strings_.end()) return at->second;
-  const auto number = static_cast<std::uint32_t>(code().strings.size());
-  code().strings.emplace_back(text);
-  strings_.emplace(std::string(text), number);
-  return number;
-}
-
-std::uint32_t ProgramBuilder::text_number(std::string_view text) {
-  if (const auto at = texts_.find(text); at != texts_.end()) return at->second;
-  if (code().texts.empty()) code().texts.emplace_back("value");  // number 0 also stands for those beyond 16 bits
-  if (code().texts.size() > 0xffff) return 0;
-  const auto number = static_cast<std::uint32_t>(code().texts.size());
-  code().texts.emplace_back(text);
-  texts_.emplace(std::string(text), number);
-  return number;
-}
-
-std::optional<ProgramBuilder::FunctionEntry> ProgramBuilder::find_function(std::string_view name,
-                                                                           std::size_t arguments) const {
-  const auto [first, last] = functions_.equal_range(name);
-  for (auto at = first; at != last; ++at)
-    if (at->second.native->signature.find(':') == arguments) return at->second;
-  return std::nullopt;
-}
-
-std::vector<std::string_view> ProgramBuilder::function_names() const {
+// The name of a class, of the program or the library, near to this one; "" if none is.
+std::string ProgramBuilder::near_class(std::string_view name) const {
   std::vector<std::string_view> names;
-  for (const auto& [name, entry] : functions_) names.push_back(name);
-  return names;
-}
-
-void ProgramBuilder::lint(const Span& span, std::string code, std::string message, std::string help) {
-  if (!embedded(span)) diagnostics_.warning(span, std::move(code), std::move(message), std::move(help));
+  for (const auto& cls : program_->classes_) {
+    names.push_back(cls->name);
+    if (!cls->alias.empty()) names.push_back(cls->alias);
+  }
+  for (const auto& file : library_files())
+    for (auto rest = file.classes; !rest.empty();) {
+      const auto end = std::min(rest.find(' '), rest.size());
+      names.push_back(rest.substr(0, end));
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+  return nearest(name, names);
 }
 
 void ProgramBuilder::check_versions() {
@@ -205,7 +197,8 @@ void ProgramBuilder::check_versions() {
     const auto* cls = program_->find_class(directive.text);
     if (!cls) {
       diagnostics_.error(directive.span, "version",
-                         "the file defines no class '" + directive.text + "' whose version could be checked");
+                         "the file defines no class '" + directive.text + "' whose version could be checked",
+                         "leave the version out");
       continue;
     }
     const float have = static_cast<float>(cls->version), want = static_cast<float>(directive.version);
@@ -219,15 +212,21 @@ void ProgramBuilder::check_versions() {
     if (!holds)
       diagnostics_.error(directive.span, "version",
                          "class " + cls->name + " has version " + std::to_string(cls->version) + ", but " + op + " " +
-                             std::to_string(directive.version) + " is required");
+                             std::to_string(directive.version) + " is required",
+                         "load another version of the file, or change what is required");
   }
 }
 
 void ProgramBuilder::choose_controller() {
   if (controller_name_.empty()) {
-    if (diagnostics_.error_count() == 0)
-      diagnostics_.error({0, 0, 0, 1, 1}, "missing-controller", "the program names no controller",
-                         "add a line: Controller NAME.");
+    if (diagnostics_.error_count() != 0) return;
+    std::string name = "NAME";  // the one class that can be meant, if there is one
+    const auto* control = program_->find_class("Control");
+    for (const auto& cls : program_->classes_)
+      if (control && cls->parent && cls->derives_from(*control) && !embedded(cls->span))
+        name = name == "NAME" ? cls->name : "CLASS";
+    diagnostics_.error({0, 0, 0, 1, 1}, "missing-controller", "the program names no controller",
+                       "a program begins with the class that runs it: add a line   Controller " + name + ".");
     return;
   }
   const auto* cls = class_named(controller_name_);
@@ -238,12 +237,14 @@ void ProgramBuilder::choose_controller() {
       report_unknown_class(controller_name_, controller_span_);
     else
       diagnostics_.error(controller_span_, "unknown-class",
-                         "the controller class '" + controller_name_ + "' is not defined");
+                         "the controller class '" + controller_name_ + "' is not defined",
+                         near_class(controller_name_).empty() ? "define it, or name another class"
+                                                              : "did you mean '" + near_class(controller_name_) + "'?");
   }
 }
 
-CompileResult compile(ModuleSource main, ModuleResolver& resolver) {
-  return ProgramBuilder(resolver).build(std::move(main));
+CompileResult compile(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed) {
+  return ProgramBuilder(resolver).build(std::move(main), allowed);
 }
 
 }  // namespace breve::steve

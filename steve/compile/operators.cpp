@@ -188,6 +188,7 @@ std::optional<Operand> FunctionCompiler::vector_binary(ast::BinaryOp op, Operand
 }
 
 Operand FunctionCompiler::generic_binary(ast::BinaryOp op, const Operand& a, const Operand& b) {
+  lint_operands(op, a.type, b.type);
   const auto left = boxed(a);
   const auto right = boxed(b);
   const auto target = emit_.temporary(StaticType::Any);

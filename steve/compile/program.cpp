@@ -13,6 +13,18 @@ Symbol SymbolTable::intern(std::string_view name) {
   return at->second;
 }
 
+SymbolTable::SymbolTable(const SymbolTable& other) : by_name_(other.by_name_) {
+  names_.resize(by_name_.size());
+  for (const auto& [name, symbol] : by_name_) names_[symbol] = &name;
+}
+
+void SymbolTable::truncate(std::size_t count) {
+  while (names_.size() > count) {
+    by_name_.erase(by_name_.find(*names_.back()));
+    names_.pop_back();
+  }
+}
+
 Symbol SymbolTable::find(std::string_view name) const {
   const auto at = by_name_.find(std::string(name));
   return at == by_name_.end() ? kNoSymbol : at->second;

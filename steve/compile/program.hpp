@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "runtime/base/ids.hpp"
+#include "steve/compile/lint_table.hpp"
 #include "steve/machine/native.hpp"
 #include "steve/machine/value.hpp"
 #include "steve/syntax/diagnostic.hpp"
@@ -24,10 +25,14 @@ inline constexpr Symbol kNoSymbol = 0xffffffffU;
 /// Names to numbers, in order of first use.
 class SymbolTable {
  public:
+  SymbolTable() = default;
+  SymbolTable(const SymbolTable& other);
+  SymbolTable& operator=(const SymbolTable&) = delete;
   Symbol intern(std::string_view name);
   Symbol find(std::string_view name) const;  // kNoSymbol if it was never interned
   const std::string& name(Symbol symbol) const { return *names_[symbol]; }
   std::size_t size() const { return names_.size(); }
+  void truncate(std::size_t count);  // forget the names behind the first `count`
 
  private:
   std::unordered_map<std::string, Symbol> by_name_;
@@ -59,6 +64,9 @@ inline StaticType static_type(ast::TypeKind kind) {
 }
 static_assert(static_cast<int>(ast::TypeKind::Int) + 1 == static_cast<int>(StaticType::Int));
 static_assert(static_cast<int>(ast::TypeKind::Data) + 1 == static_cast<int>(StaticType::Data));
+
+/// In place of an array's size: the declaration is broken, and that is reported already.
+inline constexpr std::int32_t kBrokenType = -2;
 
 struct VariableInfo {
   Symbol name = kNoSymbol;
@@ -129,7 +137,7 @@ class Program {
   Program& operator=(const Program&) = delete;
   const ClassInfo* find_class(std::string_view name_or_alias) const;  // null if there is none
   const ClassInfo& cls(ClassId id) const { return *classes_[id]; }
-  const std::vector<std::unique_ptr<ClassInfo>>& classes() const { return classes_; }
+  const std::vector<std::shared_ptr<ClassInfo>>& classes() const { return classes_; }
   const ClassInfo* controller_class() const { return controller_; }
   const SymbolTable& symbols() const { return symbols_; }
   const Sources& sources() const { return sources_; }
@@ -138,9 +146,12 @@ class Program {
   const CodeTables& code() const { return *code_; }
 
  private:
+  friend class CompileScope;
   friend class ProgramBuilder;
+  friend class Fragments;
   Program();
-  std::vector<std::unique_ptr<ClassInfo>> classes_;
+  Program(const Program& base, std::size_t room);  // with room behind the tables for fragments (evaluate.cpp)
+  std::vector<std::shared_ptr<ClassInfo>> classes_;  // shared with the programs that extend this one by fragments
   std::unordered_map<std::string, ClassInfo*> class_names_;  // names and aliases
   const ClassInfo* controller_ = nullptr;
   SymbolTable symbols_;
@@ -172,7 +183,8 @@ struct CompileResult {
 };
 
 /// Compile a main file and all that it loads. The class library is always there for @use, without a search path.
-CompileResult compile(ModuleSource main, ModuleResolver& resolver);
+/// @param allowed  codes of lints that are not to be reported
+CompileResult compile(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed = {});
 
 /// A file of the embedded class library: the one named "NAME.tz", or the one that defines class NAME. Null if none.
 struct LibraryFile {

@@ -7,13 +7,20 @@
 
 namespace breve::steve {
 
-FunctionCompiler::FunctionCompiler(ProgramBuilder& builder, const ClassInfo& cls, const ast::Method& method,
-                                   MethodInfo& info)
-    : builder_(builder), class_(cls), method_(method), info_(info), emit_(*info.function, builder.diagnostics()) {}
+FunctionCompiler::FunctionCompiler(CompileScope& builder, const ClassInfo& cls, const ast::Method& method,
+                                   MethodInfo& info, std::vector<std::string> dynamic)
+    : builder_(builder),
+      class_(cls),
+      method_(method),
+      info_(info),
+      emit_(*info.function, builder.diagnostics()),
+      dynamic_(std::move(dynamic)) {}
 
 void FunctionCompiler::compile() {
   emit_.at(method_.span);
   declare_locals();
+  for (const auto& name : dynamic_)
+    locals_[name] = {StaticType::Any, emit_.reserve(StaticType::Any), -1, kNoSymbol, method_.span, false, true};
   const auto& body = method_.body;
   if (!body.empty() && std::holds_alternative<ast::ExprStmt>(body.back()->node)) {
     // The last statement's value is the method's: earlier ones matter only to a bare `return` in front of it.
@@ -30,7 +37,8 @@ void FunctionCompiler::compile() {
   for (const auto& local : method_.locals) {
     const auto found = locals_.find(local.name);
     if (found != locals_.end() && !found->second.used)
-      builder_.lint(local.span, "lint-unused-local", "local variable '" + local.name + "' is never used");
+      builder_.lint(local.span, "lint-unused-local", "the local variable '" + local.name + "' is never used",
+                    "remove it, or use it");
   }
 }
 
@@ -56,7 +64,8 @@ void FunctionCompiler::declare_locals() {
     const auto name = builder_.symbol(v.name);
     if (class_.find_variable(name))
       builder_.lint(v.span, "lint-shadow",
-                    "local variable '" + v.name + "' hides the instance variable of the same name");
+                    "the local variable '" + v.name + "' hides the instance variable of the same name",
+                    "rename one of the two");
     const auto count = v.type.array_size >= 0 ? static_cast<std::uint32_t>(v.type.array_size) : 1;
     emit_.at(v.span);
     Symbol class_name = kNoSymbol;
@@ -65,7 +74,13 @@ void FunctionCompiler::declare_locals() {
       if (!builder_.class_named(v.type.class_name))
         builder_.report_unknown_class(v.type.class_name, v.type.span, Severity::Error);
     }
-    locals_[v.name] = {type, emit_.reserve(type, count), v.type.array_size, class_name, v.span, false};
+    locals_[v.name] = {type,
+                       emit_.reserve(type, count),
+                       v.type.broken ? kBrokenType : v.type.array_size,
+                       class_name,
+                       v.span,
+                       false,
+                       v.type.broken};
   }
 }
 
@@ -78,21 +93,7 @@ std::optional<FunctionCompiler::Variable> FunctionCompiler::find(std::string_vie
 
 std::optional<FunctionCompiler::Variable> FunctionCompiler::need(std::string_view name, const Span& span) {
   if (const auto variable = find(name)) return variable;
-  std::vector<std::string_view> candidates;
-  for (const auto& [local, unused] : locals_) candidates.push_back(local);
-  std::sort(candidates.begin(), candidates.end());
-  for (const ClassInfo* c = &class_; c; c = c->parent)
-    for (const auto& v : c->variables) candidates.push_back(builder_.symbol_name(v.name));
-  std::string help;
-  if (const auto dash = name.find('-'); dash != std::string_view::npos && find(name.substr(0, dash)))
-    help = "a dash belongs to a name: for a subtraction write spaces, '" + std::string(name.substr(0, dash)) + " - " +
-           std::string(name.substr(dash + 1)) + "'";
-  else if (const auto near = nearest(name, candidates); !near.empty())
-    help = "did you mean '" + near + "'?";
-  else if (const auto* cls = builder_.class_named(name))
-    help = "'" + cls->name + "' is a class: write new " + cls->name + " for an instance";
-  else
-    help = "declare it under '+ variables:' of the class or at the head of the method";
+  const std::string help = unknown_name_help(name);
   builder_.diagnostics().error(span, "unknown-variable", "unknown variable '" + std::string(name) + "'", help);
   // Declared here, so that each unknown name is reported once in a method.
   locals_[std::string(name)] = {StaticType::Any, emit_.reserve(StaticType::Any), -1, kNoSymbol, span, false, true};

@@ -122,7 +122,7 @@ class Writer {
     if (const Resource* resource = world.resource(object.id)) {
       ByteWriter out;
       resource->save(out);
-      const std::vector<std::uint8_t> bytes = out.take();
+      const auto bytes = out.take();
       pugi::xml_node native = element.append_child("native");
       native.append_attribute("kind") = std::string(resource->kind()).c_str();
       native.text() = to_hex({reinterpret_cast<const char*>(bytes.data()), bytes.size()}).c_str();

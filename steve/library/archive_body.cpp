@@ -59,7 +59,7 @@ void write_body(Machine& machine, const Instance& object, pugi::xml_node element
   for_each_setting(bodies.material(body), look, [&](const auto& setting) { out.put(setting); });
   out.put(std::string_view(look.label));
   element.append_attribute("kind") = kKinds[static_cast<std::size_t>(bodies.kind(body))];
-  const std::vector<std::uint8_t> bytes = out.take();
+  const auto bytes = out.take();
   element.text() = to_hex({reinterpret_cast<const char*>(bytes.data()), bytes.size()}).c_str();
 }
 

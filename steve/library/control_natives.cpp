@@ -1,4 +1,5 @@
 // Natives of Control that move the simulation: the clock, the step, selection, the main camera and its pans.
+#include <algorithm>
 #include <cmath>
 
 #include "steve/library/support.hpp"
@@ -45,7 +46,12 @@ void follow(Machine& machine, CameraState& camera) {
 void control_iterate(Machine& machine, Instance&) {
   ViewState& view = view_of(machine);
   follow(machine, view.camera);
-  if (!view.frozen) machine.world().advance_bodies();
+  if (!view.frozen) {
+    const World& world = machine.world();
+    machine.charge(static_cast<std::uint64_t>(
+        std::llround(std::clamp(world.iteration_step() / world.integration_step(), 1.0, 1e9))));
+    machine.world().advance_bodies();
+  }
   if (view.offset_pan.steps > 0) view.camera.set_offset(view.offset_pan.advance(view.camera.offset));
   if (view.target_pan.steps > 0) view.camera.set_target(view.target_pan.advance(view.camera.target));
   if (view.offset_pan.steps <= 0) view.frozen = false;

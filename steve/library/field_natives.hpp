@@ -39,8 +39,9 @@ inline void multiply_with_values(Machine& machine, Instance& self, Instance* oth
 
 /// Takes the other's size as well.
 inline void copy(Machine& machine, Instance& self, Instance* other) {
-  const Field source = field_of(machine, other, "copy");
-  resource_made<FieldResource>(machine, self).field = source;
+  const Field& source = field_of(machine, other, "copy");
+  Field made(source, machine.heap().memory());
+  resource_made<FieldResource>(machine, self).field = std::move(made);
 }
 
 inline void compute_diffusion(Machine& machine, Instance& self, Instance* source, double factor) {

@@ -21,7 +21,7 @@ void image_iterate(Machine&, Instance&) {}
 // --- size and files --------------------------------------------------------------------------------------------------
 
 Instance* image_set_size(Machine& machine, Instance& self, std::int32_t width, std::int32_t height) {
-  image(machine, self) = Image(width, height);
+  image(machine, self) = Image(width, height, machine.heap().memory());
   return &self;
 }
 
@@ -38,7 +38,7 @@ Instance* image_load(Machine& machine, Instance& self, Text file) {
     return nullptr;
   }
   try {
-    image(machine, self) = Image::read(path);
+    image(machine, self) = Image::read(path, machine.heap().memory());
   } catch (const Error& error) {
     if (error.code() != ErrorCode::File) throw;
     machine.warn_once("image:" + name, "image '" + name + "' not loaded: " + error.what());
@@ -69,7 +69,7 @@ std::int32_t image_write_16_bit(Machine& machine, Instance& self, Text file) {
   const std::string name(view(file));
   const Image& picture = image(machine, self);
   constexpr double kHighest = 65535;
-  std::vector<double> greys;
+  std::pmr::vector<double> greys(machine.heap().memory());
   greys.reserve(picture.bytes().size() / 4);
   for (int y = 0; y < picture.height(); ++y)
     for (int x = 0; x < picture.width(); ++x)
@@ -157,7 +157,7 @@ void set_rgb(Machine& machine, Instance& self, Vector3 color, std::int32_t x, st
 }
 
 DataCell* image_get_data(Machine& machine, Instance& self) {
-  const std::vector<std::uint8_t>& bytes = image(machine, self).bytes();
+  const std::pmr::vector<std::uint8_t>& bytes = image(machine, self).bytes();
   return machine.heap().data({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
@@ -171,7 +171,7 @@ std::int32_t image_get_compression_size(Machine& machine, Instance& self) {
 
 void image_read_pixels(Machine& machine, Instance& self, std::int32_t, std::int32_t) {
   Image& picture = image(machine, self);
-  if (!picture.empty()) picture = Image(picture.width(), picture.height());
+  if (!picture.empty()) picture = Image(picture.width(), picture.height(), machine.heap().memory());
   machine.warn_once("renderer:read-pixels", "read-pixels: nothing draws this world; the image is black");
 }
 

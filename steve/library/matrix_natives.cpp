@@ -12,7 +12,7 @@ namespace {
 // --- Matrix2D --------------------------------------------------------------------------------------------------------
 
 Instance* plane_set_size(Machine& machine, Instance& self, std::int32_t nx, std::int32_t ny) {
-  resource_made<FieldResource>(machine, self).field = Field::plane(nx, ny);
+  resource_made<FieldResource>(machine, self).field = Field::plane(nx, ny, machine.heap().memory());
   return &self;
 }
 
@@ -50,7 +50,7 @@ void plane_copy_to_channel(Machine& machine, Instance& self, Instance* target, d
 // --- Matrix3D --------------------------------------------------------------------------------------------------------
 
 Instance* space_set_size(Machine& machine, Instance& self, std::int32_t nx, std::int32_t ny, std::int32_t nz) {
-  resource_made<FieldResource>(machine, self).field = Field::space(nx, ny, nz);
+  resource_made<FieldResource>(machine, self).field = Field::space(nx, ny, nz, machine.heap().memory());
   return &self;
 }
 

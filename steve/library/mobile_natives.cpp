@@ -107,7 +107,7 @@ Vector3 mobile_get_bound_minimum(Machine& machine, Instance& self) {
 
 ListCell* mobile_get_colliding_objects(Machine& machine, Instance& self) {
   body_of(machine, self);
-  const std::vector<ObjectId> touching = machine.world().touching(self.id);
+  const auto touching = machine.world().touching(self.id);
   ListCell* list = machine.heap().list(static_cast<std::uint32_t>(touching.size()));
   for (ObjectId id : touching) machine.heap().push(*list, Value::of(Tag::Object, machine.instance(id)));
   return list;

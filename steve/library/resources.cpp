@@ -14,7 +14,7 @@ void ShapeResource::hash(Hasher& hasher) const {
 }
 
 std::unique_ptr<Resource> ShapeResource::load(ByteReader& in) {
-  auto resource = std::make_unique<ShapeResource>();
+  auto resource = make_in<ShapeResource>(in.memory());
   resource->density = in.get<double>();
   resource->shape = in.get_shared<Shape>();
   return resource;
@@ -30,7 +30,7 @@ void FieldResource::hash(Hasher& hasher) const {
 }
 
 std::unique_ptr<Resource> FieldResource::load(ByteReader& in) {
-  auto resource = std::make_unique<FieldResource>();
+  auto resource = make_in<FieldResource>(in.memory());
   if (in.get_bool()) resource->field = Field::load(in);
   return resource;
 }

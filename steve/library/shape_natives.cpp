@@ -75,17 +75,17 @@ Vector3 shape_get_last_scale(Machine& machine, Instance& self) {
 // --- builders --------------------------------------------------------------------------------------------------------
 
 Instance* build_sphere(Machine& machine, Instance& self, double radius) {
-  return build(machine, self, Shape::sphere(radius));
+  return build(machine, self, Shape::sphere(radius, machine.heap().memory()));
 }
 
-Instance* build_cube(Machine& machine, Instance& self, Vector3 size) { return build(machine, self, Shape::box(size)); }
+Instance* build_cube(Machine& machine, Instance& self, Vector3 size) { return build(machine, self, Shape::box(size, machine.heap().memory())); }
 
 Instance* build_disk(Machine& machine, Instance& self, std::int32_t sides, double height, double radius) {
-  return build(machine, self, Shape::prism(sides, height, radius));
+  return build(machine, self, Shape::prism(sides, height, radius, machine.heap().memory()));
 }
 
 Instance* build_cone(Machine& machine, Instance& self, std::int32_t sides, double height, double radius) {
-  return build(machine, self, Shape::cone(sides, height, radius));
+  return build(machine, self, Shape::cone(sides, height, radius, machine.heap().memory()));
 }
 
 /// The builders of Shape itself leave the shape without geometry where those of its subclasses fail.
@@ -123,7 +123,7 @@ Instance* custom_shape_build(Machine& machine, Instance& self, ListCell* faces, 
   std::vector<std::vector<Vector3>> solid;
   if (faces)
     for (const Value& face : *faces) solid.push_back(corners_of(face));
-  resource(machine, self).shape = Shape::convex(solid, density);
+  resource(machine, self).shape = Shape::convex(solid, density, machine.heap().memory());
   resource(machine, self).density = density;
   return &self;
 }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <typeinfo>
 #include <utility>
 
@@ -47,7 +48,12 @@ R* resource_of(Machine& machine, const Instance* object) {
 template <class R>
 R& resource_made(Machine& machine, const Instance& self) {
   if (R* found = resource_of<R>(machine, &self)) return *found;
-  auto made = std::make_unique<R>();
+  std::pmr::memory_resource* memory = machine.heap().memory();
+  std::unique_ptr<R> made;
+  if constexpr (std::is_constructible_v<R, std::pmr::memory_resource*>)
+    made = make_in<R>(memory, memory);
+  else
+    made = make_in<R>(memory);
   R& resource = *made;
   machine.world().attach(self.id, std::move(made));
   return resource;

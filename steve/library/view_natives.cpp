@@ -112,7 +112,9 @@ void set_skybox_images(Machine& machine, Instance&, ListCell* files) {
     const bool found = !machine.host().find_file || !machine.host().find_file(names.back()).empty();
     if (!found) machine.warn_once("image:" + names.back(), "image '" + names.back() + "' not found");
   }
-  view_of(machine).backdrop.skybox = std::move(names);
+  auto& skybox = view_of(machine).backdrop.skybox;
+  std::pmr::vector<std::pmr::string> fresh(names.begin(), names.end(), skybox.get_allocator());
+  skybox.swap(fresh);
   view_of(machine).backdrop.mountains = false;
 }
 
@@ -142,9 +144,14 @@ void set_text(Machine& machine, Text text, std::int32_t slot, double x, double y
                  std::to_string(kOverlayTextCount - 1));
     return;
   }
-  view_of(machine).texts[static_cast<std::size_t>(slot)] = {std::string(view(text)), finite(x, "a text's place"),
-                                                            finite(y, "a text's place"),
-                                                            finite(color, "a text's colour")};
+  finite(x, "a text's place");
+  finite(y, "a text's place");
+  finite(color, "a text's colour");
+  OverlayText& overlay = view_of(machine).texts[static_cast<std::size_t>(slot)];
+  overlay.text = view(text);
+  overlay.x = x;
+  overlay.y = y;
+  overlay.color = color;
 }
 
 void set_display_text(Machine& machine, Instance&, Text text, double x, double y, std::int32_t slot, Vector3 color) {

@@ -40,60 +40,12 @@ const MethodInfo* Machine::choose(const CallSite& site, const ClassInfo& cls) co
   fail_call(site, cls, candidates.empty() ? nullptr : candidates.front());
 }
 
-void Machine::fail_call(const CallSite& site, const ClassInfo& cls, const MethodInfo* best) const {
-  const auto& symbols = program_->symbols();
-  const auto& name = symbols.name(site.selector);
-  const ClassInfo* start = site.super_of ? site.super_of->parent : &cls;
-  if (!best) {
-    std::vector<std::string_view> names;
-    const MethodInfo* fewer = nullptr;
-    for (const ClassInfo* c = start; c; c = c->parent)
-      for (const auto& method : c->methods) {
-        names.push_back(symbols.name(method->name));
-        if (method->name == site.selector && !fewer) fewer = method.get();
-      }
-    if (fewer)
-      best = fewer;
-    else {
-      const auto near = nearest(name, names);
-      throw RunError(RunErrorKind::UnknownMethod, "unknown method: class " + (start ? start->name : cls.name) +
-                                                      " has no method '" + name + "'" +
-                                                      (near.empty() ? "" : "; did you mean '" + near + "'?"));
-    }
-  }
-  for (const auto& argument : site.arguments) {
-    std::vector<std::string_view> keywords;
-    bool known = false;
-    for (const auto& p : best->parameters) {
-      keywords.push_back(symbols.name(p.keyword));
-      known = known || p.keyword == argument.keyword;
-    }
-    if (known) continue;
-    const auto near = nearest(symbols.name(argument.keyword), keywords);
-    std::string list;
-    for (const auto keyword : keywords) list += (list.empty() ? "" : ", ") + std::string(keyword);
-    throw RunError(RunErrorKind::UnknownKeyword,
-                   "unknown keyword '" + symbols.name(argument.keyword) + "' for method '" + name + "' of class " +
-                       best->owner->name +
-                       (near.empty() ? (list.empty() ? "; it takes none" : "; it takes: " + list)
-                                     : "; did you mean '" + near + "'?"));
-  }
-  for (const auto& p : best->parameters) {
-    const bool given = std::any_of(site.arguments.begin(), site.arguments.end(),
-                                   [&](const auto& a) { return a.keyword == p.keyword; });
-    if (!given && !p.has_default)
-      throw RunError(RunErrorKind::MissingKeyword, "missing keyword '" + symbols.name(p.keyword) + "' for method '" +
-                                                       name + "' of class " + best->owner->name);
-  }
-  throw RunError(RunErrorKind::UnknownKeyword, "a keyword is given twice to method '" + name + "'");
-}
-
 const Machine::Plan& Machine::find_plan(std::uint32_t number, const ClassInfo& cls) {
   auto& cache = caches_[number];
-  for (const auto& plan : cache.plans) {
+  for (const Plan* plan = cache.plans.get(); plan; plan = plan->next.get()) {
     if (plan->cls != &cls) continue;
     cache.cls = &cls;
-    cache.plan = plan.get();
+    cache.plan = plan;
     return *plan;
   }
   return make_plan(number, cls);
@@ -101,7 +53,7 @@ const Machine::Plan& Machine::find_plan(std::uint32_t number, const ClassInfo& c
 
 const Machine::Plan& Machine::make_plan(std::uint32_t number, const ClassInfo& cls) {
   const auto& site = program_->code().sites[number];
-  auto plan = std::make_unique<Plan>();
+  auto plan = make_in<Plan>(memory_, memory_);
   plan->cls = &cls;
   plan->method = choose(site, cls);
   if (plan->method) {
@@ -133,7 +85,8 @@ const Machine::Plan& Machine::make_plan(std::uint32_t number, const ClassInfo& c
   auto& cache = caches_[number];
   cache.cls = &cls;
   cache.plan = plan.get();
-  cache.plans.push_back(std::move(plan));
+  plan->next = std::move(cache.plans);
+  cache.plans = std::move(plan);
   return *cache.plan;
 }
 
@@ -228,16 +181,6 @@ void Machine::check_class(Instance* object, const ClassInfo& cls, std::string_vi
   if (!object || object->cls->derives_from(cls)) return;
   throw RunError(RunErrorKind::Type, std::string(what) + " takes an object of class " + cls.name +
                                          ", not one of class " + object->cls->name);
-}
-
-void Machine::fail_receiver(const Instance* receiver, std::uint32_t number) const {
-  const auto& name = program_->symbols().name(program_->code().sites[number].selector);
-  if (!receiver)
-    throw RunError(
-        RunErrorKind::NullObject,
-        "method '" + name + "' is called on a null (uninitialised) object: nothing has been assigned to it yet");
-  throw RunError(RunErrorKind::FreedObject,
-                 "method '" + name + "' is called on a freed (uninitialised) object of class " + receiver->cls->name);
 }
 
 }  // namespace breve::steve

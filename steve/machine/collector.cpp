@@ -1,6 +1,6 @@
 // The collector of cycles: it marks from what is alive when it begins and takes apart what it did not reach, in slices
-// of counted work. What is not in a cycle never needs it. Its state is the order of one table and three boundaries, so
-// that a snapshot can keep it exactly.
+// of counted work. What is not in a cycle never needs it. Its state is the table of containers with a mark for each
+// place and a queue of places, so that a snapshot can keep it exactly.
 #include <algorithm>
 
 #include "steve/compile/program.hpp"
@@ -10,13 +10,22 @@ namespace breve::steve {
 
 namespace {
 
-// Units of work. A slice marks about 60,000 cells, or takes 60,000 apart, or looks at 1e6 places.
+// Units of work, about a nanosecond each. See docs/performance.md for what a slice takes; docs/limits.md promises in
+// how many slices a cycle is gone: a cell costs at most kLook + kMark + 2 kPlace and its references.
 constexpr std::int64_t kSlice = 2'000'000;
-constexpr std::int64_t kMarkCell = 32;
-constexpr std::int64_t kLookAtCell = 2;
-constexpr std::int64_t kBreakCell = 32;
-constexpr std::int64_t kElement = 1;
-constexpr std::int64_t kBegin = 1000;  // so that collections that follow each other end a slice
+constexpr std::int64_t kLook = 4;       // is a place a root?
+constexpr std::int64_t kMark = 20;      // scan a cell
+constexpr std::int64_t kReference = 6;  // reach a cell from another
+constexpr std::int64_t kElement = 1;    // look at an element of a list or hash
+constexpr std::int64_t kPlace = 1;      // look at the mark of a place
+constexpr std::int64_t kBreak = 40;     // release a reference of garbage, or a cell of it
+constexpr std::int64_t kBegin = 1000;   // so that collections that follow each other end a slice
+
+// How many cells to fetch ahead of their turn.
+constexpr std::uint32_t kAhead = 24;
+constexpr std::uint32_t kNear = 8;
+
+void fetch(const void* memory) { __builtin_prefetch(memory); }
 
 bool can_close_cycle(const Cell* cell) {
   if (cell == nullptr || !is_container(cell->tag)) return false;
@@ -24,12 +33,53 @@ bool can_close_cycle(const Cell* cell) {
 }
 bool can_close_cycle(const Value& v) { return v.is_reference() && can_close_cycle(v.ref); }
 
+bool is_root(const Container& cell) {
+  if (cell.tag != Tag::Object) return false;
+  const auto& instance = static_cast<const Instance&>(cell);
+  return instance.live() && (!instance.auto_free || instance.state == Instance::State::BeingFreed);
+}
+
+bool can_be_doomed(const Container& cell) {
+  if (cell.tag != Tag::Object) return false;
+  const auto& instance = static_cast<const Instance&>(cell);
+  return instance.auto_free && instance.state == Instance::State::Live;
+}
+
 }  // namespace
+
+/// References on their way to `shade`: each waits until the cells behind it are on their way from memory.
+class Heap::Reach {
+ public:
+  explicit Reach(Heap& heap) : heap_(heap) {}
+  void operator()(Cell* cell) {
+    if (cell == nullptr) return;
+    fetch(cell);
+    Cell*& place = waiting_[next_++ % kRoom];
+    if (place != nullptr) heap_.shade(place);
+    place = cell;
+  }
+  void operator()(const Value& v) {
+    if (is_container(v.tag)) (*this)(v.ref);
+  }
+  void flush() {
+    for (std::uint32_t i = 0; i < kRoom; ++i) {
+      Cell*& place = waiting_[next_++ % kRoom];
+      if (place != nullptr) heap_.shade(place);
+      place = nullptr;
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kRoom = 16;
+  Heap& heap_;
+  std::uint32_t next_ = 0;
+  std::array<Cell*, kRoom> waiting_{};
+};
 
 // A cell that was new, or held by frames alone, is now referred to from the heap. If it refers to nothing that could
 // lead back to it, it is in no cycle; if a cycle is closed later, its last link is seen here or in note_survivor.
 bool Heap::may_close_cycle(const Container& cell) {
-  constexpr std::uint32_t kLook = 64;  // a longer one is suspected unseen
+  constexpr std::uint32_t kMost = 64;  // a longer one is suspected unseen
   if (cell.tag == Tag::Object) {
     const auto& instance = static_cast<const Instance&>(cell);
     if (!instance.auto_free) return false;
@@ -39,80 +89,86 @@ bool Heap::may_close_cycle(const Container& cell) {
   }
   if (cell.tag == Tag::List) {
     const auto& list = static_cast<const ListCell&>(cell);
-    return list.size > kLook ||
+    return list.size > kMost ||
            std::any_of(list.begin(), list.end(), [](const Value& v) { return can_close_cycle(v); });
   }
   const auto& hash = static_cast<const HashCell&>(cell);
-  return hash.used > kLook || std::any_of(hash.entries, hash.entries + hash.used, [](const HashCell::Entry& entry) {
+  return hash.used > kMost || std::any_of(hash.entries, hash.entries + hash.used, [](const HashCell::Entry& entry) {
            return can_close_cycle(entry.key) || can_close_cycle(entry.value);
          });
 }
 
-// --- regions ---------------------------------------------------------------------------------------------------------
-
-std::size_t Heap::region(const Container& cell) const {
-  return static_cast<std::size_t>(
-      std::count_if(ends_.begin(), ends_.end(), [&cell](std::uint32_t end) { return end <= cell.place; }));
-}
-
-void Heap::swap_places(std::uint32_t a, std::uint32_t b) {
-  std::swap(containers_[a], containers_[b]);
-  containers_[a]->place = a;
-  containers_[b]->place = b;
-}
-
-// Into a region further to the front.
-void Heap::promote(Container& cell, std::size_t target) {
-  for (std::size_t r = region(cell); r > target; --r) swap_places(cell.place, ends_[r - 1]++);
-}
+// --- the table -------------------------------------------------------------------------------------------------------
 
 void Heap::enrol(Container& cell) {
   cell.place = static_cast<std::uint32_t>(containers_.size());
   containers_.push_back(&cell);
-  if (phase_ != Phase::Idle) promote(cell, 0);
+  marks_.push_back(phase_ == Phase::Idle ? kWhite : kBlack);
 }
 
+void Heap::move_place(std::uint32_t from, std::uint32_t to) {
+  if (from == to) return;
+  containers_[to] = containers_[from];
+  containers_[to]->place = to;
+  marks_[to] = marks_[from];
+  if (marks_[to] >= kGrey) grey_[marks_[to] - kGrey] = to;
+}
+
+// The last cell takes the place, by way of the boundary, so that what was passed stays passed.
 void Heap::strike(Container& cell) {
   if (partial_ == &cell) partial_ = nullptr;
-  for (std::size_t r = region(cell); r < ends_.size(); ++r) swap_places(cell.place, --ends_[r]);
-  Container* last = containers_.back();
-  last->place = cell.place;
-  containers_[cell.place] = last;
+  std::uint32_t place = cell.place;
+  if (marks_[place] >= kGrey) grey_[marks_[place] - kGrey] = kNoPlace;
+  if (place < passed_) {
+    move_place(--passed_, place);
+    place = passed_;
+  }
+  move_place(static_cast<std::uint32_t>(containers_.size() - 1), place);
   containers_.pop_back();
+  marks_.pop_back();
 }
 
 void Heap::shade(Cell* cell) {
   if (cell == nullptr || !is_container(cell->tag)) return;
-  auto& container = static_cast<Container&>(*cell);
-  if (container.place >= ends_[1]) promote(container, 1);
+  const std::uint32_t place = static_cast<Container*>(cell)->place;
+  if (marks_[place] != kWhite) return;
+  marks_[place] = kGrey + static_cast<std::uint32_t>(grey_.size());
+  grey_.push_back(place);  // never grows: each place is white once in a collection
 }
 
 // --- phases ----------------------------------------------------------------------------------------------------------
 
 void Heap::end_of_iteration() {
+  short_of_memory_ = false;
   reclaim_all();
   if (held_by_frames_) suspicion_ = true;
   held_by_frames_ = false;
   std::int64_t work = kSlice;
   while (work > 0 && (phase_ != Phase::Idle || suspicion_)) {
+    const Phase before = phase_;
     switch (phase_) {
       case Phase::Idle:
         work -= kBegin;
         begin_collection();
         break;
-      case Phase::Mark: mark(work); break;
+      case Phase::Mark:
+      case Phase::Remark: mark(work); break;
       case Phase::Examine: examine(work); break;
       case Phase::Sweep: sweep(work); break;
     }
-    if (phase_ == Phase::Idle) reclaim_all();
+    if (phase_ != before && (phase_ == Phase::Idle || phase_ == Phase::Remark)) reclaim_all();
   }
   if (!zero_.empty()) reclaim_all();
+  if (short_of_memory_) throw std::bad_alloc();
 }
 
 void Heap::begin_collection() {
   suspicion_ = false;
   phase_ = Phase::Mark;
-  ends_ = {0, 0, 0};
+  barrier_ = true;
+  passed_ = 0;
+  grey_.clear();
+  next_grey_ = 0;
   const auto reach = [this](Cell* cell) { shade(cell); };
   roots_.visit_roots(reach);
   // What a frame holds now may be left in a cycle when the frame ends: a later iteration has to look again.
@@ -123,126 +179,183 @@ void Heap::begin_collection() {
   for (const Doomed& doomed : doomed_) shade(doomed.instance);
 }
 
-void Heap::end_collection() {
-  phase_ = Phase::Idle;
-  ends_ = {0, 0, 0};
-}
-
+// Roots are looked for as long as few cells wait, so that there is always something to fetch ahead.
 void Heap::mark(std::int64_t& work) {
+  Reach reach(*this);
   while (work > 0) {
     if (partial_ != nullptr) {
-      scan_part(work);
-    } else if (ends_[0] < ends_[1]) {
-      Container& cell = *containers_[ends_[0]++];
-      scan(cell, work);
-    } else if (ends_[2] < containers_.size()) {
-      work -= kLookAtCell;
-      Container& cell = *containers_[ends_[2]];
-      const auto& instance = static_cast<const Instance&>(cell);
-      const bool root = cell.tag == Tag::Object && instance.live() &&
-                        (!instance.auto_free || instance.state == Instance::State::BeingFreed);
-      promote(cell, root ? 1 : 2);
-    } else {
-      phase_ = Phase::Examine;
-      ends_[2] = ends_[1];
-      return;
+      scan_part(reach, work);
+      continue;
     }
+    for (; grey_.size() - next_grey_ < kAhead && passed_ < containers_.size(); ++passed_) {
+      work -= kLook;
+      if (passed_ + kAhead < containers_.size()) fetch(containers_[passed_ + kAhead]);
+      if (marks_[passed_] == kWhite && is_root(*containers_[passed_])) shade(containers_[passed_]);
+    }
+    if (next_grey_ == grey_.size()) {
+      reach.flush();
+      if (next_grey_ != grey_.size() || passed_ < containers_.size()) continue;
+      return end_of_marking();
+    }
+    if (next_grey_ + kNear < grey_.size() && grey_[next_grey_ + kNear] != kNoPlace) {
+      const auto* ahead = reinterpret_cast<const char*>(containers_[grey_[next_grey_ + kNear]]);
+      fetch(ahead);
+      fetch(ahead + 64);
+    }
+    const std::uint32_t place = grey_[next_grey_++];
+    if (place == kNoPlace) continue;
+    marks_[place] = kBlack;
+    scan(*containers_[place], reach, work);
   }
+  reach.flush();
 }
 
-void Heap::scan(Container& cell, std::int64_t& work) {
-  work -= kMarkCell;
+void Heap::end_of_marking() {
+  passed_ = 0;
+  phase_ = phase_ == Phase::Mark ? Phase::Examine : Phase::Sweep;
+  if (phase_ == Phase::Sweep) barrier_ = false;
+}
+
+void Heap::scan(Container& cell, Reach& reach, std::int64_t& work) {
+  work -= kMark;
   if (cell.tag == Tag::Object) {
     auto& instance = static_cast<Instance&>(cell);
-    for (const std::uint16_t slot : instance.cls->reference_slots) shade(instance.slots[slot].ref);
-    work -= kElement * static_cast<std::int64_t>(instance.cls->reference_slots.size());
+    for (const std::uint16_t slot : instance.cls->reference_slots) reach(instance.slots[slot].ref);
+    work -= kReference * static_cast<std::int64_t>(instance.cls->reference_slots.size());
     return;
   }
   partial_ = &cell;
   position_ = cell.tag == Tag::List ? static_cast<ListCell&>(cell).first : 0;
-  scan_part(work);
+  scan_part(reach, work);
 }
 
 // Positions count from the start of the store, so that adding and removing at either end does not shift them. What is
 // removed unseen is shaded by `release`.
-void Heap::scan_part(std::int64_t& work) {
-  const auto most = static_cast<std::uint32_t>(std::max<std::int64_t>(work, 1));
+void Heap::scan_part(Reach& reach, std::int64_t& work) {
+  constexpr std::int64_t kPiece = 4096;  // elements, so that what they refer to is counted in time
+  const auto most = static_cast<std::uint32_t>(std::clamp<std::int64_t>(work, 1, kPiece));
+  std::uint32_t references = 0, count = 0;
   if (partial_->tag == Tag::List) {
     const auto& list = static_cast<const ListCell&>(*partial_);
     const std::uint32_t from = std::max(position_, list.first);
     const std::uint32_t end = list.first + list.size;
     const std::uint32_t to = from >= end ? end : from + std::min(most, end - from);
-    for (std::uint32_t i = from; i < to; ++i) shade(list.store[i]);
-    if (to > from) work -= kElement * (to - from);
+    for (std::uint32_t i = from; i < to; ++i) {
+      references += is_container(list.store[i].tag) ? 1U : 0U;
+      reach(list.store[i]);
+    }
+    count = to > from ? to - from : 0;
     position_ = to;
     if (to == end) partial_ = nullptr;
-    return;
+  } else {
+    const auto& hash = static_cast<const HashCell&>(*partial_);
+    // Removed entries are not counted: a restored hash has none.
+    for (; position_ < hash.used && count < most; ++position_) {
+      const HashCell::Entry& entry = hash.entries[position_];
+      if (!entry.live()) continue;
+      references += (is_container(entry.key.tag) ? 1U : 0U) + (is_container(entry.value.tag) ? 1U : 0U);
+      reach(entry.key);
+      reach(entry.value);
+      ++count;
+    }
+    if (position_ >= hash.used) partial_ = nullptr;
   }
-  const auto& hash = static_cast<const HashCell&>(*partial_);
-  const std::uint32_t from = std::min(position_, hash.used);
-  const std::uint32_t to = from + std::min(most, hash.used - from);
-  for (std::uint32_t i = from; i < to; ++i) {
-    shade(hash.entries[i].key);
-    shade(hash.entries[i].value);
-  }
-  work -= kElement * (to - from);
-  position_ = to;
-  if (to == hash.used) partial_ = nullptr;
+  work -= kElement * count + kReference * references;
 }
 
 void Heap::finish_partial() {
-  std::int64_t work = INT32_MAX;
-  while (partial_ != nullptr) scan_part(work);
+  Reach reach(*this);
+  std::int64_t work = INT64_MAX;
+  while (partial_ != nullptr) scan_part(reach, work);
+  reach.flush();
 }
 
-// Garbage is known. Auto-free instances in it must run destroy, which may bring anything of it back to life: then
-// nothing is taken apart now, and the next collection begins at once.
+// Garbage is known. Auto-free instances in it must run destroy, which may bring anything of it back to life: whatever
+// they refer to is kept this time (Remark), the rest goes.
 void Heap::examine(std::int64_t& work) {
-  while (work > 0 && ends_[2] < containers_.size()) {
-    work -= kLookAtCell;
-    Container& cell = *containers_[ends_[2]];
-    const auto& instance = static_cast<const Instance&>(cell);
-    const bool doomed = cell.tag == Tag::Object && instance.auto_free && instance.state == Instance::State::Live;
-    promote(cell, doomed ? 1 : 2);
+  for (; work > 0 && passed_ < containers_.size(); ++passed_) {
+    work -= kPlace;
+    if (marks_[passed_] != kWhite) continue;
+    work -= kLook;
+    Container& cell = *containers_[passed_];
+    if (!can_be_doomed(cell)) continue;
+    try {
+      suspects_.push_back(static_cast<Instance*>(&cell));
+      retain(&cell);
+    } catch (const std::bad_alloc&) {  // it is found again by the collection that follows
+      short_of_memory_ = true;
+    }
+    work -= kBreak;
+    shade(&cell);
   }
-  if (ends_[2] < containers_.size()) return;
-  if (ends_[0] == ends_[1]) {
-    phase_ = Phase::Sweep;
-  } else {
-    doom_unreachable();
-  }
+  if (passed_ < containers_.size()) return;
+  if (!suspects_.empty() || short_of_memory_) suspicion_ = true;
+  doom_suspects();
+  phase_ = Phase::Remark;
 }
 
-void Heap::doom_unreachable() {
-  const std::size_t old = doomed_.size();
+// In order of creation. What does not fit into memory now goes with the next collection.
+void Heap::doom_suspects() {
+  std::sort(suspects_.begin(), suspects_.end(),
+            [](const Instance* a, const Instance* b) { return a->serial < b->serial; });
   try {
-    doomed_.reserve(old + (ends_[1] - ends_[0]));
-    for (std::uint32_t i = ends_[0]; i < ends_[1]; ++i)
-      doomed_.push_back({static_cast<Instance*>(containers_[i]), true});
+    doomed_.reserve(doomed_.size() + suspects_.size());
   } catch (const std::bad_alloc&) {
-    // No memory to remember them now: they are found again by the collection that follows.
+    short_of_memory_ = true;
   }
-  for (std::size_t i = old; i < doomed_.size(); ++i) retain(doomed_[i].instance);
-  std::sort(doomed_.begin() + static_cast<std::ptrdiff_t>(old), doomed_.end(),
-            [](const Doomed& a, const Doomed& b) { return a.instance->serial < b.instance->serial; });
-  end_collection();
-  suspicion_ = true;
+  for (Instance* instance : suspects_) {
+    if (doomed_.size() < doomed_.capacity())
+      doomed_.push_back({instance, true});
+    else
+      release(instance);
+  }
+  suspects_.clear();
 }
 
 // Taking a cell apart releases what it refers to. When every cell of the garbage has lost its references, every count
 // in it is 0, and the cells are freed like any others.
 void Heap::sweep(std::int64_t& work) {
   const bool suspicion = suspicion_;
-  while (work > 0 && ends_[0] < containers_.size()) {
-    Container& cell = *containers_.back();
-    promote(cell, 0);
-    work -= kBreakCell;
-    if (cell.tag == Tag::List) work -= kElement * static_cast<ListCell&>(cell).size;
-    if (cell.tag == Tag::Hash) work -= kElement * static_cast<HashCell&>(cell).used;
-    release_children(cell);
+  while (work > 0 && passed_ < containers_.size()) {
+    work -= kPlace;
+    if (marks_[passed_] == kWhite && !take_apart(*containers_[passed_], work)) break;
+    marks_[passed_++] = kWhite;
   }
   suspicion_ = suspicion;  // the counts that garbage lowers close no cycle
-  if (ends_[0] == containers_.size()) end_collection();
+  if (passed_ < containers_.size()) return;
+  phase_ = Phase::Idle;
+  passed_ = 0;
+}
+
+/// False if the work was used up before the cell had lost all its references.
+bool Heap::take_apart(Container& cell, std::int64_t& work) {
+  work -= kBreak;
+  if (cell.tag == Tag::List) {
+    auto& list = static_cast<ListCell&>(cell);
+    for (; list.size > 0 && work > 0; work -= kElement) {
+      const Value last = list.store[list.first + --list.size];
+      if (last.is_reference()) work -= kBreak;
+      release(last);
+    }
+    return list.size == 0;
+  }
+  if (cell.tag == Tag::Hash) {
+    auto& hash = static_cast<HashCell&>(cell);
+    while (hash.used > 0 && work > 0) {
+      const HashCell::Entry last = hash.entries[--hash.used];
+      if (!last.live()) continue;
+      --hash.count_live;
+      work -= 2 * kBreak;
+      release(last.key);
+      release(last.value);
+    }
+    if (hash.used != 0) return false;
+    if (hash.index != nullptr) std::memset(hash.index, 0, hash.index_capacity * sizeof(std::uint32_t));
+    return true;
+  }
+  work -= kBreak * static_cast<std::int64_t>(static_cast<Instance&>(cell).cls->reference_slots.size());
+  clear_slots(static_cast<Instance&>(cell));
+  return true;
 }
 
 }  // namespace breve::steve

@@ -5,17 +5,28 @@
 
 #include <fmt/format.h>
 
+#include "steve/machine/brief.hpp"
 #include "steve/machine/operators.hpp"
 
 namespace breve::steve {
 
 namespace {
 
+std::string help_for(const Value& v, std::string_view to) {
+  if (v.tag == Tag::Null) return "a method gives a value with 'return'; a missing key of a hash gives none";
+  if (v.tag == Tag::Vector && (to == "an int" || to == "a double"))
+    return "take its length, |v|, or one of its components: v::x, v::y, v::z";
+  if (to == "a vector") return "a vector is written (x, y, z)";
+  if (to == "a list") return "a list of one value is written { value }";
+  if (to == "an object" && v.tag == Tag::Int) return "of all numbers only 0 stands for no object";
+  return {};
+}
+
 [[noreturn]] void fail_conversion(const Value& v, std::string_view to, std::string_view what) {
-  std::string message = fmt::format("cannot convert {} to {}", a_type(v.tag), to);
-  if (!what.empty()) message += fmt::format(" for {}", what);
-  if (v.tag == Tag::Null) message += "; the expression has no value";
-  throw RunError(RunErrorKind::Conversion, message);
+  const std::string value = typed_brief(v);
+  const std::string message = what.empty() ? fmt::format("{} is needed here, not {}", to, value)
+                                           : fmt::format("{} must be {}, not {}", what, to, value);
+  throw RunError(RunErrorKind::Conversion, message, help_for(v, to));
 }
 
 bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
@@ -108,7 +119,7 @@ StringCell* to_string(Heap& heap, const Value& v, std::string_view) {
     case Tag::String: return v.string();
     case Tag::Int: return number_to_string(heap, v.i);
     case Tag::Double: return number_to_string(heap, v.d);
-    default: return heap.string(text(v));
+    default: return heap.string(text(v, {}, &heap));
   }
 }
 

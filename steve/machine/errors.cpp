@@ -1,9 +1,8 @@
 // Run-time errors: where they happened, through which calls, and what the reader can do about it.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "steve/machine/machine.hpp"
+#include "steve/machine/trace.hpp"
 
 namespace breve::steve {
 
@@ -15,51 +14,41 @@ Span Machine::span_of(const Frame& frame, const Instruction* pc) const {
   return function.spans[static_cast<std::size_t>(at)];
 }
 
-std::vector<const Machine::Frame*> Machine::active_frames() const {
-  std::vector<const Frame*> frames;
-  for (const Frame* frame = frame_; frame; frame = frame->caller) frames.push_back(frame);
-  std::reverse(frames.begin(), frames.end());
-  return frames;
-}
-
-ErrorReport Machine::report(RunErrorKind kind, const std::string& message, const Instruction* pc) const {
+ErrorReport Machine::report(const RunError& error, const Instruction* pc) const {
   ErrorReport r;
-  r.kind = kind;
-  r.message = message;
+  r.kind = error.kind();
+  r.message = error.what();
+  r.help = error.help();
   const auto& sources = program_->sources();
+  auto frames = active_frames();
+  if (frame_ != nullptr && pc != nullptr && half_made(*frame_, pc)) frames.pop_back();
+  r.trace = trace(frames, pc);
   // The place shown is the innermost in the user's own files: an error inside the class library is the caller's.
   Span place;
-  for (const auto* active : active_frames()) {
-    const auto& frame = *active;
-    const auto span = span_of(frame, active == frame_ && pc ? pc : frame.pc);
-    const auto& file = sources.file(span.file);
-    if (!file.embedded || place.line == 0) place = span;
-    r.trace.push_back({frame.self->cls->name, program_->symbols().name(frame.method->name), file.name,
-                       frame.self->serial, span.line});
+  for (const auto* frame : frames) {
+    const auto span = span_of(*frame, frame == frame_ && pc ? pc : frame->pc);
+    const bool narrowed = frame == frames.back() && error.place().line != 0;
+    if (!sources.file(span.file).embedded || place.line == 0) place = narrowed ? error.place() : span;
   }
   if (place.line != 0) {
     r.file = sources.file(place.file).name;
     r.line = place.line;
     r.column = place.column;
-    r.text = format({Severity::Error, "run-time", message, {}, place}, sources);
-  } else {
-    r.text = "error: " + message + "\n";
+    r.length = place.length;
   }
-  if (!r.text.empty() && r.text.back() != '\n') r.text += '\n';
-  for (auto line = r.trace.rbegin(); line != r.trace.rend(); ++line) {
-    if (line - r.trace.rbegin() >= 12 && r.trace.rend() - line > 4) {
-      if (line - r.trace.rbegin() == 12) r.text += fmt::format("  ... {} more calls ...\n", r.trace.rend() - line - 4);
-      continue;
-    }
-    r.text += fmt::format("  in {} of {} (0x{:x}), {}:{}\n", line->method, line->class_name, line->address, line->file,
-                          line->line);
-  }
+  r.text = format({Severity::Error, "run-time", r.message, r.help, place}, sources) + trace_text(r.trace);
   return r;
 }
 
 void Machine::rethrow(std::size_t depth, const Instruction* pc) {
-  const auto wrap = [&](ErrorCode code, RunErrorKind kind, const std::string& message) {
-    auto r = report(kind, message, pc);
+  // Also where there is no memory for the report.
+  struct AtTheEnd {
+    Machine& machine;
+    std::size_t depth;
+    ~AtTheEnd() { machine.unwind(depth); }
+  } at_the_end{*this, depth};
+  const auto wrap = [&](ErrorCode code, const RunError& error) {
+    auto r = report(error, pc);
     unwind(depth);
     throw ScriptError(code, std::move(r));
   };
@@ -69,20 +58,34 @@ void Machine::rethrow(std::size_t depth, const Instruction* pc) {
     unwind(depth);
     throw;
   } catch (const RunError& error) {
-    const auto code = error.kind() == RunErrorKind::Budget  ? ErrorCode::Budget
-                      : error.kind() == RunErrorKind::Depth ? ErrorCode::Depth
-                                                            : ErrorCode::Script;
-    wrap(code, error.kind(), error.what());
+    const auto code = error.kind() == RunErrorKind::Budget        ? ErrorCode::Budget
+                      : error.kind() == RunErrorKind::Depth       ? ErrorCode::Depth
+                      : error.kind() == RunErrorKind::Interrupted ? ErrorCode::Interrupted
+                                                                  : ErrorCode::Script;
+    wrap(code, error);
   } catch (const Error& error) {
-    wrap(error.code() == ErrorCode::Memory ? ErrorCode::Memory : ErrorCode::Script, RunErrorKind::World, error.what());
+    const auto code = error.code() == ErrorCode::Memory ? ErrorCode::Memory : ErrorCode::Script;
+    wrap(code, RunError(RunErrorKind::World, error.what()));
   } catch (const std::bad_alloc&) {
-    unwind(depth);
-    ErrorReport r;
-    r.message = "the world has no more memory";
-    r.text = "error: the world has no more memory: raise its limit, or make fewer objects\n";
-    throw ScriptError(ErrorCode::Memory, std::move(r));
+    throw_out_of_memory(depth, pc);
   }
   throw Error(ErrorCode::Script, "unreachable");
+}
+
+// The place is told if there is memory left to tell it.
+void Machine::throw_out_of_memory(std::size_t depth, const Instruction* pc) {
+  ErrorReport r;
+  try {
+    r = report(RunError(RunErrorKind::World, "the world has no more memory",
+                        "raise its memory limit, or keep fewer objects and shorter lists"),
+               pc);
+  } catch (const std::bad_alloc&) {
+    r = {};
+    r.message = "the world has no more memory";
+    r.text = "error: the world has no more memory\n";
+  }
+  unwind(depth);
+  throw ScriptError(ErrorCode::Memory, std::move(r));
 }
 
 void Machine::survive(const ScriptError& error) {
@@ -115,7 +118,7 @@ void Machine::warn(std::string_view text) {
 }
 
 void Machine::warn_once(std::string_view key, std::string_view text) {
-  if (warned_.insert(std::string(key)).second) warn(text);
+  if (warned_.emplace(key).second) warn(text);
 }
 
 }  // namespace breve::steve

@@ -5,6 +5,7 @@
 
 #include "steve/machine/machine.hpp"
 #include "steve/machine/operators.hpp"
+#include "steve/machine/profiler.hpp"
 
 namespace breve::steve {
 
@@ -44,6 +45,7 @@ Value Machine::invoke(Instance& receiver, const MethodInfo& method, std::span<co
   if (nesting_ >= kMaxNesting)
     throw RunError(RunErrorKind::Depth, "calls between scripts and the library are nested more than " +
                                             std::to_string(kMaxNesting) + " deep");
+  count_call();
   const std::size_t depth = depth_;
   const StackMark mark(*this);
   struct Nest {
@@ -56,6 +58,8 @@ Value Machine::invoke(Instance& receiver, const MethodInfo& method, std::span<co
       write_parameter(to, method.parameters[i], arguments[i], program_->symbols().name(method.parameters[i].keyword));
   };
   pins_.push_back(Value::of(Tag::Object, &receiver));
+  if (profiler_) profiler_->use(program_);
+  const ProfileScope profiled(profiler_, Callee::of(method), 0);
   if (method.native) {
     need_room(kNativeRoom);
     Slot* args = top_;
@@ -73,7 +77,10 @@ Value Machine::invoke(Instance& receiver, const MethodInfo& method, std::span<co
     unwind(depth);
     throw;
   }
-  execute(depth);
+  if (profiler_)
+    execute<true>(depth);
+  else
+    execute<false>(depth);
   return result_;
 }
 
@@ -138,6 +145,6 @@ void Machine::visit_frames(const std::function<void(Cell*)>& visit) {
   if (result_.is_reference()) visit(result_.ref);
 }
 
-void Machine::visit_roots(const std::function<void(Cell*)>&) {}
+void Machine::visit_roots(const std::function<void(Cell*)>& visit) { visit(session_); }
 
 }  // namespace breve::steve

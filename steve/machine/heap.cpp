@@ -31,7 +31,15 @@ constexpr std::size_t kLargestChunk = 65536;
 }  // namespace
 
 Heap::Heap(std::pmr::memory_resource* memory, RootSource& roots)
-    : memory_(memory), roots_(roots), zero_(memory), containers_(memory), doomed_(memory) {}
+
+    : memory_(memory),
+      roots_(roots),
+      zero_(memory),
+      containers_(memory),
+      marks_(memory),
+      grey_(memory),
+      doomed_(memory),
+      suspects_(memory) {}
 
 Heap::~Heap() {
   for (Container* cell : containers_) free_arrays(*cell);
@@ -117,8 +125,12 @@ void Heap::give_single(void* memory) {
 void Heap::reserve_tables(bool container) {
   constexpr std::size_t kLeast = 64;
   if (cells_ >= zero_.capacity()) zero_.reserve(std::max(kLeast, zero_.capacity() * 2));
-  if (container && containers_.size() == containers_.capacity())
-    containers_.reserve(std::max(kLeast, containers_.capacity() * 2));
+  if (!container || containers_.size() < containers_.capacity()) return;
+  // The containers come last: what fails before is asked for again.
+  const std::size_t room = std::max(kLeast, containers_.capacity() * 2);
+  marks_.reserve(room);
+  grey_.reserve(room);
+  containers_.reserve(room);
 }
 
 template <class T>
@@ -129,8 +141,19 @@ T* Heap::enter(T* cell) {
   return cell;
 }
 
-StringCell* Heap::raw_string(std::size_t size) {
+namespace {
+void check_length(std::size_t size) {
   if (size > 0x7fffffffU) throw RunError(RunErrorKind::Bounds, "a string cannot be longer than 2147483647 bytes");
+}
+}  // namespace
+
+void Heap::check_room(std::size_t bytes) const {
+  check_length(bytes);
+  memory_->deallocate(memory_->allocate(bytes, 1), bytes, 1);
+}
+
+StringCell* Heap::raw_string(std::size_t size) {
+  check_length(size);
   reserve_tables(false);
   fresh_bytes_ += size;
   auto* cell = new (take(string_cell_bytes(size))) StringCell(static_cast<std::uint32_t>(size));
@@ -280,7 +303,11 @@ static bool waits(const Cell& cell) {
   return cell.mark != 0 || (cell.tag == Tag::Object && static_cast<const Instance&>(cell).live());
 }
 
-void Heap::reclaim() { reclaim_round(); }
+void Heap::reclaim() {
+  short_of_memory_ = false;
+  reclaim_round();
+  if (short_of_memory_) throw std::bad_alloc();
+}
 
 bool Heap::reclaim_round() {
   std::size_t visited = 0;
@@ -326,7 +353,7 @@ void Heap::reclaim_all() {
   }
 }
 
-// Move the unreachable auto-free instances out of the waiting table. If there is no memory for it, they wait.
+// Move the unreachable auto-free instances out of the waiting table. Those for which there is no memory wait.
 void Heap::doom_waiting(std::size_t kept) {
   const auto doomed = [](const Cell* cell) {
     if (cell->tag != Tag::Object || cell->mark != 0) return false;
@@ -339,11 +366,11 @@ void Heap::doom_waiting(std::size_t kept) {
   try {
     doomed_.reserve(doomed_.size() + count);
   } catch (const std::bad_alloc&) {
-    return;
+    short_of_memory_ = true;
   }
   const std::size_t old = doomed_.size();
   for (Cell* cell : zero_) {
-    if (!doomed(cell)) continue;
+    if (!doomed(cell) || doomed_.size() == doomed_.capacity()) continue;
     doomed_.push_back({static_cast<Instance*>(cell), false});
     cell->listed = false;
   }

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "runtime/base/bytes.hpp"
+#include "runtime/base/memory.hpp"
 #include "steve/machine/cells.hpp"
 
 namespace breve::steve {
@@ -33,7 +34,7 @@ class RootSource {
   virtual void free_unreachable(Instance& instance) = 0;
 };
 
-class Heap {
+class Heap : public InMemory {
  public:
   Heap(std::pmr::memory_resource* memory, RootSource& roots);
   ~Heap();  // frees every cell; runs no script
@@ -58,7 +59,7 @@ class Heap {
   /// The write barrier: call for every reference that a heap slot loses.
   void release(Cell* cell) {
     if (!cell || cell->immortal) return;
-    if (phase_ == Phase::Mark) [[unlikely]]
+    if (barrier_) [[unlikely]]
       shade(cell);
     assert(cell->count > 0);
     if (--cell->count == 0) {
@@ -141,6 +142,10 @@ class Heap {
   /// End of an iteration: reclaim all, then one bounded slice of the cycle collector.
   void end_of_iteration();
 
+  /// For what is built outside the heap and could become large: are so many bytes to be had now?
+  /// @throws std::bad_alloc if not, RunError{Bounds} if no string can be so long
+  void check_room(std::size_t bytes) const;
+
   std::uint64_t next_serial() { return ++serial_; }
   std::uint64_t live_cells() const { return cells_; }
   std::pmr::memory_resource* memory() const { return memory_; }
@@ -163,12 +168,18 @@ class Heap {
   void load_state(ByteReader& in, const std::function<Cell*(std::uint64_t)>& cell);
 
  private:
-  // The colours of the collector are regions of containers_: ends_[r] is the end of region r, region 3 is the rest.
-  //   Mark:     0 scanned, 1 reached but not scanned, 2 looked at and not a root, 3 not looked at
-  //   Examine:  0 live, 1 unreachable instances with auto-free, 2 other garbage, 3 not looked at
-  //   Sweep:    0 live, 2 and 3 garbage to take apart
-  // Idle: all ends are 0. New cells of a running collection join region 0.
-  enum class Phase : std::uint8_t { Idle, Mark, Examine, Sweep };
+  // Each phase passes over containers_ once; places before passed_ have been passed. New cells of a running collection
+  // are black and come last.
+  //   Mark:     roots are looked for and become grey; grey cells are scanned and become black
+  //   Examine:  white instances with auto-free are noted to be destroyed, and become grey
+  //   Remark:   grey cells are scanned: all that a destroy method can reach stays
+  //   Sweep:    white cells are taken apart; all cells passed are white again
+  // Idle: all cells are white.
+  enum class Phase : std::uint8_t { Idle, Mark, Examine, Remark, Sweep };
+  // Marks of places: white, black, or kGrey + i for the i-th of grey_.
+  static constexpr std::uint32_t kWhite = 0, kBlack = 1, kGrey = 2;
+  static constexpr std::uint32_t kNoPlace = 0xffffffffU;
+  class Reach;
   struct FreeSlot {
     FreeSlot* next;
   };
@@ -217,29 +228,29 @@ class Heap {
     if (cell->tag != Tag::Object || static_cast<Instance*>(cell)->auto_free) suspicion_ = true;
   }
   static bool may_close_cycle(const Container& cell);
-  std::size_t region(const Container& cell) const;
-  void swap_places(std::uint32_t a, std::uint32_t b);
-  void promote(Container& cell, std::size_t target);
+  void move_place(std::uint32_t from, std::uint32_t to);
   void enrol(Container& cell);
   void strike(Container& cell);
   void shade(Cell* cell);
-  void shade(const Value& v) {
-    if (v.is_reference()) shade(v.ref);
-  }
   void begin_collection();
-  void end_collection();
   void mark(std::int64_t& work);
-  void scan(Container& cell, std::int64_t& work);
-  void scan_part(std::int64_t& work);
+  void end_of_marking();
+  void scan(Container& cell, Reach& reach, std::int64_t& work);
+  void scan_part(Reach& reach, std::int64_t& work);
   void examine(std::int64_t& work);
-  void doom_unreachable();
+  void doom_suspects();
   void sweep(std::int64_t& work);
+  bool take_apart(Container& cell, std::int64_t& work);
   /// Before the elements of a half-scanned list or hash move: finish scanning it.
   void settle(const Container& cell) {
     if (partial_ == &cell) [[unlikely]]
       finish_partial();
   }
   void finish_partial();
+
+  // heap_state.cpp
+  void save_marks(ByteWriter& out) const;
+  void load_marks(ByteReader& in);
 
   // lists.cpp, hashes.cpp
   Value* new_store(std::uint32_t capacity);
@@ -259,7 +270,10 @@ class Heap {
 
   std::pmr::vector<Cell*> zero_;
   std::pmr::vector<Container*> containers_;
+  std::pmr::vector<std::uint32_t> marks_;  // by place
+  std::pmr::vector<std::uint32_t> grey_;   // places in the order in which they became grey; kNoPlace: gone
   std::pmr::vector<Doomed> doomed_;
+  std::pmr::vector<Instance*> suspects_;  // will be doomed when all are found
   std::size_t reclaim_at_ = kReclaimAt;
   std::size_t fresh_bytes_ = 0;  // taken for strings since the last reclaim
   std::uint64_t serial_ = 0x1000;
@@ -267,9 +281,12 @@ class Heap {
   bool freeing_doomed_ = false;
 
   Phase phase_ = Phase::Idle;
-  bool suspicion_ = false;       // since the last collection began, something happened that can leave a cycle behind
-  bool held_by_frames_ = false;  // the last collection began while frames held something that can be in a cycle
-  std::array<std::uint32_t, 3> ends_{};
+  bool suspicion_ = false;        // since the last collection began, something happened that can leave a cycle behind
+  bool held_by_frames_ = false;   // the last collection began while frames held something that can be in a cycle
+  bool barrier_ = false;          // what loses a reference must be marked: Mark, Examine, Remark
+  bool short_of_memory_ = false;  // not all that was to be done in this iteration could be noted
+  std::uint32_t passed_ = 0;
+  std::uint32_t next_grey_ = 0;   // the first of grey_ that is not scanned
   Container* partial_ = nullptr;  // the list or hash whose scan was cut by the end of a slice
   std::uint32_t position_ = 0;    // where: index into its store or entries
 };

@@ -1,4 +1,6 @@
 // What a snapshot keeps of a heap besides its cells: serial numbers, waiting cells, the state of the collector.
+#include <algorithm>
+
 #include "steve/machine/heap.hpp"
 
 namespace breve::steve {
@@ -10,7 +12,7 @@ void Heap::save_state(ByteWriter& out, const std::function<std::uint64_t(const C
   out.put(phase_);
   out.put(static_cast<std::uint8_t>(suspicion_));
   out.put(static_cast<std::uint8_t>(held_by_frames_));
-  for (const std::uint32_t end : ends_) out.put(end);
+  save_marks(out);
   // The rest of a cut scan, relative to the first element: restored lists start elsewhere in their stores.
   out.put(partial_ == nullptr ? std::uint64_t{0} : number(partial_) + 1);
   std::uint32_t position = position_;
@@ -30,6 +32,45 @@ void Heap::save_state(ByteWriter& out, const std::function<std::uint64_t(const C
     out.put(number(doomed.instance));
     out.put(static_cast<std::uint8_t>(doomed.cyclic));
   }
+  out.put(static_cast<std::uint64_t>(suspects_.size()));
+  for (const Instance* suspect : suspects_) out.put(number(suspect));
+}
+
+// Only a running collection has marks.
+void Heap::save_marks(ByteWriter& out) const {
+  if (phase_ == Phase::Idle) return;
+  out.put(passed_);
+  for (const std::uint32_t mark : marks_) out.put(static_cast<std::uint8_t>(std::min(mark, kGrey)));
+  out.put(static_cast<std::uint64_t>(grey_.size() - next_grey_));
+  for (std::size_t i = next_grey_; i < grey_.size(); ++i) out.put(grey_[i]);
+}
+
+void Heap::load_marks(ByteReader& in) {
+  grey_.clear();
+  next_grey_ = passed_ = 0;
+  marks_.assign(containers_.size(), kWhite);
+  if (phase_ == Phase::Idle) return;
+  passed_ = in.get<std::uint32_t>();
+  if (passed_ > containers_.size()) ByteReader::fail();
+  std::size_t grey = 0;
+  for (std::uint32_t& mark : marks_) {
+    mark = in.get<std::uint8_t>();
+    if (mark > kGrey) ByteReader::fail();
+    grey += mark == kGrey ? 1U : 0U;
+    if (mark == kGrey) mark = kNoPlace;  // until its turn is known
+  }
+  const std::size_t waiting = in.get_count(sizeof(std::uint32_t));
+  grey_.reserve(waiting + containers_.capacity());
+  for (std::size_t n = waiting; n > 0; --n) {
+    const auto place = in.get<std::uint32_t>();
+    if (place != kNoPlace && (place >= marks_.size() || marks_[place] != kNoPlace)) ByteReader::fail();
+    if (place != kNoPlace) {
+      marks_[place] = kGrey + static_cast<std::uint32_t>(grey_.size());
+      --grey;
+    }
+    grey_.push_back(place);
+  }
+  if (grey != 0) ByteReader::fail();
 }
 
 void Heap::load_state(ByteReader& in, const std::function<Cell*(std::uint64_t)>& cell) {
@@ -39,11 +80,10 @@ void Heap::load_state(ByteReader& in, const std::function<Cell*(std::uint64_t)>&
   const auto phase = in.get<std::uint8_t>();
   suspicion_ = in.get_bool();
   held_by_frames_ = in.get_bool();
-  std::array<std::uint32_t, 3> ends{};
-  for (std::uint32_t& end : ends) end = in.get<std::uint32_t>();
-  if (phase > static_cast<std::uint8_t>(Phase::Sweep) || ends[0] > ends[1] || ends[1] > ends[2] ||
-      ends[2] > containers_.size())
-    ByteReader::fail();
+  if (phase > static_cast<std::uint8_t>(Phase::Sweep)) ByteReader::fail();
+  phase_ = static_cast<Phase>(phase);
+  barrier_ = phase_ != Phase::Idle && phase_ != Phase::Sweep;
+  load_marks(in);
   const auto partial = in.get<std::uint64_t>();
   position_ = in.get<std::uint32_t>();
   partial_ = nullptr;
@@ -68,11 +108,15 @@ void Heap::load_state(ByteReader& in, const std::function<Cell*(std::uint64_t)>&
     doomed_.push_back({static_cast<Instance*>(doomed), in.get_bool()});
     retain(doomed);
   }
+  for (std::size_t n = in.get_count(sizeof(std::uint64_t)); n > 0; --n) {
+    Cell* suspect = cell(in.get<std::uint64_t>());
+    if (suspect->tag != Tag::Object) ByteReader::fail();
+    suspects_.push_back(static_cast<Instance*>(suspect));
+    retain(suspect);
+  }
   // A cell that nothing refers to and that does not wait would never go: only a damaged image has one.
   for (const Container* container : containers_) unlisted += container->count == 0 && !container->listed ? 1U : 0U;
   if (unlisted != 0) ByteReader::fail();
-  phase_ = static_cast<Phase>(phase);
-  ends_ = ends;
 }
 
 }  // namespace breve::steve

@@ -1,6 +1,7 @@
 // Elements of lists, hashes, vectors, matrices and strings: reading, replacing, inserting, removing (6.6, 8.1, 8.4).
 #include <fmt/format.h>
 
+#include "steve/machine/brief.hpp"
 #include "steve/machine/operators.hpp"
 
 namespace breve::steve {
@@ -13,8 +14,11 @@ constexpr std::string_view kIndex = "an index";
 [[noreturn]] void fail_type(const std::string& message) { throw RunError(RunErrorKind::Type, message); }
 
 [[noreturn]] void fail_base(const Value& base) {
-  if (base.tag == Tag::Null) fail_type("cannot take an element of no value (NULL); a missing hash key reads as NULL");
-  fail_type(fmt::format("{} has no elements", a_type(base.tag)));
+  if (base.tag == Tag::Null)
+    throw RunError(RunErrorKind::Type, "cannot take an element of no value (NULL)",
+                   "a missing key of a hash gives NULL: test it with 'if' before");
+  throw RunError(RunErrorKind::Type, fmt::format("{} has no elements", typed_brief(base)),
+                 "lists, hashes, vectors, matrices and strings have elements; objects have variables");
 }
 
 std::uint32_t size_of(const ListCell* list) { return list != nullptr ? list->size : 0; }

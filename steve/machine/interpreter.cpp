@@ -1,5 +1,10 @@
 // The interpreter: one loop, direct threaded, untagged registers. Everything that is rare or long is a call away in
 // slow_paths.cpp and calls.cpp. This file is longer than others because it is one function.
+//
+// The loop is compiled twice: execute<true> tells the profiler what it calls, execute<false> does not know of it and
+// costs nothing. KEEP IN STEP: profile. Whatever enters a script's frame says profile_call before, whatever leaves one
+// that the loop itself entered says profile_leave; natives, functions and reclaiming go through the ..._profiled helpers
+// (profiled.cpp) if kProfiled. What is left by an exception needs nothing: the catch block below leaves it.
 #include <cmath>
 #include <cstring>
 
@@ -31,8 +36,16 @@ namespace breve::steve {
   } while (0)
 #define COUNT_CALL()                                                                   \
   do {                                                                                 \
-    if (budget_left_ != 0 && --budget_left_ == 0) { SAVE(); fail_budget(); }           \
-    if (heap_->wants_reclaim()) [[unlikely]] { SAVE(); heap_->reclaim(); }               \
+    if (budget_.turn()) [[unlikely]] { SAVE(); end_of_piece(); }                       \
+    SAFE_POINT();                                                                      \
+  } while (0)
+#define SAFE_POINT()                                                                   \
+  do {                                                                                 \
+    if (heap_->wants_reclaim()) [[unlikely]] {                                           \
+      SAVE();                                                                            \
+      if constexpr (kProfiled) reclaim_profiled();                                       \
+      else heap_->reclaim();                                                             \
+    }                                                                                    \
   } while (0)
 // A method of an object that was freed meanwhile is left at once (F30).
 #define LEAVE_IF_FREED() do { if (!self->live()) [[unlikely]] { result_ = Value(); goto do_return; } } while (0)
@@ -67,9 +80,9 @@ inline std::int32_t int_binary(ast::BinaryOp op, std::int32_t a, std::int32_t b)
     default: return a != b;
   }
 }
-[[noreturn]] void fail_budget() { throw RunError(RunErrorKind::Budget, "the call used up its budget of loop turns and calls"); }
 }  // namespace
 
+template <bool kProfiled>
 void Machine::execute(std::size_t depth) {
   static const void* const kLabels[] = {
 #define X(name) &&op_##name,
@@ -82,6 +95,8 @@ void Machine::execute(std::size_t depth) {
   Slot* base = nullptr;
   Instance* self = nullptr;
   const Function* function = nullptr;
+  [[maybe_unused]] std::size_t profiled_depth = 0;
+  if constexpr (kProfiled) profiled_depth = profile_depth();
   try {
     RELOAD();
     NEXT();
@@ -473,12 +488,12 @@ void Machine::execute(std::size_t depth) {
     NEXT();
   }
 
-  op_New: SAVE(); R(in->a).ref = create(program_->cls(static_cast<ClassId>(in->imm()))); COUNT_CALL(); LEAVE_IF_FREED(); NEXT();
+  op_New: SAVE(); R(in->a).ref = create(program_->cls(static_cast<ClassId>(in->imm()))); SAFE_POINT(); LEAVE_IF_FREED(); NEXT();
   op_NewCount: {
     const Instruction& ext = *pc++;
     SAVE();
     ANY(in->a) = make_many(ANY(in->b), program_->cls(static_cast<ClassId>(ext.imm())));
-    COUNT_CALL();
+    SAFE_POINT();
     LEAVE_IF_FREED();
     NEXT();
   }
@@ -513,11 +528,13 @@ void Machine::execute(std::size_t depth) {
       NEXT();
     }
     if (plan->method->native) {
-      call_native(*plan, *receiver, base);
+      if constexpr (kProfiled) call_native_profiled(*plan, *receiver, base);
+      else call_native(*plan, *receiver, base);
       LEAVE_IF_FREED();
       NEXT();
     }
     const Slot* caller = base;
+    if constexpr (kProfiled) profile_call(*plan->method);
     frame = enter(*plan->method, *receiver);
     base = frame->base();
     apply(*plan, caller, base);
@@ -587,7 +604,9 @@ void Machine::execute(std::size_t depth) {
   op_Function: {
     SAVE();
     Value value;
-    functions_[static_cast<std::size_t>(in->imm())].function(*this, *self, &R(in->a), value);
+    const auto& callee = functions_[static_cast<std::size_t>(in->imm())];
+    if constexpr (kProfiled) call_function_profiled(callee, *self, &R(in->a), value);
+    else callee.function(*this, *self, &R(in->a), value);
     result_ = value;
     COUNT_CALL();
     LEAVE_IF_FREED();
@@ -621,13 +640,18 @@ void Machine::execute(std::size_t depth) {
   do_return:
     leave();
     if (depth_ == depth) return;
+    if constexpr (kProfiled) profile_leave();
     RELOAD();
     LEAVE_IF_FREED();
     NEXT();
   } catch (...) {
+    if constexpr (kProfiled) profile_unwind(profiled_depth);
     rethrow(depth, pc);
   }
 }
 // clang-format on
+
+template void Machine::execute<false>(std::size_t depth);
+template void Machine::execute<true>(std::size_t depth);
 
 }  // namespace breve::steve

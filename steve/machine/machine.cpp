@@ -4,7 +4,10 @@
 #include <algorithm>
 
 #include "runtime/world/menu.hpp"
+#include "steve/compile/evaluate.hpp"
 #include "steve/machine/operators.hpp"
+#include "steve/machine/profiler.hpp"
+#include "steve/machine/reload.hpp"
 
 namespace breve::steve {
 
@@ -14,13 +17,17 @@ Machine::Machine(std::shared_ptr<const Program> program, World& world, std::pmr:
       world_(world),
       host_(std::move(host)),
       memory_(memory),
-      heap_(std::make_unique<Heap>(memory, *this)),
+      heap_(make_in<Heap>(memory, memory, *this)),
       segments_(memory),
       pins_(memory),
-      functions_(steve::functions()) {
-  next_segment(kNativeRoom);
+      caches_(memory),
+      strings_(memory),
+      functions_(steve::functions()),
+      warned_sites_(memory),
+      warned_(memory) {
   caches_.resize(program_->code().sites.size());
-  strings_ = make_constants(*heap_);
+  strings_ = make_constants(*heap_, *program_);
+  next_segment(kNativeRoom);
   world_.set_behaviour(this);
 }
 
@@ -29,10 +36,10 @@ Machine::~Machine() {
   for (const auto& [slots, size] : segments_) memory_->deallocate(slots, size * sizeof(Slot), alignof(Slot));
 }
 
-std::vector<StringCell*> Machine::make_constants(Heap& heap) const {
-  std::vector<StringCell*> constants;
-  constants.reserve(program_->code().strings.size());
-  for (const auto& text : program_->code().strings) {
+std::pmr::vector<StringCell*> Machine::make_constants(Heap& heap, const Program& program) {
+  std::pmr::vector<StringCell*> constants(heap.memory());
+  constants.reserve(program.code().strings.size());
+  for (const auto& text : program.code().strings) {
     auto* cell = heap.string(text);
     if (cell) {
       heap.retain(cell);  // it is not garbage, now or ever
@@ -43,27 +50,72 @@ std::vector<StringCell*> Machine::make_constants(Heap& heap) const {
   return constants;
 }
 
+std::vector<std::string> Machine::reload(std::shared_ptr<const Program> program) {
+  if (nesting_ != 0 || frame_) throw Error(ErrorCode::Busy, "a program cannot be replaced while it runs");
+  return Reload(*this, std::move(program)).run();
+}
+
 void Machine::start() {
-  begin_top_level();
   const auto* cls = program_->controller_class();
   if (!cls) throw Error(ErrorCode::Argument, "the program has no controller");
   controller_ = create(*cls);
 }
 
-void Machine::begin_top_level() {
-  if (nesting_ == 0) budget_left_ = host_.budget;
+void Machine::begin_run() {
+  interrupted_.store(false, std::memory_order_relaxed);
+  budget_.begin_run(host_.budget);
+}
+
+void Machine::end_of_piece() {
+  if (interrupted_.load(std::memory_order_relaxed)) {
+    budget_.hold();
+    throw RunError(RunErrorKind::Interrupted, "interrupted");
+  }
+  if (!budget_.next_piece()) fail_budget();
+}
+
+void Machine::charge(std::uint64_t turns) {
+  if (!budget_.charge(turns)) fail_budget();
+}
+
+void Machine::fail_budget() const {
+  throw RunError(
+      RunErrorKind::Budget,
+      "the call used up its budget of loop turns and calls: " +
+          (budget_.run_is_used_up() ? std::to_string(host_.budget) + " for an iteration or a call by the host"
+                                    : std::to_string(host_.call_budget) + " for one call within an iteration"));
+}
+
+template <class Body>
+void Machine::called_by_world(Body&& body) {
+  if (host_.call_budget == 0) return body();
+  const std::size_t depth = depth_;
+  const Instruction* pc = running();
+  try {
+    const Budget::Call limited(budget_, host_.call_budget);
+    try {
+      body();
+    } catch (...) {
+      rethrow(depth, pc);
+    }
+  } catch (const ScriptError& error) {
+    if (error.code() != ErrorCode::Budget || budget_.run_is_used_up()) throw;
+    survive(error);
+  }
 }
 
 // --- objects
 // -------------------------------------------------------------------------------------------------------------------
 
 Instance* Machine::create(const ClassInfo& cls) {
+  const ProfileScope profiled(profiler_, Callee::act("new", &cls), profiler_ ? running_line() : 0);
+  count_call();
   auto* instance = heap_->instance(cls);
   heap_->retain(instance);  // by the table of objects, until it is freed or opts for auto-free
-  instance->id = world_.create(cls.id, reinterpret_cast<std::uint64_t>(instance), cls.iterate != nullptr,
-                               cls.post_iterate != nullptr);
-  if (!controller_ && program_->controller_class() == &cls) controller_ = instance;
   try {
+    instance->id = world_.create(cls.id, reinterpret_cast<std::uint64_t>(instance), cls.iterate != nullptr,
+                                 cls.post_iterate != nullptr);
+    if (!controller_ && program_->controller_class() == &cls) controller_ = instance;
     for (std::size_t i = 0; i < cls.init_chain.size(); ++i) {
       invoke(*instance, *cls.init_chain[i], {});
       if (!instance->live() && i + 1 < cls.init_chain.size())
@@ -79,11 +131,17 @@ Instance* Machine::create(const ClassInfo& cls) {
 
 void Machine::free_instance(Instance& instance) {
   if (instance.state != Instance::State::Live) return;
+  const ProfileScope profiled(profiler_, Callee::act("free", instance.cls), profiler_ ? running_line() : 0);
   instance.state = Instance::State::BeingFreed;
   const Pin pin(*this, Value::of(Tag::Object, &instance));
   Value ignored;
-  if (instance.cls->destroy) call_guarded(instance, *instance.cls->destroy, {}, ignored);
-  for (const auto* method : instance.cls->delete_chain) call_guarded(instance, *method, {}, ignored);
+  try {
+    if (instance.cls->destroy) call_guarded(instance, *instance.cls->destroy, {}, ignored);
+    for (const auto* method : instance.cls->delete_chain) call_guarded(instance, *method, {}, ignored);
+  } catch (...) {
+    forget(instance);  // cut short by the budget or by the end of memory: it is gone all the same
+    throw;
+  }
   forget(instance);
 }
 
@@ -99,7 +157,9 @@ void Machine::forget(Instance& instance) {
   instance.auto_free = false;
 }
 
-void Machine::free_unreachable(Instance& instance) { free_instance(instance); }
+void Machine::free_unreachable(Instance& instance) {
+  called_by_world([&] { free_instance(instance); });
+}
 
 Instance* Machine::instance(ObjectId id) const {
   return world_.alive(id) ? reinterpret_cast<Instance*>(world_.user(id)) : nullptr;
@@ -119,7 +179,6 @@ bool Machine::responds(const ClassInfo& cls, std::string_view name) const {
 }
 
 Value Machine::call(Instance& receiver, const MethodInfo& method, std::span<const Value> arguments) {
-  begin_top_level();
   if (!receiver.live())
     throw RunError(RunErrorKind::FreedObject, "a method is called on a freed object of class " + receiver.cls->name);
   if (arguments.size() != method.parameters.size())
@@ -198,15 +257,15 @@ Value Machine::default_value(const ParameterInfo& p) {
 // ------------------------------------------------------------------------------------------------------------
 
 void Machine::iterate(ObjectId agent) {
-  if (auto* object = instance(agent)) call(*object, *object->cls->iterate, {});
+  if (auto* object = instance(agent)) called_by_world([&] { call(*object, *object->cls->iterate, {}); });
 }
 
 void Machine::post_iterate(ObjectId agent) {
-  if (auto* object = instance(agent)) call(*object, *object->cls->post_iterate, {});
+  if (auto* object = instance(agent)) called_by_world([&] { call(*object, *object->cls->post_iterate, {}); });
 }
 
 void Machine::scheduled(ObjectId agent, std::string_view method) {
-  if (auto* object = instance(agent)) call(*object, method, {});
+  if (auto* object = instance(agent)) called_by_world([&] { call(*object, method, {}); });
 }
 
 bool Machine::collided(ObjectId agent, ObjectId other, std::string_view name, const Vector3& point,
@@ -219,7 +278,7 @@ bool Machine::collided(ObjectId agent, ObjectId other, std::string_view name, co
     if (!method) continue;
     const Value arguments[] = {Value::of(Tag::Object, hit), Value::of(point), Value::of(normal), Value(), Value()};
     Value result;
-    call_guarded(*object, *method, std::span(arguments, count), result);
+    called_by_world([&] { call_guarded(*object, *method, std::span(arguments, count), result); });
     if (result.tag == Tag::Int && result.i != 0) return true;
   }
   return false;
@@ -244,7 +303,7 @@ void Machine::notified(ObjectId observer, std::string_view name, ObjectId announ
 void Machine::call_if_present(Instance& receiver, std::string_view method, std::span<const Value> arguments) {
   Value result;
   if (const auto* info = find_method(*receiver.cls, method, arguments.size()))
-    call_guarded(receiver, *info, arguments, result);
+    called_by_world([&] { call_guarded(receiver, *info, arguments, result); });
 }
 
 void Machine::input(const InputEvent& event) {
@@ -286,23 +345,8 @@ void Machine::choose_menu(ObjectId id) {
 
 void Machine::end_of_iteration() {
   result_ = Value();
+  const StageScope stage("garbage", profiler_);
   heap_->end_of_iteration();
-}
-
-Instance* Machine::broadcast_member(const Value& element) const {
-  if (element.tag == Tag::Object && element.object() && element.object()->live()) return element.object();
-  throw RunError(element.tag == Tag::Object ? RunErrorKind::NullObject : RunErrorKind::Type,
-                 "a method is called on a list, and an element of it is not a live object but " +
-                     (element.tag != Tag::Object ? a_type(element.tag)
-                                                 : std::string(element.object() ? "a freed one" : "a null one")));
-}
-
-void Machine::fail_call_on(const Value& value) const {
-  if (value.tag == Tag::Null)
-    throw RunError(RunErrorKind::NullObject,
-                   "a method is called on no value (NULL): what stands in front of the method name gave nothing");
-  throw RunError(RunErrorKind::Type,
-                 "a method is called on " + a_type(value.tag) + "; only objects and lists of objects have methods");
 }
 
 }  // namespace breve::steve

@@ -1,6 +1,7 @@
 // One program running in one world: heap, frames, interpreter, and the calls between scripts and native code.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <functional>
 #include <memory>
@@ -14,6 +15,7 @@
 #include "runtime/world/world.hpp"
 #include "steve/compile/bytecode.hpp"
 #include "steve/compile/program.hpp"
+#include "steve/machine/budget.hpp"
 #include "steve/machine/heap.hpp"
 #include "steve/machine/native.hpp"
 
@@ -31,21 +33,23 @@ struct MachineHost {
   bool verbose = false;  // say once when an obsolete selector is used
   bool strict = false;
   std::uint32_t depth_limit = 5000;  // nested calls
-  std::uint64_t budget = 0;          // loop back-edges and calls per call from the host or iteration; 0 = none
+  std::uint64_t budget = 0;          // loop turns and calls in an iteration or a call from the host; 0 = none
+  std::uint64_t call_budget = 0;     // in one call by the world, within an iteration; 0 = none
 };
 
 /// One active method, for reports.
 struct TraceLine {
-  std::string class_name, method, file;
-  std::uint64_t address = 0;
-  std::uint32_t line = 0;  // of the statement that was running
+  std::string class_name, method, file;  // class of the receiver
+  std::string receiver;                  // "Bird 0xc"; "" if it could not be described
+  std::string arguments;                 // "target (3, 0, 1) weight 2"
+  std::uint32_t line = 0, column = 0;    // of what was running
 };
 
 /// A run-time error with everything that is known about it.
 struct ErrorReport {
   RunErrorKind kind = RunErrorKind::Internal;
-  std::string message, file;
-  std::uint32_t line = 0, column = 0;
+  std::string message, help, file;
+  std::uint32_t line = 0, column = 0, length = 0;
   std::vector<TraceLine> trace;  // outermost first
   std::string text;              // all of it, formatted for people: ends with a newline
 };
@@ -60,7 +64,10 @@ class ScriptError : public Error {
   ErrorReport report_;
 };
 
-class Machine final : public Behaviour, public RootSource {
+class Fragments;
+class Profiler;
+
+class Machine final : public Behaviour, public RootSource, public InMemory {
  public:
   Machine(std::shared_ptr<const Program> program, World& world, std::pmr::memory_resource* memory, MachineHost host);
   ~Machine() override;
@@ -73,6 +80,25 @@ class Machine final : public Behaviour, public RootSource {
   /// Make the controller and run its `init` chain. Once, before the first step.
   void start();
   Instance* controller() const { return controller_; }
+  /// From now on tell `profiler` what runs, or nobody (null). Only while nothing runs; not owned. See profiler.hpp.
+  void set_profiler(Profiler* profiler);
+
+  // --- while it runs ------------------------------------------------------------------------------------------------
+  /// Run statements as though they stood in a method of `self`'s class (evaluate.cpp). The value is that of the last
+  /// one if it is an expression, or what `return` gives. ScriptError{Compile} with all errors.
+  Value evaluate(Instance& self, std::string_view text);
+  /// The variables that evaluated statements have made, by name; null: none yet.
+  HashCell* session() const { return session_; }
+  HashCell* make_session();
+  /// Let another program take the place of this one, all or nothing; only while nothing runs (reload.hpp).
+  /// @return  warnings about values that could not be kept
+  std::vector<std::string> reload(std::shared_ptr<const Program> program);
+  /// Stop what runs, at the next call or turn of a loop that is looked at. For signal handlers and other threads.
+  void interrupt() noexcept { interrupted_.store(true, std::memory_order_relaxed); }
+  /// The host calls, or an iteration begins: what runs from now on shares one budget, and old interrupts are forgotten.
+  void begin_run();
+  /// Count work of native code as so many turns. RunError{Budget} if the budget is used up.
+  void charge(std::uint64_t turns);
 
   // --- objects ------------------------------------------------------------------------------------------------------
   /// A new instance with its `init` chain run. RunError if `init` fails or frees it.
@@ -136,6 +162,8 @@ class Machine final : public Behaviour, public RootSource {
 
  private:
   friend class Pin;
+  friend class Reload;
+  class FragmentScope;
 
   /// What a call site does with its arguments for one class of receiver.
   struct PlanStep {
@@ -145,17 +173,19 @@ class Machine final : public Behaviour, public RootSource {
     bool checked;  // the parameter names a class
     const ParameterInfo* parameter;
   };
-  struct Plan {
+  struct Plan : InMemory {
+    explicit Plan(std::pmr::memory_resource* memory) : moves(memory), steps(memory), order(memory) {}
     const ClassInfo* cls = nullptr;
-    const MethodInfo* method = nullptr;                          // null: `iterate`, which nobody has to have
-    std::vector<std::pair<std::uint16_t, std::uint16_t>> moves;  // one slot each: from, to
-    std::vector<PlanStep> steps;                                 // the rest
-    std::vector<std::uint16_t> order;                            // arguments in the order of the parameters
+    const MethodInfo* method = nullptr;                               // null: `iterate`, which nobody has to have
+    std::pmr::vector<std::pair<std::uint16_t, std::uint16_t>> moves;  // one slot each: from, to
+    std::pmr::vector<PlanStep> steps;                                 // the rest
+    std::pmr::vector<std::uint16_t> order;                            // arguments in the order of the parameters
+    std::unique_ptr<Plan> next;                                       // of the same site, for another class
   };
   struct SiteCache {
     const ClassInfo* cls = nullptr;
     const Plan* plan = nullptr;
-    std::vector<std::unique_ptr<Plan>> plans;
+    std::unique_ptr<Plan> plans;
   };
   /// One active method. It stands in the slots right below its registers, so that a call allocates nothing.
   struct Frame {
@@ -227,6 +257,7 @@ class Machine final : public Behaviour, public RootSource {
   void next_segment(std::size_t slots);
   [[noreturn]] void fail_depth(const MethodInfo& method) const;
   void unwind(std::size_t depth);
+  template <bool kProfiled>
   void execute(std::size_t depth);  // run the top frame until `depth` frames are left
   Value invoke(Instance& receiver, const MethodInfo& method, std::span<const Value> arguments);
   void write_parameter(Slot* base, const ParameterInfo& parameter, const Value& value, std::string_view what);
@@ -243,6 +274,17 @@ class Machine final : public Behaviour, public RootSource {
   const MethodInfo* choose(const CallSite& site, const ClassInfo& cls) const;
   static bool accepts(const MethodInfo& method, const CallSite& site);
   [[noreturn]] void fail_call(const CallSite& site, const ClassInfo& cls, const MethodInfo* best) const;
+  [[noreturn]] void fail_unknown_method(const CallSite& site, const ClassInfo* start) const;
+  /// What stands before a selector, as it is written, and where it comes from if it is a variable.
+  struct Receiver {
+    std::string text;
+    Span span;
+    enum class Kind { Variable, Parameter, Expression } kind = Kind::Expression;
+    const VariableInfo* member = nullptr;  // Variable of the instance
+  };
+  Receiver receiver_of_site(const Span& selector) const;
+  std::string where_assigned(const Receiver& receiver) const;
+  const CallSite* broadcast_site() const;
   void apply(const Plan& plan, const Slot* caller, Slot* callee) {
     for (const auto& [from, to] : plan.moves) callee[to].bits = caller[from].bits;
     if (!plan.steps.empty()) apply_steps(plan, caller, callee);
@@ -273,21 +315,44 @@ class Machine final : public Behaviour, public RootSource {
   Instance* instance_of(const Value& value) const;
 
   // errors (errors.cpp)
-  ErrorReport report(RunErrorKind kind, const std::string& message, const Instruction* pc) const;
+  ErrorReport report(const RunError& error, const Instruction* pc) const;
+  std::vector<TraceLine> trace(const std::vector<const Frame*>& frames, const Instruction* pc) const;
+  void describe_call(TraceLine& line, const Frame& frame) const;
+  bool half_made(const Frame& frame, const Instruction* pc) const;
   [[noreturn]] void rethrow(std::size_t depth, const Instruction* pc);  // from inside a catch block
+  [[noreturn]] void throw_out_of_memory(std::size_t depth, const Instruction* pc);
   void survive(const ScriptError& error);
   Span span_of(const Frame& frame, const Instruction* pc) const;
   std::vector<const Frame*> active_frames() const;  // outermost first
   const Instruction* running() const { return frame_ ? frame_->pc : nullptr; }
   void input_key(const InputEvent& event);
   void call_if_present(Instance& receiver, std::string_view method, std::span<const Value> arguments = {});
-  void begin_top_level();
-  std::vector<StringCell*> make_constants(Heap& heap) const;
+  void count_call() {
+    if (budget_.turn()) [[unlikely]]
+      end_of_piece();
+  }
+  void end_of_piece();
+  [[noreturn]] void fail_budget() const;
+  template <class Body>
+  void called_by_world(Body&& body);  // with a budget of its own; being cut does not end the iteration
+
+  // told to the profiler, if there is one (profiled.cpp)
+  std::uint32_t running_line() const;  // of the innermost frame's call, 0 without one
+  std::size_t profile_depth() const;
+  void profile_call(const MethodInfo& method);
+  void profile_leave();
+  void profile_unwind(std::size_t depth);
+  void call_native_profiled(const Plan& plan, Instance& receiver, const Slot* caller);
+  void call_function_profiled(const Native& function, Instance& self, const Slot* args, Value& result);
+  void reclaim_profiled();
+
+  static std::pmr::vector<StringCell*> make_constants(Heap& heap, const Program& program);
   void choose_menu(ObjectId item);
   void forget(Instance& instance);
   Value default_value(const ParameterInfo& parameter);
   Instance* broadcast_member(const Value& element) const;
   [[noreturn]] void fail_call_on(const Value& value) const;
+  [[noreturn]] void fail_null_receiver(const CallSite& site) const;
 
   std::shared_ptr<const Program> program_;
   World& world_;
@@ -295,6 +360,7 @@ class Machine final : public Behaviour, public RootSource {
   std::pmr::memory_resource* memory_;
   std::unique_ptr<Heap> heap_;
   Instance* controller_ = nullptr;
+  Profiler* profiler_ = nullptr;
   Value result_;            // of the last call
   Frame* frame_ = nullptr;  // the innermost
   std::size_t depth_ = 0;
@@ -303,13 +369,16 @@ class Machine final : public Behaviour, public RootSource {
   Slot* top_ = nullptr;
   Slot* limit_ = nullptr;
   std::pmr::vector<Value> pins_;
-  std::vector<SiteCache> caches_;
-  std::vector<StringCell*> strings_;  // the program's constants
+  std::pmr::vector<SiteCache> caches_;
+  std::pmr::vector<StringCell*> strings_;  // the program's constants
   std::span<const Native> functions_;
-  std::unordered_set<const Instruction*> warned_sites_;
-  std::unordered_set<std::string> warned_;
+  std::pmr::unordered_set<const Instruction*> warned_sites_;
+  std::pmr::unordered_set<std::pmr::string> warned_;
   std::uint64_t survived_errors_ = 0;
-  std::uint64_t budget_left_ = 0;
+  Budget budget_;
+  std::atomic<bool> interrupted_{false};
+  std::unique_ptr<Fragments> fragments_;  // once something was evaluated
+  HashCell* session_ = nullptr;
   std::uint32_t nesting_ = 0;  // interpreter loops on the C++ stack
 };
 

@@ -1,6 +1,8 @@
 // Operators on values whose types are known only when they run (5.4 to 5.7, 6.4).
 #include "steve/machine/operators.hpp"
 
+#include "steve/machine/brief.hpp"
+
 #include <array>
 #include <memory_resource>
 #include <unordered_set>
@@ -25,7 +27,7 @@ Value boolean(BinaryOp op, bool same) { return boolean(same == (op == BinaryOp::
 
 /// "cannot multiply a vector by a vector; use dot(a, b) or cross(a, b)"
 [[noreturn]] void fail_operands(BinaryOp op, const Value& a, const Value& b, std::string_view hint = {}) {
-  const std::string x = a_type(a.tag), y = a_type(b.tag);
+  const std::string x = typed_brief(a), y = typed_brief(b);
   std::string message;
   switch (op) {
     case BinaryOp::Add: message = fmt::format("cannot add {} and {}", x, y); break;
@@ -36,9 +38,11 @@ Value boolean(BinaryOp op, bool same) { return boolean(same == (op == BinaryOp::
     case BinaryOp::Pow: message = fmt::format("cannot raise {} to the power of {}", x, y); break;
     default: message = fmt::format("cannot compare {} with {}", x, y); break;
   }
-  if (!hint.empty()) message.append("; ").append(hint);
   const bool number_missing = a.tag == Tag::Null || b.tag == Tag::Null;
-  throw RunError(number_missing ? RunErrorKind::Conversion : RunErrorKind::Type, message);
+  const std::string help = number_missing && hint.empty()
+                               ? "a method gives a value with 'return'; a missing key of a hash gives none"
+                               : std::string(hint);
+  throw RunError(number_missing ? RunErrorKind::Conversion : RunErrorKind::Type, message, help);
 }
 
 // --- numbers ---------------------------------------------------------------------------------------------------------
@@ -173,7 +177,7 @@ Value number_binary(BinaryOp op, const Value& x, const Value& y) {
   }
   Value a = as_number(x), b = as_number(y);
   if (a.tag == Tag::Double || b.tag == Tag::Double) {
-    if (a.tag == Tag::Null || b.tag == Tag::Null) fail_operands(op, x, y, "the expression has no value");
+    if (a.tag == Tag::Null || b.tag == Tag::Null) fail_operands(op, x, y);
     return double_binary(op, to_double(a), to_double(b));
   }
   return int_binary(op, a.tag == Tag::Null ? 0 : a.i, b.tag == Tag::Null ? 0 : b.i);
@@ -250,7 +254,9 @@ Value binary(Heap& heap, BinaryOp op, const Value& a, const Value& b) {
   return number_binary(op, a, b);
 }
 
-void fail_division_by_zero() { fail_math("division by zero"); }
+void fail_division_by_zero() {
+  throw RunError(RunErrorKind::Math, "division by zero", "test what you divide by with 'if' before");
+}
 
 std::int32_t divide(std::int32_t a, std::int32_t b) {
   if (b == 0) fail_division_by_zero();

@@ -4,6 +4,7 @@
 
 #include "steve/machine/machine.hpp"
 #include "steve/machine/operators.hpp"
+#include "steve/machine/profiler.hpp"
 
 namespace breve::steve {
 
@@ -132,7 +133,7 @@ Value Machine::guarded_index(const Value& base, const Value& key) {
   try {
     return read_index(base, key);
   } catch (const RunError& error) {
-    survive(ScriptError(error.code(), report(error.kind(), error.what(), running())));
+    survive(ScriptError(error.code(), report(error, running())));
     return {};
   }
 }
@@ -224,6 +225,7 @@ void Machine::sort(ListCell& list, Symbol symbol, Instance& self) {
     throw RunError(RunErrorKind::UnknownMethod, "unknown method: sort needs a method '" +
                                                     program_->symbols().name(symbol) +
                                                     "' with two parameters in class " + self.cls->name);
+  const ProfileScope profiled(profiler_, Callee::act("sort"), profiler_ ? running_line() : 0);
   const Pin pin(*this, Value::of(Tag::List, &list));
   const StackMark mark(*this);
   for (const auto& element : list) pins_.push_back(element);
@@ -268,6 +270,7 @@ StringCell* Machine::interpolate(const std::vector<std::string>& texts, const Va
 }
 
 void Machine::print_value(const Value& value, int ending) {
+  const ProfileScope profiled(profiler_, Callee::act("print"), profiler_ ? running_line() : 0);
   auto out = text(value);
   if (ending == 1) out += ' ';
   if (ending == 2) out += '\n';

@@ -52,17 +52,18 @@ void for_each_number(const Instance& instance, Visit&& visit) {
 /// Numbers for cells: containers first, the rest as they are met.
 class Numbering {
  public:
+  explicit Numbering(std::pmr::memory_resource* memory) : numbers_(memory), cells_(memory) {}
   std::uint64_t number(const Cell* cell) const { return numbers_.at(cell); }
   bool add(const Cell* cell) {
     const bool fresh = numbers_.emplace(cell, numbers_.size()).second;
     if (fresh) cells_.push_back(cell);
     return fresh;
   }
-  const std::vector<const Cell*>& cells() const { return cells_; }
+  const std::pmr::vector<const Cell*>& cells() const { return cells_; }
 
  private:
-  std::unordered_map<const Cell*, std::uint64_t> numbers_;  // looked up only
-  std::vector<const Cell*> cells_;
+  std::pmr::unordered_map<const Cell*, std::uint64_t> numbers_;  // looked up only
+  std::pmr::vector<const Cell*> cells_;
 };
 
 void put_head(ByteWriter& out, const Container& cell) {
@@ -78,8 +79,7 @@ void put_head(ByteWriter& out, const Container& cell) {
     out.put(instance.serial);
     out.put(instance.state);
     out.put(static_cast<std::uint8_t>(instance.auto_free));
-    out.put(instance.id.index);
-    out.put(instance.id.generation);
+    out.put(instance.id);
   }
 }
 
@@ -97,8 +97,8 @@ void put_value(ByteWriter& out, const Value& v, const Numbering& numbering) {
 }  // namespace
 
 void Machine::save(ByteWriter& out) const {
-  Numbering numbering;
-  std::unordered_map<const Cell*, std::uint32_t> constants;
+  Numbering numbering(memory_);
+  std::pmr::unordered_map<const Cell*, std::uint32_t> constants(memory_);
   for (std::uint32_t i = 0; i < strings_.size(); ++i)
     if (strings_[i]) constants.emplace(strings_[i], i);
   const auto containers = heap_->containers();
@@ -141,15 +141,16 @@ void Machine::save(ByteWriter& out) const {
     }
     for_each_value(*cell, [&](const Value& v) { put_value(out, v, numbering); });
   }
+  out.put(session_ ? numbering.number(session_) : kNull);
   heap_->save_state(out, [&](const Cell* cell) { return numbering.number(cell); });
   out.put(controller_ ? numbering.number(controller_) : kNull);
   out.put(survived_errors_);
 }
 
 void Machine::load(ByteReader& in) {
-  auto heap = std::make_unique<Heap>(memory_, *this);
-  auto constants = make_constants(*heap);
-  std::vector<Cell*> cells;
+  auto heap = make_in<Heap>(memory_, memory_, *this);
+  auto constants = make_constants(*heap, *program_);
+  std::pmr::vector<Cell*> cells(memory_);
   const auto cell_at = [&](std::uint64_t number) {
     if (number >= cells.size()) ByteReader::fail();
     return cells[static_cast<std::size_t>(number)];
@@ -175,7 +176,7 @@ void Machine::load(ByteReader& in) {
   };
 
   const auto containers = in.get_count(9);
-  std::vector<Instance*> instances;
+  std::pmr::vector<Instance*> instances(memory_);
   for (std::size_t i = 0; i < containers; ++i) {
     const auto tag = in.get<Tag>();
     if (tag == Tag::List) {
@@ -193,8 +194,7 @@ void Machine::load(ByteReader& in) {
       instance->serial = in.get<std::uint64_t>();
       instance->state = in.get<Instance::State>();
       instance->auto_free = in.get_bool();
-      instance->id.index = in.get<std::uint32_t>();
-      instance->id.generation = in.get<std::uint32_t>();
+      instance->id = in.get_object();
       if (instance->state > Instance::State::Freed) ByteReader::fail();
       if (instance->state != Instance::State::Freed && !instance->auto_free) heap->retain(instance);
       instances.push_back(instance);
@@ -212,7 +212,7 @@ void Machine::load(ByteReader& in) {
         if (number >= constants.size() || !constants[number]) ByteReader::fail();
         cells.push_back(constants[number]);
       } else {
-        auto* string = heap->string(in.get_string());
+        auto* string = heap->string(in.get_text());
         if (!string) ByteReader::fail();
         cells.push_back(string);
       }
@@ -224,7 +224,7 @@ void Machine::load(ByteReader& in) {
       cells.push_back(pointer);
     } else if (tag == Tag::Data) {
       const auto serial = in.get<std::uint64_t>();
-      auto* data = heap->data(in.get_string());
+      auto* data = heap->data(in.get_text());
       if (!data) ByteReader::fail();
       data->serial = serial;
       cells.push_back(data);
@@ -257,6 +257,8 @@ void Machine::load(ByteReader& in) {
         }
     }
   }
+  auto* session = static_cast<HashCell*>(reference(Tag::Hash));
+  heap->retain(session);
   heap->load_state(in, cell_at);
   auto* controller = static_cast<Instance*>(reference(Tag::Object));
   const auto survived = in.get<std::uint64_t>();
@@ -269,11 +271,12 @@ void Machine::load(ByteReader& in) {
   heap_ = std::move(heap);
   strings_ = std::move(constants);
   controller_ = controller;
+  session_ = session;
   survived_errors_ = survived;
 }
 
 void Machine::hash(Hasher& hasher) const {
-  Numbering numbering;
+  Numbering numbering(memory_);
   const auto add_reference = [&](const Value& v) {
     if (!v.ref) {
       hasher.add(kNull);

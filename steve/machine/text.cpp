@@ -66,7 +66,8 @@ struct OpenList {
 
 class Writer {
  public:
-  Writer(std::string& out, const Describe& describe, Heap* heap) : out_(out), describe_(describe), heap_(heap) {}
+  Writer(std::string& out, const Describe& describe, Heap* heap)
+      : out_(out), describe_(describe), heap_(heap), pins_(heap != nullptr && describe) {}
   ~Writer() {
     while (!open_.empty()) close();
   }
@@ -80,6 +81,7 @@ class Writer {
         close();
         continue;
       }
+      if (out_.size() >= check_at_) check_room();
       out_ += top.next == 0 ? " " : ", ";
       const Value element = (*top.list)[top.next++];
       append(element);
@@ -130,19 +132,27 @@ class Writer {
       out_ += "{ ... }";
     } else {
       open_.push_back({list, 0});
-      if (heap_ != nullptr) heap_->retain(list);
+      if (pins_) heap_->retain(list);
       out_ += '{';
     }
   }
 
   void close() {
-    if (heap_ != nullptr) heap_->release(open_.back().list);
+    if (pins_) heap_->release(open_.back().list);
     open_.pop_back();
+  }
+
+  // A list that holds one list twice, which holds another twice, and so on, is small and has an endless text.
+  void check_room() {
+    if (heap_ != nullptr) heap_->check_room(out_.size());
+    check_at_ = 2 * out_.size();
   }
 
   std::string& out_;
   const Describe& describe_;
   Heap* heap_;
+  bool pins_;  // descriptions run script, which may drop what is being written
+  std::size_t check_at_ = std::size_t{1} << 20;
   std::vector<OpenList> open_;
 };
 
@@ -158,7 +168,7 @@ void append_double(std::string& out, double d) { append_number(out, d, std::char
 void append_vector(std::string& out, const Vector3& v) { append_vector(out, v.data()); }
 
 void append_text(std::string& out, const Value& v, const Describe& describe, Heap* heap) {
-  Writer(out, describe, describe ? heap : nullptr).write(v);
+  Writer(out, describe, heap).write(v);
 }
 
 std::string text(const Value& v, const Describe& describe, Heap* heap) {

@@ -5,10 +5,12 @@
 #include <cstring>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "runtime/base/error.hpp"
 #include "runtime/base/ids.hpp"
 #include "runtime/base/math.hpp"
+#include "steve/syntax/source.hpp"
 
 namespace breve::steve {
 
@@ -114,16 +116,24 @@ enum class RunErrorKind : std::uint8_t {
   MissingKeyword,
   Depth,
   Budget,
+  Interrupted,
 };
 
 /// Thrown by everything under the interpreter; the interpreter adds the place and the chain of calls.
 class RunError : public Error {
  public:
-  RunError(RunErrorKind kind, const std::string& message) : Error(ErrorCode::Script, message), kind_(kind) {}
+  /// @param help   what to do, for who wrote the program; "" if the message says it all
+  /// @param place  what is meant, where that is less than the running expression
+  RunError(RunErrorKind kind, const std::string& message, std::string help = {}, const Span& place = {})
+      : Error(ErrorCode::Script, message), kind_(kind), help_(std::move(help)), place_(place) {}
   RunErrorKind kind() const { return kind_; }
+  const std::string& help() const { return help_; }
+  const Span& place() const { return place_; }
 
  private:
   RunErrorKind kind_;
+  std::string help_;
+  Span place_;
 };
 
 }  // namespace breve::steve

@@ -23,6 +23,7 @@ struct TypeRef {
   TypeKind kind = TypeKind::Int;
   std::string class_name;        // Object only: "" = any class
   std::int32_t array_size = -1;  // >= 0: an array of that many
+  bool broken = false;           // not what was written, which is reported: nothing more is said about it
   Span span;
 };
 

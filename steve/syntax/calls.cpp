@@ -53,14 +53,39 @@ ast::ExprPtr Parser::call(std::size_t start, ast::ExprPtr receiver) {
     ast::Keyword keyword;
     const std::size_t keyword_start = pos_;
     keyword.name = expect_name("a keyword", keyword.span);
-    if (at_closing()) {
-      fail(items_[keyword_start].token->span, "syntax", fmt::format("keyword '{}' has no value", keyword.name),
-           "a method call used as a value needs parentheses: (object method)");
-    }
+    if (at_closing() || at(";")) fail_keyword(node, start, keyword_start);
     keyword.value = expression();
     node.keywords.push_back(std::move(keyword));
   }
+  call_end_ = pos_;
+  call_name_ = node.selector;
   return make(start, std::move(node));
+}
+
+// A keyword without a value: often it is the method of a call that lacks its parentheses.
+void Parser::fail_keyword(const ast::Call& call, std::size_t start, std::size_t keyword) {
+  const Token& name = *items_[keyword].token;
+  if (at(":"))
+    fail(token().span, "call-arguments", fmt::format("no ':' follows the keyword '{}'", name.text),
+         fmt::format("write its value directly: {} {} value", call.selector, name.text));
+  const auto* last = call.keywords.empty() ? nullptr : call.keywords.back().value.get();
+  const bool object = last != nullptr && !last->parenthesised &&
+                      (std::holds_alternative<ast::Name>(last->node) || std::holds_alternative<ast::Self>(last->node) ||
+                       std::holds_alternative<ast::Super>(last->node));
+  const Token& before = *items_[keyword - 1].token;
+  if (object) {
+    Span place = last->span;
+    place.length = name.span.offset + name.span.length - place.offset;
+    fail(place, "call-needs-parentheses",
+         fmt::format("the call of method '{}' is used as a value and needs parentheses", name.text),
+         fmt::format("write it as ({} {})", before.text, name.text));
+  }
+  if (call.keywords.empty() && at(")") && items_[start].token != &before)
+    fail(name.span, "call-arguments", fmt::format("keyword '{}' of '{}' has no value", name.text, call.selector),
+         fmt::format("write the value behind it; or, to call '{0}' on the result, parentheses: (({1} {2}) {0})",
+                     name.text, items_[start].token->text, call.selector));
+  fail(name.span, "call-arguments", fmt::format("keyword '{}' of '{}' has no value", name.text, call.selector),
+       fmt::format("write the value behind it: {} {} value", call.selector, name.text));
 }
 
 // What is wrong with a primary that has a selector behind it, where only a value can stand.
@@ -70,6 +95,12 @@ Diagnostic Parser::call_mistake() const {
   if (at_text("and") || at_text("or")) {
     return {Severity::Error, "syntax", fmt::format("unexpected {}", describe()),
             at_text("and") ? "logical and is written '&&'" : "logical or is written '||'", selector.span};
+  }
+  if (last.text == "not" && last.kind == TokenKind::Name) {
+    Span where = last.span;
+    where.length = selector.span.offset + selector.span.length - where.offset;
+    return {Severity::Error, "syntax", "there is no 'not'", fmt::format("logical not is written !{}", selector.text),
+            where};
   }
   if (last.kind == TokenKind::String || last.kind == TokenKind::Int || last.kind == TokenKind::Double) {
     return {Severity::Error, "syntax", fmt::format("unexpected {} after this value", describe()),

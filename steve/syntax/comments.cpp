@@ -65,10 +65,11 @@ bool Scanner::skip_space_or_comment() {
     if (at(pos_ + 1) == '!') {
       block_comment();
     } else {
+      lint_include();
       pos_ = line_end(pos_);
     }
   } else {
-    return false;
+    return foreign_comment();
   }
   space_before_ = true;
   return true;

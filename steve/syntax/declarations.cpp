@@ -93,6 +93,11 @@ void Parser::top_level(ast::File& file) {
     accept("}");
     return;
   }
+  if (foreign_class(file)) return;
+  if (at_name() &&
+      (at_text("import") || at_text("using") || at_text("require") || at_text("from") || at_text("include")))
+    fail(token().span, "foreign-statement", fmt::format("there is no '{}'", token().text),
+         "a class of the library is loaded with @use Name. and a file with @include \"file.tz\"");
   fail_expected("a class or a directive", "a class begins with: Parent : Name {");
 }
 
@@ -143,8 +148,9 @@ void Parser::directive(ast::File& file) {
 
 void Parser::directive_period() {
   if (accept(".")) return;
+  if (at(";")) return semicolon();
   if (!(token().starts_line || at("@") || at_end())) fail_expected("'.' after this directive");
-  missing(".", "after this directive");
+  missing(".", "this directive");
 }
 
 // [version OP f]
@@ -262,10 +268,11 @@ void Parser::class_body(ast::Class& result) {
   members(result);
   if (accept("}")) return;
   if (!opened) return;
+  if (open_brace_reported_) return;
   const std::string reached =
-      at_end() ? "the end of the file was reached" : fmt::format("another class begins at line {}", token().span.line);
+      at_end() ? "the file ends" : fmt::format("another class begins at line {}", token().span.line);
   error(items_[open].token->span, "missing-brace", fmt::format("the '{{' of class '{}' has no '}}'", result.name),
-        reached);
+        reached + " while it is open: write '}' where the class ends");
 }
 
 // The variables and methods of a class, up to its '}', to the next class or to the end.
@@ -275,9 +282,20 @@ void Parser::members(ast::Class& result) {
   std::size_t pending_docs = first > 0 ? first - 1 : 0;  // documentation before items after this one has no owner yet
   while (!at("}") || stray_brace()) {
     if (at_end() || (token().starts_line && at_class_header())) break;
-    if (at("}")) {
+    if (at("}") && !more_braces_close()) {
+      error(token().span, "stray-brace", fmt::format("this '}}' ends class '{}', and a method follows", result.name),
+            "remove it, and write '}' behind the last method");
+      open_brace_reported_ = true;
+      advance();
+    } else if (at("}")) {
       error(token().span, "stray-brace", "this '}' closes nothing", "remove it, or look for a missing '{' above");
       advance();
+    } else if (at_text("variables") && at(":", 1)) {
+      error(token().span, "method-header", "the '+' is missing in front of 'variables'", "write: + variables:");
+      --pos_;
+      variables(result);
+      append_docs(result.doc, docs(pending_docs, pos_ - 1));
+      pending_docs = pos_ - 1;
     } else if (at_variables_header()) {
       if (any_method) {
         error(token().span, "syntax", "the variables of a class stand before its methods",
@@ -286,7 +304,7 @@ void Parser::members(ast::Class& result) {
       variables(result);
       append_docs(result.doc, docs(pending_docs, pos_ - 1));
       pending_docs = pos_ - 1;
-    } else if (at_member_header()) {
+    } else if (at_member_header() || broken_header() != 0) {
       const std::size_t header = pos_;
       const bool class_docs = !any_method && header == first;
       if (class_docs) append_docs(result.doc, docs(pending_docs, header));
@@ -306,11 +324,11 @@ void Parser::members(ast::Class& result) {
 }
 
 void Parser::variables(ast::Class& result) {
-  if (!at("+")) error(token().span, "syntax", "the variables of a class begin with '+ variables:'");
+  if (at("-") || at("=")) error(token().span, "syntax", "the variables of a class begin with '+ variables:'");
   advance();
   advance();
-  if (!accept(":")) missing(":", "after '+ variables'");
-  while (!at_end() && !at("}") && !at_member_header() && !at_variables_header()) {
+  if (!accept(":")) missing(":", "'+ variables'");
+  while (!at_end() && !at("}") && !at_member_header() && !at_variables_header() && broken_header() == 0) {
     const std::size_t start = pos_;
     try {
       declaration(result.variables, "an instance variable");
@@ -322,16 +340,60 @@ void Parser::variables(ast::Class& result) {
   }
 }
 
+// Is there a '}' beyond the current one that closes nothing, before another class begins?
+bool Parser::more_braces_close() const {
+  int depth = 0;
+  for (std::size_t ahead = 1; !at_kind(TokenKind::End, ahead); ++ahead) {
+    if (token(ahead).starts_line && at_class_header(ahead)) return false;
+    if (at("{", ahead)) ++depth;
+    if (at("}", ahead) && --depth < 0) return true;
+  }
+  return false;
+}
+
+// `class Bird extends Mobile {`, `class Bird : Mobile {`, `Bird {`: reported, and read as the class that was meant.
+bool Parser::foreign_class(ast::File& file) {
+  const bool word = at_text("class") || at_text("struct");
+  const std::size_t name = word ? 1 : 0;
+  if (!at_name(name)) return false;
+  std::size_t open = name + 1;
+  std::size_t parent = 0;
+  for (; open < name + 6 && !at("{", open); ++open) {
+    if (!at_kind(TokenKind::Name, open) && !at(":", open) && !at("<", open) && !at("(", open) && !at(")", open))
+      return false;
+    if (at_name(open) && !at_text("extends", open) && !at_text("public", open) && !at_text("inherits", open))
+      parent = open;
+  }
+  if (!at("{", open)) return false;
+  const std::string own(token(name).text);
+  const std::string base(parent != 0 ? token(parent).text : "Object");
+  error(token().span, "class-header",
+        word ? fmt::format("'{}' begins no class: the parent stands first", token().text)
+             : fmt::format("the class '{}' names no parent", own),
+        fmt::format("write: {} : {} {{", base, own));
+  ast::Class& result = file.classes.emplace_back();
+  result.name = own;
+  result.name_span = token(name).span;
+  result.parent = base;
+  result.parent_span = token(parent != 0 ? parent : name).span;
+  pos_ += open;
+  const std::size_t start = pos_;
+  class_body(result);
+  result.span = span_from(start);
+  return true;
+}
+
 // Something between the methods that is neither: skip it.
 void Parser::stray_member() {
   if (at("@")) {
     error(token().span, "syntax", "directives stand outside of classes");
   } else {
     error(token().span, "syntax", fmt::format("expected a method or '}}', got {}", describe()),
-          "a method begins with: + to name:");
+          "statements stand inside methods, and a method begins with: + to name:");
   }
   advance();
-  while (!at_end() && !at("}") && !at_member_header() && !at_variables_header() && !at_class_header()) {
+  while (!at_end() && !at("}") && !at_member_header() && !at_variables_header() && !at_class_header() &&
+         broken_header() == 0) {
     if (at("{") && item().match != 0) pos_ = item().match;
     advance();
   }

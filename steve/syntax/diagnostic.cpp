@@ -58,26 +58,26 @@ std::pair<std::size_t, std::size_t> window(std::string_view line, std::size_t ca
   return {begin, std::min(begin + kWindow, line.size())};
 }
 
-// The line and, below it, a caret under the first byte and tildes under the others.
+// The line with its number in front and, below it, carets under what is meant.
 std::string picture(std::string_view line, const Span& span) {
   const std::size_t caret = std::min<std::size_t>(span.column - 1, line.size());
   const std::size_t last = std::min(caret + std::max<std::size_t>(span.length, 1), line.size());
   const auto [begin, end] = window(line, caret);
-  std::string shown = begin > 0 ? "..." : "";
-  std::string marks(shown.size(), ' ');
+  std::string shown = begin > 0 ? "…" : "";
+  std::string marks = begin > 0 ? " " : "";
   for (std::size_t i = begin; i < end;) {
     const Cell cell = cell_at(line, i);
     shown += cell.text;
     if (cell.end <= caret) {
       marks += cell.text == "\t" ? "\t" : std::string(cell.width, ' ');
     } else if (cell.begin < std::max(last, caret + 1)) {
-      marks += cell.begin <= caret ? "^" + std::string(cell.width - 1, '~') : std::string(cell.width, '~');
+      marks += std::string(cell.width, '^');
     }
     i = cell.end;
   }
   if (caret >= end) marks += '^';
-  if (end < line.size()) shown += "...";
-  return shown + "\n" + marks + "\n";
+  if (end < line.size()) shown += "…";
+  return fmt::format("{:>5} | {}\n      | {}\n", span.line, shown, marks);
 }
 
 std::string_view name_of(Severity severity) {
@@ -136,7 +136,9 @@ std::string format(const Diagnostic& diagnostic, const Sources& sources) {
   std::string text;
   const bool placed = span.line > 0 && span.file < sources.size();
   if (placed) text = fmt::format("{}:{}:{}: ", sources.file(span.file).name, span.line, span.column);
-  text += fmt::format("{}: {}\n", name_of(diagnostic.severity), diagnostic.message);
+  text += fmt::format("{}: {}", name_of(diagnostic.severity), diagnostic.message);
+  if (diagnostic.code.starts_with("lint-")) text += fmt::format(" [{}]", diagnostic.code);  // what turns it off
+  text += '\n';
   if (placed && span.column > 0) text += picture(sources.line_text(span), span);
   if (!diagnostic.help.empty()) text += fmt::format("help: {}\n", diagnostic.help);
   return text;

@@ -67,7 +67,8 @@ ast::ExprPtr Parser::expression() { return assignment(false); }
 
 ast::ExprPtr Parser::value() {
   ast::ExprPtr result = expression();
-  if (at_stray_call()) unparenthesised_call();
+  const bool header_word = in_header_ && (at_text("then") || at_text("do"));
+  if (at_stray_call() && !header_word) unparenthesised_call();
   return result;
 }
 
@@ -125,11 +126,12 @@ ast::ExprPtr Parser::chain(int level) {
   if (!operator_at(level, item().sign)) return first;
   const std::size_t first_end = pos_;
   ast::Chain result{std::move(first), {}, {}};
-  while (const std::optional<BinaryOp> op = operator_at(level, item().sign)) {
+  while (std::optional<BinaryOp> op = operator_at(level, item().sign)) {
     if (level == kSum && at_run_on_header()) break;
     const Token& sign_token = token();
     result.operators.push_back(sign_token.span);
     advance();
+    if (const auto meant = foreign_operator(*op)) op = meant;
     if (*op == BinaryOp::Or && at_closing()) {
       fail(sign_token.span, "syntax", "'||' means logical or and closes no bars",
            "write a blank between nested bars: | |a| - |b| |");
@@ -174,10 +176,13 @@ ast::ExprPtr Parser::prefix() {
     return make(start, ast::Unary{ast::UnaryOp::Not, std::move(operand)});
   }
   if (at("-")) return negation();
-  if (at("+")) fail(token().span, "syntax", "there is no unary '+'", "leave it out");
+  if (at("+"))
+    fail(token().span, "syntax", "there is no unary '+'",
+         previous_is("=") && adjacent(0) ? "to add to a variable write +=" : "leave it out");
   if (at("--") || at("++")) {
+    const std::string variable(at_name(1) ? token(1).text : "n");
     fail(token().span, "syntax", fmt::format("'{}' stands behind a variable, never before it", token().text),
-         at("--") ? "for two signs write '- -'" : "");
+         fmt::format("write: {}{}", variable, token().text) + (at("--") ? "; for two signs write '- -'" : ""));
   }
   switch (item().word) {
     case Word::Pop:
@@ -214,6 +219,9 @@ ast::ExprPtr Parser::list_operation() {
   advance();
   if (word == Word::Push || word == Word::Prepend) {
     ast::ExprPtr value = expression();
+    if (at_name() && (at_text("into") || at_text("to") || at_text("on") || at_text("in")))
+      fail(token().span, "syntax", fmt::format("'{}' takes 'onto', not '{}'", items_[start].token->text, token().text),
+           fmt::format("write: {} value onto list", items_[start].token->text));
     if (!at_text("onto")) {
       if (at_stray_call()) throw SyntaxError{call_mistake()};
       fail_expected("'onto' and a list", "write: push value onto list");

@@ -20,7 +20,7 @@ bool is_name_char(char c) { return is_letter(c) || is_digit(c) || c == '-'; }
 
 constexpr std::string_view kPairs[] = {"::", "||", "&&", "==", "!=", "<=", ">=", "++",
                                        "--", "+=", "-=", "*=", "/=", "%=", "^="};
-constexpr std::string_view kSingles = ".,:()[]{}|=<>!+-*/%^@?";
+constexpr std::string_view kSingles = ".,:()[]{}|=<>!+-*/%^@?;";
 constexpr std::string_view kDebug = "@@DEBUG@@";
 
 // Can a token, a comment or white space begin with this byte?
@@ -37,13 +37,9 @@ bool is_tiny(std::string_view digits) {
 }
 
 std::string help_for_byte(std::string_view rest) {
-  if (rest.starts_with(';')) return "statements end with '.'";
-  if (rest.starts_with('&')) return "write '&&' for logical and";
   if (rest.starts_with('$')) return "variables are written without '$'; '$' belongs inside strings";
-  if (rest.starts_with("\xC2\xA0")) return "this is a no-break space: replace it by an ordinary blank";
   if (rest.starts_with("\xE2\x80\x9C") || rest.starts_with("\xE2\x80\x9D")) return "write straight quotes: \"";
   if (rest.starts_with("\xE2\x80\x98") || rest.starts_with("\xE2\x80\x99")) return "write straight quotes: '";
-  if (rest.starts_with("\xE2\x80\x93") || rest.starts_with("\xE2\x88\x92")) return "write an ordinary minus sign: -";
   if (static_cast<unsigned char>(rest.front()) >= 0x80) {
     return "only ASCII letters, digits, '_' and '-' can stand outside strings and comments";
   }
@@ -106,7 +102,7 @@ void Scanner::token() {
     string();
   } else if (c == '\'') {
     character();
-  } else if (!punctuation()) {
+  } else if (!punctuation() && !pasted()) {
     unexpected_bytes();
   }
 }
@@ -174,10 +170,12 @@ void Scanner::string() {
   const std::string_view close = open == 2 ? "\\\"" : "\"";
   while (i < limit && text_.substr(i, close.size()) != close) i += text_[i] == '\\' && i + 1 < limit ? 2 : 1;
   if (i + close.size() <= limit) {
+    note_long_string(begin, i + close.size());
     skip_to(i + close.size());
     push(TokenKind::String, begin, text_.substr(inner, i - inner));
     return;
   }
+  if (blame_long_string()) return;
   error(span(begin, 1), "unterminated-string", "this string has no closing quote",
         "put a '\"' where the text ends; inside a string write \\\" for a quote");
   search_to_line_end_ = true;

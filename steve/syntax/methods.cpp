@@ -70,18 +70,25 @@ void Parser::method(ast::Class& owner) {
 }
 
 void Parser::method_header(ast::Method& result) {
-  advance();
-  advance();
+  if (at_member_header()) {
+    advance();
+    advance();
+  } else {
+    report_broken_header();
+    advance();
+  }
   result.name_span = token().span;
   try {
     result.name = expect_name("a method", result.name_span);
-    while (!at(":")) {
+    header_parentheses(result.name);
+    header_colon_ = false;
+    while (!at(":") && !header_colon_) {
       // A local or a statement on the next line: the colon was forgotten.
       const bool parameter_follows = at_kind(TokenKind::Name) && at_kind(TokenKind::Name, 1) && !at_statement_word(0);
       if (token().starts_line && !parameter_follows) break;
       parameter(result);
     }
-    if (!accept(":")) missing(":", "after the header of this method");
+    if (!header_colon_ && !accept(":") && !previous_is("{")) missing(":", "the header of this method");
   } catch (const SyntaxError& problem) {
     report(problem.diagnostic);
     // On to the colon, unless it stands before the type of a parameter, or a statement comes first.
@@ -100,15 +107,28 @@ void Parser::parameter(ast::Method& result) {
   const Span place = token().span;
   parameter.keyword = expect_name("a keyword", parameter.keyword_span);
   if (at("(") || at("=")) {
-    error(place, "syntax", fmt::format("the parameter '{}' needs a keyword and a variable", parameter.keyword),
-          fmt::format("callers write the keyword, the body uses the variable: {0} {0} (type)", parameter.keyword));
+    error(place, "syntax", fmt::format("the parameter '{}' needs a variable behind its keyword", parameter.keyword),
+          fmt::format("callers write the keyword, the body uses the variable; they may be the same: {0} {0} (type)",
+                      parameter.keyword));
     parameter.variable = parameter.keyword;
     parameter.variable_span = parameter.keyword_span;
   } else {
     parameter.variable = expect_name("a parameter", parameter.variable_span);
   }
   if (accept("=")) parameter.default_value = constant();
-  parameter.type = type();
+  if (at(":") && at_type(1)) {
+    error(token().span, "method-header", "the ':' of a method header stands behind the types of its parameters",
+          fmt::format("write: {} {} (type):", parameter.keyword, parameter.variable));
+    advance();
+    header_colon_ = true;
+  }
+  if (at(":") || (at_name() && at_name(1))) {
+    error(after_previous(), "missing-type", fmt::format("the parameter '{}' needs a type", parameter.variable),
+          fmt::format("for example: {} {} (float)", parameter.keyword, parameter.variable));
+    parameter.type.broken = true;
+  } else {
+    parameter.type = type();
+  }
   result.parameters.push_back(std::move(parameter));
 }
 
@@ -148,7 +168,7 @@ void Parser::native_body(ast::Method& result) {
   } else if (at("(")) {
     result.native_result = type();
   }
-  expect_period();
+  expect_period(pos_);
 }
 
 // A type in parentheses, rather than the arguments of a function?
@@ -178,15 +198,30 @@ void Parser::declaration(std::vector<ast::Variable>& into, std::string_view what
     variable.name = expect_name(what, variable.span);
     into.push_back(std::move(variable));
   } while (accept(","));
+  ast::TypeRef declared;
+  declared.broken = true;
+  for (std::size_t i = first; i < into.size(); ++i) into[i].type = declared;
   if (at("=")) {
-    fail(token().span, "syntax", "variables have no initial values",
+    fail(token().span, "initial-value", "variables have no initial values",
          "assign the value in a method, for instance variables in 'init'");
   }
-  const ast::TypeRef declared = type();
+  if (at(".") || at(";")) {
+    error(after_previous(), "missing-type", fmt::format("the variable '{}' needs a type", into.back().name),
+          fmt::format("for example: {} (float).", into.back().name));
+    advance();
+    return;
+  }
+  declared = type();
+  if (at("=")) {
+    for (std::size_t i = first; i < into.size(); ++i) into[i].type = declared;
+    fail(token().span, "initial-value", "variables have no initial values",
+         "assign the value in a method, for instance variables in 'init'");
+  }
   for (std::size_t i = first; i < into.size(); ++i) into[i].type = declared;
   if (accept(".")) return;
+  if (at(";")) return semicolon();
   if (!(token().starts_line || at("}") || at_end())) fail_expected("'.' after this declaration");
-  missing(".", "after this declaration");
+  missing(".", "this declaration");
 }
 
 // (int), (object), (Name object), (5 ints), (5 Name objects)
@@ -206,7 +241,7 @@ ast::TypeRef Parser::type() {
     advance();
     advance();
   } else {
-    fail_type();
+    broken_type(result);
   }
   expect(")", "after the type");
   result.span = span_from(start);
@@ -232,21 +267,32 @@ ast::TypeRef Parser::array_type() {
   return result;
 }
 
-void Parser::fail_type() {
-  if (element_type_of(item().word) || (at_word(Word::Objects, 1) && constant_named(token().text) == nullptr)) {
-    fail(token().span, "unknown-type", "an array needs a number of elements",
-         "for example (5 ints) or (5 Name objects)");
-  }
+// What stands in the parentheses of a type and is none: reported, and read as far as the ')'.
+void Parser::broken_type(ast::TypeRef& result) {
+  result.broken = true;
+  const Span place = token().span;
   if (!at_kind(TokenKind::Name)) fail_expected("a type", "for example (int), (vector) or (Name object)");
-  if (at_name() && element_type_of(item(1).word)) {
-    fail(token().span, "unknown-type",
-         fmt::format("the size of an array is an integer literal, got '{}'", token().text),
-         "constants from @define cannot be used here");
+  if (element_type_of(item().word) || (at_word(Word::Objects, 1) && constant_named(token().text) == nullptr)) {
+    error(place, "unknown-type", "an array needs a number of elements", "for example (5 ints) or (5 Name objects)");
+  } else if (at_name() && element_type_of(item(1).word)) {
+    error(place, "unknown-type", fmt::format("the size of an array is an integer literal, got '{}'", token().text),
+          "constants from @define cannot be used here");
+  } else {
+    const std::string_view text = token().text;
+    const std::string near = nearest(text, kTypeNames);
+    const bool truth = text == "bool" || text == "boolean";
+    const bool count = text == "integer" || text == "long" || text == "short" || text == "unsigned" || text == "char";
+    error(place, "unknown-type", fmt::format("unknown type {}", describe()),
+          truth                             ? "there is none for truth: write int, where 0 is false and 1 is true"
+          : count                           ? "whole numbers are int"
+          : text == "number"                ? "numbers are int or float"
+          : text == "str"                   ? "texts are string"
+          : text == "array"                 ? "write list, or for an array its number of elements: (5 floats)"
+          : text == "dict" || text == "map" ? "write hash"
+          : near.empty()                    ? fmt::format("for an object of a class write ({} object)", token().text)
+                                            : fmt::format("did you mean '{}'?", near));
   }
-  const std::string near = nearest(token().text, kTypeNames);
-  fail(token().span, "unknown-type", fmt::format("unknown type {}", describe()),
-       near.empty() ? fmt::format("for an object of a class write ({} object)", token().text)
-                    : fmt::format("did you mean '{}'?", near));
+  while (!at(")") && !at_end() && !at(".") && token().span.line == place.line) advance();
 }
 
 // A literal: number with an optional sign, string, vector or matrix of numbers.

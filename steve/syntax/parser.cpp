@@ -252,12 +252,17 @@ void Parser::fail_expected(std::string_view what, std::string help) const {
 }
 
 // Something that was left out: the place is the end of what stands before it.
-void Parser::missing(std::string_view text, std::string_view where, std::string help) {
-  error(after_previous(),
-        text == "."   ? "missing-period"
-        : text == ":" ? "missing-colon"
-                      : "syntax",
-        fmt::format("expected '{}' {}", text, where), std::move(help));
+// @param what  the construct that lacks it: "this statement"
+void Parser::missing(std::string_view text, std::string_view what, std::string help) {
+  const bool period = text == ".";
+  if (help.empty()) {
+    const std::string_view kind = what.substr(what.find(' ') + 1);
+    help = period ? fmt::format("a {} ends with a period: write '.' here", kind) : fmt::format("write '{}' here", text);
+  }
+  error(after_previous(), period ? "missing-period" : "missing-colon",
+        period ? fmt::format("the period at the end of {} is missing", what)
+               : fmt::format("the ':' after {} is missing", what),
+        std::move(help));
 }
 
 }  // namespace breve::steve

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -62,6 +63,7 @@ class Parser {
   // --- tokens (parser.cpp)
   const Item& item(std::size_t ahead = 0) const;
   const Token& token(std::size_t ahead = 0) const { return *item(ahead).token; }
+  bool previous_is(std::string_view text) const { return pos_ > 0 && items_[pos_ - 1].sign == sign(text); }
   const Token& previous() const { return *items_[pos_ > 0 ? pos_ - 1 : 0].token; }
   bool at(std::string_view text, std::size_t ahead = 0) const { return item(ahead).sign == sign(text); }
   bool at_word(Word word, std::size_t ahead = 0) const { return item(ahead).word == word; }
@@ -93,6 +95,21 @@ class Parser {
   [[noreturn]] void fail_expected(std::string_view what, std::string help = {}) const;
   void missing(std::string_view text, std::string_view where, std::string help = {});
 
+  // --- habits.cpp
+  bool adjacent(std::size_t ahead) const;
+  std::size_t behind_parentheses(std::size_t ahead) const;
+  std::size_t broken_header() const;
+  void report_broken_header();
+  void header_parentheses(std::string_view name);
+  bool foreign_declaration();
+  bool foreign_statement();
+  bool at_elif() const;
+  Diagnostic after_statement(std::size_t start) const;
+  std::optional<ast::BinaryOp> foreign_operator(ast::BinaryOp op);
+  bool at_c_for() const;
+  std::string loop_pattern(std::string_view variable) const;
+  void semicolon();
+
   // --- declarations.cpp
   void top_level(ast::File& file);
   void skip_to_top_level();
@@ -107,6 +124,8 @@ class Parser {
   void class_body(ast::Class& result);
   void variables(ast::Class& result);
   bool stray_brace() const;
+  bool more_braces_close() const;
+  bool foreign_class(ast::File& file);
   void stray_member();
   void members(ast::Class& result);
   std::string docs(std::size_t from, std::size_t to) const;  // before the items from + 1 ... to
@@ -121,7 +140,7 @@ class Parser {
   void declaration(std::vector<ast::Variable>& into, std::string_view what);
   ast::TypeRef type();
   ast::TypeRef array_type();
-  [[noreturn]] void fail_type();
+  void broken_type(ast::TypeRef& result);
   ast::Constant constant();
   double number(std::string_view where);
   std::array<double, 3> number_row(std::string_view where);
@@ -129,6 +148,7 @@ class Parser {
   // --- statements.cpp
   ast::StmtPtr statement();
   ast::StmtPtr statement_proper();
+  ast::StmtPtr c_for_statement(std::size_t start);
   ast::StmtPtr block(std::size_t start);
   ast::StmtPtr if_statement(std::size_t start);
   ast::StmtPtr while_statement(std::size_t start);
@@ -142,7 +162,8 @@ class Parser {
   void read_statements(std::vector<ast::StmtPtr>& into);
   void misplaced_declaration();
   void expect_colon(std::string_view where);
-  void expect_period();
+  void expect_period(std::size_t start);
+  void lint_dot();
   bool brace_opens_block() const;
   void recover(std::size_t start, const SyntaxError& problem);
   void skip_statement(std::size_t start);
@@ -191,6 +212,7 @@ class Parser {
   bool run_on_call() const;
   ast::ExprPtr call(std::size_t start, ast::ExprPtr receiver);
   void unparenthesised_call();
+  [[noreturn]] void fail_keyword(const ast::Call& call, std::size_t start, std::size_t keyword);
   Diagnostic call_mistake() const;
 
   // --- strings.cpp
@@ -214,9 +236,15 @@ class Parser {
   std::size_t primary_end_ = 0;
   std::size_t sign_at_ = 0;  // the item behind the last unary minus
   std::size_t errors_ = 0;
+  std::size_t statement_errors_ = 0;  // as errors_ was where the statement began
   std::size_t lints_ = 0;
   std::size_t class_close_ = 0;  // the item that closes the class being parsed, 0 if none does
   std::uint32_t last_error_offset_ = 0;
+  std::size_t call_end_ = 0;  // the item behind the call that was parsed last
+  std::string call_name_;     // and its selector
+  bool semicolon_reported_ = false;
+  bool header_colon_ = false;               // the ':' of the method header was read, too early
+  bool open_brace_reported_ = false;        // a '{' has no '}': that those around it lack theirs is no news
   bool cut_off_ = false;                    // the scanner gave up: what the parser misses is no news
   std::set<std::uint32_t> garbled_lines_;   // lines with errors of the scanner: what the parser says there is no news
   std::vector<ast::Variable> late_locals_;  // declared after a statement: reported, and yet declared

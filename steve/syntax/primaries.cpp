@@ -191,7 +191,11 @@ ast::ExprPtr Parser::parenthesised(std::size_t start) {
     unparenthesised_call();
   }
   if (at(",")) return vector_rest(start, std::move(result));
-  expect(")", "to close the parenthesis");
+  if (!at(")"))
+    fail(token().span, "missing-parenthesis", fmt::format("a ')' is missing before {}", describe()),
+         fmt::format("the '(' of line {}, column {} is still open", items_[start].token->span.line,
+                     items_[start].token->span.column));
+  advance();
   result->span = span_from(start);
   result->parenthesised = true;
   return result;
@@ -203,6 +207,8 @@ ast::ExprPtr Parser::vector_rest(std::size_t start, ast::ExprPtr x) {
   }
   expect(",", "between the components of a vector");
   ast::ExprPtr y = value();
+  if (at(")"))
+    fail(token().span, "syntax", "a vector has three components, this one has two", "for a flat one write (x, y, 0)");
   expect(",", "and a third component of the vector");
   ast::ExprPtr z = value();
   if (at(","))
@@ -231,17 +237,26 @@ ast::ExprPtr Parser::list_literal(std::size_t start) {
 // Values with commas between them, up to the closing sign.
 std::vector<ast::ExprPtr> Parser::items(std::string_view close, std::string_view where) {
   std::vector<ast::ExprPtr> result;
+  const std::size_t first = pos_;
   if (accept(close)) return result;
   do {
     if (!result.empty() && at(close)) fail_expected("a value after the comma", "leave out the last comma");
     result.push_back(value());
   } while (accept(","));
-  if (!accept(close)) fail_expected(fmt::format("',' or '{}' {}", close, where));
+  if (!accept(close))
+    fail_expected(fmt::format("',' or '{}' {}", close, where),
+                  fmt::format("the '{}' of line {} is still open", items_[first - 1].token->text,
+                              items_[first - 1].token->span.line));
   return result;
 }
 
 ast::ExprPtr Parser::matrix_literal(std::size_t start) {
   advance();
+  if (!at("(")) {
+    error(items_[start].token->span, "syntax", "a list is written in braces, not in brackets",
+          "write: { 1, 2, 3 }; a matrix is [ (a, b, c), (d, e, f), (g, h, i) ]");
+    return make(start, ast::ListLit{items("]", "after the elements of the list")});
+  }
   ast::MatrixLit matrix;
   for (std::size_t row = 0; row < 3; ++row) {
     if (row > 0) expect(",", "between the rows of a matrix");

@@ -35,6 +35,13 @@ class Scanner {
   bool after_directive_string() const;
   const Token* last_token() const { return has_last_ ? &tokens_[last_] : nullptr; }
 
+  // what was written for another language (pasted.cpp)
+  bool foreign_comment();
+  void lint_include();
+  bool pasted();
+  void note_long_string(std::size_t begin, std::size_t close);
+  bool blame_long_string();
+
   void token();
   void name();
   void number();
@@ -64,6 +71,16 @@ class Scanner {
   bool space_before_ = false;
   bool search_to_line_end_ = false;  // some string had no closing quote: later ones are not searched beyond their line
   bool comment_unclosed_ = false;
+  bool foreign_comment_reported_ = false;
+  struct {  // where to go back to if a quote is missing
+    bool known = false;
+    std::size_t tokens = 0, begin = 0, last = 0;
+    bool has_last = false;
+    std::uint32_t line = 0;
+    std::size_t line_start = 0;
+    Span place;
+    bool space_before = false, on_line = false, used = false;
+  } suspect_;
   std::size_t errors_ = 0;
   std::size_t lints_ = 0;
 };

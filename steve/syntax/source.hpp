@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,12 +25,14 @@ struct SourceFile {
   std::vector<std::uint32_t> lines;  // offset of each line's first byte
 };
 
-/// All files of one program. Indices, and references to a file and its text, stay valid.
+/// All files of one program. Indices, and references to a file and its text, stay valid; copies share the files.
 class Sources {
  public:
   /// @throws std::length_error if the text has 4 GiB or more
   std::uint32_t add(std::string name, std::string text, bool embedded = false);
-  const SourceFile& file(std::uint32_t index) const { return files_[index]; }
+  const SourceFile& file(std::uint32_t index) const { return *files_[index]; }
+  /// Forget the files behind the first `count`.
+  void truncate(std::size_t count) { files_.resize(count); }
   std::size_t size() const { return files_.size(); }
   /// The text of the line of `span`, without its line end.
   std::string_view line_text(const Span& span) const;
@@ -38,7 +40,7 @@ class Sources {
   Span span_at(std::uint32_t file, std::uint32_t offset, std::uint32_t length) const;
 
  private:
-  std::deque<SourceFile> files_;
+  std::vector<std::shared_ptr<const SourceFile>> files_;
 };
 
 }  // namespace breve::steve

@@ -7,6 +7,7 @@ namespace breve::steve {
 
 ast::StmtPtr Parser::statement() {
   const std::size_t start = pos_;
+  statement_errors_ = errors_;
   try {
     const Nest nest(*this);
     deepest_ = depth_;
@@ -21,6 +22,7 @@ ast::StmtPtr Parser::statement() {
 ast::StmtPtr Parser::statement_proper() {
   const std::size_t start = pos_;
   if (at("{") && brace_opens_block()) return block(start);
+  if (foreign_statement()) return make_statement(start, ast::Block{});
   switch (item().word) {
     case Word::If: return if_statement(start);
     case Word::While: return while_statement(start);
@@ -32,21 +34,21 @@ ast::StmtPtr Parser::statement_proper() {
     case Word::Printf: return print_statement(start);
     case Word::Return: {
       advance();
-      ast::ExprPtr result = at(".") || at("}") || at_end() ? nullptr : value();
-      expect_period();
+      ast::ExprPtr result = at(".") || at(";") || at("}") || at_end() ? nullptr : value();
+      expect_period(start);
       return make_statement(start, ast::Return{std::move(result)});
     }
     case Word::Free: {
       advance();
       ast::ExprPtr what = value();
-      expect_period();
+      expect_period(start);
       return make_statement(start, ast::Free{std::move(what)});
     }
     case Word::Die: {
       advance();
       if (at(".")) fail(token().span, "syntax", "'die' needs a message", "write: die \"what went wrong\".");
       ast::ExprPtr what = value();
-      expect_period();
+      expect_period(start);
       return make_statement(start, ast::Die{std::move(what)});
     }
     case Word::Else:
@@ -78,8 +80,11 @@ ast::StmtPtr Parser::block(std::size_t start) {
   }
   read_statements(node.body);
   if (!at("}")) {
+    open_brace_reported_ = true;
+    const std::string reached =
+        at_end() ? "the file ends" : fmt::format("line {} begins something new", token().span.line);
     error(items_[start].token->span, "missing-brace", "this '{' has no '}'",
-          fmt::format("{} was reached at line {} while its block was open", describe(), token().span.line));
+          fmt::format("{} while its block is open: write '}}' where the block ends", reached));
     return make_statement(start, std::move(node));
   }
   advance();
@@ -93,7 +98,7 @@ ast::StmtPtr Parser::block(std::size_t start) {
 // Statements up to a '}', or to what shows that it is missing.
 void Parser::read_statements(std::vector<ast::StmtPtr>& into) {
   const ast::Chain* comparison = nullptr;
-  while (!at("}") && !at_end() && !at_member_header() && !at_variables_header() &&
+  while (!at("}") && !at_end() && !at_member_header() && !at_variables_header() && broken_header() == 0 &&
          !(token().starts_line && at_class_header())) {
     if (comparison != nullptr) {
       lint(comparison->operators.back(), "lint-unused-comparison", "the result of this comparison is not used",
@@ -129,9 +134,14 @@ ast::StmtPtr Parser::if_statement(std::size_t start) {
   advance();
   for (;;) {
     ast::ExprPtr test = condition();
-    expect_colon("after the condition of 'if'");
+    expect_colon("the condition of 'if'");
     ast::StmtPtr then = statement();
     node.branches.emplace_back(std::move(test), std::move(then));
+    if (at_elif()) {
+      error(token().span, "foreign-statement", fmt::format("there is no '{}'", token().text), "write: else if");
+      advance();
+      continue;
+    }
     if (!at_word(Word::Else)) break;
     advance();
     accept(":");
@@ -147,21 +157,43 @@ ast::StmtPtr Parser::if_statement(std::size_t start) {
 ast::StmtPtr Parser::while_statement(std::size_t start) {
   advance();
   ast::ExprPtr test = condition();
-  expect_colon("after the condition of 'while'");
+  expect_colon("the condition of 'while'");
   ast::StmtPtr body = statement();
   return make_statement(start, ast::While{std::move(test), std::move(body)});
 }
 
 ast::StmtPtr Parser::for_statement(std::size_t start) {
   advance();
+  if (at_c_for()) return c_for_statement(start);
   ast::For node;
-  node.start = value();
+  const std::string variable(at_name() ? token().text : "n");
+  if (at_name() && at_text("in", 1))
+    fail(items_[start].token->span, "loop", "'for' counts; through a list goes 'foreach'",
+         fmt::format("write: foreach {} in list: ...", variable));
+  node.start = expression();
+  if (at_name() && !at(","))
+    fail(token().span, "loop", fmt::format("'for' has three parts with commas between them, not '{}'", token().text),
+         loop_pattern(variable));
+  if (at(";")) fail(token().span, "loop", "the parts of 'for' are separated by commas", loop_pattern(variable));
   expect(",", "after the start of 'for', which has three parts: start, condition, step");
   node.condition = value();
   lint_condition(*node.condition);
   expect(",", "after the condition of 'for', which has three parts: start, condition, step");
   node.step = value();
-  expect_colon("after the step of 'for'");
+  expect_colon("the step of 'for'");
+  node.body = statement();
+  return make_statement(start, std::move(node));
+}
+
+ast::StmtPtr Parser::c_for_statement(std::size_t start) {
+  error(token().span, "loop", "the parts of 'for' stand without parentheses, with commas between them",
+        loop_pattern(at_name(1) ? token(1).text : "n"));
+  pos_ += behind_parentheses(0);
+  accept(":");
+  ast::For node;
+  node.start = make(start, ast::IntLit{0});
+  node.condition = make(start, ast::IntLit{0});
+  node.step = make(start, ast::IntLit{0});
   node.body = statement();
   return make_statement(start, std::move(node));
 }
@@ -170,11 +202,12 @@ ast::StmtPtr Parser::foreach_statement(std::size_t start) {
   advance();
   if (items_[start].word == Word::For) advance();
   ast::Foreach node;
+  if (at("(")) fail(token().span, "loop", "no parentheses follow 'foreach'", "write: foreach item in list: ...");
   node.variable = expect_name("the loop's variable", node.variable_span);
   if (!at_text("in")) fail_expected("'in' and a list", "write: foreach item in list: statement");
   advance();
   node.list = header_part();
-  expect_colon("after the list of 'foreach'");
+  expect_colon("the list of 'foreach'");
   node.body = statement();
   return make_statement(start, std::move(node));
 }
@@ -188,14 +221,14 @@ ast::StmtPtr Parser::print_statement(std::size_t start) {
   ast::Print node{{}, newline};
   do node.items.push_back(value());
   while (accept(","));
-  expect_period();
+  expect_period(start);
   return make_statement(start, std::move(node));
 }
 
 ast::StmtPtr Parser::simple_statement(std::size_t start) {
   ast::ExprPtr expr = assignment(true);
   if (at_call(start) && !run_on_call()) expr = call(start, std::move(expr));
-  expect_period();
+  expect_period(start);
   return make_statement(start, ast::ExprStmt{std::move(expr)});
 }
 
@@ -221,6 +254,9 @@ ast::ExprPtr Parser::header_part() {
     in_header_ = true;
     ast::ExprPtr result = value();
     in_header_ = false;
+    if (errors_ > statement_errors_ && !at(":"))  // what follows a mistake that was read over
+      while (!at(":") && !at(".") && !at("{") && !at_end() && token().span.line == items_[start].token->span.line)
+        advance();
     return result;
   } catch (const SyntaxError& problem) {
     in_header_ = false;
@@ -229,32 +265,43 @@ ast::ExprPtr Parser::header_part() {
     const std::uint32_t line = token().span.line;
     while (!at(":", ahead) && !at(".", ahead) && !at_kind(TokenKind::End, ahead) && token(ahead).span.line == line)
       ++ahead;
+    const bool said = errors_ > statement_errors_;
     if (!at(":", ahead)) throw;
-    report(problem.diagnostic);
+    if (!said) report(problem.diagnostic);
     pos_ += ahead;
     return make(start, ast::IntLit{0});
   }
 }
 
-void Parser::expect_colon(std::string_view where) {
+void Parser::expect_colon(std::string_view what) {
   if (accept(":")) return;
-  if (!(token().starts_line || at("{") || starts_statement(0))) fail_expected(fmt::format("':' {}", where));
-  missing(":", where);
+  if (at_text("then") || at_text("do")) {
+    error(token().span, "missing-colon", fmt::format("there is no '{}'", token().text), "write ':' in its place");
+    advance();
+    return;
+  }
+  if (at("|")) fail(token().span, "foreign-operator", "a single '|' is no operator", "logical or is written ||");
+  if (!(token().starts_line || at("{") || starts_statement(0))) fail_expected(fmt::format("':' after {}", what));
+  missing(":", what);
 }
 
-void Parser::expect_period() {
-  if (accept(".")) return;
+void Parser::expect_period(std::size_t start) {
+  if (at(".")) return lint_dot();
+  if (at(";")) return semicolon();
   if (interactive_ && at_end()) return;
   const bool next_begins = token().starts_line || at("}") || at_end() || (starts_statement(0) && !at_name());
-  if (next_begins) return missing(".", "after this statement");
-  if (at("=")) fail(token().span, "syntax", "unexpected '='", "a '.' may be missing before this, or '==' be meant");
-  if (at(":"))
-    fail(token().span, "syntax", "unexpected ':' in a statement", "only if, while, for, foreach and else take a ':'");
-  if (at("["))
-    fail(token().span, "syntax", "unexpected '['",
-         "only a variable of an array type takes [index]; lists take {index}");
-  const bool swallowed = at_kind(TokenKind::Double) && token().text.front() == '.';
-  fail_expected("'.' or an operator", swallowed ? "write a blank behind the '.' that ends a statement" : "");
+  if (next_begins) return missing(".", "this statement");
+  throw SyntaxError{after_statement(start)};
+}
+
+// `leader.size` reads as a statement that ends, and another one that does nothing.
+void Parser::lint_dot() {
+  const bool glued = previous().kind == TokenKind::Name && !token().space_before && !token().space_after;
+  if (glued && at_name(1) && at(".", 2) && token(1).span.line == token().span.line && !token(2).space_before) {
+    lint(token().span, "lint-dot", "this '.' ends the statement; what stands behind it does nothing",
+         fmt::format("a variable of an object is read as {}::{}", previous().text, token(1).text));
+  }
+  advance();
 }
 
 // A word that stands nowhere but at the beginning of a statement.
@@ -309,10 +356,10 @@ std::size_t Parser::run_on_line(std::size_t start) const {
 void Parser::recover(std::size_t start, const SyntaxError& problem) {
   if (const std::size_t next = run_on_line(start); next > 0) {
     pos_ = next;
-    missing(".", "after this statement");
+    missing(".", "this statement");
     return;
   }
-  report(problem.diagnostic);
+  if (errors_ == statement_errors_) report(problem.diagnostic);
   skip_statement(start);
 }
 

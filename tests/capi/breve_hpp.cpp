@@ -140,4 +140,17 @@ TEST(BreveHpp, InputStepsAndSnapshots) {
   EXPECT_EQ(w.last_error(), nullptr);
 }
 
+TEST(BreveHpp, ProfilesAreReadWhole) {
+  Stage stage;
+  auto& w = stage.world;
+  EXPECT_EQ(w.profile().status().code(), BREVE_ERROR_NOT_FOUND);
+  w.start_profile().or_throw();
+  w.step().or_throw();
+  w.stop_profile().or_throw();
+  const auto nodes = w.profile().or_throw();
+  ASSERT_GE(nodes.size(), 2U);
+  EXPECT_EQ(nodes[0].kind, BREVE_PROFILE_WORLD);
+  EXPECT_STREQ(nodes[1].name, "iteration");
+}
+
 }  // namespace

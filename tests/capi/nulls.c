@@ -79,6 +79,12 @@ static void null_handles_give_an_argument_error_or_nothing(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_restore(NULL, d, 8));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_effects(NULL, NULL, 0, &size));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_stats(NULL, &stats));
+  breve_profile_node node;
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_profile_start(NULL, NULL, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_profile_stop(NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_profile_count(NULL, &size));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_profile_node(NULL, 0, &node));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_profile_cost(NULL, d));
 }
 
 static void null_arguments_give_an_argument_error(void) {
@@ -107,6 +113,11 @@ static void null_arguments_give_an_argument_error(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_create(s.runtime, s.program, NULL, NULL));
   CHECK(w == s.world);
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_random(w, NULL));
+  CHECK_STATUS(BREVE_OK, breve_world_profile_start(w, NULL, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_profile_count(w, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_profile_node(w, 0, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_profile_cost(w, NULL));
+  CHECK_STATUS(BREVE_OK, breve_world_profile_stop(w));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_objects(w, NULL, NULL, 3, &size));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_objects(w, NULL, NULL, 0, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_is_a(w, ball, NULL, &is));

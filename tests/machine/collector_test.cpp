@@ -317,6 +317,79 @@ TEST(Collector, ListsThatChangeWhileTheyAreScannedLoseNothing) {
   EXPECT_EQ(sum, std::int64_t{200'000} * 199'999 / 2);
 }
 
+// Objects that must be destroyed do not keep other garbage from being taken apart in the same collection.
+TEST(Collector, RingsOfListsGoThoughObjectsDieInEveryCollection) {
+  World w;
+  const ClassInfo cls = reference_class(1);
+  std::uint64_t most = 0;
+  for (int i = 0; i < 40; ++i) {
+    Instance* a = w.auto_object(cls);
+    Instance* b = w.auto_object(cls);
+    w.heap.store(a->slots[0], b);
+    w.heap.store(b->slots[0], a);
+    Value ring = w.list();
+    w.heap.push(*ring.list(), ring);
+    w.heap.end_of_iteration();
+    most = std::max(most, w.heap.live_cells());
+  }
+  EXPECT_LE(most, 3u * bound(3));
+}
+
+TEST(Collector, WhatADyingObjectRefersToIsWholeWhenItsDestroyRuns) {
+  World w;
+  const ClassInfo cls = reference_class(2);
+  Instance* a = w.auto_object(cls);
+  Instance* b = w.auto_object(cls);
+  Value ring = w.list();
+  w.heap.push(*ring.list(), ring);
+  w.heap.push(*ring.list(), number(7));
+  w.heap.store(a->slots[0], b);
+  w.heap.store(b->slots[0], a);
+  w.heap.store(b->slots[1], ring.ref);
+  std::vector<std::uint32_t> sizes;
+  w.roots.on_destroy = [&](Instance& instance) {
+    if (&instance == b) sizes.push_back(static_cast<ListCell*>(instance.slots[1].ref)->size);
+  };
+  for (std::uint64_t i = 0; i < 2 * bound(3); ++i) w.heap.end_of_iteration();
+  EXPECT_EQ(sizes, std::vector<std::uint32_t>{2});
+  EXPECT_EQ(w.heap.live_cells(), 0u);
+}
+
+// By counted work: no iteration takes apart much more than a slice, however large one list is.
+TEST(Collector, OneLargeRingIsTakenApartInSlices) {
+  World w;
+  constexpr std::uint64_t kMany = 300'000;
+  {
+    Value ring = w.list();
+    for (std::uint64_t i = 0; i < kMany; ++i) w.heap.push(*ring.list(), w.list());
+    w.heap.push(*ring.list(), ring);
+  }
+  std::uint64_t before = w.heap.live_cells(), most = 0, iterations = 0;
+  for (; w.heap.live_cells() > 0 && iterations <= bound(kMany); ++iterations) {
+    w.heap.end_of_iteration();
+    most = std::max(most, before - w.heap.live_cells());
+    before = w.heap.live_cells();
+  }
+  EXPECT_LE(iterations, bound(kMany));
+  EXPECT_LE(most, 60'000u);
+}
+
+// When there is no memory to note what is to be destroyed, something is destroyed all the same, and the host is told.
+TEST(Collector, WithoutMemoryToNoteThemObjectsAreDestroyedLittleByLittle) {
+  World w;
+  const ClassInfo cls = reference_class(1);
+  for (int i = 0; i < 4; ++i) w.auto_object(cls);
+  w.heap.end_of_iteration();
+  for (int i = 0; i < 1000; ++i) w.auto_object(cls);
+  w.memory.fail_at = 0;
+  EXPECT_THROW(w.heap.end_of_iteration(), std::bad_alloc);
+  EXPECT_GT(w.roots.destroyed.size(), 4u);
+  w.memory.fail_at = -1;
+  w.heap.end_of_iteration();
+  EXPECT_EQ(w.roots.destroyed.size(), 1004u);
+  EXPECT_EQ(w.heap.live_cells(), 0u);
+}
+
 // --- snapshots -------------------------------------------------------------------------------------------------------
 
 /// Copies a heap of lists and instances through its image, as a snapshot does, and returns the copy's owner.

@@ -255,7 +255,11 @@ TEST_F(TextStore, FailuresNameTheFile) {
 }
 
 TEST_F(TextStore, AFullDiskIsNoticed) {
+#ifdef __linux__
+  ASSERT_TRUE(std::filesystem::exists("/dev/full"));
+#else
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+#endif
   TextFile out("/dev/full", TextFile::Mode::Write);
   out.write("x");
   EXPECT_NE(message(ErrorCode::File, [&] { out.close(); }).find("/dev/full"), std::string::npos);

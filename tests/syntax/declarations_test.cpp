@@ -157,7 +157,7 @@ TEST(Variables, Mistakes) {
       {"a (3 data).", "2:6 unknown-type"},
       {"a (Kiln objects).", "2:4 unknown-type"},
       {"a (Kiln).", "2:4 unknown-type"},
-      {"a = 5 (int).", "2:3 syntax"},
+      {"a = 5 (int).", "2:3 initial-value"},
       {"a int.", "2:3 syntax"},
       {"list (int).", "2:1 reserved-word"},
       {"a (int)\nb (int).", "2:8 missing-period"},
@@ -204,7 +204,7 @@ TEST(Methods, HeadersOfEveryShape) {
 TEST(Methods, HeaderMistakes) {
   const std::vector<std::pair<std::string, std::string>> rows{
       {"+ to f x (int): return.", "2:8 syntax"},
-      {"+ to f with x: return.", "2:14 syntax"},
+      {"+ to f with x: return.", "2:14 missing-type"},
       {"+ to f with x (int)\n  n = 5.", "2:20 missing-colon"},
       {"+ to f\n  n (int).\n  n = 5.", "2:7 missing-colon"},
       {"+ to f\n  print 5.", "2:7 missing-colon"},
@@ -212,8 +212,8 @@ TEST(Methods, HeaderMistakes) {
       {"+ to f object x (int): return.", "2:8 reserved-word"},
       {"+ to f with int (int): return.", "2:13 reserved-word"},
       {"+ to f with x = n (int): m = .", "2:17 syntax, 2:30 syntax"},
-      {"+ to f with x: (int)\n  print 5.", "2:14 syntax"},
-      {"+ to f(x (int)):\n  n = 5.", "2:7 syntax"},
+      {"+ to f with x: (int)\n  print 5.", "2:14 method-header"},
+      {"+ to f(x (int)):\n  n = 5.", "2:7 method-header"},
       {"+ to f with x (itn): m = .", "2:16 unknown-type, 2:26 syntax"}};
   for (const auto& [text, errors] : rows) EXPECT_EQ(Reading("NULL : T {\n" + text + "\n}").errors(), errors) << text;
 }

@@ -21,7 +21,7 @@ TEST(Errors, AMissingPeriodIsShownAtTheEndOfItsStatement) {
                  {"n = m\nm = 6.", "1:6 missing-period"},
                  {"n = m\nk run at 5.", "1:6 missing-period"},
                  {"self run at 5\nself stop.", "1:14 missing-period"},
-                 {"k run\nm stop at 5 6.", "1:6 missing-period, 2:13 syntax"},
+                 {"k run\nm stop at 5 6.", "1:6 missing-period, 2:13 call-arguments"},
                  {"n = 5\nk run.", "1:6 missing-period"},
                  {"n = m\nk{0} = 5.", "1:6 missing-period"},
                  {"n++\nm--", "1:4 missing-period, 2:4 missing-period"},
@@ -52,7 +52,7 @@ TEST(Errors, MissingColons) {
 }
 
 TEST(Errors, BracketsAndOperands) {
-  expect_errors({{"n = (4.", "1:7 syntax"},
+  expect_errors({{"n = (4.", "1:7 missing-parenthesis"},
                  {"n = 4).", "1:6 syntax"},
                  {"n = ().", "1:6 syntax"},
                  {"n = (1, 2).", "1:10 syntax"},
@@ -96,8 +96,8 @@ TEST(Errors, ListOperationsAndLoops) {
                  {"else n = 5.", "1:1 stray-else"},
                  {"if n: m = 1. m = 2. else m = 3.", "1:21 stray-else"},
                  {"if n: { m = 1. }.", "1:17 stray-period"},
-                 {"self run at.", "1:10 syntax"},
-                 {"self run at self measure.", "1:18 syntax"}});
+                 {"self run at.", "1:10 call-arguments"},
+                 {"self run at self measure.", "1:13 call-needs-parentheses"}});
 }
 
 TEST(Errors, AllOfAFileAreReported) {
@@ -126,7 +126,7 @@ Controller First
 )");
   EXPECT_EQ(
       reading.errors(),
-      "11:9 unexpected-byte, 1:13 missing-period, 5:8 unknown-type, 8:11 syntax, 9:12 syntax, 10:10 missing-period, "
+      "1:13 missing-period, 5:8 unknown-type, 8:11 missing-parenthesis, 9:12 syntax, 10:10 missing-period, 11:9 syntax, "
       "12:8 reserved-word, 12:24 syntax, 18:5 missing-brace, 20:11 syntax, 22:17 missing-period");
   EXPECT_EQ(reading.file.classes.size(), 2U);
   EXPECT_EQ(reading.only_class().methods.size(), 3U);
@@ -141,7 +141,7 @@ TEST(Errors, StrayBracesDoNotEndTheClass) {
 }
 
 TEST(Errors, ABrokenConditionDoesNotHideItsBody) {
-  expect_errors({{"if n + : m = .", "1:8 syntax, 1:14 syntax"}, {"while (n: { m = . }", "1:9 syntax, 1:17 syntax"}});
+  expect_errors({{"if n + : m = .", "1:8 syntax, 1:14 syntax"}, {"while (n: { m = . }", "1:9 missing-parenthesis, 1:17 syntax"}});
 }
 
 TEST(Errors, SayWhatToDo) {
@@ -166,7 +166,7 @@ TEST(Errors, SayWhatToDo) {
 }
 
 TEST(Errors, OfTheScannerSilenceTheirLine) {
-  EXPECT_EQ(body_errors("n = 5 ; m\nn = ."), "1:7 unexpected-byte, 2:5 syntax");
+  EXPECT_EQ(body_errors("n = 5 ~ m\nn = ."), "1:7 unexpected-byte, 2:5 syntax");
   EXPECT_EQ(body_errors("print \"open.\nn = ."), "1:7 unterminated-string, 2:5 syntax");
 }
 

@@ -186,11 +186,11 @@ TEST(Lexer, PunctuationTakesTheLongestMatch) {
 }
 
 TEST(Lexer, OtherBytesAreErrorsAndScanningGoesOn) {
-  const Scan scan("a ; b\n\xC3\xA9 c ~");
+  const Scan scan("a $ b\n\xC3\xA9 c ~");
   EXPECT_EQ(scan.text(), "a b c");
   EXPECT_EQ(scan.errors(), "1:3 unexpected-byte, 2:1 unexpected-byte, 2:6 unexpected-byte");
-  EXPECT_EQ(scan.diagnostics.all().at(0).message, "unexpected character ';'");
-  EXPECT_EQ(scan.diagnostics.all().at(0).help, "statements end with '.'");
+  EXPECT_EQ(scan.diagnostics.all().at(0).message, "unexpected character '$'");
+  EXPECT_EQ(scan.diagnostics.all().at(0).help, "variables are written without '$'; '$' belongs inside strings");
   EXPECT_NE(scan.diagnostics.all().at(1).message.find("0xC3"), std::string::npos);
   expect_errors({{std::string_view("a\x01").data(), "1:2 unexpected-byte"}, {"a & b", "1:3 unexpected-byte"}});
   expect_rows({{"# caf\xC3\xA9\na", "a"},

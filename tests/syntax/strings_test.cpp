@@ -78,7 +78,7 @@ TEST(Strings, BracesMayHoldAnExpression) {
 
 TEST(Strings, AnExpressionInBracesThatIsWrongIsAnError) {
   EXPECT_EQ(body_errors(R"(print "${(a + }".)"), "1:15 syntax");
-  EXPECT_EQ(body_errors(R"(print "${;}".)"), "1:10 unexpected-byte");
+  EXPECT_EQ(body_errors(R"(print "${~}".)"), "1:10 unexpected-byte");
 }
 
 TEST(Strings, ConstantsDefaultsAndFileNamesKeepTheirEscapes) {

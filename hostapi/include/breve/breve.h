@@ -79,7 +79,9 @@ typedef enum breve_status {
   BREVE_ERROR_NOT_FOUND = 12,   /* no class, method, keyword, variable, element or key of that name */
   BREVE_ERROR_TYPE = 13,        /* a value that does not convert to the type it is needed in */
   BREVE_ERROR_NO_BODY = 14,     /* an object without a place in space, as the controller, asked for its pose */
-  BREVE_ERROR_INTERNAL = 15     /* a defect of the library itself; please report it */
+  BREVE_ERROR_INTERNAL = 15,    /* a defect of the library itself; please report it */
+  BREVE_ERROR_INTERRUPTED = 16, /* breve_world_interrupt stopped the call */
+  BREVE_ERROR_RELOAD = 17       /* a program that cannot take the place of the running one */
 } breve_status;
 
 /* "BREVE_ERROR_STALE" and so on; "BREVE_ERROR_INTERNAL" for a number that is no status. Never NULL. */
@@ -108,20 +110,25 @@ typedef struct breve_selector {
 
 /* ---- what went wrong --------------------------------------------------------------------------------------------- */
 
-/* One active method when an error happened. */
+/* One active method when an error happened. No text is NULL. */
 typedef struct breve_frame {
   const char* class_name; /* class of the receiver */
   const char* method;
-  const char* file;      /* of the statement that was running, or "" */
-  uint32_t line, column; /* of that statement, from 1; 0 if not known */
+  const char* file;      /* of what was running in it, or "" */
+  uint32_t line, column; /* of that, from 1; 0 if not known. The caller's place is in the next frame */
+  const char* receiver;  /* the object, in a few words: "Bird 0xc", with the number that `print` shows */
+  const char* arguments; /* each keyword with the value that its parameter had then: "target (3, 0, 1) weight 2"; long
+                            ones are cut. Both texts are "" in the middle of a deep recursion, and if memory ran out */
 } breve_frame;
 
 /* The last error of a world or runtime. Everything in it is owned by that world or runtime until its next call. */
 typedef struct breve_error {
   breve_status status;
-  const char* message;   /* what is wrong and what to do, one line or more; never NULL */
+  const char* message;   /* what is wrong, one line or more; never NULL */
+  const char* help;      /* what to do, or "" if the message says it all; never NULL */
   const char* file;      /* the script file, or "" if the error has no place in one */
   uint32_t line, column; /* from 1; 0 if not known */
+  uint32_t length;       /* bytes from there on that are meant */
   size_t frame_count;
   const breve_frame* frames; /* the chain of calls, innermost first; NULL if frame_count is 0 */
   const char* text;          /* all of the above, laid out for people to read; ends with a newline */
@@ -143,7 +150,9 @@ typedef enum breve_channel {
 typedef void (*breve_print_fn)(void* user, breve_world* world, breve_channel channel, const char* text, size_t size);
 
 /* Memory of `size` bytes aligned to `alignment` (a power of two), or NULL: the call in progress fails with
-   BREVE_ERROR_MEMORY. */
+   BREVE_ERROR_MEMORY. All memory that a world keeps is asked for here, by the thread that uses the world. Programs and
+   runtimes, which belong to no world, and texts that live for one call take theirs from the C++ allocator; where that
+   has none left, the call gives BREVE_ERROR_MEMORY as well. See docs/limits.md. */
 typedef void* (*breve_allocate_fn)(void* user, size_t size, size_t alignment);
 
 /* Give back what breve_allocate_fn gave, with the same size and alignment. */
@@ -249,10 +258,28 @@ typedef struct breve_diagnostic {
 /* How many diagnostics the last compilation on this runtime left, whether it succeeded or not. */
 BREVE_API size_t breve_runtime_diagnostic_count(const breve_runtime* runtime);
 
-/* The diagnostic at `index`, in order of report.
+/* The diagnostic at `index`, in order of files and places; the files are in order of loading.
    BREVE_OK; BREVE_ERROR_NOT_FOUND if index is not below the count. */
 BREVE_API breve_status breve_runtime_diagnostic(const breve_runtime* runtime, size_t index,
                                                 breve_diagnostic* diagnostic);
+
+/* A lint: something doubtful that is no error, and that can be turned off. Texts live as long as the process. */
+typedef struct breve_lint_info {
+  const char* code;        /* breve_diagnostic.code: "lint-unused-variable" */
+  breve_severity severity; /* WARNING: most likely a mistake; NOTE: only worth a look */
+  const char* summary;     /* one line: what it finds */
+} breve_lint_info;
+
+/* How many lints the compiler knows. */
+BREVE_API size_t breve_lint_count(void);
+
+/* The lint at `index`, in order of their codes. BREVE_OK; BREVE_ERROR_NOT_FOUND if index is not below the count. */
+BREVE_API breve_status breve_lint(size_t index, breve_lint_info* lint);
+
+/* Compilations on this runtime do not report the lint of that code from now on. In a program a comment does the same:
+   `# allow: lint-unused-variable` behind a statement or on the line before it, or, for a whole file, at its beginning.
+   BREVE_OK, also if it was allowed before; BREVE_ERROR_NOT_FOUND: there is no such lint. */
+BREVE_API breve_status breve_runtime_allow(breve_runtime* runtime, const char* code);
 
 /* A class of a program. Texts are owned by the program. */
 typedef struct breve_class_info {
@@ -270,14 +297,43 @@ BREVE_API breve_status breve_program_class(const breve_program* program, size_t 
 
 /* ---- world ------------------------------------------------------------------------------------------------------- */
 
+/* What a node of a profile stands for, and what an event of a trace is about. See "where the time goes". */
+typedef enum breve_profile_kind {
+  BREVE_PROFILE_WORLD = 0,    /* the root: all that the world did */
+  BREVE_PROFILE_STAGE = 1,    /* the world itself: "iteration" and what it is made of, as "script", "motion", "rotation",
+                                 "collision", "neighbors", "schedule", "notifications", "input"; "garbage" */
+  BREVE_PROFILE_METHOD = 2,   /* a method written in steve */
+  BREVE_PROFILE_NATIVE = 3,   /* a method of the class library that is part of breve */
+  BREVE_PROFILE_FUNCTION = 4, /* a function, as sqrt */
+  BREVE_PROFILE_ACT = 5       /* "new" and "free", of a class; "sort"; "print" */
+} breve_profile_kind;
+
+/* Something begins or ends. Texts are never NULL and are good until the function returns. */
+typedef struct breve_trace_event {
+  bool begins;          /* else it ends, perhaps by an error: what began last and has not ended */
+  breve_profile_kind kind;
+  double seconds;       /* wall time since the profile started, less the time spent in the breve_trace_fn */
+  const char* class_name; /* the class whose method it is, or that an act is about; "" if there is none */
+  const char* name;     /* method, function, act or stage */
+  const char* file;     /* where the method is declared; "" for what is no method */
+  uint32_t line;        /* of that; 0 */
+  uint32_t call_line;   /* of the call, in the calling method's file; 0 if no script called */
+  uint64_t iteration;   /* breve_world_iteration at that time */
+} breve_trace_event;
+
+/* Called at each begin and end while a profile with a trace runs. It may call what does not run script; on this world
+   functions that do give BREVE_ERROR_BUSY. */
+typedef void (*breve_trace_fn)(void* user, const breve_trace_event* event);
+
 typedef struct breve_world_config {
   size_t struct_size; /* as breve_world_config_default gives it; a smaller one of an older header is accepted */
   uint64_t seed;      /* of the world's generator of random numbers: any number. Default 1 */
   const char* const* arguments; /* what scripts read as arguments, copied; [0] is the program's name. Default NULL */
   size_t argument_count;        /* 0 if arguments is NULL. Default 0 */
-  size_t memory_limit;          /* bytes; 0: none. Beyond it: BREVE_ERROR_MEMORY. Default 0 */
-  uint64_t budget;              /* loop turns and calls in one call by the host or one iteration; 0: none.
-                                   Beyond it: BREVE_ERROR_BUDGET. Default 0 */
+  size_t memory_limit;          /* bytes that the world may take from the runtime's allocator; 0: none. Beyond it:
+                                   BREVE_ERROR_MEMORY, and the world stays usable. Default 0 */
+  uint64_t budget;              /* loop turns and calls (see "budgets" below) in one iteration, or in one call by the
+                                   host outside of an iteration; 0: none. Beyond it: BREVE_ERROR_BUDGET. Default 0 */
   uint32_t depth_limit;         /* nested calls; 0: the default of 5000. Beyond it: BREVE_ERROR_DEPTH */
   uint32_t advance_limit;       /* iterations that one breve_world_advance may run; time that is left over is then
                                    dropped; 0: none. Default 0 */
@@ -287,9 +343,30 @@ typedef struct breve_world_config {
   bool verbose;                 /* say more: once for each obsolete method that is used. Default false */
   bool coarse_random;           /* random[] of floats and vectors draws from 32,768 values, as programs written for
                                    the original expect. Default false */
-  bool reserved[5];             /* must be false */
+  bool profile;                 /* start a profile before anything runs, as breve_world_profile_start with `trace` and
+                                   `trace_user` below does later. Default false */
+  bool reserved[4];             /* must be false */
   void* user;                   /* the host's own, for breve_world_user. Default NULL */
+  uint64_t call_budget;         /* the same for each call that the world makes within an iteration; 0: none. Beyond it
+                                   that call alone is abandoned. Default 0 */
+  uint32_t nesting_limit;       /* calls of the host in callbacks of calls of the host: at most 200; 0: the default of
+                                   64. Beyond it: BREVE_ERROR_DEPTH */
+  uint32_t reserved_2;          /* must be 0 */
+  breve_trace_fn trace;         /* of `profile`; NULL: no events. Default NULL */
+  void* trace_user;             /* Default NULL */
 } breve_world_config;
+
+/* Budgets. Each turn of a loop, each call of a method or function and each new object counts 1, whoever makes the call:
+   sort, broadcasts, announcements, init and destroy, calls by name; an integration step of the world counts 1 too.
+   Nothing else counts, so that a cut falls at the same place in every run, on every machine and in every build. A call
+   on the budget's last turn is still made; the one after it is the error.
+   - `budget` is for a whole iteration, and for each function of this header that runs script outside of one. Where it is
+     used up the call is abandoned as by a run-time error, the rest of the iteration is not run, and the function gives
+     BREVE_ERROR_BUDGET. Calls that a callback makes count to the call that it is a callback of.
+   - `call_budget` is for each `iterate`, `post-iterate`, scheduled call, input or collision handler, and `destroy` of
+     auto-free: one object that does not end leaves the others their turn. What is cut is told on BREVE_CHANNEL_ERROR and
+     counted in breve_stats.errors; the iteration goes on. A collision handler does not use up its controller's; a handler
+     of announcements uses the announcer's. Scheduled calls may schedule calls: only `budget` bounds an iteration. */
 
 /* The defaults named above. */
 BREVE_API breve_world_config breve_world_config_default(void);
@@ -647,6 +724,279 @@ typedef struct breve_stats {
 
 /* BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
 BREVE_API breve_status breve_world_stats(const breve_world* world, breve_stats* stats);
+
+/* ---- where the time goes ----------------------------------------------------------------------------------------- */
+
+/* A profile is a tree: each node is something that ran, below the node that called it, and apart for each line that it
+   was called from. Time is wall time while the world runs; what the host does between its calls is not part of it. The
+   world's own work stands in the tree too, so that the totals of a node's children and its own time add up to its
+   total, and everything to that of the root. A call of something that is active already (recursion) counts in the node
+   higher up. What the profile itself costs is measured at its start and taken out, see breve_world_profile_cost: times
+   of methods that only take a few nanoseconds are estimates.
+   A profile changes nothing in the world: hash, random numbers, budgets and order stay the same. A world that has none
+   pays nothing for it. Its memory counts against the world's limit: where there is no more the profile ends, keeps what
+   it has, and the run goes on; breve_world_profile_stop tells. A tree has at most 100,000 nodes; beyond them the time of
+   new ones is their caller's. Methods that breve_world_reload replaces go on in their nodes. */
+
+/* One node. Texts are never NULL and live until the world's next profile starts. */
+typedef struct breve_profile_node {
+  size_t parent; /* its index; below the node's own, but 0 for the root, which is node 0 */
+  breve_profile_kind kind;
+  const char* class_name; /* the class whose method it is, or that an act is about; "" if there is none */
+  const char* name;       /* method, function, act or stage */
+  const char* file;       /* where the method is declared; "" for what is no method */
+  uint32_t line;          /* of that; 0 */
+  uint32_t call_line;     /* of the call, in the calling method's file; 0 if no script called */
+  uint64_t calls;         /* 0 for the root */
+  double self_seconds;    /* in it, without what it called */
+  double total_seconds;   /* with what it called */
+} breve_profile_node;
+
+/* Start a profile of a world; the last one is dropped. To see `init` as well: breve_world_config.profile.
+   @param trace  is told of every begin and end as it happens; NULL: nobody is. Its own time does not count
+   BREVE_OK; BREVE_ERROR_BUSY while a script of this world runs; BREVE_ERROR_MEMORY. */
+BREVE_API breve_status breve_world_profile_start(breve_world* world, breve_trace_fn trace, void* user);
+
+/* Stop it and keep what it found. Nothing if it has stopped.
+   BREVE_OK; BREVE_ERROR_MEMORY: it has ended before, for want of memory, and holds what was known then;
+   BREVE_ERROR_NOT_FOUND: there has been no profile; BREVE_ERROR_BUSY while a script of this world runs. */
+BREVE_API breve_status breve_world_profile_stop(breve_world* world);
+
+/* How many nodes the profile has, also while it goes on.
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: there has been no profile; BREVE_ERROR_BUSY while a script of this world runs;
+   BREVE_ERROR_MEMORY. */
+BREVE_API breve_status breve_world_profile_count(breve_world* world, size_t* count);
+
+/* The node at `index`, in the order of a walk from the root: a node, then its first child with all that is below it.
+   As breve_world_profile_count; BREVE_ERROR_NOT_FOUND also if index is not below the count. */
+BREVE_API breve_status breve_world_profile_node(breve_world* world, size_t index, breve_profile_node* node);
+
+/* What the profile itself cost and took out of the nodes, s: an estimate. As breve_world_profile_count. */
+BREVE_API breve_status breve_world_profile_cost(breve_world* world, double* seconds);
+
+/* ---- changing what runs ------------------------------------------------------------------------------------------ */
+
+/* Put a changed program in the place of the one that a world runs. The program is compiled before, so that a text with
+   errors changes nothing. All or nothing: after an error the world runs the old program, unchanged. Runs no script: an
+   `init` that is new or changed runs for new objects only.
+   Methods are the new program's from the next call on. Objects stay what they are: ids, order of creation, places in
+   space, scheduled calls, observers, collision handlers and menus (these by method name) are kept, and so are the values
+   of variables that still have their name; new variables start at zero. A variable of another type gets its old value
+   converted as an assignment would; where that cannot be it starts at zero, with a warning. Classes are known by their
+   names, of which an alias is one. breve_selectors go on working. Snapshots belong to the program they were taken
+   with: older ones do not fit any more. The world lets go of the old program. For a moment the world's objects and
+   lists are there twice, which counts against its memory limit.
+   @param program  of any runtime; used on by the world, may be destroyed after
+   BREVE_OK; BREVE_ERROR_BUSY while a script of this world runs; BREVE_ERROR_RELOAD: a class of which there are objects
+   is gone or comes from another class of the class library (a Mobile cannot become a Stationary), or the controller's
+   class is another one; BREVE_ERROR_MEMORY. */
+BREVE_API breve_status breve_world_reload(breve_world* world, const breve_program* program);
+
+/* Run statements as though they stood in a method of an object's class: they may use its variables, `self` and `super`.
+   The final period may be missing. A name that is assigned and that is no variable of the object becomes a variable of
+   the world's session: it holds values of any type and is known to later statements, whoever `self` is, until the world
+   ends. Session variables are part of snapshots (a restored world has those of the image), and not of
+   breve_world_hash. Warnings about the statements go to the print callback. Runs script.
+   @param self    null: the controller
+   @param text    `size` bytes; NULL only if size is 0
+   @param result  may be NULL: the value of the last statement if it is an expression, or what `return` gives; else null
+   BREVE_OK; BREVE_ERROR_COMPILE: nothing was run; the text of the error holds all diagnostics, with places such as
+   "input:1:5"; else as breve_object_call. */
+BREVE_API breve_status breve_world_evaluate(breve_world* world, breve_object self, const char* text, size_t size,
+                                            breve_value* result);
+
+/* The variables of the session as a hash from names to values; what is set in it is set there. Before there is one it
+   is a hash that the script has not made yet. */
+BREVE_API breve_status breve_world_session(breve_world* world, breve_value* hash);
+
+/* Can these statements be run as they are? False while a bracket, string or comment is open or the last statement must
+   go on, so that who types them is to be asked for another line. True for text that is wrong in another way, and for
+   an empty one. */
+BREVE_API bool breve_statements_complete(const char* text, size_t size);
+
+/* Stop the script that runs in a world: the function of this header that runs it gives BREVE_ERROR_INTERRUPTED soon
+   after, and the call is abandoned as by a run-time error. Where it is cut is not determined: two runs that are
+   interrupted are not equal. Nothing if no script runs; NULL is nothing. May be called by any thread, and by a signal
+   handler, as long as the world exists. */
+BREVE_API void breve_world_interrupt(breve_world* world);
+
+/* ---- what a program is made of ----------------------------------------------------------------------------------- */
+
+/* For editors, documentation and interactive use: the names of a program, where they stand and what they mean, without
+   running it, and also while its text is being written and does not compile yet. An analysis is made of one moment's
+   text and never changes; it is used by one thread at a time, and does not need its runtime any more once it is made.
+   Places are lines and columns from 1, columns in bytes; `file` is a name as breve_analysis_file gives it. Texts that
+   an analysis gives are its own and live as long as it does, where nothing else is said. */
+typedef struct breve_analysis breve_analysis;
+
+/* A piece of a text. All 0 and "": it has no place, as a function of the language itself. */
+typedef struct breve_span {
+  const char* file; /* never NULL */
+  uint32_t line, column;
+  uint32_t end_line, end_column; /* just behind its last byte */
+  uint32_t offset, length;       /* the same in bytes of the file */
+} breve_span;
+
+/* A text that a program is made of. */
+typedef struct breve_source {
+  const char* name; /* as diagnostics show it; a module of the class library is "library:Real.tz" */
+  const char* text; /* `size` bytes, ended by a zero byte behind them */
+  size_t size;
+  bool library; /* of the class library */
+  bool loaded;  /* by the program. False: a module of the class library that it does not use */
+} breve_source;
+
+/* How many modules the class library has. */
+BREVE_API size_t breve_library_module_count(void);
+
+/* The class library's module at `index`, in order of the alphabet. Its name is "Real.tz", without the "library:" that
+   diagnostics and analyses put before it; its texts live as long as the library; `loaded` is false.
+   BREVE_OK; BREVE_ERROR_NOT_FOUND if index is not below the count. */
+BREVE_API breve_status breve_library_module(size_t index, breve_source* module);
+
+/* Look at the program whose main module is `name`: read it as breve_program_compile does, with all that it loads, and
+   keep all that is known in spite of errors. Runs no script, and leaves breve_runtime_diagnostic as it is.
+   @param text      `size` bytes, copied; NULL with size 0: the module is asked of the runtime's resolve_module
+   @param analysis  to be given back to breve_analysis_destroy
+   BREVE_OK, also if the program has errors: see breve_analysis_diagnostic; BREVE_ERROR_FILE: no such module;
+   BREVE_ERROR_BUSY from a callback of a compilation. */
+BREVE_API breve_status breve_analysis_create(breve_runtime* runtime, const char* name, const char* text, size_t size,
+                                             breve_analysis** analysis);
+
+/* NULL is nothing. */
+BREVE_API void breve_analysis_destroy(breve_analysis* analysis);
+
+/* The errors and warnings of the program: as breve_runtime_diagnostic_count and breve_runtime_diagnostic. */
+BREVE_API size_t breve_analysis_diagnostic_count(const breve_analysis* analysis);
+BREVE_API breve_status breve_analysis_diagnostic(const breve_analysis* analysis, size_t index,
+                                                 breve_diagnostic* diagnostic);
+
+/* The texts: the main module first, then those that it loads, then the rest of the class library.
+   BREVE_OK; BREVE_ERROR_NOT_FOUND if index is not below the count. */
+BREVE_API size_t breve_analysis_file_count(const breve_analysis* analysis);
+BREVE_API breve_status breve_analysis_file(const breve_analysis* analysis, size_t index, breve_source* file);
+
+/* What a name names. */
+typedef enum breve_name_kind {
+  BREVE_NAME_MODULE = 0,    /* a file */
+  BREVE_NAME_CLASS = 1,     /* also by its other name (aka) */
+  BREVE_NAME_METHOD = 2,
+  BREVE_NAME_KEYWORD = 3,   /* `to` in `+ to set-velocity to v (vector):` */
+  BREVE_NAME_PARAMETER = 4, /* `v` there */
+  BREVE_NAME_VARIABLE = 5,  /* of an instance */
+  BREVE_NAME_LOCAL = 6,     /* a variable of a method */
+  BREVE_NAME_FUNCTION = 7,  /* sqrt and its like */
+  BREVE_NAME_CONSTANT = 8,  /* from @define */
+  BREVE_NAME_TYPE = 9,      /* int, vector, object ... */
+  BREVE_NAME_DIRECTIVE = 10, /* `use` behind an @ */
+  BREVE_NAME_WORD = 11      /* another reserved word */
+} breve_name_kind;
+
+#define BREVE_NO_SYMBOL ((size_t)-1)
+
+/* Something that a program, the class library or the language gives a name to. No text is NULL. */
+typedef struct breve_symbol {
+  breve_name_kind kind;      /* from BREVE_NAME_MODULE to BREVE_NAME_CONSTANT */
+  const char* name;
+  const char* signature;     /* as a reader wants it: "set-velocity to v (vector)", "Mobile : Bird (aka Birds)" */
+  const char* type;          /* of a variable, parameter, keyword: "float", "Bird object", "5 ints"; of a method or
+                                function: that of its result, "" if it has none or it is not declared */
+  const char* value;         /* of a constant, and the default of a keyword, as written; "" if there is none */
+  const char* documentation; /* its % lines without the %, of a variable or constant the # comment behind it, of a
+                                function one line; "" if it has none */
+  const char* owner;         /* the class in whose text it stands; "" outside of classes */
+  const char* parent_class;  /* of a class, "" for a root; else "" */
+  const char* alias;         /* of a class, its other name or ""; else "" */
+  size_t parent;             /* symbol that it is part of: of a method or instance variable the class, of a keyword,
+                                parameter or local the method, of a class the module; or BREVE_NO_SYMBOL */
+  breve_span name_span;      /* of the name where it is declared */
+  breve_span span;           /* of the whole declaration */
+  bool library;              /* of the class library, or a function of the language */
+  bool loaded;               /* part of the program. False: in a module of the class library that it does not use */
+  bool hidden;               /* a method declared with '-' or '=': not meant for others */
+} breve_symbol;
+
+/* How many symbols there are: modules, each followed by what it declares in the order of the text, first those of
+   the program in order of loading; last the functions. A name that is declared several times is as many symbols. */
+BREVE_API size_t breve_analysis_symbol_count(const breve_analysis* analysis);
+
+/* BREVE_OK; BREVE_ERROR_NOT_FOUND if index is not below the count. */
+BREVE_API breve_status breve_analysis_symbol(const breve_analysis* analysis, size_t index, breve_symbol* symbol);
+
+/* A name at a place. */
+typedef struct breve_reference {
+  breve_name_kind kind; /* what the name means there */
+  const char* name;
+  const char* type;      /* static type of the variable, or class of the receiver of the method or keyword, where they
+                            are known: "Bird object"; else "" */
+  const char* signature; /* of the symbol; of a reserved word how it is used: "foreach item in list: statement" */
+  const char* documentation; /* of the symbol or reserved word; or "" */
+  breve_span span;
+  size_t symbol;    /* the likeliest, as breve_analysis_definitions; or BREVE_NO_SYMBOL */
+  bool declaration; /* the name is declared here */
+} breve_reference;
+
+/* Which name stands at a place: in it or just behind it.
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: no such file, no such place, or no name there. */
+BREVE_API breve_status breve_analysis_at(const breve_analysis* analysis, const char* file, uint32_t line,
+                                         uint32_t column, breve_reference* reference);
+
+/* The symbols that the name at a place may mean, best first. A method that is called on a receiver of known class is
+   the one found there or in its ancestors; on another receiver, every method of that name that takes the keywords.
+   @param symbols  room for `capacity` numbers; NULL only if capacity is 0
+   @param count    how many there are, also where that is more than capacity: at most capacity are written
+   BREVE_OK, with count 0 if nothing of that name is known; BREVE_ERROR_NOT_FOUND as breve_analysis_at. */
+BREVE_API breve_status breve_analysis_definitions(const breve_analysis* analysis, const char* file, uint32_t line,
+                                                  uint32_t column, size_t* symbols, size_t capacity, size_t* count);
+
+/* The places in the program's files (not the class library's) where a symbol is named, its declaration included, in
+   order of files and places. Calls of a method count also where the receiver's class is not known.
+   @param spans  room for `capacity`; NULL only if capacity is 0
+   @param count  how many there are, also where that is more than capacity: at most capacity are written
+   BREVE_OK; BREVE_ERROR_NOT_FOUND if there is no such symbol. */
+BREVE_API breve_status breve_analysis_references(const breve_analysis* analysis, size_t symbol, breve_span* spans,
+                                                 size_t capacity, size_t* count);
+
+/* The methods that the call around a place may mean, best first, and the keyword whose value stands there. The text
+   may be incomplete.
+   @param symbols, capacity, count  as breve_analysis_definitions
+   @param keyword  may be NULL; "" before the first one; owned by the analysis until the next call of this function
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: the place is not behind the selector of a call, or there is
+   no such file or place. */
+BREVE_API breve_status breve_analysis_call(breve_analysis* analysis, const char* file, uint32_t line, uint32_t column,
+                                           size_t* symbols, size_t capacity, size_t* count, const char** keyword);
+
+/* A name that may stand at a place. Texts live until the next call of a completion function on the analysis. */
+typedef struct breve_completion {
+  breve_name_kind kind;
+  const char* name;          /* to be put in the place of what is typed of it */
+  const char* detail;        /* the signature of its symbol; of a word how it is used; or "" */
+  const char* owner;         /* class that declares it, or "" */
+  const char* documentation; /* or "" */
+  size_t symbol;             /* or BREVE_NO_SYMBOL */
+} breve_completion;
+
+/* The names that may stand at a place, all that begin with what is typed of a name just before it, capitals or not:
+   selectors behind a receiver, keywords in a call, classes behind `new`, `all` and in types, variables, constants,
+   functions and words where an expression or statement may begin, types behind a '(' of a declaration, directives
+   behind an '@', variables behind a `$` in a string. None inside comments. The likeliest come first.
+   @param typed  may be NULL: bytes just before the place that the name is to replace
+   @param items  room for `capacity`; NULL only if capacity is 0
+   @param count  how many there are, also where that is more than capacity: at most capacity are written
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: no such file or place. */
+BREVE_API breve_status breve_analysis_completions(breve_analysis* analysis, const char* file, uint32_t line,
+                                                  uint32_t column, uint32_t* typed, breve_completion* items,
+                                                  size_t capacity, size_t* count);
+
+/* The same for a statement that is being typed and is part of no file, as though it stood in a method of a class.
+   @param class_name  a class of the program or the class library, name or alias; NULL: none, so that `self` is unknown
+   @param text        the statement, `size` bytes; NULL only if size is 0
+   @param offset      the place, in bytes; at most size
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: no such class; BREVE_ERROR_ARGUMENT: offset beyond size. */
+BREVE_API breve_status breve_analysis_statement_completions(breve_analysis* analysis, const char* class_name,
+                                                            const char* text, size_t size, size_t offset,
+                                                            uint32_t* typed, breve_completion* items, size_t capacity,
+                                                            size_t* count);
 
 #ifdef __cplusplus
 }

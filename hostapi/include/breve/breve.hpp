@@ -338,6 +338,19 @@ class World {
     const breve_status s = breve_world_stats(get(), &stats);
     return {status(s), stats};
   }
+
+  Status start_profile(breve_trace_fn trace = nullptr, void* user = nullptr) {
+    return status(breve_world_profile_start(get(), trace, user));
+  }
+  Status stop_profile() { return status(breve_world_profile_stop(get())); }
+  /// All nodes; the root is the first.
+  Result<std::vector<breve_profile_node>> profile() {
+    std::size_t count = 0;
+    breve_status s = breve_world_profile_count(get(), &count);
+    std::vector<breve_profile_node> nodes(count);
+    for (std::size_t i = 0; i < count && s == BREVE_OK; ++i) s = breve_world_profile_node(get(), i, &nodes[i]);
+    return {status(s), std::move(nodes)};
+  }
   const breve_error* last_error() const { return breve_world_last_error(get()); }
 
  private:

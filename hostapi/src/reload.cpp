@@ -1,0 +1,18 @@
+// A changed program in the place of the running one.
+#include "internal.hpp"
+
+using namespace breve::host;
+
+breve_status breve_world_reload(breve_world* world, const breve_program* program) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need(program, "program");
+    need_idle(*world, "breve_world_reload");
+    world->references.forget_all();
+    const auto warnings = world->machine->reload(program->program);
+    world->program = program->program;
+    for (auto& selector : world->selectors) selector.cls = nullptr;  // what it meant is to be asked anew
+    for (const auto& warning : warnings)
+      if (const auto& warn = world->machine->host().warn) warn(warning);
+  });
+}

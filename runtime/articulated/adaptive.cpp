@@ -1,0 +1,134 @@
+// Fehlberg's pair with step control. The higher member goes on; the difference of the two says how far it may be wrong.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/articulated/runge_kutta.hpp"
+#include "runtime/base/error.hpp"
+
+namespace breve::articulated {
+
+namespace {
+
+// Source: Hairer, Norsett, Wanner 1993, II.4 (step size control).
+constexpr double kSafety = 0.9;
+constexpr double kMostGrowth = 5;
+constexpr double kMostShrinking = 0.1;
+constexpr double kOrder = 5;  // of the estimate's local error
+
+// A tolerance is meant for a run: some thousand steps add up, and what moves chaotically multiplies them. So one step
+// may err by this part of it only; measured on double pendulums over ten seconds. Below the finest, round-off would be
+// judged.
+constexpr double kShareOfStep = 1e-3;
+constexpr double kFinest = 1e-15;
+
+class Adaptive final : public Integrator::Method {
+ public:
+  Adaptive(System& system, const Settings& settings)
+      : Method(system, settings),
+        relative_(std::max(kShareOfStep * settings.tolerance.relative, kFinest)),
+        stages_(system, kFehlberg),
+        q_(system.positions()),
+        v_(system.velocities()),
+        d4_(v_),
+        dv4_(v_),
+        d5_(v_),
+        dv5_(v_) {}
+
+  void step(Instant& at, double h) override {
+    const double end = at.t + h;
+    double t = at.t;
+    q_ = at.q;
+    v_ = at.v;
+    double next = at.step > 0 ? at.step : h;
+    bool rejected = false;
+    while (t < end) {
+      const double left = end - t;
+      // Two like steps at the end, rather than a whole one and a sliver.
+      const double size = next >= left * (1 - 1e-12) ? left : std::min(next, std::max(0.5 * left, 0.5 * next));
+      if (size < std::min(settings_.tolerance.smallest_step, h) || t + size == t) refuse(at, t, size);
+      const double error = attempt(t, size);
+      double growth = error > 0 ? kSafety * std::pow(error, -1 / kOrder) : kMostGrowth;
+      growth = std::clamp(growth, kMostShrinking, rejected ? 1.0 : kMostGrowth);
+      rejected = !(error <= 1);
+      if (rejected) {
+        ++count.rejected;
+        next = size * std::min(growth, kSafety);
+        continue;
+      }
+      // A step that was cut short to meet the end says little about the size that would do.
+      next = size < next ? std::max(next, size * growth) : size * growth;
+      system_.move(q_, d5_, q_);
+      v_ += dv5_;
+      t = size == left ? end : t + size;
+    }
+    at.t = end;
+    at.q = q_;
+    at.v = v_;
+    at.step = next;
+  }
+
+ private:
+  /// One step of `h`; its error in units of what is allowed. Infinite where the system has no acceleration.
+  double attempt(double t, double h) {
+    try {
+      stages_.run(t, q_, v_, h,
+                  [this](double s, const Vector& q, const Vector& v, Vector& a) { evaluate(s, q, v, 0, a); });
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::Numeric) throw;
+      return std::numeric_limits<double>::infinity();
+    }
+    stages_.sum(kFehlbergWeights4, h, d4_, dv4_);
+    stages_.sum(kFehlbergWeights5, h, d5_, dv5_);
+    double worst = 0;
+    for (int i = 0; i < static_cast<int>(v_.size()); ++i) {
+      const double ratio = ratio_of(i);
+      if (!std::isfinite(ratio)) return std::numeric_limits<double>::infinity();
+      worst = std::max(worst, ratio);
+    }
+    return worst;
+  }
+
+  double ratio_of(int i) const {
+    const Tolerance& allowed = settings_.tolerance;
+    const bool length = system_.kind(i) == Kind::Length;
+    const double way = relative_ * (length ? allowed.length : allowed.angle);
+    const double speed = relative_ * ((length ? allowed.velocity : allowed.angular_velocity) +
+                                      std::max(std::abs(v_[i]), std::abs(v_[i] + dv5_[i])));
+    return std::max(std::abs(d5_[i] - d4_[i]) / way, std::abs(dv5_[i] - dv4_[i]) / speed);
+  }
+
+  [[noreturn]] void refuse(Instant& at, double t, double size) const {
+    at.step = size;
+    throw Error(
+        ErrorCode::Numeric,
+        fmt::format("at {} s the step size fell to {} s without reaching the tolerance {}: the forces jump or the "
+                    "tolerance is too fine for double precision",
+                    t, size, settings_.tolerance.relative));
+  }
+
+  const double relative_;  // error allowed in one step, per unit
+  Stages stages_;
+  Vector q_, v_, d4_, dv4_, d5_, dv5_;
+};
+
+void check(double value, const char* what) {
+  if (!(value > 0) || !std::isfinite(value))
+    throw Error(ErrorCode::Argument, fmt::format("{} of step control is {} (must be finite and > 0)", what, value));
+}
+
+}  // namespace
+
+std::unique_ptr<Integrator::Method> make_adaptive(System& system, const Settings& settings) {
+  const Tolerance& tolerance = settings.tolerance;
+  check(tolerance.relative, "the tolerance");
+  check(tolerance.angle, "the unit of angles");
+  check(tolerance.length, "the unit of lengths");
+  check(tolerance.angular_velocity, "the unit of angular velocities");
+  check(tolerance.velocity, "the unit of velocities");
+  check(tolerance.smallest_step, "the smallest step");
+  return std::make_unique<Adaptive>(system, settings);
+}
+
+}  // namespace breve::articulated

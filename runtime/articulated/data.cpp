@@ -1,0 +1,18 @@
+// Sizes the workspace of a model.
+#include "runtime/articulated/data.hpp"
+
+namespace breve::articulated {
+
+Data::Data(const Model& model, std::pmr::memory_resource* memory)
+    : work(static_cast<std::size_t>(model.size()) + 1, memory),
+      wide(static_cast<std::size_t>(model.wide_joints()) + 1, memory),
+      motion(static_cast<std::size_t>(model.size()) + 1, memory),
+      tau(Vector::Zero(model.velocities())),
+      diagonal(Vector::Zero(model.velocities())),
+      acceleration(Vector::Zero(model.velocities())),
+      rest(neutral_state(model).q),
+      deflection(Vector::Zero(model.velocities())),
+      held(Vector::Zero(model.velocities())),
+      at_limit(static_cast<std::size_t>(model.size()), memory) {}
+
+}  // namespace breve::articulated

@@ -1,0 +1,115 @@
+// One line about each function of the language (language, section 13). A test checks that none is left out.
+#include <algorithm>
+#include <iterator>
+
+#include "steve/analysis/signatures.hpp"
+
+namespace breve::steve {
+
+namespace {
+
+constexpr FunctionNote kNotes[] = {
+    {"sin", "angle", "Sine of an angle in radians."},
+    {"cos", "angle", "Cosine of an angle in radians."},
+    {"tan", "angle", "Tangent of an angle in radians."},
+    {"asin", "x", "The angle in radians, -pi/2 to pi/2, whose sine is x."},
+    {"acos", "x", "The angle in radians, 0 to pi, whose cosine is x."},
+    {"atan", "x", "The angle in radians, -pi/2 to pi/2, whose tangent is x."},
+    {"atan2", "y x", "The angle in radians, -pi to pi, of the point (x, y) as seen from the origin."},
+    {"atan2", "x", "The same as atan, with a warning: for all four quadrants write atan2(y, x)."},
+    {"sqrt", "x", "Square root. Of a negative number nan, with a warning."},
+    {"exp", "x", "e to the power of x."},
+    {"log", "x", "Natural logarithm. Of a number that is not above 0 no finite one, with a warning."},
+    {"abs", "x", "Magnitude, always as a float; |n| keeps an int an int."},
+    {"min", "a b", "The lesser of two numbers, always as a float."},
+    {"max", "a b", "The greater of two numbers, always as a float."},
+    {"isnan", "x", "1 if x is not a number (the result of 0.0/0.0 and its like), else 0."},
+    {"isinf", "x", "1 if x is infinite, else 0."},
+    {"dot", "a b", "Scalar product of two vectors."},
+    {"cross", "a b", "Vector product, right-handed."},
+    {"angle", "a b", "Angle between two vectors, 0 to pi; nan, with a warning, if one has no length."},
+    {"transpose", "m", "The matrix with rows and columns exchanged."},
+    {"rotationMatrix", "axis radians", "The matrix that turns about an axis of unit length, counter-clockwise."},
+    {"stddev", "numbers", "Standard deviation of a sample: a list of numbers, divided by their count less 1."},
+    {"randomGauss", "", "A random number, normally distributed with mean 0 and deviation 1."},
+    {"randomExponential", "", "A random number, exponentially distributed with mean 1."},
+    {"randomGamma", "order", "A random number, gamma-distributed; the order is 1 or more."},
+    {"randomSeed", "seed", "Start the world's random numbers anew from a seed."},
+    {"randomSeedFromDevRandom", "",
+     "Start the world's random numbers from a seed that differs each time; yields it, or -1."},
+    {"RGBtoHSV", "rgb",
+     "Red, green, blue (0 to 1) as hue (degrees), saturation and value (0 to 1); a grey has hue -1."},
+    {"HSVtoRGB", "hsv", "Hue (degrees), saturation and value (0 to 1) as red, green, blue (0 to 1)."},
+    {"uniqueColor", "number", "Colour number n of a sequence of colours that are easy to tell apart."},
+    {"typeof", "value",
+     "The name of the value's type: int, double, vector, matrix, string, object, list, hash, pointer, "
+     "data or NULL."},
+    {"isa", "className", "1 if the calling object's class or an ancestor has that name or alias, else 0."},
+    {"objectName", "instance", "The name of an object's class."},
+    {"respondsTo", "instance methodName", "1 if the object has a method of that name, with any keywords, else 0."},
+    {"getController", "", "The controller of the simulation."},
+    {"newInstanceForClassString", "className", "A new object of the class of that name, which must exist."},
+    {"callMethodNamed", "instance methodName arguments",
+     "Call the method with as many keywords as the list has elements, in their order."},
+    {"keys", "table", "A list of the keys of a hash, in order of insertion."},
+    {"hasKey", "table key", "1 if the hash has that key, else 0."},
+    {"addObserver", "announcer notification methodName",
+     "Call the method of the calling object whenever the announcer announces that; 0, or -1 on failure."},
+    {"removeObserver", "announcer notification", "Undo addObserver."},
+    {"notify", "notification", "Announce something from the calling object to its observers, at once."},
+    {"addCollisionHandler", "instance className methodName",
+     "Call the method when an object of the instance's class touches one of that class."},
+    {"setGC", "automatic", "1: free the calling object as soon as nothing refers to it. 0: keep it until it is freed."},
+    {"getRetainCount", "",
+     "How many references to the calling object are counted; for looking at, not for building on."},
+    {"addDependency", "instance", "Obsolete: see add-dependency of Object."},
+    {"removeDependency", "instance", "Obsolete: see remove-dependency of Object."},
+    {"setFreedInstanceProtection", "on", "Obsolete: freed objects are always protected."},
+    {"objectAllocationReport", "", "Print how many objects of each class live."},
+    {"getTime", "", "Simulated seconds since the start."},
+    {"getRealTime", "", "Seconds since the beginning of 1970, of the machine's clock."},
+    {"getRunningTime", "", "Seconds of the machine's clock since the start of the run."},
+    {"addEvent", "methodName time interval",
+     "Call the calling object's method at a simulated time, and then every `interval` seconds; 0: once."},
+    {"removeEvent", "methodName time", "Drop queued calls of the method at that time."},
+    {"endSimulation", "", "End the simulation after the current iteration."},
+    {"pauseSimulation", "", "Pause the simulation, if the host can."},
+    {"unpauseSimulation", "", "Go on after a pause."},
+    {"sleep", "seconds", "Do nothing for some seconds of the machine's clock."},
+    {"system", "command", "Run a shell command, if the host allows it; yields what it printed."},
+    {"getArgc", "", "How many arguments the program was given, its own file included."},
+    {"getArgv", "index", "An argument of the program; number 0 is its own file."},
+    {"findFile", "name", "The full path of a file on the search path, or an empty string."},
+    {"stacktrace", "", "Print the chain of calls that led here."},
+    {"getMouseX", "", "Where the mouse is, from the left; 0 without a window."},
+    {"getMouseY", "", "Where the mouse is, from the top; 0 without a window."},
+    {"getAllPressedKeys", "", "The keys pressed lately; empty without a window."},
+    {"playSound", "", "Beep, if the host can."},
+    {"dialogBox", "title message yes no", "Ask the user: 1 for yes, 0 for no or where nobody can be asked."},
+    {"openFileForReading", "name", "Open a text file; null if that fails."},
+    {"openFileForWriting", "name", "Open a text file and empty it; null if that fails."},
+    {"openFileForAppending", "name", "Open a text file to write behind its end; null if that fails."},
+    {"readLine", "file", "The next line, without its line end."},
+    {"readFileAsString", "file", "The rest of the file."},
+    {"readDelimitedList", "file delimiters", "The next line as a list of strings, split at any of those characters."},
+    {"readWhitespaceDelimitedList", "file", "The next line as a list of strings, split at blanks."},
+    {"writeString", "file text", "Write text as it is."},
+    {"fileEOF", "file", "1 if a read has met the end of the file, else 0."},
+    {"closeFile", "file", "Close the file."},
+};
+
+std::size_t count_words(std::string_view words) {
+  if (words.empty()) return 0;
+  return 1 + static_cast<std::size_t>(std::count(words.begin(), words.end(), ' '));
+}
+
+}  // namespace
+
+const FunctionNote* function_note(std::string_view name, std::size_t parameters) {
+  const auto found = std::find_if(std::begin(kNotes), std::end(kNotes), [&](const FunctionNote& note) {
+    return note.name == name && count_words(note.parameters) == parameters;
+  });
+  return found == std::end(kNotes) ? nullptr : &*found;
+}
+
+}  // namespace breve::steve

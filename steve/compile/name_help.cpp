@@ -1,0 +1,112 @@
+// What to do about a name that nothing is called by: a near one, a subtraction without blanks, a word of another
+// language, or where to declare it.
+#include <algorithm>
+
+#include "steve/compile/function_compiler.hpp"
+#include "steve/compile/scope.hpp"
+
+namespace breve::steve {
+
+namespace {
+
+struct Habit {
+  std::string_view word, help;
+};
+constexpr Habit kHabits[] = {
+    {"this", "the object itself is called 'self'"},
+    {"me", "the object itself is called 'self'"},
+    {"true", "there is no word for it: write 1"},
+    {"True", "there is no word for it: write 1"},
+    {"TRUE", "there is no word for it: write 1"},
+    {"false", "there is no word for it: write 0"},
+    {"False", "there is no word for it: write 0"},
+    {"FALSE", "there is no word for it: write 0"},
+    {"NULL", "no object is written 0; to ask whether there is one: if object: ..."},
+    {"null", "no object is written 0; to ask whether there is one: if object: ..."},
+    {"nil", "no object is written 0; to ask whether there is one: if object: ..."},
+    {"None", "no object is written 0; to ask whether there is one: if object: ..."},
+    {"break", "there is none: end a loop by its condition, or leave the method with 'return'"},
+    {"continue", "there is none: put the rest of the loop's body under an 'if'"},
+    {"not", "logical not is written !"},
+    {"pi", "write 3.14159265, or @define a constant"},
+    {"PI", "write 3.14159265, or @define a constant"},
+    {"endl", "'print' ends the line by itself; inside a string write \\n"},
+};
+
+bool is_number(std::string_view text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// `a-b-1` as `a - b - 1`, if all its parts are known; the fewest parts that do. "" if there is no such way.
+template <class Known>
+std::string spaced(std::string_view name, const Known& known) {
+  for (std::size_t dash = name.size(); (dash = name.rfind('-', dash - 1)) != std::string_view::npos && dash > 0;) {
+    const std::string_view right = name.substr(dash + 1);
+    if (!known(right)) continue;
+    const std::string_view left = name.substr(0, dash);
+    if (known(left)) return std::string(left) + " - " + std::string(right);
+    if (const std::string more = spaced(left, known); !more.empty()) return more + " - " + std::string(right);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string FunctionCompiler::unknown_name_help(std::string_view name) {
+  std::vector<std::string_view> candidates;
+  for (const auto& [local, unused] : locals_) candidates.push_back(local);
+  std::sort(candidates.begin(), candidates.end());
+  for (const ClassInfo* c = &class_; c; c = c->parent)
+    for (const auto& v : c->variables) candidates.push_back(builder_.symbol_name(v.name));
+  for (const auto& [constant, value] : builder_.defines()) candidates.push_back(constant);
+  const auto known = [&](std::string_view part) {
+    return is_number(part) || find(part).has_value() || builder_.defines().contains(part);
+  };
+  if (name.size() < 200)
+    if (const std::string apart = spaced(name, known); !apart.empty())
+      return "a dash can be part of a name: for a subtraction write blanks around it, " + apart;
+  for (const Habit& habit : kHabits)
+    if (habit.word == name) return std::string(habit.help);
+  if (const auto near = nearest(name, candidates); !near.empty()) return "did you mean '" + near + "'?";
+  const std::string text(name);
+  if (class_.responds(builder_.symbol(name))) return "'" + text + "' is a method: write (self " + text + ")";
+  if (builder_.function_exists(name)) return "'" + text + "' is a function: write " + text + "(...)";
+  if (const auto* cls = builder_.class_named(name))
+    return "'" + cls->name + "' is a class: write new " + cls->name + " for an instance";
+  return "declare it under '+ variables:' of the class, or at the beginning of the method, as in   " + text +
+         " (float).";
+}
+
+std::string FunctionCompiler::unknown_function_help(const ast::FunctionCall& f, const Span& span) {
+  const auto& source = builder_.source(span.file);
+  const bool dotted = span.offset >= 2 && source[span.offset - 1] == '.' && source[span.offset - 2] != ' ';
+  const auto near = nearest(f.name, builder_.function_names());
+  const auto symbol = builder_.symbol(f.name);
+  if (dotted) {
+    std::size_t begin = span.offset - 1;
+    const auto part = [&](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-'; };
+    while (begin > 0 && part(source[begin - 1])) --begin;
+    return "a method is called with a blank, not with a dot: (" + source.substr(begin, span.offset - 1 - begin) + " " +
+           f.name + (f.arguments.empty() ? ")" : " keyword value)");
+  }
+  if (class_.responds(symbol))
+    return "'" + f.name + "' is a method: write (self " + f.name + (f.arguments.empty() ? ")" : " keyword value)");
+  if (!near.empty()) return "did you mean '" + near + "'?";
+  return "a method is called on an object: (object " + f.name + (f.arguments.empty() ? ")" : " keyword value)");
+}
+
+// Operators whose operands give no error, and never what was meant.
+void FunctionCompiler::lint_operands(ast::BinaryOp op, StaticType a, StaticType b) {
+  const auto pair = [&](auto left, auto right) { return (left(a) && right(b)) || (left(b) && right(a)); };
+  const auto string = [](StaticType t) { return t == StaticType::String; };
+  const auto number = [](StaticType t) { return t == StaticType::Int || t == StaticType::Double; };
+  const auto object = [](StaticType t) { return t == StaticType::Object; };
+  if (op == ast::BinaryOp::Add && pair(string, number))
+    builder_.lint(emit_.span(), "lint-string-sum", "a string and a number are added: the sum is a number, not a text",
+                  "to put a value into a text write its name with a '$' in the string: \"count: $n\"");
+  if ((op == ast::BinaryOp::Eq || op == ast::BinaryOp::Ne) && pair(string, object))
+    builder_.lint(emit_.span(), "lint-object-string", "an object is never equal to a string",
+                  "compare what the object has, for example its name");
+}
+
+}  // namespace breve::steve

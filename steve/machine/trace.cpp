@@ -1,0 +1,137 @@
+// The chain of calls of a run-time error: who called whom from where, with the values of receivers and arguments.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "steve/machine/brief.hpp"
+#include "steve/machine/machine.hpp"
+#include "steve/machine/trace.hpp"
+
+namespace breve::steve {
+
+namespace {
+
+constexpr std::size_t kLongestArgument = 60;     // bytes
+constexpr std::size_t kLongestArguments = 160;   // bytes
+constexpr std::size_t kDescribedAtEachEnd = 64;  // calls whose values are told: the ends of a deep recursion
+constexpr std::size_t kLongestCycle = 4;         // methods that call one another without end
+constexpr std::size_t kShownOfRun = 3;           // rounds of a recursion that are shown before the fold
+constexpr std::size_t kShownLines = 24;
+
+bool same_call(const TraceLine& a, const TraceLine& b) {
+  return a.method == b.method && a.class_name == b.class_name && a.line == b.line && a.file == b.file;
+}
+
+std::string counted(std::size_t n) {
+  std::string digits = std::to_string(n);
+  for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");
+  return digits;
+}
+
+/// How often the `period` calls that begin at `at` come in a row.
+std::size_t rounds(const std::vector<const TraceLine*>& calls, std::size_t at, std::size_t period) {
+  std::size_t end = at + period;
+  while (end < calls.size() && same_call(*calls[end], *calls[end - period])) ++end;
+  return (end - at) / period;
+}
+
+std::string line_of(const TraceLine& call, const TraceLine* caller) {
+  std::string text = fmt::format("  in {}.{}", call.class_name, call.method);
+  if (!call.arguments.empty()) text += ' ' + call.arguments;
+  if (!call.receiver.empty()) text += fmt::format(" [self: {}]", call.receiver);
+  if (caller != nullptr) text += fmt::format(", called at {}:{}:{}", caller->file, caller->line, caller->column);
+  return text + '\n';
+}
+
+}  // namespace
+
+std::string trace_text(const std::vector<TraceLine>& trace) {
+  std::vector<const TraceLine*> calls;  // innermost first
+  for (auto line = trace.rbegin(); line != trace.rend(); ++line) calls.push_back(&*line);
+  std::vector<std::string> lines;
+  for (std::size_t at = 0; at < calls.size();) {
+    const auto show = [&] {
+      lines.push_back(line_of(*calls[at], at + 1 < calls.size() ? calls[at + 1] : nullptr));
+      ++at;
+    };
+    std::size_t period = 1;
+    while (period <= kLongestCycle && rounds(calls, at, period) <= kShownOfRun + 1) ++period;
+    if (period > kLongestCycle) {
+      show();
+      continue;
+    }
+    // The first rounds and the last one are shown: in the last one the arguments are those that it began with.
+    const std::size_t end = at + rounds(calls, at, period) * period;
+    const std::size_t fold = at + kShownOfRun * period;
+    while (at < fold) show();
+    lines.push_back(fmt::format("  … {} more of the same\n", counted(end - period - fold)));
+    at = end - period;
+    while (at < end) show();
+  }
+  std::string text;
+  const std::size_t half = kShownLines / 2;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const bool hidden = lines.size() > kShownLines && i >= half && i + half < lines.size();
+    if (!hidden) text += lines[i];
+    if (hidden && i == half) text += fmt::format("  … {} more calls\n", counted(lines.size() - 2 * half));
+  }
+  return text;
+}
+
+std::vector<const Machine::Frame*> Machine::active_frames() const {
+  std::vector<const Frame*> frames;
+  for (const Frame* frame = frame_; frame; frame = frame->caller) frames.push_back(frame);
+  std::reverse(frames.begin(), frames.end());
+  return frames;
+}
+
+// The innermost frame of a call whose arguments are still being converted: its slots hold anything. Such a frame has
+// run nothing yet, and the interpreter's place is still that of the call in the caller.
+bool Machine::half_made(const Frame& frame, const Instruction* pc) const {
+  return &frame == frame_ && frame.caller != nullptr && frame.pc == frame.function->code.data() &&
+         pc == frame.caller->pc;
+}
+
+std::vector<TraceLine> Machine::trace(const std::vector<const Frame*>& frames, const Instruction* pc) const {
+  const auto& sources = program_->sources();
+  std::vector<TraceLine> lines;
+  lines.reserve(frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const Frame& frame = *frames[i];
+    const auto span = span_of(frame, &frame == frame_ && pc ? pc : frame.pc);
+    TraceLine& line = lines.emplace_back();
+    line.class_name = frame.self->cls->name;
+    line.method = program_->symbols().name(frame.method->name);
+    line.file = sources.file(span.file).name;
+    line.line = span.line;
+    line.column = span.column;
+    if (i >= kDescribedAtEachEnd && i + kDescribedAtEachEnd < frames.size()) continue;
+    describe_call(line, frame);
+  }
+  return lines;
+}
+
+// Values as they are now: a method may have assigned to its parameters.
+void Machine::describe_call(TraceLine& line, const Frame& frame) const {
+  line.receiver = brief(frame.self);
+  const Slot* base = reinterpret_cast<const Slot*>(&frame + 1);
+  std::string all;
+  for (const auto& p : frame.method->parameters) {
+    if (program_->symbols().name(p.keyword).starts_with('%')) continue;  // of no method that somebody wrote
+    const Slot* slot = base + p.slot;
+    std::string value;
+    switch (p.type) {
+      case StaticType::Int: value = brief(Value::of(slot->i)); break;
+      case StaticType::Double: value = brief(Value::of(slot->d)); break;
+      case StaticType::Vector: value = brief(SlotType<Vector3>::from(slot)); break;
+      case StaticType::Matrix: value = "a matrix"; break;
+      case StaticType::Any:
+      case StaticType::Null: value = brief(SlotType<Value>::from(slot)); break;
+      default: value = brief(Value::of(static_cast<Tag>(p.type), slot->ref)); break;
+    }
+    all += (all.empty() ? "" : " ") + program_->symbols().name(p.keyword) + ' ' + cut(value, kLongestArgument);
+  }
+  line.arguments = cut(all, kLongestArguments);
+}
+
+}  // namespace breve::steve

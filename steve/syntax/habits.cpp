@@ -1,0 +1,229 @@
+// Mistakes that have a reason: habits of other languages, and what beginners write. Each is recognised where the
+// grammar fails (never before: what is valid stays valid), gets a text of its own, and is read as what was meant, so
+// that one mistake is one error.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "steve/syntax/parser_nodes.hpp"
+
+namespace breve::steve {
+
+namespace {
+
+bool one_of(std::string_view text, std::initializer_list<std::string_view> words) {
+  return std::find(words.begin(), words.end(), text) != words.end();
+}
+
+bool is_type_word(Word word) { return word >= Word::Int && word <= Word::Hash; }  // KEEP IN STEP: words.hpp
+
+std::string_view singular_type(std::string_view text) { return one_of(text, {"double"}) ? "float" : text; }
+
+}  // namespace
+
+bool Parser::adjacent(std::size_t ahead) const { return !token(ahead).space_before; }
+
+// The item behind the ')' that closes the '(' at the current item, on the same line; 0 if there is none.
+std::size_t Parser::behind_parentheses(std::size_t ahead) const {
+  int depth = 0;
+  const std::uint32_t line = token(ahead).span.line;
+  for (std::size_t i = ahead; !at_kind(TokenKind::End, i) && token(i).span.line == line; ++i) {
+    if (at("(", i)) ++depth;
+    if (at(")", i) && --depth == 0) return i + 1;
+  }
+  return 0;
+}
+
+// `+ fly:` without `to`, `to fly:` without a sign, `function fly()`: how many items stand before the name; 0 if none.
+std::size_t Parser::broken_header() const {
+  if (!token().starts_line || at_member_header() || at_variables_header()) return 0;
+  const auto named = [&](std::size_t ahead) {  // NAME and ':' at once, or a parameter
+    if (!at_kind(TokenKind::Name, ahead) || token(ahead).span.line != token().span.line) return false;
+    return at(":", ahead + 1) || (at_name(ahead + 1) && at_name(ahead + 2) && at_type(ahead + 3));
+  };
+  if ((at("+") || at("-")) && named(1)) return 1;
+  if (at_text("to") && named(1)) return 1;
+  if (!at_kind(TokenKind::Name) || !at_kind(TokenKind::Name, 1)) return 0;
+  if (!one_of(token().text, {"function", "def", "func", "fn", "method", "sub", "void", "proc"})) return 0;
+  return at("(", 2) || at(":", 2) || at("{", 2) ? 1 : 0;
+}
+
+void Parser::report_broken_header() {
+  const Token& name = token(1);
+  const std::string help = fmt::format("write: + to {}:", name.text);
+  if (at("+") || at("-")) {
+    error(token().span, "method-header", "the word 'to' is missing in this method header", help);
+  } else if (at_text("to")) {
+    error(token().span, "method-header", "the '+' is missing in front of this method header", help);
+  } else {
+    error(token().span, "method-header", fmt::format("'{}' begins no method", token().text), help);
+  }
+}
+
+// Behind the name of a method: `fly()` or `fly(self)`.
+void Parser::header_parentheses(std::string_view name) {
+  if (!at("(")) return;
+  const std::size_t behind = behind_parentheses(0);
+  const std::string help = behind == 2 ? fmt::format("write: + to {}:", name)
+                                       : fmt::format(
+                                             "a parameter is a keyword, a variable and a type: + to {} keyword "
+                                             "variable (type):",
+                                             name);
+  error(token().span, "method-header", "no parentheses follow the name of a method", help);
+  if (behind == 0) return;
+  pos_ += behind;
+  if (at("{")) advance();
+}
+
+// `int x;` and the like at the beginning of a statement: read as the declarations that were meant.
+bool Parser::foreign_declaration() {
+  const bool typed = is_type_word(item().word) && at_name(1);
+  const bool untyped = one_of(token().text, {"var", "let", "const", "local", "auto"}) && at_name() && at_name(1) &&
+                       (at("=", 2) || at(";", 2));
+  if (!typed && !untyped) return false;
+  const std::string type(typed ? singular_type(token().text) : "float");
+  Span place = token().span;
+  place.length = token(1).span.offset + token(1).span.length - place.offset;
+  const std::string name(token(1).text);
+  error(
+      place, "foreign-declaration",
+      typed ? "a variable is declared with its type behind it" : fmt::format("'{}' declares no variable", token().text),
+      fmt::format("write at the beginning of the method: {} ({}).", name, type));
+  advance();
+  const std::size_t start = pos_;
+  do {
+    ast::Variable variable;
+    if (!at_name()) break;
+    variable.name = token().text;
+    variable.span = token().span;
+    variable.type.broken = true;
+    late_locals_.push_back(std::move(variable));
+    advance();
+  } while (accept(","));
+  skip_statement(start);
+  return true;
+}
+
+// At the beginning of a statement: something that is none, and is skipped once it is reported.
+bool Parser::foreign_statement() {
+  if (at("%")) {
+    error(token().span, "comment", "a comment behind a statement begins with '#'",
+          "'%' begins one only where it is the first sign of its line");
+    const std::uint32_t line = token().span.line;
+    while (!at_end() && token().span.line == line) advance();
+    return true;
+  }
+  if (foreign_declaration()) return true;
+  if (!at_name()) return false;
+  const bool block = (at("(", 1) && behind_parentheses(1) != 0 && at("{", behind_parentheses(1))) || at("{", 1);
+  if (!block || !one_of(token().text, {"switch", "do", "repeat", "until", "unless", "loop", "try", "match", "forever"}))
+    return false;
+  const bool repeats = one_of(token().text, {"do", "repeat", "until", "loop", "forever"});
+  error(token().span, "foreign-statement", fmt::format("there is no '{}'", token().text),
+        repeats                 ? "repeat statements with: while condition: { ... }"
+        : token().text == "try" ? "errors cannot be caught: test with 'if' what could go wrong"
+                                : "write: if condition: { ... } else if condition: { ... }");
+  const std::size_t start = pos_;
+  while (!at_end() && !at("{")) advance();
+  skip_statement(start);
+  return true;
+}
+
+// `elif`, `elseif` and `elsif` where an else can stand.
+bool Parser::at_elif() const {
+  return at_name() && one_of(token().text, {"elif", "elseif", "elsif"}) && !at_assignment(1) && !at(".", 1);
+}
+
+// What is wrong with the sign or word that stands where a statement should end.
+Diagnostic Parser::after_statement(std::size_t start) const {
+  const auto made = [&](std::string code, std::string message, std::string help) {
+    return Diagnostic{Severity::Error, std::move(code), std::move(message), std::move(help), token().span};
+  };
+  const bool behind_call = call_end_ == pos_ && pos_ > 0;
+  const std::string_view method = behind_call ? std::string_view(call_name_) : std::string_view();
+  if (at(",") && items_[start].word == Word::Return)
+    return made("syntax", "'return' gives one value", "put several in a list: return { 1, 2 }.");
+  if (at(",") && behind_call)
+    return made("syntax", "no ',' stands between keyword arguments",
+                fmt::format("write: {} keyword value keyword value", method));
+  if (at("(") && behind_call)
+    return made("call-arguments", fmt::format("the arguments of '{}' need keywords, not parentheses", method),
+                fmt::format("write: {} keyword value", method));
+  const bool value = at_kind(TokenKind::Int) || at_kind(TokenKind::Double) || at_kind(TokenKind::String);
+  if (behind_call && value && !(at_kind(TokenKind::Double) && token().text.front() == '.'))
+    return made("call-arguments", fmt::format("this argument of '{}' has no keyword in front", method),
+                fmt::format("write: {} keyword {}", method, at_kind(TokenKind::String) ? "\"...\"" : token().text));
+  if (at("(") && pos_ >= 2 && items_[pos_ - 2].word == Word::New)
+    return made("syntax", fmt::format("no parentheses follow 'new {}'", previous().text),
+                "what the object needs is given by a call of one of its methods");
+  if (at("=")) return made("syntax", "unexpected '='", "a '.' may be missing before this, or '==' be meant");
+  if (at(":"))
+    return made("syntax", "unexpected ':' in a statement", "only if, while, for, foreach and else take a ':'");
+  if (at("["))
+    return made("syntax", "unexpected '['", "only a variable of an array type takes [index]; lists take {index}");
+  if (at("{") && !token().starts_line && !at("{", 1) && item().match == 0)
+    return made("missing-brace", "the index that begins here has no '}'", "write: list{index}");
+  if (at(")")) return made("syntax", "this ')' closes nothing", "remove it, or look for a missing '(' before it");
+  if (at("&&") || at("||") || at("?")) return made("syntax", fmt::format("unexpected {}", describe()), "");
+  const bool swallowed = at_kind(TokenKind::Double) && token().text.front() == '.';
+  return made("syntax", fmt::format("expected '.' or an operator, got {}", describe()),
+              swallowed ? "write a blank behind the '.' that ends a statement"
+                        : "a statement ends with a period; between two values stands an operator");
+}
+
+// `<>`, `===`, `**`, `->`: what was meant, reported, its extra sign skipped.
+std::optional<ast::BinaryOp> Parser::foreign_operator(ast::BinaryOp op) {
+  const auto wrong = [&](std::string_view written, std::string message, std::string help) {
+    Span place = previous().span;
+    place.length = token().span.offset + token().span.length - place.offset;
+    error(place, "foreign-operator", std::move(message), std::move(help));
+    (void)written;
+    advance();
+  };
+  if (!adjacent(0)) return std::nullopt;
+  if (op == ast::BinaryOp::Lt && at(">")) {
+    wrong("<>", "'<>' is no operator", "not equal is written !=");
+    return ast::BinaryOp::Ne;
+  }
+  if ((op == ast::BinaryOp::Eq || op == ast::BinaryOp::Ne) && at("=")) {
+    wrong("===", "one '=' too many", op == ast::BinaryOp::Eq ? "equal is written ==" : "not equal is written !=");
+    return op;
+  }
+  if (op == ast::BinaryOp::Mul && at("*")) {
+    wrong("**", "'**' is no operator", "a power is written ^; mind that it has the precedence of *");
+    return ast::BinaryOp::Pow;
+  }
+  if (op == ast::BinaryOp::Sub && at(">"))
+    fail(previous().span, "foreign-operator", "'->' is no operator",
+         "a method is called as (object method), a variable of an object read as object::variable");
+  return std::nullopt;
+}
+
+// `for (n = 0; n < 10; n++)`: reported, its parts read, the parentheses skipped.
+bool Parser::at_c_for() const {
+  if (!at("(")) return false;
+  const std::size_t behind = behind_parentheses(0);
+  for (std::size_t i = 0; i < behind; ++i)
+    if (at(";", i)) return true;
+  return false;
+}
+
+std::string Parser::loop_pattern(std::string_view variable) const {
+  return fmt::format("write: for {0} = 0, {0} < 10, {0}++: ...", variable);
+}
+
+// A ';' where a period belongs is reported once a file: who writes one writes many.
+void Parser::semicolon() {
+  if (!semicolon_reported_) {
+    const auto count = static_cast<std::size_t>(
+        std::count_if(items_.begin(), items_.end(), [](const Item& i) { return i.sign == sign(";"); }));
+    error(token().span, "semicolon", "a statement ends with a period, not with a semicolon",
+          count == 1 ? "write '.'"
+                     : fmt::format("write '.', here and in the other places: the file has {} semicolons", count));
+  }
+  semicolon_reported_ = true;
+  advance();
+}
+
+}  // namespace breve::steve

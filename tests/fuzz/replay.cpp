@@ -1,0 +1,82 @@
+// The fuzzers' targets without libFuzzer: on files, or on bytes made from seeds. Usage:
+//   replay TARGET FILE-OR-FOLDER…        each file (a finding: the word about it, and an abort)
+//   replay TARGET --seeds FIRST COUNT    what bytes_of_seed makes
+//   replay --program FILE                print the program that fuzz_run generates of a file
+//   replay --program-of-seed SEED        the same of a seed
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "generator.hpp"
+#include "seeds.hpp"
+#include "targets.hpp"
+
+namespace {
+
+using breve::fuzz::Bytes;
+
+std::vector<std::uint8_t> read(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+void (*target_named(std::string_view name))(Bytes) {
+  if (name == "compile") return breve::fuzz::fuzz_compile;
+  if (name == "run") return breve::fuzz::fuzz_run;
+  return nullptr;
+}
+
+int show(Bytes bytes) {
+  breve::fuzz::Choices choices(bytes);
+  breve::fuzz::skip_plan(choices);
+  std::fputs(breve::fuzz::generate_program(choices).c_str(), stdout);
+  return 0;
+}
+
+/// Files in the order of their names.
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& path) {
+  if (!std::filesystem::is_directory(path)) return {path};
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(path))
+    if (entry.is_regular_file()) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  if (arguments.size() == 2 && arguments[0] == "--program") return show(read(arguments[1]));
+  if (arguments.size() == 2 && arguments[0] == "--program-of-seed")
+    return show(breve::fuzz::bytes_of_seed(std::strtoull(arguments[1].c_str(), nullptr, 10)));
+  auto* const target = arguments.size() >= 2 ? target_named(arguments[0]) : nullptr;
+  if (!target) {
+    std::fputs("usage: replay TARGET FILE-OR-FOLDER... | TARGET --seeds FIRST COUNT | --program FILE\n", stderr);
+    return 2;
+  }
+  std::size_t done = 0;
+  if (arguments.size() == 4 && arguments[1] == "--seeds") {
+    const auto first = std::strtoull(arguments[2].c_str(), nullptr, 10);
+    const auto count = std::strtoull(arguments[3].c_str(), nullptr, 10);
+    for (; done < count; ++done) {
+      std::fprintf(stderr, "seed %llu\n", static_cast<unsigned long long>(first + done));
+      target(breve::fuzz::bytes_of_seed(first + done));
+    }
+  } else {
+    for (std::size_t i = 1; i < arguments.size(); ++i)
+      for (const auto& file : files_of(arguments[i])) {
+        std::fprintf(stderr, "%s\n", file.c_str());
+        target(read(file));
+        ++done;
+      }
+  }
+  std::printf("%zu inputs, no finding\n", done);
+  return done != 0 ? 0 : 1;
+}

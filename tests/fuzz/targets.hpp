@@ -1,0 +1,28 @@
+// What the fuzzers do with their bytes. Each function returns if the library behaved, and aborts with a word about what
+// is wrong if it did not; libFuzzer calls them (fuzzer.cpp), and so does the replay that every build runs.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "choices.hpp"
+
+namespace breve::fuzz {
+
+using Bytes = std::span<const std::uint8_t>;
+
+/// Any bytes as the text of a program and of its modules, which are parted by bytes 0x1e.
+void fuzz_compile(Bytes bytes);
+
+/// Bytes as the choices of a generator of valid programs, which are compiled and run. See run_target.cpp.
+void fuzz_run(Bytes bytes);
+/// Pass over the choices that fuzz_run makes before the generator's.
+void skip_plan(Choices& choices);
+
+/// Bytes as damage done to the image of a world, which is then restored and stepped.
+void fuzz_image(Bytes bytes);
+
+/// Any bytes as the text of an archive that a program reads.
+void fuzz_archive(Bytes bytes);
+
+}  // namespace breve::fuzz
