@@ -121,7 +121,7 @@ std::string HtmlPages::page(const DocModel& model, const DocClass& cls) const {
   for (const DocClass* ancestor : model.ancestors(cls)) line = link(model, ancestor->name) + " &gt; " + line;
   text += line + "<strong>" + escaped(cls.name) + "</strong>";
   if (!cls.alias.empty()) text += ", also called " + code(cls.alias);
-  text += "; in " + code(cls.module) + "</p>\n";
+  text += "; in " + code(cls.module) + (cls.library ? " of the class library</p>\n" : "</p>\n");
   if (!cls.text.empty()) text += prose(cls.text);
   std::string children;
   for (const DocClass* child : model.children(cls.name))

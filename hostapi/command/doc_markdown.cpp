@@ -84,7 +84,7 @@ std::string MarkdownPages::page(const DocModel& model, const DocClass& cls) cons
   for (const DocClass* ancestor : model.ancestors(cls)) line = link(model, ancestor->name) + " > " + line;
   text += line + "**" + cls.name + "**";
   if (!cls.alias.empty()) text += ", also called " + code(cls.alias);
-  text += "; in " + code(cls.module) + "\n\n";
+  text += "; in " + code(cls.module) + (cls.library ? " of the class library\n\n" : "\n\n");
   if (!cls.text.empty()) text += escaped(cls.text) + "\n\n";
   std::string children;
   for (const DocClass* child : model.children(cls.name))

@@ -8,12 +8,19 @@ namespace breve::command {
 
 namespace {
 
+/// "library:Real.tz" as "Real.tz".
+std::string module_name(const breve_symbol& symbol) {
+  const std::string file = symbol.span.file;
+  return symbol.library ? file.substr(file.find(':') + 1) : file;
+}
+
 std::string key_of(const DocMethod& method) { return method.name + ' ' + std::to_string(method.keywords.size()); }
 
 /// The parts of one class, which follow its symbol.
 DocClass read_class(const breve_analysis* analysis, std::size_t number, const breve_symbol& symbol) {
   DocClass cls{
-      symbol.name, symbol.alias, symbol.parent_class, symbol.span.file, symbol.documentation, symbol.library, {}, {}};
+      symbol.name, symbol.alias, symbol.parent_class, module_name(symbol), symbol.documentation, symbol.library, {},
+      {}};
   std::size_t method = BREVE_NO_SYMBOL;
   for (std::size_t i = number + 1; i < breve_analysis_symbol_count(analysis); ++i) {
     breve_symbol part;

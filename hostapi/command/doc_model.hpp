@@ -30,7 +30,7 @@ struct DocVariable {
 
 struct DocClass {
   std::string name, alias, parent, module, text;
-  bool library = false;
+  bool library = false;  // `module` then has no folder
   std::vector<DocVariable> variables;
   std::vector<DocMethod> methods;
 };

@@ -10,6 +10,8 @@
 #include <optional>
 
 #include "check.hpp"
+#include "doc.hpp"
+#include "lsp.hpp"
 #include "repl.hpp"
 #include "run.hpp"
 #include "session.hpp"
@@ -17,6 +19,8 @@
 namespace {
 
 using breve::command::CheckOptions;
+using breve::command::DocOptions;
+using breve::command::LspOptions;
 using breve::command::Output;
 using breve::command::ReplOptions;
 using breve::command::RunOptions;
@@ -111,6 +115,28 @@ void describe_repl(CLI::App& app, ReplOptions& o) {
   app.footer("`:help` there tells what can be typed.\n" + std::string(kExitStatuses));
 }
 
+void describe_doc(CLI::App& app, DocOptions& o) {
+  app.add_option("FILE", o.files, "Programs (.tz), or parts of programs");
+  app.add_flag("--library", o.library, "The class library too");
+  app.add_option("--out", o.out, "Write the pages there (reference)")->type_name("DIR");
+  app.add_option("--format", o.format, "markdown, html or both (both)")
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember({"markdown", "html", "both"}));
+  app.add_option("--path", o.paths, "Also search DIR for modules; may be repeated")
+      ->type_name("DIR")
+      ->expected(1)
+      ->take_all();
+  app.footer("The text of a class or method is its comment of lines that begin with %.\n" + std::string(kExitStatuses));
+}
+
+void describe_lsp(CLI::App& app, LspOptions& o) {
+  app.add_option("--path", o.paths, "Also search DIR for modules; may be repeated")
+      ->type_name("DIR")
+      ->expected(1)
+      ->take_all();
+  app.footer("For editors: the language server protocol over standard input and output. See docs/editors.");
+}
+
 bool is_command(const CLI::App& app, const std::string& word) {
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
     if (command->get_name() == word) return true;
@@ -132,10 +158,16 @@ int main_guarded(int argc, char** argv) {
   auto* repl = app.add_subcommand("repl", "Type statements against a running world");
   ReplOptions repl_options;
   describe_repl(*repl, repl_options);
+  DocOptions doc_options;
+  LspOptions lsp_options;
+  auto* doc = app.add_subcommand("doc", "Make reference pages out of the comments of programs");
+  auto* lsp = app.add_subcommand("lsp", "Serve an editor: errors as you type, completion, definitions");
+  describe_doc(*doc, doc_options);
+  describe_lsp(*lsp, lsp_options);
   describe_run(*run, run_options);
   describe_check(*check, check_options);
   if (argc > 1 && *argv[1] != '-' && !is_command(app, argv[1])) {
-    std::cerr << "breve: there is no command '" << argv[1] << "': it must be run, repl, check or help\n";
+    std::cerr << "breve: there is no command '" << argv[1] << "': it must be run, repl, check, doc, lsp or help\n";
     return breve::command::kWrongUsage;
   }
   try {
@@ -153,7 +185,13 @@ int main_guarded(int argc, char** argv) {
     std::cout << app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal);
     return breve::command::kEndedWell;
   }
+  if (lsp->parsed()) return breve::command::lsp(lsp_options);
+  if (doc->parsed() && doc_options.files.empty() && !doc_options.library) {
+    std::cerr << "breve: doc needs a FILE or --library\nTry `breve doc --help`.\n";
+    return breve::command::kWrongUsage;
+  }
   Output output;
+  if (doc->parsed()) return breve::command::doc(doc_options, output);
   if (repl->parsed()) return breve::command::repl(repl_options, output);
   return run->parsed() ? breve::command::run(run_options, output) : breve::command::check(check_options, output);
 }

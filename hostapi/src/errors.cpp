@@ -46,7 +46,7 @@ void need_finite(const double* numbers, std::size_t count, const char* what) {
 }
 
 breve_status ErrorRecord::keep(breve_status status, std::string message) {
-  message_ = std::move(message);
+  message_ = without_zeros(std::move(message));
   help_.clear();
   file_.clear();
   frames_.clear();
@@ -60,9 +60,9 @@ breve_status ErrorRecord::keep(breve_status status, std::string message) {
 
 breve_status ErrorRecord::keep(breve_status status, const steve::ErrorReport& report) {
   keep(status, report.message);
-  help_ = report.help;
+  help_ = without_zeros(report.help);
   file_ = report.file;
-  text_ = report.text;
+  text_ = without_zeros(report.text);
   view_.line = report.line;
   view_.column = report.column;
   view_.length = report.length;
@@ -96,7 +96,7 @@ breve_status ErrorRecord::keep_current() noexcept {
     } catch (const steve::RunError& e) {
       const breve_status status = keep(status_of(e.kind()), e.what());
       help_ = e.help();
-      if (!help_.empty()) text_ += "help: " + help_ + "\n";
+      text_ = "error: " + message_ + "\n" + (help_.empty() ? "" : "help: " + help_ + "\n");
       point();
       return status;
     } catch (const Error& e) {

@@ -1,6 +1,7 @@
 // Errors at the border: whatever is thrown inside a C function becomes a status and a kept text. Nothing gets past.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -27,6 +28,12 @@ class StatusError : public std::runtime_error {
 /// BREVE_ERROR_ARGUMENT unless `pointer` is something. `what` names the argument.
 inline void need(const void* pointer, const char* what) {
   if (!pointer) fail(BREVE_ERROR_ARGUMENT, std::string(what) + " is NULL");
+}
+
+/// For texts that hosts read up to their zero byte: one that stands in a program's text must not end them.
+inline std::string without_zeros(std::string text) {
+  std::replace(text.begin(), text.end(), '\0', '?');
+  return text;
 }
 
 /// BREVE_ERROR_ARGUMENT unless every number is finite.

@@ -50,10 +50,18 @@ steve::ModuleSource main_module(const breve_runtime& runtime, HostModules& modul
 }
 
 DiagnosticText text_of(const steve::Diagnostic& d, const steve::Sources& sources) {
-  DiagnosticText t{severity_of(d.severity), d.code, d.message, d.help, {}, steve::format(d, sources), 0, 0, 0};
+  DiagnosticText t{severity_of(d.severity),
+                   d.code,
+                   without_zeros(d.message),
+                   without_zeros(d.help),
+                   {},
+                   without_zeros(steve::format(d, sources)),
+                   0,
+                   0,
+                   0};
   if (t.text.empty() || t.text.back() != '\n') t.text += '\n';
   if (d.span.line == 0 || d.span.file >= sources.size()) return t;
-  t.file = sources.file(d.span.file).name;
+  t.file = without_zeros(sources.file(d.span.file).name);
   t.line = d.span.line;
   t.column = d.span.column;
   t.length = d.span.length;

@@ -10,20 +10,25 @@ namespace breve::articulated {
 /// A pivot this small against the largest possible one has no correct digit left: two units of round-off.
 constexpr double kSingular = 4e-16;
 
+/// Lets `felt` turn freely about an axis. `added` is added to its inertia there. Returns false if that is singular.
+inline bool release(const Vector3& axis, double added, double least, ArticulatedInertia& felt, Vector3& pull_couple,
+                    Vector3& pull_force, double& inverse) {
+  pull_couple = felt.a * axis;
+  pull_force.noalias() = felt.b.transpose() * axis;
+  const double inertia = axis.dot(pull_couple) + added;
+  if (!(inertia > least)) return false;
+  inverse = 1 / inertia;
+  felt.subtract_dyad(pull_couple, pull_force, inverse);
+  return true;
+}
+
 /// Turns the articulated inertia `felt` of a link into the one that is felt across its joint, and keeps what `carry`
 /// and `respond` need. `diagonal` (nv) is added to the joint's own inertia. Returns false if that inertia is singular.
 inline bool reduce(const Body& body, const double* diagonal, Work& w, WideWork& wide, ArticulatedInertia& felt) {
   diagonal += body.v;
   switch (body.type) {
-    case JointType::Revolute: {
-      w.pull_couple = felt.a * w.axis;
-      w.pull_force.noalias() = felt.b.transpose() * w.axis;
-      const double inertia = w.axis.dot(w.pull_couple) + diagonal[0];
-      if (!(inertia > kSingular * felt.a.trace())) return false;
-      w.inverse = 1 / inertia;
-      felt.subtract_dyad(w.pull_couple, w.pull_force, w.inverse);
-      return true;
-    }
+    case JointType::Revolute:
+      return release(w.axis, diagonal[0], kSingular * felt.a.trace(), felt, w.pull_couple, w.pull_force, w.inverse);
     case JointType::Prismatic: {
       w.pull_couple.noalias() = felt.b * w.axis;
       w.pull_force = felt.c * w.axis;
@@ -36,20 +41,9 @@ inline bool reduce(const Body& body, const double* diagonal, Work& w, WideWork& 
     case JointType::Universal: {
       // One axis after the other, as if a revolute joint sat on a revolute joint.
       const double least = kSingular * felt.a.trace();
-      w.pull_couple = felt.a * w.axis;
-      w.pull_force.noalias() = felt.b.transpose() * w.axis;
-      const double inertia = w.axis.dot(w.pull_couple) + diagonal[0];
-      if (!(inertia > least)) return false;
-      w.inverse = 1 / inertia;
+      if (!release(w.axis, diagonal[0], least, felt, w.pull_couple, w.pull_force, w.inverse)) return false;
       wide.coupling = wide.axis2.dot(w.pull_couple);
-      felt.subtract_dyad(w.pull_couple, w.pull_force, w.inverse);
-      wide.pull2_couple = felt.a * wide.axis2;
-      wide.pull2_force.noalias() = felt.b.transpose() * wide.axis2;
-      const double inertia2 = wide.axis2.dot(wide.pull2_couple) + diagonal[1];
-      if (!(inertia2 > least)) return false;
-      wide.inverse2 = 1 / inertia2;
-      felt.subtract_dyad(wide.pull2_couple, wide.pull2_force, wide.inverse2);
-      return true;
+      return release(wide.axis2, diagonal[1], least, felt, wide.pull2_couple, wide.pull2_force, wide.inverse2);
     }
     case JointType::Ball: {
       wide.added = diagonal[0];

@@ -2,6 +2,7 @@
 #include "runtime/world/schedule.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace breve {
 
@@ -19,17 +20,26 @@ Schedule::Entry Schedule::pop() {
 
 void Schedule::add(ObjectTable& objects, ObjectId target, NameId method, double when, double interval) {
   ObjectTable::Slot& slot = objects.at(target);
-  push({when, interval, ++sequences_, target, method});
+  const Entry entry{when, interval, sequences_ + 1, target, method};
+  if (indexed_) index_.insert(key(entry));
+  try {
+    push(entry);
+  } catch (...) {
+    if (indexed_) index_.erase(key(entry));
+    throw;
+  }
+  ++sequences_;
   ++slot.events;
 }
 
 bool Schedule::take_due(ObjectTable& objects, double until, Entry& entry) {
   while (!heap_.empty() && heap_.front().when <= until) {
     entry = pop();
-    if (!objects.alive(entry.target)) {
+    if (!counts(entry, objects)) {
       --dead_;
       continue;
     }
+    if (indexed_) index_.erase(key(entry));
     --objects.at(entry.target).events;
     // Queued before the call, so that the call can unschedule it and an error in the call does not end it. An
     // interval below the resolution of the clock would fire for ever within one pass: it ends instead.
@@ -42,22 +52,75 @@ bool Schedule::take_due(ObjectTable& objects, double until, Entry& entry) {
 }
 
 std::size_t Schedule::remove(ObjectTable& objects, ObjectId target, NameId method, double when) {
+  constexpr std::size_t kFew = 64;  // entries that are looked through without an index
   ObjectTable::Slot& slot = objects.at(target);
   if (slot.events == 0) return 0;
-  const auto removed = std::erase_if(heap_, [&](const Entry& entry) {
-    return entry.target == target && (method == kNoName || entry.method == method) && (when == 0 || entry.when == when);
-  });
-  if (removed != 0) std::make_heap(heap_.begin(), heap_.end(), Later{stable_});
+  const auto meant = [&](NameId its_method, double its_time) {
+    return (method == kNoName || its_method == method) && (when == 0 || its_time == when);
+  };
+  std::size_t removed = 0;
+  if (!indexed_ && heap_.size() <= kFew) {
+    removed = std::erase_if(heap_, [&](const Entry& e) { return e.target == target && meant(e.method, e.when); });
+    if (removed != 0) std::make_heap(heap_.begin(), heap_.end(), Later{stable_});
+  } else {
+    if (!indexed_) build_index(objects);
+    constexpr double kFirst = -std::numeric_limits<double>::infinity();
+    auto at = method == kNoName ? index_.lower_bound({target.index, NameId{0}, kFirst, 0})
+                                : index_.lower_bound({target.index, method, when == 0 ? kFirst : when, 0});
+    while (at != index_.end() && std::get<0>(*at) == target.index) {
+      if (meant(std::get<1>(*at), std::get<2>(*at))) {
+        at = index_.erase(at);
+        ++removed;
+      } else if (method == kNoName) {
+        ++at;
+      } else {
+        break;  // those of one method and time stand together
+      }
+    }
+    dead_ += removed;
+    if (dead_ * 2 > heap_.size()) drop_dead(objects);
+  }
   slot.events -= static_cast<std::uint32_t>(removed);
   return removed;
 }
 
 void Schedule::forget(ObjectTable& objects, ObjectId target) {
-  dead_ += objects.at(target).events;
+  ObjectTable::Slot& slot = objects.at(target);
+  dead_ += slot.events;
+  slot.events = 0;
+  if (indexed_) {
+    auto at = index_.lower_bound({target.index, NameId{0}, -std::numeric_limits<double>::infinity(), 0});
+    while (at != index_.end() && std::get<0>(*at) == target.index) at = index_.erase(at);
+  }
   if (dead_ * 2 <= heap_.size()) return;
-  std::erase_if(heap_, [&](const Entry& entry) { return entry.target == target || !objects.alive(entry.target); });
+  std::erase_if(heap_, [&](const Entry& entry) { return entry.target == target || !counts(entry, objects); });
   std::make_heap(heap_.begin(), heap_.end(), Later{stable_});
   dead_ = 0;
+}
+
+void Schedule::build_index(const ObjectTable& objects) {
+  std::pmr::set<Key> index(index_.get_allocator());
+  for (const Entry& entry : heap_)
+    if (objects.alive(entry.target)) index.insert(key(entry));
+  index_.swap(index);
+  indexed_ = true;
+}
+
+void Schedule::drop_dead(const ObjectTable& objects) {
+  std::erase_if(heap_, [&](const Entry& entry) { return !counts(entry, objects); });
+  std::make_heap(heap_.begin(), heap_.end(), Later{stable_});
+  dead_ = 0;
+  if (heap_.empty()) indexed_ = false;
+}
+
+std::pmr::vector<Schedule::Entry> Schedule::in_order(const ObjectTable& objects) const {
+  std::pmr::vector<Entry> entries(heap_.get_allocator());
+  entries.reserve(size());
+  for (const Entry& entry : heap_)
+    if (counts(entry, objects)) entries.push_back(entry);
+  const Later later{stable_};
+  std::sort(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) { return later(b, a); });
+  return entries;
 }
 
 void Schedule::set_stable(bool stable) {
@@ -65,12 +128,12 @@ void Schedule::set_stable(bool stable) {
   std::make_heap(heap_.begin(), heap_.end(), Later{stable_});
 }
 
-void Schedule::save(ByteWriter& out) const {
+void Schedule::save(ByteWriter& out, const ObjectTable& objects) const {
   out.put(stable_);
   out.put(sequences_);
-  out.put(static_cast<std::uint64_t>(dead_));
-  out.put(static_cast<std::uint64_t>(heap_.size()));
-  for (const Entry& entry : heap_) {
+  const auto entries = in_order(objects);
+  out.put(static_cast<std::uint64_t>(entries.size()));
+  for (const Entry& entry : entries) {
     out.put(entry.when);
     out.put(entry.interval);
     out.put(entry.sequence);
@@ -79,10 +142,9 @@ void Schedule::save(ByteWriter& out) const {
   }
 }
 
-void Schedule::load(ByteReader& in, std::size_t names) {
+void Schedule::load(ByteReader& in, ObjectTable& objects, std::size_t names) {
   stable_ = in.get_bool();
   sequences_ = in.get<std::uint64_t>();
-  dead_ = static_cast<std::size_t>(in.get<std::uint64_t>());
   heap_.resize(in.get_count(sizeof(Entry) - sizeof(NameId)));
   for (Entry& entry : heap_) {
     entry.when = in.get<double>();
@@ -90,15 +152,20 @@ void Schedule::load(ByteReader& in, std::size_t names) {
     entry.sequence = in.get<std::uint64_t>();
     entry.target = in.get_object();
     entry.method = in.get<NameId>();
-    if (entry.method >= names || !(entry.when == entry.when)) ByteReader::fail();
+    if (entry.method >= names || !(entry.when == entry.when) || entry.sequence > sequences_ ||
+        !objects.alive(entry.target))
+      ByteReader::fail();
+    ++objects.at(entry.target).events;
   }
-  if (dead_ > heap_.size() || !std::is_heap(heap_.begin(), heap_.end(), Later{stable_})) ByteReader::fail();
+  const Later later{stable_};
+  if (!std::is_sorted(heap_.begin(), heap_.end(), [&](const Entry& a, const Entry& b) { return later(b, a); }))
+    ByteReader::fail();
 }
 
 void Schedule::hash(Hasher& hasher, const NameTable& names, const ObjectTable& objects) const {
-  hasher.add(static_cast<std::uint64_t>(heap_.size() - dead_) << 1 | static_cast<std::uint64_t>(stable_));
-  for (const Entry& entry : heap_) {
-    if (!objects.alive(entry.target)) continue;
+  const auto entries = in_order(objects);
+  hasher.add(static_cast<std::uint64_t>(entries.size()) << 1 | static_cast<std::uint64_t>(stable_));
+  for (const Entry& entry : entries) {
     hasher.add(entry.when);
     hasher.add(entry.interval);
     hasher.add(std::uint64_t{entry.target.index} << 32 | entry.target.generation);

@@ -1,8 +1,11 @@
-// Calls that wait for their time: a binary heap, so that a million of them cost n log n.
+// Calls that wait for their time: a binary heap, so that a million of them cost n log n; and, once one of many is
+// cancelled, an index by target and method, so that cancelling a million of them costs n log n too.
 #pragma once
 
 #include <cstdint>
 #include <memory_resource>
+#include <set>
+#include <tuple>
 #include <vector>
 
 #include "runtime/base/bytes.hpp"
@@ -23,7 +26,7 @@ class Schedule {
     NameId method = kNoName;
   };
 
-  explicit Schedule(std::pmr::memory_resource* memory) : heap_(memory) {}
+  explicit Schedule(std::pmr::memory_resource* memory) : heap_(memory), index_(memory) {}
 
   void add(ObjectTable& objects, ObjectId target, NameId method, double when, double interval);
   /// The next entry due at `until` whose target lives, taken out; a repeating one is queued again at once.
@@ -38,10 +41,12 @@ class Schedule {
   void set_stable(bool stable);
   bool stable() const { return stable_; }
   std::size_t size() const { return heap_.size() - dead_; }
-  std::size_t bytes() const { return heap_.capacity() * sizeof(Entry); }
+  std::size_t bytes() const {
+    return heap_.capacity() * sizeof(Entry) + index_.size() * (sizeof(Key) + 4 * sizeof(void*));
+  }
 
-  void save(ByteWriter& out) const;
-  void load(ByteReader& in, std::size_t names);
+  void save(ByteWriter& out, const ObjectTable& objects) const;
+  void load(ByteReader& in, ObjectTable& objects, std::size_t names);
   void hash(Hasher& hasher, const NameTable& names, const ObjectTable& objects) const;
 
  private:
@@ -52,12 +57,25 @@ class Schedule {
       return stable ? a.sequence > b.sequence : a.sequence < b.sequence;
     }
   };
+  /// Target, method, time, sequence: those of one method of one target stand together.
+  using Key = std::tuple<std::uint32_t, NameId, double, std::uint64_t>;
+  static Key key(const Entry& e) { return {e.target.index, e.method, e.when, e.sequence}; }
+
   void push(const Entry& entry);
   Entry pop();
+  void build_index(const ObjectTable& objects);
+  bool counts(const Entry& entry, const ObjectTable& objects) const {
+    return objects.alive(entry.target) && (!indexed_ || index_.count(key(entry)) != 0);
+  }
+  void drop_dead(const ObjectTable& objects);
+  /// What counts, in the order in which it comes due: the same however the heap came about.
+  std::pmr::vector<Entry> in_order(const ObjectTable& objects) const;
 
   std::pmr::vector<Entry> heap_;
+  std::pmr::set<Key> index_;  // of what counts, if indexed_
   std::uint64_t sequences_ = 0;
-  std::size_t dead_ = 0;  // entries whose target is gone
+  std::size_t dead_ = 0;  // entries that were cancelled, or whose target is gone
+  bool indexed_ = false;
   bool stable_ = false;
 };
 

@@ -11,7 +11,7 @@ namespace breve {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'b', 'r', 'e', 'v', 'e', 'i', 'm', 'g'};
-constexpr std::uint32_t kVersion = 1;  // grows with every change of what follows the header
+constexpr std::uint32_t kVersion = 2;  // grows with every change of what follows the header
 
 std::uint64_t checksum(const std::uint8_t* data, std::size_t size) {
   Hasher hasher;
@@ -91,7 +91,7 @@ void World::write_image(ByteWriter& out) const {
   parts.names.save(out);
   parts.objects.save(out);
   bodies_->save(out);
-  parts.schedule.save(out);
+  parts.schedule.save(out, parts.objects);
   parts.notifications.save(out, parts.objects);
   parts.handlers.save(out);
   parts.collisions.save(out);
@@ -136,7 +136,7 @@ void World::read_image(ByteReader& in, World& fresh) const {
     ++embodied;
   }
   if (embodied != fresh.bodies_->size()) ByteReader::fail();
-  parts.schedule.load(in, parts.names.size());
+  parts.schedule.load(in, parts.objects, parts.names.size());
   parts.notifications.load(in, parts.objects, parts.names.size());
   parts.handlers.load(in, parts.names.size());
   parts.collisions.load(in);

@@ -11,8 +11,8 @@
 
 namespace breve::steve {
 
-Analysis::Analysis(ModuleSource main, ModuleResolver& resolver)
-    : model_(std::make_unique<Model>(read_model(std::move(main), resolver))), uses_(find_uses(*model_)) {}
+Analysis::Analysis(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed)
+    : model_(std::make_unique<Model>(read_model(std::move(main), resolver, allowed))), uses_(find_uses(*model_)) {}
 
 Analysis::~Analysis() = default;
 

@@ -78,7 +78,8 @@ struct Use;
 class Analysis {
  public:
   /// Reads the main module and all that it loads, as `compile` does. Errors of the program are its diagnostics.
-  Analysis(ModuleSource main, ModuleResolver& resolver);
+  /// @param allowed  codes of lints that are not to be reported
+  Analysis(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed = {});
   ~Analysis();
   Analysis(const Analysis&) = delete;
   Analysis& operator=(const Analysis&) = delete;

@@ -19,9 +19,9 @@ void parse_file(Model& model, std::uint32_t number) {
 
 }  // namespace
 
-Model read_model(ModuleSource main, ModuleResolver& resolver) {
+Model read_model(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed) {
   Model model;
-  CompileResult result = compile(std::move(main), resolver);
+  CompileResult result = compile(std::move(main), resolver, allowed);
   model.sources = std::move(result.sources);
   model.diagnostics = result.diagnostics.all();
   const std::size_t loaded = model.sources.size();

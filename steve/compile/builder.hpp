@@ -72,6 +72,7 @@ class ProgramBuilder final : public CompileScope {
   Span controller_span_;
   std::unordered_map<std::string_view, const Native*> natives_;
   int depth_ = 0;
+  std::size_t unknown_methods_ = 0;
 };
 
 }  // namespace breve::steve

@@ -28,9 +28,11 @@ void ProgramBuilder::declare(ast::Class tree) {
     if (name.empty()) return false;
     const auto* other = program_->find_class(name);
     if (!other) return false;
-    diagnostics_.error(
-        span, "redefinition", "class '" + name + "' is defined twice",
-        embedded(other->span) ? "the class library has a class of that name; choose another" : "choose another name");
+    diagnostics_.error(span, "redefinition", "class '" + name + "' is defined twice",
+                       embedded(other->span)
+                           ? "the class library has a class of that name; choose another"
+                           : "the other one is in " + program_->sources().file(other->span.file).name + ", line " +
+                                 std::to_string(other->span.line) + "; choose another name");
     return true;
   };
   const ClassInfo* parent = nullptr;

@@ -11,6 +11,7 @@ namespace breve::steve {
 namespace {
 
 constexpr std::size_t kRoom = 4096;  // entries of each table
+constexpr const char* kMethodName = "evaluate";
 
 template <class T>
 void copy_with_room(const std::vector<T>& from, std::vector<T>& to, std::size_t room) {
@@ -82,7 +83,8 @@ Program::Program(const Program& base, std::size_t room)
       defines_(base.defines_),
       code_(std::make_unique<CodeTables>()),
       diagnostics_(base.diagnostics_),
-      fingerprint_(base.fingerprint_) {
+      fingerprint_(base.fingerprint_),
+      fragment_methods_(base.fragment_methods_) {
   copy_with_room(base.code_->strings, code_->strings, room);
   copy_with_room(base.code_->texts, code_->texts, room);
   copy_with_room(base.code_->sites, code_->sites, room);
@@ -91,7 +93,26 @@ Program::Program(const Program& base, std::size_t room)
 }
 
 Fragments::Fragments(const Program& base)
-    : program_(new Program(base, kRoom)), functions_(CompileScope::function_table()) {}
+    : program_(new Program(base, kRoom)), functions_(CompileScope::function_table()) {
+  program_->symbols_.intern(kMethodName);
+  program_->symbols_.intern(kSessionVariable);
+}
+
+// One that is free, or a new one: however much is evaluated, it is one method for each class and depth.
+std::shared_ptr<MethodInfo> Fragments::method_of(const ClassInfo& self) {
+  for (const auto& method : program_->fragment_methods_)
+    if (method->owner == &self && !method->function) return method;
+  auto method = std::make_shared<MethodInfo>();
+  method->name = program_->symbols_.find(kMethodName);
+  method->owner = &self;
+  method->span = self.span;
+  method->parameters.emplace_back();
+  auto& hash = method->parameters[0];
+  hash.keyword = hash.variable = program_->symbols_.find(kSessionVariable);
+  hash.type = StaticType::Hash;
+  program_->fragment_methods_.push_back(method);
+  return method;
+}
 
 TableSizes Fragments::sizes() const {
   const auto& code = *program_->code_;
@@ -130,17 +151,11 @@ std::unique_ptr<Fragment> Fragments::compile(std::string_view text, const ClassI
     hash.variable = kSessionVariable;
     hash.type.kind = ast::TypeKind::Hash;
     tree.parameters.push_back(std::move(hash));
-    auto& method = fragment->method;
-    method.name = scope.symbol("evaluate");
-    method.owner = &self;
-    method.span = tree.span;
-    method.function = std::make_unique<Function>();
-    method.parameters.emplace_back();
-    method.parameters[0].keyword = method.parameters[0].variable = scope.symbol(kSessionVariable);
-    method.parameters[0].type = StaticType::Hash;
+    fragment->method = method_of(self);
+    fragment->method->function = std::make_unique<Function>();
     // What cannot be read is not compiled either: it would be reported twice.
     if (scope.diagnostics().error_count() == 0)
-      FunctionCompiler(scope, self, tree, method, session.loop_variables).compile();
+      FunctionCompiler(scope, self, tree, *fragment->method, session.loop_variables).compile();
     fragment->diagnostics = with_remedies(scope.diagnostics(), known, program_->symbols_, self, program_->sources_);
   } catch (...) {
     end(*fragment);
@@ -150,6 +165,7 @@ std::unique_ptr<Fragment> Fragments::compile(std::string_view text, const ClassI
 }
 
 void Fragments::end(const Fragment& fragment) {
+  if (fragment.method) fragment.method->function.reset();
   const auto& to = fragment.before;
   auto& code = *program_->code_;
   code.strings.resize(to.strings);

@@ -22,7 +22,7 @@ struct TableSizes {
 };
 
 struct Fragment {
-  MethodInfo method;  // one parameter: the hash that holds the variables of the session
+  std::shared_ptr<MethodInfo> method;  // one parameter: the hash that holds the variables of the session
   Diagnostics diagnostics;
   bool uses_session = false;
   bool gives_value = false;  // ends with an expression, or returns
@@ -49,6 +49,7 @@ class Fragments {
 
  private:
   TableSizes sizes() const;
+  std::shared_ptr<MethodInfo> method_of(const ClassInfo& self);
   void make_room(std::size_t entries);
 
   std::shared_ptr<Program> program_;

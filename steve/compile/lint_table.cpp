@@ -124,6 +124,13 @@ Diagnostics finished(const Diagnostics& all, const Sources& sources, const Allow
   std::stable_sort(list.begin(), list.end(), [](const Diagnostic& a, const Diagnostic& b) {
     return std::pair(a.span.file, a.span.offset) < std::pair(b.span.file, b.span.offset);
   });
+  // That a number has no methods makes it no news that no class has this one.
+  std::set<std::pair<std::uint32_t, std::uint32_t>> called_values;
+  for (const Diagnostic& diagnostic : list)
+    if (diagnostic.code == "lint-call-on-value") called_values.emplace(diagnostic.span.file, diagnostic.span.line);
+  std::erase_if(list, [&](const Diagnostic& d) {
+    return d.code == "lint-unknown-method" && called_values.contains({d.span.file, d.span.line});
+  });
   Diagnostics result;
   for (Diagnostic& diagnostic : list) {
     if (const Lint* lint = diagnostic.severity == Error ? nullptr : find_lint(diagnostic.code)) {

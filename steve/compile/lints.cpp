@@ -13,6 +13,7 @@ namespace breve::steve {
 namespace {
 
 constexpr std::size_t kMostHeaders = 3;
+constexpr std::size_t kMostUnknownMethods = 500;  // reported: looking for near names takes time
 
 bool accepts(const MethodInfo& method, const CallSite& site) {
   if (method.parameters.size() < site.arguments.size()) return false;
@@ -83,18 +84,19 @@ void ProgramBuilder::check_call(const ast::Call& call, const ast::Expr& e, const
   if (call.selector == "iterate" && call.keywords.empty()) return;
   if (super && !cls.parent) return;
   const Receiver receiver{super ? cls.parent : class_of(*call.receiver, method, cls, *program_), super};
-  std::vector<const MethodInfo*> candidates;
-  for (const auto* candidate : named)
-    if (receiver.reaches(*candidate->owner)) candidates.push_back(candidate);
-  if (candidates.empty()) return report_unknown_method(call, receiver.cls);
   CallSite site;
   site.selector = symbol(call.selector);
   site.span = call.selector_span;
   if (super) site.super_of = &cls;
   for (const auto& keyword : call.keywords)
     site.arguments.push_back({symbol(keyword.name), StaticType::Any, 0, -1, keyword.span});
-  for (const auto* candidate : candidates)
+  std::vector<const MethodInfo*> candidates;
+  for (const auto* candidate : named) {
+    if (!receiver.reaches(*candidate->owner)) continue;
     if (accepts(*candidate, site)) return;
+    candidates.push_back(candidate);
+  }
+  if (candidates.empty()) return report_unknown_method(call, receiver.cls);
   if (candidates.size() == 1) {
     const auto fault = call_fault(site, *candidates.front(), program_->symbols(), program_->sources(), e.span);
     lint(fault.span.line != 0 ? fault.span : call.selector_span, "lint-keywords", fault.message, fault.help);
@@ -111,6 +113,7 @@ void ProgramBuilder::check_call(const ast::Call& call, const ast::Expr& e, const
 }
 
 void ProgramBuilder::report_unknown_method(const ast::Call& call, const ClassInfo* cls) {
+  if (++unknown_methods_ > kMostUnknownMethods) return;
   if (cls) {
     lint(call.selector_span, "lint-unknown-method",
          "neither class " + cls->name + " nor its parents and children have a method '" + call.selector + "'",

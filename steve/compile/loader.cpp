@@ -1,6 +1,7 @@
 // Loads a program's files: directives before the text of the file that holds them, each file once, the class library
 // when it is named.
 #include <algorithm>
+#include <sstream>
 
 #include "runtime/base/hasher.hpp"
 #include "steve/compile/builder.hpp"
@@ -10,6 +11,12 @@ namespace breve::steve {
 
 namespace {
 constexpr int kMaxIncludeDepth = 100;
+
+std::string number_text(double number) {
+  std::ostringstream text;
+  text << number;
+  return text.str();
+}
 
 std::string stem(std::string_view name) {
   if (const auto slash = name.rfind('/'); slash != std::string_view::npos) name.remove_prefix(slash + 1);
@@ -147,7 +154,8 @@ void ProgramBuilder::late_directive(const ast::Directive& directive) {
       if (!directive.version_op.empty()) versions_.push_back(directive);
       break;
     case NibFile:
-      lint(directive.span, "lint-nib-file", "the interface file '" + directive.text + "' is ignored");
+      lint(directive.span, "lint-nib-file", "the interface file '" + directive.text + "' is ignored",
+           "remove the line");
       break;
     default: break;
   }
@@ -211,8 +219,8 @@ void ProgramBuilder::check_versions() {
                                     : have >= want;
     if (!holds)
       diagnostics_.error(directive.span, "version",
-                         "class " + cls->name + " has version " + std::to_string(cls->version) + ", but " + op + " " +
-                             std::to_string(directive.version) + " is required",
+                         "class " + cls->name + " has version " + number_text(cls->version) + ", but " + op + " " +
+                             number_text(directive.version) + " is required",
                          "load another version of the file, or change what is required");
   }
 }

@@ -33,6 +33,8 @@ constexpr Habit kHabits[] = {
     {"endl", "'print' ends the line by itself; inside a string write \\n"},
 };
 
+constexpr std::size_t kLongestApart = 60;  // bytes of a name that is tried as a subtraction: the ways grow fast
+
 bool is_number(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
@@ -62,7 +64,7 @@ std::string FunctionCompiler::unknown_name_help(std::string_view name) {
   const auto known = [&](std::string_view part) {
     return is_number(part) || find(part).has_value() || builder_.defines().contains(part);
   };
-  if (name.size() < 200)
+  if (name.size() < kLongestApart)
     if (const std::string apart = spaced(name, known); !apart.empty())
       return "a dash can be part of a name: for a subtraction write blanks around it, " + apart;
   for (const Habit& habit : kHabits)

@@ -160,6 +160,7 @@ class Program {
   std::unique_ptr<CodeTables> code_;
   std::vector<Diagnostic> diagnostics_;
   std::uint64_t fingerprint_ = 0;
+  std::vector<std::shared_ptr<MethodInfo>> fragment_methods_;  // outlive their code: profiles name them
 };
 
 /// Finds the text of a module for the compiler. The command reads files; a host decides for itself.

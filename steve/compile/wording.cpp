@@ -144,7 +144,6 @@ std::string unknown_method_help(std::string_view name, const ClassInfo* start, c
   std::vector<std::string_view> names;
   for (const ClassInfo* c = start; c; c = c->parent)
     for (const auto& method : c->methods) names.push_back(symbols.name(method->name));
-  if (const auto near = nearest(name, names); !near.empty()) return "did you mean '" + near + "'?";
   const auto variable = [&](std::string_view text) {
     const Symbol symbol = symbols.find(text);
     return start && symbol != kNoSymbol && start->find_variable(symbol);
@@ -158,6 +157,7 @@ std::string unknown_method_help(std::string_view name, const ClassInfo* start, c
   for (const std::string_view prefix : {"get-", "set-"})
     if (name.starts_with(prefix) && variable(name.substr(prefix.size())))
       return is_variable(name.substr(prefix.size()));
+  if (const auto near = nearest(name, names); !near.empty()) return "did you mean '" + near + "'?";
   std::vector<std::string> classes;
   std::size_t more = 0;
   const Symbol symbol = symbols.find(name);

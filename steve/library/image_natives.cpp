@@ -34,7 +34,8 @@ Instance* image_load(Machine& machine, Instance& self, Text file) {
   const std::string name(view(file));
   const std::string path = path_of(machine, name);
   if (path.empty()) {
-    machine.warn_once("image:" + name, "image '" + name + "' not found");
+    machine.warn_once("image:" + name,
+                      "image '" + name + "' not found; check its name, or add the directory it is in with @path");
     return nullptr;
   }
   try {

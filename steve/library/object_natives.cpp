@@ -1,6 +1,7 @@
 // Natives of Object: identity, schedule, notifications, calls by name; and the obsolete selectors of every class.
 #include <cmath>
 
+#include "steve/compile/wording.hpp"
 #include "steve/library/obsolete.hpp"
 #include "steve/library/support.hpp"
 #include "steve/library/tables.hpp"
@@ -88,10 +89,12 @@ void object_announce(Machine& machine, Instance& self, Text message) {
 Value call_named(Machine& machine, Instance& self, Text name, std::span<const Value> arguments) {
   const MethodInfo* method = machine.find_method(*self.cls, view(name), arguments.size());
   if (!method) {
-    const std::string message = "call-method: " + name_of(self) + " has no method '" + std::string(view(name)) +
-                                "' with " + std::to_string(arguments.size()) + " keywords";
-    if (machine.host().strict) Machine::fail(RunErrorKind::UnknownMethod, message);
-    if (machine.host().error) machine.host().error(message);
+    const RunError error(RunErrorKind::UnknownMethod,
+                         "call-method: " + name_of(self) + " has no method '" + std::string(view(name)) + "' with " +
+                             std::to_string(arguments.size()) + (arguments.size() == 1 ? " keyword" : " keywords"),
+                         unknown_method_help(view(name), self.cls, machine.program()));
+    if (machine.host().strict) throw error;
+    machine.survive(error);
     return {};
   }
   if (machine.host().strict) return machine.call(self, *method, arguments);

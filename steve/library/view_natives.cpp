@@ -110,7 +110,10 @@ void set_skybox_images(Machine& machine, Instance&, ListCell* files) {
     if (file.tag != Tag::String) Machine::fail(RunErrorKind::Type, "set-skybox-images: every element must be a string");
     names.emplace_back(view(file.string()));
     const bool found = !machine.host().find_file || !machine.host().find_file(names.back()).empty();
-    if (!found) machine.warn_once("image:" + names.back(), "image '" + names.back() + "' not found");
+    if (!found)
+      machine.warn_once(
+          "image:" + names.back(),
+          "image '" + names.back() + "' not found; check its name, or add the directory it is in with @path");
   }
   auto& skybox = view_of(machine).backdrop.skybox;
   std::pmr::vector<std::pmr::string> fresh(names.begin(), names.end(), skybox.get_allocator());

@@ -96,7 +96,7 @@ void Machine::fail_receiver(const Instance* receiver, std::uint32_t number) cons
   if (receiver == nullptr) fail_null_receiver(site);
   const auto& name = program_->symbols().name(site.selector);
   const Receiver who = receiver_of_site(site.span);
-  const std::string object = fmt::format("a {} ({:#x}) that has been freed", receiver->cls->name, receiver->serial);
+  const std::string object = fmt::format("{} {:#x}, which has been freed", receiver->cls->name, receiver->serial);
   const std::string help =
       who.kind == Receiver::Kind::Expression
           ? "a freed object counts as false: test it with 'if' before the call"
@@ -164,8 +164,11 @@ void Machine::fail_call_on(const Value& value) const {
   const std::string is = who.kind == Receiver::Kind::Variable    ? fmt::format("the variable '{}' is ", who.text)
                          : who.kind == Receiver::Kind::Parameter ? fmt::format("the parameter '{}' is ", who.text)
                          : is_name(who.text)                     ? fmt::format("'{}' is ", who.text)
-                                                                 : "this is ";
-  throw RunError(RunErrorKind::Type, fmt::format("{}: {}{}", call, is, typed_brief(value)),
+                         : who.text.empty()                      ? "this is "
+                                                                 : fmt::format("{} is ", who.text);
+  const bool zero = value.tag == Tag::Int && value.i == 0;
+  const std::string what = zero ? "0, which stands for no object" : typed_brief(value);
+  throw RunError(RunErrorKind::Type, fmt::format("{}: {}{}", call, is, what),
                  "only objects, and lists of objects, have methods", who.span);
 }
 
@@ -176,6 +179,42 @@ Instance* Machine::broadcast_member(const Value& element) const {
                                                : RunErrorKind::NullObject;
   throw RunError(kind, "a method is called on all of a list, and an element of it is " + typed_brief(element),
                  "every element must be a live object: take others out of the list first, or call in a foreach loop");
+}
+
+// A variable of an object that is null or freed.
+void Machine::fail_member(std::string_view name, const Instance* object) const {
+  Receiver who;
+  if (frame_ != nullptr) {
+    const Span place = span_of(*frame_, frame_->pc);
+    const std::string_view text =
+        std::string_view(program_->sources().file(place.file).text).substr(place.offset, place.length);
+    if (const auto at = text.find("::" + std::string(name)); at != std::string_view::npos)
+      who = receiver_of_site({place.file, place.offset + static_cast<std::uint32_t>(at), 1, place.line, place.column});
+  }
+  const std::string subject = who.text.empty()                        ? "its object"
+                              : who.kind == Receiver::Kind::Parameter ? fmt::format("the parameter '{}'", who.text)
+                              : who.kind == Receiver::Kind::Variable  ? fmt::format("the variable '{}'", who.text)
+                                                                      : who.text;
+  const std::string text = who.text.empty() ? "object" : who.text;
+  if (object == nullptr)
+    throw RunError(RunErrorKind::NullObject,
+                   fmt::format("there is no '{}': {} is null, no object was assigned to it", name, subject),
+                   fmt::format("assign an object first, or test it, as in   if {0}: print {0}::{1}", text, name),
+                   who.span);
+  throw RunError(
+      RunErrorKind::FreedObject,
+      fmt::format("there is no '{}' any more: {} refers to {} {:#x}, which has been freed", name, subject,
+                  object->cls->name, object->serial),
+      fmt::format("a freed object counts as false: test it first, as in   if {0}: print {0}::{1}", text, name),
+      who.span);
+}
+
+void Machine::fail_unknown_class(std::string_view name) const {
+  std::vector<std::string_view> names;
+  for (const auto& cls : program_->classes()) names.push_back(cls->name);
+  const auto near = nearest(name, names);
+  throw RunError(RunErrorKind::UnknownClass, fmt::format("there is no class '{}'", name),
+                 near.empty() ? "define it, or load its file with @use" : "did you mean '" + near + "'?");
 }
 
 void Machine::fail_call(const CallSite& site, const ClassInfo& cls, const MethodInfo* best) const {

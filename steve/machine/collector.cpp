@@ -23,7 +23,7 @@ constexpr std::int64_t kBegin = 1000;   // so that collections that follow each 
 
 // How many cells to fetch ahead of their turn.
 constexpr std::uint32_t kAhead = 24;
-constexpr std::uint32_t kNear = 8;
+constexpr std::uint32_t kNear = 4;
 
 void fetch(const void* memory) { __builtin_prefetch(memory); }
 
@@ -54,26 +54,42 @@ class Heap::Reach {
   void operator()(Cell* cell) {
     if (cell == nullptr) return;
     fetch(cell);
-    Cell*& place = waiting_[next_++ % kRoom];
-    if (place != nullptr) heap_.shade(place);
-    place = cell;
+    const std::uint32_t turn = next_++ % kRoom;
+    Cell* arrived = waiting_[turn];
+    waiting_[turn] = cell;
+    if (arrived == nullptr || !is_container(arrived->tag)) return;
+    const std::uint32_t place = static_cast<Container*>(arrived)->place;
+    fetch(&heap_.marks_[place]);
+    const std::uint32_t marked = next_mark_++ % kMarks;
+    if (marks_[marked] != kNoPlace) heap_.shade_place(marks_[marked]);
+    marks_[marked] = place;
   }
   void operator()(const Value& v) {
     if (is_container(v.tag)) (*this)(v.ref);
   }
   void flush() {
-    for (std::uint32_t i = 0; i < kRoom; ++i) {
-      Cell*& place = waiting_[next_++ % kRoom];
-      if (place != nullptr) heap_.shade(place);
-      place = nullptr;
+    for (std::uint32_t i = 0; i < kMarks; ++i, ++next_mark_) {
+      std::uint32_t& place = marks_[next_mark_ % kMarks];
+      if (place != kNoPlace) heap_.shade_place(place);
+      place = kNoPlace;
+    }
+    for (std::uint32_t i = 0; i < kRoom; ++i, ++next_) {
+      Cell*& cell = waiting_[next_ % kRoom];
+      heap_.shade(cell);
+      cell = nullptr;
     }
   }
 
  private:
-  static constexpr std::uint32_t kRoom = 16;
+  static constexpr std::uint32_t kRoom = 16, kMarks = 8;
   Heap& heap_;
-  std::uint32_t next_ = 0;
-  std::array<Cell*, kRoom> waiting_{};
+  std::uint32_t next_ = 0, next_mark_ = 0;
+  std::array<Cell*, kRoom> waiting_{};             // cells whose heads are on their way
+  std::array<std::uint32_t, kMarks> marks_ = [] {  // places whose marks are on their way
+    std::array<std::uint32_t, kMarks> none;
+    none.fill(kNoPlace);
+    return none;
+  }();
 };
 
 // A cell that was new, or held by frames alone, is now referred to from the heap. If it refers to nothing that could
@@ -130,7 +146,10 @@ void Heap::strike(Container& cell) {
 
 void Heap::shade(Cell* cell) {
   if (cell == nullptr || !is_container(cell->tag)) return;
-  const std::uint32_t place = static_cast<Container*>(cell)->place;
+  shade_place(static_cast<Container*>(cell)->place);
+}
+
+void Heap::shade_place(std::uint32_t place) {
   if (marks_[place] != kWhite) return;
   marks_[place] = kGrey + static_cast<std::uint32_t>(grey_.size());
   grey_.push_back(place);  // never grows: each place is white once in a collection
@@ -156,8 +175,9 @@ void Heap::end_of_iteration() {
       case Phase::Examine: examine(work); break;
       case Phase::Sweep: sweep(work); break;
     }
-    if (phase_ != before && (phase_ == Phase::Idle || phase_ == Phase::Remark)) reclaim_all();
+    if (phase_ != before && phase_ == Phase::Idle) reclaim_all();
   }
+  free_dying();
   if (!zero_.empty()) reclaim_all();
   if (short_of_memory_) throw std::bad_alloc();
 }
@@ -176,7 +196,8 @@ void Heap::begin_collection() {
     shade(cell);
     if (can_close_cycle(cell) && cell->count > 0) held_by_frames_ = true;
   });
-  for (const Doomed& doomed : doomed_) shade(doomed.instance);
+  for (Instance* doomed : doomed_) shade(doomed);
+  for (Instance* dying : dying_) shade(dying);
 }
 
 // Roots are looked for as long as few cells wait, so that there is always something to fetch ahead.
@@ -197,17 +218,26 @@ void Heap::mark(std::int64_t& work) {
       if (next_grey_ != grey_.size() || passed_ < containers_.size()) continue;
       return end_of_marking();
     }
-    if (next_grey_ + kNear < grey_.size() && grey_[next_grey_ + kNear] != kNoPlace) {
-      const auto* ahead = reinterpret_cast<const char*>(containers_[grey_[next_grey_ + kNear]]);
-      fetch(ahead);
-      fetch(ahead + 64);
-    }
+    fetch_ahead();
     const std::uint32_t place = grey_[next_grey_++];
     if (place == kNoPlace) continue;
     marks_[place] = kBlack;
     scan(*containers_[place], reach, work);
   }
   reach.flush();
+}
+
+// First the cell, then, when its head has arrived, its elements.
+void Heap::fetch_ahead() const {
+  if (next_grey_ + kAhead / 2 < grey_.size() && grey_[next_grey_ + kAhead / 2] != kNoPlace) {
+    const auto* far = reinterpret_cast<const char*>(containers_[grey_[next_grey_ + kAhead / 2]]);
+    fetch(far);
+    fetch(far + 64);
+  }
+  if (next_grey_ + kNear >= grey_.size() || grey_[next_grey_ + kNear] == kNoPlace) return;
+  const Container& near = *containers_[grey_[next_grey_ + kNear]];
+  if (near.tag == Tag::List) fetch(static_cast<const ListCell&>(near).begin());
+  if (near.tag == Tag::Hash) fetch(static_cast<const HashCell&>(near).entries);
 }
 
 void Heap::end_of_marking() {
@@ -294,22 +324,21 @@ void Heap::examine(std::int64_t& work) {
   phase_ = Phase::Remark;
 }
 
-// In order of creation. What does not fit into memory now goes with the next collection.
+// In order of creation, together with what is left of earlier ones. They go in so many iterations as leave the promise.
 void Heap::doom_suspects() {
-  std::sort(suspects_.begin(), suspects_.end(),
-            [](const Instance* a, const Instance* b) { return a->serial < b->serial; });
+  constexpr std::uint64_t kCells = 60'000;  // of the heap, for each iteration that may pass until all are destroyed
+  if (dying_.empty()) dying_.swap(suspects_);
   try {
-    doomed_.reserve(doomed_.size() + suspects_.size());
-  } catch (const std::bad_alloc&) {
+    dying_.insert(dying_.end(), suspects_.begin(), suspects_.end());
+    suspects_.clear();
+  } catch (const std::bad_alloc&) {  // they are found again by the collection that follows
     short_of_memory_ = true;
+    for (Instance* instance : suspects_) release(instance);
+    suspects_.clear();
   }
-  for (Instance* instance : suspects_) {
-    if (doomed_.size() < doomed_.capacity())
-      doomed_.push_back({instance, true});
-    else
-      release(instance);
-  }
-  suspects_.clear();
+  std::sort(dying_.begin(), dying_.end(), [](const Instance* a, const Instance* b) { return a->serial > b->serial; });
+  const std::uint64_t iterations = cells_ / kCells + 1;
+  share_ = (dying_.size() + iterations - 1) / iterations;
 }
 
 // Taking a cell apart releases what it refers to. When every cell of the garbage has lost its references, every count
@@ -317,6 +346,10 @@ void Heap::doom_suspects() {
 void Heap::sweep(std::int64_t& work) {
   const bool suspicion = suspicion_;
   while (work > 0 && passed_ < containers_.size()) {
+    if (partial_ != nullptr) {  // others may have taken its place
+      take_apart(*partial_, work);
+      continue;
+    }
     work -= kPlace;
     if (marks_[passed_] == kWhite && !take_apart(*containers_[passed_], work)) break;
     marks_[passed_++] = kWhite;
@@ -327,34 +360,47 @@ void Heap::sweep(std::int64_t& work) {
   passed_ = 0;
 }
 
-/// False if the work was used up before the cell had lost all its references.
+// A list or hash goes piece by piece; meanwhile it is held, so that it does not go as a whole by having lost its last
+// reference, perhaps to itself. False if the work was used up first.
 bool Heap::take_apart(Container& cell, std::int64_t& work) {
-  work -= kBreak;
-  if (cell.tag == Tag::List) {
-    auto& list = static_cast<ListCell&>(cell);
-    for (; list.size > 0 && work > 0; work -= kElement) {
-      const Value last = list.store[list.first + --list.size];
-      if (last.is_reference()) work -= kBreak;
-      release(last);
-    }
-    return list.size == 0;
-  }
-  if (cell.tag == Tag::Hash) {
-    auto& hash = static_cast<HashCell&>(cell);
-    while (hash.used > 0 && work > 0) {
-      const HashCell::Entry last = hash.entries[--hash.used];
-      if (!last.live()) continue;
-      --hash.count_live;
-      work -= 2 * kBreak;
-      release(last.key);
-      release(last.value);
-    }
-    if (hash.used != 0) return false;
-    if (hash.index != nullptr) std::memset(hash.index, 0, hash.index_capacity * sizeof(std::uint32_t));
+  if (partial_ == nullptr) work -= kBreak;
+  if (cell.tag == Tag::Object) {
+    work -= kBreak * static_cast<std::int64_t>(static_cast<Instance&>(cell).cls->reference_slots.size());
+    clear_slots(static_cast<Instance&>(cell));
     return true;
   }
-  work -= kBreak * static_cast<std::int64_t>(static_cast<Instance&>(cell).cls->reference_slots.size());
-  clear_slots(static_cast<Instance&>(cell));
+  if (partial_ == nullptr) {
+    partial_ = &cell;
+    retain(&cell);
+  }
+  const bool empty =
+      cell.tag == Tag::List ? shed(static_cast<ListCell&>(cell), work) : shed(static_cast<HashCell&>(cell), work);
+  if (!empty) return false;
+  partial_ = nullptr;
+  release(&cell);
+  return true;
+}
+
+bool Heap::shed(ListCell& list, std::int64_t& work) {
+  for (; list.size > 0 && work > 0; work -= kElement) {
+    const Value last = list.store[list.first + --list.size];
+    if (last.is_reference()) work -= kBreak;
+    release(last);
+  }
+  return list.size == 0;
+}
+
+bool Heap::shed(HashCell& hash, std::int64_t& work) {
+  while (hash.used > 0 && work > 0) {
+    const HashCell::Entry last = hash.entries[--hash.used];
+    if (!last.live()) continue;
+    --hash.count_live;
+    work -= 2 * kBreak;
+    release(last.key);
+    release(last.value);
+  }
+  if (hash.used != 0) return false;
+  if (hash.index != nullptr) std::memset(hash.index, 0, hash.index_capacity * sizeof(std::uint32_t));
   return true;
 }
 

@@ -17,7 +17,8 @@ std::string help_for(const Value& v, std::string_view to) {
   if (v.tag == Tag::Vector && (to == "an int" || to == "a double"))
     return "take its length, |v|, or one of its components: v::x, v::y, v::z";
   if (to == "a vector") return "a vector is written (x, y, z)";
-  if (to == "a list") return "a list of one value is written { value }";
+  if (to == "a list" && v.tag == Tag::Hash) return "a list of the keys of a hash is keys(hash)";
+  if (to == "a list") return "a list is written { a, b, c }; a loop that counts: for n = 0, n < 10, n++: ...";
   if (to == "an object" && v.tag == Tag::Int) return "of all numbers only 0 stands for no object";
   return {};
 }

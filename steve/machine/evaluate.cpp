@@ -3,6 +3,7 @@
 #include "steve/compile/evaluate.hpp"
 
 #include "steve/machine/machine.hpp"
+#include "steve/machine/profiler.hpp"
 
 namespace breve::steve {
 
@@ -37,7 +38,7 @@ class Machine::FragmentScope {
     for (; machine_.strings_.size() > strings_; machine_.strings_.pop_back())
       machine_.heap_->release(machine_.strings_.back());
     machine_.caches_.resize(sites_);
-    if (const auto* function = fragment_.method.function.get(); function && !function->code.empty()) {
+    if (const auto* function = fragment_.method->function.get(); function && !function->code.empty()) {
       const auto* first = function->code.data();
       std::erase_if(machine_.warned_sites_,
                     [&](const Instruction* at) { return at >= first && at < first + function->code.size(); });
@@ -85,6 +86,7 @@ Value Machine::evaluate(Instance& self, std::string_view text) {
       if (session_->entries[i].live()) known.push_back(view(session_->entries[i].key.string()));
   const auto fragment = fragments_->compile(text, *self.cls, known);
   program_ = fragments_->program();
+  if (profiler_) profiler_->use(program_);
   FragmentScope scope(*this, *fragment);
   if (!fragment->compiled())
     throw ScriptError(ErrorCode::Compile, report_of(fragment->diagnostics, program_->sources()));
@@ -92,7 +94,7 @@ Value Machine::evaluate(Instance& self, std::string_view text) {
     if (host_.warn) host_.warn(format(diagnostic, program_->sources()));
   scope.enter();
   const Value session[] = {Value::of(Tag::Hash, fragment->uses_session ? make_session() : nullptr)};
-  const Value result = call(self, fragment->method, session);
+  const Value result = call(self, *fragment->method, session);
   if (!fragment->gives_value) result_ = Value();
   return fragment->gives_value ? result : Value();
 }

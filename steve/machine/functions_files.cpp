@@ -29,7 +29,9 @@ class FilePointer final : public NativePointer {
 };
 
 FilePointer& file_of(PointerCell* pointer) {
-  if (pointer == nullptr) Machine::fail(RunErrorKind::Type, "this file was not opened: the pointer is null");
+  if (pointer == nullptr)
+    throw RunError(RunErrorKind::Type, "this file was not opened: the pointer is null",
+                   "opening gives null if the file does not exist or may not be read: test the pointer with 'if'");
   auto* file = dynamic_cast<FilePointer*>(pointer->native.get());
   if (file == nullptr) Machine::fail(RunErrorKind::Type, "this pointer is not an open file");
   return *file;

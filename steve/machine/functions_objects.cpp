@@ -21,7 +21,7 @@ Instance& needed(Instance* object, std::string_view function) {
 
 const ClassInfo& class_named(Machine& machine, std::string_view name) {
   const ClassInfo* cls = machine.program().find_class(name);
-  if (cls == nullptr) Machine::fail(RunErrorKind::UnknownClass, fmt::format("there is no class '{}'", name));
+  if (cls == nullptr) machine.fail_unknown_class(name);
   return *cls;
 }
 

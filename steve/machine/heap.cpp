@@ -39,7 +39,8 @@ Heap::Heap(std::pmr::memory_resource* memory, RootSource& roots)
       marks_(memory),
       grey_(memory),
       doomed_(memory),
-      suspects_(memory) {}
+      suspects_(memory),
+      dying_(memory) {}
 
 Heap::~Heap() {
   for (Container* cell : containers_) free_arrays(*cell);
@@ -371,17 +372,25 @@ void Heap::doom_waiting(std::size_t kept) {
   const std::size_t old = doomed_.size();
   for (Cell* cell : zero_) {
     if (!doomed(cell) || doomed_.size() == doomed_.capacity()) continue;
-    doomed_.push_back({static_cast<Instance*>(cell), false});
+    doomed_.push_back(static_cast<Instance*>(cell));
     cell->listed = false;
   }
   std::erase_if(zero_, [](const Cell* cell) { return !cell->listed; });
-  for (std::size_t i = old; i < doomed_.size(); ++i) retain(doomed_[i].instance);
+  for (std::size_t i = old; i < doomed_.size(); ++i) retain(doomed_[i]);
   std::sort(doomed_.begin() + static_cast<std::ptrdiff_t>(old), doomed_.end(),
-            [](const Doomed& a, const Doomed& b) { return a.instance->serial < b.instance->serial; });
+            [](const Instance* a, const Instance* b) { return a->serial < b->serial; });
 }
 
 // Run the destroy methods of what is doomed. They may run anything, even this function: then the outer call goes on
 // with what the inner one added. An instance that an earlier destroy has stored somewhere again lives on.
+namespace {
+struct Unpin {
+  Heap& heap;
+  Instance* instance;
+  ~Unpin() { heap.release(instance); }
+};
+}  // namespace
+
 bool Heap::free_doomed() {
   if (freeing_doomed_ || doomed_.empty()) return false;
   struct Guard {
@@ -394,17 +403,22 @@ bool Heap::free_doomed() {
     }
   } guard(*this);
   while (guard.next < doomed_.size()) {
-    const Doomed doomed = doomed_[guard.next++];
-    struct Unpin {
-      Heap& heap;
-      Instance* instance;
-      ~Unpin() { heap.release(instance); }
-    } unpin{*this, doomed.instance};
-    const bool lives_on = !doomed.cyclic && doomed.instance->count > 1;
-    if (!lives_on && doomed.instance->state == Instance::State::Live && doomed.instance->auto_free)
-      roots_.free_unreachable(*doomed.instance);
+    Instance* doomed = doomed_[guard.next++];
+    const Unpin unpin{*this, doomed};
+    const bool lives_on = doomed->count > 1;
+    if (!lives_on && doomed->state == Instance::State::Live && doomed->auto_free) roots_.free_unreachable(*doomed);
   }
   return true;
+}
+
+// Of what dies in cycles a share in each iteration, so that a collection that ends does not end in a long pause.
+void Heap::free_dying() {
+  for (std::uint64_t left = share_; left > 0 && !dying_.empty(); --left) {
+    const Unpin unpin{*this, dying_.back()};
+    dying_.pop_back();
+    if (unpin.instance->state == Instance::State::Live && unpin.instance->auto_free)
+      roots_.free_unreachable(*unpin.instance);
+  }
 }
 
 }  // namespace breve::steve

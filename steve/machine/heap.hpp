@@ -192,10 +192,6 @@ class Heap : public InMemory {
     Single* next;
     std::size_t bytes;
   };
-  struct Doomed {
-    Instance* instance;
-    bool cyclic;
-  };
   static constexpr std::size_t kUnit = 16;                // bytes; size classes are multiples
   static constexpr std::size_t kClasses = 32;             // up to 512 bytes
   static constexpr std::size_t kReclaimBytes = 8U << 20;  // a few long strings are much garbage
@@ -232,6 +228,8 @@ class Heap : public InMemory {
   void enrol(Container& cell);
   void strike(Container& cell);
   void shade(Cell* cell);
+  void shade_place(std::uint32_t place);
+  void fetch_ahead() const;
   void begin_collection();
   void mark(std::int64_t& work);
   void end_of_marking();
@@ -239,8 +237,11 @@ class Heap : public InMemory {
   void scan_part(Reach& reach, std::int64_t& work);
   void examine(std::int64_t& work);
   void doom_suspects();
+  void free_dying();
   void sweep(std::int64_t& work);
   bool take_apart(Container& cell, std::int64_t& work);
+  bool shed(ListCell& list, std::int64_t& work);
+  bool shed(HashCell& hash, std::int64_t& work);
   /// Before the elements of a half-scanned list or hash move: finish scanning it.
   void settle(const Container& cell) {
     if (partial_ == &cell) [[unlikely]]
@@ -272,8 +273,8 @@ class Heap : public InMemory {
   std::pmr::vector<Container*> containers_;
   std::pmr::vector<std::uint32_t> marks_;  // by place
   std::pmr::vector<std::uint32_t> grey_;   // places in the order in which they became grey; kNoPlace: gone
-  std::pmr::vector<Doomed> doomed_;
-  std::pmr::vector<Instance*> suspects_;  // will be doomed when all are found
+  std::pmr::vector<Instance*> doomed_;     // in no cycle, to be destroyed now
+  std::pmr::vector<Instance*> suspects_;   // in cycles, to be dying when all are found
   std::size_t reclaim_at_ = kReclaimAt;
   std::size_t fresh_bytes_ = 0;  // taken for strings since the last reclaim
   std::uint64_t serial_ = 0x1000;
@@ -287,8 +288,11 @@ class Heap : public InMemory {
   bool short_of_memory_ = false;  // not all that was to be done in this iteration could be noted
   std::uint32_t passed_ = 0;
   std::uint32_t next_grey_ = 0;   // the first of grey_ that is not scanned
-  Container* partial_ = nullptr;  // the list or hash whose scan was cut by the end of a slice
+  Container* partial_ = nullptr;  // the list or hash whose scan, or taking apart, was cut by the end of a slice
   std::uint32_t position_ = 0;    // where: index into its store or entries
+
+  std::pmr::vector<Instance*> dying_;  // in cycles, to be destroyed, the last one first: a share in each iteration
+  std::uint64_t share_ = 0;
 };
 
 /// Sort in place, stable: `before(a, b)` is true if a must come before b. Works on a copy of the elements, so that

@@ -27,13 +27,11 @@ void Heap::save_state(ByteWriter& out, const std::function<std::uint64_t(const C
   out.put(position);
   out.put(static_cast<std::uint64_t>(zero_.size()));
   for (const Cell* cell : zero_) out.put(number(cell));
-  out.put(static_cast<std::uint64_t>(doomed_.size()));
-  for (const Doomed& doomed : doomed_) {
-    out.put(number(doomed.instance));
-    out.put(static_cast<std::uint8_t>(doomed.cyclic));
+  for (const auto* list : {&doomed_, &suspects_, &dying_}) {
+    out.put(static_cast<std::uint64_t>(list->size()));
+    for (const Instance* instance : *list) out.put(number(instance));
   }
-  out.put(static_cast<std::uint64_t>(suspects_.size()));
-  for (const Instance* suspect : suspects_) out.put(number(suspect));
+  out.put(share_);
 }
 
 // Only a running collection has marks.
@@ -91,6 +89,7 @@ void Heap::load_state(ByteReader& in, const std::function<Cell*(std::uint64_t)>&
     Cell* half_scanned = cell(partial - 1);
     if (half_scanned->tag != Tag::List && half_scanned->tag != Tag::Hash) ByteReader::fail();
     partial_ = static_cast<Container*>(half_scanned);
+    if (phase_ == Phase::Sweep) retain(partial_);  // see take_apart
     if (partial_->tag == Tag::List) position_ += static_cast<ListCell*>(partial_)->first;
   }
 
@@ -102,18 +101,15 @@ void Heap::load_state(ByteReader& in, const std::function<Cell*(std::uint64_t)>&
     if (waiting->listed) ByteReader::fail();
     enlist(waiting);
   }
-  for (std::size_t n = in.get_count(sizeof(std::uint64_t)); n > 0; --n) {
-    Cell* doomed = cell(in.get<std::uint64_t>());
-    if (doomed->tag != Tag::Object) ByteReader::fail();
-    doomed_.push_back({static_cast<Instance*>(doomed), in.get_bool()});
-    retain(doomed);
+  for (auto* list : {&doomed_, &suspects_, &dying_}) {
+    for (std::size_t n = in.get_count(sizeof(std::uint64_t)); n > 0; --n) {
+      Cell* instance = cell(in.get<std::uint64_t>());
+      if (instance->tag != Tag::Object) ByteReader::fail();
+      list->push_back(static_cast<Instance*>(instance));
+      retain(instance);
+    }
   }
-  for (std::size_t n = in.get_count(sizeof(std::uint64_t)); n > 0; --n) {
-    Cell* suspect = cell(in.get<std::uint64_t>());
-    if (suspect->tag != Tag::Object) ByteReader::fail();
-    suspects_.push_back(static_cast<Instance*>(suspect));
-    retain(suspect);
-  }
+  share_ = in.get<std::uint64_t>();
   // A cell that nothing refers to and that does not wait would never go: only a damaged image has one.
   for (const Container* container : containers_) unlisted += container->count == 0 && !container->listed ? 1U : 0U;
   if (unlisted != 0) ByteReader::fail();

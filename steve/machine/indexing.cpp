@@ -40,12 +40,12 @@ int component(const Value& base, const StringCell* name) {
     if (text[0] >= 'X' && text[0] <= 'Z') return text[0] - 'X';
   }
   std::string message = fmt::format("{} has no member '{}'", a_type(base.tag), text);
-  if (base.tag == Tag::Vector) message += "; it has x, y and z";
+  const std::string help = base.tag == Tag::Vector ? "a vector has x, y and z" : "objects and hashes have members";
   const auto dash = text.find('-');
   if (dash != std::string_view::npos)
     message += fmt::format("; for a subtraction write spaces around the minus: {} - {}", text.substr(0, dash),
                            text.substr(dash + 1));
-  fail_type(message);
+  throw RunError(RunErrorKind::Type, message, help);
 }
 
 Value string_with_index(Heap& heap, const Value& base, const Value& key, const Value& value) {
@@ -65,8 +65,12 @@ Value string_with_index(Heap& heap, const Value& base, const Value& key, const V
 }  // namespace
 
 void fail_list_bounds(std::int64_t i, std::size_t size) {
-  if (size == 0) fail_bounds(fmt::format("index {} is outside an empty list", i));
-  fail_bounds(fmt::format("index {} is outside a list of {}; its elements are 0 to {}", i, size, size - 1));
+  if (size == 0)
+    throw RunError(RunErrorKind::Bounds, fmt::format("index {} is outside an empty list", i),
+                   "test its length, |list|, before; or push an element onto it");
+  throw RunError(RunErrorKind::Bounds, fmt::format("index {} is outside a list of {}", i, size),
+                 size == 1 ? "elements are counted from 0: its only one is 0"
+                           : fmt::format("elements are counted from 0: they are 0 to {}", size - 1));
 }
 
 Value index(Heap& heap, const Value& base, const Value& key) {

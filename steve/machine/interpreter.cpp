@@ -497,7 +497,7 @@ void Machine::execute(std::size_t depth) {
     LEAVE_IF_FREED();
     NEXT();
   }
-  op_NewNamed: throw RunError(RunErrorKind::UnknownClass, "unknown class '" + program_->code().strings[static_cast<std::size_t>(in->imm())] + "'");
+  op_NewNamed: fail_unknown_class(program_->code().strings[static_cast<std::size_t>(in->imm())]);
   op_All: R(in->a).ref = all_of(program_->cls(static_cast<ClassId>(in->imm()))); NEXT();
 
   {

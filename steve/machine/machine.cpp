@@ -5,6 +5,7 @@
 
 #include "runtime/world/menu.hpp"
 #include "steve/compile/evaluate.hpp"
+#include "steve/compile/wording.hpp"
 #include "steve/machine/operators.hpp"
 #include "steve/machine/profiler.hpp"
 #include "steve/machine/reload.hpp"
@@ -83,7 +84,8 @@ void Machine::fail_budget() const {
       RunErrorKind::Budget,
       "the call used up its budget of loop turns and calls: " +
           (budget_.run_is_used_up() ? std::to_string(host_.budget) + " for an iteration or a call by the host"
-                                    : std::to_string(host_.call_budget) + " for one call within an iteration"));
+                                    : std::to_string(host_.call_budget) + " for one call within an iteration"),
+      "a loop here may have no end; or the budget that the host gives is too small for this program");
 }
 
 template <class Body>
@@ -190,9 +192,10 @@ Value Machine::call(Instance& receiver, const MethodInfo& method, std::span<cons
 Value Machine::call(Instance& receiver, std::string_view name, std::span<const Value> arguments) {
   const auto* method = find_method(*receiver.cls, name, arguments.size());
   if (!method)
-    throw RunError(RunErrorKind::UnknownMethod, "unknown method: class " + receiver.cls->name + " has no method '" +
-                                                    std::string(name) + "' with " + std::to_string(arguments.size()) +
-                                                    " parameters");
+    throw RunError(RunErrorKind::UnknownMethod,
+                   "class " + receiver.cls->name + " has no method '" + std::string(name) + "' with " +
+                       std::to_string(arguments.size()) + (arguments.size() == 1 ? " parameter" : " parameters"),
+                   unknown_method_help(name, receiver.cls, *program_));
   return call(receiver, *method, arguments);
 }
 

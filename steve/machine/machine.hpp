@@ -140,6 +140,9 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   [[noreturn]] static void fail(RunErrorKind kind, const std::string& message) { throw RunError(kind, message); }
   std::string text(const Value& v);  // as `print` shows it, asking objects for their get-description
   std::string stack_trace() const;   // one line per active method, outermost first
+  /// Report an error that does not stop the run, with the place of the running statement.
+  void survive(const RunError& error) { survive(ScriptError(error.code(), report(error, running()))); }
+  [[noreturn]] void fail_unknown_class(std::string_view name) const;
   /// Errors reported that did not stop the run (F27).
   std::uint64_t survived_errors() const { return survived_errors_; }
 
@@ -313,6 +316,7 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   Value random(const Value& bound);
   const VariableInfo* member_variable(const Instance& instance, Symbol name) const;
   Instance* instance_of(const Value& value) const;
+  Instance& need_live(const Value& base, std::string_view name) const;
 
   // errors (errors.cpp)
   ErrorReport report(const RunError& error, const Instruction* pc) const;
@@ -353,6 +357,7 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   Instance* broadcast_member(const Value& element) const;
   [[noreturn]] void fail_call_on(const Value& value) const;
   [[noreturn]] void fail_null_receiver(const CallSite& site) const;
+  [[noreturn]] void fail_member(std::string_view name, const Instance* object) const;
 
   std::shared_ptr<const Program> program_;
   World& world_;

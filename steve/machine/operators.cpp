@@ -39,6 +39,13 @@ Value boolean(BinaryOp op, bool same) { return boolean(same == (op == BinaryOp::
     default: message = fmt::format("cannot compare {} with {}", x, y); break;
   }
   const bool number_missing = a.tag == Tag::Null || b.tag == Tag::Null;
+  const bool object = a.tag == Tag::Object || b.tag == Tag::Object;
+  const bool lone_vector =
+      (a.tag == Tag::Vector) != (b.tag == Tag::Vector) && (op == BinaryOp::Add || op == BinaryOp::Sub);
+  if (hint.empty() && object)
+    hint = "of an object use a variable, object::name, or what a method gives, (object method)";
+  if (hint.empty() && lone_vector && !number_missing)
+    hint = "a vector goes with a vector, (x, y, z); its length is |v|";
   const std::string help = number_missing && hint.empty()
                                ? "a method gives a value with 'return'; a missing key of a hash gives none"
                                : std::string(hint);

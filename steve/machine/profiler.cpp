@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <new>
 
 namespace breve::steve {
 
@@ -40,6 +41,7 @@ void Profiler::measure_itself() {
       leave();
     }
     leave();
+    if (out_of_memory_) throw std::bad_alloc();
     inner_cost_ = std::min(inner_cost_, static_cast<double>(nodes_[2].own) / kCalls);
     outer_cost_ = std::min(outer_cost_, static_cast<double>(nodes_[1].own) / kCalls);
   }

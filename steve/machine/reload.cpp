@@ -27,7 +27,13 @@ std::string objects_of(const ClassInfo& cls, std::size_t count) {
 }  // namespace
 
 Reload::Reload(Machine& machine, std::shared_ptr<const Program> program)
-    : machine_(machine), program_(std::move(program)), strings_(machine.memory_) {}
+    : machine_(machine),
+      program_(std::move(program)),
+      strings_(machine.memory_),
+      numbers_(machine.memory_),
+      cells_(machine.memory_),
+      twins_(machine.memory_),
+      dropped_(machine.memory_) {}
 
 std::vector<std::string> Reload::run() {
   find_classes();

@@ -11,9 +11,12 @@ namespace breve::steve {
 Value Machine::null_default(StaticType type, std::uint32_t what, const Instruction* pc) {
   // F14: NULL assigned to a typed variable stores the type's zero value, with one warning for each place.
   const auto& name = program_->code().texts.empty() ? std::string("value") : program_->code().texts[what];
-  if (host_.strict) throw RunError(RunErrorKind::Conversion, "no value (NULL) for " + name);
+  if (host_.strict)
+    throw RunError(RunErrorKind::Conversion, "no value (NULL) for " + name,
+                   "a method gives a value with 'return'; a missing key of a hash gives none");
   if (warned_sites_.insert(pc).second)
-    warn("no value (NULL) is assigned to " + name + "; it becomes its type's zero value");
+    warn("no value (NULL) is assigned to " + name +
+         "; it becomes its type's zero value (a missing key of a hash and a method without 'return' give none)");
   switch (type) {
     case StaticType::Int: return Value::of(0);
     case StaticType::Double: return Value::of(0.0);
@@ -59,20 +62,17 @@ const VariableInfo* Machine::member_variable(const Instance& instance, Symbol na
   for (const ClassInfo* c = instance.cls; c; c = c->parent)
     for (const auto& v : c->variables) names.push_back(program_->symbols().name(v.name));
   const auto near = nearest(text, names);
-  throw RunError(RunErrorKind::Type, "class " + instance.cls->name + " has no variable '" + text + "'" +
-                                         (near.empty() ? "" : "; did you mean '" + near + "'?"));
+  throw RunError(RunErrorKind::Type, "class " + instance.cls->name + " has no variable '" + text + "'",
+                 !near.empty()                   ? "did you mean '" + near + "'?"
+                 : responds(*instance.cls, text) ? "it is a method: write (object " + text + ")"
+                                                 : "declare it under '+ variables:' of the class");
 }
 
-namespace {
-Instance& need_live(const Value& base, std::string_view name) {
+Instance& Machine::need_live(const Value& base, std::string_view name) const {
   auto* instance = base.object();
-  if (!instance) throw RunError(RunErrorKind::NullObject, "variable '" + std::string(name) + "' of a null object");
-  if (!instance->live())
-    throw RunError(RunErrorKind::FreedObject,
-                   "variable '" + std::string(name) + "' of a freed object of class " + instance->cls->name);
+  if (!instance || !instance->live()) fail_member(name, instance);
   return *instance;
 }
-}  // namespace
 
 Value Machine::read_member(const Value& base, const MemberSite& site) {
   if (base.tag == Tag::Object) {
@@ -222,9 +222,10 @@ void Machine::free_value(const Value& value) {
 void Machine::sort(ListCell& list, Symbol symbol, Instance& self) {
   const auto* method = self.cls->find_method(symbol, 2);
   if (!method)
-    throw RunError(RunErrorKind::UnknownMethod, "unknown method: sort needs a method '" +
-                                                    program_->symbols().name(symbol) +
-                                                    "' with two parameters in class " + self.cls->name);
+    throw RunError(RunErrorKind::UnknownMethod,
+                   "unknown method: sort needs a method '" + program_->symbols().name(symbol) +
+                       "' with two parameters in class " + self.cls->name,
+                   "write one: + to " + program_->symbols().name(symbol) + " of a (object) with b (object):");
   const ProfileScope profiled(profiler_, Callee::act("sort"), profiler_ ? running_line() : 0);
   const Pin pin(*this, Value::of(Tag::List, &list));
   const StackMark mark(*this);

@@ -282,7 +282,7 @@ void Parser::members(ast::Class& result) {
   std::size_t pending_docs = first > 0 ? first - 1 : 0;  // documentation before items after this one has no owner yet
   while (!at("}") || stray_brace()) {
     if (at_end() || (token().starts_line && at_class_header())) break;
-    if (at("}") && !more_braces_close()) {
+    if (at("}") && pos_ == class_close_ && !more_braces_close()) {
       error(token().span, "stray-brace", fmt::format("this '}}' ends class '{}', and a method follows", result.name),
             "remove it, and write '}' behind the last method");
       open_brace_reported_ = true;

@@ -106,7 +106,8 @@ void Parser::check_target(const ast::Expr& target) {
   if (assignable && !target.parenthesised) return;
   if (const auto* constant = std::get_if<ast::ConstantExpr>(&target.node)) {
     fail(target.span, "bad-target",
-         fmt::format("'{}' is a constant (from @define) and cannot be changed", constant->name));
+         fmt::format("'{}' is a constant (from @define) and cannot be changed", constant->name),
+         "assign to a variable in its place");
   }
   if (at("++") || at("--")) {
     fail(token().span, "bad-target",

@@ -16,6 +16,8 @@ bool one_of(std::string_view text, std::initializer_list<std::string_view> words
   return std::find(words.begin(), words.end(), text) != words.end();
 }
 
+constexpr std::size_t kFarthest = 200;  // items that are looked ahead: reading stays linear
+
 bool is_type_word(Word word) { return word >= Word::Int && word <= Word::Hash; }  // KEEP IN STEP: words.hpp
 
 std::string_view singular_type(std::string_view text) { return one_of(text, {"double"}) ? "float" : text; }
@@ -28,7 +30,7 @@ bool Parser::adjacent(std::size_t ahead) const { return !token(ahead).space_befo
 std::size_t Parser::behind_parentheses(std::size_t ahead) const {
   int depth = 0;
   const std::uint32_t line = token(ahead).span.line;
-  for (std::size_t i = ahead; !at_kind(TokenKind::End, i) && token(i).span.line == line; ++i) {
+  for (std::size_t i = ahead; i < ahead + kFarthest && !at_kind(TokenKind::End, i) && token(i).span.line == line; ++i) {
     if (at("(", i)) ++depth;
     if (at(")", i) && --depth == 0) return i + 1;
   }
@@ -62,7 +64,7 @@ void Parser::report_broken_header() {
 }
 
 // Behind the name of a method: `fly()` or `fly(self)`.
-void Parser::header_parentheses(std::string_view name) {
+void Parser::header_parentheses(std::string_view name, bool reported) {
   if (!at("(")) return;
   const std::size_t behind = behind_parentheses(0);
   const std::string help = behind == 2 ? fmt::format("write: + to {}:", name)
@@ -70,10 +72,12 @@ void Parser::header_parentheses(std::string_view name) {
                                              "a parameter is a keyword, a variable and a type: + to {} keyword "
                                              "variable (type):",
                                              name);
-  error(token().span, "method-header", "no parentheses follow the name of a method", help);
+  if (!reported) error(token().span, "method-header", "no parentheses follow the name of a method", help);
   if (behind == 0) return;
   pos_ += behind;
-  if (at("{")) advance();
+  if (!at("{")) return;
+  method_brace_ = true;
+  advance();
 }
 
 // `int x;` and the like at the beginning of a statement: read as the declarations that were meant.
@@ -127,6 +131,10 @@ bool Parser::foreign_statement() {
   const std::size_t start = pos_;
   while (!at_end() && !at("{")) advance();
   skip_statement(start);
+  if (repeats && (at_word(Word::While) || at_text("until"))) {  // do { ... } while (condition);
+    while (!at_end() && !at(".") && !at(";") && !at("}")) advance();
+    if (!accept(".")) accept(";");
+  }
   return true;
 }
 
@@ -162,7 +170,7 @@ Diagnostic Parser::after_statement(std::size_t start) const {
     return made("syntax", "unexpected ':' in a statement", "only if, while, for, foreach and else take a ':'");
   if (at("["))
     return made("syntax", "unexpected '['", "only a variable of an array type takes [index]; lists take {index}");
-  if (at("{") && !token().starts_line && !at("{", 1) && item().match == 0)
+  if (at("{") && adjacent(0) && previous().kind == TokenKind::Name)
     return made("missing-brace", "the index that begins here has no '}'", "write: list{index}");
   if (at(")")) return made("syntax", "this ')' closes nothing", "remove it, or look for a missing '(' before it");
   if (at("&&") || at("||") || at("?")) return made("syntax", fmt::format("unexpected {}", describe()), "");

@@ -70,25 +70,34 @@ void Parser::method(ast::Class& owner) {
 }
 
 void Parser::method_header(ast::Method& result) {
+  bool foreign = false;
   if (at_member_header()) {
     advance();
     advance();
   } else {
     report_broken_header();
+    foreign = at_name() && !at_text("to");
     advance();
   }
   result.name_span = token().span;
+  header_colon_ = method_brace_ = false;
   try {
     result.name = expect_name("a method", result.name_span);
-    header_parentheses(result.name);
-    header_colon_ = false;
-    while (!at(":") && !header_colon_) {
+    header_parentheses(result.name, foreign);
+    while (!at(":") && !header_colon_ && !method_brace_ && !at("{")) {
       // A local or a statement on the next line: the colon was forgotten.
       const bool parameter_follows = at_kind(TokenKind::Name) && at_kind(TokenKind::Name, 1) && !at_statement_word(0);
       if (token().starts_line && !parameter_follows) break;
       parameter(result);
     }
-    if (!header_colon_ && !accept(":") && !previous_is("{")) missing(":", "the header of this method");
+    if (at("{") && item().block_like) {
+      error(token().span, "method-header", "no '{' follows the header of a method",
+            "write ':'; a method ends where the next one begins");
+      method_brace_ = true;
+      advance();
+    } else if (!header_colon_ && !method_brace_ && !accept(":")) {
+      missing(":", "the header of this method");
+    }
   } catch (const SyntaxError& problem) {
     report(problem.diagnostic);
     // On to the colon, unless it stands before the type of a parameter, or a statement comes first.
@@ -145,7 +154,8 @@ void Parser::body(ast::Method& result) {
     }
   }
   read_statements(result.body);
-  while (stray_brace()) {
+  if (method_brace_) accept("}");
+  while (stray_brace() && (pos_ != class_close_ || more_braces_close())) {
     error(token().span, "stray-brace", "this '}' closes nothing", "remove it, or look for a missing '{' above");
     advance();
     read_statements(result.body);

@@ -100,7 +100,7 @@ class Parser {
   std::size_t behind_parentheses(std::size_t ahead) const;
   std::size_t broken_header() const;
   void report_broken_header();
-  void header_parentheses(std::string_view name);
+  void header_parentheses(std::string_view name, bool reported);
   bool foreign_declaration();
   bool foreign_statement();
   bool at_elif() const;
@@ -243,6 +243,8 @@ class Parser {
   std::size_t call_end_ = 0;  // the item behind the call that was parsed last
   std::string call_name_;     // and its selector
   bool semicolon_reported_ = false;
+  bool elif_reported_ = false;
+  bool method_brace_ = false;  // a '{' stood in place of the ':' of the method header
   bool header_colon_ = false;               // the ':' of the method header was read, too early
   bool open_brace_reported_ = false;        // a '{' has no '}': that those around it lack theirs is no news
   bool cut_off_ = false;                    // the scanner gave up: what the parser misses is no news

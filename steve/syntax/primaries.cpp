@@ -118,8 +118,13 @@ ast::ExprPtr Parser::primary() {
            "write a blank between nested bars: | |a| - b |");
     case sign("@"):
       fail(token().span, "syntax", fmt::format("'@{}' is a directive, and stands outside of classes", token(1).text));
-    default: fail_expected("an expression");
+    default: break;
   }
+  const bool behind_sign =
+      pos_ > 0 && previous().kind == TokenKind::Punctuation && !previous_is(".") && !previous_is("}");
+  fail_expected("an expression", behind_sign
+                                     ? fmt::format("a value is missing behind '{}'", previous().text)
+                                     : "a statement begins with a name or with a word such as if, print, return");
 }
 
 ast::ExprPtr Parser::name_expression(std::size_t start) {

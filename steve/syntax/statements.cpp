@@ -138,7 +138,10 @@ ast::StmtPtr Parser::if_statement(std::size_t start) {
     ast::StmtPtr then = statement();
     node.branches.emplace_back(std::move(test), std::move(then));
     if (at_elif()) {
-      error(token().span, "foreign-statement", fmt::format("there is no '{}'", token().text), "write: else if");
+      if (!elif_reported_)
+        error(token().span, "foreign-statement", fmt::format("there is no '{}'", token().text),
+              "write, here and wherever it stands: else if");
+      elif_reported_ = true;
       advance();
       continue;
     }
@@ -291,6 +294,7 @@ void Parser::expect_period(std::size_t start) {
   if (interactive_ && at_end()) return;
   const bool next_begins = token().starts_line || at("}") || at_end() || (starts_statement(0) && !at_name());
   if (next_begins) return missing(".", "this statement");
+  if (at("{")) open_brace_reported_ = true;
   throw SyntaxError{after_statement(start)};
 }
 

@@ -100,7 +100,8 @@ class Interpolation {
   void dollar() {
     const std::size_t start = i_++;
     if (i_ == raw_.size()) {
-      parser_.lint(place(start, 1), "lint-lone-dollar", "a '$' at the end of a string is dropped");
+      parser_.lint(place(start, 1), "lint-lone-dollar", "a '$' at the end of a string is dropped",
+                   "write the name of a variable behind it, or a blank to print it");
       return;
     }
     const bool braces = raw_[i_] == '{' && i_ + 1 < raw_.size();
@@ -109,7 +110,9 @@ class Interpolation {
     const std::size_t name = i_;
     while (i_ < raw_.size() && is_reference_char(raw_[i_])) ++i_;
     if (i_ == name) {
-      parser_.lint(place(start, 1), "lint-lone-dollar", "this '$' has no name behind it and is printed as it is");
+      parser_.lint(
+          place(start, 1), "lint-lone-dollar", "this '$' has no name behind it and is printed as it is",
+          "write the name of a variable directly behind it, or say that it is meant: # allow: lint-lone-dollar");
       node_.texts.back() += '$';
       i_ = start + 1;
       return;

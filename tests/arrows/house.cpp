@@ -70,6 +70,7 @@ const std::map<std::string_view, std::vector<std::string_view>> kLibraries = {
     {"pugixml", {"steve/library"}},
     {"lua", {"hostapi/lua"}},
     {"CLI/", {"hostapi/command"}},
+    {"readline/", {"hostapi/command"}},
     {"breve/", {"hostapi/include", "hostapi/src", "hostapi/lua", "hostapi/command", "samples/hosts"}},
 };
 

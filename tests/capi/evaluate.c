@@ -190,6 +190,29 @@ static void statements_may_be_evaluated_while_others_run(void) {
   scene_close(&s);
 }
 
+static void statements_have_their_place_in_a_profile(void) {
+  scene s;
+  if (!scene_open(&s)) return;
+  CHECK_STATUS(BREVE_OK, run(s.world, "x = 1.", NULL));
+  CHECK_STATUS(BREVE_OK, breve_world_profile_start(s.world, NULL, NULL));
+  for (int i = 0; i < 3; ++i) {
+    CHECK_STATUS(BREVE_OK, run(s.world, "for i = 0, i < 10, i++: (self add first i).", NULL));
+    CHECK_STATUS(BREVE_ERROR_SCRIPT, run(s.world, "self fail-now.", NULL));
+  }
+  CHECK_STATUS(BREVE_OK, breve_world_profile_stop(s.world));
+  size_t count = 0;
+  uint64_t evaluated = 0;
+  CHECK_STATUS(BREVE_OK, breve_world_profile_count(s.world, &count));
+  for (size_t i = 0; i < count; ++i) {
+    breve_profile_node node;
+    CHECK_STATUS(BREVE_OK, breve_world_profile_node(s.world, i, &node));
+    if (strcmp(node.name, "evaluate") == 0) evaluated += node.calls;
+    if (strcmp(node.name, "evaluate") == 0) CHECK_TEXT("Stage", node.class_name);
+  }
+  CHECK(evaluated == 6 && count < 20);
+  scene_close(&s);
+}
+
 static const char* const describing =
     "@use Control.\nController Stage.\n"
     "Control : Stage {\n"
@@ -357,6 +380,7 @@ void evaluate_suite(void) {
   RUN(doubtful_statements_are_warned_of);
   RUN(statements_may_be_evaluated_while_others_run);
   RUN(a_large_text_inside_a_running_one_moves_nothing_that_is_used);
+  RUN(statements_have_their_place_in_a_profile);
   RUN(evaluating_often_leaks_nothing);
   RUN(a_gone_object_evaluates_nothing);
   RUN(snapshots_hold_the_session_and_the_hash_does_not);

@@ -39,9 +39,11 @@ bool check_near(double wanted, double number, double tolerance, const char* what
   return near;
 }
 
+void analysis_suite(void);
 void budget_suite(void);
 void calls_suite(void);
 void config_suite(void);
+void errors_suite(void);
 void evaluate_suite(void);
 void input_suite(void);
 void nulls_suite(void);
@@ -49,6 +51,7 @@ void objects_suite(void);
 void profile_suite(void);
 void program_suite(void);
 void reentry_suite(void);
+void reentry_all_suite(void);
 void reload_suite(void);
 void snapshot_suite(void);
 void stepping_suite(void);
@@ -59,9 +62,24 @@ static const struct {
   const char* name;
   void (*run)(void);
 } suites[] = {
-    {"budget", budget_suite},     {"calls", calls_suite},       {"config", config_suite},   {"evaluate", evaluate_suite}, {"input", input_suite},
-    {"nulls", nulls_suite},       {"objects", objects_suite},   {"profile", profile_suite},   {"program", program_suite}, {"reentry", reentry_suite}, {"reload", reload_suite},
-    {"snapshot", snapshot_suite}, {"stepping", stepping_suite}, {"threads", threads_suite}, {"values", values_suite},
+    {"analysis", analysis_suite},
+    {"budget", budget_suite},
+    {"calls", calls_suite},
+    {"config", config_suite},
+    {"errors", errors_suite},
+    {"evaluate", evaluate_suite},
+    {"input", input_suite},
+    {"nulls", nulls_suite},
+    {"objects", objects_suite},
+    {"profile", profile_suite},
+    {"program", program_suite},
+    {"reentry", reentry_suite},
+    {"reentry_all", reentry_all_suite},
+    {"reload", reload_suite},
+    {"snapshot", snapshot_suite},
+    {"stepping", stepping_suite},
+    {"threads", threads_suite},
+    {"values", values_suite},
 };
 
 int main(int argc, char** argv) {

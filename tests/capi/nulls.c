@@ -27,6 +27,8 @@ static void null_handles_give_an_argument_error_or_nothing(void) {
   breve_program_destroy(NULL);
   CHECK(breve_runtime_diagnostic_count(NULL) == 0);
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_runtime_diagnostic(NULL, 0, &diagnostic));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_lint(0, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_runtime_allow(NULL, "lint-shadow"));
   CHECK(breve_program_class_count(NULL) == 0);
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_program_class(NULL, 0, &info));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_create(NULL, NULL, NULL, &world));
@@ -72,6 +74,11 @@ static void null_handles_give_an_argument_error_or_nothing(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_call_prepared(NULL, o, sel, NULL, 0, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_key(NULL, "a", true));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_click(NULL, o));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_reload(NULL, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_evaluate(NULL, o, "1", 1, &v));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_session(NULL, &v));
+  CHECK(!breve_statements_complete(NULL, 1));
+  breve_world_interrupt(NULL);
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_menu_items(NULL, NULL, 0, &size));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_choose(NULL, o));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_hash(NULL, &hash));
@@ -108,6 +115,7 @@ static void null_arguments_give_an_argument_error(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_program_compile(s.runtime, NULL, "", 0, &program));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_program_compile(s.runtime, "x", "", 0, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_runtime_diagnostic(s.runtime, 0, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_runtime_allow(s.runtime, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_program_class(s.program, 0, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_create(s.runtime, NULL, NULL, &w));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_create(s.runtime, s.program, NULL, NULL));
@@ -177,6 +185,9 @@ static void null_arguments_give_an_argument_error(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_effects(w, NULL, 1, &size));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_effects(w, NULL, 0, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_stats(w, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_reload(w, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_evaluate(w, stage, NULL, 1, &v));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_session(w, NULL));
   CHECK(breve_world_last_error(w)->status == BREVE_ERROR_ARGUMENT);
   CHECK_STATUS(BREVE_OK, breve_world_step(w));
   scene_close(&s);

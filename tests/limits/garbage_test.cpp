@@ -18,7 +18,7 @@ Object : Spark {
     things (list).
   + to init:
     self enable-auto-free.
-  + to call-it n (string):
+  + to call-it n n (string):
     name = n.
   + to tie to o (object):
     other = o.
@@ -54,18 +54,21 @@ Control : Keeper {
     for i = 0, i < n, i++: kept = { kept }.
     kept = {}.
   + to drop-hash:
+    unused (hash).
     table{"a"} = { 1, { 2 } }. table{"b"} = "text".
-    table = 0.
+    table = unused.
   + to tie-lists count n (int):
     i (int).
     k (list).
     for i = 0, i < n, i++: { k = { i }. push k onto k. }
-    k = 0.
+    k = {}.
   + to tie-hashes count n (int):
     i (int).
+    for i = 0, i < n, i++: self tie-hash.
+  + to tie-hash:
     h (hash).
-    for i = 0, i < n, i++: { h = 0. h{"self"} = h. h{i} = i. }
-    h = 0.
+    h{"self"} = h.
+    h{1} = 2.
   + to tie-sparks count n (int):
     i (int).
     a, b (object).
@@ -77,7 +80,7 @@ Control : Keeper {
     k = { 0 }.
     for i = 0, i < n, i++: push { i } onto k.
     push k onto k.
-    k = 0.
+    k = {}.
 }
 )";
 

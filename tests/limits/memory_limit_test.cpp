@@ -73,7 +73,8 @@ Control : Hungry {
   + to drop-all:
     free all Thing. free all Mobile. free all Shape.
     if thing: free thing.
-    kept = {}. text = "". table = 0.
+    unused (hash).
+    kept = {}. text = "". table = unused.
     self unschedule method-call "ring".
     self unobserve instance self for-notification "news".
 }

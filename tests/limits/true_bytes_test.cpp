@@ -55,11 +55,13 @@ Control : Big {
       self set-display-text to "a long text for the display, which is more than a small string holds" number 1.
     }
     for i = 0, i < 5000, i++: {
-      self schedule method-call "wait-$i" at-time 1000 + i.
-      self observe instance things{i} for-notification "message $i" with-method "wait-$i".
+      self schedule method-call "wait" at-time 1000 + i.
+      self observe instance things{i} for-notification "message $i" with-method "wait".
     }
     drawing = new Drawing.
-    for i = 0, i < 2000, i++: drawing add-line from (0, 0, 0) to (i, i, i).
+    for i = 0, i < 2000, i++: drawing draw-line from (0, 0, 0) to (i, i, i).
+  + to wait:
+    return 0.
   + to iterate:
     self update-neighbors.
     super iterate.

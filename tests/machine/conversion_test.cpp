@@ -128,10 +128,10 @@ TEST(Conversion, VectorMatrixListHashDataTakeTheirOwnTypeOnly) {
 
 TEST(Conversion, ErrorNamesTypesAndPlace) {
   EXPECT_EQ(error_of([] { to_int(Value::of(Vector3(0, 0, 0)), "variable 'n'"); }),
-            "cannot convert a vector to an int for variable 'n'");
-  EXPECT_EQ(error_of([] { to_list(number(3), "keyword 'to'"); }), "cannot convert an int to a list for keyword 'to'");
+            "variable 'n' must be an int, not the vector (0, 0, 0)");
+  EXPECT_EQ(error_of([] { to_list(number(3), "keyword 'to'"); }), "keyword 'to' must be a list, not the int 3");
   EXPECT_EQ(error_of([] { to_double(Value()); }),
-            "cannot convert no value (NULL) to a double; the expression has no value");
+            "a double is needed here, not no value (NULL)");
 }
 
 TEST(Conversion, StringsGiveTheirLeadingInteger) {

@@ -152,14 +152,14 @@ TEST_F(Operators, Vectors) {
 
 TEST_F(Operators, WrongVectorOperandsAreTypeErrorsThatSayWhat) {
   const Value v = vector(1, 2, 3);
-  EXPECT_EQ(error(BinaryOp::Mul, v, v), "cannot multiply a vector by a vector; use dot(a, b) or cross(a, b)");
+  EXPECT_EQ(error(BinaryOp::Mul, v, v), "cannot multiply the vector (1, 2, 3) by the vector (1, 2, 3)");
   EXPECT_EQ(kind, RunErrorKind::Type);
-  EXPECT_EQ(error(BinaryOp::Add, v, number(1)), "cannot add a vector and an int");
-  EXPECT_EQ(error(BinaryOp::Sub, number(1), v), "cannot subtract a vector from an int");
-  EXPECT_EQ(error(BinaryOp::Mod, v, number(2)), "cannot take the remainder of a vector by an int");
-  EXPECT_EQ(error(BinaryOp::Pow, v, number(2)), "cannot raise a vector to the power of an int");
-  EXPECT_EQ(error(BinaryOp::Lt, v, v), "cannot compare a vector with a vector; compare their lengths, |a| and |b|");
-  EXPECT_EQ(error(BinaryOp::Eq, v, number(0)), "cannot compare a vector with an int");
+  EXPECT_EQ(error(BinaryOp::Add, v, number(1)), "cannot add the vector (1, 2, 3) and the int 1");
+  EXPECT_EQ(error(BinaryOp::Sub, number(1), v), "cannot subtract the vector (1, 2, 3) from the int 1");
+  EXPECT_EQ(error(BinaryOp::Mod, v, number(2)), "cannot take the remainder of the vector (1, 2, 3) by the int 2");
+  EXPECT_EQ(error(BinaryOp::Pow, v, number(2)), "cannot raise the vector (1, 2, 3) to the power of the int 2");
+  EXPECT_EQ(error(BinaryOp::Lt, v, v), "cannot compare the vector (1, 2, 3) with the vector (1, 2, 3)");
+  EXPECT_EQ(error(BinaryOp::Eq, v, number(0)), "cannot compare the vector (1, 2, 3) with the int 0");
   EXPECT_NE(error(BinaryOp::Mul, v, Value::of(Tag::Object, nullptr)), "");
 }
 
@@ -197,7 +197,7 @@ TEST_F(Operators, WrongMatrixOperandsAreErrors) {
     }
     EXPECT_NE(error(op, m, Value::of(Tag::Hash, nullptr)), "");
   }
-  EXPECT_EQ(error(BinaryOp::Add, m, v), "cannot add a matrix and a vector");
+  EXPECT_TRUE(error(BinaryOp::Add, m, v).starts_with("cannot add a matrix and the vector ("));
   EXPECT_NE(error(BinaryOp::Div, m, singular), "");
   EXPECT_EQ(kind, RunErrorKind::Math);
   EXPECT_NE(error(BinaryOp::Div, number(1), singular), "");
@@ -234,7 +234,7 @@ TEST_F(Operators, ArithmeticOnReferencesIsATypeError) {
       EXPECT_NE(error(op, reference, w.string("1")), "");
     }
   }
-  EXPECT_EQ(error(BinaryOp::Add, object, number(1)), "cannot add an object and an int");
+  EXPECT_TRUE(error(BinaryOp::Add, object, number(1)).starts_with("cannot add the object "));
   EXPECT_NE(error(BinaryOp::Eq, object, number(5)), "");
 }
 

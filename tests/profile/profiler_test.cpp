@@ -77,11 +77,11 @@ TEST_F(ProfilerTest, NodesAreMadePerCallerAndLine) {
 TEST_F(ProfilerTest, WhatIsActiveAlreadyCountsInItsFirstNode) {
   auto p = make();
   p.enter(kA, 0);
-  for (std::uint32_t i = 0; i < 500; ++i) p.enter(i % 2 == 0 ? kB : kA, i);
+  for (std::uint32_t i = 0; i < 500; ++i) p.enter(i % 2 == 0 ? kB : kA, i % 2);
   p.enter(kC, 9);
   p.leave();
   p.unwind(0);
-  EXPECT_EQ(tree(p), "world 0\nworld/a 251\nworld/a/b 250\nworld/a/b/c 1\n");
+  EXPECT_EQ(tree(p), "world 0\nworld/a 251\nworld/a/b 250\nworld/a/c 1\n");
 }
 
 TEST_F(ProfilerTest, AnExceptionLeavesWhatItPassed) {
@@ -150,14 +150,31 @@ TEST_F(ProfilerTest, WithoutMemoryItEndsAndKeepsWhatItHas) {
   EXPECT_LT(p.node_count(), 1000U);
 }
 
+TEST_F(ProfilerTest, WithoutMemoryToBeginWithThereIsNone) {
+  make();
+  for (std::size_t limit = 1; limit <= memory_.peak(); limit += 8) {
+    memory_.set_limit(limit);
+    if (limit < memory_.peak()) {
+      EXPECT_THROW(make(), std::bad_alloc) << limit;
+    } else {
+      EXPECT_NO_THROW(make());
+    }
+  }
+  EXPECT_EQ(memory_.used(), 0U);
+}
+
 TEST_F(ProfilerTest, ATreeThatIsFullCountsNewCallsInTheirCaller) {
   auto p = make();
-  p.enter(kA, 0);
-  for (std::uint32_t line = 0; line < Profiler::kMostNodes + 10; ++line) {
-    p.enter(kB, line);
+  constexpr std::uint32_t kWide = 400;
+  static_assert(kWide * kWide > Profiler::kMostNodes);
+  for (std::uint32_t caller = 0; caller < kWide; ++caller) {
+    p.enter(kA, caller);
+    for (std::uint32_t line = 0; line < kWide; ++line) {
+      p.enter(kB, line);
+      p.leave();
+    }
     p.leave();
   }
-  p.leave();
   EXPECT_TRUE(p.full());
   EXPECT_EQ(p.node_count(), Profiler::kMostNodes);
   EXPECT_EQ(p.node(1).calls, 1U);

@@ -107,7 +107,8 @@ TEST_P(Orders, AreFullOnTheTreeWithItsAttitude) {
 }
 
 TEST_P(Orders, OfWhatIsLostOfEnergyAndMomentumAreFull) {
-  const auto& [named, floating] = GetParam();
+  const Named named = std::get<0>(GetParam());
+  const bool floating = std::get<1>(GetParam());
   Creature creature(floating);
   constexpr double kSeconds = 0.4;
   const int steps = named.order < 2 ? 1600 : named.order < 4 ? 400 : 60;

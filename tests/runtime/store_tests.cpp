@@ -120,7 +120,7 @@ TEST_F(ImageStore, TgaIsReadAndGivenAlpha) {
   tga += std::string("\x01\x02\x03\x04\x05\x06", 6);
   put("a.tga", tga);
   const Image image = Image::read(path("a.tga"));
-  EXPECT_EQ(image.bytes(), (std::vector<std::uint8_t>{3, 2, 1, 255, 6, 5, 4, 255}));
+  EXPECT_EQ(image.bytes(), (std::pmr::vector<std::uint8_t>{3, 2, 1, 255, 6, 5, 4, 255}));
 }
 
 TEST_F(ImageStore, FailuresNameTheFile) {

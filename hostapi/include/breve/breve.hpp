@@ -120,6 +120,9 @@ struct Keyword {
   Value value;
 };
 
+/// Can these statements be evaluated as they are, or must another line follow?
+inline bool statements_complete(std::string_view text) { return breve_statements_complete(text.data(), text.size()); }
+
 struct Snapshot {
   std::vector<unsigned char> image;
 };
@@ -274,6 +277,22 @@ class World {
     const breve_status s = breve_world_prepare(get(), method, keywords.begin(), keywords.size(), &selector);
     return {status(s), selector};
   }
+  /// Run statements as though they stood in a method of `self`; the null object: of the controller.
+  Result<Value> evaluate(std::string_view text, Object self = {}) {
+    breve_value value = breve_value_null();
+    const breve_status s = breve_world_evaluate(get(), self, text.data(), text.size(), &value);
+    return {status(s), value};
+  }
+  /// The variables that evaluated statements have made: a hash.
+  Result<Value> session() {
+    breve_value value = breve_value_null();
+    const breve_status s = breve_world_session(get(), &value);
+    return {status(s), value};
+  }
+  /// Go on with a changed program, all or nothing.
+  Status reload(const Program& program) { return status(breve_world_reload(get(), program.get())); }
+  /// Stop the script that runs; from any thread, or a signal handler.
+  void interrupt() noexcept { breve_world_interrupt(get()); }
   Result<Value> call(Object object, breve_selector selector, std::initializer_list<Value> arguments = {}) {
     std::vector<breve_value> list(arguments.begin(), arguments.end());
     breve_value value = breve_value_null();
@@ -398,6 +417,8 @@ class Runtime {
     const breve_status s = breve_world_create(get(), program.get(), &config, &made);
     return {status(s), World(made)};
   }
+  /// Do not report lints of that code: "lint-unused-variable".
+  Status allow(const char* code) { return status(breve_runtime_allow(get(), code)); }
   /// What the last compilation had to say; good until the next one.
   std::vector<breve_diagnostic> diagnostics() const {
     std::vector<breve_diagnostic> all(breve_runtime_diagnostic_count(get()));

@@ -1,0 +1,16 @@
+# Fails if a function of HEADER is not named in TEST: cmake -DHEADER=breve.h -DTEST=file.c -P named_in.cmake
+# Analyses know no world and run no script: making one is tried, and stands for what is done with it.
+file(READ ${HEADER} header)
+file(READ ${TEST} test)
+string(REGEX MATCHALL "BREVE_API [^;(]*breve_[a-z_]+\\(" declarations "${header}")
+list(LENGTH declarations count)
+if(count LESS 80)
+  message(FATAL_ERROR "found ${count} functions in ${HEADER}: the pattern is out of date")
+endif()
+foreach(declaration IN LISTS declarations)
+  string(REGEX MATCH "breve_[a-z_]+\\($" name "${declaration}")
+  string(FIND "${test}" "${name}" at)
+  if(at EQUAL -1 AND NOT name MATCHES "^breve_analysis_")
+    message(SEND_ERROR "${name}) is not in ${TEST}")
+  endif()
+endforeach()
