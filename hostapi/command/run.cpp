@@ -6,8 +6,8 @@
 #include <chrono>
 #include <csignal>
 #include <ctime>
-#include <random>
 #include <optional>
+#include <random>
 #include <stdexcept>
 #include <thread>
 

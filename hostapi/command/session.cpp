@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -24,6 +25,22 @@ bool run_command(const char* command, breve_write_fn write, void* sink) {
   while (const std::size_t size = std::fread(chunk.data(), 1, chunk.size(), pipe.get()))
     write(sink, chunk.data(), size);
   return true;
+}
+
+/// What could have been meant by a name: the programs in the folder it points to.
+std::string programs_beside(const std::string& file) {
+  constexpr std::size_t kMost = 5;
+  std::vector<std::string> names;
+  std::error_code problem;
+  const auto folder = std::filesystem::path(file).parent_path();
+  for (std::filesystem::directory_iterator it(folder.empty() ? "." : folder, problem), end; !problem && it != end;
+       it.increment(problem))
+    if (it->path().extension() == ".tz") names.push_back(it->path().filename().string());
+  if (names.empty()) return {};
+  std::sort(names.begin(), names.end());
+  const bool more = names.size() > kMost;
+  names.resize(std::min(names.size(), kMost));
+  return fmt::format("; there are {}{}", fmt::join(names, ", "), more ? ", ..." : "");
 }
 
 }  // namespace
@@ -79,7 +96,7 @@ bool Session::allow(const std::string& code) { return breve_runtime_allow(runtim
 ExitStatus Session::load(const std::string& file, ProgramHandle& program) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) {
-    output_.complain(fmt::format("breve: there is no file '{}'\n", file));
+    output_.complain(fmt::format("breve: there is no file '{}'{}\n", file, programs_beside(file)));
     return kWrongUsage;
   }
   const LoadedFile* main = loader_.open(file);

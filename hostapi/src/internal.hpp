@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <exception>
 #include <memory>
 #include <memory_resource>
 #include <optional>
@@ -144,6 +145,7 @@ class ScriptScope {
 
  private:
   breve_world& world_;
+  int exceptions_ = std::uncaught_exceptions();
 };
 
 /// Begin a profile; an earlier one is gone. Only while nothing runs.

@@ -45,7 +45,7 @@ breve_value to_host(breve_world& world, const Value& value) {
       if (value.ref) std::memcpy(out.as.matrix, value.matrix()->m.data(), sizeof out.as.matrix);
       break;
     case Tag::String:
-      out.as.string.bytes = value.ref ? value.string()->bytes : "";
+      out.as.string.bytes = world.machine->heap().terminated(value.string());
       out.as.string.size = value.ref ? value.string()->size : 0;
       break;
     case Tag::Data:

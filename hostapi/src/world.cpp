@@ -136,7 +136,16 @@ ScriptScope::ScriptScope(breve_world& world) : world_(world) {
   if (world_.running++ == 0) world_.machine->begin_run();
 }
 
+// A call that failed, perhaps for lack of memory, has left garbage: it goes now, not at the end of an iteration that
+// may not be reached for lack of memory.
 ScriptScope::~ScriptScope() {
+  if (world_.running == 1 && std::uncaught_exceptions() != exceptions_) {
+    try {
+      world_.machine->heap().reclaim();
+    } catch (...) {
+      // A destroy method that finds no memory either; what it has not freed waits for the end of the iteration.
+    }
+  }
   --world_.running;
   world_.references.forget_all();
 }

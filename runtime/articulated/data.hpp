@@ -54,8 +54,8 @@ class Data {
   /// @param memory  where the arrays of links live; outlives the Data
   explicit Data(const Model& model, std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
-  // Entry 0 is the world, which rests; link i has entry i + 1. So roots need no special case. After inverse_dynamics the
-  // couple and force of the world are what the ground gives.
+  // Entry 0 is the world, which rests; link i has entry i + 1. So roots need no special case. After inverse_dynamics
+  // the couple and force of the world are what the ground gives.
   std::pmr::vector<Work> work;
   std::pmr::vector<WideWork> wide;
   std::pmr::vector<Motion> motion;

@@ -92,12 +92,14 @@ void ObjectTable::join() {
     released_since_join_ = 0;
   }
   // Room first: nothing may fail half-way.
-  const auto make_room = [this](std::pmr::vector<ObjectId>& list) {
-    const std::size_t needed = list.size() + joining_.size();
+  const auto make_room = [this](std::pmr::vector<ObjectId>& list, bool Slot::*joins) {
+    const auto more = std::count_if(joining_.begin(), joining_.end(),
+                                    [&](ObjectId id) { return alive(id) && slots_[id.index].*joins; });
+    const std::size_t needed = list.size() + static_cast<std::size_t>(more);
     if (needed > list.capacity()) list.reserve(std::max(needed, 2 * list.capacity()));
   };
-  make_room(iterating_);
-  make_room(post_iterating_);
+  make_room(iterating_, &Slot::iterates);
+  make_room(post_iterating_, &Slot::post_iterates);
   for (const ObjectId id : joining_) {
     if (!alive(id)) continue;
     if (slots_[id.index].iterates) iterating_.push_back(id);

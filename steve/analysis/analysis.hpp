@@ -43,7 +43,7 @@ struct SymbolInfo {
   bool library = false, loaded = false, hidden = false;
 };
 
-/// A name at a place.
+/// A name at a place. Its texts live as long as the analysis that gave it.
 struct Reference {
   NameKind kind = NameKind::Word;
   std::string_view name, type, signature, doc;

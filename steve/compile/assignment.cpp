@@ -16,7 +16,7 @@ Operand FunctionCompiler::assign(const ast::Assign& a, const ast::Expr& e) {
     }
     if (!a.op) return assign_to_variable(*variable, n->name, *a.value);
     const auto current = stable(read(*variable), *a.value);
-    const auto value = expr(*a.value);
+    const auto value = operand(*a.value);
     emit_.at(e.span);
     const Operand local{variable->type(), variable->local ? variable->local->slot : std::uint16_t{0}, false};
     const bool direct = variable->local && variable->class_name() == kNoSymbol;
@@ -31,7 +31,7 @@ Operand FunctionCompiler::assign(const ast::Assign& a, const ast::Expr& e) {
     return stored;
   }
   const auto current = stable(load(target), *a.value);
-  const auto value = expr(*a.value);
+  const auto value = operand(*a.value);
   emit_.at(e.span);
   const auto stored = store(target, binary(*a.op, current, value, nullptr));
   release(target);
@@ -81,13 +81,13 @@ Operand FunctionCompiler::store_variable(const Variable& variable, std::string_v
     const Operand local{type, variable.local->slot, false};
     const bool checked = variable.class_name() != kNoSymbol;
     const auto converted = convert(value, type, what, checked ? nullptr : &local);
-    if (checked) check_class(converted, variable.class_name(), what, emit_.span());
+    if (checked) check_class(converted, variable.class_name(), what);
     move(local, converted);
     emit_.release(converted);
     return local;
   }
   const auto converted = convert(value, type, what);
-  check_class(converted, variable.class_name(), what, emit_.span());
+  check_class(converted, variable.class_name(), what);
   write_member(*variable.member, converted);
   return converted;
 }
@@ -99,11 +99,10 @@ void FunctionCompiler::write_member(const VariableInfo& member, const Operand& v
   emit_.emit_imm(op, value.slot, static_cast<std::int32_t>(member.slot));
 }
 
-void FunctionCompiler::check_class(const Operand& object, Symbol class_name, std::int32_t what, const Span& span) {
+void FunctionCompiler::check_class(const Operand& object, Symbol class_name, std::int32_t what) {
   if (class_name == kNoSymbol) return;
   const auto* cls = builder_.class_named(builder_.symbol_name(class_name));
   if (!cls) return;  // reported where the variable is declared
-  (void)span;
   emit_.emit_imm(Op::CheckClass, object.slot, static_cast<std::int32_t>(cls->id));
   emit_.ext(0, what);
 }
@@ -274,7 +273,7 @@ Operand FunctionCompiler::store_array(const Place& p, const Operand& value) {
   const auto type = p.variable.type();
   const auto what = text("element of array '" + p.name + "'");
   const auto converted = convert(value, type, what);
-  check_class(converted, p.variable.class_name(), what, emit_.span());
+  check_class(converted, p.variable.class_name(), what);
   const auto flags = static_cast<std::uint16_t>(slot_count(type) | (p.variable.local ? kFrameArray : 0));
   const bool counted = !p.variable.local && type >= StaticType::String && type <= StaticType::Data;
   emit_.emit(counted ? Op::ArraySetRef : Op::ArraySet, converted.slot, p.key.slot, flags);

@@ -34,15 +34,22 @@ namespace breve::steve {
   X(ArrayGetList) X(ArrayGetHash) \
   /* int */ \
   X(AddInt) X(SubInt) X(MulInt) X(DivInt) X(ModInt) X(PowInt) X(NegInt) X(AbsInt) X(AddIntImm) \
+  X(MulIntImm) X(DivIntImm) X(ModIntImm)  /* a = b op c, c a number that is neither 0 nor -1 */ \
   X(LtInt) X(LeInt) X(EqInt) X(NeInt) X(NotInt) \
   /* double */ \
   X(AddDouble) X(SubDouble) X(MulDouble) X(DivDouble) \
-  X(AddConstant) X(SubConstant) X(MulConstant) X(DivConstant)  /* a = b op numbers[c], double */ \
+  X(AddConstant) X(MulConstant) X(DivConstant)  /* a = b op numbers[c], double */ \
+  X(ConstantSub) X(ConstantDiv)   /* a = numbers[c] op b */ \
+  X(IntMulConstant)               /* double a = int b * numbers[c] */ \
+  X(MulAdd) X(MulSub) X(SubMul)   /* a = b * c + d, b * c - d, d - b * c; ext.a: d */ \
+  X(MulConstantAdd) X(MulConstantSub) X(SubMulConstant) /* the same with numbers[c] */ \
+  X(AddAddConstant) X(SubAddConstant) /* a = b + c + numbers[ext.a], b - c + numbers[ext.a] */ \
   X(ModDouble) X(PowDouble) X(NegDouble) X(AbsDouble) \
   X(LtDouble) X(LeDouble) X(EqDouble) X(NeDouble) \
   X(IntToDouble) X(DoubleToInt) \
   /* vector */ \
   X(AddVector) X(SubVector) X(NegVector) X(ScaleVector) X(DivVector) X(EqVector) X(NeVector) X(Length) X(Dot) X(Cross) \
+  X(MulAddVector) X(MulSubVector) X(SubMulVector) /* a = b * double c + d, b * c - d, d - b * c; ext.a: d */ \
   X(EqObject) X(NeObject) \
   /* dynamic values */ \
   X(BoxInt) X(BoxDouble) X(BoxVector) X(BoxMatrix) \
@@ -54,6 +61,9 @@ namespace breve::steve {
   X(CheckClass)   /* object a is null or an instance of class imm; ext.imm: text number */ \
   X(Truth)        /* int a = truth of any b */ \
   X(Binary)       /* any a = b op c; ext.a: ast::BinaryOp */ \
+  X(AddAny) X(SubAny) X(MulAny)   /* any a = any b op any c (kResult: the result register) */ \
+  X(AddDoubleAny) X(SubDoubleAny) X(AddAnyDouble) X(SubAnyDouble) /* double a = b op c, c op b; double b, any c or kResult */ \
+  X(AddVectorAny) X(SubVectorAny) X(AddAnyVector) X(SubAnyVector) /* the same with vectors a and b */ \
   X(Negate) X(Magnitude) X(RandomInt) X(RandomDouble) X(RandomVector) X(RandomAny) \
   /* jumps: imm is relative to the next instruction */ \
   X(Jump) X(Loop) \
@@ -65,10 +75,12 @@ namespace breve::steve {
   X(JumpIfLtInt) X(JumpIfLeInt) X(JumpIfEqInt) X(JumpIfNeInt) \
   X(JumpIfLtDouble) X(JumpIfLeDouble) X(JumpIfEqDouble) X(JumpIfNeDouble) \
   X(JumpIfLtSmall) X(JumpIfLeSmall) X(JumpIfGtSmall) X(JumpIfGeSmall) X(JumpIfEqSmall) X(JumpIfNeSmall) /* int a, number b */ \
+  X(StepJumpIfLt) X(StepJumpIfLe) X(StepJumpIfLtImm) /* a += ext.a, then the test against b or ext.imm */ \
   /* containers */ \
   X(NewList)      /* a = list; imm: capacity */ \
   X(Append)       /* list a gets any b */ \
   X(Push) X(Prepend)            /* list a gets any b */ \
+  X(PushInt) X(PushDouble) X(PushRef) /* list a gets b; c: tag of a reference */ \
   X(Pop) X(Unprepend)           /* any a from list b */ \
   X(Insert)       /* list a, any value b, any index c */ \
   X(Remove)       /* any a = removed from any b at any c */ \

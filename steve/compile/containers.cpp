@@ -48,6 +48,7 @@ Operand FunctionCompiler::function_call(const ast::FunctionCall& f, const ast::E
     zero(target);
     return target;
   }
+  if (f.name == "dot" || f.name == "cross") return product(f, e, into);
   if (f.name == "atan2" && f.arguments.size() == 1)
     builder_.lint(e.span, "lint-one-argument-atan2", "atan2 with one argument is atan",
                   "for an angle in all four quadrants write atan2(y, x)");
@@ -63,16 +64,23 @@ Operand FunctionCompiler::function_call(const ast::FunctionCall& f, const ast::E
   }
   emit_.at(e.span);
   const auto type = signature.back() == 'n' ? StaticType::Null : type_of_letter(signature.back());
-  if (f.name == "dot" || f.name == "cross") {
-    const auto target = result(type, into);
-    emit_.emit(f.name == "dot" ? Op::Dot : Op::Cross, target.slot, registers[0].slot, registers[1].slot);
-    emit_.release_block(registers);
-    return target;
-  }
   emit_.emit_imm(Op::Function, registers.empty() ? std::uint16_t{0} : registers[0].slot,
                  static_cast<std::int32_t>(entry->number));
   emit_.release_block(registers);
   return result_register(type, into);
+}
+
+/// dot(a, b) and cross(a, b) are instructions, not calls.
+Operand FunctionCompiler::product(const ast::FunctionCall& f, const ast::Expr& e, const Operand* into) {
+  const auto argument = [&](std::size_t i) {
+    const auto what = text("argument " + std::to_string(i + 1) + " of " + f.name);
+    return convert(expr(*f.arguments[i]), StaticType::Vector, what);
+  };
+  const auto a = stable(argument(0), *f.arguments[1]);
+  const auto b = argument(1);
+  emit_.at(e.span);
+  return f.name == "dot" ? emit_binary(Op::Dot, StaticType::Double, a, b, into)
+                         : emit_binary(Op::Cross, StaticType::Vector, a, b, into);
 }
 
 Operand FunctionCompiler::random(const ast::RandomExpr& r) {
@@ -93,14 +101,16 @@ Operand FunctionCompiler::random(const ast::RandomExpr& r) {
   return target;
 }
 
+Operand FunctionCompiler::unknown_class(const std::string& name, const Span& span) {
+  builder_.report_unknown_class(name, span);
+  const auto target = emit_.temporary(StaticType::Any);
+  emit_.emit_imm(Op::NewNamed, target.slot, static_cast<std::int32_t>(builder_.string_number(name)));
+  return target;
+}
+
 Operand FunctionCompiler::make_new(const ast::NewExpr& n) {
   const auto* cls = builder_.class_named(n.class_name);
-  if (!cls) {
-    builder_.report_unknown_class(n.class_name, n.class_span);
-    const auto target = emit_.temporary(StaticType::Any);
-    emit_.emit_imm(Op::NewNamed, target.slot, static_cast<std::int32_t>(builder_.string_number(n.class_name)));
-    return target;
-  }
+  if (!cls) return unknown_class(n.class_name, n.class_span);
   if (n.count) {
     const auto count = any(*n.count);
     const auto target = emit_.temporary(StaticType::Any);
@@ -116,12 +126,7 @@ Operand FunctionCompiler::make_new(const ast::NewExpr& n) {
 
 Operand FunctionCompiler::all(const ast::AllExpr& a) {
   const auto* cls = builder_.class_named(a.class_name);
-  if (!cls) {
-    builder_.report_unknown_class(a.class_name, a.class_span);
-    const auto target = emit_.temporary(StaticType::Any);
-    emit_.emit_imm(Op::NewNamed, target.slot, static_cast<std::int32_t>(builder_.string_number(a.class_name)));
-    return target;
-  }
+  if (!cls) return unknown_class(a.class_name, a.class_span);
   const auto target = emit_.temporary(StaticType::List);
   emit_.emit_imm(Op::All, target.slot, static_cast<std::int32_t>(cls->id));
   return target;
@@ -143,8 +148,18 @@ Operand FunctionCompiler::list_operand(const ast::Expr& e, std::string_view what
 
 Operand FunctionCompiler::push(const ast::Push& p) {
   const auto list = stable(list_operand(*p.list, p.front ? "what is prepended to" : "what is pushed onto"), *p.value);
-  const auto value = any(*p.value);
-  emit_.emit(p.front ? Op::Prepend : Op::Push, list.slot, value.slot);
+  auto value = expr(*p.value);
+  const bool reference = value.type >= StaticType::String && value.type <= StaticType::Data;
+  if (!p.front && value.type == StaticType::Int) {
+    emit_.emit(Op::PushInt, list.slot, value.slot);
+  } else if (!p.front && value.type == StaticType::Double) {
+    emit_.emit(Op::PushDouble, list.slot, value.slot);
+  } else if (!p.front && reference) {
+    emit_.emit(Op::PushRef, list.slot, value.slot, static_cast<std::uint16_t>(value.type));
+  } else {
+    value = boxed(value);
+    emit_.emit(p.front ? Op::Prepend : Op::Push, list.slot, value.slot);
+  }
   emit_.release(value);
   return list;
 }

@@ -17,7 +17,7 @@ int slot_count(StaticType type) {
 }
 
 namespace {
-bool is_compare_jump(Op op) { return op >= Op::JumpUnlessLtInt && op <= Op::JumpIfNeSmall; }
+bool is_compare_jump(Op op) { return op >= Op::JumpUnlessLtInt && op <= Op::StepJumpIfLtImm; }
 }  // namespace
 
 int Emitter::pool_of(StaticType type) {
@@ -54,6 +54,13 @@ std::uint16_t Emitter::fresh(StaticType type, std::uint32_t count) {
   return slot;
 }
 
+std::uint16_t Emitter::pooled(StaticType type) {
+  const auto slot = fresh(type, 1);
+  temporaries_.resize(std::max<std::size_t>(temporaries_.size(), function_.frame_slots));
+  temporaries_[slot] = true;
+  return slot;
+}
+
 Operand Emitter::temporary(StaticType type) {
   if (type == StaticType::Null) type = StaticType::Any;
   auto& pool = free_[pool_of(type)];
@@ -62,7 +69,7 @@ Operand Emitter::temporary(StaticType type) {
     pool.pop_back();
     return {type, slot, true};
   }
-  return {type, fresh(type, 1), true};
+  return {type, pooled(type), true};
 }
 
 void Emitter::release(const Operand& operand) {
@@ -85,7 +92,7 @@ std::vector<Operand> Emitter::block(const std::vector<StaticType>& types) {
     return block;
   }
   std::vector<Operand> block;
-  for (const auto type : types) block.push_back({type, fresh(type, 1), false});
+  for (const auto type : types) block.push_back({type, pooled(type), false});
   return block;
 }
 
@@ -145,9 +152,30 @@ void Emitter::compare_jump(Op op, std::uint16_t a, std::uint16_t b, Label& label
 }
 
 void Emitter::place(Label& label) {
-  label.position = here();
+  label.position = placed_ = here();
   for (const auto use : label.uses) patch(use, label.position);
   label.uses.clear();
+}
+
+Instruction* Emitter::just_made(const Operand& temporary) {
+  auto& code = function_.code;
+  if (!temporary.temporary || code.empty() || placed_ == here() || code.back().a != temporary.slot) return nullptr;
+  return &code.back();
+}
+
+std::optional<Instruction> Emitter::take_product(const Operand& temporary) {
+  const auto* made = just_made(temporary);
+  if (!made || !is_product(made->op)) return std::nullopt;
+  const auto is_pooled = [this](std::uint16_t slot) { return slot < temporaries_.size() && temporaries_[slot]; };
+  if (is_pooled(made->b) || (made->op != Op::MulConstant && is_pooled(made->c))) return std::nullopt;
+  const auto product = *made;
+  drop_last();
+  return product;
+}
+
+void Emitter::drop_last() {
+  function_.code.pop_back();
+  function_.spans.pop_back();
 }
 
 void Emitter::patch(std::uint32_t use, std::int32_t target) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,10 +54,17 @@ class Emitter {
   void jump_ext(Label& label, std::uint16_t a = 0);  // the data word of an instruction that jumps
   void compare_jump(Op op, std::uint16_t a, std::uint16_t b, Label& label);
   void place(Label& label);
+  /// The instruction before, if it put a temporary into `slot` and no jump leads here: it may be made part of the next.
+  Instruction* just_made(const Operand& temporary);
+  void drop_last();
+  static bool is_product(Op op) { return op == Op::MulDouble || op == Op::MulConstant || op == Op::ScaleVector; }
+  /// Take back the instruction before, if it made `temporary` as a product of variables.
+  std::optional<Instruction> take_product(const Operand& temporary);
   std::int32_t here() const { return static_cast<std::int32_t>(function_.code.size()); }
 
  private:
   void patch(std::uint32_t use, std::int32_t target);
+  std::uint16_t pooled(StaticType type);
   std::uint16_t fresh(StaticType type, std::uint32_t count);
   static int pool_of(StaticType type);
 
@@ -64,7 +72,9 @@ class Emitter {
   Diagnostics& diagnostics_;
   Span span_;
   std::vector<std::uint16_t> free_[5];
+  std::vector<bool> temporaries_;  // for each slot: it is one, or an argument of a call
   std::map<std::string, std::vector<std::vector<Operand>>> free_blocks_;
+  std::int32_t placed_ = -1;  // the last label
   bool full_ = false;
 };
 

@@ -107,9 +107,9 @@ Operand FunctionCompiler::array_slot(const Variable& variable, const ast::Expr& 
   if (variable.array_size() < 0) {
     if (variable.local) variable.local->used = true;
     if (variable.array_size() != kBrokenType)
-      builder_.diagnostics().error(emit_.span(), "not-an-array", "'" + std::string(name) + "' is not an array",
-                                   "elements of lists, hashes and vectors are taken with braces: " + std::string(name) +
-                                       "{i}");
+      builder_.diagnostics().error(
+          emit_.span(), "not-an-array", "'" + std::string(name) + "' is not an array",
+          "elements of lists, hashes and vectors are taken with braces: " + std::string(name) + "{i}");
     return emit_.temporary(StaticType::Int);
   }
   if (variable.local) variable.local->used = true;
@@ -142,28 +142,12 @@ Operand FunctionCompiler::index(const ast::IndexExpr& i, const ast::Expr& e) {
 Operand FunctionCompiler::index_of(const Operand& base, const ast::Expr& key) {
   if (base.type == StaticType::List) {
     const auto position = expr(key);
-    if (position.type == StaticType::Int) {
-      const auto target = emit_.temporary(StaticType::Any);
-      emit_.emit(Op::IndexList, target.slot, base.slot, position.slot);
-      emit_.release(position);
-      emit_.release(base);
-      return target;
-    }
+    if (position.type == StaticType::Int) return emit_binary(Op::IndexList, StaticType::Any, base, position, nullptr);
     const auto container = boxed(base);
-    const auto box = boxed(position);
-    const auto target = emit_.temporary(StaticType::Any);
-    emit_.emit(Op::Index, target.slot, container.slot, box.slot);
-    emit_.release(box);
-    emit_.release(container);
-    return target;
+    return emit_binary(Op::Index, StaticType::Any, container, boxed(position), nullptr);
   }
   const auto container = boxed(base);
-  const auto position = any(key);
-  const auto target = emit_.temporary(StaticType::Any);
-  emit_.emit(Op::Index, target.slot, container.slot, position.slot);
-  emit_.release(position);
-  emit_.release(container);
-  return target;
+  return emit_binary(Op::Index, StaticType::Any, container, any(key), nullptr);
 }
 
 std::uint32_t FunctionCompiler::member_site(std::string_view name) {

@@ -103,14 +103,25 @@ class FunctionCompiler {
   Operand unary(const ast::Unary& u, const ast::Expr& e, const Operand* into);
   Operand chain(const ast::Chain& c, const ast::Expr& e, const Operand* into);
   Operand binary(ast::BinaryOp op, Operand a, Operand b, const Operand* into);
-  std::optional<Operand> with_constant(ast::BinaryOp op, const Operand& left, double number, const Operand* into);
+  Operand link(Operand left, ast::BinaryOp op, const ast::Expr& right, const Span& span, const Operand* into);
+  Operand operand(const ast::Expr& e);
+  Operand number_first(const ast::Expr& first, ast::BinaryOp op, const ast::Expr& right, const Span& span,
+                       const Operand* into);
+  std::optional<Operand> with_number(ast::BinaryOp op, Operand left, double number, bool integer, const Operand* into);
+  std::optional<Operand> with_constant(Op code, const Operand& left, double number, const Operand* into);
+  Operand emit_binary(Op code, StaticType type, const Operand& x, const Operand& y, const Operand* into);
+  Operand product_and(const Instruction& product, ast::BinaryOp op, bool product_first, const Operand& made,
+                      const Operand& other, const Operand* into);
+  std::optional<Operand> multiply_add(ast::BinaryOp op, const Operand& a, const Operand& b, const Operand* into);
   std::optional<Operand> vector_binary(ast::BinaryOp op, Operand a, Operand b, const Operand* into);
   void lint_operands(ast::BinaryOp op, StaticType a, StaticType b);
-  Operand generic_binary(ast::BinaryOp op, const Operand& a, const Operand& b);
+  Operand generic_binary(ast::BinaryOp op, const Operand& a, const Operand& b, const Operand* into);
   Operand logical(const ast::Expr& e, const Operand* into);
   Operand magnitude(const ast::Magnitude& m, const Operand* into);
   Operand function_call(const ast::FunctionCall& f, const ast::Expr& e, const Operand* into);
+  Operand product(const ast::FunctionCall& f, const ast::Expr& e, const Operand* into);
   Operand random(const ast::RandomExpr& r);
+  Operand unknown_class(const std::string& name, const Span& span);
   Operand make_new(const ast::NewExpr& n);
   Operand all(const ast::AllExpr& a);
   Operand list_operand(const ast::Expr& e, std::string_view what);
@@ -145,7 +156,7 @@ class FunctionCompiler {
   void write_member(const VariableInfo& member, const Operand& value);
   Operand store_array(const Place& place, const Operand& value);
   void release(Place& place);
-  void check_class(const Operand& object, Symbol class_name, std::int32_t what, const Span& span);
+  void check_class(const Operand& object, Symbol class_name, std::int32_t what);
 
   // --- statements
   // -------------------------------------------------------------------------------------------------------------
@@ -157,6 +168,7 @@ class FunctionCompiler {
   void if_statement(const ast::If& s, bool keep);
   void while_statement(const ast::While& s, bool keep);
   void for_statement(const ast::For& s, bool keep);
+  bool counting_for(const ast::For& s, Label& body);
   void foreach_statement(const ast::Foreach& s, const Span& span, bool keep);
   void print(const ast::Print& p);
   void return_statement(const ast::Return& r);

@@ -41,7 +41,7 @@ constexpr std::array kLints{
     Lint{"lint-unknown-class", Warning, "an object of a class that does not exist"},
     Lint{"lint-unknown-method", Warning, "a method that no class has, or not the class that is called"},
     Lint{"lint-unused-comparison", Warning, "a comparison whose result is not used, where '=' may be meant"},
-    Lint{"lint-unused-local", Warning, "a local variable is never used"},
+    Lint{"lint-unused-local", Warning, "a local variable is never read"},
     Lint{"lint-unused-parameter", Note, "a parameter is never used"},
     Lint{"lint-unused-variable", Warning, "an instance variable is never used"},
 };

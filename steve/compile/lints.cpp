@@ -66,9 +66,9 @@ void ProgramBuilder::check_calls() {
   for (const auto& [tree, info] : declared_) {
     if (embedded(info->span)) continue;
     for (const auto& method : tree.methods) {
-      const auto visit = [&](const ast::Expr& e) {
+      const auto visit = [&, &owner = *info](const ast::Expr& e) {
         if (const auto* call = std::get_if<ast::Call>(&e.node))
-          check_call(*call, e, method, *info, methods[symbol(call->selector)]);
+          check_call(*call, e, method, owner, methods[symbol(call->selector)]);
       };
       for (const auto& statement : method.body) walk(*statement, visit);
     }

@@ -55,124 +55,210 @@ Operand FunctionCompiler::unary(const ast::Unary& u, const ast::Expr& e, const O
 
 Operand FunctionCompiler::chain(const ast::Chain& c, const ast::Expr& e, const Operand* into) {
   if (c.rest.front().first == ast::BinaryOp::And || c.rest.front().first == ast::BinaryOp::Or) return logical(e, into);
-  // A number written first waits for the other side, so that it is loaded with the right type.
-  const auto first_number = written_number(*c.first);
-  const bool first_int = first_number && is_written_int(*c.first);
+  const auto target = [&](std::size_t i) { return i + 1 == c.rest.size() ? into : nullptr; };
+  std::size_t i = 0;
   Operand left;
-  if (!first_int) left = expr(*c.first);
-  for (std::size_t i = 0; i < c.rest.size(); ++i) {
-    const auto& [op, operand] = c.rest[i];
-    const Operand* target = i + 1 == c.rest.size() ? into : nullptr;
-    const auto number = written_number(*operand);
-    const bool pending = i == 0 && first_int;
-    if (pending && number && is_written_int(*operand)) left = expr(*c.first);
-    if (!pending || left.type != StaticType::Null) {
-      left = stable(left, *operand);
-      if (number && is_written_int(*operand) && left.type == StaticType::Int && std::abs(*number) < 32768 &&
-          (op == ast::BinaryOp::Add || op == ast::BinaryOp::Sub)) {
-        const auto sum = result(StaticType::Int, target);
-        const auto step = static_cast<std::int16_t>(op == ast::BinaryOp::Add ? *number : -*number);
-        emit_.at(e.span);
-        emit_.emit(Op::AddIntImm, sum.slot, left.slot, static_cast<std::uint16_t>(step));
-        emit_.release(left);
-        left = sum;
-        continue;
-      }
-      if (number && left.type == StaticType::Double && op <= ast::BinaryOp::Div && *number != 0) {
-        if (const auto value = with_constant(op, left, *number, target)) {
-          left = *value;
-          continue;
-        }
-      }
-      if (number && left.type == StaticType::Double) {
-        const auto right = literal(ast::DoubleLit{*number}, nullptr);
-        emit_.at(e.span);
-        left = binary(op, left, right, target);
-        continue;
-      }
-      const auto right = expr(*operand);
-      emit_.at(e.span);
-      left = binary(op, left, right, target);
-      continue;
-    }
-    const auto right = expr(*operand);
-    emit_.at(e.span);
-    left = right.type == StaticType::Double || right.type == StaticType::Vector
-               ? literal(ast::DoubleLit{*first_number}, nullptr)
-               : literal(ast::IntLit{static_cast<std::int32_t>(*first_number)}, nullptr);
-    left = binary(op, left, right, target);
+  if (written_number(*c.first) && !written_number(*c.rest.front().second)) {
+    left = number_first(*c.first, c.rest.front().first, *c.rest.front().second, e.span, target(0));
+    i = 1;
+  } else {
+    const auto& next = *c.rest.front().second;  // what does not touch the result register
+    const bool plain = std::holds_alternative<ast::Name>(next.node) || written_number(next);
+    left = plain ? operand(*c.first) : expr(*c.first);
   }
+  for (; i < c.rest.size(); ++i) left = link(left, c.rest[i].first, *c.rest[i].second, e.span, target(i));
   return left;
 }
 
-std::optional<Operand> FunctionCompiler::with_constant(ast::BinaryOp op, const Operand& left, double number,
+/// left op right, where `left` is in its register already.
+Operand FunctionCompiler::link(Operand left, ast::BinaryOp op, const ast::Expr& right_tree, const Span& span,
+                               const Operand* into) {
+  using enum ast::BinaryOp;
+  left = stable(left, right_tree);
+  if (const auto number = written_number(right_tree)) {
+    emit_.at(span);
+    if (const auto value = with_number(op, left, *number, is_written_int(right_tree), into)) return *value;
+  }
+  // A product waits for what is added to it, so that both are one instruction, if nothing can change its factors.
+  std::optional<Instruction> product;
+  if ((op == Add || op == Sub) && !assigns(right_tree)) product = emit_.take_product(left);
+  auto right = operand(right_tree);
+  emit_.at(span);
+  if (!product) return binary(op, left, right, into);
+  if (left.type == StaticType::Double && right.type == StaticType::Int) right = convert(right, StaticType::Double, 0);
+  if (right.type == left.type) return product_and(*product, op, true, left, right, into);
+  emit_.emit(product->op, product->a, product->b, product->c);
+  return binary(op, left, right, into);
+}
+
+/// The right side of an operator: what a call gives may stay in the result register.
+Operand FunctionCompiler::operand(const ast::Expr& e) {
+  const auto* c = std::get_if<ast::Call>(&e.node);
+  if (!c) return expr(e);
+  const Span outer = emit_.span();
+  emit_.at(e.span);
+  call(*c, e);
+  emit_.at(outer);
+  return {StaticType::Any, kResult, false};
+}
+
+/// A number written first waits for the other side, so that it is loaded with the right type.
+Operand FunctionCompiler::number_first(const ast::Expr& first, ast::BinaryOp op, const ast::Expr& right_tree,
+                                       const Span& span, const Operand* into) {
+  using enum ast::BinaryOp;
+  const double number = *written_number(first);
+  const bool integer = is_written_int(first);
+  auto right = expr(right_tree);
+  emit_.at(span);
+  const bool commutes = op == Add || op == Mul;
+  if (!integer && right.type == StaticType::Int && !commutes) right = convert(right, StaticType::Double, 0);
+  if (commutes && (right.type == StaticType::Double || right.type == StaticType::Int))
+    if (const auto value = with_number(op, right, number, integer, into)) return *value;
+  if (right.type == StaticType::Double && (op == Sub || op == Div))
+    if (const auto value = with_constant(op == Sub ? Op::ConstantSub : Op::ConstantDiv, right, number, into))
+      return *value;
+  const bool loaded_as_double = !integer || right.type == StaticType::Double || right.type == StaticType::Vector;
+  const auto left = loaded_as_double ? literal(ast::DoubleLit{number}, nullptr)
+                                     : literal(ast::IntLit{static_cast<std::int32_t>(number)}, nullptr);
+  return binary(op, left, right, into);
+}
+
+/// left op number, where there is an instruction for it.
+std::optional<Operand> FunctionCompiler::with_number(ast::BinaryOp op, Operand left, double number, bool integer,
+                                                     const Operand* into) {
+  using enum ast::BinaryOp;
+  if (left.type == StaticType::Vector && (op == Mul || op == Div))
+    return binary(op, left, literal(ast::DoubleLit{number}, nullptr), into);
+  if (left.type == StaticType::Int && integer) {
+    if (std::abs(number) >= 32768 || op > Mod) return std::nullopt;
+    const bool divides = op == Div || op == Mod;
+    if (divides && (number == 0 || number == -1)) return std::nullopt;  // these fail, or may not fit
+    static constexpr Op kOps[] = {Op::AddIntImm, Op::AddIntImm, Op::MulIntImm, Op::DivIntImm, Op::ModIntImm};
+    const auto value = result(StaticType::Int, into);
+    const auto imm = static_cast<std::int16_t>(op == Sub ? -number : number);
+    emit_.emit(kOps[static_cast<int>(op)], value.slot, left.slot, static_cast<std::uint16_t>(imm));
+    emit_.release(left);
+    return value;
+  }
+  if (left.type == StaticType::Int && op == Mul) return with_constant(Op::IntMulConstant, left, number, into);
+  if (left.type == StaticType::Int) left = convert(left, StaticType::Double, 0);
+  if (left.type != StaticType::Double) return std::nullopt;
+  static constexpr Op kOps[] = {Op::AddConstant, Op::AddConstant, Op::MulConstant, Op::DivConstant};
+  const double constant = op == Sub ? -number : number;  // x - k is x + -k, to the last bit
+  if (op <= Div && !(op == Div && number == 0))
+    if (const auto value = with_constant(kOps[static_cast<int>(op)], left, constant, into)) return value;
+  return binary(op, left, literal(ast::DoubleLit{number}, nullptr), into);
+}
+
+std::optional<Operand> FunctionCompiler::with_constant(Op code, const Operand& left, double number,
                                                        const Operand* into) {
-  static constexpr Op kOps[] = {Op::AddConstant, Op::SubConstant, Op::MulConstant, Op::DivConstant};
   const auto index = emit_.number(number);
   if (index > 0xffff) return std::nullopt;
+  const auto constant = static_cast<std::uint16_t>(index);
+  const Instruction* sum = code == Op::AddConstant ? emit_.just_made(left) : nullptr;
+  if (sum && (sum->op == Op::AddDouble || sum->op == Op::SubDouble)) {
+    const Instruction made = *sum;
+    emit_.drop_last();
+    const auto value = result(StaticType::Double, into);
+    emit_.emit(made.op == Op::AddDouble ? Op::AddAddConstant : Op::SubAddConstant, value.slot, made.b, made.c);
+    emit_.ext(constant);
+    emit_.release(left);
+    return value;
+  }
   const auto value = result(StaticType::Double, into);
-  emit_.emit(kOps[static_cast<int>(op)], value.slot, left.slot, static_cast<std::uint16_t>(index));
+  emit_.emit(code, value.slot, left.slot, constant);
   emit_.release(left);
   return value;
 }
 
+Operand FunctionCompiler::emit_binary(Op code, StaticType type, const Operand& x, const Operand& y,
+                                      const Operand* into) {
+  const auto target = result(type, into);
+  emit_.emit(code, target.slot, x.slot, y.slot);
+  emit_.release(x);
+  emit_.release(y);
+  return target;
+}
+
+/// product + other, product - other, other - product.
+Operand FunctionCompiler::product_and(const Instruction& product, ast::BinaryOp op, bool product_first,
+                                      const Operand& made, const Operand& other, const Operand* into) {
+  const bool adds = op == ast::BinaryOp::Add;
+  Op code = adds ? Op::MulAdd : product_first ? Op::MulSub : Op::SubMul;
+  if (product.op == Op::MulConstant)
+    code = adds ? Op::MulConstantAdd : product_first ? Op::MulConstantSub : Op::SubMulConstant;
+  if (product.op == Op::ScaleVector)
+    code = adds ? Op::MulAddVector : product_first ? Op::MulSubVector : Op::SubMulVector;
+  const auto target = result(made.type, into);
+  emit_.emit(code, target.slot, product.b, product.c);
+  emit_.ext(other.slot);
+  emit_.release(made);
+  emit_.release(other);
+  return target;
+}
+
+/// a op b where one of them is a product that was made just now.
+std::optional<Operand> FunctionCompiler::multiply_add(ast::BinaryOp op, const Operand& a, const Operand& b,
+                                                      const Operand* into) {
+  if ((op != ast::BinaryOp::Add && op != ast::BinaryOp::Sub) || a.type != b.type || a.slot == b.slot)
+    return std::nullopt;
+  for (const bool first : {false, true}) {
+    const auto* made = emit_.just_made(first ? a : b);
+    if (!made || !Emitter::is_product(made->op)) continue;
+    const Instruction product = *made;
+    emit_.drop_last();
+    return product_and(product, op, first, first ? a : b, first ? b : a, into);
+  }
+  return std::nullopt;
+}
+
 Operand FunctionCompiler::binary(ast::BinaryOp op, Operand a, Operand b, const Operand* into) {
   using enum ast::BinaryOp;
-  const auto emit3 = [&](Op code, StaticType type, const Operand& x, const Operand& y) {
-    const auto target = result(type, into);
-    emit_.emit(code, target.slot, x.slot, y.slot);
-    emit_.release(a);
-    emit_.release(b);
-    return target;
-  };
+  if (const auto sum = multiply_add(op, a, b, into)) return *sum;
   if (const auto vector = vector_binary(op, a, b, into)) return *vector;
   if (a.type == StaticType::Object && b.type == StaticType::Object && (op == Eq || op == Ne))
-    return emit3(op == Eq ? Op::EqObject : Op::NeObject, StaticType::Int, a, b);
-  if (!is_number(a.type) || !is_number(b.type)) return generic_binary(op, a, b);
+    return emit_binary(op == Eq ? Op::EqObject : Op::NeObject, StaticType::Int, a, b, into);
+  if (!is_number(a.type) || !is_number(b.type)) return generic_binary(op, a, b, into);
   const bool integer = a.type == StaticType::Int && b.type == StaticType::Int;
   if (!integer) {
     a = convert(a, StaticType::Double, 0);
     b = convert(b, StaticType::Double, 0);
   }
-  const auto type = integer ? StaticType::Int : StaticType::Double;
+  static constexpr Op kInt[] = {Op::AddInt, Op::SubInt, Op::MulInt, Op::DivInt, Op::ModInt, Op::PowInt};
+  static constexpr Op kDouble[] = {Op::AddDouble, Op::SubDouble, Op::MulDouble,
+                                   Op::DivDouble, Op::ModDouble, Op::PowDouble};
+  const auto compare = [&](Op of_ints, Op of_doubles, const Operand& x, const Operand& y) {
+    return emit_binary(integer ? of_ints : of_doubles, StaticType::Int, x, y, into);
+  };
   switch (op) {
-    case Add: return emit3(integer ? Op::AddInt : Op::AddDouble, type, a, b);
-    case Sub: return emit3(integer ? Op::SubInt : Op::SubDouble, type, a, b);
-    case Mul: return emit3(integer ? Op::MulInt : Op::MulDouble, type, a, b);
-    case Div: return emit3(integer ? Op::DivInt : Op::DivDouble, type, a, b);
-    case Mod: return emit3(integer ? Op::ModInt : Op::ModDouble, type, a, b);
-    case Pow: return emit3(integer ? Op::PowInt : Op::PowDouble, type, a, b);
-    case Lt: return emit3(integer ? Op::LtInt : Op::LtDouble, StaticType::Int, a, b);
-    case Le: return emit3(integer ? Op::LeInt : Op::LeDouble, StaticType::Int, a, b);
-    case Gt: return emit3(integer ? Op::LtInt : Op::LtDouble, StaticType::Int, b, a);
-    case Ge: return emit3(integer ? Op::LeInt : Op::LeDouble, StaticType::Int, b, a);
-    case Eq: return emit3(integer ? Op::EqInt : Op::EqDouble, StaticType::Int, a, b);
-    case Ne: return emit3(integer ? Op::NeInt : Op::NeDouble, StaticType::Int, a, b);
-    default: return generic_binary(op, a, b);
+    case Lt: return compare(Op::LtInt, Op::LtDouble, a, b);
+    case Le: return compare(Op::LeInt, Op::LeDouble, a, b);
+    case Gt: return compare(Op::LtInt, Op::LtDouble, b, a);
+    case Ge: return compare(Op::LeInt, Op::LeDouble, b, a);
+    case Eq: return compare(Op::EqInt, Op::EqDouble, a, b);
+    case Ne: return compare(Op::NeInt, Op::NeDouble, a, b);
+    case And:
+    case Or: return generic_binary(op, a, b, into);
+    default: break;
   }
+  return emit_binary((integer ? kInt : kDouble)[static_cast<int>(op)], integer ? StaticType::Int : StaticType::Double,
+                     a, b, into);
 }
 
 std::optional<Operand> FunctionCompiler::vector_binary(ast::BinaryOp op, Operand a, Operand b, const Operand* into) {
   using enum ast::BinaryOp;
-  const auto emit3 = [&](Op code, StaticType type, const Operand& x, const Operand& y) {
-    const auto target = result(type, into);
-    emit_.emit(code, target.slot, x.slot, y.slot);
-    emit_.release(a);
-    emit_.release(b);
-    return target;
-  };
   const bool va = a.type == StaticType::Vector;
   const bool vb = b.type == StaticType::Vector;
   if (va && vb) {
-    if (op == Add) return emit3(Op::AddVector, StaticType::Vector, a, b);
-    if (op == Sub) return emit3(Op::SubVector, StaticType::Vector, a, b);
-    if (op == Eq) return emit3(Op::EqVector, StaticType::Int, a, b);
-    if (op == Ne) return emit3(Op::NeVector, StaticType::Int, a, b);
+    if (op == Add) return emit_binary(Op::AddVector, StaticType::Vector, a, b, into);
+    if (op == Sub) return emit_binary(Op::SubVector, StaticType::Vector, a, b, into);
+    if (op == Eq) return emit_binary(Op::EqVector, StaticType::Int, a, b, into);
+    if (op == Ne) return emit_binary(Op::NeVector, StaticType::Int, a, b, into);
     return std::nullopt;
   }
   if (va && is_number(b.type) && (op == Mul || op == Div)) {
     b = convert(b, StaticType::Double, 0);
-    return emit3(op == Mul ? Op::ScaleVector : Op::DivVector, StaticType::Vector, a, b);
+    return emit_binary(op == Mul ? Op::ScaleVector : Op::DivVector, StaticType::Vector, a, b, into);
   }
   if (vb && is_number(a.type) && (op == Mul || op == Div)) {
     if (op == Div)
@@ -182,14 +268,32 @@ std::optional<Operand> FunctionCompiler::vector_binary(ast::BinaryOp op, Operand
       emit_.emit_imm(Op::FailIfStrict, static_cast<std::uint16_t>(RunErrorKind::Type),
                      text("a number cannot be divided by a vector; write vector / number"));
     a = convert(a, StaticType::Double, 0);
-    return emit3(op == Mul ? Op::ScaleVector : Op::DivVector, StaticType::Vector, b, a);
+    return emit_binary(op == Mul ? Op::ScaleVector : Op::DivVector, StaticType::Vector, b, a, into);
   }
   return std::nullopt;
 }
 
-Operand FunctionCompiler::generic_binary(ast::BinaryOp op, const Operand& a, const Operand& b) {
+Operand FunctionCompiler::generic_binary(ast::BinaryOp op, const Operand& a, const Operand& b, const Operand* into) {
+  using enum ast::BinaryOp;
   lint_operands(op, a.type, b.type);
+  // A number and something dynamic add to a number or are an error; a vector likewise.
+  const bool a_dynamic = a.type == StaticType::Any;
+  const auto known = a_dynamic ? b.type : a.type;
+  if ((op == Add || op == Sub) && a_dynamic != (b.type == StaticType::Any) &&
+      (known == StaticType::Double || known == StaticType::Vector)) {
+    static constexpr Op kSums[2][2][2] = {{{Op::AddDoubleAny, Op::AddAnyDouble}, {Op::SubDoubleAny, Op::SubAnyDouble}},
+                                          {{Op::AddVectorAny, Op::AddAnyVector}, {Op::SubVectorAny, Op::SubAnyVector}}};
+    const Op code = kSums[known == StaticType::Vector][op == Sub][a_dynamic];
+    return emit_binary(code, known, a_dynamic ? b : a, a_dynamic ? a : b, into);
+  }
   const auto left = boxed(a);
+  if (op <= Mul) {
+    const auto right = b.slot == kResult ? b : boxed(b);
+    return emit_binary(op == Add   ? Op::AddAny
+                       : op == Sub ? Op::SubAny
+                                   : Op::MulAny,
+                       StaticType::Any, left, right, nullptr);
+  }
   const auto right = boxed(b);
   const auto target = emit_.temporary(StaticType::Any);
   emit_.emit(Op::Binary, target.slot, left.slot, right.slot);

@@ -37,7 +37,7 @@ void FunctionCompiler::compile() {
   for (const auto& local : method_.locals) {
     const auto found = locals_.find(local.name);
     if (found != locals_.end() && !found->second.used)
-      builder_.lint(local.span, "lint-unused-local", "the local variable '" + local.name + "' is never used",
+      builder_.lint(local.span, "lint-unused-local", "the local variable '" + local.name + "' is never read",
                     "remove it, or use it");
   }
 }
@@ -224,14 +224,48 @@ void FunctionCompiler::while_statement(const ast::While& s, bool keep) {
 }
 
 void FunctionCompiler::for_statement(const ast::For& s, bool keep) {
-  Label body, test;
+  Label body, test, end;
   emit_.release(expr(*s.start));
   emit_.jump(Op::Jump, 0, test);
   emit_.place(body);
   statement(*s.body, keep);
-  emit_.release(expr(*s.step));
+  // The first test stands apart if step and test are one: either way each turn is one jump back.
+  if (counting_for(s, body))
+    emit_.jump(Op::Jump, 0, end);
+  else
+    emit_.release(expr(*s.step));
   emit_.place(test);
   condition(*s.condition, true, body);
+  emit_.place(end);
+}
+
+/// Step and test of `i++` and `i < n` or `i <= n` as one instruction: i and n are local ints, or n is written out.
+bool FunctionCompiler::counting_for(const ast::For& s, Label& body) {
+  const auto local_int = [this](const ast::Expr& e) -> const Local* {
+    const auto* n = std::get_if<ast::Name>(&e.node);
+    const auto found = n ? locals_.find(n->name) : locals_.end();
+    if (found == locals_.end()) return nullptr;
+    return found->second.type == StaticType::Int && found->second.array_size < 0 ? &found->second : nullptr;
+  };
+  const auto* step = std::get_if<ast::Step>(&s.step->node);
+  const auto* test = std::get_if<ast::Chain>(&s.condition->node);
+  if (!step || !test || test->rest.size() != 1) return false;
+  const auto* counter = local_int(*step->target);
+  const auto& [op, limit] = test->rest.front();
+  if (!counter || local_int(*test->first) != counter || (op != ast::BinaryOp::Lt && op != ast::BinaryOp::Le))
+    return false;
+  const auto number = written_number(*limit);
+  const bool constant = number && is_written_int(*limit);
+  // i <= n is i < n + 1 where that is an int.
+  if (constant && op == ast::BinaryOp::Le && *number >= INT32_MAX) return false;
+  const auto* variable = local_int(*limit);
+  if (!constant && !variable) return false;
+  emit_.at(s.step->span);
+  const Op code = constant ? Op::StepJumpIfLtImm : op == ast::BinaryOp::Lt ? Op::StepJumpIfLt : Op::StepJumpIfLe;
+  emit_.compare_jump(code, counter->slot, variable ? variable->slot : std::uint16_t{0}, body);
+  const double bound = constant ? *number + (op == ast::BinaryOp::Le ? 1 : 0) : 0;
+  emit_.ext(static_cast<std::uint16_t>(static_cast<std::int16_t>(step->delta)), static_cast<std::int32_t>(bound));
+  return true;
 }
 
 void FunctionCompiler::foreach_statement(const ast::Foreach& s, const Span& span, bool keep) {

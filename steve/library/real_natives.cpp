@@ -175,14 +175,9 @@ double real_get_neighborhood_size(Machine& machine, Instance& self) {
 ListCell* real_get_neighbors(Machine& machine, Instance& self) {
   body_of(machine, self);
   const std::span<const std::uint64_t> neighbors = machine.world().neighbor_users(self.id);
-  const auto count = static_cast<std::uint32_t>(neighbors.size());
-  ListCell* list = machine.heap().list(count);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    auto* neighbor = reinterpret_cast<Instance*>(neighbors[i]);
-    machine.heap().retain(neighbor);
-    list->store[i] = Value::of(Tag::Object, neighbor);
-  }
-  list->size = count;
+  ListCell* list = machine.heap().list(static_cast<std::uint32_t>(neighbors.size()));
+  for (const std::uint64_t neighbor : neighbors)
+    machine.heap().push(*list, Value::of(Tag::Object, reinterpret_cast<Instance*>(neighbor)));
   return list;
 }
 

@@ -76,8 +76,8 @@ const Machine::Plan& Machine::make_plan(std::uint32_t number, const ClassInfo& c
       } else if (at->type == StaticType::Double && p.type == StaticType::Int) {
         kind = PlanStep::Kind::DoubleToInt;
       }
-      if (kind == PlanStep::Kind::Copy1 && !checked)
-        plan->moves.emplace_back(at->slot, to);
+      if ((kind == PlanStep::Kind::Copy1 || kind == PlanStep::Kind::IntToDouble) && !checked)
+        plan->moves.push_back({at->slot, to, kind == PlanStep::Kind::IntToDouble});
       else
         plan->steps.push_back({kind, at->type, at->slot, to, checked, &p});
     }
@@ -91,6 +91,7 @@ const Machine::Plan& Machine::make_plan(std::uint32_t number, const ClassInfo& c
 }
 
 void Machine::apply_steps(const Plan& plan, const Slot* caller, Slot* callee) {
+  const std::size_t pinned = pins_.size();
   for (const auto& step : plan.steps) {
     const Slot* from = caller + step.from;
     Slot* to = callee + step.to;
@@ -109,6 +110,7 @@ void Machine::apply_steps(const Plan& plan, const Slot* caller, Slot* callee) {
         check_class(static_cast<Instance*>(to->ref), *cls, "keyword '" + program_->symbols().name(p.keyword) + "'");
     }
   }
+  if (!plan.method->native && pins_.size() != pinned) pins_.resize(pinned);  // the frame holds them now
 }
 
 void Machine::convert_argument(const PlanStep& step, const Slot* from, Slot* to) {
@@ -170,9 +172,7 @@ void Machine::call_native(const Plan& plan, Instance& receiver, const Slot* call
   const std::size_t pinned = pins_.size();
   apply(plan, caller, args);
   top_ = args + kNativeRoom;
-  Value result;
-  plan.method->native(*this, receiver, args, result);
-  result_ = result;
+  plan.method->native(*this, receiver, args, result_);
   top_ = args;
   if (pins_.size() != pinned) pins_.resize(pinned);
 }

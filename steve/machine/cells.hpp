@@ -1,7 +1,10 @@
 // The cells of the heap: strings, matrices, lists, hashes, instances, pointers, data.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <iterator>
 #include <memory>
 #include <memory_resource>
 #include <string_view>
@@ -22,15 +25,31 @@ struct Container : Cell {
 };
 inline bool is_container(Tag tag) { return tag >= Tag::Object && tag <= Tag::Hash; }
 
+/// Bytes that several strings begin with: each is as long as it says, and the longest may grow in place. So a text that
+/// is built up piece by piece costs its length, not the square of it.
+struct SharedText {
+  SharedText* previous;
+  SharedText* next;
+  std::uint32_t cells;  // that share it
+  std::uint32_t used, capacity;
+  char bytes[4];  // really `capacity` and a zero byte
+};
+
 /// Immutable bytes; never empty (the empty string is the null reference).
 struct StringCell : Cell {
-  std::uint32_t size;
+  std::uint32_t size : 31;
+  std::uint32_t shared : 1;  // in place of bytes stands a SharedText*
   mutable std::uint32_t hash_cache =
       0;          // 0: not computed yet. Computed beforehand in immortal strings (shared by threads)
   char bytes[8];  // really `size`, with a zero byte behind
 
-  explicit StringCell(std::uint32_t n) : Cell(Tag::String), size(n) {}
-  std::string_view view() const { return {bytes, size}; }
+  explicit StringCell(std::uint32_t n) : Cell(Tag::String), size(n & 0x7fffffffU), shared(0) {}
+  SharedText* text() const {
+    SharedText* text = nullptr;
+    std::memcpy(&text, bytes, sizeof text);
+    return text;
+  }
+  std::string_view view() const { return {shared != 0 ? text()->bytes : bytes, size}; }
 };
 inline std::string_view view(const StringCell* s) { return s ? s->view() : std::string_view{}; }
 
@@ -48,19 +67,52 @@ struct MatrixCell : Cell {
   explicit MatrixCell(const Matrix3& value) : Cell(Tag::Matrix), m(value) {}
 };
 
-/// A growable array with room at both ends: push, pop, prepend and unprepend are O(1) amortised.
+/// A growable array with room at both ends: push, pop, prepend and unprepend are O(1) amortised. Elements that are all
+/// of one type which fits a slot stand there without tags (a list of numbers or objects takes a quarter of the memory);
+/// others, vectors and NULL stand as Values. A list becomes wide with the first element that asks for it, and may
+/// become narrow again when it is empty.
 struct ListCell : Container {
-  std::uint32_t first = 0, size = 0, capacity = 0;
+  Tag kind = Tag::Null;                             // the type of all elements; Null: they are Values
+  std::uint32_t first = 0, size = 0, capacity = 0;  // in elements
+  std::uint32_t wish = 0;                           // least capacity of the first store
   std::uint64_t serial;
-  Value* store = nullptr;
+  Slot* store = nullptr;
 
   explicit ListCell(std::uint64_t s) : Container(Tag::List), serial(s) {}
-  Value* begin() { return store + first; }
-  Value* end() { return store + first + size; }
-  const Value* begin() const { return store + first; }
-  const Value* end() const { return store + first + size; }
-  Value& operator[](std::uint32_t i) { return store[first + i]; }
-  const Value& operator[](std::uint32_t i) const { return store[first + i]; }
+  bool narrow() const { return kind != Tag::Null; }
+  static constexpr bool fits_slot(Tag tag) { return tag != Tag::Null && tag != Tag::Vector; }
+  bool holds_references() const { return kind >= Tag::Matrix || kind == Tag::Null; }
+  std::size_t element_bytes() const { return narrow() ? sizeof(Slot) : sizeof(Value); }
+  Value* values() { return reinterpret_cast<Value*>(store); }
+  const Value* values() const { return reinterpret_cast<const Value*>(store); }
+  /// By value: there may be no Value to refer to.
+  Value operator[](std::uint32_t i) const {
+    return narrow() ? Value::of(kind, store[first + i].bits) : values()[first + i];
+  }
+
+  /// Reads one element after the other, with the list as it is then.
+  class Iterator {
+   public:
+    using iterator_category = std::input_iterator_tag;
+    using value_type = Value;
+    using difference_type = std::ptrdiff_t;
+    using pointer = void;
+    using reference = Value;
+    Iterator(const ListCell& list, std::uint32_t i) : list_(&list), i_(i) {}
+    Value operator*() const { return (*list_)[i_]; }
+    Iterator& operator++() {
+      ++i_;
+      return *this;
+    }
+    void operator++(int) { ++i_; }
+    friend bool operator==(const Iterator&, const Iterator&) = default;
+
+   private:
+    const ListCell* list_;
+    std::uint32_t i_;
+  };
+  Iterator begin() const { return {*this, 0}; }
+  Iterator end() const { return {*this, size}; }
 };
 
 /// Open addressing over entries kept in order of insertion. Keys compare with type (language, section 8.2).

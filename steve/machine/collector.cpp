@@ -13,13 +13,13 @@ namespace {
 // Units of work, about a nanosecond each. See docs/performance.md for what a slice takes; docs/limits.md promises in
 // how many slices a cycle is gone: a cell costs at most kLook + kMark + 2 kPlace and its references.
 constexpr std::int64_t kSlice = 2'000'000;
-constexpr std::int64_t kLook = 4;       // is a place a root?
-constexpr std::int64_t kMark = 20;      // scan a cell
-constexpr std::int64_t kReference = 6;  // reach a cell from another
-constexpr std::int64_t kElement = 1;    // look at an element of a list or hash
-constexpr std::int64_t kPlace = 1;      // look at the mark of a place
-constexpr std::int64_t kBreak = 40;     // release a reference of garbage, or a cell of it
-constexpr std::int64_t kBegin = 1000;   // so that collections that follow each other end a slice
+constexpr std::int64_t kLook = 4;        // is a place a root?
+constexpr std::int64_t kMark = 20;       // scan a cell
+constexpr std::int64_t kReference = 16;  // reach a cell from another
+constexpr std::int64_t kElement = 1;     // look at an element of a list or hash
+constexpr std::int64_t kPlace = 1;       // look at the mark of a place
+constexpr std::int64_t kBreak = 40;      // release a reference of garbage, or a cell of it
+constexpr std::int64_t kBegin = 1000;    // so that collections that follow each other end a slice
 
 // How many cells to fetch ahead of their turn.
 constexpr std::uint32_t kAhead = 24;
@@ -119,7 +119,7 @@ bool Heap::may_close_cycle(const Container& cell) {
 void Heap::enrol(Container& cell) {
   cell.place = static_cast<std::uint32_t>(containers_.size());
   containers_.push_back(&cell);
-  marks_.push_back(phase_ == Phase::Idle ? kWhite : kBlack);
+  marks_.push_back(phase_ == Phase::Idle ? white(cell) : black(cell));
 }
 
 void Heap::move_place(std::uint32_t from, std::uint32_t to) {
@@ -150,7 +150,7 @@ void Heap::shade(Cell* cell) {
 }
 
 void Heap::shade_place(std::uint32_t place) {
-  if (marks_[place] != kWhite) return;
+  if (marks_[place] >= kBlack) return;
   marks_[place] = kGrey + static_cast<std::uint32_t>(grey_.size());
   grey_.push_back(place);  // never grows: each place is white once in a collection
 }
@@ -208,10 +208,13 @@ void Heap::mark(std::int64_t& work) {
       scan_part(reach, work);
       continue;
     }
-    for (; grey_.size() - next_grey_ < kAhead && passed_ < containers_.size(); ++passed_) {
+    for (; grey_.size() - next_grey_ < kAhead && passed_ < containers_.size() && work > 0; ++passed_) {
+      const std::uint32_t ahead = passed_ + kAhead;
+      if (ahead < containers_.size() && marks_[ahead] == kWhite) fetch(containers_[ahead]);
+      work -= kPlace;
+      if (marks_[passed_] != kWhite) continue;
       work -= kLook;
-      if (passed_ + kAhead < containers_.size()) fetch(containers_[passed_ + kAhead]);
-      if (marks_[passed_] == kWhite && is_root(*containers_[passed_])) shade(containers_[passed_]);
+      if (is_root(*containers_[passed_])) shade_place(passed_);
     }
     if (next_grey_ == grey_.size()) {
       reach.flush();
@@ -221,8 +224,9 @@ void Heap::mark(std::int64_t& work) {
     fetch_ahead();
     const std::uint32_t place = grey_[next_grey_++];
     if (place == kNoPlace) continue;
-    marks_[place] = kBlack;
-    scan(*containers_[place], reach, work);
+    Container& cell = *containers_[place];
+    marks_[place] = black(cell);
+    scan(cell, reach, work);
   }
   reach.flush();
 }
@@ -236,7 +240,10 @@ void Heap::fetch_ahead() const {
   }
   if (next_grey_ + kNear >= grey_.size() || grey_[next_grey_ + kNear] == kNoPlace) return;
   const Container& near = *containers_[grey_[next_grey_ + kNear]];
-  if (near.tag == Tag::List) fetch(static_cast<const ListCell&>(near).begin());
+  if (near.tag == Tag::List) {
+    const auto& list = static_cast<const ListCell&>(near);
+    fetch(reinterpret_cast<const char*>(list.store) + list.first * list.element_bytes());
+  }
   if (near.tag == Tag::Hash) fetch(static_cast<const HashCell&>(near).entries);
 }
 
@@ -250,8 +257,10 @@ void Heap::scan(Container& cell, Reach& reach, std::int64_t& work) {
   work -= kMark;
   if (cell.tag == Tag::Object) {
     auto& instance = static_cast<Instance&>(cell);
-    for (const std::uint16_t slot : instance.cls->reference_slots) reach(instance.slots[slot].ref);
-    work -= kReference * static_cast<std::int64_t>(instance.cls->reference_slots.size());
+    for (const std::uint16_t slot : instance.cls->reference_slots) {
+      work -= instance.slots[slot].ref != nullptr ? kReference : kElement;
+      reach(instance.slots[slot].ref);
+    }
     return;
   }
   partial_ = &cell;
@@ -262,7 +271,7 @@ void Heap::scan(Container& cell, Reach& reach, std::int64_t& work) {
 // Positions count from the start of the store, so that adding and removing at either end does not shift them. What is
 // removed unseen is shaded by `release`.
 void Heap::scan_part(Reach& reach, std::int64_t& work) {
-  constexpr std::int64_t kPiece = 4096;  // elements, so that what they refer to is counted in time
+  constexpr std::int64_t kPiece = 1024;  // elements, so that what they refer to is counted in time
   const auto most = static_cast<std::uint32_t>(std::clamp<std::int64_t>(work, 1, kPiece));
   std::uint32_t references = 0, count = 0;
   if (partial_->tag == Tag::List) {
@@ -271,8 +280,13 @@ void Heap::scan_part(Reach& reach, std::int64_t& work) {
     const std::uint32_t end = list.first + list.size;
     const std::uint32_t to = from >= end ? end : from + std::min(most, end - from);
     for (std::uint32_t i = from; i < to; ++i) {
-      references += is_container(list.store[i].tag) ? 1U : 0U;
-      reach(list.store[i]);
+      if (!list.narrow()) {
+        references += is_container(list.values()[i].tag) ? 1U : 0U;
+        reach(list.values()[i]);
+      } else if (is_container(list.kind)) {
+        ++references;
+        reach(list.store[i].ref);
+      }
     }
     count = to > from ? to - from : 0;
     position_ = to;
@@ -351,8 +365,11 @@ void Heap::sweep(std::int64_t& work) {
       continue;
     }
     work -= kPlace;
-    if (marks_[passed_] == kWhite && !take_apart(*containers_[passed_], work)) break;
-    marks_[passed_++] = kWhite;
+    if (marks_[passed_] >= kBlack)
+      marks_[passed_] -= kBlack - kWhite;
+    else if (!take_apart(*containers_[passed_], work))
+      break;
+    ++passed_;
   }
   suspicion_ = suspicion;  // the counts that garbage lowers close no cycle
   if (passed_ < containers_.size()) return;
@@ -383,7 +400,7 @@ bool Heap::take_apart(Container& cell, std::int64_t& work) {
 
 bool Heap::shed(ListCell& list, std::int64_t& work) {
   for (; list.size > 0 && work > 0; work -= kElement) {
-    const Value last = list.store[list.first + --list.size];
+    const Value last = list[--list.size];
     if (last.is_reference()) work -= kBreak;
     release(last);
   }

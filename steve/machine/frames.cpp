@@ -11,7 +11,6 @@ namespace breve::steve {
 
 namespace {
 constexpr std::size_t kFirstSegment = 4096;  // slots
-constexpr std::uint32_t kMaxNesting = 400;   // interpreter loops on the C++ stack
 }  // namespace
 
 void Machine::next_segment(std::size_t slots) {
@@ -32,9 +31,9 @@ void Machine::next_segment(std::size_t slots) {
 }
 
 void Machine::fail_depth(const MethodInfo& method) const {
-  throw RunError(RunErrorKind::Depth, "methods call one another more than " + std::to_string(host_.depth_limit) +
-                                          " deep: does '" + program_->symbols().name(method.name) +
-                                          "' call itself without end?",
+  throw RunError(RunErrorKind::Depth,
+                 "methods call one another more than " + std::to_string(host_.depth_limit) + " deep: does '" +
+                     program_->symbols().name(method.name) + "' call itself without end?",
                  "a recursion needs a case that ends it: the chain of calls below shows how it goes on");
 }
 
@@ -49,11 +48,7 @@ Value Machine::invoke(Instance& receiver, const MethodInfo& method, std::span<co
   count_call();
   const std::size_t depth = depth_;
   const StackMark mark(*this);
-  struct Nest {
-    std::uint32_t& nesting;
-    explicit Nest(std::uint32_t& n) : nesting(n) { ++nesting; }
-    ~Nest() { --nesting; }
-  } nest(nesting_);
+  const Nest nest(nesting_);
   const auto write_all = [&](Slot* to) {
     for (std::size_t i = 0; i < arguments.size(); ++i)
       write_parameter(to, method.parameters[i], arguments[i], program_->symbols().name(method.parameters[i].keyword));
@@ -82,7 +77,11 @@ Value Machine::invoke(Instance& receiver, const MethodInfo& method, std::span<co
     execute<true>(depth);
   else
     execute<false>(depth);
-  return result_;
+  // Word by word, as it was written (interpreter.cpp).
+  Value result;
+  result.head = result_.head;
+  for (int i = 0; i < 3; ++i) result.bits[i] = result_.bits[i];
+  return result;
 }
 
 void Machine::write_parameter(Slot* base, const ParameterInfo& parameter, const Value& value, std::string_view what) {

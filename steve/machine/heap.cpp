@@ -2,6 +2,7 @@
 #include "steve/machine/heap.hpp"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "steve/compile/program.hpp"
 
@@ -28,6 +29,9 @@ void unpoison([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes)
 constexpr std::size_t kFirstChunk = 2048;
 constexpr std::size_t kLargestChunk = 65536;
 
+/// Where the bytes of a shared text are, as far as they go.
+char* body(SharedText* text) { return reinterpret_cast<char*>(text) + offsetof(SharedText, bytes); }
+
 }  // namespace
 
 Heap::Heap(std::pmr::memory_resource* memory, RootSource& roots)
@@ -51,6 +55,11 @@ Heap::~Heap() {
     if (cell->tag == Tag::Data) static_cast<DataCell*>(cell)->~DataCell();
     singles_ = single->next;
     memory_->deallocate(single, single->bytes, alignof(Single));
+  }
+  while (texts_ != nullptr) {
+    SharedText* text = texts_;
+    texts_ = text->next;
+    memory_->deallocate(text, sizeof(SharedText) + text->capacity, alignof(SharedText));
   }
   while (chunks_ != nullptr) {
     Chunk* chunk = chunks_;
@@ -143,8 +152,9 @@ T* Heap::enter(T* cell) {
 }
 
 namespace {
+constexpr std::size_t kLongestString = 0x7fffffff;
 void check_length(std::size_t size) {
-  if (size > 0x7fffffffU) throw RunError(RunErrorKind::Bounds, "a string cannot be longer than 2147483647 bytes");
+  if (size > kLongestString) throw RunError(RunErrorKind::Bounds, "a string cannot be longer than 2147483647 bytes");
 }
 }  // namespace
 
@@ -156,7 +166,7 @@ void Heap::check_room(std::size_t bytes) const {
 StringCell* Heap::raw_string(std::size_t size) {
   check_length(size);
   reserve_tables(false);
-  fresh_bytes_ += size;
+  note_fresh(size);
   auto* cell = new (take(string_cell_bytes(size))) StringCell(static_cast<std::uint32_t>(size));
   char* bytes = cell->bytes;
   bytes[size] = 0;
@@ -181,6 +191,67 @@ StringCell* Heap::concat(std::string_view a, std::string_view b) {
   return cell;
 }
 
+SharedText* Heap::make_text(std::string_view begin, std::size_t capacity) {
+  auto* text = static_cast<SharedText*>(memory_->allocate(sizeof(SharedText) + capacity, alignof(SharedText)));
+  const auto size = static_cast<std::uint32_t>(begin.size());
+  *text = {nullptr, texts_, 0, size, static_cast<std::uint32_t>(capacity), {}};
+  char* to = body(text);
+  std::memcpy(to, begin.data(), begin.size());
+  to[size] = 0;
+  if (texts_ != nullptr) texts_->previous = text;
+  texts_ = text;
+  return text;
+}
+
+void Heap::leave_text(SharedText* text) {
+  if (text->cells > 1) {
+    --text->cells;
+    return;
+  }
+  (text->previous != nullptr ? text->previous->next : texts_) = text->next;
+  if (text->next != nullptr) text->next->previous = text->previous;
+  memory_->deallocate(text, sizeof(SharedText) + text->capacity, alignof(SharedText));
+}
+
+// Only what is long and grows by little is worth a text of its own: it takes up to twice the memory.
+StringCell* Heap::append(StringCell* a, std::string_view b) {
+  constexpr std::size_t kLeastShared = 256;
+  const std::size_t old = view(a).size(), size = old + b.size();
+  if (old < kLeastShared || b.empty() || b.size() > old / 4 || size > kLongestString) return concat(view(a), b);
+  reserve_tables(false);
+  SharedText* text = a->shared != 0 ? a->text() : nullptr;
+  const bool fits = text != nullptr && text->used == old && text->capacity - old >= b.size();
+  if (!fits) text = make_text(a->view(), std::min(size * 2, kLongestString));
+  void* memory = nullptr;
+  try {
+    memory = take(sizeof(StringCell));
+  } catch (...) {
+    if (!fits) leave_text(text);
+    throw;
+  }
+  char* to = body(text) + old;
+  std::memcpy(to, b.data(), b.size());
+  to[b.size()] = 0;
+  text->used = static_cast<std::uint32_t>(size);
+  ++text->cells;
+  auto* cell = new (memory) StringCell(static_cast<std::uint32_t>(size));
+  cell->shared = 1;
+  std::memcpy(cell->bytes, &text, sizeof text);
+  note_fresh(size);  // as much as an unshared one: where reclaiming happens must not depend on what is shared
+  return enter(cell);
+}
+
+const char* Heap::terminated(StringCell* string) {
+  if (string == nullptr) return "";
+  if (string->shared != 0 && string->text()->used != string->size) {
+    SharedText* own = make_text(string->view(), string->size);
+    own->cells = 1;
+    leave_text(string->text());
+    std::memcpy(string->bytes, &own, sizeof own);
+  }
+  return string->view().data();
+}
+
 MatrixCell* Heap::matrix(const Matrix3& m) {
   reserve_tables(false);
   return enter(new (take(sizeof(MatrixCell))) MatrixCell(m));
@@ -188,17 +259,8 @@ MatrixCell* Heap::matrix(const Matrix3& m) {
 
 ListCell* Heap::list(std::uint32_t capacity) {
   reserve_tables(true);
-  Value* store = capacity != 0 ? new_store(capacity) : nullptr;
-  void* memory = nullptr;
-  try {
-    memory = take(sizeof(ListCell));
-  } catch (...) {
-    if (store != nullptr) memory_->deallocate(store, capacity * sizeof(Value), alignof(Value));
-    throw;
-  }
-  auto* cell = new (memory) ListCell(next_serial());
-  cell->store = store;
-  cell->capacity = capacity;
+  auto* cell = new (take(sizeof(ListCell))) ListCell(next_serial());
+  cell->wish = capacity;
   return enter(cell);
 }
 
@@ -252,7 +314,11 @@ void Heap::release_children(Container& cell) {
   if (cell.tag == Tag::Object) return clear_slots(static_cast<Instance&>(cell));
   if (cell.tag == Tag::List) {
     auto& list = static_cast<ListCell&>(cell);
-    for (const Value& v : list) release(v);
+    if (list.narrow() && list.holds_references()) {
+      for (std::uint32_t i = 0; i < list.size; ++i) release(list.store[list.first + i].ref);
+    } else if (!list.narrow()) {
+      for (std::uint32_t i = 0; i < list.size; ++i) release(list.values()[list.first + i]);
+    }
     list.size = 0;
     return;
   }
@@ -267,8 +333,7 @@ void Heap::release_children(Container& cell) {
 
 void Heap::free_arrays(Container& cell) {
   if (cell.tag == Tag::List) {
-    auto& list = static_cast<ListCell&>(cell);
-    if (list.store != nullptr) memory_->deallocate(list.store, list.capacity * sizeof(Value), alignof(Value));
+    free_store(static_cast<ListCell&>(cell));
   } else if (cell.tag == Tag::Hash) {
     auto& hash = static_cast<HashCell&>(cell);
     if (hash.entries != nullptr) {
@@ -281,7 +346,12 @@ void Heap::free_arrays(Container& cell) {
 void Heap::destroy(Cell* cell) {
   --cells_;
   switch (cell->tag) {
-    case Tag::String: return give(cell, string_cell_bytes(static_cast<StringCell*>(cell)->size));
+    case Tag::String: {
+      const auto* string = static_cast<StringCell*>(cell);
+      if (string->shared == 0) return give(cell, string_cell_bytes(string->size));
+      leave_text(string->text());
+      return give(cell, sizeof(StringCell));
+    }
     case Tag::Matrix: return give(cell, sizeof(MatrixCell));
     case Tag::Pointer: static_cast<PointerCell*>(cell)->~PointerCell(); return give_single(cell);
     case Tag::Data: static_cast<DataCell*>(cell)->~DataCell(); return give_single(cell);
@@ -343,6 +413,7 @@ bool Heap::reclaim_round() {
   }
   // Cells that stay because frames hold them are looked at again only when as many new ones have come.
   reclaim_at_ = std::max(kReclaimAt, zero_.size() * 2 + visited);
+  wants_reclaim_ = zero_.size() >= reclaim_at_;
   return free_doomed();
 }
 
@@ -377,8 +448,11 @@ void Heap::doom_waiting(std::size_t kept) {
   }
   std::erase_if(zero_, [](const Cell* cell) { return !cell->listed; });
   for (std::size_t i = old; i < doomed_.size(); ++i) retain(doomed_[i]);
-  std::sort(doomed_.begin() + static_cast<std::ptrdiff_t>(old), doomed_.end(),
-            [](const Instance* a, const Instance* b) { return a->serial < b->serial; });
+  // Those that wait stand in the table newest first, as a rule.
+  const auto first = doomed_.begin() + static_cast<std::ptrdiff_t>(old);
+  const auto older = [](const Instance* a, const Instance* b) { return a->serial < b->serial; };
+  std::reverse(first, doomed_.end());
+  if (!std::is_sorted(first, doomed_.end(), older)) std::sort(first, doomed_.end(), older);
 }
 
 // Run the destroy methods of what is doomed. They may run anything, even this function: then the outer call goes on

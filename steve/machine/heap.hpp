@@ -44,6 +44,10 @@ class Heap : public InMemory {
   // --- making cells; each may throw std::bad_alloc (then nothing has changed), none collects -----------------------
   StringCell* string(std::string_view bytes);  // null for the empty string
   StringCell* concat(std::string_view a, std::string_view b);
+  /// a + b, where `a` may be the same text that was added to before: amortised O(b).
+  StringCell* append(StringCell* a, std::string_view b);
+  /// The bytes of a string with a zero byte behind them; null gives "".
+  const char* terminated(StringCell* string);
   MatrixCell* matrix(const Matrix3& m);
   ListCell* list(std::uint32_t capacity = 0);
   HashCell* hash();
@@ -95,26 +99,28 @@ class Heap : public InMemory {
   // ----------------------------------------------------------------------- Adding to a list of 2^31 - 1 elements is
   // RunError{Bounds}.
   void push(ListCell& list, const Value& value) {
-    const Value copy = value;
-    if (list.first + list.size == list.capacity) make_room_behind(list);
-    retain(copy);
-    list.store[list.first + list.size++] = copy;
+    if (!push_slot(list, value.tag, value.bits[0])) push_slowly(list, value);
   }
-  void prepend(ListCell& list, const Value& value) {
-    const Value copy = value;
-    if (list.first == 0) make_room_before(list);
-    retain(copy);
-    list.store[--list.first] = copy;
-    ++list.size;
+  /// Push what stands in one slot, if the list is one of such elements and has room: else nothing happens.
+  bool push_slot(ListCell& list, Tag tag, std::uint64_t bits) {
+    if (list.kind != tag || tag == Tag::Null || list.first + list.size == list.capacity) return false;
+    Slot& slot = list.store[list.first + list.size++];
+    slot.bits = bits;
+    if (tag >= Tag::Matrix) retain(slot.ref);
+    return true;
   }
+  void prepend(ListCell& list, const Value& value);
   void insert(ListCell& list, std::uint32_t position, const Value& value);
+  /// list{position} = value
+  void set(ListCell& list, std::uint32_t position, const Value& value);
   Value pop(ListCell& list) {  // the list is not empty
-    const Value value = list.store[list.first + --list.size];
+    const Value value = list[--list.size];
     release(value);
     return value;
   }
   Value unprepend(ListCell& list) {  // the list is not empty
-    const Value value = list.store[list.first++];
+    const Value value = list[0];
+    ++list.first;
     --list.size;
     release(value);
     return value;
@@ -135,7 +141,7 @@ class Heap : public InMemory {
   // -------------------------------------------------------------------------------------------------------
   /// Safe point inside running code: true when so many zero-count cells wait, or so many bytes were taken, that
   /// `reclaim` is worth its cost.
-  bool wants_reclaim() const { return zero_.size() >= reclaim_at_ || fresh_bytes_ >= kReclaimBytes; }
+  bool wants_reclaim() const { return wants_reclaim_; }
   /// Free the waiting cells that no frame refers to. Runs `destroy` of unreachable auto-free instances, in the order
   /// in which they were made.
   void reclaim();
@@ -176,8 +182,11 @@ class Heap : public InMemory {
   //   Sweep:    white cells are taken apart; all cells passed are white again
   // Idle: all cells are white.
   enum class Phase : std::uint8_t { Idle, Mark, Examine, Remark, Sweep };
-  // Marks of places: white, black, or kGrey + i for the i-th of grey_.
-  static constexpr std::uint32_t kWhite = 0, kBlack = 1, kGrey = 2;
+  // Marks of places: white, black, or kGrey + i for the i-th of grey_. Lists and hashes have colours of their own, so
+  // that passes over the table need not look at the cells.
+  static constexpr std::uint32_t kWhite = 0, kWhiteOther = 1, kBlack = 2, kBlackOther = 3, kGrey = 4;
+  static std::uint32_t white(const Container& cell) { return cell.tag == Tag::Object ? kWhite : kWhiteOther; }
+  static std::uint32_t black(const Container& cell) { return cell.tag == Tag::Object ? kBlack : kBlackOther; }
   static constexpr std::uint32_t kNoPlace = 0xffffffffU;
   class Reach;
   struct FreeSlot {
@@ -207,9 +216,17 @@ class Heap : public InMemory {
   template <class T>
   T* enter(T* cell);
   StringCell* raw_string(std::size_t size);
+  SharedText* make_text(std::string_view begin, std::size_t capacity);
+  void leave_text(SharedText* text);
+  void note_fresh(std::size_t bytes) {
+    fresh_bytes_ += bytes;
+    if (fresh_bytes_ >= kReclaimBytes) wants_reclaim_ = true;
+  }
   void enlist(Cell* cell) {
     cell->listed = true;
     zero_.push_back(cell);  // never grows: reserve_tables keeps room for every cell
+    if (zero_.size() >= reclaim_at_) [[unlikely]]
+      wants_reclaim_ = true;
   }
   void destroy(Cell* cell);
   void release_children(Container& cell);
@@ -254,12 +271,14 @@ class Heap : public InMemory {
   void load_marks(ByteReader& in);
 
   // lists.cpp, hashes.cpp
-  Value* new_store(std::uint32_t capacity);
+  void free_store(ListCell& list);
   void move_store(ListCell& list, std::uint32_t capacity, std::uint32_t first);
   void make_room_behind(ListCell& list);
   void make_room_before(ListCell& list);
-  void copy_elements(const ListCell& from, ListCell& to, std::pmr::vector<const ListCell*>& pending,
-                     const std::function<ListCell*(const ListCell*)>& twin);
+  void push_slowly(ListCell& list, const Value& value);
+  void fit(ListCell& list, Tag tag);
+  void widen(ListCell& list);
+  static void put(ListCell& list, std::uint32_t position, const Value& value);
   void regrow(HashCell& hash);
 
   std::pmr::memory_resource* memory_;
@@ -268,6 +287,7 @@ class Heap : public InMemory {
   Chunk* chunks_ = nullptr;
   std::array<std::size_t, kClasses + 1> chunk_bytes_{};
   Single* singles_ = nullptr;
+  SharedText* texts_ = nullptr;
 
   std::pmr::vector<Cell*> zero_;
   std::pmr::vector<Container*> containers_;
@@ -277,6 +297,7 @@ class Heap : public InMemory {
   std::pmr::vector<Instance*> suspects_;   // in cycles, to be dying when all are found
   std::size_t reclaim_at_ = kReclaimAt;
   std::size_t fresh_bytes_ = 0;  // taken for strings since the last reclaim
+  bool wants_reclaim_ = false;   // one of the two has reached its limit
   std::uint64_t serial_ = 0x1000;
   std::uint64_t cells_ = 0;
   bool freeing_doomed_ = false;
@@ -298,6 +319,7 @@ class Heap : public InMemory {
 /// Sort in place, stable: `before(a, b)` is true if a must come before b. Works on a copy of the elements, so that
 /// `before` may run script, change the list, or throw (then the list stays as `before` left it). The elements are kept
 /// alive meanwhile. A list that `before` has changed is replaced by the sorted elements.
-void merge_sort(Heap& heap, ListCell& list, const std::function<bool(const Value&, const Value&)>& before);
+using Before = std::function<bool(const Value&, const Value&)>;
+void merge_sort(Heap& heap, ListCell& list, const Before& before);
 
 }  // namespace breve::steve

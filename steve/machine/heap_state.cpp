@@ -46,7 +46,7 @@ void Heap::save_marks(ByteWriter& out) const {
 void Heap::load_marks(ByteReader& in) {
   grey_.clear();
   next_grey_ = passed_ = 0;
-  marks_.assign(containers_.size(), kWhite);
+  for (std::size_t i = 0; i < marks_.size(); ++i) marks_[i] = white(*containers_[i]);
   if (phase_ == Phase::Idle) return;
   passed_ = in.get<std::uint32_t>();
   if (passed_ > containers_.size()) ByteReader::fail();
@@ -113,6 +113,7 @@ void Heap::load_state(ByteReader& in, const std::function<Cell*(std::uint64_t)>&
   // A cell that nothing refers to and that does not wait would never go: only a damaged image has one.
   for (const Container* container : containers_) unlisted += container->count == 0 && !container->listed ? 1U : 0U;
   if (unlisted != 0) ByteReader::fail();
+  wants_reclaim_ = zero_.size() >= reclaim_at_ || fresh_bytes_ >= kReclaimBytes;
 }
 
 }  // namespace breve::steve

@@ -106,7 +106,7 @@ void set_index(Heap& heap, const Value& base, const Value& key, const Value& val
   ListCell& list = *base.list();
   const std::int32_t i = to_int(key, kIndex);
   if (i >= 0 && static_cast<std::uint32_t>(i) == list.size) return heap.push(list, value);
-  heap.store(list[list_position(list, i)], value);
+  heap.set(list, list_position(list, i), value);
 }
 
 Value with_index(Heap& heap, const Value& base, const Value& key, const Value& value) {

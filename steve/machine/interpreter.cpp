@@ -3,8 +3,9 @@
 //
 // The loop is compiled twice: execute<true> tells the profiler what it calls, execute<false> does not know of it and
 // costs nothing. KEEP IN STEP: profile. Whatever enters a script's frame says profile_call before, whatever leaves one
-// that the loop itself entered says profile_leave; natives, functions and reclaiming go through the ..._profiled helpers
-// (profiled.cpp) if kProfiled. What is left by an exception needs nothing: the catch block below leaves it.
+// that the loop itself entered says profile_leave; natives, functions and reclaiming go through the ..._profiled
+// helpers (profiled.cpp) if kProfiled. What is left by an exception needs nothing: the catch block below leaves it.
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -22,6 +23,11 @@ namespace breve::steve {
 #define ANY(n) (*reinterpret_cast<Value*>(base + (n)))
 #define ANY_OR_RESULT(n) ((n) == kResult ? result_ : ANY(n))
 #define LIST(n) static_cast<ListCell*>(R(n).ref)
+#define K(n) numbers[n]
+// A dynamic value in registers, and the result of a call, are written and copied word by word: a read that is wider than
+// the write before it would wait until that has reached the cache.
+#define BOX(n, tag, word) put_any(&R(n), Tag::tag, word)
+#define RESULT(tag, word) (result_.head = Value::head_of(Tag::tag), result_.bits[0] = (word))
 #define NEXT() do { in = pc++; goto *kLabels[static_cast<std::size_t>(in->op)]; } while (0)
 #define SAVE() (frame->pc = pc)
 #define EXT(n) (pc[n])
@@ -32,7 +38,7 @@ namespace breve::steve {
     pc = frame->pc;               \
     base = frame->base();         \
     self = frame->self;           \
-    function = frame->function;   \
+    numbers = frame->function->numbers.data(); \
   } while (0)
 #define COUNT_CALL()                                                                   \
   do {                                                                                 \
@@ -48,7 +54,7 @@ namespace breve::steve {
     }                                                                                    \
   } while (0)
 // A method of an object that was freed meanwhile is left at once (F30).
-#define LEAVE_IF_FREED() do { if (!self->live()) [[unlikely]] { result_ = Value(); goto do_return; } } while (0)
+#define LEAVE_IF_FREED() do { if (!self->live()) [[unlikely]] { RESULT(Null, 0); goto do_return; } } while (0)
 
 namespace {
 inline bool true_object(const Cell* cell) { return cell && static_cast<const Instance*>(cell)->live(); }
@@ -65,6 +71,35 @@ inline void put_vector(Slot* to, double x, double y, double z) {
   to[0].d = x;
   to[1].d = y;
   to[2].d = z;
+}
+inline void copy3(Slot* to, const Slot* from) {
+  const std::uint64_t x = from[0].bits, y = from[1].bits, z = from[2].bits;
+  to[0].bits = x;
+  to[1].bits = y;
+  to[2].bits = z;
+}
+inline void put_any(Slot* to, Tag tag, std::uint64_t word) {
+  to[0].bits = Value::head_of(tag);
+  to[1].bits = word;
+}
+inline void copy_any(Slot* to, const Value& from) {
+  const std::uint64_t head = from.head, word = from.bits[0];
+  if (from.tag == Tag::Vector) {
+    const std::uint64_t y = from.bits[1], z = from.bits[2];
+    to[2].bits = y;
+    to[3].bits = z;
+  }
+  to[0].bits = head;
+  to[1].bits = word;
+}
+inline void copy_any(Value& to, const Value& from) { copy_any(reinterpret_cast<Slot*>(&to), from); }
+inline std::uint64_t word(std::int32_t i) { return static_cast<std::uint32_t>(i); }
+inline std::uint64_t word(double d) { return std::bit_cast<std::uint64_t>(d); }
+inline std::uint64_t word(Cell* ref) { return reinterpret_cast<std::uintptr_t>(ref); }
+/// The element of a list that is known to be there.
+inline void copy_element(Slot* to, const ListCell& list, std::uint32_t i) {
+  if (list.narrow()) put_any(to, list.kind, list.store[list.first + i].bits);
+  else copy_any(to, list.values()[list.first + i]);
 }
 /// The operators on ints that cannot fail.
 inline std::int32_t int_binary(ast::BinaryOp op, std::int32_t a, std::int32_t b) {
@@ -94,7 +129,7 @@ void Machine::execute(std::size_t depth) {
   Frame* frame = nullptr;
   Slot* base = nullptr;
   Instance* self = nullptr;
-  const Function* function = nullptr;
+  const double* numbers = nullptr;
   [[maybe_unused]] std::size_t profiled_depth = 0;
   if constexpr (kProfiled) profiled_depth = profile_depth();
   try {
@@ -102,22 +137,22 @@ void Machine::execute(std::size_t depth) {
     NEXT();
 
   op_Mov1: R(in->a).bits = R(in->b).bits; NEXT();
-  op_Mov3: std::memmove(static_cast<void*>(&R(in->a)), &R(in->b), 3 * sizeof(Slot)); NEXT();
+  op_Mov3: copy3(&R(in->a), &R(in->b)); NEXT();
   op_Mov9: std::memmove(static_cast<void*>(&R(in->a)), &R(in->b), 9 * sizeof(Slot)); NEXT();
-  op_MovAny: ANY(in->a) = ANY(in->b); NEXT();
+  op_MovAny: copy_any(&R(in->a), ANY(in->b)); NEXT();
   op_LoadInt: R(in->a).i = in->imm(); NEXT();
-  op_LoadDouble: R(in->a).d = function->numbers[static_cast<std::size_t>(in->imm())]; NEXT();
-  op_LoadVector: std::memcpy(static_cast<void*>(&R(in->a)), &function->numbers[static_cast<std::size_t>(in->imm())], 3 * sizeof(double)); NEXT();
-  op_LoadMatrix: std::memcpy(static_cast<void*>(&R(in->a)), &function->numbers[static_cast<std::size_t>(in->imm())], 9 * sizeof(double)); NEXT();
+  op_LoadDouble: R(in->a).d = K(in->imm()); NEXT();
+  op_LoadVector: put_vector(&R(in->a), K(in->imm()), K(in->imm() + 1), K(in->imm() + 2)); NEXT();
+  op_LoadMatrix: std::memcpy(static_cast<void*>(&R(in->a)), &K(in->imm()), 9 * sizeof(double)); NEXT();
   op_LoadString: R(in->a).ref = strings_[static_cast<std::size_t>(in->imm())]; NEXT();
   op_LoadSelf: R(in->a).ref = self; NEXT();
   op_ZeroRef: R(in->a).ref = nullptr; NEXT();
-  op_ZeroAny: ANY(in->a) = Value(); NEXT();
+  op_ZeroAny: BOX(in->a, Null, 0); NEXT();
   op_EnsureList: if (!R(in->a).ref) R(in->a).ref = heap_->list(); NEXT();
   op_EnsureHash: if (!R(in->a).ref) R(in->a).ref = heap_->hash(); NEXT();
 
   op_GetVar1: R(in->a).bits = self->slots[in->imm()].bits; NEXT();
-  op_GetVar3: std::memcpy(static_cast<void*>(&R(in->a)), self->slots + in->imm(), 3 * sizeof(Slot)); NEXT();
+  op_GetVar3: copy3(&R(in->a), self->slots + in->imm()); NEXT();
   op_GetVar9: std::memcpy(static_cast<void*>(&R(in->a)), self->slots + in->imm(), 9 * sizeof(Slot)); NEXT();
   op_GetVarList: {
     Slot& slot = self->slots[in->imm()];
@@ -132,7 +167,7 @@ void Machine::execute(std::size_t depth) {
     NEXT();
   }
   op_SetVar1: self->slots[in->imm()].bits = R(in->a).bits; NEXT();
-  op_SetVar3: std::memcpy(static_cast<void*>(self->slots + in->imm()), &R(in->a), 3 * sizeof(Slot)); NEXT();
+  op_SetVar3: copy3(self->slots + in->imm(), &R(in->a)); NEXT();
   op_SetVar9: std::memcpy(static_cast<void*>(self->slots + in->imm()), &R(in->a), 9 * sizeof(Slot)); NEXT();
   op_SetVarRef: heap_->store(self->slots[in->imm()], R(in->a).ref); NEXT();
 
@@ -175,6 +210,9 @@ void Machine::execute(std::size_t depth) {
   op_PowInt: R(in->a).i = power(R(in->b).i, R(in->c).i); NEXT();
   op_NegInt: R(in->a).i = wrap_negate(R(in->b).i); NEXT();
   op_AbsInt: R(in->a).i = R(in->b).i < 0 ? wrap_negate(R(in->b).i) : R(in->b).i; NEXT();
+  op_MulIntImm: R(in->a).i = wrap_mul(R(in->b).i, static_cast<std::int16_t>(in->c)); NEXT();
+  op_DivIntImm: R(in->a).i = R(in->b).i / static_cast<std::int16_t>(in->c); NEXT();
+  op_ModIntImm: R(in->a).i = R(in->b).i % static_cast<std::int16_t>(in->c); NEXT();
   op_AddIntImm: R(in->a).i = wrap_add(R(in->b).i, static_cast<std::int16_t>(in->c)); NEXT();
   op_LtInt: R(in->a).i = R(in->b).i < R(in->c).i; NEXT();
   op_LeInt: R(in->a).i = R(in->b).i <= R(in->c).i; NEXT();
@@ -189,10 +227,24 @@ void Machine::execute(std::size_t depth) {
     if (R(in->c).d == 0) fail_division_by_zero();
     R(in->a).d = R(in->b).d / R(in->c).d;
     NEXT();
-  op_AddConstant: R(in->a).d = R(in->b).d + function->numbers[in->c]; NEXT();
-  op_SubConstant: R(in->a).d = R(in->b).d - function->numbers[in->c]; NEXT();
-  op_MulConstant: R(in->a).d = R(in->b).d * function->numbers[in->c]; NEXT();
-  op_DivConstant: R(in->a).d = R(in->b).d / function->numbers[in->c]; NEXT();
+  op_AddConstant: R(in->a).d = R(in->b).d + K(in->c); NEXT();
+  op_MulConstant: R(in->a).d = R(in->b).d * K(in->c); NEXT();
+  op_DivConstant: R(in->a).d = R(in->b).d / K(in->c); NEXT();
+  op_ConstantSub: R(in->a).d = K(in->c) - R(in->b).d; NEXT();
+  op_ConstantDiv:
+    if (R(in->b).d == 0) fail_division_by_zero();
+    R(in->a).d = K(in->c) / R(in->b).d;
+    NEXT();
+  op_IntMulConstant: R(in->a).d = R(in->b).i * K(in->c); NEXT();
+  // Two steps, each rounded: no fused multiply and add of the processor, whose result would differ.
+  op_MulAdd: { const double product = R(in->b).d * R(in->c).d; R(in->a).d = product + R((pc++)->a).d; NEXT(); }
+  op_MulSub: { const double product = R(in->b).d * R(in->c).d; R(in->a).d = product - R((pc++)->a).d; NEXT(); }
+  op_SubMul: { const double product = R(in->b).d * R(in->c).d; R(in->a).d = R((pc++)->a).d - product; NEXT(); }
+  op_MulConstantAdd: { const double product = R(in->b).d * K(in->c); R(in->a).d = product + R((pc++)->a).d; NEXT(); }
+  op_MulConstantSub: { const double product = R(in->b).d * K(in->c); R(in->a).d = product - R((pc++)->a).d; NEXT(); }
+  op_SubMulConstant: { const double product = R(in->b).d * K(in->c); R(in->a).d = R((pc++)->a).d - product; NEXT(); }
+  op_AddAddConstant: R(in->a).d = R(in->b).d + R(in->c).d + K((pc++)->a); NEXT();
+  op_SubAddConstant: R(in->a).d = R(in->b).d - R(in->c).d + K((pc++)->a); NEXT();
   op_ModDouble: R(in->a).d = remainder(R(in->b).d, R(in->c).d); NEXT();
   op_PowDouble: R(in->a).d = std::pow(R(in->b).d, R(in->c).d); NEXT();
   op_NegDouble: R(in->a).d = -R(in->b).d; NEXT();
@@ -232,6 +284,24 @@ void Machine::execute(std::size_t depth) {
     put_vector(&R(in->a), x[0].d / s, x[1].d / s, x[2].d / s);
     NEXT();
   }
+  op_MulAddVector: {
+    const Slot *x = &R(in->b), *y = &R((pc++)->a);
+    const double s = R(in->c).d;
+    put_vector(&R(in->a), x[0].d * s + y[0].d, x[1].d * s + y[1].d, x[2].d * s + y[2].d);
+    NEXT();
+  }
+  op_MulSubVector: {
+    const Slot *x = &R(in->b), *y = &R((pc++)->a);
+    const double s = R(in->c).d;
+    put_vector(&R(in->a), x[0].d * s - y[0].d, x[1].d * s - y[1].d, x[2].d * s - y[2].d);
+    NEXT();
+  }
+  op_SubMulVector: {
+    const Slot *x = &R(in->b), *y = &R((pc++)->a);
+    const double s = R(in->c).d;
+    put_vector(&R(in->a), y[0].d - x[0].d * s, y[1].d - x[1].d * s, y[2].d - x[2].d * s);
+    NEXT();
+  }
   op_EqVector: op_NeVector: {
     const Slot *x = &R(in->b), *y = &R(in->c);
     const bool same = x[0].d == y[0].d && x[1].d == y[1].d && x[2].d == y[2].d;
@@ -256,11 +326,11 @@ void Machine::execute(std::size_t depth) {
   op_EqObject: R(in->a).i = R(in->b).ref == R(in->c).ref; NEXT();
   op_NeObject: R(in->a).i = R(in->b).ref != R(in->c).ref; NEXT();
 
-  op_BoxInt: ANY(in->a) = Value::of(R(in->b).i); NEXT();
-  op_BoxDouble: ANY(in->a) = Value::of(R(in->b).d); NEXT();
-  op_BoxVector: ANY(in->a) = Value::of(Vector3(R(in->b).d, R(in->b + 1).d, R(in->b + 2).d)); NEXT();
+  op_BoxInt: BOX(in->a, Int, word(R(in->b).i)); NEXT();
+  op_BoxDouble: BOX(in->a, Double, R(in->b).bits); NEXT();
+  op_BoxVector: copy3(&R(in->a + 1), &R(in->b)); R(in->a).bits = Value::head_of(Tag::Vector); NEXT();
   op_BoxMatrix: ANY(in->a) = Value::of(Tag::Matrix, heap_->matrix(SlotType<Matrix3>::from(&R(in->b)))); NEXT();
-  op_BoxRef: ANY(in->a) = Value::of(static_cast<Tag>(in->c), R(in->b).ref); NEXT();
+  op_BoxRef: put_any(&R(in->a), static_cast<Tag>(in->c), R(in->b).bits); NEXT();
 
   op_ToInt: {
     const Value& v = ANY_OR_RESULT(in->b);
@@ -307,7 +377,7 @@ void Machine::execute(std::size_t depth) {
     }
     NEXT();
   }
-  op_ToAny: ANY(in->a) = result_; NEXT();
+  op_ToAny: copy_any(&R(in->a), result_); NEXT();
   op_ResultInt: R(in->a).i = result_.i; NEXT();
   op_ResultDouble: R(in->a).d = result_.d; NEXT();
   op_ResultVector: put_vector(&R(in->a), result_.v[0], result_.v[1], result_.v[2]); NEXT();
@@ -336,6 +406,56 @@ void Machine::execute(std::size_t depth) {
     }
     NEXT();
   }
+#define ARITHMETIC(name, kind, op, of_ints)                                            \
+  op_##name: {                                                                         \
+    const Value &x = ANY(in->b), &y = ANY_OR_RESULT(in->c);                            \
+    if (x.tag == Tag::Int && y.tag == Tag::Int) {                                      \
+      BOX(in->a, Int, word(of_ints(x.i, y.i)));                                        \
+    } else if (x.tag == Tag::Double && y.tag == Tag::Double) {                         \
+      BOX(in->a, Double, word(x.d op y.d));                                            \
+    } else {                                                                           \
+      SAVE();                                                                          \
+      copy_any(&R(in->a), binary(*heap_, ast::BinaryOp::kind, x, y));                  \
+    }                                                                                  \
+    NEXT();                                                                            \
+  }
+  ARITHMETIC(AddAny, Add, +, wrap_add)
+  ARITHMETIC(SubAny, Sub, -, wrap_sub)
+  ARITHMETIC(MulAny, Mul, *, wrap_mul)
+#undef ARITHMETIC
+// A sum of what is known and what is not; `first`: the known one comes first.
+#define MIXED_SUM(of_doubles, of_vectors, kind, op, first)                                                        \
+  op_##of_doubles: {                                                                                              \
+    const Value& v = ANY_OR_RESULT(in->c);                                                                        \
+    const double known = R(in->b).d;                                                                              \
+    if (v.tag == Tag::Double) {                                                                                   \
+      R(in->a).d = first ? known op v.d : v.d op known;                                                           \
+    } else if (v.tag == Tag::Int) {                                                                               \
+      R(in->a).d = first ? known op v.i : v.i op known;                                                           \
+    } else {                                                                                                      \
+      SAVE();                                                                                                     \
+      R(in->a).d = first ? binary(*heap_, ast::BinaryOp::kind, Value::of(known), v).d                             \
+                         : binary(*heap_, ast::BinaryOp::kind, v, Value::of(known)).d;                            \
+    }                                                                                                             \
+    NEXT();                                                                                                       \
+  }                                                                                                               \
+  op_##of_vectors: {                                                                                              \
+    const Value& v = ANY_OR_RESULT(in->c);                                                                        \
+    const Slot* known = &R(in->b);                                                                                \
+    if (v.tag != Tag::Vector) [[unlikely]] {                                                                      \
+      SAVE();                                                                                                     \
+      const Value other = Value::of(Vector3(known[0].d, known[1].d, known[2].d));                                 \
+      first ? binary(*heap_, ast::BinaryOp::kind, other, v) : binary(*heap_, ast::BinaryOp::kind, v, other);      \
+    }                                                                                                             \
+    if (first) put_vector(&R(in->a), known[0].d op v.v[0], known[1].d op v.v[1], known[2].d op v.v[2]);           \
+    else put_vector(&R(in->a), v.v[0] op known[0].d, v.v[1] op known[1].d, v.v[2] op known[2].d);                 \
+    NEXT();                                                                                                       \
+  }
+  MIXED_SUM(AddDoubleAny, AddVectorAny, Add, +, true)
+  MIXED_SUM(SubDoubleAny, SubVectorAny, Sub, -, true)
+  MIXED_SUM(AddAnyDouble, AddAnyVector, Add, +, false)
+  MIXED_SUM(SubAnyDouble, SubAnyVector, Sub, -, false)
+#undef MIXED_SUM
   op_Negate: ANY(in->a) = negate(ANY(in->b)); NEXT();
   op_Magnitude: ANY(in->a) = magnitude(ANY(in->b)); NEXT();
   op_RandomInt: R(in->a).i = world_.random().below_or_equal(R(in->b).i); NEXT();
@@ -360,13 +480,13 @@ void Machine::execute(std::size_t depth) {
     pc += far;                           \
   } while (0)
   op_JumpIfInt: if (R(in->a).i) JUMP_BACK(in->imm()); NEXT();
-  op_JumpIfNotInt: if (!R(in->a).i) JUMP(); NEXT();
+  op_JumpIfNotInt: if (!R(in->a).i) JUMP_BACK(in->imm()); NEXT();
   op_JumpIfDouble: if (R(in->a).d != 0) JUMP_BACK(in->imm()); NEXT();
-  op_JumpIfNotDouble: if (!(R(in->a).d != 0)) JUMP(); NEXT();
+  op_JumpIfNotDouble: if (!(R(in->a).d != 0)) JUMP_BACK(in->imm()); NEXT();
   op_JumpIfObject: if (true_object(R(in->a).ref)) JUMP_BACK(in->imm()); NEXT();
-  op_JumpIfNotObject: if (!true_object(R(in->a).ref)) JUMP(); NEXT();
+  op_JumpIfNotObject: if (!true_object(R(in->a).ref)) JUMP_BACK(in->imm()); NEXT();
   op_JumpIfAny: if (true_any(ANY_OR_RESULT(in->a))) JUMP_BACK(in->imm()); NEXT();
-  op_JumpIfNotAny: if (!true_any(ANY_OR_RESULT(in->a))) JUMP(); NEXT();
+  op_JumpIfNotAny: if (!true_any(ANY_OR_RESULT(in->a))) JUMP_BACK(in->imm()); NEXT();
 #define COMPARE_JUMP(name, field, op, wanted) \
   op_##name: if ((R(in->a).field op R(in->b).field) == wanted) JUMP_BACK(static_cast<std::int16_t>(in->c)); NEXT();
   COMPARE_JUMP(JumpUnlessLtInt, i, <, false)
@@ -395,9 +515,31 @@ void Machine::execute(std::size_t depth) {
   SMALL_JUMP(JumpIfEqSmall, ==)
   SMALL_JUMP(JumpIfNeSmall, !=)
 #undef SMALL_JUMP
+// The end of a `for` that counts: step and test in one.
+#define STEP_JUMP(name, op, limit)                                      \
+  op_##name: {                                                          \
+    const Instruction& ext = EXT(0);                                    \
+    R(in->a).i = wrap_add(R(in->a).i, static_cast<std::int16_t>(ext.a)); \
+    if (R(in->a).i op (limit)) JUMP_BACK(static_cast<std::int16_t>(in->c)); \
+    else ++pc;                                                          \
+    NEXT();                                                             \
+  }
+  STEP_JUMP(StepJumpIfLt, <, R(in->b).i)
+  STEP_JUMP(StepJumpIfLe, <=, R(in->b).i)
+  STEP_JUMP(StepJumpIfLtImm, <, ext.imm())
+#undef STEP_JUMP
 
   op_NewList: R(in->a).ref = heap_->list(static_cast<std::uint32_t>(in->imm())); NEXT();
   op_Append: op_Push: heap_->push(*LIST(in->a), ANY(in->b)); NEXT();
+  op_PushInt:
+    if (!heap_->push_slot(*LIST(in->a), Tag::Int, word(R(in->b).i))) heap_->push(*LIST(in->a), Value::of(R(in->b).i));
+    NEXT();
+  op_PushDouble:
+    if (!heap_->push_slot(*LIST(in->a), Tag::Double, R(in->b).bits)) heap_->push(*LIST(in->a), Value::of(R(in->b).d));
+    NEXT();
+  op_PushRef:
+    if (!heap_->push_slot(*LIST(in->a), static_cast<Tag>(in->c), R(in->b).bits)) heap_->push(*LIST(in->a), Value::of(static_cast<Tag>(in->c), R(in->b).ref));
+    NEXT();
   op_Prepend: heap_->prepend(*LIST(in->a), ANY(in->b)); NEXT();
   op_Pop: ANY(in->a) = LIST(in->b)->size == 0 ? Value() : heap_->pop(*LIST(in->b)); NEXT();
   op_Unprepend: ANY(in->a) = LIST(in->b)->size == 0 ? Value() : heap_->unprepend(*LIST(in->b)); NEXT();
@@ -428,7 +570,7 @@ void Machine::execute(std::size_t depth) {
   op_IndexGuarded: SAVE(); ANY(in->a) = guarded_index(ANY(in->b), ANY(in->c)); NEXT();
   op_IndexList: {
     const auto& list = *LIST(in->b);
-    ANY(in->a) = list[list_position(list, R(in->c).i)];
+    copy_element(&R(in->a), list, list_position(list, R(in->c).i));
     NEXT();
   }
   op_SetIndex: {
@@ -440,7 +582,7 @@ void Machine::execute(std::size_t depth) {
   op_SetIndexList: {
     auto& list = *LIST(in->a);
     const auto i = static_cast<std::uint32_t>(R(in->b).i);
-    if (i < list.size) heap_->store(list[i], ANY(in->c));
+    if (i < list.size) heap_->set(list, i, ANY(in->c));
     else if (i == list.size) heap_->push(list, ANY(in->c));
     else fail_list_bounds(R(in->b).i, list.size);
     NEXT();
@@ -464,7 +606,7 @@ void Machine::execute(std::size_t depth) {
     const auto& list = *LIST(in->a);
     const auto i = static_cast<std::uint32_t>(R(in->b).i);
     if (i < list.size) {
-      ANY(in->c) = list[i];
+      copy_element(&R(in->c), list, i);
       R(in->b).i = static_cast<std::int32_t>(i + 1);
       JUMP_BACK(ext.imm());
     }
@@ -478,7 +620,7 @@ void Machine::execute(std::size_t depth) {
     if (i < list.size) {
       pc += 1;
       R(in->b).i = static_cast<std::int32_t>(i + 1);
-      const Value& element = list[i];
+      const Value element = list[i];
       if (element.tag == Tag::Object) R(in->c).ref = element.ref;
       else { SAVE(); R(in->c) = converted_reference(StaticType::Object, element, static_cast<std::uint32_t>(what.imm()), false, in); }
       JUMP_BACK(ext.imm());
@@ -524,7 +666,7 @@ void Machine::execute(std::size_t depth) {
     plan = &plan_for(site, *receiver->cls);
     COUNT_CALL();
     if (!plan->method) {
-      result_ = Value();
+      RESULT(Null, 0);
       NEXT();
     }
     if (plan->method->native) {
@@ -539,8 +681,8 @@ void Machine::execute(std::size_t depth) {
     base = frame->base();
     apply(*plan, caller, base);
     self = receiver;
-    function = frame->function;
-    pc = function->code.data();
+    numbers = frame->function->numbers.data();
+    pc = frame->function->code.data();
     NEXT();
   }
   op_ResolveCall: {
@@ -553,14 +695,14 @@ void Machine::execute(std::size_t depth) {
     const Plan& plan = plan_for(number, *receiver->cls);
     R(in->b).i = 0;
     R(in->b + 1).bits = reinterpret_cast<std::uintptr_t>(&plan);
-    pc = function->code.data() + (plan.order.empty() ? site.call : site.arguments[plan.order[0]].block);
+    pc = frame->function->code.data() + (plan.order.empty() ? site.call : site.arguments[plan.order[0]].block);
     NEXT();
   }
   op_NextArgument: {
     const auto& site = program_->code().sites[static_cast<std::size_t>(in->imm())];
     const auto& order = reinterpret_cast<const Plan*>(static_cast<std::uintptr_t>(R(in->a + 1).bits))->order;
     const auto next = static_cast<std::size_t>(++R(in->a).i);
-    pc = function->code.data() + (next >= order.size() ? site.call : site.arguments[order[next]].block);
+    pc = frame->function->code.data() + (next >= order.size() ? site.call : site.arguments[order[next]].block);
     NEXT();
   }
   op_Broadcast: {
@@ -603,11 +745,9 @@ void Machine::execute(std::size_t depth) {
   }
   op_Function: {
     SAVE();
-    Value value;
     const auto& callee = functions_[static_cast<std::size_t>(in->imm())];
-    if constexpr (kProfiled) call_function_profiled(callee, *self, &R(in->a), value);
-    else callee.function(*this, *self, &R(in->a), value);
-    result_ = value;
+    if constexpr (kProfiled) call_function_profiled(callee, *self, &R(in->a), result_);
+    else callee.function(*this, *self, &R(in->a), result_);
     COUNT_CALL();
     LEAVE_IF_FREED();
     NEXT();
@@ -629,13 +769,16 @@ void Machine::execute(std::size_t depth) {
     if (!host_.strict) NEXT();
   op_Fail: throw RunError(static_cast<RunErrorKind>(in->a), program_->code().texts[static_cast<std::size_t>(in->imm())]);
 
-  op_ReturnInt: result_ = Value::of(R(in->a).i); goto do_return;
-  op_ReturnDouble: result_ = Value::of(R(in->a).d); goto do_return;
-  op_ReturnVector: result_ = Value::of(Vector3(R(in->a).d, R(in->a + 1).d, R(in->a + 2).d)); goto do_return;
+  op_ReturnInt: RESULT(Int, word(R(in->a).i)); goto do_return;
+  op_ReturnDouble: RESULT(Double, R(in->a).bits); goto do_return;
+  op_ReturnVector:
+    result_.head = Value::head_of(Tag::Vector);
+    copy3(reinterpret_cast<Slot*>(result_.bits), &R(in->a));
+    goto do_return;
   op_ReturnMatrix: result_ = Value::of(Tag::Matrix, heap_->matrix(SlotType<Matrix3>::from(&R(in->a)))); goto do_return;
-  op_ReturnRef: result_ = Value::of(static_cast<Tag>(in->b), R(in->a).ref); goto do_return;
-  op_ReturnAny: result_ = ANY(in->a); goto do_return;
-  op_ReturnNull: result_ = Value(); goto do_return;
+  op_ReturnRef: put_any(reinterpret_cast<Slot*>(&result_), static_cast<Tag>(in->b), R(in->a).bits); goto do_return;
+  op_ReturnAny: copy_any(result_, ANY(in->a)); goto do_return;
+  op_ReturnNull: RESULT(Null, 0); goto do_return;
   op_ReturnResult:
   do_return:
     leave();

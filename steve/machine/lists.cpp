@@ -1,4 +1,7 @@
-// Lists: one store without gaps and with room at both ends, doubled when it is full.
+// Lists: one store without gaps and with room at both ends, doubled when it is full. Elements of one type stand in it
+// without their tags (as V8's arrays and PyPy's list strategies have it); the first other one makes the list wide.
+//
+// Source: Bolz, Diekmann and Tratt 2013, "Storage strategies for collections in dynamically typed languages".
 #include <algorithm>
 #include <unordered_map>
 
@@ -19,26 +22,32 @@ void check_size(std::uint32_t size) {
   if (size >= kMostElements) throw RunError(RunErrorKind::Bounds, "a list cannot have more than 2147483647 elements");
 }
 
-void move_values(Value* to, const Value* from, std::size_t count) {
-  if (count != 0) std::memmove(static_cast<void*>(to), from, count * sizeof(Value));
+/// Move `count` elements of `list` from one position of the store to another.
+void shift(ListCell& list, std::uint32_t to, std::uint32_t from, std::uint32_t count) {
+  const std::size_t bytes = list.element_bytes();
+  auto* store = reinterpret_cast<char*>(list.store);
+  if (count != 0) std::memmove(store + to * bytes, store + from * bytes, count * bytes);
 }
 
 }  // namespace
 
-Value* Heap::new_store(std::uint32_t capacity) {
-  return static_cast<Value*>(memory_->allocate(capacity * sizeof(Value), alignof(Value)));
+void Heap::free_store(ListCell& list) {
+  if (list.store != nullptr) memory_->deallocate(list.store, list.capacity * list.element_bytes(), alignof(Slot));
+  list.store = nullptr;
+  list.capacity = list.first = 0;
 }
 
 void Heap::move_store(ListCell& list, std::uint32_t capacity, std::uint32_t first) {
   settle(list);
   if (capacity == list.capacity) {
-    move_values(list.store + first, list.begin(), list.size);
+    shift(list, first, list.first, list.size);
   } else {
-    Value* store = new_store(capacity);
-    if (list.store != nullptr) {
-      move_values(store + first, list.begin(), list.size);
-      memory_->deallocate(list.store, list.capacity * sizeof(Value), alignof(Value));
-    }
+    const std::size_t bytes = list.element_bytes();
+    auto* store = static_cast<Slot*>(memory_->allocate(capacity * bytes, alignof(Slot)));
+    if (list.size != 0)
+      std::memcpy(reinterpret_cast<char*>(store) + first * bytes,
+                  reinterpret_cast<const char*>(list.store) + list.first * bytes, list.size * bytes);
+    free_store(list);
     list.store = store;
     list.capacity = capacity;
   }
@@ -50,37 +59,99 @@ void Heap::move_store(ListCell& list, std::uint32_t capacity, std::uint32_t firs
 void Heap::make_room_behind(ListCell& list) {
   check_size(list.size);
   if (list.first > list.capacity / 2) return move_store(list, list.capacity, list.first / 4);
-  move_store(list, doubled(list.capacity), list.first);
+  move_store(list, std::max(doubled(list.capacity), list.wish), list.first);
 }
 
 void Heap::make_room_before(ListCell& list) {
   check_size(list.size);
   const std::uint32_t behind = list.capacity - list.size;
   if (list.capacity != 0 && behind > list.capacity / 2) return move_store(list, list.capacity, behind - behind / 4);
-  const std::uint32_t capacity = doubled(list.capacity);
+  const std::uint32_t capacity = std::max(doubled(list.capacity), list.wish);
   move_store(list, capacity, capacity - list.capacity);
 }
 
 void Heap::reserve(ListCell& list, std::uint32_t capacity) {
   if (capacity > kMostElements) check_size(kMostElements);
-  if (capacity > list.capacity - list.first)
+  if (list.store == nullptr) {
+    list.wish = std::max(list.wish, capacity);
+  } else if (capacity > list.capacity - list.first) {
     move_store(list, std::max(capacity, list.capacity) + list.first, list.first);
+  }
+}
+
+// --- narrow and wide -------------------------------------------------------------------------------------------------
+
+/// Make `list` one that can hold an element of type `tag`. An empty list takes the kind of its first element.
+void Heap::fit(ListCell& list, Tag tag) {
+  if (list.size == 0) {
+    const Tag kind = ListCell::fits_slot(tag) ? tag : Tag::Null;
+    settle(list);
+    if (list.narrow() != (kind != Tag::Null)) free_store(list);
+    list.kind = kind;
+  } else if (list.narrow() && list.kind != tag) {
+    widen(list);
+  }
+}
+
+void Heap::widen(ListCell& list) {
+  settle(list);
+  auto* store = static_cast<Slot*>(memory_->allocate(list.capacity * sizeof(Value), alignof(Slot)));
+  auto* to = reinterpret_cast<Value*>(store) + list.first;
+  for (std::uint32_t i = 0; i < list.size; ++i) new (to + i) Value(list[i]);
+  const std::uint32_t first = list.first, capacity = list.capacity;
+  free_store(list);
+  list.kind = Tag::Null;
+  list.store = store;
+  list.first = first;
+  list.capacity = capacity;
+}
+
+void Heap::put(ListCell& list, std::uint32_t position, const Value& value) {
+  if (list.narrow())
+    list.store[list.first + position].bits = value.bits[0];
+  else
+    new (list.values() + list.first + position) Value(value);
+}
+
+void Heap::push_slowly(ListCell& list, const Value& value) {
+  fit(list, value.tag);
+  if (list.first + list.size == list.capacity) make_room_behind(list);
+  retain(value);
+  put(list, list.size, value);
+  ++list.size;
+}
+
+void Heap::prepend(ListCell& list, const Value& value) {
+  fit(list, value.tag);
+  if (list.first == 0) make_room_before(list);
+  retain(value);
+  --list.first;
+  ++list.size;
+  put(list, 0, value);
+}
+
+void Heap::set(ListCell& list, std::uint32_t position, const Value& value) {
+  if (list.narrow() && list.kind != value.tag) widen(list);
+  const Value old = list[position];
+  retain(value);
+  put(list, position, value);
+  release(old);
 }
 
 void Heap::insert(ListCell& list, std::uint32_t position, const Value& value) {
   if (position == list.size) return push(list, value);
   if (position == 0) return prepend(list, value);
-  const Value copy = value;
+  fit(list, value.tag);
   settle(list);
   if (list.first > 0 && position <= list.size / 2) {
     --list.first;
-    move_values(list.begin(), list.begin() + 1, position);
+    shift(list, list.first, list.first + 1, position);
   } else {
     if (list.first + list.size == list.capacity) make_room_behind(list);
-    move_values(list.begin() + position + 1, list.begin() + position, list.size - position);
+    shift(list, list.first + position + 1, list.first + position, list.size - position);
   }
-  retain(copy);
-  list[position] = copy;
+  retain(value);
+  put(list, position, value);
   ++list.size;
 }
 
@@ -90,10 +161,10 @@ Value Heap::remove(ListCell& list, std::uint32_t position) {
   settle(list);
   const Value removed = list[position];
   if (position < list.size / 2) {
-    move_values(list.begin() + 1, list.begin(), position);
+    shift(list, list.first + 1, list.first, position);
     ++list.first;
   } else {
-    move_values(list.begin() + position, list.begin() + position + 1, list.size - position - 1);
+    shift(list, list.first + position, list.first + position + 1, list.size - position - 1);
   }
   --list.size;
   release(removed);
@@ -101,11 +172,8 @@ Value Heap::remove(ListCell& list, std::uint32_t position) {
 }
 
 void Heap::resize(ListCell& list, std::uint32_t size) {
-  if (size > list.size) {
-    reserve(list, size);
-    std::fill(list.end(), list.begin() + size, Value());
-    list.size = size;
-  }
+  if (size > list.size) reserve(list, size);
+  while (list.size < size) push(list, Value());
   while (list.size > size) pop(list);
 }
 
@@ -141,8 +209,13 @@ ListCell* Heap::copy(const ListCell& original) {
   }
 }
 
-void merge_sort(Heap& heap, ListCell& list, const std::function<bool(const Value&, const Value&)>& before) {
-  std::pmr::vector<Value> items(list.begin(), list.end(), heap.memory());
+// --- sorting ---------------------------------------------------------------------------------------------------------
+
+void merge_sort(Heap& heap, ListCell& list, const Before& before) {
+  const Tag kind = list.kind;
+  std::pmr::vector<Value> items(heap.memory());
+  items.reserve(list.size);
+  for (const Value& element : list) items.push_back(element);
   std::pmr::vector<Value> other(items.size(), heap.memory());
   struct Pin {
     Heap& heap;
@@ -167,8 +240,12 @@ void merge_sort(Heap& heap, ListCell& list, const std::function<bool(const Value
     }
     items.swap(other);
   }
-  heap.resize(list, static_cast<std::uint32_t>(n));
-  for (std::size_t i = 0; i < n; ++i) heap.store(list[static_cast<std::uint32_t>(i)], items[i]);
+  if (list.size == n && list.kind == kind) {
+    for (std::size_t i = 0; i < n; ++i) heap.set(list, static_cast<std::uint32_t>(i), items[i]);
+  } else {  // `before` has changed it
+    heap.resize(list, 0);
+    for (const Value& item : items) heap.push(list, item);
+  }
 }
 
 }  // namespace breve::steve

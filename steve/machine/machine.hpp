@@ -179,11 +179,15 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   struct Plan : InMemory {
     explicit Plan(std::pmr::memory_resource* memory) : moves(memory), steps(memory), order(memory) {}
     const ClassInfo* cls = nullptr;
-    const MethodInfo* method = nullptr;                               // null: `iterate`, which nobody has to have
-    std::pmr::vector<std::pair<std::uint16_t, std::uint16_t>> moves;  // one slot each: from, to
-    std::pmr::vector<PlanStep> steps;                                 // the rest
-    std::pmr::vector<std::uint16_t> order;                            // arguments in the order of the parameters
-    std::unique_ptr<Plan> next;                                       // of the same site, for another class
+    const MethodInfo* method = nullptr;  // null: `iterate`, which nobody has to have
+    struct Move {
+      std::uint16_t from, to;
+      bool widens;  // an int becomes a double
+    };
+    std::pmr::vector<Move> moves;           // one slot each
+    std::pmr::vector<PlanStep> steps;       // the rest
+    std::pmr::vector<std::uint16_t> order;  // arguments in the order of the parameters
+    std::unique_ptr<Plan> next;             // of the same site, for another class
   };
   struct SiteCache {
     const ClassInfo* cls = nullptr;
@@ -224,6 +228,16 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
     std::uint32_t segment_;
     std::size_t pins_;
   };
+
+  /// One interpreter loop more on the C++ stack.
+  struct Nest {
+    std::uint32_t& nesting;
+    explicit Nest(std::uint32_t& n) : nesting(n) { ++nesting; }
+    ~Nest() { --nesting; }
+    Nest(const Nest&) = delete;
+    Nest& operator=(const Nest&) = delete;
+  };
+  static constexpr std::uint32_t kMaxNesting = 400;
 
   // frames (frames.cpp)
   /// A new frame; parameters are still to be written.
@@ -289,7 +303,12 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   std::string where_assigned(const Receiver& receiver) const;
   const CallSite* broadcast_site() const;
   void apply(const Plan& plan, const Slot* caller, Slot* callee) {
-    for (const auto& [from, to] : plan.moves) callee[to].bits = caller[from].bits;
+    for (const auto& move : plan.moves) {
+      if (move.widens)
+        callee[move.to].d = caller[move.from].i;
+      else
+        callee[move.to].bits = caller[move.from].bits;
+    }
     if (!plan.steps.empty()) apply_steps(plan, caller, callee);
   }
   void apply_steps(const Plan& plan, const Slot* caller, Slot* callee);
@@ -311,6 +330,8 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   ListCell* all_of(const ClassInfo& cls);
   void free_value(const Value& value);
   void sort(ListCell& list, Symbol method, Instance& self);
+  bool comes_before(Instance& self, const MethodInfo& method, const Value& a, const Value& b);
+  void write_argument(Slot* base, const ParameterInfo& parameter, const Value& value);
   StringCell* interpolate(const std::vector<std::string>& texts, const Value* values, std::size_t count);
   void print_value(const Value& value, int ending);
   Value random(const Value& bound);

@@ -100,11 +100,12 @@ struct Binder {
     return F(machine, self, SlotType<Plain<A>>::from(args + offset(I, sizes))...);
   }
   static void call(Machine& machine, Instance& self, const Slot* args, Value& result) {
-    if constexpr (std::is_void_v<R>)
+    if constexpr (std::is_void_v<R>) {
       apply(machine, self, args, std::index_sequence_for<A...>());
-    else
+      result = Value();
+    } else {
       result = SlotType<Plain<R>>::to(apply(machine, self, args, std::index_sequence_for<A...>()));
-    (void)result;
+    }
   }
 };
 

@@ -254,7 +254,7 @@ Value binary(Heap& heap, BinaryOp op, const Value& a, const Value& b) {
   if (a.tag == Tag::Matrix || b.tag == Tag::Matrix) return matrix_binary(heap, op, a, b);
   if (a.tag == Tag::Vector || b.tag == Tag::Vector) return vector_binary(op, a, b);
   if (a.tag == Tag::String && b.tag == Tag::String) {
-    if (op == BinaryOp::Add) return Value::of(Tag::String, heap.concat(view(a.string()), view(b.string())));
+    if (op == BinaryOp::Add) return Value::of(Tag::String, heap.append(a.string(), view(b.string())));
     if (is_equality(op)) return boolean(op, view(a.string()) == view(b.string()));
   }
   if (a.tag == Tag::List && b.tag == Tag::List && is_equality(op)) return boolean(op, equal(a, b));

@@ -228,14 +228,53 @@ void Machine::sort(ListCell& list, Symbol symbol, Instance& self) {
                    "write one: + to " + program_->symbols().name(symbol) + " of a (object) with b (object):");
   const ProfileScope profiled(profiler_, Callee::act("sort"), profiler_ ? running_line() : 0);
   const Pin pin(*this, Value::of(Tag::List, &list));
-  const StackMark mark(*this);
-  for (const auto& element : list) pins_.push_back(element);
-  merge_sort(*heap_, list, [&](const Value& a, const Value& b) {
+  merge_sort(*heap_, list, [&](const Value& a, const Value& b) { return comes_before(self, *method, a, b); });
+}
+
+/// One comparison of a sort: a method called by position many times over. An error in it does not stop the run (F27).
+bool Machine::comes_before(Instance& self, const MethodInfo& method, const Value& a, const Value& b) {
+  const auto& parameters = method.parameters;
+  Value order;
+  if (method.native || profiler_ || nesting_ >= kMaxNesting || !self.live() || parameters[0].class_name != kNoSymbol ||
+      parameters[1].class_name != kNoSymbol) {
     const Value arguments[] = {a, b};
-    Value order;
-    if (!call_guarded(self, *method, arguments, order)) return false;
-    return order.tag != Tag::Null && to_double(order, "the result of the comparison") < 0;
-  });
+    if (!call_guarded(self, method, arguments, order)) return false;
+  } else {
+    const std::size_t depth = depth_;
+    const Instruction* pc = running();
+    try {
+      try {
+        count_call();
+        const Nest nest(nesting_);
+        Slot* base = enter(method, self)->base();
+        try {
+          write_argument(base, parameters[0], a);
+          write_argument(base, parameters[1], b);
+        } catch (...) {
+          unwind(depth);
+          throw;
+        }
+        execute<false>(depth);
+      } catch (...) {
+        rethrow(depth, pc);
+      }
+    } catch (const ScriptError& error) {
+      if (error.code() != ErrorCode::Script && error.code() != ErrorCode::Depth) throw;
+      survive(error);
+      return false;
+    }
+    if (result_.tag == Tag::Double) return result_.d < 0;
+    order = result_;
+  }
+  return order.tag != Tag::Null && to_double(order, "the result of the comparison") < 0;
+}
+
+void Machine::write_argument(Slot* base, const ParameterInfo& parameter, const Value& value) {
+  const bool fits = static_cast<int>(value.tag) == static_cast<int>(parameter.type) && slot_count(parameter.type) == 1;
+  if (fits)
+    base[parameter.slot].bits = value.bits[0];
+  else
+    write_parameter(base, parameter, value, program_->symbols().name(parameter.keyword));
 }
 
 // --- text
@@ -255,8 +294,10 @@ std::string Machine::describe(Instance& instance) {
 }
 
 StringCell* Machine::interpolate(const std::vector<std::string>& texts, const Value* values, std::size_t count) {
-  std::string out = texts[0];
-  for (std::size_t i = 0; i < count; ++i) {
+  // A text that begins with another one adds to it.
+  StringCell* begin = texts[0].empty() && values[0].tag == Tag::String ? values[0].string() : nullptr;
+  std::string out = begin ? texts[1] : texts[0];
+  for (std::size_t i = begin ? 1 : 0; i < count; ++i) {
     if (values[i].tag == Tag::String)
       out += view(values[i].string());
     else if (values[i].tag == Tag::Int)
@@ -267,7 +308,7 @@ StringCell* Machine::interpolate(const std::vector<std::string>& texts, const Va
       out += text(values[i]);
     out += texts[i + 1];
   }
-  return heap_->string(out);
+  return begin ? heap_->append(begin, out) : heap_->string(out);
 }
 
 void Machine::print_value(const Value& value, int ending) {

@@ -1,6 +1,7 @@
 // What a steve value is: untagged slots where the type is known, a tagged Value where it is not, cells for the rest.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -51,7 +52,11 @@ struct Instance;
 /// A dynamic value: a tag and what it tags. Vectors stand in place; matrices and strings are immutable cells. The null
 /// reference is the empty string, the null object, a list or hash not made yet, the null pointer, empty data.
 struct Value {
-  Tag tag;
+  // The tag is written as a whole word: a copy reads words, and a read wider than the last write waits for it.
+  union {
+    Tag tag;
+    std::uint64_t head;
+  };
   union {
     std::int32_t i;
     double d;
@@ -60,7 +65,7 @@ struct Value {
     std::uint64_t bits[3];
   };
 
-  Value() : tag(Tag::Null), bits{0, 0, 0} {}
+  Value() : head(0), bits{0, 0, 0} {}
   static Value of(std::int32_t i) {
     Value r(Tag::Int);
     r.i = i;
@@ -82,6 +87,17 @@ struct Value {
     return r;
   }
 
+  /// A value of a type that takes one slot, from the bits of that slot.
+  static Value of(Tag tag, std::uint64_t bits) {
+    Value r(tag);
+    r.bits[0] = bits;
+    return r;
+  }
+  static constexpr std::uint64_t head_of(Tag t) {
+    const auto number = static_cast<std::uint64_t>(t);
+    return std::endian::native == std::endian::little ? number : number << 56;
+  }
+
   bool is_reference() const { return tag >= Tag::Matrix; }
   Vector3 vector() const { return {v[0], v[1], v[2]}; }
   // Unchecked: the caller has looked at the tag. Null where the reference is null.
@@ -94,7 +110,7 @@ struct Value {
   DataCell* data() const { return reinterpret_cast<DataCell*>(ref); }
 
  private:
-  explicit Value(Tag t) : tag(t), bits{0, 0, 0} {}
+  explicit Value(Tag t) : head(head_of(t)), bits{0, 0, 0} {}
 };
 static_assert(sizeof(Value) == 32);
 

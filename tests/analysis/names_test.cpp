@@ -93,7 +93,8 @@ TEST(Names, AReceiverWhoseClassDoesNotAnswerMayBeOfAnother) {
 
 TEST(Names, KeywordsBelongToTheCalledMethod) {
   EXPECT_EQ(in_body("b fly t~o (1, 2, 3).").definitions(), "Bird.to place (vector)");
-  const auto reference = in_body("b fly to (1, 2, 3) with-~speed 3.").at();
+  const Looking looking = in_body("b fly to (1, 2, 3) with-~speed 3.");
+  const auto reference = looking.at();
   ASSERT_TRUE(reference);
   EXPECT_EQ(reference->kind, NameKind::Keyword);
   EXPECT_EQ(reference->type, "Bird object");
@@ -121,18 +122,21 @@ TEST(Names, HeadersAndTypesNameClassesToo) {
 }
 
 TEST(Names, DeclarationsSayThatTheyAre) {
-  const auto reference = Looking("Object : A {\n + to ho~p: print 1.\n}").at();
+  const Looking looking("Object : A {\n + to ho~p: print 1.\n}");
+  const auto reference = looking.at();
   ASSERT_TRUE(reference);
   EXPECT_TRUE(reference->declaration);
   EXPECT_EQ(reference->signature, "hop");
 }
 
 TEST(Names, WordsAreExplained) {
-  const auto word = in_body("fore~ach b in birds: b rest.").at();
+  const Looking loop = in_body("fore~ach b in birds: b rest.");
+  const auto word = loop.at();
   ASSERT_TRUE(word);
   EXPECT_EQ(word->kind, NameKind::Word);
   EXPECT_EQ(word->signature, "foreach item in list: statement");
-  const auto type = Looking("Object : A {\n + variables:\n  a (vec~tor).\n}").at();
+  const Looking variable("Object : A {\n + variables:\n  a (vec~tor).\n}");
+  const auto type = variable.at();
   ASSERT_TRUE(type);
   EXPECT_EQ(type->kind, NameKind::Type);
 }

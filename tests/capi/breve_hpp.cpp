@@ -168,4 +168,33 @@ TEST(World, EvaluatesStatementsAndGoesOnWithAChangedProgram) {
   world.interrupt();
 }
 
+TEST(Lints, AreAllowedByTheirCode) {
+  auto runtime = breve::Runtime::create().or_throw();
+  const char* text = "@use Control.\nController A.\nControl : A {\n  + to init: print 2 * 3 ^ 2.\n}\n";
+  ASSERT_TRUE(runtime.compile("a.tz", text));
+  EXPECT_EQ(runtime.diagnostics().size(), 1U);
+  EXPECT_EQ(runtime.allow("lint-precedense").code(), BREVE_ERROR_NOT_FOUND);
+  ASSERT_TRUE(runtime.allow("lint-precedence"));
+  ASSERT_TRUE(runtime.compile("a.tz", text));
+  EXPECT_TRUE(runtime.diagnostics().empty());
+}
+
+TEST(Analysis, TellsOfAProgramThatDoesNotCompile) {
+  auto runtime = breve::Runtime::create().or_throw();
+  auto analysis =
+      runtime.analyse("a.tz", "Object : A {\n  + to hop: x = 1.\n  + to run: self ho.\n}\nController A.\n").or_throw();
+  ASSERT_FALSE(analysis.diagnostics().empty());
+  EXPECT_STREQ(analysis.diagnostics()[0].code, "unknown-variable");
+  const auto symbols = analysis.symbols();
+  EXPECT_STREQ(symbols.at(0).name, "a.tz");
+  EXPECT_STREQ(symbols.at(1).signature, "Object : A");
+  EXPECT_STREQ(analysis.at("a.tz", 2, 9).or_throw().name, "hop");
+  EXPECT_EQ(analysis.at("a.tz", 9, 9).status().code(), BREVE_ERROR_NOT_FOUND);
+  const auto items = analysis.completions("a.tz", 3, 20).or_throw();
+  ASSERT_EQ(items.size(), 1U);
+  EXPECT_STREQ(items[0].name, "hop");
+  EXPECT_TRUE(runtime.analyse("empty.tz", {}));
+  EXPECT_EQ(breve::Analysis().at("a.tz", 1, 1).status().code(), BREVE_ERROR_ARGUMENT);
+}
+
 }  // namespace

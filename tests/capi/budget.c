@@ -19,6 +19,10 @@ static const char* const endless_text =
     "    push 1 onto k.\n"
     "    foreach i in k: { push i onto k. n += 1. }\n"
     "  + to go-nothing: while 1: {}\n"
+    "  + to go-until: while !calls: {}\n"
+    "  + to go-until-object:\n"
+    "    o (object).\n"
+    "    while !o: {}\n"
     "  + to go-recursion: n += 1. self go-recursion. self go-recursion.\n"
     "  + to go-mutual: n += 1. self go-mutual-other.\n"
     "  + to go-mutual-other: n += 1. self go-mutual.\n"
@@ -58,8 +62,9 @@ static breve_status call(scene* s, const char* method) {
 
 static void whatever_does_not_end_is_cut_and_the_world_goes_on(void) {
   static const char* const methods[] = {
-      "go-while", "go-for",  "go-foreach", "go-nothing", "go-recursion", "go-mutual",   "go-by-name",   "go-new",
-      "go-many",  "go-init", "go-destroy", "go-sort",    "go-announce",  "go-function", "go-broadcast", "go-steps",
+      "go-while",     "go-for",    "go-foreach",  "go-nothing",  "go-until",     "go-until-object",
+      "go-recursion", "go-mutual", "go-by-name",  "go-new",      "go-many",      "go-init",
+      "go-destroy",   "go-sort",   "go-announce", "go-function", "go-broadcast", "go-steps",
   };
   for (size_t i = 0; i < sizeof methods / sizeof *methods; ++i) {
     scene s;

@@ -321,6 +321,38 @@ static void profiling_changes_neither_hash_nor_budget(void) {
   CHECK(hashes[0] == hashes[1]);
 }
 
+/* Sorting, printing, making and freeing too cost as much of a budget with a profile as without. */
+static void a_budget_cuts_at_the_same_place(void) {
+  static const char* const methods[] = {"order", "ask"};
+  scene s;
+  int cut = 0, done = 0;
+  if (!scene_open_text(&s, program_text, NULL)) return;
+  for (uint64_t budget = 1; budget < 30; ++budget) {
+    breve_status statuses[2][2] = {{BREVE_OK, BREVE_OK}, {BREVE_OK, BREVE_OK}};
+    uint64_t hashes[2] = {0, 0};
+    for (int profiled = 0; profiled < 2; ++profiled) {
+      breve_world_config config = breve_world_config_default();
+      breve_world* world = NULL;
+      config.budget = budget;
+      config.profile = profiled;
+      statuses[profiled][0] = breve_world_create(s.runtime, s.program, &config, &world);
+      if (!world) continue;
+      for (int m = 0; m < 2; ++m)
+        statuses[profiled][m] = breve_object_call(world, breve_world_controller(world), methods[m], NULL, 0, NULL);
+      CHECK_STATUS(BREVE_OK, breve_world_hash(world, &hashes[profiled]));
+      CHECK_STATUS(BREVE_OK, breve_world_destroy(world));
+    }
+    for (int m = 0; m < 2; ++m) {
+      CHECK_STATUS(statuses[0][m], statuses[1][m]);
+      if (statuses[0][m] == BREVE_ERROR_BUDGET) ++cut;
+      if (statuses[0][m] == BREVE_OK) ++done;
+    }
+    CHECK(hashes[0] == hashes[1]);
+  }
+  CHECK(cut > 5 && done > 5);
+  scene_close(&s);
+}
+
 static void a_profile_without_memory_ends_and_the_run_goes_on(void) {
   scene s;
   breve_stats stats = {.struct_size = sizeof stats};
@@ -382,6 +414,7 @@ void profile_suite(void) {
   RUN(a_running_script_is_busy);
   RUN(a_profile_is_kept_until_the_next);
   RUN(profiling_changes_neither_hash_nor_budget);
+  RUN(a_budget_cuts_at_the_same_place);
   RUN(a_profile_without_memory_ends_and_the_run_goes_on);
   RUN(a_reloaded_method_goes_on_in_its_node);
 }

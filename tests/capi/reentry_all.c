@@ -412,10 +412,9 @@ static void every_function_works_or_is_busy_inside_callbacks_of_a_script(void) {
   CHECK(v.in_channel[BREVE_CHANNEL_PRINT] > 0 && v.in_channel[BREVE_CHANNEL_WARNING] > 0);
   CHECK(v.files == 1 && v.commands == 1);
   /* A handler that fails: its report is a callback, too. */
-  CHECK_STATUS(BREVE_OK, breve_world_evaluate(p->world, p->controller,
-                                              "self observe instance self for-notification \"x\" with-method "
-                                              "\"fail-now\". self announce message \"x\".",
-                                              100, NULL));
+  const char* fails =
+      "self observe instance self for-notification \"x\" with-method \"fail-now\". self announce message \"x\".";
+  CHECK_STATUS(BREVE_OK, breve_world_evaluate(p->world, p->controller, fails, strlen(fails), NULL));
   CHECK(v.in_channel[BREVE_CHANNEL_ERROR] > 0);
   close_visited(&v);
 }

@@ -266,6 +266,17 @@ TEST(TextMateGrammar, AnyRuleThatIsMissingIsNoticed) {
   }
 }
 
+TEST(EditorPage, ItsConfigurationsAreJson) {
+  const std::string page = read(fs::path(BREVE_SOURCE) / "docs/editors/README.md");
+  std::size_t count = 0;
+  for (std::size_t at = page.find("```json\n"); at != std::string::npos; at = page.find("```json\n", at + 1)) {
+    const std::string text = page.substr(at + 8, page.find("```", at + 8) - at - 8);
+    EXPECT_TRUE(json::accept(text)) << text;
+    ++count;
+  }
+  EXPECT_EQ(count, 3U);
+}
+
 TEST(TextMateGrammar, WordsInsideNamesAreNoWords) {
   EXPECT_EQ(offences_in("Object : A {\n  + to format if-not x (int):\n    for-each-item, newest, a-for (int).\n\n"
                         "    for-each-item = newest.\n    self push-up.\n}\n",

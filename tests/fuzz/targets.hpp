@@ -19,10 +19,4 @@ void fuzz_run(Bytes bytes);
 /// Pass over the choices that fuzz_run makes before the generator's.
 void skip_plan(Choices& choices);
 
-/// Bytes as damage done to the image of a world, which is then restored and stepped.
-void fuzz_image(Bytes bytes);
-
-/// Any bytes as the text of an archive that a program reads.
-void fuzz_archive(Bytes bytes);
-
 }  // namespace breve::fuzz

@@ -2,6 +2,7 @@
 # `breve repl` through pipes and `breve run --watch`, one case a run: live.sh PATH-OF-BREVE CASE.
 set -u
 breve=$(realpath "$1")
+here=$(cd "$(dirname "$0")" && pwd)
 case=$2
 work=$(mktemp -d)
 watched=
@@ -144,6 +145,17 @@ repl_reload)
   watched=
   has err 'a.tz reloaded' && has err 'a.tz is not reloaded'
   has out '^142$' && has out '^"good day you"$' && has out '^241$'
+  ;;
+repl_reloads_samples_unchanged)
+  samples=$(cd "$here/../../samples/worlds" && pwd)
+  for world in flock gas aggregation random_walk; do
+    tell='foreach one in (all Real): print (one get-location), (one get-rotation).'
+    printf ':step 20\n:reload\n:step 20\n:reload\n:step\n%s\n' "$tell" | "$breve" repl --quiet "$samples/$world.tz" >all 2>err || fail status
+    has err reloaded && grep -v iteration all >reloaded
+    printf ':step 41\n%s\n' "$tell" | "$breve" repl --quiet "$samples/$world.tz" >all 2>err || fail status
+    grep -v iteration all >straight
+    [ -s straight ] && cmp -s straight reloaded || fail "$world goes on as though nothing had happened"
+  done
   ;;
 repl_without_file)
   repl <<'END'

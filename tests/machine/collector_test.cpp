@@ -240,7 +240,7 @@ class RandomGraph {
         if (list.size != 0) w_.heap.unprepend(list);
         break;
       default:
-        if (list.size != 0) w_.heap.store(list[below(list.size)], v);
+        if (list.size != 0) w_.heap.set(list, below(list.size), v);
         break;
     }
   }

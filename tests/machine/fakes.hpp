@@ -38,11 +38,13 @@ class FailingMemory final : public std::pmr::memory_resource {
  public:
   long fail_at = -1;  // < 0: never
   std::size_t used = 0;
+  std::size_t given = 0;  // in all
 
  private:
   void* do_allocate(std::size_t bytes, std::size_t alignment) override {
     if (fail_at >= 0 && fail_at-- == 0) throw std::bad_alloc();
     used += bytes;
+    given += bytes;
     return std::pmr::new_delete_resource()->allocate(bytes, alignment);
   }
   void do_deallocate(void* memory, std::size_t bytes, std::size_t alignment) override {

@@ -43,6 +43,45 @@ TEST(Heap, StringsOfEverySizeKeepTheirBytes) {
   }
 }
 
+// Bytes that are asked for, all together: a text that is built up must not be copied each time.
+TEST(Heap, AMillionAppendedBytesTakeMemoryLinearly) {
+  World w;
+  StringCell* text = nullptr;
+  std::string model;
+  w.roots.frames.push_back(nullptr);
+  for (int i = 0; i < 1'000'000; ++i) {
+    const char c = static_cast<char>('a' + i % 26);
+    text = w.heap.append(text, {&c, 1});
+    model += c;
+    w.roots.frames[0] = text;
+    if (w.heap.wants_reclaim()) w.heap.reclaim();
+  }
+  EXPECT_EQ(text->view(), model);
+  EXPECT_LT(w.memory.used, 8'000'000u);
+  EXPECT_LT(w.memory.given, 40'000'000u);
+}
+
+TEST(Heap, StringsThatShareABeginningStayAsTheyWere) {
+  World w;
+  StringCell* begin = w.heap.string(std::string(1000, 'x'));
+  StringCell* one = w.heap.append(begin, "one");
+  StringCell* two = w.heap.append(one, "two");
+  StringCell* other = w.heap.append(one, "2nd");  // `one` is no longer the longest of its text
+  StringCell* self = w.heap.append(two, two->view().substr(998, 6));
+  EXPECT_EQ(one->view(), std::string(1000, 'x') + "one");
+  EXPECT_EQ(two->view(), std::string(1000, 'x') + "onetwo");
+  EXPECT_EQ(other->view(), std::string(1000, 'x') + "one2nd");
+  EXPECT_EQ(self->view(), std::string(1000, 'x') + "onetwoxxonet");
+  EXPECT_EQ(std::string(w.heap.terminated(one)), std::string(1000, 'x') + "one");
+  EXPECT_EQ(std::string(w.heap.terminated(two)), std::string(1000, 'x') + "onetwo");
+  EXPECT_EQ(self->view().substr(1000), "onetwoxxonet");
+  EXPECT_EQ(std::string(w.heap.terminated(nullptr)), "");
+  w.roots.frames.push_back(two);
+  w.heap.reclaim();
+  EXPECT_EQ(w.heap.live_cells(), 1u);
+  EXPECT_EQ(two->view(), std::string(1000, 'x') + "onetwo");
+}
+
 TEST(Heap, FrameKeepsACellWithoutCounting) {
   World w;
   StringCell* held = w.heap.string("held");
@@ -303,6 +342,9 @@ void use_everything(Heap& heap, FakeRoots& roots, const ClassInfo& cls) {
     heap.push(*inner, Value::of(Tag::Object, instance));
     heap.store(instance->slots[0], inner);
     heap.resize(*inner, 12);
+    StringCell* text = heap.string(std::string(300, 'x'));
+    for (int k = 0; k < 10; ++k) text = heap.append(text, "a little more");
+    heap.push(*inner, Value::of(Tag::String, text));
   }
   heap.copy(*list);
   merge_sort(heap, *list, [](const Value& a, const Value& b) { return a.list()->serial > b.list()->serial; });

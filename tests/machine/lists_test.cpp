@@ -105,6 +105,79 @@ TEST(Lists, GrownElementsAreNull) {
   EXPECT_EQ(list.size, 1u);
 }
 
+// The kinds of elements in any order: what a list gives back does not depend on how it stands in memory.
+TEST(Lists, ElementsOfAnyTypeInAnyOrderAgreeWithADeque) {
+  std::mt19937 random(7);
+  for (int trial = 0; trial < 60; ++trial) {
+    World w;
+    ListCell& list = *w.heap.list();
+    std::deque<Value> model;
+    const auto value = [&]() {
+      switch (random() % (trial % 6 + 1)) {
+        case 0: return number(static_cast<std::int32_t>(random()));
+        case 1: return number(static_cast<double>(random()) * 0.5);
+        case 2: return Value::of(Vector3(1, static_cast<double>(random() % 9), 3));
+        case 3: return Value();
+        case 4: return Value::of(Tag::List, nullptr);
+        default: return Value::of(Tag::Object, nullptr);
+      }
+    };
+    for (int step = 0; step < 400; ++step) {
+      const auto at = static_cast<std::uint32_t>(random() % (model.size() + 1));
+      const Value v = value();
+      const bool some = at < model.size();
+      switch (random() % 7) {
+        case 0:
+        case 1: w.heap.push(list, v), model.push_back(v); break;
+        case 2: w.heap.prepend(list, v), model.push_front(v); break;
+        case 3: w.heap.insert(list, at, v), model.insert(model.begin() + at, v); break;
+        case 4:
+          if (some) w.heap.set(list, at, v), model[at] = v;
+          break;
+        case 5:
+          if (some) w.heap.remove(list, at), model.erase(model.begin() + at);
+          break;
+        default:
+          if (step % 60 == 0) w.heap.resize(list, 0), model.clear();
+      }
+      ASSERT_EQ(list.size, model.size());
+    }
+    const ListCell& copy = *w.heap.copy(list);
+    for (std::uint32_t i = 0; i < list.size; ++i) {
+      const Value a = list[i], b = copy[i], c = model[i];
+      ASSERT_EQ(a.tag, c.tag);
+      ASSERT_EQ(b.tag, c.tag);
+      for (int k = 0; k < 3; ++k) ASSERT_TRUE(a.bits[k] == c.bits[k] && b.bits[k] == c.bits[k]) << i;
+    }
+  }
+}
+
+TEST(Lists, AListOfNumbersTakesEightBytesAnElement) {
+  World w;
+  ListCell& list = *w.heap.list();
+  const std::size_t before = w.memory.used;
+  for (int i = 0; i < 1 << 16; ++i) w.heap.push(list, number(0.5 * i));
+  EXPECT_LE(w.memory.used - before, (1U << 16) * 8U + 64U);
+  w.heap.set(list, 5, w.string("five"));
+  EXPECT_EQ(list[4].d, 2.0);
+  EXPECT_EQ(list[5].string()->view(), "five");
+  EXPECT_EQ(list[5].string()->count, 1u);
+}
+
+TEST(Lists, AListThatHasBecomeEmptyMayHoldAnotherTypeInPlace) {
+  World w;
+  ListCell& list = *w.heap.list();
+  w.heap.push(list, number(1));
+  w.heap.push(list, number(1.5));
+  EXPECT_FALSE(list.narrow());
+  w.heap.resize(list, 0);
+  w.heap.push(list, w.string("text"));
+  EXPECT_TRUE(list.narrow());
+  w.heap.resize(list, 0);
+  w.heap.reclaim();
+  EXPECT_EQ(w.heap.live_cells(), 0u);
+}
+
 TEST(Lists, CopyKeepsSharingAndCyclesAndSharesObjectsAndHashes) {
   World w;
   ListCell* a = w.heap.list();
@@ -186,6 +259,17 @@ TEST(MergeSort, ComparisonThatEmptiesTheListAndCollectsIsSafe) {
   w.heap.resize(list, 0);
   w.heap.reclaim();
   EXPECT_EQ(w.heap.live_cells(), 1u);
+}
+
+TEST(MergeSort, ComparisonThatMakesTheListWideIsSafe) {
+  World w;
+  ListCell& list = *w.heap.list();
+  for (int i = 0; i < 20; ++i) w.heap.push(list, number(19 - i));
+  merge_sort(w.heap, list, [&](const Value& a, const Value& b) {
+    w.heap.set(list, 0, Value::of(Vector3(1, 2, 3)));
+    return a.i < b.i;
+  });
+  for (std::uint32_t i = 0; i < 20; ++i) ASSERT_EQ(list[i].i, static_cast<std::int32_t>(i));
 }
 
 TEST(MergeSort, InconsistentComparisonEnds) {

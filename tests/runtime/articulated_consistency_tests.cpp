@@ -143,6 +143,26 @@ TEST(RandomTrees, ImpulsesChangeVelocitiesByTheInverseMassMatrix) {
   });
 }
 
+TEST(RandomTrees, WrenchesAccelerateAsImpulsesChangeVelocities) {
+  for_random_trees(300, [](Random& random, const Model& model, Data& data, const State& state) {
+    Loads loads;
+    const Vector without = forward_dynamics(model, data, state, loads);
+    const auto link = static_cast<std::size_t>(random.below(static_cast<std::uint64_t>(model.size())));
+    loads.wrenches.resize(static_cast<std::size_t>(model.size()));
+    loads.wrenches[link] = {random_vector(random, 2), random_vector(random, 2)};
+    const Vector with = forward_dynamics(model, data, state, loads);
+    forward_kinematics(model, data, state);
+    const int at = static_cast<int>(link);
+    const Wrench& wrench = loads.wrenches[link];
+    const Impulse impulses[] = {{at, com_position(model, data, at), wrench.force, wrench.couple}};
+    Vector change(model.velocities());
+    impulse_response(model, data, impulses, change);
+    // Differences of accelerations that gyroscopic forces may make large.
+    const double scale = 1 + without.cwiseAbs().maxCoeff() + change.cwiseAbs().maxCoeff();
+    EXPECT_LE((with - without - change).cwiseAbs().maxCoeff(), kRelative * scale);
+  });
+}
+
 TEST(RandomTrees, CollisionMatrixIsTheAnswerToUnitImpulses) {
   for_random_trees(kTrees, [](Random& random, const Model& model, Data& data, const State& state) {
     Loads loads;

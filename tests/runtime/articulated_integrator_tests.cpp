@@ -126,6 +126,24 @@ TEST(Integrators, VerletHasOrderTwoWithForcesThatDependOnVelocity) {
   EXPECT_NEAR(std::log2(errors[0] / errors[1]), 2, 0.1);
 }
 
+TEST(Integrators, AskForLoadsAtTheTimeAndStateOfEachStage) {
+  // x'' = -x + sin(2t) from rest, both forces given by the callback: x = (2 sin t - sin 2t) / 3.
+  const Model model = slide();
+  TreeSystem system(model);
+  system.loads.tau = Vector::Zero(1);
+  system.update_loads = [](double t, const State& state, Loads& loads) { loads.tau[0] = std::sin(2 * t) - state.q[0]; };
+  Integrator integrator(system, Scheme::RungeKutta4);
+  constexpr double kEnd = 2;
+  double errors[2];
+  for (const int fine : {0, 1}) {
+    const int steps = fine ? 80 : 40;
+    Instant at{0, Vector::Zero(1), Vector::Zero(1), 0};
+    for (int i = 0; i < steps; ++i) integrator.step(at, kEnd / steps);
+    errors[fine] = std::abs(at.q[0] - (2 * std::sin(kEnd) - std::sin(2 * kEnd)) / 3);
+  }
+  EXPECT_NEAR(std::log2(errors[0] / errors[1]), 4, 0.15);
+}
+
 TEST(Integrators, OscillatorsMeetTheirClosedForm) {
   double worst = 0;
   for (const Row& row : reference::read("oscillator")) {

@@ -392,6 +392,48 @@ class World {
   std::unique_ptr<breve_world, Destroy> handle_;
 };
 
+/// What a program is made of. Texts that it gives live as long as it does.
+class Analysis {
+ public:
+  Analysis() = default;
+  explicit Analysis(breve_analysis* handle) : handle_(handle) {}  // takes it over
+  breve_analysis* get() const { return handle_.get(); }
+
+  std::vector<breve_diagnostic> diagnostics() const {
+    return all<breve_diagnostic>(breve_analysis_diagnostic_count(get()), breve_analysis_diagnostic);
+  }
+  /// As numbered by breve_analysis_definitions.
+  std::vector<breve_symbol> symbols() const {
+    return all<breve_symbol>(breve_analysis_symbol_count(get()), breve_analysis_symbol);
+  }
+  Result<breve_reference> at(const char* file, std::uint32_t line, std::uint32_t column) const {
+    breve_reference reference{};
+    return {{breve_analysis_at(get(), file, line, column, &reference), nullptr}, reference};
+  }
+  /// Good until the next call.
+  Result<std::vector<breve_completion>> completions(const char* file, std::uint32_t line, std::uint32_t column) {
+    std::size_t count = 0;
+    breve_status s = breve_analysis_completions(get(), file, line, column, nullptr, nullptr, 0, &count);
+    std::vector<breve_completion> items(s == BREVE_OK ? count : 0);
+    if (s == BREVE_OK)
+      s = breve_analysis_completions(get(), file, line, column, nullptr, items.data(), items.size(), &count);
+    return {{s, nullptr}, std::move(items)};
+  }
+
+ private:
+  struct Destroy {
+    void operator()(breve_analysis* a) const { breve_analysis_destroy(a); }
+  };
+  template <class T, class F>
+  std::vector<T> all(std::size_t count, F get_one) const {
+    std::vector<T> list(count);
+    for (std::size_t i = 0; i < count; ++i) get_one(get(), i, &list[i]);
+    return list;
+  }
+
+  std::unique_ptr<breve_analysis, Destroy> handle_;
+};
+
 class Runtime {
  public:
   Runtime() = default;
@@ -411,6 +453,13 @@ class Runtime {
     breve_program* made = nullptr;
     const breve_status s = breve_program_load(get(), name, &made);
     return {status(s), Program(made)};
+  }
+  /// Look at a program without running it, also if it has errors.
+  Result<Analysis> analyse(const char* name, std::string_view text) {
+    breve_analysis* made = nullptr;
+    const char* given = text.data() ? text.data() : "";  // NULL would ask for the module
+    const breve_status s = breve_analysis_create(get(), name, given, text.size(), &made);
+    return {status(s), Analysis(made)};
   }
   Result<World> world(const Program& program, const breve_world_config& config = breve_world_config_default()) {
     breve_world* made = nullptr;
