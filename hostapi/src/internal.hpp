@@ -125,7 +125,7 @@ struct breve_world : breve::InMemory {
 
   explicit breve_world(std::shared_ptr<breve::host::RuntimeState> r)
       : runtime(std::move(r)),
-        meter(runtime->memory()),
+        meter(runtime->memory(), taken(sizeof(breve_world))),
         references(&meter),
         selectors(&meter),
         text(&meter),

@@ -12,7 +12,9 @@ namespace breve {
 /// A memory resource that counts the bytes in use and refuses to go beyond a limit (std::bad_alloc).
 class MemoryMeter final : public std::pmr::memory_resource {
  public:
-  explicit MemoryMeter(std::pmr::memory_resource* upstream = std::pmr::new_delete_resource()) : upstream_(upstream) {}
+  /// @param standing  bytes that were taken from `upstream` before there was a meter: the meter's own place, say
+  explicit MemoryMeter(std::pmr::memory_resource* upstream = std::pmr::new_delete_resource(), std::size_t standing = 0)
+      : upstream_(upstream), used_(standing), peak_(standing) {}
 
   std::size_t used() const { return used_; }
   std::size_t peak() const { return peak_; }
@@ -34,8 +36,8 @@ class MemoryMeter final : public std::pmr::memory_resource {
   bool do_is_equal(const std::pmr::memory_resource& other) const noexcept override { return this == &other; }
 
   std::pmr::memory_resource* upstream_;
-  std::size_t used_ = 0;
-  std::size_t peak_ = 0;
+  std::size_t used_;
+  std::size_t peak_;
   std::size_t limit_ = 0;
 };
 
@@ -43,9 +45,11 @@ class MemoryMeter final : public std::pmr::memory_resource {
 /// back there when it is deleted. `new T` without one takes them from the C++ allocator.
 class InMemory {
  public:
+  /// What an object of `bytes` bytes takes from its resource.
+  static constexpr std::size_t taken(std::size_t bytes) { return bytes + sizeof(Head); }
   static void* operator new(std::size_t bytes, std::pmr::memory_resource* memory) {
-    void* block = memory->allocate(bytes + sizeof(Head), alignof(Head));
-    return new (block) Head{memory, bytes + sizeof(Head)} + 1;
+    void* block = memory->allocate(taken(bytes), alignof(Head));
+    return new (block) Head{memory, taken(bytes)} + 1;
   }
   static void* operator new(std::size_t bytes) { return operator new(bytes, std::pmr::new_delete_resource()); }
   static void operator delete(void* object) noexcept {
