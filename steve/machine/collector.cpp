@@ -162,6 +162,7 @@ void Heap::end_of_iteration() {
   reclaim_all();
   if (held_by_frames_) suspicion_ = true;
   held_by_frames_ = false;
+  judge_suspects();
   std::int64_t work = kSlice;
   while (work > 0 && (phase_ != Phase::Idle || suspicion_)) {
     const Phase before = phase_;
@@ -324,7 +325,7 @@ void Heap::examine(std::int64_t& work) {
     Container& cell = *containers_[passed_];
     if (!can_be_doomed(cell)) continue;
     try {
-      suspects_.push_back(static_cast<Instance*>(&cell));
+      condemned_.push_back(static_cast<Instance*>(&cell));
       retain(&cell);
     } catch (const std::bad_alloc&) {  // it is found again by the collection that follows
       short_of_memory_ = true;
@@ -333,22 +334,22 @@ void Heap::examine(std::int64_t& work) {
     shade(&cell);
   }
   if (passed_ < containers_.size()) return;
-  if (!suspects_.empty() || short_of_memory_) suspicion_ = true;
-  doom_suspects();
+  if (!condemned_.empty() || short_of_memory_) suspicion_ = true;
+  doom_condemned();
   phase_ = Phase::Remark;
 }
 
 // In order of creation, together with what is left of earlier ones. They go in so many iterations as leave the promise.
-void Heap::doom_suspects() {
+void Heap::doom_condemned() {
   constexpr std::uint64_t kCells = 60'000;  // of the heap, for each iteration that may pass until all are destroyed
-  if (dying_.empty()) dying_.swap(suspects_);
+  if (dying_.empty()) dying_.swap(condemned_);
   try {
-    dying_.insert(dying_.end(), suspects_.begin(), suspects_.end());
-    suspects_.clear();
+    dying_.insert(dying_.end(), condemned_.begin(), condemned_.end());
+    condemned_.clear();
   } catch (const std::bad_alloc&) {  // they are found again by the collection that follows
     short_of_memory_ = true;
-    for (Instance* instance : suspects_) release(instance);
-    suspects_.clear();
+    for (Instance* instance : condemned_) release(instance);
+    condemned_.clear();
   }
   std::sort(dying_.begin(), dying_.end(), [](const Instance* a, const Instance* b) { return a->serial > b->serial; });
   const std::uint64_t iterations = cells_ / kCells + 1;

@@ -35,7 +35,6 @@ char* body(SharedText* text) { return reinterpret_cast<char*>(text) + offsetof(S
 }  // namespace
 
 Heap::Heap(std::pmr::memory_resource* memory, RootSource& roots)
-
     : memory_(memory),
       roots_(roots),
       zero_(memory),
@@ -43,6 +42,7 @@ Heap::Heap(std::pmr::memory_resource* memory, RootSource& roots)
       marks_(memory),
       grey_(memory),
       doomed_(memory),
+      condemned_(memory),
       suspects_(memory),
       dying_(memory) {}
 
@@ -140,6 +140,7 @@ void Heap::reserve_tables(bool container) {
   const std::size_t room = std::max(kLeast, containers_.capacity() * 2);
   marks_.reserve(room);
   grey_.reserve(room);
+  suspects_.reserve(std::min(room, kMostSuspects));  // so that to suspect never fails
   containers_.reserve(room);
 }
 
@@ -383,7 +384,7 @@ void Heap::reclaim() {
 bool Heap::reclaim_round() {
   std::size_t visited = 0;
   fresh_bytes_ = 0;
-  if (!zero_.empty()) {
+  if (drop_lonely_suspects() || !zero_.empty()) {
     roots_.visit_frames([&visited](Cell* cell) {
       if (cell == nullptr || cell->immortal) return;
       cell->mark = 1;
@@ -392,20 +393,22 @@ bool Heap::reclaim_round() {
     // Last in, first out: freeing a cell puts its children at the end, so the table never outgrows the heap, and a
     // structure however deep goes without recursion. What must stay gathers at the front.
     std::size_t kept = 0;
-    while (zero_.size() > kept) {
-      Cell* cell = zero_.back();
-      if (cell->count == 0 && waits(*cell)) {
-        std::swap(zero_.back(), zero_[kept++]);
-        continue;
+    do {
+      while (zero_.size() > kept) {
+        Cell* cell = zero_.back();
+        if (cell->count == 0 && waits(*cell)) {
+          std::swap(zero_.back(), zero_[kept++]);
+          continue;
+        }
+        zero_.pop_back();
+        cell->listed = false;
+        if (cell->count == 0) {
+          destroy(cell);
+        } else if (is_container(cell->tag) && !cell->suspected && may_close_cycle(*static_cast<Container*>(cell))) {
+          suspect(*static_cast<Container*>(cell));
+        }
       }
-      zero_.pop_back();
-      cell->listed = false;
-      if (cell->count == 0) {
-        destroy(cell);
-      } else if (!suspicion_ && is_container(cell->tag)) {
-        suspicion_ = may_close_cycle(*static_cast<Container*>(cell));
-      }
-    }
+    } while (drop_lonely_suspects());
     doom_waiting(kept);
     roots_.visit_frames([](Cell* cell) {
       if (cell != nullptr && !cell->immortal) cell->mark = 0;
@@ -417,8 +420,7 @@ bool Heap::reclaim_round() {
   return free_doomed();
 }
 
-// A destroy method may leave new garbage, and auto-free instances among it: these go in the same iteration too. The
-// limit is for a destroy that makes its own successor.
+// A destroy method may leave new garbage, and auto-free instances too. The limit is for one that makes its successor.
 void Heap::reclaim_all() {
   constexpr int kRounds = 1000;
   for (int round = 0; round < kRounds && reclaim_round(); ++round) {

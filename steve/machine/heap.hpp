@@ -204,6 +204,7 @@ class Heap : public InMemory {
   static constexpr std::size_t kUnit = 16;                // bytes; size classes are multiples
   static constexpr std::size_t kClasses = 32;             // up to 512 bytes
   static constexpr std::size_t kReclaimBytes = 8U << 20;  // a few long strings are much garbage
+  static constexpr std::size_t kMostSuspects = 4096;
   static constexpr std::size_t kReclaimAt = 1024;  // so little garbage that it is still in the cache when it goes
 
   // heap.cpp
@@ -238,7 +239,7 @@ class Heap : public InMemory {
 
   // collector.cpp
   void note_survivor(Container* cell) {
-    if (cell->tag != Tag::Object || static_cast<Instance*>(cell)->auto_free) suspicion_ = true;
+    if (!cell->suspected && (cell->tag != Tag::Object || static_cast<Instance*>(cell)->auto_free)) suspect(*cell);
   }
   static bool may_close_cycle(const Container& cell);
   void move_place(std::uint32_t from, std::uint32_t to);
@@ -253,7 +254,7 @@ class Heap : public InMemory {
   void scan(Container& cell, Reach& reach, std::int64_t& work);
   void scan_part(Reach& reach, std::int64_t& work);
   void examine(std::int64_t& work);
-  void doom_suspects();
+  void doom_condemned();
   void free_dying();
   void sweep(std::int64_t& work);
   bool take_apart(Container& cell, std::int64_t& work);
@@ -265,6 +266,14 @@ class Heap : public InMemory {
       finish_partial();
   }
   void finish_partial();
+
+  // suspects.cpp
+  class Region;
+  void suspect(Container& cell);
+  bool drop_lonely_suspects();  // true if there were any
+  void judge_suspects();
+  void condemn(Region& region);
+  void break_up(const Region& region);
 
   // heap_state.cpp
   void save_marks(ByteWriter& out) const;
@@ -294,7 +303,8 @@ class Heap : public InMemory {
   std::pmr::vector<std::uint32_t> marks_;  // by place
   std::pmr::vector<std::uint32_t> grey_;   // places in the order in which they became grey; kNoPlace: gone
   std::pmr::vector<Instance*> doomed_;     // in no cycle, to be destroyed now
-  std::pmr::vector<Instance*> suspects_;   // in cycles, to be dying when all are found
+  std::pmr::vector<Instance*> condemned_;  // in cycles, to be dying when all are found
+  std::pmr::vector<Container*> suspects_;  // to be judged at the end of the iteration; each counts as a reference
   std::size_t reclaim_at_ = kReclaimAt;
   std::size_t fresh_bytes_ = 0;  // taken for strings since the last reclaim
   bool wants_reclaim_ = false;   // one of the two has reached its limit
@@ -303,7 +313,7 @@ class Heap : public InMemory {
   bool freeing_doomed_ = false;
 
   Phase phase_ = Phase::Idle;
-  bool suspicion_ = false;        // since the last collection began, something happened that can leave a cycle behind
+  bool suspicion_ = false;        // since the last collection began, a suspect was left to it
   bool held_by_frames_ = false;   // the last collection began while frames held something that can be in a cycle
   bool barrier_ = false;          // what loses a reference must be marked: Mark, Examine, Remark
   bool short_of_memory_ = false;  // not all that was to be done in this iteration could be noted

@@ -27,11 +27,14 @@ void Heap::save_state(ByteWriter& out, const std::function<std::uint64_t(const C
   out.put(position);
   out.put(static_cast<std::uint64_t>(zero_.size()));
   for (const Cell* cell : zero_) out.put(number(cell));
-  for (const auto* list : {&doomed_, &suspects_, &dying_}) {
+  for (const auto* list : {&doomed_, &condemned_, &dying_}) {
     out.put(static_cast<std::uint64_t>(list->size()));
     for (const Instance* instance : *list) out.put(number(instance));
   }
   out.put(share_);
+  out.put(static_cast<std::uint64_t>(suspects_.size()));
+  for (const Container* suspect : suspects_) out.put(number(suspect));
+  out.put(static_cast<std::uint8_t>(wants_reclaim_));
 }
 
 // Only a running collection has marks.
@@ -101,7 +104,7 @@ void Heap::load_state(ByteReader& in, const std::function<Cell*(std::uint64_t)>&
     if (waiting->listed) ByteReader::fail();
     enlist(waiting);
   }
-  for (auto* list : {&doomed_, &suspects_, &dying_}) {
+  for (auto* list : {&doomed_, &condemned_, &dying_}) {
     for (std::size_t n = in.get_count(sizeof(std::uint64_t)); n > 0; --n) {
       Cell* instance = cell(in.get<std::uint64_t>());
       if (instance->tag != Tag::Object) ByteReader::fail();
@@ -110,10 +113,15 @@ void Heap::load_state(ByteReader& in, const std::function<Cell*(std::uint64_t)>&
     }
   }
   share_ = in.get<std::uint64_t>();
+  for (std::size_t n = in.get_count(sizeof(std::uint64_t)); n > 0; --n) {
+    Cell* held = cell(in.get<std::uint64_t>());
+    if (!is_container(held->tag) || held->suspected || suspects_.size() == kMostSuspects) ByteReader::fail();
+    suspect(*static_cast<Container*>(held));
+  }
   // A cell that nothing refers to and that does not wait would never go: only a damaged image has one.
+  wants_reclaim_ = in.get_bool();
   for (const Container* container : containers_) unlisted += container->count == 0 && !container->listed ? 1U : 0U;
   if (unlisted != 0) ByteReader::fail();
-  wants_reclaim_ = zero_.size() >= reclaim_at_ || fresh_bytes_ >= kReclaimBytes;
 }
 
 }  // namespace breve::steve

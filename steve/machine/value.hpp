@@ -25,8 +25,9 @@ std::string_view type_name(Tag tag);
 struct Cell {
   std::uint32_t count = 0;
   Tag tag;
-  std::uint8_t mark = 0;  // colour of the cycle collector
-  bool listed = false;    // in the table of zero counts
+  std::uint8_t mark = 0;       // while frames are looked at or suspects are judged; else 0
+  bool listed : 1 = false;     // in the table of zero counts
+  bool suspected : 1 = false;  // of being in a cycle that nothing refers to: held by the table of suspects
   bool immortal = false;  // a literal of the program: never freed, never counted
   explicit Cell(Tag t) : tag(t) {}
 };

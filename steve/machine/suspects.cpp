@@ -1,0 +1,239 @@
+// Small cycles, found where they are left behind: a container that lost a reference and lives on, or that came to be
+// referred to while it leads on, is suspected and judged at the end of the iteration. All that it leads to is gathered,
+// up to a bound; what nothing outside refers to is garbage. What leads too far is left to the collector of the whole
+// heap.
+//
+// Source: Bacon and Rajan 2001 (trial deletion), with regions gathered and counts restored per suspect.
+#include <algorithm>
+#include <optional>
+
+#include "steve/compile/program.hpp"
+#include "steve/machine/heap.hpp"
+
+namespace breve::steve {
+
+namespace {
+
+// Units of work: a cell, or an element or slot of one.
+constexpr std::int64_t kRegion = 2000;      // of one suspect
+constexpr std::int64_t kIteration = 30000;  // of all; those that are left wait for the next one
+
+// Marks of cells while suspects are judged.
+constexpr std::uint8_t kHeld = 1;    // by a frame: neither part of a region nor looked into
+constexpr std::uint8_t kInside = 2;  // part of the region
+constexpr std::uint8_t kAlive = 3;   // part of it, and reached from outside
+constexpr std::uint8_t kJudged = 4;  // a suspect that a region has told of
+
+// Other instances are alive until they are freed, whoever refers to them.
+bool can_be_garbage(const Cell* cell) {
+  if (cell == nullptr || !is_container(cell->tag) || cell->mark == kHeld) return false;
+  if (cell->tag != Tag::Object) return true;
+  const auto& instance = static_cast<const Instance&>(*cell);
+  return instance.auto_free && instance.state == Instance::State::Live;
+}
+
+std::int64_t cost(const Container& cell) {
+  if (cell.tag == Tag::List)
+    return 1 + (static_cast<const ListCell&>(cell).holds_references() ? static_cast<const ListCell&>(cell).size : 0U);
+  if (cell.tag == Tag::Hash) return 1 + 2 * static_cast<std::int64_t>(static_cast<const HashCell&>(cell).used);
+  return 1 + static_cast<std::int64_t>(static_cast<const Instance&>(cell).cls->reference_slots.size());
+}
+
+template <class Visit>
+void each_reference(const Container& cell, const Visit& visit) {
+  const auto visit_cell = [&visit](Cell* child) {
+    if (can_be_garbage(child)) visit(*static_cast<Container*>(child));
+  };
+  if (cell.tag == Tag::Object) {
+    const auto& instance = static_cast<const Instance&>(cell);
+    for (const std::uint16_t slot : instance.cls->reference_slots) visit_cell(instance.slots[slot].ref);
+  } else if (cell.tag == Tag::List) {
+    const auto& list = static_cast<const ListCell&>(cell);
+    if (!list.holds_references()) return;
+    for (const Value& element : list)
+      if (element.is_reference()) visit_cell(element.ref);
+  } else {
+    const auto& hash = static_cast<const HashCell&>(cell);
+    for (std::uint32_t i = 0; i < hash.used; ++i) {
+      if (!hash.entries[i].live()) continue;
+      if (hash.entries[i].key.is_reference()) visit_cell(hash.entries[i].key.ref);
+      if (hash.entries[i].value.is_reference()) visit_cell(hash.entries[i].value.ref);
+    }
+  }
+}
+
+}  // namespace
+
+/// What a suspect leads to. While it is gathered, references inside it are taken off the counts; they are put back
+/// before anything else happens.
+class Heap::Region {
+ public:
+  /// @throws std::bad_alloc  nothing has happened
+  explicit Region(std::pmr::memory_resource* memory) : cells_(memory), path_(memory) {
+    cells_.reserve(kRegion + 1);
+    path_.reserve(kRegion + 1);
+  }
+
+  /// False if it leads too far; then nothing has changed but `work`.
+  bool gather(Container& suspect, std::int64_t& work) {
+    cells_.clear();
+    add(suspect);
+    std::int64_t left = kRegion;
+    std::size_t done = 0;
+    for (; done < cells_.size() && left >= 0; ++done) {
+      left -= cost(*cells_[done]);
+      if (left < 0) break;
+      each_reference(*cells_[done], [this](Container& child) {
+        if (child.mark != kInside) add(child);
+        --child.count;
+      });
+    }
+    work -= kRegion - std::max<std::int64_t>(left, 0);
+    if (left >= 0) return true;
+    restore(done);
+    leave();
+    return false;
+  }
+
+  /// Tell the living from the dead, and put the counts back.
+  void judge() {
+    for (Container* cell : cells_)
+      if (cell->count > (cell->suspected ? 1U : 0U)) revive(*cell);
+    restore(cells_.size());
+  }
+
+  /// A dead cell that is to stay for now, with all that it leads to.
+  void revive(Container& cell) {
+    if (cell.mark != kInside) return;
+    cell.mark = kAlive;
+    path_.push_back(&cell);
+    while (!path_.empty()) {
+      const Container& next = *path_.back();
+      path_.pop_back();
+      each_reference(next, [this](Container& child) {
+        if (child.mark != kInside) return;
+        child.mark = kAlive;
+        path_.push_back(&child);
+      });
+    }
+  }
+
+  /// Take the marks away; what is left in cells() is dead.
+  void leave() {
+    std::size_t dead = 0;
+    for (Container* cell : cells_) {
+      if (cell->mark == kInside) cells_[dead++] = cell;
+      cell->mark = cell->suspected ? kJudged : 0;
+    }
+    cells_.resize(dead);
+  }
+
+  static bool dead(const Container& cell) { return cell.mark == kInside; }
+  const std::pmr::vector<Container*>& cells() const { return cells_; }
+
+ private:
+  void add(Container& cell) {
+    cell.mark = kInside;
+    cells_.push_back(&cell);
+  }
+  void restore(std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) each_reference(*cells_[i], [](Container& child) { ++child.count; });
+  }
+
+  std::pmr::vector<Container*> cells_;
+  std::pmr::vector<Container*> path_;
+};
+
+void Heap::suspect(Container& cell) {
+  if (suspects_.size() == kMostSuspects) {
+    suspicion_ = true;
+    return;
+  }
+  cell.suspected = true;
+  ++cell.count;
+  suspects_.push_back(&cell);
+  if (suspects_.size() % kReclaimAt == 0) wants_reclaim_ = true;
+}
+
+// Those that only the table holds are in no cycle, but garbage like any other.
+bool Heap::drop_lonely_suspects() {
+  const auto dropped = std::erase_if(suspects_, [this](Container* cell) {
+    if (cell->count > 1) return false;
+    cell->suspected = false;
+    cell->count = 0;
+    if (!cell->listed) enlist(cell);
+    return true;
+  });
+  return dropped != 0;
+}
+
+void Heap::judge_suspects() {
+  if (suspects_.empty()) return;
+  std::optional<Region> region;
+  try {
+    region.emplace(memory_);
+  } catch (const std::bad_alloc&) {  // they wait
+    short_of_memory_ = true;
+    return;
+  }
+  roots_.visit_frames([](Cell* cell) {
+    if (cell != nullptr && !cell->immortal) cell->mark = kHeld;
+  });
+  std::int64_t work = kIteration;
+  for (std::size_t i = 0; i < suspects_.size() && work > 0; ++i) {
+    Container& suspect = *suspects_[i];
+    if (suspect.mark != 0) continue;
+    --work;
+    suspect.mark = kJudged;
+    if (suspect.count == 1 || !can_be_garbage(&suspect)) continue;
+    if (!region->gather(suspect, work)) {
+      suspicion_ = true;
+      continue;
+    }
+    region->judge();
+    condemn(*region);
+    region->leave();
+    break_up(*region);
+  }
+  roots_.visit_frames([](Cell* cell) {
+    if (cell != nullptr && !cell->immortal) cell->mark = 0;
+  });
+  std::erase_if(suspects_, [this](Container* cell) {
+    if (cell->mark != kJudged) return false;
+    cell->mark = 0;
+    cell->suspected = false;
+    if (--cell->count == 0 && !cell->listed) enlist(cell);
+    return true;
+  });
+  if (!condemned_.empty() && phase_ != Phase::Examine) doom_condemned();
+  if (!zero_.empty()) reclaim_all();
+}
+
+// Dead instances must run destroy, which may bring anything that they lead to back to life: that stays this time.
+void Heap::condemn(Region& region) {
+  const std::size_t old = condemned_.size();
+  for (Container* cell : region.cells()) {
+    if (!Region::dead(*cell) || cell->tag != Tag::Object) continue;
+    try {
+      condemned_.push_back(static_cast<Instance*>(cell));
+    } catch (const std::bad_alloc&) {  // the collector of the whole heap finds it
+      short_of_memory_ = suspicion_ = true;
+      region.revive(*cell);
+    }
+  }
+  for (std::size_t i = old; i < condemned_.size(); ++i) {
+    retain(condemned_[i]);
+    if (barrier_) shade(condemned_[i]);
+    region.revive(*condemned_[i]);
+  }
+}
+
+// All are held until each has lost its references.
+void Heap::break_up(const Region& region) {
+  for (Container* cell : region.cells()) retain(cell);
+  for (Container* cell : region.cells()) release_children(*cell);
+  for (Container* cell : region.cells())
+    if (--cell->count == 0 && !cell->listed) enlist(cell);
+}
+
+}  // namespace breve::steve
