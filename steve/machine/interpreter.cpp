@@ -95,7 +95,6 @@ inline void copy_any(Slot* to, const Value& from) {
 inline void copy_any(Value& to, const Value& from) { copy_any(reinterpret_cast<Slot*>(&to), from); }
 inline std::uint64_t word(std::int32_t i) { return static_cast<std::uint32_t>(i); }
 inline std::uint64_t word(double d) { return std::bit_cast<std::uint64_t>(d); }
-inline std::uint64_t word(Cell* ref) { return reinterpret_cast<std::uintptr_t>(ref); }
 /// The element of a list that is known to be there.
 inline void copy_element(Slot* to, const ListCell& list, std::uint32_t i) {
   if (list.narrow()) put_any(to, list.kind, list.store[list.first + i].bits);

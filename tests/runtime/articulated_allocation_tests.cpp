@@ -12,24 +12,16 @@
 #include "runtime/articulated/kinematics.hpp"
 #include "runtime/articulated/tree_system.hpp"
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kCounted = false;  // the sanitizer's own malloc stands in the place of ours
-#else
-constexpr bool kCounted = true;
-#endif
-
 namespace {
 std::atomic<long> allocations{0};
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 // Eigen calls malloc and not operator new, which ends in malloc too: here both pass.
 extern "C" void* __libc_malloc(std::size_t size);
 extern "C" void* malloc(std::size_t size) {
   ++allocations;
   return __libc_malloc(size);
 }
-#endif
 
 namespace breve::articulated {
 namespace {
@@ -49,7 +41,6 @@ struct Scene {
 };
 
 TEST(Allocation, TheCounterSeesVectors) {
-  if (!kCounted) GTEST_SKIP() << "not with a sanitizer's malloc";
   const long before = allocations;
   const Vector v = Vector::Zero(100);
   EXPECT_GT(allocations, before);
@@ -57,7 +48,6 @@ TEST(Allocation, TheCounterSeesVectors) {
 }
 
 TEST(Allocation, NoSchemeTakesMemoryInAStep) {
-  if (!kCounted) GTEST_SKIP() << "not with a sanitizer's malloc";
   Scene scene;
   for (const Scheme scheme : {Scheme::ExplicitEuler, Scheme::SemiImplicitEuler, Scheme::ImplicitEuler,
                               Scheme::VelocityVerlet, Scheme::ImplicitMidpoint, Scheme::RungeKutta4, Scheme::Fehlberg4,
@@ -75,7 +65,6 @@ TEST(Allocation, NoSchemeTakesMemoryInAStep) {
 }
 
 TEST(Allocation, QuestionsTakeNone) {
-  if (!kCounted) GTEST_SKIP() << "not with a sanitizer's malloc";
   Scene scene;
   Data data(scene.model);
   const State state = neutral_state(scene.model);
