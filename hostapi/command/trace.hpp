@@ -51,7 +51,7 @@ class TraceWriter {
 
   std::string path_;
   std::unique_ptr<std::FILE, CloseFile> file_;
-  bool can_seek_ = false, failed_ = false, first_ = true;
+  bool can_seek_ = false, failed_ = false;
   std::string buffer_;
   std::uint64_t size_ = 0, limit_, left_out_ = 0, cut_at_iteration_ = 0;
   std::vector<Open> open_;
