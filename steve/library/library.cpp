@@ -7,14 +7,15 @@
 #include "runtime/world/camera.hpp"
 #include "runtime/world/drawing.hpp"
 #include "runtime/world/menu.hpp"
-#include "steve/library/joints.hpp"
 #include "steve/library/resources.hpp"
 
 namespace breve::steve {
 
 namespace {
 
-constexpr std::string_view kLaterClasses[] = {"BraitenbergControl",
+constexpr std::string_view kLaterClasses[] = {"BallJoint",
+                                              "BallJoints",
+                                              "BraitenbergControl",
                                               "BraitenbergHeavyVehicle",
                                               "BraitenbergHeavyVehicles",
                                               "BraitenbergLight",
@@ -26,6 +27,8 @@ constexpr std::string_view kLaterClasses[] = {"BraitenbergControl",
                                               "BraitenbergWheel",
                                               "BraitenbergWheels",
                                               "FFNetwork",
+                                              "FixedJoint",
+                                              "FixedJoints",
                                               "GADirectedGraph",
                                               "GADirectedGraphConnection",
                                               "GADirectedGraphConnections",
@@ -39,7 +42,14 @@ constexpr std::string_view kLaterClasses[] = {"BraitenbergControl",
                                               "Graph",
                                               "IRSensor",
                                               "IRSensors",
+                                              "Joint",
+                                              "Joints",
+                                              "Link",
+                                              "Links",
+                                              "MeshShape",
                                               "Movie",
+                                              "MultiBodies",
+                                              "MultiBody",
                                               "NetworkServer",
                                               "NetworkServers",
                                               "NeuralNetwork",
@@ -50,6 +60,9 @@ constexpr std::string_view kLaterClasses[] = {"BraitenbergControl",
                                               "PatchToroid",
                                               "PatchToroids",
                                               "Patches",
+                                              "PhysicalControl",
+                                              "PrismaticJoint",
+                                              "PrismaticJoints",
                                               "PushClusterGP",
                                               "PushDiversityPool",
                                               "PushGP",
@@ -62,11 +75,18 @@ constexpr std::string_view kLaterClasses[] = {"BraitenbergControl",
                                               "PushPrograms",
                                               "QProgram",
                                               "QSystem",
+                                              "RevoluteJoint",
+                                              "RevoluteJoints",
                                               "Sound",
                                               "Sounds",
+                                              "Spring",
+                                              "Springs",
+                                              "Terrain",
                                               "Tone",
                                               "Tones",
-                                              "URL"};
+                                              "URL",
+                                              "UniversalJoint",
+                                              "UniversalJoints"};
 
 struct Kind {
   std::string_view name;
@@ -76,8 +96,7 @@ constexpr Kind kKinds[] = {
     {CameraResource::kKind, &CameraResource::load},   {MenuItemResource::kKind, &MenuItemResource::load},
     {DrawingResource::kKind, &DrawingResource::load}, {LineResource::kKind, &LineResource::load},
     {ShapeResource::kKind, &ShapeResource::load},     {ImageResource::kKind, &ImageResource::load},
-    {FieldResource::kKind, &FieldResource::load},     {JointResource::kKind, &JointResource::load},
-    {SpringResource::kKind, &SpringResource::load},
+    {FieldResource::kKind, &FieldResource::load},
 };
 
 /// Is `word` one of the space-separated words of `list`?

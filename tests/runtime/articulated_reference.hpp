@@ -39,11 +39,8 @@ class Row {
 
 inline std::vector<std::string> split(const std::string& line) {
   std::vector<std::string> cells(1);
-  bool quoted = false;
   for (const char c : line) {
-    if (c == '"')
-      quoted = !quoted;
-    else if (c == ',' && !quoted)
+    if (c == ',')
       cells.emplace_back();
     else if (c != '\r')
       cells.back() += c;
