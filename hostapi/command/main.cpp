@@ -53,6 +53,12 @@ CLI::Option* number(CLI::App& app, const char* name, const char* type, std::opti
       ->check(CLI::Validator(parser(out, what), ""));
 }
 
+/// An option that may be given several times, each time with one value.
+void several(CLI::App& app, const char* name, const char* type, std::vector<std::string>& out,
+             const std::string& help) {
+  app.add_option(name, out, help + "; may be repeated")->type_name(type)->expected(1)->take_all();
+}
+
 void describe_run(CLI::App& app, RunOptions& o) {
   constexpr const char* kWhole = "whole number (0 or more)";
   app.add_option("FILE", o.file, "The program (.tz)")->required();
@@ -62,10 +68,11 @@ void describe_run(CLI::App& app, RunOptions& o) {
   number(app, "--seconds", "S", o.seconds, "number of seconds (0 or more)", "End when S simulated seconds have passed")
       ->excludes(iterations);
   number(app, "--seed", "K", o.seed, kWhole, "Seed of the random numbers. Without it one is drawn and shown");
-  app.add_option("--path", o.paths, "Also search DIR for modules and data files; may be repeated")
-      ->type_name("DIR")
-      ->expected(1)
-      ->take_all();
+  several(app, "--path", "DIR", o.paths, "Also search DIR for modules and data files");
+  app.add_option("--accuracy", o.accuracy,
+                 "How bodies with physics are computed: fast, balanced, precise, reference or conserving")
+      ->type_name("RUNG")
+      ->check(CLI::IsMember({"fast", "balanced", "precise", "reference", "conserving"}));
   app.add_flag("--watch", o.watch, "When a file of the program changes, go on with the changed program");
   app.add_flag("--coarse-random", o.coarse_random, "Draw random floats from 32,768 values, as the original did");
   app.add_flag("--strict", o.strict, "Treat doubtful things as errors");
@@ -91,14 +98,8 @@ void describe_run(CLI::App& app, RunOptions& o) {
 
 void describe_check(CLI::App& app, CheckOptions& o) {
   app.add_option("FILE", o.files, "Programs (.tz)")->required();
-  app.add_option("--path", o.paths, "Also search DIR for modules; may be repeated")
-      ->type_name("DIR")
-      ->expected(1)
-      ->take_all();
-  app.add_option("--allow", o.allowed, "Do not report lints of that code; may be repeated")
-      ->type_name("CODE")
-      ->expected(1)
-      ->take_all();
+  several(app, "--path", "DIR", o.paths, "Also search DIR for modules");
+  several(app, "--allow", "CODE", o.allowed, "Do not report lints of that code");
   app.add_flag("--json", o.json, "Print an array of file, line, column, length, severity, code, message, help");
   app.footer(kExitStatuses);
 }
@@ -106,10 +107,7 @@ void describe_check(CLI::App& app, CheckOptions& o) {
 void describe_repl(CLI::App& app, ReplOptions& o) {
   app.add_option("FILE", o.file, "The program (.tz). Without it: a world with an empty controller");
   number(app, "--seed", "K", o.seed, "whole number (0 or more)", "Seed of the random numbers (1)");
-  app.add_option("--path", o.paths, "Also search DIR for modules and data files; may be repeated")
-      ->type_name("DIR")
-      ->expected(1)
-      ->take_all();
+  several(app, "--path", "DIR", o.paths, "Also search DIR for modules and data files");
   app.add_flag("--strict", o.strict, "Treat doubtful things as errors");
   app.add_flag("--quiet", o.quiet, "No warnings");
   app.footer("`:help` there tells what can be typed.\n" + std::string(kExitStatuses));
@@ -122,18 +120,12 @@ void describe_doc(CLI::App& app, DocOptions& o) {
   app.add_option("--format", o.format, "markdown, html or both (both)")
       ->type_name("FORMAT")
       ->check(CLI::IsMember({"markdown", "html", "both"}));
-  app.add_option("--path", o.paths, "Also search DIR for modules; may be repeated")
-      ->type_name("DIR")
-      ->expected(1)
-      ->take_all();
+  several(app, "--path", "DIR", o.paths, "Also search DIR for modules");
   app.footer("The text of a class or method is its comment of lines that begin with %.\n" + std::string(kExitStatuses));
 }
 
 void describe_lsp(CLI::App& app, LspOptions& o) {
-  app.add_option("--path", o.paths, "Also search DIR for modules; may be repeated")
-      ->type_name("DIR")
-      ->expected(1)
-      ->take_all();
+  several(app, "--path", "DIR", o.paths, "Also search DIR for modules");
   app.footer("For editors: the language server protocol over standard input and output. See docs/editors.");
 }
 
@@ -151,21 +143,21 @@ int main_guarded(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer("`breve help` shows this text, `breve run --help` the options of a command.");
   RunOptions run_options;
-  CheckOptions check_options;
-  auto* run = app.add_subcommand("run", "Run a program");
-  auto* check = app.add_subcommand("check", "Compile programs and show what the compiler has to say");
-  auto* help = app.add_subcommand("help", "Show this text");
-  auto* repl = app.add_subcommand("repl", "Type statements against a running world");
   ReplOptions repl_options;
-  describe_repl(*repl, repl_options);
+  CheckOptions check_options;
   DocOptions doc_options;
   LspOptions lsp_options;
+  auto* run = app.add_subcommand("run", "Run a program");
+  auto* repl = app.add_subcommand("repl", "Type statements against a running world");
+  auto* check = app.add_subcommand("check", "Compile programs and show what the compiler has to say");
   auto* doc = app.add_subcommand("doc", "Make reference pages out of the comments of programs");
   auto* lsp = app.add_subcommand("lsp", "Serve an editor: errors as you type, completion, definitions");
+  auto* help = app.add_subcommand("help", "Show this text");
+  describe_run(*run, run_options);
+  describe_repl(*repl, repl_options);
+  describe_check(*check, check_options);
   describe_doc(*doc, doc_options);
   describe_lsp(*lsp, lsp_options);
-  describe_run(*run, run_options);
-  describe_check(*check, check_options);
   if (argc > 1 && *argv[1] != '-' && !is_command(app, argv[1])) {
     std::cerr << "breve: there is no command '" << argv[1] << "': it must be run, repl, check, doc, lsp or help\n";
     return breve::command::kWrongUsage;

@@ -121,6 +121,7 @@ WorldHandle make_world(const Session& session, const breve_program* program, con
   config.strict = options.strict;
   config.coarse_random = options.coarse_random;
   config.verbose = options.verbose;
+  config.accuracy = options.accuracy.empty() ? nullptr : options.accuracy.c_str();
   profiling.configure(config);
   breve_world* world = nullptr;
   status = breve_world_create(session.runtime(), program, &config, &world);

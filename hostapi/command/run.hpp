@@ -19,6 +19,7 @@ struct RunOptions {
   bool watch = false;  // reload the program when its files change
   bool coarse_random = false;
   bool strict = false, quiet = false, verbose = false, stats = false, effects = false, hash = false;
+  std::string accuracy;                      // rung, "" for the program's own
   std::string positions;                     // CSV file, "" for none
   std::string profile;                       // file, "-" for standard error, "" for none
   std::string trace;                         // JSON file, "" for none

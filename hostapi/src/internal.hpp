@@ -117,6 +117,7 @@ struct breve_world : breve::InMemory {
   breve::host::References references;
   std::pmr::deque<breve::host::Selector> selectors;  // a callback may add some while one is in use
   std::pmr::string text;                             // of breve_value_text
+  std::pmr::string accuracy_text;                    // of breve_world_describe_accuracy
   std::pmr::vector<std::pair<std::pmr::string, std::pmr::string>> menu_texts;
   mutable std::pmr::vector<std::pair<std::pmr::string, std::pmr::string>> effect_texts;
   double remainder = 0;  // s, kept by breve_world_advance; in [0, iteration step)
@@ -129,6 +130,7 @@ struct breve_world : breve::InMemory {
         references(&meter),
         selectors(&meter),
         text(&meter),
+        accuracy_text(&meter),
         menu_texts(&meter),
         effect_texts(&meter) {}
 };

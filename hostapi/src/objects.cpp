@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "internal.hpp"
+#include "runtime/solid/polygons.hpp"
 
 namespace breve::host {
 
@@ -68,6 +69,8 @@ breve_shape describe(const Shape& shape) {
     case ShapeKind::Sphere: out.kind = BREVE_SHAPE_SPHERE; break;
     case ShapeKind::Box: out.kind = BREVE_SHAPE_BOX; break;
     case ShapeKind::Convex: out.kind = BREVE_SHAPE_CONVEX; break;
+    case ShapeKind::Mesh: out.kind = BREVE_SHAPE_MESH; break;
+    case ShapeKind::HeightField: out.kind = BREVE_SHAPE_HEIGHT_FIELD; break;
   }
   out.radius = shape.bounding_radius();
   if (shape.kind() == ShapeKind::Sphere) {
@@ -76,9 +79,10 @@ breve_shape describe(const Shape& shape) {
   }
   const Eigen::AlignedBox3d box = shape.bounds(Matrix3::Identity());
   for (int i = 0; i < 3; ++i) out.size[i] = 2 * std::max(box.max()[i], -box.min()[i]);
-  out.vertex_count = shape.vertices().size();
-  out.face_count = shape.faces().size();
-  for (const auto& face : shape.faces()) out.index_count += face.size();
+  const breve::PolygonCounts counts = breve::count_polygons(shape);
+  out.vertex_count = counts.vertices;
+  out.face_count = counts.faces;
+  out.index_count = counts.indices;
   return out;
 }
 
@@ -233,9 +237,10 @@ breve_status breve_object_shape_vertices(const breve_world* world, breve_object 
   return guard(world->error, [&] {
     if (capacity != 0) need(vertices, "vertices");
     const auto& shape = display_shape(*world, object);
-    if (shape.kind() == breve::ShapeKind::Sphere) return;
-    for (std::size_t i = 0; i < std::min(capacity, shape.vertices().size()); ++i)
-      std::copy_n(shape.vertices()[i].data(), 3, vertices + 3 * i);
+    std::size_t written = 0;
+    breve::for_each_vertex(shape, [&](const Vector3& vertex) {
+      if (written < capacity) std::copy_n(vertex.data(), 3, vertices + 3 * written++);
+    });
   });
 }
 
@@ -246,12 +251,11 @@ breve_status breve_object_shape_faces(const breve_world* world, breve_object obj
     if (face_capacity != 0) need(sizes, "sizes");
     if (index_capacity != 0) need(indices, "indices");
     const auto& shape = display_shape(*world, object);
-    if (shape.kind() == breve::ShapeKind::Sphere) return;
     std::size_t written_faces = 0, written = 0;
-    for (const auto& face : shape.faces()) {
-      if (written_faces < face_capacity) sizes[written_faces++] = static_cast<std::uint32_t>(face.size());
-      for (const int vertex : face)
-        if (written < index_capacity) indices[written++] = static_cast<std::uint32_t>(vertex);
-    }
+    breve::for_each_face(shape, [&](const int* face, std::size_t size) {
+      if (written_faces < face_capacity) sizes[written_faces++] = static_cast<std::uint32_t>(size);
+      for (std::size_t i = 0; i < size && written < index_capacity; ++i)
+        indices[written++] = static_cast<std::uint32_t>(face[i]);
+    });
   });
 }

@@ -1,5 +1,6 @@
 // Compilation: programs for the host, diagnostics for its runtime.
 #include "modules.hpp"
+#include "steve/library/library.hpp"
 
 namespace breve::host {
 namespace {
@@ -54,6 +55,21 @@ breve_status breve_program_compile(breve_runtime* runtime, const char* name, con
     runtime->diagnostics.clear();
     HostModules modules(runtime->state->config);
     *program = compile_module(*runtime, {name, std::string(text ? text : "", size)}, modules).release();
+  });
+}
+
+breve_status breve_program_create_library(breve_runtime* runtime, const char* controller, breve_program** program) {
+  if (!runtime) return BREVE_ERROR_ARGUMENT;
+  return guard(runtime->error, [&] {
+    need(program, "program");
+    const BusyScope busy(*runtime);
+    runtime->diagnostics.clear();
+    std::string text;
+    for (const auto& file : breve::steve::library_files())
+      text += "@use " + std::string(file.name.substr(0, file.name.size() - 3)) + ".\n";
+    text += "Controller " + std::string(controller ? controller : "PhysicalControl") + ".\n";
+    HostModules modules(runtime->state->config);
+    *program = compile_module(*runtime, {"library", std::move(text)}, modules).release();
   });
 }
 

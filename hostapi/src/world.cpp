@@ -80,6 +80,7 @@ void check(const breve_world_config& config) {
   for (const bool reserved : config.reserved)
     if (reserved) fail(BREVE_ERROR_ARGUMENT, "a reserved field is not false");
   if (config.reserved_2 != 0) fail(BREVE_ERROR_ARGUMENT, "a reserved field is not 0");
+  if (config.accuracy) rung_named(config.accuracy);  // an error that names the rungs
 }
 
 /// While it stands the runtime is not to be destroyed.
@@ -99,6 +100,8 @@ void start(breve_world& world) {
   world.machine->start();
   if (world.config.integration_step > 0) world.world->set_integration_step(world.config.integration_step);
   if (world.config.iteration_step > 0) world.world->set_iteration_step(world.config.iteration_step);
+  if (world.config.accuracy) world.world->dynamics().set_accuracy(rung_named(world.config.accuracy));
+  world.config.accuracy = nullptr;  // the host's text may go
 }
 
 void step(breve_world& world) {

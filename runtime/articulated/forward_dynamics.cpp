@@ -85,7 +85,7 @@ void start(Data& data, const Loads& loads) {
 }  // namespace
 
 const Vector& forward_dynamics(const Model& model, Data& data, const State& state, const Loads& loads, double step) {
-  const bool motors = step > 0 && !loads.drives.empty();
+  const bool motors = motor_lag(loads, step) > 0 && !loads.drives.empty();
   if (motors) std::fill(data.at_limit.begin(), data.at_limit.end(), 0);
   do {
     start(data, loads);

@@ -51,19 +51,19 @@ bool for_each_motor(const Body& body, F f) {
 
 double motor_speed(const Loads& loads, int i) { return loads.motor_speed.size() ? loads.motor_speed[i] : 0; }
 
-void add_motor(const Loads& loads, const Drive& drive, const Body& body, const State& state, double step, bool held,
+void add_motor(const Loads& loads, const Drive& drive, const Body& body, const State& state, double lag, bool held,
                Data& data) {
   for_each_motor(body, [&](int first, int count) {
     auto force = data.deflection.segment(first, count);  // a place to work in: the springs are done with it
     for (int k = 0; k < count; ++k) force[k] = drive.motor_gain * (motor_speed(loads, first + k) - state.v[first + k]);
-    if (step == 0) {
+    if (lag == 0) {
       limit_force(drive.motor_limit, force);
       data.tau.segment(first, count) += force;
     } else if (held) {
       data.tau.segment(first, count) += data.held.segment(first, count);
     } else {
       data.tau.segment(first, count) += force;
-      data.diagonal.segment(first, count).array() += step * drive.motor_gain;
+      data.diagonal.segment(first, count).array() += lag * drive.motor_gain;
     }
     return false;
   });
@@ -111,11 +111,13 @@ void gather_joint_forces(const Model& model, const Loads& loads, const State& st
       data.tau[k] -= drive.stiffness * (data.deflection[k] + step * state.v[k]) + drive.damping * state.v[k];
       data.diagonal[k] += step * (drive.damping + step * drive.stiffness);
     }
-    if (drive.motor_gain > 0) add_motor(loads, drive, body, state, step, data.at_limit[at] != 0, data);
+    if (drive.motor_gain > 0)
+      add_motor(loads, drive, body, state, motor_lag(loads, step), data.at_limit[at] != 0, data);
   }
 }
 
 bool hold_motors(const Model& model, const Loads& loads, const State& state, double step, Data& data) {
+  const double lag = motor_lag(loads, step);
   bool any = false;
   for (int i = 0; i < model.size(); ++i) {
     const Body& body = model.body(i);
@@ -124,7 +126,7 @@ bool hold_motors(const Model& model, const Loads& loads, const State& state, dou
     if (!(drive.motor_gain > 0) || data.at_limit[at]) continue;
     const bool beyond = for_each_motor(body, [&](int first, int count) {
       for (int k = first; k < first + count; ++k)
-        data.held[k] = drive.motor_gain * (motor_speed(loads, k) - state.v[k] - step * data.acceleration[k]);
+        data.held[k] = drive.motor_gain * (motor_speed(loads, k) - state.v[k] - lag * data.acceleration[k]);
       return limit_force(drive.motor_limit, data.held.segment(first, count));
     });
     data.at_limit[at] = beyond;

@@ -30,7 +30,14 @@ struct Loads {
   std::vector<Drive> drives;          // one a link; empty: none
   Vector rest;                        // (nq) where springs are slack; empty: joints at zero
   Vector motor_speed;                 // (nv) what motors aim at; empty: 0
+  /// s; above 0 a motor looks ahead by that time, with any `step`: it gives gain * (its speed - v - motor_time * v').
+  /// With a gain beyond the joint's inertia over motor_time, v follows its speed as (speed - v) / motor_time, whatever
+  /// the load, up to the motor's limit. Smooth, so that every scheme keeps its order.
+  double motor_time = 0;
 };
+
+/// How far ahead motors look in a solve with `step`, s.
+inline double motor_lag(const Loads& loads, double step) { return loads.motor_time > 0 ? loads.motor_time : step; }
 
 /// @throws Error{Argument} if a size is not the model's, a number is not finite, or a drive's number is negative; the
 ///         message names the link
@@ -45,8 +52,8 @@ class Data;
 ///              too large for the step. Motors are implicit but for those that data.at_limit names
 void gather_joint_forces(const Model& model, const Loads& loads, const State& state, double step, Data& data);
 
-/// After a solve with `step` > 0: marks the motors that gave more than their limit (data.at_limit, data.held).
-/// Returns whether there is a new one, so that the solve must be repeated.
+/// After a solve in which motors look ahead: marks the motors that gave more than their limit (data.at_limit,
+/// data.held). Returns whether there is a new one, so that the solve must be repeated.
 bool hold_motors(const Model& model, const Loads& loads, const State& state, double step, Data& data);
 
 /// Energy stored in the springs of all joints, J.

@@ -1,19 +1,13 @@
-// Rotations as a group: exponential, logarithm, and the derivative that lets a Runge-Kutta method keep its order on it.
+// Rotations as a group: the logarithm, inverse of rotation_by, and the derivative that lets a Runge-Kutta method keep
+// its order on it.
 #pragma once
 
 #include <cmath>
 
 #include "runtime/base/math.hpp"
+#include "runtime/base/rotation_vector.hpp"
 
 namespace breve::articulated {
-
-/// exp of a rotation vector (axis times angle, rad), as a unit quaternion.
-inline Quaternion exponential(const Vector3& d) {
-  const double angle = d.norm();
-  // sin(x/2)/x, by its series where the quotient would lose digits.
-  const double factor = angle < 1e-4 ? 0.5 - angle * angle / 48 : std::sin(0.5 * angle) / angle;
-  return {std::cos(0.5 * angle), factor * d.x(), factor * d.y(), factor * d.z()};
-}
 
 /// The rotation vector of a unit quaternion, of length at most pi.
 inline Vector3 logarithm(const Quaternion& q) {

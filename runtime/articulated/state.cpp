@@ -76,7 +76,7 @@ void move(const Model& model, const Vector& q, const Vector& d, Vector& out) {
     for (int k = 0; k < n; ++k) out[iq + k] = q[iq + k] + d[iv + k];
   });
   for_each_turn(model, [&](Turn t) {
-    const Quaternion turned = quaternion_at(q, t.q) * exponential(d.segment<3>(t.v));
+    const Quaternion turned = quaternion_at(q, t.q) * rotation_by(d.segment<3>(t.v));
     put_quaternion(turned.normalized(), t.q, out);
   });
 }

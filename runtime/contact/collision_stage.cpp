@@ -26,6 +26,7 @@ void CollisionStage::begin(const CollisionClient& client, std::uint64_t rules) {
 }
 
 void CollisionStage::finish(CollisionClient& client, double start, double h, const Vector3& gravity, bool at_impact) {
+  purge();  // handlers of impacts may have freed bodies since
   for (const ProxyIndex index : order_) {
     const Proxy& proxy = proxies_[index];
     if (proxy.path == kNoPath) continue;

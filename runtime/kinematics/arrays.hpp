@@ -55,8 +55,8 @@ class ActiveSet {
     const bool member = place_[body] != kNoBody;
     if (member == active) return;
     if (active) {
-      place_[body] = static_cast<BodyIndex>(members_.size());
-      members_.push_back(body);
+      members_.push_back(body);  // first: it may throw
+      place_[body] = static_cast<BodyIndex>(members_.size() - 1);
       return;
     }
     members_[place_[body]] = members_.back();
@@ -85,11 +85,9 @@ struct RigidRow {
   Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // N, N*m; world frame
   Vector3 kinematic_velocity = Vector3::Zero();               // what applies again when physics is disabled
   Vector3 kinematic_rotational_velocity = Vector3::Zero();
-  double mass = 1;                           // kg; copied from the shape, as is all below
-  Matrix3 inertia = Matrix3::Identity();     // about the centre of mass, own frame
-  Vector3 center_of_mass = Vector3::Zero();  // own frame
+  MassProperties solid;  // copied from the shape
   bool physics = false;
-  bool round = true;  // equal moments of inertia: no gyroscopic term
+  bool touched = false;  // in the list of those that setters changed
 };
 
 struct Bodies::Arrays : InMemory {
@@ -114,6 +112,7 @@ struct Bodies::Arrays : InMemory {
   std::size_t used = 0;
   std::uint64_t revision = 0;
   std::pmr::vector<BodyIndex>* log = nullptr;
+  std::pmr::vector<BodyIndex> touched;  // may name bodies that are gone
 
   BodyIndex grow();
   bool physics(BodyIndex body) const { return rigid_row[body] != kNoRow && rigid_rows[rigid_row[body]].physics; }
@@ -130,6 +129,9 @@ struct Bodies::Arrays : InMemory {
   void copy_mass(BodyIndex body);
   void note(BodyIndex body) {
     if (log) log->push_back(body);
+    if (rigid_row[body] == kNoRow || rigid_rows[rigid_row[body]].touched) return;
+    rigid_rows[rigid_row[body]].touched = true;
+    touched.push_back(body);
   }
   void translate_one(BodyIndex body, double h) {
     location[body] += h * velocity[body];

@@ -74,7 +74,8 @@ Bodies::Arrays::Arrays(std::pmr::memory_resource* memory)
       translating(memory),
       turning(memory),
       rigid(memory),
-      free(memory) {}
+      free(memory),
+      touched(memory) {}
 
 BodyIndex Bodies::Arrays::grow() {
   const std::size_t size = owner.size() + 1;
@@ -108,14 +109,15 @@ void Bodies::Arrays::classify(BodyIndex body) {
 void Bodies::Arrays::copy_mass(BodyIndex body) {
   RigidRow& row = rigid_rows[rigid_row[body]];
   const Shape& shape = *collision_shape[body];
-  row.mass = shape.mass();
-  row.center_of_mass = shape.center_of_mass();
-  const Vector3& c = row.center_of_mass;
+  MassProperties& solid = row.solid;
+  solid.mass = shape.mass();
+  solid.center_of_mass = shape.center_of_mass();
+  const Vector3& c = solid.center_of_mass;
   // Steiner: from the origin of the shape to its centre of mass.
-  row.inertia = shape.inertia() - row.mass * (c.squaredNorm() * Matrix3::Identity() - Matrix3(c * c.transpose()));
-  const double moment = row.inertia(0, 0);
+  solid.inertia = shape.inertia() - solid.mass * (c.squaredNorm() * Matrix3::Identity() - Matrix3(c * c.transpose()));
+  const double moment = solid.inertia(0, 0);
   constexpr double kRound = 1e-14;  // a sphere's inertia is round up to the last digits
-  row.round = (row.inertia - moment * Matrix3::Identity()).cwiseAbs().maxCoeff() <= kRound * moment;
+  solid.round = (solid.inertia - moment * Matrix3::Identity()).cwiseAbs().maxCoeff() <= kRound * moment;
 }
 
 Bodies::Bodies(std::pmr::memory_resource* memory) : memory_(memory) {}
@@ -276,6 +278,7 @@ void Bodies::set_physics(BodyIndex body, bool enabled) {
     a.velocity[body] = row.kinematic_velocity;
     if (a.turn_row[body] != kNoRow) a.turn_rows[a.turn_row[body]].velocity = row.kinematic_rotational_velocity;
   }
+  ++a.revision;
   a.classify(body);
   a.note(body);
 }
@@ -324,6 +327,11 @@ Eigen::AlignedBox3d Bodies::bounds(BodyIndex body) const {
 }
 
 double Bodies::mass(BodyIndex body) const { return arrays_->collision_shape[body]->mass(); }
+
+const MassProperties& Bodies::mass_properties(BodyIndex body) const {
+  assert(arrays_->rigid_row[body] != kNoRow);
+  return arrays_->rigid_rows[arrays_->rigid_row[body]].solid;
+}
 
 double Bodies::neighborhood_size(BodyIndex body) const { return arrays_->neighborhood[body]; }
 

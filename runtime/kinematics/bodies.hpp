@@ -52,6 +52,15 @@ struct BodyState {
   bool physics = false;
 };
 
+/// Of a physics-enabled body, copied from its shape when that was set or physics was switched on (CLASSES 2.4).
+struct MassProperties {
+  double mass = 1;                           // kg
+  Matrix3 inertia = Matrix3::Identity();     // about the centre of mass, own frame, kg*m^2
+  Vector3 center_of_mass = Vector3::Zero();  // own frame, m
+  bool round = true;                         // equal moments of inertia: no gyroscopic term
+  friend bool operator==(const MassProperties&, const MassProperties&) = default;
+};
+
 class Bodies : public InMemory {
  public:
   explicit Bodies(std::pmr::memory_resource* memory);
@@ -64,7 +73,7 @@ class Bodies : public InMemory {
   std::size_t size() const;
   std::size_t index_end() const;  // every index is below this
   bool used(BodyIndex body) const;
-  std::uint64_t revision() const;  // grows when a body is added or removed
+  std::uint64_t revision() const;  // grows when a body is added, removed, or its physics switched
   std::size_t bytes() const;
   void swap(Bodies& other);
   BodyKind kind(BodyIndex body) const;
@@ -102,7 +111,8 @@ class Bodies : public InMemory {
   void set_display_shape(BodyIndex body, std::shared_ptr<Shape> shape);
   /// World-aligned bounds of the collision shape at the body's pose.
   Eigen::AlignedBox3d bounds(BodyIndex body) const;
-  double mass(BodyIndex body) const;
+  double mass(BodyIndex body) const;                            // of its collision shape now
+  const MassProperties& mass_properties(BodyIndex body) const;  // of a body that was ever physics-enabled
 
   double neighborhood_size(BodyIndex body) const;  // 0 until set
   void set_neighborhood_size(BodyIndex body, double radius);
@@ -112,10 +122,11 @@ class Bodies : public InMemory {
   const Appearance& appearance(BodyIndex body) const;
 
   // --- the stages of a sub-step of h seconds, each over its own active bodies only (CLASSES 2.3, 2.4) ----------------
-  std::size_t translating() const;     // kinematic bodies with a velocity or an acceleration
-  std::size_t turning() const;         // kinematic bodies with a rotational velocity or acceleration
-  std::size_t rigid() const;           // physics-enabled bodies
-  ObjectId first_translating() const;  // null if there is none; so the other two
+  std::size_t translating() const;  // kinematic bodies with a velocity or an acceleration
+  std::size_t turning() const;      // kinematic bodies with a rotational velocity or acceleration
+  std::size_t rigid() const;        // physics-enabled bodies that are not Stationary
+  const std::pmr::vector<BodyIndex>& rigid_bodies() const;  // these, in no order that matters
+  ObjectId first_translating() const;                       // null if there is none; so the other two
   ObjectId first_turning() const;
   ObjectId first_rigid() const;
   void translate(double h);
@@ -129,6 +140,13 @@ class Bodies : public InMemory {
   void place(BodyIndex body, const Vector3& location, const Quaternion& orientation, const Vector3& velocity,
              const Vector3& rotational_velocity);
   void advance(BodyIndex body, double h, const Vector3& gravity);  // one body through the stages above
+  /// Put it there as the result of a step: neither a note in the log nor among the touched.
+  void set_motion(BodyIndex body, const Vector3& location, const Quaternion& orientation, const Vector3& velocity,
+                  const Vector3& rotational_velocity);
+  /// Appends the physics-enabled bodies that setters changed since the last call (or that were switched), in the order
+  /// of the first change; from now on they count as not touched.
+  void take_touched(std::pmr::vector<BodyIndex>& out);
+  void touch_rigid();  // all physics-enabled bodies count as touched
   /// While a log is set, each setter that changes how a body moves notes the body there. Null: no log.
   void set_log(std::pmr::vector<BodyIndex>* log);
 

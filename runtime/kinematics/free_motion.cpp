@@ -34,14 +34,4 @@ Vector3 advance_spin(const Matrix3& inertia, const Vector3& spin, const Vector3&
   return 2 * m - spin;
 }
 
-Quaternion rotation_by(const Vector3& rotation_vector) {
-  const double angle = rotation_vector.norm();
-  // sin(x/2)/x, by its series where the quotient would lose digits.
-  const double factor = angle < 1e-4 ? 0.5 - angle * angle / 48 : std::sin(0.5 * angle) / angle;
-  Quaternion q;
-  q.w() = std::cos(0.5 * angle);
-  q.vec() = factor * rotation_vector;
-  return q;
-}
-
 }  // namespace breve

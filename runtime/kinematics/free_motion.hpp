@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/base/math.hpp"
+#include "runtime/base/rotation_vector.hpp"  // for the turn by h * middle
 
 namespace breve {
 
@@ -14,8 +15,5 @@ namespace breve {
 /// @return         spin after h; `middle` is the mean of both, with which the orientation turns
 /// Source: Hairer, Lubich, Wanner 2006, IV.2 (quadratic invariants of the implicit midpoint rule).
 Vector3 advance_spin(const Matrix3& inertia, const Vector3& spin, const Vector3& torque, double h, Vector3& middle);
-
-/// exp of a rotation vector (axis times angle, rad), as a unit quaternion.
-Quaternion rotation_by(const Vector3& rotation_vector);
 
 }  // namespace breve

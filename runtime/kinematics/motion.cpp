@@ -1,6 +1,7 @@
 // The stages that move bodies: kinematic translation and rotation by explicit Euler, and free rigid motion.
 #include <cmath>
 
+#include "runtime/base/rotation_vector.hpp"
 #include "runtime/kinematics/arrays.hpp"
 #include "runtime/kinematics/free_motion.hpp"
 
@@ -18,7 +19,7 @@ void Bodies::Arrays::turn_one(BodyIndex body, double h) {
 
 void Bodies::Arrays::move_rigid_one(BodyIndex body, double h, const Vector3& gravity) {
   const RigidRow& rigid = rigid_rows[rigid_row[body]];
-  const Vector3 pull = gravity + rigid.force / rigid.mass;
+  const Vector3 pull = gravity + rigid.force / rigid.solid.mass;
   if (turn_row[body] == kNoRow) {
     velocity[body] += h * pull;
     location[body] += h * velocity[body];
@@ -26,7 +27,7 @@ void Bodies::Arrays::move_rigid_one(BodyIndex body, double h, const Vector3& gra
   }
   TurnRow& turn = turn_rows[turn_row[body]];
   // The centre of mass moves like a point; the body turns about it.
-  const Vector3 arm = turn.orientation * rigid.center_of_mass;
+  const Vector3 arm = turn.orientation * rigid.solid.center_of_mass;
   const Vector3 center_velocity = velocity[body] + turn.velocity.cross(arm) + h * pull;
   const Vector3 center = location[body] + arm + h * center_velocity;
   const Quaternion to_own = turn.orientation.conjugate();
@@ -34,15 +35,15 @@ void Bodies::Arrays::move_rigid_one(BodyIndex body, double h, const Vector3& gra
   const Vector3 own_torque = to_own * rigid.torque;
   Vector3 middle;
   Vector3 spin;
-  if (rigid.round) {
-    spin = own_spin + (h / rigid.inertia(0, 0)) * own_torque;
+  if (rigid.solid.round) {
+    spin = own_spin + (h / rigid.solid.inertia(0, 0)) * own_torque;
     middle = 0.5 * (own_spin + spin);
   } else {
-    spin = advance_spin(rigid.inertia, own_spin, own_torque, h, middle);
+    spin = advance_spin(rigid.solid.inertia, own_spin, own_torque, h, middle);
   }
   turn.orientation = (turn.orientation * rotation_by(h * middle)).normalized();
   turn.velocity = turn.orientation * spin;
-  const Vector3 new_arm = turn.orientation * rigid.center_of_mass;
+  const Vector3 new_arm = turn.orientation * rigid.solid.center_of_mass;
   location[body] = center - new_arm;
   velocity[body] = center_velocity - turn.velocity.cross(new_arm);
 }
@@ -58,6 +59,7 @@ ObjectId first_of(const ActiveSet& set, const std::pmr::vector<ObjectId>& owner)
 std::size_t Bodies::translating() const { return arrays_ ? arrays_->translating.members().size() : 0; }
 std::size_t Bodies::turning() const { return arrays_ ? arrays_->turning.members().size() : 0; }
 std::size_t Bodies::rigid() const { return arrays_ ? arrays_->rigid.members().size() : 0; }
+const std::pmr::vector<BodyIndex>& Bodies::rigid_bodies() const { return arrays_->rigid.members(); }
 ObjectId Bodies::first_translating() const {
   return arrays_ ? first_of(arrays_->translating, arrays_->owner) : ObjectId{};
 }
@@ -109,6 +111,35 @@ void Bodies::place(BodyIndex body, const Vector3& location, const Quaternion& or
     row.velocity = rotational_velocity;
   }
   a.classify(body);
+}
+
+void Bodies::set_motion(BodyIndex body, const Vector3& location, const Quaternion& orientation, const Vector3& velocity,
+                        const Vector3& rotational_velocity) {
+  Arrays& a = *arrays_;
+  a.location[body] = location;
+  a.velocity[body] = velocity;
+  if (a.turn_row[body] == kNoRow && orientation.vec() == Vector3::Zero() && rotational_velocity == Vector3::Zero())
+    return;
+  TurnRow& row = a.turn(body);
+  row.orientation = orientation;
+  row.velocity = rotational_velocity;
+}
+
+void Bodies::take_touched(std::pmr::vector<BodyIndex>& out) {
+  if (!arrays_) return;
+  Arrays& a = *arrays_;
+  for (const BodyIndex body : a.touched) {
+    if (!used(body) || a.rigid_row[body] == kNoRow || !a.rigid_rows[a.rigid_row[body]].touched) continue;
+    out.push_back(body);
+    a.rigid_rows[a.rigid_row[body]].touched = false;
+  }
+  a.touched.clear();
+}
+
+void Bodies::touch_rigid() {
+  if (!arrays_) return;
+  for (BodyIndex body = 0; body < arrays_->owner.size(); ++body)
+    if (used(body) && physics(body)) arrays_->note(body);
 }
 
 void Bodies::advance(BodyIndex body, double h, const Vector3& gravity) {

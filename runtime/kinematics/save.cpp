@@ -61,25 +61,25 @@ void load(ByteReader& in, TurnRow& row) {
 }
 
 void save(ByteWriter& out, const RigidRow& row) {
-  for (const Vector3* v :
-       {&row.force, &row.torque, &row.kinematic_velocity, &row.kinematic_rotational_velocity, &row.center_of_mass}) {
+  for (const Vector3* v : {&row.force, &row.torque, &row.kinematic_velocity, &row.kinematic_rotational_velocity,
+                           &row.solid.center_of_mass}) {
     out.put(*v);
   }
-  out.put(row.mass);
-  out.put(row.inertia);
+  out.put(row.solid.mass);
+  out.put(row.solid.inertia);
   out.put(row.physics);
-  out.put(row.round);
+  out.put(row.solid.round);
 }
 
 void load(ByteReader& in, RigidRow& row) {
-  for (Vector3* v :
-       {&row.force, &row.torque, &row.kinematic_velocity, &row.kinematic_rotational_velocity, &row.center_of_mass}) {
+  for (Vector3* v : {&row.force, &row.torque, &row.kinematic_velocity, &row.kinematic_rotational_velocity,
+                     &row.solid.center_of_mass}) {
     *v = in.get_vector();
   }
-  row.mass = in.get<double>();
-  row.inertia = in.get_matrix();
+  row.solid.mass = in.get<double>();
+  row.solid.inertia = in.get_matrix();
   row.physics = in.get_bool();
-  row.round = in.get_bool();
+  row.solid.round = in.get_bool();
 }
 
 template <class Row>
@@ -168,8 +168,8 @@ void Bodies::hash(Hasher& hasher, BodyIndex body) const {
   hasher.add(static_cast<std::uint64_t>(physics(body)));
   if (physics(body)) {
     const RigidRow& row = a.rigid_rows[a.rigid_row[body]];
-    hasher.add(row.mass);
-    hasher.add(row.inertia);
+    hasher.add(row.solid.mass);
+    hasher.add(row.solid.inertia);
     hasher.add(row.kinematic_velocity);
     hasher.add(row.kinematic_rotational_velocity);
   }

@@ -8,6 +8,8 @@
 
 #include "runtime/solid/gap.hpp"
 #include "runtime/solid/place.hpp"
+#include "runtime/solid/surface_pair.hpp"
+#include "runtime/solid/triangle.hpp"
 
 namespace breve {
 
@@ -17,28 +19,6 @@ namespace {
 // normal of the facing features keeps them all.
 constexpr double kClose = 1e-5;
 constexpr double kAgree = 1e-14;  // round-off of either, relative to the sizes
-
-Gap flipped(const Gap& gap) {
-  Gap other = gap;
-  std::swap(other.on_a, other.on_b);
-  std::swap(other.edge_a, other.edge_b);
-  other.normal = -gap.normal;
-  return other;
-}
-
-/// Witness points of an overlap: of the two solids moved apart along the normal, then brought back.
-void place_witnesses(const Placed& a, const Placed& b, Gap& gap) {
-  const double lift = 0.25 * std::min(a.radius, b.radius) - gap.distance;
-  Placed lowered = b;
-  lowered.location -= lift * gap.normal;
-  Gap apart;
-  if (separated(a, lowered, apart)) {
-    gap.on_a = apart.on_a;
-    gap.on_b = apart.on_b + lift * gap.normal;
-  } else {
-    gap.on_a = gap.on_b = a.vertex(a.support(-gap.normal));
-  }
-}
 
 Gap polyhedra_gap(const Placed& a, const Placed& b) {
   const double size = a.radius + b.radius;
@@ -53,13 +33,38 @@ Gap polyhedra_gap(const Placed& a, const Placed& b) {
 
 }  // namespace
 
+Gap flipped(const Gap& gap) {
+  Gap other = gap;
+  std::swap(other.on_a, other.on_b);
+  std::swap(other.edge_a, other.edge_b);
+  std::swap(other.start_a, other.start_b);
+  other.normal = -gap.normal;
+  return other;
+}
+
+// Of the two solids moved apart along the normal, then brought back.
+void place_witnesses(const Placed& a, const Placed& b, Gap& gap) {
+  const double lift = 0.25 * std::min(a.radius, b.radius) - gap.distance;
+  Placed lowered = b;
+  lowered.location -= lift * gap.normal;
+  Gap apart;
+  if (separated(a, lowered, apart)) {
+    gap.on_a = apart.on_a;
+    gap.on_b = apart.on_b + lift * gap.normal;
+  } else {
+    gap.on_a = gap.on_b = a.vertex(a.support(-gap.normal));
+  }
+}
+
 Placed place(const Shape& shape, const Pose& pose) {
-  const bool round = shape.kind() == ShapeKind::Sphere;
+  const bool round = shape.kind() == ShapeKind::Sphere;  // a surface stands for its hull, or nothing
   return {round ? nullptr : &shape.polyhedron(), shape.bounding_radius(), pose.location,
           pose.orientation.toRotationMatrix()};
 }
 
 Gap find_gap(const Placed& a, const Placed& b) {
+  if (b.flat) return triangle_gap(a, b);
+  if (a.flat) return flipped(triangle_gap(b, a));
   if (a.solid == nullptr && b.solid == nullptr) return balls_gap(a, b);
   if (a.solid == nullptr) return ball_gap(a, b);
   if (b.solid == nullptr) return flipped(ball_gap(b, a));
@@ -71,7 +76,7 @@ Contact closest(const Shape& a, const Pose& pa, const Shape& b, const Pose& pb) 
   Placed at = place(a, pa), other = place(b, pb);
   other.location = pb.location - pa.location;
   at.location.setZero();
-  const Gap gap = find_gap(at, other);
+  const Gap gap = is_surface(a) || is_surface(b) ? surface_gap(a, at, b, other) : find_gap(at, other);
   return {pa.location + (gap.on_a + gap.on_b) / 2, gap.normal, gap.distance};
 }
 

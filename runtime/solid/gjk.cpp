@@ -129,8 +129,10 @@ void fill(const Placed& a, const Placed& b, const Simplex& simplex, const Neares
     if (c.b != first.b) (other_b == first.b || other_b == c.b) ? void(other_b = c.b) : void(two_b = false);
   }
   if (two_a && two_b && other_a != first.a && other_b != first.b) {
-    gap.edge_a = a.vertex(other_a) - a.vertex(first.a);
-    gap.edge_b = b.vertex(other_b) - b.vertex(first.b);
+    gap.start_a = a.vertex(first.a);
+    gap.start_b = b.vertex(first.b);
+    gap.edge_a = a.vertex(other_a) - gap.start_a;
+    gap.edge_b = b.vertex(other_b) - gap.start_b;
   }
 }
 

@@ -6,6 +6,9 @@
 
 namespace breve {
 
+/// A mesh is placed as its hull, a height field as a bare place.
 Placed place(const Shape& shape, const Pose& pose);
+
+inline bool is_surface(const Shape& shape) { return shape.surface() != nullptr; }
 
 }  // namespace breve

@@ -140,6 +140,14 @@ void update_planes(Polyhedron& solid) {
   }
 }
 
+void add_tetrahedron(const Vector3& a, const Vector3& b, const Vector3& c, Moments& sum) {
+  const double six_volumes = a.dot(b.cross(c));
+  const Vector3 s = a + b + c;
+  sum.volume += six_volumes / 6;
+  sum.first += six_volumes / 24 * s;
+  sum.second += six_volumes / 120 * (s * s.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
+}
+
 Moments moments(const Polyhedron& solid) {
   Moments sum{0, Vector3::Zero(), Matrix3::Zero()};
   for (const auto& face : solid.faces) {
@@ -147,11 +155,7 @@ Moments moments(const Polyhedron& solid) {
     for (std::size_t i = 1; i + 1 < face.size(); ++i) {
       const Vector3& b = solid.vertices[static_cast<std::size_t>(face[i])];
       const Vector3& c = solid.vertices[static_cast<std::size_t>(face[i + 1])];
-      const double six_volumes = a.dot(b.cross(c));
-      const Vector3 s = a + b + c;
-      sum.volume += six_volumes / 6;
-      sum.first += six_volumes / 24 * s;
-      sum.second += six_volumes / 120 * (s * s.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
+      add_tetrahedron(a, b, c, sum);
     }
   }
   return sum;

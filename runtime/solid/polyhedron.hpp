@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory_resource>
+#include <span>
 #include <vector>
 
 #include "runtime/base/math.hpp"
@@ -53,6 +54,11 @@ Polyhedron make_cone(int sides, double height, double radius);
 /// Error{Argument} says which face or vertex keeps it from being closed, convex, or around the origin.
 Polyhedron make_convex(const std::vector<std::vector<Vector3>>& faces);
 
+/// The smallest convex solid that holds all points. Faces are flat to round-off of the extent. Error{Argument}: fewer
+/// than four points, a point that is not finite, points in one plane or nearly, more than 1,000,000 points or 4,000
+/// faces. By quickhull in double precision (Barber, Dobkin and Huhdanpaa 1996).
+Polyhedron make_hull(std::span<const Vector3> points);
+
 /// Find the edges from the faces. Error{Argument} if some edge is not shared by exactly two faces, once in each sense.
 void connect(Polyhedron& solid);
 /// Recompute the planes after the vertices moved.
@@ -63,5 +69,7 @@ void update_planes(Polyhedron& solid);
 /// accurate computation of polyhedral mass properties"; Eberly 2002, "Polyhedral mass properties"); here as signed
 /// tetrahedra from the origin. Cost O(corners).
 Moments moments(const Polyhedron& solid);
+/// Add what the tetrahedron from the origin to a triangle contributes; negative if the origin is outside its plane.
+void add_tetrahedron(const Vector3& a, const Vector3& b, const Vector3& c, Moments& sum);
 
 }  // namespace breve

@@ -6,10 +6,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "runtime/base/error.hpp"
+#include "runtime/solid/shape_geometry.hpp"
 
 namespace breve {
 
@@ -57,34 +57,6 @@ void check_inertia(const Matrix3& inertia) {
 
 }  // namespace
 
-struct Shape::Geometry : InMemory {
-  explicit Geometry(Memory memory) : original_vertices(memory), solid(memory) {}
-  Geometry(const Geometry& other) = delete;
-  Geometry(Geometry&&) = delete;
-  Geometry& operator=(const Geometry&) = default;  // the arrays stay in the memory that they have
-  Memory memory() const { return original_vertices.get_allocator().resource(); }
-
-  ShapeKind kind{};
-  double original_radius = 0;                   // Sphere
-  std::pmr::vector<Vector3> original_vertices;  // Box, Convex
-  Moments original{};                           // at scale 1 and density 1; set_inertia changes `second`
-  Vector3 scale = Vector3::Ones();
-  Vector3 last_scale = Vector3::Ones();
-  double density = 1;
-
-  // What follows from the above.
-  double radius = 0;
-  Polyhedron solid;
-  double bounding_radius = 0;
-  double volume = 0;
-  Matrix3 inertia = Matrix3::Zero();
-
-  Vector3 factors() const { return kind == ShapeKind::Sphere ? Vector3::Constant(scale.x()) : scale; }
-  void derive_size();
-  void derive_mass();
-};
-
-/// Radius, vertices and planes from the original and the scale.
 void Shape::Geometry::derive_size() {
   const Vector3 f = factors();
   radius = original_radius * f.x();
@@ -94,9 +66,11 @@ void Shape::Geometry::derive_size() {
     bounding_radius = std::max(bounding_radius, solid.vertices[i].stableNorm());
   }
   update_planes(solid);
+  if (!surface) return;
+  const Eigen::AlignedBox3d& box = surface->bounds();
+  bounding_radius = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).stableNorm();
 }
 
-/// Volume and inertia. Error{Argument} if a mass or moment is too large or too small for a number.
 void Shape::Geometry::derive_mass() {
   volume = original.volume * factors().prod();
   inertia = density * inertia_of(stretched(original.second, factors()));
@@ -167,6 +141,7 @@ Vector3 Shape::size() const {
   return geometry_->kind == ShapeKind::Box ? Vector3(geometry_->solid.vertices.back() * 2) : Vector3(Vector3::Zero());
 }
 const std::pmr::vector<Vector3>& Shape::vertices() const { return geometry_->solid.vertices; }
+const Surface* Shape::surface() const { return geometry_->surface.get(); }
 const std::pmr::vector<std::pmr::vector<int>>& Shape::faces() const { return geometry_->solid.faces; }
 const Polyhedron& Shape::polyhedron() const { return geometry_->solid; }
 double Shape::bounding_radius() const { return geometry_->bounding_radius; }
@@ -174,7 +149,13 @@ double Shape::bounding_radius() const { return geometry_->bounding_radius; }
 Eigen::AlignedBox3d Shape::bounds(const Matrix3& rotation) const {
   if (kind() == ShapeKind::Sphere) return {Vector3::Constant(-radius()), Vector3::Constant(radius())};
   Eigen::AlignedBox3d box;
-  for (const Vector3& v : vertices()) box.extend(rotation * v);
+  if (kind() == ShapeKind::HeightField) {
+    for (int i = 0; i < 8; ++i) {
+      box.extend(rotation * geometry_->surface->bounds().corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
+    }
+    return box;
+  }
+  for (const Vector3& v : polyhedron().vertices) box.extend(rotation * v);  // a mesh reaches as far as its hull
   return box;
 }
 
@@ -224,156 +205,10 @@ void Shape::set_scale(const Vector3& factors) {
   *next = *geometry_;
   next->last_scale = next->scale;
   next->scale = factors;
+  next->scale_surface();
   next->derive_size();
   next->derive_mass();
   geometry_ = std::move(next);
-}
-
-Vector3 Shape::point_on(const Vector3& direction) const {
-  if (!direction.allFinite()) {
-    throw Error(ErrorCode::Argument, fmt::format("a direction is {} (must be finite)", show(direction)));
-  }
-  const Vector3 unit = direction.stableNormalized();
-  if (unit.squaredNorm() < 0.5) return Vector3::Zero();
-  if (kind() == ShapeKind::Sphere) return radius() * unit;
-  double distance = std::numeric_limits<double>::infinity();
-  for (const Plane& plane : polyhedron().planes) {
-    const double rise = plane.normal.dot(unit);
-    if (rise > 0) distance = std::min(distance, plane.offset / rise);
-  }
-  return distance * unit;
-}
-
-namespace {
-
-/// Where origin + t direction enters the ball: t >= 0, or infinity.
-double enter_ball(double radius, const Vector3& origin, const Vector3& direction) {
-  constexpr double kMiss = std::numeric_limits<double>::infinity();
-  const double a = direction.squaredNorm(), b = origin.dot(direction);
-  const double c = (origin.norm() - radius) * (origin.norm() + radius);
-  if (c <= 0) return 0;
-  // |o x d|^2 = a |o|^2 - b^2 has no cancellation for rays that graze.
-  const double discriminant = a * radius * radius - origin.cross(direction).squaredNorm();
-  if (b >= 0 || discriminant < 0) return kMiss;
-  return c / (-b + std::sqrt(discriminant));
-}
-
-/// The same for the intersection of half-spaces (Cyrus and Beck, 1978).
-double enter_planes(const std::pmr::vector<Plane>& planes, const Vector3& origin, const Vector3& direction) {
-  constexpr double kMiss = std::numeric_limits<double>::infinity();
-  double first = 0, last = kMiss;
-  for (const Plane& plane : planes) {
-    const double height = plane.normal.dot(origin) - plane.offset;
-    const double rise = plane.normal.dot(direction);
-    if (rise < 0) {
-      first = std::max(first, height / -rise);
-    } else if (rise > 0) {
-      last = std::min(last, -height / rise);
-    } else if (height > 0) {
-      return kMiss;
-    }
-  }
-  return first <= last ? first : kMiss;
-}
-
-}  // namespace
-
-bool Shape::raycast(const Vector3& origin, const Vector3& direction, double& fraction) const {
-  if (!origin.allFinite() || !direction.allFinite()) {
-    throw Error(ErrorCode::Argument,
-                fmt::format("a ray from {} along {} (must be finite)", show(origin), show(direction)));
-  }
-  const double t = kind() == ShapeKind::Sphere ? enter_ball(radius(), origin, direction)
-                                               : enter_planes(polyhedron().planes, origin, direction);
-  if (!std::isfinite(t)) return false;
-  fraction = t;
-  return true;
-}
-
-void Shape::save(ByteWriter& out) const {
-  const Geometry& g = *geometry_;
-  out.put(g.kind);
-  out.put(g.original_radius);
-  out.put(static_cast<std::uint64_t>(g.original_vertices.size()));
-  for (const Vector3& v : g.original_vertices) out.put(v);
-  out.put(static_cast<std::uint64_t>(g.solid.faces.size()));
-  for (const auto& face : g.solid.faces) {
-    out.put(static_cast<std::uint64_t>(face.size()));
-    for (const int v : face) out.put(static_cast<std::int32_t>(v));
-  }
-  out.put(g.original.second);
-  out.put(g.inertia);  // a given one does not come back from `second` to the last bit
-  out.put(g.scale);
-  out.put(g.last_scale);
-  out.put(g.density);
-}
-
-namespace {
-
-/// A polyhedron whose indices are in range and whose vertices are finite.
-Polyhedron load_polyhedron(ByteReader& in) {
-  Polyhedron solid;
-  solid.vertices.resize(in.get_count(3 * sizeof(double)));
-  for (Vector3& v : solid.vertices) {
-    v = in.get_vector();
-    if (!v.allFinite()) ByteReader::fail();
-  }
-  solid.faces.resize(in.get_count(sizeof(std::uint64_t)));
-  for (auto& face : solid.faces) {
-    face.resize(in.get_count(sizeof(std::int32_t)));
-    if (face.size() < 3) ByteReader::fail();
-    for (int& v : face) {
-      v = in.get<std::int32_t>();
-      if (v < 0 || static_cast<std::size_t>(v) >= solid.vertices.size()) ByteReader::fail();
-    }
-  }
-  connect(solid);
-  return solid;
-}
-
-bool positive(double value) { return std::isfinite(value) && value > 0; }
-
-}  // namespace
-
-std::shared_ptr<Shape> Shape::load(ByteReader& in) {
-  const auto kind = in.get<ShapeKind>();
-  const double radius = in.get<double>();
-  if (kind > ShapeKind::Convex) ByteReader::fail();
-  try {
-    Polyhedron solid = load_polyhedron(in);
-    const bool round = kind == ShapeKind::Sphere;
-    const bool whole = solid.faces.size() >= 4 && (kind != ShapeKind::Box || solid.vertices.size() == 8);
-    if (round ? !solid.faces.empty() || !solid.vertices.empty() : !whole) ByteReader::fail();
-    const std::shared_ptr<Shape> shape = round ? sphere(radius, in.memory()) : of(kind, solid, 1, in.memory());
-    Geometry& g = *shape->geometry_;
-    g.original.second = in.get_matrix();
-    const Matrix3 inertia = in.get_matrix();
-    g.scale = in.get_vector();
-    g.last_scale = in.get_vector();
-    g.density = in.get<double>();
-    if (!positive(g.scale.minCoeff()) || !positive(g.scale.maxCoeff()) || !positive(g.density)) ByteReader::fail();
-    g.derive_size();
-    g.derive_mass();
-    if (!inertia.isApprox(g.inertia, 1e-9)) ByteReader::fail();
-    g.inertia = inertia;
-    return shape;
-  } catch (const Error&) {
-    ByteReader::fail();
-  }
-}
-
-void Shape::hash(Hasher& hasher) const {
-  const Geometry& g = *geometry_;
-  hasher.add(static_cast<std::uint64_t>(g.kind));
-  hasher.add(g.radius);
-  for (const Vector3& v : g.solid.vertices) hasher.add(v);
-  for (const auto& face : g.solid.faces) {
-    for (const int v : face) hasher.add(static_cast<std::uint64_t>(v));
-  }
-  hasher.add(g.inertia);
-  hasher.add(g.scale);
-  hasher.add(g.last_scale);
-  hasher.add(g.density);
 }
 
 }  // namespace breve

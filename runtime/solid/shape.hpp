@@ -1,8 +1,10 @@
-// A closed convex solid with mass properties, shared between bodies. The origin is its centre.
+// A solid or surface with mass properties, shared between bodies. The origin is its centre.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <memory_resource>
+#include <span>
 #include <vector>
 
 #include "runtime/base/bytes.hpp"
@@ -13,7 +15,11 @@
 
 namespace breve {
 
-enum class ShapeKind : std::uint8_t { Sphere, Box, Convex };
+class Surface;
+class TriangleMesh;
+class HeightGrid;
+
+enum class ShapeKind : std::uint8_t { Sphere, Box, Convex, Mesh, HeightField };
 
 class Shape : public InMemory {
  public:
@@ -34,15 +40,34 @@ class Shape : public InMemory {
   static std::shared_ptr<Shape> convex(const std::vector<std::vector<Vector3>>& faces, double density,
                                        Memory memory = std::pmr::get_default_resource());
 
+  /// The convex hull of a cloud of points; a Convex shape like any other. The points keep their places: see make_hull.
+  static std::shared_ptr<Shape> hull(std::span<const Vector3> points, double density,
+                                     Memory memory = std::pmr::get_default_resource());
+  /// Triangles, counter-clockwise seen from outside. If they close a solid, that is the shape, its mass too; else they
+  /// are a surface of two sides with the mass of its hull (a flat one: a thousandth of its extent thick).
+  /// Error{Argument}: see TriangleMesh and make_hull.
+  static std::shared_ptr<Shape> mesh(std::span<const Vector3> corners,
+                                     std::span<const std::array<std::int32_t, 3>> triangles,
+                                     Memory memory = std::pmr::get_default_resource());
+  /// Heights over a grid in x and z, see HeightGrid. Ground: what is below is inside. Its mass, which nothing should
+  /// need, is that of its bounds, at least a tile thick, when it was built.
+  static std::shared_ptr<Shape> height_field(int columns, int rows, double tile, std::span<const double> heights,
+                                             Memory memory = std::pmr::get_default_resource());
+
   ~Shape();
   ShapeKind kind() const;
   double radius() const;                              // Sphere
   Vector3 size() const;                               // Box: full edge lengths after scaling
-  const std::pmr::vector<Vector3>& vertices() const;  // Box, Convex: after scaling, own frame
+  const std::pmr::vector<Vector3>& vertices() const;  // Box, Convex: after scaling, own frame; Mesh: of its hull
   /// Indices into vertices, counter-clockwise from outside.
   const std::pmr::vector<std::pmr::vector<int>>& faces() const;
-  const Polyhedron& polyhedron() const;  // Box, Convex: the same with planes and edges; empty for a Sphere
-  double bounding_radius() const;        // of the sphere about the origin that holds it
+  const Polyhedron& polyhedron() const;   // Box, Convex, Mesh: the same with planes and edges; empty for others
+  const Surface* surface() const;         // Mesh, HeightField: its triangles after scaling; null for others
+  const TriangleMesh* triangles() const;  // Mesh
+  const HeightGrid* heights() const;      // HeightField
+  /// HeightField: Error{Argument} if it is none, or as HeightGrid::set_height. Bounds follow, the mass does not.
+  void set_height(int column, int row, double height);
+  double bounding_radius() const;                             // of the sphere about the origin that holds it
   Eigen::AlignedBox3d bounds(const Matrix3& rotation) const;  // about the origin
 
   double volume() const;
@@ -77,6 +102,8 @@ class Shape : public InMemory {
   struct Geometry;
   explicit Shape(std::unique_ptr<Geometry> geometry);
   static std::shared_ptr<Shape> of(ShapeKind kind, const Polyhedron& solid, double density, Memory memory);
+  static std::shared_ptr<Shape> mesh(std::shared_ptr<TriangleMesh> surface, const Polyhedron* hull, Memory memory);
+  static std::shared_ptr<Shape> height_field(std::shared_ptr<HeightGrid> grid, Memory memory);
   static std::shared_ptr<Shape> shared(std::unique_ptr<Geometry> geometry);
   std::unique_ptr<Geometry> geometry_;
 };

@@ -10,6 +10,8 @@
 #include "runtime/solid/contact.hpp"
 #include "runtime/solid/gap.hpp"
 #include "runtime/solid/place.hpp"
+#include "runtime/solid/surface_pair.hpp"
+#include "runtime/solid/triangle.hpp"
 
 namespace breve {
 
@@ -120,18 +122,31 @@ double balls_meet(const Vector3& x, const Vector3& v, double reach) {
   return c / (approach + std::sqrt(discriminant));
 }
 
+/// What moves: a solid as seen from its own place, and how it goes. Only the solid itself is read of `body`.
+struct Mover {
+  Placed body;
+  const Motion& motion;
+
+  Placed at(double t) const {
+    const Pose pose = pose_at(motion, t);
+    Placed placed = body;
+    placed.location = pose.location;
+    placed.rotation = pose.orientation.toRotationMatrix();
+    return placed;
+  }
+};
+
+/// Two convex solids, or one and a triangle.
 class Advancement {
  public:
-  Advancement(const Shape& a, const Motion& ma, const Shape& b, const Motion& mb, double h)
-      : a_(a), b_(b), ma_(ma), mb_(mb), h_(h) {
-    const Pose end_a = pose_at(ma, h), end_b = pose_at(mb, h);
-    tolerance_ = std::max(touch_tolerance(a, ma.start, b, mb.start), touch_tolerance(a, end_a, b, end_b));
-  }
+  Advancement(const Mover& a, const Mover& b, double tolerance, double h)
+      : a_(a), b_(b), h_(h), tolerance_(tolerance) {}
 
-  bool run(double& t, Contact& contact);
+  /// The first touch in (0, h]; not whether they touch already.
+  bool run(double& t);
 
  private:
-  bool both_round() const { return a_.kind() == ShapeKind::Sphere && b_.kind() == ShapeKind::Sphere; }
+  bool both_round() const { return a_.body.solid == nullptr && b_.body.solid == nullptr; }
   Scene scene(double t) const;
   bool touches(double t, Gap& gap) const {
     const Scene s = scene(t);
@@ -139,19 +154,17 @@ class Advancement {
     return gap.distance <= tolerance_;
   }
   double refined(double t, Gap gap) const;
-  void report(double t, Contact& contact) const { contact = closest(a_, pose_at(ma_, t), b_, pose_at(mb_, t)); }
 
-  const Shape &a_, &b_;
-  const Motion &ma_, &mb_;
+  Mover a_, b_;
   double h_;
   double tolerance_;
 };
 
 Scene Advancement::scene(double t) const {
-  Scene s{place(a_, pose_at(ma_, t)), place(b_, pose_at(mb_, t)), mb_.velocity - ma_.velocity,
-          ma_.rotational_velocity_world, mb_.rotational_velocity_world};
+  Scene s{a_.at(t), b_.at(t), b_.motion.velocity - a_.motion.velocity, a_.motion.rotational_velocity_world,
+          b_.motion.rotational_velocity_world};
   s.a.location.setZero();
-  s.b.location = mb_.start.location - ma_.start.location + t * s.velocity;
+  s.b.location = b_.motion.start.location - a_.motion.start.location + t * s.velocity;
   return s;
 }
 
@@ -172,15 +185,14 @@ double Advancement::refined(double t, Gap gap) const {
   return t;
 }
 
-bool Advancement::run(double& t, Contact& contact) {
+bool Advancement::run(double& t) {
   Gap gap;
   if (touches(0, gap)) return false;
   const Scene start = scene(0);
-  const double reach = a_.bounding_radius() + b_.bounding_radius();
+  const double reach = a_.body.radius + b_.body.radius;
   double now = balls_meet(start.b.location, start.velocity, reach);
   if (both_round() && now <= h_) {
     t = now;
-    report(t, contact);
     return true;
   }
   // What touches at the end must not count as touching from the start in the next interval: it is a hit at h.
@@ -189,7 +201,6 @@ bool Advancement::run(double& t, Contact& contact) {
   for (int stop = 0; stop < kMaxStops; ++stop) {
     if (touches(now, gap)) {
       t = refined(now, gap);
-      report(t, contact);
       return true;
     }
     if (now >= h_) return false;
@@ -197,8 +208,65 @@ bool Advancement::run(double& t, Contact& contact) {
     now = std::min(h_, now + std::max(longest_safe_time(scene(now), gap, tolerance_ / 2, left), kShortestStep * h_));
   }
   t = now;
-  report(t, contact);
   return true;
+}
+
+/// A convex solid against the facets it may meet on its way; each that is met shortens the rest of the search.
+class FacetAdvancement final : public FacetVisitor {
+ public:
+  FacetAdvancement(const Mover& convex, const Mover& frame, bool solid, double tolerance, double h)
+      : convex_(convex), frame_(frame), solid_(solid), tolerance_(tolerance), first(h) {}
+  void visit(const Facet& facet) override {
+    triangle_.set(facet);
+    const Mover triangle{triangle_.placed(frame_.body, solid_), frame_.motion};
+    double t;
+    if (!Advancement(convex_, triangle, tolerance_, first).run(t)) return;
+    found = true;
+    first = t;
+  }
+
+ private:
+  const Mover &convex_, &frame_;
+  bool solid_;
+  double tolerance_;
+  TriangleSolid triangle_;
+
+ public:
+  double first;
+  bool found = false;
+};
+
+/// All that a convex solid may pass in the frame of the surface: a ball about its place that holds it, along a path
+/// that the turning frame bends.
+Eigen::AlignedBox3d swept(const Mover& convex, const Mover& frame, double h) {
+  constexpr int kPieces = 16;
+  const double spin = frame.motion.rotational_velocity_world.norm();
+  const double speed = (convex.motion.velocity - frame.motion.velocity).norm();
+  double farthest = 0;
+  Eigen::AlignedBox3d box;
+  for (int i = 0; i <= kPieces; ++i) {
+    const double t = h * i / kPieces;
+    const Placed at = frame.at(t);
+    const Vector3 apart = convex.motion.start.location - frame.motion.start.location +
+                          t * (convex.motion.velocity - frame.motion.velocity);
+    farthest = std::max(farthest, apart.norm());
+    box.extend(at.rotation.transpose() * apart);
+  }
+  // Between two moments a piece of the path leaves the chord by at most its length.
+  const double piece = spin > 0 ? (speed + spin * (farthest + speed * h)) * h / kPieces : 0;
+  const double margin = convex.body.radius + piece;
+  return {box.min() - Vector3::Constant(margin), box.max() + Vector3::Constant(margin)};
+}
+
+bool surface_impact(const Shape& a, const Motion& ma, const Shape& b, const Motion& mb, double tolerance, double h,
+                    double& t) {
+  const SurfacePair pair(a, place(a, ma.start), b, place(b, mb.start));
+  if (pair.surface == nullptr) return false;
+  const Mover convex{pair.convex, pair.convex_is_a ? ma : mb}, frame{pair.frame, pair.convex_is_a ? mb : ma};
+  FacetAdvancement search(convex, frame, pair.surface->solid(), tolerance, h);
+  pair.surface->under(swept(convex, frame, h), search);
+  if (search.found) t = search.first;
+  return search.found;
 }
 
 }  // namespace
@@ -206,7 +274,14 @@ bool Advancement::run(double& t, Contact& contact) {
 bool time_of_impact(const Shape& a, const Motion& ma, const Shape& b, const Motion& mb, double h, double& t,
                     Contact& contact) {
   if (!(h > 0)) return false;
-  return Advancement(a, ma, b, mb, h).run(t, contact);
+  const double tolerance =
+      std::max(touch_tolerance(a, ma.start, b, mb.start), touch_tolerance(a, pose_at(ma, h), b, pose_at(mb, h)));
+  const bool surface = is_surface(a) || is_surface(b);
+  if (surface && closest(a, ma.start, b, mb.start).distance <= tolerance) return false;
+  const bool hit = surface ? surface_impact(a, ma, b, mb, tolerance, h, t)
+                           : Advancement({place(a, ma.start), ma}, {place(b, mb.start), mb}, tolerance, h).run(t);
+  if (hit) contact = closest(a, pose_at(ma, t), b, pose_at(mb, t));
+  return hit;
 }
 
 }  // namespace breve

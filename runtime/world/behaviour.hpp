@@ -40,6 +40,15 @@ class Behaviour {
                         const Vector3& normal) = 0;
   virtual void notified(ObjectId observer, std::string_view method, ObjectId announcer, std::string_view message) = 0;
   virtual void input(const InputEvent& event) = 0;
+  /// The force method of `agent` is asked for a force, N, world axes. Poses and velocities are those of a stage of the
+  /// integrator, which may be tried again: making, freeing and joining objects and printing are errors there, and
+  /// numbers drawn at random are to follow from `draw` alone.
+  virtual Vector3 stage_force(ObjectId agent, double time, std::uint64_t draw) {
+    static_cast<void>(agent);
+    static_cast<void>(time);
+    static_cast<void>(draw);
+    return Vector3::Zero();
+  }
   /// The last act of an iteration: a slice of garbage collection.
   virtual void end_of_iteration() = 0;
 

@@ -22,6 +22,14 @@ constexpr std::array<Words, static_cast<std::size_t>(EffectId::kCount)> kWords{{
     {"notifications", "an object observes another"},
     {"script", "an instance iterates"},
     {"input", "the host queued input"},
+    {"articulation", "a joint connects bodies"},
+    {"joint limits", "a joint has a limit"},
+    {"motors", "a joint has a motor with a strength"},
+    {"springs", "a spring ties bodies or bends a joint"},
+    {"contact", "bodies that forces move are near others"},
+    {"friction", "bodies that touch have a friction that is not zero"},
+    {"restitution", "bodies that touch give back some of their speed"},
+    {"sleeping", "bodies at rest may sleep"},
 }};
 
 }  // namespace

@@ -24,6 +24,14 @@ enum class EffectId : std::uint8_t {
   Notifications,
   Script,
   Input,
+  Articulation,
+  JointLimits,
+  Motors,
+  Springs,
+  Contact,
+  Friction,
+  Restitution,
+  Sleeping,
   kCount
 };
 

@@ -30,7 +30,7 @@ class NeighborRecord {
   /// Live neighbours in order of creation; none for an object that was not there at the update. Valid until the next
   /// call.
   const std::pmr::vector<ObjectId>& neighbors(ObjectId id);
-  std::span<const std::uint64_t> users(ObjectId id);  // the same neighbours' user words
+  std::span<const std::uint64_t> users(ObjectId id);    // the same neighbours' user words
   bool answered() const { return points_.answered(); }  // all answers are known: a question is a look-up
 
   void save(ByteWriter& out) const;

@@ -5,21 +5,74 @@
 
 namespace breve {
 
+namespace {
+constexpr std::size_t kShort = 16;  // entries that are faster looked through than looked up
+}
+
+void Notifications::List::remove_entries(auto&& which) {
+  std::erase_if(entries, which);
+  removed = 0;
+  places.clear();
+  indexed = false;
+}
+
+void Notifications::List::build_index() {
+  try {
+    places.reserve(entries.size());
+    for (std::size_t i = 0; i < entries.size(); ++i)
+      if (entries[i].observer)
+        places.emplace(key(entries[i].observer, entries[i].message), static_cast<std::uint32_t>(i));
+    indexed = true;
+  } catch (...) {
+    places.clear();
+    throw;
+  }
+}
+
 void Notifications::observe(const ObjectTable& objects, ObjectId announcer, const Registration& registration) {
   auto* memory = by_announcer_.get_allocator().resource();
-  auto& list = by_announcer_.try_emplace(announcer.index, List{std::pmr::vector<Registration>(memory)}).first->second;
+  auto& list = by_announcer_.try_emplace(announcer.index, memory).first->second;
   if (list.entries.size() >= list.sweep_at) {
-    std::erase_if(list.entries, [&](const Registration& r) { return !objects.alive(r.observer); });
+    list.remove_entries([&](const Registration& r) { return !objects.alive(r.observer); });
     list.sweep_at = std::max<std::size_t>(16, 2 * list.entries.size());
   }
   list.entries.push_back(registration);
+  if (!list.indexed) return;
+  try {
+    list.places.emplace(key(registration.observer, registration.message),
+                        static_cast<std::uint32_t>(list.entries.size() - 1));
+  } catch (...) {
+    list.entries.pop_back();
+    throw;
+  }
 }
 
 std::size_t Notifications::unobserve(ObjectId observer, ObjectId announcer, NameId message) {
-  const auto list = by_announcer_.find(announcer.index);
-  if (list == by_announcer_.end()) return 0;
-  return std::erase_if(list->second.entries,
-                       [&](const Registration& r) { return r.observer == observer && r.message == message; });
+  const auto found = by_announcer_.find(announcer.index);
+  if (found == by_announcer_.end()) return 0;
+  List& list = found->second;
+  const auto matches = [&](const Registration& r) { return r.observer == observer && r.message == message; };
+  if (list.entries.size() <= kShort) {
+    const std::size_t before = list.entries.size() - list.removed;
+    list.remove_entries([&](const Registration& r) { return !r.observer || matches(r); });
+    return before - list.entries.size();
+  }
+  if (!list.indexed) list.build_index();
+  std::size_t count = 0;
+  const auto [first, last] = list.places.equal_range(key(observer, message));
+  for (auto place = first; place != last;) {
+    Registration& r = list.entries[place->second];
+    if (!matches(r)) {  // of an earlier object in the same slot
+      ++place;
+      continue;
+    }
+    r.observer = {};
+    place = list.places.erase(place);
+    ++count;
+  }
+  list.removed += count;
+  if (2 * list.removed > list.entries.size()) list.remove_entries([](const Registration& r) { return !r.observer; });
+  return count;
 }
 
 void Notifications::collect(const ObjectTable& objects, ObjectId announcer, NameId message,

@@ -25,7 +25,7 @@ class Notifications {
   explicit Notifications(std::pmr::memory_resource* memory) : by_announcer_(memory) {}
 
   void observe(const ObjectTable& objects, ObjectId announcer, const Registration& registration);
-  /// Remove every matching registration. Returns how many.
+  /// Remove every matching registration. Returns how many. O(1) each, amortised. @throws std::bad_alloc, unchanged
   std::size_t unobserve(ObjectId observer, ObjectId announcer, NameId message);
   /// Those who want this message now, in order of registration, appended to `out`.
   void collect(const ObjectTable& objects, ObjectId announcer, NameId message,
@@ -40,10 +40,22 @@ class Notifications {
   void hash(Hasher& hasher, const NameTable& names, const ObjectTable& objects) const;
 
  private:
+  /// In order. What was removed stays as an entry without an observer until there are many: the places stay the same.
   struct List {
+    explicit List(std::pmr::memory_resource* memory) : entries(memory), places(memory) {}
+    void remove_entries(auto&& which);
+    void build_index();
+
     std::pmr::vector<Registration> entries;
+    // Observer's slot and message to places in `entries`, found by key only. A short list has none.
+    std::pmr::unordered_multimap<std::uint64_t, std::uint32_t> places;
+    bool indexed = false;
+    std::size_t removed = 0;
     std::size_t sweep_at = 16;  // length at which entries of observers that went are swept out
   };
+  static std::uint64_t key(ObjectId observer, NameId message) {
+    return std::uint64_t{observer.index} << 32 | static_cast<std::uint32_t>(message);
+  }
   const List* find(ObjectId announcer) const;
 
   // By the announcer's slot; found by key, walked only through the order of objects.

@@ -18,13 +18,14 @@
 
 namespace breve {
 
-struct World::Parts final : CollisionClient, InMemory {
+struct World::Parts final : CollisionClient, DynamicsClient, InMemory {
   Parts(World& world, std::pmr::memory_resource* memory);
 
   /// These parts now belong to `owner`, whose bodies they use.
   void rebind(World& owner) {
     world = &owner;
     collisions.rebind(*owner.bodies_);
+    dynamics.rebind(*owner.bodies_);
   }
 
   // --- the stages of a sub-step: a list, rebuilt only when the scene calls for other effects -------------------------
@@ -37,12 +38,23 @@ struct World::Parts final : CollisionClient, InMemory {
   std::uint32_t signature() const;
   void rebuild_stages(std::uint32_t signature);
   ObjectId who_asked(EffectId effect) const;
+  void count_dynamics();
 
   // --- CollisionClient ----------------------------------------------------------------------------------------------
   bool takes_part(BodyIndex body) const override;
   bool reported(BodyIndex a, BodyIndex b) const override;
   std::uint64_t serial(BodyIndex body) const override;
   void touched(BodyIndex a, BodyIndex b, const Contact& contact, double moment) override;
+
+  // --- DynamicsClient -----------------------------------------------------------------------------------------------
+  bool handled(BodyIndex a, BodyIndex b) const override;
+  bool ignored(BodyIndex a, BodyIndex b) const override;
+  bool locates() const override { return at_impact; }
+  std::uint64_t rules() const override { return handlers.revision() + world->bodies_->revision(); }
+  void impact(BodyIndex a, BodyIndex b, const Contact& contact, double moment) override {
+    touched(a, b, contact, moment);
+  }
+  Vector3 stage_force(BodyIndex body, double time, std::uint64_t draw) override;
 
   World* world;
   ObjectTable objects;
@@ -51,10 +63,10 @@ struct World::Parts final : CollisionClient, InMemory {
   Notifications notifications;
   CollisionHandlers handlers;
   CollisionStage collisions;
+  Dynamics dynamics;
   std::pmr::vector<Stage> stages;
   std::uint32_t stage_signature = 0;
   Effects effects;
-  Vector3 gravity{0, -9.81, 0};
   bool exact_schedule = false;
   bool at_impact = true;
   ObjectId first_handler;  // who registered the first collision handler

@@ -11,7 +11,7 @@ namespace breve {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'b', 'r', 'e', 'v', 'e', 'i', 'm', 'g'};
-constexpr std::uint32_t kVersion = 2;  // grows with every change of what follows the header
+constexpr std::uint32_t kVersion = 3;  // grows with every change of what follows the header
 
 std::uint64_t checksum(const std::uint8_t* data, std::size_t size) {
   Hasher hasher;
@@ -96,7 +96,7 @@ void World::write_image(ByteWriter& out) const {
   parts.handlers.save(out);
   parts.collisions.save(out);
   parts.effects.save(out);
-  out.put(parts.gravity);
+  parts.dynamics.save(out);
   out.put(parts.exact_schedule);
   out.put(parts.at_impact);
   out.put(parts.first_handler);
@@ -141,7 +141,7 @@ void World::read_image(ByteReader& in, World& fresh) const {
   parts.handlers.load(in, parts.names.size());
   parts.collisions.load(in);
   parts.effects.load(in);
-  parts.gravity = in.get_vector();
+  parts.dynamics.load(in);
   parts.exact_schedule = in.get_bool();
   parts.at_impact = in.get_bool();
   parts.first_handler = in.get_object();
@@ -199,7 +199,7 @@ std::uint64_t World::hash() const {
   parts.notifications.hash(hasher, parts.names, parts.objects);
   parts.handlers.hash(hasher, parts.names);
   parts.collisions.hash(hasher);
-  hasher.add(parts.gravity);
+  parts.dynamics.hash(hasher);
   hasher.add(static_cast<std::uint64_t>(parts.exact_schedule) | static_cast<std::uint64_t>(parts.at_impact) << 1);
   parts.near.hash(hasher);
   for (const InputEvent& event : parts.input) {

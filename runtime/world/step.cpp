@@ -67,6 +67,7 @@ void World::step() {
   const StageScope iteration("iteration", observer_);
   Parts& parts = *parts_;
   parts.effects.begin_step();
+  parts.dynamics.begin_iteration(clock_.iteration);
   deliver_input();
   parts.objects.join();
   if (behaviour_) {
@@ -151,6 +152,7 @@ void World::advance_bodies() {
   }
   const auto count = static_cast<std::uint64_t>(std::max(1.0, std::ceil(exact - kTolerance)));
   run_substeps(h, count);
+  parts_->count_dynamics();
   clock_.advance(static_cast<double>(count) * h);
 }
 
@@ -171,8 +173,40 @@ void World::run_substeps(double h, std::uint64_t count) {
     }
   } catch (...) {
     parts.collisions.abandon();
+    parts.dynamics.abandon();
     throw;
   }
+}
+
+/// What the stage that moves rigid bodies consists of, for the list of effects: they share its stage and its time.
+void World::Parts::count_dynamics() {
+  const Dynamics::Census census = dynamics.census();
+  const DynamicsCounters& counted = dynamics.counters();
+  const struct {
+    EffectId id;
+    bool on;
+    ObjectId asked_by;
+    std::uint64_t items, calls;
+  } all[] = {
+      {EffectId::Articulation, census.joints != 0, census.first_joint, census.joints, counted.evaluations},
+      {EffectId::JointLimits, census.limits != 0, census.first_limit, census.limits, counted.limits},
+      {EffectId::Motors, census.motors != 0, census.first_motor, census.motors, counted.evaluations},
+      {EffectId::Springs, census.springs != 0, census.first_spring, census.springs, counted.evaluations},
+      {EffectId::Contact, census.pairs != 0, census.first_pair, counted.contacts, counted.pairs},
+      {EffectId::Friction, census.rough != 0, census.first_rough, census.rough, counted.contacts},
+      {EffectId::Restitution, census.bouncing != 0, census.first_bouncing, census.bouncing, counted.impacts},
+      {EffectId::Sleeping, dynamics.sleeping(), {}, census.asleep, census.asleep},
+  };
+  for (const auto& one : all) {
+    Effect& effect = effects[one.id];
+    if (one.on)
+      effects.turn_on(one.id, world->clock_.iteration, one.asked_by);
+    else
+      effects.turn_off(one.id);
+    effect.items = one.items;
+    effect.calls = one.calls;
+  }
+  effects[EffectId::Articulation].bytes = dynamics.bytes();
 }
 
 std::uint32_t World::Parts::signature() const {
@@ -181,7 +215,7 @@ std::uint32_t World::Parts::signature() const {
   if (bodies.translating() != 0) bits |= bit(EffectId::Motion);
   if (bodies.turning() != 0) bits |= bit(EffectId::Rotation);
   if (bodies.rigid() != 0) bits |= bit(EffectId::Rigid);
-  if (bodies.rigid() != 0 && gravity != Vector3::Zero()) bits |= bit(EffectId::Gravity);
+  if (bodies.rigid() != 0 && dynamics.gravity() != Vector3::Zero()) bits |= bit(EffectId::Gravity);
   if (handlers.any_handler() && bodies.size() != 0) {
     bits |= bit(EffectId::Collision);
     if (at_impact) bits |= bit(EffectId::TimeOfImpact);
@@ -212,7 +246,10 @@ void World::Parts::rebuild_stages(std::uint32_t signature) {
   const bool collide = (signature & bit(EffectId::Collision)) != 0;
   if (collide) {
     stages.push_back({EffectId::Collision,
-                      [](World::Parts& p, double) { p.collisions.begin(p, p.handlers.revision()); },
+                      [](World::Parts& p, double) {
+                        p.collisions.begin(p,
+                                           p.handlers.revision() + p.dynamics.rules() + p.world->bodies_->revision());
+                      },
                       [](const World::Parts&) { return std::size_t{0}; }});
   }
   if ((signature & bit(EffectId::Motion)) != 0) {
@@ -224,13 +261,13 @@ void World::Parts::rebuild_stages(std::uint32_t signature) {
                       [](const World::Parts& p) { return p.world->bodies_->turning(); }});
   }
   if ((signature & bit(EffectId::Rigid)) != 0) {
-    stages.push_back({EffectId::Rigid, [](World::Parts& p, double h) { p.world->bodies_->move_rigid(h, p.gravity); },
+    stages.push_back({EffectId::Rigid, [](World::Parts& p, double h) { p.dynamics.advance(p, p.substep_start, h); },
                       [](const World::Parts& p) { return p.world->bodies_->rigid(); }});
   }
   if (collide) {
     stages.push_back({EffectId::Collision,
                       [](World::Parts& p, double h) {
-                        p.collisions.finish(p, p.substep_start, h, p.gravity, p.at_impact);
+                        p.collisions.finish(p, p.substep_start, h, p.dynamics.gravity(), p.at_impact);
                         const CollisionStage::Counters counted = p.collisions.take_counters();
                         p.effects[EffectId::TimeOfImpact].calls += counted.searches;
                         p.effects[EffectId::TimeOfImpact].items += counted.impacts;
@@ -249,7 +286,22 @@ bool World::Parts::takes_part(BodyIndex body) const {
 }
 
 bool World::Parts::reported(BodyIndex a, BodyIndex b) const {
+  // What dynamics pushes apart it reports itself, at the impact and before its impulse.
+  return handled(a, b) && !dynamics.pushes(a, b, *this);
+}
+
+bool World::Parts::handled(BodyIndex a, BodyIndex b) const {
   return handlers.handled(objects.at(world->bodies_->owner(a)).cls, objects.at(world->bodies_->owner(b)).cls);
+}
+
+bool World::Parts::ignored(BodyIndex a, BodyIndex b) const {
+  return handlers.ignored(objects.at(world->bodies_->owner(a)).cls, objects.at(world->bodies_->owner(b)).cls);
+}
+
+Vector3 World::Parts::stage_force(BodyIndex body, double time, std::uint64_t draw) {
+  if (!world->behaviour_) return Vector3::Zero();
+  const MomentOf clock(world->clock_.time, time);
+  return world->behaviour_->stage_force(world->bodies_->owner(body), time, draw);
 }
 
 std::uint64_t World::Parts::serial(BodyIndex body) const { return objects.at(world->bodies_->owner(body)).serial; }

@@ -18,6 +18,7 @@ World::Parts::Parts(World& owner, std::pmr::memory_resource* memory)
       notifications(memory),
       handlers(memory),
       collisions(memory, *owner.bodies_),
+      dynamics(memory, *owner.bodies_),
       stages(memory),
       near(memory),
       input(memory),
@@ -45,6 +46,7 @@ void World::release(ObjectId id) {
   ObjectTable::Slot& slot = parts.objects.at(id);
   if (slot.body != kNoBody) {
     parts.collisions.forget(slot.body);
+    parts.dynamics.forget(slot.body);
     bodies_->remove(slot.body);
     slot.body = kNoBody;
   }
@@ -228,12 +230,11 @@ void World::ignore_collisions(ClassId owner, ClassId other) { parts_->handlers.i
 void World::set_impact_timing(bool at_impact) { parts_->at_impact = at_impact; }
 bool World::impact_timing() const { return parts_->at_impact; }
 
-void World::set_gravity(const Vector3& gravity) {
-  if (!gravity.allFinite()) throw Error(ErrorCode::Argument, "gravity must be finite");
-  parts_->gravity = gravity;
-}
+void World::set_gravity(const Vector3& gravity) { parts_->dynamics.set_gravity(gravity); }
+const Vector3& World::gravity() const { return parts_->dynamics.gravity(); }
 
-const Vector3& World::gravity() const { return parts_->gravity; }
+Dynamics& World::dynamics() { return parts_->dynamics; }
+const Dynamics& World::dynamics() const { return parts_->dynamics; }
 
 void World::queue_input(InputEvent event) {
   parts_->input.push_back(std::move(event));

@@ -14,6 +14,7 @@
 #include "runtime/base/math.hpp"
 #include "runtime/base/memory.hpp"
 #include "runtime/base/random.hpp"
+#include "runtime/dynamics/dynamics.hpp"
 #include "runtime/kinematics/bodies.hpp"
 #include "runtime/world/behaviour.hpp"
 #include "runtime/world/effects.hpp"
@@ -49,7 +50,8 @@ class World : public InMemory {
   std::pmr::vector<ObjectId> objects() const;
   std::size_t object_count() const;
   /// The script side has replaced its program: objects and collision handlers go over to other class numbers, and who
-  /// iterates is decided anew. All or nothing. Error{Busy} inside a step, Error{Argument} if a live object's class is gone.
+  /// iterates is decided anew. All or nothing. Error{Busy} inside a step, Error{Argument} if a live object's class is
+  /// gone.
   /// @param classes  by old number
   void reclass(std::span<const ClassChange> classes);
 
@@ -66,6 +68,9 @@ class World : public InMemory {
   ObjectId object_of(BodyIndex body) const;
   Bodies& bodies() { return *bodies_; }
   const Bodies& bodies() const { return *bodies_; }
+  /// Joints, springs, accuracy, energy: whatever has to do with forces. Valid until the world is loaded or destroyed.
+  Dynamics& dynamics();
+  const Dynamics& dynamics() const;
   /// Objects whose shapes intersect this one's now and that are solvable (physics-enabled, Stationary), creation order.
   std::pmr::vector<ObjectId> touching(ObjectId id) const;
 

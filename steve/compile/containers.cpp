@@ -24,8 +24,7 @@ StaticType type_of_letter(char letter) {
 
 }  // namespace
 
-// --- functions
-// -------------------------------------------------------------------------------------------------------------------
+// --- functions -------------------------------------------------------------------------------------------------------
 
 Operand FunctionCompiler::function_call(const ast::FunctionCall& f, const ast::Expr& e, const Operand* into) {
   const auto entry = builder_.find_function(f.name, f.arguments.size());
@@ -132,8 +131,7 @@ Operand FunctionCompiler::all(const ast::AllExpr& a) {
   return target;
 }
 
-// --- lists
-// -------------------------------------------------------------------------------------------------------------------------
+// --- lists -----------------------------------------------------------------------------------------------------------
 
 Operand FunctionCompiler::list_operand(const ast::Expr& e, std::string_view what) {
   const auto value = expr(e);
@@ -207,8 +205,7 @@ void FunctionCompiler::sort(const ast::Sort& s) {
   emit_.release(list);
 }
 
-// --- calls
-// -------------------------------------------------------------------------------------------------------------------------
+// --- calls -----------------------------------------------------------------------------------------------------------
 
 void FunctionCompiler::call(const ast::Call& c, const ast::Expr& e) {
   const Span outer = emit_.span();

@@ -27,8 +27,7 @@ class Emitter {
  public:
   Emitter(Function& function, Diagnostics& diagnostics) : function_(function), diagnostics_(diagnostics) {}
 
-  // --- registers
-  // ------------------------------------------------------------------------------------------------------
+  // --- registers -----------------------------------------------------------------------------------------------------
   Operand temporary(StaticType type);
   void release(const Operand& operand);
   /// Registers for a parameter, local or array; never given back.
@@ -38,8 +37,7 @@ class Emitter {
   void release_block(const std::vector<Operand>& block);
   void finish();
 
-  // --- code
-  // -----------------------------------------------------------------------------------------------------------
+  // --- code ----------------------------------------------------------------------------------------------------------
   void at(const Span& span) { span_ = span; }
   const Span& span() const { return span_; }
   std::uint32_t emit(Op op, std::uint16_t a = 0, std::uint16_t b = 0, std::uint16_t c = 0);
@@ -48,8 +46,7 @@ class Emitter {
   std::uint32_t number(double value);
   std::uint32_t numbers(const double* values, std::size_t count);
 
-  // --- jumps
-  // ------------------------------------------------------------------------------------------------------------
+  // --- jumps ---------------------------------------------------------------------------------------------------------
   void jump(Op op, std::uint16_t a, Label& label);   // imm form
   void jump_ext(Label& label, std::uint16_t a = 0);  // the data word of an instruction that jumps
   void compare_jump(Op op, std::uint16_t a, std::uint16_t b, Label& label);

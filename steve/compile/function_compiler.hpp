@@ -53,8 +53,7 @@ class FunctionCompiler {
     const ast::Expr* expr = nullptr;
   };
 
-  // --- names
-  // ------------------------------------------------------------------------------------------------------------
+  // --- names ---------------------------------------------------------------------------------------------------------
   void declare_locals();
   std::optional<Variable> find(std::string_view name);
   std::optional<Variable> need(std::string_view name, const Span& span);  // reports an unknown one
@@ -63,8 +62,7 @@ class FunctionCompiler {
   std::int32_t text(std::string what);
   std::int32_t text_for(const Variable& variable, std::string_view name);
 
-  // --- expressions
-  // ----------------------------------------------------------------------------------------------------------
+  // --- expressions ---------------------------------------------------------------------------------------------------
   /// @param into  a register of exactly the value's type where the result may be put; it is not used before the end
   Operand expr(const ast::Expr& e, const Operand* into = nullptr);
   Operand any(const ast::Expr& e);  // the value as a dynamic one, in a temporary
@@ -132,20 +130,17 @@ class FunctionCompiler {
   Operand copy_list(const ast::CopyList& c);
   void sort(const ast::Sort& s);
 
-  // --- conditions
-  // -----------------------------------------------------------------------------------------------------------
+  // --- conditions ----------------------------------------------------------------------------------------------------
   /// Jump to `target` if the truth of `e` is `when`; else fall through.
   void condition(const ast::Expr& e, bool when, Label& target);
   void jump_on(const Operand& value, bool when, Label& target);
   bool comparison_jump(const ast::Chain& c, bool when, Label& target);
 
-  // --- calls
-  // ------------------------------------------------------------------------------------------------------------------
+  // --- calls ---------------------------------------------------------------------------------------------------------
   void call(const ast::Call& c, const ast::Expr& e);  // the value is in the result register
   void arguments_and_call(const ast::Call& c, Op op, const Operand& receiver, std::int32_t site);
 
-  // --- assignment
-  // -------------------------------------------------------------------------------------------------------------
+  // --- assignment ----------------------------------------------------------------------------------------------------
   Operand assign(const ast::Assign& a, const ast::Expr& e);
   Operand step(const ast::Step& s, const ast::Expr& e);
   Operand assign_to_variable(const Variable& variable, std::string_view name, const ast::Expr& value);
@@ -158,8 +153,7 @@ class FunctionCompiler {
   void release(Place& place);
   void check_class(const Operand& object, Symbol class_name, std::int32_t what);
 
-  // --- statements
-  // -------------------------------------------------------------------------------------------------------------
+  // --- statements ----------------------------------------------------------------------------------------------------
   /// @param keep  the value of the last expression statement may be the method's: keep it
   void statements(const std::vector<ast::StmtPtr>& list, bool keep);
   void statement(const ast::Stmt& s, bool keep);

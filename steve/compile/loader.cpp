@@ -1,7 +1,8 @@
 // Loads a program's files: directives before the text of the file that holds them, each file once, the class library
 // when it is named.
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <sstream>
 
 #include "runtime/base/hasher.hpp"
 #include "steve/compile/builder.hpp"
@@ -11,12 +12,6 @@ namespace breve::steve {
 
 namespace {
 constexpr int kMaxIncludeDepth = 100;
-
-std::string number_text(double number) {
-  std::ostringstream text;
-  text << number;
-  return text.str();
-}
 
 std::string stem(std::string_view name) {
   if (const auto slash = name.rfind('/'); slash != std::string_view::npos) name.remove_prefix(slash + 1);
@@ -219,8 +214,8 @@ void ProgramBuilder::check_versions() {
                                     : have >= want;
     if (!holds)
       diagnostics_.error(directive.span, "version",
-                         "class " + cls->name + " has version " + number_text(cls->version) + ", but " + op + " " +
-                             number_text(directive.version) + " is required",
+                         "class " + cls->name + " has version " + fmt::format("{:g}", cls->version) + ", but " + op +
+                             " " + fmt::format("{:g}", directive.version) + " is required",
                          "load another version of the file, or change what is required");
   }
 }

@@ -106,8 +106,7 @@ std::int32_t FunctionCompiler::text_for(const Variable& variable, std::string_vi
   return text((variable.local && variable.local->parameter ? "parameter '" : "variable '") + std::string(name) + "'");
 }
 
-// --- statements
-// ------------------------------------------------------------------------------------------------------------------
+// --- statements ------------------------------------------------------------------------------------------------------
 
 void FunctionCompiler::statements(const std::vector<ast::StmtPtr>& list, bool keep) {
   std::vector<bool> keeps(list.size());

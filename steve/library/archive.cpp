@@ -2,15 +2,18 @@
 #include "steve/library/archive.hpp"
 
 #include <deque>
+#include <exception>
 #include <functional>
 #include <map>
 #include <pugixml.hpp>
 #include <set>
-#include <sstream>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "steve/library/archive_body.hpp"
 #include "steve/library/archive_values.hpp"
+#include "steve/library/joints.hpp"
 #include "steve/library/library.hpp"
 #include "steve/library/support.hpp"
 
@@ -28,6 +31,8 @@ bool is_archived(const ClassInfo& cls, std::string_view name, const VariableInfo
   if (cls.name == "Object") return name == "birthTime" || name == "archiveDependencies";
   if (cls.name == "Real") return name != "realLines" && name != "realMenus";
   if (cls.name == "Control") return name == "accuracyRung";
+  if (cls.name == "Spring") return name != "springLine";
+  if (cls.name == "MultiBody") return name != "bodyMenus";
   return variable.type != StaticType::Pointer;
 }
 
@@ -55,6 +60,27 @@ VariableInfo element_of(const VariableInfo& variable, int element) {
 
 // --- writing ---------------------------------------------------------------------------------------------------------
 
+/// What pugixml writes, in a string. A stream of the standard library would hide that memory has run out.
+class TextWriter : public pugi::xml_writer {
+ public:
+  void write(const void* data, std::size_t size) override {
+    if (failure_) return;
+    try {
+      text_.append(static_cast<const char*>(data), size);
+    } catch (...) {
+      failure_ = std::current_exception();  // not through the library: it is not ours
+    }
+  }
+  std::string text() {
+    if (failure_) std::rethrow_exception(failure_);
+    return std::move(text_);
+  }
+
+ private:
+  std::string text_;
+  std::exception_ptr failure_;
+};
+
 class Writer {
  public:
   explicit Writer(Machine& machine) : machine_(machine) {}
@@ -67,9 +93,9 @@ class Writer {
     archive.append_attribute("root") = numbers_.at(root.serial);
     ValueWriter values(numbers_);
     for (Instance* object : order_) write_object(archive.append_child("object"), *object, values);
-    std::ostringstream out;
+    TextWriter out;
     document.save(out, " ");
-    return out.str();
+    return out.text();
   }
 
  private:
@@ -82,6 +108,7 @@ class Writer {
         if (need.tag == Tag::Object && need.object() && need.object()->live()) needs.push_back(need.object());
     for (const char* name : {"collisionShape", "displayShape", "textureImage", "bitmapImage", "lightmapImage"})
       if (Instance* need = library_object(machine_, object, "Real", name)) needs.push_back(need);
+    add_parts(machine_, object, needs);
     return needs;
   }
 

@@ -1,6 +1,8 @@
 // Bodies in archives. The snapshot form of numbers, in hexadecimal, keeps every bit.
 #include "steve/library/archive_body.hpp"
 
+#include <array>
+
 #include "steve/library/archive_values.hpp"
 #include "steve/library/resources.hpp"
 #include "steve/library/support.hpp"
@@ -79,15 +81,18 @@ void read_body(Machine& machine, Instance& object, pugi::xml_node element) {
   Appearance& look = bodies.appearance(body);
   bodies.set_location(body, in.get_vector());
   bodies.set_orientation(body, in.get_quaternion());
-  bodies.set_velocity(body, in.get_vector());
-  bodies.set_acceleration(body, in.get_vector());
-  bodies.set_rotational_velocity(body, in.get_vector());
-  bodies.set_rotational_acceleration(body, in.get_vector());
-  bodies.set_force(body, in.get_vector());
-  bodies.set_torque(body, in.get_vector());
+  std::array<Vector3, 6> motion;
+  for (Vector3& v : motion) v = in.get_vector();
   look.color = in.get_vector();
   bodies.set_neighborhood_size(body, in.get<double>());
-  const bool physics = in.get_bool();
+  // Before the motion: the frame of a rotational velocity depends on it.
+  if (in.get_bool()) bodies.set_physics(body, true);
+  bodies.set_velocity(body, motion[0]);
+  bodies.set_acceleration(body, motion[1]);
+  bodies.set_rotational_velocity(body, motion[2]);
+  bodies.set_rotational_acceleration(body, motion[3]);
+  bodies.set_force(body, motion[4]);
+  bodies.set_torque(body, motion[5]);
   for_each_setting(bodies.material(body), look, [&](auto& setting) {
     if constexpr (std::is_same_v<std::remove_reference_t<decltype(setting)>, bool>)
       setting = in.get_bool();
@@ -98,7 +103,6 @@ void read_body(Machine& machine, Instance& object, pugi::xml_node element) {
   look.texture = machine.id_of(library_object(machine, object, "Real", "textureImage"));
   look.bitmap = machine.id_of(library_object(machine, object, "Real", "bitmapImage"));
   look.lightmap = machine.id_of(library_object(machine, object, "Real", "lightmapImage"));
-  if (physics) bodies.set_physics(body, true);
 }
 
 }  // namespace breve::steve

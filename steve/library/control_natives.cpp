@@ -1,8 +1,9 @@
 // Natives of Control that move the simulation: the clock, the step, selection, the main camera and its pans.
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
-#include "steve/library/support.hpp"
+#include "steve/library/joints.hpp"
 #include "steve/library/tables.hpp"
 
 namespace breve::steve {
@@ -80,29 +81,43 @@ void control_set_impact_timing(Machine& machine, Instance&, Text mode) {
 
 // --- selection and input ---------------------------------------------------------------------------------------------
 
-void show_selected(Machine& machine, ObjectId object, bool selected) {
+/// Axes and bounds of a body, or of all links of a MultiBody.
+void show_selected(Machine& machine, ObjectId id, bool selected) {
   World& world = machine.world();
-  if (!world.alive(object) || !world.has_body(object)) return;
-  Appearance& look = world.bodies().appearance(world.body(object));
-  look.axis = selected;
-  look.bounding_box = selected;
+  Instance* object = machine.instance(id);
+  if (!object) return;
+  std::vector<Instance*> shown{object};
+  if (is_library_kind(*object, "MultiBody")) shown = links_of(machine, *object);
+  for (const Instance* one : shown) {
+    if (!world.has_body(one->id)) continue;
+    Appearance& look = world.bodies().appearance(world.body(one->id));
+    look.axis = selected;
+    look.bounding_box = selected;
+  }
+}
+
+/// A click on a link selects its MultiBody.
+Instance* selected_by(Machine& machine, Instance* object) {
+  if (!object || !object->live() || !is_library_kind(*object, "Link")) return object;
+  Instance* whole = multibody_of(machine, body_of(machine, *object));
+  return whole ? whole : object;
 }
 
 void control_click(Machine& machine, Instance&, Instance* object) {
   ViewState& view = view_of(machine);
   show_selected(machine, view.selection, false);
-  view.selection = machine.id_of(object);
+  view.selection = machine.id_of(selected_by(machine, object));
   show_selected(machine, view.selection, true);
 }
 
 Instance* control_get_selection(Machine& machine, Instance&) { return machine.instance(view_of(machine).selection); }
 
 Instance* control_get_drag_object(Machine& machine, Instance&) {
-  const ObjectId selection = view_of(machine).selection;
   World& world = machine.world();
-  if (!world.alive(selection) || !world.has_body(selection)) return nullptr;
-  if (world.bodies().kind(world.body(selection)) == BodyKind::Stationary) return nullptr;
-  return machine.instance(selection);
+  Instance* selection = machine.instance(view_of(machine).selection);
+  if (!selection || is_library_kind(*selection, "MultiBody")) return selection;
+  if (!world.has_body(selection->id)) return nullptr;
+  return world.bodies().kind(world.body(selection->id)) == BodyKind::Stationary ? nullptr : selection;
 }
 
 std::int32_t control_get_mouse_x(Machine& machine, Instance&) { return view_of(machine).mouse_x; }

@@ -7,15 +7,14 @@
 #include "runtime/world/camera.hpp"
 #include "runtime/world/drawing.hpp"
 #include "runtime/world/menu.hpp"
+#include "steve/library/joints.hpp"
 #include "steve/library/resources.hpp"
 
 namespace breve::steve {
 
 namespace {
 
-constexpr std::string_view kLaterClasses[] = {"BallJoint",
-                                              "BallJoints",
-                                              "BraitenbergControl",
+constexpr std::string_view kLaterClasses[] = {"BraitenbergControl",
                                               "BraitenbergHeavyVehicle",
                                               "BraitenbergHeavyVehicles",
                                               "BraitenbergLight",
@@ -27,8 +26,6 @@ constexpr std::string_view kLaterClasses[] = {"BallJoint",
                                               "BraitenbergWheel",
                                               "BraitenbergWheels",
                                               "FFNetwork",
-                                              "FixedJoint",
-                                              "FixedJoints",
                                               "GADirectedGraph",
                                               "GADirectedGraphConnection",
                                               "GADirectedGraphConnections",
@@ -42,14 +39,7 @@ constexpr std::string_view kLaterClasses[] = {"BallJoint",
                                               "Graph",
                                               "IRSensor",
                                               "IRSensors",
-                                              "Joint",
-                                              "Joints",
-                                              "Link",
-                                              "Links",
-                                              "MeshShape",
                                               "Movie",
-                                              "MultiBodies",
-                                              "MultiBody",
                                               "NetworkServer",
                                               "NetworkServers",
                                               "NeuralNetwork",
@@ -60,9 +50,6 @@ constexpr std::string_view kLaterClasses[] = {"BallJoint",
                                               "PatchToroid",
                                               "PatchToroids",
                                               "Patches",
-                                              "PhysicalControl",
-                                              "PrismaticJoint",
-                                              "PrismaticJoints",
                                               "PushClusterGP",
                                               "PushDiversityPool",
                                               "PushGP",
@@ -75,18 +62,11 @@ constexpr std::string_view kLaterClasses[] = {"BallJoint",
                                               "PushPrograms",
                                               "QProgram",
                                               "QSystem",
-                                              "RevoluteJoint",
-                                              "RevoluteJoints",
                                               "Sound",
                                               "Sounds",
-                                              "Spring",
-                                              "Springs",
-                                              "Terrain",
                                               "Tone",
                                               "Tones",
-                                              "URL",
-                                              "UniversalJoint",
-                                              "UniversalJoints"};
+                                              "URL"};
 
 struct Kind {
   std::string_view name;
@@ -96,7 +76,8 @@ constexpr Kind kKinds[] = {
     {CameraResource::kKind, &CameraResource::load},   {MenuItemResource::kKind, &MenuItemResource::load},
     {DrawingResource::kKind, &DrawingResource::load}, {LineResource::kKind, &LineResource::load},
     {ShapeResource::kKind, &ShapeResource::load},     {ImageResource::kKind, &ImageResource::load},
-    {FieldResource::kKind, &FieldResource::load},
+    {FieldResource::kKind, &FieldResource::load},     {JointResource::kKind, &JointResource::load},
+    {SpringResource::kKind, &SpringResource::load},
 };
 
 /// Is `word` one of the space-separated words of `list`?

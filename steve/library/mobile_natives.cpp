@@ -1,7 +1,7 @@
 // Natives of Mobile: motion, physics, geometry of a body that moves.
 #include <cmath>
 
-#include "steve/library/support.hpp"
+#include "steve/library/joints.hpp"
 #include "steve/library/tables.hpp"
 
 namespace breve::steve {
@@ -10,7 +10,9 @@ namespace {
 
 Bodies& bodies_of(Machine& machine) { return machine.world().bodies(); }
 
-void mobile_init(Machine& machine, Instance& self) { embody(machine, self, BodyKind::Mobile); }
+void mobile_init(Machine& machine, Instance& self) {
+  embody(machine, self, is_library_kind(self, "Link") ? BodyKind::Link : BodyKind::Mobile);
+}
 
 Instance* mobile_register(Machine& machine, Instance& self, Instance* shape) {
   machine.warn_once("mobile.register", "'register' of Mobile is the old name of 'set-shape'");
@@ -105,18 +107,36 @@ Vector3 mobile_get_bound_minimum(Machine& machine, Instance& self) {
   return bodies_of(machine).bounds(body_of(machine, self)).min();
 }
 
+/// Are two links of one assembly tested against each other at all? (CLASSES 2.5)
+bool tested(const Dynamics& dynamics, BodyIndex a, BodyIndex b) {
+  return dynamics.self_collisions(a) && !dynamics.jointed(a, b);
+}
+
 ListCell* mobile_get_colliding_objects(Machine& machine, Instance& self) {
-  body_of(machine, self);
-  const auto touching = machine.world().touching(self.id);
-  ListCell* list = machine.heap().list(static_cast<std::uint32_t>(touching.size()));
-  for (ObjectId id : touching) machine.heap().push(*list, Value::of(Tag::Object, machine.instance(id)));
+  const BodyIndex body = body_of(machine, self);
+  const Dynamics& dynamics = machine.world().dynamics();
+  ListCell* list = machine.heap().list(0);
+  for (const ObjectId id : machine.world().touching(self.id)) {
+    const BodyIndex other = machine.world().body(id);
+    if (dynamics.jointed(body, other)) continue;
+    if (dynamics.same_assembly(body, other) && !tested(dynamics, body, other)) continue;
+    machine.heap().push(*list, Value::of(Tag::Object, machine.instance(id)));
+  }
   return list;
 }
 
-/// Links of one assembly are what could intersect; a body without joints has none.
 std::int32_t mobile_check_for_self_penetrations(Machine& machine, Instance& self) {
-  body_of(machine, self);
+  const BodyIndex body = body_of(machine, self);
+  const Dynamics& dynamics = machine.world().dynamics();
+  for (const ObjectId id : machine.world().touching(self.id)) {
+    const BodyIndex other = machine.world().body(id);
+    if (dynamics.same_assembly(body, other) && tested(dynamics, body, other)) return 1;
+  }
   return 0;
+}
+
+void mobile_set_force_method(Machine& machine, Instance& self, std::int32_t on) {
+  machine.world().dynamics().set_force_method(body_of(machine, self), on != 0);
 }
 
 constexpr Native kMobileNatives[] = {
@@ -131,6 +151,7 @@ constexpr Native kMobileNatives[] = {
     native<get<&Bodies::force>>("mobile.get-force"),
     native<set<&Bodies::set_torque>>("mobile.set-torque"),
     native<get<&Bodies::torque>>("mobile.get-torque"),
+    native<mobile_set_force_method>("mobile.use-force-method"),
     native<mobile_rotate>("mobile.rotate"),
     native<mobile_relative_rotate>("mobile.relative-rotate"),
     native<mobile_offset>("mobile.offset"),

@@ -7,7 +7,7 @@ namespace breve::steve {
 
 namespace {
 
-constexpr std::size_t kMaxNatives = 512;
+constexpr std::size_t kMaxNatives = 768;
 
 /// One array made of all tables. Filled once, then constant: a table of addresses, the same for every world.
 struct Joined {
@@ -16,9 +16,11 @@ struct Joined {
 
   Joined() {
     for (std::span<const Native> table :
-         {object_natives(), obsolete_natives(), archive_natives(), control_natives(), view_natives(), camera_natives(),
-          real_natives(), look_natives(), mobile_natives(), shape_natives(), image_natives(), menu_natives(),
-          drawing_natives(), data_natives(), matrix_natives(), vector_natives()})
+         {object_natives(),  obsolete_natives(), archive_natives(), control_natives(),  view_natives(),
+          camera_natives(),  real_natives(),     look_natives(),    mobile_natives(),   shape_natives(),
+          image_natives(),   menu_natives(),     drawing_natives(), data_natives(),     matrix_natives(),
+          vector_natives(),  joint_natives(),    spring_natives(),  assembly_natives(), accuracy_natives(),
+          terrain_natives(), mesh_natives()})
       for (const Native& native : table) natives.at(count++) = native;
   }
 };

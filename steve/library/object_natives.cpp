@@ -158,6 +158,8 @@ constexpr Native kObsoleteNatives[] = {
     native<obsolete<"get-data-for-shape", DataCell*>>("obsolete.get-data-for-shape"),
     native<obsolete<"get-interface-version", Text>>("obsolete.get-interface-version"),
     native<obsolete<"get-link-pointer", PointerCell*>>("obsolete.get-link-pointer"),
+    native<obsolete<"get-joint-pointer", PointerCell*>>("obsolete.get-joint-pointer"),
+    native<obsolete<"get-multibody-pointer", PointerCell*>>("obsolete.get-multibody-pointer"),
     native<obsolete<"get-matrix-pointer", PointerCell*>>("obsolete.get-matrix-pointer"),
     native<obsolete<"get-pixel-pointer", PointerCell*>>("obsolete.get-pixel-pointer"),
     native<obsolete<"get-pointer", PointerCell*>>("obsolete.get-pointer"),

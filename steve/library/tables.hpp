@@ -23,5 +23,11 @@ std::span<const Native> drawing_natives();
 std::span<const Native> data_natives();
 std::span<const Native> matrix_natives();
 std::span<const Native> vector_natives();
+std::span<const Native> joint_natives();
+std::span<const Native> spring_natives();
+std::span<const Native> assembly_natives();
+std::span<const Native> accuracy_natives();
+std::span<const Native> terrain_natives();
+std::span<const Native> mesh_natives();
 
 }  // namespace breve::steve

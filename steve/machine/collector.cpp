@@ -1,6 +1,9 @@
-// The collector of cycles: it marks from what is alive when it begins and takes apart what it did not reach, in slices
-// of counted work. What is not in a cycle never needs it. Its state is the table of containers with a mark for each
-// place and a queue of places, so that a snapshot can keep it exactly.
+// The collector of the whole heap, for cycles that suspects.cpp leaves: it marks from what is alive when it begins and
+// takes apart what it did not reach, in slices of counted work. What is in no cycle never needs it. Its state is the
+// table of containers with a mark for each place and a queue of places, so that a snapshot can keep it exactly.
+//
+// Instances without auto-free are alive by themselves and have their turn in the order of the table, which is nearly
+// that of memory; all else is scanned in the order in which it was reached.
 #include <algorithm>
 
 #include "steve/compile/program.hpp"
@@ -10,16 +13,20 @@ namespace breve::steve {
 
 namespace {
 
-// Units of work, about a nanosecond each. See docs/performance.md for what a slice takes; docs/limits.md promises in
-// how many slices a cycle is gone: a cell costs at most kLook + kMark + 2 kPlace and its references.
-constexpr std::int64_t kSlice = 2'000'000;
-constexpr std::int64_t kLook = 4;        // is a place a root?
-constexpr std::int64_t kMark = 20;       // scan a cell
-constexpr std::int64_t kReference = 16;  // reach a cell from another
-constexpr std::int64_t kElement = 1;     // look at an element of a list or hash
-constexpr std::int64_t kPlace = 1;       // look at the mark of a place
-constexpr std::int64_t kBreak = 40;      // release a reference of garbage, or a cell of it
-constexpr std::int64_t kBegin = 1000;    // so that collections that follow each other end a slice
+// Units of work. See docs/performance.md for what a slice takes. docs/limits.md promises in how many slices a cycle is
+// gone, by the number of cells: two collections, each of at most kLook + kMark + 3 * kPlace + r units for a cell with r
+// references, so that a slice is 40,000 cells with up to six references on the average.
+constexpr std::int64_t kSlice = 2'120'000;
+constexpr std::int64_t kLook = 4;      // is a place a root?
+constexpr std::int64_t kMark = 40;     // reach and scan a cell: memory is waited for, whatever stands there
+constexpr std::int64_t kElement = 1;   // look at a reference, or an element of a list or hash
+constexpr std::int64_t kPlace = 1;     // look at the mark of a place
+constexpr std::int64_t kBreak = 18;    // release a reference of garbage, or a cell of it
+constexpr std::int64_t kBegin = 1000;  // so that collections that follow each other end a slice
+
+// How far may_close_cycle looks; what leads further is suspected unseen.
+constexpr int kLooks = 64;  // references and elements
+constexpr int kLevels = 3;  // below the first
 
 // How many cells to fetch ahead of their turn.
 constexpr std::uint32_t kAhead = 24;
@@ -31,7 +38,6 @@ bool can_close_cycle(const Cell* cell) {
   if (cell == nullptr || !is_container(cell->tag)) return false;
   return cell->tag != Tag::Object || static_cast<const Instance*>(cell)->auto_free;
 }
-bool can_close_cycle(const Value& v) { return v.is_reference() && can_close_cycle(v.ref); }
 
 bool is_root(const Container& cell) {
   if (cell.tag != Tag::Object) return false;
@@ -57,61 +63,89 @@ class Heap::Reach {
     const std::uint32_t turn = next_++ % kRoom;
     Cell* arrived = waiting_[turn];
     waiting_[turn] = cell;
-    if (arrived == nullptr || !is_container(arrived->tag)) return;
-    const std::uint32_t place = static_cast<Container*>(arrived)->place;
-    fetch(&heap_.marks_[place]);
-    const std::uint32_t marked = next_mark_++ % kMarks;
-    if (marks_[marked] != kNoPlace) heap_.shade_place(marks_[marked]);
-    marks_[marked] = place;
+    if (needs_mark(arrived)) wait_for_mark(*static_cast<Container*>(arrived));
   }
   void operator()(const Value& v) {
     if (is_container(v.tag)) (*this)(v.ref);
   }
   void flush() {
-    for (std::uint32_t i = 0; i < kMarks; ++i, ++next_mark_) {
-      std::uint32_t& place = marks_[next_mark_ % kMarks];
-      if (place != kNoPlace) heap_.shade_place(place);
-      place = kNoPlace;
-    }
     for (std::uint32_t i = 0; i < kRoom; ++i, ++next_) {
       Cell*& cell = waiting_[next_ % kRoom];
-      heap_.shade(cell);
+      if (needs_mark(cell)) wait_for_mark(*static_cast<Container*>(cell));
       cell = nullptr;
     }
+    for (std::uint32_t i = 0; i < kMarks; ++i, ++next_mark_) settle(marks_[next_mark_ % kMarks]);
   }
 
  private:
   static constexpr std::uint32_t kRoom = 16, kMarks = 8;
+  struct Mark {
+    std::uint32_t place = kNoPlace;
+    bool leaf = false;
+  };
+
+  // Roots have their turn in the order of the table, which is nearly that of memory; one that ceases to be a root is
+  // shaded by the release of the table of objects.
+  static bool needs_mark(const Cell* cell) {
+    return cell != nullptr && is_container(cell->tag) && !is_root(*static_cast<const Container*>(cell));
+  }
+  static bool is_leaf(const Container& cell) {
+    if (cell.tag != Tag::List) return false;
+    const auto& list = static_cast<const ListCell&>(cell);
+    return list.size == 0 || (list.narrow() && !is_container(list.kind));
+  }
+  void wait_for_mark(const Container& cell) {
+    fetch(&heap_.marks_[cell.place]);
+    Mark& mark = marks_[next_mark_++ % kMarks];
+    settle(mark);
+    mark = {cell.place, is_leaf(cell)};
+  }
+  void settle(Mark& mark) {
+    if (mark.place == kNoPlace) return;
+    if (!mark.leaf)
+      heap_.shade_place(mark.place);
+    else if (heap_.marks_[mark.place] < kBlack)
+      heap_.marks_[mark.place] = kBlackOther;
+    mark.place = kNoPlace;
+  }
+
   Heap& heap_;
   std::uint32_t next_ = 0, next_mark_ = 0;
-  std::array<Cell*, kRoom> waiting_{};             // cells whose heads are on their way
-  std::array<std::uint32_t, kMarks> marks_ = [] {  // places whose marks are on their way
-    std::array<std::uint32_t, kMarks> none;
-    none.fill(kNoPlace);
-    return none;
-  }();
+  std::array<Cell*, kRoom> waiting_{};  // cells whose heads are on their way
+  std::array<Mark, kMarks> marks_;      // places whose marks are on their way
 };
 
-// A cell that was new, or held by frames alone, is now referred to from the heap. If it refers to nothing that could
-// lead back to it, it is in no cycle; if a cycle is closed later, its last link is seen here or in note_survivor.
+// A cell that was new, or held by frames alone, is now referred to from the heap. If nothing that it refers to leads
+// back to it, it is in no cycle; if a cycle is closed later, its last link is seen here or in note_survivor. Most new
+// cells are small trees of lists: they are known by a short look while they are still in the cache.
 bool Heap::may_close_cycle(const Container& cell) {
-  constexpr std::uint32_t kMost = 64;  // a longer one is suspected unseen
+  int looks = kLooks;
+  return leads_on(cell, kLevels, looks);
+}
+
+bool Heap::leads_on(const Container& cell, int levels, int& looks) {
+  const auto child_leads_on = [&](const Cell* child) {
+    if (--looks < 0) return true;
+    if (!can_close_cycle(child)) return false;
+    return levels == 0 || leads_on(static_cast<const Container&>(*child), levels - 1, looks);
+  };
+  const auto element_leads_on = [&](const Value& v) { return child_leads_on(v.is_reference() ? v.ref : nullptr); };
   if (cell.tag == Tag::Object) {
     const auto& instance = static_cast<const Instance&>(cell);
     if (!instance.auto_free) return false;
     const auto& slots = instance.cls->reference_slots;
     return std::any_of(slots.begin(), slots.end(),
-                       [&instance](std::uint16_t slot) { return can_close_cycle(instance.slots[slot].ref); });
+                       [&](std::uint16_t slot) { return child_leads_on(instance.slots[slot].ref); });
   }
   if (cell.tag == Tag::List) {
     const auto& list = static_cast<const ListCell&>(cell);
-    return list.size > kMost ||
-           std::any_of(list.begin(), list.end(), [](const Value& v) { return can_close_cycle(v); });
+    if (list.narrow() && !is_container(list.kind)) return false;
+    return std::any_of(list.begin(), list.end(), element_leads_on);
   }
   const auto& hash = static_cast<const HashCell&>(cell);
-  return hash.used > kMost || std::any_of(hash.entries, hash.entries + hash.used, [](const HashCell::Entry& entry) {
-           return can_close_cycle(entry.key) || can_close_cycle(entry.value);
-         });
+  return std::any_of(hash.entries, hash.entries + hash.used, [&](const HashCell::Entry& entry) {
+    return element_leads_on(entry.key) || element_leads_on(entry.value);
+  });
 }
 
 // --- the table -------------------------------------------------------------------------------------------------------
@@ -178,8 +212,9 @@ void Heap::end_of_iteration() {
     }
     if (phase_ != before && phase_ == Phase::Idle) reclaim_all();
   }
+  const bool dying = !dying_.empty();
   free_dying();
-  if (!zero_.empty()) reclaim_all();
+  if (dying || !zero_.empty()) reclaim_all();
   if (short_of_memory_) throw std::bad_alloc();
 }
 
@@ -201,7 +236,7 @@ void Heap::begin_collection() {
   for (Instance* dying : dying_) shade(dying);
 }
 
-// Roots are looked for as long as few cells wait, so that there is always something to fetch ahead.
+// Roots are scanned as long as few cells wait, so that there is always something to fetch ahead.
 void Heap::mark(std::int64_t& work) {
   Reach reach(*this);
   while (work > 0) {
@@ -210,12 +245,14 @@ void Heap::mark(std::int64_t& work) {
       continue;
     }
     for (; grey_.size() - next_grey_ < kAhead && passed_ < containers_.size() && work > 0; ++passed_) {
-      const std::uint32_t ahead = passed_ + kAhead;
-      if (ahead < containers_.size() && marks_[ahead] == kWhite) fetch(containers_[ahead]);
+      fetch_place_ahead();
       work -= kPlace;
       if (marks_[passed_] != kWhite) continue;
       work -= kLook;
-      if (is_root(*containers_[passed_])) shade_place(passed_);
+      Container& cell = *containers_[passed_];
+      if (!is_root(cell)) continue;
+      marks_[passed_] = kBlack;
+      scan(cell, reach, work);
     }
     if (next_grey_ == grey_.size()) {
       reach.flush();
@@ -230,6 +267,14 @@ void Heap::mark(std::int64_t& work) {
     scan(cell, reach, work);
   }
   reach.flush();
+}
+
+void Heap::fetch_place_ahead() const {
+  const std::uint32_t ahead = passed_ + kAhead;
+  if (ahead >= containers_.size() || marks_[ahead] != kWhite) return;
+  const auto* cell = reinterpret_cast<const char*>(containers_[ahead]);
+  fetch(cell);
+  fetch(cell + 64);
 }
 
 // First the cell, then, when its head has arrived, its elements.
@@ -258,10 +303,8 @@ void Heap::scan(Container& cell, Reach& reach, std::int64_t& work) {
   work -= kMark;
   if (cell.tag == Tag::Object) {
     auto& instance = static_cast<Instance&>(cell);
-    for (const std::uint16_t slot : instance.cls->reference_slots) {
-      work -= instance.slots[slot].ref != nullptr ? kReference : kElement;
-      reach(instance.slots[slot].ref);
-    }
+    for (const std::uint16_t slot : instance.cls->reference_slots) reach(instance.slots[slot].ref);
+    work -= kElement * static_cast<std::int64_t>(instance.cls->reference_slots.size());
     return;
   }
   partial_ = &cell;
@@ -274,20 +317,17 @@ void Heap::scan(Container& cell, Reach& reach, std::int64_t& work) {
 void Heap::scan_part(Reach& reach, std::int64_t& work) {
   constexpr std::int64_t kPiece = 1024;  // elements, so that what they refer to is counted in time
   const auto most = static_cast<std::uint32_t>(std::clamp<std::int64_t>(work, 1, kPiece));
-  std::uint32_t references = 0, count = 0;
+  std::uint32_t count = 0;
   if (partial_->tag == Tag::List) {
     const auto& list = static_cast<const ListCell&>(*partial_);
     const std::uint32_t from = std::max(position_, list.first);
     const std::uint32_t end = list.first + list.size;
     const std::uint32_t to = from >= end ? end : from + std::min(most, end - from);
     for (std::uint32_t i = from; i < to; ++i) {
-      if (!list.narrow()) {
-        references += is_container(list.values()[i].tag) ? 1U : 0U;
+      if (!list.narrow())
         reach(list.values()[i]);
-      } else if (is_container(list.kind)) {
-        ++references;
+      else if (is_container(list.kind))
         reach(list.store[i].ref);
-      }
     }
     count = to > from ? to - from : 0;
     position_ = to;
@@ -298,14 +338,13 @@ void Heap::scan_part(Reach& reach, std::int64_t& work) {
     for (; position_ < hash.used && count < most; ++position_) {
       const HashCell::Entry& entry = hash.entries[position_];
       if (!entry.live()) continue;
-      references += (is_container(entry.key.tag) ? 1U : 0U) + (is_container(entry.value.tag) ? 1U : 0U);
       reach(entry.key);
       reach(entry.value);
       ++count;
     }
     if (position_ >= hash.used) partial_ = nullptr;
   }
-  work -= kElement * count + kReference * references;
+  work -= kElement * count;
 }
 
 void Heap::finish_partial() {
@@ -330,11 +369,12 @@ void Heap::examine(std::int64_t& work) {
     } catch (const std::bad_alloc&) {  // it is found again by the collection that follows
       short_of_memory_ = true;
     }
+    suspicion_ = true;  // what hangs on it is looked at again, when it is gone
     work -= kBreak;
     shade(&cell);
   }
   if (passed_ < containers_.size()) return;
-  if (!condemned_.empty() || short_of_memory_) suspicion_ = true;
+  if (short_of_memory_) suspicion_ = true;
   doom_condemned();
   phase_ = Phase::Remark;
 }
@@ -402,7 +442,7 @@ bool Heap::take_apart(Container& cell, std::int64_t& work) {
 bool Heap::shed(ListCell& list, std::int64_t& work) {
   for (; list.size > 0 && work > 0; work -= kElement) {
     const Value last = list[--list.size];
-    if (last.is_reference()) work -= kBreak;
+    if (last.is_reference()) work -= 2 * kBreak;  // it may be the last one, and the cell be freed
     release(last);
   }
   return list.size == 0;

@@ -55,8 +55,7 @@ class Heap : public InMemory {
   DataCell* data(std::string_view bytes);
   Instance* instance(const ClassInfo& cls);  // slots zeroed, serial given, count 0
 
-  // --- counted references
-  // ---------------------------------------------------------------------------------------------
+  // --- counted references --------------------------------------------------------------------------------------------
   void retain(Cell* cell) {
     if (cell && !cell->immortal) ++cell->count;
   }
@@ -95,9 +94,10 @@ class Heap : public InMemory {
   /// Release every reference in the slots of an instance and zero all its slots (what `free` does to variables).
   void clear_slots(Instance& instance);
 
-  // --- lists; positions are checked by the caller
-  // ----------------------------------------------------------------------- Adding to a list of 2^31 - 1 elements is
-  // RunError{Bounds}.
+  // --- lists ---------------------------------------------------------------------------------------------------------
+
+  // Positions are checked by the caller. Adding to a list of 2^31 - 1 elements is RunError{Bounds}.
+
   void push(ListCell& list, const Value& value) {
     if (!push_slot(list, value.tag, value.bits[0])) push_slowly(list, value);
   }
@@ -130,15 +130,13 @@ class Heap : public InMemory {
   void resize(ListCell& list, std::uint32_t size);  // shrink, or grow with NULL values
   void reserve(ListCell& list, std::uint32_t capacity);  // room for that many elements in all
 
-  // --- hashes
-  // -----------------------------------------------------------------------------------------------------------
+  // --- hashes --------------------------------------------------------------------------------------------------------
   const Value* find(const HashCell& hash, const Value& key) const;  // null if absent
   void set(HashCell& hash, const Value& key, const Value& value);
   bool remove(HashCell& hash, const Value& key, Value& removed);  // false if absent
   ListCell* keys(const HashCell& hash);                           // in order of insertion
 
-  // --- collection
-  // -------------------------------------------------------------------------------------------------------
+  // --- collection ----------------------------------------------------------------------------------------------------
   /// Safe point inside running code: true when so many zero-count cells wait, or so many bytes were taken, that
   /// `reclaim` is worth its cost.
   bool wants_reclaim() const { return wants_reclaim_; }
@@ -156,9 +154,9 @@ class Heap : public InMemory {
   std::uint64_t live_cells() const { return cells_; }
   std::pmr::memory_resource* memory() const { return memory_; }
 
-  // --- snapshots
-  // ---------------------------------------------------------------------------------------------------------- A
-  // snapshot writes the cells in the order of containers() (garbage not yet collected included), then those of
+  // --- snapshots -----------------------------------------------------------------------------------------------------
+
+  // A snapshot writes the cells in the order of containers() (garbage not yet collected included), then those of
   // waiting() that are no containers, then save_state. Restoring makes the containers in the same order in an empty
   // heap, gives them their serials and contents (retaining), and calls load_state last: the restored heap then collects
   // at the same iterations and safe points as the saved one.
@@ -242,12 +240,14 @@ class Heap : public InMemory {
     if (!cell->suspected && (cell->tag != Tag::Object || static_cast<Instance*>(cell)->auto_free)) suspect(*cell);
   }
   static bool may_close_cycle(const Container& cell);
+  static bool leads_on(const Container& cell, int levels, int& looks);
   void move_place(std::uint32_t from, std::uint32_t to);
   void enrol(Container& cell);
   void strike(Container& cell);
   void shade(Cell* cell);
   void shade_place(std::uint32_t place);
   void fetch_ahead() const;
+  void fetch_place_ahead() const;
   void begin_collection();
   void mark(std::int64_t& work);
   void end_of_marking();
@@ -272,6 +272,8 @@ class Heap : public InMemory {
   void suspect(Container& cell);
   bool drop_lonely_suspects();  // true if there were any
   void judge_suspects();
+  void judge_region(Region& region);
+  void judge_far_suspects(Region& region);
   void condemn(Region& region);
   void break_up(const Region& region);
 

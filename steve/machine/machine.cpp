@@ -22,6 +22,7 @@ Machine::Machine(std::shared_ptr<const Program> program, World& world, std::pmr:
       segments_(memory),
       pins_(memory),
       caches_(memory),
+      handler_methods_(memory),
       strings_(memory),
       functions_(steve::functions()),
       warned_sites_(memory),
@@ -106,10 +107,10 @@ void Machine::called_by_world(Body&& body) {
   }
 }
 
-// --- objects
-// -------------------------------------------------------------------------------------------------------------------
+// --- objects ---------------------------------------------------------------------------------------------------------
 
 Instance* Machine::create(const ClassInfo& cls) {
+  refuse_in_stage("create an object");
   const ProfileScope profiled(profiler_, Callee::act("new", &cls), profiler_ ? running_line() : 0);
   count_call();
   auto* instance = heap_->instance(cls);
@@ -133,6 +134,7 @@ Instance* Machine::create(const ClassInfo& cls) {
 
 void Machine::free_instance(Instance& instance) {
   if (instance.state != Instance::State::Live) return;
+  refuse_in_stage("free an object");
   const ProfileScope profiled(profiler_, Callee::act("free", instance.cls), profiler_ ? running_line() : 0);
   instance.state = Instance::State::BeingFreed;
   const Pin pin(*this, Value::of(Tag::Object, &instance));
@@ -167,8 +169,7 @@ Instance* Machine::instance(ObjectId id) const {
   return world_.alive(id) ? reinterpret_cast<Instance*>(world_.user(id)) : nullptr;
 }
 
-// --- calls from native code
-// ------------------------------------------------------------------------------------------------------
+// --- calls from native code ------------------------------------------------------------------------------------------
 
 const MethodInfo* Machine::find_method(const ClassInfo& cls, std::string_view name, std::size_t count) const {
   const auto symbol = program_->symbols().find(name);
@@ -256,8 +257,7 @@ Value Machine::default_value(const ParameterInfo& p) {
   }
 }
 
-// --- events of the world
-// ------------------------------------------------------------------------------------------------------------
+// --- events of the world ---------------------------------------------------------------------------------------------
 
 void Machine::iterate(ObjectId agent) {
   if (auto* object = instance(agent)) called_by_world([&] { call(*object, *object->cls->iterate, {}); });
@@ -277,7 +277,8 @@ bool Machine::collided(ObjectId agent, ObjectId other, std::string_view name, co
     auto* object = instance(agent);
     auto* hit = instance(other);
     if (!object || !hit) return true;
-    const auto* method = find_method(*object->cls, name, count);
+    // Looked up anew each time: the method before may have replaced classes.
+    const auto* method = handler_methods_.find(*object->cls, name, program_->symbols())[count];
     if (!method) continue;
     const Value arguments[] = {Value::of(Tag::Object, hit), Value::of(point), Value::of(normal), Value(), Value()};
     Value result;
@@ -292,7 +293,7 @@ void Machine::notified(ObjectId observer, std::string_view name, ObjectId announ
   auto* source = instance(announcer);
   if (!object) return;
   for (const std::size_t count : {2, 1, 0}) {
-    const auto* method = find_method(*object->cls, name, count);
+    const auto* method = handler_methods_.find(*object->cls, name, program_->symbols())[count];
     if (!method) continue;
     const Value text = Value::of(Tag::String, heap_->string(message));
     const Pin pin(*this, text);

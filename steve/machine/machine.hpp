@@ -16,6 +16,7 @@
 #include "steve/compile/bytecode.hpp"
 #include "steve/compile/program.hpp"
 #include "steve/machine/budget.hpp"
+#include "steve/machine/handler_methods.hpp"
 #include "steve/machine/heap.hpp"
 #include "steve/machine/native.hpp"
 
@@ -108,8 +109,7 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   Instance* instance(ObjectId id) const;  // null if the id is null or stale
   ObjectId id_of(const Instance* instance) const { return instance && instance->live() ? instance->id : ObjectId{}; }
 
-  // --- calls from native code
-  // -----------------------------------------------------------------------------------------
+  // --- calls from native code ----------------------------------------------------------------------------------------
   /// The method of `cls` or an ancestor with this name and exactly `count` parameters; null if there is none.
   const MethodInfo* find_method(const ClassInfo& cls, std::string_view name, std::size_t count) const;
   bool responds(const ClassInfo& cls, std::string_view name) const;  // any number of parameters
@@ -123,14 +123,13 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   Value call_with_keywords(Instance& receiver, std::string_view method,
                            std::span<const std::pair<std::string_view, Value>> keywords);
 
-  // --- variables of instances
-  // ------------------------------------------------------------------------------------------
+  // --- variables of instances ----------------------------------------------------------------------------------------
   Value get_variable(const Instance& instance, const VariableInfo& variable) const;
   void set_variable(Instance& instance, const VariableInfo& variable, const Value& value);  // converts, checks class
 
-  // --- talking
-  // ---------------------------------------------------------------------------------------------------------
+  // --- talking -------------------------------------------------------------------------------------------------------
   void print(std::string_view text) {
+    refuse_in_stage("print");
     if (host_.print) host_.print(text);
   }
   /// A warning with the place of the running statement in front.
@@ -143,17 +142,22 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   /// Report an error that does not stop the run, with the place of the running statement.
   void survive(const RunError& error) { survive(ScriptError(error.code(), report(error, running()))); }
   [[noreturn]] void fail_unknown_class(std::string_view name) const;
+  /// RunError{World} inside a force method, which runs at stages that may be tried again. `what` is what it does.
+  void refuse_in_stage(std::string_view what) const {
+    if (in_stage_) [[unlikely]]
+      fail_in_stage(what);
+  }
   /// Errors reported that did not stop the run (F27).
   std::uint64_t survived_errors() const { return survived_errors_; }
 
-  // --- Behaviour, RootSource
-  // ---------------------------------------------------------------------------------------------
+  // --- Behaviour, RootSource -----------------------------------------------------------------------------------------
   void iterate(ObjectId agent) override;
   void post_iterate(ObjectId agent) override;
   void scheduled(ObjectId agent, std::string_view method) override;
   bool collided(ObjectId agent, ObjectId other, std::string_view method, const Vector3& point,
                 const Vector3& normal) override;
   void notified(ObjectId observer, std::string_view method, ObjectId announcer, std::string_view message) override;
+  Vector3 stage_force(ObjectId agent, double time, std::uint64_t draw) override;
   void input(const InputEvent& event) override;
   void end_of_iteration() override;
   void save(ByteWriter& out) const override;
@@ -352,6 +356,7 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   const Instruction* running() const { return frame_ ? frame_->pc : nullptr; }
   void input_key(const InputEvent& event);
   void call_if_present(Instance& receiver, std::string_view method, std::span<const Value> arguments = {});
+  [[noreturn]] static void fail_in_stage(std::string_view what);
   void count_call() {
     if (budget_.turn()) [[unlikely]]
       end_of_piece();
@@ -396,11 +401,13 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   Slot* limit_ = nullptr;
   std::pmr::vector<Value> pins_;
   std::pmr::vector<SiteCache> caches_;
+  HandlerMethods handler_methods_;         // of the program
   std::pmr::vector<StringCell*> strings_;  // the program's constants
   std::span<const Native> functions_;
   std::pmr::unordered_set<const Instruction*> warned_sites_;
   std::pmr::unordered_set<std::pmr::string> warned_;
   std::uint64_t survived_errors_ = 0;
+  bool in_stage_ = false;  // a force method runs
   Budget budget_;
   std::atomic<bool> interrupted_{false};
   std::unique_ptr<Fragments> fragments_;  // once something was evaluated

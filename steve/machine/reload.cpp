@@ -167,6 +167,7 @@ void Reload::exchange() {
   machine_.heap_.swap(heap_);
   machine_.strings_.swap(strings_);
   machine_.caches_.swap(caches);
+  machine_.handler_methods_.clear();
   machine_.program_ = program_;
   machine_.fragments_.reset();
   machine_.warned_sites_.clear();

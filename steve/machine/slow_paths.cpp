@@ -46,8 +46,7 @@ Slot Machine::converted_reference(StaticType type, const Value& given, std::uint
   return slot;
 }
 
-// --- members of objects
-// ------------------------------------------------------------------------------------------------------
+// --- members of objects ----------------------------------------------------------------------------------------------
 
 Instance* Machine::instance_of(const Value& value) const { return value.tag == Tag::Object ? value.object() : nullptr; }
 
@@ -177,8 +176,7 @@ void Machine::set_variable(Instance& instance, const VariableInfo& variable, con
                 static_cast<std::size_t>(slot_count(variable.type)) * sizeof(Slot));
 }
 
-// --- creation, freeing, enumeration
-// ----------------------------------------------------------------------------------------------
+// --- creation, freeing, enumeration ----------------------------------------------------------------------------------
 
 Value Machine::make_many(const Value& count, const ClassInfo& cls) {
   if (count.tag != Tag::Int)
@@ -277,8 +275,7 @@ void Machine::write_argument(Slot* base, const ParameterInfo& parameter, const V
     write_parameter(base, parameter, value, program_->symbols().name(parameter.keyword));
 }
 
-// --- text
-// --------------------------------------------------------------------------------------------------------------------------
+// --- text ------------------------------------------------------------------------------------------------------------
 
 std::string Machine::text(const Value& value) {
   return steve::text(

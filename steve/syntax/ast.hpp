@@ -30,8 +30,31 @@ struct TypeRef {
 /// A literal usable in @define, defaults and nowhere else: int, double, string (outer quotes removed, escapes kept as
 /// written), vector (3) or matrix (9, rows first).
 struct Constant {
-  std::variant<std::int32_t, double, std::string, std::array<double, 3>, std::array<double, 9>> value;
+  using Value = std::variant<std::int32_t, double, std::string, std::array<double, 3>, std::array<double, 9>>;
+
+  Constant() = default;
+  Constant(Value v, Span s) : value(std::move(v)), span(s) {}
+  // Not the variant's own copy: in libstdc++ 12 one that runs out of memory for the string destroys what is not there.
+  Constant(const Constant& other) : value(copy(other.value)), span(other.span) {}
+  Constant(Constant&&) = default;
+  Constant& operator=(Constant other) noexcept {
+    value = std::move(other.value);
+    span = other.span;
+    return *this;
+  }
+
+  Value value;
   Span span;
+
+ private:
+  static Value copy(const Value& from) {
+    return std::visit(
+        [](const auto& alternative) {
+          auto one = alternative;
+          return Value(std::move(one));
+        },
+        from);
+  }
 };
 
 struct Expr;

@@ -1,9 +1,11 @@
-// How long the collector stops a world of many live objects. A program keeps a million objects, links them anew,
-// replaces some, and drops lists and cycles in each iteration, at 60 iterations a second. Claim: with 1e6 live objects
-// the collector's part of an iteration takes at most 2 ms of processor time in 99.9 % of the iterations. Prints
-// quantiles of that part and what the heap holds; exits 1 if the claim does not hold.
+// How long the collector stops a world of many live objects. A program keeps a million objects, two million lists
+// besides, and in each iteration links 2,000 of the objects anew and gives them two new lists each, replaces 200, drops
+// 100 pairs of objects, lists and hashes in cycles, and in each 30th a ring of 5,000 lists, so that the collector of
+// the whole heap runs too: at 60 iterations a second. Claim: with 1e6 live objects 99.9 % of the pauses take at most 2
+// ms of processor time, both those at the end of an iteration and those at calls, where garbage is given back
+// meanwhile. Prints quantiles of both and what the heap holds; exits 1 if the claim does not hold.
 //
-// Usage: bench_gc_pauses [OBJECTS [FRAMES]]
+// Usage: bench_gc_pauses [OBJECTS [FRAMES [RING]]]; without a ring (0) small cycles alone are dropped
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -30,10 +32,11 @@ Controller Town.
 Control : Town {
   + variables:
     people (list).
-    count (int).
+    count, ring, turn (int).
   + to init:
     i (int).
     count = (self get-argument at-index 1).
+    ring = (self get-argument at-index 2).
     for i = 0, i < count, i++: push (new Person) onto people.
     for i = 0, i < count, i++: people{i} meet friend people{random[count - 1]}.
   + to iterate:
@@ -51,7 +54,19 @@ Control : Town {
       people{n} meet friend people{random[count - 1]}.
     }
     for i = 0, i < 100, i++: self make-knots.
+    turn++.
+    if ring > 0 && turn % 30 == 0: self make-ring.
     super iterate.
+  + to make-ring:
+    i (int).
+    first, last (list).
+    first = { 0 }.
+    last = first.
+    for i = 1, i < ring, i++: last = (self chain next { i } behind last).
+    push first onto last.
+  + to chain next n (list) behind l (list):
+    push n onto l.
+    return n.
   + to make-knots:
     a, b (object).
     k (list).
@@ -90,6 +105,9 @@ double now(clockid_t clock) {
   clock_gettime(clock, &t);
   return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_nsec) * 1e-6;
 }
+
+// The linker leads calls of Heap::reclaim here, see CMakeLists.txt: what the interpreter gives back at calls is timed.
+std::vector<double>* at_calls = nullptr;  // ms
 
 /// Passes everything on to the machine, and times the end of the iteration.
 class Timed final : public Behaviour {
@@ -139,9 +157,18 @@ void print_row(const char* what, const std::vector<double>& times) {
 
 }  // namespace
 
+extern "C" void __real__ZN5breve5steve4Heap7reclaimEv(steve::Heap* heap);
+extern "C" void __wrap__ZN5breve5steve4Heap7reclaimEv(steve::Heap* heap);
+void __wrap__ZN5breve5steve4Heap7reclaimEv(steve::Heap* heap) {
+  const double begin = now(CLOCK_THREAD_CPUTIME_ID);
+  __real__ZN5breve5steve4Heap7reclaimEv(heap);
+  if (at_calls != nullptr) at_calls->push_back(now(CLOCK_THREAD_CPUTIME_ID) - begin);
+}
+
 int main(int count, char** arguments) {
   const std::string objects = count > 1 ? arguments[1] : "1000000";
   const int frames = count > 2 ? std::atoi(arguments[2]) : 2000;
+  const std::string ring = count > 3 ? arguments[3] : "5000";
   NoModules modules;
   auto compiled = steve::compile({"town.tz", kProgram}, modules);
   if (!compiled.program) {
@@ -151,14 +178,16 @@ int main(int count, char** arguments) {
   MemoryMeter memory;
   World world(&memory, 1);
   steve::MachineHost host;
-  host.arguments = {"town.tz", objects};
+  host.arguments = {"town.tz", objects, ring};
   steve::Machine machine(compiled.program, world, &memory, std::move(host));
   machine.start();
   Timed timed(machine);
   world.set_behaviour(&timed);
-  for (int i = 0; i < 200; ++i) world.step();  // until as much garbage goes as comes
+  for (int i = 0; i < 1500; ++i) world.step();  // until nearly all have their lists, and as much goes as comes
   timed.cpu.clear();
   timed.wall.clear();
+  std::vector<double> calls;
+  at_calls = &calls;
 
   auto next = std::chrono::steady_clock::now();
   std::uint64_t least = machine.heap().live_cells(), most = least;
@@ -169,12 +198,14 @@ int main(int count, char** arguments) {
     next += std::chrono::microseconds(16'667);
     std::this_thread::sleep_until(next);
   }
-  std::printf("%zu objects, %llu to %llu cells, %zu MB, %d iterations at 60 Hz; the collector's part, ms:\n\n",
-              world.object_count(), static_cast<unsigned long long>(least), static_cast<unsigned long long>(most),
-              memory.used() >> 20, frames);
-  std::printf("| clock | p50 | p99 | p99.9 | max |\n| --- | --- | --- | --- | --- |\n");
-  print_row("processor", timed.cpu);
-  print_row("wall", timed.wall);
+  std::printf("%zu objects, %llu to %llu cells, %zu MB, %d iterations at 60 Hz; pauses, ms:\n\n", world.object_count(),
+              static_cast<unsigned long long>(least), static_cast<unsigned long long>(most), memory.used() >> 20,
+              frames);
+  std::printf("| pause | p50 | p99 | p99.9 | max |\n| --- | --- | --- | --- | --- |\n");
+  print_row("end of an iteration, processor", timed.cpu);
+  print_row("end of an iteration, wall", timed.wall);
+  print_row("at a call, processor", calls);
+  at_calls = nullptr;
   world.set_behaviour(&machine);
-  return quantile(timed.cpu, 0.999) <= kClaim ? 0 : 1;
+  return std::max(quantile(timed.cpu, 0.999), quantile(calls, 0.999)) <= kClaim ? 0 : 1;
 }

@@ -197,4 +197,45 @@ TEST(Analysis, TellsOfAProgramThatDoesNotCompile) {
   EXPECT_EQ(breve::Analysis().at("a.tz", 1, 1).status().code(), BREVE_ERROR_ARGUMENT);
 }
 
+TEST(Bodies, AreBuiltJoinedAndDrivenWithoutAScript) {
+  auto runtime = breve::Runtime::create().or_throw();
+  const auto program = runtime.library_program().or_throw();
+  auto world = runtime.world(program).or_throw();
+  const breve::Object arm = world.create("Link").or_throw(), ball = world.create("Mobile").or_throw();
+  breve_geometry box = breve_geometry_default();
+  box.kind = BREVE_SHAPE_BOX;
+  ASSERT_TRUE(world.set_shape(ball, world.create_shape(box).or_throw()));
+  EXPECT_NEAR(world.mass(ball).or_throw(), 1, 1e-12);
+  ASSERT_TRUE(world.set_physics(ball, true));
+  ASSERT_TRUE(world.set_gravity({0, 0, 0}));
+  ASSERT_TRUE(world.set_force(ball, {1, 0, 0}));
+  ASSERT_TRUE(world.set_material(ball, {0.5, 0.5, 0, 0, 0}));
+  breve_joint_description hinge = breve_joint_description_default(BREVE_JOINT_REVOLUTE);
+  hinge.child = arm;
+  hinge.parent_point[1] = 5;
+  const breve::Object joint = world.create_joint(hinge).or_throw();
+  breve_joint_drive drive = world.drive(joint).or_throw();
+  drive.strength_limit = 5;
+  drive.motor_speed[0] = 1;
+  ASSERT_TRUE(world.set_drive(joint, drive));
+  EXPECT_EQ(world.links(arm).or_throw().size(), 1U);
+  EXPECT_EQ(world.joints(arm).or_throw().size(), 1U);
+  breve_spring tie = breve_spring_default();
+  tie.from = arm;
+  tie.to = ball;
+  tie.strength = 0;
+  ASSERT_TRUE(world.create_spring(tie));
+  breve_accuracy accuracy = world.accuracy().or_throw();
+  accuracy.step = 1e-3;
+  ASSERT_TRUE(world.set_accuracy(accuracy));
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(world.step());
+  EXPECT_NEAR(world.joint(joint).or_throw().position[0], 1, 0.05);
+  EXPECT_NEAR(world.velocity(ball).or_throw()[0], 1, 1e-2);
+  EXPECT_GT(world.energy().or_throw().kinetic, 0.4);
+  EXPECT_TRUE(world.impacts().or_throw().empty());
+  EXPECT_TRUE(world.interventions().or_throw().empty());
+  ASSERT_TRUE(world.break_joint(joint));
+  EXPECT_FALSE(world.joint(joint).or_throw().linked);
+}
+
 }  // namespace

@@ -3,17 +3,8 @@
 set -u
 breve=$(realpath "$1")
 case=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-export HOME="$work/home" BREVE_CLASS_PATH=
-mkdir "$HOME"
+. "$(dirname "$0")/../case.sh"
 
-fail() {
-  echo "not so: $*"
-  for file in out err; do [ -f $file ] && { echo "--- $file"; cat $file; }; done
-  exit 1
-}
 # expect STATUS ARGS...: run breve; its output is in out and err.
 expect() {
   local wanted=$1 status
@@ -22,9 +13,6 @@ expect() {
   status=$?
   [ $status = "$wanted" ] || fail "status $status and not $wanted of: breve $*"
 }
-same() { [ "$1" = "$2" ] || fail "'$1' is '$2'"; }
-has() { grep -q -e "$2" "$1" || fail "$1 has '$2'"; }
-lacks() { ! grep -q -e "$2" "$1" || fail "$1 lacks '$2'"; }
 
 # program NAME INIT ITERATE: a controller with these statements.
 program() {
@@ -150,6 +138,20 @@ quiet)
   program a.tz 'bug = new Mobile. self schedule method-call "go" at-time -1.' ''
   expect 0 run a.tz --iterations 1 --seed 1 && [ -s err ] || fail "a warning is shown"
   expect 0 run a.tz --iterations 1 --seed 1 --quiet && same "$(cat err)" ""
+  ;;
+accuracy)
+  cat >a.tz <<END
+@use PhysicalControl.
+Controller Main.
+PhysicalControl : Main {
+  + to iterate:
+    super iterate.
+    print (self get-accuracy).
+}
+END
+  expect 0 run a.tz --iterations 1 --seed 1 --quiet && same "$(cat out)" balanced
+  expect 0 run a.tz --iterations 1 --seed 1 --quiet --accuracy precise && same "$(cat out)" precise
+  expect 2 run a.tz --iterations 1 --accuracy sloppy && has err "balanced"
   ;;
 coarse-random)
   program a.tz 'print ((random[1.0] * 32767.0 + 0.0000005) % 1.0 < 0.000001).' ''

@@ -54,6 +54,7 @@ void reentry_suite(void);
 void reentry_all_suite(void);
 void reload_suite(void);
 void snapshot_suite(void);
+void solid_suite(void);
 void stepping_suite(void);
 void threads_suite(void);
 void values_suite(void);
@@ -77,6 +78,7 @@ static const struct {
     {"reentry_all", reentry_all_suite},
     {"reload", reload_suite},
     {"snapshot", snapshot_suite},
+    {"solid", solid_suite},
     {"stepping", stepping_suite},
     {"threads", threads_suite},
     {"values", values_suite},

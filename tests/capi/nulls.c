@@ -193,7 +193,88 @@ static void null_arguments_give_an_argument_error(void) {
   scene_close(&s);
 }
 
+static void null_handles_and_arguments_of_bodies_with_physics(void) {
+  scene s;
+  if (!scene_open(&s)) return;
+  breve_world* w = s.world;
+  const breve_object ball = ball_of(&s);
+  breve_program* program = NULL;
+  breve_object object;
+  breve_geometry geometry = breve_geometry_default();
+  breve_joint_description joint = breve_joint_description_default(BREVE_JOINT_BALL);
+  breve_joint_info info;
+  breve_joint_drive drive = {.struct_size = sizeof drive};
+  breve_spring spring = breve_spring_default();
+  breve_accuracy accuracy;
+  breve_rung rung;
+  breve_energy energy = {.struct_size = sizeof energy};
+  breve_physics_counters counters = {.struct_size = sizeof counters};
+  const breve_material material = {0, 0, 0, 0, 0};
+  const breve_pose pose = {{0}, {1, 0, 0, 0}};
+  double d[4] = {0};
+  bool is;
+  size_t size;
+  const char* text;
+  CHECK_STATUS(BREVE_OK, breve_accuracy_of_rung(BREVE_RUNG_FAST, &accuracy));
+  breve_world* const worlds[] = {NULL, w};
+  for (int i = 0; i < 2; ++i) { /* without a world, then without the rest */
+    breve_world* const u = worlds[i];
+    const bool all = u == NULL;
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_shape_create(u, all ? &geometry : NULL, &object));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_shape_create(u, &geometry, all ? &object : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_physics(u, ball, all ? &is : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_mass(u, ball, all ? d : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_material(u, ball, all ? &material : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_asleep(u, ball, all ? &is : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_joint_create(u, all ? &joint : NULL, &object));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_joint_create(u, &joint, all ? &object : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_joint_read(u, ball, all ? &info : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_joint_get_drive(u, ball, all ? &drive : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_joint_set_drive(u, ball, all ? &drive : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_links(u, ball, NULL, 1, &size));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_links(u, ball, NULL, 0, all ? &size : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_joints(u, ball, NULL, 1, &size));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_joints(u, ball, NULL, 0, all ? &size : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_move_assembly(u, ball, all ? &pose : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_spring_create(u, all ? &spring : NULL, &object));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_spring_create(u, &spring, all ? &object : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_spring_set(u, ball, all ? &spring : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_accuracy(u, all ? &accuracy : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_accuracy(u, all ? &accuracy : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_describe_accuracy(u, all ? &text : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_gravity(u, all ? d : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_gravity(u, all ? d : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_interventions(u, NULL, 1, &size));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_interventions(u, NULL, 0, all ? &size : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_impacts(u, NULL, 1, &size));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_impacts(u, NULL, 0, all ? &size : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_energy(u, all ? &energy : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_energy(u, ball, all ? &energy : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_physics_counters(u, all ? &counters : NULL));
+  }
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_program_create_library(NULL, NULL, &program));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_program_create_library(s.runtime, NULL, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_shape(NULL, ball, ball));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_physics(NULL, ball, true));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_force(NULL, ball, d, d));
+  CHECK_STATUS(BREVE_OK, breve_object_set_force(w, ball, NULL, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_joint_break(NULL, ball));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_joint_place(NULL, ball, d, d));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_self_collisions(NULL, ball, true));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_spring_read(NULL, ball, d, d));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_accuracy_of_rung(BREVE_RUNG_FAST, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_rung_named(NULL, &rung));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_rung_named("fast", NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_accuracy(NULL, ball, &accuracy));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_sleeping(NULL, true));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_workers(NULL, 1));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_guard(NULL, BREVE_GUARD_OFF));
+  CHECK(breve_world_guard(NULL) == BREVE_GUARD_OFF);
+  scene_close(&s);
+}
+
 void nulls_suite(void) {
   RUN(null_handles_give_an_argument_error_or_nothing);
   RUN(null_arguments_give_an_argument_error);
+  RUN(null_handles_and_arguments_of_bodies_with_physics);
 }

@@ -184,6 +184,102 @@ static breve_status do_session(place* p) {
   return breve_world_session(p->world, &hash);
 }
 
+static breve_status do_library_program(place* p) {
+  breve_program* made = NULL;
+  const breve_status status = breve_program_create_library(p->runtime, NULL, &made);
+  breve_program_destroy(made);
+  return status;
+}
+/* The first that does not work, or BREVE_OK. */
+#define TRY(call)                        \
+  do {                                   \
+    const breve_status tried = (call);   \
+    if (tried != BREVE_OK) return tried; \
+  } while (0)
+static breve_status do_bodies(place* p) {
+  breve_world* w = p->world;
+  breve_geometry geometry = breve_geometry_default();
+  breve_object body, shape, links[2];
+  const breve_material material = {0.5, 0.5, 0.5, 0, 0};
+  breve_pose pose;
+  double mass;
+  bool is;
+  size_t count;
+  breve_energy energy = {.struct_size = sizeof energy};
+  TRY(breve_object_create(w, "Mobile", &body));
+  TRY(breve_shape_create(w, &geometry, &shape));
+  TRY(breve_object_set_shape(w, body, shape));
+  TRY(breve_object_set_physics(w, body, true));
+  TRY(breve_object_physics(w, body, &is));
+  TRY(breve_object_mass(w, body, &mass));
+  TRY(breve_object_set_force(w, body, NULL, NULL));
+  TRY(breve_object_set_material(w, body, &material));
+  TRY(breve_object_asleep(w, body, &is));
+  TRY(breve_object_links(w, body, links, 2, &count));
+  TRY(breve_object_joints(w, body, links, 2, &count));
+  TRY(breve_object_pose(w, body, &pose));
+  TRY(breve_object_move_assembly(w, body, &pose));
+  TRY(breve_object_set_self_collisions(w, body, false));
+  TRY(breve_object_energy(w, body, &energy));
+  TRY(breve_object_set_accuracy(w, body, NULL));
+  return breve_object_free(w, body);
+}
+static breve_status do_joints(place* p) {
+  breve_world* w = p->world;
+  breve_joint_description description = breve_joint_description_default(BREVE_JOINT_REVOLUTE);
+  breve_joint_info info;
+  breve_joint_drive drive = {.struct_size = sizeof drive};
+  breve_object joint;
+  const double still[3] = {0};
+  TRY(breve_object_create(w, "Mobile", &description.child));
+  TRY(breve_joint_create(w, &description, &joint));
+  TRY(breve_joint_read(w, joint, &info));
+  TRY(breve_joint_get_drive(w, joint, &drive));
+  TRY(breve_joint_set_drive(w, joint, &drive));
+  TRY(breve_joint_place(w, joint, still, still));
+  TRY(breve_joint_break(w, joint));
+  TRY(breve_object_free(w, joint));
+  return breve_object_free(w, description.child);
+}
+static breve_status do_springs(place* p) {
+  breve_world* w = p->world;
+  breve_spring description = breve_spring_default();
+  breve_object spring;
+  double length, force;
+  TRY(breve_object_create(w, "Mobile", &description.from));
+  TRY(breve_object_create(w, "Mobile", &description.to));
+  TRY(breve_spring_create(w, &description, &spring));
+  TRY(breve_spring_set(w, spring, &description));
+  TRY(breve_spring_read(w, spring, &length, &force));
+  TRY(breve_object_free(w, spring));
+  TRY(breve_object_free(w, description.from));
+  return breve_object_free(w, description.to);
+}
+static breve_status do_accuracy(place* p) {
+  breve_world* w = p->world;
+  breve_accuracy accuracy;
+  breve_rung rung;
+  breve_energy energy = {.struct_size = sizeof energy};
+  breve_physics_counters counters = {.struct_size = sizeof counters};
+  const char* text;
+  size_t count;
+  double gravity[3];
+  TRY(breve_rung_named("balanced", &rung));
+  TRY(breve_accuracy_of_rung(rung, &accuracy));
+  TRY(breve_world_accuracy(w, &accuracy));
+  TRY(breve_world_set_accuracy(w, &accuracy));
+  TRY(breve_world_describe_accuracy(w, &text));
+  TRY(breve_world_gravity(w, gravity));
+  TRY(breve_world_set_gravity(w, gravity));
+  TRY(breve_world_set_sleeping(w, false));
+  TRY(breve_world_set_workers(w, 1));
+  TRY(breve_world_set_guard(w, breve_world_guard(w)));
+  TRY(breve_world_interventions(w, NULL, 0, &count));
+  TRY(breve_world_impacts(w, NULL, 0, &count));
+  TRY(breve_world_energy(w, &energy));
+  return breve_world_physics_counters(w, &counters);
+}
+
 /* Works, is busy, or finds nothing: what each function may do in each kind of callback. */
 enum { WORKS = 1, BUSY = 2, NOTHING = 4 };
 static const struct {
@@ -208,6 +304,11 @@ static const struct {
     {"breve_object_rotational_velocity", do_turning, WORKS, WORKS},
     {"breve_object_color", do_color, WORKS, WORKS},
     {"breve_object_shape", do_shape, WORKS, WORKS},
+    {"breve_program_create_library", do_library_program, WORKS, BUSY},
+    {"breve_object_set_physics and so on", do_bodies, WORKS, WORKS},
+    {"breve_joint_create and so on", do_joints, WORKS, WORKS},
+    {"breve_spring_create and so on", do_springs, WORKS, WORKS},
+    {"breve_world_accuracy and so on", do_accuracy, WORKS, WORKS},
     {"breve_value_text", do_text, WORKS, WORKS},
     {"breve_list_create and so on", do_list, WORKS, WORKS},
     {"breve_hash_create and so on", do_hash_value, WORKS, WORKS},

@@ -234,7 +234,7 @@ static void prepared_selectors_and_collision_handlers_go_on_working(void) {
   HEAD EXTRA                                                                                                 \
       "Control : Stage { + variables: hits (int). a (object).\n"                                             \
       "  + to init: a = new Left. new Right. self observe. self add-menu named \"M\" for-method \"menu\".\n" \
-      "  + to observe: self observe instance a for-notification \"hit\" with-method \"told\".\n"               \
+      "  + to observe: self observe instance a for-notification \"hit\" with-method \"told\".\n"             \
       "  + to told by o (object): hits += 1.\n"                                                              \
       "  + to menu: hits += 1000.\n"                                                                         \
       "}\n"                                                                                                  \
@@ -260,6 +260,35 @@ static void handlers_observers_and_menus_are_kept_though_class_numbers_change(vo
   CHECK_STATUS(BREVE_OK, breve_world_choose(s.world, items[count - 1].item));
   CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
   CHECK(int_of(&s, "hits") == 1001);
+  scene_close(&s);
+}
+
+#define TOUCHING(TOLD, MET)                                                                                 \
+  HEAD "Control : Stage { + variables: hits, met (int).\n"                                                  \
+       "  + to init: new Left. new Right. self observe instance self for-notification \"hit\" with-method " \
+       "\"told\".\n"                                                                                        \
+       "  + to told: hits += " TOLD                                                                         \
+       ".\n"                                                                                                \
+       "  + to meet: met += " MET                                                                           \
+       ".\n"                                                                                                \
+       "  + to iterate: self announce message \"hit\". super iterate. }\n"                                  \
+       "Mobile : Left { + to init: self handle-collisions with-type \"Right\" with-method \"hit\".\n"       \
+       "  + to hit other o (object): controller meet. }\n"                                                  \
+       "Mobile : Right { + to init: self move to (0.5, 0, 0). }\n"
+
+/* What was found for a handler that has run already is forgotten with the old program. */
+static void handlers_that_have_run_are_replaced(void) {
+  scene s;
+  if (!scene_open_text(&s, TOUCHING("1", "1"), NULL)) return;
+  CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+  const int hits = int_of(&s, "hits"), met = int_of(&s, "met");
+  CHECK(hits == 1 && met >= 1);
+  for (int i = 0; i < 3; ++i) {
+    CHECK_STATUS(BREVE_OK, reload(&s, TOUCHING("100", "100")));
+    CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+  }
+  CHECK(int_of(&s, "hits") == 301);
+  CHECK(int_of(&s, "met") == met + 300 * met);
   scene_close(&s);
 }
 
@@ -430,6 +459,7 @@ void reload_suite(void) {
   RUN(the_same_program_changes_no_bit);
   RUN(instances_keep_their_values_by_name);
   RUN(prepared_selectors_and_collision_handlers_go_on_working);
+  RUN(handlers_that_have_run_are_replaced);
   RUN(handlers_observers_and_menus_are_kept_though_class_numbers_change);
   RUN(what_cannot_be_is_refused_and_changes_nothing);
   RUN(nothing_is_replaced_while_it_runs);

@@ -6,6 +6,8 @@ const char* const scene_text =
     "@use Mobile.\n"
     "@use Stationary.\n"
     "@use Shape.\n"
+    "@use MultiBody.\n"
+    "@use Spring.\n"
     "Controller Stage.\n"
     "Control : Stage (aka Stages) {\n"
     "  + variables:\n"

@@ -45,21 +45,19 @@ std::string compile(Modules& modules) {
   breve_runtime_config config = breve_runtime_config_default();
   config.user = &modules;
   config.resolve_module = resolve;
-  breve_runtime* made = nullptr;
-  require(breve_runtime_create(&config, &made) == BREVE_OK, "no runtime");
-  const Runtime runtime(made);
+  const Runtime runtime = make_runtime(config);
   breve_program* compiled = nullptr;
   const std::string& text = modules.texts[0];
-  const breve_status status = breve_program_compile(made, "fuzz.tz", text.data(), text.size(), &compiled);
+  const breve_status status = breve_program_compile(runtime.get(), "fuzz.tz", text.data(), text.size(), &compiled);
   const Program program(compiled);
   require(status == BREVE_OK || status == BREVE_ERROR_COMPILE, breve_status_name(status),
-          status == BREVE_OK ? "" : breve_runtime_last_error(made)->text);
+          status == BREVE_OK ? "" : breve_runtime_last_error(runtime.get())->text);
 
   std::string said = breve_status_name(status);
   bool error = false;
-  for (std::size_t i = 0; i < breve_runtime_diagnostic_count(made); ++i) {
+  for (std::size_t i = 0; i < breve_runtime_diagnostic_count(runtime.get()); ++i) {
     breve_diagnostic d{};
-    require(breve_runtime_diagnostic(made, i, &d) == BREVE_OK, "a diagnostic that is counted is not there");
+    require(breve_runtime_diagnostic(runtime.get(), i, &d) == BREVE_OK, "a diagnostic that is counted is not there");
     check_diagnostic(d);
     error = error || d.severity == BREVE_SEVERITY_ERROR;
     said += d.text;

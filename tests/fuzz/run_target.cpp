@@ -148,22 +148,20 @@ void fuzz_run(Bytes bytes) {
   breve_runtime_config config = breve_runtime_config_default();
   config.user = &run;
   config.print = print;
-  breve_runtime* made = nullptr;
-  require(breve_runtime_create(&config, &made) == BREVE_OK, "no runtime");
-  const Runtime runtime(made);
+  const Runtime runtime = make_runtime(config);
   breve_program* compiled = nullptr;
-  if (breve_program_compile(made, "generated.tz", text.data(), text.size(), &compiled) != BREVE_OK)
-    finding(breve_runtime_last_error(made)->text, text);
+  if (breve_program_compile(runtime.get(), "generated.tz", text.data(), text.size(), &compiled) != BREVE_OK)
+    finding(breve_runtime_last_error(runtime.get())->text, text);
   const Program program(compiled);
 
   const auto create = [&](std::string& seen) {
     run.printed.clear();
     run.prints = 0;
     breve_world* world = nullptr;
-    const breve_status status = breve_world_create(made, compiled, &plan.config, &world);
-    if (!documented(status)) finding(breve_runtime_last_error(made)->text, text);
+    const breve_status status = breve_world_create(runtime.get(), compiled, &plan.config, &world);
+    if (!documented(status)) finding(breve_runtime_last_error(runtime.get())->text, text);
     seen = breve_status_name(status) + std::string("\n") + run.printed;
-    if (status != BREVE_OK) seen += breve_runtime_last_error(made)->message;
+    if (status != BREVE_OK) seen += breve_runtime_last_error(runtime.get())->message;
     return World(world);
   };
   std::string start_one, start_other;

@@ -30,4 +30,10 @@ inline void require(bool condition, std::string_view what, std::string_view abou
   if (!condition) finding(what, about);
 }
 
+inline Runtime make_runtime(const breve_runtime_config& config) {
+  breve_runtime* made = nullptr;
+  require(breve_runtime_create(&config, &made) == BREVE_OK, "no runtime");
+  return Runtime(made);
+}
+
 }  // namespace breve::fuzz

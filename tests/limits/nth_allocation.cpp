@@ -1,10 +1,15 @@
-// Fails the n-th allocation of a run that uses everything, for n = 1, 2, 3 ... until a run gets through. Each failure
-// must be BREVE_ERROR_MEMORY from the call in progress; the world must be usable after it, nothing may leak, and the
-// runtime must do the whole run afterwards.
+// Fails the n-th allocation of what a host does, for n = 1, 2, 3 ... until nothing fails any more. Each failure must be
+// BREVE_ERROR_MEMORY from the call in progress; the world must be usable after it, nothing may leak, and the runtime
+// must work as before.
 //
-// Usage: nth_allocation ALL STRIDE    every n up to ALL, then every STRIDE-th. ALL 0: all there are.
+// A run is tried in parts, so that what comes before a part is not done anew for each of its allocations: the program
+// of `world` and `image` is compiled once.
+//
+// Usage: nth_allocation PART [STRIDE]    every STRIDE-th allocation of the part; without it: every one.
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <initializer_list>
 
 #include "counted_new.hpp"
 #include "everything.hpp"
@@ -12,6 +17,22 @@
 using namespace limits;
 
 namespace {
+
+struct Part {
+  const char* name;
+  bool (*before)(Run& run);  // nothing fails; null: nothing
+  bool (*tried)(Run& run);
+};
+
+bool from_nothing(Run& run) { return make_runtime(run) && run_everything(run); }
+bool compile(Run& run) { return make_runtime(run) && load_grammar(run); }
+
+constexpr Part kParts[] = {
+    {"compile", nullptr, compile},
+    {"world", make_runtime, use_world},
+    {"image", [](Run& run) { return make_runtime(run) && make_two_worlds(run); }, use_images},
+    {"everything", nullptr, from_nothing},
+};
 
 int complaints = 0;
 
@@ -36,16 +57,25 @@ void check_world(std::uint64_t n, Run run) {
   if (run.status != BREVE_OK) complain(n, run, "the world is not usable");
 }
 
-/// One run with the n-th allocation failing. False once there is no n-th.
-bool fail_at(std::uint64_t n, bool whole_run_after) {
+/// Does the runtime work? Now and then everything is tried, else a little: compiled anew if compiling has failed.
+bool works(Run& run, const Run& little, std::uint64_t n, bool compiled) {
+  if (n % 97 == 0) return run_everything(run);
+  run.program = little.program;
+  return (compiled || load_a_little(run)) && run_a_little(run);
+}
+
+/// The part of a new run with the n-th allocation failing. False once there is no n-th.
+bool fail_at(const Part& part, const Run& shared, const Run& little, std::uint64_t n) {
   const std::size_t blocks = live_blocks(), given = given_blocks();
   Run run;
+  run.program = shared.program;
+  if (part.before != nullptr && !part.before(run)) complain(0, run, "what comes before the part fails");
   fail_allocation(n);
-  const bool through = run_everything(run);
+  const bool through = part.tried(run);
   const bool hit = failed(), nothrow = failed_nothrow();
   fail_allocation(0);
   if (through && hit && !nothrow) complain(n, run, "the failure was swallowed");
-  if (!through && !hit) complain(n, run, "the run fails by itself");
+  if (!through && !hit) complain(n, run, "the part fails by itself");
   if (!through && hit && run.status != BREVE_ERROR_MEMORY) complain(n, run, "another status");
   if (run.world != nullptr) {
     Run after = run;
@@ -56,37 +86,53 @@ bool fail_at(std::uint64_t n, bool whole_run_after) {
   if (run.runtime != nullptr) {
     Run again;
     again.runtime = run.runtime;
-    if (!(whole_run_after ? run_everything(again) : run_a_little(again))) complain(n, again, "the runtime is spoilt");
+    if (!works(again, little, n, part.before != nullptr)) complain(n, again, "the runtime is spoilt");
     end_run(again);
     breve_runtime_destroy(run.runtime);
     run.runtime = nullptr;
   }
+  remove_files();
   if (live_blocks() != blocks || given_blocks() != given) complain(n, run, "a leak");
   return hit;
+}
+
+/// Every stride-th allocation of the part. How many there were.
+std::uint64_t fail_all(const Part& part, const Run& shared, const Run& little, std::uint64_t stride) {
+  std::uint64_t tried = 0;
+  for (std::uint64_t n = stride; fail_at(part, shared, little, n); n += stride) ++tried;
+  return tried;
 }
 
 }  // namespace
 
 int main(int count, char** arguments) {
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
-  const std::uint64_t all = count > 1 ? std::strtoull(arguments[1], nullptr, 10) : 0;
+  const Part* part = nullptr;
+  for (const Part& p : kParts)
+    if (count > 1 && std::strcmp(p.name, arguments[1]) == 0) part = &p;
   const std::uint64_t stride = count > 2 ? std::strtoull(arguments[2], nullptr, 10) : 1;
-  for (int warm_up = 0; warm_up < 2; ++warm_up) {  // what the C++ library makes once is made
+  if (part == nullptr || stride == 0) {
+    std::printf("usage: nth_allocation compile|world|image|everything [STRIDE]\n");
+    return 2;
+  }
+  // What the C++ library makes once is made.
+  for (int warm_up = 0; warm_up < 2; ++warm_up) {
     Run run;
-    fail_allocation(0);
-    if (!run_everything(run)) {
+    if (!from_nothing(run)) {
       complain(0, run, "the run fails by itself");
       return 1;
     }
-    std::printf("%llu allocations in a whole run\n", static_cast<unsigned long long>(allocations()));
     end_run(run);
     breve_runtime_destroy(run.runtime);
   }
-  std::uint64_t n = 1, tried = 0;
-  while (fail_at(n, n % 97 == 0)) {
-    ++tried;
-    n += all == 0 || n < all ? 1 : stride;
+  Run shared, little;
+  if (!make_runtime(shared) || !load_everything(shared) || !make_runtime(little) || !load_a_little(little)) return 1;
+  const std::uint64_t tried = fail_all(*part, shared, little, stride);
+  std::printf("%s: failed %llu allocations, %d complaints\n", part->name, static_cast<unsigned long long>(tried),
+              complaints);
+  for (Run* run : {&shared, &little}) {
+    end_run(*run);
+    breve_runtime_destroy(run->runtime);
   }
-  std::printf("failed %llu of them: %d complaints\n", static_cast<unsigned long long>(tried), complaints);
   return complaints == 0 ? 0 : 1;
 }

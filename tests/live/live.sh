@@ -4,21 +4,10 @@ set -u
 breve=$(realpath "$1")
 here=$(cd "$(dirname "$0")" && pwd)
 case=$2
-work=$(mktemp -d)
+. "$here/../case.sh"
 watched=
 trap '[ -z "$watched" ] || kill "$watched" 2>/dev/null; rm -rf "$work"' EXIT
-cd "$work" || exit 1
-export HOME="$work/home" BREVE_CLASS_PATH=
-mkdir "$HOME"
 
-fail() {
-  echo "not so: $*"
-  for file in out err; do [ -f $file ] && { echo "--- $file"; cat $file; }; done
-  exit 1
-}
-same() { [ "$1" = "$2" ] || fail "'$1' is '$2'"; }
-has() { grep -q -e "$2" "$1" || fail "$1 has '$2'"; }
-lacks() { ! grep -q -e "$2" "$1" || fail "$1 lacks '$2'"; }
 # repl ARGS...: type standard input.
 repl() { "$breve" repl "$@" >out 2>err || fail "status $? of: breve repl $*"; }
 # soon FILE TEXT: FILE has TEXT before long.

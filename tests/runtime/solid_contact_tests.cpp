@@ -18,7 +18,8 @@ void expect_near(const Vector3& a, const Vector3& b, double tolerance) {
 
 TEST(Closest, SpheresApartInClosedForm) {
   const auto a = Shape::sphere(0.5), b = Shape::sphere(1);
-  const Contact c = closest(*a, {Vector3(3, 4, 0), {}}, *b, {Vector3::Zero(), {}});
+  const Contact c =
+      closest(*a, {Vector3(3, 4, 0), Quaternion::Identity()}, *b, {Vector3::Zero(), Quaternion::Identity()});
   EXPECT_NEAR(c.distance, 3.5, kExact);
   expect_near(c.normal, Vector3(0.6, 0.8, 0), kExact);
   expect_near(c.point, 2.75 * Vector3(0.6, 0.8, 0), kExact);
@@ -141,7 +142,8 @@ TEST(Closest, DepthIsTheShortestWayOutForAnyPolyhedra) {
 
 TEST(Closest, ABoxInTheFloorTouchesUnderTheBox) {
   const auto box = Shape::box(Vector3(1, 1, 1)), floor = Shape::box(Vector3(1000, 2, 1000));
-  const Contact c = closest(*box, {Vector3(100, 0.4, 50), {}}, *floor, {Vector3(0, -1, 0), {}});
+  const Contact c = closest(*box, {Vector3(100, 0.4, 50), Quaternion::Identity()}, *floor,
+                            {Vector3(0, -1, 0), Quaternion::Identity()});
   EXPECT_NEAR(c.distance, -0.1, 1e-12);
   expect_near(c.normal, Vector3::UnitY(), 1e-12);
   EXPECT_LE(std::abs(c.point.x() - 100), 0.5 + 1e-9);
@@ -151,9 +153,11 @@ TEST(Closest, ABoxInTheFloorTouchesUnderTheBox) {
 
 TEST(Closest, SphereOnAConeTipAndSide) {
   const auto cone = Shape::cone(4, 2, 1), ball = Shape::sphere(0.25);
-  EXPECT_NEAR(closest(*ball, {Vector3(0, 3, 0), {}}, *cone, {}).distance, 1.75, kExact);  // apex at +height/2
-  EXPECT_NEAR(closest(*ball, {Vector3(0, -3, 0), {}}, *cone, {}).distance, 1.75, kExact);
-  EXPECT_NEAR(closest(*ball, {Vector3(3, -1, 0), {}}, *cone, {}).distance, 1.75, kExact);  // first base vertex on +x
+  EXPECT_NEAR(closest(*ball, {Vector3(0, 3, 0), Quaternion::Identity()}, *cone, {}).distance, 1.75,
+              kExact);  // apex at +height/2
+  EXPECT_NEAR(closest(*ball, {Vector3(0, -3, 0), Quaternion::Identity()}, *cone, {}).distance, 1.75, kExact);
+  EXPECT_NEAR(closest(*ball, {Vector3(3, -1, 0), Quaternion::Identity()}, *cone, {}).distance, 1.75,
+              kExact);  // first base vertex on +x
 }
 
 TEST(PoseAt, TurnsByTheExponentialMap) {

@@ -318,6 +318,41 @@ TEST(Notifications, UnobserveRemovesEveryMatchingRegistration) {
   EXPECT_EQ(s.script.calls, (Calls{"notified 1 m pong"}));
 }
 
+// The oracle is a plain list, gone through from end to end.
+TEST(Notifications, KeepTheirOrderThroughManyRegistrationsAndRemovals) {
+  Scene s;
+  std::vector<ObjectId> observers;
+  for (int i = 0; i < 60; ++i) observers.push_back(s.world.create(1, 0, false, false));
+  std::vector<std::pair<std::size_t, std::string>> expected;
+  std::uint32_t random = 1;
+  const auto draw = [&](std::uint32_t below) {
+    random = random * 1664525 + 1013904223;
+    return (random >> 8) % below;
+  };
+  for (int turn = 0; turn < 3000; ++turn) {
+    const std::size_t who = draw(60);
+    const std::string message = draw(2) ? "ping" : "pong";
+    if (turn % 1000 == 999) {  // freed, and another one in its slot
+      s.world.release(observers[who]);
+      std::erase_if(expected, [&](const auto& e) { return e.first == who; });
+      observers[who] = s.world.create(1, 0, false, false);
+    } else if (draw(5) < (turn / 500 % 2 ? 2U : 3U)) {
+      s.world.observe(observers[who], s.controller, message, "m");
+      expected.emplace_back(who, message);
+    } else {
+      const auto gone = std::erase_if(expected, [&](const auto& e) { return e.first == who && e.second == message; });
+      ASSERT_EQ(s.world.unobserve(observers[who], s.controller, message), gone);
+    }
+    if (turn % 100 != 0) continue;
+    Calls calls;
+    for (const auto& [observer, text] : expected)
+      if (text == "ping") calls.push_back("notified " + std::to_string(observers[observer].index) + " m ping");
+    s.script.calls.clear();
+    s.world.announce(s.controller, "ping");
+    ASSERT_EQ(s.script.calls, calls) << turn;
+  }
+}
+
 TEST(Notifications, SurviveObserversBeingFreedAndAddedDuringDelivery) {
   Scene s;
   std::vector<ObjectId> observers;

@@ -354,6 +354,8 @@ typedef struct breve_world_config {
   uint32_t reserved_2;          /* must be 0 */
   breve_trace_fn trace;         /* of `profile`; NULL: no events. Default NULL */
   void* trace_user;             /* Default NULL */
+  const char* accuracy;         /* rung of the ladder of accuracy, as breve_rung_named knows them, set after the
+                                   controller's init; copied; NULL: the script's own. Default NULL */
 } breve_world_config;
 
 /* Budgets. Each turn of a loop, each call of a method or function and each new object counts 1, whoever makes the call:
@@ -492,7 +494,13 @@ BREVE_API breve_status breve_object_color(const breve_world* world, breve_object
 /* BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: not finite. */
 BREVE_API breve_status breve_object_set_color(breve_world* world, breve_object object, const double rgba[4]);
 
-typedef enum breve_shape_kind { BREVE_SHAPE_SPHERE = 0, BREVE_SHAPE_BOX = 1, BREVE_SHAPE_CONVEX = 2 } breve_shape_kind;
+typedef enum breve_shape_kind {
+  BREVE_SHAPE_SPHERE = 0,
+  BREVE_SHAPE_BOX = 1,
+  BREVE_SHAPE_CONVEX = 2,
+  BREVE_SHAPE_MESH = 3,        /* triangles; they need not be convex, nor closed */
+  BREVE_SHAPE_HEIGHT_FIELD = 4 /* ground: a grid of triangles, seen from above */
+} breve_shape_kind;
 
 /* The shape that an object is drawn with, in its own frame about its centre. */
 typedef struct breve_shape {
@@ -519,6 +527,382 @@ BREVE_API breve_status breve_object_shape_vertices(const breve_world* world, bre
    At most that many are written. BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_shape_faces(const breve_world* world, breve_object object, uint32_t* sizes,
                                                 size_t face_capacity, uint32_t* indices, size_t index_capacity);
+
+/* ---- bodies with physics ------------------------------------------------------------------------------------------ */
+
+/* Rigid bodies, joints between them, springs, contacts. All of them are objects of the class library, whether a script
+   or a host made them, so that both see the same ones: a script may drive a joint of the host, a host may read a joint
+   of a script. Classes that hosts make objects of are to be part of the program: `@use MultiBody.` has links and joints,
+   `@use Spring.` springs; breve_program_create_library has all. Functions of this section that place, join or change
+   bodies are not for force methods (BREVE_ERROR_SCRIPT there). See docs/physics.md for models, frames and sources. */
+
+/* Make a program that has no text of its own: the whole class library.
+   @param controller  class of the controller: "PhysicalControl" or "Control"; NULL: "PhysicalControl"
+   @param program     to be given back to breve_program_destroy
+   BREVE_OK; BREVE_ERROR_COMPILE: there is no such class; BREVE_ERROR_BUSY as breve_program_compile. */
+BREVE_API breve_status breve_program_create_library(breve_runtime* runtime, const char* controller,
+                                                    breve_program** program);
+
+/* What a shape is to be. Only the fields of its kind are read. */
+typedef struct breve_geometry {
+  size_t struct_size;     /* as breve_geometry_default gives it */
+  breve_shape_kind kind;  /* Default BREVE_SHAPE_SPHERE */
+  uint32_t reserved;      /* must be 0 */
+  double radius;          /* of a sphere, > 0. Default 1 */
+  double size[3];         /* edges of a box, each > 0. Default 1, 1, 1 */
+  const double* vertices; /* of a convex solid or a mesh: x, y, z of each corner. Default NULL */
+  size_t vertex_count;    /* Default 0 */
+  const uint32_t* face_sizes; /* corners of each face, 3 or more. Of a convex solid, which must be around the origin, in
+                                 order around the face, either way; of a mesh counter-clockwise from outside: if its
+                                 faces close a solid, that is the shape, else a surface of two sides. Default NULL */
+  size_t face_count;          /* Default 0 */
+  const uint32_t* indices;    /* the corners of one face after the other, numbers of vertices. Default NULL */
+  size_t index_count;         /* sum of face_sizes. Default 0 */
+  const double* heights;      /* of a height field: `columns` values along x for each of `rows` along z; what is below is
+                                 inside. The origin is the middle of the grid at height 0. Default NULL */
+  uint32_t columns, rows;     /* 2 to 4097. Default 0 */
+  double tile;                /* edge of a cell, > 0. Default 1 */
+  double density;             /* > 0; mass is density times volume. Default 1 */
+} breve_geometry;
+
+/* The defaults named above. */
+BREVE_API breve_geometry breve_geometry_default(void);
+
+/* Make a Shape object. Many bodies may use one. Runs script (`init`).
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a size or density that is not finite and > 0, faces that are no convex solid around
+   the origin or no mesh, an index that is not below vertex_count, a height that is not finite; nothing is made then. */
+BREVE_API breve_status breve_shape_create(breve_world* world, const breve_geometry* geometry, breve_object* shape);
+
+/* Give a body its shape, for display and collisions, and the mass that goes with it. Runs script (`set-shape`).
+   BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_SCRIPT: the object is no shape. */
+BREVE_API breve_status breve_object_set_shape(breve_world* world, breve_object object, breve_object shape);
+
+/* Is a body moved by gravity, forces and contacts? BREVE_OK; BREVE_ERROR_NO_BODY. */
+BREVE_API breve_status breve_object_physics(const breve_world* world, breve_object object, bool* enabled);
+
+/* BREVE_OK; BREVE_ERROR_NO_BODY. */
+BREVE_API breve_status breve_object_set_physics(breve_world* world, breve_object object, bool enabled);
+
+/* Mass of a body: density times volume of its shape. BREVE_OK; BREVE_ERROR_NO_BODY. */
+BREVE_API breve_status breve_object_mass(const breve_world* world, breve_object object, double* mass);
+
+/* A force and a torque at the centre of mass, world frame, until they are replaced. NULL leaves one as it is.
+   BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: not finite; nothing is changed. */
+BREVE_API breve_status breve_object_set_force(breve_world* world, breve_object object, const double force[3],
+                                              const double torque[3]);
+
+/* Coefficients of a body's surface, as set-friction and set-restitution set them. Of two bodies so set: the geometric
+   mean of each friction, the maximum of the rest. */
+typedef struct breve_material {
+  double static_friction, dynamic_friction; /* >= 0 */
+  double restitution;                       /* along the normal, 0 to 1 */
+  double tangential_restitution;            /* -1 to 1 */
+  double threshold;                         /* m/s; nothing bounces below this speed of approach. >= 0 */
+} breve_material;
+
+/* BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: out of these ranges; nothing is changed. */
+BREVE_API breve_status breve_object_set_material(breve_world* world, breve_object object,
+                                                 const breve_material* material);
+
+/* Does a body that rests sleep until something touches or changes it? BREVE_OK; BREVE_ERROR_NO_BODY. */
+BREVE_API breve_status breve_object_asleep(const breve_world* world, breve_object object, bool* asleep);
+
+typedef enum breve_joint_kind {
+  BREVE_JOINT_REVOLUTE = 0,  /* turns about the normal */
+  BREVE_JOINT_PRISMATIC = 1, /* slides along the normal, from -2 to 2 at first */
+  BREVE_JOINT_FIXED = 2,
+  BREVE_JOINT_UNIVERSAL = 3, /* turns about the normal (fixed in the parent) and parent_point x normal (in the child) */
+  BREVE_JOINT_BALL = 4       /* turns every way; the middle angle stays within pi/2 - 0.35 */
+} breve_joint_kind;
+
+/* Between which bodies, and where. */
+typedef struct breve_joint_description {
+  size_t struct_size; /* as breve_joint_description_default gives it */
+  breve_joint_kind kind;
+  bool keep_rotation;     /* the child is moved, but not turned: the joint may start away from zero. Default false */
+  bool reserved[3];       /* must be false */
+  breve_object parent;    /* null: the world. Default null */
+  breve_object child;     /* a body that can move */
+  double parent_point[3]; /* in the parent's own frame, or the world's. Default 0 */
+  double child_point[3];  /* in the child's own frame. Default 0 */
+  double rotation[4];     /* quaternion (w, x, y, z) of any length but 0: at zero the child stands at the parent's
+                             rotation times this. Default 1, 0, 0, 0 */
+  double normal[3];       /* in the parent's own frame, of any length but 0; not read for BREVE_JOINT_FIXED.
+                             Default 1, 0, 0 */
+} breve_joint_description;
+
+/* The defaults named above. */
+BREVE_API breve_joint_description breve_joint_description_default(breve_joint_kind kind);
+
+/* Make a joint: an object of class RevoluteJoint and so on. Both bodies get physics; the child, with all that hangs on
+   it, is placed so that the two points coincide. A joint between bodies that are connected already closes a ring, and
+   moves nothing. A joint never opens. Runs script (`init`).
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: the program does not have the class; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: parent
+   and child are one, the child is a Stationary, or something is not finite or has length 0; nothing is made then. */
+BREVE_API breve_status breve_joint_create(breve_world* world, const breve_joint_description* description,
+                                          breve_object* joint);
+
+/* Let go, and keep the object. Nothing if it is not linked.
+   BREVE_OK; BREVE_ERROR_TYPE: the object is no joint. */
+BREVE_API breve_status breve_joint_break(breve_world* world, breve_object joint);
+
+/* What is known of a joint. Positions and velocities have one number for each axis (1, 1, 0, 2, 3 by kind), the rest is
+   0; they are positive when the parent turns or moves along the axis relative to the child. */
+typedef struct breve_joint_info {
+  breve_joint_kind kind;
+  bool linked; /* if not, all of the following is zero */
+  bool ring;   /* closes a ring: a constraint */
+  breve_object parent, child;
+  double position[3];  /* rad or m; a revolute joint counts whole turns */
+  double velocity[3];  /* rad/s or m/s */
+  double force[3];     /* on the child, in the last sub-step, world frame, N */
+  double torque[3];    /* on the child about the joint's point, world frame, N*m */
+  double hard_limit;   /* most that a motor may use: 500 times the child's mass */
+} breve_joint_info;
+
+/* BREVE_OK; BREVE_ERROR_TYPE: the object is no joint. */
+BREVE_API breve_status breve_joint_read(breve_world* world, breve_object joint, breve_joint_info* info);
+
+/* What drives and bounds a joint. Forces are N*m or N, positions rad or m, speeds rad/s or m/s. */
+typedef struct breve_joint_drive {
+  size_t struct_size;      /* sizeof(breve_joint_drive); breve_joint_get_drive fills it in */
+  double motor_speed[3];   /* what the motor aims at, for each axis. Default 0 */
+  double strength_limit;   /* most that it uses for that, cut to 0 .. hard_limit; 0: no motor. Default 0 */
+  double double_strength;  /* 1/s, added to the motor's speed outside of double_min .. double_max. Default 0 */
+  double double_min, double_max; /* Default 0 */
+  double damping;                /* force per speed, >= 0. Default 0 */
+  double stiffness;              /* of a spring in the joint, force per position, >= 0. Default 0 */
+  double rest[3];                /* where that spring is slack. Default 0 */
+  double force[3];               /* along the axes, until replaced. Default 0 */
+  double low[3], high[3];        /* stops; -INFINITY and INFINITY: none. Default none, but see breve_joint_kind */
+  double limit_restitution;      /* at the stops, 0 to 1. Default 0 */
+} breve_joint_drive;
+
+/* BREVE_OK; BREVE_ERROR_TYPE: the object is no joint; BREVE_ERROR_ARGUMENT: it is not linked. */
+BREVE_API breve_status breve_joint_get_drive(const breve_world* world, breve_object joint, breve_joint_drive* drive);
+
+/* As breve_joint_get_drive; BREVE_ERROR_ARGUMENT also for numbers out of these ranges; nothing is changed then. */
+BREVE_API breve_status breve_joint_set_drive(breve_world* world, breve_object joint, const breve_joint_drive* drive);
+
+/* Put a joint somewhere, moving so; what hangs on the child moves along. NULL leaves one as it is.
+   BREVE_OK; BREVE_ERROR_TYPE; BREVE_ERROR_ARGUMENT: not finite, not linked, or the joint closes a ring. */
+BREVE_API breve_status breve_joint_place(breve_world* world, breve_object joint, const double position[3],
+                                         const double velocity[3]);
+
+/* The bodies that joints connect with this one, itself among them, in order of creation.
+   @param links  room for `capacity` ids; NULL only if capacity is 0
+   @param count  how many there are, also where that is more than capacity: at most capacity are written
+   BREVE_OK; BREVE_ERROR_NO_BODY. */
+BREVE_API breve_status breve_object_links(const breve_world* world, breve_object object, breve_object* links,
+                                          size_t capacity, size_t* count);
+
+/* The joints of these bodies, in order of creation. As breve_object_links. */
+BREVE_API breve_status breve_object_joints(const breve_world* world, breve_object object, breve_object* joints,
+                                           size_t capacity, size_t* count);
+
+/* Move all that joints connect with a body, rigidly, so that the body stands there. breve_object_set_pose does the same
+   in the course of the next step. As breve_object_set_pose. */
+BREVE_API breve_status breve_object_move_assembly(breve_world* world, breve_object object, const breve_pose* pose);
+
+/* Do bodies that joints connect push each other, where no joint connects them directly? Off at first.
+   BREVE_OK; BREVE_ERROR_NO_BODY. */
+BREVE_API breve_status breve_object_set_self_collisions(breve_world* world, breve_object object, bool on);
+
+/* An elastic tie between two bodies: strength (distance - length) + damping (rate of distance), positive pulling. */
+typedef enum breve_spring_mode {
+  BREVE_SPRING_BOTH = 0,
+  BREVE_SPRING_EXPAND_ONLY = 1,  /* pushes, and is slack beyond its length */
+  BREVE_SPRING_CONTRACT_ONLY = 2 /* pulls, and is slack below it */
+} breve_spring_mode;
+
+typedef struct breve_spring {
+  size_t struct_size; /* as breve_spring_default gives it */
+  breve_spring_mode mode; /* Default BREVE_SPRING_BOTH */
+  uint32_t reserved;      /* must be 0 */
+  breve_object from, to;  /* two bodies */
+  double from_point[3], to_point[3]; /* in their own frames. Default 0 */
+  double length;                     /* m, >= 0. Default 0 */
+  double strength;                   /* N/m, >= 0. Default 100 */
+  double damping;                    /* N*s/m, >= 0. Default 0.01 */
+  double maximum_force;              /* N, either way; 0: no bound. Default 0 */
+} breve_spring;
+
+/* The defaults named above. */
+BREVE_API breve_spring breve_spring_default(void);
+
+/* Make a spring: an object of class Spring. Runs script (`init`).
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: the program does not have the class; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: both
+   ends are one body, or a number is out of these ranges; nothing is made then. */
+BREVE_API breve_status breve_spring_create(breve_world* world, const breve_spring* description, breve_object* spring);
+
+/* Change the numbers of a spring; its bodies and points stay. BREVE_OK; BREVE_ERROR_TYPE: the object is no spring;
+   BREVE_ERROR_ARGUMENT: out of these ranges; nothing is changed then. */
+BREVE_API breve_status breve_spring_set(breve_world* world, breve_object spring, const breve_spring* description);
+
+/* The distance of a spring's points now and its force in the last sub-step, N; both 0 if it ties nothing.
+   @param length, force  may be NULL
+   BREVE_OK; BREVE_ERROR_TYPE: the object is no spring. */
+BREVE_API breve_status breve_spring_read(const breve_world* world, breve_object spring, double* length, double* force);
+
+/* Rungs of the ladder of accuracy: names for settings. */
+typedef enum breve_rung {
+  BREVE_RUNG_FAST = 0,
+  BREVE_RUNG_BALANCED = 1,
+  BREVE_RUNG_PRECISE = 2,
+  BREVE_RUNG_REFERENCE = 3,
+  BREVE_RUNG_CONSERVING = 4
+} breve_rung;
+
+typedef enum breve_integrator {
+  BREVE_EXPLICIT_EULER = 0,
+  BREVE_SEMI_IMPLICIT_EULER = 1,
+  BREVE_IMPLICIT_EULER = 2,
+  BREVE_VELOCITY_VERLET = 3,
+  BREVE_IMPLICIT_MIDPOINT = 4,
+  BREVE_RUNGE_KUTTA_4 = 5,
+  BREVE_FEHLBERG_4 = 6,
+  BREVE_FEHLBERG_5 = 7,
+  BREVE_FEHLBERG_ADAPTIVE = 8
+} breve_integrator;
+
+/* How bodies with physics are computed. */
+typedef struct breve_accuracy {
+  size_t struct_size; /* as breve_accuracy_of_rung gives it */
+  breve_rung rung;    /* where the settings come from */
+  breve_integrator integrator; /* of smooth motion */
+  bool implicit_joints;        /* springs, dampers and motors of joints implicit (Euler's schemes) */
+  bool implicit_spin;          /* a free body's spin by the implicit midpoint rule */
+  bool direct;                 /* small islands of contacts are solved directly */
+  bool locate_impacts;         /* impacts at their time of impact; else at the end of the sub-step */
+  bool contact_springs;        /* contacts at low speed are springs inside the integrator's stages */
+  bool reserved[3];            /* must be false */
+  double step;                 /* s, the longest sub-step; 0: the integration step */
+  double contact_step;         /* s, the longest sub-step of bodies in contact; 0: `step` */
+  double tolerance;            /* of BREVE_FEHLBERG_ADAPTIVE */
+  int32_t iterations;          /* most of the contact solver, where it is iterative */
+  int32_t impacts;             /* most that are located in one island and sub-step */
+  double contact_stiffness;    /* N/m of contact springs */
+  double contact_damping;      /* their ratio of damping */
+} breve_accuracy;
+
+/* The settings of a rung. BREVE_OK; BREVE_ERROR_ARGUMENT: there is no such rung. */
+BREVE_API breve_status breve_accuracy_of_rung(breve_rung rung, breve_accuracy* accuracy);
+
+/* The rung of that name: "fast", "balanced", "precise", "reference" or "conserving".
+   BREVE_OK; BREVE_ERROR_NOT_FOUND. */
+BREVE_API breve_status breve_rung_named(const char* name, breve_rung* rung);
+
+BREVE_API breve_status breve_world_accuracy(const breve_world* world, breve_accuracy* accuracy);
+
+/* BREVE_OK; BREVE_ERROR_ARGUMENT: a setting is not finite, negative, or 0 where there must be something. */
+BREVE_API breve_status breve_world_set_accuracy(breve_world* world, const breve_accuracy* accuracy);
+
+/* What a world's settings mean, in words; owned by the world until the next call of this function on it. */
+BREVE_API breve_status breve_world_describe_accuracy(breve_world* world, const char** text);
+
+/* Settings of a body and all that joints connect with it; NULL: the world's.
+   BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT as breve_world_set_accuracy. */
+BREVE_API breve_status breve_object_set_accuracy(breve_world* world, breve_object object,
+                                                 const breve_accuracy* accuracy);
+
+/* Acceleration of all bodies with physics, (0, -9.81, 0) unless a script set it. */
+BREVE_API breve_status breve_world_gravity(const breve_world* world, double gravity[3]);
+
+/* BREVE_OK; BREVE_ERROR_ARGUMENT: not finite. */
+BREVE_API breve_status breve_world_set_gravity(breve_world* world, const double gravity[3]);
+
+/* Let bodies that rest sleep. Off at first. */
+BREVE_API breve_status breve_world_set_sleeping(breve_world* world, bool on);
+
+/* Threads that compute the physics of a world, the caller's among them, 1 to 256; 1 at first. What comes out does not
+   depend on it. BREVE_OK; BREVE_ERROR_ARGUMENT: out of this range. */
+BREVE_API breve_status breve_world_set_workers(breve_world* world, uint32_t workers);
+
+/* What happens where physics goes wrong. */
+typedef enum breve_guard {
+  BREVE_GUARD_OFF = 0,
+  BREVE_GUARD_REPORT = 1,
+  BREVE_GUARD_REFINE = 2, /* compute that part of the world more finely */
+  BREVE_GUARD_REST = 3    /* and stop it, if that does not help. The default */
+} breve_guard;
+
+/* BREVE_OK; BREVE_ERROR_ARGUMENT: there is no such mode. */
+BREVE_API breve_status breve_world_set_guard(breve_world* world, breve_guard mode);
+
+/* The mode of the guard; BREVE_GUARD_OFF for NULL. */
+BREVE_API breve_guard breve_world_guard(const breve_world* world);
+
+/* What the guard did. */
+typedef struct breve_intervention {
+  uint64_t iteration;
+  double time;        /* s */
+  breve_object body;  /* the one that showed it; perhaps gone */
+  const char* reason; /* in words: "a number is not finite"; lives as long as the library */
+  const char* action; /* "reported", "refined" or "put to rest"; lives as long as the library */
+  double value;       /* what was measured: J, m, or a ratio */
+} breve_intervention;
+
+/* The interventions of the last iteration, in order.
+   @param interventions  room for `capacity`; NULL only if capacity is 0
+   @param count          how many there are, also where that is more than capacity: at most capacity are written */
+BREVE_API breve_status breve_world_interventions(const breve_world* world, breve_intervention* interventions,
+                                                 size_t capacity, size_t* count);
+
+/* An impulse at a contact. */
+typedef struct breve_impact {
+  breve_object a, b; /* b may be null: something without an object. Both are perhaps gone */
+  double time;       /* s */
+  double point[3];   /* world frame */
+  double normal[3];  /* unit, from b toward a */
+  double impulse[3]; /* on a, N*s, world frame */
+} breve_impact;
+
+/* The impacts of the last iteration, in the order in which they happened. As breve_world_interventions. */
+BREVE_API breve_status breve_world_impacts(const breve_world* world, breve_impact* impacts, size_t capacity,
+                                           size_t* count);
+
+/* Where energy is and where it went, J. The first three are of now, the rest since the start:
+   kinetic + potential + springs - (their sum at the start) = works - losses + residual. */
+typedef struct breve_energy {
+  size_t struct_size; /* to be set to sizeof(breve_energy); a smaller one of an older header is filled in part */
+  double kinetic;
+  double potential;     /* in the field of gravity, 0 at the world's origin */
+  double springs;       /* of joints, of Springs and of contacts */
+  double motor_work;    /* of the motors of joints */
+  double script_work;   /* of forces that scripts and hosts set, and of moving, striking and changing bodies */
+  double contact_loss;  /* in contacts, along the normal */
+  double friction_loss; /* in contacts, along the surface */
+  double drag_loss;     /* of dampers */
+  double limit_loss;    /* at the stops of joints */
+  double residual;      /* what no account explains: the error of the method */
+} breve_energy;
+
+/* Of all bodies with physics. BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
+BREVE_API breve_status breve_world_energy(const breve_world* world, breve_energy* energy);
+
+/* Of a body and all that joints connect with it. As breve_world_energy; BREVE_ERROR_NO_BODY. */
+BREVE_API breve_status breve_object_energy(const breve_world* world, breve_object object, breve_energy* energy);
+
+/* What the physics of the last iteration took: counts only, so that runs can be compared. */
+typedef struct breve_physics_counters {
+  size_t struct_size;   /* to be set to sizeof(breve_physics_counters); a smaller one is filled in part */
+  uint64_t sub_steps;   /* of islands; rejected ones are not counted */
+  uint64_t evaluations; /* of forces, by trees of bodies */
+  uint64_t rejected;    /* steps of step control that were tried again */
+  uint64_t islands;
+  uint64_t pairs;    /* looked at by the narrow phase */
+  uint64_t contacts; /* points */
+  uint64_t warm;     /* of them, with an impulse from the last sub-step */
+  uint64_t impacts;  /* at their time of impact */
+  uint64_t searches; /* for a time of impact */
+  uint64_t solver_iterations;
+  uint64_t direct;   /* islands solved directly */
+  uint64_t sleeping; /* bodies asleep now */
+  uint64_t interventions;
+} breve_physics_counters;
+
+/* BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
+BREVE_API breve_status breve_world_physics_counters(const breve_world* world, breve_physics_counters* counters);
 
 /* ---- values ------------------------------------------------------------------------------------------------------ */
 

@@ -256,6 +256,84 @@ class World {
     return {status(s), std::move(faces)};
   }
 
+  // --- bodies with physics -------------------------------------------------------------------------------------------
+  Result<Object> create_shape(const breve_geometry& geometry) {
+    Object made{};
+    const breve_status s = breve_shape_create(get(), &geometry, &made);
+    return {status(s), made};
+  }
+  Status set_shape(Object object, Object shape) { return status(breve_object_set_shape(get(), object, shape)); }
+  Status set_physics(Object object, bool on) { return status(breve_object_set_physics(get(), object, on)); }
+  Result<double> mass(Object object) const {
+    double mass = 0;
+    const breve_status s = breve_object_mass(get(), object, &mass);
+    return {status(s), mass};
+  }
+  Status set_force(Object object, const Vector& force, const Vector& torque = {}) {
+    return status(breve_object_set_force(get(), object, force.data(), torque.data()));
+  }
+  Status set_material(Object object, const breve_material& material) {
+    return status(breve_object_set_material(get(), object, &material));
+  }
+  Result<Object> create_joint(const breve_joint_description& description) {
+    Object made{};
+    const breve_status s = breve_joint_create(get(), &description, &made);
+    return {status(s), made};
+  }
+  Status break_joint(Object joint) { return status(breve_joint_break(get(), joint)); }
+  Result<breve_joint_info> joint(Object joint) {
+    breve_joint_info info{};
+    const breve_status s = breve_joint_read(get(), joint, &info);
+    return {status(s), info};
+  }
+  Result<breve_joint_drive> drive(Object joint) const {
+    breve_joint_drive drive{};
+    drive.struct_size = sizeof drive;
+    const breve_status s = breve_joint_get_drive(get(), joint, &drive);
+    return {status(s), drive};
+  }
+  Status set_drive(Object joint, const breve_joint_drive& drive) {
+    return status(breve_joint_set_drive(get(), joint, &drive));
+  }
+  Result<std::vector<Object>> links(Object object) const {
+    return list<Object>([&](Object* out, std::size_t capacity, std::size_t* count) {
+      return breve_object_links(get(), object, out, capacity, count);
+    });
+  }
+  Result<std::vector<Object>> joints(Object object) const {
+    return list<Object>([&](Object* out, std::size_t capacity, std::size_t* count) {
+      return breve_object_joints(get(), object, out, capacity, count);
+    });
+  }
+  Result<Object> create_spring(const breve_spring& description) {
+    Object made{};
+    const breve_status s = breve_spring_create(get(), &description, &made);
+    return {status(s), made};
+  }
+  Result<breve_accuracy> accuracy() const {
+    breve_accuracy accuracy{};
+    const breve_status s = breve_world_accuracy(get(), &accuracy);
+    return {status(s), accuracy};
+  }
+  Status set_accuracy(const breve_accuracy& accuracy) { return status(breve_world_set_accuracy(get(), &accuracy)); }
+  Status set_gravity(const Vector& gravity) { return status(breve_world_set_gravity(get(), gravity.data())); }
+  Result<breve_energy> energy() const {
+    breve_energy energy{};
+    energy.struct_size = sizeof energy;
+    const breve_status s = breve_world_energy(get(), &energy);
+    return {status(s), energy};
+  }
+  Result<std::vector<breve_impact>> impacts() const {
+    return list<breve_impact>([this](breve_impact* out, std::size_t capacity, std::size_t* count) {
+      return breve_world_impacts(get(), out, capacity, count);
+    });
+  }
+  Result<std::vector<breve_intervention>> interventions() const {
+    return list<breve_intervention>([this](breve_intervention* out, std::size_t capacity, std::size_t* count) {
+      return breve_world_interventions(get(), out, capacity, count);
+    });
+  }
+
   Result<Value> get(Object object, const char* variable) {
     breve_value value = breve_value_null();
     const breve_status s = breve_object_get(get(), object, variable, &value);
@@ -452,6 +530,12 @@ class Runtime {
   Result<Program> load(const char* name) {
     breve_program* made = nullptr;
     const breve_status s = breve_program_load(get(), name, &made);
+    return {status(s), Program(made)};
+  }
+  /// A program without a text: the whole class library, and one of its controllers.
+  Result<Program> library_program(const char* controller = nullptr) {
+    breve_program* made = nullptr;
+    const breve_status s = breve_program_create_library(get(), controller, &made);
     return {status(s), Program(made)};
   }
   /// Look at a program without running it, also if it has errors.

@@ -1,0 +1,239 @@
+// How bodies with physics are computed, from C: accuracy, guard, workers; and what came of it: energy, events,
+// counters.
+#include <iterator>
+
+#include "physical.hpp"
+
+namespace breve::host {
+namespace {
+
+constexpr unsigned kRungs = 5, kIntegrators = 9, kGuards = 4;
+
+breve_accuracy accuracy_from(const Accuracy& from) {
+  breve_accuracy to{};
+  to.struct_size = sizeof to;
+  to.rung = static_cast<breve_rung>(from.rung);
+  to.integrator = static_cast<breve_integrator>(from.scheme);
+  to.implicit_joints = from.implicit_joints;
+  to.implicit_spin = from.implicit_spin;
+  to.direct = from.direct;
+  to.locate_impacts = from.locate_impacts;
+  to.contact_springs = from.contact_springs;
+  to.step = from.step;
+  to.contact_step = from.contact_step;
+  to.tolerance = from.tolerance;
+  to.iterations = from.iterations;
+  to.impacts = from.impacts;
+  to.contact_stiffness = from.contact_stiffness;
+  to.contact_damping = from.contact_damping;
+  return to;
+}
+
+Rung rung_of(breve_rung rung) {
+  if (static_cast<unsigned>(rung) >= kRungs)
+    fail(BREVE_ERROR_ARGUMENT, "there is no rung " + std::to_string(static_cast<unsigned>(rung)));
+  return static_cast<Rung>(rung);
+}
+
+Accuracy accuracy_of_struct(const breve_accuracy* given) {
+  need(given, "accuracy");
+  const breve_accuracy from = read_config(given, accuracy_from(accuracy_of(Rung::Balanced)), "breve_accuracy");
+  const Rung rung = rung_of(from.rung);
+  if (static_cast<unsigned>(from.integrator) >= kIntegrators)
+    fail(BREVE_ERROR_ARGUMENT, "breve_accuracy.integrator is no integrator");
+  for (const bool reserved : from.reserved)
+    if (reserved) fail(BREVE_ERROR_ARGUMENT, "a reserved field is not false");
+  Accuracy to = accuracy_of(rung);
+  to.scheme = static_cast<articulated::Scheme>(from.integrator);
+  to.implicit_joints = from.implicit_joints;
+  to.implicit_spin = from.implicit_spin;
+  to.direct = from.direct;
+  to.locate_impacts = from.locate_impacts;
+  to.contact_springs = from.contact_springs;
+  to.step = from.step;
+  to.contact_step = from.contact_step;
+  to.tolerance = from.tolerance;
+  to.iterations = from.iterations;
+  to.impacts = from.impacts;
+  to.contact_stiffness = from.contact_stiffness;
+  to.contact_damping = from.contact_damping;
+  const breve_accuracy plain = accuracy_from(accuracy_of(rung)), wanted = accuracy_from(to);
+  to.custom = std::memcmp(&plain, &wanted, sizeof plain) != 0;
+  check(to);
+  return to;
+}
+
+breve_energy energy_from(const Energy& from) {
+  breve_energy to{};
+  to.kinetic = from.kinetic;
+  to.potential = from.potential;
+  to.springs = from.springs;
+  to.motor_work = from.motor_work;
+  to.script_work = from.script_work;
+  to.contact_loss = from.contact_loss;
+  to.friction_loss = from.friction_loss;
+  to.drag_loss = from.drag_loss;
+  to.limit_loss = from.limit_loss;
+  to.residual = from.residual;
+  return to;
+}
+
+const Dynamics& dynamics_of(const breve_world& world) { return std::as_const(*world.world).dynamics(); }
+
+}  // namespace
+}  // namespace breve::host
+
+using namespace breve::host;
+
+// --- accuracy -------------------------------------------------------------------------------------------------------
+
+breve_status breve_accuracy_of_rung(breve_rung rung, breve_accuracy* accuracy) {
+  return guard([&] {
+    need(accuracy, "accuracy");
+    *accuracy = accuracy_from(breve::accuracy_of(rung_of(rung)));
+  });
+}
+
+breve_status breve_rung_named(const char* name, breve_rung* rung) {
+  return guard([&] {
+    need(name, "name");
+    need(rung, "rung");
+    for (unsigned i = 0; i < kRungs; ++i) {
+      if (breve::name_of(static_cast<breve::Rung>(i)) != name) continue;
+      *rung = static_cast<breve_rung>(i);
+      return;
+    }
+    fail(BREVE_ERROR_NOT_FOUND, "there is no such rung");
+  });
+}
+
+breve_status breve_world_accuracy(const breve_world* world, breve_accuracy* accuracy) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need(accuracy, "accuracy");
+    *accuracy = accuracy_from(dynamics_of(*world).accuracy());
+  });
+}
+
+breve_status breve_world_set_accuracy(breve_world* world, const breve_accuracy* accuracy) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] { world->world->dynamics().set_accuracy(accuracy_of_struct(accuracy)); });
+}
+
+breve_status breve_world_describe_accuracy(breve_world* world, const char** text) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need(text, "text");
+    world->accuracy_text = breve::describe(dynamics_of(*world).accuracy());
+    *text = world->accuracy_text.c_str();
+  });
+}
+
+breve_status breve_object_set_accuracy(breve_world* world, breve_object object, const breve_accuracy* accuracy) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    const breve::BodyIndex body = live_body(*world, object);
+    if (!accuracy) return world->world->dynamics().clear_accuracy(body);
+    world->world->dynamics().set_accuracy(body, accuracy_of_struct(accuracy));
+  });
+}
+
+// --- settings of the world ------------------------------------------------------------------------------------------
+
+breve_status breve_world_gravity(const breve_world* world, double gravity[3]) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need(gravity, "gravity");
+    copy_to(gravity, world->world->gravity());
+  });
+}
+
+breve_status breve_world_set_gravity(breve_world* world, const double gravity[3]) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] { world->world->set_gravity(vector_of(gravity, "gravity")); });
+}
+
+breve_status breve_world_set_sleeping(breve_world* world, bool on) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] { world->world->dynamics().set_sleeping(on); });
+}
+
+breve_status breve_world_set_workers(breve_world* world, uint32_t workers) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    constexpr uint32_t kMost = 256;
+    if (workers < 1 || workers > kMost) fail(BREVE_ERROR_ARGUMENT, "workers must be 1 to 256");
+    world->world->dynamics().set_workers(static_cast<int>(workers));
+  });
+}
+
+breve_status breve_world_set_guard(breve_world* world, breve_guard mode) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    if (static_cast<unsigned>(mode) >= kGuards) fail(BREVE_ERROR_ARGUMENT, "there is no such mode of the guard");
+    world->world->dynamics().set_guard(static_cast<breve::GuardMode>(mode));
+  });
+}
+
+breve_guard breve_world_guard(const breve_world* world) {
+  return world ? static_cast<breve_guard>(dynamics_of(*world).guard()) : BREVE_GUARD_OFF;
+}
+
+// --- what came of it ------------------------------------------------------------------------------------------------
+
+breve_status breve_world_interventions(const breve_world* world, breve_intervention* interventions, size_t capacity,
+                                       size_t* count) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    copy_list(dynamics_of(*world).interventions(), interventions, capacity, count, "interventions",
+              [](const breve::Intervention& one) {
+                // Names are literals: they end with a zero byte.
+                return breve_intervention{one.iteration,
+                                          one.time,
+                                          handle_of(one.body),
+                                          breve::words_for(one.reason).data(),
+                                          breve::name_of(one.action).data(),
+                                          one.value};
+              });
+  });
+}
+
+breve_status breve_world_impacts(const breve_world* world, breve_impact* impacts, size_t capacity, size_t* count) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    copy_list(dynamics_of(*world).impacts(), impacts, capacity, count, "impacts", [](const breve::Impact& one) {
+      breve_impact impact{};
+      impact.a = handle_of(one.a);
+      impact.b = handle_of(one.b);
+      impact.time = one.time;
+      copy_to(impact.point, one.point);
+      copy_to(impact.normal, one.normal);
+      copy_to(impact.impulse, one.impulse);
+      return impact;
+    });
+  });
+}
+
+breve_status breve_world_energy(const breve_world* world, breve_energy* energy) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] { write_struct(energy, energy_from(dynamics_of(*world).energy()), "breve_energy"); });
+}
+
+breve_status breve_object_energy(const breve_world* world, breve_object object, breve_energy* energy) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    const breve::BodyIndex body = live_body(*world, object);
+    write_struct(energy, energy_from(dynamics_of(*world).energy(body)), "breve_energy");
+  });
+}
+
+breve_status breve_world_physics_counters(const breve_world* world, breve_physics_counters* counters) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    const breve::DynamicsCounters& c = dynamics_of(*world).counters();
+    const breve_physics_counters filled{
+        0,      c.sub_steps, c.evaluations, c.rejected,          c.islands, c.pairs,    c.contacts,
+        c.warm, c.impacts,   c.searches,    c.solver_iterations, c.direct,  c.sleeping, c.interventions};
+    write_struct(counters, filled, "breve_physics_counters");
+  });
+}

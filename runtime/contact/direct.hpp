@@ -1,0 +1,18 @@
+// The direct solver for small islands: Newton's method on all rows at once, to tolerance.
+#pragma once
+
+#include "runtime/contact/workspace.hpp"
+
+namespace breve::contact {
+
+/// Solve the packed island from the impulses it has. Velocities and impulses of `work` are those of the best iterate,
+/// consistent with each other, inside cones and bounds.
+/// @param solves  grows by the number of linear solves
+/// @param solved  whether the violation is within the tolerance, or as near to it as round-off allows
+/// @return        the violation left, m/s
+double solve_direct(Workspace& work, double tolerance, int& solves, bool& solved);
+
+/// By how much the worst row violates its law, m/s: the distance to the projected point of a step of the row alone.
+double violation(const Workspace& work);
+
+}  // namespace breve::contact

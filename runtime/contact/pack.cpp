@@ -1,0 +1,240 @@
+// Packing: arms or matrices of each side become the 3x3 response of the contact, once per solve.
+#include "runtime/contact/pack.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace breve::contact {
+
+namespace {
+
+Packed world() {
+  Packed out{};
+  out.free = true;
+  return out;
+}
+
+Packed packed(const Mover& mover) {
+  Packed out{};
+  out.place = mover.v;
+  out.size = mover.size;
+  out.free = mover.inverse_mass > 0;
+  if (!out.free) return out;
+  std::copy_n(mover.v, 6, out.v);
+  out.inverse_mass = mover.inverse_mass;
+  const Matrix3& inverse = mover.inverse_inertia;
+  const double inertia[6] = {inverse(0, 0), inverse(0, 1), inverse(0, 2), inverse(1, 1), inverse(1, 2), inverse(2, 2)};
+  std::copy_n(inertia, 6, out.inertia);
+  return out;
+}
+
+/// Of a free body, with its impulse at an arm.
+void add_response(const Packed& m, const double arm[3], const Point& c, LocalMatrix& W) {
+  if (m.inverse_mass == 0) return;
+  const double* axes[3] = {c.normal, c.tangent1, c.tangent2};
+  double torque[3][3], spin[3][3];
+  for (int k = 0; k < 3; ++k) {
+    const double* n = axes[k];
+    const double x = arm[1] * n[2] - arm[2] * n[1], y = arm[2] * n[0] - arm[0] * n[2],
+                 z = arm[0] * n[1] - arm[1] * n[0];
+    torque[k][0] = x;
+    torque[k][1] = y;
+    torque[k][2] = z;
+    spin[k][0] = m.inertia[0] * x + m.inertia[1] * y + m.inertia[2] * z;
+    spin[k][1] = m.inertia[1] * x + m.inertia[3] * y + m.inertia[4] * z;
+    spin[k][2] = m.inertia[2] * x + m.inertia[4] * y + m.inertia[5] * z;
+  }
+  const auto dot = [&](int i, int k) {
+    return torque[i][0] * spin[k][0] + torque[i][1] * spin[k][1] + torque[i][2] * spin[k][2];
+  };
+  W.nn += m.inverse_mass + dot(0, 0);
+  W.n1 += dot(0, 1);
+  W.n2 += dot(0, 2);
+  W.s11 += m.inverse_mass + dot(1, 1);
+  W.s12 += dot(1, 2);
+  W.s22 += m.inverse_mass + dot(2, 2);
+}
+
+double dot(const double* a, const double* b, int size) {
+  double sum = 0;
+  for (int i = 0; i < size; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+/// Of a side given by its matrices. J R is symmetric; both halves are read, so that round-off is shared.
+void add_response(const double* j, const double* r, int n, LocalMatrix& W) {
+  const auto at = [&](int i, int k) { return dot(j + i * n, r + k * n, n); };
+  W.nn += at(0, 0);
+  W.n1 += 0.5 * (at(0, 1) + at(1, 0));
+  W.n2 += 0.5 * (at(0, 2) + at(2, 0));
+  W.s11 += at(1, 1);
+  W.s12 += 0.5 * (at(1, 2) + at(2, 1));
+  W.s22 += at(2, 2);
+}
+
+void fill(Point& c, const Row& row, const std::pmr::vector<Packed>& movers) {
+  c.a = row.a + 1;
+  c.b = row.b + 1;
+  c.plain = row.ja == nullptr && row.jb == nullptr;
+  c.friction = row.static_friction;
+  for (int k = 0; k < 3; ++k) {
+    c.normal[k] = row.axes(0, k);
+    c.tangent1[k] = row.axes(1, k);
+    c.tangent2[k] = row.axes(2, k);
+    c.arm_a[k] = row.arm_a[k];
+    c.arm_b[k] = row.arm_b[k];
+  }
+  c.bias = row.bias;
+  c.softness = row.softness;
+  c.response = {};
+  const Packed& a = movers[static_cast<std::size_t>(c.a)];
+  const Packed& b = movers[static_cast<std::size_t>(c.b)];
+  if (row.ja != nullptr)
+    add_response(row.ja, row.ra, a.size, c.response);
+  else
+    add_response(a, c.arm_a, c, c.response);
+  if (row.jb != nullptr)
+    add_response(row.jb, row.rb, b.size, c.response);
+  else
+    add_response(b, c.arm_b, c, c.response);
+  c.response.nn += row.softness;
+  c.inverse = regular_inverse(c.response);
+  const bool warm = row.impulse[0] > 0 && row.impulse.allFinite();
+  for (int k = 0; k < 3; ++k) c.impulse[k] = warm ? row.impulse[k] : 0.0;
+  if (warm) clip_to_cone(c.friction, c.impulse);
+}
+
+PackedScalar packed(const ScalarRow& row, const std::pmr::vector<Packed>& movers) {
+  PackedScalar out{};
+  out.a = row.a + 1;
+  out.b = row.b + 1;
+  out.ja = row.ja;
+  out.ra = row.ra;
+  out.jb = row.jb;
+  out.rb = row.rb;
+  out.bias = row.bias;
+  out.softness = row.softness;
+  out.lo = row.lo;
+  out.hi = row.hi;
+  if (row.ja != nullptr) out.response += dot(row.ja, row.ra, movers[static_cast<std::size_t>(out.a)].size);
+  if (row.jb != nullptr) out.response += dot(row.jb, row.rb, movers[static_cast<std::size_t>(out.b)].size);
+  out.response += row.softness;
+  out.impulse = std::isfinite(row.impulse) ? std::clamp(row.impulse, row.lo, row.hi) : 0.0;
+  return out;
+}
+
+/// u += sign J v.
+void add_velocity(const double* j, const Packed& m, double sign, double u[3]) {
+  const double* v = m.now();
+  for (int k = 0; k < 3; ++k) u[k] += sign * dot(j + k * m.size, v, m.size);
+}
+
+/// v += R p.
+void add_push(const double* r, Packed& m, double p0, double p1, double p2) {
+  double* v = m.now();
+  const int n = m.size;
+  for (int i = 0; i < n; ++i) v[i] += r[i] * p0 + r[n + i] * p1 + r[2 * n + i] * p2;
+}
+
+/// Velocity of the point of a side with an arm, added with a sign.
+void add_velocity(const Point& c, const double arm[3], const Packed& m, double sign, double u[3]) {
+  const double x = m.v[0] + m.v[4] * arm[2] - m.v[5] * arm[1];
+  const double y = m.v[1] + m.v[5] * arm[0] - m.v[3] * arm[2];
+  const double z = m.v[2] + m.v[3] * arm[1] - m.v[4] * arm[0];
+  u[0] += sign * (c.normal[0] * x + c.normal[1] * y + c.normal[2] * z);
+  u[1] += sign * (c.tangent1[0] * x + c.tangent1[1] * y + c.tangent1[2] * z);
+  u[2] += sign * (c.tangent2[0] * x + c.tangent2[1] * y + c.tangent2[2] * z);
+}
+
+}  // namespace
+
+void pack(std::span<const Mover> movers, std::span<const Row> rows, std::span<const ScalarRow> scalars,
+          Workspace& work) {
+  work.movers.clear();
+  work.movers.push_back(world());
+  for (const Mover& mover : movers) work.movers.push_back(packed(mover));
+  work.points.resize(rows.size());
+  work.sides.resize(rows.size());
+  work.grips.resize(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Row& row = rows[i];
+    fill(work.points[i], row, work.movers);
+    work.sides[i] = {row.ja, row.ra, row.jb, row.rb, {}};
+    work.grips[i] = row.dynamic_friction < row.static_friction ? Grip::Unsettled : Grip::Holds;
+    velocity(work, i, work.sides[i].free_velocity);
+  }
+  work.scalars.clear();
+  for (const ScalarRow& row : scalars) {
+    work.scalars.push_back(packed(row, work.movers));
+    work.scalars.back().free_velocity = velocity(work, work.scalars.back());
+  }
+}
+
+void unpack(const Workspace& work, std::span<Row> rows, std::span<ScalarRow> scalars) {
+  for (const Packed& mover : work.movers)
+    if (mover.free && mover.place != nullptr) std::copy_n(mover.v, 6, mover.place);
+  for (std::size_t i = 0; i < rows.size(); ++i) std::copy_n(work.points[i].impulse, 3, rows[i].impulse.data());
+  for (std::size_t i = 0; i < scalars.size(); ++i) scalars[i].impulse = work.scalars[i].impulse;
+}
+
+void velocity(const Workspace& work, std::size_t contact, double u[3]) {
+  const Point& c = work.points[contact];
+  const Packed& a = work.movers[static_cast<std::size_t>(c.a)];
+  const Packed& b = work.movers[static_cast<std::size_t>(c.b)];
+  if (c.plain) return plain_velocity(c, a, b, u);
+  const Sides& sides = work.sides[contact];
+  u[0] = u[1] = u[2] = 0;
+  if (sides.ja != nullptr)
+    add_velocity(sides.ja, a, 1, u);
+  else
+    add_velocity(c, c.arm_a, a, 1, u);
+  if (sides.jb != nullptr)
+    add_velocity(sides.jb, b, -1, u);
+  else
+    add_velocity(c, c.arm_b, b, -1, u);
+}
+
+void push(Workspace& work, std::size_t contact, const double p[3]) {
+  const Point& c = work.points[contact];
+  Packed& a = work.movers[static_cast<std::size_t>(c.a)];
+  Packed& b = work.movers[static_cast<std::size_t>(c.b)];
+  if (c.plain) return plain_push(c, a, b, p);
+  const Sides& sides = work.sides[contact];
+  const double x = c.normal[0] * p[0] + c.tangent1[0] * p[1] + c.tangent2[0] * p[2];
+  const double y = c.normal[1] * p[0] + c.tangent1[1] * p[1] + c.tangent2[1] * p[2];
+  const double z = c.normal[2] * p[0] + c.tangent1[2] * p[1] + c.tangent2[2] * p[2];
+  if (sides.ja != nullptr)
+    add_push(sides.ra, a, p[0], p[1], p[2]);
+  else
+    plain_push(a, c.arm_a, x, y, z);
+  if (sides.jb != nullptr)
+    add_push(sides.rb, b, -p[0], -p[1], -p[2]);
+  else
+    plain_push(b, c.arm_b, -x, -y, -z);
+}
+
+double velocity(const Workspace& work, const PackedScalar& row) {
+  double u = 0;
+  if (row.ja != nullptr) {
+    const Packed& a = work.movers[static_cast<std::size_t>(row.a)];
+    u += dot(row.ja, a.now(), a.size);
+  }
+  if (row.jb != nullptr) {
+    const Packed& b = work.movers[static_cast<std::size_t>(row.b)];
+    u -= dot(row.jb, b.now(), b.size);
+  }
+  return u;
+}
+
+void push(Workspace& work, const PackedScalar& row, double impulse) {
+  const auto add = [&](int mover, const double* r, double sign) {
+    if (r == nullptr) return;
+    Packed& m = work.movers[static_cast<std::size_t>(mover)];
+    double* v = m.now();
+    for (int i = 0; i < m.size; ++i) v[i] += r[i] * (sign * impulse);
+  };
+  add(row.a, row.ra, 1);
+  add(row.b, row.rb, -1);
+}
+
+}  // namespace breve::contact

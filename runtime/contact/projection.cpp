@@ -1,0 +1,98 @@
+// Projections of the direct solver; where a row has no response it has no impulse.
+#include "runtime/contact/projection.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace breve::contact {
+
+double tangential_response(const Point& c) { return std::max(c.response.s11, c.response.s22); }
+
+Slope project(const Point& c, const double centre[3], const double u[3], double stiffness, double p[3]) {
+  Slope slope;
+  p[0] = p[1] = p[2] = 0;
+  if (!(c.response.nn > 0)) return slope;
+  const double rho_n = stiffness / c.response.nn;
+  const double soft = 1 / (1 + rho_n * c.softness);
+  const double normal = (centre[0] - rho_n * (u[0] - c.bias)) * soft;
+  if (!(normal > 0)) return slope;
+  p[0] = normal;
+  slope.nn = rho_n * soft;
+  const double response = tangential_response(c);
+  if (c.friction == 0 || !(response > 0)) return slope;
+  const double rho_t = stiffness / response;
+  const double z1 = centre[1] - rho_t * u[1], z2 = centre[2] - rho_t * u[2];
+  const double length = std::sqrt(z1 * z1 + z2 * z2), radius = c.friction * normal;
+  if (length <= radius) {
+    p[1] = z1;
+    p[2] = z2;
+    slope.t11 = slope.t22 = rho_t;
+    return slope;
+  }
+  const double x = z1 / length, y = z2 / length;
+  p[1] = radius * x;
+  p[2] = radius * y;
+  const double turn = rho_t * radius / length;
+  slope.t1n = c.friction * slope.nn * x;
+  slope.t2n = c.friction * slope.nn * y;
+  slope.t11 = turn * y * y;
+  slope.t12 = -turn * x * y;
+  slope.t22 = turn * x * x;
+  return slope;
+}
+
+Slope project_convex(const Point& c, const double centre[3], const double u[3], double lift, double stiffness,
+                     double p[3]) {
+  Slope slope;
+  p[0] = p[1] = p[2] = 0;
+  if (!(c.response.nn > 0)) return slope;
+  const double mu = c.friction;
+  const double rho = stiffness / std::max(c.response.nn, tangential_response(c));
+  const double soft =
+      1 / (1 + rho * c.softness);  // of the normal part; exact while the point sticks or has no friction
+  const double zn = (centre[0] - rho * (u[0] + lift - c.bias)) * soft;
+  if (mu == 0) {
+    if (!(zn > 0)) return slope;
+    p[0] = zn;
+    slope.nn = rho * soft;
+    return slope;
+  }
+  const double z1 = centre[1] - rho * u[1], z2 = centre[2] - rho * u[2];
+  const double length = std::sqrt(z1 * z1 + z2 * z2);
+  if (length <= mu * zn) {
+    p[0] = zn;
+    p[1] = z1;
+    p[2] = z2;
+    slope.nn = rho * soft;
+    slope.t11 = slope.t22 = rho;
+    return slope;
+  }
+  const double share = 1 / (1 + mu * mu), normal = (zn + mu * length) * share;
+  if (!(normal > 0)) return slope;
+  const double x = z1 / length, y = z2 / length;
+  p[0] = normal;
+  p[1] = mu * normal * x;
+  p[2] = mu * normal * y;
+  const double along = rho * share * mu * mu, turn = rho * mu * normal / length;
+  slope.nn = rho * share * soft;
+  slope.n1 = rho * share * mu * x;
+  slope.n2 = rho * share * mu * y;
+  slope.t1n = slope.n1 * soft;
+  slope.t2n = slope.n2 * soft;
+  slope.t11 = along * x * x + turn * y * y;
+  slope.t12 = (along - turn) * x * y;
+  slope.t22 = along * y * y + turn * x * x;
+  return slope;
+}
+
+double project(const PackedScalar& row, double centre, double u, double stiffness, double& p) {
+  p = 0;
+  if (!(row.response > 0)) return 0;
+  const double rho = stiffness / row.response;
+  const double soft = 1 / (1 + rho * row.softness);
+  const double z = (centre - rho * (u - row.bias)) * soft;
+  p = std::clamp(z, row.lo, row.hi);
+  return p == z ? rho * soft : 0;
+}
+
+}  // namespace breve::contact

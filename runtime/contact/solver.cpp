@@ -1,0 +1,57 @@
+// The course of a solve: pack, start warm, sweep or solve directly, settle static against dynamic friction, unpack.
+#include "runtime/contact/solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/contact/direct.hpp"
+#include "runtime/contact/friction.hpp"
+#include "runtime/contact/pack.hpp"
+#include "runtime/contact/sweep.hpp"
+
+namespace breve::contact {
+
+namespace {
+
+/// Sweeps for a direct solve whose Newton's method gave up.
+constexpr int kPatientSweeps = 1000;
+
+/// Rounds of settling friction. Each point changes its coefficient at most twice, so this ends what could chatter.
+constexpr int kRounds = 4;
+
+void run_sweeps(Workspace& work, int most, double tolerance, SolveReport& report) {
+  for (int i = 0; i < most; ++i) {
+    report.residual = sweep(work);
+    ++report.iterations;
+    if (report.residual <= tolerance) return;
+  }
+}
+
+void solve_directly(Workspace& work, const SolveSettings& settings, SolveReport& report) {
+  report.residual = solve_direct(work, settings.tolerance, report.newton, report.direct);
+  if (report.direct) return;
+  run_sweeps(work, kPatientSweeps, settings.tolerance * 0.1, report);
+  report.residual = violation(work);
+  report.direct = report.residual <= settings.tolerance;
+}
+
+}  // namespace
+
+SolveReport solve_island(std::span<const Mover> movers, std::span<Row> rows, std::span<ScalarRow> scalars,
+                         const SolveSettings& settings, Workspace& work) {
+  SolveReport report;
+  pack(movers, rows, scalars, work);
+  push_all(work);
+  for (int round = 0; round < kRounds; ++round) {
+    if (settings.direct)
+      solve_directly(work, settings, report);
+    else
+      run_sweeps(work, settings.iterations, settings.tolerance, report);
+    if (round + 1 == kRounds || !settle_friction(rows, settings.tolerance, work)) break;
+  }
+  hold_energy(work);
+  unpack(work, rows, scalars);
+  return report;
+}
+
+}  // namespace breve::contact

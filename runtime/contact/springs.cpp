@@ -1,0 +1,92 @@
+// Contact springs. Calibration: with damping ratio z and w = 1, a contact comes to rest after a(z) = acos(z) / sqrt(1 -
+// z^2) and has lost exp(-z a(z)) of its speed; parting, the force ends after the same time and factor, and the surface
+// leaves the gap 2 z v behind, which takes another 2 z. (Schwager and Poeschel 2007, "Coefficient of restitution and
+// linear-dashpot model revisited".)
+#include "runtime/contact/springs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace breve::contact {
+
+namespace {
+
+constexpr double kTangential = 2.0 / 7.0;
+constexpr double kMostDamping = 0.9;
+
+double time_to_rest(double z) {
+  if (std::abs(1 - z) < 1e-9) return 1;
+  return z < 1 ? std::acos(z) / std::sqrt(1 - z * z) : std::acosh(z) / std::sqrt(z * z - 1);
+}
+
+double loss(double z) { return z * time_to_rest(z); }  // of the logarithm of the speed; grows with z
+
+/// The argument where a growing function passes `value`.
+template <class F>
+double invert(double low, double high, double value, F&& f) {
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (f(middle) < value ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace
+
+Dashpots calibrate(double zeta) {
+  zeta = std::clamp(zeta, 0.0, kMostDamping);
+  if (zeta == 0) return {};
+  const double s = std::sqrt(1 - zeta * zeta);
+  const double wanted_loss = std::numbers::pi * zeta / s, wanted_time = std::numbers::pi / s;
+  const double most = std::exp(wanted_loss);  // loss(z) > log(z) + 0.6 beyond 1
+  const auto partner = [&](double out) { return invert(0, most, wanted_loss - loss(out), loss); };
+  const auto time = [&](double out) { return time_to_rest(partner(out)) + time_to_rest(out) + 2 * out; };
+  const double out = invert(0, invert(0, most, wanted_loss, loss), wanted_time, time);
+  return {partner(out), out};
+}
+
+Spring make_spring(double stiffness, const Dashpots& dashpots, double mass, const Law& law) {
+  const double scale = 2 * std::sqrt(stiffness * mass);
+  Spring spring;
+  spring.stiffness = stiffness;
+  spring.in = dashpots.in * scale;
+  spring.out = dashpots.out * scale;
+  spring.tangential_stiffness = kTangential * stiffness;
+  spring.tangential_damping = kTangential * 0.5 * (spring.in + spring.out);
+  spring.static_friction = law.static_friction;
+  spring.dynamic_friction = law.dynamic_friction;
+  return spring;
+}
+
+Press press(const Spring& spring, double gap, double gap_rate) {
+  Press out;
+  if (!(gap < 0)) return out;
+  const double elastic = -spring.stiffness * gap;
+  out.force = std::max(0.0, elastic - (gap_rate < 0 ? spring.in : spring.out) * gap_rate);
+  out.stored = -0.5 * elastic * gap;
+  out.loss = (elastic - out.force) * gap_rate;
+  return out;
+}
+
+Drag drag(const Spring& spring, const Vector2& stretch, const Vector2& slip, double normal_force) {
+  Drag out;
+  out.stored = 0.5 * spring.tangential_stiffness * stretch.squaredNorm();
+  const Vector2 elastic = spring.tangential_stiffness * stretch;
+  const Vector2 held = elastic + spring.tangential_damping * slip;
+  const double size = held.norm();
+  if (size <= spring.static_friction * normal_force) {
+    out.force = -held;
+    out.stretch_rate = slip;
+  } else {
+    const Vector2 limit = held * (std::min(1.0, spring.dynamic_friction * normal_force / size));
+    out.force = -limit;
+    // The spring and damper carry what the slider lets through. Without a damper they follow at once, as fast as any
+    // integrator can: the stretch is then shortened by the caller.
+    out.stretch_rate = spring.tangential_damping > 0 ? Vector2((limit - elastic) / spring.tangential_damping) : slip;
+  }
+  out.loss = elastic.dot(-out.stretch_rate) - out.force.dot(slip);
+  return out;
+}
+
+}  // namespace breve::contact

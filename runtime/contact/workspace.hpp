@@ -1,0 +1,86 @@
+// What the contact solver keeps between calls so that it allocates nothing: rows as its loops read them, packed.
+#pragma once
+
+#include <memory_resource>
+#include <vector>
+
+#include "runtime/contact/cone.hpp"
+
+namespace breve::contact {
+
+/// A mover as the sweeps read it. A free body's velocity is kept here while they run, a tree's stays in its place.
+struct Packed {
+  double v[6];          // free: velocity, spin
+  double inverse_mass;  // 0: the world, or a tree
+  double inertia[6];    // inverse, world axes: xx, xy, xz, yy, yz, zz
+  double* place;        // where v comes from and goes to; null: the world
+  int size;
+  bool free;
+
+  double* now() { return free ? v : place; }
+  const double* now() const { return free ? v : place; }
+};
+
+/// A contact as the sweeps read it.
+struct Point {
+  int a, b;    // packed movers; 0 is the world
+  bool plain;  // both sides are free bodies with arms, or the world
+  double friction;
+  double normal[3], tangent1[3], tangent2[3];
+  double arm_a[3], arm_b[3];
+  double bias, softness;
+  LocalMatrix response;  // softness included
+  LocalMatrix inverse;   // of it, made regular
+  double impulse[3];
+};
+
+/// A contact's matrices, if a side has them, and the velocity it had without any impulse.
+struct Sides {
+  const double *ja, *ra, *jb, *rb;
+  double free_velocity[3];
+};
+
+/// A scalar row as the sweeps read it.
+struct PackedScalar {
+  int a, b;  // packed movers; 0 is the world
+  const double *ja, *ra, *jb, *rb;
+  double bias, softness, lo, hi;
+  double response;  // softness included; 0: nothing can move it
+  double impulse;
+  double free_velocity;
+};
+
+/// What a point whose two coefficients of friction differ was found to do.
+enum class Grip : unsigned char {
+  Unsettled,  // static; may yet slide
+  GoesOn,     // dynamic, since it slid before; may yet come to rest
+  Slides,     // dynamic: the static one could not hold it
+  Holds       // static for good
+};
+
+struct Workspace {
+  explicit Workspace(std::pmr::memory_resource* memory)
+      : movers(memory),
+        points(memory),
+        sides(memory),
+        scalars(memory),
+        grips(memory),
+        numbers(memory),
+        indices(memory),
+        order(memory),
+        firsts(memory),
+        saved(memory),
+        earlier(memory),
+        biases(memory) {}
+  std::pmr::vector<Packed> movers;
+  std::pmr::vector<Point> points;
+  std::pmr::vector<Sides> sides;
+  std::pmr::vector<PackedScalar> scalars;
+  std::pmr::vector<Grip> grips;
+  std::pmr::vector<double> numbers;  // of the direct solver
+  std::pmr::vector<int> indices;
+  std::pmr::vector<int> order, firsts;  // of impacts in groups
+  std::pmr::vector<double> saved, earlier, biases;
+};
+
+}  // namespace breve::contact

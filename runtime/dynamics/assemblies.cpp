@@ -1,0 +1,178 @@
+// Bodies that joints connect, as a whole: who belongs, where it stands, what holds for it.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runtime/base/error.hpp"
+#include "runtime/dynamics/core.hpp"
+#include "runtime/dynamics/joint_frames.hpp"
+
+namespace breve {
+
+bool Dynamics::jointed(BodyIndex a, BodyIndex b) const { return core_ && core_->jointed(a, b); }
+
+bool Dynamics::Core::jointed(BodyIndex a, BodyIndex b) const {
+  const BodyEntry* known = find(a);
+  if (!known) return false;
+  return std::any_of(known->joints.begin(), known->joints.end(), [&](JointIndex index) {
+    const JointDescription& is = joints[index].is;
+    return (is.parent == a && is.child == b) || (is.parent == b && is.child == a);
+  });
+}
+
+bool Dynamics::same_assembly(BodyIndex a, BodyIndex b) const {
+  if (a == b) return true;
+  if (!core_) return false;
+  const BodyEntry* first = core_->find(a);
+  const BodyEntry* second = core_->find(b);
+  if (!first || !second) return false;
+  if (first->tree != kNone && second->tree != kNone) return first->tree == second->tree;
+  core_->collect(a, core_->scratch);
+  return std::find(core_->scratch.begin(), core_->scratch.end(), b) != core_->scratch.end();
+}
+
+std::pmr::vector<BodyIndex> Dynamics::links_of(BodyIndex body) const {
+  std::pmr::vector<BodyIndex> all(memory_);
+  if (core_)
+    core_->collect(body, all);
+  else
+    all.push_back(body);
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+std::pmr::vector<JointIndex> Dynamics::joints_of(BodyIndex body) const {
+  std::pmr::vector<JointIndex> all(memory_);
+  if (!core_) return all;
+  for (const BodyIndex link : links_of(body)) {
+    if (const BodyEntry* known = core_->find(link)) all.insert(all.end(), known->joints.begin(), known->joints.end());
+  }
+  std::sort(all.begin(), all.end(),
+            [this](JointIndex x, JointIndex y) { return core_->joints[x].serial < core_->joints[y].serial; });
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+void Dynamics::move_assembly(BodyIndex body, const Vector3& location, const Quaternion& orientation) {
+  const double norm = orientation.norm();
+  if (!location.allFinite()) throw Error(ErrorCode::Argument, "location must be finite");
+  if (!std::isfinite(norm) || !(norm > 0))
+    throw Error(ErrorCode::Argument, "orientation must be a finite quaternion of non-zero length");
+  if (!core_ || !core_->find(body)) {
+    bodies_->set_location(body, location);
+    bodies_->set_orientation(body, orientation);
+    return;
+  }
+  Core& c = *core_;
+  c.take_changes();
+  const BodyEntry& known = *c.find(body);
+  if (known.tree == kNone) {
+    bodies_->set_location(body, location);
+    bodies_->set_orientation(body, orientation);
+    return;
+  }
+  c.move_tree(*c.trees[known.tree], {known.location, known.orientation}, {location, orientation.normalized()});
+  c.take_changes();
+}
+
+void Dynamics::set_assembly_velocity(BodyIndex body, const Vector3& velocity, const Vector3& spin) {
+  if (!velocity.allFinite()) throw Error(ErrorCode::Argument, "velocity must be finite");
+  if (!spin.allFinite()) throw Error(ErrorCode::Argument, "rotational velocity must be finite");
+  if (core_) core_->take_changes();
+  const BodyEntry* known = core_ ? core_->find(body) : nullptr;
+  if (!known || known->tree == kNone) {
+    bodies_->set_velocity(body, velocity);
+    bodies_->set_rotational_velocity(body, spin);
+    return;
+  }
+  Core& c = *core_;
+  Tree& tree = *c.trees[known->tree];
+  const Vector3 center = bodies_->location(body);
+  for (const TreeLink& link : tree.links) {
+    const Pose at = c.pose(link.body);
+    bodies_->set_motion(link.body, at.location, at.orientation, velocity + spin.cross(at.location - center), spin);
+  }
+  c.project_velocities(tree);
+  c.place_links(tree);
+}
+
+// --- settings of an assembly ----------------------------------------------------------------------------------------
+
+const AssemblySettings* Dynamics::Core::settings_of(BodyIndex body, bool (*wanted)(const AssemblySettings&)) {
+  if (own.empty()) return nullptr;
+  const auto mine = [&](BodyIndex one) -> const AssemblySettings* {
+    const auto found = own.find(one);
+    return found != own.end() && wanted(found->second) ? &found->second : nullptr;
+  };
+  const BodyEntry* known = find(body);
+  if (!known) return mine(body);
+  if (known->tree != kNone) {
+    const AssemblySettings* best = nullptr;
+    BodyIndex lowest = kNoBody;
+    for (const TreeLink& link : trees[known->tree]->links) {
+      if (link.body > lowest) continue;
+      if (const AssemblySettings* found = mine(link.body)) {
+        best = found;
+        lowest = link.body;
+      }
+    }
+    return best;
+  }
+  std::pmr::vector<BodyIndex> all(memory);
+  collect(body, all);
+  std::sort(all.begin(), all.end());
+  for (const BodyIndex one : all)
+    if (const AssemblySettings* found = mine(one)) return found;
+  return nullptr;
+}
+
+void Dynamics::set_self_collisions(BodyIndex body, bool on) {
+  Core& c = core();
+  c.entry(body);
+  c.own[body].has_self = true;
+  c.own[body].self_collisions = on;
+  ++c.rules;
+}
+
+bool Dynamics::self_collisions(BodyIndex body) const {
+  if (!core_) return false;
+  const AssemblySettings* found = core_->settings_of(body, [](const AssemblySettings& s) { return s.has_self; });
+  return found && found->self_collisions;
+}
+
+void Dynamics::set_self_collision_parameters(BodyIndex body, double erp, double cfm) {
+  if (!std::isfinite(erp) || erp < 0 || erp > 1)
+    throw Error(ErrorCode::Argument, fmt::format("self collision erp must be from 0 to 1, but is {}", erp));
+  if (!std::isfinite(cfm) || cfm < 0)
+    throw Error(ErrorCode::Argument, fmt::format("self collision cfm must be finite and >= 0, but is {}", cfm));
+  Core& c = core();
+  c.entry(body);
+  c.own[body].self_erp = erp;
+  c.own[body].self_cfm = cfm;
+}
+
+void Dynamics::set_accuracy(BodyIndex body, const Accuracy& accuracy) {
+  check(accuracy);
+  Core& c = core();
+  c.entry(body);
+  c.own[body].has_accuracy = true;
+  c.own[body].accuracy = accuracy;
+  c.integrators_changed = true;
+}
+
+void Dynamics::clear_accuracy(BodyIndex body) {
+  if (!core_) return;
+  const auto found = core_->own.find(body);
+  if (found == core_->own.end()) return;
+  found->second.has_accuracy = false;
+  core_->integrators_changed = true;
+}
+
+const Accuracy& Dynamics::Core::accuracy_of(BodyIndex body) {
+  const AssemblySettings* found = settings_of(body, [](const AssemblySettings& s) { return s.has_accuracy; });
+  return found ? found->accuracy : settings.accuracy;
+}
+
+const Accuracy& Dynamics::accuracy(BodyIndex body) const { return core_ ? core_->accuracy_of(body) : accuracy(); }
+
+}  // namespace breve

@@ -1,0 +1,62 @@
+// Entries of bodies: made when dynamics first has to do with one.
+#include <fmt/format.h>
+
+#include "runtime/base/error.hpp"
+#include "runtime/dynamics/island.hpp"
+
+namespace breve {
+
+Dynamics::Core::Core(std::pmr::memory_resource* where, Bodies& of)
+    : memory(where),
+      bodies(&of),
+      joints(where),
+      free_joints(where),
+      springs(where),
+      free_springs(where),
+      entry_of(where),
+      entries(where),
+      free_entries(where),
+      own(where),
+      trees(where),
+      tree_order(where),
+      clusters(where),
+      near(where),
+      slot_of(where),
+      islands(where),
+      aside(where),
+      set_of(where),
+      interventions(where),
+      impacts(where),
+      scratch(where),
+      changed(where),
+      changes(where) {}
+
+BodyEntry* Dynamics::Core::find(BodyIndex body) {
+  return body < entry_of.size() && entry_of[body] != kNone ? &entries[entry_of[body]] : nullptr;
+}
+
+const BodyEntry* Dynamics::Core::find(BodyIndex body) const { return const_cast<Core*>(this)->find(body); }
+
+BodyEntry& Dynamics::Core::entry(BodyIndex body) {
+  if (!bodies->used(body)) throw Error(ErrorCode::Argument, "there is no such body");
+  if (BodyEntry* known = find(body)) return *known;
+  if (body >= entry_of.size()) entry_of.resize(bodies->index_end(), kNone);
+  if (free_entries.capacity() <= entries.size()) free_entries.reserve(2 * entries.size() + 16);  // forget() takes none
+  std::uint32_t index;
+  if (free_entries.empty()) {
+    index = static_cast<std::uint32_t>(entries.size());
+    entries.emplace_back(memory);
+  } else {
+    index = free_entries.back();
+    free_entries.pop_back();
+  }
+  entries[index].body = body;
+  entry_of[body] = index;
+  return entries[index];
+}
+
+bool Dynamics::Core::dynamic(BodyIndex body) const {
+  return bodies->used(body) && bodies->physics(body) && bodies->kind(body) != BodyKind::Stationary;
+}
+
+}  // namespace breve

@@ -1,0 +1,205 @@
+// What scripts and hosts set in the arrays between two steps, brought into the trees: a link that was moved takes its
+// assembly along, a link whose velocity was set is struck.
+#include <Eigen/QR>
+#include <algorithm>
+
+#include "runtime/articulated/forward_dynamics.hpp"
+#include "runtime/articulated/impulse.hpp"
+#include "runtime/articulated/kinematics.hpp"
+#include "runtime/dynamics/core.hpp"
+
+namespace breve {
+
+void Dynamics::Core::note_written(BodyIndex body) {
+  BodyEntry& known = *find(body);
+  known.known = true;
+  known.location = bodies->location(body);
+  known.orientation = bodies->orientation(body);
+  known.velocity = bodies->velocity(body);
+  known.spin = bodies->rotational_velocity(body);
+}
+
+bool Dynamics::Core::note_change(BodyIndex body, std::pmr::vector<Change>& out) const {
+  const BodyEntry& known = *find(body);
+  Change change;
+  change.body = body;
+  change.pose = pose(body);
+  change.velocity = bodies->velocity(body);
+  change.spin = bodies->rotational_velocity(body);
+  change.pushed = change.velocity != known.velocity;
+  change.spun = change.spin != known.spin;
+  const bool moved =
+      change.pose.location != known.location || change.pose.orientation.coeffs() != known.orientation.coeffs();
+  if (!moved && !change.pushed && !change.spun) return false;
+  out.push_back(change);
+  return true;
+}
+
+void Dynamics::Core::sync_changes() {
+  changed.clear();
+  bodies->take_touched(changed);
+  // By index: the order in which a script set them must not matter to which trees are built first.
+  std::sort(changed.begin(), changed.end());
+  changes.clear();
+  bool late = false;  // a link whose tree is not built yet was moved
+  for (const BodyIndex body : changed) {
+    near.wake(body);
+    BodyEntry* known = find(body);
+    if (!known) continue;
+    if (known->tree == kNone) {
+      if (!needs_tree(body)) continue;
+      graph_changed = true;
+      late = late || (known->known && note_change(body, changes));
+      continue;
+    }
+    const TreeLink& link = trees[known->tree]->links[static_cast<std::size_t>(known->link)];
+    if (!dynamic(body) || !(bodies->mass_properties(body) == link.solid))
+      drop_tree(known->tree);  // what was set besides is found when it is built again
+    else
+      note_change(body, changes);
+  }
+  drop_trees_with_moved_anchors();
+  if (late) build_trees();
+  apply_changes(changes);
+}
+
+void Dynamics::Core::drop_trees_with_moved_anchors() {
+  for (std::uint32_t index = 0; index < trees.size(); ++index) {
+    if (!trees[index]) continue;
+    const auto& anchors = trees[index]->anchors;
+    const bool moved = std::any_of(anchors.begin(), anchors.end(), [this](const TreeAnchor& anchor) {
+      return !bodies->used(anchor.body) || dynamic(anchor.body) ||
+             bodies->location(anchor.body) != anchor.pose.location ||
+             bodies->orientation(anchor.body).coeffs() != anchor.pose.orientation.coeffs();
+    });
+    if (moved) drop_tree(index);
+  }
+}
+
+void Dynamics::Core::apply_changes(std::span<const Change> all) {
+  for (const Change& change : all) {
+    const BodyEntry& known = *find(change.body);
+    if (known.tree == kNone) continue;
+    // What another link's move brought here is no move of its own.
+    if (known.location != change.pose.location || known.orientation.coeffs() != change.pose.orientation.coeffs())
+      move_tree(*trees[known.tree], {known.location, known.orientation}, change.pose);
+  }
+  std::pmr::vector<std::uint32_t> done(memory);
+  for (const Change& change : all) {
+    const std::uint32_t index = find(change.body)->tree;
+    if (index == kNone || std::find(done.begin(), done.end(), index) != done.end()) continue;
+    done.push_back(index);
+    strike(*trees[index], all);
+  }
+}
+
+void Dynamics::Core::move_tree(Tree& tree, const Pose& from, const Pose& to) {
+  const Quaternion turn = (to.orientation * from.orientation.conjugate()).normalized();
+  const articulated::Body& root = tree.model.body(0);
+  if (!tree.anchored) {
+    double* q = tree.state.q.data() + root.q;
+    Eigen::Map<Vector3> place{q};
+    place = Vector3(to.location + turn * (Vector3(place) - from.location));
+    const Quaternion turned = (turn * Quaternion(q[3], q[4], q[5], q[6])).normalized();
+    q[3] = turned.w(), q[4] = turned.x(), q[5] = turned.y(), q[6] = turned.z();
+    // The velocity of a free joint is in the world's axes, and is not turned: as when a single body is turned.
+    place_links(tree);
+    return;
+  }
+  // The anchors of its joints to the world move along; a tree that a body holds cannot go anywhere.
+  if (tree.anchors.empty()) {
+    for (const TreeLink& link : tree.links) {
+      for (const JointIndex index : find(link.body)->joints) {
+        JointDescription& is = joints[index].is;
+        if (is.parent != kNoBody) continue;
+        is.parent_point = to.location + turn * (is.parent_point - from.location);
+        is.relative_rotation = (turn * is.relative_rotation).normalized();
+        is.normal = turn * is.normal;
+        is.other_axis = turn * is.other_axis;
+      }
+    }
+    // All links stand where they are to be before it is built anew.
+    const std::pmr::vector<TreeLink> links(tree.links, memory);
+    for (const TreeLink& link : links) {
+      const BodyEntry& known = *find(link.body);
+      const Vector3 location = to.location + turn * (known.location - from.location);
+      bodies->set_motion(link.body, location, (turn * known.orientation).normalized(), bodies->velocity(link.body),
+                         bodies->rotational_velocity(link.body));
+      note_written(link.body);
+    }
+    drop_tree(find(links.front().body)->tree);
+    return;
+  }
+  place_links(tree);
+}
+
+void Dynamics::Core::strike(Tree& tree, std::span<const Change> all) {
+  std::pmr::vector<const Change*> struck(memory);
+  for (const Change& change : all) {
+    const BodyEntry& known = *find(change.body);
+    if (known.tree != kNone && trees[known.tree].get() == &tree && (change.pushed || change.spun))
+      struck.push_back(&change);
+  }
+  if (struck.empty()) return;
+  constexpr std::size_t kMostSolved = 8;
+  if (struck.size() > kMostSolved) {
+    // As if all had got these velocities before the joints were closed.
+    for (const Change* change : struck) {
+      const Pose at = pose(change->body);
+      bodies->set_motion(change->body, at.location, at.orientation, change->velocity, change->spin);
+    }
+    project_velocities(tree);
+  } else {
+    solve_strike(tree, struck);
+  }
+  place_links(tree);
+}
+
+void Dynamics::Core::solve_strike(Tree& tree, std::span<const Change* const> struck) {
+  articulated::Loads none;
+  articulated::factorize(tree.model, tree.data, tree.state, none);
+  articulated::forward_kinematics(tree.model, tree.data, tree.state);
+  // A number for each component that was set: the velocity of a body's origin, its spin. Impulses act at centres of
+  // mass; what was not set is free, and nothing pushes along it.
+  struct Axis {
+    int link, axis;
+    bool angular;
+    Vector3 center, origin;
+  };
+  std::pmr::vector<Axis> axes(memory);
+  std::pmr::vector<double> wanted(memory);
+  for (const Change* change : struck) {
+    const int link = find(change->body)->link;
+    const Vector3 center = articulated::com_position(tree.model, tree.data, link), origin = tree.pose(link).location;
+    const Vector3 linear = change->velocity - tree.velocity(link), angular = change->spin - tree.data.of(link).spin;
+    for (int i = 0; i < 6; ++i) {
+      if (!(i < 3 ? change->pushed : change->spun)) continue;
+      axes.push_back({link, i % 3, i >= 3, center, origin});
+      wanted.push_back(i < 3 ? linear[i] : angular[i - 3]);
+    }
+  }
+  const auto size = static_cast<Eigen::Index>(axes.size());
+  Eigen::MatrixXd response(size, size), answers(tree.model.velocities(), size);
+  articulated::Vector change(tree.model.velocities());
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const Axis& axis = axes[static_cast<std::size_t>(i)];
+    articulated::Impulse unit{axis.link, axis.center, Vector3::Zero()};
+    (axis.angular ? unit.angular : unit.linear) = Vector3::Unit(axis.axis);
+    articulated::impulse_response(tree.model, tree.data, {&unit, 1}, change);
+    answers.col(i) = change;
+    articulated::forward_kinematics(tree.model, tree.data, {tree.state.q, change});
+    for (Eigen::Index j = 0; j < size; ++j) {
+      const Axis& seen = axes[static_cast<std::size_t>(j)];
+      const Vector3 motion = seen.angular ? Vector3(tree.data.of(seen.link).spin)
+                                          : articulated::point_velocity(tree.data, seen.link, seen.origin);
+      response(j, i) = motion[seen.axis];
+    }
+    articulated::forward_kinematics(tree.model, tree.data, tree.state);
+  }
+  // The joints may allow less than was asked: then as near as it can be.
+  const Eigen::VectorXd impulses =
+      response.completeOrthogonalDecomposition().solve(Eigen::Map<const Eigen::VectorXd>(wanted.data(), size));
+  tree.state.v += answers * impulses;
+}
+
+}  // namespace breve

@@ -1,0 +1,178 @@
+// Joint coordinates of several trees behind one another, and the powers that the ledger integrates.
+#include "runtime/dynamics/cluster.hpp"
+
+#include "runtime/articulated/forward_dynamics.hpp"
+#include "runtime/articulated/kinematics.hpp"
+
+namespace breve {
+
+namespace {
+
+using articulated::Kind;
+using articulated::Vector;
+
+articulated::Settings settings_of(const Accuracy& accuracy) {
+  articulated::Settings settings;
+  settings.tolerance.relative = accuracy.tolerance;
+  settings.implicit_joints = accuracy.implicit_joints;
+  return settings;
+}
+
+}  // namespace
+
+Cluster::Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees, const Accuracy& accuracy)
+    : trees_(trees.begin(), trees.end(), memory), accuracy_(accuracy), kinds_(memory) {
+  for (const Tree* tree : trees_) {
+    nq_ += tree->model.positions();
+    nv_ += tree->model.velocities();
+    mass_ += tree->model.mass();
+    for (const articulated::Body& body : tree->model.bodies())
+      for (int k = 0; k < articulated::velocity_count(body.type); ++k) {
+        const bool length =
+            body.type == articulated::JointType::Prismatic || (body.type == articulated::JointType::Free && k < 3);
+        kinds_.push_back(length ? Kind::Length : Kind::Angle);
+      }
+  }
+  kinds_.insert(kinds_.end(), kWorks, Kind::Length);
+  at_.q.setZero(nq_);
+  at_.v.setZero(nv_ + kWorks);
+  if (!trees_.empty()) at_.step = trees_.front()->step;
+  integrator_.emplace(*this, accuracy.scheme, settings_of(accuracy));
+}
+
+void Cluster::set_accuracy(const Accuracy& accuracy) {
+  accuracy_ = accuracy;
+  at_.step = 0;
+  integrator_.emplace(*this, accuracy.scheme, settings_of(accuracy));
+}
+
+void Cluster::begin(StageForces* forces) {
+  forces_ = forces;
+  working_ = forces != nullptr;
+  for (const Tree* tree : trees_) working_ = working_ || tree->driven;
+}
+
+void Cluster::step(double time, double h) {
+  int q = 0, v = 0;
+  for (const Tree* tree : trees_) {
+    at_.q.segment(q, tree->state.q.size()) = tree->state.q;
+    at_.v.segment(v, tree->state.v.size()) = tree->state.v;
+    q += tree->model.positions();
+    v += tree->model.velocities();
+  }
+  at_.v.tail<kWorks>().setZero();
+  at_.t = time;
+  current_step_ = h;
+  try {
+    integrator_->step(at_, h);
+  } catch (...) {
+    scatter(at_.q, at_.v);  // the step leaves `at_` as it was; the trees' states are the last stage's
+    throw;
+  }
+  scatter(at_.q, at_.v);
+  for (int i = 0; i < kWorks; ++i) works_[static_cast<std::size_t>(i)] = at_.v[nv_ + i] * mass_;
+}
+
+void Cluster::scatter(const Vector& q, const Vector& v) {
+  int from_q = 0, from_v = 0;
+  for (Tree* tree : trees_) {
+    tree->state.q = q.segment(from_q, tree->model.positions());
+    tree->state.v = v.segment(from_v, tree->model.velocities());
+    from_q += tree->model.positions();
+    from_v += tree->model.velocities();
+  }
+}
+
+void Cluster::acceleration(double t, const Vector& q, const Vector& v, double step, Vector& a) {
+  scatter(q, v);
+  if (forces_) {
+    forces_->aim();
+    if (forces_->adds())
+      for (Tree* tree : trees_) articulated::forward_kinematics(tree->model, tree->data, tree->state);
+    forces_->add(t);
+  }
+  int from = 0;
+  Powers powers;
+  for (Tree* tree : trees_) {
+    const int n = tree->model.velocities();
+    a.segment(from, n) = articulated::forward_dynamics(tree->model, tree->data, tree->state, tree->loads, step);
+    if (tree->driven) add_powers(*tree, step, v.data() + from, a.data() + from, powers);
+    from += n;
+  }
+  a.tail<kWorks>().setZero();
+  if (!working_) return;
+  if (forces_) {
+    powers.script += forces_->script_power();
+    powers.drag += forces_->drag_power();
+  }
+  a.tail<kWorks>() << powers.motor / mass_, powers.script / mass_, powers.drag / mass_;
+}
+
+void Cluster::add_powers(const Tree& tree, double step, const double* v, const double* a, Powers& powers) const {
+  // What acts over a semi-implicit step does its work at the mean of the velocities before and after.
+  const articulated::Loads& loads = tree.loads;
+  const double half = accuracy_.scheme == articulated::Scheme::SemiImplicitEuler ? 0.5 * current_step_ : 0;
+  const double lag = articulated::motor_lag(loads, step);
+  for (int i = 0; i < tree.model.size(); ++i) {
+    const articulated::Body& body = tree.model.body(i);
+    const articulated::Drive& drive = loads.drives[static_cast<std::size_t>(i)];
+    for (int k = body.v; k < body.v + articulated::velocity_count(body.type); ++k) {
+      const double mean = v[k] + half * a[k];
+      if (loads.tau.size()) powers.script += tree.set_tau[k] * mean;
+      powers.drag += drive.damping * (v[k] + step * a[k]) * mean;
+      powers.drag += tree.links[static_cast<std::size_t>(i)].slow_damping * v[k] * mean;
+      if (!(drive.motor_gain > 0)) continue;
+      const bool held = tree.data.at_limit[static_cast<std::size_t>(i)] != 0;
+      const double torque = held ? tree.data.held[k] : drive.motor_gain * (loads.motor_speed[k] - v[k] - lag * a[k]);
+      powers.motor += torque * mean;
+    }
+  }
+}
+
+// The first tree's numbers begin where the whole vector's do, so that one tree alone needs no copies.
+
+void Cluster::move(const Vector& q, const Vector& d, Vector& out) {
+  if (trees_.size() == 1) return articulated::move(trees_.front()->model, q, d, out);
+  int from_q = 0, from_v = 0;
+  for (Tree* tree : trees_) {
+    const int nq = tree->model.positions(), nv = tree->model.velocities();
+    tree->work_q = q.segment(from_q, nq);
+    tree->work_v = d.segment(from_v, nv);
+    articulated::move(tree->model, tree->work_q, tree->work_v, tree->work_q);
+    out.segment(from_q, nq) = tree->work_q;
+    from_q += nq;
+    from_v += nv;
+  }
+}
+
+void Cluster::rate_of_move(const Vector& d, const Vector& v, Vector& out) {
+  if (trees_.size() == 1) {
+    articulated::rate_of_move(trees_.front()->model, d, v, out);
+  } else {
+    int from = 0;
+    out = v;
+    for (Tree* tree : trees_) {
+      const int nv = tree->model.velocities();
+      tree->work_v = d.segment(from, nv);
+      tree->work_u = v.segment(from, nv);
+      articulated::rate_of_move(tree->model, tree->work_v, tree->work_u, tree->work_w);
+      out.segment(from, nv) = tree->work_w;
+      from += nv;
+    }
+  }
+  out.tail<kWorks>().setZero();  // works have no positions
+}
+
+void Cluster::bend_to_cayley(Vector& d) {
+  if (trees_.size() == 1) return articulated::bend_to_cayley(trees_.front()->model, d);
+  int from = 0;
+  for (Tree* tree : trees_) {
+    const int nv = tree->model.velocities();
+    tree->work_v = d.segment(from, nv);
+    articulated::bend_to_cayley(tree->model, tree->work_v);
+    d.segment(from, nv) = tree->work_v;
+    from += nv;
+  }
+}
+
+}  // namespace breve

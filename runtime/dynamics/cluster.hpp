@@ -1,0 +1,86 @@
+// Trees that springs tie together, as one system for an integrator: joint coordinates of all, and as further
+// coordinates the works that the energy ledger keeps, so that they are integrated by the same stages as the motion.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "runtime/articulated/integrator.hpp"
+#include "runtime/dynamics/accuracy.hpp"
+#include "runtime/dynamics/tree.hpp"
+
+namespace breve {
+
+/// What the forces of a cluster depend on beside its own numbers; asked at every stage.
+class StageForces {
+ public:
+  virtual ~StageForces() = default;
+  /// Sets what depends on the trees' states, which are the stage's: motors' speeds, forces of joints that turn with
+  /// them.
+  virtual void aim() = 0;
+  /// True if add() has something to do: the trees' links must then be placed.
+  virtual bool adds() const = 0;
+  /// Adds what springs, contacts and scripts do to wrenches of the trees' links, which stand where the stage is if
+  /// adds() says so.
+  virtual void add(double time) = 0;
+  /// Power of scripts' forces and of dampers among these, W; after add().
+  virtual double script_power() const = 0;
+  virtual double drag_power() const = 0;
+};
+
+class Cluster final : public articulated::System, public InMemory {
+ public:
+  /// `trees` outlive the cluster. It takes its state from them and gives it back.
+  Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees, const Accuracy& accuracy);
+
+  std::span<Tree* const> trees() const { return trees_; }
+  const Accuracy& accuracy() const { return accuracy_; }
+  void set_accuracy(const Accuracy& accuracy);  // makes another integrator
+
+  /// Call after the loads of the trees were set and before the first step() that uses them.
+  void begin(StageForces* forces);
+  /// Moves the trees' states from `time` by h seconds, without contacts. Error{Numeric} leaves them as they were.
+  void step(double time, double h);
+
+  // Of the last step.
+  const articulated::StepCount& count() const { return integrator_->count(); }
+  double motor_work() const { return works_[0]; }   // J
+  double script_work() const { return works_[1]; }  // J, of forces on joints and bodies
+  double drag_loss() const { return works_[2]; }    // J
+  double next_step() const { return at_.step; }
+  void set_next_step(double step) { at_.step = step; }
+
+  // --- System
+  int positions() const override { return nq_; }
+  int velocities() const override { return nv_ + kWorks; }
+  articulated::Kind kind(int velocity) const override { return kinds_[static_cast<std::size_t>(velocity)]; }
+  void acceleration(double t, const articulated::Vector& q, const articulated::Vector& v, double step,
+                    articulated::Vector& a) override;
+  void move(const articulated::Vector& q, const articulated::Vector& d, articulated::Vector& out) override;
+  void rate_of_move(const articulated::Vector& d, const articulated::Vector& v, articulated::Vector& out) override;
+  void bend_to_cayley(articulated::Vector& d) override;
+
+ private:
+  static constexpr int kWorks = 3;
+  struct Powers {
+    double motor = 0, script = 0, drag = 0;
+  };
+  void add_powers(const Tree& tree, double step, const double* v, const double* a, Powers& powers) const;
+  void scatter(const articulated::Vector& q, const articulated::Vector& v);
+
+  std::pmr::vector<Tree*> trees_;
+  Accuracy accuracy_;
+  int nq_ = 0, nv_ = 0;
+  double mass_ = 0;       // kg: works are kept per kg, so that step control sees numbers of ordinary size
+  bool working_ = false;  // some power is not zero
+  StageForces* forces_ = nullptr;
+  std::pmr::vector<articulated::Kind> kinds_;
+  std::array<double, kWorks> works_{};
+  articulated::Instant at_;
+  double current_step_ = 0;
+  std::optional<articulated::Integrator> integrator_;
+};
+
+}  // namespace breve

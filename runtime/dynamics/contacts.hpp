@@ -1,0 +1,112 @@
+// Which bodies are near one another: boxes in a tree that is kept from step to step, and pairs in the order of
+// creation, each with what it remembers of its contact.
+#pragma once
+
+#include <memory_resource>
+#include <vector>
+
+#include "runtime/contact/law.hpp"
+#include "runtime/dynamics/dynamics.hpp"
+#include "runtime/solid/manifold.hpp"
+#include "runtime/space/box_tree.hpp"
+
+namespace breve {
+
+/// The impulse of a contact point in the last sub-step, to start from in the next.
+struct WarmPoint {
+  std::uint32_t feature = 0;
+  Vector3 impulse = Vector3::Zero();  // world axes
+};
+
+struct NearPair {
+  BodyIndex a = kNoBody, b = kNoBody;  // a was created earlier
+  std::uint64_t serial_a = 0, serial_b = 0;
+  bool pushes = false;    // contacts of these two are solved
+  bool handled = false;   // a handler wants to know
+  bool touching = false;  // at the end of the last sub-step
+  bool reported = false;  // the handler was called in this step
+  PairCache cache;
+  contact::Law law;
+  int warm_count = 0;
+  std::array<WarmPoint, 2 * kMostPoints> warm;
+};
+
+class NearPairs {
+ public:
+  explicit NearPairs(std::pmr::memory_resource* memory);
+
+  /// Brings boxes and pairs up to date for a step of h seconds.
+  /// @param rules  grows when an answer of `wanted` may have changed
+  template <class Wanted>
+  void update(const Bodies& bodies, const DynamicsClient& client, const Vector3& gravity, double h, std::uint64_t rules,
+              const Wanted& wanted) {
+    refresh(bodies, client, gravity, h);
+    if (rules != seen_rules_)
+      for (NearPair& pair : pairs_) wanted(pair);
+    seen_rules_ = rules;
+    merge();
+    for (const std::size_t index : fresh_) wanted(pairs_[index]);
+    drop_far();
+  }
+  void forget(BodyIndex body);
+
+  std::pmr::vector<NearPair>& all() { return pairs_; }
+  const std::pmr::vector<NearPair>& all() const { return pairs_; }
+  NearPair* find(BodyIndex a, BodyIndex b);
+  /// True if the boxes of what the two may reach in this step meet.
+  bool near(const NearPair& pair) const;
+  std::uint64_t serial(BodyIndex body) const { return proxies_[proxy_of_[body]].serial; }
+  /// Bodies in the order of creation: those that forces move.
+  const std::pmr::vector<BodyIndex>& movers() const { return movers_; }
+
+  /// Of each body that forces move: how long it has been still, s, and whether it sleeps.
+  struct Rest {
+    double still = 0;
+    bool asleep = false;
+  };
+  Rest& rest(BodyIndex body) { return proxies_[proxy_of_[body]].rest; }
+  const Rest* find_rest(BodyIndex body) const {
+    return body < proxy_of_.size() && proxy_of_[body] != kNoProxy ? &proxies_[proxy_of_[body]].rest : nullptr;
+  }
+  void wake(BodyIndex body) {
+    if (body < proxy_of_.size() && proxy_of_[body] != kNoProxy) proxies_[proxy_of_[body]].rest = {};
+  }
+  std::size_t bytes() const;
+  void save(ByteWriter& out) const;
+  void load(ByteReader& in, const Bodies& bodies);
+  void hash(Hasher& hasher) const;
+
+ private:
+  using ProxyIndex = std::uint32_t;
+  static constexpr ProxyIndex kNoProxy = 0xffffffffU;
+  struct Proxy {
+    BodyIndex body = kNoBody;
+    std::uint64_t serial = 0;
+    BoxTree::Leaf leaf = BoxTree::kNoLeaf;
+    bool moves = false;
+    Rest rest;
+    Vector3 location = Vector3::Zero();  // of a body that does not move by itself, when its box was found
+    Quaternion orientation{1, 0, 0, 0};
+    const Shape* shape = nullptr;
+    Eigen::AlignedBox3d box;  // of what it may reach in this step
+  };
+  void gather(const Bodies& bodies, const DynamicsClient& client);
+  void refresh(const Bodies& bodies, const DynamicsClient& client, const Vector3& gravity, double h);
+  void enter(const Bodies& bodies, const DynamicsClient& client, BodyIndex body);
+  void leave(ProxyIndex index);
+  void update_box(const Bodies& bodies, Proxy& proxy, const Vector3& gravity, double h);
+  void seek(ProxyIndex index);
+  void merge();
+  void drop_far();
+
+  BoxTree tree_;
+  std::pmr::vector<Proxy> proxies_;
+  std::pmr::vector<ProxyIndex> free_, proxy_of_;
+  std::pmr::vector<BodyIndex> movers_;
+  std::pmr::vector<NearPair> pairs_, new_pairs_;
+  std::pmr::vector<std::size_t> fresh_;
+  std::pmr::vector<std::uint32_t> found_;
+  std::uint64_t seen_rules_ = 0, seen_bodies_ = ~std::uint64_t{0};
+};
+
+}  // namespace breve

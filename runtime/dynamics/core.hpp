@@ -1,0 +1,254 @@
+// The inside of Dynamics: tables of joints and springs, what is known of each body, trees, settings. One idea a file
+// works on it: joints, assemblies, trees, motion, ledger, save.
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "runtime/dynamics/cluster.hpp"
+#include "runtime/dynamics/contacts.hpp"
+#include "runtime/dynamics/dynamics.hpp"
+#include "runtime/dynamics/rings.hpp"
+#include "runtime/dynamics/tree.hpp"
+
+namespace breve {
+
+inline constexpr std::uint32_t kNone = 0xffffffffU;
+
+struct JointEntry {
+  bool used = false;
+  ObjectId owner;
+  JointDescription is;
+  JointDrive drive;
+  std::uint64_t serial = 0;  // in the order of creation
+  std::uint32_t tree = kNone;
+  int link = -1;         // of the tree, whose inboard joint this is; -1: none (a ring, or not built yet)
+  bool flipped = false;  // the tree goes from the child to the parent
+  bool ring = false;
+  JointVector position = Vector3::Zero();  // as last known: whole turns are counted from here
+};
+
+struct SpringEntry {
+  bool used = false;
+  ObjectId owner;
+  SpringDescription is;
+  double force = 0;  // N, in the last sub-step
+};
+
+/// What dynamics knows of a body beside the arrays; only bodies that it has to do with have one.
+struct BodyEntry {
+  BodyIndex body = kNoBody;
+  std::uint32_t tree = kNone;  // that it is a link of; kNone: free
+  int link = -1;
+  bool force_method = false;
+  bool known = false;  // the four below are what dynamics wrote last
+  Vector3 location = Vector3::Zero(), velocity = Vector3::Zero(), spin = Vector3::Zero();
+  Quaternion orientation{1, 0, 0, 0};
+  double step = 0;                      // s, that step control would try next (a free body)
+  std::pmr::vector<JointIndex> joints;  // in the order of creation
+  std::uint32_t ties = 0;               // springs that hold it
+  std::uint64_t mark = 0;               // of the last search that came here
+
+  explicit BodyEntry(std::pmr::memory_resource* memory) : joints(memory) {}
+};
+
+/// What a spring between bodies does now.
+struct TiePull {
+  Vector3 direction = Vector3::Zero();  // unit, from a to b
+  double force = 0;                     // N, positive pulls together
+  double energy = 0;                    // J, stored
+  double loss = 0;                      // W, in its damper
+};
+/// @param way   from the point on a to the point on b, m
+/// @param rate  of that, m/s
+TiePull pull_of(const SpringDescription& is, const Vector3& way, const Vector3& rate);
+
+struct AssemblySettings {
+  bool has_self = false, self_collisions = false;
+  double self_erp = 0, self_cfm = 0;
+  bool has_accuracy = false;
+  Accuracy accuracy;
+};
+
+struct WorldSettings {
+  Vector3 gravity{0, -9.81, 0};
+  Accuracy accuracy = accuracy_of(Rung::Balanced);
+  GuardMode guard = GuardMode::Rest;
+  bool sleeping = false;
+  int fast_contacts = 0;
+  double erp = 0.1, cfm = 1e-6;
+  int workers = 1;
+};
+
+/// What a script or host set in the arrays of a body that dynamics had written.
+struct Change {
+  BodyIndex body = kNoBody;
+  Pose pose;
+  Vector3 velocity = Vector3::Zero(), spin = Vector3::Zero();
+  bool pushed = false, spun = false;  // which of these it set
+};
+
+/// Trees that springs tie together: what one integrator moves.
+struct ClusterEntry : InMemory {
+  explicit ClusterEntry(std::pmr::memory_resource* memory) : trees(memory), ties(memory) {}
+  std::pmr::vector<std::uint32_t> trees;  // in their order
+  std::pmr::vector<SpringIndex> ties;     // in the order of their indices
+  std::unique_ptr<Cluster> system;
+};
+
+class Island;
+
+struct Dynamics::Core : InMemory {
+  Core(std::pmr::memory_resource* memory, Bodies& bodies);
+
+  std::pmr::memory_resource* memory;
+  Bodies* bodies;
+  WorldSettings settings;
+
+  std::pmr::vector<JointEntry> joints;
+  std::pmr::vector<JointIndex> free_joints;
+  std::uint64_t next_serial = 0;
+  std::pmr::vector<SpringEntry> springs;
+  std::pmr::vector<SpringIndex> free_springs;
+
+  std::pmr::vector<std::uint32_t> entry_of;  // by body; kNone: no entry
+  std::pmr::vector<BodyEntry> entries;
+  std::pmr::vector<std::uint32_t> free_entries;
+  std::pmr::map<BodyIndex, AssemblySettings> own;  // by body
+
+  std::pmr::vector<std::unique_ptr<Tree>> trees;             // null: a free place
+  std::pmr::vector<std::uint32_t> tree_order;                // by the serial of their first joint
+  std::pmr::vector<std::unique_ptr<ClusterEntry>> clusters;  // in the order of their first tree
+  bool graph_changed = false;                                // some body's tree is to be built anew
+  bool clusters_changed = false;                             // trees or springs between them changed
+  bool integrators_changed = false;                          // the accuracy of something changed
+  bool loading = false;                                      // trees take their numbers from an image
+  std::uint64_t rules = 0;  // grows when the answer may change whether two bodies push each other
+
+  NearPairs near;
+  std::pmr::vector<int> slot_of;                      // by body: of a free one, in its island
+  std::pmr::vector<std::unique_ptr<Island>> islands;  // as many as were ever needed at once
+  std::size_t island_count = 0;
+  std::pmr::vector<std::uint8_t> aside;    // by body; empty: all move
+  std::pmr::vector<std::uint32_t> set_of;  // by body: for finding islands
+
+  std::uint64_t iteration = 0;
+  std::uint64_t sub_step = 0;  // since the beginning, for force methods
+  DynamicsCounters counters;
+  std::pmr::vector<Intervention> interventions;
+  std::pmr::vector<Impact> impacts;
+  Energy account;  // works and losses of all since the ledger began
+  std::pmr::vector<BodyIndex> scratch, changed;
+  std::pmr::vector<Change> changes;
+  std::uint64_t search = 0;  // the number of the last one
+
+  // bodies.cpp
+  BodyEntry& entry(BodyIndex body);
+  BodyEntry* find(BodyIndex body);
+  const BodyEntry* find(BodyIndex body) const;
+  bool dynamic(BodyIndex body) const;  // physics-enabled and not Stationary
+  /// And not set aside while the rest of a step is taken by others.
+  bool moves_now(BodyIndex body) const {
+    return dynamic(body) && (aside.empty() || (body < aside.size() && !aside[body]));
+  }
+  std::uint64_t structure() const {
+    return bodies->revision() + rules + (graph_changed ? 1 : 0) + (clusters_changed ? 1 : 0);
+  }
+  Pose pose(BodyIndex body) const { return {bodies->location(body), bodies->orientation(body)}; }
+
+  // joints.cpp
+  JointEntry& at(JointIndex joint);
+  const JointEntry& at(JointIndex joint) const;
+  void check(const JointDescription& description) const;
+  void place_child(JointEntry& joint);
+  void detach(JointIndex joint);
+  void note_joined(JointIndex joint);
+  JointReaction react(const JointEntry& joint);
+  /// Bodies connected with `body` through joints that hold, itself first; breadth first in the order of joints.
+  void collect(BodyIndex body, std::pmr::vector<BodyIndex>& out);
+  bool held_by_world(BodyIndex body);
+  void move_rigidly(std::span<const BodyIndex> some, const Pose& from, const Pose& to);
+  void touch_tree(BodyIndex body);  // the body's tree is to be built anew
+
+  // assemblies.cpp
+  bool jointed(BodyIndex a, BodyIndex b) const;
+  /// Of the first body of the assembly, by index, whose settings are `wanted`; null if there is none.
+  const AssemblySettings* settings_of(BodyIndex body, bool (*wanted)(const AssemblySettings&));
+  const Accuracy& accuracy_of(BodyIndex body);
+
+  // ties.cpp
+  SpringEntry& tie_at(SpringIndex spring);
+
+  // trees.cpp
+  bool needs_tree(BodyIndex body) const;
+  void build_trees();
+  void drop_tree(std::uint32_t tree);
+  void build_tree(std::span<const BodyIndex> component);
+  void read_state(Tree& tree) const;
+  std::pair<Quaternion, Vector3> between(const JointDescription& is) const;  // the child as seen from the parent
+  void project_velocities(Tree& tree);
+  void place_links(Tree& tree);  // forward kinematics, then write_back
+  void write_back(Tree& tree);   // to the arrays, after forward kinematics
+
+  JointVector read_position(const JointEntry& joint) const;
+  JointVector read_velocity(const JointEntry& joint) const;
+
+  // loads.cpp
+  static bool has_limits(const JointEntry& joint);
+  void measure_motors(Tree& tree);                                 // after factorize
+  void set_loads(Tree& tree, const Accuracy& accuracy, double h);  // for steps of at most h
+  void aim(Tree& tree) const;                                      // motors and joint forces, at the tree's state
+
+  // motion.cpp
+  void build_clusters();
+
+  // step.cpp
+  void advance(DynamicsClient& client, double start, double h);
+  bool pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client);
+  void find_islands();
+  void run(DynamicsClient& client, double start, double h, int depth);
+  void run_only(DynamicsClient& client, double start, double h, int depth, std::span<const BodyIndex> bodies);
+  void report_lasting(DynamicsClient& client, double moment);
+  bool sleep_through(Island& island);
+  void note_rest(Island& island, double h);
+  void take_result(Island& island);
+  ~Core();
+  void abandon();
+  void forget(BodyIndex body);
+  std::size_t bytes() const;
+
+  // rings.cpp
+  RingRows ring_rows(const Tree& tree, const JointDescription& is) const;
+
+  // ledger.cpp
+  Energy energy_of(Tree& tree) const;
+  double joint_springs(Tree& tree) const;
+  double tie_energy_in(const SpringDescription& is) const;
+  double tie_energy(const SpringDescription& is) const;
+  Energy free_energy(BodyIndex body) const;
+  void add_stored(Energy& sum);
+
+  // save.cpp
+  void save(ByteWriter& out) const;
+  void save_tree(ByteWriter& out, const Tree& tree) const;
+  void load(ByteReader& in);
+  void join_loaded();
+  std::uint32_t load_tree(ByteReader& in);  // which
+  void hash(Hasher& hasher) const;
+
+  // changes.cpp
+  void sync_changes();  // trees that there are, with what was set in the arrays
+  void take_changes() {
+    sync_changes();
+    if (graph_changed) build_trees();
+  }
+  void note_written(BodyIndex body);  // the arrays hold what dynamics knows
+  void move_tree(Tree& tree, const Pose& from, const Pose& to);
+  bool note_change(BodyIndex body, std::pmr::vector<Change>& out) const;  // false if the arrays hold what was written
+  void apply_changes(std::span<const Change> all);
+  void drop_trees_with_moved_anchors();
+  void strike(Tree& tree, std::span<const Change> all);
+  void solve_strike(Tree& tree, std::span<const Change* const> struck);
+};
+
+}  // namespace breve

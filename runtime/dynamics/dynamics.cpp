@@ -1,0 +1,238 @@
+// The face: settings, questions, and the world's side. What does the work is in the files that README.md lists.
+#include "runtime/dynamics/dynamics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/base/error.hpp"
+#include "runtime/dynamics/island.hpp"
+#include "runtime/dynamics/joint_frames.hpp"
+
+namespace breve {
+
+namespace {
+
+const WorldSettings kSettings{};
+const DynamicsCounters kNoCounters{};
+
+void need_range(std::string_view property, double value, double low, double high) {
+  if (!(value >= low && value <= high))
+    throw Error(ErrorCode::Argument, fmt::format("{} must be from {} to {}, but is {}", property, low, high, value));
+}
+
+}  // namespace
+
+Dynamics::Dynamics(std::pmr::memory_resource* memory, Bodies& bodies) : memory_(memory), bodies_(&bodies) {}
+Dynamics::~Dynamics() = default;
+
+Dynamics::Core& Dynamics::core() {
+  if (!core_) core_ = make_in<Core>(memory_, memory_, *bodies_);
+  return *core_;
+}
+
+void Dynamics::rebind(Bodies& bodies) {
+  bodies_ = &bodies;
+  if (core_) core_->bodies = &bodies;
+}
+
+// --- positions of joints --------------------------------------------------------------------------------------------
+
+JointVector Dynamics::position(JointIndex joint) const {
+  this->joint(joint);
+  core_->take_changes();
+  return core_->read_position(core_->at(joint));
+}
+
+JointVector Dynamics::velocity(JointIndex joint) const {
+  this->joint(joint);
+  core_->take_changes();
+  return core_->read_velocity(core_->at(joint));
+}
+
+namespace {
+void need_finite(const JointVector& value, std::string_view what) {
+  if (!value.allFinite()) throw Error(ErrorCode::Argument, fmt::format("{} of a joint must be finite", what));
+}
+void need_in_tree(const JointEntry& joint) {
+  if (joint.link < 0)
+    throw Error(ErrorCode::Argument,
+                fmt::format("a {} joint that closes a ring cannot be put somewhere: the other joints "
+                            "of the ring decide where it is",
+                            name_of(joint.is.kind)));
+}
+}  // namespace
+
+void Dynamics::set_position(JointIndex joint, const JointVector& position) {
+  need_finite(position, "the position");
+  this->joint(joint);
+  Core& c = *core_;
+  c.take_changes();
+  const JointEntry& entry = c.at(joint);
+  need_in_tree(entry);
+  Tree& tree = *c.trees[entry.tree];
+  put_joint_position(entry.is, entry.flipped, position, tree.state.q.data() + tree.model.body(entry.link).q);
+  c.place_links(tree);
+}
+
+void Dynamics::set_velocity(JointIndex joint, const JointVector& velocity) {
+  need_finite(velocity, "the velocity");
+  this->joint(joint);
+  Core& c = *core_;
+  c.take_changes();
+  const JointEntry& entry = c.at(joint);
+  need_in_tree(entry);
+  Tree& tree = *c.trees[entry.tree];
+  const articulated::Body& body = tree.model.body(entry.link);
+  put_joint_velocity(entry.is, entry.flipped, tree.state.q.data() + body.q, velocity, tree.state.v.data() + body.v);
+  c.place_links(tree);
+}
+
+void Dynamics::set_ball(JointIndex joint, const Quaternion& turn, const Vector3& spin) {
+  const double norm = turn.norm();
+  if (!std::isfinite(norm) || !(norm > 0) || !spin.allFinite())
+    throw Error(ErrorCode::Argument, "the turn and spin of a ball joint must be finite, the turn not zero");
+  this->joint(joint);
+  Core& c = *core_;
+  c.take_changes();
+  const JointEntry& entry = c.at(joint);
+  if (entry.is.kind != JointKind::Ball) throw Error(ErrorCode::Argument, "only a ball joint has a turn as a whole");
+  need_in_tree(entry);
+  Tree& tree = *c.trees[entry.tree];
+  const articulated::Body& body = tree.model.body(entry.link);
+  put_ball(entry.is, entry.flipped, turn.normalized(), spin, tree.state.q.data() + body.q,
+           tree.state.v.data() + body.v);
+  c.place_links(tree);
+}
+
+// --- settings -------------------------------------------------------------------------------------------------------
+
+void Dynamics::set_gravity(const Vector3& gravity) {
+  if (!gravity.allFinite()) throw Error(ErrorCode::Argument, "gravity must be finite");
+  core().settings.gravity = gravity;
+}
+const Vector3& Dynamics::gravity() const { return core_ ? core_->settings.gravity : kSettings.gravity; }
+
+void Dynamics::set_accuracy(Rung rung) { set_accuracy(accuracy_of(rung)); }
+void Dynamics::set_accuracy(const Accuracy& accuracy) {
+  check(accuracy);
+  core().settings.accuracy = accuracy;
+  core().integrators_changed = true;
+}
+const Accuracy& Dynamics::accuracy() const { return core_ ? core_->settings.accuracy : kSettings.accuracy; }
+
+void Dynamics::set_guard(GuardMode mode) { core().settings.guard = mode; }
+GuardMode Dynamics::guard() const { return core_ ? core_->settings.guard : kSettings.guard; }
+
+void Dynamics::set_sleeping(bool on) { core().settings.sleeping = on; }
+bool Dynamics::sleeping() const { return core_ && core_->settings.sleeping; }
+
+void Dynamics::set_fast_contacts(int iterations) {
+  need_range("the number of iterations", iterations, 0, 1e6);
+  core().settings.fast_contacts = iterations;
+}
+
+void Dynamics::set_softness(double erp, double cfm) {
+  need_range("erp", erp, 0, 1);
+  if (!std::isfinite(cfm) || cfm < 0)
+    throw Error(ErrorCode::Argument, fmt::format("cfm must be finite and >= 0, but is {}", cfm));
+  core().settings.erp = erp;
+  core().settings.cfm = cfm;
+}
+double Dynamics::erp() const { return core_ ? core_->settings.erp : kSettings.erp; }
+double Dynamics::cfm() const { return core_ ? core_->settings.cfm : kSettings.cfm; }
+
+void Dynamics::set_workers(int workers) {
+  need_range("the number of workers", workers, 1, 1024);
+  core().settings.workers = workers;
+}
+int Dynamics::workers() const { return core_ ? core_->settings.workers : 1; }
+
+void Dynamics::set_force_method(BodyIndex body, bool on) {
+  if (!core_ && !on) return;
+  Core& c = core();
+  BodyEntry& known = c.entry(body);
+  if (known.force_method == on) return;
+  known.force_method = on;
+  if (known.tree == kNone)
+    c.graph_changed = c.graph_changed || on;
+  else if (!c.needs_tree(body))
+    c.drop_tree(known.tree);
+}
+bool Dynamics::force_method(BodyIndex body) const {
+  const BodyEntry* known = core_ ? core_->find(body) : nullptr;
+  return known && known->force_method;
+}
+
+// --- questions ------------------------------------------------------------------------------------------------------
+
+const DynamicsCounters& Dynamics::counters() const { return core_ ? core_->counters : kNoCounters; }
+
+std::span<const Intervention> Dynamics::interventions() const {
+  return core_ ? std::span<const Intervention>(core_->interventions) : std::span<const Intervention>();
+}
+
+std::span<const Impact> Dynamics::impacts() const {
+  return core_ ? std::span<const Impact>(core_->impacts) : std::span<const Impact>();
+}
+
+Dynamics::Census Dynamics::census() const {
+  Census census;
+  census.bodies = bodies_->rigid();
+  if (!core_) return census;
+  const auto count = [](std::size_t& number, ObjectId& first, ObjectId owner) {
+    if (number++ == 0) first = owner;
+  };
+  for (const JointEntry& joint : core_->joints) {
+    if (!joint.used) continue;
+    count(census.joints, census.first_joint, joint.owner);
+    if (Core::has_limits(joint)) count(census.limits, census.first_limit, joint.owner);
+    if (joint.drive.strength_limit > 0) count(census.motors, census.first_motor, joint.owner);
+    if (joint.drive.stiffness > 0) count(census.springs, census.first_spring, joint.owner);
+  }
+  for (const SpringEntry& tie : core_->springs)
+    if (tie.used) count(census.springs, census.first_spring, tie.owner);
+  for (const NearPair& pair : core_->near.all()) {
+    if (!pair.pushes) continue;
+    const ObjectId owner = bodies_->owner(pair.a);
+    count(census.pairs, census.first_pair, owner);
+    if (pair.law.static_friction > 0) count(census.rough, census.first_rough, owner);
+    if (pair.law.restitution > 0) count(census.bouncing, census.first_bouncing, owner);
+  }
+  census.asleep = core_->counters.sleeping;
+  for (const BodyEntry& entry : core_->entries)
+    if (entry.body != kNoBody && entry.force_method)
+      count(census.force_methods, census.first_force_method, bodies_->owner(entry.body));
+  return census;
+}
+
+std::size_t Dynamics::bytes() const { return core_ ? core_->bytes() : 0; }
+
+// --- the world's side -----------------------------------------------------------------------------------------------
+
+void Dynamics::begin_iteration(std::uint64_t iteration) {
+  if (!core_) return;
+  core_->iteration = iteration;
+  core_->counters = {};
+  core_->interventions.clear();
+  core_->impacts.clear();
+}
+
+void Dynamics::advance(DynamicsClient& client, double start, double h) { core().advance(client, start, h); }
+
+void Dynamics::take_changes() {
+  if (core_) core_->take_changes();
+}
+
+void Dynamics::abandon() {
+  if (core_) core_->abandon();
+}
+
+void Dynamics::forget(BodyIndex body) {
+  if (!core_) return;
+  core_->near.forget(body);
+  if (core_->find(body)) core_->forget(body);
+}
+
+}  // namespace breve

@@ -1,0 +1,48 @@
+// What becomes of a body's joints, springs and entries when it goes, and what all takes of memory.
+#include <algorithm>
+
+#include "runtime/dynamics/island.hpp"
+
+namespace breve {
+
+void Dynamics::Core::abandon() {}
+
+void Dynamics::Core::forget(BodyIndex body) {
+  BodyEntry& known = *find(body);
+  if (known.tree != kNone) drop_tree(known.tree);
+  while (!known.joints.empty()) {
+    const JointIndex joint = known.joints.back();
+    detach(joint);
+    joints[joint] = JointEntry();
+    free_joints.push_back(joint);
+  }
+  for (SpringIndex i = 0; known.ties > 0 && i < springs.size(); ++i) {
+    if (!springs[i].used || (springs[i].is.a != body && springs[i].is.b != body)) continue;
+    for (const BodyIndex end : {springs[i].is.a, springs[i].is.b}) {
+      BodyEntry& one = *find(end);
+      --one.ties;
+      if (!needs_tree(end) && one.tree != kNone) drop_tree(one.tree);
+    }
+    springs[i] = SpringEntry();
+    free_springs.push_back(i);
+    clusters_changed = true;
+  }
+  near.forget(body);
+  own.erase(body);
+  const std::uint32_t index = entry_of[body];
+  entry_of[body] = kNone;
+  entries[index] = BodyEntry(memory);
+  free_entries.push_back(index);
+}
+
+std::size_t Dynamics::Core::bytes() const {
+  std::size_t sum = sizeof(Core) + joints.capacity() * sizeof(JointEntry) + springs.capacity() * sizeof(SpringEntry) +
+                    entries.capacity() * sizeof(BodyEntry) + entry_of.capacity() * sizeof(std::uint32_t);
+  for (const auto& tree : trees)
+    if (tree)
+      sum += sizeof(Tree) + tree->reserved.bytes() + tree->links.capacity() * sizeof(TreeLink) +
+             tree->data.work.capacity() * sizeof(articulated::Work);
+  return sum;
+}
+
+}  // namespace breve

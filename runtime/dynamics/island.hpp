@@ -1,0 +1,197 @@
+// A set of bodies that may push one another within a step: what moves, which pairs are near, and the rows of contacts,
+// limits and rings. Islands know nothing of one another, so that several may be stepped at once.
+#pragma once
+
+#include "runtime/contact/impacts.hpp"
+#include "runtime/contact/solver.hpp"
+#include "runtime/dynamics/contacts.hpp"
+#include "runtime/dynamics/motion.hpp"
+#include "runtime/dynamics/stage.hpp"
+
+namespace breve {
+
+/// What an island was found to have, and what its step took; added to the world's in the order of islands.
+struct IslandResult {
+  DynamicsCounters counters;
+  Energy account;
+  std::pmr::vector<Impact> impacts;
+  std::pmr::vector<Intervention> interventions;
+  explicit IslandResult(std::pmr::memory_resource* memory) : impacts(memory), interventions(memory) {}
+};
+
+class Island {
+ public:
+  Island(Dynamics::Core& core, std::pmr::memory_resource* memory);
+
+  // --- what belongs to it, set before a step
+  void clear();
+  void add_free(BodyIndex body);
+  void add_cluster(ClusterEntry& cluster);
+  void add_pair(NearPair& pair);
+  bool empty() const { return free_.empty() && clusters_.empty(); }
+
+  /// Moves it from `start` by h seconds.
+  /// @param client  for handlers and force methods; then on the world's thread only
+  void step(DynamicsClient* client, double start, double h);
+  bool calls_out() const;  // step() needs a client
+  /// Seconds of the step that are left because a handler made or freed bodies or joints; 0: none.
+  double unfinished() const { return unfinished_; }
+  void append_bodies(std::pmr::vector<BodyIndex>& out) const;
+  /// Slow enough to sleep, all of it.
+  bool still() const;
+  void stop();   // all velocities zero
+  void write();  // to the arrays
+
+  IslandResult result;
+
+ private:
+  // Parts of the smaller body's radius: within the first, bodies that are slow rest on one another; within the second,
+  // they touch.
+  static constexpr double kSkin = 1e-3, kTouchSkin = 1e-4;
+  static constexpr double kTurnRoom = 0.02;   // of the radius, which turning may bring nearer in a sub-step
+  static constexpr double kTiny = 1e-9;       // of stored energy: round-off of sums
+  static constexpr double kLimitSkin = 1e-6;  // rad or m
+
+  struct Free {
+    BodyIndex body;
+    FreeBody now, before;
+    double next = 0, next_before = 0;
+    double v[6], free_v[6];  // velocity and spin: as the solver has them, and without its impulses
+  };
+  struct Clustered {
+    ClusterEntry* entry;
+    std::unique_ptr<Stage> stage;
+    double next_before = 0;
+  };
+  struct Treed {
+    Tree* tree;
+    articulated::State before;
+    articulated::Vector free_v, way;
+  };
+  /// What a pair is in this sub-step.
+  enum class Role : std::uint8_t { Far, Comes, Rests };
+  /// A point that touches, or nearly, as rows see it.
+  struct Touch {
+    std::uint32_t pair;
+    std::uint32_t feature;
+    Vector3 point, normal;  // world; the normal from b toward a
+    double gap;             // m, at the start of the sub-step
+    double approach;        // m/s, v_n when the sub-step began
+  };
+  /// A joint's limit as a scalar row.
+  struct Bound {
+    JointIndex joint;
+    int axis;
+    double sign;  // the gap grows with sign * position
+    double gap;   // m or rad
+    double rate;  // of the gap when the sub-step began
+    bool rests;   // it is a row; else it is to be located
+  };
+  struct Side {
+    int mover = -1;
+    Tree* tree = nullptr;
+    int link = -1;
+    Vector3 center = Vector3::Zero();
+  };
+  /// What comes first in a sub-step.
+  struct Event {
+    double time = 0;  // s after the start of the sub-step
+    int pair = -1, bound = -1;
+    bool found() const { return pair >= 0 || bound >= 0; }
+  };
+
+  // island.cpp
+  void begin(DynamicsClient* client, double h);
+  void place();  // kinematics and factors of trees, at the state now
+  void remember();
+  void restore();
+  void smooth(double time, double h);
+  void commit();  // the last smooth() counts: its works go to the account
+  Pose pose_of(BodyIndex body) const;
+  Side side_of(BodyIndex body) const;
+  Vector3 point_velocity(BodyIndex body, const Vector3& point) const;
+
+  // island_rows.cpp
+  void find_touches(double h, bool speculative);
+  void find_touches_now();
+  void find_bounds(double h);
+  void make_rows(double h, bool restitution);
+  void set_biases(double h);
+  void add_touch_row(const Touch& touch);
+  void add_bound_row(const Bound& bound);
+  void add_ring_rows(const Tree& tree);
+  double* rows_of(Tree& tree, int count);
+  void fill(Tree& tree, int link, const Vector3& point, const Vector3& axis, bool angular, double sign,
+            double* j) const;
+  void respond(Tree& tree, const double* j, double* r) const;
+  void solve(double h);
+  void load_velocities();                 // movers' v from the state
+  void store_velocities(double moved_h);  // back, and positions by what impulses changed times moved_h
+  void account_rows();
+  void keep_warm();
+
+  // island_step.cpp
+  void step_quiet(double start, double h);
+  void step_fast(double start, double h);
+  void step_located(DynamicsClient* client, double start, double h);
+  void advance_once(double time, double h);
+  Event seek(double h);
+  void refine(double time, Event& event, double h);
+  double gap_of(const Event& event, double& rate) const;
+  bool approaches() const;
+  void collide(double time);
+  void rebound(const Bound& bound);
+  void push_apart(double h);
+  void move_by_rows(std::span<contact::Row> rows, std::span<contact::ScalarRow> scalars, double h);
+  bool call(DynamicsClient& client, int pair, double moment, double left);
+  void hold_rings(double h);
+  void close_rings();
+  void place_links();
+  static Motion chord(const Pose& from, const Pose& to, double h);
+  double longest(double left) const;
+
+  // island_guard.cpp
+  void step_once(DynamicsClient* client, double start, double h);
+  bool try_step(DynamicsClient* client, double start, double h, GuardReason& reason, double& value);
+  void keep_start();
+  void back_to_start();
+  bool finite() const;
+  double stored(double* kinetic = nullptr) const;
+  BodyIndex any_body() const;
+  void intervene(GuardReason reason, GuardAction action, double time, double value);
+
+  Dynamics::Core& core_;
+  std::pmr::memory_resource* memory_;
+  Accuracy accuracy_;
+  bool accuracy_set_ = false;
+  double unfinished_ = 0;
+  IslandResult at_start_;  // of the result, for a step that is tried again
+  std::pmr::vector<FreeBody> free_start_;
+  std::pmr::vector<articulated::State> tree_start_;
+  std::pmr::vector<NearPair> pair_start_;
+  double quiet_ = 0;              // m/s: slower than this is at rest, in a sub-step of this one
+  Energy pending_;                // of the last smooth()
+  std::pmr::vector<Role> roles_;  // of pairs
+  std::pmr::vector<Free> free_;
+  std::pmr::vector<Clustered> clusters_;
+  std::pmr::vector<Treed> trees_;
+  std::pmr::vector<NearPair*> pairs_;
+  std::pmr::vector<Touch> touches_;
+  std::pmr::vector<Bound> bounds_;
+  std::pmr::vector<contact::Mover> movers_;
+  std::pmr::vector<contact::Row> rows_;
+  std::pmr::vector<contact::ScalarRow> scalars_;
+  std::pmr::vector<contact::Law> laws_;
+  std::pmr::vector<double> numbers_;  // of Jacobians
+  std::pmr::vector<Manifold> manifolds_;
+  std::pmr::vector<contact::Row> apart_;
+  std::pmr::vector<contact::ScalarRow> apart_scalars_;
+  std::pmr::vector<double> ring_errors_;
+  std::pmr::vector<Pose> start_poses_;  // of each pair's two bodies, as the sub-step began
+  std::pmr::vector<Bound> rebound_later_;
+  int hit_ = -1;                     // the pair whose impact was located, if one was just now
+  std::pmr::vector<double> before_;  // of each row: v_n, v_t1, v_t2 when the sub-step began
+  contact::Workspace workspace_;
+};
+
+}  // namespace breve

@@ -1,0 +1,212 @@
+// Which bodies may push one another in this step, and the step of each such island.
+#include <algorithm>
+#include <numeric>
+
+#include "runtime/dynamics/island.hpp"
+
+namespace breve {
+
+Dynamics::Core::~Core() = default;
+
+bool Dynamics::pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client) const {
+  return core_ && core_->pushes(a, b, client);
+}
+
+std::uint64_t Dynamics::rules() const { return core_ ? core_->rules : 0; }
+
+bool Dynamics::Core::pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client) {
+  const bool first = dynamic(a), second = dynamic(b);
+  if (!first && !second) return false;
+  if (jointed(a, b) || client.ignored(a, b)) return false;
+  const BodyEntry *x = find(a), *y = find(b);
+  const bool same = x && y && x->tree != kNone && x->tree == y->tree;
+  if (!same) return true;
+  const AssemblySettings* own = settings_of(a, [](const AssemblySettings& s) { return s.has_self; });
+  return own && own->self_collisions;
+}
+
+void Dynamics::Core::find_islands() {
+  // Sets of bodies by union-find. A tree's first link stands for the tree, a cluster's first tree for the cluster.
+  set_of.resize(bodies->index_end());
+  slot_of.resize(bodies->index_end());
+  for (const BodyIndex body : near.movers()) set_of[body] = body;
+  const auto root = [this](BodyIndex body) {
+    while (set_of[body] != body) body = set_of[body] = set_of[set_of[body]];
+    return body;
+  };
+  const auto join = [&](BodyIndex a, BodyIndex b) { set_of[root(a)] = root(b); };
+  for (const auto& cluster : clusters)
+    for (const std::uint32_t index : cluster->trees)
+      for (const TreeLink& link : trees[index]->links)
+        join(link.body, trees[cluster->trees.front()]->links.front().body);
+  for (const NearPair& pair : near.all())
+    if (pair.pushes && moves_now(pair.a) && moves_now(pair.b) && near.near(pair)) join(pair.a, pair.b);
+
+  // Islands in the order of creation of their first bodies.
+  std::size_t used = 0;
+  std::pmr::vector<std::uint32_t> island_of(bodies->index_end(), kNone, memory);
+  const auto island = [&](BodyIndex body) -> Island& {
+    std::uint32_t& index = island_of[root(body)];
+    if (index == kNone) {
+      index = static_cast<std::uint32_t>(used++);
+      if (islands.size() < used) islands.push_back(std::make_unique<Island>(*this, memory));
+      islands[index]->clear();
+    }
+    return *islands[index];
+  };
+  for (const BodyIndex body : near.movers()) {
+    if (!moves_now(body)) continue;
+    const BodyEntry* known = find(body);
+    if (known && known->tree != kNone)
+      island(body);
+    else
+      island(body).add_free(body);
+  }
+  for (const auto& cluster : clusters) island(trees[cluster->trees.front()]->links.front().body).add_cluster(*cluster);
+  for (NearPair& pair : near.all())
+    if (pair.pushes && near.near(pair)) island(dynamic(pair.a) ? pair.a : pair.b).add_pair(pair);
+  island_count = used;
+}
+
+void Dynamics::Core::advance(DynamicsClient& client, double start, double h) {
+  ++sub_step;
+  aside.clear();
+  for (NearPair& pair : near.all()) pair.reported = false;
+  run(client, start, h, 0);
+  report_lasting(client, start + h);
+}
+
+void Dynamics::Core::run(DynamicsClient& client, double start, double h, int depth) {
+  take_changes();
+  if (clusters_changed || integrators_changed) build_clusters();
+  near.update(*bodies, client, settings.gravity, h, rules + client.rules(), [&](NearPair& pair) {
+    pair.pushes = pushes(pair.a, pair.b, client);
+    pair.handled = client.handled(pair.a, pair.b);
+  });
+  const Bodies& all = *bodies;
+  for (NearPair& pair : near.all())
+    if (pair.pushes) pair.law = contact::combine(all.material(pair.a), all.material(pair.b));
+  find_islands();
+  // Islands that call nobody first: what a handler does must not pull the ground from under them.
+  std::pmr::vector<Island*> calling(memory);
+  for (std::size_t i = 0; i < island_count; ++i) {
+    Island& island = *islands[i];
+    if (sleep_through(island)) continue;
+    if (island.calls_out()) {
+      calling.push_back(&island);
+      continue;
+    }
+    island.step(nullptr, start, h);
+    note_rest(island, h);
+  }
+  for (std::size_t i = 0; i < island_count; ++i)
+    if (!islands[i]->calls_out()) take_result(*islands[i]);
+  constexpr int kDeepest = 64;  // handlers that make or free bodies, in one step
+  for (std::size_t i = 0; i < calling.size(); ++i) {
+    std::pmr::vector<BodyIndex> mine(memory), others(memory);
+    calling[i]->append_bodies(mine);
+    for (std::size_t k = i + 1; k < calling.size(); ++k) calling[k]->append_bodies(others);
+    calling[i]->step(&client, start, h);
+    const double left = calling[i]->unfinished();
+    take_result(*calling[i]);
+    if (left == 0) {
+      note_rest(*calling[i], h);
+      continue;
+    }
+    if (depth < kDeepest) {
+      run_only(client, start + (h - left), left, depth + 1, mine);
+      run_only(client, start, h, depth + 1, others);
+    }
+    return;
+  }
+}
+
+void Dynamics::Core::run_only(DynamicsClient& client, double start, double h, int depth,
+                              std::span<const BodyIndex> some) {
+  const std::pmr::vector<std::uint8_t> before(aside, memory);
+  aside.assign(bodies->index_end(), 1);
+  for (const BodyIndex body : some)
+    if (bodies->used(body)) aside[body] = 0;
+  if (!some.empty()) run(client, start, h, depth);
+  aside = before;
+}
+
+void Dynamics::Core::report_lasting(DynamicsClient& client, double moment) {
+  std::pmr::vector<std::pair<BodyIndex, BodyIndex>> touching(memory);
+  for (const NearPair& pair : near.all())
+    if (pair.pushes && pair.handled && pair.touching && !pair.reported) touching.emplace_back(pair.a, pair.b);
+  for (const auto& [a, b] : touching) {
+    NearPair* pair = near.find(a, b);
+    if (!pair || !bodies->used(a) || !bodies->used(b)) continue;
+    pair->reported = true;
+    client.impact(a, b, closest(*bodies->collision_shape(a), pose(a), *bodies->collision_shape(b), pose(b)), moment);
+  }
+}
+
+// --- sleeping -------------------------------------------------------------------------------------------------------
+
+bool Dynamics::Core::sleep_through(Island& island) {
+  if (!settings.sleeping) return false;
+  scratch.clear();
+  island.append_bodies(scratch);
+  bool all = true;
+  for (const BodyIndex body : scratch) all = all && near.rest(body).asleep;
+  if (all) {
+    counters.sleeping += scratch.size();
+    return true;
+  }
+  // One that is awake wakes the others.
+  for (const BodyIndex body : scratch) {
+    if (!near.rest(body).asleep) continue;
+    near.rest(body) = {};
+  }
+  return false;
+}
+
+void Dynamics::Core::note_rest(Island& island, double h) {
+  if (!settings.sleeping) return;
+  constexpr double kUntilSleep = 0.5;  // s
+  scratch.clear();
+  island.append_bodies(scratch);
+  const bool still = island.still();
+  bool all = still;
+  for (const BodyIndex body : scratch) {
+    NearPairs::Rest& rest = near.rest(body);
+    rest.still = still ? rest.still + h : 0;
+    all = all && rest.still >= kUntilSleep;
+  }
+  if (!all) return;
+  for (const BodyIndex body : scratch) near.rest(body).asleep = true;
+  island.stop();
+  island.write();
+}
+
+void Dynamics::Core::take_result(Island& island) {
+  const IslandResult& from = island.result;
+  const DynamicsCounters& c = from.counters;
+  counters.sub_steps += c.sub_steps;
+  counters.evaluations += c.evaluations;
+  counters.rejected += c.rejected;
+  counters.islands += c.islands;
+  counters.pairs += c.pairs;
+  counters.manifolds += c.manifolds;
+  counters.contacts += c.contacts;
+  counters.warm += c.warm;
+  counters.impacts += c.impacts;
+  counters.searches += c.searches;
+  counters.solver_iterations += c.solver_iterations;
+  counters.direct += c.direct;
+  counters.limits += c.limits;
+  counters.interventions += from.interventions.size();
+  account.motor_work += from.account.motor_work;
+  account.script_work += from.account.script_work;
+  account.drag_loss += from.account.drag_loss;
+  account.contact_loss += from.account.contact_loss;
+  account.friction_loss += from.account.friction_loss;
+  account.limit_loss += from.account.limit_loss;
+  account.residual += from.account.residual;
+  impacts.insert(impacts.end(), from.impacts.begin(), from.impacts.end());
+  interventions.insert(interventions.end(), from.interventions.begin(), from.interventions.end());
+}
+
+}  // namespace breve

@@ -1,0 +1,315 @@
+// The table of joints: making, breaking, placing the child, driving.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/articulated/forward_dynamics.hpp"
+#include "runtime/articulated/inverse_dynamics.hpp"
+#include "runtime/base/error.hpp"
+#include "runtime/dynamics/core.hpp"
+
+namespace breve {
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& what) { throw Error(ErrorCode::Argument, what); }
+
+void need_finite(const Vector3& value, std::string_view what) {
+  if (!value.allFinite())
+    refuse(fmt::format("{} must be finite, but is ({}, {}, {})", what, value.x(), value.y(), value.z()));
+}
+
+void need_finite(double value, std::string_view what) {
+  if (!std::isfinite(value)) refuse(fmt::format("{} must be finite, but is {}", what, value));
+}
+
+void need_positive(double value, std::string_view what) {
+  if (!std::isfinite(value) || value < 0) refuse(fmt::format("{} must be finite and >= 0, but is {}", what, value));
+}
+
+/// Where the child's body stands when the joint is at zero.
+Pose place_at_zero(const JointDescription& is, const Pose& parent) {
+  Pose child;
+  child.orientation = (parent.orientation * is.relative_rotation).normalized();
+  child.location = parent.location + parent.orientation * is.parent_point - child.orientation * is.child_point;
+  return child;
+}
+
+}  // namespace
+
+JointEntry& Dynamics::Core::at(JointIndex joint) {
+  if (joint >= joints.size() || !joints[joint].used) refuse("there is no such joint: it is not linked");
+  return joints[joint];
+}
+
+const JointEntry& Dynamics::Core::at(JointIndex joint) const { return const_cast<Core*>(this)->at(joint); }
+
+void Dynamics::Core::check(const JointDescription& is) const {
+  const std::string_view kind = name_of(is.kind);
+  if (static_cast<int>(is.kind) > static_cast<int>(JointKind::Ball)) refuse("there is no such kind of joint");
+  if (!bodies->used(is.child)) refuse(fmt::format("{} joint: the child is no body in the world", kind));
+  if (bodies->kind(is.child) == BodyKind::Stationary)
+    refuse(fmt::format("{} joint: the child is Stationary; make it the parent", kind));
+  if (is.parent != kNoBody && !bodies->used(is.parent))
+    refuse(fmt::format("{} joint: the parent is no body in the world", kind));
+  if (is.parent == is.child) refuse(fmt::format("{} joint: parent and child are the same body", kind));
+  need_finite(is.parent_point, fmt::format("{} joint: the parent's point", kind));
+  need_finite(is.child_point, fmt::format("{} joint: the child's point", kind));
+  const double norm = is.relative_rotation.norm();
+  if (!std::isfinite(norm) || !(norm > 0))
+    refuse(fmt::format("{} joint: the relative rotation must be a finite quaternion that is not zero", kind));
+  if (is.kind == JointKind::Fixed) return;
+  need_finite(is.normal, fmt::format("{} joint: the normal", kind));
+  need_finite(is.other_axis, fmt::format("{} joint: the other axis", kind));
+  const double length = is.normal.stableNorm();
+  if (!(length > 0) || !std::isfinite(length))
+    refuse(fmt::format("{} joint: the normal ({}, {}, {}) has no direction", kind, is.normal.x(), is.normal.y(),
+                       is.normal.z()));
+}
+
+void Dynamics::Core::collect(BodyIndex body, std::pmr::vector<BodyIndex>& out) {
+  out.clear();
+  out.push_back(body);
+  if (!find(body)) return;
+  ++search;
+  find(body)->mark = search;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    for (const JointIndex index : find(out[i])->joints) {
+      const JointDescription& is = joints[index].is;
+      const BodyIndex other = is.parent == out[i] ? is.child : is.parent;
+      // What does not move by itself holds nothing together.
+      if (other == kNoBody || !dynamic(other) || find(other)->mark == search) continue;
+      find(other)->mark = search;
+      out.push_back(other);
+    }
+  }
+}
+
+bool Dynamics::Core::held_by_world(BodyIndex body) {
+  std::pmr::vector<BodyIndex> all(memory);
+  collect(body, all);
+  for (const BodyIndex one : all) {
+    if (!find(one)) continue;
+    for (const JointIndex index : find(one)->joints) {
+      const JointDescription& is = joints[index].is;
+      if (is.parent == kNoBody || !dynamic(is.parent) || !dynamic(is.child)) return true;
+    }
+  }
+  return false;
+}
+
+void Dynamics::Core::move_rigidly(std::span<const BodyIndex> some, const Pose& from, const Pose& to) {
+  const Quaternion turn = (to.orientation * from.orientation.conjugate()).normalized();
+  for (const BodyIndex body : some) {
+    const Vector3 arm = bodies->location(body) - from.location;
+    bodies->set_location(body, to.location + turn * arm);
+    bodies->set_orientation(body, turn * bodies->orientation(body));
+  }
+}
+
+void Dynamics::Core::place_child(JointEntry& joint) {
+  JointDescription& is = joint.is;
+  const Pose parent = is.parent == kNoBody ? Pose{} : pose(is.parent);
+  const Pose now = pose(is.child);
+  Pose wanted = place_at_zero(is, parent);
+  if (is.keep_rotation) {
+    wanted.location += wanted.orientation * is.child_point - now.orientation * is.child_point;
+    wanted.orientation = now.orientation;
+  }
+  std::pmr::vector<BodyIndex> all(memory);
+  collect(is.child, all);
+  if (is.parent != kNoBody && std::find(all.begin(), all.end(), is.parent) != all.end()) {
+    joint.ring = true;
+    return;
+  }
+  if (held_by_world(is.child)) {
+    joint.ring = true;
+    return;
+  }
+  joint.ring = false;
+  if (wanted.location == now.location && wanted.orientation.coeffs() == now.orientation.coeffs()) return;
+  move_rigidly(all, now, wanted);
+}
+
+void Dynamics::Core::touch_tree(BodyIndex body) {
+  if (const BodyEntry* known = find(body); known && known->tree != kNone) drop_tree(known->tree);
+  graph_changed = true;
+}
+
+JointIndex Dynamics::link(const JointDescription& description, ObjectId owner) {
+  Core& c = core();
+  c.check(description);
+  c.sync_changes();
+  if (c.free_joints.capacity() <= c.joints.size()) c.free_joints.reserve(2 * c.joints.size() + 16);
+  JointEntry made;
+  made.used = true;
+  made.owner = owner;
+  made.is = description;
+  made.is.relative_rotation.normalize();
+  made.is.normal.stableNormalize();
+  BodyIndex ends[2] = {description.child, description.parent};
+  for (const BodyIndex end : ends) {
+    if (end == kNoBody) continue;
+    BodyEntry& entry = c.entry(end);
+    entry.joints.reserve(entry.joints.size() + 1);
+  }
+  JointIndex index;
+  if (c.free_joints.empty()) {
+    index = static_cast<JointIndex>(c.joints.size());
+    c.joints.emplace_back();
+  } else {
+    index = c.free_joints.back();
+    c.free_joints.pop_back();
+  }
+  // From here on nothing that has to be undone can fail, but for memory in the placing of many bodies.
+  for (const BodyIndex end : ends)
+    if (end != kNoBody && c.bodies->kind(end) != BodyKind::Stationary) c.bodies->set_physics(end, true);
+  made.serial = c.next_serial++;
+  c.place_child(made);
+  for (const BodyIndex end : ends) {
+    if (end == kNoBody) continue;
+    c.touch_tree(end);
+    c.entry(end).joints.push_back(index);
+  }
+  c.joints[index] = made;
+  c.note_joined(index);
+  return index;
+}
+
+void Dynamics::Core::note_joined(JointIndex joint) {
+  // From now on whoever moves one of them moves all.
+  std::pmr::vector<BodyIndex> all(memory);
+  for (const BodyIndex end : {joints[joint].is.child, joints[joint].is.parent}) {
+    if (end == kNoBody || !dynamic(end) || (find(end)->known && find(end)->tree != kNone)) continue;
+    if (!find(end)->known) note_written(end);
+  }
+  if (joints[joint].ring) return;
+  collect(joints[joint].is.child, all);
+  for (const BodyIndex body : all) note_written(body);
+}
+
+void Dynamics::Core::detach(JointIndex index) {
+  JointEntry& joint = joints[index];
+  for (const BodyIndex end : {joint.is.child, joint.is.parent}) {
+    if (end == kNoBody) continue;
+    touch_tree(end);
+    std::erase(entry(end).joints, index);
+    if (!needs_tree(end)) entry(end).known = false;
+  }
+}
+
+void Dynamics::unlink(JointIndex joint) {
+  Core& c = core();
+  c.at(joint);
+  c.sync_changes();
+  c.detach(joint);
+  c.joints[joint] = JointEntry();
+  c.free_joints.push_back(joint);
+}
+
+void Dynamics::relink(JointIndex joint, const JointDescription& description) {
+  Core& c = core();
+  c.at(joint);
+  c.check(description);
+  c.sync_changes();
+  c.detach(joint);
+  JointEntry changed = c.joints[joint];
+  changed.is = description;
+  changed.is.relative_rotation.normalize();
+  changed.is.normal.stableNormalize();
+  changed.tree = kNone;
+  changed.link = -1;
+  for (const BodyIndex end : {description.child, description.parent})
+    if (end != kNoBody && c.bodies->kind(end) != BodyKind::Stationary) c.bodies->set_physics(end, true);
+  c.place_child(changed);
+  for (const BodyIndex end : {description.child, description.parent}) {
+    if (end == kNoBody) continue;
+    c.touch_tree(end);
+    std::pmr::vector<JointIndex>& of = c.entry(end).joints;
+    of.insert(std::lower_bound(of.begin(), of.end(), changed.serial,
+                               [&c](JointIndex x, std::uint64_t serial) { return c.joints[x].serial < serial; }),
+              joint);
+  }
+  c.joints[joint] = changed;
+  c.note_joined(joint);
+}
+
+bool Dynamics::linked(JointIndex joint) const {
+  return core_ && joint < core_->joints.size() && core_->joints[joint].used;
+}
+
+std::size_t Dynamics::joint_count() const { return core_ ? core_->joints.size() - core_->free_joints.size() : 0; }
+
+namespace {
+[[noreturn]] void no_joint() { refuse("there is no such joint: it is not linked"); }
+}  // namespace
+
+const JointDescription& Dynamics::joint(JointIndex joint) const {
+  if (!core_) no_joint();
+  return core_->at(joint).is;
+}
+ObjectId Dynamics::joint_owner(JointIndex joint) const {
+  if (!core_) no_joint();
+  return core_->at(joint).owner;
+}
+bool Dynamics::closes_ring(JointIndex joint) const {
+  if (!core_) no_joint();
+  return core_->at(joint).ring;
+}
+const JointDrive& Dynamics::drive(JointIndex joint) const {
+  if (!core_) no_joint();
+  return core_->at(joint).drive;
+}
+JointReaction Dynamics::reaction(JointIndex joint) const {
+  if (!core_) no_joint();
+  core_->take_changes();
+  const JointEntry& entry = core_->at(joint);
+  return entry.link < 0 ? JointReaction() : core_->react(entry);
+}
+
+JointReaction Dynamics::Core::react(const JointEntry& joint) {
+  Tree& tree = *trees[joint.tree];
+  set_loads(tree, accuracy_of(joint.is.child), 0);
+  const articulated::Vector acceleration =
+      articulated::forward_dynamics(tree.model, tree.data, tree.state, tree.loads, 0);
+  articulated::Vector tau(tree.model.velocities());
+  articulated::inverse_dynamics(tree.model, tree.data, tree.state, acceleration, tree.loads, tau);
+  // What goes through the joint to the tree's side beyond it, about the joint's point.
+  const articulated::Work& work = tree.data.of(joint.link);
+  const double sign = joint.flipped ? -1 : 1;
+  return {sign * work.force, sign * work.couple};
+}
+
+double Dynamics::strength_hard_limit(JointIndex joint) const {
+  constexpr double kPerMass = 500;  // N*m a kg (CLASSES 5)
+  if (!core_) no_joint();
+  return kPerMass * core_->bodies->mass(core_->at(joint).is.child);
+}
+
+void Dynamics::set_drive(JointIndex joint, const JointDrive& drive) {
+  Core& c = core();
+  JointEntry& entry = c.at(joint);
+  const auto what = [&](std::string_view property) {
+    return fmt::format("{} joint: {}", name_of(entry.is.kind), property);
+  };
+  need_finite(drive.motor_speed, what("joint velocity"));
+  need_finite(drive.force, what("joint force or torque"));
+  need_finite(drive.rest, what("rest of the spring"));
+  need_finite(drive.double_strength, what("strength of the double spring"));
+  need_finite(drive.double_max, what("max of the double spring"));
+  need_finite(drive.double_min, what("min of the double spring"));
+  need_positive(drive.damping, what("damping"));
+  need_positive(drive.stiffness, what("stiffness"));
+  if (std::isnan(drive.strength_limit)) refuse(what("strength limit") + " must be a number");
+  if (!(drive.limit_restitution >= 0 && drive.limit_restitution <= 1))
+    refuse(fmt::format("{} must be from 0 to 1, but is {}", what("restitution of limits"), drive.limit_restitution));
+  for (int i = 0; i < axis_count(entry.is.kind); ++i)
+    if (!(drive.low[i] <= drive.high[i]))
+      refuse(fmt::format("{} of axis {}: the minimum {} is above the maximum {}", what("limits"), i + 1, drive.low[i],
+                         drive.high[i]));
+  entry.drive = drive;
+  entry.drive.strength_limit = std::clamp(drive.strength_limit, 0.0, strength_hard_limit(joint));
+}
+
+}  // namespace breve

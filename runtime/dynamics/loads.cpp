@@ -1,0 +1,216 @@
+// What acts on a tree, gathered from joints, bodies, springs and scripts before a step, and at each of its stages.
+#include <algorithm>
+
+#include "runtime/articulated/impulse.hpp"
+#include "runtime/articulated/kinematics.hpp"
+#include "runtime/dynamics/core.hpp"
+#include "runtime/dynamics/joint_frames.hpp"
+#include "runtime/dynamics/stage.hpp"
+
+namespace breve {
+
+namespace {
+
+// A motor lets its joint's velocity follow the wanted one with this delay, s, on every rung and at any step: so that
+// the same motor is meant all the way up the ladder.
+constexpr double kMotorTime = 0.01;
+// How much stiffer a motor is than the inertia that it moves: by this part of it a load can push a held joint.
+constexpr double kMotorStiffness = 1e6;
+
+/// Whether a step of h follows the tree's springs and dampers by itself. What is slower than the step loses accuracy by
+/// being treated as implicit, what is faster would blow up if it were not. The sum over the joints bounds the square of
+/// the highest frequency times h.
+bool follows(double sum) {
+  constexpr double kStable = 4;  // semi-implicit Euler's limit for one oscillator
+  return sum < kStable;
+}
+
+bool bounded(const JointDrive& drive, int axes) {
+  for (int i = 0; i < axes; ++i)
+    if (drive.low[i] > -JointDrive::kNoLimit || drive.high[i] < JointDrive::kNoLimit) return true;
+  return false;
+}
+
+}  // namespace
+
+bool Dynamics::Core::has_limits(const JointEntry& joint) { return bounded(joint.drive, axis_count(joint.is.kind)); }
+
+void Dynamics::Core::measure_motors(Tree& tree) {
+  // The response of each joint to its own force, with all other joints free.
+  articulated::Vector unit(tree.model.velocities()), answer(tree.model.velocities());
+  for (int i = 0; i < tree.model.size(); ++i) {
+    const articulated::Body& body = tree.model.body(i);
+    double most = 0;
+    for (int k = 0; k < articulated::velocity_count(body.type); ++k) {
+      unit.setZero();
+      unit[body.v + k] = 1;
+      articulated::apply_inverse_mass(tree.model, tree.data, unit, answer);
+      most = std::max(most, answer[body.v + k] > 0 ? 1 / answer[body.v + k] : 0);
+    }
+    tree.links[static_cast<std::size_t>(i)].gain_unit = most;
+  }
+}
+
+void Dynamics::Core::set_loads(Tree& tree, const Accuracy& accuracy, double h) {
+  const bool implicit = accuracy.implicit_joints;
+  articulated::Loads& loads = tree.loads;
+  const auto size = static_cast<std::size_t>(tree.model.size());
+  loads.gravity = settings.gravity;
+  loads.wrenches.resize(size);
+  loads.drives.resize(size);
+  loads.rest.resize(tree.model.positions());
+  loads.rest = tree.data.rest;
+  loads.tau.setZero(tree.model.velocities());
+  tree.set_tau.setZero(tree.model.velocities());
+  loads.motor_speed.setZero(tree.model.velocities());
+  loads.motor_time = std::max(kMotorTime, h);
+  tree.driven = tree.aimed = tree.pushed = false;
+  double fastest = 0;
+  for (const TreeLink& link : tree.links) {
+    if (link.joint == kNoJoint || !(link.gain_unit > 0)) continue;
+    const JointDrive& drive = joints[link.joint].drive;
+    fastest += axis_count(joints[link.joint].is.kind) * h * (drive.damping + h * drive.stiffness) / link.gain_unit;
+  }
+  const bool explicitly = follows(fastest);
+  bool drives = false;
+  for (std::size_t i = 0; i < size; ++i) {
+    TreeLink& link = tree.links[i];
+    link.force = bodies->force(link.body);
+    link.torque = bodies->torque(link.body);
+    loads.wrenches[i] = {link.torque, link.force};
+    tree.pushed = tree.pushed || link.force != Vector3::Zero() || link.torque != Vector3::Zero();
+    articulated::Drive& made = loads.drives[i] = {};
+    if (link.joint == kNoJoint) continue;
+    const JointEntry& joint = joints[link.joint];
+    const JointDrive& drive = joint.drive;
+    const articulated::Body& body = tree.model.body(static_cast<int>(i));
+    link.slow_spring = explicitly && (drive.stiffness > 0 || drive.damping > 0);
+    link.slow_damping = link.slow_spring && implicit ? drive.damping : 0;
+    if (!link.slow_spring || !implicit) {
+      made.stiffness = drive.stiffness;
+      made.damping = drive.damping;
+    }
+    if (drive.strength_limit > 0) {
+      made.motor_gain = kMotorStiffness * link.gain_unit / kMotorTime;
+      made.motor_limit = drive.strength_limit;
+    }
+    put_joint_position(joint.is, joint.flipped, drive.rest, loads.rest.data() + body.q);
+    drives = drives || drive.stiffness > 0 || drive.damping > 0 || drive.strength_limit > 0;
+    if (implicit && link.slow_spring) tree.aimed = tree.driven = true;
+    const bool forced = drive.force != JointVector::Zero();
+    tree.driven = tree.driven || drive.damping > 0 || drive.strength_limit > 0 || forced;
+    const bool moving = drive.strength_limit > 0 && (drive.double_strength != 0 || joint.is.kind == JointKind::Ball);
+    tree.aimed = tree.aimed || moving || (forced && joint.is.kind == JointKind::Ball);
+  }
+  aim(tree);
+  if (!drives && !tree.driven) loads.drives.clear();
+  if (!tree.driven) loads.tau.resize(0);
+}
+
+void Dynamics::Core::aim(Tree& tree) const {
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    if (tree.links[i].joint == kNoJoint) continue;
+    const JointEntry& joint = joints[tree.links[i].joint];
+    const JointDrive& drive = joint.drive;
+    const articulated::Body& body = tree.model.body(static_cast<int>(i));
+    const double* q = tree.state.q.data() + body.q;
+    if (tree.loads.tau.size() && (drive.force != JointVector::Zero() || tree.links[i].slow_spring)) {
+      JointVector force = drive.force;
+      if (tree.links[i].slow_spring && tree.loads.drives[i].stiffness == 0 && tree.loads.drives[i].damping == 0)
+        force -= drive.stiffness * (joint_position(joint.is, joint.flipped, q) - drive.rest) +
+                 drive.damping * joint_velocity(joint.is, joint.flipped, q, tree.state.v.data() + body.v);
+      put_joint_force(joint.is, joint.flipped, q, force, tree.loads.tau.data() + body.v);
+      put_joint_force(joint.is, joint.flipped, q, drive.force, tree.set_tau.data() + body.v);
+    }
+    if (!(drive.strength_limit > 0)) continue;
+    JointVector speed = drive.motor_speed;
+    if (drive.double_strength != 0) {
+      const double at = joint_position(joint.is, joint.flipped, q)[0];
+      const double bound =
+          std::clamp(at, std::min(drive.double_min, drive.double_max), std::max(drive.double_min, drive.double_max));
+      speed[0] += drive.double_strength * (bound - at);
+    }
+    put_joint_velocity(joint.is, joint.flipped, q, speed, tree.loads.motor_speed.data() + body.v);
+  }
+}
+
+// --- at the stages --------------------------------------------------------------------------------------------------
+
+Stage::Stage(Dynamics::Core& core, const ClusterEntry& cluster, DynamicsClient* client)
+    : core_(core), cluster_(cluster), client_(client) {
+  for (const std::uint32_t index : cluster.trees) {
+    const Tree& tree = *core.trees[index];
+    aims_ = aims_ || tree.aimed;
+    pushed_ = pushed_ || tree.pushed;
+    for (const TreeLink& link : tree.links) asked_ = asked_ || core.find(link.body)->force_method;
+  }
+  asked_ = asked_ && client != nullptr;
+  needed_ = aims_ || pushed_ || asked_ || !cluster.ties.empty();
+}
+
+void Stage::aim() {
+  if (!aims_) return;
+  for (const std::uint32_t index : cluster_.trees)
+    if (core_.trees[index]->aimed) core_.aim(*core_.trees[index]);
+}
+
+void Stage::add(double time) {
+  script_ = drag_ = 0;
+  if (!adds()) return;
+  for (const std::uint32_t index : cluster_.trees) {
+    Tree& tree = *core_.trees[index];
+    for (int i = 0; i < tree.model.size(); ++i) {
+      const TreeLink& link = tree.links[static_cast<std::size_t>(i)];
+      articulated::Wrench& wrench = tree.loads.wrenches[static_cast<std::size_t>(i)];
+      wrench = {link.torque, link.force};
+      if (asked_ && core_.find(link.body)->force_method) wrench.force += asked(tree, i, time);
+      if (wrench.force != Vector3::Zero() || wrench.couple != Vector3::Zero())
+        script_ += wrench.force.dot(articulated::com_velocity(tree.model, tree.data, i)) +
+                   wrench.couple.dot(articulated::spin(tree.data, i));
+    }
+  }
+  for (const SpringIndex tie : cluster_.ties) pull(core_.springs[tie]);
+}
+
+Vector3 Stage::asked(Tree& tree, int link, double time) {
+  const BodyIndex body = tree.links[static_cast<std::size_t>(link)].body;
+  const Pose at = tree.pose(link);
+  core_.bodies->set_motion(body, at.location, at.orientation, tree.velocity(link), tree.data.of(link).spin);
+  return client_->stage_force(body, time, core_.sub_step);
+}
+
+Stage::End Stage::end_of(BodyIndex body, const Vector3& point) const {
+  End end;
+  const BodyEntry& known = *core_.find(body);
+  if (known.tree == kNone) {
+    const Pose at = core_.pose(body);
+    end.point = at.location + at.orientation * point;
+    end.velocity =
+        core_.bodies->velocity(body) + core_.bodies->rotational_velocity(body).cross(end.point - at.location);
+    return end;
+  }
+  end.tree = core_.trees[known.tree].get();
+  end.link = known.link;
+  const TreeLink& link = end.tree->links[static_cast<std::size_t>(known.link)];
+  end.point =
+      end.tree->data.motion_of(known.link).origin + end.tree->data.of(known.link).rotation * (point - link.origin);
+  end.velocity = articulated::point_velocity(end.tree->data, known.link, end.point);
+  return end;
+}
+
+void Stage::pull(SpringEntry& spring) {
+  const End a = end_of(spring.is.a, spring.is.point_a), b = end_of(spring.is.b, spring.is.point_b);
+  const TiePull pull = pull_of(spring.is, b.point - a.point, b.velocity - a.velocity);
+  spring.force = pull.force;
+  drag_ += pull.loss;
+  const Vector3 force = pull.force * pull.direction;
+  for (const auto& [end, sign] : {std::pair{&a, 1.0}, std::pair{&b, -1.0}}) {
+    if (!end->tree) continue;
+    articulated::Wrench& wrench = end->tree->loads.wrenches[static_cast<std::size_t>(end->link)];
+    const Vector3 arm = end->point - articulated::com_position(end->tree->model, end->tree->data, end->link);
+    wrench.force += sign * force;
+    wrench.couple += arm.cross(sign * force);
+  }
+}
+
+}  // namespace breve

@@ -1,0 +1,180 @@
+// Smooth motion, without contacts: clusters of trees by their integrator, free bodies by rules of their own.
+#include "runtime/dynamics/motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "runtime/articulated/kinematics.hpp"
+#include "runtime/articulated/rotation.hpp"
+#include "runtime/base/error.hpp"
+#include "runtime/base/rotation_vector.hpp"
+#include "runtime/dynamics/stage.hpp"
+#include "runtime/kinematics/free_motion.hpp"
+
+namespace breve {
+
+// --- clusters -------------------------------------------------------------------------------------------------------
+
+void Dynamics::Core::build_clusters() {
+  clusters_changed = integrators_changed = false;
+  clusters.clear();
+  std::pmr::vector<std::uint32_t> set(trees.size(), memory);
+  std::iota(set.begin(), set.end(), 0U);
+  const auto set_of = [&set](std::uint32_t i) {
+    while (set[i] != i) i = set[i] = set[set[i]];
+    return i;
+  };
+  const auto tree_of = [this](BodyIndex body) {
+    const BodyEntry* known = find(body);
+    return known ? known->tree : kNone;
+  };
+  for (const SpringEntry& tie : springs) {
+    if (!tie.used) continue;
+    const std::uint32_t a = tree_of(tie.is.a), b = tree_of(tie.is.b);
+    if (a != kNone && b != kNone) set[set_of(a)] = set_of(b);
+  }
+  std::pmr::vector<ClusterEntry*> of(trees.size(), nullptr, memory);
+  for (const std::uint32_t index : tree_order) {
+    ClusterEntry*& entry = of[set_of(index)];
+    if (!entry) {
+      clusters.push_back(make_in<ClusterEntry>(memory, memory));
+      entry = clusters.back().get();
+    }
+    entry->trees.push_back(index);
+  }
+  for (SpringIndex i = 0; i < springs.size(); ++i) {
+    if (!springs[i].used) continue;
+    std::uint32_t tree = tree_of(springs[i].is.a);
+    if (tree == kNone) tree = tree_of(springs[i].is.b);
+    if (tree != kNone) of[set_of(tree)]->ties.push_back(i);
+  }
+  for (const auto& entry : clusters) {
+    std::pmr::vector<Tree*> members(memory);
+    for (const std::uint32_t index : entry->trees) members.push_back(trees[index].get());
+    const Accuracy* finest = nullptr;
+    for (const Tree* tree : members) {
+      const Accuracy& one = accuracy_of(tree->links.front().body);
+      if (!finest || finer(one.rung, finest->rung)) finest = &one;
+    }
+    entry->system = make_in<Cluster>(memory, memory, members, *finest);
+  }
+}
+
+bool finer(Rung a, Rung b) {
+  // Conserving stands between balanced and precise: it is exact in other things.
+  constexpr int kOrder[] = {0, 1, 3, 4, 2};
+  return kOrder[static_cast<int>(a)] > kOrder[static_cast<int>(b)];
+}
+
+// --- free bodies ----------------------------------------------------------------------------------------------------
+
+FreeBody read_free(const Bodies& bodies, BodyIndex body) {
+  const MassProperties& solid = bodies.mass_properties(body);
+  FreeBody free;
+  free.solid = &solid;
+  free.orientation = bodies.orientation(body);
+  free.spin = bodies.rotational_velocity(body);
+  const Vector3 arm = free.orientation * solid.center_of_mass;
+  free.center = bodies.location(body) + arm;
+  free.velocity = bodies.velocity(body) + free.spin.cross(arm);
+  free.force = bodies.force(body);
+  free.torque = bodies.torque(body);
+  return free;
+}
+
+void write_free(Bodies& bodies, BodyIndex body, const FreeBody& free) {
+  const Vector3 arm = free.orientation * free.solid->center_of_mass;
+  bodies.set_motion(body, free.center - arm, free.orientation, free.velocity - free.spin.cross(arm), free.spin);
+}
+
+namespace {
+
+/// The spin and attitude of one body, as a system for integrators: q the quaternion, v the spin in its own axes.
+class Spin final : public articulated::System {
+ public:
+  explicit Spin(const FreeBody& body) : body_(body), inverse_(Eigen::Matrix3d(body.solid->inertia).inverse()) {}
+
+  int positions() const override { return 4; }
+  int velocities() const override { return 3; }
+  articulated::Kind kind(int) const override { return articulated::Kind::Angle; }
+  void acceleration(double, const articulated::Vector& q, const articulated::Vector& v, double,
+                    articulated::Vector& a) override {
+    const Vector3 spin = v, torque = Quaternion(q[0], q[1], q[2], q[3]).conjugate() * body_.torque;
+    a = inverse_ * (torque - spin.cross(body_.solid->inertia * spin));
+  }
+  void move(const articulated::Vector& q, const articulated::Vector& d, articulated::Vector& out) override {
+    const Quaternion turned = (Quaternion(q[0], q[1], q[2], q[3]) * rotation_by(d.head<3>())).normalized();
+    out.resize(4);
+    out << turned.w(), turned.x(), turned.y(), turned.z();
+  }
+  void rate_of_move(const articulated::Vector& d, const articulated::Vector& v, articulated::Vector& out) override {
+    out = articulated::rate_of_rotation_vector(d.head<3>(), v.head<3>());
+  }
+  void bend_to_cayley(articulated::Vector& d) override { d = articulated::cayley(d.head<3>()); }
+
+ private:
+  const FreeBody& body_;
+  const Eigen::Matrix3d inverse_;
+};
+
+void turn_by_scheme(FreeBody& body, const Accuracy& accuracy, double time, double h, double& next_step) {
+  Spin system(body);
+  articulated::Settings settings;
+  settings.tolerance.relative = accuracy.tolerance;
+  articulated::Integrator integrator(system, accuracy.scheme, settings);
+  articulated::Instant at;
+  at.t = time;
+  const Quaternion& o = body.orientation;
+  at.q.resize(4);
+  at.q << o.w(), o.x(), o.y(), o.z();
+  at.v = o.conjugate() * body.spin;
+  at.step = next_step;
+  integrator.step(at, h);
+  next_step = at.step;
+  body.orientation = Quaternion(at.q[0], at.q[1], at.q[2], at.q[3]);
+  body.spin = body.orientation * Vector3(at.v);
+}
+
+/// Implicit midpoint, and Cayley's rotation with it: the angular momentum stays in the world, size and direction.
+void turn_by_midpoint(FreeBody& body, double h) {
+  const Quaternion to_own = body.orientation.conjugate();
+  const Vector3 spin = to_own * body.spin, torque = to_own * body.torque;
+  Vector3 middle, after;
+  if (body.solid->round) {
+    after = spin + (h / body.solid->inertia(0, 0)) * torque;
+    middle = 0.5 * (spin + after);
+  } else {
+    after = advance_spin(body.solid->inertia, spin, torque, h, middle);
+  }
+  body.orientation = (body.orientation * rotation_by(articulated::cayley(h * middle))).normalized();
+  body.spin = body.orientation * after;
+}
+
+}  // namespace
+
+void move_free(FreeBody& body, const Accuracy& accuracy, const Vector3& gravity, double time, double h,
+               double& next_step) {
+  const Vector3 pull = gravity + body.force / body.solid->mass;
+  if (accuracy.scheme == articulated::Scheme::SemiImplicitEuler) {
+    body.velocity += h * pull;
+    body.center += h * body.velocity;
+  } else {
+    // Nothing it depends on changes on the way: the parabola is exact.
+    body.center += h * (body.velocity + (0.5 * h) * pull);
+    body.velocity += h * pull;
+  }
+  const bool still = body.spin == Vector3::Zero() && body.torque == Vector3::Zero();
+  if (still) return;
+  const bool plain = body.solid->round && body.torque == Vector3::Zero();
+  if (plain) {
+    // A round body without torque turns at its rate: exact.
+    body.orientation = (rotation_by(h * body.spin) * body.orientation).normalized();
+  } else if (accuracy.implicit_spin) {
+    turn_by_midpoint(body, h);
+  } else {
+    turn_by_scheme(body, accuracy, time, h, next_step);
+  }
+}
+
+}  // namespace breve

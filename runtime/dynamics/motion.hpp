@@ -1,0 +1,36 @@
+// A body without joints, and how it moves when nothing touches it.
+#pragma once
+
+#include "runtime/dynamics/core.hpp"
+
+namespace breve {
+
+/// About its centre of mass, world axes.
+struct FreeBody {
+  const MassProperties* solid = nullptr;
+  Vector3 center = Vector3::Zero(), velocity = Vector3::Zero(), spin = Vector3::Zero();
+  Vector3 force = Vector3::Zero(), torque = Vector3::Zero();
+  Quaternion orientation{1, 0, 0, 0};
+
+  Matrix3 inertia() const {
+    const Matrix3 r = orientation.toRotationMatrix();
+    return r * solid->inertia * r.transpose();
+  }
+  double kinetic() const {
+    const Vector3 own = orientation.conjugate() * spin;
+    return 0.5 * (solid->mass * velocity.squaredNorm() + own.dot(solid->inertia * own));
+  }
+};
+
+FreeBody read_free(const Bodies& bodies, BodyIndex body);
+void write_free(Bodies& bodies, BodyIndex body, const FreeBody& free);
+
+/// One step of h seconds without contacts. Translation is exact (on `fast` semi-implicit), rotation by the rung's rule.
+/// @param next_step  s, of step control; in and out
+void move_free(FreeBody& body, const Accuracy& accuracy, const Vector3& gravity, double time, double h,
+               double& next_step);
+
+/// Whether a rung is finer than another: an island takes the finest of its bodies.
+bool finer(Rung a, Rung b);
+
+}  // namespace breve

@@ -1,0 +1,30 @@
+// Elastic ties between points of two bodies (CLASSES 5, Spring): massless, passing through everything.
+#pragma once
+
+#include <cstdint>
+
+#include "runtime/base/ids.hpp"
+#include "runtime/base/math.hpp"
+#include "runtime/kinematics/bodies.hpp"
+
+namespace breve {
+
+using SpringIndex = std::uint32_t;
+inline constexpr SpringIndex kNoSpring = 0xffffffffU;
+
+enum class SpringMode : std::uint8_t { Both, ExpandOnly, ContractOnly };
+
+/// With d from the point on a to the point on b and u the rate of |d|: F = strength (|d| - length) + damping u,
+/// positive pulling together, cut at +-maximum. Expand-only gives nothing while |d| > length, contract-only nothing
+/// while |d| < length.
+struct SpringDescription {
+  BodyIndex a = kNoBody, b = kNoBody;
+  Vector3 point_a = Vector3::Zero(), point_b = Vector3::Zero();  // each in its body's own frame, m
+  double length = 0;                                             // m, >= 0
+  double strength = 100;                                         // N/m, >= 0
+  double damping = 0.01;                                         // N*s/m, >= 0
+  double maximum_force = 0;                                      // N; 0: no bound
+  SpringMode mode = SpringMode::Both;
+};
+
+}  // namespace breve

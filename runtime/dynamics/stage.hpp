@@ -1,0 +1,40 @@
+// The forces of one cluster at the stages of its integrator: motors that look at positions, springs between bodies,
+// forces that scripts set or compute.
+#pragma once
+
+#include "runtime/dynamics/cluster.hpp"
+#include "runtime/dynamics/core.hpp"
+
+namespace breve {
+
+class Stage final : public StageForces {
+ public:
+  /// @param client  asked for the forces of force methods; null: there are none
+  Stage(Dynamics::Core& core, const ClusterEntry& cluster, DynamicsClient* client);
+
+  bool needed() const { return needed_; }
+
+  void aim() override;
+  bool adds() const override { return pushed_ || asked_ || !cluster_.ties.empty(); }
+  void add(double time) override;
+  double script_power() const override { return script_; }
+  double drag_power() const override { return drag_; }
+
+ private:
+  struct End {
+    Tree* tree = nullptr;
+    int link = -1;
+    Vector3 point = Vector3::Zero(), velocity = Vector3::Zero();
+  };
+  End end_of(BodyIndex body, const Vector3& point) const;
+  Vector3 asked(Tree& tree, int link, double time);
+  void pull(SpringEntry& spring);
+
+  Dynamics::Core& core_;
+  const ClusterEntry& cluster_;
+  DynamicsClient* client_;
+  bool aims_ = false, pushed_ = false, asked_ = false, needed_ = false;
+  double script_ = 0, drag_ = 0;
+};
+
+}  // namespace breve

@@ -1,0 +1,132 @@
+// The table of springs between bodies, and the force of one.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/base/error.hpp"
+#include "runtime/dynamics/core.hpp"
+
+namespace breve {
+
+namespace {
+
+void need(bool holds, std::string_view property, double value, std::string_view rule) {
+  if (!holds) throw Error(ErrorCode::Argument, fmt::format("spring: {} must be {}, but is {}", property, rule, value));
+}
+
+void check(const SpringDescription& is) {
+  if (!is.point_a.allFinite() || !is.point_b.allFinite())
+    throw Error(ErrorCode::Argument, "spring: a point of attachment is not finite");
+  need(std::isfinite(is.length) && is.length >= 0, "length", is.length, "finite and >= 0");
+  need(std::isfinite(is.strength) && is.strength >= 0, "strength", is.strength, "finite and >= 0");
+  need(std::isfinite(is.damping) && is.damping >= 0, "damping", is.damping, "finite and >= 0");
+  need(std::isfinite(is.maximum_force) && is.maximum_force >= 0, "maximum force", is.maximum_force, "finite and >= 0");
+}
+
+[[noreturn]] void no_spring() { throw Error(ErrorCode::Argument, "there is no such spring: it is not connected"); }
+
+}  // namespace
+
+SpringEntry& Dynamics::Core::tie_at(SpringIndex spring) {
+  if (spring >= springs.size() || !springs[spring].used) no_spring();
+  return springs[spring];
+}
+
+SpringIndex Dynamics::tie(const SpringDescription& description, ObjectId owner) {
+  check(description);
+  for (const BodyIndex end : {description.a, description.b})
+    if (!bodies_->used(end)) throw Error(ErrorCode::Argument, "spring: an end is no body in the world");
+  if (description.a == description.b) return kNoSpring;
+  Core& c = core();
+  c.sync_changes();
+  if (c.free_springs.capacity() <= c.springs.size()) c.free_springs.reserve(2 * c.springs.size() + 16);
+  c.entry(description.a);
+  c.entry(description.b);
+  SpringIndex index;
+  if (c.free_springs.empty()) {
+    index = static_cast<SpringIndex>(c.springs.size());
+    c.springs.emplace_back();
+  } else {
+    index = c.free_springs.back();
+    c.free_springs.pop_back();
+  }
+  c.springs[index].used = true;
+  c.springs[index].owner = owner;
+  c.springs[index].is = description;
+  for (const BodyIndex end : {description.a, description.b}) {
+    ++c.entry(end).ties;
+    if (c.entry(end).tree == kNone) c.graph_changed = true;
+  }
+  c.clusters_changed = true;
+  return index;
+}
+
+void Dynamics::untie(SpringIndex spring) {
+  Core& c = core();
+  const SpringDescription& is = c.tie_at(spring).is;
+  for (const BodyIndex end : {is.a, is.b}) {
+    --c.entry(end).ties;
+    // A free body needs no tree any more.
+    if (!c.needs_tree(end) && c.entry(end).tree != kNone) c.drop_tree(c.entry(end).tree);
+  }
+  c.springs[spring] = SpringEntry();
+  c.free_springs.push_back(spring);
+  c.clusters_changed = true;
+}
+
+bool Dynamics::tied(SpringIndex spring) const {
+  return core_ && spring < core_->springs.size() && core_->springs[spring].used;
+}
+
+const SpringDescription& Dynamics::spring(SpringIndex spring) const {
+  if (!core_) no_spring();
+  return core_->tie_at(spring).is;
+}
+
+void Dynamics::set_spring(SpringIndex spring, const SpringDescription& description) {
+  check(description);
+  SpringEntry& entry = core().tie_at(spring);
+  const BodyIndex a = entry.is.a, b = entry.is.b;
+  entry.is = description;
+  entry.is.a = a;
+  entry.is.b = b;
+}
+
+double Dynamics::spring_length(SpringIndex spring) const {
+  const SpringDescription& is = this->spring(spring);
+  const Vector3 a = bodies_->location(is.a) + bodies_->orientation(is.a) * is.point_a;
+  const Vector3 b = bodies_->location(is.b) + bodies_->orientation(is.b) * is.point_b;
+  return (b - a).norm();
+}
+
+double Dynamics::spring_force(SpringIndex spring) const {
+  if (!core_) no_spring();
+  return core_->tie_at(spring).force;
+}
+
+TiePull pull_of(const SpringDescription& is, const Vector3& way, const Vector3& rate) {
+  TiePull pull;
+  const double length = way.norm();
+  if (!(length > 0)) return pull;  // no direction to pull along
+  if (is.mode == SpringMode::ExpandOnly && length > is.length) return pull;
+  if (is.mode == SpringMode::ContractOnly && length < is.length) return pull;
+  pull.direction = way / length;
+  const double stretch = length - is.length, speed = pull.direction.dot(rate);
+  const double elastic = is.strength * stretch;
+  pull.force = elastic + is.damping * speed;
+  pull.energy = 0.5 * is.strength * stretch * stretch;
+  if (is.maximum_force > 0) {
+    // Beyond the bound the force is constant: the energy goes on linearly, and no damper acts.
+    const double reach = is.strength > 0 ? is.maximum_force / is.strength : 0;
+    if (std::abs(stretch) > reach && is.strength > 0)
+      pull.energy = is.maximum_force * (std::abs(stretch) - 0.5 * reach);
+    pull.force = std::clamp(pull.force, -is.maximum_force, is.maximum_force);
+    pull.loss = (pull.force - std::clamp(elastic, -is.maximum_force, is.maximum_force)) * speed;
+  } else {
+    pull.loss = is.damping * speed * speed;
+  }
+  return pull;
+}
+
+}  // namespace breve

@@ -1,0 +1,85 @@
+// A tree of bodies that joints connect: its articulated model, its state, and which body and joint each link is.
+#pragma once
+
+#include <algorithm>
+#include <memory_resource>
+#include <vector>
+
+#include "runtime/articulated/data.hpp"
+#include "runtime/articulated/loads.hpp"
+#include "runtime/articulated/system.hpp"
+#include "runtime/base/memory.hpp"
+#include "runtime/dynamics/account.hpp"
+#include "runtime/dynamics/joint.hpp"
+#include "runtime/kinematics/bodies.hpp"
+#include "runtime/solid/contact.hpp"
+
+namespace breve {
+
+/// Where a link's own frame (on its inboard joint) lies in its body's frame. The axes are the body's.
+struct TreeLink {
+  BodyIndex body = kNoBody;
+  JointIndex joint = kNoJoint;                                // kNoJoint: the free joint of a root
+  Vector3 origin = Vector3::Zero();                           // of the link's frame, in the body's frame
+  MassProperties solid;                                       // that the model was made of
+  Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // set by scripts, as the step began
+  bool slow_spring = false;                                   // its joint's spring is slower than the step
+  double slow_damping = 0;                                    // of that, if it is
+  double gain_unit = 0;  // inertia that the joint's motor feels as the tree was built, kg or kg*m^2
+};
+
+/// A body that does not move by itself and holds the tree, and where it stood when the tree was built.
+struct TreeAnchor {
+  BodyIndex body = kNoBody;
+  Pose pose;
+};
+
+/// Bytes that Eigen and the articulated algorithms take from C++'s allocator, held as a block of the world's memory of
+/// the same size: so that a limit on that memory bounds them.
+class Reservation {
+ public:
+  Reservation(std::pmr::memory_resource* memory, std::size_t bytes)
+      : memory_(memory), bytes_(bytes), block_(memory->allocate(bytes)) {}
+  ~Reservation() { memory_->deallocate(block_, bytes_); }
+  Reservation(const Reservation&) = delete;
+  Reservation& operator=(const Reservation&) = delete;
+  std::size_t bytes() const { return bytes_; }
+
+ private:
+  std::pmr::memory_resource* memory_;
+  std::size_t bytes_;
+  void* block_;
+};
+
+struct Tree : InMemory {
+  Tree(std::pmr::memory_resource* memory, const std::vector<articulated::Link>& description);
+
+  Reservation reserved;
+  articulated::Model model;
+  articulated::Data data;
+  articulated::State state;
+  articulated::Loads loads;
+  std::pmr::vector<TreeLink> links;
+  std::pmr::vector<JointIndex> rings;  // joints within the tree (or to the world) that are constraints
+  bool anchored = false;               // held by the world
+  std::pmr::vector<TreeAnchor> anchors;
+  double step = 0;              // s, that step control would try next
+  int slot = -1;                // in its island
+  bool driven = false;          // some joint has a motor, a damper or a force
+  bool aimed = false;           // some of that depends on where joints are
+  bool pushed = false;          // some link has a force or torque set
+  articulated::Vector set_tau;  // (nv) of loads.tau, what scripts set
+  articulated::Vector work_q, work_v, work_u, work_w;
+  Energy account;  // works and losses since it was made
+
+  BodyIndex first_body() const {  // of the lowest index
+    BodyIndex first = kNoBody;
+    for (const TreeLink& link : links) first = std::min(first, link.body);
+    return first;
+  }
+  /// The pose of the body of a link, after forward_kinematics.
+  Pose pose(int link) const;
+  Vector3 velocity(int link) const;  // of the body's origin, m/s, world
+};
+
+}  // namespace breve

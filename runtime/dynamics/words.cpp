@@ -1,0 +1,128 @@
+// Names of what can be chosen or told: rungs, guard modes, reasons, kinds of joints; and rungs in words.
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "runtime/base/error.hpp"
+#include "runtime/dynamics/account.hpp"
+#include "runtime/dynamics/accuracy.hpp"
+#include "runtime/dynamics/joint.hpp"
+
+namespace breve {
+
+namespace {
+
+using Words = std::string_view;
+
+// KEEP IN STEP: the enumerations.
+constexpr std::array<Words, 5> kKinds{"revolute", "prismatic", "fixed", "universal", "ball"};
+constexpr std::array<Words, 5> kRungs{"fast", "balanced", "precise", "reference", "conserving"};
+constexpr std::array<Words, 4> kModes{"off", "report", "refine", "rest"};
+constexpr std::array<Words, 3> kActions{"reported", "refined", "put to rest"};
+constexpr std::array<Words, 7> kReasons{"a number is not finite",
+                                        "energy appears that no account explains",
+                                        "an overlap grows",
+                                        "a body turns too far in one sub-step",
+                                        "a damper is too strong for the sub-step",
+                                        "more impacts in one sub-step than are located",
+                                        "an equation of the step has no solution that is found"};
+constexpr std::array<Words, 9> kSchemes{
+    "explicit Euler",          "semi-implicit Euler",     "implicit Euler",
+    "velocity Verlet",         "implicit midpoint",       "Runge-Kutta 4",
+    "Fehlberg 4, fixed steps", "Fehlberg 5, fixed steps", "Fehlberg with step control"};
+
+template <class Enum, std::size_t N>
+Enum named(const std::array<Words, N>& names, Words name, Words what) {
+  std::string list;
+  for (std::size_t i = 0; i < N; ++i) {
+    if (names[i] == name) return static_cast<Enum>(i);
+    list += fmt::format("{}\"{}\"", i == 0 ? "" : i + 1 == N ? " or " : ", ", names[i]);
+  }
+  throw Error(ErrorCode::Argument, fmt::format("there is no {} \"{}\": it is {}", what, name, list));
+}
+
+template <class Enum, std::size_t N>
+Words word(const std::array<Words, N>& names, Enum value) {
+  return names[static_cast<std::size_t>(value)];
+}
+
+void need(bool holds, Words setting, double value, Words rule) {
+  if (!holds) throw Error(ErrorCode::Argument, fmt::format("accuracy: {} is {} (must be {})", setting, value, rule));
+}
+
+}  // namespace
+
+Words name_of(JointKind kind) { return word(kKinds, kind); }
+Words name_of(Rung rung) { return word(kRungs, rung); }
+Words name_of(GuardMode mode) { return word(kModes, mode); }
+Words name_of(GuardAction action) { return word(kActions, action); }
+Words words_for(GuardReason reason) { return word(kReasons, reason); }
+Rung rung_named(Words name) { return named<Rung>(kRungs, name, "accuracy"); }
+GuardMode guard_named(Words name) { return named<GuardMode>(kModes, name, "guard mode"); }
+
+Accuracy accuracy_of(Rung rung) {
+  using articulated::Scheme;
+  Accuracy a;
+  a.rung = rung;
+  switch (rung) {
+    case Rung::Fast:
+      a.scheme = Scheme::SemiImplicitEuler;
+      a.implicit_joints = true;
+      a.direct = false;
+      a.locate_impacts = false;
+      a.iterations = 20;
+      break;
+    case Rung::Balanced: a.contact_step = 1.0 / 240; break;
+    case Rung::Precise:
+      // With step control below that step: a light chain that carries a heavy load swings at thousands of rad/s, where
+      // the classic scheme at this step would blow up.
+      a.tolerance = 1e-4;
+      a.implicit_spin = false;
+      a.step = 1.0 / 480;
+      a.contact_springs = true;
+      break;
+    case Rung::Reference:
+      a.implicit_spin = false;
+      a.tolerance = 1e-10;
+      a.contact_step = 1.0 / 480;
+      a.contact_springs = true;
+      break;
+    case Rung::Conserving: a.scheme = Scheme::ImplicitMidpoint; break;
+  }
+  return a;
+}
+
+void check(const Accuracy& a) {
+  need(std::isfinite(a.step) && a.step >= 0, "step", a.step, "finite and >= 0");
+  need(std::isfinite(a.contact_step) && a.contact_step >= 0, "contact step", a.contact_step, "finite and >= 0");
+  need(std::isfinite(a.tolerance) && a.tolerance > 0, "tolerance", a.tolerance, "finite and > 0");
+  need(a.iterations > 0, "iterations", a.iterations, "> 0");
+  need(a.impacts >= 0, "impacts", a.impacts, ">= 0");
+  need(std::isfinite(a.contact_stiffness) && a.contact_stiffness > 0, "contact stiffness", a.contact_stiffness,
+       "finite and > 0");
+  need(std::isfinite(a.contact_damping) && a.contact_damping >= 0, "contact damping", a.contact_damping,
+       "finite and >= 0");
+  need(static_cast<std::size_t>(a.scheme) < kSchemes.size(), "integrator", static_cast<double>(a.scheme),
+       "one that there is");
+  need(static_cast<std::size_t>(a.rung) < kRungs.size(), "rung", static_cast<double>(a.rung), "one that there is");
+}
+
+std::string describe(const Accuracy& a) {
+  std::string text = fmt::format("{}{}: smooth motion by {}", name_of(a.rung), a.custom ? ", with own settings" : "",
+                                 word(kSchemes, a.scheme));
+  if (a.scheme == articulated::Scheme::FehlbergAdaptive) text += fmt::format(" at tolerance {}", a.tolerance);
+  if (a.step > 0) text += fmt::format(", steps of at most {} s", a.step);
+  if (a.implicit_joints) text += ", springs, dampers and motors of joints implicit";
+  text += a.implicit_spin ? "; a free body's spin by the implicit midpoint rule" : "; a free body's spin likewise";
+  text += a.locate_impacts ? fmt::format("; up to {} impacts of an island at their time of impact", a.impacts)
+                           : "; impacts at the end of the sub-step";
+  text += a.direct ? "; small islands of contacts solved directly, large ones" : "; contacts solved";
+  text += fmt::format(" iteratively with at most {} iterations", a.iterations);
+  if (a.contact_springs)
+    text += fmt::format("; slow contacts are springs of {} N/m with damping ratio {}", a.contact_stiffness,
+                        a.contact_damping);
+  return text + ".";
+}
+
+}  // namespace breve

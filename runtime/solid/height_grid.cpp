@@ -1,0 +1,239 @@
+// A height field needs no tree: a place says which cells are meant. A ray walks from cell to cell.
+#include "runtime/solid/height_grid.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "runtime/base/error.hpp"
+
+namespace breve {
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& why) { throw Error(ErrorCode::Argument, "a height field " + why); }
+
+void check_height(double height, int column, int row) {
+  if (!std::isfinite(height)) {
+    refuse(fmt::format("has height {} at column {}, row {} (must be finite)", height, column, row));
+  }
+}
+
+}  // namespace
+
+HeightGrid::HeightGrid(int columns, int rows, double tile, std::span<const double> heights,
+                       std::pmr::memory_resource* memory)
+    : columns_(columns), rows_(rows), tile_(tile), heights_(memory) {
+  if (columns < 2 || rows < 2 || columns > kMostSide || rows > kMostSide) {
+    refuse(fmt::format("has {} columns and {} rows (must be from 2 to {})", columns, rows, kMostSide));
+  }
+  if (!std::isfinite(tile) || tile <= 0) refuse(fmt::format("has tiles of size {} (must be finite and > 0)", tile));
+  const auto points = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  if (heights.size() != points) {
+    refuse(fmt::format("of {} columns and {} rows has {} heights (must be {})", columns, rows, heights.size(), points));
+  }
+  for (std::size_t i = 0; i < points; ++i) {
+    const auto place = static_cast<int>(i);
+    check_height(heights[i], place % columns, place / columns);
+  }
+  heights_.assign(heights.begin(), heights.end());
+  measure();
+}
+
+HeightGrid::HeightGrid(const HeightGrid& other, const Vector3& factors)
+    : columns_(other.columns_),
+      rows_(other.rows_),
+      tile_(other.tile_),
+      scale_(factors),
+      heights_(other.heights_, other.heights_.get_allocator()) {
+  measure();
+}
+
+void HeightGrid::measure() {
+  const auto [low, high] = std::minmax_element(heights_.begin(), heights_.end());
+  const Vector3 first = corner(0, 0), last = corner(columns_ - 1, rows_ - 1);
+  bounds_ = Eigen::AlignedBox3d(Vector3(first.x(), *low * scale_.y(), first.z()),
+                                Vector3(last.x(), *high * scale_.y(), last.z()));
+}
+
+std::size_t HeightGrid::index(int column, int row) const {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+}
+
+Vector3 HeightGrid::corner(int column, int row) const {
+  return {(column - (columns_ - 1) / 2.0) * tile_ * scale_.x(), heights_[index(column, row)] * scale_.y(),
+          (row - (rows_ - 1) / 2.0) * tile_ * scale_.z()};
+}
+
+double HeightGrid::height(int column, int row) const {
+  if (column < 0 || row < 0 || column >= columns_ || row >= rows_) {
+    refuse(fmt::format("has no column {}, row {} (there are {} and {})", column, row, columns_, rows_));
+  }
+  return heights_[index(column, row)];
+}
+
+void HeightGrid::set_height(int column, int row, double value) {
+  const double before = height(column, row);
+  check_height(value, column, row);
+  heights_[index(column, row)] = value;
+  const double y = value * scale_.y();
+  bounds_.min().y() = std::min(bounds_.min().y(), y);
+  bounds_.max().y() = std::max(bounds_.max().y(), y);
+  // Only a height that made the bounds can narrow them.
+  const double old = before * scale_.y();
+  if (old <= bounds_.min().y() || old >= bounds_.max().y()) measure();
+}
+
+int HeightGrid::column_at(double x) const {
+  const double place = x / (tile_ * scale_.x()) + (columns_ - 1) / 2.0;
+  return static_cast<int>(std::clamp(std::floor(place), 0.0, columns_ - 2.0));
+}
+
+int HeightGrid::row_at(double z) const {
+  const double place = z / (tile_ * scale_.z()) + (rows_ - 1) / 2.0;
+  return static_cast<int>(std::clamp(std::floor(place), 0.0, rows_ - 2.0));
+}
+
+/// Half 0 has the corner at low x and high z, half 1 the one at high x and low z; edge 2 of both is the diagonal.
+std::array<Vector3, 3> HeightGrid::corners(int column, int row, int half) const {
+  const Vector3 low = corner(column, row), high = corner(column + 1, row + 1);
+  if (half == 0) return {low, corner(column, row + 1), high};
+  return {high, corner(column + 1, row), low};
+}
+
+bool HeightGrid::neighbour(int column, int row, int half, int edge, Vector3& normal, Vector3& opposite) const {
+  int c = column, r = row;
+  if (edge == 0) c += half == 0 ? -1 : 1;
+  if (edge == 1) r += half == 0 ? 1 : -1;
+  if (c < 0 || r < 0 || c > columns_ - 2 || r > rows_ - 2) return false;
+  const auto other = corners(c, r, 1 - half);
+  normal = normal_of(other[0], other[1], other[2]);
+  // Edge e of one is edge e of the other; the corner off edges 0, 1, 2 is number 2, 0, 1.
+  opposite = other[static_cast<std::size_t>(edge + 2) % 3];
+  return true;
+}
+
+Facet HeightGrid::facet(int column, int row, int half) const {
+  Facet f;
+  f.corner = corners(column, row, half);
+  f.normal = normal_of(f.corner[0], f.corner[1], f.corner[2]);
+  f.index = static_cast<std::uint32_t>(2 * (row * (columns_ - 1) + column) + half);
+  f.active = 0;
+  for (int edge = 0; edge < 3; ++edge) {
+    Vector3 normal, opposite;
+    if (!neighbour(column, row, half, edge, normal, opposite) ||
+        stands_out(f.normal, normal, opposite - f.corner[static_cast<std::size_t>(edge)], true)) {
+      f.active = static_cast<std::uint8_t>(f.active | (1 << edge));
+    }
+  }
+  return f;
+}
+
+bool HeightGrid::height_at(double x, double z, double& height) const {
+  if (!(x >= bounds_.min().x() && x <= bounds_.max().x() && z >= bounds_.min().z() && z <= bounds_.max().z())) {
+    return false;
+  }
+  const int c = column_at(x), r = row_at(z);
+  const Vector3 low = corner(c, r), high = corner(c + 1, r + 1);
+  const double u = std::clamp((x - low.x()) / (high.x() - low.x()), 0.0, 1.0);
+  const double v = std::clamp((z - low.z()) / (high.z() - low.z()), 0.0, 1.0);
+  // Along the two edges of the half that the place is in.
+  const double turn = v >= u ? corner(c, r + 1).y() : corner(c + 1, r).y();
+  height = v >= u ? low.y() + v * (turn - low.y()) + u * (high.y() - turn)
+                  : low.y() + u * (turn - low.y()) + v * (high.y() - turn);
+  return true;
+}
+
+bool HeightGrid::inside(const Vector3& point) const {
+  double height;
+  return height_at(point.x(), point.z(), height) && point.y() <= height;
+}
+
+void HeightGrid::under(const Eigen::AlignedBox3d& box, FacetVisitor& visitor) const {
+  if (!box.intersects(bounds_)) return;
+  const int last_column = column_at(box.max().x()), last_row = row_at(box.max().z());
+  for (int r = row_at(box.min().z()); r <= last_row; ++r) {
+    for (int c = column_at(box.min().x()); c <= last_column; ++c) {
+      const double a = heights_[index(c, r)], b = heights_[index(c + 1, r)], d = heights_[index(c, r + 1)],
+                   e = heights_[index(c + 1, r + 1)];
+      if (std::min({a, b, d, e}) * scale_.y() > box.max().y() || std::max({a, b, d, e}) * scale_.y() < box.min().y()) {
+        continue;
+      }
+      visitor.visit(facet(c, r, 0));
+      visitor.visit(facet(c, r, 1));
+    }
+  }
+}
+
+bool HeightGrid::raycast(const Vector3& origin, const Vector3& direction, double& fraction, Facet& hit) const {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  // The stretch of the ray over the grid, a hair longer than the bounds.
+  double begin = 0, end = kNever;
+  const Vector3 hair = 1e-12 * (bounds_.sizes() + bounds_.max().cwiseAbs() + origin.cwiseAbs());
+  for (int i = 0; i < 3; ++i) {
+    const double low = bounds_.min()[i] - hair[i] - origin[i], high = bounds_.max()[i] + hair[i] - origin[i];
+    if (direction[i] == 0) {
+      if (low > 0 || high < 0) return false;
+      continue;
+    }
+    begin = std::max(begin, std::min(low / direction[i], high / direction[i]));
+    end = std::min(end, std::max(low / direction[i], high / direction[i]));
+  }
+  if (begin > end) return false;
+  const Vector3 start = origin + begin * direction;
+  int c = column_at(start.x()), r = row_at(start.z());
+  const int step_c = direction.x() > 0 ? 1 : -1, step_r = direction.z() > 0 ? 1 : -1;
+  for (;;) {
+    double best = kNever;
+    for (int half = 0; half < 2; ++half) {
+      const double t = ray_meets(corners(c, r, half), origin, direction);
+      if (t >= best) continue;
+      best = t;
+      hit = facet(c, r, half);
+    }
+    if (std::isfinite(best)) {
+      fraction = best;
+      return true;
+    }
+    // Where the ray leaves this cell: amanatides and Woo 1987.
+    const Vector3 low = corner(c, r), high = corner(c + 1, r + 1);
+    const double tx = direction.x() == 0 ? kNever : ((step_c > 0 ? high : low).x() - origin.x()) / direction.x();
+    const double tz = direction.z() == 0 ? kNever : ((step_r > 0 ? high : low).z() - origin.z()) / direction.z();
+    if (std::min(tx, tz) > end) return false;
+    (tx < tz ? c : r) += tx < tz ? step_c : step_r;
+    if (c < 0 || r < 0 || c > columns_ - 2 || r > rows_ - 2 || (tx == kNever && tz == kNever)) return false;
+  }
+}
+
+std::shared_ptr<Surface> HeightGrid::scaled(const Vector3& factors) const {
+  return std::shared_ptr<Surface>(new (heights_.get_allocator().resource()) HeightGrid(*this, factors),
+                                  std::default_delete<Surface>(), heights_.get_allocator());
+}
+
+void HeightGrid::hash(Hasher& hasher) const {
+  hasher.add(static_cast<std::uint64_t>(columns_));
+  hasher.add(static_cast<std::uint64_t>(rows_));
+  hasher.add(tile_);
+  for (const double h : heights_) hasher.add(h);
+}
+
+void HeightGrid::save(ByteWriter& out) const {
+  out.put(static_cast<std::int32_t>(columns_));
+  out.put(static_cast<std::int32_t>(rows_));
+  out.put(tile_);
+  out.put(static_cast<std::uint64_t>(heights_.size()));
+  for (const double h : heights_) out.put(h);
+}
+
+std::shared_ptr<HeightGrid> HeightGrid::load(ByteReader& in) {
+  const auto columns = in.get<std::int32_t>(), rows = in.get<std::int32_t>();
+  const double tile = in.get<double>();
+  std::pmr::vector<double> heights(in.get_count(sizeof(double)), in.memory());
+  for (double& h : heights) h = in.get<double>();
+  return std::shared_ptr<HeightGrid>(new (in.memory()) HeightGrid(columns, rows, tile, heights, in.memory()),
+                                     std::default_delete<HeightGrid>(), heights.get_allocator());
+}
+
+}  // namespace breve

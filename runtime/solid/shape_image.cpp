@@ -1,0 +1,112 @@
+// Shapes in snapshot images and hashes.
+#include <cmath>
+
+#include "runtime/base/error.hpp"
+#include "runtime/solid/height_grid.hpp"
+#include "runtime/solid/shape_geometry.hpp"
+
+namespace breve {
+
+void Shape::save(ByteWriter& out) const {
+  const Geometry& g = *geometry_;
+  out.put(g.kind);
+  out.put(g.original_radius);
+  out.put(static_cast<std::uint64_t>(g.original_vertices.size()));
+  for (const Vector3& v : g.original_vertices) out.put(v);
+  out.put(static_cast<std::uint64_t>(g.solid.faces.size()));
+  for (const auto& face : g.solid.faces) {
+    out.put(static_cast<std::uint64_t>(face.size()));
+    for (const int v : face) out.put(static_cast<std::int32_t>(v));
+  }
+  if (g.kind == ShapeKind::Mesh) static_cast<const TriangleMesh&>(*g.surface).save(out);
+  if (g.kind == ShapeKind::HeightField) static_cast<const HeightGrid&>(*g.surface).save(out);
+  out.put(g.original.second);
+  out.put(g.inertia);  // a given one does not come back from `second` to the last bit
+  out.put(g.scale);
+  out.put(g.last_scale);
+  out.put(g.density);
+}
+
+namespace {
+
+/// A polyhedron whose indices are in range and whose vertices are finite.
+Polyhedron load_polyhedron(ByteReader& in) {
+  Polyhedron solid;
+  solid.vertices.resize(in.get_count(3 * sizeof(double)));
+  for (Vector3& v : solid.vertices) {
+    v = in.get_vector();
+    if (!v.allFinite()) ByteReader::fail();
+  }
+  solid.faces.resize(in.get_count(sizeof(std::uint64_t)));
+  for (auto& face : solid.faces) {
+    face.resize(in.get_count(sizeof(std::int32_t)));
+    if (face.size() < 3) ByteReader::fail();
+    for (int& v : face) {
+      v = in.get<std::int32_t>();
+      if (v < 0 || static_cast<std::size_t>(v) >= solid.vertices.size()) ByteReader::fail();
+    }
+  }
+  connect(solid);
+  return solid;
+}
+
+bool positive(double value) { return std::isfinite(value) && value > 0; }
+
+/// The polyhedron that an image may hold beside a kind of shape.
+bool fits(ShapeKind kind, const Polyhedron& solid) {
+  if (kind == ShapeKind::Sphere || kind == ShapeKind::HeightField) return solid.faces.empty() && solid.vertices.empty();
+  if (kind == ShapeKind::Mesh && solid.faces.empty()) return solid.vertices.empty();
+  return solid.faces.size() >= 4 && (kind != ShapeKind::Box || solid.vertices.size() == 8);
+}
+
+}  // namespace
+
+std::shared_ptr<Shape> Shape::load(ByteReader& in) {
+  const auto kind = in.get<ShapeKind>();
+  const double radius = in.get<double>();
+  if (kind > ShapeKind::HeightField) ByteReader::fail();
+  try {
+    Polyhedron solid = load_polyhedron(in);
+    if (!fits(kind, solid)) ByteReader::fail();
+    std::shared_ptr<Shape> shape;
+    switch (kind) {
+      case ShapeKind::Sphere: shape = sphere(radius, in.memory()); break;
+      case ShapeKind::Box:
+      case ShapeKind::Convex: shape = of(kind, solid, 1, in.memory()); break;
+      case ShapeKind::Mesh: shape = mesh(TriangleMesh::load(in), &solid, in.memory()); break;
+      case ShapeKind::HeightField: shape = height_field(HeightGrid::load(in), in.memory()); break;
+    }
+    Geometry& g = *shape->geometry_;
+    g.original.second = in.get_matrix();
+    const Matrix3 inertia = in.get_matrix();
+    g.scale = in.get_vector();
+    g.last_scale = in.get_vector();
+    g.density = in.get<double>();
+    if (!positive(g.scale.minCoeff()) || !positive(g.scale.maxCoeff()) || !positive(g.density)) ByteReader::fail();
+    g.scale_surface();
+    g.derive_size();
+    g.derive_mass();
+    if (!inertia.isApprox(g.inertia, 1e-9)) ByteReader::fail();
+    g.inertia = inertia;
+    return shape;
+  } catch (const Error&) {
+    ByteReader::fail();
+  }
+}
+
+void Shape::hash(Hasher& hasher) const {
+  const Geometry& g = *geometry_;
+  hasher.add(static_cast<std::uint64_t>(g.kind));
+  hasher.add(g.radius);
+  for (const Vector3& v : g.solid.vertices) hasher.add(v);
+  for (const auto& face : g.solid.faces) {
+    for (const int v : face) hasher.add(static_cast<std::uint64_t>(v));
+  }
+  if (g.surface) g.surface->hash(hasher);
+  hasher.add(g.inertia);
+  hasher.add(g.scale);
+  hasher.add(g.last_scale);
+  hasher.add(g.density);
+}
+
+}  // namespace breve

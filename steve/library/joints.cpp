@@ -1,0 +1,264 @@
+// Joint, Spring and MultiBody objects: linking and breaking, which MultiBody a body belongs to, what archives need.
+#include "steve/library/joints.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace breve::steve {
+
+namespace {
+
+struct Kind {
+  std::string_view cls;
+  JointKind kind;
+  bool may_be_linked_again;  // without breaking it first (CLASSES 5, Joint)
+};
+constexpr std::array<Kind, 5> kKinds{{{"RevoluteJoint", JointKind::Revolute, false},
+                                      {"PrismaticJoint", JointKind::Prismatic, true},
+                                      {"FixedJoint", JointKind::Fixed, true},
+                                      {"UniversalJoint", JointKind::Universal, false},
+                                      {"BallJoint", JointKind::Ball, false}}};
+
+const Kind& row_of(const Instance& joint) {
+  for (const Kind& row : kKinds)
+    if (is_library_kind(joint, row.cls)) return row;
+  throw Error(ErrorCode::Argument, name_of(joint) +
+                                       " cannot be linked: it is no RevoluteJoint, PrismaticJoint, FixedJoint, "
+                                       "UniversalJoint or BallJoint");
+}
+
+/// Stops that a joint has from the start: -2 to 2 of a prismatic joint, the middle axis of a ball away from where its
+/// angles stop to be angles.
+void set_first_limits(Dynamics& dynamics, JointIndex joint, JointKind kind) {
+  JointDrive drive = dynamics.drive(joint);
+  if (kind == JointKind::Prismatic) {
+    drive.low[0] = -kSliderStop;
+    drive.high[0] = kSliderStop;
+  } else if (kind == JointKind::Ball) {
+    drive.low[1] = -kBallMiddle;
+    drive.high[1] = kBallMiddle;
+  } else {
+    return;
+  }
+  dynamics.set_drive(joint, drive);
+}
+
+/// The body at the end of a joint; the world for none.
+BodyIndex end_of(Machine& machine, Instance* end, std::string_view what) {
+  return end ? body_of(machine, must_live(end, what)) : kNoBody;
+}
+
+}  // namespace
+
+bool is_library_kind(const Instance& object, std::string_view library_class) {
+  for (const ClassInfo* cls = object.cls; cls; cls = cls->parent)
+    if (cls->name == library_class) return true;
+  return false;
+}
+
+// --- joints ---------------------------------------------------------------------------------------------------------
+
+JointKind joint_kind(const Instance& joint) { return row_of(joint).kind; }
+
+JointIndex joint_of(Machine& machine, const Instance& joint) {
+  const JointResource* resource = resource_of<JointResource>(machine, &joint);
+  if (!resource || resource->index == kNoJoint) return kNoJoint;
+  const Dynamics& dynamics = machine.world().dynamics();
+  const bool ours = dynamics.linked(resource->index) && dynamics.joint_owner(resource->index) == joint.id;
+  return ours ? resource->index : kNoJoint;
+}
+
+void link_joint(Machine& machine, Instance& joint, JointDescription description, Instance* parent, Instance* child) {
+  machine.refuse_in_stage("link a joint");
+  const Kind& row = row_of(joint);
+  if (joint_of(machine, joint) != kNoJoint) {
+    if (!row.may_be_linked_again)
+      throw Error(ErrorCode::Argument, "link: " + name_of(joint) + " is linked already (break-joint it first)");
+    break_joint(machine, joint);
+  }
+  must_live(child, "link: the child");
+  description.kind = row.kind;
+  description.child = end_of(machine, child, "link: the child");
+  description.parent = end_of(machine, parent, "link: the parent");
+  if (row.kind == JointKind::Fixed && description.keep_rotation) {
+    // It has no position to start from: what the child is turned by now is its zero.
+    const Bodies& bodies = machine.world().bodies();
+    const Quaternion from =
+        description.parent == kNoBody ? Quaternion(1, 0, 0, 0) : bodies.orientation(description.parent);
+    description.relative_rotation = (from.conjugate() * bodies.orientation(description.child)).normalized();
+  }
+  JointResource& resource = resource_made<JointResource>(machine, joint);
+  Dynamics& dynamics = machine.world().dynamics();
+  resource.index = dynamics.link(description, joint.id);
+  resource.is = dynamics.joint(resource.index);
+  set_first_limits(dynamics, resource.index, row.kind);
+  set_library_object(machine, joint, "Joint", "parentObject", parent);
+  set_library_object(machine, joint, "Joint", "childObject", child);
+}
+
+void break_joint(Machine& machine, Instance& joint) {
+  machine.refuse_in_stage("break a joint");
+  const JointIndex index = joint_of(machine, joint);
+  if (index != kNoJoint) machine.world().dynamics().unlink(index);
+  if (JointResource* resource = resource_of<JointResource>(machine, &joint)) resource->index = kNoJoint;
+  set_library_object(machine, joint, "Joint", "parentObject", nullptr);
+  set_library_object(machine, joint, "Joint", "childObject", nullptr);
+}
+
+void prepare_joint(Machine& machine, Instance& joint) {
+  JointResource& resource = resource_made<JointResource>(machine, joint);
+  const JointIndex index = joint_of(machine, joint);
+  resource.was_linked = index != kNoJoint;
+  if (!resource.was_linked) return;
+  const Dynamics& dynamics = machine.world().dynamics();
+  resource.is = dynamics.joint(index);
+  resource.drive = dynamics.drive(index);
+  resource.position = dynamics.position(index);
+  resource.velocity = dynamics.velocity(index);
+}
+
+void relink_joint(Machine& machine, Instance& joint) {
+  JointResource* resource = resource_of<JointResource>(machine, &joint);
+  if (!resource || !resource->was_linked || joint_of(machine, joint) != kNoJoint) return;
+  resource->was_linked = false;
+  resource->index = kNoJoint;
+  const JointResource saved = *resource;
+  JointDescription description = saved.is;
+  description.keep_rotation = true;  // the bodies stand where they are to stand
+  Instance* child = library_object(machine, joint, "Joint", "childObject");
+  if (!child) return;  // it was not archived
+  link_joint(machine, joint, description, library_object(machine, joint, "Joint", "parentObject"), child);
+  Dynamics& dynamics = machine.world().dynamics();
+  const JointIndex index = joint_of(machine, joint);
+  dynamics.set_drive(index, saved.drive);
+  if (dynamics.closes_ring(index)) return;
+  // Bodies do not know how many turns a joint has made.
+  dynamics.set_position(index, saved.position);
+  dynamics.set_velocity(index, saved.velocity);
+}
+
+// --- springs --------------------------------------------------------------------------------------------------------
+
+SpringIndex spring_of(Machine& machine, Instance& spring) {
+  const SpringResource* resource = resource_of<SpringResource>(machine, &spring);
+  if (!resource || resource->index == kNoSpring) return kNoSpring;
+  const Dynamics& dynamics = machine.world().dynamics();
+  if (!dynamics.tied(resource->index)) return kNoSpring;
+  // A body that went took its springs along, and the number may be another's now.
+  const SpringDescription& is = dynamics.spring(resource->index);
+  const auto still = [&](std::string_view end, BodyIndex body) {
+    const Instance* object = library_object(machine, spring, "Spring", end);
+    return object && machine.world().has_body(object->id) && machine.world().body(object->id) == body;
+  };
+  return still("fromObject", is.a) && still("toObject", is.b) ? resource->index : kNoSpring;
+}
+
+void connect_spring(Machine& machine, Instance& spring, SpringDescription description, Instance* from, Instance* to) {
+  description.a = body_of(machine, must_live(from, "connect: the object it comes from"));
+  description.b = body_of(machine, must_live(to, "connect: the object it goes to"));
+  if (description.a == description.b) return;
+  machine.refuse_in_stage("connect a spring");
+  Dynamics& dynamics = machine.world().dynamics();
+  const SpringIndex before = spring_of(machine, spring);
+  SpringResource& resource = resource_made<SpringResource>(machine, spring);
+  resource.index = dynamics.tie(description, spring.id);
+  if (before != kNoSpring) dynamics.untie(before);
+  resource.is = description;
+  set_library_object(machine, spring, "Spring", "fromObject", from);
+  set_library_object(machine, spring, "Spring", "toObject", to);
+}
+
+void change_spring(Machine& machine, Instance& spring, const SpringDescription& description) {
+  const SpringIndex index = spring_of(machine, spring);
+  if (index != kNoSpring) {
+    SpringDescription changed = description;
+    changed.a = machine.world().dynamics().spring(index).a;
+    changed.b = machine.world().dynamics().spring(index).b;
+    machine.world().dynamics().set_spring(index, changed);
+  }
+  resource_made<SpringResource>(machine, spring).is = description;
+}
+
+void relink_spring(Machine& machine, Instance& spring) {
+  SpringResource* resource = resource_of<SpringResource>(machine, &spring);
+  if (!resource || spring_of(machine, spring) != kNoSpring) return;
+  resource->index = kNoSpring;
+  Instance* from = library_object(machine, spring, "Spring", "fromObject");
+  Instance* to = library_object(machine, spring, "Spring", "toObject");
+  if (from && to) connect_spring(machine, spring, resource->is, from, to);
+}
+
+// --- assemblies -----------------------------------------------------------------------------------------------------
+
+Instance* root_of(Machine& machine, Instance& multibody) {
+  Instance* root = library_object(machine, multibody, "MultiBody", "rootLink");
+  return root && machine.world().has_body(root->id) ? root : nullptr;
+}
+
+Instance* multibody_of(Machine& machine, BodyIndex body) {
+  World& world = machine.world();
+  Instance* oldest = nullptr;
+  for (const BodyIndex link : world.dynamics().links_of(body)) {
+    Instance* object = machine.instance(world.bodies().owner(link));
+    Instance* owner = object ? library_object(machine, *object, "Mobile", "rootOf") : nullptr;
+    if (!owner || root_of(machine, *owner) != object) continue;
+    if (!oldest || owner->serial < oldest->serial) oldest = owner;
+  }
+  return oldest;
+}
+
+void set_root(Machine& machine, Instance& multibody, Instance* root) {
+  const BodyIndex body = body_of(machine, must_live(root, "set-root: the link"));
+  if (machine.world().bodies().kind(body) == BodyKind::Stationary)
+    throw Error(ErrorCode::Argument, "set-root: " + name_of(*root) + " cannot move: the root is a Link or a Mobile");
+  if (Instance* before = root_of(machine, multibody)) set_library_object(machine, *before, "Mobile", "rootOf", nullptr);
+  set_library_object(machine, multibody, "MultiBody", "rootLink", root);
+  set_library_object(machine, *root, "Mobile", "rootOf", &multibody);
+}
+
+namespace {
+
+/// The root's body if the MultiBody is the one that its links belong to, else kNoBody.
+BodyIndex own_root(Machine& machine, Instance& multibody) {
+  Instance* root = root_of(machine, multibody);
+  if (!root) return kNoBody;
+  const BodyIndex body = body_of(machine, *root);
+  return multibody_of(machine, body) == &multibody ? body : kNoBody;
+}
+
+}  // namespace
+
+std::vector<Instance*> links_of(Machine& machine, Instance& multibody) {
+  std::vector<Instance*> links;
+  const BodyIndex root = own_root(machine, multibody);
+  if (root == kNoBody) return links;
+  for (const BodyIndex body : machine.world().dynamics().links_of(root))
+    if (Instance* link = machine.instance(machine.world().bodies().owner(body))) links.push_back(link);
+  std::sort(links.begin(), links.end(), [](const Instance* a, const Instance* b) { return a->serial < b->serial; });
+  return links;
+}
+
+std::vector<Instance*> joints_of(Machine& machine, Instance& multibody) {
+  std::vector<Instance*> joints;
+  const BodyIndex root = own_root(machine, multibody);
+  if (root == kNoBody) return joints;
+  const Dynamics& dynamics = machine.world().dynamics();
+  for (const JointIndex joint : dynamics.joints_of(root))
+    if (Instance* owner = machine.instance(dynamics.joint_owner(joint))) joints.push_back(owner);
+  std::sort(joints.begin(), joints.end(), [](const Instance* a, const Instance* b) { return a->serial < b->serial; });
+  return joints;
+}
+
+void add_parts(Machine& machine, Instance& object, std::vector<Instance*>& parts) {
+  for (const auto& [cls, variable] : {std::pair<std::string_view, std::string_view>{"Joint", "parentObject"},
+                                      {"Joint", "childObject"},
+                                      {"Spring", "fromObject"},
+                                      {"Spring", "toObject"}})
+    if (Instance* part = library_object(machine, object, cls, variable)) parts.push_back(part);
+  if (!is_library_kind(object, "MultiBody")) return;
+  for (Instance* link : links_of(machine, object)) parts.push_back(link);
+  for (Instance* joint : joints_of(machine, object)) parts.push_back(joint);
+}
+
+}  // namespace breve::steve

@@ -1,0 +1,179 @@
+// Natives of Terrain: a body whose shape is a height field of its own, and the heights in it.
+#include <cmath>
+#include <vector>
+
+#include "runtime/solid/height_grid.hpp"
+#include "steve/library/resources.hpp"
+#include "steve/library/support.hpp"
+#include "steve/library/tables.hpp"
+
+namespace breve::steve {
+
+namespace {
+
+using Text = StringCell*;
+
+constexpr int kFirstSide = 33;
+
+/// Heights of a square grid, as they are built up.
+struct Heights {
+  int side = 0;
+  double tile = 1;
+  std::vector<double> values;
+
+  explicit Heights(int points)
+      : side(points), values(static_cast<std::size_t>(points) * static_cast<std::size_t>(points)) {}
+  double& at(int column, int row) {
+    return values[static_cast<std::size_t>(row) * static_cast<std::size_t>(side) + static_cast<std::size_t>(column)];
+  }
+};
+
+const std::shared_ptr<Shape>& shape_of(Machine& machine, Instance& self) {
+  const ShapeResource* resource = resource_of<ShapeResource>(machine, &self);
+  if (!resource || !resource->shape)
+    Machine::fail(RunErrorKind::NullObject, name_of(self) + " has no heights (its init did not run)");
+  return resource->shape;
+}
+
+const HeightGrid& grid_of(Machine& machine, Instance& self) { return *shape_of(machine, self)->heights(); }
+
+void use(Machine& machine, Instance& self, const std::shared_ptr<Shape>& shape) {
+  Bodies& bodies = machine.world().bodies();
+  const BodyIndex body = body_of(machine, self);
+  bodies.set_collision_shape(body, shape);
+  bodies.set_display_shape(body, shape);
+}
+
+void set_heights(Machine& machine, Instance& self, const Heights& heights) {
+  auto shape = Shape::height_field(heights.side, heights.side, heights.tile, heights.values, machine.heap().memory());
+  use(machine, self, shape);
+  resource_made<ShapeResource>(machine, self).shape = std::move(shape);
+}
+
+Heights copy_of(const HeightGrid& grid) {
+  Heights heights(grid.columns());
+  heights.tile = grid.tile();
+  for (int row = 0; row < heights.side; ++row)
+    for (int column = 0; column < heights.side; ++column) heights.at(column, row) = grid.height(column, row);
+  return heights;
+}
+
+bool in(const HeightGrid& grid, std::int32_t column, std::int32_t row) {
+  return column >= 0 && row >= 0 && column < grid.columns() && row < grid.rows();
+}
+
+// --- natives --------------------------------------------------------------------------------------------------------
+
+void terrain_init(Machine& machine, Instance& self) {
+  embody(machine, self, BodyKind::Stationary);
+  set_heights(machine, self, Heights(kFirstSide));
+}
+
+void terrain_dearchive(Machine& machine, Instance& self) { use(machine, self, shape_of(machine, self)); }
+
+/// Midpoint displacement: squares get their middles, then edges theirs, level by level.
+void displace(Heights& heights, double factor, Random& random) {
+  const int last = heights.side - 1;
+  double reach = 1;
+  for (int step = last; step > 1; step /= 2, reach *= factor) {
+    const int half = step / 2;
+    const auto offset = [&] { return (random.uniform() - 0.5) * reach; };
+    for (int z = half; z < last; z += step)
+      for (int x = half; x < last; x += step)
+        heights.at(x, z) = offset() + (heights.at(x - half, z - half) + heights.at(x + half, z - half) +
+                                       heights.at(x - half, z + half) + heights.at(x + half, z + half)) /
+                                          4;
+    for (int z = 0; z <= last; z += half)
+      for (int x = (z / half) % 2 == 0 ? half : 0; x <= last; x += step) {
+        double sum = 0;
+        int count = 0;
+        for (const auto& [dx, dz] : {std::pair{-half, 0}, {half, 0}, {0, -half}, {0, half}}) {
+          if (x + dx < 0 || x + dx > last || z + dz < 0 || z + dz > last) continue;
+          sum += heights.at(x + dx, z + dz);
+          ++count;
+        }
+        heights.at(x, z) = offset() + sum / count;
+      }
+  }
+}
+
+void terrain_generate(Machine& machine, Instance& self, double ruggedness, double height) {
+  finite(ruggedness, "generate: the ruggedness");
+  finite(height, "generate: the height");
+  const HeightGrid& grid = grid_of(machine, self);
+  const int side = 2 * (grid.columns() - 1) + 1;
+  if (side > HeightGrid::kMostSide)
+    throw Error(ErrorCode::Argument, "generate: the grid has " + std::to_string(grid.columns()) +
+                                         " points a side and cannot be doubled again");
+  Heights heights(side);
+  heights.tile = grid.tile();
+  const double grown = (grid.columns() - 1) * grid.tile() / 2;
+  displace(heights, std::pow(2.0, -(1 - ruggedness)), machine.world().random());
+  for (double& value : heights.values) value *= height;
+  set_heights(machine, self, heights);
+  Bodies& bodies = machine.world().bodies();
+  const BodyIndex body = body_of(machine, self);
+  bodies.set_location(body, bodies.location(body) + Vector3(grown, 0, grown));
+}
+
+void terrain_set_height(Machine& machine, Instance& self, std::int32_t column, std::int32_t row, double height) {
+  finite(height, "set-height: the height");
+  if (!in(grid_of(machine, self), column, row)) return;
+  const std::shared_ptr<Shape>& shape = shape_of(machine, self);
+  shape->set_height(column, row, height);
+  use(machine, self, shape);  // its bounds may be others
+}
+
+double terrain_get_height(Machine& machine, Instance& self, std::int32_t column, std::int32_t row) {
+  const HeightGrid& grid = grid_of(machine, self);
+  return in(grid, column, row) ? grid.height(column, row) : 0;
+}
+
+double terrain_height_in_world(Machine& machine, Instance& self, double x, double z) {
+  finite(x, "get-height-in-world: x");
+  finite(z, "get-height-in-world: z");
+  const HeightGrid& grid = grid_of(machine, self);
+  const Vector3& location = machine.world().bodies().location(body_of(machine, self));
+  const double middle = (grid.columns() - 1) / 2.0;
+  const double column = std::floor((x - location.x()) / grid.tile() + middle);
+  const double row = std::floor((z - location.z()) / grid.tile() + middle);
+  if (column < 0 || row < 0) return 0;
+  const double last = grid.columns() - 1;
+  return location.y() + grid.height(static_cast<int>(std::fmin(column, last)), static_cast<int>(std::fmin(row, last)));
+}
+
+std::int32_t terrain_get_size(Machine& machine, Instance& self) { return grid_of(machine, self).columns(); }
+
+void terrain_set_scale(Machine& machine, Instance& self, double tile) {
+  finite(tile, "set-scale: the tile size");
+  constexpr double kSmallest = 0.001;
+  if (tile < kSmallest) return;
+  Heights heights = copy_of(grid_of(machine, self));
+  heights.tile = tile;
+  set_heights(machine, self, heights);
+}
+
+void terrain_load_geo_tiff(Machine&, Instance&, Text file) {
+  throw Error(ErrorCode::Unsupported,
+              "load-geo-tiff: '" + std::string(view(file)) +
+                  "' is not read: this version has no reader of GeoTIFF files (set heights with "
+                  "set-height)");
+}
+
+constexpr Native kTerrainNatives[] = {
+    native<terrain_init>("terrain.init"),
+    native<terrain_dearchive>("terrain.dearchive"),
+    native<terrain_generate>("terrain.generate"),
+    native<terrain_set_height>("terrain.set-height"),
+    native<terrain_get_height>("terrain.get-height"),
+    native<terrain_height_in_world>("terrain.get-height-in-world"),
+    native<terrain_get_size>("terrain.get-size"),
+    native<terrain_set_scale>("terrain.set-scale"),
+    native<terrain_load_geo_tiff>("terrain.load-geo-tiff"),
+};
+
+}  // namespace
+
+std::span<const Native> terrain_natives() { return kTerrainNatives; }
+
+}  // namespace breve::steve

@@ -1,0 +1,120 @@
+// How long the collector of the whole heap may take: the promise counts cells, whatever they refer to.
+#include <gtest/gtest.h>
+
+#include "tests/machine/fakes.hpp"
+
+namespace breve::steve::testing {
+namespace {
+
+std::uint64_t bound(std::uint64_t live) { return (live + 19'999) / 20'000 + 2; }
+
+/// Rings that are too long to be judged by themselves, dropped while a collection runs.
+void drop_long_ring(World& w, int length = 3000) {
+  ListCell* first = w.heap.list();
+  ListCell* last = first;
+  for (int i = 1; i < length; ++i) {
+    ListCell* next = w.heap.list();
+    w.heap.push(*last, Value::of(Tag::List, next));
+    last = next;
+  }
+  w.heap.push(*last, Value::of(Tag::List, first));
+}
+std::uint64_t iterations_until(World& w, std::uint64_t live, std::uint64_t most) {
+  std::uint64_t iterations = 0;
+  for (; w.heap.live_cells() > live && iterations <= most; ++iterations) w.heap.end_of_iteration();
+  return iterations;
+}
+
+// The promise is by cells: references to few of them cost little.
+TEST(CollectorsPromise, AMillionReferencesToAFewCellsDelayNothing) {
+  World w;
+  const ClassInfo cls = reference_class(1);
+  Instance* owner = w.object(cls);
+  ListCell* many = w.heap.list();
+  w.heap.store(owner->slots[0], many);
+  for (int i = 0; i < 1'000'000; ++i) w.heap.push(*many, Value::of(Tag::Object, owner));
+  iterations_until(w, 0, 5);
+  const std::uint64_t live = w.heap.live_cells();
+  drop_long_ring(w);
+  w.heap.end_of_iteration();
+  drop_long_ring(w);
+  const std::uint64_t most = bound(w.heap.live_cells());
+  EXPECT_LE(iterations_until(w, live, most), most);
+}
+
+TEST(CollectorsPromise, CellsWithSixReferencesEachDelayNothing) {
+  World w;
+  const ClassInfo cls = reference_class(6);
+  constexpr std::size_t kObjects = 200'000;
+  std::vector<Instance*> objects;
+  for (std::size_t i = 0; i < kObjects; ++i) objects.push_back(w.object(cls));
+  for (std::size_t i = 0; i < kObjects; ++i) {
+    for (std::size_t k = 0; k < 5; ++k)
+      w.heap.store(objects[i]->slots[k], objects[(i * 7919 + k * 104'729) % kObjects]);
+    ListCell* things = w.heap.list();
+    w.heap.store(objects[i]->slots[5], things);
+    for (std::size_t k = 0; k < 6; ++k) w.heap.push(*things, Value::of(Tag::Object, objects[(i * 31 + k) % kObjects]));
+  }
+  iterations_until(w, 0, 30);
+  const std::uint64_t live = w.heap.live_cells();
+  drop_long_ring(w);
+  w.heap.end_of_iteration();
+  w.heap.end_of_iteration();
+  drop_long_ring(w);
+  const std::uint64_t most = bound(w.heap.live_cells());
+  EXPECT_LE(iterations_until(w, live, most), most);
+}
+
+// What was skipped as a root must not be lost when it ceases to be one before its turn.
+TEST(CollectorsPromise, AnObjectThatBecomesAutoFreeWhileACollectionRunsStays) {
+  World w;
+  const ClassInfo cls = reference_class(1);
+  Instance* owner = w.object(cls);
+  ListCell* list = w.heap.list();
+  w.heap.store(owner->slots[0], list);
+  for (int i = 0; i < 100'000; ++i) w.heap.push(*list, Value::of(Tag::List, w.heap.list()));
+  std::vector<Instance*> late;
+  for (int i = 0; i < 1000; ++i) {
+    late.push_back(w.object(cls));
+    w.heap.store(late.back()->slots[0], w.heap.list());
+    w.heap.push(*list, Value::of(Tag::Object, late.back()));
+  }
+  for (std::size_t cut = 1; cut < 8; ++cut) {
+    drop_long_ring(w);
+    for (std::size_t i = 0; i < cut; ++i) w.heap.end_of_iteration();
+    for (std::size_t i = cut * 100; i < cut * 100 + 100; ++i) {
+      late[i]->auto_free = true;
+      w.heap.release(late[i]);
+    }
+    for (int i = 0; i < 12; ++i) w.heap.end_of_iteration();
+    ASSERT_TRUE(w.roots.destroyed.empty()) << cut;
+    for (Instance* instance : late) ASSERT_NE(instance->slots[0].ref, nullptr);
+  }
+  EXPECT_EQ(w.heap.live_cells(), 2u + 100'000 + 2 * 1000);
+}
+
+// The whole heap becomes garbage when a collection has just found it alive.
+TEST(CollectorsPromise, ARingOfAllCellsGoesThoughACollectionHasBegun) {
+  World w;
+  const ClassInfo cls = reference_class(1);
+  Instance* owner = w.object(cls);
+  ListCell* first = w.heap.list();
+  w.heap.store(owner->slots[0], first);
+  ListCell* last = first;
+  for (int i = 1; i < 300'000; ++i) {
+    ListCell* next = w.heap.list();
+    w.heap.push(*last, Value::of(Tag::List, next));
+    last = next;
+  }
+  w.heap.push(*last, Value::of(Tag::List, first));
+  iterations_until(w, 0, 40);
+  drop_long_ring(w);
+  w.heap.end_of_iteration();
+  w.heap.end_of_iteration();
+  w.heap.store(owner->slots[0], nullptr);
+  const std::uint64_t most = bound(w.heap.live_cells());
+  EXPECT_LE(iterations_until(w, 1, most), most);
+}
+
+}  // namespace
+}  // namespace breve::steve::testing
