@@ -55,8 +55,4 @@ BodyEntry& Dynamics::Core::entry(BodyIndex body) {
   return entries[index];
 }
 
-bool Dynamics::Core::dynamic(BodyIndex body) const {
-  return bodies->used(body) && bodies->physics(body) && bodies->kind(body) != BodyKind::Stationary;
-}
-
 }  // namespace breve

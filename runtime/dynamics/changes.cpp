@@ -53,7 +53,7 @@ void Dynamics::Core::sync_changes() {
       continue;
     }
     const TreeLink& link = trees[known->tree]->links[static_cast<std::size_t>(known->link)];
-    if (!dynamic(body) || !(bodies->mass_properties(body) == link.solid))
+    if (!bodies->dynamic(body) || !(bodies->mass_properties(body) == link.solid))
       drop_tree(known->tree);  // what was set besides is found when it is built again
     else
       note_change(body, changes);
@@ -68,7 +68,7 @@ void Dynamics::Core::drop_trees_with_moved_anchors() {
     if (!trees[index]) continue;
     const auto& anchors = trees[index]->anchors;
     const bool moved = std::any_of(anchors.begin(), anchors.end(), [this](const TreeAnchor& anchor) {
-      return !bodies->used(anchor.body) || dynamic(anchor.body) ||
+      return !bodies->used(anchor.body) || bodies->dynamic(anchor.body) ||
              bodies->location(anchor.body) != anchor.pose.location ||
              bodies->orientation(anchor.body).coeffs() != anchor.pose.orientation.coeffs();
     });

@@ -146,10 +146,9 @@ struct Dynamics::Core : InMemory {
   BodyEntry& entry(BodyIndex body);
   BodyEntry* find(BodyIndex body);
   const BodyEntry* find(BodyIndex body) const;
-  bool dynamic(BodyIndex body) const;  // physics-enabled and not Stationary
-  /// And not set aside while the rest of a step is taken by others.
+  /// Dynamic, and not set aside while the rest of a step is taken by others.
   bool moves_now(BodyIndex body) const {
-    return dynamic(body) && (aside.empty() || (body < aside.size() && !aside[body]));
+    return bodies->dynamic(body) && (aside.empty() || (body < aside.size() && !aside[body]));
   }
   std::uint64_t structure() const {
     return bodies->revision() + rules + (graph_changed ? 1 : 0) + (clusters_changed ? 1 : 0);

@@ -9,14 +9,15 @@ namespace breve {
 Dynamics::Core::~Core() = default;
 
 bool Dynamics::pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client) const {
-  return core_ && core_->pushes(a, b, client);
+  if (core_) return core_->pushes(a, b, client);
+  // Nothing has moved yet: no joints, no trees.
+  return (bodies_->dynamic(a) || bodies_->dynamic(b)) && !client.ignored(a, b);
 }
 
 std::uint64_t Dynamics::rules() const { return core_ ? core_->rules : 0; }
 
 bool Dynamics::Core::pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client) {
-  const bool first = dynamic(a), second = dynamic(b);
-  if (!first && !second) return false;
+  if (!bodies->dynamic(a) && !bodies->dynamic(b)) return false;
   if (jointed(a, b) || client.ignored(a, b)) return false;
   const BodyEntry *x = find(a), *y = find(b);
   const bool same = x && y && x->tree != kNone && x->tree == y->tree;
@@ -64,7 +65,7 @@ void Dynamics::Core::find_islands() {
   }
   for (const auto& cluster : clusters) island(trees[cluster->trees.front()]->links.front().body).add_cluster(*cluster);
   for (NearPair& pair : near.all())
-    if (pair.pushes && near.near(pair)) island(dynamic(pair.a) ? pair.a : pair.b).add_pair(pair);
+    if (pair.pushes && near.near(pair)) island(bodies->dynamic(pair.a) ? pair.a : pair.b).add_pair(pair);
   island_count = used;
 }
 

@@ -79,7 +79,7 @@ void Dynamics::Core::collect(BodyIndex body, std::pmr::vector<BodyIndex>& out) {
       const JointDescription& is = joints[index].is;
       const BodyIndex other = is.parent == out[i] ? is.child : is.parent;
       // What does not move by itself holds nothing together.
-      if (other == kNoBody || !dynamic(other) || find(other)->mark == search) continue;
+      if (other == kNoBody || !bodies->dynamic(other) || find(other)->mark == search) continue;
       find(other)->mark = search;
       out.push_back(other);
     }
@@ -93,7 +93,7 @@ bool Dynamics::Core::held_by_world(BodyIndex body) {
     if (!find(one)) continue;
     for (const JointIndex index : find(one)->joints) {
       const JointDescription& is = joints[index].is;
-      if (is.parent == kNoBody || !dynamic(is.parent) || !dynamic(is.child)) return true;
+      if (is.parent == kNoBody || !bodies->dynamic(is.parent) || !bodies->dynamic(is.child)) return true;
     }
   }
   return false;
@@ -181,7 +181,7 @@ void Dynamics::Core::note_joined(JointIndex joint) {
   // From now on whoever moves one of them moves all.
   std::pmr::vector<BodyIndex> all(memory);
   for (const BodyIndex end : {joints[joint].is.child, joints[joint].is.parent}) {
-    if (end == kNoBody || !dynamic(end) || (find(end)->known && find(end)->tree != kNone)) continue;
+    if (end == kNoBody || !bodies->dynamic(end) || (find(end)->known && find(end)->tree != kNone)) continue;
     if (!find(end)->known) note_written(end);
   }
   if (joints[joint].ring) return;

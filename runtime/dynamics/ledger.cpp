@@ -61,7 +61,7 @@ void Dynamics::Core::add_stored(Energy& sum) {
   }
   // The list's order depends on the past: by index, so that a sum is the same after a snapshot.
   for (BodyIndex body = 0; body < bodies->index_end(); ++body) {
-    if (!dynamic(body)) continue;
+    if (!bodies->dynamic(body)) continue;
     const BodyEntry* known = find(body);
     if (known && known->tree != kNone) continue;
     const Energy one = free_energy(body);
@@ -85,7 +85,7 @@ Energy Dynamics::energy(BodyIndex body) const {
   core_->take_changes();
   const BodyEntry* known = core_->find(body);
   if (known && known->tree != kNone) return core_->energy_of(*core_->trees[known->tree]);
-  return core_->dynamic(body) ? core_->free_energy(body) : Energy{};
+  return core_->bodies->dynamic(body) ? core_->free_energy(body) : Energy{};
 }
 
 std::size_t Dynamics::self_penetrations(BodyIndex) const { return 0; }

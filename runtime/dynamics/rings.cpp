@@ -25,7 +25,7 @@ void add_angular(const Vector3& axis, double error, RingRows& rows) {
 Pose end_pose(const Dynamics::Core& core, const Tree& tree, BodyIndex body, int& link) {
   link = -1;
   if (body == kNoBody) return {};
-  if (!core.dynamic(body)) return core.pose(body);
+  if (!core.bodies->dynamic(body)) return core.pose(body);
   link = core.find(body)->link;
   return tree.pose(link);
 }

@@ -51,7 +51,7 @@ class Plan {
   std::size_t world() const { return bodies_.size(); }
 
   std::size_t place(BodyIndex body) const {
-    if (body == kNoBody || !core_.dynamic(body)) return world();
+    if (body == kNoBody || !core_.bodies->dynamic(body)) return world();
     return std::lower_bound(places_.begin(), places_.end(), std::pair{body, std::size_t{0}})->second;
   }
 
@@ -138,7 +138,7 @@ class Plan {
 
 bool Dynamics::Core::needs_tree(BodyIndex body) const {
   const BodyEntry* known = find(body);
-  return known && dynamic(body) && (!known->joints.empty() || known->ties > 0 || known->force_method);
+  return known && bodies->dynamic(body) && (!known->joints.empty() || known->ties > 0 || known->force_method);
 }
 
 void Dynamics::Core::build_trees() {

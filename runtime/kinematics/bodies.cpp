@@ -260,6 +260,10 @@ void Bodies::set_rotational_acceleration(BodyIndex body, const Vector3& value) {
 
 bool Bodies::physics(BodyIndex body) const { return arrays_->physics(body); }
 
+bool Bodies::dynamic(BodyIndex body) const {
+  return used(body) && physics(body) && kind(body) != BodyKind::Stationary;
+}
+
 void Bodies::set_physics(BodyIndex body, bool enabled) {
   Arrays& a = *arrays_;
   if (a.physics(body) == enabled) return;

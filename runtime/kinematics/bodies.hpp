@@ -99,6 +99,7 @@ class Bodies : public InMemory {
 
   // Rigid motion: on after enable_physics. Force and torque act at the centre of mass, world frame, until replaced.
   bool physics(BodyIndex body) const;
+  bool dynamic(BodyIndex body) const;  // in use, physics-enabled and not Stationary
   void set_physics(BodyIndex body, bool enabled);
   const Vector3& force(BodyIndex body) const;
   const Vector3& torque(BodyIndex body) const;
