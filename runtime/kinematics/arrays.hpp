@@ -110,7 +110,7 @@ struct Bodies::Arrays : InMemory {
   std::pmr::vector<BodyIndex> free;  // last removed, first reused
   std::shared_ptr<Shape> default_shape;
   std::size_t used = 0;
-  std::uint64_t revision = 0;
+  std::uint64_t revision = 0, physics_revision = 0;
   std::pmr::vector<BodyIndex>* log = nullptr;
   std::pmr::vector<BodyIndex> touched;  // may name bodies that are gone
 

@@ -175,6 +175,7 @@ std::size_t Bodies::size() const { return arrays_ ? arrays_->used : 0; }
 std::size_t Bodies::index_end() const { return arrays_ ? arrays_->owner.size() : 0; }
 bool Bodies::used(BodyIndex body) const { return body < index_end() && arrays_->owner[body]; }
 std::uint64_t Bodies::revision() const { return arrays_ ? arrays_->revision : 0; }
+std::uint64_t Bodies::physics_revision() const { return arrays_ ? arrays_->physics_revision : 0; }
 
 std::size_t Bodies::bytes() const {
   if (!arrays_) return 0;
@@ -260,9 +261,7 @@ void Bodies::set_rotational_acceleration(BodyIndex body, const Vector3& value) {
 
 bool Bodies::physics(BodyIndex body) const { return arrays_->physics(body); }
 
-bool Bodies::dynamic(BodyIndex body) const {
-  return used(body) && physics(body) && kind(body) != BodyKind::Stationary;
-}
+bool Bodies::dynamic(BodyIndex body) const { return used(body) && physics(body) && kind(body) != BodyKind::Stationary; }
 
 void Bodies::set_physics(BodyIndex body, bool enabled) {
   Arrays& a = *arrays_;
@@ -283,6 +282,7 @@ void Bodies::set_physics(BodyIndex body, bool enabled) {
     if (a.turn_row[body] != kNoRow) a.turn_rows[a.turn_row[body]].velocity = row.kinematic_rotational_velocity;
   }
   ++a.revision;
+  ++a.physics_revision;
   a.classify(body);
   a.note(body);
 }

@@ -73,7 +73,8 @@ class Bodies : public InMemory {
   std::size_t size() const;
   std::size_t index_end() const;  // every index is below this
   bool used(BodyIndex body) const;
-  std::uint64_t revision() const;  // grows when a body is added, removed, or its physics switched
+  std::uint64_t revision() const;          // grows when a body is added, removed, or its physics switched
+  std::uint64_t physics_revision() const;  // grows when the physics of a body is switched
   std::size_t bytes() const;
   void swap(Bodies& other);
   BodyKind kind(BodyIndex body) const;

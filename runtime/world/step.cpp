@@ -247,8 +247,8 @@ void World::Parts::rebuild_stages(std::uint32_t signature) {
   if (collide) {
     stages.push_back({EffectId::Collision,
                       [](World::Parts& p, double) {
-                        p.collisions.begin(p,
-                                           p.handlers.revision() + p.dynamics.rules() + p.world->bodies_->revision());
+                        p.collisions.begin(
+                            p, p.handlers.revision() + p.dynamics.rules() + p.world->bodies_->physics_revision());
                       },
                       [](const World::Parts&) { return std::size_t{0}; }});
   }
