@@ -71,6 +71,11 @@ struct Tree : InMemory {
   articulated::Vector set_tau;  // (nv) of loads.tau, what scripts set
   articulated::Vector work_q, work_v, work_u, work_w;
   Energy account;  // works and losses since it was made
+  // An island's, kept here so that a step allocates nothing.
+  articulated::State step_state, sub_state;  // as the step, the sub-step began
+  articulated::Vector free_v, way;           // v without the rows' impulses; the way they make
+  Energy step_account;                       // as the step began
+  double step_stored = 0;                    // J, likewise
 
   BodyIndex first_body() const {  // of the lowest index
     BodyIndex first = kNoBody;
