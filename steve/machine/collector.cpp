@@ -5,6 +5,7 @@
 // Instances without auto-free are alive by themselves and have their turn in the order of the table, which is nearly
 // that of memory; all else is scanned in the order in which it was reached.
 #include <algorithm>
+#include <memory>
 
 #include "steve/compile/program.hpp"
 #include "steve/machine/collecting.hpp"
@@ -97,7 +98,7 @@ void Heap::end_of_iteration() {
   if (held_by_frames_) suspicion_ = true;
   held_by_frames_ = false;
   judge_suspects();
-  std::int64_t work = kSlice;
+  std::int64_t work = slice();
   while (work > 0 && (phase_ != Phase::Idle || suspicion_)) {
     const Phase before = phase_;
     switch (phase_) {
@@ -112,16 +113,28 @@ void Heap::end_of_iteration() {
     }
     if (phase_ != before && phase_ == Phase::Idle) reclaim_all();
   }
+  if (slices_left_ > 1) --slices_left_;
   const bool dying = !dying_.empty();
   free_dying();
   if (dying || !zero_.empty()) reclaim_all();
   if (short_of_memory_) throw std::bad_alloc();
 }
 
+// More than usual only where cells refer to so many others that the collection would not be done in time.
+std::int64_t Heap::slice() const {
+  if (phase_ != Phase::Mark) return kSlice;
+  const std::uint64_t cells = white_left_ / slices_left_;
+  if (slices_left_ == 1) return 8 * kSlice;
+  return cells >= kHurry * 3 / 2 ? 4 * kSlice : cells >= kHurry ? 2 * kSlice : kSlice;
+}
+
 void Heap::begin_collection() {
   suspicion_ = false;
   phase_ = Phase::Mark;
   barrier_ = true;
+  slices_left_ = cells_ / kPromised + 1;
+  white_left_ = count_white();
+  drop_suspects();  // what is garbage by now, this collection finds
   passed_ = 0;
   grey_.clear();
   const auto reach = [this](Cell* cell) { shade(cell); };
@@ -175,24 +188,49 @@ void Heap::doom_condemned() {
   share_ = (dying_.size() + iterations - 1) / iterations;
 }
 
+// Of what dies in cycles a share in each iteration, so that a collection that ends does not end in a long pause.
+void Heap::free_dying() {
+  for (std::uint64_t left = share_; left > 0 && !dying_.empty(); --left) {
+    Instance* dying = dying_.back();
+    dying_.pop_back();
+    const auto unpin = [this](Instance* instance) { release(instance); };
+    const std::unique_ptr<Instance, decltype(unpin)> held(dying, unpin);
+    if (dying->state == Instance::State::Live && dying->auto_free) roots_.free_unreachable(*dying);
+  }
+}
+
 // Taking a cell apart releases what it refers to. When every cell of the garbage has lost its references, every count
-// in it is 0, and the cells are freed like any others.
+// in it is 0, and the cells are freed like any others: no more in each iteration than leaves the promise.
 void Heap::sweep(std::int64_t& work) {
   const bool suspicion = suspicion_;
-  while (work > 0 && passed_ < containers_.size()) {
+  const auto share = static_cast<std::int64_t>((white_left_ + slices_left_ - 1) / slices_left_);
+  const std::int64_t most = std::min(work, kSwept * std::max(share, kLeastSwept));
+  std::int64_t left = most;
+  while (left > 0 && passed_ < containers_.size()) {
     if (partial_ != nullptr) {  // others may have taken its place
-      take_apart(*partial_, work);
+      take_apart(*partial_, left);
       continue;
     }
-    if (!pass_to(kOther, work)) break;
-    if (!take_apart(*containers_[passed_], work)) break;
+    if (!pass_to(kOther, left) || !take_apart(*containers_[passed_], left)) break;
     blacken(passed_++);
+    if (white_left_ > 0) --white_left_;
   }
+  work -= most - left;
   suspicion_ = suspicion;  // the counts that garbage lowers close no cycle
-  if (passed_ < containers_.size()) return;
+  if (passed_ < containers_.size()) {
+    work = 0;
+    return;
+  }
   phase_ = Phase::Idle;
   passed_ = 0;
   white_ ^= kColour;
+}
+
+// Freeing a cell of the garbage frees what it alone refers to, and so on: a ring would go at once.
+bool Heap::is_swept_later(const Cell& cell) const {
+  if (phase_ != Phase::Sweep || !is_container(cell.tag)) return false;
+  const auto& container = static_cast<const Container&>(cell);
+  return is_white(container.place) && !is_leaf(container);
 }
 
 // A list or hash goes piece by piece; meanwhile it is held, so that it does not go as a whole by having lost its last

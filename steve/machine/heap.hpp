@@ -206,7 +206,7 @@ class Heap : public InMemory {
   static constexpr std::size_t kUnit = 16;                // bytes; size classes are multiples
   static constexpr std::size_t kClasses = 32;             // up to 512 bytes
   static constexpr std::size_t kReclaimBytes = 8U << 20;  // a few long strings are much garbage
-  static constexpr std::size_t kMostSuspects = 4096;
+  static constexpr std::size_t kMostSuspects = 16384;
   static constexpr std::size_t kReclaimAt = 1024;  // so little garbage that it is still in the cache when it goes
 
   // heap.cpp
@@ -250,10 +250,12 @@ class Heap : public InMemory {
   static std::uint8_t new_mark(const Container& cell, int colour);
   void strike(Container& cell);
   void begin_collection();
+  std::int64_t slice() const;
   void examine(std::int64_t& work);
   void doom_condemned();
   void free_dying();
   void sweep(std::int64_t& work);
+  bool is_swept_later(const Cell& cell) const;
   bool take_apart(Container& cell, std::int64_t& work);
   bool shed(ListCell& list, std::int64_t& work);
   bool shed(HashCell& hash, std::int64_t& work);
@@ -263,6 +265,7 @@ class Heap : public InMemory {
   void shade_place(std::uint32_t place);
   void push_grey(std::uint32_t place);
   std::uint32_t next_place(std::uint32_t from, std::uint32_t to, std::uint8_t mask, std::uint8_t mark) const;
+  std::uint32_t count_white() const;
   bool pass_to(std::uint8_t kinds, std::int64_t& work);
   void mark(std::int64_t& work);
   void fetch_place_ahead() const;
@@ -280,6 +283,7 @@ class Heap : public InMemory {
   void suspect(Container& cell);
   bool drop_lonely_suspects();  // true if there were any
   void judge_suspects();
+  void drop_suspects();
   void judge_region(Region& region);
   void judge_far_suspects(Region& region);
   void condemn(Region& region);
@@ -334,6 +338,8 @@ class Heap : public InMemory {
 
   std::pmr::vector<Instance*> dying_;  // in cycles, to be destroyed, the last one first: a share in each iteration
   std::uint64_t share_ = 0;
+  std::uint64_t slices_left_ = 0;  // for the running collection, this one included
+  std::uint64_t white_left_ = 0;   // cells that are white yet, or a few more
 };
 
 /// Sort in place, stable: `before(a, b)` is true if a must come before b. Works on a copy of the elements, so that

@@ -32,6 +32,8 @@ void Heap::save_state(ByteWriter& out, const std::function<std::uint64_t(const C
     for (const Instance* instance : *list) out.put(number(instance));
   }
   out.put(share_);
+  out.put(slices_left_);
+  out.put(white_left_);
   out.put(static_cast<std::uint64_t>(suspects_.size()));
   for (const Container* suspect : suspects_) out.put(number(suspect));
   out.put(static_cast<std::uint8_t>(wants_reclaim_));
@@ -105,6 +107,9 @@ void Heap::load_state(ByteReader& in, const std::function<Cell*(std::uint64_t)>&
     }
   }
   share_ = in.get<std::uint64_t>();
+  slices_left_ = in.get<std::uint64_t>();
+  white_left_ = in.get<std::uint64_t>();
+  if (phase_ != Phase::Idle && (slices_left_ == 0 || white_left_ > containers_.size())) ByteReader::fail();
   for (std::size_t n = in.get_count(sizeof(std::uint64_t)); n > 0; --n) {
     Cell* held = cell(in.get<std::uint64_t>());
     if (!is_container(held->tag) || held->suspected || suspects_.size() == kMostSuspects) ByteReader::fail();

@@ -29,8 +29,11 @@ class Heap::Marker {
     std::swap(cell, heads_[next_head_++ % kHeads]);
     if (cell != nullptr) arrived(cell);
   }
-  void reach(const Value& v) {
-    if (is_container(v.tag)) reach(v.ref);
+  /// Is it a reference that may lead on?
+  std::uint32_t reach(const Value& v) {
+    if (!is_container(v.tag)) return 0;
+    reach(v.ref);
+    return 1;
   }
 
   /// Are so few cells on their way that a root may be scanned?
@@ -53,14 +56,12 @@ class Heap::Marker {
     std::swap(container, places_[next_place_++ % kPlaces]);
     if (container != nullptr) darken(*container);
   }
-  static bool is_leaf(const Container& cell) {
-    if (cell.tag != Tag::List) return false;
-    const auto& list = static_cast<const ListCell&>(cell);
-    return list.size == 0 || (list.narrow() && !is_container(list.kind));
-  }
   void darken(Container& cell) {
     if (!heap_.is_white(cell.place)) return;
-    if (is_leaf(cell)) return heap_.blacken(cell.place);
+    if (is_leaf(cell)) {
+      if (heap_.white_left_ > 0) --heap_.white_left_;
+      return heap_.blacken(cell.place);
+    }
     if (stacked_ == kStack) return heap_.shade_place(cell.place);
     heap_.marks_[cell.place] = kOnItsWay;
     stack_[stacked_++] = &cell;
@@ -150,11 +151,12 @@ void Heap::Marker::flush() {
 
 void Heap::Marker::scan(Container& cell, std::int64_t& work) {
   heap_.marks_[cell.place] = heap_.new_mark(cell, heap_.white_ ^ kColour);
+  if (heap_.white_left_ > 0) --heap_.white_left_;
   work -= kMark;
   if (cell.tag == Tag::Object) {
     auto& instance = static_cast<Instance&>(cell);
     for (const std::uint16_t slot : instance.cls->reference_slots) reach(instance.slots[slot].ref);
-    work -= kElement * static_cast<std::int64_t>(instance.cls->reference_slots.size());
+    work -= kReference * static_cast<std::int64_t>(instance.cls->reference_slots.size());
     return;
   }
   heap_.partial_ = &cell;
@@ -167,20 +169,20 @@ void Heap::Marker::scan(Container& cell, std::int64_t& work) {
 void Heap::Marker::scan_part(std::int64_t& work) {
   constexpr std::int64_t kPiece = 1024;  // elements, so that what they refer to is counted in time
   const auto most = static_cast<std::uint32_t>(std::clamp<std::int64_t>(work, 1, kPiece));
-  std::uint32_t count = 0;
+  std::uint32_t count = 0, references = 0;
   std::uint32_t& position = heap_.position_;
   if (heap_.partial_->tag == Tag::List) {
     const auto& list = static_cast<const ListCell&>(*heap_.partial_);
     const std::uint32_t from = std::max(position, list.first);
     const std::uint32_t end = list.first + list.size;
     const std::uint32_t to = from >= end ? end : from + std::min(most, end - from);
-    for (std::uint32_t i = from; i < to; ++i) {
-      if (!list.narrow())
-        reach(list.values()[i]);
-      else if (is_container(list.kind))
-        reach(list.store[i].ref);
-    }
     count = to > from ? to - from : 0;
+    if (!list.narrow()) {
+      for (std::uint32_t i = from; i < to; ++i) references += reach(list.values()[i]);
+    } else if (is_container(list.kind)) {
+      for (std::uint32_t i = from; i < to; ++i) reach(list.store[i].ref);
+      references = count;
+    }
     position = to;
     if (to == end) heap_.partial_ = nullptr;
   } else {
@@ -189,13 +191,12 @@ void Heap::Marker::scan_part(std::int64_t& work) {
     for (; position < hash.used && count < most; ++position) {
       const HashCell::Entry& entry = hash.entries[position];
       if (!entry.live()) continue;
-      reach(entry.key);
-      reach(entry.value);
+      references += reach(entry.key) + reach(entry.value);
       ++count;
     }
     if (position >= hash.used) heap_.partial_ = nullptr;
   }
-  work -= kElement * count;
+  work -= kElement * count + kReference * references;
 }
 
 void Heap::shade(Cell* cell) {
@@ -254,7 +255,9 @@ void Heap::mark(std::int64_t& work) {
       fetch_place_ahead();
       work -= kLook;
       Container& cell = *containers_[passed_++];
-      if (is_root(cell)) marker.scan(cell, work);
+      if (!is_root(cell)) continue;
+      work += kMark - kRoot;
+      marker.scan(cell, work);
       continue;
     }
     if (Container* cell = marker.next(); cell != nullptr)
@@ -285,7 +288,15 @@ bool Heap::find_left_grey() {
 void Heap::end_of_marking() {
   passed_ = 0;
   phase_ = phase_ == Phase::Mark ? Phase::Examine : Phase::Sweep;
-  if (phase_ == Phase::Sweep) barrier_ = false;
+  if (phase_ != Phase::Sweep) return;
+  barrier_ = false;
+  white_left_ = count_white();
+}
+
+std::uint32_t Heap::count_white() const {
+  std::uint32_t count = 0;
+  for (const std::uint8_t mark : marks_) count += (mark & ~kOther) == white_ ? 1U : 0U;
+  return count;
 }
 
 void Heap::finish_partial() {

@@ -98,8 +98,9 @@ class Heap::Region {
     path_.reserve(static_cast<std::size_t>(units + 1));
   }
 
-  /// False if it leads too far, which is more than `most` units; then nothing has changed but `work`.
-  bool gather(Container& suspect, std::int64_t most, std::int64_t& work) {
+  /// False if it leads too far, which is more than `most` units; then nothing has changed but `work`, and suspects
+  /// among what was gathered are marked `otherwise`: they share its lot, so that what is large is gathered once.
+  bool gather(Container& suspect, std::int64_t most, std::int64_t& work, std::uint8_t otherwise) {
     cells_.clear();
     add(suspect);
     std::int64_t left = most;
@@ -115,7 +116,7 @@ class Heap::Region {
     work -= most - std::max<std::int64_t>(left, 0);
     if (left >= 0) return true;
     restore(done);
-    leave();
+    leave(otherwise);
     return false;
   }
 
@@ -143,11 +144,11 @@ class Heap::Region {
   }
 
   /// Take the marks away; what is left in cells() is dead.
-  void leave() {
+  void leave(std::uint8_t suspects = kJudged) {
     std::size_t dead = 0;
     for (Container* cell : cells_) {
       if (cell->mark == kInside) cells_[dead++] = cell;
-      cell->mark = cell->suspected ? kJudged : 0;
+      cell->mark = cell->suspected ? suspects : 0;
     }
     cells_.resize(dead);
   }
@@ -213,14 +214,11 @@ void Heap::judge_suspects() {
     work -= kSuspect;
     suspect.mark = kJudged;
     if (suspect.count == 1 || !can_be_garbage(&suspect)) continue;
-    if (region->gather(suspect, kRegion, work)) {
+    if (region->gather(suspect, kRegion, work, kFar))
       judge_region(*region);
-    } else {
-      suspect.mark = kFar;
+    else
       any_far = true;
-    }
   }
-  if (next < suspects_.size()) suspicion_ = true;  // their turn may come later than was promised
   if (any_far) judge_far_suspects(*region);
   roots_.visit_frames([](Cell* cell) {
     if (cell != nullptr && !cell->immortal) cell->mark = 0;
@@ -233,7 +231,17 @@ void Heap::judge_suspects() {
     return true;
   });
   if (!condemned_.empty() && phase_ != Phase::Examine) doom_condemned();
-  if (!zero_.empty()) reclaim_all();
+  const bool left_over = !suspects_.empty();
+  if (!zero_.empty() || left_over) reclaim_all();
+  if (left_over && !suspects_.empty()) suspicion_ = true;  // their turn may come later than was promised
+}
+
+void Heap::drop_suspects() {
+  for (Container* cell : suspects_) {
+    cell->suspected = false;
+    if (--cell->count == 0 && !cell->listed) enlist(cell);
+  }
+  suspects_.clear();
 }
 
 void Heap::judge_region(Region& region) {
@@ -254,7 +262,7 @@ void Heap::judge_far_suspects(Region& region) {
   for (Container* suspect : suspects_) {
     if (suspect->mark != kFar) continue;
     suspect->mark = kJudged;
-    if (work > 0 && region.gather(*suspect, work, work))
+    if (work > 0 && region.gather(*suspect, work, work, kJudged))
       judge_region(region);
     else
       suspicion_ = true;
