@@ -81,6 +81,7 @@ void Heap::move_place(std::uint32_t from, std::uint32_t to) {
 void Heap::strike(Container& cell) {
   if (partial_ == &cell) partial_ = nullptr;
   std::uint32_t place = cell.place;
+  if (white_left_ > 0 && is_white(place)) --white_left_;
   if (place < passed_) {
     move_place(--passed_, place);
     place = passed_;
