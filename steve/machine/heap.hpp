@@ -332,6 +332,8 @@ class Heap : public InMemory {
   bool barrier_ = false;          // what loses a reference must be marked: Mark, Examine, Remark
   bool short_of_memory_ = false;  // not all that was to be done in this iteration could be noted
   std::uint8_t white_ = 0;        // or kColour
+  std::uint8_t far_rest_ = 0;     // iterations in which far suspects are left to the collector at once
+  std::uint8_t next_far_rest_ = 0;
   std::uint32_t passed_ = 0;
   Container* partial_ = nullptr;  // the list or hash whose scan, or taking apart, was cut by the end of a slice
   std::uint32_t position_ = 0;    // where: index into its store or entries

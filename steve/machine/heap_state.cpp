@@ -33,6 +33,8 @@ void Heap::save_state(ByteWriter& out, const std::function<std::uint64_t(const C
   }
   out.put(share_);
   out.put(slices_left_);
+  out.put(far_rest_);
+  out.put(next_far_rest_);
   out.put(white_left_);
   out.put(static_cast<std::uint64_t>(suspects_.size()));
   for (const Container* suspect : suspects_) out.put(number(suspect));
@@ -108,6 +110,8 @@ void Heap::load_state(ByteReader& in, const std::function<Cell*(std::uint64_t)>&
   }
   share_ = in.get<std::uint64_t>();
   slices_left_ = in.get<std::uint64_t>();
+  far_rest_ = in.get<std::uint8_t>();
+  next_far_rest_ = in.get<std::uint8_t>();
   white_left_ = in.get<std::uint64_t>();
   if (phase_ != Phase::Idle && (slices_left_ == 0 || white_left_ > containers_.size())) ByteReader::fail();
   for (std::size_t n = in.get_count(sizeof(std::uint64_t)); n > 0; --n) {

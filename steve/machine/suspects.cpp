@@ -19,6 +19,7 @@ namespace {
 constexpr std::int64_t kRegion = 2000;      // of one suspect
 constexpr std::int64_t kIteration = 16000;  // of all; those that are left wait, and the whole heap is collected
 constexpr std::int64_t kLarge = 20000;      // of those that lead farther than kRegion, when all others are judged
+constexpr std::uint8_t kMostFarRest = 64;   // iterations for which these are not looked at, when one led farther still
 constexpr std::int64_t kSuspect = 2;        // to begin with one
 
 // Marks of cells while suspects are judged.
@@ -193,6 +194,7 @@ bool Heap::drop_lonely_suspects() {
 }
 
 void Heap::judge_suspects() {
+  if (far_rest_ > 0) --far_rest_;
   if (suspects_.empty()) return;
   std::optional<Region> region;
   try {
@@ -251,22 +253,31 @@ void Heap::judge_region(Region& region) {
   break_up(region);
 }
 
-// A ring of some thousands is worth more work than looking through the whole heap for it.
+// A ring of some thousands is worth more work than looking through the whole heap for it. A large structure that lives
+// may come to be suspected in each iteration, and is not.
 void Heap::judge_far_suspects(Region& region) {
+  std::int64_t work = far_rest_ == 0 ? kLarge : 0;
   try {
-    region.make_room(kLarge);
+    if (work > 0) region.make_room(kLarge);
   } catch (const std::bad_alloc&) {
     short_of_memory_ = true;
+    work = 0;
   }
-  std::int64_t work = short_of_memory_ ? 0 : kLarge;
+  const bool looked = work > 0;
+  bool any_left = false;
   for (Container* suspect : suspects_) {
     if (suspect->mark != kFar) continue;
     suspect->mark = kJudged;
     if (work > 0 && region.gather(*suspect, work, work, kJudged))
       judge_region(region);
     else
-      suspicion_ = true;
+      any_left = true;
   }
+  if (any_left) suspicion_ = true;
+  if (!looked) return;
+  next_far_rest_ =
+      any_left ? std::clamp<std::uint8_t>(static_cast<std::uint8_t>(next_far_rest_ * 2), 4, kMostFarRest) : 0;
+  far_rest_ = next_far_rest_;
 }
 
 // Dead instances must run destroy, which may bring anything that they lead to back to life: that stays this time.
