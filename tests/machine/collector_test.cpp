@@ -457,7 +457,11 @@ TEST(Collector, RestoredHeapDestroysTheSameObjectsInTheSameIterations) {
     Instance* owner = live.object(cls);
     ListCell* list = live.heap.list();
     live.heap.store(owner->slots[0], list);
-    for (int i = 0; i < 100'000; ++i) live.heap.push(*list, live.list());  // two slices to mark
+    for (int i = 0; i < 60'000; ++i) {  // two slices to mark
+      const Value outer = live.list();
+      live.heap.push(*outer.list(), live.list());
+      live.heap.push(*list, outer);
+    }
     for (int i = 0; i < cut; ++i) live_on(live, owner, cls, static_cast<unsigned>(i));
     live.roots.destroyed.clear();
     World restored;
