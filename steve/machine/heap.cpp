@@ -396,7 +396,7 @@ bool Heap::reclaim_round() {
     do {
       while (zero_.size() > kept) {
         Cell* cell = zero_.back();
-        if (cell->count == 0 && waits(*cell)) {
+        if (cell->count == 0 && (waits(*cell) || is_swept_later(*cell))) {
           std::swap(zero_.back(), zero_[kept++]);
           continue;
         }
@@ -485,16 +485,6 @@ bool Heap::free_doomed() {
     if (!lives_on && doomed->state == Instance::State::Live && doomed->auto_free) roots_.free_unreachable(*doomed);
   }
   return true;
-}
-
-// Of what dies in cycles a share in each iteration, so that a collection that ends does not end in a long pause.
-void Heap::free_dying() {
-  for (std::uint64_t left = share_; left > 0 && !dying_.empty(); --left) {
-    const Unpin unpin{*this, dying_.back()};
-    dying_.pop_back();
-    if (unpin.instance->state == Instance::State::Live && unpin.instance->auto_free)
-      roots_.free_unreachable(*unpin.instance);
-  }
 }
 
 }  // namespace breve::steve

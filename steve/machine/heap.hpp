@@ -180,13 +180,17 @@ class Heap : public InMemory {
   //   Sweep:    white cells are taken apart; all cells passed are white again
   // Idle: all cells are white.
   enum class Phase : std::uint8_t { Idle, Mark, Examine, Remark, Sweep };
-  // Marks of places: white, black, or kGrey + i for the i-th of grey_. Lists and hashes have colours of their own, so
-  // that passes over the table need not look at the cells.
-  static constexpr std::uint32_t kWhite = 0, kWhiteOther = 1, kBlack = 2, kBlackOther = 3, kGrey = 4;
-  static std::uint32_t white(const Container& cell) { return cell.tag == Tag::Object ? kWhite : kWhiteOther; }
-  static std::uint32_t black(const Container& cell) { return cell.tag == Tag::Object ? kBlack : kBlackOther; }
-  static constexpr std::uint32_t kNoPlace = 0xffffffffU;
-  class Reach;
+  // Marks of places, a byte each, so that passes over the table read little. Which of the two colours is white changes
+  // with each collection: what was found alive is white again without being touched.
+  static constexpr std::uint8_t kOther = 1;   // a list or hash
+  static constexpr std::uint8_t kColour = 2;  // one of the two: white_ says which
+  static constexpr std::uint8_t kGrey = 4;
+  static constexpr std::uint8_t kInert = 8;  // an instance that can refer to nothing: in no cycle, of no colour
+  bool is_white(std::uint32_t place) const { return (marks_[place] & ~kOther) == white_; }
+  void blacken(std::uint32_t place) {
+    marks_[place] = static_cast<std::uint8_t>((marks_[place] & kOther) | (white_ ^ kColour));
+  }
+  class Marker;
   struct FreeSlot {
     FreeSlot* next;
   };
@@ -202,7 +206,7 @@ class Heap : public InMemory {
   static constexpr std::size_t kUnit = 16;                // bytes; size classes are multiples
   static constexpr std::size_t kClasses = 32;             // up to 512 bytes
   static constexpr std::size_t kReclaimBytes = 8U << 20;  // a few long strings are much garbage
-  static constexpr std::size_t kMostSuspects = 4096;
+  static constexpr std::size_t kMostSuspects = 16384;
   static constexpr std::size_t kReclaimAt = 1024;  // so little garbage that it is still in the cache when it goes
 
   // heap.cpp
@@ -243,23 +247,30 @@ class Heap : public InMemory {
   static bool leads_on(const Container& cell, int levels, int& looks);
   void move_place(std::uint32_t from, std::uint32_t to);
   void enrol(Container& cell);
+  static std::uint8_t new_mark(const Container& cell, int colour);
   void strike(Container& cell);
-  void shade(Cell* cell);
-  void shade_place(std::uint32_t place);
-  void fetch_ahead() const;
-  void fetch_place_ahead() const;
   void begin_collection();
-  void mark(std::int64_t& work);
-  void end_of_marking();
-  void scan(Container& cell, Reach& reach, std::int64_t& work);
-  void scan_part(Reach& reach, std::int64_t& work);
+  std::int64_t slice() const;
   void examine(std::int64_t& work);
   void doom_condemned();
   void free_dying();
   void sweep(std::int64_t& work);
+  bool is_swept_later(const Cell& cell) const;
   bool take_apart(Container& cell, std::int64_t& work);
   bool shed(ListCell& list, std::int64_t& work);
   bool shed(HashCell& hash, std::int64_t& work);
+
+  // marking.cpp
+  void shade(Cell* cell);
+  void shade_place(std::uint32_t place);
+  void push_grey(std::uint32_t place);
+  std::uint32_t next_place(std::uint32_t from, std::uint32_t to, std::uint8_t mask, std::uint8_t mark) const;
+  std::uint32_t count_white() const;
+  bool pass_to(std::uint8_t kinds, std::int64_t& work);
+  void mark(std::int64_t& work);
+  void fetch_place_ahead() const;
+  void end_of_marking();
+  bool find_left_grey();
   /// Before the elements of a half-scanned list or hash move: finish scanning it.
   void settle(const Container& cell) {
     if (partial_ == &cell) [[unlikely]]
@@ -272,6 +283,7 @@ class Heap : public InMemory {
   void suspect(Container& cell);
   bool drop_lonely_suspects();  // true if there were any
   void judge_suspects();
+  void drop_suspects();
   void judge_region(Region& region);
   void judge_far_suspects(Region& region);
   void condemn(Region& region);
@@ -302,8 +314,8 @@ class Heap : public InMemory {
 
   std::pmr::vector<Cell*> zero_;
   std::pmr::vector<Container*> containers_;
-  std::pmr::vector<std::uint32_t> marks_;  // by place
-  std::pmr::vector<std::uint32_t> grey_;   // places in the order in which they became grey; kNoPlace: gone
+  std::pmr::vector<std::uint8_t> marks_;   // by place
+  std::pmr::vector<std::uint32_t> grey_;   // a stack of places where grey cells stood when they became grey
   std::pmr::vector<Instance*> doomed_;     // in no cycle, to be destroyed now
   std::pmr::vector<Instance*> condemned_;  // in cycles, to be dying when all are found
   std::pmr::vector<Container*> suspects_;  // to be judged at the end of the iteration; each counts as a reference
@@ -319,13 +331,17 @@ class Heap : public InMemory {
   bool held_by_frames_ = false;   // the last collection began while frames held something that can be in a cycle
   bool barrier_ = false;          // what loses a reference must be marked: Mark, Examine, Remark
   bool short_of_memory_ = false;  // not all that was to be done in this iteration could be noted
+  std::uint8_t white_ = 0;        // or kColour
+  std::uint8_t far_rest_ = 0;     // iterations in which far suspects are left to the collector at once
+  std::uint8_t next_far_rest_ = 0;
   std::uint32_t passed_ = 0;
-  std::uint32_t next_grey_ = 0;   // the first of grey_ that is not scanned
   Container* partial_ = nullptr;  // the list or hash whose scan, or taking apart, was cut by the end of a slice
   std::uint32_t position_ = 0;    // where: index into its store or entries
 
   std::pmr::vector<Instance*> dying_;  // in cycles, to be destroyed, the last one first: a share in each iteration
   std::uint64_t share_ = 0;
+  std::uint64_t slices_left_ = 0;  // for the running collection, this one included
+  std::uint64_t white_left_ = 0;   // cells that are white yet, or a few more
 };
 
 /// Sort in place, stable: `before(a, b)` is true if a must come before b. Works on a copy of the elements, so that

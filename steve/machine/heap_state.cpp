@@ -32,46 +32,42 @@ void Heap::save_state(ByteWriter& out, const std::function<std::uint64_t(const C
     for (const Instance* instance : *list) out.put(number(instance));
   }
   out.put(share_);
+  out.put(slices_left_);
+  out.put(far_rest_);
+  out.put(next_far_rest_);
+  out.put(white_left_);
   out.put(static_cast<std::uint64_t>(suspects_.size()));
   for (const Container* suspect : suspects_) out.put(number(suspect));
   out.put(static_cast<std::uint8_t>(wants_reclaim_));
 }
 
-// Only a running collection has marks.
+// Only a running collection has marks: 0 white, 1 black, 2 grey.
 void Heap::save_marks(ByteWriter& out) const {
   if (phase_ == Phase::Idle) return;
   out.put(passed_);
-  for (const std::uint32_t mark : marks_) out.put(static_cast<std::uint8_t>(std::min(mark, kGrey)));
-  out.put(static_cast<std::uint64_t>(grey_.size() - next_grey_));
-  for (std::size_t i = next_grey_; i < grey_.size(); ++i) out.put(grey_[i]);
+  for (std::uint32_t place = 0; place < marks_.size(); ++place)
+    out.put(static_cast<std::uint8_t>(is_white(place) ? 0 : marks_[place] == kGrey ? 2 : 1));
+  out.put(static_cast<std::uint64_t>(grey_.size()));
+  for (const std::uint32_t place : grey_) out.put(place);
 }
 
 void Heap::load_marks(ByteReader& in) {
   grey_.clear();
-  next_grey_ = passed_ = 0;
-  for (std::size_t i = 0; i < marks_.size(); ++i) marks_[i] = white(*containers_[i]);
+  passed_ = 0;
+  white_ = 0;
+  for (std::size_t i = 0; i < marks_.size(); ++i) marks_[i] = new_mark(*containers_[i], white_);
   if (phase_ == Phase::Idle) return;
   passed_ = in.get<std::uint32_t>();
   if (passed_ > containers_.size()) ByteReader::fail();
-  std::size_t grey = 0;
-  for (std::uint32_t& mark : marks_) {
-    mark = in.get<std::uint8_t>();
-    if (mark > kGrey) ByteReader::fail();
-    grey += mark == kGrey ? 1U : 0U;
-    if (mark == kGrey) mark = kNoPlace;  // until its turn is known
+  for (std::uint32_t place = 0; place < marks_.size(); ++place) {
+    const auto mark = in.get<std::uint8_t>();
+    if (mark > 2) ByteReader::fail();
+    if (mark == 1 && is_white(place)) blacken(place);
+    if (mark == 2) marks_[place] = kGrey;
   }
   const std::size_t waiting = in.get_count(sizeof(std::uint32_t));
   grey_.reserve(waiting + containers_.capacity());
-  for (std::size_t n = waiting; n > 0; --n) {
-    const auto place = in.get<std::uint32_t>();
-    if (place != kNoPlace && (place >= marks_.size() || marks_[place] != kNoPlace)) ByteReader::fail();
-    if (place != kNoPlace) {
-      marks_[place] = kGrey + static_cast<std::uint32_t>(grey_.size());
-      --grey;
-    }
-    grey_.push_back(place);
-  }
-  if (grey != 0) ByteReader::fail();
+  for (std::size_t n = waiting; n > 0; --n) grey_.push_back(in.get<std::uint32_t>());
 }
 
 void Heap::load_state(ByteReader& in, const std::function<Cell*(std::uint64_t)>& cell) {
@@ -113,6 +109,11 @@ void Heap::load_state(ByteReader& in, const std::function<Cell*(std::uint64_t)>&
     }
   }
   share_ = in.get<std::uint64_t>();
+  slices_left_ = in.get<std::uint64_t>();
+  far_rest_ = in.get<std::uint8_t>();
+  next_far_rest_ = in.get<std::uint8_t>();
+  white_left_ = in.get<std::uint64_t>();
+  if (phase_ != Phase::Idle && (slices_left_ == 0 || white_left_ > containers_.size())) ByteReader::fail();
   for (std::size_t n = in.get_count(sizeof(std::uint64_t)); n > 0; --n) {
     Cell* held = cell(in.get<std::uint64_t>());
     if (!is_container(held->tag) || held->suspected || suspects_.size() == kMostSuspects) ByteReader::fail();

@@ -19,6 +19,7 @@ namespace {
 constexpr std::int64_t kRegion = 2000;      // of one suspect
 constexpr std::int64_t kIteration = 16000;  // of all; those that are left wait, and the whole heap is collected
 constexpr std::int64_t kLarge = 20000;      // of those that lead farther than kRegion, when all others are judged
+constexpr std::uint8_t kMostFarRest = 64;   // iterations for which these are not looked at, when one led farther still
 constexpr std::int64_t kSuspect = 2;        // to begin with one
 
 // Marks of cells while suspects are judged.
@@ -98,8 +99,9 @@ class Heap::Region {
     path_.reserve(static_cast<std::size_t>(units + 1));
   }
 
-  /// False if it leads too far, which is more than `most` units; then nothing has changed but `work`.
-  bool gather(Container& suspect, std::int64_t most, std::int64_t& work) {
+  /// False if it leads too far, which is more than `most` units; then nothing has changed but `work`, and suspects
+  /// among what was gathered are marked `otherwise`: they share its lot, so that what is large is gathered once.
+  bool gather(Container& suspect, std::int64_t most, std::int64_t& work, std::uint8_t otherwise) {
     cells_.clear();
     add(suspect);
     std::int64_t left = most;
@@ -115,7 +117,7 @@ class Heap::Region {
     work -= most - std::max<std::int64_t>(left, 0);
     if (left >= 0) return true;
     restore(done);
-    leave();
+    leave(otherwise);
     return false;
   }
 
@@ -143,11 +145,11 @@ class Heap::Region {
   }
 
   /// Take the marks away; what is left in cells() is dead.
-  void leave() {
+  void leave(std::uint8_t suspects = kJudged) {
     std::size_t dead = 0;
     for (Container* cell : cells_) {
       if (cell->mark == kInside) cells_[dead++] = cell;
-      cell->mark = cell->suspected ? kJudged : 0;
+      cell->mark = cell->suspected ? suspects : 0;
     }
     cells_.resize(dead);
   }
@@ -192,6 +194,7 @@ bool Heap::drop_lonely_suspects() {
 }
 
 void Heap::judge_suspects() {
+  if (far_rest_ > 0) --far_rest_;
   if (suspects_.empty()) return;
   std::optional<Region> region;
   try {
@@ -213,14 +216,11 @@ void Heap::judge_suspects() {
     work -= kSuspect;
     suspect.mark = kJudged;
     if (suspect.count == 1 || !can_be_garbage(&suspect)) continue;
-    if (region->gather(suspect, kRegion, work)) {
+    if (region->gather(suspect, kRegion, work, kFar))
       judge_region(*region);
-    } else {
-      suspect.mark = kFar;
+    else
       any_far = true;
-    }
   }
-  if (next < suspects_.size()) suspicion_ = true;  // their turn may come later than was promised
   if (any_far) judge_far_suspects(*region);
   roots_.visit_frames([](Cell* cell) {
     if (cell != nullptr && !cell->immortal) cell->mark = 0;
@@ -233,7 +233,17 @@ void Heap::judge_suspects() {
     return true;
   });
   if (!condemned_.empty() && phase_ != Phase::Examine) doom_condemned();
-  if (!zero_.empty()) reclaim_all();
+  const bool left_over = !suspects_.empty();
+  if (!zero_.empty() || left_over) reclaim_all();
+  if (left_over && !suspects_.empty()) suspicion_ = true;  // their turn may come later than was promised
+}
+
+void Heap::drop_suspects() {
+  for (Container* cell : suspects_) {
+    cell->suspected = false;
+    if (--cell->count == 0 && !cell->listed) enlist(cell);
+  }
+  suspects_.clear();
 }
 
 void Heap::judge_region(Region& region) {
@@ -243,22 +253,31 @@ void Heap::judge_region(Region& region) {
   break_up(region);
 }
 
-// A ring of some thousands is worth more work than looking through the whole heap for it.
+// A ring of some thousands is worth more work than looking through the whole heap for it. A large structure that lives
+// may come to be suspected in each iteration, and is not.
 void Heap::judge_far_suspects(Region& region) {
+  std::int64_t work = far_rest_ == 0 ? kLarge : 0;
   try {
-    region.make_room(kLarge);
+    if (work > 0) region.make_room(kLarge);
   } catch (const std::bad_alloc&) {
     short_of_memory_ = true;
+    work = 0;
   }
-  std::int64_t work = short_of_memory_ ? 0 : kLarge;
+  const bool looked = work > 0;
+  bool any_left = false;
   for (Container* suspect : suspects_) {
     if (suspect->mark != kFar) continue;
     suspect->mark = kJudged;
-    if (work > 0 && region.gather(*suspect, work, work))
+    if (work > 0 && region.gather(*suspect, work, work, kJudged))
       judge_region(region);
     else
-      suspicion_ = true;
+      any_left = true;
   }
+  if (any_left) suspicion_ = true;
+  if (!looked) return;
+  next_far_rest_ =
+      any_left ? std::clamp<std::uint8_t>(static_cast<std::uint8_t>(next_far_rest_ * 2), 4, kMostFarRest) : 0;
+  far_rest_ = next_far_rest_;
 }
 
 // Dead instances must run destroy, which may bring anything that they lead to back to life: that stays this time.

@@ -9,7 +9,7 @@ namespace {
 std::uint64_t bound(std::uint64_t live) { return (live + 19'999) / 20'000 + 2; }
 
 /// Rings that are too long to be judged by themselves, dropped while a collection runs.
-void drop_long_ring(World& w, int length = 3000) {
+void drop_long_ring(World& w, int length = 12'000) {
   ListCell* first = w.heap.list();
   ListCell* last = first;
   for (int i = 1; i < length; ++i) {
@@ -114,6 +114,51 @@ TEST(CollectorsPromise, ARingOfAllCellsGoesThoughACollectionHasBegun) {
   w.heap.store(owner->slots[0], nullptr);
   const std::uint64_t most = bound(w.heap.live_cells());
   EXPECT_LE(iterations_until(w, 1, most), most);
+}
+
+// A collection that is done early takes its garbage apart little by little, however it hangs together.
+TEST(CollectorsPromise, ALongRingIsFreedInParts) {
+  World w;
+  const ClassInfo cls = reference_class(1);
+  for (int i = 0; i < 400'000; ++i) w.object(cls);
+  iterations_until(w, 0, 30);
+  const std::uint64_t live = w.heap.live_cells();
+  drop_long_ring(w, 20'000);
+  const std::uint64_t promised = bound(w.heap.live_cells());
+  std::uint64_t most = 0, iterations = 0;
+  for (std::uint64_t before = w.heap.live_cells(); before > live && iterations <= promised; ++iterations) {
+    w.heap.end_of_iteration();
+    most = std::max(most, before - w.heap.live_cells());
+    before = w.heap.live_cells();
+  }
+  EXPECT_LE(iterations, promised);
+  EXPECT_LE(most, 8000u);
+}
+
+// They are left out of marking: they live and die by their counts.
+TEST(CollectorsPromise, AnObjectThatCanReferToNothingGoesWithTheRingThatHeldItAndNotBefore) {
+  World w;
+  const ClassInfo bare = reference_class(0);
+  ListCell* kept = w.heap.list();
+  w.heap.retain(kept);
+  w.roots.roots.push_back(kept);
+  w.heap.push(*kept, Value::of(Tag::Object, w.auto_object(bare)));
+  Instance* doomed = w.auto_object(bare);
+  const std::uint64_t serial = doomed->serial;
+  ListCell* first = w.heap.list();
+  ListCell* last = first;
+  for (int i = 1; i < 30'000; ++i) {
+    ListCell* next = w.heap.list();
+    w.heap.push(*last, Value::of(Tag::List, next));
+    last = next;
+  }
+  w.heap.push(*last, Value::of(Tag::Object, doomed));
+  w.heap.push(*last, Value::of(Tag::List, first));
+  const std::uint64_t most = bound(w.heap.live_cells());
+  EXPECT_LE(iterations_until(w, 2, most), most);
+  EXPECT_EQ(w.roots.destroyed, std::vector<std::uint64_t>{serial});
+  for (int i = 0; i < 5; ++i) w.heap.end_of_iteration();
+  EXPECT_EQ(w.heap.live_cells(), 2u);
 }
 
 }  // namespace
