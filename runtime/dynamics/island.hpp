@@ -136,6 +136,7 @@ class Island {
   void solve(double h);
   void load_velocities();                 // movers' v from the state
   void store_velocities(double moved_h);  // back, and positions by what impulses changed times moved_h
+  void correct_works(double h);
   Vector3 rate_of(const contact::Row& row, bool first) const;
   double rate_of(const contact::ScalarRow& row) const;
   void account_rows();

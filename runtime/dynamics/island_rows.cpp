@@ -348,6 +348,35 @@ void Island::store_velocities(double moved_h) {
   }
 }
 
+/// Motors, dampers and scripts pushed along the way that smooth motion took; what the rows' impulses added to it, half
+/// of the change of velocity for h, is worked along too.
+void Island::correct_works(double h) {
+  for (const Free& one : free_) {
+    for (int k = 0; k < 3; ++k)
+      free_work_ +=
+          0.5 * h *
+          (one.now.force[k] * (one.v[k] - one.free_v[k]) + one.now.torque[k] * (one.v[3 + k] - one.free_v[3 + k]));
+  }
+  for (Clustered& clustered : clusters_)
+    for (const std::uint32_t index : clustered.entry->trees) {
+      Tree& tree = *core_.trees[index];
+      if (!tree.driven) continue;
+      const articulated::Vector &before = tree.sub_state.v, &free = tree.free_v, &after = tree.state.v;
+      for (int i = 0; i < tree.model.size(); ++i) {
+        const TreeLink& link = tree.links[static_cast<std::size_t>(i)];
+        if (link.joint == kNoJoint) continue;
+        const articulated::Body& body = tree.model.body(i);
+        const double damping = core_.joints[link.joint].drive.damping;
+        for (int k = body.v; k < body.v + articulated::velocity_count(body.type); ++k) {
+          const double change = 0.5 * (after[k] - free[k]);
+          clustered.pending.motor_work += change * tree.motor_impulse[k];
+          clustered.pending.drag_loss += change * damping * h * 0.5 * (before[k] + free[k]);
+          clustered.pending.script_work += change * h * tree.set_tau[k];
+        }
+      }
+    }
+}
+
 void Island::solve(double h) {
   if (rows_.empty() && scalars_.empty()) return;
   static_cast<void>(h);

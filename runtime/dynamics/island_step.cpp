@@ -67,6 +67,7 @@ void Island::advance_once(double time, double h) {
   if (rows_.empty() && !ring_errors_.empty()) return hold_rings(h);
   solve(h);
   // A force that is constant over the step moves by half of what its change of velocity would.
+  correct_works(h);
   store_velocities(0.5 * h);
 }
 

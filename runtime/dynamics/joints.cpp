@@ -308,8 +308,11 @@ void Dynamics::set_drive(JointIndex joint, const JointDrive& drive) {
     if (!(drive.low[i] <= drive.high[i]))
       refuse(fmt::format("{} of axis {}: the minimum {} is above the maximum {}", what("limits"), i + 1, drive.low[i],
                          drive.high[i]));
+  const bool had_motor = entry.drive.strength_limit > 0;
   entry.drive = drive;
   entry.drive.strength_limit = std::clamp(drive.strength_limit, 0.0, strength_hard_limit(joint));
+  // The integrator keeps the impulse of each motor.
+  if (had_motor != (entry.drive.strength_limit > 0)) c.integrators_changed = true;
 }
 
 }  // namespace breve
