@@ -35,6 +35,7 @@ Island::Island(Dynamics::Core& core, std::pmr::memory_resource* memory)
       rebound_later_(memory),
       depths_(memory),
       before_(memory),
+      warm_(memory),
       scalars_before_(memory),
       workspace_(memory) {}
 

@@ -207,6 +207,7 @@ class Island {
   int impacts_ = 0;                          // located so far in this step
   std::pmr::vector<double> depths_;          // of pairs: overlap when the sub-step began, m
   std::pmr::vector<Vector3> before_;         // of each row's two sides: velocity along its axes as the sub-step began
+  std::pmr::vector<Vector3> warm_;           // of each row, where its solver begins
   std::pmr::vector<double> scalars_before_;  // of each scalar row
   contact::Workspace workspace_;
 };

@@ -204,9 +204,11 @@ void Island::make_rows(double h, bool restitution) {
   for (Tree* tree : trees_) add_ring_rows(*tree);
   load_velocities();
   before_.clear();
+  warm_.clear();
   scalars_before_.clear();
   for (contact::Row& row : rows_) {
     const Vector3 a = rate_of(row, true), b = rate_of(row, false);
+    warm_.push_back(row.impulse);
     before_.push_back(a);
     before_.push_back(b);
     row.slip[0] = a[1] - b[1];

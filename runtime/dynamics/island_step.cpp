@@ -62,7 +62,7 @@ void Island::advance_once(double time, double h) {
   smooth(time, h);
   load_velocities();
   set_biases(h);
-  for (contact::Row& row : rows_) row.impulse = Vector3::Zero();
+  for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i].impulse = warm_[i];
   for (contact::ScalarRow& row : scalars_) row.impulse = 0;
   if (rows_.empty() && !ring_errors_.empty()) return hold_rings(h);
   solve(h);

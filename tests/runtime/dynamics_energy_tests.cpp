@@ -100,7 +100,7 @@ TEST(DynamicsEnergy, AnAssemblyKnowsWhatItsContactsTook) {
 
 TEST(DynamicsEnergy, FeetThatRestAreNotASeriesOfImpacts) {
   Walker s(Rung::Balanced);
-  std::uint64_t impacts = 0, most = 0, sub_steps = 0, evaluations = 0, rejected = 0;
+  std::uint64_t impacts = 0, most = 0, sub_steps = 0, evaluations = 0, rejected = 0, solves = 0;
   for (int i = 0; i < 300; ++i) {
     s.step();
     const DynamicsCounters& c = s.dynamics().counters();
@@ -109,11 +109,14 @@ TEST(DynamicsEnergy, FeetThatRestAreNotASeriesOfImpacts) {
     sub_steps += c.sub_steps;
     evaluations += c.evaluations;
     rejected += c.rejected;
+    solves += c.solver_iterations;
     EXPECT_EQ(c.interventions, 0U) << "at " << s.world.time()
                                    << " s: " << words_for(s.dynamics().interventions()[0].reason);
   }
-  std::printf("  walker, 5 s: %lu impacts, at most %lu in a step, %lu sub-steps, %lu evaluations, %lu rejected\n",
-              impacts, most, sub_steps, evaluations, rejected);
+  std::printf(
+      "  walker, 5 s: %lu impacts, at most %lu in a step, %lu sub-steps, %lu evaluations, %lu rejected, %lu "
+      "iterations\n",
+      impacts, most, sub_steps, evaluations, rejected, solves);
   EXPECT_LT(most, 20U);
   EXPECT_LT(impacts, 300U);
 }
