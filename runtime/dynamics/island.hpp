@@ -140,6 +140,7 @@ class Island {
   Vector3 rate_of(const contact::Row& row, bool first) const;
   double rate_of(const contact::ScalarRow& row) const;
   void account_rows();
+  void note_forces(double h);
   void keep_warm();
 
   // island_step.cpp

@@ -445,6 +445,34 @@ void Island::account_rows() {
   }
 }
 
+/// What contacts and limits did to trees, as forces that last the h seconds of a sub-step, for who asks what joints
+/// hold.
+void Island::note_forces(double h) {
+  for (Tree* tree : trees_) {
+    for (TreeLink& link : tree->links) link.contact = {};
+    tree->limit_force.setZero();
+  }
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (rows_[i].impulse == Vector3::Zero()) continue;
+    const NearPair& pair = *pairs_[touches_[i].pair];
+    const Vector3 force = rows_[i].axes.transpose() * rows_[i].impulse / h;
+    for (const auto& [body, sign] : {std::pair{pair.a, 1.0}, std::pair{pair.b, -1.0}}) {
+      const Side side = side_of(body);
+      if (!side.tree) continue;
+      articulated::Wrench& wrench = side.tree->links[static_cast<std::size_t>(side.link)].contact;
+      const Vector3 arm = touches_[i].point - articulated::com_position(side.tree->model, side.tree->data, side.link);
+      wrench.force += sign * force;
+      wrench.couple += sign * arm.cross(force);
+    }
+  }
+  const std::size_t limits = scalars_.size() - ring_errors_.size();
+  for (std::size_t i = 0; i < limits; ++i) {
+    Tree& tree = *trees_[static_cast<std::size_t>(scalars_[i].a) - free_.size()];
+    tree.limit_force +=
+        scalars_[i].impulse / h * Eigen::Map<const articulated::Vector>(scalars_[i].ja, tree.model.velocities());
+  }
+}
+
 void Island::keep_warm() {
   for (NearPair* pair : pairs_) {
     pair->warm_count = 0;

@@ -50,6 +50,7 @@ void Island::step_fast(double start, double h) {
     load_velocities();
     solve(part);
     account_rows();
+    note_forces(part);
     store_velocities(part);
     push_apart(part);
     keep_warm();
@@ -139,6 +140,7 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
     }
     commit();
     account_rows();
+    note_forces(event.found() ? std::max(event.time, kSliver * h) : part);
     if (!event.found()) {
       push_apart(part);
       keep_warm();
