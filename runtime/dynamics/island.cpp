@@ -35,6 +35,7 @@ Island::Island(Dynamics::Core& core, std::pmr::memory_resource* memory)
       rebound_later_(memory),
       depths_(memory),
       before_(memory),
+      warm_(memory),
       scalars_before_(memory),
       workspace_(memory) {}
 
@@ -120,7 +121,12 @@ void Island::step_once(DynamicsClient* client, double start, double h) {
 
 void Island::begin(DynamicsClient* client, double h) {
   for (Clustered& one : clusters_) {
-    for (const std::uint32_t index : one.entry->trees) core_.set_loads(*core_.trees[index], accuracy_, h);
+    for (const std::uint32_t index : one.entry->trees) {
+      Tree& tree = *core_.trees[index];
+      core_.set_loads(tree, accuracy_, h);
+      for (TreeLink& link : tree.links) link.contact = {};
+      tree.limit_force.setZero();
+    }
     one.stage.emplace(core_, *one.entry, client);
     one.entry->system->begin(one.stage->needed() ? &*one.stage : nullptr);
   }

@@ -136,9 +136,11 @@ class Island {
   void solve(double h);
   void load_velocities();                 // movers' v from the state
   void store_velocities(double moved_h);  // back, and positions by what impulses changed times moved_h
+  void correct_works(double h);
   Vector3 rate_of(const contact::Row& row, bool first) const;
   double rate_of(const contact::ScalarRow& row) const;
   void account_rows();
+  void note_forces(double h);
   void keep_warm();
 
   // island_step.cpp
@@ -206,6 +208,7 @@ class Island {
   int impacts_ = 0;                          // located so far in this step
   std::pmr::vector<double> depths_;          // of pairs: overlap when the sub-step began, m
   std::pmr::vector<Vector3> before_;         // of each row's two sides: velocity along its axes as the sub-step began
+  std::pmr::vector<Vector3> warm_;           // of each row, where its solver begins
   std::pmr::vector<double> scalars_before_;  // of each scalar row
   contact::Workspace workspace_;
 };

@@ -204,9 +204,11 @@ void Island::make_rows(double h, bool restitution) {
   for (Tree* tree : trees_) add_ring_rows(*tree);
   load_velocities();
   before_.clear();
+  warm_.clear();
   scalars_before_.clear();
   for (contact::Row& row : rows_) {
     const Vector3 a = rate_of(row, true), b = rate_of(row, false);
+    warm_.push_back(row.impulse);
     before_.push_back(a);
     before_.push_back(b);
     row.slip[0] = a[1] - b[1];
@@ -348,6 +350,35 @@ void Island::store_velocities(double moved_h) {
   }
 }
 
+/// Motors, dampers and scripts pushed along the way that smooth motion took; what the rows' impulses added to it, half
+/// of the change of velocity for h, is worked along too.
+void Island::correct_works(double h) {
+  for (const Free& one : free_) {
+    for (int k = 0; k < 3; ++k)
+      free_work_ +=
+          0.5 * h *
+          (one.now.force[k] * (one.v[k] - one.free_v[k]) + one.now.torque[k] * (one.v[3 + k] - one.free_v[3 + k]));
+  }
+  for (Clustered& clustered : clusters_)
+    for (const std::uint32_t index : clustered.entry->trees) {
+      Tree& tree = *core_.trees[index];
+      if (!tree.driven) continue;
+      const articulated::Vector &before = tree.sub_state.v, &free = tree.free_v, &after = tree.state.v;
+      for (int i = 0; i < tree.model.size(); ++i) {
+        const TreeLink& link = tree.links[static_cast<std::size_t>(i)];
+        if (link.joint == kNoJoint) continue;
+        const articulated::Body& body = tree.model.body(i);
+        const double damping = core_.joints[link.joint].drive.damping;
+        for (int k = body.v; k < body.v + articulated::velocity_count(body.type); ++k) {
+          const double change = 0.5 * (after[k] - free[k]);
+          clustered.pending.motor_work += change * tree.motor_impulse[k];
+          clustered.pending.drag_loss += change * damping * h * 0.5 * (before[k] + free[k]);
+          clustered.pending.script_work += change * h * tree.set_tau[k];
+        }
+      }
+    }
+}
+
 void Island::solve(double h) {
   if (rows_.empty() && scalars_.empty()) return;
   static_cast<void>(h);
@@ -411,6 +442,34 @@ void Island::account_rows() {
     const double loss = -0.5 * row.impulse * (scalars_before_[i] + rate_of(row));
     result.account.limit_loss += loss;
     tree_at(row.a)->account.limit_loss += loss;
+  }
+}
+
+/// What contacts and limits did to trees, as forces that last the h seconds of a sub-step, for who asks what joints
+/// hold.
+void Island::note_forces(double h) {
+  for (Tree* tree : trees_) {
+    for (TreeLink& link : tree->links) link.contact = {};
+    tree->limit_force.setZero();
+  }
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (rows_[i].impulse == Vector3::Zero()) continue;
+    const NearPair& pair = *pairs_[touches_[i].pair];
+    const Vector3 force = rows_[i].axes.transpose() * rows_[i].impulse / h;
+    for (const auto& [body, sign] : {std::pair{pair.a, 1.0}, std::pair{pair.b, -1.0}}) {
+      const Side side = side_of(body);
+      if (!side.tree) continue;
+      articulated::Wrench& wrench = side.tree->links[static_cast<std::size_t>(side.link)].contact;
+      const Vector3 arm = touches_[i].point - articulated::com_position(side.tree->model, side.tree->data, side.link);
+      wrench.force += sign * force;
+      wrench.couple += sign * arm.cross(force);
+    }
+  }
+  const std::size_t limits = scalars_.size() - ring_errors_.size();
+  for (std::size_t i = 0; i < limits; ++i) {
+    Tree& tree = *trees_[static_cast<std::size_t>(scalars_[i].a) - free_.size()];
+    tree.limit_force +=
+        scalars_[i].impulse / h * Eigen::Map<const articulated::Vector>(scalars_[i].ja, tree.model.velocities());
   }
 }
 

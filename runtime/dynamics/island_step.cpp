@@ -50,6 +50,7 @@ void Island::step_fast(double start, double h) {
     load_velocities();
     solve(part);
     account_rows();
+    note_forces(part);
     store_velocities(part);
     push_apart(part);
     keep_warm();
@@ -62,11 +63,12 @@ void Island::advance_once(double time, double h) {
   smooth(time, h);
   load_velocities();
   set_biases(h);
-  for (contact::Row& row : rows_) row.impulse = Vector3::Zero();
+  for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i].impulse = warm_[i];
   for (contact::ScalarRow& row : scalars_) row.impulse = 0;
   if (rows_.empty() && !ring_errors_.empty()) return hold_rings(h);
   solve(h);
   // A force that is constant over the step moves by half of what its change of velocity would.
+  correct_works(h);
   store_velocities(0.5 * h);
 }
 
@@ -138,6 +140,7 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
     }
     commit();
     account_rows();
+    note_forces(event.found() ? std::max(event.time, kSliver * h) : part);
     if (!event.found()) {
       push_apart(part);
       keep_warm();
