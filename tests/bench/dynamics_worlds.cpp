@@ -204,10 +204,11 @@ double crowd(int count, breve_physics_counters* counted) {
   world.set_shape(geometry);
   std::mt19937 random(5);
   const auto unit = [&] { return static_cast<double>(random()) / 4294967296.0; };
-  // A grid with jitter, so that none overlap at the start: about 0.06 of space is filled.
+  // A grid with jitter, so that none overlap at the start: about a quarter of space is filled.
   const int side = static_cast<int>(std::ceil(std::cbrt(count)));
   for (int i = 0; i < count; ++i) {
-    const double x = 2 * (i % side) + unit(), y = 2 * (i / side % side) + unit(), z = 2 * (i / side / side) + unit();
+    const double x = 1.3 * (i % side) + 0.3 * unit(), y = 1.3 * (i / side % side) + 0.3 * unit();
+    const double z = 1.3 * (i / side / side) + 0.3 * unit();
     const breve_object made = world.moving(x, y, z);
     const double a = unit(), b = unit(), c = unit();
     const double velocity[3] = {a - 0.5, b - 0.5, c - 0.5};
