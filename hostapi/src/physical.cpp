@@ -187,7 +187,7 @@ breve_status breve_object_set_material(breve_world* world, breve_object object, 
     const BodyIndex body = live_body(*world, object);
     constexpr double kMost = 1e6;
     const breve_material& m = *material;
-    breve::Material set = world->world->bodies().material(body);
+    breve::Material set = std::as_const(*world->world).bodies().material(body);
     set.static_friction = within(m.static_friction, 0, kMost, "material.static_friction");
     set.dynamic_friction = within(m.dynamic_friction, 0, kMost, "material.dynamic_friction");
     set.normal_restitution = within(m.restitution, 0, 1, "material.restitution");

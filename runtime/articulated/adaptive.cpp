@@ -41,7 +41,8 @@ class Adaptive final : public Integrator::Method {
     double t = at.t;
     q_ = at.q;
     v_ = at.v;
-    double next = at.step > 0 ? at.step : h;
+    // What is remembered may be from a step that an event cut to a sliver.
+    double next = at.step > 0 ? std::max(at.step, settings_.tolerance.smallest_step) : h;
     bool rejected = false;
     while (t < end) {
       const double left = end - t;

@@ -28,9 +28,9 @@ bool Dynamics::Core::note_change(BodyIndex body, std::pmr::vector<Change>& out) 
   change.spin = bodies->rotational_velocity(body);
   change.pushed = change.velocity != known.velocity;
   change.spun = change.spin != known.spin;
-  const bool moved =
+  change.moved =
       change.pose.location != known.location || change.pose.orientation.coeffs() != known.orientation.coeffs();
-  if (!moved && !change.pushed && !change.spun) return false;
+  if (!change.moved && !change.pushed && !change.spun) return false;
   out.push_back(change);
   return true;
 }
@@ -79,7 +79,8 @@ void Dynamics::Core::drop_trees_with_moved_anchors() {
 void Dynamics::Core::apply_changes(std::span<const Change> all) {
   for (const Change& change : all) {
     const BodyEntry& known = *find(change.body);
-    if (known.tree == kNone) continue;
+    // A tree that was built meanwhile has its links elsewhere by round-off: that is no move.
+    if (known.tree == kNone || !change.moved) continue;
     // What another link's move brought here is no move of its own.
     if (known.location != change.pose.location || known.orientation.coeffs() != change.pose.orientation.coeffs())
       move_tree(*trees[known.tree], {known.location, known.orientation}, change.pose);

@@ -85,7 +85,7 @@ struct Change {
   BodyIndex body = kNoBody;
   Pose pose;
   Vector3 velocity = Vector3::Zero(), spin = Vector3::Zero();
-  bool pushed = false, spun = false;  // which of these it set
+  bool moved = false, pushed = false, spun = false;  // which of these it set
 };
 
 /// Trees that springs tie together: what one integrator moves.

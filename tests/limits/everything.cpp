@@ -7,18 +7,11 @@
 
 #include "counted_new.hpp"
 #include "programs.hpp"
+#include "try.hpp"
 
 namespace limits {
 
 namespace {
-
-#define TRY(call_of_host)                     \
-  do {                                        \
-    run.status = (call_of_host);              \
-    run.call = #call_of_host;                 \
-    run.line = __LINE__;                      \
-    if (run.status != BREVE_OK) return false; \
-  } while (false)
 
 bool make_world(Run& run) {
   breve_world_config config = breve_world_config_default();

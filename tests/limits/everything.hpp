@@ -14,6 +14,7 @@ struct Run {
   breve_world* second = nullptr;  // restored from the first one's image
   breve_status status = BREVE_OK;
   const char* call = "";
+  const char* file = "";
   int line = 0;
 };
 
@@ -30,6 +31,10 @@ bool use_world(Run& run);
 bool make_two_worlds(Run& run);
 /// Snapshot, hash, restore into the world and into the second one, effects.
 bool use_images(Run& run);
+/// Shapes, bodies with physics, joints, springs, contacts, and all that tells of them, in a world of the class library.
+bool load_library(Run& run);
+bool make_library_world(Run& run);
+bool use_physics(Run& run);
 /// All of it, on a runtime that there is.
 bool run_everything(Run& run);
 /// Compile, and then create and step: little of each, on a runtime that there is.

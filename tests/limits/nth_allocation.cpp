@@ -22,6 +22,7 @@ struct Part {
   const char* name;
   bool (*before)(Run& run);  // nothing fails; null: nothing
   bool (*tried)(Run& run);
+  bool (*load)(Run& run) = load_everything;  // the program that all runs of the part share
 };
 
 bool from_nothing(Run& run) { return make_runtime(run) && run_everything(run); }
@@ -31,14 +32,15 @@ constexpr Part kParts[] = {
     {"compile", nullptr, compile},
     {"world", make_runtime, use_world},
     {"image", [](Run& run) { return make_runtime(run) && make_two_worlds(run); }, use_images},
+    {"physics", [](Run& run) { return make_runtime(run) && make_library_world(run); }, use_physics, load_library},
     {"everything", nullptr, from_nothing},
 };
 
 int complaints = 0;
 
 void complain(std::uint64_t n, const Run& run, const char* what) {
-  std::printf("allocation %llu: %s\n    in %s (everything.cpp:%d): %s\n", static_cast<unsigned long long>(n), what,
-              run.call, run.line, breve_status_name(run.status));
+  std::printf("allocation %llu: %s\n    in %s (%s:%d): %s\n", static_cast<unsigned long long>(n), what, run.call,
+              run.file, run.line, breve_status_name(run.status));
   const breve_error* error = run.world ? breve_world_last_error(run.world) : nullptr;
   if (error == nullptr) error = breve_runtime_last_error(run.runtime);
   if (error != nullptr) std::printf("    %s", error->text);
@@ -112,7 +114,7 @@ int main(int count, char** arguments) {
     if (count > 1 && std::strcmp(p.name, arguments[1]) == 0) part = &p;
   const std::uint64_t stride = count > 2 ? std::strtoull(arguments[2], nullptr, 10) : 1;
   if (part == nullptr || stride == 0) {
-    std::printf("usage: nth_allocation compile|world|image|everything [STRIDE]\n");
+    std::printf("usage: nth_allocation compile|world|image|physics|everything [STRIDE]\n");
     return 2;
   }
   // What the C++ library makes once is made.
@@ -126,7 +128,7 @@ int main(int count, char** arguments) {
     breve_runtime_destroy(run.runtime);
   }
   Run shared, little;
-  if (!make_runtime(shared) || !load_everything(shared) || !make_runtime(little) || !load_a_little(little)) return 1;
+  if (!make_runtime(shared) || !part->load(shared) || !make_runtime(little) || !load_a_little(little)) return 1;
   const std::uint64_t tried = fail_all(*part, shared, little, stride);
   std::printf("%s: failed %llu allocations, %d complaints\n", part->name, static_cast<unsigned long long>(tried),
               complaints);

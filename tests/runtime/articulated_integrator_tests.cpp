@@ -227,6 +227,16 @@ TEST(Integrators, StepControlEndsInAnErrorWhereNoStepIsSmallEnough) {
   EXPECT_EQ(at.q[0], 0);
 }
 
+TEST(Integrators, StepControlGoesOnAfterASliver) {
+  // An event right after the start of a step leaves a first piece of next to nothing, and a tiny size to go on from.
+  const auto system = plain("harmonic");
+  Integrator integrator(*system, Scheme::FehlbergAdaptive);
+  Instant at{0, Vector::Ones(1), Vector::Zero(1), 0};
+  integrator.step(at, 1e-17);
+  integrator.step(at, 1);
+  EXPECT_NEAR(at.q[0], std::cos(1.0), 1e-5);
+}
+
 TEST(Integrators, StepControlGrowsByAtMostFive) {
   Plain still([](double, double) { return 0.0; });
   Integrator integrator(still, Scheme::FehlbergAdaptive);
