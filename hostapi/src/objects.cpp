@@ -183,6 +183,7 @@ breve_status breve_object_set_pose(breve_world* world, breve_object object, cons
     Bodies& bodies = world->world->bodies();
     bodies.set_location(body, Vector3(pose->location[0], pose->location[1], pose->location[2]));
     bodies.set_orientation(body, breve::Quaternion(q));
+    world->world->dynamics().moved(body);
   });
 }
 

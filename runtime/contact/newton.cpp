@@ -65,6 +65,10 @@ void Newton::begin() {
   const auto n = static_cast<std::size_t>(size_);
   offsets_ = work_.indices.size();
   work_.indices.resize(offsets_ + n);
+  int widest = 0;
+  for (const Packed& mover : work_.movers) widest = std::max(widest, mover.size);
+  work_.columns.resize(static_cast<std::size_t>(widest));
+  columns_ = work_.columns.data();
   work_.numbers.resize(n * n + 2 * n + 8 * rows_ + work_.points.size());
   double* next = work_.numbers.data();
   const auto take = [&](std::size_t count) { return std::exchange(next, next + count); };
@@ -298,16 +302,25 @@ void Newton::add(const Point& c, const Sides& own, const Slope& D) {
   for (int y = 0; y < 2; ++y) {
     const Matrices& J = sides[y];
     const int column = work_.indices[static_cast<std::size_t>(movers[y])];
+    // A point of a tree moves with the joints between it and the root: the other columns are zero.
+    int count = 0;
     for (int k = 0; k < J.size; ++k) {
       const double n = J.j[k], t1 = J.j[J.size + k], t2 = J.j[2 * J.size + k];
-      const double d[3] = {D.nn * n + D.n1 * t1 + D.n2 * t2, D.t1n * n + D.t11 * t1 + D.t12 * t2,
+      if (n == 0 && t1 == 0 && t2 == 0) continue;
+      columns_[count++] = {column + k, D.nn * n + D.n1 * t1 + D.n2 * t2, D.t1n * n + D.t11 * t1 + D.t12 * t2,
                            D.t2n * n + D.t12 * t1 + D.t22 * t2};
-      for (int x = 0; x < 2; ++x) {
-        const Matrices& R = sides[x];
-        const int row = work_.indices[static_cast<std::size_t>(movers[x])];
-        const double sign = x == y ? 1 : -1;
-        for (int i = 0; i < R.size; ++i)
-          entry(row + i, column + k) += sign * (R.r[i] * d[0] + R.r[R.size + i] * d[1] + R.r[2 * R.size + i] * d[2]);
+    }
+    for (int x = 0; x < 2; ++x) {
+      const Matrices& R = sides[x];
+      const int row = work_.indices[static_cast<std::size_t>(movers[x])];
+      const double sign = x == y ? 1 : -1;
+      for (int i = 0; i < R.size; ++i) {
+        const double r0 = sign * R.r[i], r1 = sign * R.r[R.size + i], r2 = sign * R.r[2 * R.size + i];
+        double* line = &entry(row + i, 0);
+        for (int k = 0; k < count; ++k) {
+          const Column& at = columns_[k];
+          line[at.place] += r0 * at.n + r1 * at.t1 + r2 * at.t2;
+        }
       }
     }
   }
@@ -323,9 +336,11 @@ void Newton::add(const PackedScalar& row, double slope) {
       const int top = work_.indices[static_cast<std::size_t>(movers[x])],
                 left = work_.indices[static_cast<std::size_t>(movers[y])];
       const double sign = x == y ? slope : -slope;
-      for (int i = 0; i < work_.movers[static_cast<std::size_t>(movers[x])].size; ++i)
-        for (int k = 0; k < work_.movers[static_cast<std::size_t>(movers[y])].size; ++k)
-          entry(top + i, left + k) += sign * r[x][i] * j[y][k];
+      for (int i = 0; i < work_.movers[static_cast<std::size_t>(movers[x])].size; ++i) {
+        const double yields = sign * r[x][i];
+        double* line = &entry(top + i, left);
+        for (int k = 0; k < work_.movers[static_cast<std::size_t>(movers[y])].size; ++k) line[k] += yields * j[y][k];
+      }
     }
 }
 

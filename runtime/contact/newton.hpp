@@ -58,6 +58,7 @@ class Newton {
   int size_ = 0;  // numbers in v
   double stiffness_ = 1;
   Around law_ = Around::Convex;
+  Column* columns_ = nullptr;  // of the row that is added
   double *matrix_ = nullptr, *free_ = nullptr, *step_ = nullptr, *lift_ = nullptr;
   // Of the rows: the centre; p(J v); impulses kept; q with v = v* + R q; its step; J v, and that of the step.
   double *centre_ = nullptr, *p_ = nullptr, *best_ = nullptr, *kept_ = nullptr;

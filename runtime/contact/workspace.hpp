@@ -58,6 +58,13 @@ enum class Grip : unsigned char {
   Holds       // static for good
 };
 
+/// A column of a contact's matrix that is not zero: its place among the velocities, and what a change of that velocity
+/// does to the contact's impulse.
+struct Column {
+  int place;
+  double n, t1, t2;
+};
+
 struct Workspace {
   explicit Workspace(std::pmr::memory_resource* memory)
       : movers(memory),
@@ -66,6 +73,7 @@ struct Workspace {
         scalars(memory),
         grips(memory),
         numbers(memory),
+        columns(memory),
         indices(memory),
         order(memory),
         firsts(memory),
@@ -78,6 +86,7 @@ struct Workspace {
   std::pmr::vector<PackedScalar> scalars;
   std::pmr::vector<Grip> grips;
   std::pmr::vector<double> numbers;  // of the direct solver
+  std::pmr::vector<Column> columns;
   std::pmr::vector<int> indices;
   std::pmr::vector<int> order, firsts;  // of impacts in groups
   std::pmr::vector<double> saved, earlier, biases;

@@ -96,6 +96,29 @@ void Dynamics::set_assembly_velocity(BodyIndex body, const Vector3& velocity, co
   c.place_links(tree);
 }
 
+void Dynamics::moved(BodyIndex body) {
+  const BodyEntry* known = core_ ? core_->find(body) : nullptr;
+  if (known && !known->joints.empty()) core_->take_changes();
+}
+
+std::size_t Dynamics::self_penetrations(BodyIndex body) const {
+  if (!self_collisions(body)) return 0;
+  core_->take_changes();
+  const std::pmr::vector<BodyIndex> links = links_of(body);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < links.size(); ++i)
+    for (std::size_t k = i + 1; k < links.size(); ++k) {
+      const BodyIndex a = links[i], b = links[k];
+      const Shape &x = *bodies_->collision_shape(a), &y = *bodies_->collision_shape(b);
+      const double reach = x.bounding_radius() + y.bounding_radius();
+      if ((bodies_->location(a) - bodies_->location(b)).norm() > reach || jointed(a, b)) continue;
+      const Pose pa = core_->pose(a), pb = core_->pose(b);
+      // Feet that stand on one another touch, and do not intersect.
+      count += closest(x, pa, y, pb).distance < -touch_tolerance(x, pa, y, pb);
+    }
+  return count;
+}
+
 // --- settings of an assembly ----------------------------------------------------------------------------------------
 
 const AssemblySettings* Dynamics::Core::settings_of(BodyIndex body, bool (*wanted)(const AssemblySettings&)) {

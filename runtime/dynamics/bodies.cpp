@@ -25,6 +25,7 @@ Dynamics::Core::Core(std::pmr::memory_resource* where, Bodies& of)
       islands(where),
       aside(where),
       set_of(where),
+      island_of(where),
       interventions(where),
       impacts(where),
       scratch(where),

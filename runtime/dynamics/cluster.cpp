@@ -21,8 +21,14 @@ articulated::Settings settings_of(const Accuracy& accuracy) {
 }  // namespace
 
 Cluster::Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees, const Accuracy& accuracy)
-    : trees_(trees.begin(), trees.end(), memory), accuracy_(accuracy), kinds_(memory) {
-  for (const Tree* tree : trees_) {
+    : trees_(trees.begin(), trees.end(), memory), accuracy_(accuracy), kinds_(memory), motors_(memory) {
+  for (std::size_t t = 0; t < trees_.size(); ++t) {
+    const Tree* tree = trees_[t];
+    for (int i = 0; i < tree->model.size(); ++i) {
+      if (!tree->links[static_cast<std::size_t>(i)].motor) continue;
+      const articulated::Body& body = tree->model.body(i);
+      for (int k = body.v; k < body.v + articulated::velocity_count(body.type); ++k) motors_.push_back({nv_ + k, t, k});
+    }
     nq_ += tree->model.positions();
     nv_ += tree->model.velocities();
     mass_ += tree->model.mass();
@@ -33,9 +39,10 @@ Cluster::Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees
         kinds_.push_back(length ? Kind::Length : Kind::Angle);
       }
   }
-  kinds_.insert(kinds_.end(), kWorks, Kind::Length);
+  kinds_.insert(kinds_.end(), kWorks + motors_.size(), Kind::Length);
   at_.q.setZero(nq_);
-  at_.v.setZero(nv_ + kWorks);
+  at_.v.setZero(velocities());
+  torques_.setZero(nv_);
   if (!trees_.empty()) at_.step = trees_.front()->step;
   integrator_.emplace(*this, accuracy.scheme, settings_of(accuracy));
 }
@@ -60,7 +67,7 @@ void Cluster::step(double time, double h) {
     q += tree->model.positions();
     v += tree->model.velocities();
   }
-  at_.v.tail<kWorks>().setZero();
+  at_.v.tail(velocities() - nv_).setZero();
   at_.t = time;
   current_step_ = h;
   try {
@@ -71,6 +78,13 @@ void Cluster::step(double time, double h) {
   }
   scatter(at_.q, at_.v);
   for (int i = 0; i < kWorks; ++i) works_[static_cast<std::size_t>(i)] = at_.v[nv_ + i] * mass_;
+  keep_impulses();
+}
+
+void Cluster::keep_impulses() {
+  for (Tree* tree : trees_) tree->motor_impulse.setZero();
+  for (std::size_t i = 0; i < motors_.size(); ++i)
+    trees_[motors_[i].tree]->motor_impulse[motors_[i].own] = at_.v[nv_ + kWorks + static_cast<Eigen::Index>(i)] * mass_;
 }
 
 void Cluster::scatter(const Vector& q, const Vector& v) {
@@ -96,19 +110,23 @@ void Cluster::acceleration(double t, const Vector& q, const Vector& v, double st
   for (Tree* tree : trees_) {
     const int n = tree->model.velocities();
     a.segment(from, n) = articulated::forward_dynamics(tree->model, tree->data, tree->state, tree->loads, step);
-    if (tree->driven) add_powers(*tree, step, v.data() + from, a.data() + from, powers);
+    torques_.segment(from, n).setZero();
+    if (tree->driven) add_powers(*tree, step, v.data() + from, a.data() + from, torques_.data() + from, powers);
     from += n;
   }
-  a.tail<kWorks>().setZero();
+  a.tail(velocities() - nv_).setZero();
   if (!working_) return;
   if (forces_) {
     powers.script += forces_->script_power();
     powers.drag += forces_->drag_power();
   }
-  a.tail<kWorks>() << powers.motor / mass_, powers.script / mass_, powers.drag / mass_;
+  a.segment<kWorks>(nv_) << powers.motor / mass_, powers.script / mass_, powers.drag / mass_;
+  for (std::size_t i = 0; i < motors_.size(); ++i)
+    a[nv_ + kWorks + static_cast<Eigen::Index>(i)] = torques_[motors_[i].place] / mass_;
 }
 
-void Cluster::add_powers(const Tree& tree, double step, const double* v, const double* a, Powers& powers) const {
+void Cluster::add_powers(const Tree& tree, double step, const double* v, const double* a, double* torques,
+                         Powers& powers) const {
   // What acts over a semi-implicit step does its work at the mean of the velocities before and after.
   const articulated::Loads& loads = tree.loads;
   const double half = accuracy_.scheme == articulated::Scheme::SemiImplicitEuler ? 0.5 * current_step_ : 0;
@@ -125,6 +143,7 @@ void Cluster::add_powers(const Tree& tree, double step, const double* v, const d
       const bool held = tree.data.at_limit[static_cast<std::size_t>(i)] != 0;
       const double torque = held ? tree.data.held[k] : drive.motor_gain * (loads.motor_speed[k] - v[k] - lag * a[k]);
       powers.motor += torque * mean;
+      torques[k] = torque;
     }
   }
 }
@@ -160,7 +179,7 @@ void Cluster::rate_of_move(const Vector& d, const Vector& v, Vector& out) {
       from += nv;
     }
   }
-  out.tail<kWorks>().setZero();  // works have no positions
+  out.tail(velocities() - nv_).setZero();  // works have no positions
 }
 
 void Cluster::bend_to_cayley(Vector& d) {

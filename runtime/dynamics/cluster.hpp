@@ -54,7 +54,7 @@ class Cluster final : public articulated::System, public InMemory {
 
   // --- System
   int positions() const override { return nq_; }
-  int velocities() const override { return nv_ + kWorks; }
+  int velocities() const override { return nv_ + kWorks + static_cast<int>(motors_.size()); }
   articulated::Kind kind(int velocity) const override { return kinds_[static_cast<std::size_t>(velocity)]; }
   void acceleration(double t, const articulated::Vector& q, const articulated::Vector& v, double step,
                     articulated::Vector& a) override;
@@ -64,10 +64,18 @@ class Cluster final : public articulated::System, public InMemory {
 
  private:
   static constexpr int kWorks = 3;
+  /// A number of v that a motor drives: its place in the whole vector, whose tree, and its place there.
+  struct Motor {
+    int place;
+    std::size_t tree;
+    int own;
+  };
   struct Powers {
     double motor = 0, script = 0, drag = 0;
   };
-  void add_powers(const Tree& tree, double step, const double* v, const double* a, Powers& powers) const;
+  void add_powers(const Tree& tree, double step, const double* v, const double* a, double* torques,
+                  Powers& powers) const;
+  void keep_impulses();
   void scatter(const articulated::Vector& q, const articulated::Vector& v);
 
   std::pmr::vector<Tree*> trees_;
@@ -77,6 +85,8 @@ class Cluster final : public articulated::System, public InMemory {
   bool working_ = false;  // some power is not zero
   StageForces* forces_ = nullptr;
   std::pmr::vector<articulated::Kind> kinds_;
+  std::pmr::vector<Motor> motors_;  // their impulses are further coordinates, after the works
+  articulated::Vector torques_;     // (nv_) of motors, at the last stage
   std::array<double, kWorks> works_{};
   articulated::Instant at_;
   double current_step_ = 0;

@@ -129,8 +129,8 @@ struct Dynamics::Core : InMemory {
   std::pmr::vector<int> slot_of;                      // by body: of a free one, in its island
   std::pmr::vector<std::unique_ptr<Island>> islands;  // as many as were ever needed at once
   std::size_t island_count = 0;
-  std::pmr::vector<std::uint8_t> aside;    // by body; empty: all move
-  std::pmr::vector<std::uint32_t> set_of;  // by body: for finding islands
+  std::pmr::vector<std::uint8_t> aside;               // by body; empty: all move
+  std::pmr::vector<std::uint32_t> set_of, island_of;  // by body: for finding islands
 
   std::uint64_t iteration = 0;
   std::uint64_t sub_step = 0;  // since the beginning, for force methods

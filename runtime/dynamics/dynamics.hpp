@@ -89,7 +89,8 @@ class Dynamics : public InMemory {
   /// The same for a ball joint, without angles: at zero turned by `turn`, child relative to parent, in the parent's
   /// axes, and spinning so. Errors as above, and if it is no ball joint.
   void set_ball(JointIndex joint, const Quaternion& turn, const Vector3& spin);
-  /// At this moment, from the forces that act now, without those of contacts; zero for a joint that closes a ring.
+  /// At this moment, from the forces that act now and those that contacts and limits had in the last sub-step; zero for
+  /// a joint that closes a ring, and without the forces of such joints.
   JointReaction reaction(JointIndex joint) const;
 
   // --- assemblies: bodies that joints connect ---------------------------------------------------------------------
@@ -114,7 +115,11 @@ class Dynamics : public InMemory {
   void clear_accuracy(BodyIndex body);
   const Accuracy& accuracy(BodyIndex body) const;  // in force: the assembly's or the world's
   Energy energy(BodyIndex body) const;             // of its assembly; works and losses since it was made
-  /// Pairs of links of the assembly that intersect now, of those that are tested at all.
+  /// A script put the body somewhere else: if it has joints, its assembly follows now. Otherwise, and where this is not
+  /// called, before anything is done with its assembly.
+  void moved(BodyIndex body);
+  /// Pairs of links of the assembly that intersect now, of those that are tested at all: not those that a joint
+  /// connects, and none without self collisions. Time grows as the square of the number of links.
   std::size_t self_penetrations(BodyIndex body) const;
 
   // --- springs between bodies ---------------------------------------------------------------------------------------

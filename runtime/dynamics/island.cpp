@@ -14,7 +14,6 @@ Island::Island(Dynamics::Core& core, std::pmr::memory_resource* memory)
       memory_(memory),
       at_start_(memory),
       free_start_(memory),
-      tree_start_(memory),
       pair_start_(memory),
       roles_(memory),
       free_(memory),
@@ -34,7 +33,10 @@ Island::Island(Dynamics::Core& core, std::pmr::memory_resource* memory)
       ring_errors_(memory),
       start_poses_(memory),
       rebound_later_(memory),
+      depths_(memory),
       before_(memory),
+      warm_(memory),
+      scalars_before_(memory),
       workspace_(memory) {}
 
 void Island::clear() {
@@ -50,6 +52,14 @@ void Island::clear() {
   result.interventions.clear();
 }
 
+namespace {
+void add_works(const Energy& from, Energy& to) {
+  to.motor_work += from.motor_work;
+  to.script_work += from.script_work;
+  to.drag_loss += from.drag_loss;
+}
+}  // namespace
+
 void Island::add_free(BodyIndex body) {
   core_.slot_of[body] = static_cast<int>(free_.size());
   Free one{};
@@ -63,11 +73,11 @@ void Island::add_free(BodyIndex body) {
 }
 
 void Island::add_cluster(ClusterEntry& cluster) {
-  clusters_.push_back({&cluster, nullptr, 0});
+  clusters_.push_back({&cluster, std::nullopt, 0, {}});
   for (const std::uint32_t index : cluster.trees) {
     Tree* tree = core_.trees[index].get();
     tree->slot = static_cast<int>(trees_.size());
-    trees_.push_back({tree, tree->state, tree->state.v, tree->state.v});
+    trees_.push_back(tree);
   }
   const Accuracy& accuracy = cluster.system->accuracy();
   if (!accuracy_set_ || finer(accuracy.rung, accuracy_.rung)) accuracy_ = accuracy;
@@ -79,24 +89,24 @@ void Island::add_pair(NearPair& pair) { pairs_.push_back(&pair); }
 bool Island::calls_out() const {
   for (const NearPair* pair : pairs_)
     if (pair->handled) return true;
-  for (const Treed& one : trees_)
-    for (const TreeLink& link : one.tree->links)
+  for (Tree* tree : trees_)
+    for (const TreeLink& link : tree->links)
       if (core_.find(link.body)->force_method) return true;
   return false;
 }
 
 void Island::append_bodies(std::pmr::vector<BodyIndex>& out) const {
   for (const Free& one : free_) out.push_back(one.body);
-  for (const Treed& one : trees_)
-    for (const TreeLink& link : one.tree->links) out.push_back(link.body);
+  for (Tree* tree : trees_)
+    for (const TreeLink& link : tree->links) out.push_back(link.body);
 }
 
 void Island::step_once(DynamicsClient* client, double start, double h) {
   begin(client, h);
   bool bounded = false;
-  for (const Treed& one : trees_) {
-    bounded = bounded || !one.tree->rings.empty();
-    for (const TreeLink& link : one.tree->links)
+  for (Tree* tree : trees_) {
+    bounded = bounded || !tree->rings.empty();
+    for (const TreeLink& link : tree->links)
       bounded = bounded || (link.joint != kNoJoint && Dynamics::Core::has_limits(core_.joints[link.joint]));
   }
   rows_.clear();
@@ -111,9 +121,14 @@ void Island::step_once(DynamicsClient* client, double start, double h) {
 
 void Island::begin(DynamicsClient* client, double h) {
   for (Clustered& one : clusters_) {
-    for (const std::uint32_t index : one.entry->trees) core_.set_loads(*core_.trees[index], accuracy_, h);
-    one.stage = std::make_unique<Stage>(core_, *one.entry, client);
-    one.entry->system->begin(one.stage->needed() ? one.stage.get() : nullptr);
+    for (const std::uint32_t index : one.entry->trees) {
+      Tree& tree = *core_.trees[index];
+      core_.set_loads(tree, accuracy_, h);
+      for (TreeLink& link : tree.links) link.contact = {};
+      tree.limit_force.setZero();
+    }
+    one.stage.emplace(core_, *one.entry, client);
+    one.entry->system->begin(one.stage->needed() ? &*one.stage : nullptr);
   }
   movers_.clear();
   for (Free& one : free_) {
@@ -122,19 +137,19 @@ void Island::begin(DynamicsClient* client, double h) {
     mover.inverse_mass = 1 / one.now.solid->mass;
     movers_.push_back(mover);
   }
-  for (const Treed& one : trees_) {
+  for (Tree* tree : trees_) {
     contact::Mover mover;
-    mover.v = one.tree->state.v.data();
-    mover.size = one.tree->model.velocities();
+    mover.v = tree->state.v.data();
+    mover.size = tree->model.velocities();
     movers_.push_back(mover);
   }
 }
 
 void Island::place() {
   const articulated::Loads none;
-  for (const Treed& one : trees_) {
-    articulated::factorize(one.tree->model, one.tree->data, one.tree->state, none);
-    articulated::forward_kinematics(one.tree->model, one.tree->data, one.tree->state);
+  for (Tree* tree : trees_) {
+    articulated::factorize(tree->model, tree->data, tree->state, none);
+    articulated::forward_kinematics(tree->model, tree->data, tree->state);
   }
 }
 
@@ -143,7 +158,7 @@ void Island::remember() {
     one.before = one.now;
     one.next_before = one.next;
   }
-  for (Treed& one : trees_) one.before = one.tree->state;
+  for (Tree* tree : trees_) tree->sub_state = tree->state;
   for (Clustered& one : clusters_) one.next_before = one.entry->system->next_step();
 }
 
@@ -152,39 +167,36 @@ void Island::restore() {
     one.now = one.before;
     one.next = one.next_before;
   }
-  for (Treed& one : trees_) one.tree->state = one.before;
+  for (Tree* tree : trees_) tree->state = tree->sub_state;
   for (Clustered& one : clusters_) one.entry->system->set_next_step(one.next_before);
 }
 
 void Island::smooth(double time, double h) {
-  pending_ = {};
+  free_work_ = 0;
   for (Free& one : free_) {
     const Vector3 center = one.now.center, spin = one.now.spin;
     move_free(one.now, accuracy_, core_.settings.gravity, time, h, one.next);
-    pending_.script_work +=
-        one.now.force.dot(one.now.center - center) + 0.5 * h * one.now.torque.dot(spin + one.now.spin);
+    free_work_ += one.now.force.dot(one.now.center - center) + 0.5 * h * one.now.torque.dot(spin + one.now.spin);
   }
   for (Clustered& one : clusters_) {
     Cluster& system = *one.entry->system;
     system.step(time, h);
     result.counters.evaluations += static_cast<std::uint64_t>(system.count().evaluations);
     result.counters.rejected += static_cast<std::uint64_t>(system.count().rejected);
-    pending_.motor_work += system.motor_work();
-    pending_.script_work += system.script_work();
-    pending_.drag_loss += system.drag_loss();
+    one.pending.motor_work = system.motor_work();
+    one.pending.script_work = system.script_work();
+    one.pending.drag_loss = system.drag_loss();
   }
 }
 
 void Island::commit() {
-  result.account.motor_work += pending_.motor_work;
-  result.account.script_work += pending_.script_work;
-  result.account.drag_loss += pending_.drag_loss;
   ++result.counters.sub_steps;
-  if (trees_.size() != 1) return;
-  Energy& own = trees_.front().tree->account;
-  own.motor_work += pending_.motor_work;
-  own.script_work += pending_.script_work;
-  own.drag_loss += pending_.drag_loss;
+  result.account.script_work += free_work_;
+  for (const Clustered& one : clusters_) {
+    add_works(one.pending, result.account);
+    // What springs between trees do is nobody's own.
+    if (one.alone()) add_works(one.pending, core_.trees[one.entry->trees.front()]->account);
+  }
 }
 
 void Island::write() {

@@ -2,6 +2,8 @@
 // limits and rings. Islands know nothing of one another, so that several may be stepped at once.
 #pragma once
 
+#include <optional>
+
 #include "runtime/contact/impacts.hpp"
 #include "runtime/contact/solver.hpp"
 #include "runtime/dynamics/contacts.hpp"
@@ -60,16 +62,14 @@ class Island {
   };
   struct Clustered {
     ClusterEntry* entry;
-    std::unique_ptr<Stage> stage;
+    std::optional<Stage> stage;
     double next_before = 0;
+    Energy pending;  // of the last smooth()
+    bool alone() const { return entry->trees.size() == 1 && entry->ties.empty(); }
   };
-  struct Treed {
-    Tree* tree;
-    articulated::State before;
-    articulated::Vector free_v, way;
-  };
-  /// What a pair is in this sub-step.
-  enum class Role : std::uint8_t { Far, Comes, Rests };
+  /// What a pair is in this sub-step: its impact is looked for on the whole way; or only whether it comes back; or it
+  /// has rows.
+  enum class Role : std::uint8_t { Far, Leaves, Rests };
   /// A point that touches, or nearly, as rows see it.
   struct Touch {
     std::uint32_t pair;
@@ -77,6 +77,11 @@ class Island {
     Vector3 point, normal;  // world; the normal from b toward a
     double gap;             // m, at the start of the sub-step
     double approach;        // m/s, v_n when the sub-step began
+  };
+  /// Speeds of a pair, m/s, that separate impacts from what the rows of a sub-step do.
+  struct Speeds {
+    double slow;    // approaching or leaving slower than this rests
+    double strike;  // what touches and approaches faster collides at once
   };
   /// A joint's limit as a scalar row.
   struct Bound {
@@ -97,6 +102,7 @@ class Island {
   struct Event {
     double time = 0;  // s after the start of the sub-step
     int pair = -1, bound = -1;
+    double depth = 0;  // m, of overlap when the sub-step began: it is an event if it gets deeper
     bool found() const { return pair >= 0 || bound >= 0; }
   };
 
@@ -112,7 +118,10 @@ class Island {
   Vector3 point_velocity(BodyIndex body, const Vector3& point) const;
 
   // island_rows.cpp
+  double size_of_pair(const NearPair& pair) const;
+  Speeds speeds_of(const contact::Law& law, double size, double h) const;
   void find_touches(double h, bool speculative);
+  void find_roles(double h, bool struck);
   void find_touches_now();
   void find_bounds(double h);
   void make_rows(double h, bool restitution);
@@ -127,7 +136,11 @@ class Island {
   void solve(double h);
   void load_velocities();                 // movers' v from the state
   void store_velocities(double moved_h);  // back, and positions by what impulses changed times moved_h
+  void correct_works(double h);
+  Vector3 rate_of(const contact::Row& row, bool first) const;
+  double rate_of(const contact::ScalarRow& row) const;
   void account_rows();
+  void note_forces(double h);
   void keep_warm();
 
   // island_step.cpp
@@ -138,7 +151,10 @@ class Island {
   Event seek(double h);
   void refine(double time, Event& event, double h);
   double gap_of(const Event& event, double& rate) const;
-  bool approaches() const;
+  void look(double h, bool spent);
+  double contact_part(double left) const;
+  bool strikes(double h) const;
+  void meet(DynamicsClient* client, const Event& event, double moment, double left);
   void collide(double time);
   void rebound(const Bound& bound);
   void push_apart(double h);
@@ -154,9 +170,10 @@ class Island {
   void step_once(DynamicsClient* client, double start, double h);
   bool try_step(DynamicsClient* client, double start, double h, GuardReason& reason, double& value);
   void keep_start();
+  void balance(double before, double& residual, double& turnover);
   void back_to_start();
   bool finite() const;
-  double stored(double* kinetic = nullptr) const;
+  double stored(double& kinetic, bool start);
   BodyIndex any_body() const;
   void intervene(GuardReason reason, GuardAction action, double time, double value);
 
@@ -167,14 +184,13 @@ class Island {
   double unfinished_ = 0;
   IslandResult at_start_;  // of the result, for a step that is tried again
   std::pmr::vector<FreeBody> free_start_;
-  std::pmr::vector<articulated::State> tree_start_;
   std::pmr::vector<NearPair> pair_start_;
   double quiet_ = 0;              // m/s: slower than this is at rest, in a sub-step of this one
-  Energy pending_;                // of the last smooth()
+  double free_work_ = 0;          // J, of scripts on free bodies in the last smooth()
   std::pmr::vector<Role> roles_;  // of pairs
   std::pmr::vector<Free> free_;
   std::pmr::vector<Clustered> clusters_;
-  std::pmr::vector<Treed> trees_;
+  std::pmr::vector<Tree*> trees_;
   std::pmr::vector<NearPair*> pairs_;
   std::pmr::vector<Touch> touches_;
   std::pmr::vector<Bound> bounds_;
@@ -189,8 +205,11 @@ class Island {
   std::pmr::vector<double> ring_errors_;
   std::pmr::vector<Pose> start_poses_;  // of each pair's two bodies, as the sub-step began
   std::pmr::vector<Bound> rebound_later_;
-  int hit_ = -1;                     // the pair whose impact was located, if one was just now
-  std::pmr::vector<double> before_;  // of each row: v_n, v_t1, v_t2 when the sub-step began
+  int impacts_ = 0;                          // located so far in this step
+  std::pmr::vector<double> depths_;          // of pairs: overlap when the sub-step began, m
+  std::pmr::vector<Vector3> before_;         // of each row's two sides: velocity along its axes as the sub-step began
+  std::pmr::vector<Vector3> warm_;           // of each row, where its solver begins
+  std::pmr::vector<double> scalars_before_;  // of each scalar row
   contact::Workspace workspace_;
 };
 

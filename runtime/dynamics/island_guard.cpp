@@ -35,15 +35,14 @@ void Island::step(DynamicsClient* client, double start, double h) {
   const GuardMode mode = core_.settings.guard;
   GuardReason reason{};
   double value = 0;
+  // Where a handler may be called there is no going back.
+  const bool again = !calls_out() && (mode == GuardMode::Refine || mode == GuardMode::Rest);
+  keep_start();
+  bool good = try_step(client, start, h, reason, value);
   if (mode == GuardMode::Off) {
-    step_once(client, start, h);
     if (unfinished_ == 0) write();
     return;
   }
-  // Where a handler may be called there is no going back.
-  const bool again = !calls_out() && mode != GuardMode::Report;
-  keep_start();
-  bool good = try_step(client, start, h, reason, value);
   if (!good && reason == GuardReason::Residual && mode == GuardMode::Report) {
     intervene(reason, GuardAction::Reported, start, value);
     good = true;
@@ -68,12 +67,12 @@ void Island::step(DynamicsClient* client, double start, double h) {
 }
 
 bool Island::try_step(DynamicsClient* client, double start, double h, GuardReason& reason, double& value) {
-  const double before = stored();
-  const Energy accounts = result.account;
+  double kinetic = 0, residual = 0, turnover = 0;
+  const double before = stored(kinetic, true);
   try {
     step_once(client, start, h);
   } catch (const Error& error) {
-    if (error.code() != ErrorCode::Numeric) throw;
+    if (error.code() != ErrorCode::Numeric || core_.settings.guard == GuardMode::Off) throw;
     reason = GuardReason::NoSolution;
     value = 0;
     return false;
@@ -84,29 +83,52 @@ bool Island::try_step(DynamicsClient* client, double start, double h, GuardReaso
     value = 0;
     return false;
   }
-  const Energy& now = result.account;
-  const double works = now.motor_work + now.script_work - accounts.motor_work - accounts.script_work;
-  const double losses = now.contact_loss + now.friction_loss + now.drag_loss + now.limit_loss - accounts.contact_loss -
-                        accounts.friction_loss - accounts.drag_loss - accounts.limit_loss;
-  double kinetic = 0;
-  const double after = stored(&kinetic);
-  const double residual = after - before - works + losses;
-  result.account.residual += residual;
-  if (trees_.size() == 1 && free_.empty()) trees_.front().tree->account.residual += residual;
+  balance(before, residual, turnover);
   const double most = accuracy_.rung == Rung::Fast ? kResidualFast : kResidual;
   reason = GuardReason::Residual;
   value = residual;
-  return !(residual > most * (kinetic + std::abs(works) + std::abs(losses)) + kTiny * std::abs(before));
+  return !(residual > most * turnover + kTiny * std::abs(before));
+}
+
+namespace {
+
+double works(const Energy& now, const Energy& then) {
+  return now.motor_work + now.script_work - then.motor_work - then.script_work;
+}
+double losses(const Energy& now, const Energy& then) {
+  return now.contact_loss + now.friction_loss + now.drag_loss + now.limit_loss - then.contact_loss -
+         then.friction_loss - then.drag_loss - then.limit_loss;
+}
+
+}  // namespace
+
+/// What of the step's change in energy no account explains, of all and of each tree.
+/// @param turnover  J, of which the residual is to be a small part
+void Island::balance(double before, double& residual, double& turnover) {
+  double kinetic = 0;
+  const double after = stored(kinetic, false);
+  const double in = works(result.account, at_start_.account), out = losses(result.account, at_start_.account);
+  residual = after - before - in + out;
+  result.account.residual += residual;
+  turnover = kinetic + std::abs(in) + std::abs(out);
+  for (const Clustered& one : clusters_) {
+    if (!one.alone()) continue;
+    Tree& tree = *core_.trees[one.entry->trees.front()];
+    const double change = tree.step_stored;
+    tree.account.residual += change - works(tree.account, tree.step_account) + losses(tree.account, tree.step_account);
+  }
 }
 
 void Island::keep_start() {
   at_start_.counters = result.counters;
   at_start_.account = result.account;
   free_start_.clear();
-  tree_start_.clear();
   pair_start_.clear();
   for (const Free& one : free_) free_start_.push_back(one.now);
-  for (const Treed& one : trees_) tree_start_.push_back(one.tree->state);
+  for (Tree* tree : trees_) {
+    tree->step_state = tree->state;
+    tree->step_account = tree->account;
+  }
   for (const NearPair* pair : pairs_) pair_start_.push_back(*pair);
 }
 
@@ -116,7 +138,10 @@ void Island::back_to_start() {
   result.counters.evaluations = evaluations;
   result.account = at_start_.account;
   for (std::size_t i = 0; i < free_.size(); ++i) free_[i].now = free_start_[i];
-  for (std::size_t i = 0; i < trees_.size(); ++i) trees_[i].tree->state = tree_start_[i];
+  for (Tree* tree : trees_) {
+    tree->state = tree->step_state;
+    tree->account = tree->step_account;
+  }
   for (std::size_t i = 0; i < pairs_.size(); ++i) *pairs_[i] = pair_start_[i];
   for (Clustered& one : clusters_) one.entry->system->set_next_step(0);
   for (Free& one : free_) one.next = 0;
@@ -124,7 +149,7 @@ void Island::back_to_start() {
 
 void Island::stop() {
   for (Free& one : free_) one.now.velocity = one.now.spin = Vector3::Zero();
-  for (Treed& one : trees_) one.tree->state.v.setZero();
+  for (Tree* tree : trees_) tree->state.v.setZero();
 }
 
 bool Island::finite() const {
@@ -132,25 +157,27 @@ bool Island::finite() const {
     if (!one.now.center.allFinite() || !one.now.velocity.allFinite() || !one.now.spin.allFinite() ||
         !one.now.orientation.coeffs().allFinite())
       return false;
-  for (const Treed& one : trees_)
-    if (!one.tree->state.q.allFinite() || !one.tree->state.v.allFinite()) return false;
+  for (Tree* tree : trees_)
+    if (!tree->state.q.allFinite() || !tree->state.v.allFinite()) return false;
   return true;
 }
 
-double Island::stored(double* kinetic) const {
+/// Kinetic, potential and in springs, J. Notes for each tree its own: at the start of a step as it is, later as change.
+double Island::stored(double& kinetic, bool start) {
   double sum = 0, moving = 0;
   for (const Free& one : free_) {
     moving += one.now.kinetic();
     sum -= one.now.solid->mass * core_.settings.gravity.dot(one.now.center);
   }
-  for (const Treed& one : trees_) {
-    const Energy energy = core_.energy_of(*one.tree);
+  for (Tree* tree : trees_) {
+    const Energy energy = core_.energy_of(*tree);
     moving += energy.kinetic;
     sum += energy.potential + energy.springs;
+    tree->step_stored = start ? energy.total() : energy.total() - tree->step_stored;
   }
   for (const Clustered& one : clusters_)
     for (const SpringIndex tie : one.entry->ties) sum += core_.tie_energy_in(core_.springs[tie].is);
-  if (kinetic) *kinetic = moving;
+  kinetic = moving;
   return sum + moving;
 }
 
@@ -158,14 +185,12 @@ bool Island::still() const {
   constexpr double kSlow = 0.02;  // m/s and rad/s
   for (const Free& one : free_)
     if (one.now.velocity.norm() > kSlow || one.now.spin.norm() > kSlow) return false;
-  for (const Treed& one : trees_)
-    if (one.tree->state.v.cwiseAbs().maxCoeff() > kSlow) return false;
+  for (Tree* tree : trees_)
+    if (tree->state.v.cwiseAbs().maxCoeff() > kSlow) return false;
   return true;
 }
 
-BodyIndex Island::any_body() const {
-  return free_.empty() ? trees_.front().tree->links.front().body : free_.front().body;
-}
+BodyIndex Island::any_body() const { return free_.empty() ? trees_.front()->links.front().body : free_.front().body; }
 
 void Island::intervene(GuardReason reason, GuardAction action, double time, double value) {
   result.interventions.push_back({core_.iteration, time, core_.bodies->owner(any_body()), reason, action, value});

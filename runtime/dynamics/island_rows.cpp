@@ -20,16 +20,17 @@ double size_of(const Shape& a, const Shape& b) { return std::min(a.bounding_radi
 
 void Island::find_touches(double h, bool speculative) {
   touches_.clear();
-  roles_.assign(pairs_.size(), Role::Far);
   NarrowCounters narrow;
   const double fall = core_.settings.gravity.norm() * h;
   quiet_ = 1e-3 * fall + 1e-12;
+  // What comes as slowly as something at rest falls in a sub-step is caught by a row before it touches.
+  constexpr double kMostRoom = 0.05;  // of the size
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     NearPair& pair = *pairs_[i];
     const Shape &a = *core_.bodies->collision_shape(pair.a), &b = *core_.bodies->collision_shape(pair.b);
     const Pose pa = pose_of(pair.a), pb = pose_of(pair.b);
     const double skin = kSkin * size_of(a, b);
-    double margin = skin;
+    double margin = std::max(skin, std::min(2 * fall * h, kMostRoom * size_of(a, b)));
     if (speculative) {
       const Vector3 rate = point_velocity(pair.a, pa.location) - point_velocity(pair.b, pb.location);
       margin += h * (rate.norm() + fall) + kTurnRoom * size_of(a, b);
@@ -52,17 +53,48 @@ void Island::find_touches(double h, bool speculative) {
     }
   }
   result.counters.pairs += narrow.pairs;
-  if (speculative) return;
-  // A pair that comes or leaves at a speed that would bounce is none of the rows': its impact is located.
+}
+
+double Island::size_of_pair(const NearPair& pair) const {
+  return size_of(*core_.bodies->collision_shape(pair.a), *core_.bodies->collision_shape(pair.b));
+}
+
+Island::Speeds Island::speeds_of(const contact::Law& law, double size, double h) const {
+  const double fall = core_.settings.gravity.norm() * h;
+  if (law.restitution > 0) {
+    const double slow = std::max({law.restitution_threshold, fall, quiet_});
+    return {slow, slow};
+  }
+  // Nothing rebounds: a row stops it as well, but for the depth that it would reach until then.
+  return {JointDrive::kNoLimit, std::max(2 * fall, kSkin * size / h) + quiet_};
+}
+
+bool Island::strikes(double h) const {
   for (const Touch& touch : touches_) {
-    const contact::Law& law = pairs_[touch.pair]->law;
-    const double slow = law.restitution > 0 ? std::max(law.restitution_threshold, quiet_) : JointDrive::kNoLimit;
+    const NearPair& pair = *pairs_[touch.pair];
+    const double size = size_of_pair(pair);
+    if (touch.gap <= kTouchSkin * size && touch.approach < -speeds_of(pair.law, size, h).strike) return true;
+  }
+  for (const Bound& bound : bounds_)
+    if (bound.gap <= 0 && bound.rate < -quiet_) return true;
+  return false;
+}
+
+/// @param struck  what touches has collided already: what still approaches then is stopped by rows
+void Island::find_roles(double h, bool struck) {
+  roles_.assign(pairs_.size(), Role::Far);
+  depths_.assign(pairs_.size(), 0.0);
+  for (const Touch& touch : touches_) {
+    const NearPair& pair = *pairs_[touch.pair];
+    const double size = size_of_pair(pair);
+    const bool touching = touch.gap <= kTouchSkin * size;
+    const Speeds speeds = speeds_of(pair.law, size, h);
     Role& role = roles_[touch.pair];
-    if (touch.approach > slow || touch.approach < -slow) {
-      if (role == Role::Far) role = Role::Comes;
-    } else {
+    depths_[touch.pair] = std::max(depths_[touch.pair], -touch.gap);
+    if (std::abs(touch.approach) <= speeds.slow || (struck && touching && touch.approach < 0))
       role = Role::Rests;
-    }
+    else if (touching && role == Role::Far)
+      role = Role::Leaves;
   }
   std::erase_if(touches_, [this](const Touch& touch) { return roles_[touch.pair] != Role::Rests; });
 }
@@ -87,8 +119,8 @@ void Island::find_touches_now() {
 
 void Island::find_bounds(double) {
   bounds_.clear();
-  for (const Treed& one : trees_) {
-    for (const TreeLink& link : one.tree->links) {
+  for (Tree* tree : trees_) {
+    for (const TreeLink& link : tree->links) {
       if (link.joint == kNoJoint) continue;
       const JointEntry& joint = core_.joints[link.joint];
       if (!Dynamics::Core::has_limits(joint)) continue;
@@ -156,9 +188,9 @@ void Island::make_rows(double h, bool restitution) {
   numbers_.clear();
   ring_errors_.clear();
   std::size_t widest = 0, rings = 0;
-  for (const Treed& one : trees_) {
-    widest = std::max(widest, static_cast<std::size_t>(one.tree->model.velocities()));
-    rings += one.tree->rings.size();
+  for (Tree* tree : trees_) {
+    widest = std::max(widest, static_cast<std::size_t>(tree->model.velocities()));
+    rings += tree->rings.size();
   }
   numbers_.reserve(widest * (12 * touches_.size() + 2 * bounds_.size() + 12 * rings));
   for (Free& one : free_) {
@@ -169,19 +201,20 @@ void Island::make_rows(double h, bool restitution) {
   for (const Touch& touch : touches_) add_touch_row(touch);
   for (const Bound& bound : bounds_)
     if (bound.rests) add_bound_row(bound);
-  for (const Treed& one : trees_) add_ring_rows(*one.tree);
+  for (Tree* tree : trees_) add_ring_rows(*tree);
   load_velocities();
   before_.clear();
-  for (const contact::Row& row : rows_) {
-    const Touch& touch = touches_[static_cast<std::size_t>(&row - rows_.data())];
-    const NearPair& pair = *pairs_[touch.pair];
-    const Vector3 rate = row.axes * (point_velocity(pair.a, touch.point) - point_velocity(pair.b, touch.point));
-    before_.insert(before_.end(), {rate[0], rate[1], rate[2]});
+  warm_.clear();
+  scalars_before_.clear();
+  for (contact::Row& row : rows_) {
+    const Vector3 a = rate_of(row, true), b = rate_of(row, false);
+    warm_.push_back(row.impulse);
+    before_.push_back(a);
+    before_.push_back(b);
+    row.slip[0] = a[1] - b[1];
+    row.slip[1] = a[2] - b[2];
   }
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    rows_[i].slip[0] = before_[3 * i + 1];
-    rows_[i].slip[1] = before_[3 * i + 2];
-  }
+  for (const contact::ScalarRow& row : scalars_) scalars_before_.push_back(rate_of(row));
   set_biases(h);
   if (!restitution) return;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -267,7 +300,7 @@ void Island::add_bound_row(const Bound& bound) {
 }
 
 void Island::add_ring_rows(const Tree& of) {
-  Tree& tree = *trees_[static_cast<std::size_t>(of.slot)].tree;
+  Tree& tree = *trees_[static_cast<std::size_t>(of.slot)];
   for (const JointIndex index : tree.rings) {
     const RingRows ring = core_.ring_rows(tree, core_.joints[index].is);
     for (int k = 0; k < ring.count; ++k) {
@@ -297,7 +330,7 @@ void Island::load_velocities() {
       one.v[3 + k] = one.free_v[3 + k] = one.now.spin[k];
     }
   }
-  for (Treed& one : trees_) one.free_v = one.tree->state.v;
+  for (Tree* tree : trees_) tree->free_v = tree->state.v;
 }
 
 void Island::store_velocities(double moved_h) {
@@ -311,10 +344,39 @@ void Island::store_velocities(double moved_h) {
     if (turn != Vector3::Zero()) one.now.orientation = (rotation_by(moved_h * turn) * one.now.orientation).normalized();
   }
   if (moved_h == 0) return;
-  for (Treed& one : trees_) {
-    one.way = moved_h * (one.tree->state.v - one.free_v);
-    articulated::move(one.tree->model, one.tree->state.q, one.way, one.tree->state.q);
+  for (Tree* tree : trees_) {
+    tree->way = moved_h * (tree->state.v - tree->free_v);
+    articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
   }
+}
+
+/// Motors, dampers and scripts pushed along the way that smooth motion took; what the rows' impulses added to it, half
+/// of the change of velocity for h, is worked along too.
+void Island::correct_works(double h) {
+  for (const Free& one : free_) {
+    for (int k = 0; k < 3; ++k)
+      free_work_ +=
+          0.5 * h *
+          (one.now.force[k] * (one.v[k] - one.free_v[k]) + one.now.torque[k] * (one.v[3 + k] - one.free_v[3 + k]));
+  }
+  for (Clustered& clustered : clusters_)
+    for (const std::uint32_t index : clustered.entry->trees) {
+      Tree& tree = *core_.trees[index];
+      if (!tree.driven) continue;
+      const articulated::Vector &before = tree.sub_state.v, &free = tree.free_v, &after = tree.state.v;
+      for (int i = 0; i < tree.model.size(); ++i) {
+        const TreeLink& link = tree.links[static_cast<std::size_t>(i)];
+        if (link.joint == kNoJoint) continue;
+        const articulated::Body& body = tree.model.body(i);
+        const double damping = core_.joints[link.joint].drive.damping;
+        for (int k = body.v; k < body.v + articulated::velocity_count(body.type); ++k) {
+          const double change = 0.5 * (after[k] - free[k]);
+          clustered.pending.motor_work += change * tree.motor_impulse[k];
+          clustered.pending.drag_loss += change * damping * h * 0.5 * (before[k] + free[k]);
+          clustered.pending.script_work += change * h * tree.set_tau[k];
+        }
+      }
+    }
 }
 
 void Island::solve(double h) {
@@ -330,35 +392,84 @@ void Island::solve(double h) {
   result.counters.direct += report.direct;
 }
 
+/// Of one side's point along the row's axes, from the movers' v as they are. A tree that touches itself is one side.
+Vector3 Island::rate_of(const contact::Row& row, bool first) const {
+  const int index = first ? row.a : row.b;
+  if (index < 0) return Vector3::Zero();
+  const contact::Mover& mover = movers_[static_cast<std::size_t>(index)];
+  const double *v = mover.v, *j = first ? row.ja : row.jb;
+  if (!j) {
+    const Vector3& arm = first ? row.arm_a : row.arm_b;
+    return row.axes * (Vector3(v[0], v[1], v[2]) + Vector3(v[3], v[4], v[5]).cross(arm));
+  }
+  const Eigen::Map<const articulated::Vector> velocity(v, mover.size);
+  Vector3 rate;
+  for (int k = 0; k < 3; ++k)
+    rate[k] = Eigen::Map<const articulated::Vector>(j + k * mover.size, mover.size).dot(velocity);
+  return rate;
+}
+
+double Island::rate_of(const contact::ScalarRow& row) const {
+  const contact::Mover& mover = movers_[static_cast<std::size_t>(row.a)];
+  return Eigen::Map<const articulated::Vector>(row.ja, mover.size)
+      .dot(Eigen::Map<const articulated::Vector>(mover.v, mover.size));
+}
+
 void Island::account_rows() {
-  // A contact force that is constant over the sub-step works along the mean of the velocities before and after.
+  // A contact force that is constant over the sub-step works along the mean of the velocities before and after. Each
+  // tree's own account has what left it through the contact, were it into another body.
+  const auto tree_at = [this](int mover) {
+    const int first = static_cast<int>(free_.size());
+    return mover < first ? nullptr : trees_[static_cast<std::size_t>(mover - first)];
+  };
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const contact::Row& row = rows_[i];
-    const Touch& touch = touches_[i];
-    const NearPair& pair = *pairs_[touch.pair];
-    Vector3 after = Vector3::Zero();
-    const std::pair<int, double> ends[] = {{row.a, 1.0}, {row.b, -1.0}};
-    for (const auto& [mover, sign] : ends) {
-      if (mover < 0) continue;
-      const bool first = sign > 0;
-      const double* v = movers_[static_cast<std::size_t>(mover)].v;
-      const double* j = first ? row.ja : row.jb;
-      const int n = movers_[static_cast<std::size_t>(mover)].size;
-      if (!j) {
-        const Vector3 arm = first ? row.arm_a : row.arm_b;
-        const Vector3 at = Vector3(v[0], v[1], v[2]) + Vector3(v[3], v[4], v[5]).cross(arm);
-        after += sign * (row.axes * at);
-      } else {
-        for (int k = 0; k < 3; ++k)
-          after[k] +=
-              sign *
-              Eigen::Map<const articulated::Vector>(j + k * n, n).dot(Eigen::Map<const articulated::Vector>(v, n));
+    if (row.impulse == Vector3::Zero()) continue;
+    for (const bool first : {true, false}) {
+      const Vector3 mean = (first ? 0.5 : -0.5) * (rate_of(row, first) + before_[2 * i + (first ? 0 : 1)]);
+      const double along = row.impulse[0] * mean[0], across = row.impulse[1] * mean[1] + row.impulse[2] * mean[2];
+      result.account.contact_loss -= along;
+      result.account.friction_loss -= across;
+      if (Tree* tree = tree_at(first ? row.a : row.b)) {
+        tree->account.contact_loss -= along;
+        tree->account.friction_loss -= across;
       }
     }
-    static_cast<void>(pair);
-    const Vector3 mean = 0.5 * (after + Vector3(before_[3 * i], before_[3 * i + 1], before_[3 * i + 2]));
-    result.account.contact_loss -= row.impulse[0] * mean[0];
-    result.account.friction_loss -= row.impulse[1] * mean[1] + row.impulse[2] * mean[2];
+  }
+  const std::size_t limits = scalars_.size() - ring_errors_.size();
+  for (std::size_t i = 0; i < limits; ++i) {
+    const contact::ScalarRow& row = scalars_[i];
+    const double loss = -0.5 * row.impulse * (scalars_before_[i] + rate_of(row));
+    result.account.limit_loss += loss;
+    tree_at(row.a)->account.limit_loss += loss;
+  }
+}
+
+/// What contacts and limits did to trees, as forces that last the h seconds of a sub-step, for who asks what joints
+/// hold.
+void Island::note_forces(double h) {
+  for (Tree* tree : trees_) {
+    for (TreeLink& link : tree->links) link.contact = {};
+    tree->limit_force.setZero();
+  }
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (rows_[i].impulse == Vector3::Zero()) continue;
+    const NearPair& pair = *pairs_[touches_[i].pair];
+    const Vector3 force = rows_[i].axes.transpose() * rows_[i].impulse / h;
+    for (const auto& [body, sign] : {std::pair{pair.a, 1.0}, std::pair{pair.b, -1.0}}) {
+      const Side side = side_of(body);
+      if (!side.tree) continue;
+      articulated::Wrench& wrench = side.tree->links[static_cast<std::size_t>(side.link)].contact;
+      const Vector3 arm = touches_[i].point - articulated::com_position(side.tree->model, side.tree->data, side.link);
+      wrench.force += sign * force;
+      wrench.couple += sign * arm.cross(force);
+    }
+  }
+  const std::size_t limits = scalars_.size() - ring_errors_.size();
+  for (std::size_t i = 0; i < limits; ++i) {
+    Tree& tree = *trees_[static_cast<std::size_t>(scalars_[i].a) - free_.size()];
+    tree.limit_force +=
+        scalars_[i].impulse / h * Eigen::Map<const articulated::Vector>(scalars_[i].ja, tree.model.velocities());
   }
 }
 

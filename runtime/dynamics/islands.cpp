@@ -45,7 +45,7 @@ void Dynamics::Core::find_islands() {
 
   // Islands in the order of creation of their first bodies.
   std::size_t used = 0;
-  std::pmr::vector<std::uint32_t> island_of(bodies->index_end(), kNone, memory);
+  island_of.assign(bodies->index_end(), kNone);
   const auto island = [&](BodyIndex body) -> Island& {
     std::uint32_t& index = island_of[root(body)];
     if (index == kNone) {
@@ -75,6 +75,9 @@ void Dynamics::Core::advance(DynamicsClient& client, double start, double h) {
   for (NearPair& pair : near.all()) pair.reported = false;
   run(client, start, h, 0);
   report_lasting(client, start + h);
+  counters.sleeping = 0;
+  if (!settings.sleeping) return;
+  for (const BodyIndex body : near.movers()) counters.sleeping += near.rest(body).asleep;
 }
 
 void Dynamics::Core::run(DynamicsClient& client, double start, double h, int depth) {
@@ -152,10 +155,7 @@ bool Dynamics::Core::sleep_through(Island& island) {
   island.append_bodies(scratch);
   bool all = true;
   for (const BodyIndex body : scratch) all = all && near.rest(body).asleep;
-  if (all) {
-    counters.sleeping += scratch.size();
-    return true;
-  }
+  if (all) return true;
   // One that is awake wakes the others.
   for (const BodyIndex body : scratch) {
     if (!near.rest(body).asleep) continue;

@@ -271,6 +271,12 @@ JointReaction Dynamics::reaction(JointIndex joint) const {
 JointReaction Dynamics::Core::react(const JointEntry& joint) {
   Tree& tree = *trees[joint.tree];
   set_loads(tree, accuracy_of(joint.is.child), 0);
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    tree.loads.wrenches[i].force += tree.links[i].contact.force;
+    tree.loads.wrenches[i].couple += tree.links[i].contact.couple;
+  }
+  if (tree.loads.tau.size() == 0) tree.loads.tau.setZero(tree.model.velocities());
+  tree.loads.tau += tree.limit_force;
   const articulated::Vector acceleration =
       articulated::forward_dynamics(tree.model, tree.data, tree.state, tree.loads, 0);
   articulated::Vector tau(tree.model.velocities());
@@ -287,12 +293,21 @@ double Dynamics::strength_hard_limit(JointIndex joint) const {
   return kPerMass * core_->bodies->mass(core_->at(joint).is.child);
 }
 
-void Dynamics::set_drive(JointIndex joint, const JointDrive& drive) {
-  Core& c = core();
-  JointEntry& entry = c.at(joint);
-  const auto what = [&](std::string_view property) {
-    return fmt::format("{} joint: {}", name_of(entry.is.kind), property);
-  };
+namespace {
+
+bool acceptable(const JointDrive& drive, int axes) {
+  const auto positive = [](double value) { return std::isfinite(value) && value >= 0; };
+  bool good = drive.motor_speed.allFinite() && drive.force.allFinite() && drive.rest.allFinite() &&
+              std::isfinite(drive.double_strength) && std::isfinite(drive.double_max) &&
+              std::isfinite(drive.double_min) && positive(drive.damping) && positive(drive.stiffness) &&
+              !std::isnan(drive.strength_limit) && drive.limit_restitution >= 0 && drive.limit_restitution <= 1;
+  for (int i = 0; i < axes; ++i) good = good && drive.low[i] <= drive.high[i];
+  return good;
+}
+
+/// Why it is not: apart, since words take memory and drives are set in every step.
+void explain(const JointDrive& drive, JointKind kind) {
+  const auto what = [&](std::string_view property) { return fmt::format("{} joint: {}", name_of(kind), property); };
   need_finite(drive.motor_speed, what("joint velocity"));
   need_finite(drive.force, what("joint force or torque"));
   need_finite(drive.rest, what("rest of the spring"));
@@ -304,12 +319,23 @@ void Dynamics::set_drive(JointIndex joint, const JointDrive& drive) {
   if (std::isnan(drive.strength_limit)) refuse(what("strength limit") + " must be a number");
   if (!(drive.limit_restitution >= 0 && drive.limit_restitution <= 1))
     refuse(fmt::format("{} must be from 0 to 1, but is {}", what("restitution of limits"), drive.limit_restitution));
-  for (int i = 0; i < axis_count(entry.is.kind); ++i)
+  for (int i = 0; i < axis_count(kind); ++i)
     if (!(drive.low[i] <= drive.high[i]))
       refuse(fmt::format("{} of axis {}: the minimum {} is above the maximum {}", what("limits"), i + 1, drive.low[i],
                          drive.high[i]));
+}
+
+}  // namespace
+
+void Dynamics::set_drive(JointIndex joint, const JointDrive& drive) {
+  Core& c = core();
+  JointEntry& entry = c.at(joint);
+  if (!acceptable(drive, axis_count(entry.is.kind))) explain(drive, entry.is.kind);
+  const bool had_motor = entry.drive.strength_limit > 0;
   entry.drive = drive;
   entry.drive.strength_limit = std::clamp(drive.strength_limit, 0.0, strength_hard_limit(joint));
+  // The integrator keeps the impulse of each motor.
+  if (had_motor != (entry.drive.strength_limit > 0)) c.integrators_changed = true;
 }
 
 }  // namespace breve

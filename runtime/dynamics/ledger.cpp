@@ -88,8 +88,6 @@ Energy Dynamics::energy(BodyIndex body) const {
   return core_->bodies->dynamic(body) ? core_->free_energy(body) : Energy{};
 }
 
-std::size_t Dynamics::self_penetrations(BodyIndex) const { return 0; }
-
 bool Dynamics::asleep(BodyIndex body) const {
   const NearPairs::Rest* rest = core_ ? core_->near.find_rest(body) : nullptr;
   return rest && rest->asleep;

@@ -50,7 +50,11 @@ void Dynamics::Core::build_clusters() {
   }
   for (const auto& entry : clusters) {
     std::pmr::vector<Tree*> members(memory);
-    for (const std::uint32_t index : entry->trees) members.push_back(trees[index].get());
+    for (const std::uint32_t index : entry->trees) {
+      members.push_back(trees[index].get());
+      for (TreeLink& link : trees[index]->links)
+        link.motor = link.joint != kNoJoint && joints[link.joint].drive.strength_limit > 0;
+    }
     const Accuracy* finest = nullptr;
     for (const Tree* tree : members) {
       const Accuracy& one = accuracy_of(tree->links.front().body);

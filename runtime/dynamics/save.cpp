@@ -179,7 +179,9 @@ void Dynamics::Core::save_tree(ByteWriter& out, const Tree& tree) const {
   each(Writer{out}, tree.account);
   put_numbers(out, tree.state.q);
   put_numbers(out, tree.state.v);
-  for (const TreeLink& link : tree.links) out.put(link.gain_unit);
+  put_numbers(out, tree.limit_force);
+  for (const TreeLink& link : tree.links)
+    out.put(link.gain_unit), out.put(link.contact.force), out.put(link.contact.couple);
 }
 
 void Dynamics::Core::load(ByteReader& in) {
@@ -253,7 +255,12 @@ std::uint32_t Dynamics::Core::load_tree(ByteReader& in) {
   each(Reader{in}, tree.account);
   for (double& x : tree.state.q) x = in.get<double>();
   for (double& x : tree.state.v) x = in.get<double>();
-  for (TreeLink& link : tree.links) link.gain_unit = in.get<double>();
+  for (double& x : tree.limit_force) x = in.get<double>();
+  for (TreeLink& link : tree.links) {
+    link.gain_unit = in.get<double>();
+    link.contact.force = in.get_vector();
+    link.contact.couple = in.get_vector();
+  }
   return known->tree;
 }
 

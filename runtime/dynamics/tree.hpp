@@ -23,8 +23,10 @@ struct TreeLink {
   Vector3 origin = Vector3::Zero();                           // of the link's frame, in the body's frame
   MassProperties solid;                                       // that the model was made of
   Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // set by scripts, as the step began
+  articulated::Wrench contact;                                // of contacts in the last sub-step, about its centre
   bool slow_spring = false;                                   // its joint's spring is slower than the step
   double slow_damping = 0;                                    // of that, if it is
+  bool motor = false;                                         // its joint has one
   double gain_unit = 0;  // inertia that the joint's motor feels as the tree was built, kg or kg*m^2
 };
 
@@ -71,6 +73,13 @@ struct Tree : InMemory {
   articulated::Vector set_tau;  // (nv) of loads.tau, what scripts set
   articulated::Vector work_q, work_v, work_u, work_w;
   Energy account;  // works and losses since it was made
+  // An island's, kept here so that a step allocates nothing.
+  articulated::State step_state, sub_state;  // as the step, the sub-step began
+  articulated::Vector free_v, way;           // v without the rows' impulses; the way they make
+  articulated::Vector limit_force;           // (nv) of the joints' limits in the last sub-step
+  articulated::Vector motor_impulse;         // (nv) of motors, in the last smooth motion, N*s or N*m*s
+  Energy step_account;                       // as the step began
+  double step_stored = 0;                    // J, likewise
 
   BodyIndex first_body() const {  // of the lowest index
     BodyIndex first = kNoBody;

@@ -47,18 +47,22 @@ Quaternion turn_about(const Vector3& axis, double radians) {
 void mobile_rotate(Machine& machine, Instance& self, Vector3 axis, double radians) {
   const Quaternion turn = turn_about(axis, radians);
   const BodyIndex body = body_of(machine, self);
-  if (!axis.isZero(0)) bodies_of(machine).set_orientation(body, turn);
+  if (axis.isZero(0)) return;
+  bodies_of(machine).set_orientation(body, turn);
+  machine.world().dynamics().moved(body);
 }
 
 void mobile_relative_rotate(Machine& machine, Instance& self, Vector3 axis, double radians) {
   const Quaternion turn = turn_about(axis, radians);
   const BodyIndex body = body_of(machine, self);
   bodies_of(machine).set_orientation(body, turn * bodies_of(machine).orientation(body));
+  machine.world().dynamics().moved(body);
 }
 
 void mobile_offset(Machine& machine, Instance& self, Vector3 displacement) {
   const BodyIndex body = body_of(machine, self);
   bodies_of(machine).set_location(body, bodies_of(machine).location(body) + displacement);
+  machine.world().dynamics().moved(body);
 }
 
 // --- physics ---------------------------------------------------------------------------------------------------------

@@ -15,10 +15,15 @@ using Text = StringCell*;
 
 Bodies& bodies_of(Machine& machine) { return machine.world().bodies(); }
 
+/// What joints hold to it follows at once.
+void moved(Machine& machine, BodyIndex body) { machine.world().dynamics().moved(body); }
+
 // --- pose ------------------------------------------------------------------------------------------------------------
 
 void real_move(Machine& machine, Instance& self, Vector3 location) {
-  bodies_of(machine).set_location(body_of(machine, self), location);
+  const BodyIndex body = body_of(machine, self);
+  bodies_of(machine).set_location(body, location);
+  moved(machine, body);
 }
 
 Vector3 real_get_location(Machine& machine, Instance& self) {
@@ -30,7 +35,9 @@ MatrixCell* real_get_rotation(Machine& machine, Instance& self) {
 }
 
 void real_set_rotation(Machine& machine, Instance& self, Matrix3 rotation) {
-  bodies_of(machine).set_rotation(body_of(machine, self), rotation);
+  const BodyIndex body = body_of(machine, self);
+  bodies_of(machine).set_rotation(body, rotation);
+  moved(machine, body);
 }
 
 void real_set_rotation_around(Machine& machine, Instance& self, Vector3 axis, double radians) {
@@ -40,6 +47,7 @@ void real_set_rotation_around(Machine& machine, Instance& self, Vector3 axis, do
   const double length = axis.stableNorm();
   if (length == 0) return;
   bodies_of(machine).set_orientation(body, Quaternion(Eigen::AngleAxisd(radians, axis / length)));
+  moved(machine, body);
 }
 
 void real_set_rotation_euler_angles(Machine& machine, Instance& self, Vector3 angles) {
@@ -47,7 +55,9 @@ void real_set_rotation_euler_angles(Machine& machine, Instance& self, Vector3 an
   const Quaternion turn = Eigen::AngleAxisd(angles.z(), Vector3::UnitZ()) *
                           Eigen::AngleAxisd(angles.y(), Vector3::UnitY()) *
                           Eigen::AngleAxisd(angles.x(), Vector3::UnitX());
-  bodies_of(machine).set_orientation(body_of(machine, self), turn);
+  const BodyIndex body = body_of(machine, self);
+  bodies_of(machine).set_orientation(body, turn);
+  moved(machine, body);
 }
 
 void real_point(Machine& machine, Instance& self, Vector3 vertex, Vector3 direction) {
@@ -64,6 +74,7 @@ void real_point(Machine& machine, Instance& self, Vector3 vertex, Vector3 direct
   const Eigen::AngleAxisd turn = sine < kParallel ? Eigen::AngleAxisd(kParallelTurn, from)
                                                   : Eigen::AngleAxisd(std::atan2(sine, from.dot(to)), axis / sine);
   bodies_of(machine).set_orientation(body, Quaternion(turn));
+  moved(machine, body);
 }
 
 // --- shape -----------------------------------------------------------------------------------------------------------

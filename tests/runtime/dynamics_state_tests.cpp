@@ -1,6 +1,8 @@
 // What scripts do between steps, snapshots and hashes of worlds with joints and contacts, handlers at impacts.
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "dynamics_scene.hpp"
 
 namespace breve::testing {
@@ -220,6 +222,81 @@ TEST(DynamicsState, AJointSaysWhatItHolds) {
   EXPECT_LT((s.dynamics().reaction(top).force - Vector3(0, 3 * 9.81, 0)).norm(), 1e-9);
   EXPECT_LT((s.dynamics().reaction(top).torque - Vector3(0, 0, 2 * 9.81)).norm(), 1e-9);
   EXPECT_LT((s.dynamics().reaction(weld).force - Vector3(0, 2 * 9.81, 0)).norm(), 1e-9);
+}
+
+TEST(DynamicsState, AJointHoldsWhatAFloorPushes) {
+  // A body on a leg: the joint between them carries the body, the floor carries both.
+  Physics s;
+  s.body(2, Vector3(0, -0.5, 0), BodyKind::Stationary, Shape::box(Vector3(10, 1, 10)));
+  const ObjectId trunk = s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3(0, 1.5, 0));
+  const ObjectId leg = s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3(0, 0.5, 0));
+  JointDescription is;
+  is.kind = JointKind::Fixed;
+  is.parent = s.index(trunk);
+  is.child = s.index(leg);
+  is.parent_point = Vector3(0, -0.5, 0);
+  is.child_point = Vector3(0, 0.5, 0);
+  const JointIndex joint = s.dynamics().link(is, leg);
+  s.run(1);
+  // On the leg: the trunk's weight.
+  EXPECT_LT((s.dynamics().reaction(joint).force - Vector3(0, -9.81, 0)).norm(), 1e-6);
+  EXPECT_LT(s.dynamics().reaction(joint).torque.norm(), 1e-6);
+}
+
+TEST(DynamicsState, LinksThatIntersectAreCountedIfTheyAreTested) {
+  Physics s;
+  s.dynamics().set_gravity(Vector3::Zero());
+  std::vector<ObjectId> rods;
+  for (int i = 0; i < 4; ++i) rods.push_back(s.rigid(Shape::box(Vector3(1, 0.2, 0.2)), Vector3::Zero()));
+  for (std::size_t i = 1; i < rods.size(); ++i) {
+    JointDescription is;
+    is.parent = s.index(rods[i - 1]);
+    is.child = s.index(rods[i]);
+    is.parent_point = Vector3(0.5, 0, 0);
+    is.child_point = Vector3(-0.5, 0, 0);
+    is.normal = Vector3::UnitZ();
+    const JointIndex joint = s.dynamics().link(is, rods[i]);
+    s.dynamics().set_position(joint, Vector3(1.57, 0, 0));  // a square: the fourth meets the first
+  }
+  EXPECT_EQ(s.dynamics().self_penetrations(s.index(rods[0])), 0U);
+  s.dynamics().set_self_collisions(s.index(rods[0]), true);
+  EXPECT_EQ(s.dynamics().self_penetrations(s.index(rods[2])), 1U);
+  const JointIndex last = s.dynamics().joints_of(s.index(rods[0])).back();
+  s.dynamics().set_position(last, Vector3(-1.57, 0, 0));
+  EXPECT_EQ(s.dynamics().self_penetrations(s.index(rods[0])), 0U);
+}
+
+TEST(DynamicsState, TheCounterOfSleepersIsTheirNumber) {
+  Physics s(1.0 / 240);
+  s.world.set_iteration_step(1.0 / 60);  // four sub-steps
+  s.dynamics().set_sleeping(true);
+  s.body(2, Vector3(0, -0.5, 0), BodyKind::Stationary, Shape::box(Vector3(10, 1, 10)));
+  ObjectId last;
+  for (int i = 0; i < 3; ++i) last = s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3(2 * i, 0.5, 0));
+  s.run(2);
+  EXPECT_EQ(s.dynamics().counters().sleeping, 3U);
+  s.set_velocity(last, Vector3(0, 1, 0));
+  s.world.step();
+  EXPECT_EQ(s.dynamics().counters().sleeping, 2U);
+}
+
+TEST(DynamicsState, ALinkThatIsTurnedBeforeTheFirstStepTakesItsAssemblyAlong) {
+  Physics s;
+  const ObjectId a = s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3::Zero());
+  const ObjectId b = s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3(5, 5, 5));
+  JointDescription is;
+  is.parent = s.index(a);
+  is.child = s.index(b);
+  is.parent_point = Vector3(1, 0, 0);
+  is.child_point = Vector3(-1, 0, 0);
+  is.normal = Vector3::UnitZ();
+  s.dynamics().link(is, b);
+  s.world.bodies().set_orientation(s.index(a), Quaternion(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3::UnitZ())));
+  s.dynamics().moved(s.index(a));
+  EXPECT_LT((s.at(b) - Vector3(0, 2, 0)).norm(), kRounding);
+  s.world.bodies().set_location(s.index(b), Vector3(1, 2, 0));
+  s.dynamics().moved(s.index(b));
+  EXPECT_LT((s.at(a) - Vector3(1, 0, 0)).norm(), kRounding);
 }
 
 TEST(DynamicsState, EffectsSayWhoAsked) {

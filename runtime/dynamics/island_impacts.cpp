@@ -1,0 +1,163 @@
+// Impacts of an island: which comes first in a sub-step and when, and what happens then.
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/dynamics/island.hpp"
+
+namespace breve {
+
+Island::Event Island::seek(double h) {
+  Event first;
+  first.time = h;
+  place_links();
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    if (roles_[i] == Role::Rests) continue;
+    ++result.counters.searches;
+    const NearPair& pair = *pairs_[i];
+    const Shape &a = *core_.bodies->collision_shape(pair.a), &b = *core_.bodies->collision_shape(pair.b);
+    const Pose a1 = pose_of(pair.a), b1 = pose_of(pair.b);
+    double time = h;
+    bool hit = false;
+    if (roles_[i] == Role::Far) {
+      Contact contact;
+      const Motion ma = chord(start_poses_[2 * i], a1, h), mb = chord(start_poses_[2 * i + 1], b1, h);
+      hit = time_of_impact(a, ma, b, mb, h, time, contact);
+    }
+    if (!hit) {
+      // It left and came back, or its path bends.
+      hit = closest(a, a1, b, b1).distance < -depths_[i];
+      time = h;
+    }
+    if (!hit || (time >= first.time && first.found())) continue;
+    first = {time, static_cast<int>(i), -1, depths_[i]};
+  }
+  for (std::size_t i = 0; i < bounds_.size(); ++i) {
+    if (bounds_[i].rests) continue;
+    double rate = 0;
+    Event event;
+    event.bound = static_cast<int>(i);
+    const double gap = gap_of(event, rate);
+    if (!(gap < 0)) continue;
+    const double start_gap = std::max(bounds_[i].gap, 0.0);
+    event.time = start_gap > 0 ? h * start_gap / (start_gap - gap) : h;
+    if (event.time <= first.time || !first.found()) first = event;
+  }
+  return first;
+}
+
+double Island::gap_of(const Event& event, double& rate) const {
+  if (event.bound >= 0) {
+    const Bound& bound = bounds_[static_cast<std::size_t>(event.bound)];
+    const JointEntry& joint = core_.joints[bound.joint];
+    const double limit = bound.sign > 0 ? joint.drive.low[bound.axis] : joint.drive.high[bound.axis];
+    rate = bound.sign * core_.read_velocity(joint)[bound.axis];
+    return bound.sign * (core_.read_position(joint)[bound.axis] - limit);
+  }
+  const NearPair& pair = *pairs_[static_cast<std::size_t>(event.pair)];
+  const Shape &a = *core_.bodies->collision_shape(pair.a), &b = *core_.bodies->collision_shape(pair.b);
+  const Contact contact = closest(a, pose_of(pair.a), b, pose_of(pair.b));
+  rate = contact.normal.dot(point_velocity(pair.a, contact.point) - point_velocity(pair.b, contact.point));
+  return contact.distance;
+}
+
+void Island::refine(double time, Event& event, double h) {
+  // Newton's method on the gap, kept between a time at which they are apart and one at which they overlap.
+  double low = 0, high = h, at = event.time;
+  constexpr int kMost = 30;
+  for (int i = 0; i < kMost; ++i) {
+    restore();
+    advance_once(time, at);
+    place_links();
+    double rate = 0;
+    const double gap = gap_of(event, rate) + event.depth;
+    (gap < 0 ? high : low) = at;
+    const bool done = std::abs(gap) <= 1e-13 + 1e-15 * std::abs(at) || high - low <= 1e-13 * h;
+    double next = rate < 0 ? at - gap / rate : 0.5 * (low + high);
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (done || next == at || std::abs(next - at) <= 1e-12 * h) break;
+    at = next;
+  }
+  event.time = at;
+}
+
+Motion Island::chord(const Pose& from, const Pose& to, double h) {
+  Motion motion;
+  motion.start = from;
+  motion.velocity = (to.location - from.location) / h;
+  Quaternion turn = to.orientation * from.orientation.conjugate();
+  if (turn.w() < 0) turn.coeffs() = -turn.coeffs();
+  const double sine = turn.vec().norm();
+  if (sine > 0) motion.rotational_velocity_world = turn.vec() * (2 * std::atan2(sine, turn.w()) / (sine * h));
+  return motion;
+}
+
+/// What has come to its moment: the handler first, then the impulses.
+void Island::meet(DynamicsClient* client, const Event& event, double moment, double left) {
+  ++result.counters.impacts;
+  if (event.pair >= 0) {
+    NearPair& pair = *pairs_[static_cast<std::size_t>(event.pair)];
+    pair.touching = true;
+    if (pair.handled && !pair.reported && client && client->locates() && !call(*client, event.pair, moment, left))
+      return;
+  } else {
+    rebound(bounds_[static_cast<std::size_t>(event.bound)]);
+  }
+  collide(moment);
+}
+
+void Island::rebound(const Bound& bound) {
+  const JointEntry& joint = core_.joints[bound.joint];
+  rows_.clear();
+  touches_.clear();
+  scalars_.clear();
+  numbers_.clear();
+  numbers_.reserve(2 * static_cast<std::size_t>(core_.trees[joint.tree]->model.velocities()));
+  add_bound_row(bound);
+  const contact::ScalarRow& row = scalars_.front();
+  Tree& tree = *core_.trees[joint.tree];
+  const int n = tree.model.velocities();
+  const Eigen::Map<const articulated::Vector> j(row.ja, n), r(row.ra, n);
+  const double rate = j.dot(tree.state.v), yields = j.dot(r);
+  if (!(rate < 0) || !(yields > 0)) return;
+  const double e = joint.drive.limit_restitution;
+  tree.state.v -= ((1 + e) * rate / yields) * r;
+  const double loss = 0.5 * (1 - e * e) * rate * rate / yields;
+  result.account.limit_loss += loss;
+  tree.account.limit_loss += loss;
+}
+
+void Island::collide(double time) {
+  place();
+  // Everything that touches now, whatever its speed.
+  find_touches_now();
+  find_bounds(0);
+  for (Bound& bound : bounds_) {
+    bound.rests = bound.gap <= 0 && bound.rate <= 0;
+    if (bound.rests && bound.rate < -quiet_) rebound_later_.push_back(bound);
+  }
+  for (const Bound& bound : rebound_later_) rebound(bound);
+  if (!rebound_later_.empty()) {
+    rebound_later_.clear();
+    find_touches_now();
+    find_bounds(0);
+    for (Bound& bound : bounds_) bound.rests = bound.gap <= 0 && bound.rate <= quiet_;
+  }
+  make_rows(1, false);
+  if (rows_.empty()) return;
+  contact::ImpactSettings settings;
+  settings.rest.iterations = std::max(50, accuracy_.iterations);
+  settings.rest.direct = accuracy_.direct && rows_.size() <= 100;
+  for (contact::Row& row : rows_) row.bias = 0, row.impulse = Vector3::Zero();
+  for (contact::ScalarRow& row : scalars_) row.bias = 0, row.impulse = 0;
+  contact::resolve_impacts(movers_, rows_, laws_, scalars_, settings, workspace_);
+  account_rows();
+  store_velocities(0);
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (rows_[i].impulse == Vector3::Zero()) continue;
+    const NearPair& pair = *pairs_[touches_[i].pair];
+    result.impacts.push_back({core_.bodies->owner(pair.a), core_.bodies->owner(pair.b), time, touches_[i].point,
+                              touches_[i].normal, rows_[i].axes.transpose() * rows_[i].impulse});
+  }
+}
+
+}  // namespace breve

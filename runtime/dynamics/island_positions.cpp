@@ -1,0 +1,114 @@
+// Overlap and open rings: positions alone are put right, nothing gets velocity.
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/articulated/kinematics.hpp"
+#include "runtime/base/rotation_vector.hpp"
+#include "runtime/dynamics/island.hpp"
+
+namespace breve {
+
+void Island::push_apart(double h) {
+  constexpr double kShare = 0.2;      // of the overlap, in one sub-step
+  constexpr double kFastestPush = 3;  // m/s, along which nothing is moved faster
+  bool any = false;
+  apart_.assign(rows_.begin(), rows_.end());
+  for (std::size_t i = 0; i < apart_.size(); ++i) {
+    const NearPair& pair = *pairs_[touches_[i].pair];
+    const Shape &a = *core_.bodies->collision_shape(pair.a), &b = *core_.bodies->collision_shape(pair.b);
+    const double slop = 0.1 * kSkin * std::min(a.bounding_radius(), b.bounding_radius());
+    const double deep = -touches_[i].gap - slop;
+    apart_[i].impulse = Vector3::Zero();
+    apart_[i].static_friction = apart_[i].dynamic_friction = 0;
+    // What is not too deep may come nearer by what room there is.
+    apart_[i].bias = deep > 0 ? std::min(kShare * deep / h, kFastestPush) : std::min(0.0, -touches_[i].gap / h);
+    any = any || deep > 0;
+  }
+  apart_scalars_.assign(scalars_.begin(), scalars_.end());
+  std::size_t k = 0;
+  for (const Bound& bound : bounds_) {
+    if (!bound.rests) continue;
+    apart_scalars_[k].bias = -kShare * std::min(bound.gap, 0.0) / h;
+    any = any || bound.gap < -kLimitSkin;
+    ++k;
+  }
+  for (; k < apart_scalars_.size(); ++k) apart_scalars_[k].bias = 0;
+  for (contact::ScalarRow& row : apart_scalars_) row.impulse = 0;
+  if (any) move_by_rows(apart_, apart_scalars_, h);
+  close_rings();
+}
+
+void Island::move_by_rows(std::span<contact::Row> rows, std::span<contact::ScalarRow> scalars, double h) {
+  // The rows' solution is taken as a velocity that lasts h and then is gone.
+  for (Free& one : free_) std::fill(one.v, one.v + 6, 0.0);
+  for (Tree* tree : trees_) {
+    tree->free_v = tree->state.v;
+    tree->state.v.setZero();
+  }
+  contact::SolveSettings settings;
+  settings.iterations = accuracy_.iterations;
+  settings.direct = rows.empty();
+  if (settings.direct) settings.tolerance = 1e-14;  // a length here: rings are closed to round-off
+  contact::solve_island(movers_, rows, scalars, settings, workspace_);
+  for (Free& one : free_) {
+    one.now.center += h * Vector3(one.v[0], one.v[1], one.v[2]);
+    const Vector3 turn = h * Vector3(one.v[3], one.v[4], one.v[5]);
+    if (turn != Vector3::Zero()) one.now.orientation = (rotation_by(turn) * one.now.orientation).normalized();
+  }
+  for (Tree* tree : trees_) {
+    tree->way = h * tree->state.v;
+    tree->state.v = tree->free_v;
+    articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
+  }
+}
+
+void Island::close_rings() {
+  bool any = false;
+  for (Tree* tree : trees_) any = any || !tree->rings.empty();
+  if (!any) return;
+  touches_.clear();
+  bounds_.clear();
+  constexpr int kMost = 4;  // Newton's method from a small error: two are enough but far from the solution
+  constexpr double kClosed = 1e-13;
+  for (int i = 0; i < kMost; ++i) {
+    place();
+    make_rows(1, false);
+    double worst = 0;
+    for (std::size_t k = 0; k < scalars_.size(); ++k) {
+      scalars_[k].bias = -ring_errors_[k];
+      worst = std::max(worst, std::abs(ring_errors_[k]));
+    }
+    if (worst < kClosed) break;
+    move_by_rows({}, scalars_, 1);
+  }
+  // Velocities along the rings where they stand now.
+  for (contact::ScalarRow& row : scalars_) row.bias = 0, row.impulse = 0;
+  load_velocities();
+  contact::SolveSettings settings;
+  settings.direct = true;
+  settings.iterations = accuracy_.iterations;
+  contact::solve_island(movers_, {}, scalars_, settings, workspace_);
+  store_velocities(0);
+}
+
+/// Rings alone: half of their impulse at the start closes them at the end, the other half, at the end, is found by
+/// close_rings. So the rule is symmetric in time and keeps the energy. Source: Andersen 1983 (RATTLE).
+void Island::hold_rings(double h) {
+  place_links();
+  std::size_t k = scalars_.size() - ring_errors_.size();
+  for (Tree* tree : trees_) {
+    for (const JointIndex index : tree->rings) {
+      const RingRows ring = core_.ring_rows(*tree, core_.joints[index].is);
+      for (int i = 0; i < ring.count; ++i, ++k) {
+        contact::ScalarRow& row = scalars_[k];
+        const int n = tree->model.velocities();
+        const double rate = Eigen::Map<const articulated::Vector>(row.ja, n).dot(tree->state.v);
+        row.bias = rate - ring.rows[static_cast<std::size_t>(i)].error / h;
+      }
+    }
+  }
+  solve(h);
+  store_velocities(h);
+}
+
+}  // namespace breve
