@@ -71,14 +71,18 @@ void NearPairs::gather(const Bodies& bodies, const DynamicsClient& client) {
 }
 
 void NearPairs::refresh(const Bodies& bodies, const DynamicsClient& client, const Vector3& gravity, double h) {
-  if (bodies.revision() != seen_bodies_) {
-    seen_bodies_ = bodies.revision();
+  const bool again = std::exchange(incomplete_, true);
+  if (again || bodies.revision() != seen_bodies_) {
     gather(bodies, client);
+    seen_bodies_ = bodies.revision();
   }
   fresh_.clear();
   new_pairs_.clear();
   for (Proxy& proxy : proxies_)
     if (proxy.body != kNoBody) update_box(bodies, proxy, gravity, h);
+  if (!again) return;
+  for (ProxyIndex index = 0; index < proxies_.size(); ++index)
+    if (proxies_[index].leaf != BoxTree::kNoLeaf) seek(index);
 }
 
 void NearPairs::update_box(const Bodies& bodies, Proxy& proxy, const Vector3& gravity, double h) {
@@ -160,6 +164,7 @@ void NearPairs::merge() {
   new_pairs_.erase(last, new_pairs_.end());
   // Merged from the back, in place.
   std::size_t old = pairs_.size(), fresh = new_pairs_.size();
+  fresh_.reserve(fresh);  // so that memory ends before anything is moved, or not at all
   pairs_.resize(old + fresh);
   for (std::size_t at = old + fresh; fresh > 0;) {
     const bool take_old = old > 0 && earlier(new_pairs_[fresh - 1], pairs_[old - 1]);

@@ -41,12 +41,14 @@ class NearPairs {
   void update(const Bodies& bodies, const DynamicsClient& client, const Vector3& gravity, double h, std::uint64_t rules,
               const Wanted& wanted) {
     refresh(bodies, client, gravity, h);
-    if (rules != seen_rules_)
+    if (rules != seen_rules_ || unasked_)
       for (NearPair& pair : pairs_) wanted(pair);
     seen_rules_ = rules;
+    unasked_ = true;
     merge();
     for (const std::size_t index : fresh_) wanted(pairs_[index]);
     drop_far();
+    unasked_ = incomplete_ = false;
   }
   void forget(BodyIndex body);
 
@@ -107,6 +109,8 @@ class NearPairs {
   std::pmr::vector<std::size_t> fresh_;
   std::pmr::vector<std::uint32_t> found_;
   std::uint64_t seen_rules_ = 0, seen_bodies_ = ~std::uint64_t{0};
+  // Memory ended in the last update: all is to be looked for again, and `wanted` to be asked of all.
+  bool incomplete_ = false, unasked_ = false;
 };
 
 }  // namespace breve

@@ -17,7 +17,6 @@ namespace breve {
 // --- clusters -------------------------------------------------------------------------------------------------------
 
 void Dynamics::Core::build_clusters() {
-  clusters_changed = integrators_changed = false;
   clusters.clear();
   std::pmr::vector<std::uint32_t> set(trees.size(), memory);
   std::iota(set.begin(), set.end(), 0U);
@@ -63,6 +62,8 @@ void Dynamics::Core::build_clusters() {
     }
     entry->system = make_in<Cluster>(memory, memory, members, *finest);
   }
+  // Not before: what memory cut short is made anew.
+  clusters_changed = integrators_changed = false;
 }
 
 bool finer(Rung a, Rung b) {

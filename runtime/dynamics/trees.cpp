@@ -146,14 +146,19 @@ void Dynamics::Core::build_trees() {
   clusters_changed = true;
   ++rules;
   std::pmr::vector<BodyIndex> component(memory);
-  for (BodyIndex body = 0; body < entry_of.size(); ++body) {
-    if (!needs_tree(body) || find(body)->tree != kNone) continue;
-    collect(body, component);
-    build_tree(component);
+  try {
+    for (BodyIndex body = 0; body < entry_of.size(); ++body) {
+      if (!needs_tree(body) || find(body)->tree != kNone) continue;
+      collect(body, component);
+      build_tree(component);
+    }
+    tree_order.clear();
+    for (std::uint32_t i = 0; i < trees.size(); ++i)
+      if (trees[i]) tree_order.push_back(i);
+  } catch (...) {
+    graph_changed = true;  // what memory cut short is made anew
+    throw;
   }
-  tree_order.clear();
-  for (std::uint32_t i = 0; i < trees.size(); ++i)
-    if (trees[i]) tree_order.push_back(i);
   // By the lowest index of a body: the same whether trees were built now or long ago.
   std::sort(tree_order.begin(), tree_order.end(),
             [this](std::uint32_t x, std::uint32_t y) { return trees[x]->first_body() < trees[y]->first_body(); });
