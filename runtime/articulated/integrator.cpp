@@ -69,6 +69,8 @@ std::unique_ptr<Method> make(System& system, Scheme scheme, const Settings& sett
     case Scheme::ImplicitEuler:
     case Scheme::ImplicitMidpoint: return make_implicit(system, scheme, settings);
     case Scheme::RungeKutta4:
+      if (settings.refine) return make_guarded(system, settings);
+      [[fallthrough]];
     case Scheme::Fehlberg4:
     case Scheme::Fehlberg5: return make_runge_kutta(system, scheme, settings);
     case Scheme::FehlbergAdaptive: return make_adaptive(system, settings);

@@ -20,6 +20,7 @@ enum class Scheme {
   FehlbergAdaptive,   // order 5, with the difference of the two as error estimate and steps to keep it small
 };
 
+/// Of the schemes with step control.
 /// How far a run of FehlbergAdaptive over some seconds may be wrong (a single step may by a thousandth of it, and not
 /// less than round-off). Positions by the kind of coordinate, velocities by kind and size.
 struct Tolerance {
@@ -36,6 +37,10 @@ struct Settings {
   /// Euler's two explicit schemes treat stiff internal forces (joint springs, dampers, motors) as linearly implicit,
   /// which keeps them stable at any stiffness. Off: the textbook's schemes.
   bool implicit_joints = false;
+  /// RungeKutta4 leaves a step to FehlbergAdaptive where its two middle stages, which stand at the same time, disagree:
+  /// where h / 3 times the difference of their accelerations (what a scheme of order 3 of the same stages would change)
+  /// is more than the tolerance of the velocity. Off: the textbook's scheme.
+  bool refine = false;
 };
 
 /// What the last step took.

@@ -28,6 +28,7 @@ class Integrator::Method {
 // KEEP IN STEP: Scheme.
 std::unique_ptr<Integrator::Method> make_runge_kutta(System& system, Scheme scheme, const Settings& settings);
 std::unique_ptr<Integrator::Method> make_adaptive(System& system, const Settings& settings);
+std::unique_ptr<Integrator::Method> make_guarded(System& system, const Settings& settings);
 std::unique_ptr<Integrator::Method> make_implicit(System& system, Scheme scheme, const Settings& settings);
 
 }  // namespace breve::articulated

@@ -1,6 +1,10 @@
 // The classic scheme and Fehlberg's pair at fixed steps.
 #include "runtime/articulated/runge_kutta.hpp"
 
+#include <cmath>
+
+#include "runtime/base/error.hpp"
+
 namespace breve::articulated {
 
 const Tableau kClassic = {4, {0, 0.5, 0.5, 1}, {{{}, {0.5}, {0, 0.5}, {0, 0, 1}}}};
@@ -63,7 +67,59 @@ class RungeKutta final : public Integrator::Method {
   Vector d_, dv_;
 };
 
+/// The classic scheme as long as it is good (Settings::refine).
+class Guarded final : public Integrator::Method {
+ public:
+  Guarded(System& system, const Settings& settings)
+      : Method(system, settings),
+        stages_(system, kClassic),
+        d_(system.velocities()),
+        dv_(system.velocities()),
+        fine_(make_adaptive(system, settings)) {}
+
+  void step(Instant& at, double h) override {
+    if (good(at, h)) {
+      stages_.sum(kClassicWeights, h, d_, dv_);
+      system_.move(at.q, d_, at.q);
+      at.v += dv_;
+      at.t += h;
+      return;
+    }
+    fine_->count = {};
+    fine_->step(at, h);
+    count.evaluations += fine_->count.evaluations;
+    count.rejected += 1 + fine_->count.rejected;
+  }
+
+ private:
+  bool good(const Instant& at, double h) {
+    try {
+      stages_.run(at.t, at.q, at.v, h,
+                  [this](double t, const Vector& q, const Vector& v, Vector& a) { evaluate(t, q, v, 0, a); });
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::Numeric) throw;
+      return false;
+    }
+    const Tolerance& allowed = settings_.tolerance;
+    const Vector &second = stages_.acceleration(1), &third = stages_.acceleration(2);
+    for (int i = 0; i < static_cast<int>(second.size()); ++i) {
+      const double unit = system_.kind(i) == Kind::Length ? allowed.velocity : allowed.angular_velocity;
+      const double differs = h / 3 * std::abs(third[i] - second[i]);
+      if (!(differs <= allowed.relative * (unit + std::abs(at.v[i])))) return false;
+    }
+    return true;
+  }
+
+  Stages stages_;
+  Vector d_, dv_;
+  std::unique_ptr<Integrator::Method> fine_;
+};
+
 }  // namespace
+
+std::unique_ptr<Integrator::Method> make_guarded(System& system, const Settings& settings) {
+  return std::make_unique<Guarded>(system, settings);
+}
 
 std::unique_ptr<Integrator::Method> make_runge_kutta(System& system, Scheme scheme, const Settings& settings) {
   if (scheme == Scheme::RungeKutta4) return std::make_unique<RungeKutta>(system, settings, kClassic, kClassicWeights);

@@ -49,6 +49,8 @@ class Stages {
     sum(weights.data(), tableau_.stages, h, d, dv);
   }
 
+  const Vector& acceleration(int stage) const { return rates_v_[static_cast<std::size_t>(stage)]; }
+
  private:
   System& system_;
   const Tableau& tableau_;

@@ -15,6 +15,7 @@ articulated::Settings settings_of(const Accuracy& accuracy) {
   articulated::Settings settings;
   settings.tolerance.relative = accuracy.tolerance;
   settings.implicit_joints = accuracy.implicit_joints;
+  settings.refine = true;  // a plain scheme must not blow up on a light chain with a heavy load
   return settings;
 }
 

@@ -160,7 +160,8 @@ class Island {
   void push_apart(double h);
   void move_by_rows(std::span<contact::Row> rows, std::span<contact::ScalarRow> scalars, double h);
   bool call(DynamicsClient& client, int pair, double moment, double left);
-  void hold_rings(double h);
+  void hold_rings(double time, double h);
+  double read_ring_errors();
   void close_rings();
   void place_links();
   static Motion chord(const Pose& from, const Pose& to, double h);

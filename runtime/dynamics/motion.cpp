@@ -127,6 +127,7 @@ void turn_by_scheme(FreeBody& body, const Accuracy& accuracy, double time, doubl
   Spin system(body);
   articulated::Settings settings;
   settings.tolerance.relative = accuracy.tolerance;
+  settings.refine = true;
   articulated::Integrator integrator(system, accuracy.scheme, settings);
   articulated::Instant at;
   at.t = time;

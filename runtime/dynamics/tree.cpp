@@ -30,7 +30,7 @@ Tree::Tree(std::pmr::memory_resource* memory, const std::vector<articulated::Lin
       rings(memory),
       anchors(memory) {
   work_q = state.q;
-  work_v = work_u = work_w = free_v = way = motor_impulse = limit_force = state.v;
+  work_v = work_u = work_w = free_v = way = kick = motor_impulse = limit_force = state.v;
   step_state = sub_state = state;
 }
 

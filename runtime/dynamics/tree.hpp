@@ -75,7 +75,7 @@ struct Tree : InMemory {
   Energy account;  // works and losses since it was made
   // An island's, kept here so that a step allocates nothing.
   articulated::State step_state, sub_state;  // as the step, the sub-step began
-  articulated::Vector free_v, way;           // v without the rows' impulses; the way they make
+  articulated::Vector free_v, way, kick;     // v without the rows' impulses; the way they make
   articulated::Vector limit_force;           // (nv) of the joints' limits in the last sub-step
   articulated::Vector motor_impulse;         // (nv) of motors, in the last smooth motion, N*s or N*m*s
   Energy step_account;                       // as the step began

@@ -75,8 +75,9 @@ Accuracy accuracy_of(Rung rung) {
       break;
     case Rung::Balanced: a.contact_step = 1.0 / 240; break;
     case Rung::Precise:
-      // With step control below that step: a light chain that carries a heavy load swings at thousands of rad/s, where
-      // the classic scheme at this step would blow up.
+      // A light chain that carries a heavy load swings at thousands of rad/s, where the classic scheme alone would blow
+      // up at this step.
+      a.scheme = Scheme::RungeKutta4;
       a.tolerance = 1e-4;
       a.implicit_spin = false;
       a.step = 1.0 / 480;
@@ -111,7 +112,9 @@ void check(const Accuracy& a) {
 std::string describe(const Accuracy& a) {
   std::string text = fmt::format("{}{}: smooth motion by {}", name_of(a.rung), a.custom ? ", with own settings" : "",
                                  word(kSchemes, a.scheme));
-  if (a.scheme == articulated::Scheme::FehlbergAdaptive) text += fmt::format(" at tolerance {}", a.tolerance);
+  if (a.scheme == articulated::Scheme::RungeKutta4) text += ", hard steps by Fehlberg with step control";
+  if (a.scheme == articulated::Scheme::FehlbergAdaptive || a.scheme == articulated::Scheme::RungeKutta4)
+    text += fmt::format(" at tolerance {}", a.tolerance);
   if (a.step > 0) text += fmt::format(", steps of at most {} s", a.step);
   if (a.implicit_joints) text += ", springs, dampers and motors of joints implicit";
   text += a.implicit_spin ? "; a free body's spin by the implicit midpoint rule" : "; a free body's spin likewise";
