@@ -208,20 +208,30 @@ void Heap::judge_suspects() {
   });
   std::int64_t work = kIteration;
   std::size_t next = 0;
-  bool any_far = false;
-  for (; next < suspects_.size() && work > 0; ++next) {
-    fetch_suspects(suspects_, next);
-    Container& suspect = *suspects_[next];
-    if (suspect.mark != 0) continue;
-    work -= kSuspect;
-    suspect.mark = kJudged;
-    if (suspect.count == 1 || !can_be_garbage(&suspect)) continue;
-    if (region->gather(suspect, kRegion, work, kFar))
-      judge_region(*region);
-    else
-      any_far = true;
+  int far = 0;
+  const auto judge_near = [&](int most_far) {
+    const std::uint8_t otherwise = most_far > 0 ? kFar : kJudged;
+    for (far = 0; next < suspects_.size() && work > 0 && far <= most_far; ++next) {
+      fetch_suspects(suspects_, next);
+      Container& suspect = *suspects_[next];
+      if (suspect.mark != 0) continue;
+      work -= kSuspect;
+      suspect.mark = kJudged;
+      if (suspect.count == 1 || !can_be_garbage(&suspect)) continue;
+      if (region->gather(suspect, kRegion, work, otherwise))
+        judge_region(*region);
+      else if (most_far > 0)
+        ++far;
+      else
+        suspicion_ = true;
+    }
+  };
+  // One large structure has many suspects in it: it is judged when two have failed, and then the others are.
+  judge_near(1);
+  if (far > 0) {
+    judge_far_suspects(*region);
+    judge_near(0);
   }
-  if (any_far) judge_far_suspects(*region);
   roots_.visit_frames([](Cell* cell) {
     if (cell != nullptr && !cell->immortal) cell->mark = 0;
   });
