@@ -161,5 +161,44 @@ TEST(CollectorsPromise, AnObjectThatCanReferToNothingGoesWithTheRingThatHeldItAn
   EXPECT_EQ(w.heap.live_cells(), 2u);
 }
 
+// Cells that wait to be scanned change their places in the table when others die.
+TEST(Collector, ListsThatMoveInTheTableWhileTheyWaitAreScanned) {
+  constexpr int kLists = 80'000;
+  World w;
+  const ClassInfo cls = reference_class(3);
+  Instance* owner = w.object(cls);
+  ListCell* big = w.heap.list();
+  ListCell* short_lived = w.heap.list();
+  w.heap.store(owner->slots[0], big);
+  w.heap.store(owner->slots[1], short_lived);
+  const Value ring = w.list();
+  for (int i = 0; i < 30'000; ++i) {
+    const Value link = w.list();
+    w.heap.push(*link.list(), ring);
+    w.heap.push(*ring.list(), link);
+  }
+  w.heap.store(owner->slots[2], ring.ref);
+  for (int i = 0; i < kLists; ++i) {
+    if (i % 10 == 0) w.heap.push(*short_lived, w.list());
+    const Value element = w.list(), inner = w.list();
+    w.heap.push(*inner.list(), number(i));
+    w.heap.push(*element.list(), inner);
+    w.heap.prepend(*big, element);  // so that the last in the table wait longest
+  }
+  for (int i = 0; i < 30; ++i) w.heap.end_of_iteration();
+  const std::uint64_t live = w.heap.live_cells();
+  w.heap.store(owner->slots[2], nullptr);  // and a collection begins
+  for (std::uint64_t i = 0; i < bound(live); ++i) {
+    w.heap.end_of_iteration();
+    for (int k = 0; k < 2000 && short_lived->size > 0; ++k) w.heap.pop(*short_lived);
+    w.heap.reclaim();
+  }
+  for (int i = 0; i < kLists; ++i) {
+    const Value element = (*big)[static_cast<std::uint32_t>(i)];
+    ASSERT_EQ(element.list()->size, 1u) << i;
+    ASSERT_EQ((*element.list())[0].list()->size, 1u) << i;
+  }
+}
+
 }  // namespace
 }  // namespace breve::steve::testing
