@@ -48,8 +48,8 @@ class Island {
 
  private:
   // Parts of the smaller body's radius: within the first, bodies that are slow rest on one another; within the second,
-  // they touch.
-  static constexpr double kSkin = 1e-3, kTouchSkin = 1e-4;
+  // they touch, and within the third they have met: what approaches collides there, not before.
+  static constexpr double kSkin = 1e-3, kTouchSkin = 1e-4, kMetSkin = 1e-9;
   static constexpr double kTurnRoom = 0.02;   // of the radius, which turning may bring nearer in a sub-step
   static constexpr double kTiny = 1e-9;       // of stored energy: round-off of sums
   static constexpr double kLimitSkin = 1e-6;  // rad or m

@@ -62,7 +62,7 @@ double Island::size_of_pair(const NearPair& pair) const {
 Island::Speeds Island::speeds_of(const contact::Law& law, double size, double h) const {
   const double fall = core_.settings.gravity.norm() * h;
   if (law.restitution > 0) {
-    const double slow = std::max({law.restitution_threshold, fall, quiet_});
+    const double slow = std::max(law.restitution_threshold, quiet_);
     return {slow, slow};
   }
   // Nothing rebounds: a row stops it as well, but for the depth that it would reach until then.
@@ -73,7 +73,7 @@ bool Island::strikes(double h) const {
   for (const Touch& touch : touches_) {
     const NearPair& pair = *pairs_[touch.pair];
     const double size = size_of_pair(pair);
-    if (touch.gap <= kTouchSkin * size && touch.approach < -speeds_of(pair.law, size, h).strike) return true;
+    if (touch.gap <= kMetSkin * size && touch.approach < -speeds_of(pair.law, size, h).strike) return true;
   }
   for (const Bound& bound : bounds_)
     if (bound.gap <= 0 && bound.rate < -quiet_) return true;
@@ -93,7 +93,7 @@ void Island::find_roles(double h, bool struck) {
     depths_[touch.pair] = std::max(depths_[touch.pair], -touch.gap);
     if (std::abs(touch.approach) <= speeds.slow || (struck && touching && touch.approach < 0))
       role = Role::Rests;
-    else if (touching && role == Role::Far)
+    else if (touching && touch.approach > 0 && role == Role::Far)
       role = Role::Leaves;
   }
   std::erase_if(touches_, [this](const Touch& touch) { return roles_[touch.pair] != Role::Rests; });
