@@ -12,7 +12,6 @@ Island::Island(Dynamics::Core& core, std::pmr::memory_resource* memory)
     : result(memory),
       core_(core),
       memory_(memory),
-      at_start_(memory),
       free_start_(memory),
       pair_start_(memory),
       roles_(memory),

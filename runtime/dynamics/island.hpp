@@ -183,7 +183,12 @@ class Island {
   Accuracy accuracy_;
   bool accuracy_set_ = false;
   double unfinished_ = 0;
-  IslandResult at_start_;  // of the result, for a step that is tried again
+  struct ResultStart {  // what the result was when the step began, for one that is tried again
+    DynamicsCounters counters;
+    Energy account;
+    std::size_t impacts = 0;
+  };
+  ResultStart at_start_;
   std::pmr::vector<FreeBody> free_start_;
   std::pmr::vector<NearPair> pair_start_;
   double quiet_ = 0;              // m/s: slower than this is at rest, in a sub-step of this one

@@ -120,8 +120,7 @@ void Island::balance(double before, double& residual, double& turnover) {
 }
 
 void Island::keep_start() {
-  at_start_.counters = result.counters;
-  at_start_.account = result.account;
+  at_start_ = {result.counters, result.account, result.impacts.size()};
   free_start_.clear();
   pair_start_.clear();
   for (const Free& one : free_) free_start_.push_back(one.now);
@@ -137,6 +136,7 @@ void Island::back_to_start() {
   result.counters = at_start_.counters;
   result.counters.evaluations = evaluations;
   result.account = at_start_.account;
+  result.impacts.erase(result.impacts.begin() + static_cast<std::ptrdiff_t>(at_start_.impacts), result.impacts.end());
   for (std::size_t i = 0; i < free_.size(); ++i) free_[i].now = free_start_[i];
   for (Tree* tree : trees_) {
     tree->state = tree->step_state;
