@@ -123,7 +123,7 @@ class Island {
   void find_touches(double h, bool speculative);
   void find_roles(double h, bool struck);
   void find_touches_now();
-  void find_bounds(double h);
+  void find_bounds();
   void make_rows(double h, bool restitution);
   void set_biases(double h);
   void add_touch_row(const Touch& touch);
@@ -133,7 +133,7 @@ class Island {
   void fill(Tree& tree, int link, const Vector3& point, const Vector3& axis, bool angular, double sign,
             double* j) const;
   void respond(Tree& tree, const double* j, double* r) const;
-  void solve(double h);
+  void solve();
   void load_velocities();                 // movers' v from the state
   void store_velocities(double moved_h);  // back, and positions by what impulses changed times moved_h
   void correct_works(double h);

@@ -130,7 +130,7 @@ void Island::collide(double time) {
   place();
   // Everything that touches now, whatever its speed.
   find_touches_now();
-  find_bounds(0);
+  find_bounds();
   for (Bound& bound : bounds_) {
     bound.rests = bound.gap <= 0 && bound.rate <= 0;
     if (bound.rests && bound.rate < -quiet_) rebound_later_.push_back(bound);
@@ -139,7 +139,7 @@ void Island::collide(double time) {
   if (!rebound_later_.empty()) {
     rebound_later_.clear();
     find_touches_now();
-    find_bounds(0);
+    find_bounds();
     for (Bound& bound : bounds_) bound.rests = bound.gap <= 0 && bound.rate <= quiet_;
   }
   make_rows(1, false);

@@ -117,7 +117,7 @@ void Island::find_touches_now() {
   }
 }
 
-void Island::find_bounds(double) {
+void Island::find_bounds() {
   bounds_.clear();
   for (Tree* tree : trees_) {
     for (const TreeLink& link : tree->links) {
@@ -379,9 +379,8 @@ void Island::correct_works(double h) {
     }
 }
 
-void Island::solve(double h) {
+void Island::solve() {
   if (rows_.empty() && scalars_.empty()) return;
-  static_cast<void>(h);
   contact::SolveSettings settings;
   const int fast = core_.settings.fast_contacts;
   settings.iterations = fast > 0 ? fast : accuracy_.iterations;

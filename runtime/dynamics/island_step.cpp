@@ -36,7 +36,7 @@ void Island::step_fast(double start, double h) {
   for (int i = 0; i < parts; ++i) {
     place();
     find_touches(part, true);
-    find_bounds(part);
+    find_bounds();
     for (Bound& bound : bounds_) bound.rests = bound.gap + part * std::min(0.0, 2 * bound.rate) <= kLimitSkin;
     make_rows(part, true);
     for (std::size_t k = 0, s = 0; k < bounds_.size(); ++k) {
@@ -48,7 +48,7 @@ void Island::step_fast(double start, double h) {
     smooth(start + i * part, part);
     commit();
     load_velocities();
-    solve(part);
+    solve();
     account_rows();
     note_forces(part);
     store_velocities(part);
@@ -69,7 +69,7 @@ void Island::advance_once(double time, double h) {
   set_biases(h);
   for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i].impulse = warm_[i];
   for (contact::ScalarRow& row : scalars_) row.impulse = 0;
-  solve(h);
+  solve();
   // A force that is constant over the step moves by half of what its change of velocity would.
   correct_works(h);
   store_velocities(0.5 * h);
@@ -104,7 +104,7 @@ double Island::contact_part(double left) const {
 void Island::look(double h, bool spent) {
   place();
   find_touches(h, spent);
-  find_bounds(h);
+  find_bounds();
 }
 
 void Island::step_located(DynamicsClient* client, double start, double h) {

@@ -123,8 +123,8 @@ std::string describe(const Accuracy& a) {
   text += a.direct ? "; small islands of contacts solved directly, large ones" : "; contacts solved";
   text += fmt::format(" iteratively with at most {} iterations", a.iterations);
   if (a.contact_springs)
-    text += fmt::format("; slow contacts are springs of {} N/m with damping ratio {}", a.contact_stiffness,
-                        a.contact_damping);
+    text += fmt::format("; springs of {} N/m with damping ratio {} are wanted for slow contacts, which are still rigid",
+                        a.contact_stiffness, a.contact_damping);
   return text + ".";
 }
 

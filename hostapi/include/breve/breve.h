@@ -774,7 +774,7 @@ typedef struct breve_accuracy {
   bool implicit_spin;          /* a free body's spin by the implicit midpoint rule */
   bool direct;                 /* small islands of contacts are solved directly */
   bool locate_impacts;         /* impacts at their time of impact; else at the end of the sub-step */
-  bool contact_springs;        /* contacts at low speed are springs inside the integrator's stages */
+  bool contact_springs;        /* wanted: contacts at low speed as springs. Kept, without effect yet */
   bool reserved[3];            /* must be false */
   double step;                 /* s, the longest sub-step; 0: the integration step */
   double contact_step;         /* s, the longest sub-step of bodies in contact; 0: `step` */
@@ -814,8 +814,8 @@ BREVE_API breve_status breve_world_set_gravity(breve_world* world, const double 
 /* Let bodies that rest sleep. Off at first. */
 BREVE_API breve_status breve_world_set_sleeping(breve_world* world, bool on);
 
-/* Threads that compute the physics of a world, the caller's among them, 1 to 256; 1 at first. What comes out does not
-   depend on it. BREVE_OK; BREVE_ERROR_ARGUMENT: out of this range. */
+/* Threads that may compute the physics of a world, the caller's among them, 1 to 256; 1 at first. What comes out does
+   not depend on it. The number is kept; the caller's thread does all of the work yet. BREVE_OK; BREVE_ERROR_ARGUMENT: out of this range. */
 BREVE_API breve_status breve_world_set_workers(breve_world* world, uint32_t workers);
 
 /* What happens where physics goes wrong. */
