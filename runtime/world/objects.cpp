@@ -3,17 +3,13 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "runtime/base/error.hpp"
 
 namespace breve {
 
 namespace {
-
-void save_ids(ByteWriter& out, const std::pmr::vector<ObjectId>& ids) {
-  out.put(static_cast<std::uint64_t>(ids.size()));
-  for (const ObjectId id : ids) out.put(id);
-}
 
 void load_ids(ByteReader& in, std::pmr::vector<ObjectId>& ids) {
   ids.resize(in.get_count(2 * sizeof(std::uint32_t)));
@@ -23,11 +19,16 @@ void load_ids(ByteReader& in, std::pmr::vector<ObjectId>& ids) {
 }  // namespace
 
 ObjectTable::ObjectTable(std::pmr::memory_resource* memory)
-    : slots_(memory), free_(memory), order_(memory), iterating_(memory), post_iterating_(memory), joining_(memory) {}
+    : slots_(memory),
+      free_(memory),
+      order_{std::pmr::vector<ObjectId>(memory)},
+      iterating_{std::pmr::vector<ObjectId>(memory)},
+      post_iterating_{std::pmr::vector<ObjectId>(memory)},
+      joining_(memory) {}
 
 ObjectId ObjectTable::create(ClassId cls, std::uint64_t user, bool iterates, bool post_iterates) {
   // Everything that can run out of memory comes first: a failed creation leaves no trace.
-  order_.push_back({});
+  order_.ids.push_back({});
   try {
     joining_.push_back({});
     if (free_.empty()) {
@@ -37,7 +38,7 @@ ObjectId ObjectTable::create(ClassId cls, std::uint64_t user, bool iterates, boo
       free_.push_back(static_cast<std::uint32_t>(slots_.size() - 1));
     }
   } catch (...) {
-    order_.pop_back();
+    order_.ids.pop_back();
     if (joining_.size() > 0 && !joining_.back()) joining_.pop_back();
     throw;
   }
@@ -55,7 +56,7 @@ ObjectId ObjectTable::create(ClassId cls, std::uint64_t user, bool iterates, boo
   slot.post_iterates = post_iterates;
   ++live_;
   const ObjectId id{index, generation};
-  order_.back() = id;
+  order_.ids.back() = id;
   joining_.back() = id;
   return id;
 }
@@ -67,7 +68,7 @@ void ObjectTable::release(ObjectId id) {
   // A slot whose generations are used up is never reused: a stale id must not come alive again.
   if (slot.generation != std::numeric_limits<std::uint32_t>::max()) free_.push_back(id.index);
   --live_;
-  ++released_since_join_;
+  ++released_;
 }
 
 ObjectTable::Slot& ObjectTable::at(ObjectId id) {
@@ -79,18 +80,12 @@ const ObjectTable::Slot& ObjectTable::at(ObjectId id) const { return const_cast<
 
 std::size_t ObjectTable::bytes() const {
   return slots_.capacity() * sizeof(Slot) +
-         (order_.capacity() + iterating_.capacity() + post_iterating_.capacity() + joining_.capacity()) *
+         (order_.ids.capacity() + iterating_.ids.capacity() + post_iterating_.ids.capacity() + joining_.capacity()) *
              sizeof(ObjectId);
 }
 
 void ObjectTable::join() {
-  // Not for each that goes: a pass over all objects is paid for by an eighth of them.
-  if (released_since_join_ * 8 > order_.size()) {
-    drop_dead(order_);
-    drop_dead(iterating_);
-    drop_dead(post_iterating_);
-    released_since_join_ = 0;
-  }
+  tidy();
   // Room first: nothing may fail half-way.
   const auto make_room = [this](std::pmr::vector<ObjectId>& list, bool Slot::*joins) {
     const auto more = std::count_if(joining_.begin(), joining_.end(),
@@ -98,18 +93,48 @@ void ObjectTable::join() {
     const std::size_t needed = list.size() + static_cast<std::size_t>(more);
     if (needed > list.capacity()) list.reserve(std::max(needed, 2 * list.capacity()));
   };
-  make_room(iterating_, &Slot::iterates);
-  make_room(post_iterating_, &Slot::post_iterates);
+  make_room(iterating_.ids, &Slot::iterates);
+  make_room(post_iterating_.ids, &Slot::post_iterates);
   for (const ObjectId id : joining_) {
     if (!alive(id)) continue;
-    if (slots_[id.index].iterates) iterating_.push_back(id);
-    if (slots_[id.index].post_iterates) post_iterating_.push_back(id);
+    if (slots_[id.index].iterates) iterating_.ids.push_back(id);
+    if (slots_[id.index].post_iterates) post_iterating_.ids.push_back(id);
   }
   joining_.clear();
+  joined_ = serials_;
 }
 
-void ObjectTable::drop_dead(std::pmr::vector<ObjectId>& list) const {
-  std::erase_if(list, [this](ObjectId id) { return !alive(id); });
+// A pass over all ids is paid for by an eighth of them, and cut into slices: with a million objects it takes 10 ms.
+void ObjectTable::tidy() {
+  constexpr std::size_t kShare = 8, kSlice = 16'384;
+  gaps_ += released_;
+  if (tidied_ == kLists && gaps_ * kShare > order_.ids.size()) tidied_ = gaps_ = 0;
+  std::size_t most = kSlice + kShare * (released_ + joining_.size());
+  released_ = 0;
+  for (SparseIds* const lists[kLists] = {&order_, &iterating_, &post_iterating_}; tidied_ < kLists; ++tidied_)
+    if (!close_gaps(*lists[tidied_], most)) return;
+}
+
+// True if the pass has reached the end of the list.
+bool ObjectTable::close_gaps(SparseIds& list, std::size_t& most) const {
+  const std::size_t end = std::min(list.ids.size(), list.next + most);
+  most -= end - list.next;
+  for (; list.next < end; ++list.next) {
+    const ObjectId id = std::exchange(list.ids[list.next], ObjectId{});
+    if (alive(id)) list.ids[list.kept++] = id;
+  }
+  if (list.next < list.ids.size()) return false;
+  list.ids.resize(list.kept);
+  list.kept = list.next = 0;
+  return true;
+}
+
+// Without the gaps, so that an image does not tell how far a pass has come.
+void ObjectTable::save_ids(ByteWriter& out, const std::pmr::vector<ObjectId>& ids) const {
+  const auto lives = [this](ObjectId id) { return alive(id); };
+  out.put(static_cast<std::uint64_t>(std::count_if(ids.begin(), ids.end(), lives)));
+  for (const ObjectId id : ids)
+    if (lives(id)) out.put(id);
 }
 
 void ObjectTable::save(ByteWriter& out) const {
@@ -129,12 +154,12 @@ void ObjectTable::save(ByteWriter& out) const {
   }
   out.put(static_cast<std::uint64_t>(free_.size()));
   for (const auto index : free_) out.put(index);
-  save_ids(out, order_);
-  save_ids(out, iterating_);
-  save_ids(out, post_iterating_);
+  save_ids(out, order_.ids);
+  save_ids(out, iterating_.ids);
+  save_ids(out, post_iterating_.ids);
   save_ids(out, joining_);
   out.put(serials_);
-  out.put(static_cast<std::uint64_t>(released_since_join_));
+  out.put(joined_);
 }
 
 void ObjectTable::load_slot(ByteReader& in, Slot& slot, FindLoader find_loader, const void* context) {
@@ -164,18 +189,18 @@ void ObjectTable::load(ByteReader& in, FindLoader find_loader, const void* conte
     index = in.get<std::uint32_t>();
     if (index >= slots_.size() || slots_[index].live) ByteReader::fail();
   }
-  load_ids(in, order_);
-  load_ids(in, iterating_);
-  load_ids(in, post_iterating_);
+  load_ids(in, order_.ids);
+  load_ids(in, iterating_.ids);
+  load_ids(in, post_iterating_.ids);
   load_ids(in, joining_);
   serials_ = in.get<std::uint64_t>();
-  released_since_join_ = static_cast<std::size_t>(in.get<std::uint64_t>());
+  joined_ = in.get<std::uint64_t>();
 }
 
 void ObjectTable::hash(Hasher& hasher) const {
   hasher.add(static_cast<std::uint64_t>(live_));
   hasher.add(serials_);
-  for (const ObjectId id : order_) {
+  for (const ObjectId id : order_.ids) {
     if (!alive(id)) continue;
     const Slot& slot = slots_[id.index];
     hasher.add(std::uint64_t{id.index} << 32 | id.generation);
@@ -186,7 +211,8 @@ void ObjectTable::hash(Hasher& hasher) const {
       slot.resource->hash(hasher);
     }
   }
-  for (const ObjectId id : joining_) hasher.add(alive(id) ? std::uint64_t{id.index} : 0);
+  for (const ObjectId id : joining_)
+    if (alive(id)) hasher.add(std::uint64_t{id.index});
 }
 
 }  // namespace breve

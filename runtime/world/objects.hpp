@@ -44,12 +44,12 @@ class ObjectTable {
   std::size_t slot_count() const { return slots_.size(); }
   std::size_t bytes() const;
 
-  /// What was created since the last call joins the lists; what was released leaves them sooner or later.
+  /// What was created since the last call joins the lists; what was released leaves them a slice at a time.
   void join();
   // In order of creation; may name what was released meanwhile. Iterating lists change in join() only.
-  const std::pmr::vector<ObjectId>& order() const { return order_; }
-  const std::pmr::vector<ObjectId>& iterating() const { return iterating_; }
-  const std::pmr::vector<ObjectId>& post_iterating() const { return post_iterating_; }
+  const std::pmr::vector<ObjectId>& order() const { return order_.ids; }
+  const std::pmr::vector<ObjectId>& iterating() const { return iterating_.ids; }
+  const std::pmr::vector<ObjectId>& post_iterating() const { return post_iterating_.ids; }
 
   /// The lists that follow from new classes (reclass.cpp). Error{Argument} if a live object's class is gone.
   struct Reclassed {
@@ -64,15 +64,27 @@ class ObjectTable {
   void hash(Hasher& hasher) const;
 
  private:
-  void drop_dead(std::pmr::vector<ObjectId>& list) const;
+  static constexpr std::size_t kLists = 3;
+
+  /// A list of ids in which a pass closes the gaps: before `kept` it has been, from there to `next` is nobody.
+  struct SparseIds {
+    std::pmr::vector<ObjectId> ids;
+    std::size_t kept = 0, next = 0;
+  };
+  void tidy();
+  bool close_gaps(SparseIds& list, std::size_t& most) const;
+  bool joined(const Slot& slot) const { return slot.serial <= joined_; }
+  void save_ids(ByteWriter& out, const std::pmr::vector<ObjectId>& ids) const;
   void load_slot(ByteReader& in, Slot& slot, FindLoader find_loader, const void* context);
 
   std::pmr::vector<Slot> slots_;
   std::pmr::vector<std::uint32_t> free_;  // last freed, first reused
-  std::pmr::vector<ObjectId> order_, iterating_, post_iterating_, joining_;
-  std::uint64_t serials_ = 0;
+  SparseIds order_, iterating_, post_iterating_;
+  std::pmr::vector<ObjectId> joining_;
+  std::uint64_t serials_ = 0, joined_ = 0;  // of the last created, of the last that has joined the lists
   std::size_t live_ = 0;
-  std::size_t released_since_join_ = 0;
+  std::size_t gaps_ = 0, released_ = 0;  // released since the last pass began, since the last join
+  std::size_t tidied_ = kLists;          // lists that the pass is done with
 };
 
 }  // namespace breve

@@ -18,19 +18,16 @@ bool keeps_numbers(std::span<const ClassChange> classes) {
 }  // namespace
 
 ObjectTable::Reclassed ObjectTable::prepare_reclass(std::span<const ClassChange> classes) const {
-  Reclassed lists{std::pmr::vector<ObjectId>(iterating_.get_allocator()),
-                  std::pmr::vector<ObjectId>(iterating_.get_allocator()), false};
-  // Those that wait to join stand at the end of the order of creation.
-  const std::size_t joined = order_.size() - joining_.size();
-  for (std::size_t i = 0; i < order_.size(); ++i) {
-    const ObjectId id = order_[i];
+  Reclassed lists{std::pmr::vector<ObjectId>(joining_.get_allocator()),
+                  std::pmr::vector<ObjectId>(joining_.get_allocator()), false};
+  for (const ObjectId id : order_.ids) {
     if (!alive(id)) continue;
     const Slot& slot = slots_[id.index];
     if (slot.cls >= classes.size() || classes[slot.cls].to == kNoClass)
       throw Error(ErrorCode::Argument, "a live object's class is gone");
     const ClassChange& change = classes[slot.cls];
     lists.changed = lists.changed || change.iterates != slot.iterates || change.post_iterates != slot.post_iterates;
-    if (i >= joined) continue;
+    if (!joined(slot)) continue;
     if (change.iterates) lists.iterating.push_back(id);
     if (change.post_iterates) lists.post_iterating.push_back(id);
   }
@@ -46,8 +43,8 @@ void ObjectTable::reclass(std::span<const ClassChange> classes, Reclassed& lists
     slot.post_iterates = change.post_iterates;
   }
   if (!lists.changed) return;
-  iterating_.swap(lists.iterating);
-  post_iterating_.swap(lists.post_iterating);
+  iterating_ = {std::move(lists.iterating)};
+  post_iterating_ = {std::move(lists.post_iterating)};
 }
 
 CollisionHandlers CollisionHandlers::reclassed(std::span<const ClassChange> classes) const {

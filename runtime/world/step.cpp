@@ -79,15 +79,14 @@ void World::step() {
     if (any) parts.effects.turn_on(EffectId::Script, clock_.iteration, first.empty() ? second[0] : first[0]);
     for (const ObjectId id : first) {
       if (!alive(id)) continue;
-      ++script.calls;
+      ++script.calls, ++script.items;
       behaviour_->iterate(id);
     }
     for (const ObjectId id : second) {
       if (!alive(id)) continue;
-      ++script.calls;
+      ++script.calls, ++script.items;
       behaviour_->post_iterate(id);
     }
-    script.items = first.size() + second.size();
   }
   run_scheduled();
   if (behaviour_) behaviour_->end_of_iteration();

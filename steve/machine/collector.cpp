@@ -146,7 +146,7 @@ void Heap::begin_collection() {
     if (can_close_cycle(cell) && cell->count > 0) held_by_frames_ = true;
   });
   for (Instance* doomed : doomed_) shade(doomed);
-  for (Instance* dying : dying_) shade(dying);
+  for (const Dying& dying : dying_) shade(dying.instance);
 }
 
 // Garbage is known. Auto-free instances in it must run destroy, which may bring anything of it back to life: whatever
@@ -175,16 +175,15 @@ void Heap::examine(std::int64_t& work) {
 // In order of creation, together with what is left of earlier ones. They go in so many iterations as leave the promise.
 void Heap::doom_condemned() {
   constexpr std::uint64_t kCells = 60'000;  // of the heap, for each iteration that may pass until all are destroyed
-  if (dying_.empty()) dying_.swap(condemned_);
   try {
-    dying_.insert(dying_.end(), condemned_.begin(), condemned_.end());
-    condemned_.clear();
+    dying_.reserve(dying_.size() + condemned_.size());
+    for (Instance* instance : condemned_) dying_.push_back({instance->serial, instance});
   } catch (const std::bad_alloc&) {  // they are found again by the collection that follows
     short_of_memory_ = true;
     for (Instance* instance : condemned_) release(instance);
-    condemned_.clear();
   }
-  std::sort(dying_.begin(), dying_.end(), [](const Instance* a, const Instance* b) { return a->serial > b->serial; });
+  condemned_.clear();
+  std::sort(dying_.begin(), dying_.end(), [](const Dying& a, const Dying& b) { return a.serial > b.serial; });
   const std::uint64_t iterations = cells_ / kCells + 1;
   share_ = (dying_.size() + iterations - 1) / iterations;
 }
@@ -192,7 +191,7 @@ void Heap::doom_condemned() {
 // Of what dies in cycles a share in each iteration, so that a collection that ends does not end in a long pause.
 void Heap::free_dying() {
   for (std::uint64_t left = share_; left > 0 && !dying_.empty(); --left) {
-    Instance* dying = dying_.back();
+    Instance* dying = dying_.back().instance;
     dying_.pop_back();
     const auto unpin = [this](Instance* instance) { release(instance); };
     const std::unique_ptr<Instance, decltype(unpin)> held(dying, unpin);

@@ -338,7 +338,12 @@ class Heap : public InMemory {
   Container* partial_ = nullptr;  // the list or hash whose scan, or taking apart, was cut by the end of a slice
   std::uint32_t position_ = 0;    // where: index into its store or entries
 
-  std::pmr::vector<Instance*> dying_;  // in cycles, to be destroyed, the last one first: a share in each iteration
+  /// An instance in a cycle, to be destroyed. Its serial number stands beside it: to sort must not wait for memory.
+  struct Dying {
+    std::uint64_t serial;
+    Instance* instance;
+  };
+  std::pmr::vector<Dying> dying_;  // the last one goes first: a share in each iteration
   std::uint64_t share_ = 0;
   std::uint64_t slices_left_ = 0;  // for the running collection, this one included
   std::uint64_t white_left_ = 0;   // cells that are white yet, or a few more

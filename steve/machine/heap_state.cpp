@@ -27,10 +27,12 @@ void Heap::save_state(ByteWriter& out, const std::function<std::uint64_t(const C
   out.put(position);
   out.put(static_cast<std::uint64_t>(zero_.size()));
   for (const Cell* cell : zero_) out.put(number(cell));
-  for (const auto* list : {&doomed_, &condemned_, &dying_}) {
+  for (const auto* list : {&doomed_, &condemned_}) {
     out.put(static_cast<std::uint64_t>(list->size()));
     for (const Instance* instance : *list) out.put(number(instance));
   }
+  out.put(static_cast<std::uint64_t>(dying_.size()));
+  for (const Dying& dying : dying_) out.put(number(dying.instance));
   out.put(share_);
   out.put(slices_left_);
   out.put(far_rest_);
@@ -100,14 +102,17 @@ void Heap::load_state(ByteReader& in, const std::function<Cell*(std::uint64_t)>&
     if (waiting->listed) ByteReader::fail();
     enlist(waiting);
   }
-  for (auto* list : {&doomed_, &condemned_, &dying_}) {
+  const auto load_instances = [&](auto add) {
     for (std::size_t n = in.get_count(sizeof(std::uint64_t)); n > 0; --n) {
       Cell* instance = cell(in.get<std::uint64_t>());
       if (instance->tag != Tag::Object) ByteReader::fail();
-      list->push_back(static_cast<Instance*>(instance));
+      add(static_cast<Instance*>(instance));
       retain(instance);
     }
-  }
+  };
+  load_instances([this](Instance* instance) { doomed_.push_back(instance); });
+  load_instances([this](Instance* instance) { condemned_.push_back(instance); });
+  load_instances([this](Instance* instance) { dying_.push_back({instance->serial, instance}); });
   share_ = in.get<std::uint64_t>();
   slices_left_ = in.get<std::uint64_t>();
   far_rest_ = in.get<std::uint8_t>();
