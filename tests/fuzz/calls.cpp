@@ -95,11 +95,12 @@ std::string Writer::mobile_call(const std::string& receiver) {
     case 0:
     case 1:
     case 2:
-    case 3: return receiver + " " + choose_.one_of(kVectors) + leaf({Type::Vector});
-    case 4: return receiver + " " + choose_.one_of(kVectors) + expression({Type::Vector});
-    case 5: return receiver + " rotate around-axis " + leaf({Type::Vector}) + " by " + leaf({Type::Double});
+    case 3: return joined({receiver, " ", choose_.one_of(kVectors), leaf({Type::Vector})});
+    case 4: return joined({receiver, " ", choose_.one_of(kVectors), expression({Type::Vector})});
+    case 5: return joined({receiver, " rotate around-axis ", leaf({Type::Vector}), " by ", leaf({Type::Double})});
     case 6:
-      return receiver + " relative-rotate around-axis " + expression({Type::Vector}) + " by " + leaf({Type::Double});
+      return joined(
+          {receiver, " relative-rotate around-axis ", expression({Type::Vector}), " by ", leaf({Type::Double})});
     case 7: return receiver + " set-neighborhood-size to " + leaf({Type::Double});
     case 8: return receiver + " set-rotation to " + expression({Type::Matrix});
     case 9: {
@@ -107,12 +108,13 @@ std::string Writer::mobile_call(const std::string& receiver) {
           "((new Sphere) init-with radius 1.5)", "((new Cube) init-with size (1, 2, 3))",
           "((new Sphere) init-with radius .25)", "((new PolygonDisk) init-with sides 5 height 1 radius 2)",
           "((new PolygonCone) init-with sides 4 height 2 radius 1)"};
-      return receiver + (choose_.chance(50) ? " set-shape to " : " register with-shape ") + choose_.one_of(kShapes);
+      return joined(
+          {receiver, choose_.chance(50) ? " set-shape to " : " register with-shape ", choose_.one_of(kShapes)});
     }
-    case 10: return receiver + " point vertex " + leaf({Type::Vector}) + " at " + leaf({Type::Vector});
+    case 10: return joined({receiver, " point vertex ", leaf({Type::Vector}), " at ", leaf({Type::Vector})});
     case 11: return receiver + " set-label to " + leaf({Type::String});
     case 12:
-      return receiver + " set-restitution normal " + leaf({Type::Double}) + " tangential " + leaf({Type::Double});
+      return joined({receiver, " set-restitution normal ", leaf({Type::Double}), " tangential ", leaf({Type::Double})});
     default: return receiver + " " + choose_.one_of(kPlain);
   }
 }
@@ -136,7 +138,8 @@ std::string Writer::control_call(const std::string& receiver) {
       "set-accuracy to \"fast\"",
       "add-menu-separator",
   };
-  if (choose_.chance(20)) return receiver + " add-menu named " + leaf({Type::String}) + " for-method " + method_name(0);
+  if (choose_.chance(20))
+    return joined({receiver, " add-menu named ", leaf({Type::String}), " for-method ", method_name(0)});
   if (choose_.chance(10)) return receiver + " watch item " + leaf({Type::Object});
   return receiver + " " + choose_.one_of(kCalls);
 }
@@ -157,7 +160,7 @@ std::string Writer::native_value(const Kind& kind) {
       if (base == Base::Mobile && choose_.chance(50)) return "(self get-distance from " + leaf({Type::Object}) + ")";
       return base == Base::Control ? "(self get-time)" : "(self get-age)";
     case Type::Int:
-      if (choose_.chance(50)) return "(self can-respond to " + method_name(choose_.below(3)) + ")";
+      if (choose_.chance(50)) return joined({"(self can-respond to ", method_name(choose_.below(3)), ")"});
       return "(self is a " + leaf({Type::String}) + ")";
     case Type::List:
       if (kind.element != Type::Object || kind.element_cls >= 0) return "";

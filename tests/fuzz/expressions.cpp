@@ -79,9 +79,10 @@ std::string Writer::int_expression() {
   switch (choose_.below(15)) {
     case 0:
     case 1:
-    case 2: return "(" + sub() + choose_.one_of(kArithmetic) + sub() + ")";
-    case 3: return "(" + expression({Type::Double}) + choose_.one_of(kComparisons) + expression({Type::Double}) + ")";
-    case 4: return "(" + sub() + choose_.one_of(kComparisons) + sub() + ")";
+    case 2: return joined({"(", sub(), choose_.one_of(kArithmetic), sub(), ")"});
+    case 3:
+      return joined({"(", expression({Type::Double}), choose_.one_of(kComparisons), expression({Type::Double}), ")"});
+    case 4: return joined({"(", sub(), choose_.one_of(kComparisons), sub(), ")"});
     case 5: return condition();
     case 6: return "(- " + sub() + ")";
     case 7: return "(!" + sub() + ")";
@@ -93,12 +94,13 @@ std::string Writer::int_expression() {
       return list.empty() ? "(| " + expression({Type::String}) + " |)" : "(| " + list + " |)";
     }
     case 11:
-      return "(" + expression({Type::String}) + (choose_.chance(50) ? " == " : " != ") + expression({Type::String}) +
-             ")";
+      return joined(
+          {"(", expression({Type::String}), choose_.chance(50) ? " == " : " != ", expression({Type::String}), ")"});
     case 12:
-      return "(" + expression({Type::Vector}) + (choose_.chance(50) ? " == " : " != ") + expression({Type::Vector}) +
-             ")";
-    case 13: return "(" + object_expression(-1) + (choose_.chance(50) ? " == " : " != ") + object_expression(-1) + ")";
+      return joined(
+          {"(", expression({Type::Vector}), choose_.chance(50) ? " == " : " != ", expression({Type::Vector}), ")"});
+    case 13:
+      return joined({"(", object_expression(-1), choose_.chance(50) ? " == " : " != ", object_expression(-1), ")"});
     default:
       return choose_.chance(50) ? "isa(" + expression({Type::String}) + ")"
                                 : "isnan(" + expression({Type::Double}) + ")";
@@ -110,21 +112,22 @@ std::string Writer::double_expression() {
   switch (choose_.below(14)) {
     case 0:
     case 1:
-    case 2: return "(" + sub() + choose_.one_of(kArithmetic) + sub() + ")";
-    case 3: return "(" + sub() + choose_.one_of(kArithmetic) + expression({Type::Int}) + ")";
+    case 2: return joined({"(", sub(), choose_.one_of(kArithmetic), sub(), ")"});
+    case 3: return joined({"(", sub(), choose_.one_of(kArithmetic), expression({Type::Int}), ")"});
     case 4: return "(- " + sub() + ")";
     case 5: return "(| " + expression({Type::Vector}) + " |)";
-    case 6: return std::string(choose_.one_of(kFunctions)) + "(" + sub() + ")";
-    case 7: return std::string(choose_.chance(50) ? "min(" : "max(") + sub() + ", " + sub() + ")";
-    case 8: return "dot(" + expression({Type::Vector}) + ", " + expression({Type::Vector}) + ")";
-    case 9: return expression({Type::Vector}) + (choose_.chance(50) ? "::x" : choose_.chance(50) ? "::y" : "::z");
+    case 6: return joined({choose_.one_of(kFunctions), "(", sub(), ")"});
+    case 7: return joined({choose_.chance(50) ? "min(" : "max(", sub(), ", ", sub(), ")"});
+    case 8: return joined({"dot(", expression({Type::Vector}), ", ", expression({Type::Vector}), ")"});
+    case 9:
+      return joined({expression({Type::Vector}), choose_.chance(50) ? "::x" : choose_.chance(50) ? "::y" : "::z"});
     case 10: return "random[" + sub() + "]";
     case 11: {
       static constexpr std::array kDraws = {"randomGauss()", "randomExponential()", "getTime()", "randomGamma(3)"};
       return choose_.one_of(kDraws);
     }
-    case 12: return "angle(" + expression({Type::Vector}) + ", " + expression({Type::Vector}) + ")";
-    default: return "(" + expression({Type::Vector}) + "{" + std::to_string(choose_.below(3)) + "})";
+    case 12: return joined({"angle(", expression({Type::Vector}), ", ", expression({Type::Vector}), ")"});
+    default: return joined({"(", expression({Type::Vector}), "{", std::to_string(choose_.below(3)), "})"});
   }
 }
 
@@ -132,15 +135,15 @@ std::string Writer::vector_expression() {
   const auto sub = [&] { return expression({Type::Vector}); };
   switch (choose_.below(9)) {
     case 0:
-    case 1: return "(" + sub() + (choose_.chance(50) ? " + " : " - ") + sub() + ")";
-    case 2: return "(" + sub() + (choose_.chance(70) ? " * " : " / ") + expression({Type::Double}) + ")";
-    case 3: return "(" + expression({Type::Double}) + " * " + sub() + ")";
-    case 4: return "cross(" + sub() + ", " + sub() + ")";
+    case 1: return joined({"(", sub(), choose_.chance(50) ? " + " : " - ", sub(), ")"});
+    case 2: return joined({"(", sub(), choose_.chance(70) ? " * " : " / ", expression({Type::Double}), ")"});
+    case 3: return joined({"(", expression({Type::Double}), " * ", sub(), ")"});
+    case 4: return joined({"cross(", sub(), ", ", sub(), ")"});
     case 5:
-      return "(" + expression({Type::Double}) + ", " + expression({Type::Int}) + ", " + expression({Type::Double}) +
-             ")";
+      return joined(
+          {"(", expression({Type::Double}), ", ", expression({Type::Int}), ", ", expression({Type::Double}), ")"});
     case 6: return "random[" + sub() + "]";
-    case 7: return "(" + expression({Type::Matrix}) + " * " + sub() + ")";
+    case 7: return joined({"(", expression({Type::Matrix}), " * ", sub(), ")"});
     default: return "(- " + sub() + ")";
   }
 }
@@ -148,27 +151,27 @@ std::string Writer::vector_expression() {
 std::string Writer::matrix_expression() {
   const auto sub = [&] { return expression({Type::Matrix}); };
   switch (choose_.below(6)) {
-    case 0: return "(" + sub() + " + " + sub() + ")";
-    case 1: return "(" + sub() + " * " + sub() + ")";
+    case 0: return joined({"(", sub(), " + ", sub(), ")"});
+    case 1: return joined({"(", sub(), " * ", sub(), ")"});
     case 2: return "transpose(" + sub() + ")";
-    case 3: return "(" + sub() + " * " + expression({Type::Double}) + ")";
-    case 4: return "rotationMatrix(" + expression({Type::Vector}) + ", " + expression({Type::Double}) + ")";
+    case 3: return joined({"(", sub(), " * ", expression({Type::Double}), ")"});
+    case 4: return joined({"rotationMatrix(", expression({Type::Vector}), ", ", expression({Type::Double}), ")"});
     default: {
       const auto row = [&] {
-        return "(" + expression({Type::Double}) + ", " + leaf({Type::Double}) + ", " + leaf({Type::Int}) + ")";
+        return joined({"(", expression({Type::Double}), ", ", leaf({Type::Double}), ", ", leaf({Type::Int}), ")"});
       };
-      return "[" + row() + ", " + row() + ", " + row() + "]";
+      return joined({"[", row(), ", ", row(), ", ", row(), "]"});
     }
   }
 }
 
 std::string Writer::string_expression() {
   switch (choose_.below(7)) {
-    case 0: return "(" + expression({Type::String}) + " + " + expression({Type::String}) + ")";
+    case 0: return joined({"(", expression({Type::String}), " + ", expression({Type::String}), ")"});
     case 1:
     case 2:
     case 3: return text_literal(true);
-    case 4: return "typeof(" + expression(any_kind(true)) + ")";
+    case 4: return joined({"typeof(", expression(any_kind(true)), ")"});
     case 5: return "objectName(" + leaf({Type::Object}) + ")";
     default: return text_literal(false);
   }
@@ -239,16 +242,16 @@ std::string Writer::hash_expression(const Kind& kind) { return leaf(kind); }
 std::string Writer::condition() {
   const auto one = [&]() -> std::string {
     switch (choose_.below(5)) {
-      case 0: return "(" + expression({Type::Int}) + choose_.one_of(kComparisons) + expression({Type::Int}) + ")";
-      case 1: return "(" + expression({Type::Double}) + choose_.one_of(kComparisons) + leaf({Type::Double}) + ")";
+      case 0: return joined({"(", expression({Type::Int}), choose_.one_of(kComparisons), expression({Type::Int}), ")"});
+      case 1: return joined({"(", expression({Type::Double}), choose_.one_of(kComparisons), leaf({Type::Double}), ")"});
       case 2: return leaf({Type::Object});
-      case 3: return "(" + leaf({Type::String}) + " == " + leaf({Type::String}) + ")";
+      case 3: return joined({"(", leaf({Type::String}), " == ", leaf({Type::String}), ")"});
       default: return leaf({Type::Int});
     }
   };
   switch (choose_.below(4)) {
-    case 0: return "(" + one() + " && " + one() + ")";
-    case 1: return "(" + one() + " || " + one() + ")";
+    case 0: return joined({"(", one(), " && ", one(), ")"});
+    case 1: return joined({"(", one(), " || ", one(), ")"});
     case 2: return "(!" + one() + ")";
     default: return one();
   }
@@ -290,7 +293,7 @@ std::vector<Variable> Writer::visible() const {
 std::string Writer::named(const std::string& name, const Kind&, int array) {
   if (array == 0) return name;
   const auto index = std::to_string(choose_.below(static_cast<std::size_t>(array)));
-  return name + "[" + (choose_.chance(10) ? literal({Type::Int}) : index) + "]";
+  return joined({name, "[", choose_.chance(10) ? literal({Type::Int}) : index, "]"});
 }
 
 std::string Writer::variable(const Kind& kind) {

@@ -3,6 +3,7 @@
 //   replay TARGET --seeds FIRST COUNT    what bytes_of_seed makes
 //   replay --program FILE                print the program that fuzz_run generates of a file
 //   replay --program-of-seed SEED        the same of a seed
+//   replay --checksum FIRST COUNT        FNV-1a of the programs of seeds: each compiler must give the same
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -32,10 +33,25 @@ void (*target_named(std::string_view name))(Bytes) {
   return nullptr;
 }
 
-int show(Bytes bytes) {
+std::string program_of(Bytes bytes) {
   breve::fuzz::Choices choices(bytes);
   breve::fuzz::skip_plan(choices);
-  std::fputs(breve::fuzz::generate_program(choices).c_str(), stdout);
+  return breve::fuzz::generate_program(choices);
+}
+
+int show(Bytes bytes) {
+  std::fputs(program_of(bytes).c_str(), stdout);
+  return 0;
+}
+
+std::uint64_t number(const std::string& text) { return std::strtoull(text.c_str(), nullptr, 10); }
+
+int show_checksum(std::uint64_t first, std::uint64_t count) {
+  std::uint64_t sum = 0xcbf29ce484222325U;
+  for (std::uint64_t seed = first; seed < first + count; ++seed)
+    for (const char c : program_of(breve::fuzz::bytes_of_seed(seed)))
+      sum = (sum ^ static_cast<std::uint8_t>(c)) * 0x100000001b3U;
+  std::printf("%016llx\n", static_cast<unsigned long long>(sum));
   return 0;
 }
 
@@ -55,7 +71,9 @@ int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   if (arguments.size() == 2 && arguments[0] == "--program") return show(read(arguments[1]));
   if (arguments.size() == 2 && arguments[0] == "--program-of-seed")
-    return show(breve::fuzz::bytes_of_seed(std::strtoull(arguments[1].c_str(), nullptr, 10)));
+    return show(breve::fuzz::bytes_of_seed(number(arguments[1])));
+  if (arguments.size() == 3 && arguments[0] == "--checksum")
+    return show_checksum(number(arguments[1]), number(arguments[2]));
   auto* const target = arguments.size() >= 2 ? target_named(arguments[0]) : nullptr;
   if (!target) {
     std::fputs("usage: replay TARGET FILE-OR-FOLDER... | TARGET --seeds FIRST COUNT | --program FILE\n", stderr);
@@ -63,8 +81,8 @@ int main(int argc, char** argv) {
   }
   std::size_t done = 0;
   if (arguments.size() == 4 && arguments[1] == "--seeds") {
-    const auto first = std::strtoull(arguments[2].c_str(), nullptr, 10);
-    const auto count = std::strtoull(arguments[3].c_str(), nullptr, 10);
+    const auto first = number(arguments[2]);
+    const auto count = number(arguments[3]);
     for (; done < count; ++done) {
       std::fprintf(stderr, "seed %llu\n", static_cast<unsigned long long>(first + done));
       target(breve::fuzz::bytes_of_seed(first + done));

@@ -15,7 +15,7 @@ namespace {
 /// How a program is run; drawn before the program itself.
 struct Plan {
   explicit Plan(Choices& choices) {
-    static constexpr std::uint64_t kBudgets[] = {20000, 3000, 300, 60000};
+    static constexpr std::uint64_t kBudgets[] = {5000, 3000, 300, 10000};
     static constexpr std::size_t kMemory[] = {64u << 20, 64u << 20, 64u << 20, 64u << 20, 4u << 20, 1u << 20};
     config = breve_world_config_default();
     config.seed = choices.below(4);

@@ -46,7 +46,7 @@ std::string Writer::statements(std::size_t count, int indent) {
 }
 
 std::string Writer::block(int indent) {
-  return "{\n" + statements(1 + choose_.below(3), indent + 2) + margin(indent) + "}";
+  return joined({"{\n", statements(1 + choose_.below(3), indent + 2), margin(indent), "}"});
 }
 
 std::string Writer::statement(int indent) {
@@ -95,7 +95,7 @@ std::string Writer::target(Kind& kind) {
   }
   if (v.kind.type == Type::Hash && choose_.chance(90)) {
     kind = {v.kind.element, v.kind.element_cls};
-    return name + (choose_.chance(30) ? std::string("::part") : "{" + key() + "}");
+    return joined({name, choose_.chance(30) ? std::string("::part") : "{" + key() + "}"});
   }
   if (v.kind.type == Type::List && choose_.chance(50)) {
     kind = {v.kind.element, v.kind.element_cls};
@@ -120,11 +120,11 @@ std::string Writer::assignment() {
   const auto to = target(kind);
   if ((kind.type == Type::Int || kind.type == Type::Double) && choose_.chance(70)) {
     if (choose_.chance(15)) return to + (choose_.chance(50) ? "++." : "--.");
-    return to + choose_.one_of(kAssignments) + expression(choose_.chance(80) ? kind : Kind{Type::Double}) + ".";
+    return joined({to, choose_.one_of(kAssignments), expression(choose_.chance(80) ? kind : Kind{Type::Double}), "."});
   }
   if (kind.type == Type::String && choose_.chance(30)) return to + " += " + expression({Type::String}) + ".";
   if (kind.type == Type::Vector && choose_.chance(30))
-    return to + (choose_.chance(50) ? " += " : " -= ") + expression({Type::Vector}) + ".";
+    return joined({to, choose_.chance(50) ? " += " : " -= ", expression({Type::Vector}), "."});
   return to + " = " + expression(kind) + ".";
 }
 
@@ -136,20 +136,22 @@ std::string Writer::loop(int indent) {
     case 0:
     case 1:
       text =
-          "for " + i + " = 0, " + i + " < " + std::to_string(1 + choose_.below(9)) + ", " + i + "++: " + block(indent);
+          joined({"for ", i, " = 0, ", i, " < ", std::to_string(1 + choose_.below(9)), ", ", i, "++: ", block(indent)});
       break;
-    case 2: text = "while (" + i + "++) < " + std::to_string(1 + choose_.below(9)) + ": " + block(indent); break;
-    case 3: text = "while " + condition() + ": " + block(indent); break;  // perhaps without end: the budget ends it
+    case 2: text = joined({"while (", i, "++) < ", std::to_string(1 + choose_.below(9)), ": ", block(indent)}); break;
+    case 3:
+      text = joined({"while ", condition(), ": ", block(indent)});
+      break;  // perhaps without end: the budget ends it
     default: {
       Kind found;
       const auto list = choose_.chance(60) ? container(Type::List, found) : "";
       const Kind element = list.empty() ? Kind{Type::Object} : Kind{found.element, found.element_cls};
       auto runner = variable(element);
       if (runner.empty() || runner.find('[') != std::string::npos) {
-        text = "if " + condition() + ": " + block(indent);
+        text = joined({"if ", condition(), ": ", block(indent)});
         break;
       }
-      text = "foreach " + runner + " in " + (list.empty() ? objects_list() : list) + ": " + block(indent);
+      text = joined({"foreach ", runner, " in ", (list.empty() ? objects_list() : list), ": ", block(indent)});
       break;
     }
   }
@@ -165,7 +167,7 @@ std::string Writer::objects_list() {
 }
 
 std::string Writer::branch(int indent) {
-  std::string text = "if " + condition() + ": " + block(indent);
+  std::string text = joined({"if ", condition(), ": ", block(indent)});
   if (choose_.chance(40)) text += " else " + block(indent);
   return text;
 }
@@ -180,7 +182,7 @@ std::string Writer::list_statement() {
     case 1:
     case 2: return "push " + expression(element) + " onto " + list + ".";
     case 3: return "prepend " + expression(element) + " onto " + list + ".";
-    case 4: return "insert " + expression(element) + " at " + list + "{" + std::to_string(choose_.below(4)) + "}.";
+    case 4: return joined({"insert ", expression(element), " at ", list, "{", std::to_string(choose_.below(4)), "}."});
     case 5: return "remove " + list + "{" + std::to_string(choose_.below(4)) + "}.";
     case 6: return "sort " + list + " with compare.";
     case 7: return "push " + list + " onto " + list + ".";  // a cycle
@@ -194,15 +196,16 @@ std::string Writer::event_statement() {
   const auto message = std::string(choose_.one_of(kMessages));
   switch (choose_.below(7)) {
     case 0:
-      return "self schedule method-call " + method_name(0) + " at-time getTime() + " + literal({Type::Double}) + ".";
+      return joined(
+          {"self schedule method-call ", method_name(0), " at-time getTime() + ", literal({Type::Double}), "."});
     case 1:
-      return "self schedule-repeating method-call " + method_name(0) + " with-interval " + literal({Type::Double}) +
-             ".";
+      return joined(
+          {"self schedule-repeating method-call ", method_name(0), " with-interval ", literal({Type::Double}), "."});
     case 2: return "self unschedule method-call " + method_name(0) + ".";
     case 3:
     case 4:
-      return "self observe instance " + leaf({Type::Object}) + " for-notification " + message + " with-method " +
-             method_name(choose_.below(3)) + ".";
+      return joined({"self observe instance ", leaf({Type::Object}), " for-notification ", message, " with-method ",
+                     method_name(choose_.below(3)), "."});
     case 5: return "self unobserve instance " + leaf({Type::Object}) + " for-notification " + message + ".";
     default: return "self announce message " + message + ".";
   }

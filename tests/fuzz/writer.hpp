@@ -1,13 +1,22 @@
 // The part of the generator that writes bodies of methods: expressions of a wanted type, and statements.
 #pragma once
 
+#include <initializer_list>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "choices.hpp"
 #include "model.hpp"
 
 namespace breve::fuzz {
+
+/// Draws in the order in which it is written: the operands of + may be evaluated in any, and each compiler has its own.
+inline std::string joined(std::initializer_list<std::string_view> parts) {
+  std::string text;
+  for (const auto part : parts) text += part;
+  return text;
+}
 
 class Writer {
  public:
