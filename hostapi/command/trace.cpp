@@ -39,6 +39,7 @@ TraceWriter::TraceWriter(const std::string& path, const std::string& program, st
     : path_(path), file_(std::fopen(path.c_str(), "w")), limit_(limit) {
   if (!file_) throw std::runtime_error("cannot write " + path + ": " + std::strerror(errno));
   can_seek_ = std::fseek(file_.get(), 0, SEEK_CUR) == 0;
+  std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // buffer_ is one
   const std::string name = json_text(program);
   buffer_ = fmt::format(
       "{{\"displayTimeUnit\":\"ms\",\"otherData\":{{\"program\":\"{0}\",\"library\":\"breve {1}\"}},\"traceEvents\":[\n"
@@ -115,17 +116,13 @@ void TraceWriter::write(const Open& call, double end) {
 }
 
 void TraceWriter::flush() {
-  // What ends the file is written each time, and written over the next: on a pipe it comes once.
-  const auto put = [&](std::string_view text) {
-    if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) failed_ = true;
-  };
-  put(buffer_);
   size_ += buffer_.size();
+  // What ends the file is written each time, and written over the next: on a pipe it comes once. Both in one go: a kill
+  // between them would leave a file without an end.
+  if (can_seek_) buffer_ += kTail;
+  if (std::fwrite(buffer_.data(), 1, buffer_.size(), file_.get()) != buffer_.size()) failed_ = true;
+  if (can_seek_ && std::fseek(file_.get(), -static_cast<long>(kTail.size()), SEEK_CUR) != 0) failed_ = true;
   buffer_.clear();
-  if (!can_seek_) return;
-  put(kTail);
-  if (std::fflush(file_.get()) != 0 || std::fseek(file_.get(), -static_cast<long>(kTail.size()), SEEK_CUR) != 0)
-    failed_ = true;
 }
 
 void TraceWriter::close() {
