@@ -168,15 +168,37 @@ class Island {
   double longest(double left) const;
 
   // island_guard.cpp
+  /// What went wrong, the body that shows it, and how much: J, m or a ratio.
+  struct Trouble {
+    bool found = false;
+    GuardReason reason = GuardReason::NotFinite;
+    double value = 0;
+    BodyIndex body = kNoBody;
+  };
+  /// A pair that is deep, or may become so in this step.
+  struct Overlap {
+    std::uint32_t pair;
+    double before;  // m, when it was noted
+  };
   void step_once(DynamicsClient* client, double start, double h);
-  bool try_step(DynamicsClient* client, double start, double h, GuardReason& reason, double& value);
+  Trouble try_step(DynamicsClient* client, double start, double h);
+  void give_in(const Trouble& trouble, double start);
   void keep_start();
   void balance(double before, double& residual, double& turnover);
   void back_to_start();
-  bool finite() const;
   double stored(double& kinetic, bool start);
   BodyIndex any_body() const;
-  void intervene(GuardReason reason, GuardAction action, double time, double value);
+  void intervene(const Trouble& trouble, GuardAction action, double time);
+
+  // island_watch.cpp
+  BodyIndex not_finite() const;  // the first that shows it
+  Trouble judge_residual(double residual, double turnover, double before) const;
+  Trouble foresee(double h);
+  Trouble fastest_turn(double h) const;
+  Trouble strongest_damper(double h) const;
+  void note_overlaps(double h);
+  Trouble measure_overlaps();
+  double height();
 
   Dynamics::Core& core_;
   std::pmr::memory_resource* memory_;
@@ -216,6 +238,8 @@ class Island {
   std::pmr::vector<Vector3> before_;         // of each row's two sides: velocity along its axes as the sub-step began
   std::pmr::vector<Vector3> warm_;           // of each row, where its solver begins
   std::pmr::vector<double> scalars_before_;  // of each scalar row
+  std::pmr::vector<Overlap> overlaps_;
+  double pushed_ = 0;  // J, by which pushing apart lifted all in this step
   contact::Workspace workspace_;
 };
 

@@ -112,11 +112,9 @@ void Dynamics::Core::run(DynamicsClient& client, double start, double h, int dep
     for (std::size_t k = i + 1; k < calling.size(); ++k) calling[k]->append_bodies(others);
     calling[i]->step(&client, start, h);
     const double left = calling[i]->unfinished();
+    if (left == 0) note_rest(*calling[i], h);
     take_result(*calling[i]);
-    if (left == 0) {
-      note_rest(*calling[i], h);
-      continue;
-    }
+    if (left == 0) continue;
     if (depth < kDeepest) {
       run_only(client, start + (h - left), left, depth + 1, mine);
       run_only(client, start, h, depth + 1, others);
