@@ -46,6 +46,7 @@ void Island::clear() {
   pairs_.clear();
   accuracy_set_ = false;
   unfinished_ = 0;
+  error = nullptr;
   result.counters = {};
   result.account = {};
   result.impacts.clear();

@@ -2,6 +2,7 @@
 // limits and rings. Islands know nothing of one another, so that several may be stepped at once.
 #pragma once
 
+#include <exception>
 #include <optional>
 
 #include "runtime/contact/impacts.hpp"
@@ -32,7 +33,8 @@ class Island {
   void add_pair(NearPair& pair);
   bool empty() const { return free_.empty() && clusters_.empty(); }
 
-  /// Moves it from `start` by h seconds.
+  /// Moves it from `start` by h seconds; write() is to follow, but for a step that is unfinished. Touches nothing that
+  /// is not the island's if there is no client: on any thread then.
   /// @param client  for handlers and force methods; then on the world's thread only
   void step(DynamicsClient* client, double start, double h);
   bool calls_out() const;  // step() needs a client
@@ -45,6 +47,7 @@ class Island {
   void write();  // to the arrays
 
   IslandResult result;
+  std::exception_ptr error;  // that ended its step, where others are stepped at the same time
 
  private:
   // Parts of the smaller body's radius: within the first, bodies that are slow rest on one another; within the second,

@@ -65,7 +65,6 @@ void Island::step(DynamicsClient* client, double start, double h) {
     for (Clustered& one : clusters_) one.entry->system->set_accuracy(asked);
   accuracy_ = asked;
   if (trouble.found) give_in(trouble, start);
-  if (unfinished_ == 0) write();
 }
 
 /// What did not help is reported, or ended.
