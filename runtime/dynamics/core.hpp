@@ -10,6 +10,7 @@
 #include "runtime/dynamics/dynamics.hpp"
 #include "runtime/dynamics/rings.hpp"
 #include "runtime/dynamics/tree.hpp"
+#include "runtime/dynamics/workers.hpp"
 
 namespace breve {
 
@@ -126,9 +127,12 @@ struct Dynamics::Core : InMemory {
   std::uint64_t rules = 0;  // grows when the answer may change whether two bodies push each other
 
   NearPairs near;
-  std::pmr::vector<int> slot_of;                      // by body: of a free one, in its island
+  std::pmr::vector<int> slot_of;  // by body: of a free one, in its island
+  SharedMemory shared;            // of islands, which workers step
+  Workers workers;
   std::pmr::vector<std::unique_ptr<Island>> islands;  // as many as were ever needed at once
   std::size_t island_count = 0;
+  std::pmr::vector<Island*> quiet;                    // of the step: those that call nobody
   std::pmr::vector<std::uint8_t> aside;               // by body; empty: all move
   std::pmr::vector<std::uint32_t> set_of, island_of;  // by body: for finding islands
 
@@ -205,6 +209,7 @@ struct Dynamics::Core : InMemory {
   void advance(DynamicsClient& client, double start, double h);
   bool pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client);
   void find_islands();
+  void step_quiet(double start, double h);
   void run(DynamicsClient& client, double start, double h, int depth);
   void run_only(DynamicsClient& client, double start, double h, int depth, std::span<const BodyIndex> bodies);
   void report_lasting(DynamicsClient& client, double moment);

@@ -36,6 +36,7 @@ Island::Island(Dynamics::Core& core, std::pmr::memory_resource* memory)
       before_(memory),
       warm_(memory),
       scalars_before_(memory),
+      overlaps_(memory),
       workspace_(memory) {}
 
 void Island::clear() {
@@ -45,6 +46,7 @@ void Island::clear() {
   pairs_.clear();
   accuracy_set_ = false;
   unfinished_ = 0;
+  error = nullptr;
   result.counters = {};
   result.account = {};
   result.impacts.clear();

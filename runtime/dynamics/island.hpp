@@ -2,6 +2,7 @@
 // limits and rings. Islands know nothing of one another, so that several may be stepped at once.
 #pragma once
 
+#include <exception>
 #include <optional>
 
 #include "runtime/contact/impacts.hpp"
@@ -32,7 +33,8 @@ class Island {
   void add_pair(NearPair& pair);
   bool empty() const { return free_.empty() && clusters_.empty(); }
 
-  /// Moves it from `start` by h seconds.
+  /// Moves it from `start` by h seconds; write() is to follow, but for a step that is unfinished. Touches nothing that
+  /// is not the island's if there is no client: on any thread then.
   /// @param client  for handlers and force methods; then on the world's thread only
   void step(DynamicsClient* client, double start, double h);
   bool calls_out() const;  // step() needs a client
@@ -45,6 +47,7 @@ class Island {
   void write();  // to the arrays
 
   IslandResult result;
+  std::exception_ptr error;  // that ended its step, where others are stepped at the same time
 
  private:
   // Parts of the smaller body's radius: within the first, bodies that are slow rest on one another; within the second,
@@ -168,15 +171,37 @@ class Island {
   double longest(double left) const;
 
   // island_guard.cpp
+  /// What went wrong, the body that shows it, and how much: J, m or a ratio.
+  struct Trouble {
+    bool found = false;
+    GuardReason reason = GuardReason::NotFinite;
+    double value = 0;
+    BodyIndex body = kNoBody;
+  };
+  /// A pair that is deep, or may become so in this step.
+  struct Overlap {
+    std::uint32_t pair;
+    double before;  // m, when it was noted
+  };
   void step_once(DynamicsClient* client, double start, double h);
-  bool try_step(DynamicsClient* client, double start, double h, GuardReason& reason, double& value);
+  Trouble try_step(DynamicsClient* client, double start, double h);
+  void give_in(const Trouble& trouble, double start);
   void keep_start();
   void balance(double before, double& residual, double& turnover);
   void back_to_start();
-  bool finite() const;
   double stored(double& kinetic, bool start);
   BodyIndex any_body() const;
-  void intervene(GuardReason reason, GuardAction action, double time, double value);
+  void intervene(const Trouble& trouble, GuardAction action, double time);
+
+  // island_watch.cpp
+  BodyIndex not_finite() const;  // the first that shows it
+  Trouble judge_residual(double residual, double turnover, double before) const;
+  Trouble foresee(double h);
+  Trouble fastest_turn(double h) const;
+  Trouble strongest_damper(double h) const;
+  void note_overlaps(double h);
+  Trouble measure_overlaps();
+  double height();
 
   Dynamics::Core& core_;
   std::pmr::memory_resource* memory_;
@@ -216,6 +241,8 @@ class Island {
   std::pmr::vector<Vector3> before_;         // of each row's two sides: velocity along its axes as the sub-step began
   std::pmr::vector<Vector3> warm_;           // of each row, where its solver begins
   std::pmr::vector<double> scalars_before_;  // of each scalar row
+  std::pmr::vector<Overlap> overlaps_;
+  double pushed_ = 0;  // J, by which pushing apart lifted all in this step
   contact::Workspace workspace_;
 };
 

@@ -1,8 +1,10 @@
-// The guard: a step of an island that gives no numbers, or energy that nothing explains, is tried again more finely,
+// The guard: a step of an island in which something goes wrong (island_watch.cpp says what) is tried again more finely,
 // and an island for which that does not help is put to rest. Nothing of it is silent.
+#include <algorithm>
 #include <cmath>
 
 #include "runtime/articulated/energy.hpp"
+#include "runtime/articulated/kinematics.hpp"
 #include "runtime/base/error.hpp"
 #include "runtime/dynamics/island.hpp"
 
@@ -10,9 +12,7 @@ namespace breve {
 
 namespace {
 
-// Of the energy in motion: what a step may gain that no account explains before the guard looks up. The fast rung is
-// not meant to keep energy.
-constexpr double kResidual = 0.1, kResidualFast = 10;
+constexpr int kFinest = 2;  // attempts after the first
 
 Accuracy finer_settings(const Accuracy& from, int attempt, double h) {
   Accuracy to = from;
@@ -21,10 +21,14 @@ Accuracy finer_settings(const Accuracy& from, int attempt, double h) {
     if (from.contact_step > 0) to.contact_step = std::min(from.contact_step, h) / 4;
     return to;
   }
+  constexpr int kManyIterations = 200;
   to.scheme = articulated::Scheme::RungeKutta4;
   to.implicit_joints = false;
+  to.implicit_spin = false;
   to.step = h / 64;
   to.contact_step = 0;
+  to.direct = true;
+  to.iterations = std::max(from.iterations, kManyIterations);
   return to;
 }
 
@@ -33,61 +37,65 @@ Accuracy finer_settings(const Accuracy& from, int attempt, double h) {
 void Island::step(DynamicsClient* client, double start, double h) {
   ++result.counters.islands;
   const GuardMode mode = core_.settings.guard;
-  GuardReason reason{};
-  double value = 0;
-  // Where a handler may be called there is no going back.
-  const bool again = !calls_out() && (mode == GuardMode::Refine || mode == GuardMode::Rest);
-  keep_start();
-  bool good = try_step(client, start, h, reason, value);
-  if (mode == GuardMode::Off) {
-    if (unfinished_ == 0) write();
-    return;
-  }
-  if (!good && reason == GuardReason::Residual && mode == GuardMode::Report) {
-    intervene(reason, GuardAction::Reported, start, value);
-    good = true;
-  }
   const Accuracy asked = accuracy_;
-  for (int attempt = 1; !good && again && attempt <= 2; ++attempt) {
-    intervene(reason, GuardAction::Refined, start, value);
-    back_to_start();
-    accuracy_ = finer_settings(asked, attempt, h);
+  keep_start();
+  Trouble trouble;
+  int attempt = 0;
+  const auto refine_from = [&] {
+    intervene(trouble, GuardAction::Refined, start);
+    accuracy_ = finer_settings(asked, ++attempt, h);
     for (Clustered& one : clusters_) one.entry->system->set_accuracy(accuracy_);
-    good = try_step(client, start, h, reason, value) || (attempt == 2 && reason == GuardReason::Residual);
+  };
+  const bool refines = mode == GuardMode::Refine || mode == GuardMode::Rest;
+  // What is too fast for the sub-steps is seen before anything has moved.
+  if (mode != GuardMode::Off) trouble = foresee(h);
+  while (trouble.found && refines && attempt < kFinest) {
+    refine_from();
+    trouble = foresee(h);
   }
-  if (accuracy_.step != asked.step || accuracy_.scheme != asked.scheme)
+  if (trouble.found) intervene(trouble, GuardAction::Reported, start);
+  trouble = try_step(client, start, h);
+  // Where a handler may have been called there is no going back.
+  while (trouble.found && refines && !calls_out() && attempt < kFinest) {
+    back_to_start();
+    refine_from();
+    trouble = try_step(client, start, h);
+  }
+  if (attempt > 0)
     for (Clustered& one : clusters_) one.entry->system->set_accuracy(asked);
   accuracy_ = asked;
-  if (!good) {
-    back_to_start();
-    if (mode == GuardMode::Rest) stop();
-    intervene(reason, mode == GuardMode::Rest ? GuardAction::Rested : GuardAction::Reported, start, value);
-  }
-  if (unfinished_ == 0) write();
+  if (trouble.found) give_in(trouble, start);
 }
 
-bool Island::try_step(DynamicsClient* client, double start, double h, GuardReason& reason, double& value) {
+/// What did not help is reported, or ended.
+void Island::give_in(const Trouble& trouble, double start) {
+  const bool rest = core_.settings.guard == GuardMode::Rest;
+  const bool unusable = trouble.reason == GuardReason::NotFinite || trouble.reason == GuardReason::NoSolution;
+  // Energy from nowhere ends with the speeds; positions, put right on the way, are as good as any.
+  if (unusable || (rest && trouble.reason == GuardReason::Penetration)) back_to_start();
+  if (rest) stop();
+  intervene(trouble, rest ? GuardAction::Rested : GuardAction::Reported, start);
+}
+
+Island::Trouble Island::try_step(DynamicsClient* client, double start, double h) {
+  const bool off = core_.settings.guard == GuardMode::Off;
   double kinetic = 0, residual = 0, turnover = 0;
+  overlaps_.clear();
+  pushed_ = 0;
   const double before = stored(kinetic, true);
   try {
     step_once(client, start, h);
   } catch (const Error& error) {
-    if (error.code() != ErrorCode::Numeric || core_.settings.guard == GuardMode::Off) throw;
-    reason = GuardReason::NoSolution;
-    value = 0;
-    return false;
+    if (error.code() != ErrorCode::Numeric || off) throw;
+    return {true, GuardReason::NoSolution, 0, any_body()};
   }
-  if (unfinished_ > 0) return true;
-  if (!finite()) {
-    reason = GuardReason::NotFinite;
-    value = 0;
-    return false;
-  }
+  if (unfinished_ > 0) return {};
+  if (const BodyIndex body = not_finite(); body != kNoBody) return {!off, GuardReason::NotFinite, 0, body};
   balance(before, residual, turnover);
-  const double most = accuracy_.rung == Rung::Fast ? kResidualFast : kResidual;
-  reason = GuardReason::Residual;
-  value = residual;
-  return !(residual > most * turnover + kTiny * std::abs(before));
+  if (off) return {};
+  if (const Trouble deeper = measure_overlaps(); deeper.found) return deeper;
+  // Overlap that was pushed apart may have lifted something: that is known, if not a work.
+  return judge_residual(residual - std::max(pushed_, 0.0), turnover, before);
 }
 
 namespace {
@@ -147,19 +155,21 @@ void Island::back_to_start() {
   for (Free& one : free_) one.next = 0;
 }
 
+/// Takes all velocities, and writes down that their energy is gone.
 void Island::stop() {
-  for (Free& one : free_) one.now.velocity = one.now.spin = Vector3::Zero();
-  for (Tree* tree : trees_) tree->state.v.setZero();
-}
-
-bool Island::finite() const {
-  for (const Free& one : free_)
-    if (!one.now.center.allFinite() || !one.now.velocity.allFinite() || !one.now.spin.allFinite() ||
-        !one.now.orientation.coeffs().allFinite())
-      return false;
-  for (Tree* tree : trees_)
-    if (!tree->state.q.allFinite() || !tree->state.v.allFinite()) return false;
-  return true;
+  for (Free& one : free_) {
+    result.account.residual -= one.now.kinetic();
+    one.now.velocity = one.now.spin = Vector3::Zero();
+  }
+  for (const Clustered& one : clusters_)
+    for (const std::uint32_t index : one.entry->trees) {
+      Tree& tree = *core_.trees[index];
+      articulated::forward_kinematics(tree.model, tree.data, tree.state);
+      const double lost = articulated::kinetic_energy(tree.model, tree.data);
+      result.account.residual -= lost;
+      if (one.alone()) tree.account.residual -= lost;
+      tree.state.v.setZero();
+    }
 }
 
 /// Kinetic, potential and in springs, J. Notes for each tree its own: at the start of a step as it is, later as change.
@@ -192,8 +202,9 @@ bool Island::still() const {
 
 BodyIndex Island::any_body() const { return free_.empty() ? trees_.front()->links.front().body : free_.front().body; }
 
-void Island::intervene(GuardReason reason, GuardAction action, double time, double value) {
-  result.interventions.push_back({core_.iteration, time, core_.bodies->owner(any_body()), reason, action, value});
+void Island::intervene(const Trouble& trouble, GuardAction action, double time) {
+  result.interventions.push_back(
+      {core_.iteration, time, core_.bodies->owner(trouble.body), trouble.reason, action, trouble.value});
 }
 
 }  // namespace breve

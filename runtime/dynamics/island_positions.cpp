@@ -34,7 +34,11 @@ void Island::push_apart(double h) {
   }
   for (; k < apart_scalars_.size(); ++k) apart_scalars_[k].bias = 0;
   for (contact::ScalarRow& row : apart_scalars_) row.impulse = 0;
-  if (any) move_by_rows(apart_, apart_scalars_, h);
+  if (any) {
+    const double before = height();
+    move_by_rows(apart_, apart_scalars_, h);
+    pushed_ += height() - before;
+  }
   close_rings();
 }
 

@@ -50,6 +50,7 @@ void Island::step_fast(double start, double h) {
     load_velocities();
     solve();
     account_rows();
+    note_overlaps(part);
     note_forces(part);
     store_velocities(part);
     push_apart(part);
@@ -143,6 +144,7 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
     }
     commit();
     account_rows();
+    note_overlaps(part);
     note_forces(event.found() ? std::max(event.time, kSliver * h) : part);
     if (!event.found()) {
       push_apart(part);
@@ -156,9 +158,9 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
     meet(client, event, start + now, h - now);
     if (unfinished_ > 0) return;
   }
-  if (impacts_ > accuracy_.impacts)
-    result.interventions.push_back(
-        {core_.iteration, start + h, {}, GuardReason::Impacts, GuardAction::Reported, static_cast<double>(impacts_)});
+  if (impacts_ > accuracy_.impacts && core_.settings.guard != GuardMode::Off)
+    intervene({true, GuardReason::Impacts, static_cast<double>(impacts_), any_body()}, GuardAction::Reported,
+              start + h);
 }
 
 void Island::place_links() {

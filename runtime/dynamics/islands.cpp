@@ -50,7 +50,7 @@ void Dynamics::Core::find_islands() {
     std::uint32_t& index = island_of[root(body)];
     if (index == kNone) {
       index = static_cast<std::uint32_t>(used++);
-      if (islands.size() < used) islands.push_back(std::make_unique<Island>(*this, memory));
+      if (islands.size() < used) islands.push_back(std::make_unique<Island>(*this, &shared));
       islands[index]->clear();
     }
     return *islands[index];
@@ -93,16 +93,13 @@ void Dynamics::Core::run(DynamicsClient& client, double start, double h, int dep
   find_islands();
   // Islands that call nobody first: what a handler does must not pull the ground from under them.
   std::pmr::vector<Island*> calling(memory);
+  quiet.clear();
   for (std::size_t i = 0; i < island_count; ++i) {
     Island& island = *islands[i];
     if (sleep_through(island)) continue;
-    if (island.calls_out()) {
-      calling.push_back(&island);
-      continue;
-    }
-    island.step(nullptr, start, h);
-    note_rest(island, h);
+    (island.calls_out() ? calling : quiet).push_back(&island);
   }
+  step_quiet(start, h);
   for (std::size_t i = 0; i < island_count; ++i)
     if (!islands[i]->calls_out()) take_result(*islands[i]);
   constexpr int kDeepest = 64;  // handlers that make or free bodies, in one step
@@ -112,16 +109,36 @@ void Dynamics::Core::run(DynamicsClient& client, double start, double h, int dep
     for (std::size_t k = i + 1; k < calling.size(); ++k) calling[k]->append_bodies(others);
     calling[i]->step(&client, start, h);
     const double left = calling[i]->unfinished();
-    take_result(*calling[i]);
     if (left == 0) {
+      calling[i]->write();
       note_rest(*calling[i], h);
-      continue;
     }
+    take_result(*calling[i]);
+    if (left == 0) continue;
     if (depth < kDeepest) {
       run_only(client, start + (h - left), left, depth + 1, mine);
       run_only(client, start, h, depth + 1, others);
     }
     return;
+  }
+}
+
+/// Islands that call nobody, by the workers. What all see is written when all are done, in their order: so that nothing
+/// depends on which came first, an error neither.
+void Dynamics::Core::step_quiet(double start, double h) {
+  const auto step = [&](std::size_t i) {
+    try {
+      quiet[i]->step(nullptr, start, h);
+    } catch (...) {
+      quiet[i]->error = std::current_exception();
+    }
+  };
+  workers.run(settings.workers, quiet.size(), std::ref(step));
+  for (const Island* island : quiet)
+    if (island->error) std::rethrow_exception(island->error);
+  for (Island* island : quiet) {
+    island->write();
+    note_rest(*island, h);
   }
 }
 

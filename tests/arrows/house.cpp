@@ -70,6 +70,7 @@ const std::map<std::string_view, std::vector<std::string_view>> kLibraries = {
     {"BulletCollision/", {"runtime/solid", "runtime/space", "runtime/contact"}},
     {"LinearMath/", {"runtime/solid", "runtime/space", "runtime/contact"}},
     {"assimp/", {"runtime/store"}},
+    {"tbb/", {"runtime/dynamics"}},
     {"box2d/", {"runtime/planar"}},
     {"pugixml", {"steve/library"}},
     {"lua", {"hostapi/lua"}},

@@ -150,7 +150,8 @@ typedef enum breve_channel {
 typedef void (*breve_print_fn)(void* user, breve_world* world, breve_channel channel, const char* text, size_t size);
 
 /* Memory of `size` bytes aligned to `alignment` (a power of two), or NULL: the call in progress fails with
-   BREVE_ERROR_MEMORY. All memory that a world keeps is asked for here, by the thread that uses the world. Programs and
+   BREVE_ERROR_MEMORY. All memory that a world keeps is asked for here, by the thread that uses the world; while that
+   computes physics with several workers (breve_world_set_workers), by any of these, one at a time. Programs and
    runtimes, which belong to no world, and texts that live for one call take theirs from the C++ allocator; where that
    has none left, the call gives BREVE_ERROR_MEMORY as well. See docs/limits.md. */
 typedef void* (*breve_allocate_fn)(void* user, size_t size, size_t alignment);
@@ -815,7 +816,9 @@ BREVE_API breve_status breve_world_set_gravity(breve_world* world, const double 
 BREVE_API breve_status breve_world_set_sleeping(breve_world* world, bool on);
 
 /* Threads that may compute the physics of a world, the caller's among them, 1 to 256; 1 at first. What comes out does
-   not depend on it. The number is kept; the caller's thread does all of the work yet. BREVE_OK; BREVE_ERROR_ARGUMENT: out of this range. */
+   not depend on it. Islands (bodies that touch or are joined, and what they touch) are shared among them; those with a
+   collision handler or a force method are left to the caller's thread. The threads are the process's: no more than it
+   has cores. BREVE_OK; BREVE_ERROR_ARGUMENT: out of this range. */
 BREVE_API breve_status breve_world_set_workers(breve_world* world, uint32_t workers);
 
 /* What happens where physics goes wrong. */

@@ -1,0 +1,158 @@
+// What the guard looks for in an island: numbers that are none, energy from nowhere, overlaps that grow, and what turns
+// or is damped too fast for its sub-steps.
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/articulated/energy.hpp"
+#include "runtime/articulated/kinematics.hpp"
+#include "runtime/dynamics/island.hpp"
+
+namespace breve {
+
+namespace {
+
+// Of the energy in motion: what a step may gain that no account explains. The fast rung is not meant to keep energy.
+constexpr double kResidual = 0.1, kResidualFast = 10;
+
+constexpr double kMostTurn = 0.5;     // rad in a sub-step
+constexpr double kMostDamping = 1.0;  // c h / I
+
+/// Parts of the smaller body's radius: an overlap that is deeper than the first and grew by more than the second in one
+/// step grows. What solvers that stop early leave is less.
+struct Depths {
+  double deep, grown;
+};
+constexpr Depths kDepths{0.05, 0.01}, kDepthsFast{0.25, 0.05};
+
+const Depths& depths_for(Rung rung) { return rung == Rung::Fast ? kDepthsFast : kDepths; }
+
+/// The scheme looks itself at how much a step errs, and takes smaller ones.
+bool controlled(articulated::Scheme scheme) {
+  return scheme == articulated::Scheme::FehlbergAdaptive || scheme == articulated::Scheme::RungeKutta4;
+}
+
+bool damps_without_limit(const Accuracy& accuracy) {
+  using articulated::Scheme;
+  if (accuracy.implicit_joints &&
+      (accuracy.scheme == Scheme::SemiImplicitEuler || accuracy.scheme == Scheme::ExplicitEuler))
+    return true;
+  return accuracy.scheme == Scheme::ImplicitEuler || accuracy.scheme == Scheme::ImplicitMidpoint;
+}
+
+}  // namespace
+
+BodyIndex Island::not_finite() const {
+  for (const Free& one : free_)
+    if (!one.now.center.allFinite() || !one.now.velocity.allFinite() || !one.now.spin.allFinite() ||
+        !one.now.orientation.coeffs().allFinite())
+      return one.body;
+  for (const Tree* tree : trees_)
+    if (!tree->state.q.allFinite() || !tree->state.v.allFinite()) return tree->links.front().body;
+  return kNoBody;
+}
+
+Island::Trouble Island::judge_residual(double residual, double turnover, double before) const {
+  const double most = accuracy_.rung == Rung::Fast ? kResidualFast : kResidual;
+  if (!(residual > most * turnover + kTiny * std::abs(before))) return {};
+  return {true, GuardReason::Residual, residual, any_body()};
+}
+
+/// What would go wrong in a step of h seconds with the settings as they are, from the state now.
+Island::Trouble Island::foresee(double h) {
+  const double part = accuracy_.step > 0 ? std::min(accuracy_.step, h) : h;
+  Trouble worst = fastest_turn(part);
+  if (worst.value > kMostTurn) return worst;
+  worst = strongest_damper(part);
+  return worst.value > kMostDamping ? worst : Trouble{};
+}
+
+Island::Trouble Island::fastest_turn(double h) const {
+  Trouble worst{true, GuardReason::FastTurn, 0, kNoBody};
+  const auto look = [&worst, h](double spin, BodyIndex body) {
+    if (spin * h > worst.value) worst.value = spin * h, worst.body = body;
+  };
+  // A round body turns exactly, and a scheme with step control takes what steps it needs.
+  for (const Free& one : free_)
+    if (!one.now.solid->round && (accuracy_.implicit_spin || !controlled(accuracy_.scheme)))
+      look(one.now.spin.norm(), one.body);
+  if (controlled(accuracy_.scheme)) return worst;
+  for (Tree* tree : trees_) {
+    articulated::forward_kinematics(tree->model, tree->data, tree->state);
+    for (std::size_t i = 0; i < tree->links.size(); ++i)
+      look(articulated::spin(tree->data, static_cast<int>(i)).norm(), tree->links[i].body);
+  }
+  return worst;
+}
+
+Island::Trouble Island::strongest_damper(double h) const {
+  Trouble worst{true, GuardReason::FastDamping, 0, kNoBody};
+  if (controlled(accuracy_.scheme)) return worst;
+  const auto look = [&worst, h](double rate, BodyIndex body) {
+    if (rate * h > worst.value) worst.value = rate * h, worst.body = body;
+  };
+  if (!damps_without_limit(accuracy_))
+    for (const Tree* tree : trees_)
+      for (const TreeLink& link : tree->links)
+        if (link.joint != kNoJoint && link.gain_unit > 0)
+          look(core_.joints[link.joint].drive.damping / link.gain_unit, link.body);
+  if (accuracy_.scheme == articulated::Scheme::ImplicitMidpoint ||
+      accuracy_.scheme == articulated::Scheme::ImplicitEuler)
+    return worst;
+  // A Spring's damper is explicit wherever the whole scheme is.
+  for (const Clustered& one : clusters_)
+    for (const SpringIndex tie : one.entry->ties) {
+      const SpringDescription& is = core_.springs[tie].is;
+      double yields = 0;
+      for (const BodyIndex body : {is.a, is.b})
+        if (core_.bodies->dynamic(body)) yields += 1 / core_.bodies->mass(body);
+      look(is.damping * yields, core_.bodies->dynamic(is.a) ? is.a : is.b);
+    }
+  return worst;
+}
+
+/// After the rows of a sub-step of h seconds were solved: notes pairs that are deep, or will be if they move on as they
+/// do, to be looked at when the step is over.
+void Island::note_overlaps(double h) {
+  if (core_.settings.guard == GuardMode::Off) return;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const Touch& touch = touches_[i];
+    const double deep = depths_for(accuracy_.rung).deep * size_of_pair(*pairs_[touch.pair]);
+    if (touch.gap > 0 && rows_[i].impulse[0] > 0) continue;  // it is stopped before it overlaps
+    const double rate = rate_of(rows_[i], true)[0] - rate_of(rows_[i], false)[0];
+    if (touch.gap + h * std::min(rate, 0.0) > -deep) continue;
+    const auto same = [&touch](const Overlap& one) { return one.pair == touch.pair; };
+    if (std::none_of(overlaps_.begin(), overlaps_.end(), same))
+      overlaps_.push_back({touch.pair, std::max(-touch.gap, 0.0)});
+  }
+}
+
+Island::Trouble Island::measure_overlaps() {
+  Trouble worst;
+  if (overlaps_.empty()) return worst;
+  place_links();
+  double most = 0;
+  for (const Overlap& one : overlaps_) {
+    const NearPair& pair = *pairs_[one.pair];
+    const double depth = -closest(*core_.bodies->collision_shape(pair.a), pose_of(pair.a),
+                                  *core_.bodies->collision_shape(pair.b), pose_of(pair.b))
+                              .distance;
+    const double size = size_of_pair(pair);
+    const Depths& limits = depths_for(accuracy_.rung);
+    if (depth < limits.deep * size || depth - one.before < limits.grown * size) continue;
+    if (depth <= most) continue;
+    most = depth;
+    worst = {true, GuardReason::Penetration, depth, core_.bodies->dynamic(pair.a) ? pair.a : pair.b};
+  }
+  return worst;
+}
+
+/// Potential energy in the field of gravity, J.
+double Island::height() {
+  double sum = 0;
+  for (const Free& one : free_) sum -= one.now.solid->mass * core_.settings.gravity.dot(one.now.center);
+  place_links();
+  for (const Tree* tree : trees_) sum += articulated::potential_energy(tree->model, tree->data, core_.settings.gravity);
+  return sum;
+}
+
+}  // namespace breve

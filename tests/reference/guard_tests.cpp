@@ -1,0 +1,192 @@
+// The guard through breve.h: each thing that it watches for, in each of its modes. What is found is an event with
+// reason, action and body, is counted, and the world goes on.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "scenes.hpp"
+
+namespace breve::reference {
+namespace {
+
+constexpr breve_guard kModes[] = {BREVE_GUARD_OFF, BREVE_GUARD_REPORT, BREVE_GUARD_REFINE, BREVE_GUARD_REST};
+
+int count(const std::vector<breve_intervention>& all, const char* reason, const char* action) {
+  int n = 0;
+  for (const breve_intervention& one : all) n += !std::strcmp(one.reason, reason) && !std::strcmp(one.action, action);
+  return n;
+}
+
+struct Watched : World {
+  std::vector<breve_intervention> all;
+  explicit Watched(breve_guard guard, breve_rung rung = BREVE_RUNG_BALANCED) : World(1.0 / 60, rung) {
+    set_guard(guard);
+    set_gravity(Vector3::Zero());
+  }
+  void watch(int steps) {
+    for (int i = 0; i < steps; ++i) {
+      step();
+      const std::vector<breve_intervention> now = interventions();
+      EXPECT_EQ(now.size(), counters().interventions);
+      all.insert(all.end(), now.begin(), now.end());
+    }
+  }
+  /// Reported in `report`, tried again in `refine` and `rest`, not looked at in `off`; `body` is the one that shows it.
+  void expect_refined(breve_guard guard, const char* reason, breve_object body) {
+    EXPECT_EQ(count(all, reason, "reported") > 0, guard == BREVE_GUARD_REPORT) << reason;
+    EXPECT_EQ(count(all, reason, "refined") > 0, guard >= BREVE_GUARD_REFINE) << reason;
+    EXPECT_EQ(count(all, reason, "put to rest"), 0) << reason;
+    expect_body(reason, body);
+  }
+  /// As above, and refining does not help.
+  void expect_ended(breve_guard guard, const char* reason, breve_object body) {
+    const bool reports = guard == BREVE_GUARD_REPORT || guard == BREVE_GUARD_REFINE;
+    EXPECT_EQ(count(all, reason, "reported") > 0, reports) << reason;
+    EXPECT_EQ(count(all, reason, "refined") > 0, guard >= BREVE_GUARD_REFINE) << reason;
+    EXPECT_EQ(count(all, reason, "put to rest") > 0, guard == BREVE_GUARD_REST) << reason;
+    expect_body(reason, body);
+  }
+  void expect_body(const char* reason, breve_object body) {
+    for (const breve_intervention& one : all) {
+      if (std::strcmp(one.reason, reason) != 0) continue;
+      EXPECT_TRUE(same(one.body, body)) << reason;
+      EXPECT_TRUE(std::isfinite(one.value));
+    }
+  }
+};
+
+TEST(Guard, SeesANumberThatIsNotFinite) {
+  for (const breve_guard guard : kModes) {
+    Watched world(guard);
+    const breve_object ball = world.body(sphere(0.5, 1e-3), Vector3::Zero());
+    world.body(sphere(0.5, 1), Vector3(100, 0, 0));
+    world.set_force(ball, Vector3(1e307, 0, 0));
+    world.watch(2);
+    world.expect_ended(guard, "a number is not finite", ball);
+    if (guard != BREVE_GUARD_OFF) {
+      EXPECT_TRUE(world.at(ball).allFinite());
+    }
+  }
+}
+
+TEST(Guard, SeesAnEquationWithoutSolution) {
+  for (const breve_guard guard : {BREVE_GUARD_REPORT, BREVE_GUARD_REFINE, BREVE_GUARD_REST}) {
+    Watched world(guard, BREVE_RUNG_CONSERVING);
+    world.set_gravity(Vector3(0, -1e6, 0));
+    const Chain chain = hang(world, {1, 1}, {1, 1});
+    start(world, chain, {0.5, 1}, {0, 0});
+    world.watch(1);
+    world.expect_refined(guard, "an equation of the step has no solution that is found", chain.links[0]);
+  }
+}
+
+TEST(Guard, SeesEnergyFromNowhere) {
+  for (const breve_guard guard : kModes) {
+    Watched world(guard);
+    world.set_integrator(BREVE_EXPLICIT_EULER);
+    const Chain chain = hang(world, {1}, {1});
+    breve_joint_drive drive = world.drive(chain.joints[0]);
+    drive.stiffness = 10 * (1.0 / 3) * 3600;  // k h^2 / I = 10
+    world.set_drive(chain.joints[0], drive);
+    start(world, chain, {0.1}, {0});
+    const double begin = world.mechanical();
+    world.watch(10);
+    world.expect_refined(guard, "energy appears that no account explains", chain.links[0]);
+    EXPECT_EQ(world.mechanical() > 2 * begin, guard <= BREVE_GUARD_REPORT);
+  }
+}
+
+/// A plate that no force moves presses a ball into the floor.
+TEST(Guard, SeesAnOverlapThatGrows) {
+  for (const breve_guard guard : kModes) {
+    Watched world(guard);
+    world.fixed(box(Vector3(10, 1, 10), 1), Vector3(0, -0.5, 0));
+    const breve_object ball = world.body(sphere(0.5, 1), Vector3(0, 0.5, 0));
+    const breve_object plate = world.fixed(box(Vector3(10, 1, 10), 1), Vector3(0, 1.5, 0));
+    for (int i = 1; i < 8; ++i) {
+      world.place(plate, Vector3(0, 1.5 - 0.1 * i, 0), Quaternion::Identity());
+      world.watch(1);
+    }
+    world.expect_ended(guard, "an overlap grows", ball);
+    EXPECT_TRUE(world.at(ball).allFinite());
+  }
+}
+
+TEST(Guard, SeesABodyThatTurnsTooFar) {
+  for (const breve_guard guard : kModes) {
+    Watched world(guard);
+    const breve_object fast = world.body(box(Vector3(1, 2, 3), 1), Vector3::Zero());
+    world.set_spin(fast, Vector3(1, 40, 2));
+    const breve_object slow = world.body(box(Vector3(1, 2, 3), 1), Vector3(10, 0, 0));
+    world.set_spin(slow, Vector3(1, 29, 2));
+    const breve_object round = world.body(sphere(1, 1), Vector3(20, 0, 0));
+    world.set_spin(round, Vector3(1, 400, 2));
+    world.watch(1);
+    world.expect_refined(guard, "a body turns too far in one sub-step", fast);
+    EXPECT_EQ(world.counters().sub_steps, guard >= BREVE_GUARD_REFINE ? 6U : 3U);
+    if (guard != BREVE_GUARD_OFF) {
+      EXPECT_NEAR(world.all.front().value, std::hypot(1, 40, 2) / 60, 1e-12);
+    }
+  }
+}
+
+TEST(Guard, SeesADamperThatIsTooStrong) {
+  for (const breve_guard guard : kModes) {
+    for (const double strength : {0.9, 4.0}) {
+      Watched world(guard);
+      world.set_integrator(BREVE_VELOCITY_VERLET);
+      const Chain chain = hang(world, {1}, {1});
+      breve_joint_drive drive = world.drive(chain.joints[0]);
+      drive.damping = strength * (1.0 / 3) * 60;  // c h / I for the rod about its end
+      world.set_drive(chain.joints[0], drive);
+      start(world, chain, {0}, {1});
+      world.watch(1);
+      if (strength < 1) {
+        for (const breve_intervention& one : world.all)
+          EXPECT_STRNE(one.reason, "a damper is too strong for the sub-step");
+        continue;
+      }
+      world.expect_refined(guard, "a damper is too strong for the sub-step", chain.links[0]);
+      if (guard != BREVE_GUARD_OFF) {
+        EXPECT_NEAR(world.all.front().value, strength, 1e-9);
+      }
+      if (guard >= BREVE_GUARD_REFINE) {
+        EXPECT_NEAR(world.read(chain.joints[0]).velocity[0], std::exp(-strength), 0.02);
+      }
+    }
+  }
+}
+
+TEST(Guard, SeesMoreImpactsThanAreLocated) {
+  for (const breve_guard guard : kModes) {
+    Watched world(guard);
+    breve_accuracy accuracy = world.accuracy();
+    accuracy.impacts = 1;
+    world.set_accuracy(accuracy);
+    for (const double x : {-1.01, 1.01})
+      world.set_material(world.fixed(box(Vector3(1, 1, 1), 1), Vector3(x, 0, 0)), 0, 1);
+    const breve_object ball = world.body(sphere(0.5, 1), Vector3::Zero());
+    world.set_material(ball, 0, 1);
+    world.set_velocity(ball, Vector3(5, 0, 0));
+    world.watch(1);
+    EXPECT_EQ(count(world.all, "more impacts in one sub-step than are located", "reported"), guard ? 1 : 0);
+    world.expect_body("more impacts in one sub-step than are located", ball);
+  }
+}
+
+/// What the guard takes is in the ledger, too.
+TEST(Guard, RestIsInTheLedger) {
+  Watched world(BREVE_GUARD_REST);
+  const breve_object ball = world.body(sphere(0.5, 1e-3), Vector3::Zero());
+  world.set_velocity(ball, Vector3(0, 3, 0));
+  const breve_energy before = world.energy();
+  world.set_force(ball, Vector3(1e307, 0, 0));
+  world.watch(1);
+  const breve_energy after = world.energy();
+  EXPECT_EQ(world.velocity(ball), Vector3::Zero());
+  EXPECT_NEAR(after.residual - before.residual, -before.kinetic, 1e-15);
+}
+
+}  // namespace
+}  // namespace breve::reference
