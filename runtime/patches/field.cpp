@@ -59,7 +59,7 @@ std::size_t Field::at(int x, int y, int z) const {
 }
 
 void Field::check_same_size(const Field& other, const char* what) const {
-  if (other.dimensions_ == dimensions_ && other.nx_ == nx_ && other.ny_ == ny_ && other.nz_ == nz_) return;
+  if (same_size(other)) return;
   throw Error(ErrorCode::Argument, fmt::format("cannot {} a matrix of {} and one of {}: the sizes must agree", what,
                                                size_text(), other.size_text()));
 }
@@ -77,6 +77,12 @@ void Field::subtract(const Field& other, double factor) {
 void Field::multiply(const Field& other) {
   check_same_size(other, "multiply");
   array() *= other.values();
+}
+
+void Field::add_product(const Field& a, const Field& b, double factor) {
+  check_same_size(a, "add the product of");
+  check_same_size(b, "add the product of");
+  array() += factor * a.values() * b.values();
 }
 
 void Field::copy(const Field& other) {
@@ -97,7 +103,7 @@ double Field::max() const {
 }
 
 template <bool kPeriodic>
-void Field::laplacian(const Field& other, double factor) {
+void Field::laplacian(const Field& other, double factor, bool added) {
   check_same_size(other, "diffuse");
   const auto from = other.values();
   std::pmr::vector<double> scratch(values_.size(), values_.get_allocator());
@@ -119,11 +125,16 @@ void Field::laplacian(const Field& other, double factor) {
   along(nx_, static_cast<Eigen::Index>(ny_) * nz_);
   if (dimensions_ > 1) along(ny_, nz_);
   if (dimensions_ > 2) along(nz_, 1);
-  array() = factor * sum;
+  if (added)
+    array() += factor * sum;
+  else
+    array() = factor * sum;
 }
 
-void Field::diffuse(const Field& other, double factor) { laplacian<false>(other, factor); }
-void Field::diffuse_periodic(const Field& other, double factor) { laplacian<true>(other, factor); }
+void Field::diffuse(const Field& other, double factor) { laplacian<false>(other, factor, false); }
+void Field::diffuse_periodic(const Field& other, double factor) { laplacian<true>(other, factor, false); }
+void Field::spread(double factor) { laplacian<false>(*this, factor, true); }
+void Field::spread_periodic(double factor) { laplacian<true>(*this, factor, true); }
 
 void Field::transform(const Field& matrix, Field& result) const {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

@@ -35,6 +35,13 @@ class Field {
   int nz() const { return nz_; }  // 1 for a line or a plane
   std::size_t size() const { return values_.size(); }
   Eigen::Map<const Eigen::ArrayXd> values() const { return {values_.data(), length()}; }
+  bool same_size(const Field& other) const {
+    return other.dimensions_ == dimensions_ && other.nx_ == nx_ && other.ny_ == ny_ && other.nz_ == nz_;
+  }
+  /// Take `values`, as many as are here; if they lie in the same memory, in exchange for those.
+  void swap_values(std::pmr::vector<double>& values) {
+    values.get_allocator() == values_.get_allocator() ? values_.swap(values) : void(values_ = values);
+  }
 
   // Elements; an index out of range is named in the error.
   double get(int x, int y = 0, int z = 0) const { return values_[at(x, y, z)]; }
@@ -47,6 +54,7 @@ class Field {
   void add(const Field& other, double factor = 1);
   void subtract(const Field& other, double factor = 1);
   void multiply(const Field& other);  // element by element
+  void add_product(const Field& a, const Field& b, double factor = 1);
   void copy(const Field& other);
 
   double absolute_sum() const;  // in the order of the elements: the same on every machine
@@ -55,6 +63,10 @@ class Field {
   /// this = factor * (sum of the 2 d neighbours - 2 d * other), d dimensions. `other` may be this field.
   void diffuse(const Field& other, double factor = 1);           // outside is 0
   void diffuse_periodic(const Field& other, double factor = 1);  // edges wrap, for every size
+
+  /// this += factor * its own Laplacian, as above.
+  void spread(double factor);
+  void spread_periodic(double factor);
 
   /// result = matrix * this. For a plane this is the product of matrices with x as row and y as column; for a line the
   /// product with a column. `result` must have the sizes of the product and may be either operand.
@@ -78,7 +90,7 @@ class Field {
   void check_same_size(const Field& other, const char* what) const;
   std::string size_text() const;
   template <bool kPeriodic>
-  void laplacian(const Field& other, double factor);
+  void laplacian(const Field& other, double factor, bool added);
 
   int dimensions_, nx_, ny_, nz_;
   std::pmr::vector<double> values_;

@@ -37,6 +37,19 @@ inline void multiply_with_values(Machine& machine, Instance& self, Instance* oth
   own_field(machine, self).multiply(field_of(machine, other, "multiply-with-values"));
 }
 
+inline void add_product(Machine& machine, Instance& self, Instance* first, Instance* second, double factor) {
+  const Field& a = field_of(machine, first, "add-product");
+  own_field(machine, self).add_product(a, field_of(machine, second, "add-product"), factor);
+}
+
+inline void diffuse_in_place(Machine& machine, Instance& self, double factor) {
+  own_field(machine, self).spread(factor);
+}
+
+inline void diffuse_periodically(Machine& machine, Instance& self, double factor) {
+  own_field(machine, self).spread_periodic(factor);
+}
+
 /// Takes the other's size as well.
 inline void copy(Machine& machine, Instance& self, Instance* other) {
   const Field& source = field_of(machine, other, "copy");

@@ -7,6 +7,7 @@
 #include "runtime/world/camera.hpp"
 #include "runtime/world/drawing.hpp"
 #include "runtime/world/menu.hpp"
+#include "steve/library/grids.hpp"
 #include "steve/library/joints.hpp"
 #include "steve/library/resources.hpp"
 
@@ -43,13 +44,6 @@ constexpr std::string_view kLaterClasses[] = {"BraitenbergControl",
                                               "NetworkServer",
                                               "NetworkServers",
                                               "NeuralNetwork",
-                                              "Patch",
-                                              "PatchChemical",
-                                              "PatchGrid",
-                                              "PatchGrids",
-                                              "PatchToroid",
-                                              "PatchToroids",
-                                              "Patches",
                                               "PushClusterGP",
                                               "PushDiversityPool",
                                               "PushGP",
@@ -73,11 +67,12 @@ struct Kind {
   ResourceLoader loader;
 };
 constexpr Kind kKinds[] = {
-    {CameraResource::kKind, &CameraResource::load},   {MenuItemResource::kKind, &MenuItemResource::load},
-    {DrawingResource::kKind, &DrawingResource::load}, {LineResource::kKind, &LineResource::load},
-    {ShapeResource::kKind, &ShapeResource::load},     {ImageResource::kKind, &ImageResource::load},
-    {FieldResource::kKind, &FieldResource::load},     {JointResource::kKind, &JointResource::load},
-    {SpringResource::kKind, &SpringResource::load},
+    {CameraResource::kKind, &CameraResource::load},     {MenuItemResource::kKind, &MenuItemResource::load},
+    {DrawingResource::kKind, &DrawingResource::load},   {LineResource::kKind, &LineResource::load},
+    {ShapeResource::kKind, &ShapeResource::load},       {ImageResource::kKind, &ImageResource::load},
+    {FieldResource::kKind, &FieldResource::load},       {JointResource::kKind, &JointResource::load},
+    {SpringResource::kKind, &SpringResource::load},     {GridResource::kKind, &GridResource::load},
+    {ReactionResource::kKind, &ReactionResource::load},
 };
 
 /// Is `word` one of the space-separated words of `list`?

@@ -71,11 +71,6 @@ void space_copy_slice(Machine& machine, Instance& self, std::int32_t z, Instance
   copy_plane(machine, field, z, target, factor, C);
 }
 
-/// There is no object of class PatchGrid before that class is there: the argument cannot be one.
-void space_copy_to_grid(Machine&, Instance&, Instance*, double) {
-  Machine::fail(RunErrorKind::UnknownClass, "class PatchGrid is part of a later version");
-}
-
 constexpr Native kMatrixNatives[] = {
     native<plane_set_size>("matrix2d.init-with"),
     native<plane_set_size>("matrix2d.set-size"),
@@ -93,6 +88,9 @@ constexpr Native kMatrixNatives[] = {
     native<fields::multiply_with_values>("matrix2d.multiply-with-values"),
     native<fields::transform>("matrix2d.transform"),
     native<fields::copy>("matrix2d.copy"),
+    native<fields::add_product>("matrix2d.add-product"),
+    native<fields::diffuse_in_place>("matrix2d.diffuse"),
+    native<fields::diffuse_periodically>("matrix2d.diffuse-periodically"),
     native<fields::compute_diffusion>("matrix2d.compute-diffusion-matrix"),
     native<fields::compute_periodic_diffusion>("matrix2d.compute-periodic-diffusion-matrix"),
     native<plane_copy_to_channel<Channel::Red>>("matrix2d.copy-to-red-channel"),
@@ -111,16 +109,15 @@ constexpr Native kMatrixNatives[] = {
     native<fields::subtract_values>("matrix3d.subtract-values"),
     native<fields::multiply_with_values>("matrix3d.multiply-with-values"),
     native<fields::copy>("matrix3d.copy"),
+    native<fields::add_product>("matrix3d.add-product"),
+    native<fields::diffuse_in_place>("matrix3d.diffuse"),
+    native<fields::diffuse_periodically>("matrix3d.diffuse-periodically"),
     native<fields::compute_diffusion>("matrix3d.compute-diffusion-matrix"),
     native<fields::compute_periodic_diffusion>("matrix3d.compute-periodic-diffusion-matrix"),
     native<space_copy_slice<Channel::Red>>("matrix3d.copy-slice-to-red-channel"),
     native<space_copy_slice<Channel::Green>>("matrix3d.copy-sliced-to-green-channel"),
     native<space_copy_slice<Channel::Blue>>("matrix3d.copy-slice-to-blue-channel"),
     native<space_copy_slice<Channel::Alpha>>("matrix3d.copy-slice-to-alpha-channel"),
-    native<space_copy_to_grid>("matrix3d.copy-to-red-channel"),
-    native<space_copy_to_grid>("matrix3d.copy-to-green-channel"),
-    native<space_copy_to_grid>("matrix3d.copy-to-blue-channel"),
-    native<space_copy_to_grid>("matrix3d.copy-to-alpha-channel"),
 };
 
 }  // namespace

@@ -7,7 +7,7 @@ namespace breve::steve {
 
 namespace {
 
-constexpr std::size_t kMaxNatives = 768;
+constexpr std::size_t kMaxNatives = 1024;
 
 /// One array made of all tables. Filled once, then constant: a table of addresses, the same for every world.
 struct Joined {
@@ -20,7 +20,8 @@ struct Joined {
           camera_natives(),  real_natives(),     look_natives(),    mobile_natives(),   shape_natives(),
           image_natives(),   menu_natives(),     drawing_natives(), data_natives(),     matrix_natives(),
           vector_natives(),  joint_natives(),    spring_natives(),  assembly_natives(), accuracy_natives(),
-          terrain_natives(), mesh_natives()})
+          terrain_natives(), mesh_natives(),     patch_natives(),   grid_natives(),     cell_natives(),
+          agent_natives(),   reaction_natives()})
       for (const Native& native : table) natives.at(count++) = native;
   }
 };

@@ -35,4 +35,19 @@ std::unique_ptr<Resource> FieldResource::load(ByteReader& in) {
   return resource;
 }
 
+void ReactionResource::save(ByteWriter& out) const {
+  out.put(reaction.has_value());
+  if (reaction) reaction->save(out);
+}
+
+void ReactionResource::hash(Hasher& hasher) const {
+  if (reaction) reaction->hash(hasher);
+}
+
+std::unique_ptr<Resource> ReactionResource::load(ByteReader& in) {
+  auto resource = make_in<ReactionResource>(in.memory());
+  if (in.get_bool()) resource->reaction = Reaction::load(in);
+  return resource;
+}
+
 }  // namespace breve::steve

@@ -1,10 +1,11 @@
-// The native data behind Shape, Matrix2D, Matrix3D and Vector objects.
+// The native data behind Shape, Matrix2D, Matrix3D, Vector and Reaction objects.
 #pragma once
 
 #include <memory>
 #include <optional>
 
 #include "runtime/patches/field.hpp"
+#include "runtime/patches/reaction.hpp"
 #include "runtime/solid/shape.hpp"
 #include "runtime/world/resource.hpp"
 
@@ -28,6 +29,18 @@ class FieldResource final : public Resource {
  public:
   static constexpr std::string_view kKind = "field";
   std::optional<Field> field;  // none until sized
+
+  std::string_view kind() const override { return kKind; }
+  void save(ByteWriter& out) const override;
+  void hash(Hasher& hasher) const override;
+  static std::unique_ptr<Resource> load(ByteReader& in);
+};
+
+/// A Reaction object.
+class ReactionResource final : public Resource {
+ public:
+  static constexpr std::string_view kKind = "reaction";
+  std::optional<Reaction> reaction;  // none until its matrices are named
 
   std::string_view kind() const override { return kKind; }
   void save(ByteWriter& out) const override;

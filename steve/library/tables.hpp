@@ -29,5 +29,10 @@ std::span<const Native> assembly_natives();
 std::span<const Native> accuracy_natives();
 std::span<const Native> terrain_natives();
 std::span<const Native> mesh_natives();
+std::span<const Native> patch_natives();
+std::span<const Native> grid_natives();
+std::span<const Native> cell_natives();
+std::span<const Native> agent_natives();
+std::span<const Native> reaction_natives();
 
 }  // namespace breve::steve

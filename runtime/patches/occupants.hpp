@@ -1,0 +1,74 @@
+// Agents on the cells of a grid: who stands where, which cells are free. Every operation is O(1) but the searches.
+#pragma once
+
+#include <cstdint>
+#include <memory_resource>
+#include <vector>
+
+#include "runtime/base/ids.hpp"
+#include "runtime/base/random.hpp"
+#include "runtime/patches/grid.hpp"
+
+namespace breve {
+
+/// The agents of one cell form a ring, in order of arrival. Free cells stand in an array, so that a random one is drawn
+/// without trying.
+class Occupants {
+ public:
+  using Place = std::uint32_t;  // of an agent in the tables
+  static constexpr Place kNoPlace = 0xffffffffU;
+
+  struct Agent {
+    ObjectId id;  // null: the place is not in use
+    CellIndex cell = kNoCell;
+    Place before = kNoPlace, after = kNoPlace;  // in the ring of its cell
+  };
+
+  explicit Occupants(std::pmr::memory_resource* memory)
+      : first_(memory), agents_(memory), unused_(memory), free_(memory), place_of_free_(memory), counts_(memory) {}
+
+  bool made() const { return !first_.empty(); }
+  void make(const Grid& grid);  // tables for its cells; nothing if they are there
+  /// How many agents a cell holds at most; 0: any number. What is too many already stays.
+  void set_capacity(std::uint32_t capacity) { capacity_ = capacity; }
+  std::uint32_t capacity() const { return capacity_; }
+  std::uint32_t count(CellIndex cell) const { return counts_[cell]; }
+  bool has_room(CellIndex cell) const { return capacity_ == 0 || counts_[cell] < capacity_; }
+  std::size_t agents() const { return agents_.size() - unused_.size(); }
+  std::size_t free_cells() const { return free_.size(); }  // cells without any agent
+
+  /// A new agent in a cell. @throws std::bad_alloc, and nothing has changed then
+  Place enter(ObjectId id, CellIndex cell);
+  void leave(Place place);
+  void move(Place place, CellIndex to);
+  /// Is this agent still there?
+  bool holds(Place place, ObjectId id) const { return place < agents_.size() && id && agents_[place].id == id; }
+  const Agent& agent(Place place) const { return agents_[place]; }
+  std::size_t places() const { return agents_.size(); }
+  Place first(CellIndex cell) const { return first_[cell]; }
+  /// The next agent of the same cell; kNoPlace behind the last.
+  Place next(Place place) const {
+    const Agent& a = agents_[place];
+    return a.after == first_[a.cell] ? kNoPlace : a.after;
+  }
+  /// A cell without any agent, each equally likely; kNoCell if there is none.
+  CellIndex random_free(Random& random) const;
+
+  void save(ByteWriter& out) const;
+  void load(ByteReader& in, const Grid& grid);  // Error{Image}
+  void hash(Hasher& hasher) const;
+
+ private:
+  void link(Place place, CellIndex cell);
+  void unlink(Place place);
+
+  std::uint32_t capacity_ = 1;
+  std::pmr::vector<Place> first_;  // by cell
+  std::pmr::vector<Agent> agents_;
+  std::pmr::vector<Place> unused_;             // last left, first used again
+  std::pmr::vector<CellIndex> free_;           // cells without agents
+  std::pmr::vector<CellIndex> place_of_free_;  // by cell: where it stands in free_
+  std::pmr::vector<std::uint32_t> counts_;     // by cell
+};
+
+}  // namespace breve
