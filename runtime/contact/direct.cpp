@@ -24,7 +24,6 @@ constexpr int kFirstCentres = 4, kLastCentres = 10;
 // How near Newton's method is tried again, of the speed that the rows have to stop. The first is often enough, and
 // what is redundant then shares its loads evenly.
 constexpr double kNear[] = {1e-3, 1e-6, 0};
-constexpr double kLastDigits = 0.02;  // of the tolerance: what is far from its solution all the same is found
 // How much stiffer than its own response a row is towards its centre: the higher, the fewer centres do, and the nearer
 // to the solution the first one has to be. A box whose corners are off by 1e-6 of what its weight does in a step shares
 // its load only at 1e6.
@@ -50,14 +49,12 @@ double attainable(const Workspace& work, double tolerance) { return tolerance + 
 /// Centres from the impulses of the island: stiffer while that goes well, softer where it does not.
 /// @param most      centres
 /// @param failures  as many may come to nothing
-/// @param goal      part of the tolerance where to stop; what is within the tolerance goes on while that helps at once
 /// @param left      the violation; in and out
 /// @return          whether it is within the tolerance; the island is at the best centre in any case
-bool approach(Newton& newton, const Workspace& work, double stiffness, int most, int failures, double goal,
-              double tolerance, int& solves, double& left) {
+bool approach(Newton& newton, const Workspace& work, double stiffness, int most, int failures, double tolerance,
+              int& solves, double& left) {
   newton.begin();
   newton.keep();
-  bool good = false;
   // Round-off of velocities, this much larger in the impulses, is not to be seen.
   const double stiffest = std::min(kMostStiffness, attainable(work, tolerance) / (kRoundOff * largest_change(work)));
   stiffness = std::clamp(stiffness, kLeastStiffness, stiffest);
@@ -68,8 +65,7 @@ bool approach(Newton& newton, const Workspace& work, double stiffness, int most,
       const bool fast = now < 0.03 * left;
       left = now;
       newton.keep();
-      good = left <= attainable(work, tolerance);
-      if (left <= goal * attainable(work, tolerance)) return true;
+      if (left <= attainable(work, tolerance)) return true;
       if (settled) {
         stiffness = std::min(stiffest, stiffness * (fast ? 3 : 100));
         continue;
@@ -77,10 +73,10 @@ bool approach(Newton& newton, const Workspace& work, double stiffness, int most,
     }
     newton.restore();
     stiffness *= 0.1;
-    if (good || --failures < 0 || stiffness < kLeastStiffness) break;
+    if (--failures < 0 || stiffness < kLeastStiffness) break;
   }
   newton.restore();
-  return good;
+  return false;
 }
 
 }  // namespace
@@ -122,14 +118,14 @@ double solve_direct(Workspace& work, double tolerance, int& solves, bool& solved
   double* const start = room + Newton::numbers(rows) + Interior::numbers(rows);
   Newton newton(work, equations, room);
   if (largest_change(work) > 0)
-    solved = approach(newton, work, kFirstStiffness, kFirstCentres, 0, 1, tolerance, solves, best);
+    solved = approach(newton, work, kFirstStiffness, kFirstCentres, 0, tolerance, solves, best);
   if (solved) return best;
   equations.get_impulses(start);
   Interior interior(work, equations, room + Newton::numbers(rows));
   for (const double part : kNear) {
     double left = interior.solve(std::max(part * interior.speed(), attainable(work, tolerance)), solves);
     const double stiffness = 0.5 * largest_change(work) / left;
-    solved = approach(newton, work, stiffness, kLastCentres, part > 0 ? 1 : 2, kLastDigits, tolerance, solves, left) ||
+    solved = approach(newton, work, stiffness, kLastCentres, part > 0 ? 1 : 2, tolerance, solves, left) ||
              left <= attainable(work, tolerance);
     if (left < best) {
       best = left;

@@ -64,14 +64,14 @@ double* Equations::begin(std::size_t numbers) {
   work_.indices.resize(offsets_ + n);
   int widest = 0;
   for (const Packed& mover : work_.movers) widest = std::max(widest, mover.size);
-  work_.columns.resize(static_cast<std::size_t>(widest));
-  columns_ = work_.columns.data();
-  work_.numbers.resize(n * n + 2 * n + rows_ + numbers);
+  const auto width = static_cast<std::size_t>(widest);
+  work_.numbers.resize(n * n + 2 * n + 3 * width + rows_ + numbers);
   double* next = work_.numbers.data();
   const auto take = [&](std::size_t count) { return std::exchange(next, next + count); };
   matrix_ = take(n * n);
   free_ = take(n);
   step_ = take(n);
+  for (double*& columns : columns_) columns = take(width);
   double* const impulses = take(rows_);
   get_impulses(impulses);
   push_impulses(impulses, -1);
@@ -169,13 +169,15 @@ void Equations::add_point(std::size_t point, const Slope& D) {
   for (int y = 0; y < 2; ++y) {
     const Matrices& J = sides[y];
     const int column = work_.indices[static_cast<std::size_t>(movers[y])];
-    // A point of a tree moves with the joints between it and the root: the other columns are zero.
+    // A point of a tree moves with the joints between it and the root: the columns behind them are zero.
+    double *const n = columns_[0], *const t1 = columns_[1], *const t2 = columns_[2];
     int count = 0;
     for (int k = 0; k < J.size; ++k) {
-      const double n = J.j[k], t1 = J.j[J.size + k], t2 = J.j[2 * J.size + k];
-      if (n == 0 && t1 == 0 && t2 == 0) continue;
-      columns_[count++] = {column + k, D.nn * n + D.n1 * t1 + D.n2 * t2, D.t1n * n + D.t11 * t1 + D.t12 * t2,
-                           D.t2n * n + D.t21 * t1 + D.t22 * t2};
+      const double j0 = J.j[k], j1 = J.j[J.size + k], j2 = J.j[2 * J.size + k];
+      n[k] = D.nn * j0 + D.n1 * j1 + D.n2 * j2;
+      t1[k] = D.t1n * j0 + D.t11 * j1 + D.t12 * j2;
+      t2[k] = D.t2n * j0 + D.t21 * j1 + D.t22 * j2;
+      if (j0 != 0 || j1 != 0 || j2 != 0) count = k + 1;
     }
     for (int x = 0; x < 2; ++x) {
       const Matrices& R = sides[x];
@@ -183,11 +185,8 @@ void Equations::add_point(std::size_t point, const Slope& D) {
       const double sign = x == y ? 1 : -1;
       for (int i = 0; i < R.size; ++i) {
         const double r0 = sign * R.r[i], r1 = sign * R.r[R.size + i], r2 = sign * R.r[2 * R.size + i];
-        double* line = &entry(row + i, 0);
-        for (int k = 0; k < count; ++k) {
-          const Column& at = columns_[k];
-          line[at.place] += r0 * at.n + r1 * at.t1 + r2 * at.t2;
-        }
+        double* __restrict line = &entry(row + i, column);
+        for (int k = 0; k < count; ++k) line[k] += r0 * n[k] + r1 * t1[k] + r2 * t2[k];
       }
     }
   }

@@ -42,9 +42,9 @@ class Equations {
 
   Workspace& work_;
   std::size_t rows_, offsets_ = 0;
-  int size_ = 0;               // numbers in v
-  Column* columns_ = nullptr;  // of the row that is added
+  int size_ = 0;  // numbers in v
   double *matrix_ = nullptr, *free_ = nullptr, *step_ = nullptr;
+  double* columns_[3] = {};  // D J of the row that is added, one side
 };
 
 }  // namespace breve::contact

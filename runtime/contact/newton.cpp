@@ -9,7 +9,7 @@
 namespace breve::contact {
 
 namespace {
-constexpr int kSteps = 12;
+constexpr int kSteps = 6;
 constexpr int kHalvings = 5;  // of a step that makes things worse
 }  // namespace
 

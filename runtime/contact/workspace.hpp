@@ -65,13 +65,6 @@ struct Slope {
   double t11 = 0, t12 = 0, t21 = 0, t22 = 0;
 };
 
-/// A column of a contact's matrix that is not zero: its place among the velocities, and what a change of that velocity
-/// does to the contact's impulse.
-struct Column {
-  int place;
-  double n, t1, t2;
-};
-
 struct Workspace {
   explicit Workspace(std::pmr::memory_resource* memory)
       : movers(memory),
@@ -81,7 +74,6 @@ struct Workspace {
         grips(memory),
         numbers(memory),
         slopes(memory),
-        columns(memory),
         indices(memory),
         order(memory),
         firsts(memory),
@@ -95,7 +87,6 @@ struct Workspace {
   std::pmr::vector<Grip> grips;
   std::pmr::vector<double> numbers;  // of the direct solver
   std::pmr::vector<Slope> slopes;
-  std::pmr::vector<Column> columns;
   std::pmr::vector<int> indices;
   std::pmr::vector<int> order, firsts;  // of impacts in groups
   std::pmr::vector<double> saved, earlier, biases;
