@@ -1,16 +1,18 @@
-// The centres of the direct solver: a proximal method around Newton's.
+// The course of the direct solver: near the last step's impulses Newton's method; else the interior-point method, then
+// Newton's for the last digits.
 //
-// An exact law has no derivative where bodies touch at more points than they need, so each row is given the law
-// p = project(centre - stiffness * error), which is exact once the centre is the impulse itself. For a fixed centre,
-// v = v* + R p(J v) is a system as large as the number of velocities, however many contacts there are, and its
-// derivative I + R D J is regular. A few steps solve it; then the impulses are the next centre. Redundant contacts
-// share a load as their warm start did. Sources: Rockafellar 1976 (the proximal point algorithm); Alart and Curnier
-// 1991 (projections and their derivatives); Acary, Cadoux, Lemarechal and Malick 2011 (a series of convex problems).
+// An exact law has no derivative where bodies touch at more points than they need, so Newton's method is given rows
+// with the law p = project(centre - stiffness * error), which is exact once the centre is the impulse itself. For a
+// fixed centre, v = v* + R p(J v) is a system as large as the number of velocities, however many contacts there are,
+// and its derivative I + R D J is regular. A few steps solve it; then the impulses are the next centre. Redundant
+// contacts share a load as the impulses did that it began with. Sources: Rockafellar 1976 (the proximal point
+// algorithm); Alart and Curnier 1991 (projections and their derivatives).
 #include "runtime/contact/direct.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/contact/interior.hpp"
 #include "runtime/contact/newton.hpp"
 #include "runtime/contact/pack.hpp"
 
@@ -18,55 +20,62 @@ namespace breve::contact {
 
 namespace {
 
-constexpr int kCentres = 30;
-constexpr int kFinalCentres = 8;
-// How much stiffer than its own response a row is towards its centre: high enough that few centres do, low enough that
-// round-off of velocities, this much larger in the impulses, does no harm.
-constexpr double kStiffness = 1e3, kLeastStiffness = 0.1, kMostStiffness = 1e5;
+constexpr int kFirstCentres = 4, kLastCentres = 10;
+// How near Newton's method is tried again, of the speed that the rows have to stop. The first is often enough, and
+// what is redundant then shares its loads evenly.
+constexpr double kNear[] = {1e-3, 1e-6, 0};
+// How much stiffer than its own response a row is towards its centre: the higher, the fewer centres do, and the nearer
+// to the solution the first one has to be. A box whose corners are off by 1e-6 of what its weight does in a step shares
+// its load only at 1e6.
+constexpr double kFirstStiffness = 1e3, kLeastStiffness = 0.1, kMostStiffness = 1e8;
+constexpr double kRoundOff = 1e-15;  // of velocities at rows, per unit
 
 /// Impulses that stop fast or heavy bodies are not known better than to this share of what they change.
 constexpr double kRelative = 2e-11;
 
-double attainable(const Workspace& work, double tolerance) {
+}  // namespace
+
+double largest_change(const Workspace& work) {
   double largest = 0;
   for (const Point& c : work.points) largest = std::max(largest, c.impulse[0] * c.response.nn);
   for (const PackedScalar& row : work.scalars) largest = std::max(largest, std::abs(row.impulse) * row.response);
-  return tolerance + kRelative * largest;
+  return largest;
 }
 
-/// Centres of the convex law; each time a few of Coulomb's law from there, which converge at once when they are near.
-bool run(Newton& newton, const Workspace& work, double tolerance, int& solves, double& best) {
-  const auto done = [&](double left) {
-    if (!(left < best)) return false;
-    best = left;
-    newton.keep_best();
-    return best <= attainable(work, tolerance);
-  };
-  double base = kStiffness, before = best;
-  for (int centre = 0; centre < kCentres; ++centre) {
-    newton.keep();
-    if (!newton.settle(Around::Convex, base, tolerance, solves)) {
-      newton.restore();
-      base *= 0.1;
-      if (base < kLeastStiffness) return false;
-      continue;
-    }
-    double last = newton.take();
-    if (done(last)) return true;
-    newton.keep();
-    if (last > 0.3 * before) base = std::min(kMostStiffness, base * 10);
-    before = last;
-    double stiffness = base;
-    for (int k = 0; k < kFinalCentres; ++k) {
-      newton.settle(Around::Coulomb, stiffness, tolerance, solves);
-      const double left = newton.take();
-      if (done(left)) return true;
-      if (!(left < 0.5 * last)) break;
-      if (left > 0.03 * last) stiffness = std::min(kMostStiffness, stiffness * 10);
-      last = left;
+namespace {
+
+double attainable(const Workspace& work, double tolerance) { return tolerance + kRelative * largest_change(work); }
+
+/// Centres from the impulses of the island: stiffer while that goes well, softer where it does not.
+/// @param most      centres
+/// @param failures  as many may come to nothing
+/// @param left      the violation; in and out
+/// @return          whether it is within the tolerance; the island is at the best centre in any case
+bool approach(Newton& newton, const Workspace& work, double stiffness, int most, int failures, double tolerance,
+              int& solves, double& left) {
+  newton.begin();
+  newton.keep();
+  // Round-off of velocities, this much larger in the impulses, is not to be seen.
+  const double stiffest = std::min(kMostStiffness, attainable(work, tolerance) / (kRoundOff * largest_change(work)));
+  stiffness = std::clamp(stiffness, kLeastStiffness, stiffest);
+  for (int i = 0; i < most; ++i) {
+    const bool settled = newton.settle(stiffness, tolerance, solves);
+    const double now = newton.take();
+    if (now < left) {
+      const bool fast = now < 0.03 * left;
+      left = now;
+      newton.keep();
+      if (left <= attainable(work, tolerance)) return true;
+      if (settled) {
+        stiffness = std::min(stiffest, stiffness * (fast ? 3 : 100));
+        continue;
+      }
     }
     newton.restore();
+    stiffness *= 0.1;
+    if (--failures < 0 || stiffness < kLeastStiffness) break;
   }
+  newton.restore();
   return false;
 }
 
@@ -102,11 +111,29 @@ double solve_direct(Workspace& work, double tolerance, int& solves, bool& solved
   double best = violation(work);
   solved = best <= attainable(work, tolerance);
   if (solved) return best;
-  Newton newton(work);
-  if (!newton.fits()) return best;
-  newton.begin();
-  solved = run(newton, work, tolerance, solves, best);
-  newton.restore_best();
+  Equations equations(work);
+  if (!equations.fits()) return best;
+  const std::size_t rows = equations.rows();
+  double* room = equations.begin(Newton::numbers(rows) + Interior::numbers(rows) + rows);
+  double* const start = room + Newton::numbers(rows) + Interior::numbers(rows);
+  Newton newton(work, equations, room);
+  if (largest_change(work) > 0)
+    solved = approach(newton, work, kFirstStiffness, kFirstCentres, 0, tolerance, solves, best);
+  if (solved) return best;
+  equations.get_impulses(start);
+  Interior interior(work, equations, room + Newton::numbers(rows));
+  for (const double part : kNear) {
+    double left = interior.solve(std::max(part * interior.speed(), attainable(work, tolerance)), solves);
+    const double stiffness = 0.5 * largest_change(work) / left;
+    solved = approach(newton, work, stiffness, kLastCentres, part > 0 ? 1 : 2, tolerance, solves, left) ||
+             left <= attainable(work, tolerance);
+    if (left < best) {
+      best = left;
+      equations.get_impulses(start);
+    }
+    if (solved) break;
+  }
+  equations.take(start);
   return best;
 }
 

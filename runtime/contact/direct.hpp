@@ -15,4 +15,7 @@ double solve_direct(Workspace& work, double tolerance, int& solves, bool& solved
 /// By how much the worst row violates its law, m/s: the distance to the projected point of a step of the row alone.
 double violation(const Workspace& work);
 
+/// What the strongest impulse does to the velocity at its row, m/s: what a violation is to be compared with.
+double largest_change(const Workspace& work);
+
 }  // namespace breve::contact

@@ -36,52 +36,8 @@ Slope project(const Point& c, const double centre[3], const double u[3], double 
   slope.t1n = c.friction * slope.nn * x;
   slope.t2n = c.friction * slope.nn * y;
   slope.t11 = turn * y * y;
-  slope.t12 = -turn * x * y;
+  slope.t12 = slope.t21 = -turn * x * y;
   slope.t22 = turn * x * x;
-  return slope;
-}
-
-Slope project_convex(const Point& c, const double centre[3], const double u[3], double lift, double stiffness,
-                     double p[3]) {
-  Slope slope;
-  p[0] = p[1] = p[2] = 0;
-  if (!(c.response.nn > 0)) return slope;
-  const double mu = c.friction;
-  const double rho = stiffness / std::max(c.response.nn, tangential_response(c));
-  const double soft =
-      1 / (1 + rho * c.softness);  // of the normal part; exact while the point sticks or has no friction
-  const double zn = (centre[0] - rho * (u[0] + lift - c.bias)) * soft;
-  if (mu == 0) {
-    if (!(zn > 0)) return slope;
-    p[0] = zn;
-    slope.nn = rho * soft;
-    return slope;
-  }
-  const double z1 = centre[1] - rho * u[1], z2 = centre[2] - rho * u[2];
-  const double length = std::sqrt(z1 * z1 + z2 * z2);
-  if (length <= mu * zn) {
-    p[0] = zn;
-    p[1] = z1;
-    p[2] = z2;
-    slope.nn = rho * soft;
-    slope.t11 = slope.t22 = rho;
-    return slope;
-  }
-  const double share = 1 / (1 + mu * mu), normal = (zn + mu * length) * share;
-  if (!(normal > 0)) return slope;
-  const double x = z1 / length, y = z2 / length;
-  p[0] = normal;
-  p[1] = mu * normal * x;
-  p[2] = mu * normal * y;
-  const double along = rho * share * mu * mu, turn = rho * mu * normal / length;
-  slope.nn = rho * share * soft;
-  slope.n1 = rho * share * mu * x;
-  slope.n2 = rho * share * mu * y;
-  slope.t1n = slope.n1 * soft;
-  slope.t2n = slope.n2 * soft;
-  slope.t11 = along * x * x + turn * y * y;
-  slope.t12 = (along - turn) * x * y;
-  slope.t22 = along * y * y + turn * x * x;
   return slope;
 }
 

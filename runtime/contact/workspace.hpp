@@ -58,11 +58,11 @@ enum class Grip : unsigned char {
   Holds       // static for good
 };
 
-/// A column of a contact's matrix that is not zero: its place among the velocities, and what a change of that velocity
-/// does to the contact's impulse.
-struct Column {
-  int place;
-  double n, t1, t2;
+/// How p depends on the velocity at its contact: dp = -D du.
+struct Slope {
+  double nn = 0, n1 = 0, n2 = 0;
+  double t1n = 0, t2n = 0;  // friction's limit follows the normal impulse
+  double t11 = 0, t12 = 0, t21 = 0, t22 = 0;
 };
 
 struct Workspace {
@@ -73,7 +73,7 @@ struct Workspace {
         scalars(memory),
         grips(memory),
         numbers(memory),
-        columns(memory),
+        slopes(memory),
         indices(memory),
         order(memory),
         firsts(memory),
@@ -86,7 +86,7 @@ struct Workspace {
   std::pmr::vector<PackedScalar> scalars;
   std::pmr::vector<Grip> grips;
   std::pmr::vector<double> numbers;  // of the direct solver
-  std::pmr::vector<Column> columns;
+  std::pmr::vector<Slope> slopes;
   std::pmr::vector<int> indices;
   std::pmr::vector<int> order, firsts;  // of impacts in groups
   std::pmr::vector<double> saved, earlier, biases;

@@ -27,6 +27,7 @@ struct JointEntry {
   bool flipped = false;  // the tree goes from the child to the parent
   bool ring = false;
   JointVector position = Vector3::Zero();  // as last known: whole turns are counted from here
+  JointVector limit = Vector3::Zero();     // impulse of the limits in the last sub-step; > 0: of the lower one
 };
 
 struct SpringEntry {

@@ -295,6 +295,7 @@ void Island::add_bound_row(const Bound& bound) {
   row.ja = j;
   row.ra = r;
   row.hi = JointDrive::kNoLimit;
+  row.impulse = std::max(0.0, bound.sign * joint.limit[bound.axis]);
   scalars_.push_back(row);
   ++result.counters.limits;
 }
@@ -485,6 +486,10 @@ void Island::keep_warm() {
     pair.warm[static_cast<std::size_t>(pair.warm_count++)] = {touches_[i].feature,
                                                               rows_[i].axes.transpose() * rows_[i].impulse};
   }
+  for (const Bound& bound : bounds_) core_.joints[bound.joint].limit[bound.axis] = 0;
+  std::size_t k = 0;
+  for (const Bound& bound : bounds_)
+    if (bound.rests) core_.joints[bound.joint].limit[bound.axis] += bound.sign * scalars_[k++].impulse;
 }
 
 }  // namespace breve

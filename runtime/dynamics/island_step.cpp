@@ -69,7 +69,6 @@ void Island::advance_once(double time, double h) {
   load_velocities();
   set_biases(h);
   for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i].impulse = warm_[i];
-  for (contact::ScalarRow& row : scalars_) row.impulse = 0;
   solve();
   // A force that is constant over the step moves by half of what its change of velocity would.
   correct_works(h);

@@ -67,7 +67,7 @@ void each(const F& f, E& e) requires std::same_as<std::remove_const_t<E>, Energy
 
 template <class F, class J>
 void each(const F& f, J& j) requires std::same_as<std::remove_const_t<J>, JointEntry> {
-  f(j.owner), f(j.serial), f(j.ring), f(j.position);
+  f(j.owner), f(j.serial), f(j.ring), f(j.position), f(j.limit);
   auto& is = j.is;
   f(is.kind), f(is.parent), f(is.child), f(is.parent_point), f(is.child_point), f(is.relative_rotation);
   f(is.normal), f(is.other_axis), f(is.keep_rotation);

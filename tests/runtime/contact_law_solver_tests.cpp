@@ -284,7 +284,22 @@ TEST(DirectSolver, SolvesAlmostAllIslandsWithFrictionThatHaveNothingInCommonWith
     scene.settings = {10, true, 1e-9};
     direct += scene.solve().direct ? 1 : 0;
   }
-  EXPECT_GE(direct, 970);
+  EXPECT_GE(direct, 990);
+}
+
+TEST(DirectSolver, ABoxWhoseCornersAreHardlyOffStandsOnThreeOfThem) {
+  // Corners that may sink by a few micrometres: which of them bears nothing is decided by a millionth of what the
+  // weight does in a step.
+  Scene scene;
+  scene.stack({2}, 0.8);
+  const double room[4] = {0, 9e-6, 3.7e-5, 2.6e-5};
+  for (std::size_t i = 0; i < 4; ++i) scene.rows[i].bias = -room[i];
+  scene.pull({0.1, 0.2, -kGravity}, kStep);
+  scene.settings = {10, true, 1e-9};
+  const SolveReport report = scene.solve();
+  EXPECT_TRUE(report.direct) << report.residual;
+  EXPECT_LE(report.newton, 60);
+  EXPECT_EQ(report.iterations, 0);
 }
 
 TEST(ScalarRows, KeepTheirBoundsAndBiases) {

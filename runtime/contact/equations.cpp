@@ -1,0 +1,215 @@
+// Assembled over the velocities, since there are fewer of them than rows, and solved within the matrix's envelope.
+#include "runtime/contact/equations.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "runtime/contact/elimination.hpp"
+#include "runtime/contact/pack.hpp"
+
+namespace breve::contact {
+
+namespace {
+
+constexpr int kMostVelocities = 1200;  // beyond it the matrix is too large: leave the island to the sweeps
+
+/// One side of a row as matrices: of its own, or made from the arm of a free body.
+struct Matrices {
+  const double *j = nullptr, *r = nullptr;
+  int size = 0;
+  double made[36];
+
+  void read(const Packed& m, const double* own_j, const double* own_r, const Point& c, const double arm[3]) {
+    size = m.place == nullptr ? 0 : m.size;
+    j = own_j;
+    r = own_r;
+    if (j != nullptr || size == 0) return;
+    const double* axes[3] = {c.normal, c.tangent1, c.tangent2};
+    for (int k = 0; k < 3; ++k) {
+      const double* n = axes[k];
+      double* jk = made + 6 * k;
+      double* rk = made + 18 + 6 * k;
+      for (int i = 0; i < 3; ++i) {
+        jk[i] = n[i];
+        rk[i] = m.inverse_mass * n[i];
+      }
+      jk[3] = arm[1] * n[2] - arm[2] * n[1];
+      jk[4] = arm[2] * n[0] - arm[0] * n[2];
+      jk[5] = arm[0] * n[1] - arm[1] * n[0];
+      rk[3] = m.inertia[0] * jk[3] + m.inertia[1] * jk[4] + m.inertia[2] * jk[5];
+      rk[4] = m.inertia[1] * jk[3] + m.inertia[3] * jk[4] + m.inertia[4] * jk[5];
+      rk[5] = m.inertia[2] * jk[3] + m.inertia[4] * jk[4] + m.inertia[5] * jk[5];
+    }
+    j = made;
+    r = made + 18;
+  }
+};
+
+}  // namespace
+
+Equations::Equations(Workspace& work) : work_(work), rows_(3 * work.points.size() + work.scalars.size()) {
+  work.indices.clear();
+  for (const Packed& mover : work.movers) {
+    work.indices.push_back(size_);
+    if (mover.place != nullptr) size_ += mover.size;
+  }
+}
+
+bool Equations::fits() const { return size_ > 0 && size_ <= kMostVelocities; }
+
+double* Equations::begin(std::size_t numbers) {
+  const auto n = static_cast<std::size_t>(size_);
+  offsets_ = work_.indices.size();
+  work_.indices.resize(offsets_ + n);
+  int widest = 0;
+  for (const Packed& mover : work_.movers) widest = std::max(widest, mover.size);
+  const auto width = static_cast<std::size_t>(widest);
+  work_.numbers.resize(n * n + 2 * n + 3 * width + rows_ + numbers);
+  double* next = work_.numbers.data();
+  const auto take = [&](std::size_t count) { return std::exchange(next, next + count); };
+  matrix_ = take(n * n);
+  free_ = take(n);
+  step_ = take(n);
+  for (double*& columns : columns_) columns = take(width);
+  double* const impulses = take(rows_);
+  get_impulses(impulses);
+  push_impulses(impulses, -1);
+  get_velocities(free_);
+  return next;
+}
+
+void Equations::take(const double* q) {
+  set_impulses(q);
+  apply(q);
+}
+
+template <class F>
+void Equations::each_mover(F&& f) {
+  for (std::size_t i = 0; i < work_.movers.size(); ++i)
+    if (work_.movers[i].place != nullptr) f(work_.movers[i], work_.indices[i]);
+}
+
+void Equations::get_velocities(double* out) {
+  each_mover([&](Packed& m, int at) { std::copy_n(m.now(), m.size, out + at); });
+}
+
+void Equations::set_velocities(const double* in) {
+  each_mover([&](Packed& m, int at) { std::copy_n(in + at, m.size, m.now()); });
+}
+
+void Equations::get_impulses(double* out) const {
+  for (const Point& c : work_.points) out = std::copy_n(c.impulse, 3, out);
+  for (const PackedScalar& row : work_.scalars) *out++ = row.impulse;
+}
+
+void Equations::set_impulses(const double* in) {
+  for (Point& c : work_.points) {
+    std::copy_n(in, 3, c.impulse);
+    in += 3;
+  }
+  for (PackedScalar& row : work_.scalars) row.impulse = *in++;
+}
+
+void Equations::push_impulses(const double* p, double sign) {
+  for (std::size_t i = 0; i < work_.points.size(); ++i, p += 3) {
+    const double signed_p[3] = {sign * p[0], sign * p[1], sign * p[2]};
+    if (p[0] != 0 || p[1] != 0 || p[2] != 0) push(work_, i, signed_p);
+  }
+  for (const PackedScalar& row : work_.scalars) push(work_, row, sign * *p++);
+}
+
+void Equations::apply(const double* p) {
+  set_velocities(free_);
+  push_impulses(p, 1);
+}
+
+void Equations::read_free(double* u) {
+  set_velocities(free_);
+  read_rows(u);
+}
+
+void Equations::read_rows(double* out) {
+  for (std::size_t i = 0; i < work_.points.size(); ++i, out += 3) velocity(work_, i, out);
+  for (const PackedScalar& row : work_.scalars) *out++ = velocity(work_, row);
+}
+
+void Equations::clear() {
+  std::fill_n(matrix_, static_cast<std::size_t>(size_) * static_cast<std::size_t>(size_), 0.0);
+  for (int k = 0; k < size_; ++k) entry(k, k) = 1;
+}
+
+bool Equations::solve(const double* q, double* du) {
+  std::fill_n(step_, size_, 0.0);
+  set_velocities(step_);
+  push_impulses(q, 1);
+  get_velocities(step_);
+  const auto n = static_cast<std::size_t>(size_);
+  // What is infinite or none leaves no trace, neither here nor in the world, which takes part in every push.
+  std::fill_n(work_.movers.front().v, 6, 0.0);
+  if (!std::all_of(step_, step_ + size_, [](double v) { return std::isfinite(v); })) return false;
+  if (!eliminate({matrix_, n * n}, {step_, n}, {work_.indices.data() + offsets_, n})) return false;
+  set_velocities(step_);
+  read_rows(du);
+  return std::all_of(du, du + rows_, [](double u) { return std::isfinite(u); });
+}
+
+double& Equations::entry(int i, int k) {
+  return matrix_[static_cast<std::size_t>(i) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(k)];
+}
+
+void Equations::add_point(std::size_t point, const Slope& D) {
+  if (D.nn == 0) return;
+  const Point& c = work_.points[point];
+  const Sides& own = work_.sides[point];
+  Matrices sides[2];
+  const int movers[2] = {c.a, c.b};
+  sides[0].read(work_.movers[static_cast<std::size_t>(c.a)], own.ja, own.ra, c, c.arm_a);
+  sides[1].read(work_.movers[static_cast<std::size_t>(c.b)], own.jb, own.rb, c, c.arm_b);
+  for (int y = 0; y < 2; ++y) {
+    const Matrices& J = sides[y];
+    const int column = work_.indices[static_cast<std::size_t>(movers[y])];
+    // A point of a tree moves with the joints between it and the root: the columns behind them are zero.
+    double *const n = columns_[0], *const t1 = columns_[1], *const t2 = columns_[2];
+    int count = 0;
+    for (int k = 0; k < J.size; ++k) {
+      const double j0 = J.j[k], j1 = J.j[J.size + k], j2 = J.j[2 * J.size + k];
+      n[k] = D.nn * j0 + D.n1 * j1 + D.n2 * j2;
+      t1[k] = D.t1n * j0 + D.t11 * j1 + D.t12 * j2;
+      t2[k] = D.t2n * j0 + D.t21 * j1 + D.t22 * j2;
+      if (j0 != 0 || j1 != 0 || j2 != 0) count = k + 1;
+    }
+    for (int x = 0; x < 2; ++x) {
+      const Matrices& R = sides[x];
+      const int row = work_.indices[static_cast<std::size_t>(movers[x])];
+      const double sign = x == y ? 1 : -1;
+      for (int i = 0; i < R.size; ++i) {
+        const double r0 = sign * R.r[i], r1 = sign * R.r[R.size + i], r2 = sign * R.r[2 * R.size + i];
+        double* __restrict line = &entry(row + i, column);
+        for (int k = 0; k < count; ++k) line[k] += r0 * n[k] + r1 * t1[k] + r2 * t2[k];
+      }
+    }
+  }
+}
+
+void Equations::add_scalar(std::size_t scalar, double slope) {
+  if (slope == 0) return;
+  const PackedScalar& row = work_.scalars[scalar];
+  const double* j[2] = {row.ja, row.jb};
+  const double* r[2] = {row.ra, row.rb};
+  const int movers[2] = {row.a, row.b};
+  for (int y = 0; y < 2; ++y)
+    for (int x = 0; x < 2; ++x) {
+      if (j[y] == nullptr || r[x] == nullptr) continue;
+      const int top = work_.indices[static_cast<std::size_t>(movers[x])],
+                left = work_.indices[static_cast<std::size_t>(movers[y])];
+      const double sign = x == y ? slope : -slope;
+      for (int i = 0; i < work_.movers[static_cast<std::size_t>(movers[x])].size; ++i) {
+        const double yields = sign * r[x][i];
+        double* line = &entry(top + i, left);
+        for (int k = 0; k < work_.movers[static_cast<std::size_t>(movers[y])].size; ++k) line[k] += yields * j[y][k];
+      }
+    }
+}
+
+}  // namespace breve::contact
