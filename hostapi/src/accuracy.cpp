@@ -153,6 +153,26 @@ breve_status breve_world_set_gravity(breve_world* world, const double gravity[3]
   return guard(world->error, [&] { world->world->set_gravity(vector_of(gravity, "gravity")); });
 }
 
+breve_status breve_world_set_space(breve_world* world, int axis, breve_edge edge, double low, double high) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    if (static_cast<unsigned>(edge) > BREVE_EDGE_WALL)
+      fail(BREVE_ERROR_ARGUMENT, "there is no edge " + std::to_string(static_cast<unsigned>(edge)));
+    world->world->set_space(axis, static_cast<breve::Ending>(edge), low, high);
+  });
+}
+
+breve_status breve_world_space(const breve_world* world, int axis, breve_edge* edge, double* low, double* high) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    if (axis < 0 || axis > 2) fail(BREVE_ERROR_ARGUMENT, "space has no axis " + std::to_string(axis) + " (0 to 2)");
+    const breve::Extent::Axis& of = world->world->space().axis(axis);
+    if (edge) *edge = static_cast<breve_edge>(of.edge);
+    if (low) *low = of.low;
+    if (high) *high = of.high;
+  });
+}
+
 breve_status breve_world_set_sleeping(breve_world* world, bool on) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] { world->world->dynamics().set_sleeping(on); });

@@ -181,7 +181,8 @@ breve_status breve_object_set_pose(breve_world* world, breve_object object, cons
     if (largest == 0) fail(BREVE_ERROR_ARGUMENT, "pose.rotation has length 0: it is no rotation");
     q = (q / largest).normalized();
     Bodies& bodies = world->world->bodies();
-    bodies.set_location(body, Vector3(pose->location[0], pose->location[1], pose->location[2]));
+    const Vector3 place(pose->location[0], pose->location[1], pose->location[2]);
+    bodies.set_location(body, world->world->space().inside(place));
     bodies.set_orientation(body, breve::Quaternion(q));
     world->world->dynamics().moved(body);
   });

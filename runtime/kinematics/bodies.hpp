@@ -127,6 +127,7 @@ class Bodies : public InMemory {
   std::size_t translating() const;  // kinematic bodies with a velocity or an acceleration
   std::size_t turning() const;      // kinematic bodies with a rotational velocity or acceleration
   std::size_t rigid() const;        // physics-enabled bodies that are not Stationary
+  const std::pmr::vector<BodyIndex>& translating_bodies() const;  // the first of these, in no order that matters
   const std::pmr::vector<BodyIndex>& rigid_bodies() const;  // these, in no order that matters
   ObjectId first_translating() const;                       // null if there is none; so the other two
   ObjectId first_turning() const;

@@ -11,6 +11,7 @@ Neighbors::Neighbors(std::pmr::memory_resource* memory)
     : points_(memory),
       radii_(memory),
       labels_(memory),
+      real_of_(memory),
       grids_(memory),
       tree_(memory),
       result_(memory),
@@ -23,12 +24,48 @@ void Neighbors::clear() {
   points_.clear();
   radii_.clear();
   labels_.clear();
+  real_of_.clear();
   asked_last_time_ = asked_;
   asked_ = 0;
   answered_ = too_many_ = false;
   grid_count_ = 0;
   tree_built_ = false;
   visited_ = 0;
+}
+
+void Neighbors::close(const Extent& space) {
+  if (!space.wraps()) return;
+  double reach = 0;
+  for (const double radius : radii_) reach = std::max(reach, radius);
+  const std::size_t count = points_.size();
+  for (int i = 0; i < 3; ++i) {
+    const Extent::Axis& axis = space.axis(i);
+    if (axis.edge != Ending::Wrap) continue;
+    const double length = axis.high - axis.low;
+    // The nearest image of a point is never farther beyond an edge than half the length.
+    const double near = std::min(reach, 0.5 * length);
+    for (std::size_t p = 0, end = points_.size(); p < end; ++p) {
+      const double x = points_[p][i];
+      const auto add_image = [&](double shift) {
+        Vector3 image = points_[p];
+        image[i] += shift;
+        real_of_.push_back(p < count ? static_cast<std::uint32_t>(p) : real_of_[p - count]);
+        add(image, 0);
+      };
+      if (x - axis.low < near) add_image(length);
+      if (axis.high - x <= near) add_image(-length);
+    }
+  }
+}
+
+/// What was found since `start`: images become their points, sorted, none twice, not the one who asks.
+void Neighbors::map_images(std::uint32_t self, std::size_t start, std::pmr::vector<std::uint32_t>& out) const {
+  const auto begin = out.begin() + static_cast<std::ptrdiff_t>(start);
+  for (auto at = begin; at != out.end(); ++at)
+    if (*at >= size()) *at = real_of_[*at - size()];
+  std::sort(begin, out.end());
+  out.erase(std::unique(begin, out.end()), out.end());
+  out.erase(std::remove(begin, out.end(), self), out.end());
 }
 
 CellGrid* Neighbors::grid_for(double radius) {
@@ -75,6 +112,7 @@ void Neighbors::search(std::uint32_t self, const Vector3& center, std::pmr::vect
     }
     out.resize(static_cast<std::size_t>(next - out.data()));
   }
+  if (!real_of_.empty()) return map_images(self, start, out);
   std::sort(out.begin() + static_cast<std::ptrdiff_t>(start), out.end());
 }
 
@@ -89,7 +127,7 @@ void Neighbors::add_labels(const std::pmr::vector<std::uint32_t>& found,
   for (std::size_t i = labels.size(); i < found.size(); ++i) labels.push_back(labels_[found[i]]);
 }
 
-bool Neighbors::most_ask() const { return asked_last_time_ > points_.size() / 2 || asked_ > points_.size() / 4; }
+bool Neighbors::most_ask() const { return asked_last_time_ > size() / 2 || asked_ > size() / 4; }
 
 /// @param first  the point whose radius makes the grid that gives the order
 void Neighbors::answer_all(std::uint32_t first) {
@@ -101,6 +139,7 @@ void Neighbors::answer_all(std::uint32_t first) {
   const CellGrid* grid = grid_count_ != 0 ? &grids_.front() : nullptr;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const std::uint32_t point = grid ? grid->order()[i] : static_cast<std::uint32_t>(i);
+    if (point >= size()) continue;  // an image asks nothing
     const std::size_t begin = kept_.size();
     if (grid && i + kAhead < points_.size()) {
       const std::uint32_t later = grid->order()[i + kAhead];
@@ -126,7 +165,7 @@ void Neighbors::answer_all(std::uint32_t first) {
 /// Answers lie in the order of space, questions mostly come in that of creation: begin to fetch what the next two will
 /// want. A label is often the address of what will be counted or written; where it is none, a prefetch does nothing.
 void Neighbors::fetch_ahead(std::uint32_t self) const {
-  if (self + std::size_t{2} >= answers_.size()) return;
+  if (self + std::size_t{2} >= size()) return;
   const Answer& second = answers_[self + 2];
   __builtin_prefetch(kept_labels_.data() + second.begin);
   __builtin_prefetch(kept_labels_.data() + second.begin + second.count);
@@ -157,7 +196,8 @@ std::size_t Neighbors::bytes() const {
       points_.capacity() * sizeof(Vector3) + tree_.bytes() +
       (result_.capacity() + kept_.capacity()) * sizeof(std::uint32_t) +
       (labels_.capacity() + result_labels_.capacity() + kept_labels_.capacity()) * sizeof(std::uint64_t) +
-      radii_.capacity() * sizeof(double) + answers_.capacity() * sizeof(Answer);
+      radii_.capacity() * sizeof(double) + real_of_.capacity() * sizeof(std::uint32_t) +
+      answers_.capacity() * sizeof(Answer);
   for (const CellGrid& grid : grids_) bytes += grid.bytes();
   return bytes;
 }

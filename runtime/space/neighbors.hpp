@@ -8,6 +8,7 @@
 
 #include "runtime/base/math.hpp"
 #include "runtime/space/cell_grid.hpp"
+#include "runtime/space/extent.hpp"
 #include "runtime/space/point_tree.hpp"
 
 namespace breve {
@@ -24,8 +25,11 @@ class Neighbors {
     radii_.push_back(radius);
     labels_.push_back(label);
   }
+  /// All points of this moment are there. Where space wraps, those near an edge get images beyond the opposite one, so
+  /// that distances are those across it; answers never name an image, nor a point twice.
+  void close(const Extent& space);
   void set_label(std::uint32_t point, std::uint64_t label);
-  std::size_t size() const { return points_.size(); }
+  std::size_t size() const { return points_.size() - real_of_.size(); }
   const std::pmr::vector<Vector3>& points() const { return points_; }
   const std::pmr::vector<double>& radii() const { return radii_; }
 
@@ -43,6 +47,7 @@ class Neighbors {
  private:
   CellGrid* grid_for(double radius);
   void search(std::uint32_t self, const Vector3& center, std::pmr::vector<std::uint32_t>& out);
+  void map_images(std::uint32_t self, std::size_t start, std::pmr::vector<std::uint32_t>& out) const;
   bool most_ask() const;
   void answer_all(std::uint32_t first);
   void fetch_ahead(std::uint32_t self) const;
@@ -62,7 +67,8 @@ class Neighbors {
   std::pmr::vector<Vector3> points_;
   std::pmr::vector<double> radii_;
   std::pmr::vector<std::uint64_t> labels_;
-  std::pmr::vector<CellGrid> grids_;  // kept for their memory; the first `grid_count_` are of this moment
+  std::pmr::vector<std::uint32_t> real_of_;  // images stand behind the points: which point each is of
+  std::pmr::vector<CellGrid> grids_;         // kept for their memory; the first `grid_count_` are of this moment
   std::size_t grid_count_ = 0;
   PointTree tree_;
   bool tree_built_ = false;

@@ -23,6 +23,7 @@ class NeighborRecord {
   /// Begin a new moment; live objects follow in order of creation. @param slots  of the table of objects
   void clear(std::size_t slots);
   void add(ObjectId id, std::uint64_t user, const Vector3& center, double radius);
+  void close(const Extent& space) { points_.close(space); }  // all are there
   /// The object is released: no answer names it from now on.
   void forget(ObjectId id);
   void set_user(ObjectId id, std::uint64_t user);

@@ -39,6 +39,7 @@ struct World::Parts final : CollisionClient, DynamicsClient, InMemory {
   void rebuild_stages(std::uint32_t signature);
   ObjectId who_asked(EffectId effect) const;
   void count_dynamics();
+  void bring_inside();
 
   // --- CollisionClient ----------------------------------------------------------------------------------------------
   bool takes_part(BodyIndex body) const override;
@@ -72,6 +73,7 @@ struct World::Parts final : CollisionClient, DynamicsClient, InMemory {
   ObjectId first_handler;  // who registered the first collision handler
   double substep_start = 0;
 
+  Extent space;
   NeighborRecord near;  // the last update of neighbours
   std::pmr::deque<InputEvent> input;
   std::pmr::map<std::pmr::string, ResourceLoader, std::less<>> loaders;  // not state: the program's own

@@ -100,6 +100,7 @@ void World::write_image(ByteWriter& out) const {
   out.put(parts.exact_schedule);
   out.put(parts.at_impact);
   out.put(parts.first_handler);
+  parts.space.save(out);
   parts.near.save(out);
   save_input(out, parts.input);
   out.put(behaviour_ != nullptr);
@@ -145,7 +146,9 @@ void World::read_image(ByteReader& in, World& fresh) const {
   parts.exact_schedule = in.get_bool();
   parts.at_impact = in.get_bool();
   parts.first_handler = in.get_object();
+  parts.space.load(in);
   parts.near.load(in, parts.objects);
+  parts.near.close(parts.space);
   load_input(in, parts.input);
 }
 
@@ -201,6 +204,7 @@ std::uint64_t World::hash() const {
   parts.collisions.hash(hasher);
   parts.dynamics.hash(hasher);
   hasher.add(static_cast<std::uint64_t>(parts.exact_schedule) | static_cast<std::uint64_t>(parts.at_impact) << 1);
+  parts.space.hash(hasher);
   parts.near.hash(hasher);
   for (const InputEvent& event : parts.input) {
     hasher.add(std::uint64_t{event.object.index} << 8 | static_cast<std::uint64_t>(event.kind));

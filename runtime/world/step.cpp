@@ -219,7 +219,32 @@ std::uint32_t World::Parts::signature() const {
     bits |= bit(EffectId::Collision);
     if (at_impact) bits |= bit(EffectId::TimeOfImpact);
   }
+  if (!space.open() && (bits & (bit(EffectId::Motion) | bit(EffectId::Rigid))) != 0) bits |= bit(EffectId::Bounds);
   return bits;
+}
+
+/// Whatever has left space comes back into it: after collisions, which look at whole paths.
+void World::Parts::bring_inside() {
+  Bodies& bodies = *world->bodies_;
+  const auto bring = [&](BodyIndex body) {
+    if (space.holds(bodies.location(body))) return false;
+    Vector3 location = bodies.location(body), velocity = bodies.velocity(body);
+    if (!location.allFinite()) return false;
+    space.bring_inside(location, velocity);
+    bodies.set_location(body, location);
+    if (velocity != bodies.velocity(body)) bodies.set_velocity(body, velocity);
+    return true;
+  };
+  std::uint64_t& brought = effects[EffectId::Bounds].items;
+  if (bodies.translating() != 0)
+    for (const BodyIndex body : bodies.translating_bodies()) brought += bring(body) ? 1U : 0U;
+  if (bodies.rigid() == 0) return;
+  for (const BodyIndex body : bodies.rigid_bodies()) {
+    // A machine of joints would be torn apart, or turned as one solid: it is left to real walls.
+    if (space.holds(bodies.location(body)) || !dynamics.joints_of(body).empty() || !bring(body)) continue;
+    dynamics.moved(body);
+    ++brought;
+  }
 }
 
 ObjectId World::Parts::who_asked(EffectId effect) const {
@@ -273,6 +298,10 @@ void World::Parts::rebuild_stages(std::uint32_t signature) {
                         p.effects[EffectId::TimeOfImpact].held += counted.held;
                         p.effects[EffectId::Collision].items += counted.pairs;
                       },
+                      [](const World::Parts&) { return std::size_t{0}; }});
+  }
+  if ((signature & bit(EffectId::Bounds)) != 0) {
+    stages.push_back({EffectId::Bounds, [](World::Parts& p, double) { p.bring_inside(); },
                       [](const World::Parts&) { return std::size_t{0}; }});
   }
   stage_signature = signature;

@@ -137,8 +137,9 @@ void World::update_neighbors() {
     if (body == kNoBody || !bodies_->location(body).allFinite()) continue;
     constexpr double kUnset = 0.00001;  // what a radius nobody set counts as (CLASSES 2.6)
     const double radius = bodies_->neighborhood_size(body);
-    parts.near.add(id, slot.user, bodies_->location(body), radius == 0 ? kUnset : radius);
+    parts.near.add(id, slot.user, parts.space.inside(bodies_->location(body)), radius == 0 ? kUnset : radius);
   }
+  parts.near.close(parts.space);
   ++parts.effects[EffectId::Neighbors].calls;
 }
 
@@ -159,6 +160,18 @@ std::span<const std::uint64_t> World::neighbor_users(ObjectId id) {
   const StageScope stage(effect, observer_);
   return parts_->near.users(id);
 }
+
+// --- how far space goes ----------------------------------------------------------------------------------------------
+
+void World::set_space(int axis, Ending edge, double low, double high, ObjectId asked_by) {
+  parts_->space.set(axis, edge, low, high);
+  if (parts_->space.open())
+    parts_->effects.turn_off(EffectId::Bounds);
+  else
+    parts_->effects.turn_on(EffectId::Bounds, clock_.iteration, asked_by);
+}
+
+const Extent& World::space() const { return parts_->space; }
 
 // --- schedule -------------------------------------------------------------------------------------------------------
 

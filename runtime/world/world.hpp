@@ -16,6 +16,7 @@
 #include "runtime/base/random.hpp"
 #include "runtime/dynamics/dynamics.hpp"
 #include "runtime/kinematics/bodies.hpp"
+#include "runtime/space/extent.hpp"
 #include "runtime/world/behaviour.hpp"
 #include "runtime/world/effects.hpp"
 #include "runtime/world/resource.hpp"
@@ -82,6 +83,13 @@ class World : public InMemory {
   const std::pmr::vector<ObjectId>& neighbors(ObjectId id);
   /// What user() gives for each of these neighbours, in the same order and as long valid: cheaper than asking for each.
   std::span<const std::uint64_t> neighbor_users(ObjectId id);
+
+  // --- how far space goes ------------------------------------------------------------------------------------------
+  /// Along this axis space is open, wraps, or has walls. At the end of each sub-step kinematic bodies that move, and
+  /// bodies with physics that have no joints, are brought inside; walls reflect their centres. Neighbours and offsets
+  /// are across edges that wrap; collisions are not. @throws Error{Argument} as Extent::set
+  void set_space(int axis, Ending edge, double low, double high, ObjectId asked_by = {});
+  const Extent& space() const;
 
   // --- clock and step ----------------------------------------------------------------------------------------------
   double time() const { return clock_.time; }

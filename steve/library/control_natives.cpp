@@ -72,6 +72,33 @@ void control_set_integration_step(Machine& machine, Instance&, double seconds) {
 double control_get_integration_step(Machine& machine, Instance&) { return machine.world().integration_step(); }
 void control_update_neighbors(Machine& machine, Instance&) { machine.world().update_neighbors(); }
 
+// --- how far space goes
+// ------------------------------------------------------------------------------------------------
+
+template <Ending Kind>
+void control_close_space(Machine& machine, Instance& self, Vector3 low, Vector3 high) {
+  const char* selector = Kind == Ending::Wrap ? "wrap-space" : "wall-space";
+  finite(low, std::string(selector) + ": from");
+  finite(high, std::string(selector) + ": to");
+  if (!(high.array() > low.array()).any() || (high.array() < low.array()).any())
+    throw Error(ErrorCode::Argument, std::string(selector) +
+                                         ": `from` must be below `to` along at least one axis, and above it "
+                                         "along none");
+  for (int axis = 0; axis < 3; ++axis)
+    if (low[axis] < high[axis]) machine.world().set_space(axis, Kind, low[axis], high[axis], self.id);
+}
+
+void control_open_space(Machine& machine, Instance&) {
+  for (int axis = 0; axis < 3; ++axis) machine.world().set_space(axis, Ending::Open, 0, 0);
+}
+
+Vector3 control_get_space_size(Machine& machine, Instance&) {
+  const Extent& space = machine.world().space();
+  Vector3 size;
+  for (int axis = 0; axis < 3; ++axis) size[axis] = space.axis(axis).high - space.axis(axis).low;
+  return size;
+}
+
 void control_set_impact_timing(Machine& machine, Instance&, Text mode) {
   if (view(mode) != "impact" && view(mode) != "step")
     throw Error(ErrorCode::Argument,
@@ -203,6 +230,10 @@ constexpr Native kControlNatives[] = {
     native<control_set_integration_step>("control.set-integration-step"),
     native<control_get_integration_step>("control.get-integration-step"),
     native<control_update_neighbors>("control.update-neighbors"),
+    native<control_close_space<Ending::Wrap>>("control.wrap-space"),
+    native<control_close_space<Ending::Wall>>("control.wall-space"),
+    native<control_open_space>("control.open-space"),
+    native<control_get_space_size>("control.get-space-size"),
     native<control_set_impact_timing>("control.set-impact-timing"),
     native<control_click>("control.click"),
     native<control_get_selection>("control.get-selection"),

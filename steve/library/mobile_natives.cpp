@@ -61,7 +61,8 @@ void mobile_relative_rotate(Machine& machine, Instance& self, Vector3 axis, doub
 
 void mobile_offset(Machine& machine, Instance& self, Vector3 displacement) {
   const BodyIndex body = body_of(machine, self);
-  bodies_of(machine).set_location(body, bodies_of(machine).location(body) + displacement);
+  const Vector3 place = bodies_of(machine).location(body) + displacement;
+  bodies_of(machine).set_location(body, place.allFinite() ? machine.world().space().inside(place) : place);
   machine.world().dynamics().moved(body);
 }
 
@@ -96,7 +97,7 @@ double mobile_get_mass(Machine& machine, Instance& self) { return bodies_of(mach
 double mobile_get_distance(Machine& machine, Instance& self, Instance* other) {
   const BodyIndex body = body_of(machine, self);
   const BodyIndex to = body_of(machine, must_live(other, "get-distance: the object"));
-  return (bodies_of(machine).location(to) - bodies_of(machine).location(body)).norm();
+  return machine.world().space().offset(bodies_of(machine).location(body), bodies_of(machine).location(to)).norm();
 }
 
 Vector3 mobile_transform(Machine& machine, Instance& self, Vector3 v) {

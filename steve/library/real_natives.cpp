@@ -22,12 +22,23 @@ void moved(Machine& machine, BodyIndex body) { machine.world().dynamics().moved(
 
 void real_move(Machine& machine, Instance& self, Vector3 location) {
   const BodyIndex body = body_of(machine, self);
-  bodies_of(machine).set_location(body, location);
+  // What is not finite is refused as it is.
+  bodies_of(machine).set_location(body, location.allFinite() ? machine.world().space().inside(location) : location);
   moved(machine, body);
 }
 
 Vector3 real_get_location(Machine& machine, Instance& self) {
   return bodies_of(machine).location(body_of(machine, self));
+}
+
+Vector3 real_get_offset(Machine& machine, Instance& self, Instance* other) {
+  const BodyIndex body = body_of(machine, self);
+  const BodyIndex to = body_of(machine, must_live(other, "get-offset: the object"));
+  return machine.world().space().offset(bodies_of(machine).location(body), bodies_of(machine).location(to));
+}
+
+Vector3 real_get_offset_to_point(Machine& machine, Instance& self, Vector3 point) {
+  return machine.world().space().offset(bodies_of(machine).location(body_of(machine, self)), point);
 }
 
 MatrixCell* real_get_rotation(Machine& machine, Instance& self) {
@@ -236,6 +247,8 @@ void stationary_init(Machine& machine, Instance& self) {
 constexpr Native kRealNatives[] = {
     native<real_move>("real.move"),
     native<real_get_location>("real.get-location"),
+    native<real_get_offset>("real.get-offset"),
+    native<real_get_offset_to_point>("real.get-offset-to-point"),
     native<real_get_rotation>("real.get-rotation"),
     native<real_get_rotation>("real.get-rotation-matrix"),
     native<real_set_rotation>("real.set-rotation"),

@@ -244,6 +244,8 @@ static void null_handles_and_arguments_of_bodies_with_physics(void) {
     CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_describe_accuracy(u, all ? &text : NULL));
     CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_gravity(u, all ? d : NULL));
     CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_gravity(u, all ? d : NULL));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_space(u, 3, BREVE_EDGE_OPEN, 0, 1));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_space(u, all ? 3 : -1, NULL, NULL, NULL));
     CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_interventions(u, NULL, 1, &size));
     CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_interventions(u, NULL, 0, all ? &size : NULL));
     CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_impacts(u, NULL, 1, &size));

@@ -271,6 +271,8 @@ static breve_status do_accuracy(place* p) {
   TRY(breve_world_describe_accuracy(w, &text));
   TRY(breve_world_gravity(w, gravity));
   TRY(breve_world_set_gravity(w, gravity));
+  TRY(breve_world_space(w, 0, NULL, NULL, NULL));
+  TRY(breve_world_set_space(w, 0, BREVE_EDGE_OPEN, 0, 0));
   TRY(breve_world_set_sleeping(w, false));
   TRY(breve_world_set_workers(w, 1));
   TRY(breve_world_set_guard(w, breve_world_guard(w)));

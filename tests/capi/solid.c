@@ -178,6 +178,17 @@ static void what_cannot_be_joined_is_refused_and_nothing_changes(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_joint_place(s.world, elbow, wrong, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_joint_place(s.world, elbow, NULL, wrong));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_gravity(s.world, wrong));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_space(s.world, 0, BREVE_EDGE_WRAP, 1, 1));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_space(s.world, 0, BREVE_EDGE_WALL, nan, 1));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_space(s.world, 0, (breve_edge)3, 0, 1));
+  breve_edge edge = BREVE_EDGE_WALL;
+  double low = 7, high = 7;
+  CHECK_STATUS(BREVE_OK, breve_world_space(s.world, 0, &edge, &low, &high));
+  CHECK(edge == BREVE_EDGE_OPEN && low == 0 && high == 0);
+  CHECK_STATUS(BREVE_OK, breve_world_set_space(s.world, 2, BREVE_EDGE_WRAP, -1000, 1000));
+  CHECK_STATUS(BREVE_OK, breve_world_space(s.world, 2, &edge, &low, &high));
+  CHECK(edge == BREVE_EDGE_WRAP && low == -1000 && high == 1000);
+  CHECK_STATUS(BREVE_OK, breve_world_set_space(s.world, 2, BREVE_EDGE_OPEN, 0, 0));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_force(s.world, link, wrong, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_workers(s.world, 0));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_guard(s.world, (breve_guard)9));

@@ -812,6 +812,25 @@ BREVE_API breve_status breve_world_gravity(const breve_world* world, double grav
 /* BREVE_OK; BREVE_ERROR_ARGUMENT: not finite. */
 BREVE_API breve_status breve_world_set_gravity(breve_world* world, const double gravity[3]);
 
+/* How space goes on along an axis. */
+typedef enum breve_edge {
+  BREVE_EDGE_OPEN = 0, /* for ever; so all axes begin */
+  BREVE_EDGE_WRAP = 1, /* what leaves at one end comes back at the other; distances and neighbours are across it */
+  BREVE_EDGE_WALL = 2  /* it ends at walls that reflect the centres of bodies */
+} breve_edge;
+
+/* Set how space goes on along one axis. At the end of each sub-step kinematic bodies that move, and bodies with physics
+   that have no joints, are brought inside; collisions do not reach across edges. Runs no script.
+   @param axis       0, 1, 2 for x, y, z
+   @param low, high  m, finite, low < high; not looked at for BREVE_EDGE_OPEN
+   BREVE_OK; BREVE_ERROR_ARGUMENT. */
+BREVE_API breve_status breve_world_set_space(breve_world* world, int axis, breve_edge edge, double low, double high);
+/* How space goes on along one axis.
+   @param edge, low, high  each may be NULL; low and high are 0 where it is open
+   BREVE_OK; BREVE_ERROR_ARGUMENT. */
+BREVE_API breve_status breve_world_space(const breve_world* world, int axis, breve_edge* edge, double* low,
+                                         double* high);
+
 /* Let bodies that rest sleep. Off at first. */
 BREVE_API breve_status breve_world_set_sleeping(breve_world* world, bool on);
 

@@ -317,6 +317,10 @@ class World {
   }
   Status set_accuracy(const breve_accuracy& accuracy) { return status(breve_world_set_accuracy(get(), &accuracy)); }
   Status set_gravity(const Vector& gravity) { return status(breve_world_set_gravity(get(), gravity.data())); }
+  /// How space goes on along axis 0, 1 or 2; see breve_world_set_space.
+  Status set_space(int axis, breve_edge edge, double low, double high) {
+    return status(breve_world_set_space(get(), axis, edge, low, high));
+  }
   Result<breve_energy> energy() const {
     breve_energy energy{};
     energy.struct_size = sizeof energy;
