@@ -90,12 +90,12 @@ Outcome flocking(int steps) {
     }
   }
   Outcome outcome{0, now() - begin};
-  double x = 0, y = 0;
-  for (const Bird& b : birds) {
-    x += b.vx;
-    y += b.vy;
+  for (const Bird& a : birds) {
+    for (const Bird& b : birds) {
+      const double dx = shortest(b.x - a.x), dy = shortest(b.y - a.y);
+      if (&a != &b && dx * dx + dy * dy < kSight * kSight) outcome.result += 1.0 / kBirds;
+    }
   }
-  outcome.result = std::sqrt(x * x + y * y) / kBirds;
   return outcome;
 }
 

@@ -19,7 +19,14 @@ constexpr std::string_view kMain = R"tz(
 @include "words.tz".
 @path "data".
 @define PLACES 4.
+@use GridAgent.
+@use Reaction.
 Controller Everything.
+
+Patch : Ground {
+	+ to grow:
+		self set-state to (self get-state) + |(self get-moore-neighborhood)|.
+}
 
 Control : Everything (aka Everythings) {
 	+ variables:
@@ -27,7 +34,7 @@ Control : Everything (aka Everythings) {
 		kept, words, cells (list).
 		table (hash).
 		title (string).
-		picture, plane, diffused, cube, row, note, spinner, tree, camera, entry, drawing (object).
+		picture, plane, diffused, cube, row, note, spinner, tree, camera, entry, drawing, board, ant (object).
 		bag (data).
 		frame (matrix).
 		grid (4 objects).
@@ -52,6 +59,10 @@ Control : Everything (aka Everythings) {
 		self watch item note.
 		camera = new Camera.
 		camera watch item (new Post).
+		self wrap-space from (-1000, 0, 0) to (1000, 0, 0).
+		board = ((new PatchToroid) init-with x-count 3 y-count 2 z-count 1 patch-class "Ground").
+		board track patch-chemical ((new PatchChemical) init-with diffusion-rate 0.1 decay-rate 0.1).
+		ant = new GridAgent.
 
 	+ to make-pictures:
 		picture = ((new Image) init-with width 8 height 6).
@@ -102,6 +113,7 @@ Control : Everything (aka Everythings) {
 		self work-with-text.
 		self work-with-hashes.
 		self work-with-grids.
+		self work-with-cells.
 		self make-garbage.
 		if turns == 1: self work-with-files.
 		if turns == 2: self work-with-archives.
@@ -162,6 +174,27 @@ Control : Everything (aka Everythings) {
 		plane copy-to-red-channel of-image picture.
 		row set-size to turns + 3.
 		picture set-size width (turns + 4) height 6.
+
+	+ to work-with-cells:
+		reaction, other (object).
+
+		board set-rule born { 3 } survive { 2, 3 }.
+		board apply-rule.
+		board set-update-order to "random".
+		board apply-rule.
+		board update-patches with-method "grow".
+		board update-concentrations.
+		board display-concentration-in-red of-patch-chemical ((board get-patch-chemicals){0}).
+		board set-patch-colors-to-chemical-concentrations.
+		ant enter-free-cell of board.
+		ant get-agents within 1.
+		reaction = ((new Reaction) init-with fields { plane, diffused }).
+		reaction add-term to plane rate -0.1 powers { 1, 1 }.
+		reaction step by 0.1.
+		free reaction.
+		other = ((new PatchGrid) init-with x-count 2 y-count 2 z-count 2).
+		(other get-patch-at x 0 y 0 z 0) set-color to (1, 0, 0).
+		free other.
 
 	+ to make-garbage:
 		a, b (object).
