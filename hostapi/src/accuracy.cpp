@@ -78,7 +78,7 @@ breve_energy energy_from(const Energy& from) {
   return to;
 }
 
-const Dynamics& dynamics_of(const breve_world& world) { return std::as_const(*world.world).dynamics(); }
+const Mechanics& dynamics_of(const breve_world& world) { return std::as_const(*world.world).dynamics(); }
 
 }  // namespace
 }  // namespace breve::host
@@ -124,7 +124,7 @@ breve_status breve_world_describe_accuracy(breve_world* world, const char** text
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     need(text, "text");
-    world->accuracy_text = breve::describe(dynamics_of(*world).accuracy());
+    world->accuracy_text = dynamics_of(*world).describe_accuracy();
     *text = world->accuracy_text.c_str();
   });
 }

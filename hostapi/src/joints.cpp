@@ -108,7 +108,7 @@ SpringDescription spring_of(const breve_spring& from) {
 }  // namespace breve::host
 
 using namespace breve::host;
-using breve::Dynamics;
+using breve::Mechanics;
 using breve::JointIndex;
 
 breve_joint_description breve_joint_description_default(breve_joint_kind kind) {
@@ -155,7 +155,7 @@ breve_status breve_joint_read(breve_world* world, breve_object joint, breve_join
     found.kind = static_cast<breve_joint_kind>(breve::steve::joint_kind(object));
     found.linked = index != breve::kNoJoint;
     if (found.linked) {
-      const Dynamics& dynamics = world->world->dynamics();
+      const Mechanics& dynamics = world->world->dynamics();
       const auto& is = dynamics.joint(index);
       const auto owner = [&](breve::BodyIndex body) {
         return body == breve::kNoBody ? breve_object{} : handle_of(world->world->bodies().owner(body));
@@ -187,7 +187,7 @@ breve_status breve_joint_set_drive(breve_world* world, breve_object joint, const
   return guard(world->error, [&] {
     need(drive, "drive");
     const JointIndex index = linked(*world, joint);
-    Dynamics& dynamics = world->world->dynamics();
+    Mechanics& dynamics = world->world->dynamics();
     // What an older header does not have stays as it is.
     dynamics.set_drive(index, drive_of(read_config(drive, drive_from(dynamics.drive(index)), "breve_joint_drive")));
   });
@@ -252,7 +252,7 @@ breve_status breve_spring_read(const breve_world* world, breve_object spring, do
   return guard(world->error, [&] {
     auto& object = object_of_kind(*world, spring, "Spring");
     const breve::SpringIndex index = breve::steve::spring_of(*world->machine, object);
-    const Dynamics& dynamics = world->world->dynamics();
+    const Mechanics& dynamics = world->world->dynamics();
     if (length) *length = index == breve::kNoSpring ? 0 : dynamics.spring_length(index);
     if (force) *force = index == breve::kNoSpring ? 0 : dynamics.spring_force(index);
   });

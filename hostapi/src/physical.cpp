@@ -223,7 +223,7 @@ breve_status breve_object_joints(const breve_world* world, breve_object object, 
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     const BodyIndex body = live_body(*world, object);
-    const breve::Dynamics& dynamics = std::as_const(*world->world).dynamics();
+    const breve::Mechanics& dynamics = std::as_const(*world->world).dynamics();
     copy_list(dynamics.joints_of(body), joints, capacity, count, "joints",
               [&](breve::JointIndex joint) { return handle_of(dynamics.joint_owner(joint)); });
   });

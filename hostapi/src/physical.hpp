@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "internal.hpp"
-#include "runtime/dynamics/dynamics.hpp"
+#include "runtime/mechanics/mechanics.hpp"
 #include "steve/library/joints.hpp"
 
 namespace breve::host {

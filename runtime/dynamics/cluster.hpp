@@ -8,7 +8,7 @@
 #include <span>
 
 #include "runtime/articulated/integrator.hpp"
-#include "runtime/dynamics/accuracy.hpp"
+#include "runtime/mechanics/accuracy.hpp"
 #include "runtime/dynamics/tree.hpp"
 
 namespace breve {

@@ -54,17 +54,6 @@ struct BodyEntry {
   explicit BodyEntry(std::pmr::memory_resource* memory) : joints(memory) {}
 };
 
-/// What a spring between bodies does now.
-struct TiePull {
-  Vector3 direction = Vector3::Zero();  // unit, from a to b
-  double force = 0;                     // N, positive pulls together
-  double energy = 0;                    // J, stored
-  double loss = 0;                      // W, in its damper
-};
-/// @param way   from the point on a to the point on b, m
-/// @param rate  of that, m/s
-TiePull pull_of(const SpringDescription& is, const Vector3& way, const Vector3& rate);
-
 struct AssemblySettings {
   bool has_self = false, self_collisions = false;
   double self_erp = 0, self_cfm = 0;
@@ -163,7 +152,6 @@ struct Dynamics::Core : InMemory {
   // joints.cpp
   JointEntry& at(JointIndex joint);
   const JointEntry& at(JointIndex joint) const;
-  void check(const JointDescription& description) const;
   void place_child(JointEntry& joint);
   void detach(JointIndex joint);
   void note_joined(JointIndex joint);

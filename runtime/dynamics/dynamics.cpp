@@ -108,6 +108,13 @@ void Dynamics::set_ball(JointIndex joint, const Quaternion& turn, const Vector3&
 
 // --- settings -------------------------------------------------------------------------------------------------------
 
+void Dynamics::set_length_unit(double metres) {
+  if (metres != 1)
+    throw Error(ErrorCode::Argument,
+                fmt::format("the length unit is {}, but only a flat world has one (its controller a PlanarControl)",
+                            metres));
+}
+
 void Dynamics::set_gravity(const Vector3& gravity) {
   if (!gravity.allFinite()) throw Error(ErrorCode::Argument, "gravity must be finite");
   core().settings.gravity = gravity;

@@ -4,7 +4,7 @@
 
 #include "runtime/articulated/model.hpp"
 #include "runtime/articulated/state.hpp"
-#include "runtime/dynamics/joint.hpp"
+#include "runtime/mechanics/joint.hpp"
 
 namespace breve {
 

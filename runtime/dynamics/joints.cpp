@@ -15,19 +15,6 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& what) { throw Error(ErrorCode::Argument, what); }
 
-void need_finite(const Vector3& value, std::string_view what) {
-  if (!value.allFinite())
-    refuse(fmt::format("{} must be finite, but is ({}, {}, {})", what, value.x(), value.y(), value.z()));
-}
-
-void need_finite(double value, std::string_view what) {
-  if (!std::isfinite(value)) refuse(fmt::format("{} must be finite, but is {}", what, value));
-}
-
-void need_positive(double value, std::string_view what) {
-  if (!std::isfinite(value) || value < 0) refuse(fmt::format("{} must be finite and >= 0, but is {}", what, value));
-}
-
 /// Where the child's body stands when the joint is at zero.
 Pose place_at_zero(const JointDescription& is, const Pose& parent) {
   Pose child;
@@ -44,29 +31,6 @@ JointEntry& Dynamics::Core::at(JointIndex joint) {
 }
 
 const JointEntry& Dynamics::Core::at(JointIndex joint) const { return const_cast<Core*>(this)->at(joint); }
-
-void Dynamics::Core::check(const JointDescription& is) const {
-  const std::string_view kind = name_of(is.kind);
-  if (static_cast<int>(is.kind) > static_cast<int>(JointKind::Ball)) refuse("there is no such kind of joint");
-  if (!bodies->used(is.child)) refuse(fmt::format("{} joint: the child is no body in the world", kind));
-  if (bodies->kind(is.child) == BodyKind::Stationary)
-    refuse(fmt::format("{} joint: the child is Stationary; make it the parent", kind));
-  if (is.parent != kNoBody && !bodies->used(is.parent))
-    refuse(fmt::format("{} joint: the parent is no body in the world", kind));
-  if (is.parent == is.child) refuse(fmt::format("{} joint: parent and child are the same body", kind));
-  need_finite(is.parent_point, fmt::format("{} joint: the parent's point", kind));
-  need_finite(is.child_point, fmt::format("{} joint: the child's point", kind));
-  const double norm = is.relative_rotation.norm();
-  if (!std::isfinite(norm) || !(norm > 0))
-    refuse(fmt::format("{} joint: the relative rotation must be a finite quaternion that is not zero", kind));
-  if (is.kind == JointKind::Fixed) return;
-  need_finite(is.normal, fmt::format("{} joint: the normal", kind));
-  need_finite(is.other_axis, fmt::format("{} joint: the other axis", kind));
-  const double length = is.normal.stableNorm();
-  if (!(length > 0) || !std::isfinite(length))
-    refuse(fmt::format("{} joint: the normal ({}, {}, {}) has no direction", kind, is.normal.x(), is.normal.y(),
-                       is.normal.z()));
-}
 
 void Dynamics::Core::collect(BodyIndex body, std::pmr::vector<BodyIndex>& out) {
   out.clear();
@@ -139,7 +103,7 @@ void Dynamics::Core::touch_tree(BodyIndex body) {
 
 JointIndex Dynamics::link(const JointDescription& description, ObjectId owner) {
   Core& c = core();
-  c.check(description);
+  check(description, *c.bodies);
   c.sync_changes();
   if (c.free_joints.capacity() <= c.joints.size()) c.free_joints.reserve(2 * c.joints.size() + 16);
   JointEntry made;
@@ -211,7 +175,7 @@ void Dynamics::unlink(JointIndex joint) {
 void Dynamics::relink(JointIndex joint, const JointDescription& description) {
   Core& c = core();
   c.at(joint);
-  c.check(description);
+  check(description, *c.bodies);
   c.sync_changes();
   c.detach(joint);
   JointEntry changed = c.joints[joint];
@@ -293,44 +257,10 @@ double Dynamics::strength_hard_limit(JointIndex joint) const {
   return kPerMass * core_->bodies->mass(core_->at(joint).is.child);
 }
 
-namespace {
-
-bool acceptable(const JointDrive& drive, int axes) {
-  const auto positive = [](double value) { return std::isfinite(value) && value >= 0; };
-  bool good = drive.motor_speed.allFinite() && drive.force.allFinite() && drive.rest.allFinite() &&
-              std::isfinite(drive.double_strength) && std::isfinite(drive.double_max) &&
-              std::isfinite(drive.double_min) && positive(drive.damping) && positive(drive.stiffness) &&
-              !std::isnan(drive.strength_limit) && drive.limit_restitution >= 0 && drive.limit_restitution <= 1;
-  for (int i = 0; i < axes; ++i) good = good && drive.low[i] <= drive.high[i];
-  return good;
-}
-
-/// Why it is not: apart, since words take memory and drives are set in every step.
-void explain(const JointDrive& drive, JointKind kind) {
-  const auto what = [&](std::string_view property) { return fmt::format("{} joint: {}", name_of(kind), property); };
-  need_finite(drive.motor_speed, what("joint velocity"));
-  need_finite(drive.force, what("joint force or torque"));
-  need_finite(drive.rest, what("rest of the spring"));
-  need_finite(drive.double_strength, what("strength of the double spring"));
-  need_finite(drive.double_max, what("max of the double spring"));
-  need_finite(drive.double_min, what("min of the double spring"));
-  need_positive(drive.damping, what("damping"));
-  need_positive(drive.stiffness, what("stiffness"));
-  if (std::isnan(drive.strength_limit)) refuse(what("strength limit") + " must be a number");
-  if (!(drive.limit_restitution >= 0 && drive.limit_restitution <= 1))
-    refuse(fmt::format("{} must be from 0 to 1, but is {}", what("restitution of limits"), drive.limit_restitution));
-  for (int i = 0; i < axis_count(kind); ++i)
-    if (!(drive.low[i] <= drive.high[i]))
-      refuse(fmt::format("{} of axis {}: the minimum {} is above the maximum {}", what("limits"), i + 1, drive.low[i],
-                         drive.high[i]));
-}
-
-}  // namespace
-
 void Dynamics::set_drive(JointIndex joint, const JointDrive& drive) {
   Core& c = core();
   JointEntry& entry = c.at(joint);
-  if (!acceptable(drive, axis_count(entry.is.kind))) explain(drive, entry.is.kind);
+  check(drive, entry.is.kind);
   const bool had_motor = entry.drive.strength_limit > 0;
   entry.drive = drive;
   entry.drive.strength_limit = std::clamp(drive.strength_limit, 0.0, strength_hard_limit(joint));

@@ -230,7 +230,7 @@ void Dynamics::Core::join_loaded() {
   for (const JointIndex index : order) {
     const JointDescription& is = joints[index].is;
     try {
-      check(is);
+      check(is, *bodies);
     } catch (const Error&) {
       ByteReader::fail();
     }

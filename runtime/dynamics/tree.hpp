@@ -9,8 +9,8 @@
 #include "runtime/articulated/loads.hpp"
 #include "runtime/articulated/system.hpp"
 #include "runtime/base/memory.hpp"
-#include "runtime/dynamics/account.hpp"
-#include "runtime/dynamics/joint.hpp"
+#include "runtime/mechanics/account.hpp"
+#include "runtime/mechanics/joint.hpp"
 #include "runtime/kinematics/bodies.hpp"
 #include "runtime/solid/contact.hpp"
 

@@ -25,6 +25,39 @@ void require_finite(std::string_view property, const Vector3& value) {
               fmt::format("{} must be finite, but is ({}, {}, {})", property, value.x(), value.y(), value.z()));
 }
 
+/// Parts out of the plane up to here, relative to the whole, are what scripts' arithmetic leaves.
+constexpr double kInPlane = 1e-9;
+
+/// In a flat world: a vector with z = 0.
+Vector3 in_plane(std::string_view property, const Vector3& value, bool flat) {
+  if (!flat || value.z() == 0) return value;
+  if (std::abs(value.z()) > kInPlane * std::max(1.0, value.norm()))
+    throw Error(ErrorCode::Argument, fmt::format("{} is ({}, {}, {}), but this world is flat: z must be 0", property,
+                                                 value.x(), value.y(), value.z()));
+  return {value.x(), value.y(), 0};
+}
+
+/// In a flat world: a vector along z.
+Vector3 about_z(std::string_view property, const Vector3& value, bool flat) {
+  if (!flat || (value.x() == 0 && value.y() == 0)) return value;
+  if (value.head<2>().norm() > kInPlane * std::max(1.0, value.norm()))
+    throw Error(ErrorCode::Argument,
+                fmt::format("{} is ({}, {}, {}), but this world is flat: bodies turn about z only, x and y must be 0",
+                            property, value.x(), value.y(), value.z()));
+  return {0, 0, value.z()};
+}
+
+/// In a flat world: a rotation about z.
+Quaternion turned_about_z(const Quaternion& unit, bool flat) {
+  if (!flat || (unit.x() == 0 && unit.y() == 0)) return unit;
+  if (std::hypot(unit.x(), unit.y()) > kInPlane)
+    throw Error(ErrorCode::Argument,
+                fmt::format("orientation is turned out of the plane (quaternion {}, {}, {}, {}), but this world is "
+                            "flat: bodies turn about z only",
+                            unit.w(), unit.x(), unit.y(), unit.z()));
+  return Quaternion(unit.w(), 0, 0, unit.z()).normalized();
+}
+
 /// The rotation nearest to a matrix that is one up to round-off or drift.
 Quaternion rotation_of(const Matrix3& matrix) {
   if (!matrix.allFinite()) throw Error(ErrorCode::Argument, "rotation must be finite");
@@ -131,6 +164,21 @@ Bodies::Arrays& Bodies::arrays() {
 void Bodies::swap(Bodies& other) {
   std::swap(arrays_, other.arrays_);
   std::swap(memory_, other.memory_);
+  std::swap(flat_, other.flat_);
+}
+
+void Bodies::flatten() {
+  for (BodyIndex body = 0; body < index_end(); ++body) {
+    if (!used(body)) continue;
+    const bool vectors = location(body).z() == 0 && velocity(body).z() == 0 && acceleration(body).z() == 0;
+    const Quaternion turn = orientation(body);
+    const Vector3 &spin = rotational_velocity(body), &more = rotational_acceleration(body);
+    const bool turns =
+        turn.x() == 0 && turn.y() == 0 && spin.x() == 0 && spin.y() == 0 && more.x() == 0 && more.y() == 0;
+    if (!vectors || !turns)
+      throw Error(ErrorCode::Argument, "the world cannot become flat: a body is not in the plane z = 0");
+  }
+  flat_ = true;
 }
 
 BodyIndex Bodies::add(BodyKind kind, ObjectId owner) {
@@ -200,7 +248,7 @@ Quaternion Bodies::orientation(BodyIndex body) const {
 
 void Bodies::set_location(BodyIndex body, const Vector3& location) {
   require_finite("location", location);
-  arrays_->location[body] = location;
+  arrays_->location[body] = in_plane("location", location, flat_);
   arrays_->note(body);
 }
 
@@ -212,7 +260,8 @@ void Bodies::set_orientation(BodyIndex body, const Quaternion& orientation) {
     throw Error(ErrorCode::Argument, "orientation must be a finite quaternion of non-zero length");
   }
   if (arrays_->turn_row[body] == kNoRow && orientation.vec() == kZero) return;
-  arrays_->turn(body).orientation = orientation.normalized();
+  const Quaternion turned = turned_about_z(orientation.normalized(), flat_);
+  arrays_->turn(body).orientation = turned;
   arrays_->note(body);
 }
 
@@ -231,14 +280,14 @@ const Vector3& Bodies::rotational_acceleration(BodyIndex body) const {
 
 void Bodies::set_velocity(BodyIndex body, const Vector3& value) {
   require_finite("velocity", value);
-  arrays_->velocity[body] = value;
+  arrays_->velocity[body] = in_plane("velocity", value, flat_);
   arrays_->classify(body);
   arrays_->note(body);
 }
 
 void Bodies::set_acceleration(BodyIndex body, const Vector3& value) {
   require_finite("acceleration", value);
-  arrays_->acceleration[body] = value;
+  arrays_->acceleration[body] = in_plane("acceleration", value, flat_);
   arrays_->classify(body);
   arrays_->note(body);
 }
@@ -246,7 +295,8 @@ void Bodies::set_acceleration(BodyIndex body, const Vector3& value) {
 void Bodies::set_rotational_velocity(BodyIndex body, const Vector3& value) {
   require_finite("rotational velocity", value);
   if (arrays_->turn_row[body] == kNoRow && value == kZero) return;
-  arrays_->turn(body).velocity = value;
+  const Vector3 spin = about_z("rotational velocity", value, flat_);
+  arrays_->turn(body).velocity = spin;
   arrays_->classify(body);
   arrays_->note(body);
 }
@@ -254,7 +304,8 @@ void Bodies::set_rotational_velocity(BodyIndex body, const Vector3& value) {
 void Bodies::set_rotational_acceleration(BodyIndex body, const Vector3& value) {
   require_finite("rotational acceleration", value);
   if (arrays_->turn_row[body] == kNoRow && value == kZero) return;
-  arrays_->turn(body).acceleration = value;
+  const Vector3 spin = about_z("rotational acceleration", value, flat_);
+  arrays_->turn(body).acceleration = spin;
   arrays_->classify(body);
   arrays_->note(body);
 }
@@ -299,13 +350,14 @@ const Vector3& Bodies::torque(BodyIndex body) const {
 
 void Bodies::set_force(BodyIndex body, const Vector3& newtons) {
   require_finite("force", newtons);
-  arrays_->make_rigid(body).force = newtons;
+  arrays_->make_rigid(body).force = in_plane("force", newtons, flat_);
   arrays_->note(body);
 }
 
 void Bodies::set_torque(BodyIndex body, const Vector3& newton_metres) {
   require_finite("torque", newton_metres);
-  arrays_->make_rigid(body).torque = newton_metres;
+  const Vector3 about = about_z("torque", newton_metres, flat_);
+  arrays_->make_rigid(body).torque = about;
   if (newton_metres != kZero) arrays_->turn(body);
   arrays_->note(body);
 }

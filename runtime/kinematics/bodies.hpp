@@ -77,6 +77,10 @@ class Bodies : public InMemory {
   std::uint64_t physics_revision() const;  // grows when the physics of a body is switched
   std::size_t bytes() const;
   void swap(Bodies& other);
+  /// From now on z = 0 and rotation about z only, exactly. Error{Argument} if a body is not so. A setter then throws
+  /// Error{Argument} naming the property for a part out of the plane that is more than round-off.
+  void flatten();
+  bool flat() const { return flat_; }
   BodyKind kind(BodyIndex body) const;
   ObjectId owner(BodyIndex body) const;
 
@@ -163,6 +167,7 @@ class Bodies : public InMemory {
   Arrays& arrays();  // made with the first body: a world without bodies has none
   std::pmr::memory_resource* memory_;
   std::unique_ptr<Arrays> arrays_;
+  bool flat_ = false;
 };
 
 }  // namespace breve

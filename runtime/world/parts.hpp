@@ -25,7 +25,7 @@ struct World::Parts final : CollisionClient, DynamicsClient, InMemory {
   void rebind(World& owner) {
     world = &owner;
     collisions.rebind(*owner.bodies_);
-    dynamics.rebind(*owner.bodies_);
+    dynamics->rebind(*owner.bodies_);
   }
 
   // --- the stages of a sub-step: a list, rebuilt only when the scene calls for other effects -------------------------
@@ -51,6 +51,7 @@ struct World::Parts final : CollisionClient, DynamicsClient, InMemory {
   bool handled(BodyIndex a, BodyIndex b) const override;
   bool ignored(BodyIndex a, BodyIndex b) const override;
   bool locates() const override { return at_impact; }
+  bool any_handled() const override { return handlers.any_handler(); }
   std::uint64_t rules() const override { return handlers.revision() + world->bodies_->revision(); }
   void impact(BodyIndex a, BodyIndex b, const Contact& contact, double moment) override {
     touched(a, b, contact, moment);
@@ -64,7 +65,7 @@ struct World::Parts final : CollisionClient, DynamicsClient, InMemory {
   Notifications notifications;
   CollisionHandlers handlers;
   CollisionStage collisions;
-  Dynamics dynamics;
+  std::unique_ptr<Mechanics> dynamics;  // Dynamics, or Planar in a flat world; never null
   std::pmr::vector<Stage> stages;
   std::uint32_t stage_signature = 0;
   Effects effects;

@@ -86,6 +86,7 @@ void World::write_image(ByteWriter& out) const {
   out.put(clock_.iteration);
   out.put(clock_.end_requested);
   out.put(clock_.paused);
+  out.put(bodies_->flat());
   random_.save(out);
   view_.save(out);
   parts.names.save(out);
@@ -96,7 +97,7 @@ void World::write_image(ByteWriter& out) const {
   parts.handlers.save(out);
   parts.collisions.save(out);
   parts.effects.save(out);
-  parts.dynamics.save(out);
+  parts.dynamics->save(out);
   out.put(parts.exact_schedule);
   out.put(parts.at_impact);
   out.put(parts.first_handler);
@@ -117,6 +118,7 @@ void World::read_image(ByteReader& in, World& fresh) const {
   fresh.clock_.end_requested = in.get_bool();
   fresh.clock_.paused = in.get_bool();
   if (!(fresh.clock_.iteration_step > 0) || !(fresh.clock_.integration_step > 0)) ByteReader::fail();
+  if (in.get_bool()) fresh.flatten();
   fresh.random_.load(in);
   fresh.view_.load(in);
   parts.names.load(in);
@@ -142,7 +144,7 @@ void World::read_image(ByteReader& in, World& fresh) const {
   parts.handlers.load(in, parts.names.size());
   parts.collisions.load(in);
   parts.effects.load(in);
-  parts.dynamics.load(in);
+  parts.dynamics->load(in);
   parts.exact_schedule = in.get_bool();
   parts.at_impact = in.get_bool();
   parts.first_handler = in.get_object();
@@ -202,7 +204,7 @@ std::uint64_t World::hash() const {
   parts.notifications.hash(hasher, parts.names, parts.objects);
   parts.handlers.hash(hasher, parts.names);
   parts.collisions.hash(hasher);
-  parts.dynamics.hash(hasher);
+  parts.dynamics->hash(hasher);
   hasher.add(static_cast<std::uint64_t>(parts.exact_schedule) | static_cast<std::uint64_t>(parts.at_impact) << 1);
   parts.space.hash(hasher);
   parts.near.hash(hasher);

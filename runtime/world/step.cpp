@@ -67,7 +67,7 @@ void World::step() {
   const StageScope iteration("iteration", observer_);
   Parts& parts = *parts_;
   parts.effects.begin_step();
-  parts.dynamics.begin_iteration(clock_.iteration);
+  parts.dynamics->begin_iteration(clock_.iteration);
   deliver_input();
   parts.objects.join();
   if (behaviour_) {
@@ -172,15 +172,15 @@ void World::run_substeps(double h, std::uint64_t count) {
     }
   } catch (...) {
     parts.collisions.abandon();
-    parts.dynamics.abandon();
+    parts.dynamics->abandon();
     throw;
   }
 }
 
 /// What the stage that moves rigid bodies consists of, for the list of effects: they share its stage and its time.
 void World::Parts::count_dynamics() {
-  const Dynamics::Census census = dynamics.census();
-  const DynamicsCounters& counted = dynamics.counters();
+  const Mechanics::Census census = dynamics->census();
+  const DynamicsCounters& counted = dynamics->counters();
   const struct {
     EffectId id;
     bool on;
@@ -194,7 +194,7 @@ void World::Parts::count_dynamics() {
       {EffectId::Contact, census.pairs != 0, census.first_pair, counted.contacts, counted.pairs},
       {EffectId::Friction, census.rough != 0, census.first_rough, census.rough, counted.contacts},
       {EffectId::Restitution, census.bouncing != 0, census.first_bouncing, census.bouncing, counted.impacts},
-      {EffectId::Sleeping, dynamics.sleeping(), {}, census.asleep, census.asleep},
+      {EffectId::Sleeping, dynamics->sleeping(), {}, census.asleep, census.asleep},
   };
   for (const auto& one : all) {
     Effect& effect = effects[one.id];
@@ -205,7 +205,8 @@ void World::Parts::count_dynamics() {
     effect.items = one.items;
     effect.calls = one.calls;
   }
-  effects[EffectId::Articulation].bytes = dynamics.bytes();
+  // The flat world keeps its joints in one structure with its bodies.
+  effects[world->dimension() == 2 ? EffectId::Rigid : EffectId::Articulation].bytes = dynamics->bytes();
 }
 
 std::uint32_t World::Parts::signature() const {
@@ -214,7 +215,7 @@ std::uint32_t World::Parts::signature() const {
   if (bodies.translating() != 0) bits |= bit(EffectId::Motion);
   if (bodies.turning() != 0) bits |= bit(EffectId::Rotation);
   if (bodies.rigid() != 0) bits |= bit(EffectId::Rigid);
-  if (bodies.rigid() != 0 && dynamics.gravity() != Vector3::Zero()) bits |= bit(EffectId::Gravity);
+  if (bodies.rigid() != 0 && dynamics->gravity() != Vector3::Zero()) bits |= bit(EffectId::Gravity);
   if (handlers.any_handler() && bodies.size() != 0) {
     bits |= bit(EffectId::Collision);
     if (at_impact) bits |= bit(EffectId::TimeOfImpact);
@@ -272,7 +273,7 @@ void World::Parts::rebuild_stages(std::uint32_t signature) {
     stages.push_back({EffectId::Collision,
                       [](World::Parts& p, double) {
                         p.collisions.begin(
-                            p, p.handlers.revision() + p.dynamics.rules() + p.world->bodies_->physics_revision());
+                            p, p.handlers.revision() + p.dynamics->rules() + p.world->bodies_->physics_revision());
                       },
                       [](const World::Parts&) { return std::size_t{0}; }});
   }
@@ -285,13 +286,13 @@ void World::Parts::rebuild_stages(std::uint32_t signature) {
                       [](const World::Parts& p) { return p.world->bodies_->turning(); }});
   }
   if ((signature & bit(EffectId::Rigid)) != 0) {
-    stages.push_back({EffectId::Rigid, [](World::Parts& p, double h) { p.dynamics.advance(p, p.substep_start, h); },
+    stages.push_back({EffectId::Rigid, [](World::Parts& p, double h) { p.dynamics->advance(p, p.substep_start, h); },
                       [](const World::Parts& p) { return p.world->bodies_->rigid(); }});
   }
   if (collide) {
     stages.push_back({EffectId::Collision,
                       [](World::Parts& p, double h) {
-                        p.collisions.finish(p, p.substep_start, h, p.dynamics.gravity(), p.at_impact);
+                        p.collisions.finish(p, p.substep_start, h, p.dynamics->gravity(), p.at_impact);
                         const CollisionStage::Counters counted = p.collisions.take_counters();
                         p.effects[EffectId::TimeOfImpact].calls += counted.searches;
                         p.effects[EffectId::TimeOfImpact].items += counted.impacts;
@@ -315,7 +316,7 @@ bool World::Parts::takes_part(BodyIndex body) const {
 
 bool World::Parts::reported(BodyIndex a, BodyIndex b) const {
   // What dynamics pushes apart it reports itself, at the impact and before its impulse.
-  return handled(a, b) && !dynamics.pushes(a, b, *this);
+  return handled(a, b) && !dynamics->pushes(a, b, *this);
 }
 
 bool World::Parts::handled(BodyIndex a, BodyIndex b) const {

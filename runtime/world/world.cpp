@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "runtime/base/error.hpp"
+#include "runtime/dynamics/dynamics.hpp"
+#include "runtime/planar/planar.hpp"
 #include "runtime/world/parts.hpp"
 
 namespace breve {
@@ -18,7 +20,7 @@ World::Parts::Parts(World& owner, std::pmr::memory_resource* memory)
       notifications(memory),
       handlers(memory),
       collisions(memory, *owner.bodies_),
-      dynamics(memory, *owner.bodies_),
+      dynamics(make_in<Dynamics>(memory, memory, *owner.bodies_)),
       stages(memory),
       near(memory),
       input(memory),
@@ -46,7 +48,7 @@ void World::release(ObjectId id) {
   ObjectTable::Slot& slot = parts.objects.at(id);
   if (slot.body != kNoBody) {
     parts.collisions.forget(slot.body);
-    parts.dynamics.forget(slot.body);
+    parts.dynamics->forget(slot.body);
     bodies_->remove(slot.body);
     slot.body = kNoBody;
   }
@@ -243,11 +245,24 @@ void World::ignore_collisions(ClassId owner, ClassId other) { parts_->handlers.i
 void World::set_impact_timing(bool at_impact) { parts_->at_impact = at_impact; }
 bool World::impact_timing() const { return parts_->at_impact; }
 
-void World::set_gravity(const Vector3& gravity) { parts_->dynamics.set_gravity(gravity); }
-const Vector3& World::gravity() const { return parts_->dynamics.gravity(); }
+void World::set_gravity(const Vector3& gravity) { parts_->dynamics->set_gravity(gravity); }
+const Vector3& World::gravity() const { return parts_->dynamics->gravity(); }
 
-Dynamics& World::dynamics() { return parts_->dynamics; }
-const Dynamics& World::dynamics() const { return parts_->dynamics; }
+Mechanics& World::dynamics() { return *parts_->dynamics; }
+const Mechanics& World::dynamics() const { return *parts_->dynamics; }
+
+void World::flatten() {
+  if (bodies_->flat()) return;
+  const Mechanics& before = *parts_->dynamics;
+  if (bodies_->rigid() != 0 || before.joint_count() != 0 || before.census().springs != 0)
+    throw Error(ErrorCode::Argument,
+                "the world cannot become flat: it has bodies with physics, joints or springs already; make it flat "
+                "first (its controller a PlanarControl, or breve_world_config.dimension = 2)");
+  auto flat = make_in<Planar>(memory_, memory_, *bodies_);
+  flat->take_settings(before);
+  bodies_->flatten();
+  parts_->dynamics = std::move(flat);
+}
 
 void World::queue_input(InputEvent event) {
   parts_->input.push_back(std::move(event));

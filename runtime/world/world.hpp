@@ -14,8 +14,8 @@
 #include "runtime/base/math.hpp"
 #include "runtime/base/memory.hpp"
 #include "runtime/base/random.hpp"
-#include "runtime/dynamics/dynamics.hpp"
 #include "runtime/kinematics/bodies.hpp"
+#include "runtime/mechanics/mechanics.hpp"
 #include "runtime/space/extent.hpp"
 #include "runtime/world/behaviour.hpp"
 #include "runtime/world/effects.hpp"
@@ -70,8 +70,13 @@ class World : public InMemory {
   Bodies& bodies() { return *bodies_; }
   const Bodies& bodies() const { return *bodies_; }
   /// Joints, springs, accuracy, energy: whatever has to do with forces. Valid until the world is loaded or destroyed.
-  Dynamics& dynamics();
-  const Dynamics& dynamics() const;
+  Mechanics& dynamics();
+  const Mechanics& dynamics() const;
+  /// From now on the world is flat: every body has z = 0 and turns about z alone. What dynamics() gave before is gone;
+  /// its settings are kept. Error{Argument} if there are bodies with physics, joints or springs, or a body that is not
+  /// in the plane. Nothing if it is flat already.
+  void flatten();
+  int dimension() const { return bodies_->flat() ? 2 : 3; }
   /// Objects whose shapes intersect this one's now and that are solvable (physics-enabled, Stationary), creation order.
   std::pmr::vector<ObjectId> touching(ObjectId id) const;
 

@@ -11,7 +11,7 @@ namespace {
 
 using Text = StringCell*;
 
-Dynamics& dynamics_of(Machine& machine) { return machine.world().dynamics(); }
+Mechanics& dynamics_of(Machine& machine) { return machine.world().dynamics(); }
 
 // --- accuracy -------------------------------------------------------------------------------------------------------
 
@@ -22,7 +22,7 @@ Text get_accuracy(Machine& machine, Instance&) {
 }
 
 Text describe_accuracy(Machine& machine, Instance&) {
-  return machine.heap().string(describe(dynamics_of(machine).accuracy()));
+  return machine.heap().string(dynamics_of(machine).describe_accuracy());
 }
 
 /// A setting of a rung that is a number or a switch, by its name.
@@ -165,16 +165,27 @@ double number_at_least_zero(double value, const char* what) {
 }
 
 void set_erp(Machine& machine, Instance&, double erp) {
-  Dynamics& dynamics = dynamics_of(machine);
+  Mechanics& dynamics = dynamics_of(machine);
   dynamics.set_softness(number_at_least_zero(erp, "set-erp: the error reduction"), dynamics.cfm());
   say_if_ignored(machine);
 }
 
 void set_cfm(Machine& machine, Instance&, double cfm) {
-  Dynamics& dynamics = dynamics_of(machine);
+  Mechanics& dynamics = dynamics_of(machine);
   dynamics.set_softness(dynamics.erp(), number_at_least_zero(cfm, "set-cfm: the softness"));
   say_if_ignored(machine);
 }
+
+// --- PlanarControl --------------------------------------------------------------------------------------------------
+
+void flatten(Machine& machine, Instance&) { machine.world().flatten(); }
+
+void set_length_unit(Machine& machine, Instance&, double unit) {
+  finite(unit, "set-length-unit: the length unit");
+  dynamics_of(machine).set_length_unit(unit);
+}
+
+double get_length_unit(Machine& machine, Instance&) { return dynamics_of(machine).length_unit(); }
 
 constexpr Native kAccuracyNatives[] = {
     native<set_accuracy>("control.set-accuracy"),
@@ -202,6 +213,9 @@ constexpr Native kAccuracyNatives[] = {
     native<set_sleeping<false>>("physical-control.disable-auto-disable"),
     native<set_erp>("physical-control.set-erp"),
     native<set_cfm>("physical-control.set-cfm"),
+    native<flatten>("planar-control.flatten"),
+    native<set_length_unit>("planar-control.set-length-unit"),
+    native<get_length_unit>("planar-control.get-length-unit"),
 };
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 using Text = StringCell*;
 
 Bodies& bodies_of(Machine& machine) { return machine.world().bodies(); }
-Dynamics& dynamics_of(Machine& machine) { return machine.world().dynamics(); }
+Mechanics& dynamics_of(Machine& machine) { return machine.world().dynamics(); }
 
 /// The root of a MultiBody that must have one.
 Instance& need_root(Machine& machine, Instance& self) {
@@ -149,7 +149,7 @@ Vector3 changed(const Vector3& now, Vector3 wanted) {
 /// Let the root move so and all links with it, as one rigid body; joints go on as they did. An assembly that the world
 /// holds moves as near to that as it can.
 void set_velocity_of_all(Machine& machine, BodyIndex root, const Vector3& velocity, const Vector3& spin) {
-  Dynamics& dynamics = dynamics_of(machine);
+  Mechanics& dynamics = dynamics_of(machine);
   Bodies& bodies = bodies_of(machine);
   dynamics.take_changes();
   const Vector3 center = bodies.location(root);

@@ -9,7 +9,7 @@ namespace breve::steve {
 
 namespace {
 
-Dynamics& dynamics_of(Machine& machine) { return machine.world().dynamics(); }
+Mechanics& dynamics_of(Machine& machine) { return machine.world().dynamics(); }
 
 JointResource& resource(Machine& machine, Instance& self) { return resource_made<JointResource>(machine, self); }
 
@@ -241,7 +241,7 @@ void set_limit_vectors(Machine& machine, Instance& self, Vector3 low, Vector3 hi
 
 template <JointVector JointDrive::*Limit>
 Vector3 get_limits(Machine& machine, Instance& self) {
-  return read(machine, self, [](Dynamics& dynamics, JointIndex joint) {
+  return read(machine, self, [](Mechanics& dynamics, JointIndex joint) {
     Vector3 limits = dynamics.drive(joint).*Limit;
     for (int i = axis_count(dynamics.joint(joint).kind); i < 3; ++i) limits[i] = 0;
     return limits;
@@ -249,31 +249,31 @@ Vector3 get_limits(Machine& machine, Instance& self) {
 }
 
 double get_strength_limit(Machine& machine, Instance& self) {
-  return read(machine, self, [](Dynamics& d, JointIndex joint) { return d.drive(joint).strength_limit; });
+  return read(machine, self, [](Mechanics& d, JointIndex joint) { return d.drive(joint).strength_limit; });
 }
 double get_strength_hard_limit(Machine& machine, Instance& self) {
-  return read(machine, self, [](Dynamics& d, JointIndex joint) { return d.strength_hard_limit(joint); });
+  return read(machine, self, [](Mechanics& d, JointIndex joint) { return d.strength_hard_limit(joint); });
 }
 
 // --- how it stands and moves ----------------------------------------------------------------------------------------
 
 double get_position(Machine& machine, Instance& self) {
-  return read(machine, self, [](Dynamics& d, JointIndex joint) { return d.position(joint)[0]; });
+  return read(machine, self, [](Mechanics& d, JointIndex joint) { return d.position(joint)[0]; });
 }
 Vector3 get_positions(Machine& machine, Instance& self) {
-  return read(machine, self, [](Dynamics& d, JointIndex joint) { return Vector3(d.position(joint)); });
+  return read(machine, self, [](Mechanics& d, JointIndex joint) { return Vector3(d.position(joint)); });
 }
 double get_velocity(Machine& machine, Instance& self) {
-  return read(machine, self, [](Dynamics& d, JointIndex joint) { return d.velocity(joint)[0]; });
+  return read(machine, self, [](Mechanics& d, JointIndex joint) { return d.velocity(joint)[0]; });
 }
 Vector3 get_velocity_vector(Machine& machine, Instance& self) {
-  return read(machine, self, [](Dynamics& d, JointIndex joint) { return Vector3(d.velocity(joint)); });
+  return read(machine, self, [](Mechanics& d, JointIndex joint) { return Vector3(d.velocity(joint)); });
 }
 Vector3 get_reaction_force(Machine& machine, Instance& self) {
-  return read(machine, self, [](Dynamics& d, JointIndex joint) { return Vector3(d.reaction(joint).force); });
+  return read(machine, self, [](Mechanics& d, JointIndex joint) { return Vector3(d.reaction(joint).force); });
 }
 Vector3 get_reaction_torque(Machine& machine, Instance& self) {
-  return read(machine, self, [](Dynamics& d, JointIndex joint) { return Vector3(d.reaction(joint).torque); });
+  return read(machine, self, [](Mechanics& d, JointIndex joint) { return Vector3(d.reaction(joint).torque); });
 }
 
 constexpr Native kJointNatives[] = {

@@ -30,7 +30,7 @@ const Kind& row_of(const Instance& joint) {
 
 /// Stops that a joint has from the start: -2 to 2 of a prismatic joint, the middle axis of a ball away from where its
 /// angles stop to be angles.
-void set_first_limits(Dynamics& dynamics, JointIndex joint, JointKind kind) {
+void set_first_limits(Mechanics& dynamics, JointIndex joint, JointKind kind) {
   JointDrive drive = dynamics.drive(joint);
   if (kind == JointKind::Prismatic) {
     drive.low[0] = -kSliderStop;
@@ -64,7 +64,7 @@ JointKind joint_kind(const Instance& joint) { return row_of(joint).kind; }
 JointIndex joint_of(Machine& machine, const Instance& joint) {
   const JointResource* resource = resource_of<JointResource>(machine, &joint);
   if (!resource || resource->index == kNoJoint) return kNoJoint;
-  const Dynamics& dynamics = machine.world().dynamics();
+  const Mechanics& dynamics = machine.world().dynamics();
   const bool ours = dynamics.linked(resource->index) && dynamics.joint_owner(resource->index) == joint.id;
   return ours ? resource->index : kNoJoint;
 }
@@ -89,7 +89,7 @@ void link_joint(Machine& machine, Instance& joint, JointDescription description,
     description.relative_rotation = (from.conjugate() * bodies.orientation(description.child)).normalized();
   }
   JointResource& resource = resource_made<JointResource>(machine, joint);
-  Dynamics& dynamics = machine.world().dynamics();
+  Mechanics& dynamics = machine.world().dynamics();
   resource.index = dynamics.link(description, joint.id);
   resource.is = dynamics.joint(resource.index);
   set_first_limits(dynamics, resource.index, row.kind);
@@ -111,7 +111,7 @@ void prepare_joint(Machine& machine, Instance& joint) {
   const JointIndex index = joint_of(machine, joint);
   resource.was_linked = index != kNoJoint;
   if (!resource.was_linked) return;
-  const Dynamics& dynamics = machine.world().dynamics();
+  const Mechanics& dynamics = machine.world().dynamics();
   resource.is = dynamics.joint(index);
   resource.drive = dynamics.drive(index);
   resource.position = dynamics.position(index);
@@ -129,7 +129,7 @@ void relink_joint(Machine& machine, Instance& joint) {
   Instance* child = library_object(machine, joint, "Joint", "childObject");
   if (!child) return;  // it was not archived
   link_joint(machine, joint, description, library_object(machine, joint, "Joint", "parentObject"), child);
-  Dynamics& dynamics = machine.world().dynamics();
+  Mechanics& dynamics = machine.world().dynamics();
   const JointIndex index = joint_of(machine, joint);
   dynamics.set_drive(index, saved.drive);
   if (dynamics.closes_ring(index)) return;
@@ -143,7 +143,7 @@ void relink_joint(Machine& machine, Instance& joint) {
 SpringIndex spring_of(Machine& machine, Instance& spring) {
   const SpringResource* resource = resource_of<SpringResource>(machine, &spring);
   if (!resource || resource->index == kNoSpring) return kNoSpring;
-  const Dynamics& dynamics = machine.world().dynamics();
+  const Mechanics& dynamics = machine.world().dynamics();
   if (!dynamics.tied(resource->index)) return kNoSpring;
   // A body that went took its springs along, and the number may be another's now.
   const SpringDescription& is = dynamics.spring(resource->index);
@@ -159,7 +159,7 @@ void connect_spring(Machine& machine, Instance& spring, SpringDescription descri
   description.b = body_of(machine, must_live(to, "connect: the object it goes to"));
   if (description.a == description.b) return;
   machine.refuse_in_stage("connect a spring");
-  Dynamics& dynamics = machine.world().dynamics();
+  Mechanics& dynamics = machine.world().dynamics();
   const SpringIndex before = spring_of(machine, spring);
   SpringResource& resource = resource_made<SpringResource>(machine, spring);
   resource.index = dynamics.tie(description, spring.id);
@@ -243,7 +243,7 @@ std::vector<Instance*> joints_of(Machine& machine, Instance& multibody) {
   std::vector<Instance*> joints;
   const BodyIndex root = own_root(machine, multibody);
   if (root == kNoBody) return joints;
-  const Dynamics& dynamics = machine.world().dynamics();
+  const Mechanics& dynamics = machine.world().dynamics();
   for (const JointIndex joint : dynamics.joints_of(root))
     if (Instance* owner = machine.instance(dynamics.joint_owner(joint))) joints.push_back(owner);
   std::sort(joints.begin(), joints.end(), [](const Instance* a, const Instance* b) { return a->serial < b->serial; });

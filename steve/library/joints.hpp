@@ -7,13 +7,13 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/dynamics/dynamics.hpp"
+#include "runtime/mechanics/mechanics.hpp"
 #include "runtime/world/resource.hpp"
 #include "steve/library/support.hpp"
 
 namespace breve::steve {
 
-/// The native data of a Joint object. Dynamics has the truth while the joint is linked; what stands here is for linking
+/// The native data of a Joint object. Mechanics has the truth while the joint is linked; what stands here is for linking
 /// it, and for archives.
 class JointResource final : public Resource {
  public:

@@ -113,13 +113,13 @@ Vector3 mobile_get_bound_minimum(Machine& machine, Instance& self) {
 }
 
 /// Are two links of one assembly tested against each other at all? (CLASSES 2.5)
-bool tested(const Dynamics& dynamics, BodyIndex a, BodyIndex b) {
+bool tested(const Mechanics& dynamics, BodyIndex a, BodyIndex b) {
   return dynamics.self_collisions(a) && !dynamics.jointed(a, b);
 }
 
 ListCell* mobile_get_colliding_objects(Machine& machine, Instance& self) {
   const BodyIndex body = body_of(machine, self);
-  const Dynamics& dynamics = machine.world().dynamics();
+  const Mechanics& dynamics = machine.world().dynamics();
   ListCell* list = machine.heap().list(0);
   for (const ObjectId id : machine.world().touching(self.id)) {
     const BodyIndex other = machine.world().body(id);
@@ -132,7 +132,7 @@ ListCell* mobile_get_colliding_objects(Machine& machine, Instance& self) {
 
 std::int32_t mobile_check_for_self_penetrations(Machine& machine, Instance& self) {
   const BodyIndex body = body_of(machine, self);
-  const Dynamics& dynamics = machine.world().dynamics();
+  const Mechanics& dynamics = machine.world().dynamics();
   for (const ObjectId id : machine.world().touching(self.id)) {
     const BodyIndex other = machine.world().body(id);
     if (dynamics.same_assembly(body, other) && tested(dynamics, body, other)) return 1;

@@ -80,8 +80,23 @@ Instance* build_sphere(Machine& machine, Instance& self, double radius) {
 
 Instance* build_cube(Machine& machine, Instance& self, Vector3 size) { return build(machine, self, Shape::box(size, machine.heap().memory())); }
 
+/// In a flat world a disk lies in the plane: turned so that its axis is z.
+std::shared_ptr<Shape> lying(const Shape& prism, std::pmr::memory_resource* memory) {
+  std::vector<std::vector<Vector3>> faces;
+  for (const auto& face : prism.faces()) {
+    std::vector<Vector3>& corners = faces.emplace_back();
+    for (const int corner : face) {
+      const Vector3& v = prism.vertices()[static_cast<std::size_t>(corner)];
+      corners.emplace_back(v.x(), -v.z(), v.y());
+    }
+  }
+  return Shape::convex(faces, 1, memory);
+}
+
 Instance* build_disk(Machine& machine, Instance& self, std::int32_t sides, double height, double radius) {
-  return build(machine, self, Shape::prism(sides, height, radius, machine.heap().memory()));
+  std::shared_ptr<Shape> prism = Shape::prism(sides, height, radius, machine.heap().memory());
+  if (machine.world().dimension() == 2) prism = lying(*prism, machine.heap().memory());
+  return build(machine, self, prism);
 }
 
 Instance* build_cone(Machine& machine, Instance& self, std::int32_t sides, double height, double radius) {

@@ -3,7 +3,7 @@
 
 #include "articulated_reference.hpp"
 #include "fake_behaviour.hpp"
-#include "runtime/dynamics/dynamics.hpp"
+#include "runtime/mechanics/mechanics.hpp"
 
 namespace breve::testing {
 
@@ -23,7 +23,7 @@ struct Physics : Scene {
     world.set_iteration_step(step);
     script.recording = false;
   }
-  Dynamics& dynamics() { return world.dynamics(); }
+  Mechanics& dynamics() { return world.dynamics(); }
   /// A physics-enabled body.
   ObjectId rigid(std::shared_ptr<Shape> shape, const Vector3& at, const Quaternion& turn = Quaternion::Identity()) {
     const ObjectId id = body(1, at, BodyKind::Mobile, std::move(shape));

@@ -68,6 +68,13 @@ struct JointDrive {
   double limit_restitution = 0;  // at the limits, 0 to 1
 };
 
+/// Error{Argument} naming the property: a child that is no body or is Stationary, parent and child the same, a point,
+/// rotation or normal that is not finite or has no direction.
+void check(const JointDescription& is, const Bodies& bodies);
+/// Error{Argument} naming the number that is not finite, negative where it must not be, or a low limit above a high
+/// one.
+void check(const JointDrive& drive, JointKind kind);
+
 /// What a joint gives.
 struct JointReaction {
   Vector3 force = Vector3::Zero();   // on the child, world axes, N

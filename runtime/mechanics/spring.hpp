@@ -27,4 +27,18 @@ struct SpringDescription {
   SpringMode mode = SpringMode::Both;
 };
 
+/// Error{Argument} naming the property that is not finite or below 0.
+void check(const SpringDescription& is);
+
+/// What a spring between bodies does now.
+struct TiePull {
+  Vector3 direction = Vector3::Zero();  // unit, from a to b
+  double force = 0;                     // N, positive pulls together
+  double energy = 0;                    // J, stored
+  double loss = 0;                      // W, in its damper
+};
+/// @param way   from the point on a to the point on b, m
+/// @param rate  of that, m/s
+TiePull pull_of(const SpringDescription& is, const Vector3& way, const Vector3& rate);
+
 }  // namespace breve

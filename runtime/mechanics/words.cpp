@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "runtime/base/error.hpp"
-#include "runtime/dynamics/account.hpp"
-#include "runtime/dynamics/accuracy.hpp"
-#include "runtime/dynamics/joint.hpp"
+#include "runtime/mechanics/account.hpp"
+#include "runtime/mechanics/accuracy.hpp"
+#include "runtime/mechanics/joint.hpp"
 
 namespace breve {
 

@@ -1,0 +1,200 @@
+// What moves the bodies that have forces: joints, contacts, accuracy, energy, guard. This is all that the world, native
+// methods and the C API see of it; behind it stands runtime/dynamics in space, runtime/planar in a flat world.
+//
+// The arrays of runtime/kinematics stay what everybody reads: poses and velocities are written there. Between two calls
+// of advance() a script may set anything there; what it set is found at the next advance() (or at once by
+// `take_changes`): a link that was moved takes its whole assembly along, a link whose velocity was set is struck, so
+// that the whole assembly answers.
+#pragma once
+
+#include <memory_resource>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/base/bytes.hpp"
+#include "runtime/base/hasher.hpp"
+#include "runtime/base/memory.hpp"
+#include "runtime/kinematics/bodies.hpp"
+#include "runtime/mechanics/account.hpp"
+#include "runtime/mechanics/accuracy.hpp"
+#include "runtime/mechanics/joint.hpp"
+#include "runtime/mechanics/spring.hpp"
+#include "runtime/solid/contact.hpp"
+
+namespace breve {
+
+/// What mechanics asks of the world around it.
+class DynamicsClient {
+ public:
+  virtual ~DynamicsClient() = default;
+  /// Position in the order of creation.
+  virtual std::uint64_t serial(BodyIndex body) const = 0;
+  /// A handler wants to know when these two touch.
+  virtual bool handled(BodyIndex a, BodyIndex b) const = 0;
+  /// These two are not to be pushed apart.
+  virtual bool ignored(BodyIndex a, BodyIndex b) const = 0;
+  /// Handlers are called at the moment of impact; otherwise at the end of the step.
+  virtual bool locates() const = 0;
+  /// Some pair has a handler.
+  virtual bool any_handled() const = 0;
+  /// Grows when an answer of the two first may have changed.
+  virtual std::uint64_t rules() const = 0;
+  /// The moment of impact of a pair with a handler, before its impulse. Bodies of the two islands stand at that moment.
+  /// May change, free and create bodies; may throw.
+  virtual void impact(BodyIndex a, BodyIndex b, const Contact& contact, double moment) = 0;
+  /// The force of a body that has a force method, N, world axes, at the stage that stands in the arrays now.
+  /// @param draw  the number of the sub-step, from which numbers drawn at random are to follow
+  virtual Vector3 stage_force(BodyIndex body, double time, std::uint64_t draw) = 0;
+};
+
+class Mechanics : public InMemory {
+ public:
+  virtual ~Mechanics() = default;
+  virtual void rebind(Bodies& bodies) = 0;  // the same bodies, at another address
+
+  // --- joints -----------------------------------------------------------------------------------------------------
+  /// Joins two bodies, or a body to the world. Both become physics-enabled (a Stationary parent is like the world). The
+  /// child, with all that hangs on it, is turned to its place (unless keep_rotation) and moved so that the two points
+  /// coincide; if it is connected with the parent already, the joint closes a ring: nothing is moved, and the joint
+  /// becomes a constraint. A child that is held by the world already closes a ring too.
+  /// @param owner  the object behind it, for messages and for who_asked; may be null
+  /// @throws Error{Argument} naming the property: a child that is no body or is Stationary, parent and child the same,
+  ///         a point, rotation or normal that is not finite or has no direction. Nothing is changed then
+  virtual JointIndex link(const JointDescription& description, ObjectId owner) = 0;
+  virtual void unlink(JointIndex joint) = 0;
+  virtual bool linked(JointIndex joint) const = 0;  // names a joint that there is
+  virtual std::size_t joint_count() const = 0;
+  virtual const JointDescription& joint(JointIndex joint) const = 0;
+  virtual ObjectId joint_owner(JointIndex joint) const = 0;
+  virtual bool closes_ring(JointIndex joint) const = 0;
+  /// Point and normal may be changed while it is linked; the bodies are placed anew as by link(). Errors as there.
+  virtual void relink(JointIndex joint, const JointDescription& description) = 0;
+
+  virtual const JointDrive& drive(JointIndex joint) const = 0;
+  /// Error{Argument} naming the number that is not finite, negative where it must not be, or a low limit above a high
+  /// one; nothing is changed then. The strength limit is cut to 0 .. strength_hard_limit.
+  virtual void set_drive(JointIndex joint, const JointDrive& drive) = 0;
+  virtual double strength_hard_limit(JointIndex joint) const = 0;  // 500 x mass of the child, N*m or N
+
+  /// rad or m, sign as in JointDescription; a revolute joint counts its whole turns. Universal and ball: angles about
+  /// their axes.
+  virtual JointVector position(JointIndex joint) const = 0;
+  virtual JointVector velocity(JointIndex joint) const = 0;  // rad/s or m/s
+  /// Put the joint there, moving so: what hangs on the child's side moves along. Error{Argument} if not finite, or if
+  /// the joint closes a ring.
+  virtual void set_position(JointIndex joint, const JointVector& position) = 0;
+  virtual void set_velocity(JointIndex joint, const JointVector& velocity) = 0;
+  /// The same for a ball joint, without angles: at zero turned by `turn`, child relative to parent, in the parent's
+  /// axes, and spinning so. Errors as above, and if it is no ball joint.
+  virtual void set_ball(JointIndex joint, const Quaternion& turn, const Vector3& spin) = 0;
+  /// At this moment, from the forces that act now and those that contacts and limits had in the last sub-step; zero for
+  /// a joint that closes a ring, and without the forces of such joints.
+  virtual JointReaction reaction(JointIndex joint) const = 0;
+
+  // --- assemblies: bodies that joints connect ---------------------------------------------------------------------
+  virtual bool jointed(BodyIndex a, BodyIndex b) const = 0;        // directly
+  virtual bool same_assembly(BodyIndex a, BodyIndex b) const = 0;  // through joints
+  /// All bodies that joints connect with this one, itself too, and the joints; in the order of creation of the bodies'
+  /// indices and joints. A body without joints is alone.
+  virtual std::pmr::vector<BodyIndex> links_of(BodyIndex body) const = 0;
+  virtual std::pmr::vector<JointIndex> joints_of(BodyIndex body) const = 0;
+  /// Moves the whole assembly rigidly so that this body stands there. Anchors of joints to the world move along.
+  virtual void move_assembly(BodyIndex body, const Vector3& location, const Quaternion& orientation) = 0;
+  /// The whole assembly moves as one solid, so that this body has this velocity and spin (world axes): no joint turns.
+  /// Joints to the world allow what they allow. Error{Argument} if not finite.
+  virtual void set_assembly_velocity(BodyIndex body, const Vector3& velocity, const Vector3& spin) = 0;
+  /// Settings of the assembly that this body belongs to, kept with the body; the first body in the order of indices
+  /// that has some decides for an assembly.
+  virtual void set_self_collisions(BodyIndex body, bool on) = 0;
+  virtual bool self_collisions(BodyIndex body) const = 0;
+  /// Contact softness within the assembly, for the iterative solver; used if cfm is not 0.
+  virtual void set_self_collision_parameters(BodyIndex body, double erp, double cfm) = 0;
+  virtual void set_accuracy(BodyIndex body, const Accuracy& accuracy) = 0;
+  virtual void clear_accuracy(BodyIndex body) = 0;
+  virtual const Accuracy& accuracy(BodyIndex body) const = 0;  // in force: the assembly's or the world's
+  virtual Energy energy(BodyIndex body) const = 0;             // of its assembly; works and losses since it was made
+  /// A script put the body somewhere else: if it has joints, its assembly follows now. Otherwise, and where this is not
+  /// called, before anything is done with its assembly.
+  virtual void moved(BodyIndex body) = 0;
+  /// Pairs of links of the assembly that intersect now, of those that are tested at all: not those that a joint
+  /// connects, and none without self collisions. Time grows as the square of the number of links.
+  virtual std::size_t self_penetrations(BodyIndex body) const = 0;
+
+  // --- springs between bodies ---------------------------------------------------------------------------------------
+  /// Error{Argument} naming the property. The same body twice gives kNoSpring.
+  virtual SpringIndex tie(const SpringDescription& description, ObjectId owner) = 0;
+  virtual void untie(SpringIndex spring) = 0;
+  virtual bool tied(SpringIndex spring) const = 0;
+  virtual const SpringDescription& spring(SpringIndex spring) const = 0;
+  virtual void set_spring(SpringIndex spring, const SpringDescription& description) = 0;  // not its bodies
+  virtual double spring_length(SpringIndex spring) const = 0;                             // m, now
+  virtual double spring_force(SpringIndex spring) const = 0;  // N, in the last sub-step; pulling is positive
+
+  // --- settings of the world ----------------------------------------------------------------------------------------
+  virtual int dimension() const = 0;  // 3, or 2 in a flat world
+  /// Metres of what a flat world computes with as 1: sizes from 0.1 to 10 of it are best. In space always 1.
+  virtual double length_unit() const = 0;
+  /// Error{Argument} if it is not finite and > 0, and in space if it is not 1.
+  virtual void set_length_unit(double metres) = 0;
+  virtual void set_gravity(const Vector3& gravity) = 0;  // m/s^2; Error{Argument} if not finite
+  virtual const Vector3& gravity() const = 0;
+  virtual void set_accuracy(Rung rung) = 0;
+  virtual void set_accuracy(const Accuracy& accuracy) = 0;  // Error{Argument} naming the setting
+  virtual const Accuracy& accuracy() const = 0;
+  virtual std::string describe_accuracy() const = 0;  // what the settings mean here, in words, for people
+  virtual void set_guard(GuardMode mode) = 0;
+  virtual GuardMode guard() const = 0;
+  /// Bodies at rest may sleep until something touches or changes them (enable-auto-disable). Off at first.
+  virtual void set_sleeping(bool on) = 0;
+  virtual bool sleeping() const = 0;
+  /// Contacts by the iterative solver and nothing else (enable-fast-physics), with at most so many iterations; 0: as
+  /// the rung says.
+  virtual void set_fast_contacts(int iterations) = 0;
+  /// For the softness of the iterative solver; ignored where contacts are solved exactly.
+  virtual void set_softness(double erp, double cfm) = 0;
+  virtual double erp() const = 0;
+  virtual double cfm() const = 0;
+  /// Threads that work on islands, the caller's one of them; results do not depend on it. 1 at first.
+  virtual void set_workers(int workers) = 0;
+  virtual int workers() const = 0;
+  /// The client's stage_force is asked for this body's force at every stage of the integrator.
+  virtual void set_force_method(BodyIndex body, bool on) = 0;
+  virtual bool force_method(BodyIndex body) const = 0;
+
+  // --- what there is to know ----------------------------------------------------------------------------------------
+  virtual bool asleep(BodyIndex body) const = 0;
+  virtual Energy energy() const = 0;  // of all physics-enabled bodies
+  virtual const DynamicsCounters& counters() const = 0;
+  virtual std::span<const Intervention> interventions() const = 0;  // of the last iteration
+  virtual std::span<const Impact> impacts() const = 0;              // of the last iteration
+  virtual std::size_t bytes() const = 0;
+  // What the effects ask: how many there are, and who asked first.
+  struct Census {
+    std::size_t bodies = 0;                                       // physics-enabled
+    std::size_t joints = 0, limits = 0, motors = 0, springs = 0;  // joints with them
+    std::size_t pairs = 0, rough = 0, bouncing = 0;  // pairs near enough to push; of them with friction, restitution
+    std::size_t force_methods = 0, asleep = 0;
+    ObjectId first_joint, first_limit, first_motor, first_spring, first_pair, first_rough, first_bouncing;
+    ObjectId first_force_method;
+  };
+  virtual Census census() const = 0;
+
+  // --- the world's side ---------------------------------------------------------------------------------------------
+  virtual void begin_iteration(std::uint64_t iteration) = 0;  // counters, interventions and impacts start again
+  /// Moves all physics-enabled bodies from time `start` to `start + h`. Error{Numeric} only with the guard off.
+  virtual void advance(DynamicsClient& client, double start, double h) = 0;
+  /// Something left advance() by an exception.
+  virtual void abandon() = 0;
+  /// Finds what was changed in the arrays since, and brings assemblies in step with it.
+  virtual void take_changes() = 0;
+  /// Contacts of these two are solved here, and their handlers called from here.
+  virtual bool pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client) const = 0;
+  virtual std::uint64_t rules() const = 0;  // grows when that may have changed
+  virtual void forget(BodyIndex body) = 0;  // it is going: its joints and springs go with it
+  virtual void save(ByteWriter& out) const = 0;
+  virtual void load(ByteReader& in) = 0;  // into a fresh one whose bodies are loaded; Error{Image}
+  virtual void hash(Hasher& hasher) const = 0;
+};
+
+}  // namespace breve

@@ -1,0 +1,247 @@
+// Bodies that joints connect, as a whole: who belongs, how it is moved, what holds for it.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runtime/base/error.hpp"
+#include "runtime/planar/core.hpp"
+
+namespace breve {
+
+void Planar::Core::collect(BodyIndex body, std::pmr::vector<BodyIndex>& out) const {
+  out.clear();
+  out.push_back(body);
+  std::pmr::vector<BodyIndex> known({body}, memory);  // sorted
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const auto found = joints_at.find(out[i]);
+    if (found == joints_at.end()) continue;
+    for (const JointIndex index : found->second) {
+      const JointDescription& is = joints[index].is;
+      const BodyIndex other = is.parent == out[i] ? is.child : is.parent;
+      // What does not move by itself holds nothing together.
+      if (other == kNoBody || !bodies->dynamic(other)) continue;
+      const auto place = std::lower_bound(known.begin(), known.end(), other);
+      if (place != known.end() && *place == other) continue;
+      known.insert(place, other);
+      out.push_back(other);
+    }
+  }
+}
+
+bool Planar::Core::jointed(BodyIndex a, BodyIndex b) const {
+  const auto found = joints_at.find(a);
+  if (found == joints_at.end()) return false;
+  return std::any_of(found->second.begin(), found->second.end(), [&](JointIndex index) {
+    const JointDescription& is = joints[index].is;
+    return (is.parent == a && is.child == b) || (is.parent == b && is.child == a);
+  });
+}
+
+bool Planar::Core::held_by_world(BodyIndex body) const {
+  std::pmr::vector<BodyIndex> all(memory);
+  collect(body, all);
+  for (const BodyIndex one : all) {
+    const auto found = joints_at.find(one);
+    if (found == joints_at.end()) continue;
+    for (const JointIndex index : found->second) {
+      const JointDescription& is = joints[index].is;
+      if (is.parent == kNoBody || !bodies->dynamic(is.parent) || !bodies->dynamic(is.child)) return true;
+    }
+  }
+  return false;
+}
+
+void Planar::Core::move_rigidly(std::span<const BodyIndex> some, const Pose& from, const Pose& to) {
+  if (from.location == to.location && from.orientation.coeffs() == to.orientation.coeffs()) return;
+  const Quaternion turn = (to.orientation * from.orientation.conjugate()).normalized();
+  for (const BodyIndex body : some) {
+    const Vector3 arm = bodies->location(body) - from.location;
+    bodies->set_location(body, to.location + turn * arm);
+    bodies->set_orientation(body, turn * bodies->orientation(body));
+    if (FlatBody* flat = find(body); flat && !flat->fixed) {
+      push_pose(*flat);
+      push_velocity(*flat);
+      note_known(*flat);
+    }
+  }
+}
+
+/// `leader` was moved from there to where it is: all that joints connect with it goes along, points of the world that
+/// it hangs on too.
+void Planar::Core::follow(BodyIndex leader, const Pose& from) {
+  std::pmr::vector<BodyIndex> all(memory);
+  collect(leader, all);
+  const Pose to = pose(leader);
+  const Quaternion turn = (to.orientation * from.orientation.conjugate()).normalized();
+  const double energy_before = [&] {
+    double sum = 0;
+    for (std::size_t i = 1; i < all.size(); ++i) sum += energy_of(all[i]);
+    return sum;
+  }();
+  move_rigidly(std::span<const BodyIndex>(all).subspan(1), from, to);
+  for (std::size_t i = 1; i < all.size(); ++i) account.script_work += energy_of(all[i]);
+  account.script_work -= energy_before;
+  for (const BodyIndex body : all) {
+    const auto found = joints_at.find(body);
+    if (found == joints_at.end()) continue;
+    for (const JointIndex index : found->second) {
+      JointDescription& is = joints[index].is;
+      if (is.parent != kNoBody) continue;
+      is.parent_point = to.location + turn * (is.parent_point - from.location);
+      is.relative_rotation = (turn * is.relative_rotation).normalized();
+      if (is.kind == JointKind::Prismatic) is.normal = turn * is.normal;
+      if (!joints[index].b2) continue;
+      drop_b2(joints[index]);
+      make_b2(joints[index]);
+    }
+  }
+}
+
+/// Numbers for who belongs to which assembly, for the filter of contacts. A body without joints has none.
+void Planar::Core::number_assemblies() {
+  for (FlatBody& flat : slots) {
+    flat.assembly = kNoSlot;
+    flat.jointed = flat.body != kNoBody && joints_at.count(flat.body) != 0;
+  }
+  std::pmr::vector<BodyIndex> all(memory);
+  for (std::uint32_t i = 0; i < slots.size(); ++i) {
+    if (slots[i].body == kNoBody || !slots[i].jointed || slots[i].fixed || slots[i].assembly != kNoSlot) continue;
+    collect(slots[i].body, all);
+    for (const BodyIndex body : all)
+      if (FlatBody* flat = find(body)) flat->assembly = i;
+  }
+}
+
+const OwnSettings* Planar::Core::own_of(BodyIndex body, bool (*wanted)(const OwnSettings&)) const {
+  if (own.empty()) return nullptr;
+  std::pmr::vector<BodyIndex> all(memory);
+  collect(body, all);
+  std::sort(all.begin(), all.end());
+  for (const BodyIndex one : all) {
+    const auto found = own.find(one);
+    if (found != own.end() && wanted(found->second)) return &found->second;
+  }
+  return nullptr;
+}
+
+bool Planar::Core::pushes(BodyIndex a, BodyIndex b, const DynamicsClient& asked) const {
+  if (!bodies->dynamic(a) && !bodies->dynamic(b)) return false;
+  const bool solid_a = bodies->dynamic(a) || bodies->kind(a) == BodyKind::Stationary;
+  const bool solid_b = bodies->dynamic(b) || bodies->kind(b) == BodyKind::Stationary;
+  if (!solid_a || !solid_b || asked.ignored(a, b)) return false;
+  if (joints_at.empty()) return true;
+  if (jointed(a, b)) return false;
+  const FlatBody *x = find(a), *y = find(b);
+  if (!x || !y || x->assembly == kNoSlot || x->assembly != y->assembly) return true;
+  const OwnSettings* found = own_of(a, [](const OwnSettings& s) { return s.has_self; });
+  return found && found->self_collisions;
+}
+
+// --- the face -------------------------------------------------------------------------------------------------------
+
+bool Planar::jointed(BodyIndex a, BodyIndex b) const { return core_->jointed(a, b); }
+
+bool Planar::same_assembly(BodyIndex a, BodyIndex b) const {
+  if (a == b) return true;
+  const std::pmr::vector<BodyIndex> all = links_of(a);
+  return std::binary_search(all.begin(), all.end(), b);
+}
+
+std::pmr::vector<BodyIndex> Planar::links_of(BodyIndex body) const {
+  std::pmr::vector<BodyIndex> all(memory_);
+  core_->collect(body, all);
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+std::pmr::vector<JointIndex> Planar::joints_of(BodyIndex body) const {
+  std::pmr::vector<JointIndex> all(memory_);
+  for (const BodyIndex link : links_of(body)) {
+    const auto found = core_->joints_at.find(link);
+    if (found != core_->joints_at.end()) all.insert(all.end(), found->second.begin(), found->second.end());
+  }
+  std::sort(all.begin(), all.end(),
+            [this](JointIndex x, JointIndex y) { return core_->joints[x].serial < core_->joints[y].serial; });
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+void Planar::move_assembly(BodyIndex body, const Vector3& location, const Quaternion& orientation) {
+  Core& c = *core_;
+  take_changes();
+  const Pose from = c.pose(body);
+  c.bodies->set_location(body, location);
+  c.bodies->set_orientation(body, orientation);
+  if (c.joints_at.count(body) == 0) return;
+  if (c.b2) return c.push_changes();
+  c.follow(body, from);
+}
+
+void Planar::set_assembly_velocity(BodyIndex body, const Vector3& velocity, const Vector3& spin) {
+  if (!velocity.allFinite()) throw Error(ErrorCode::Argument, "velocity must be finite");
+  if (!spin.allFinite()) throw Error(ErrorCode::Argument, "rotational velocity must be finite");
+  const Vector3 center = core_->bodies->location(body);
+  for (const BodyIndex link : links_of(body)) {
+    const Vector3 arm = core_->bodies->location(link) - center;
+    core_->bodies->set_velocity(link, velocity + spin.cross(arm));
+    core_->bodies->set_rotational_velocity(link, spin);
+  }
+  take_changes();
+}
+
+void Planar::moved(BodyIndex body) {
+  if (core_->joints_at.count(body) != 0) take_changes();
+}
+
+std::size_t Planar::self_penetrations(BodyIndex body) const {
+  if (!self_collisions(body)) return 0;
+  const std::pmr::vector<BodyIndex> links = links_of(body);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < links.size(); ++i)
+    for (std::size_t k = i + 1; k < links.size(); ++k) {
+      const BodyIndex a = links[i], b = links[k];
+      if (jointed(a, b)) continue;
+      const Shape &x = *core_->bodies->collision_shape(a), &y = *core_->bodies->collision_shape(b);
+      // Box2D's bodies rest with an overlap of its slop.
+      count += closest(x, core_->pose(a), y, core_->pose(b)).distance < -2 * b2_linearSlop * core_->settings.unit;
+    }
+  return count;
+}
+
+// --- settings of an assembly ----------------------------------------------------------------------------------------
+
+void Planar::set_self_collisions(BodyIndex body, bool on) {
+  core_->own[body].has_self = true;
+  core_->own[body].self_collisions = on;
+  ++core_->rules;
+}
+
+bool Planar::self_collisions(BodyIndex body) const {
+  const OwnSettings* found = core_->own_of(body, [](const OwnSettings& s) { return s.has_self; });
+  return found && found->self_collisions;
+}
+
+void Planar::set_self_collision_parameters(BodyIndex, double erp, double cfm) {
+  if (!std::isfinite(erp) || erp < 0 || erp > 1)
+    throw Error(ErrorCode::Argument, fmt::format("self collision erp must be from 0 to 1, but is {}", erp));
+  if (!std::isfinite(cfm) || cfm < 0)
+    throw Error(ErrorCode::Argument, fmt::format("self collision cfm must be finite and >= 0, but is {}", cfm));
+}
+
+void Planar::set_accuracy(BodyIndex body, const Accuracy& accuracy) {
+  check(accuracy);
+  core_->own[body].has_accuracy = true;
+  core_->own[body].accuracy = accuracy;
+}
+
+void Planar::clear_accuracy(BodyIndex body) {
+  const auto found = core_->own.find(body);
+  if (found != core_->own.end()) found->second.has_accuracy = false;
+}
+
+const Accuracy& Planar::accuracy(BodyIndex body) const {
+  const OwnSettings* found = core_->own_of(body, [](const OwnSettings& s) { return s.has_accuracy; });
+  return found ? found->accuracy : accuracy();
+}
+
+}  // namespace breve

@@ -1,0 +1,328 @@
+// The inside of Planar: tables of joints and springs, the bodies that Box2D knows, its world. One idea a file works on
+// it; README.md says which. Lengths inside b2World are in the world's length unit, everything else in metres.
+#pragma once
+
+#include <box2d/box2d.h>
+
+#include <map>
+#include <optional>
+
+#include "runtime/contact/law.hpp"
+#include "runtime/planar/held.hpp"
+#include "runtime/planar/outline.hpp"
+#include "runtime/planar/planar.hpp"
+
+namespace breve {
+
+inline constexpr std::uint32_t kNoSlot = 0xffffffffU;
+
+/// Impulses that Box2D starts the next step from.
+struct WarmJoint {
+  float x = 0, y = 0, turn = 0, motor = 0, lower = 0, upper = 0;
+};
+
+struct FlatJoint {
+  bool used = false;
+  ObjectId owner;
+  JointDescription is;
+  JointDrive drive;
+  std::uint64_t serial = 0;
+  bool ring = false;
+  double position = 0;  // rad or m, as last known: whole turns are counted from here
+  b2Joint* b2 = nullptr;
+  double rate = 0;  // of its motor at the start of the sub-step, in Box2D's units
+  double pull = 0;  // N or N*m that its spring, damper and set force give in this sub-step
+};
+
+struct FlatSpring {
+  bool used = false;
+  ObjectId owner;
+  SpringDescription is;
+  double force = 0;  // N, in the last sub-step
+};
+
+/// A body that Box2D knows: one that moves, or that others touch or hang on.
+struct FlatBody {
+  BodyIndex body = kNoBody;
+  b2Body* b2 = nullptr;
+  bool fixed = false;    // does not move by itself
+  bool solid = true;     // others touch it
+  bool jointed = false;  // some joint holds it
+  bool kicked = false;   // half of this sub-step's acceleration was taken off
+  bool pulled = false;   // a spring or force method acts on it
+  int touching = 0;      // contacts that touch
+  std::uint32_t assembly = kNoSlot;
+  std::shared_ptr<Shape> shape;
+  Vector3 scale = Vector3::Ones();
+  MassProperties mass;
+  Material material;
+  double thickness = 0;  // half its narrowest width, length units
+  // What the arrays held when they were last brought together with Box2D's.
+  Vector3 location = Vector3::Zero(), velocity = Vector3::Zero(), spin = Vector3::Zero();
+  Quaternion orientation{1, 0, 0, 0};
+  bool has_force = false;
+  Vector2 force = Vector2::Zero();  // set by scripts, N
+  double torque = 0;                // N*m
+  Vector2 asked = Vector2::Zero();  // of its force method, in this sub-step
+  Vector2 pull = Vector2::Zero();   // of springs and joints in this sub-step
+  double twist = 0;
+  b2Vec2 kick{0, 0}, kicked_velocity{0, 0};  // what was taken off, and what was left
+  b2Vec2 before{0, 0};                       // velocity of the centre of mass at the start of the sub-step
+  float before_spin = 0;
+
+  /// Nothing but gravity and constant forces act on it.
+  bool free_flight() const { return !jointed && !pulled && touching == 0; }
+};
+
+struct OwnSettings {
+  bool has_self = false, self_collisions = false;
+  bool has_accuracy = false;
+  Accuracy accuracy;
+};
+
+struct FlatSettings {
+  Vector3 gravity{0, -9.81, 0};
+  Accuracy accuracy = accuracy_of(Rung::Balanced);
+  GuardMode guard = GuardMode::Rest;
+  bool sleeping = false;
+  int fast_contacts = 0;
+  double erp = 0.1, cfm = 1e-6, unit = 1;
+  int workers = 1;
+};
+
+/// Which two shapes meet: indices of bodies, of their fixtures, and of a profile's edge. What is first has the lower
+/// numbers.
+struct ContactKey {
+  BodyIndex a = kNoBody, b = kNoBody;
+  std::uint32_t fixture_a = 0, fixture_b = 0, child_a = 0, child_b = 0;
+  friend auto operator<=>(const ContactKey&, const ContactKey&) = default;
+};
+struct WarmPoint {
+  std::uint32_t id = 0;
+  float normal = 0, tangent = 0;
+};
+struct WarmContact {
+  ContactKey key;
+  int count = 0;
+  WarmPoint points[2];
+};
+struct FrozenBody {
+  BodyIndex body = kNoBody;
+  float x = 0, y = 0, angle = 0, vx = 0, vy = 0, spin = 0;
+  bool awake = true;
+  Vector3 location = Vector3::Zero(), velocity = Vector3::Zero(), turn = Vector3::Zero();
+  Quaternion orientation{1, 0, 0, 0};
+};
+struct FrozenJoint {
+  JointIndex joint = kNoJoint;
+  WarmJoint warm;
+};
+/// Impulses of a step of some length.
+struct Warm {
+  float step = 0;                          // s
+  std::pmr::vector<WarmContact> contacts;  // by key
+  std::pmr::vector<FrozenJoint> joints;    // by index
+  explicit Warm(std::pmr::memory_resource* memory) : contacts(memory), joints(memory) {}
+};
+/// Box2D's world as data: what an image holds. Live worlds are made of it anew after an image was taken, so that going
+/// on after saving is the same as going on after loading.
+struct Frozen {
+  std::pmr::vector<FrozenBody> bodies;  // by body
+  Warm warm;
+  explicit Frozen(std::pmr::memory_resource* memory) : bodies(memory), warm(memory) {}
+};
+
+using BodyPair = std::pair<BodyIndex, BodyIndex>;
+
+struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
+  Core(std::pmr::memory_resource* memory, Bodies& bodies);
+  ~Core() override;
+
+  std::pmr::memory_resource* memory;
+  Bodies* bodies;
+  FlatSettings settings;
+
+  std::pmr::vector<FlatJoint> joints;
+  std::pmr::vector<JointIndex> free_joints;
+  std::uint64_t next_serial = 0;
+  std::pmr::vector<FlatSpring> springs;
+  std::pmr::vector<SpringIndex> free_springs;
+  std::pmr::map<BodyIndex, std::pmr::vector<JointIndex>> joints_at;  // by body, in the order of creation
+  std::pmr::map<BodyIndex, OwnSettings> own;
+  std::pmr::vector<BodyIndex> force_methods;  // in order
+
+  std::unique_ptr<b2World> b2;
+  b2Body* ground = nullptr;          // what joints to the world hang on
+  Held held;                         // memory for what Box2D takes
+  std::pmr::vector<FlatBody> slots;  // those in use have a body
+  std::pmr::vector<std::uint32_t> free_slots;
+  std::pmr::vector<std::uint32_t> slot_of;  // by body
+  std::optional<Frozen> frozen;             // what b2 is to be made of
+  float last_step = 0;                      // s
+  std::optional<Warm> kept;                 // while steps are cut: impulses of the last one that was not
+  bool muted = false;                       // contacts are being made again: nobody is told
+
+  std::uint64_t seen_revision = 0, seen_rules = 0;
+  bool rules_seen = false, members_changed = true, materials_changed = true;
+  std::uint64_t rules = 0;           // grows when the answer may change whether two bodies push each other
+  DynamicsClient* client = nullptr;  // during advance()
+
+  std::pmr::map<BodyPair, bool> met;  // pairs with a handler whose first touch was told; true: told in this step
+  std::uint64_t iteration = 0, sub_step = 0;
+  double now = 0;          // s, at the start of the current sub-step
+  int calm = 0;            // steps since something was wrong
+  int refined = 0;         // the guard's doublings of the sub-steps
+  int awake = 0;           // bodies, when the sub-step was planned
+  double step_length = 0;  // s, of the sub-step that is being taken, uncut
+  bool stepping = false;   // inside b2World::Step
+  double friction = 0;     // J, lost in sliding contacts in this sub-step
+  int located = 0;         // impacts of pairs without handler in this sub-step
+  DynamicsCounters counters;
+  std::pmr::vector<Intervention> interventions;
+  std::pmr::vector<Impact> impacts;
+  Energy account;   // works and losses
+  double base = 0;  // J: total energy when the ledger began, plus what came and went with bodies
+  std::pmr::vector<BodyIndex> scratch;
+
+  // members.cpp: which bodies Box2D knows
+  FlatBody* find(BodyIndex body);
+  const FlatBody* find(BodyIndex body) const { return const_cast<Core*>(this)->find(body); }
+  FlatBody& of(const b2Body* b) {
+    return slots[static_cast<std::size_t>(const_cast<b2Body*>(b)->GetUserData().pointer - 1)];
+  }
+  bool is_body(const b2Body* b) const { return const_cast<b2Body*>(b)->GetUserData().pointer != 0; }
+  /// Box2D's world holds what the arrays hold. Error{Argument} for a shape that cannot be.
+  void sync();
+  void ensure_world();
+  void make_world();
+  void drop_world();
+  void update_members();
+  void add_member(BodyIndex body);
+  void remove_member(std::uint32_t slot);
+  void fit(FlatBody& flat);  // shape and mass
+  void push_changes();
+  void note_known(FlatBody& flat);
+  void push_pose(FlatBody& flat);
+  void push_velocity(FlatBody& flat);
+  void write_back(FlatBody& flat);
+  void write_back_all();
+  void refresh_rules();
+  void reserve_memory();
+
+  // joints.cpp
+  FlatJoint& at(JointIndex joint);
+  void check_flat(const JointDescription& is) const;
+  void place_child(FlatJoint& joint);
+  void detach(JointIndex joint);
+  void make_b2(FlatJoint& joint);
+  void drop_b2(FlatJoint& joint);
+  void put_drive(FlatJoint& joint);
+  double read_position(const FlatJoint& joint) const;
+  double read_velocity(const FlatJoint& joint) const;
+  WarmJoint warm_of(const FlatJoint& joint) const;
+  void set_warm(FlatJoint& joint, const WarmJoint& warm);
+  double gap(const FlatJoint& joint) const;  // m, between the two points of a joint
+
+  // assemblies.cpp
+  void collect(BodyIndex body, std::pmr::vector<BodyIndex>& out) const;
+  bool jointed(BodyIndex a, BodyIndex b) const;
+  bool held_by_world(BodyIndex body) const;
+  void move_rigidly(std::span<const BodyIndex> some, const Pose& from, const Pose& to);
+  void follow(BodyIndex leader, const Pose& from);
+  void number_assemblies();
+  const OwnSettings* own_of(BodyIndex body, bool (*wanted)(const OwnSettings&)) const;
+  bool pushes(BodyIndex a, BodyIndex b, const DynamicsClient& asked) const;
+  Pose pose(BodyIndex body) const { return {bodies->location(body), bodies->orientation(body)}; }
+
+  // loads.cpp: forces of a sub-step
+  void apply_forces(double dt);
+  void apply_joint(FlatJoint& joint, double dt);
+  void apply_spring(FlatSpring& spring, double dt);
+  void ask_forces();
+
+  // step.cpp
+  void advance(DynamicsClient& asked, double start, double h);
+  int sub_steps() const;
+  int velocity_iterations() const;
+  int position_iterations() const;
+  void run(double dt);
+  double plan_parts(double dt);
+  void step(double dt);
+  void start_warm(double dt);
+  void kick(double dt);
+  void report_lasting(double moment);
+
+  // impacts.cpp: where the next first touch is
+  struct Hit {
+    b2Fixture *a = nullptr, *b = nullptr;
+    int child_a = 0, child_b = 0;
+    double t = 0;
+    bool handled = false;
+  };
+  bool find_hit(double dt, Hit& best);
+  void consider(b2Fixture* a, int child_a, b2Fixture* b, int child_b, bool handled, double dt, Hit& best, bool& found);
+  void look_around(FlatBody& flat, double dt, Hit& best, bool& found);
+  void deliver(const Hit& hit, double moment);
+  b2Transform place_after(const FlatBody& flat, double t) const;
+  bool approach_fast(const FlatBody& a, const FlatBody& b, double dt) const;
+  bool near_enough(const BodyPair& pair) const;
+  Contact contact_between(b2Fixture* a, int child_a, b2Fixture* b, int child_b, bool turned) const;
+
+  // touch.cpp: Box2D's callbacks, and what is known of a contact
+  void BeginContact(b2Contact* contact) override;
+  void EndContact(b2Contact* contact) override;
+  void PreSolve(b2Contact* contact, const b2Manifold* old) override;
+  void PostSolve(b2Contact* contact, const b2ContactImpulse* impulse) override;
+  bool ShouldCollide(b2Fixture* a, b2Fixture* b) override;
+  contact::Law law_of(const FlatBody& a, const FlatBody& b) const;
+  void refresh(b2Contact* contact);
+
+  // impulse.cpp
+  bool collide(FlatBody& a, FlatBody& b, const b2WorldManifold& where, int points);
+  void spread(FlatBody& a, FlatBody& b);
+  double slowest_bounce(const contact::Law& law) const;
+
+  // ledger.cpp
+  Energy stored() const;
+  double kinetic_of(const FlatBody& flat) const;
+  double energy_of(BodyIndex body) const;
+  void end_account(double dt);
+  Energy energy() const;
+  double springs_energy() const;
+  double joint_rate(const FlatJoint& joint) const;
+  // guard.cpp
+  void watch(double moment);
+  void intervene(BodyIndex body, GuardReason reason, double value, double moment, GuardAction action);
+  void rest(FlatBody& flat);
+
+  // save.cpp
+  Frozen freeze();
+  void thaw();  // bodies and joints
+  void thaw_contacts();
+  Warm warm() const;
+  void set_contacts(const Warm& from, double factor);
+  void set_joints(const Warm& from, double factor);
+  void save(ByteWriter& out);
+  void load(ByteReader& in);
+  void join_loaded();
+  void hash(Hasher& hasher) const;
+  void forget(BodyIndex body);
+
+  b2Vec2 to_b2(const Vector3& v) const {
+    return {static_cast<float>(v.x() / settings.unit), static_cast<float>(v.y() / settings.unit)};
+  }
+  Vector3 from_b2(const b2Vec2& v) const { return {v.x * settings.unit, v.y * settings.unit, 0}; }
+};
+
+/// The angle of a rotation about z.
+inline double angle_of(const Quaternion& q) { return 2 * std::atan2(q.z(), q.w()); }
+inline Quaternion turned(double angle) { return {std::cos(angle / 2), 0, 0, std::sin(angle / 2)}; }
+/// v turned left by a right angle.
+inline Vector2 left_of(const Vector2& v) { return {-v.y(), v.x()}; }
+inline double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
+/// Index of a fixture among those of its body; its shape decides the order.
+inline std::uint32_t number_of(const b2Fixture* fixture) {
+  return static_cast<std::uint32_t>(const_cast<b2Fixture*>(fixture)->GetUserData().pointer);
+}
+
+}  // namespace breve

@@ -1,0 +1,127 @@
+// Where energy is and where it went. A sub-step changes the velocity of a body by gravity, by forces, and by what joins
+// and touches it; half the sum of the velocities before and after, times the impulse, is the work of each. Energy
+// stored is computed in double precision from Box2D's numbers.
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/planar/core.hpp"
+
+namespace breve {
+
+namespace {
+
+double square(double x) { return x * x; }
+
+}  // namespace
+
+/// Of a body as Box2D has it, J: motion and height.
+double Planar::Core::kinetic_of(const FlatBody& flat) const {
+  const b2Vec2 v = flat.b2->GetLinearVelocity(), at = flat.b2->GetWorldCenter();
+  const double u = settings.unit;
+  const Vector2 center = Vector2(at.x, at.y) * u;
+  return 0.5 * flat.mass.mass * (square(v.x * u) + square(v.y * u)) +
+         0.5 * flat.mass.inertia(2, 2) * square(flat.b2->GetAngularVelocity()) -
+         flat.mass.mass * settings.gravity.head<2>().dot(center);
+}
+
+/// Of a body as the arrays have it, J: motion and height.
+double Planar::Core::energy_of(BodyIndex body) const {
+  if (!bodies->dynamic(body)) return 0;
+  const MassProperties& mass = bodies->mass_properties(body);
+  const Vector3 arm = bodies->orientation(body) * mass.center_of_mass;
+  const Vector3& spin = bodies->rotational_velocity(body);
+  const Vector3 v = bodies->velocity(body) + spin.cross(arm);
+  return 0.5 * mass.mass * v.squaredNorm() + 0.5 * mass.inertia(2, 2) * square(spin.z()) -
+         mass.mass * settings.gravity.dot(bodies->location(body) + arm);
+}
+
+double Planar::Core::springs_energy() const {
+  double sum = 0;
+  for (const FlatSpring& spring : springs) {
+    if (!spring.used || !bodies->used(spring.is.a) || !bodies->used(spring.is.b)) continue;
+    const Pose a = pose(spring.is.a), b = pose(spring.is.b);
+    const Vector3 way = b.location + b.orientation * spring.is.point_b - a.location - a.orientation * spring.is.point_a;
+    sum += pull_of(spring.is, way, Vector3::Zero()).energy;
+  }
+  for (const FlatJoint& joint : joints)
+    if (joint.used && joint.drive.stiffness > 0)
+      sum += 0.5 * joint.drive.stiffness * square(read_position(joint) - joint.drive.rest[0]);
+  return sum;
+}
+
+Energy Planar::Core::stored() const {
+  Energy sum;
+  if (bodies->rigid() == 0) return sum;
+  for (const BodyIndex body : bodies->rigid_bodies()) {
+    const MassProperties& mass = bodies->mass_properties(body);
+    const Vector3 arm = bodies->orientation(body) * mass.center_of_mass;
+    const double height = -mass.mass * settings.gravity.dot(bodies->location(body) + arm);
+    sum.potential += height;
+    sum.kinetic += energy_of(body) - height;
+  }
+  sum.springs = springs_energy();
+  return sum;
+}
+
+Energy Planar::Core::energy() const {
+  Energy sum = stored();
+  sum.motor_work = account.motor_work;
+  sum.script_work = account.script_work;
+  sum.contact_loss = account.contact_loss;
+  sum.friction_loss = account.friction_loss;
+  sum.drag_loss = account.drag_loss;
+  sum.limit_loss = account.limit_loss;
+  if (!b2) return sum;
+  const double works = sum.motor_work + sum.script_work;
+  const double losses = sum.contact_loss + sum.friction_loss + sum.drag_loss + sum.limit_loss;
+  sum.residual = sum.total() - base - works + losses;
+  return sum;
+}
+
+/// Of the motor's own axis in Box2D, rad/s or length units per second.
+double Planar::Core::joint_rate(const FlatJoint& joint) const {
+  if (!joint.b2) return 0;
+  if (joint.is.kind == JointKind::Revolute) return static_cast<const b2RevoluteJoint*>(joint.b2)->GetJointSpeed();
+  return joint.is.kind == JointKind::Prismatic ? static_cast<const b2PrismaticJoint*>(joint.b2)->GetJointSpeed() : 0;
+}
+
+/// Gives back what was taken off, and writes down what the sub-step did.
+void Planar::Core::end_account(double dt) {
+  const double u = settings.unit;
+  const Vector2 gravity = settings.gravity.head<2>();
+  double held_back = 0;  // work of all that joins and touches
+  for (FlatBody& flat : slots) {
+    if (flat.body == kNoBody || flat.fixed) continue;
+    if (flat.kicked && flat.b2->IsAwake()) flat.b2->SetLinearVelocity(flat.b2->GetLinearVelocity() + flat.kick);
+    flat.kicked = false;
+    const b2Vec2 v = flat.b2->GetLinearVelocity();
+    const double w = flat.b2->GetAngularVelocity();
+    const Vector2 sum(u * (double{v.x} + flat.before.x), u * (double{v.y} + flat.before.y));
+    const double turn = w + double{flat.before_spin};
+    if (sum == Vector2::Zero() && turn == 0) continue;
+    const double m = flat.mass.mass;
+    const Vector2 change(u * (double{v.x} - flat.before.x), u * (double{v.y} - flat.before.y));
+    const Vector2 force = flat.force + flat.asked;
+    held_back += (m * change - dt * (m * gravity + force + flat.pull)).dot(sum) / 2 +
+                 (flat.mass.inertia(2, 2) * (w - flat.before_spin) - dt * (flat.torque + flat.twist)) * turn / 2;
+    if (flat.has_force || flat.asked != Vector2::Zero())
+      account.script_work += dt * (force.dot(sum) + flat.torque * turn) / 2;
+  }
+  double motors = 0;
+  for (const FlatJoint& joint : joints) {
+    if (!joint.used || !joint.b2 || !(joint.drive.strength_limit > 0)) continue;
+    const float rate = static_cast<float>(1 / dt);
+    const double strength = joint.is.kind == JointKind::Revolute
+                                ? static_cast<const b2RevoluteJoint*>(joint.b2)->GetMotorTorque(rate)
+                                : static_cast<const b2PrismaticJoint*>(joint.b2)->GetMotorForce(rate);
+    motors += strength * dt * (joint.rate + joint_rate(joint)) / 2 * u * u;
+  }
+  account.motor_work += motors;
+  // What is left is lost where bodies touch; if it came in, nothing explains it, and it shows in the residual.
+  const double lost = std::max(0.0, motors - held_back);
+  const double rubbed = std::min(friction, lost);
+  account.friction_loss += rubbed;
+  account.contact_loss += lost - rubbed;
+}
+
+}  // namespace breve

@@ -1,0 +1,390 @@
+// Which bodies Box2D knows, and how its bodies and the arrays are brought together: what scripts changed goes in before
+// a step, poses and velocities come out after it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "runtime/base/error.hpp"
+#include "runtime/planar/core.hpp"
+
+namespace breve {
+
+namespace {
+
+// What Box2D takes, by its sources: a body 184 bytes, a fixture with its shape and proxy about 330, two nodes of its
+// trees 96, a contact 256, a joint up to 280; rounded up for its blocks and lists.
+constexpr std::size_t kPerWorld = 160'000, kPerBody = 768, kPerContact = 320, kPerJoint = 320;
+
+}  // namespace
+
+Planar::Core::Core(std::pmr::memory_resource* resource, Bodies& all)
+    : memory(resource),
+      bodies(&all),
+      joints(resource),
+      free_joints(resource),
+      springs(resource),
+      free_springs(resource),
+      joints_at(resource),
+      own(resource),
+      force_methods(resource),
+      held(resource),
+      slots(resource),
+      free_slots(resource),
+      slot_of(resource),
+      met(resource),
+      interventions(resource),
+      impacts(resource),
+      scratch(resource) {}
+
+Planar::Core::~Core() {
+  muted = true;  // contacts end with the world
+}
+
+FlatBody* Planar::Core::find(BodyIndex body) {
+  return body < slot_of.size() && slot_of[body] != kNoSlot ? &slots[slot_of[body]] : nullptr;
+}
+
+void Planar::Core::make_world() {
+  held.hold(kPerWorld);
+  b2 = std::make_unique<b2World>(b2Vec2(0, 0));
+  b2->SetContactListener(this);
+  b2->SetContactFilter(this);
+  // A step without bodies tells Box2D how long the last one was: impulses of it are scaled to the next one's length.
+  if (last_step > 0) b2->Step(last_step, 1, 1);
+  b2BodyDef def;
+  ground = b2->CreateBody(&def);
+  members_changed = true;
+  rules_seen = false;
+}
+
+void Planar::Core::drop_world() {
+  kept.reset();
+  muted = true;
+  b2.reset();
+  muted = false;
+  ground = nullptr;
+  slots.clear();
+  free_slots.clear();
+  std::fill(slot_of.begin(), slot_of.end(), kNoSlot);
+  for (FlatJoint& joint : joints) joint.b2 = nullptr;
+}
+
+void Planar::Core::reserve_memory() {
+  const auto contacts = static_cast<std::size_t>(b2->GetContactCount());
+  const auto count = static_cast<std::size_t>(b2->GetBodyCount());
+  const auto joined = static_cast<std::size_t>(b2->GetJointCount());
+  // Contacts are made inside of a step: there is room for twice as many, and for some on each body.
+  held.hold(kPerWorld + count * (kPerBody + 4 * kPerContact) + 2 * contacts * kPerContact + joined * kPerJoint);
+}
+
+/// With the bodies and joints that there are now; contacts may still have to be made.
+void Planar::Core::ensure_world() {
+  if (!b2) {
+    if (bodies->rigid() == 0) return;
+    make_world();
+    if (frozen) thaw();
+  }
+  if (seen_revision != bodies->revision()) members_changed = true;
+  if (members_changed) update_members();
+}
+
+void Planar::Core::sync() {
+  ensure_world();
+  if (!b2) return;
+  push_changes();
+  refresh_rules();
+  reserve_memory();
+  if (frozen) thaw_contacts();
+}
+
+void Planar::Core::update_members() {
+  if (slot_of.size() < bodies->index_end()) slot_of.resize(bodies->index_end(), kNoSlot);
+  for (BodyIndex body = 0; body < slot_of.size(); ++body) {
+    const bool used = bodies->used(body);
+    const bool moves = used && bodies->dynamic(body);
+    const bool fixed = used && !moves && bodies->kind(body) == BodyKind::Stationary;
+    const bool anchor = used && !moves && joints_at.count(body) != 0;
+    FlatBody* flat = find(body);
+    const bool right = flat && (moves || fixed || anchor) && flat->fixed == !moves && flat->solid == (moves || fixed);
+    if (flat && !right) remove_member(slot_of[body]);
+    if (!right && (moves || fixed || anchor)) add_member(body);
+  }
+  for (FlatJoint& joint : joints)
+    if (joint.used && !joint.b2) make_b2(joint);
+  number_assemblies();
+  seen_revision = bodies->revision();
+  members_changed = false;
+  rules_seen = false;
+}
+
+void Planar::Core::add_member(BodyIndex body) {
+  held.hold(kPerWorld + static_cast<std::size_t>(b2->GetBodyCount() + 1) * kPerBody);
+  if (free_slots.capacity() <= slots.size()) free_slots.reserve(2 * slots.size() + 16);
+  std::uint32_t slot;
+  if (free_slots.empty()) {
+    slot = static_cast<std::uint32_t>(slots.size());
+    slots.emplace_back();
+  } else {
+    slot = free_slots.back();
+    free_slots.pop_back();
+    slots[slot] = FlatBody();
+  }
+  FlatBody& flat = slots[slot];
+  flat.body = body;
+  slot_of[body] = slot;
+  flat.fixed = !bodies->dynamic(body);
+  flat.solid = !flat.fixed || bodies->kind(body) == BodyKind::Stationary;
+  b2BodyDef def;
+  def.type = flat.fixed ? b2_staticBody : b2_dynamicBody;
+  def.position = to_b2(bodies->location(body));
+  def.angle = static_cast<float>(angle_of(bodies->orientation(body)));
+  def.userData.pointer = slot + 1;
+  flat.b2 = b2->CreateBody(&def);
+  try {
+    fit(flat);
+  } catch (...) {
+    remove_member(slot);
+    throw;
+  }
+  push_velocity(flat);
+  note_known(flat);
+  flat.force = bodies->force(body).head<2>();
+  flat.torque = bodies->torque(body).z();
+  flat.has_force = flat.force != Vector2::Zero() || flat.torque != 0;
+  if (!flat.fixed) base += energy_of(body);
+}
+
+void Planar::Core::remove_member(std::uint32_t slot) {
+  FlatBody& flat = slots[slot];
+  for (FlatJoint& joint : joints)
+    if (joint.used && joint.b2 && (joint.b2->GetBodyA() == flat.b2 || joint.b2->GetBodyB() == flat.b2)) drop_b2(joint);
+  if (bodies->used(flat.body) && bodies->dynamic(flat.body)) base -= energy_of(flat.body);
+  b2->DestroyBody(flat.b2);
+  slot_of[flat.body] = kNoSlot;
+  flat = FlatBody();
+  free_slots.push_back(slot);
+}
+
+// --- shapes and mass ------------------------------------------------------------------------------------------------
+
+namespace {
+
+void add_fixture(FlatBody& flat, const b2Shape& shape, std::uint32_t number) {
+  b2FixtureDef def;
+  def.shape = &shape;
+  def.friction = 0;
+  // KEEP IN STEP: touch.cpp. A contact's restitution is our note of what is known of it, -1 for nothing; Box2D's own
+  // restitution is out of reach of any speed.
+  def.restitution = -1;
+  def.restitutionThreshold = std::numeric_limits<float>::max();
+  def.userData.pointer = number;
+  flat.b2->CreateFixture(&def);
+}
+
+b2Vec2 scaled(const Vector2& v, double unit) {
+  return {static_cast<float>(v.x() / unit), static_cast<float>(v.y() / unit)};
+}
+
+/// Box2D's polygons have a skin, without which its search for the time of impact fails on what rests. It lies inside
+/// the true outline: corners are rounded by it.
+b2PolygonShape polygon_of(const std::pmr::vector<Vector2>& points, double unit) {
+  constexpr double kSkinPart = 0.25;  // of half the width, at most
+  const double skin = std::min(double{b2_polygonRadius} * unit, kSkinPart * half_width(points));
+  const std::pmr::vector<Vector2> core = shrunk(points, skin);
+  b2PolygonShape shape;
+  shape.m_radius = static_cast<float>(skin / unit);
+  shape.m_count = static_cast<int32>(core.size());
+  Vector2 center = Vector2::Zero();
+  for (std::size_t i = 0; i < core.size(); ++i) {
+    shape.m_vertices[i] = scaled(core[i], unit);
+    center += core[i] / static_cast<double>(core.size());
+    const Vector2 out = -left_of(core[(i + 1) % core.size()] - core[i]).normalized();
+    shape.m_normals[i] = b2Vec2(static_cast<float>(out.x()), static_cast<float>(out.y()));
+  }
+  shape.m_centroid = scaled(center, unit);
+  return shape;
+}
+
+void add_profile(FlatBody& flat, const std::pmr::vector<Vector2>& points, double unit, std::uint32_t number) {
+  std::vector<b2Vec2> corners;
+  for (const Vector2& p : points) corners.push_back(scaled(p, unit));
+  const std::size_t n = corners.size();
+  b2ChainShape chain;
+  chain.CreateChain(corners.data(), static_cast<int32>(n), 2 * corners[0] - corners[1],
+                    2 * corners[n - 1] - corners[n - 2]);
+  chain.m_radius = 0;
+  add_fixture(flat, chain, number);
+}
+
+}  // namespace
+
+void Planar::Core::fit(FlatBody& flat) {
+  const std::shared_ptr<Shape>& shape = bodies->collision_shape(flat.body);
+  Outline outline = outline_of(*shape, memory);
+  if (!outline.solid && !flat.fixed)
+    throw Error(
+        ErrorCode::Argument,
+        "a surface that encloses nothing, or a height field, cannot be the shape of a body that moves in a flat "
+        "world");
+  constexpr double kThinnest = 0.002;  // length units; Box2D's bodies rest with an overlap of 0.005
+  if (flat.solid && outline.thickness < kThinnest * settings.unit)
+    throw Error(ErrorCode::Argument,
+                fmt::format("a body is only {} wide, which is too thin at a length unit of {}; set the world's length "
+                            "unit to about the size of its bodies (set-length-unit, breve_world_config.length_unit)",
+                            2 * outline.thickness, settings.unit));
+  while (b2Fixture* fixture = flat.b2->GetFixtureList()) flat.b2->DestroyFixture(fixture);
+  flat.shape = shape;
+  flat.scale = shape->scale();
+  flat.thickness = outline.thickness / settings.unit;
+  std::uint32_t number = 0;
+  if (flat.solid)
+    for (const FlatPiece& piece : outline.pieces) {
+      if (piece.kind == FlatPiece::Kind::Circle) {
+        b2CircleShape circle;
+        circle.m_radius = static_cast<float>(piece.radius / settings.unit);
+        add_fixture(flat, circle, number);
+      } else if (piece.kind == FlatPiece::Kind::Polygon) {
+        add_fixture(flat, polygon_of(piece.points, settings.unit), number);
+      } else {
+        add_profile(flat, piece.points, settings.unit, number);
+      }
+      ++number;
+    }
+  if (flat.fixed) return;
+  flat.mass = bodies->mass_properties(flat.body);
+  const Vector3& c = flat.mass.center_of_mass;
+  const double u = settings.unit;
+  b2MassData data;
+  data.mass = static_cast<float>(flat.mass.mass);
+  data.center = b2Vec2(static_cast<float>(c.x() / u), static_cast<float>(c.y() / u));
+  data.I = static_cast<float>((flat.mass.inertia(2, 2) + flat.mass.mass * c.head<2>().squaredNorm()) / (u * u));
+  if (!(data.mass > 0) || !std::isfinite(data.mass) || !(data.I > 0) || !std::isfinite(data.I))
+    throw Error(ErrorCode::Argument,
+                fmt::format("a body's mass of {} or its inertia of {} about z is out of the range of single precision",
+                            flat.mass.mass, flat.mass.inertia(2, 2)));
+  flat.b2->SetMassData(&data);
+}
+
+// --- in and out -----------------------------------------------------------------------------------------------------
+
+void Planar::Core::note_known(FlatBody& flat) {
+  flat.location = bodies->location(flat.body);
+  flat.orientation = bodies->orientation(flat.body);
+  flat.velocity = bodies->velocity(flat.body);
+  flat.spin = bodies->rotational_velocity(flat.body);
+}
+
+void Planar::Core::push_pose(FlatBody& flat) {
+  // Whole turns stay: joints count them.
+  const double before = flat.b2->GetAngle();
+  const double angle = before + std::remainder(angle_of(bodies->orientation(flat.body)) - before, 2 * M_PI);
+  flat.b2->SetTransform(to_b2(bodies->location(flat.body)), static_cast<float>(angle));
+  flat.b2->SetAwake(true);
+}
+
+void Planar::Core::push_velocity(FlatBody& flat) {
+  if (flat.fixed) return;
+  const double spin = bodies->rotational_velocity(flat.body).z();
+  const Vector3 arm = bodies->orientation(flat.body) * flat.mass.center_of_mass;
+  const Vector3 center = bodies->velocity(flat.body) + spin * Vector3(-arm.y(), arm.x(), 0);
+  flat.b2->SetLinearVelocity(to_b2(center));
+  flat.b2->SetAngularVelocity(static_cast<float>(spin));
+}
+
+void Planar::Core::push_changes() {
+  for (FlatBody& flat : slots) {
+    if (flat.body == kNoBody) continue;
+    const Shape& shape = *bodies->collision_shape(flat.body);
+    if (flat.shape.get() != &shape || flat.scale != shape.scale()) {
+      const double before = energy_of(flat.body);
+      fit(flat);
+      flat.b2->SetAwake(true);
+      account.script_work += energy_of(flat.body) - before;
+    }
+    if (flat.fixed && (flat.location != bodies->location(flat.body) ||
+                       flat.orientation.coeffs() != bodies->orientation(flat.body).coeffs())) {
+      push_pose(flat);
+      note_known(flat);
+      // What stood on it is to notice.
+      for (b2ContactEdge* edge = flat.b2->GetContactList(); edge; edge = edge->next) edge->other->SetAwake(true);
+    }
+    const Material& material = std::as_const(*bodies).material(flat.body);
+    if (std::memcmp(&material, &flat.material, sizeof material) != 0) {
+      flat.material = material;
+      materials_changed = true;
+    }
+  }
+  scratch.clear();
+  bodies->take_touched(scratch);
+  for (const BodyIndex body : scratch) {
+    FlatBody* flat = find(body);
+    if (!flat || flat->fixed) continue;
+    const bool moved =
+        flat->location != bodies->location(body) || flat->orientation.coeffs() != bodies->orientation(body).coeffs();
+    const bool pushed = flat->velocity != bodies->velocity(body) || flat->spin != bodies->rotational_velocity(body);
+    const Vector3 &force = bodies->force(body), &torque = bodies->torque(body);
+    const bool forced = flat->force != force.head<2>() || flat->torque != torque.z();
+    flat->force = force.head<2>();
+    flat->torque = torque.z();
+    flat->has_force = flat->force != Vector2::Zero() || flat->torque != 0;
+    if (moved) {
+      const Pose from{flat->location, flat->orientation};
+      push_pose(*flat);
+      if (flat->jointed) follow(body, from);
+    }
+    if (moved || pushed) {
+      account.script_work += energy_of(body) - kinetic_of(*flat);
+      push_velocity(*flat);
+    }
+    if (moved || pushed || forced) flat->b2->SetAwake(true);
+    note_known(*flat);
+  }
+}
+
+void Planar::Core::write_back(FlatBody& flat) {
+  const b2Transform& at = flat.b2->GetTransform();
+  const double angle = flat.b2->GetAngle(), spin = flat.b2->GetAngularVelocity();
+  const Vector3 location = from_b2(at.p);
+  const Quaternion orientation = turned(angle);
+  const Vector3 arm = orientation * flat.mass.center_of_mass;
+  const Vector3 velocity = from_b2(flat.b2->GetLinearVelocity()) - spin * Vector3(-arm.y(), arm.x(), 0);
+  bodies->set_motion(flat.body, location, orientation, velocity, {0, 0, spin});
+  flat.location = location;
+  flat.orientation = orientation;
+  flat.velocity = velocity;
+  flat.spin = {0, 0, spin};
+}
+
+void Planar::Core::write_back_all() {
+  constexpr float kWholeTurns = 50;  // rad; beyond it single precision is worth less than 4e-6 rad
+  for (FlatBody& flat : slots) {
+    if (flat.body == kNoBody || flat.fixed) continue;
+    // What fell asleep in this step is written once more.
+    if (!flat.b2->IsAwake() && flat.velocity == Vector3::Zero() && flat.spin == Vector3::Zero()) continue;
+    if (!flat.jointed && std::abs(flat.b2->GetAngle()) > kWholeTurns)
+      flat.b2->SetTransform(flat.b2->GetPosition(), std::remainder(flat.b2->GetAngle(), 2 * b2_pi));
+    write_back(flat);
+  }
+  for (FlatJoint& joint : joints)
+    if (joint.used && joint.is.kind == JointKind::Revolute) joint.position = read_position(joint);
+}
+
+void Planar::Core::refresh_rules() {
+  const bool changed = !rules_seen || (client && seen_rules != client->rules() + rules);
+  if (changed && client) {
+    seen_rules = client->rules() + rules;
+    rules_seen = true;
+    for (FlatBody& flat : slots) {
+      if (flat.body == kNoBody) continue;
+      for (b2Fixture* fixture = flat.b2->GetFixtureList(); fixture; fixture = fixture->GetNext()) fixture->Refilter();
+    }
+  }
+  if (changed || materials_changed)
+    for (b2Contact* contact = b2->GetContactList(); contact; contact = contact->GetNext()) contact->SetRestitution(-1);
+  materials_changed = false;
+}
+
+}  // namespace breve

@@ -1,0 +1,416 @@
+// A flat world in a snapshot and in the hash. An image holds Box2D's world as data: bodies, impulses of contacts by
+// what touches, impulses of joints. Once an image was taken the live world is made anew from the same data when it next
+// moves, so that going on after saving is the same as going on after loading, bit for bit.
+#include <algorithm>
+#include <concepts>
+
+#include "runtime/base/error.hpp"
+#include "runtime/planar/core.hpp"
+
+namespace breve {
+
+namespace {
+
+/// Writes, reads and hashes the same list of members, so that these cannot get out of step.
+struct Writer {
+  ByteWriter& out;
+  template <class T>
+  void operator()(const T& value) const {
+    out.put(value);
+  }
+};
+struct Reader {
+  ByteReader& in;
+  void operator()(Vector3& v) const { v = in.get_vector(); }
+  void operator()(Quaternion& q) const { q = in.get_quaternion(); }
+  void operator()(ObjectId& id) const { id = in.get_object(); }
+  void operator()(bool& flag) const { flag = in.get_bool(); }
+  template <class T>
+  void operator()(T& value) const {
+    value = in.get<T>();
+  }
+};
+struct Adder {
+  Hasher& hasher;
+  void operator()(const Vector3& v) const { hasher.add(v); }
+  void operator()(const Quaternion& q) const { hasher.add(q); }
+  void operator()(const ObjectId& id) const { hasher.add(std::uint64_t{id.index} << 32 | id.generation); }
+  void operator()(double value) const { hasher.add(value); }
+  void operator()(float value) const { hasher.add(double{value}); }
+  template <class T>
+  void operator()(const T& value) const {
+    hasher.add(static_cast<std::uint64_t>(value));
+  }
+};
+
+template <class T, class U>
+concept Is = std::same_as<std::remove_const_t<T>, U>;
+
+template <class F, Is<Accuracy> A>
+void each(const F& f, A& a) {
+  f(a.rung), f(a.custom), f(a.scheme), f(a.implicit_joints), f(a.implicit_spin), f(a.step), f(a.tolerance);
+  f(a.contact_step), f(a.iterations), f(a.direct), f(a.locate_impacts), f(a.impacts), f(a.contact_springs);
+  f(a.contact_stiffness), f(a.contact_damping);
+}
+template <class F, Is<FlatSettings> S>
+void each(const F& f, S& s) {
+  f(s.gravity), each(f, s.accuracy), f(s.guard), f(s.sleeping), f(s.fast_contacts), f(s.erp), f(s.cfm), f(s.unit);
+}
+template <class F, Is<OwnSettings> S>
+void each(const F& f, S& s) {
+  f(s.has_self), f(s.self_collisions), f(s.has_accuracy), each(f, s.accuracy);
+}
+template <class F, Is<Energy> E>
+void each(const F& f, E& e) {
+  f(e.motor_work), f(e.script_work), f(e.contact_loss), f(e.friction_loss), f(e.drag_loss), f(e.limit_loss);
+}
+template <class F, Is<FlatJoint> J>
+void each(const F& f, J& j) {
+  f(j.owner), f(j.serial), f(j.ring), f(j.position);
+  auto& is = j.is;
+  f(is.kind), f(is.parent), f(is.child), f(is.parent_point), f(is.child_point), f(is.relative_rotation);
+  f(is.normal), f(is.other_axis), f(is.keep_rotation);
+  auto& d = j.drive;
+  f(d.motor_speed), f(d.strength_limit), f(d.double_strength), f(d.double_max), f(d.double_min), f(d.damping);
+  f(d.stiffness), f(d.rest), f(d.force), f(d.low), f(d.high), f(d.limit_restitution);
+}
+template <class F, Is<FlatSpring> S>
+void each(const F& f, S& s) {
+  f(s.owner), f(s.force);
+  auto& is = s.is;
+  f(is.a), f(is.b), f(is.point_a), f(is.point_b), f(is.length), f(is.strength), f(is.damping);
+  f(is.maximum_force), f(is.mode);
+}
+template <class F, Is<FrozenBody> B>
+void each(const F& f, B& b) {
+  f(b.body), f(b.x), f(b.y), f(b.angle), f(b.vx), f(b.vy), f(b.spin), f(b.awake);
+  f(b.location), f(b.velocity), f(b.turn), f(b.orientation);
+}
+template <class F, Is<WarmContact> C>
+void each(const F& f, C& c) {
+  f(c.key.a), f(c.key.b), f(c.key.fixture_a), f(c.key.fixture_b), f(c.key.child_a), f(c.key.child_b), f(c.count);
+  for (auto& p : c.points) f(p.id), f(p.normal), f(p.tangent);
+}
+template <class F, Is<FrozenJoint> J>
+void each(const F& f, J& j) {
+  f(j.joint), f(j.warm.x), f(j.warm.y), f(j.warm.turn), f(j.warm.motor), f(j.warm.lower), f(j.warm.upper);
+}
+
+template <class Table>
+void put_table(ByteWriter& out, const Table& table) {
+  out.put(static_cast<std::uint64_t>(table.size()));
+  for (const auto& entry : table) {
+    out.put(entry.used);
+    if (entry.used) each(Writer{out}, entry);
+  }
+}
+template <class Entry, class Index>
+void get_table(ByteReader& in, std::pmr::vector<Entry>& table) {
+  const std::size_t count = in.get_count();
+  for (std::size_t i = 0; i < count; ++i) {
+    Entry entry;
+    entry.used = in.get_bool();
+    if (entry.used) each(Reader{in}, entry);
+    table.push_back(entry);
+  }
+}
+template <class Index>
+void put_free(ByteWriter& out, const std::pmr::vector<Index>& list) {
+  out.put(static_cast<std::uint64_t>(list.size()));
+  for (const Index index : list) out.put(index);
+}
+template <class Table, class Index>
+void get_free(ByteReader& in, const Table& table, std::pmr::vector<Index>& list) {
+  const std::size_t count = in.get_count(sizeof(Index));
+  for (std::size_t i = 0; i < count; ++i) {
+    const Index index = in.get<Index>();
+    if (index >= table.size() || table[index].used) ByteReader::fail();
+    list.push_back(index);
+  }
+}
+template <class List>
+void put_list(ByteWriter& out, const List& list) {
+  out.put(static_cast<std::uint64_t>(list.size()));
+  for (const auto& entry : list) each(Writer{out}, entry);
+}
+template <class Entry>
+void get_list(ByteReader& in, std::pmr::vector<Entry>& list) {
+  const std::size_t count = in.get_count();
+  for (std::size_t i = 0; i < count; ++i) {
+    Entry entry;
+    each(Reader{in}, entry);
+    list.push_back(entry);
+  }
+}
+
+/// Which shapes a contact is of, and whether its order is the other way.
+ContactKey key_of(Planar::Core& core, b2Contact* contact, bool& swapped) {
+  b2Fixture *a = contact->GetFixtureA(), *b = contact->GetFixtureB();
+  ContactKey key{core.of(a->GetBody()).body,
+                 core.of(b->GetBody()).body,
+                 number_of(a),
+                 number_of(b),
+                 static_cast<std::uint32_t>(contact->GetChildIndexA()),
+                 static_cast<std::uint32_t>(contact->GetChildIndexB())};
+  swapped = key.b < key.a;
+  if (swapped) {
+    std::swap(key.a, key.b);
+    std::swap(key.fixture_a, key.fixture_b);
+    std::swap(key.child_a, key.child_b);
+  }
+  return key;
+}
+
+}  // namespace
+
+/// What the last step left for the next.
+Warm Planar::Core::warm() const {
+  Warm made(memory);
+  made.step = last_step;
+  for (b2Contact* contact = b2->GetContactList(); contact; contact = contact->GetNext()) {
+    const b2Manifold& manifold = *contact->GetManifold();
+    if (!contact->IsTouching() || manifold.pointCount == 0) continue;
+    WarmContact one;
+    bool swapped = false;
+    one.key = key_of(const_cast<Core&>(*this), contact, swapped);
+    one.count = manifold.pointCount;
+    for (int i = 0; i < one.count; ++i)
+      one.points[i] = {manifold.points[i].id.key, manifold.points[i].normalImpulse, manifold.points[i].tangentImpulse};
+    made.contacts.push_back(one);
+  }
+  std::sort(made.contacts.begin(), made.contacts.end(),
+            [](const WarmContact& p, const WarmContact& q) { return p.key < q.key; });
+  for (JointIndex i = 0; i < joints.size(); ++i)
+    if (joints[i].used && joints[i].b2) made.joints.push_back({i, warm_of(joints[i])});
+  return made;
+}
+
+/// Impulses times a factor, to contacts of the same shapes and features; none to others.
+void Planar::Core::set_contacts(const Warm& from, double factor) {
+  const auto scaled = [factor](float impulse) { return static_cast<float>(factor * impulse); };
+  for (b2Contact* contact = b2->GetContactList(); contact; contact = contact->GetNext()) {
+    b2Manifold& manifold = *contact->GetManifold();
+    if (manifold.pointCount == 0) continue;
+    bool swapped = false;
+    const ContactKey key = key_of(*this, contact, swapped);
+    const auto found = std::lower_bound(from.contacts.begin(), from.contacts.end(), key,
+                                        [](const WarmContact& p, const ContactKey& k) { return p.key < k; });
+    const int known = found != from.contacts.end() && found->key == key ? found->count : 0;
+    for (int i = 0; i < manifold.pointCount; ++i) {
+      manifold.points[i].normalImpulse = manifold.points[i].tangentImpulse = 0;
+      for (int k = 0; k < known; ++k)
+        if (found->points[k].id == manifold.points[i].id.key) {
+          manifold.points[i].normalImpulse = scaled(found->points[k].normal);
+          manifold.points[i].tangentImpulse = scaled(found->points[k].tangent);
+        }
+    }
+  }
+}
+
+void Planar::Core::set_joints(const Warm& from, double factor) {
+  const auto f = static_cast<float>(factor);
+  for (const FrozenJoint& one : from.joints) {
+    if (one.joint >= joints.size() || !joints[one.joint].used || !joints[one.joint].b2) continue;
+    const WarmJoint& w = one.warm;
+    set_warm(joints[one.joint], {f * w.x, f * w.y, f * w.turn, f * w.motor, f * w.lower, f * w.upper});
+  }
+}
+
+Frozen Planar::Core::freeze() {
+  Frozen made(memory);
+  for (BodyIndex body = 0; body < slot_of.size(); ++body) {
+    const FlatBody* flat = find(body);
+    if (!flat) continue;
+    FrozenBody one;
+    one.body = body;
+    one.x = flat->b2->GetPosition().x;
+    one.y = flat->b2->GetPosition().y;
+    one.angle = flat->b2->GetAngle();
+    one.vx = flat->b2->GetLinearVelocity().x;
+    one.vy = flat->b2->GetLinearVelocity().y;
+    one.spin = flat->b2->GetAngularVelocity();
+    one.awake = flat->b2->IsAwake();
+    one.location = flat->location;
+    one.velocity = flat->velocity;
+    one.turn = flat->spin;
+    one.orientation = flat->orientation;
+    made.bodies.push_back(one);
+  }
+  made.warm = kept ? *kept : warm();
+  return made;
+}
+
+void Planar::Core::thaw() {
+  const double kept = base;
+  update_members();
+  base = kept;  // they have been counted
+  for (const FrozenBody& one : frozen->bodies) {
+    FlatBody* flat = find(one.body);
+    if (!flat) continue;
+    flat->b2->SetTransform(b2Vec2(one.x, one.y), one.angle);
+    flat->b2->SetLinearVelocity(b2Vec2(one.vx, one.vy));
+    flat->b2->SetAngularVelocity(one.spin);
+    flat->location = one.location;
+    flat->velocity = one.velocity;
+    flat->spin = one.turn;
+    flat->orientation = one.orientation;
+  }
+  // Their reference angles follow from the bodies' angles, whole turns included.
+  for (FlatJoint& joint : joints) {
+    if (!joint.used) continue;
+    drop_b2(joint);
+    make_b2(joint);
+  }
+  set_joints(frozen->warm, 1);
+  bodies->touch_rigid();  // what was set in the arrays and not taken yet is found by comparing
+}
+
+void Planar::Core::thaw_contacts() {
+  muted = true;
+  b2->SetContinuousPhysics(true);
+  b2->Step(0, 1, 1);  // contacts are found and their points computed; nothing moves
+  muted = false;
+  set_contacts(frozen->warm, 1);
+  for (const FrozenBody& one : frozen->bodies)
+    if (FlatBody* flat = find(one.body);
+        flat && !flat->fixed && !one.awake && flat->location == bodies->location(one.body))
+      flat->b2->SetAwake(false);
+  frozen.reset();
+}
+
+void Planar::Core::save(ByteWriter& out) {
+  if (b2 && !frozen) {
+    frozen.emplace(freeze());
+    last_step = frozen->warm.step;
+    drop_world();
+  }
+  each(Writer{out}, settings);
+  each(Writer{out}, account);
+  out.put(base);
+  out.put(next_serial);
+  out.put(sub_step);
+  out.put(refined);
+  out.put(calm);
+  put_table(out, joints);
+  put_free(out, free_joints);
+  put_table(out, springs);
+  put_free(out, free_springs);
+  out.put(static_cast<std::uint64_t>(own.size()));
+  for (const auto& [body, one] : own) {
+    out.put(body);
+    each(Writer{out}, one);
+  }
+  put_free(out, force_methods);
+  out.put(static_cast<std::uint64_t>(met.size()));
+  for (const auto& [pair, told] : met) out.put(pair.first), out.put(pair.second);
+  out.put(frozen.has_value());
+  if (!frozen) return;
+  out.put(frozen->warm.step);
+  put_list(out, frozen->bodies);
+  put_list(out, frozen->warm.contacts);
+  put_list(out, frozen->warm.joints);
+}
+
+void Planar::Core::load(ByteReader& in) {
+  each(Reader{in}, settings);
+  breve::check(settings.accuracy);
+  if (!(settings.unit >= 1e-9 && settings.unit <= 1e9)) ByteReader::fail();
+  each(Reader{in}, account);
+  base = in.get<double>();
+  next_serial = in.get<std::uint64_t>();
+  sub_step = in.get<std::uint64_t>();
+  refined = in.get<int>();
+  calm = in.get<int>();
+  if (refined < 0 || refined > 8) ByteReader::fail();
+  get_table<FlatJoint, JointIndex>(in, joints);
+  get_free(in, joints, free_joints);
+  get_table<FlatSpring, SpringIndex>(in, springs);
+  get_free(in, springs, free_springs);
+  join_loaded();
+  const std::size_t settings_count = in.get_count(sizeof(BodyIndex));
+  for (std::size_t i = 0; i < settings_count; ++i) {
+    const auto body = in.get<BodyIndex>();
+    each(Reader{in}, own[body]);
+    breve::check(own[body].accuracy);
+  }
+  const std::size_t methods = in.get_count(sizeof(BodyIndex));
+  for (std::size_t i = 0; i < methods; ++i) force_methods.push_back(in.get<BodyIndex>());
+  const std::size_t pairs = in.get_count(2 * sizeof(BodyIndex));
+  for (std::size_t i = 0; i < pairs; ++i) {
+    const auto first = in.get<BodyIndex>();
+    met[{first, in.get<BodyIndex>()}] = false;
+  }
+  if (!in.get_bool()) return;
+  frozen.emplace(memory);
+  frozen->warm.step = last_step = in.get<float>();
+  get_list(in, frozen->bodies);
+  get_list(in, frozen->warm.contacts);
+  get_list(in, frozen->warm.joints);
+  for (const FrozenJoint& one : frozen->warm.joints)
+    if (one.joint >= joints.size()) ByteReader::fail();
+  for (const WarmContact& one : frozen->warm.contacts)
+    if (one.count < 0 || one.count > b2_maxManifoldPoints) ByteReader::fail();
+}
+
+void Planar::Core::join_loaded() {
+  std::pmr::vector<JointIndex> order(memory);
+  for (JointIndex i = 0; i < joints.size(); ++i)
+    if (joints[i].used) order.push_back(i);
+  std::sort(order.begin(), order.end(),
+            [this](JointIndex x, JointIndex y) { return joints[x].serial < joints[y].serial; });
+  for (const JointIndex index : order) {
+    const JointDescription& is = joints[index].is;
+    try {
+      check_flat(is);
+    } catch (const Error&) {
+      ByteReader::fail();
+    }
+    joints_at[is.child].push_back(index);
+    if (is.parent != kNoBody) joints_at[is.parent].push_back(index);
+  }
+  for (const FlatSpring& tie : springs)
+    if (tie.used && (!bodies->used(tie.is.a) || !bodies->used(tie.is.b))) ByteReader::fail();
+}
+
+void Planar::Core::hash(Hasher& hasher) const {
+  const Adder add{hasher};
+  each(add, settings);
+  each(add, account);
+  add(base);
+  add(refined);
+  add(calm);
+  for (const FlatJoint& joint : joints)
+    if (joint.used) each(add, joint);
+  for (const FlatSpring& tie : springs)
+    if (tie.used) each(add, tie);
+  for (const auto& [body, one] : own) {
+    add(body);
+    each(add, one);
+  }
+}
+
+void Planar::Core::forget(BodyIndex body) {
+  if (const auto found = joints_at.find(body); found != joints_at.end()) {
+    const std::pmr::vector<JointIndex> held_by(found->second, memory);
+    for (const JointIndex index : held_by) {
+      detach(index);
+      joints[index] = FlatJoint();
+      free_joints.push_back(index);
+    }
+  }
+  for (SpringIndex i = 0; i < springs.size(); ++i)
+    if (springs[i].used && (springs[i].is.a == body || springs[i].is.b == body)) {
+      springs[i] = FlatSpring();
+      free_springs.push_back(i);
+    }
+  if (body < slot_of.size() && slot_of[body] != kNoSlot) remove_member(slot_of[body]);
+  own.erase(body);
+  std::erase(force_methods, body);
+  std::erase_if(met, [body](const auto& one) { return one.first.first == body || one.first.second == body; });
+  if (!frozen) return;
+  std::erase_if(frozen->bodies, [body](const FrozenBody& one) { return one.body == body; });
+  std::erase_if(frozen->warm.contacts,
+                [body](const WarmContact& one) { return one.key.a == body || one.key.b == body; });
+}
+
+}  // namespace breve

@@ -1,0 +1,223 @@
+// One integration step: sub-steps of Box2D, cut at first touches that somebody wants to know about.
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/planar/core.hpp"
+
+namespace breve {
+
+namespace {
+
+/// How a rung is spent on Box2D. KEEP IN STEP: docs/physics.md.
+struct Effort {
+  int sub_steps, velocity, position;
+};
+Effort effort_of(Rung rung) {
+  switch (rung) {
+    case Rung::Fast: return {1, 8, 3};
+    case Rung::Balanced: return {4, 8, 3};
+    case Rung::Precise: return {16, 30, 10};
+    case Rung::Reference: return {64, 30, 10};
+    case Rung::Conserving: return {16, 8, 3};
+  }
+  return {4, 8, 3};
+}
+
+}  // namespace
+
+int Planar::Core::sub_steps() const {
+  int most = effort_of(settings.accuracy.rung).sub_steps;
+  for (const auto& [body, one] : own)
+    if (one.has_accuracy) most = std::max(most, effort_of(one.accuracy.rung).sub_steps);
+  return most;
+}
+
+int Planar::Core::velocity_iterations() const {
+  if (settings.fast_contacts > 0) return settings.fast_contacts;
+  return settings.accuracy.custom ? settings.accuracy.iterations : effort_of(settings.accuracy.rung).velocity;
+}
+
+int Planar::Core::position_iterations() const { return effort_of(settings.accuracy.rung).position; }
+
+void Planar::Core::advance(DynamicsClient& asked, double start, double h) {
+  struct Asking {
+    Core& core;
+    Asking(Core& c, DynamicsClient& who) : core(c) { core.client = &who; }
+    ~Asking() { core.client = nullptr; }
+  } asking(*this, asked);
+  now = start;
+  sync();
+  if (!b2) return;
+  int count = sub_steps() << refined;
+  if (settings.accuracy.custom && settings.accuracy.step > 0)
+    count = std::max(count, static_cast<int>(std::ceil(h / settings.accuracy.step - 1e-9)));
+  for (int i = 0; i < count; ++i) {
+    // Box2D moves nothing further than two units or a quarter turn in one step: what is faster needs more of them.
+    const double dt = h / count;
+    const auto parts = static_cast<int>(plan_parts(dt));
+    for (int k = 0; k < parts; ++k) {
+      now = start + (i + static_cast<double>(k) / parts) * dt;
+      run(dt / parts);
+    }
+  }
+  write_back_all();
+  report_lasting(start + h);
+  watch(start + h);
+  counters.sleeping = 0;
+  for (const FlatBody& flat : slots) counters.sleeping += flat.body != kNoBody && !flat.fixed && !flat.b2->IsAwake();
+  counters.interventions = interventions.size();
+}
+
+double Planar::Core::plan_parts(double dt) {
+  constexpr double kTravel = 0.9 * b2_maxTranslation, kTurn = 0.9 * b2_maxRotation, kMost = 1024;
+  b2->SetAllowSleeping(settings.sleeping);
+  const b2Vec2 gravity = to_b2(settings.gravity);
+  b2->SetGravity(gravity);
+  const double fall = gravity.Length();
+  // Where bodies may sleep, what creeps or rolls among others at ten times the speed at which Box2D lets it sleep, or
+  // slower, is braked: a disc has no friction against rolling, and one that rolls keeps a whole heap awake.
+  constexpr float kDrowsy = 10 * b2_linearSleepTolerance, kDrowsyTurn = 10 * b2_angularSleepTolerance,
+                  kBrake = 2;  // 1/s
+  double parts = 1;
+  awake = 0;
+  for (const FlatBody& flat : slots) {
+    if (flat.body == kNoBody || flat.fixed || !flat.b2->IsAwake()) continue;
+    ++awake;
+    const double pull = flat.has_force ? flat.force.norm() / (flat.mass.mass * settings.unit) : 0;
+    const double way = (flat.b2->GetLinearVelocity().Length() + (fall + pull) * dt) * dt;
+    const double turn = std::abs(flat.b2->GetAngularVelocity()) * dt;
+    parts = std::max({parts, std::ceil(way / kTravel), std::ceil(turn / kTurn)});
+    const bool drowsy = settings.sleeping && flat.touching > 0 && !flat.jointed &&
+                        flat.b2->GetLinearVelocity().Length() < kDrowsy &&
+                        std::abs(flat.b2->GetAngularVelocity()) < kDrowsyTurn;
+    flat.b2->SetAngularDamping(drowsy ? kBrake : 0);
+    flat.b2->SetLinearDamping(drowsy ? kBrake : 0);
+    // What moves more than half its width is to meet what moves, too.
+    flat.b2->SetBullet(way > flat.thickness);
+  }
+  if (!(parts <= kMost)) {
+    for (const FlatBody& flat : slots)
+      if (flat.body != kNoBody && !flat.fixed && !(flat.b2->GetLinearVelocity().Length() * dt <= kMost * kTravel))
+        intervene(flat.body, GuardReason::FastTurn, flat.b2->GetLinearVelocity().Length() * settings.unit, now,
+                  GuardAction::Reported);
+    return kMost;
+  }
+  return parts;
+}
+
+void Planar::Core::run(double dt) {
+  located = 0;
+  step_length = dt;
+  double left = dt;
+  int handled = 0;
+  Hit hit;
+  while (left > 0 && b2) {
+    const bool found = find_hit(left, hit);
+    if (!found) break;
+    if (hit.handled && ++handled > settings.accuracy.impacts) {
+      intervene(of(hit.a->GetBody()).body, GuardReason::Impacts, handled, now, GuardAction::Reported);
+      break;
+    }
+    if (!hit.handled) ++located;
+    const double t = std::min(hit.t, left);
+    if (t > 0) step(t);
+    left -= t;
+    now += t;
+    deliver(hit, now);
+  }
+  if (left > 0 && b2) step(left);
+  now += left;
+}
+
+/// Notes the velocities at the start of a sub-step, and takes off half of the acceleration where it is known.
+void Planar::Core::kick(double dt) {
+  friction = 0;
+  for (FlatJoint& joint : joints)
+    if (joint.used && joint.drive.strength_limit > 0) joint.rate = joint_rate(joint);
+  const b2Vec2 gravity = b2->GetGravity();
+  for (FlatBody& flat : slots) {
+    flat.kicked = false;
+    if (flat.body == kNoBody || flat.fixed) continue;
+    flat.before = flat.b2->GetLinearVelocity();
+    flat.before_spin = flat.b2->GetAngularVelocity();
+    if (!flat.free_flight() || !flat.b2->IsAwake()) continue;
+    b2Vec2 pull = gravity;
+    if (flat.has_force) {
+      const double scale = 1 / (flat.mass.mass * settings.unit);
+      pull += b2Vec2(static_cast<float>(flat.force.x() * scale), static_cast<float>(flat.force.y() * scale));
+    }
+    // Half of the acceleration now and half at the end: Box2D's own step then lies on the parabola.
+    flat.kick = static_cast<float>(dt / 2) * pull;
+    flat.b2->SetLinearVelocity(flat.b2->GetLinearVelocity() - flat.kick);
+    flat.kicked_velocity = flat.b2->GetLinearVelocity();
+    flat.kicked = true;
+  }
+}
+
+/// Box2D starts from the impulses of the last step, times the ratio of their lengths. What stops an approach in a short
+/// step would be multiplied by much in the next: while steps are cut, each starts from the last that was not.
+void Planar::Core::start_warm(double dt) {
+  constexpr double kWhole = 0.75;
+  const bool whole = dt >= kWhole * step_length;
+  if (!kept && !whole && last_step > 0) kept.emplace(warm());
+  if (!kept) return;
+  const double factor = double{last_step} / kept->step;
+  set_contacts(*kept, factor);
+  set_joints(*kept, factor);
+  if (whole) kept.reset();
+}
+
+void Planar::Core::step(double dt) {
+  start_warm(dt);
+  apply_forces(dt);
+  kick(dt);
+  stepping = true;
+  b2->Step(static_cast<float>(dt), velocity_iterations(), position_iterations());
+  stepping = false;
+  end_account(dt);
+  last_step = static_cast<float>(dt);
+  ++sub_step;
+  ++counters.sub_steps;
+  ++counters.evaluations;
+  counters.solver_iterations += static_cast<std::uint64_t>(velocity_iterations());
+  counters.pairs += static_cast<std::uint64_t>(b2->GetContactCount());
+}
+
+void Planar::Core::report_lasting(double moment) {
+  if (!client->any_handled()) {
+    met.clear();
+    return;
+  }
+  struct Lasting {
+    BodyIndex a, b;
+    Contact contact;
+  };
+  std::pmr::vector<Lasting> lasting(memory);
+  for (b2Contact* contact = b2->GetContactList(); contact; contact = contact->GetNext()) {
+    if (!contact->IsTouching()) continue;
+    refresh(contact);
+    if (!(contact->GetRestitution() >= 2)) continue;
+    const BodyIndex x = of(contact->GetFixtureA()->GetBody()).body, y = of(contact->GetFixtureB()->GetBody()).body;
+    const BodyPair pair = std::minmax(x, y);
+    const auto [place, fresh] = met.try_emplace(pair, false);
+    if (place->second || !client->handled(x, y)) continue;
+    place->second = true;
+    const bool turned = client->serial(x) > client->serial(y);
+    lasting.push_back({turned ? y : x, turned ? x : y,
+                       contact_between(contact->GetFixtureA(), contact->GetChildIndexA(), contact->GetFixtureB(),
+                                       contact->GetChildIndexB(), turned)});
+  }
+  for (auto place = met.begin(); place != met.end();) {
+    const bool told = place->second;
+    place->second = false;
+    place = told || near_enough(place->first) ? std::next(place) : met.erase(place);
+  }
+  // A handler may free, move and make bodies.
+  std::sort(lasting.begin(), lasting.end(), [this](const Lasting& p, const Lasting& q) {
+    return std::pair(client->serial(p.a), client->serial(p.b)) < std::pair(client->serial(q.a), client->serial(q.b));
+  });
+  for (const Lasting& one : lasting)
+    if (bodies->used(one.a) && bodies->used(one.b)) client->impact(one.a, one.b, one.contact, moment);
+}
+
+}  // namespace breve

@@ -1,0 +1,98 @@
+// Box2D's callbacks: who may touch whom, what is known of a contact, and rebounds. Box2D's own restitution, which acts
+// on velocities that gravity has changed already and spreads one impact over all that touch, is switched off; a pair
+// that comes fast enough collides by the law of runtime/contact when its contact is solved first.
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/planar/core.hpp"
+
+namespace breve {
+
+namespace {
+
+// What is known of a contact is kept where Box2D keeps its restitution, which it never uses here: -1 nothing; else the
+// restitution, from 0 to 1, plus 2 if a handler waits for it, plus 4 if its friction at rest is another than in motion.
+constexpr float kHandled = 2, kTwoFrictions = 4;
+
+float restitution_of(float known) { return std::fmod(known, kHandled); }
+bool two_frictions(float known) { return known >= kTwoFrictions; }
+
+}  // namespace
+
+contact::Law Planar::Core::law_of(const FlatBody& a, const FlatBody& b) const {
+  return contact::combine(a.material, b.material);
+}
+
+void Planar::Core::refresh(b2Contact* contact) {
+  if (contact->GetRestitution() >= 0) return;
+  const FlatBody &a = of(contact->GetFixtureA()->GetBody()), &b = of(contact->GetFixtureB()->GetBody());
+  const contact::Law law = law_of(a, b);
+  float known = static_cast<float>(law.restitution);
+  if (client && client->handled(a.body, b.body)) known += kHandled;
+  if (law.static_friction != law.dynamic_friction) known += kTwoFrictions;
+  contact->SetRestitution(known);
+  contact->SetFriction(static_cast<float>(law.dynamic_friction));
+}
+
+bool Planar::Core::ShouldCollide(b2Fixture* a, b2Fixture* b) {
+  const b2Body *x = a->GetBody(), *y = b->GetBody();
+  if (!is_body(x) || !is_body(y) || !client) return false;
+  return pushes(of(x).body, of(y).body, *client);
+}
+
+void Planar::Core::BeginContact(b2Contact* contact) {
+  for (const b2Fixture* fixture : {contact->GetFixtureA(), contact->GetFixtureB()}) {
+    FlatBody& flat = of(const_cast<b2Fixture*>(fixture)->GetBody());
+    ++flat.touching;
+    if (!flat.kicked) continue;
+    flat.kicked = false;
+    // Not in flight after all. Once Box2D has moved it, it is too late to give back what was taken.
+    const b2Vec2 now_at = flat.b2->GetLinearVelocity();
+    if (now_at == flat.kicked_velocity) flat.b2->SetLinearVelocity(now_at + flat.kick);
+  }
+}
+
+void Planar::Core::EndContact(b2Contact* contact) {
+  if (muted) return;
+  for (const b2Fixture* fixture : {contact->GetFixtureA(), contact->GetFixtureB()})
+    --of(const_cast<b2Fixture*>(fixture)->GetBody()).touching;
+}
+
+void Planar::Core::PreSolve(b2Contact* contact, const b2Manifold*) {
+  if (muted) return;
+  refresh(contact);
+  const float known = contact->GetRestitution();
+  if (known == 0) return;
+  const bool bounces = restitution_of(known) > 0;
+  if (!bounces && !two_frictions(known)) return;
+  FlatBody &a = of(contact->GetFixtureA()->GetBody()), &b = of(contact->GetFixtureB()->GetBody());
+  b2WorldManifold where;
+  contact->GetWorldManifold(&where);
+  const int points = contact->GetManifold()->pointCount;
+  if (bounces && collide(a, b, where, points)) spread(a, b);
+  if (!two_frictions(known)) return;
+  const contact::Law law = law_of(a, b);
+  const b2Vec2 slip =
+      b.b2->GetLinearVelocityFromWorldPoint(where.points[0]) - a.b2->GetLinearVelocityFromWorldPoint(where.points[0]);
+  // Slower than this it rests: what gravity would add along a surface in a sub-step is stopped by friction each time.
+  constexpr double kRest = 1e-3;  // m/s
+  const bool rests = std::abs(b2Cross(slip, where.normal)) * settings.unit < kRest;
+  contact->SetFriction(static_cast<float>(rests ? law.static_friction : law.dynamic_friction));
+}
+
+void Planar::Core::PostSolve(b2Contact* contact, const b2ContactImpulse* impulse) {
+  const float mu = contact->GetFriction();
+  if (mu == 0) return;
+  float sliding = 0;
+  for (int i = 0; i < impulse->count; ++i)
+    if (std::abs(impulse->tangentImpulses[i]) >= 0.999F * mu * impulse->normalImpulses[i])
+      sliding += std::abs(impulse->tangentImpulses[i]);
+  if (sliding == 0) return;
+  b2WorldManifold where;
+  contact->GetWorldManifold(&where);
+  const b2Vec2 slip = contact->GetFixtureB()->GetBody()->GetLinearVelocityFromWorldPoint(where.points[0]) -
+                      contact->GetFixtureA()->GetBody()->GetLinearVelocityFromWorldPoint(where.points[0]);
+  friction += double{sliding} * std::abs(b2Cross(slip, where.normal)) * settings.unit * settings.unit;
+}
+
+}  // namespace breve

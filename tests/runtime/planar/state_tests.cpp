@@ -1,0 +1,261 @@
+// What a flat world is made of and remembers: shapes, handlers, effects, snapshots, equal runs, memory.
+#include "scene.hpp"
+
+namespace breve::testing {
+namespace {
+
+/// A pile with joints, springs, a motor and handlers.
+struct Zoo : Flat {
+  std::vector<ObjectId> boxes;
+  explicit Zoo(Rung rung = Rung::Balanced) : Flat(rung) {
+    ground();
+    for (int i = 0; i < 12; ++i) boxes.push_back(rigid(Shape::box({1, 0.6, 1}), 0.3 * (i % 3), 1 + 0.8 * i, 0.1 * i));
+    const ObjectId wheel = ball(0.5, 6, 3), arm = box(2, 0.2, 7, 3);
+    const JointIndex joint = hinge(wheel, arm, {0, 0, 0}, {-1, 0, 0});
+    JointDrive drive = physics().drive(joint);
+    drive.motor_speed[0] = 4;
+    drive.strength_limit = 20;
+    physics().set_drive(joint, drive);
+    SpringDescription spring;
+    spring.a = index(boxes[0]);
+    spring.b = index(wheel);
+    spring.length = 3;
+    physics().tie(spring, wheel);
+    world.handle_collisions(1, 2, "hit", controller);
+  }
+};
+
+TEST(PlanarState, TwoWorldsHaveTheSameHashAtEveryStep) {
+  Zoo a, b;
+  for (int i = 0; i < 1000; ++i) {
+    a.world.step();
+    b.world.step();
+    ASSERT_EQ(a.world.hash(), b.world.hash()) << "after " << i << " steps";
+  }
+}
+
+TEST(PlanarState, SaveAndGoOnIsLoadAndGoOn) {
+  for (const int moment : {0, 1, 30, 200}) {
+    Zoo live, other;
+    for (int i = 0; i < moment; ++i) live.world.step();
+    const std::uint64_t before = live.world.hash();
+    const auto image = live.world.save(1);
+    ASSERT_EQ(live.world.hash(), before);  // taking it changes nothing that can be seen
+    other.world.load(image.data(), image.size(), 1);
+    ASSERT_EQ(other.world.hash(), before);
+    for (int i = 0; i < 200; ++i) {
+      live.world.step();
+      other.world.step();
+      ASSERT_EQ(live.world.hash(), other.world.hash()) << i << " steps after an image at " << moment;
+    }
+  }
+}
+
+TEST(PlanarState, AgentsWithoutPhysicsCostNoBox2D) {
+  Flat flat;
+  for (int i = 0; i < 100'000; ++i) flat.set_velocity(flat.body(1, {i * 0.01, 0, 0}), {1, 0, 0});
+  flat.world.update_neighbors();
+  flat.run(0.1);
+  const Effects& effects = flat.world.effects();
+  EXPECT_TRUE(effects[EffectId::Motion].active);
+  EXPECT_FALSE(effects[EffectId::Rigid].active);
+  EXPECT_EQ(effects[EffectId::Rigid].bytes, 0U);
+  EXPECT_EQ(flat.physics().bytes(), 0U);
+  flat.ball(1, 0, 5);
+  flat.run(0.1);
+  EXPECT_TRUE(effects[EffectId::Rigid].active);
+  EXPECT_GT(effects[EffectId::Rigid].bytes, 0U);
+}
+
+TEST(PlanarState, AHandlerIsCalledAtTheTimeOfImpactWithPointAndNormal) {
+  for (const Rung rung : {Rung::Fast, Rung::Precise}) {
+    Flat flat(rung);
+    const ObjectId ground = flat.ground();
+    const ObjectId ball = flat.ball(0.5, 1, 5.5);
+    flat.material(ground, 0, 1);
+    flat.material(ball, 0, 1);
+    flat.world.handle_collisions(1, 2, "hit", flat.controller);
+    double moment = -1;
+    Vector3 point, normal, velocity;
+    double height = 0;
+    flat.script.on_collided = [&](ObjectId, ObjectId, const Vector3& p, const Vector3& n) {
+      if (moment >= 0) return false;
+      moment = flat.world.time();
+      point = p;
+      normal = n;
+      velocity = flat.velocity(ball);
+      height = flat.at(ball).y();
+      return false;
+    };
+    flat.run(1.2);
+    EXPECT_NEAR(moment, std::sqrt(2 * 5 / 9.81), 2e-5);
+    EXPECT_NEAR((point - Vector3(1, 0, 0)).norm(), 0, 1e-3);
+    EXPECT_NEAR((normal - Vector3(0, 1, 0)).norm(), 0, 1e-6);
+    EXPECT_NEAR(velocity.y(), -std::sqrt(2 * 5 * 9.81), 1e-3);  // before the impulse
+    EXPECT_NEAR(height, 0.5, 1e-4);
+    EXPECT_GT(flat.velocity(ball).y(), 0);
+  }
+}
+
+TEST(PlanarState, AHandlerIsCalledOncePerStepWhileAContactLasts) {
+  Flat flat;
+  flat.ground();
+  flat.box(1, 1, 0, 0.6);
+  flat.world.handle_collisions(1, 2, "hit", flat.controller);
+  int calls = 0;
+  flat.script.on_collided = [&](ObjectId, ObjectId, const Vector3&, const Vector3&) {
+    ++calls;
+    return false;
+  };
+  flat.run(1);
+  calls = 0;
+  for (int i = 0; i < 10; ++i) flat.world.step();
+  EXPECT_EQ(calls, 10);
+}
+
+TEST(PlanarState, AHandlerMayFreeBothBodies) {
+  Flat flat;
+  const ObjectId a = flat.ball(0.5, 0, 3), b = flat.ball(0.5, 0.1, 0);
+  flat.set_velocity(a, {0, -50, 0});
+  flat.world.handle_collisions(1, 1, "hit", flat.controller);
+  flat.script.on_collided = [&](ObjectId, ObjectId, const Vector3&, const Vector3&) {
+    flat.world.release(a);
+    flat.world.release(b);
+    return true;
+  };
+  flat.run(0.5);
+  EXPECT_FALSE(flat.world.alive(a));
+  EXPECT_EQ(flat.bodies().rigid(), 0U);
+}
+
+TEST(PlanarState, WhatClassesIgnoreFallsThrough) {
+  Flat flat;
+  flat.ground();
+  const ObjectId ball = flat.ball(0.5, 0, 2);
+  flat.world.ignore_collisions(1, 2);
+  flat.run(2);
+  EXPECT_LT(flat.at(ball).y(), -5);
+}
+
+TEST(PlanarState, OutlinesOfSolidsPrismsAndConcaveMeshesCarryWhatRollsOnThem) {
+  Flat flat;
+  flat.ground();
+  // A prism of 24 sides lies with its axis along z: it rolls.
+  std::vector<std::vector<Vector3>> faces(2);
+  for (int i = 0; i < 24; ++i) {
+    const double angle = 2 * M_PI * i / 24, next = 2 * M_PI * (i + 1) / 24;
+    const auto at = [](double turn, double z) { return Vector3(std::cos(turn), std::sin(turn), z); };
+    faces[0].push_back(at(-angle, -0.5));
+    faces[1].push_back(at(angle, 0.5));
+    faces.push_back({at(angle, -0.5), at(next, -0.5), at(next, 0.5), at(angle, 0.5)});
+  }
+  const ObjectId wheel = flat.rigid(Shape::convex(faces, 1), 0, 1.05);
+  flat.bodies().set_rotational_velocity(flat.index(wheel), {0, 0, -3});
+  flat.set_velocity(wheel, {3, 0, 0});
+  flat.run(2);
+  EXPECT_GT(flat.at(wheel).x(), 3);
+  EXPECT_NEAR(flat.at(wheel).y(), 1, 0.03);
+  // A cup: a closed mesh whose outline is concave. A ball stays in it.
+  const double outline[8][2] = {{-2, 0}, {2, 0}, {2, 2}, {1.5, 2}, {1.5, 0.5}, {-1.5, 0.5}, {-1.5, 2}, {-2, 2}};
+  const int ears[6][3] = {{0, 1, 4}, {0, 4, 5}, {1, 2, 3}, {1, 3, 4}, {0, 5, 6}, {0, 6, 7}};
+  std::vector<Vector3> corners;
+  std::vector<std::array<std::int32_t, 3>> triangles;
+  for (const double z : {-0.5, 0.5})
+    for (const auto& p : outline) corners.emplace_back(p[0], p[1], z);
+  for (const auto& t : ears) {
+    triangles.push_back({t[2], t[1], t[0]});
+    triangles.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
+  }
+  for (int i = 0; i < 8; ++i) {
+    const int k = (i + 1) % 8;
+    triangles.push_back({i, k, k + 8});
+    triangles.push_back({i, k + 8, i + 8});
+  }
+  const ObjectId cup = flat.rigid(Shape::mesh(corners, triangles), 20, 0.5);
+  const ObjectId ball = flat.ball(0.4, 20.3, 3);
+  flat.run(4);
+  EXPECT_NEAR(flat.at(ball).x(), flat.at(cup).x(), 1.2);
+  EXPECT_GT(flat.at(ball).y(), 0.7);
+  EXPECT_LT(flat.at(ball).y(), 1.2);
+}
+
+TEST(PlanarState, AHeightFieldIsAProfileToStandOn) {
+  Flat flat;
+  std::vector<double> heights;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 41; ++column) heights.push_back(std::abs(column - 20) * 0.2);
+  flat.fixed(Shape::height_field(41, 3, 1, heights), 0, 0);
+  const ObjectId ball = flat.ball(0.5, 6, 5);
+  flat.material(ball, 0.5, 0);
+  flat.run(20);
+  EXPECT_NEAR(flat.at(ball).x(), 0, 2);
+  EXPECT_GT(flat.at(ball).y(), 0.4);
+}
+
+TEST(PlanarState, EveryRefusedAllocationIsAnErrorAndNothingLeaks) {
+  for (std::size_t limit = 0; limit < 400'000; limit += 7001) {
+    MemoryMeter memory;
+    std::size_t used = 0;
+    {
+      World world(&memory);
+      FakeBehaviour script;
+      script.recording = false;
+      world.set_behaviour(&script);
+      const ObjectId controller = world.create(0, 0, true, false);
+      script.on_iterate = [&](ObjectId id) {
+        if (id == controller) world.advance_bodies();
+      };
+      used = memory.used();
+      memory.set_limit(used + limit + 1);
+      try {
+        world.flatten();
+        for (int i = 0; i < 20; ++i) {
+          const ObjectId id = world.create(1, 0, false, false);
+          world.embody(id, BodyKind::Mobile);
+          world.bodies().set_location(world.body(id), {0.5 * i, 0.1 * i, 0});
+          world.bodies().set_physics(world.body(id), true);
+        }
+        for (int i = 0; i < 5; ++i) world.step();
+      } catch (const std::bad_alloc&) {
+      }
+      memory.set_limit(0);
+      world.step();  // it can be used on
+    }
+    ASSERT_EQ(memory.used(), 0U);
+  }
+}
+
+TEST(PlanarState, SettingsGoOverWhenAWorldBecomesFlatAndABodyWithPhysicsIsTooLate) {
+  Scene scene;
+  scene.world.dynamics().set_gravity({0, -3, 0});
+  scene.world.dynamics().set_accuracy(Rung::Precise);
+  scene.world.flatten();
+  EXPECT_EQ(scene.world.dimension(), 2);
+  EXPECT_EQ(scene.world.dynamics().gravity(), Vector3(0, -3, 0));
+  EXPECT_EQ(scene.world.dynamics().accuracy().rung, Rung::Precise);
+  Scene late;
+  late.world.bodies().set_physics(late.world.body(late.body(1, {0, 0, 0})), true);
+  EXPECT_THROW(late.world.flatten(), Error);
+}
+
+TEST(PlanarState, TheLedgerExplainsWhereEnergyWent) {
+  Flat flat;
+  flat.ground();
+  const ObjectId box = flat.box(1, 1, 0, 0.5);
+  flat.material(box, 0.5, 0);
+  flat.set_velocity(box, {6, 0, 0});
+  flat.world.step();
+  const Energy first = flat.physics().energy();
+  const double start = first.total();
+  flat.run(3);
+  Energy now = flat.physics().energy();
+  now.friction_loss -= first.friction_loss;
+  now.contact_loss -= first.contact_loss;
+  EXPECT_NEAR(now.kinetic, 0, 1e-3);
+  EXPECT_NEAR(now.friction_loss + now.contact_loss, start - now.total(), 0.05 * start);
+  EXPECT_GT(now.friction_loss, 0.5 * (start - now.total()));
+  EXPECT_NEAR(now.residual, 0, 0.05 * start);
+}
+
+}  // namespace
+}  // namespace breve::testing
