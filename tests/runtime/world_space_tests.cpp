@@ -71,7 +71,8 @@ TEST(Extent, RefusesWhatIsNoBounds) {
   EXPECT_THROW(space.set(3, Ending::Wrap, 0, 1), Error);
   EXPECT_THROW(space.set(0, Ending::Wrap, 1, 1), Error);
   EXPECT_THROW(space.set(0, Ending::Wall, 0, std::nan("")), Error);
-  EXPECT_THROW(space.set(0, Ending::Wall, -std::numeric_limits<double>::max(), std::numeric_limits<double>::max()), Error);
+  EXPECT_THROW(space.set(0, Ending::Wall, -std::numeric_limits<double>::max(), std::numeric_limits<double>::max()),
+               Error);
   EXPECT_TRUE(space.open());
 }
 
