@@ -242,8 +242,8 @@ void World::Parts::bring_inside() {
   if (bodies.rigid() == 0) return;
   for (const BodyIndex body : bodies.rigid_bodies()) {
     // A machine of joints would be torn apart, or turned as one solid: it is left to real walls.
-    if (space.holds(bodies.location(body)) || !dynamics.joints_of(body).empty() || !bring(body)) continue;
-    dynamics.moved(body);
+    if (space.holds(bodies.location(body)) || !dynamics->joints_of(body).empty() || !bring(body)) continue;
+    dynamics->moved(body);
     ++brought;
   }
 }
