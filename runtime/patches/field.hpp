@@ -35,6 +35,7 @@ class Field {
   int nz() const { return nz_; }  // 1 for a line or a plane
   std::size_t size() const { return values_.size(); }
   Eigen::Map<const Eigen::ArrayXd> values() const { return {values_.data(), length()}; }
+  double* data() { return values_.data(); }  // size() of them, in their order
   bool same_size(const Field& other) const {
     return other.dimensions_ == dimensions_ && other.nx_ == nx_ && other.ny_ == ny_ && other.nz_ == nz_;
   }

@@ -15,27 +15,30 @@ namespace {
 
 using Array = Eigen::Map<const Eigen::ArrayXd>;
 
+constexpr std::size_t kKept = 3;  // rows of a plane: see step_plane
+
 void need_finite(const char* what, double value) {
   if (!std::isfinite(value)) throw Error(ErrorCode::Argument, fmt::format("the {} must be finite", what));
 }
 
 }  // namespace
 
-/// A row of all fields: the elements along the last axis, and the rows beside it.
+/// A row of all fields: the elements along the last axis, the rows that touch it, and where it goes.
 struct Reaction::Row {
-  std::size_t at;  // of its first element
   Eigen::Index length;
-  int beside;                                    // rows that touch it: 0 on a line, 2 in a plane, 4 in space
-  std::array<std::ptrdiff_t, 4> rows;            // where these begin; negative: outside
-  std::array<const double*, kMaxFields> values;  // by field: all of it
+  int beside;  // how many rows touch it: 0 on a line, 2 in a plane, 4 in space
   bool wraps;
+  // By field; all are values before the step.
+  std::array<const double*, kMaxFields> own;
+  std::array<std::array<const double*, 4>, kMaxFields> near;
+  std::array<double*, kMaxFields> to;
 };
 
 Reaction::Reaction(std::size_t fields, std::pmr::memory_resource* memory)
-    : count_(fields), groups_(memory), fresh_(memory), products_(memory), zeros_(memory) {
+    : count_(fields), groups_(memory), scratch_(memory), products_(memory), zeros_(memory) {
   if (fields < 1 || fields > kMaxFields)
     throw Error(ErrorCode::Argument, fmt::format("a reaction of {} fields (1 to {} are possible)", fields, kMaxFields));
-  fresh_.resize(fields);
+  scratch_.resize(fields);
 }
 
 void Reaction::set_diffusion(std::size_t field, double rate) {
@@ -77,7 +80,7 @@ void Reaction::step_row(const Row& row, double dt) {
     Eigen::Map<Eigen::ArrayXd> product(products_[g].data(), n);
     bool first = true;
     for (std::size_t i = 0; i < count_; ++i) {
-      const Array c(row.values[i] + row.at, n);
+      const Array c(row.own[i], n);
       for (int left = groups_[g].powers[i]; left > 0;) {
         const bool twice = left > 1;
         left -= twice ? 2 : 1;
@@ -94,16 +97,12 @@ void Reaction::step_row(const Row& row, double dt) {
     }
   }
   for (std::size_t i = 0; i < count_; ++i) {
-    const double* const c = row.values[i] + row.at;
-    double* const to = fresh_[i].data() + row.at;
+    const double* const c = row.own[i];
+    double* const to = row.to[i];
+    const std::array<const double*, 4>& near = row.near[i];
     const double beside = dt * diffusion_[i];
     const double own = 1 + dt * linear_[i] - (2 + row.beside) * beside;
     const double flow = dt * constant_[i];
-    std::array<const double*, 4> near{};
-    for (int r = 0; r < row.beside; ++r) {
-      const std::ptrdiff_t start = row.rows[static_cast<std::size_t>(r)];
-      near[static_cast<std::size_t>(r)] = start < 0 ? zeros_.data() : row.values[i] + start;
-    }
     // The first product of this field goes along with the stencil.
     const double* product = nullptr;
     double rate = 0;
@@ -159,38 +158,74 @@ void Reaction::step(std::span<Field* const> fields, double dt, bool periodic) {
     for (std::size_t j = 0; j < i; ++j)
       if (fields[i] == fields[j]) throw Error(ErrorCode::Argument, "a reaction names one matrix twice");
   }
-  const int dimensions = shape.dimensions();
-  const int length = dimensions == 1 ? shape.nx() : dimensions == 2 ? shape.ny() : shape.nz();
-  const auto n = static_cast<std::size_t>(length);
-  for (auto& fresh : fresh_) fresh.resize(shape.size());
+  const auto n = static_cast<std::size_t>(shape.dimensions() == 1   ? shape.nx()
+                                          : shape.dimensions() == 2 ? shape.ny()
+                                                                    : shape.nz());
   products_.resize(groups_.size());
   for (auto& product : products_) product.resize(n);
   zeros_.assign(n, 0.0);
+  const std::size_t room = shape.dimensions() == 3 ? shape.size() : kKept * n;
+  for (auto& scratch : scratch_) scratch.resize(room);
+  if (shape.dimensions() == 3)
+    step_space(fields, dt, periodic);
+  else
+    step_plane(fields, dt, periodic);
+}
 
-  Row row{};
-  row.length = length;
-  row.beside = 2 * (dimensions - 1);
-  row.wraps = periodic;
-  for (std::size_t i = 0; i < count_; ++i) row.values[i] = fields[i]->values().data();
-  // Rows are counted along x, and in space along y within it.
-  const int outer = dimensions == 1 ? 1 : shape.nx(), inner = dimensions == 3 ? shape.ny() : 1;
+/// A line or a plane, in place: the values before the step are kept of the row at work, the one before it and the
+/// first.
+void Reaction::step_plane(std::span<Field* const> fields, double dt, bool periodic) {
+  const bool line = fields[0]->dimensions() == 1;
+  const int rows = line ? 1 : fields[0]->nx();
+  const int length = line ? fields[0]->nx() : fields[0]->ny();
+  Row row{length, line ? 0 : 2, periodic, {}, {}, {}};
+  const auto n = static_cast<std::size_t>(length);
+  for (int x = 0; x < rows; ++x) {
+    for (std::size_t i = 0; i < count_; ++i) {
+      double* const kept = scratch_[i].data();
+      double* const now = kept + (x % 2 == 0 ? 0 : n);
+      double* const before = kept + (x % 2 == 0 ? n : 0);
+      double* const first = kept + 2 * n;
+      double* const values = fields[i]->data();
+      row.to[i] = values + static_cast<std::size_t>(x) * n;
+      std::copy_n(row.to[i], n, now);
+      if (x == 0) std::copy_n(now, n, first);
+      row.own[i] = now;
+      const double* const last = rows == 1 ? now : values + static_cast<std::size_t>(rows - 1) * n;
+      const double* const above = x > 0 ? before : periodic ? last : zeros_.data();
+      const double* const below = x + 1 < rows ? row.to[i] + n : periodic ? first : zeros_.data();
+      row.near[i] = {above, below, nullptr, nullptr};
+    }
+    step_row(row, dt);
+  }
+}
+
+/// In space, into other arrays, which then take the place of the old ones.
+void Reaction::step_space(std::span<Field* const> fields, double dt, bool periodic) {
+  const int nx = fields[0]->nx(), ny = fields[0]->ny(), nz = fields[0]->nz();
+  Row row{nz, 4, periodic, {}, {}, {}};
   const auto start = [&](int x, int y) -> std::ptrdiff_t {
     if (periodic) {
-      x = (x + outer) % outer;
-      y = (y + inner) % inner;
-    } else if (x < 0 || x >= outer || y < 0 || y >= inner) {
+      x = (x + nx) % nx;
+      y = (y + ny) % ny;
+    } else if (x < 0 || x >= nx || y < 0 || y >= ny) {
       return -1;
     }
-    return (static_cast<std::ptrdiff_t>(x) * inner + y) * length;
+    return (static_cast<std::ptrdiff_t>(x) * ny + y) * nz;
   };
-  for (int x = 0; x < outer; ++x) {
-    for (int y = 0; y < inner; ++y) {
-      row.at = static_cast<std::size_t>(start(x, y));
-      row.rows = {start(x - 1, y), start(x + 1, y), start(x, y - 1), start(x, y + 1)};
+  for (int x = 0; x < nx; ++x) {
+    for (int y = 0; y < ny; ++y) {
+      const std::array<std::ptrdiff_t, 4> near{start(x - 1, y), start(x + 1, y), start(x, y - 1), start(x, y + 1)};
+      for (std::size_t i = 0; i < count_; ++i) {
+        const double* const values = fields[i]->data();
+        row.own[i] = values + start(x, y);
+        row.to[i] = scratch_[i].data() + start(x, y);
+        for (std::size_t r = 0; r < near.size(); ++r) row.near[i][r] = near[r] < 0 ? zeros_.data() : values + near[r];
+      }
       step_row(row, dt);
     }
   }
-  for (std::size_t i = 0; i < count_; ++i) fields[i]->swap_values(fresh_[i]);
+  for (std::size_t i = 0; i < count_; ++i) fields[i]->swap_values(scratch_[i]);
 }
 
 void Reaction::save(ByteWriter& out) const {

@@ -51,11 +51,13 @@ class Reaction {
   };
   struct Row;
   void step_row(const Row& row, double dt);
+  void step_plane(std::span<Field* const> fields, double dt, bool periodic);
+  void step_space(std::span<Field* const> fields, double dt, bool periodic);
 
   std::size_t count_;
   std::array<double, kMaxFields> diffusion_{}, constant_{}, linear_{};  // linear: in the field itself
   std::pmr::vector<Group> groups_;
-  std::pmr::vector<std::pmr::vector<double>> fresh_;     // by field: where the values after the step are written
+  std::pmr::vector<std::pmr::vector<double>> scratch_;   // by field: a few rows, or in space all values after the step
   std::pmr::vector<std::pmr::vector<double>> products_;  // by group: of one row
   std::pmr::vector<double> zeros_;                       // a row outside
 };

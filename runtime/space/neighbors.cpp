@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <utility>
 
 namespace breve {
 
@@ -12,6 +14,7 @@ Neighbors::Neighbors(std::pmr::memory_resource* memory)
       radii_(memory),
       labels_(memory),
       real_of_(memory),
+      marks_(memory),
       grids_(memory),
       tree_(memory),
       result_(memory),
@@ -58,12 +61,28 @@ void Neighbors::close(const Extent& space) {
   }
 }
 
-/// What was found since `start`: images become their points, sorted, none twice, not the one who asks.
-void Neighbors::map_images(std::uint32_t self, std::size_t start, std::pmr::vector<std::uint32_t>& out) const {
+/// What was found since `start`: images become their points, ascending, none twice, not the one who asks.
+void Neighbors::put_in_order(std::uint32_t self, std::size_t start, std::pmr::vector<std::uint32_t>& out) {
   const auto begin = out.begin() + static_cast<std::ptrdiff_t>(start);
-  for (auto at = begin; at != out.end(); ++at)
-    if (*at >= size()) *at = real_of_[*at - size()];
+  if (!real_of_.empty()) {
+    for (auto at = begin; at != out.end(); ++at)
+      if (*at >= size()) *at = real_of_[*at - size()];
+  }
+  // Where the answer is a good part of all points, a bit for each of them sorts without comparing.
+  const std::size_t words = size() / 64 + 1, found = out.size() - start;
+  if (words <= found) {
+    if (marks_.size() < words) marks_.resize(words);
+    for (auto at = begin; at != out.end(); ++at) marks_[*at / 64] |= std::uint64_t{1} << (*at % 64);
+    marks_[self / 64] &= ~(std::uint64_t{1} << (self % 64));
+    out.resize(start);
+    for (std::size_t word = 0; word < words; ++word) {
+      for (std::uint64_t bits = std::exchange(marks_[word], 0); bits != 0; bits &= bits - 1)
+        out.push_back(static_cast<std::uint32_t>(64 * word + static_cast<std::size_t>(std::countr_zero(bits))));
+    }
+    return;
+  }
   std::sort(begin, out.end());
+  if (real_of_.empty()) return;
   out.erase(std::unique(begin, out.end()), out.end());
   out.erase(std::remove(begin, out.end(), self), out.end());
 }
@@ -112,8 +131,7 @@ void Neighbors::search(std::uint32_t self, const Vector3& center, std::pmr::vect
     }
     out.resize(static_cast<std::size_t>(next - out.data()));
   }
-  if (!real_of_.empty()) return map_images(self, start, out);
-  std::sort(out.begin() + static_cast<std::ptrdiff_t>(start), out.end());
+  put_in_order(self, start, out);
 }
 
 void Neighbors::set_label(std::uint32_t point, std::uint64_t label) {
@@ -192,12 +210,12 @@ Neighbors::Found Neighbors::query(std::uint32_t self) {
 }
 
 std::size_t Neighbors::bytes() const {
-  std::size_t bytes =
-      points_.capacity() * sizeof(Vector3) + tree_.bytes() +
-      (result_.capacity() + kept_.capacity()) * sizeof(std::uint32_t) +
-      (labels_.capacity() + result_labels_.capacity() + kept_labels_.capacity()) * sizeof(std::uint64_t) +
-      radii_.capacity() * sizeof(double) + real_of_.capacity() * sizeof(std::uint32_t) +
-      answers_.capacity() * sizeof(Answer);
+  std::size_t bytes = points_.capacity() * sizeof(Vector3) + tree_.bytes() +
+                      (result_.capacity() + kept_.capacity()) * sizeof(std::uint32_t) +
+                      (labels_.capacity() + marks_.capacity() + result_labels_.capacity() + kept_labels_.capacity()) *
+                          sizeof(std::uint64_t) +
+                      radii_.capacity() * sizeof(double) + real_of_.capacity() * sizeof(std::uint32_t) +
+                      answers_.capacity() * sizeof(Answer);
   for (const CellGrid& grid : grids_) bytes += grid.bytes();
   return bytes;
 }

@@ -47,7 +47,7 @@ class Neighbors {
  private:
   CellGrid* grid_for(double radius);
   void search(std::uint32_t self, const Vector3& center, std::pmr::vector<std::uint32_t>& out);
-  void map_images(std::uint32_t self, std::size_t start, std::pmr::vector<std::uint32_t>& out) const;
+  void put_in_order(std::uint32_t self, std::size_t start, std::pmr::vector<std::uint32_t>& out);
   bool most_ask() const;
   void answer_all(std::uint32_t first);
   void fetch_ahead(std::uint32_t self) const;
@@ -68,6 +68,7 @@ class Neighbors {
   std::pmr::vector<double> radii_;
   std::pmr::vector<std::uint64_t> labels_;
   std::pmr::vector<std::uint32_t> real_of_;  // images stand behind the points: which point each is of
+  std::pmr::vector<std::uint64_t> marks_;    // a bit for each point, all 0 between searches
   std::pmr::vector<CellGrid> grids_;         // kept for their memory; the first `grid_count_` are of this moment
   std::size_t grid_count_ = 0;
   PointTree tree_;

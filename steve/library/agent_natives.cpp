@@ -150,8 +150,17 @@ ListCell* agent_get_agents(Machine& machine, Instance& self, std::int32_t radius
     throw Error(ErrorCode::Argument, "get-agents: the radius is " + std::to_string(radius) + " (must be >= 0)");
   const Grid& grid = *standing.resource->grid;
   const Occupants& occupants = standing.resource->occupants;
-  constexpr std::uint32_t kUsual = 8;
-  ListCell* list = machine.heap().list(kUsual);
+  // Agents lie anywhere in memory: what is known of them is fetched while the list is made.
+  std::uint32_t expected = 1;
+  const auto fetch = [&](CellIndex cell) {
+    const Occupants::Place first = occupants.first(cell);
+    if (first == Occupants::kNoPlace) return;
+    __builtin_prefetch(&occupants.agent(first));
+    ++expected;
+  };
+  constexpr std::int32_t kFarFetch = 4;  // cells; more would push each other out
+  if (radius <= kFarFetch) grid.moore(standing.cell(), radius, grid.flat(), fetch);
+  ListCell* list = machine.heap().list(expected);
   push_agents(machine, occupants, standing.cell(), &self, *list);
   grid.moore(standing.cell(), radius, grid.flat(),
              [&](CellIndex cell) { push_agents(machine, occupants, cell, &self, *list); });

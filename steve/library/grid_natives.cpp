@@ -45,14 +45,15 @@ void grid_rebuild(Machine& machine, Instance& self, StringCell* patch_class) {
   if (code) make_patches(machine, self);
 }
 
-/// The objects of the cells go with their grid.
+/// The objects of the cells go with their grid. They stay in its table while they go, so that a destroy method which
+/// asks for neighbours finds those that are left, and makes no new ones.
 void grid_free_patches(Machine& machine, Instance& self) {
-  GridResource* resource = resource_of<GridResource>(machine, &self);
-  if (!resource) return;
-  // Taken out first: what destroy methods ask of the grid makes no new ones.
-  const std::pmr::vector<ObjectId> patches = std::move(resource->patches);
-  for (const ObjectId id : patches)
+  for (std::size_t cell = 0;; ++cell) {
+    const GridResource* resource = resource_of<GridResource>(machine, &self);
+    if (!resource || cell >= resource->patches.size()) return;
+    const ObjectId id = resource->patches[cell];
     if (Instance* patch = id ? machine.instance(id) : nullptr) machine.free_instance(*patch);
+  }
 }
 
 // --- cells -----------------------------------------------------------------------------------------------------------

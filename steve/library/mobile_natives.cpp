@@ -3,6 +3,7 @@
 
 #include "steve/library/joints.hpp"
 #include "steve/library/tables.hpp"
+#include "steve/library/vector_native.hpp"
 
 namespace breve::steve {
 
@@ -153,19 +154,19 @@ constexpr Native kMobileNatives[] = {
     native<mobile_resume_physics>("mobile.resume-physics"),
     native<mobile_get_mass>("mobile.get-mass"),
     native<set<&Bodies::set_force>>("mobile.set-force"),
-    native<get<&Bodies::force>>("mobile.get-force"),
+    vector_native<get<&Bodies::force>>("mobile.get-force"),
     native<set<&Bodies::set_torque>>("mobile.set-torque"),
-    native<get<&Bodies::torque>>("mobile.get-torque"),
+    vector_native<get<&Bodies::torque>>("mobile.get-torque"),
     native<mobile_set_force_method>("mobile.use-force-method"),
     native<mobile_rotate>("mobile.rotate"),
     native<mobile_relative_rotate>("mobile.relative-rotate"),
     native<mobile_offset>("mobile.offset"),
     native<set<&Bodies::set_velocity>>("mobile.set-velocity"),
-    native<get<&Bodies::velocity>>("mobile.get-velocity"),
+    vector_native<get<&Bodies::velocity>>("mobile.get-velocity"),
     native<set<&Bodies::set_acceleration>>("mobile.set-acceleration"),
-    native<get<&Bodies::acceleration>>("mobile.get-acceleration"),
+    vector_native<get<&Bodies::acceleration>>("mobile.get-acceleration"),
     native<set<&Bodies::set_rotational_velocity>>("mobile.set-rotational-velocity"),
-    native<get<&Bodies::rotational_velocity>>("mobile.get-rotational-velocity"),
+    vector_native<get<&Bodies::rotational_velocity>>("mobile.get-rotational-velocity"),
     native<set<&Bodies::set_rotational_acceleration>>("mobile.set-rotational-acceleration"),
     native<mobile_get_distance>("mobile.get-distance"),
     native<mobile_transform>("mobile.transform"),

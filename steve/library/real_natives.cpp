@@ -6,6 +6,7 @@
 #include "steve/library/resources.hpp"
 #include "steve/library/support.hpp"
 #include "steve/library/tables.hpp"
+#include "steve/library/vector_native.hpp"
 
 namespace breve::steve {
 
@@ -246,9 +247,9 @@ void stationary_init(Machine& machine, Instance& self) {
 
 constexpr Native kRealNatives[] = {
     native<real_move>("real.move"),
-    native<real_get_location>("real.get-location"),
-    native<real_get_offset>("real.get-offset"),
-    native<real_get_offset_to_point>("real.get-offset-to-point"),
+    vector_native<real_get_location>("real.get-location"),
+    vector_native<real_get_offset>("real.get-offset"),
+    vector_native<real_get_offset_to_point>("real.get-offset-to-point"),
     native<real_get_rotation>("real.get-rotation"),
     native<real_get_rotation>("real.get-rotation-matrix"),
     native<real_set_rotation>("real.set-rotation"),

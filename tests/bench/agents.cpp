@@ -36,7 +36,7 @@ constexpr Model kModels[] = {
     {"gray_scott", 100, plain::gray_scott, 1.5, 0, 512 * 512, 1e-9},
 };
 
-constexpr int kRepetitions = 5;  // the fastest counts: the others were disturbed
+constexpr int kRepetitions = 15;  // the fastest counts: the others were disturbed
 
 plain::Outcome in_steve(breve::Runtime& runtime, const Model& model) {
   const std::string name = std::string(BREVE_AGENTS_FOLDER "/") + model.name + ".tz";

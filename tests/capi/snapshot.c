@@ -38,6 +38,64 @@ static const char* const lively =
     "    self set-velocity to (random[(2, 2, 2)] - (1, 1, 1)) * (1 + |friends|).\n"
     "}\n";
 
+/* The same for discrete models: cells with code, states, agents on them, chemicals, a reaction, space that wraps. */
+static const char* const discrete =
+    "@use GridAgent.\n"
+    "@use Mobile.\n"
+    "@use Reaction.\n"
+    "@use Control.\n"
+    "Controller Town.\n"
+    "Patch : Cell {\n"
+    "  + variables:\n"
+    "    n (int).\n"
+    "  + to init-patch:\n"
+    "    n = random[9].\n"
+    "  + to mix:\n"
+    "    n = (n + ((self get-patch-to-east) get-n)) % 200.\n"
+    "    self set-state to n.\n"
+    "    self set-color to (n, 0, 0).\n"
+    "  + to get-n:\n"
+    "    return n.\n"
+    "}\n"
+    "GridAgent : Ant (aka Ants) {\n"
+    "  + to iterate:\n"
+    "    if random[3] == 0: self move-to-free-cell.\n"
+    "    else self move-to-free-neighbor.\n"
+    "    if random[40] == 0: free self.\n"
+    "}\n"
+    "Control : Town {\n"
+    "  + variables:\n"
+    "    cells, board, salt, u, v, reaction, ball (object).\n"
+    "  + to init:\n"
+    "    i (int).\n"
+    "    self wrap-space from (0, 0, 0) to (3, 3, 0).\n"
+    "    cells = ((new PatchToroid) init-with x-count 4 y-count 4 z-count 1 patch-class \"Cell\").\n"
+    "    board = ((new PatchGrid) init-with x-count 6 y-count 6 z-count 2).\n"
+    "    cells set-update-order to \"random\".\n"
+    "    board randomize-states with-density 0.4.\n"
+    "    board set-rule born {5, 6} survive {4, 5, 6}.\n"
+    "    salt = ((new PatchChemical) init-with diffusion-rate 0.1 decay-rate 0.01).\n"
+    "    board track patch-chemical salt.\n"
+    "    for i = 0, i < 8, i++: (new Ant) enter-free-cell of board.\n"
+    "    u = ((new Matrix2D) init-with x-size 6 y-size 6).\n"
+    "    v = ((new Matrix2D) init-with x-size 6 y-size 6).\n"
+    "    u set-value to 1.0 at-x 2 at-y 3.\n"
+    "    v set-value to 0.5 at-x 2 at-y 4.\n"
+    "    reaction = ((new Reaction) init-with fields {u, v}).\n"
+    "    reaction set-diffusion of u to 0.1.\n"
+    "    reaction add-term to v rate 0.3 powers {1, 1}.\n"
+    "    ball = new Mobile.\n"
+    "    ball set-velocity to (5, 7, 1).\n"
+    "  + to iterate:\n"
+    "    super iterate.\n"
+    "    cells update-patches with-method \"mix\".\n"
+    "    board apply-rule.\n"
+    "    (board get-patch-at x random[5] y 0 z 1) increase-concentration of salt by 1.0.\n"
+    "    board update-concentrations.\n"
+    "    reaction step by 0.5.\n"
+    "    (new Ant) enter-free-cell of board.\n"
+    "}\n";
+
 static uint64_t hash_of(const breve_world* world) {
   uint64_t hash = 0;
   CHECK_STATUS(BREVE_OK, breve_world_hash(world, &hash));
@@ -79,9 +137,9 @@ static void equal_runs_have_equal_hashes_and_unequal_ones_do_not(void) {
   scene_close(&c);
 }
 
-static void restore_and_go_on_equals_save_and_go_on(void) {
+static void check_restore_and_go_on(const char* program) {
   scene a, b;
-  if (!scene_open_text(&a, lively, NULL) || !scene_open_text(&b, lively, NULL)) return;
+  if (!scene_open_text(&a, program, NULL) || !scene_open_text(&b, program, NULL)) return;
   step_times(a.world, 20);
   size_t size = 0;
   unsigned char* image = image_of(a.world, &size);
@@ -106,6 +164,9 @@ static void restore_and_go_on_equals_save_and_go_on(void) {
   scene_close(&a);
   scene_close(&b);
 }
+
+static void restore_and_go_on_equals_save_and_go_on(void) { check_restore_and_go_on(lively); }
+static void so_it_does_for_grids_agents_and_reactions(void) { check_restore_and_go_on(discrete); }
 
 static void a_snapshot_changes_nothing(void) {
   scene a, b;
@@ -195,6 +256,7 @@ static void an_image_of_another_program_is_refused(void) {
 void snapshot_suite(void) {
   RUN(equal_runs_have_equal_hashes_and_unequal_ones_do_not);
   RUN(restore_and_go_on_equals_save_and_go_on);
+  RUN(so_it_does_for_grids_agents_and_reactions);
   RUN(a_snapshot_changes_nothing);
   RUN(ids_of_the_snapshot_are_good_again_and_later_ones_are_stale);
   RUN(a_room_that_is_too_small_is_not_written_to);

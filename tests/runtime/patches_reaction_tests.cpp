@@ -127,8 +127,9 @@ double changed(const std::vector<Field>& c, std::size_t i, double diffusion, con
 TEST(Reaction, AgreesWithTheEquationElementByElement) {
   constexpr double kRounding = 1e-14;
   for (const bool periodic : {false, true}) {
-    for (const Eigen::Array3i& size : {Eigen::Array3i(7, 1, 1), Eigen::Array3i(5, 6, 1), Eigen::Array3i(4, 3, 5),
-                                       Eigen::Array3i(1, 1, 1), Eigen::Array3i(2, 2, 2)}) {
+    for (const Eigen::Array3i& size :
+         {Eigen::Array3i(7, 1, 1), Eigen::Array3i(5, 6, 1), Eigen::Array3i(4, 3, 5), Eigen::Array3i(1, 1, 1),
+          Eigen::Array3i(2, 2, 2), Eigen::Array3i(1, 6, 1), Eigen::Array3i(2, 5, 1)}) {
       std::vector<Field> c;
       for (std::uint64_t i = 0; i < 3; ++i) c.push_back(random_field(size[0], size[1], size[2], i));
       const std::vector<double> diffusion{0.1, 0, 0.05};
