@@ -161,7 +161,7 @@ void Planar::Core::remove_member(std::uint32_t slot) {
   FlatBody& flat = slots[slot];
   for (FlatJoint& joint : joints)
     if (joint.used && joint.b2 && (joint.b2->GetBodyA() == flat.b2 || joint.b2->GetBodyB() == flat.b2)) drop_b2(joint);
-  if (bodies->used(flat.body) && bodies->dynamic(flat.body)) base -= energy_of(flat.body);
+  if (!flat.fixed) base -= kinetic_of(flat);
   b2->DestroyBody(flat.b2);
   slot_of[flat.body] = kNoSlot;
   flat = FlatBody();
@@ -209,7 +209,7 @@ b2PolygonShape polygon_of(const std::pmr::vector<Vector2>& points, double unit) 
 }
 
 void add_profile(FlatBody& flat, const std::pmr::vector<Vector2>& points, double unit, std::uint32_t number) {
-  std::vector<b2Vec2> corners;
+  std::pmr::vector<b2Vec2> corners(points.get_allocator().resource());
   for (const Vector2& p : points) corners.push_back(scaled(p, unit));
   const std::size_t n = corners.size();
   b2ChainShape chain;
