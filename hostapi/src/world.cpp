@@ -79,7 +79,12 @@ void check(const breve_world_config& config) {
       fail(BREVE_ERROR_ARGUMENT, "iteration_step and integration_step must be finite and >= 0");
   for (const bool reserved : config.reserved)
     if (reserved) fail(BREVE_ERROR_ARGUMENT, "a reserved field is not false");
-  if (config.reserved_2 != 0) fail(BREVE_ERROR_ARGUMENT, "a reserved field is not 0");
+  if (config.dimension != 0 && config.dimension != 2 && config.dimension != 3)
+    fail(BREVE_ERROR_ARGUMENT, "dimension must be 2, 3, or 0 for the script's own");
+  if (!std::isfinite(config.length_unit) || config.length_unit < 0)
+    fail(BREVE_ERROR_ARGUMENT, "length_unit must be finite and >= 0");
+  if (config.length_unit > 0 && config.length_unit != 1 && config.dimension == 3)
+    fail(BREVE_ERROR_ARGUMENT, "length_unit is for flat worlds, but dimension is 3");
   if (config.accuracy) rung_named(config.accuracy);  // an error that names the rungs
 }
 
@@ -97,7 +102,11 @@ class CreationScope {
 
 void start(breve_world& world) {
   const ScriptScope script(world);
+  if (world.config.dimension == 2) world.world->flatten();
   world.machine->start();
+  if (world.config.dimension == 3 && world.world->dimension() != 3)
+    fail(BREVE_ERROR_ARGUMENT, "dimension is 3, but the program's controller makes the world flat");
+  if (world.config.length_unit > 0) world.world->dynamics().set_length_unit(world.config.length_unit);
   if (world.config.integration_step > 0) world.world->set_integration_step(world.config.integration_step);
   if (world.config.iteration_step > 0) world.world->set_iteration_step(world.config.iteration_step);
   if (world.config.accuracy) world.world->dynamics().set_accuracy(rung_named(world.config.accuracy));

@@ -4,6 +4,7 @@
 
 #include <box2d/box2d.h>
 
+#include <exception>
 #include <map>
 #include <optional>
 
@@ -169,14 +170,15 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
 
   std::pmr::map<BodyPair, bool> met;  // pairs with a handler whose first touch was told; true: told in this step
   std::uint64_t iteration = 0, sub_step = 0;
-  double now = 0;          // s, at the start of the current sub-step
-  int calm = 0;            // steps since something was wrong
-  int refined = 0;         // the guard's doublings of the sub-steps
-  int awake = 0;           // bodies, when the sub-step was planned
-  double step_length = 0;  // s, of the sub-step that is being taken, uncut
-  bool stepping = false;   // inside b2World::Step
-  double friction = 0;     // J, lost in sliding contacts in this sub-step
-  int located = 0;         // impacts of pairs without handler in this sub-step
+  double now = 0;              // s, at the start of the current sub-step
+  int calm = 0;                // steps since something was wrong
+  int refined = 0;             // the guard's doublings of the sub-steps
+  int awake = 0;               // bodies, when the sub-step was planned
+  double step_length = 0;      // s, of the sub-step that is being taken, uncut
+  std::exception_ptr failure;  // what went wrong in a callback of Box2D, which must come to its end all the same
+  bool stepping = false;       // inside b2World::Step
+  double friction = 0;         // J, lost in sliding contacts in this sub-step
+  int located = 0;             // impacts of pairs without handler in this sub-step
   DynamicsCounters counters;
   std::pmr::vector<Intervention> interventions;
   std::pmr::vector<Impact> impacts;
@@ -299,6 +301,8 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   Frozen freeze();
   void thaw();  // bodies and joints
   void thaw_contacts();
+  void rethrow();
+  void before_solving(b2Contact* contact);
   Warm warm() const;
   void set_contacts(const Warm& from, double factor);
   void set_joints(const Warm& from, double factor);

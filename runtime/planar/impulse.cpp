@@ -21,7 +21,7 @@ Vector2 vector_of(const b2Vec2& v) { return {v.x, v.y}; }
 /// units. Free bodies answer alone; what joints connect answers as a whole, M^-1 - M^-1 J^T (J M^-1 J^T)^-1 J M^-1.
 class Response {
  public:
-  Response(const Planar::Core& core, FlatBody& a, FlatBody& b) : core_(core) {
+  Response(const Planar::Core& core, FlatBody& a, FlatBody& b) : core_(core), bodies_(core.memory) {
     gather(a);
     gather(b);
     const auto n = static_cast<Eigen::Index>(3 * bodies_.size());
@@ -87,7 +87,7 @@ class Response {
   }
 
   void hold_joints() {
-    std::vector<JointIndex> held;
+    std::pmr::vector<JointIndex> held(core_.memory);
     for (const FlatBody* flat : bodies_) {
       const auto found = core_.joints_at.find(flat->body);
       if (found != core_.joints_at.end()) held.insert(held.end(), found->second.begin(), found->second.end());
@@ -147,7 +147,7 @@ class Response {
   }
 
   const Planar::Core& core_;
-  std::vector<FlatBody*> bodies_;
+  std::pmr::vector<FlatBody*> bodies_;
   Matrix columns_;
 };
 

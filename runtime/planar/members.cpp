@@ -18,6 +18,22 @@ namespace {
 // trees 96, a contact 256, a joint up to 280; rounded up for its blocks and lists.
 constexpr std::size_t kPerWorld = 160'000, kPerBody = 768, kPerContact = 320, kPerJoint = 320;
 
+/// Box2D fills a table for the whole process when the first contact is made, unguarded: two worlds on two threads would
+/// both do so. It is made to do it once, here, where the language guards.
+bool contacts_are_ready() {
+  static const bool ready = [] {
+    b2World world(b2Vec2(0, 0));
+    b2CircleShape circle;
+    circle.m_radius = 1;
+    b2BodyDef def;
+    def.type = b2_dynamicBody;
+    for (int i = 0; i < 2; ++i) world.CreateBody(&def)->CreateFixture(&circle, 1);
+    world.Step(0, 1, 1);
+    return world.GetContactCount() == 1;
+  }();
+  return ready;
+}
+
 }  // namespace
 
 Planar::Core::Core(std::pmr::memory_resource* resource, Bodies& all)
@@ -49,6 +65,8 @@ FlatBody* Planar::Core::find(BodyIndex body) {
 
 void Planar::Core::make_world() {
   held.hold(kPerWorld);
+  if (!contacts_are_ready())
+    throw Error(ErrorCode::Unsupported, "the Box2D library that is installed makes no contacts");
   b2 = std::make_unique<b2World>(b2Vec2(0, 0));
   b2->SetContactListener(this);
   b2->SetContactFilter(this);
@@ -161,7 +179,7 @@ void Planar::Core::remove_member(std::uint32_t slot) {
   FlatBody& flat = slots[slot];
   for (FlatJoint& joint : joints)
     if (joint.used && joint.b2 && (joint.b2->GetBodyA() == flat.b2 || joint.b2->GetBodyB() == flat.b2)) drop_b2(joint);
-  if (bodies->used(flat.body) && bodies->dynamic(flat.body)) base -= energy_of(flat.body);
+  if (!flat.fixed) base -= kinetic_of(flat);
   b2->DestroyBody(flat.b2);
   slot_of[flat.body] = kNoSlot;
   flat = FlatBody();
@@ -209,7 +227,7 @@ b2PolygonShape polygon_of(const std::pmr::vector<Vector2>& points, double unit) 
 }
 
 void add_profile(FlatBody& flat, const std::pmr::vector<Vector2>& points, double unit, std::uint32_t number) {
-  std::vector<b2Vec2> corners;
+  std::pmr::vector<b2Vec2> corners(points.get_allocator().resource());
   for (const Vector2& p : points) corners.push_back(scaled(p, unit));
   const std::size_t n = corners.size();
   b2ChainShape chain;

@@ -243,7 +243,13 @@ Frozen Planar::Core::freeze() {
 void Planar::Core::thaw() {
   const double kept = base;
   update_members();
-  base = kept;  // they have been counted
+  base = kept;
+  for (const FlatBody& flat : slots) {
+    const auto place = std::lower_bound(frozen->bodies.begin(), frozen->bodies.end(), flat.body,
+                                        [](const FrozenBody& one, BodyIndex body) { return one.body < body; });
+    const bool counted = place != frozen->bodies.end() && place->body == flat.body;
+    if (flat.body != kNoBody && !flat.fixed && !counted) base += energy_of(flat.body);
+  }
   for (const FrozenBody& one : frozen->bodies) {
     FlatBody* flat = find(one.body);
     if (!flat) continue;
@@ -270,6 +276,7 @@ void Planar::Core::thaw_contacts() {
   b2->SetContinuousPhysics(true);
   b2->Step(0, 1, 1);  // contacts are found and their points computed; nothing moves
   muted = false;
+  rethrow();
   set_contacts(frozen->warm, 1);
   for (const FrozenBody& one : frozen->bodies)
     if (FlatBody* flat = find(one.body);
@@ -282,8 +289,8 @@ void Planar::Core::save(ByteWriter& out) {
   if (b2 && !frozen) {
     frozen.emplace(freeze());
     last_step = frozen->warm.step;
-    drop_world();
   }
+  if (b2) drop_world();
   each(Writer{out}, settings);
   each(Writer{out}, account);
   out.put(base);
@@ -403,11 +410,14 @@ void Planar::Core::forget(BodyIndex body) {
       springs[i] = FlatSpring();
       free_springs.push_back(i);
     }
-  if (body < slot_of.size() && slot_of[body] != kNoSlot) remove_member(slot_of[body]);
+  const bool known = body < slot_of.size() && slot_of[body] != kNoSlot;
+  if (known) remove_member(slot_of[body]);
   own.erase(body);
   std::erase(force_methods, body);
   std::erase_if(met, [body](const auto& one) { return one.first.first == body || one.first.second == body; });
   if (!frozen) return;
+  const auto gone = [body](const FrozenBody& one) { return one.body == body; };
+  if (!known && std::any_of(frozen->bodies.begin(), frozen->bodies.end(), gone)) base -= energy_of(body);
   std::erase_if(frozen->bodies, [body](const FrozenBody& one) { return one.body == body; });
   std::erase_if(frozen->warm.contacts,
                 [body](const WarmContact& one) { return one.key.a == body || one.key.b == body; });

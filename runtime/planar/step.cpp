@@ -181,6 +181,7 @@ void Planar::Core::step(double dt) {
   ++counters.evaluations;
   counters.solver_iterations += static_cast<std::uint64_t>(velocity_iterations());
   counters.pairs += static_cast<std::uint64_t>(b2->GetContactCount());
+  rethrow();
 }
 
 void Planar::Core::report_lasting(double moment) {

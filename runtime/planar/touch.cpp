@@ -3,6 +3,7 @@
 // that comes fast enough collides by the law of runtime/contact when its contact is solved first.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "runtime/planar/core.hpp"
 
@@ -37,7 +38,12 @@ void Planar::Core::refresh(b2Contact* contact) {
 bool Planar::Core::ShouldCollide(b2Fixture* a, b2Fixture* b) {
   const b2Body *x = a->GetBody(), *y = b->GetBody();
   if (!is_body(x) || !is_body(y) || !client) return false;
-  return pushes(of(x).body, of(y).body, *client);
+  try {
+    return pushes(of(x).body, of(y).body, *client);
+  } catch (...) {
+    failure = std::current_exception();
+    return false;
+  }
 }
 
 void Planar::Core::BeginContact(b2Contact* contact) {
@@ -60,6 +66,18 @@ void Planar::Core::EndContact(b2Contact* contact) {
 
 void Planar::Core::PreSolve(b2Contact* contact, const b2Manifold*) {
   if (muted) return;
+  try {
+    before_solving(contact);
+  } catch (...) {
+    failure = std::current_exception();
+  }
+}
+
+void Planar::Core::rethrow() {
+  if (failure) std::rethrow_exception(std::exchange(failure, nullptr));
+}
+
+void Planar::Core::before_solving(b2Contact* contact) {
   refresh(contact);
   const float known = contact->GetRestitution();
   if (known == 0) return;

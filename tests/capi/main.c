@@ -54,6 +54,7 @@ void reentry_suite(void);
 void reentry_all_suite(void);
 void reload_suite(void);
 void snapshot_suite(void);
+void flat_suite(void);
 void solid_suite(void);
 void stepping_suite(void);
 void threads_suite(void);
@@ -78,6 +79,7 @@ static const struct {
     {"reentry_all", reentry_all_suite},
     {"reload", reload_suite},
     {"snapshot", snapshot_suite},
+    {"flat", flat_suite},
     {"solid", solid_suite},
     {"stepping", stepping_suite},
     {"threads", threads_suite},

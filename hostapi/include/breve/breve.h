@@ -352,11 +352,14 @@ typedef struct breve_world_config {
                                    that call alone is abandoned. Default 0 */
   uint32_t nesting_limit;       /* calls of the host in callbacks of calls of the host: at most 200; 0: the default of
                                    64. Beyond it: BREVE_ERROR_DEPTH */
-  uint32_t reserved_2;          /* must be 0 */
+  uint32_t dimension;           /* 2: the world is flat (z = 0, turns about z) before the controller's init; 3: it is not,
+                                   and a PlanarControl is an error; 0: as the controller says. Default 0 */
   breve_trace_fn trace;         /* of `profile`; NULL: no events. Default NULL */
   void* trace_user;             /* Default NULL */
   const char* accuracy;         /* rung of the ladder of accuracy, as breve_rung_named knows them, set after the
                                    controller's init; copied; NULL: the script's own. Default NULL */
+  double length_unit;           /* m, what a flat world computes with as 1, set after the controller's init: sizes of 0.1
+                                   to 10 of it are best; 0: the script's own. Default 0 */
 } breve_world_config;
 
 /* Budgets. Each turn of a loop, each call of a method or function and each new object counts 1, whoever makes the call:

@@ -82,8 +82,10 @@ TEST(PlanarMotion, APendulumSwingsWithItsPeriod) {
     const double x = flat.at(ball).x();
     if (last < 0 && x >= 0) {
       latest = time - x / (x - last) / 60;
-      if (first < 0) first = latest;
-      else ++turns;
+      if (first < 0)
+        first = latest;
+      else
+        ++turns;
     }
     last = x;
   }

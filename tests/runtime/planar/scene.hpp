@@ -36,9 +36,7 @@ struct Flat : Scene {
   }
   ObjectId ground(double width = 1000) { return fixed(Shape::box({width, 10, 1}), 0, -5); }
   ObjectId ball(double radius, double x, double y) { return rigid(Shape::sphere(radius), x, y); }
-  ObjectId box(double width, double height, double x, double y) {
-    return rigid(Shape::box({width, height, 1}), x, y);
-  }
+  ObjectId box(double width, double height, double x, double y) { return rigid(Shape::box({width, height, 1}), x, y); }
   void turn(ObjectId id, double angle) {
     bodies().set_orientation(index(id), Quaternion(std::cos(angle / 2), 0, 0, std::sin(angle / 2)));
   }

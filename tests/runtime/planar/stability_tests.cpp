@@ -49,7 +49,8 @@ TEST(PlanarStability, ACollisionKeepsMomentum) {
   flat.set_velocity(a, {4, 0, 0});
   const double before = flat.bodies().mass(flat.index(a)) * 4;
   flat.run(3);
-  const Vector3 p = flat.bodies().mass(flat.index(a)) * flat.velocity(a) + flat.bodies().mass(flat.index(b)) * flat.velocity(b);
+  const Vector3 p =
+      flat.bodies().mass(flat.index(a)) * flat.velocity(a) + flat.bodies().mass(flat.index(b)) * flat.velocity(b);
   EXPECT_NEAR(p.x(), before, 1e-5 * before);
   EXPECT_NEAR(p.y(), 0, 1e-5 * before);
   EXPECT_GT(flat.velocity(b).x(), 0.5);
@@ -70,7 +71,8 @@ TEST(PlanarStability, NewtonsCradlePassesTheSpeedOnToTheLastBall) {
   for (int i = 0; i < 90; ++i) {  // through the first swing of the last ball
     flat.world.step();
     most = std::max(most, flat.at(balls[4]).x() - 8 * r);
-    for (int k = 1; k < 4; ++k) middle = std::max(middle, std::abs(flat.at(balls[static_cast<std::size_t>(k)]).x() - 2 * r * k));
+    for (int k = 1; k < 4; ++k)
+      middle = std::max(middle, std::abs(flat.at(balls[static_cast<std::size_t>(k)]).x() - 2 * r * k));
   }
   EXPECT_NEAR(most, l * std::sin(0.6), 0.03 * l * std::sin(0.6));
   EXPECT_LT(middle, 0.02 * l);

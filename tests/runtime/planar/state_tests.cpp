@@ -238,6 +238,19 @@ TEST(PlanarState, SettingsGoOverWhenAWorldBecomesFlatAndABodyWithPhysicsIsTooLat
   EXPECT_THROW(late.world.flatten(), Error);
 }
 
+TEST(PlanarState, BodiesThatComeAndGoTakeTheirEnergyAlong) {
+  Flat flat;
+  const ObjectId first = flat.ball(0.5, 0, 10), second = flat.ball(0.5, 3, 20);
+  flat.run(0.2);
+  flat.world.save(1);
+  flat.ball(0.5, 6, 30);  // while the world is to be made anew
+  flat.world.release(first);
+  flat.run(0.2);
+  flat.bodies().set_physics(flat.index(second), false);
+  flat.run(0.2);
+  EXPECT_NEAR(flat.physics().energy().residual, 0, 0.1);
+}
+
 TEST(PlanarState, TheLedgerExplainsWhereEnergyWent) {
   Flat flat;
   flat.ground();
