@@ -36,6 +36,7 @@ void CollisionStage::finish(CollisionClient& client, double start, double h, con
     path.to = bodies_->state(proxy.body);
     finish_path(path);
   }
+  std::sort(loaded_touching_.begin(), loaded_touching_.end());  // for find_pairs; until here it is in the order saved
   for (const ProxyIndex index : order_) update_box(client, index);
   look_at_all_ = false;
   merge_new_pairs();

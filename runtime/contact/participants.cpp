@@ -162,9 +162,8 @@ void CollisionStage::find_pairs(const CollisionClient& client, ProxyIndex index)
     pair.a = self.serial < other.serial ? index : other_index;
     pair.b = self.serial < other.serial ? other_index : index;
     if (find_pair(pair.a, pair.b) || !client.reported(self.body, other.body)) continue;
-    pair.touching = !loaded_touching_.empty() &&
-                    std::find(loaded_touching_.begin(), loaded_touching_.end(),
-                              std::pair{proxies_[pair.a].body, proxies_[pair.b].body}) != loaded_touching_.end();
+    pair.touching = std::binary_search(loaded_touching_.begin(), loaded_touching_.end(),
+                                       std::pair{proxies_[pair.a].body, proxies_[pair.b].body});
     new_pairs_.push_back(pair);
   }
 }

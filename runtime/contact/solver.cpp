@@ -23,7 +23,7 @@ constexpr int kRounds = 4;
 
 void run_sweeps(Workspace& work, int most, double tolerance, SolveReport& report) {
   for (int i = 0; i < most; ++i) {
-    report.residual = sweep(work);
+    report.residual = sweep(work, i % 2 == 1);
     ++report.iterations;
     if (report.residual <= tolerance) return;
   }

@@ -62,11 +62,13 @@ double visit_point(Workspace& work, std::size_t point) {
   return moved;
 }
 
-double sweep(Workspace& work) {
+double sweep(Workspace& work, bool backward) {
   double largest = sweep_scalars(work);
   Packed* const movers = work.movers.data();
   double u[3], change[3];
-  for (std::size_t i = 0; i < work.points.size(); ++i) {
+  const std::size_t count = work.points.size();
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::size_t i = backward ? count - 1 - n : n;
     Point& c = work.points[i];
     if (!c.plain) {
       largest = std::max(largest, visit_point(work, i));

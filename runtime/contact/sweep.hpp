@@ -10,9 +10,10 @@ namespace breve::contact {
 /// Push every row by the impulse it starts with.
 void push_all(Workspace& work);
 
-/// One sweep: scalar rows, then contacts, each in the order given.
+/// One sweep: scalar rows, then contacts, each in the order given; or contacts in the opposite order. Taken by turns a
+/// load goes up a stack as fast as down, and no side is always the last.
 /// @return the largest change of velocity that a row made at itself, m/s
-double sweep(Workspace& work);
+double sweep(Workspace& work, bool backward = false);
 
 /// One contact of a sweep.
 double visit_point(Workspace& work, std::size_t point);

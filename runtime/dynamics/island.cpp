@@ -1,4 +1,4 @@
-// What an island is made of, and its smooth motion.
+// What an island is made of.
 #include "runtime/dynamics/island.hpp"
 
 #include <algorithm>
@@ -170,24 +170,6 @@ void Island::restore() {
   }
   for (Tree* tree : trees_) tree->state = tree->sub_state;
   for (Clustered& one : clusters_) one.entry->system->set_next_step(one.next_before);
-}
-
-void Island::smooth(double time, double h) {
-  free_work_ = 0;
-  for (Free& one : free_) {
-    const Vector3 center = one.now.center, spin = one.now.spin;
-    move_free(one.now, accuracy_, core_.settings.gravity, time, h, one.next);
-    free_work_ += one.now.force.dot(one.now.center - center) + 0.5 * h * one.now.torque.dot(spin + one.now.spin);
-  }
-  for (Clustered& one : clusters_) {
-    Cluster& system = *one.entry->system;
-    system.step(time, h);
-    result.counters.evaluations += static_cast<std::uint64_t>(system.count().evaluations);
-    result.counters.rejected += static_cast<std::uint64_t>(system.count().rejected);
-    one.pending.motor_work = system.motor_work();
-    one.pending.script_work = system.script_work();
-    one.pending.drag_loss = system.drag_loss();
-  }
 }
 
 void Island::commit() {

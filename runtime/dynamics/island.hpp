@@ -115,6 +115,11 @@ class Island {
   void remember();
   void restore();
   void smooth(double time, double h);
+  // island_smooth.cpp
+  void smooth_once(Clustered& one, double time, double h);
+  void smooth_in_parts(Clustered& one, double time, double h);
+  bool smooth_part(Clustered& one, double time, double h, bool last, double& energy, double& kinetic);
+  double stored_in(const Clustered& one, double& kinetic);
   void commit();  // the last smooth() counts: its works go to the account
   Pose pose_of(BodyIndex body) const;
   Side side_of(BodyIndex body) const;
@@ -136,7 +141,7 @@ class Island {
   void fill(Tree& tree, int link, const Vector3& point, const Vector3& axis, bool angular, double sign,
             double* j) const;
   void respond(Tree& tree, const double* j, double* r) const;
-  void solve();
+  void solve();  // this and what follows: island_results.cpp
   void load_velocities();                 // movers' v from the state
   void store_velocities(double moved_h);  // back, and positions by what impulses changed times moved_h
   void correct_works(double h);

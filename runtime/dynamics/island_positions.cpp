@@ -52,6 +52,11 @@ void Island::move_by_rows(std::span<contact::Row> rows, std::span<contact::Scala
   contact::SolveSettings settings;
   settings.iterations = accuracy_.iterations;
   settings.direct = rows.empty();
+  // Only a part of an overlap is put right: how exactly does not matter.
+  double fastest = 0;
+  for (const contact::Row& row : rows) fastest = std::max(fastest, row.bias);
+  for (const contact::ScalarRow& row : scalars) fastest = std::max(fastest, row.bias);
+  settings.tolerance = std::max(settings.tolerance, 1e-3 * fastest);
   if (settings.direct) settings.tolerance = 1e-14;  // a length here: rings are closed to round-off
   contact::solve_island(movers_, rows, scalars, settings, workspace_);
   for (Free& one : free_) {

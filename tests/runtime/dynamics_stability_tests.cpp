@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <limits>
 
 #include "dynamics_scene.hpp"
 
@@ -103,8 +104,9 @@ void heavy_ball(double degrees, Rung rung, double bound) {
   is.normal = Vector3::UnitZ();
   s.dynamics().link(is, weight);
   const double start = s.dynamics().energy().total(), scale = 1000 * 9.81 * 10.5;
-  double worst = 0, open = 0;
+  double worst = 0, open = 0, gained = 0;
   s.measure(10, [&] {
+    gained = std::max(gained, (s.dynamics().energy().total() - start) / scale);
     worst = std::max(worst, std::abs(s.dynamics().energy().total() - start) / scale);
     const Bodies& bodies = s.world.bodies();
     const Vector3 gap = bodies.location(is.child) + bodies.orientation(is.child) * is.child_point -
@@ -115,6 +117,7 @@ void heavy_ball(double degrees, Rung rung, double bound) {
   std::printf("    %.0f degrees, %s: dE %.1e, joints open by %.1e\n", degrees, std::string(name_of(rung)).c_str(),
               worst, open);
   EXPECT_LE(worst, bound);
+  EXPECT_LE(gained, 0.01);
   EXPECT_LE(open, 1e-9);
 }
 
@@ -215,6 +218,64 @@ TEST(DynamicsStability, PlatesThatClapStayWhereTheyAre) {
   s.print("plates");
   std::printf("    centre of mass moved by %.1e\n", moved);
   EXPECT_LE(moved, 1e-6);
+}
+
+// --- fast: finite, figures published, not promised -----------------------------------------------------------------
+
+TEST(DynamicsStability, OnFastAPassivePendulumStaysFinite) {
+  Hard s(Rung::Fast);
+  chain(s, 5, 0.5, 1, Vector3(1, 0, 0));
+  const double start = s.dynamics().energy().total(), scale = 5 * 9.81 * 2.5;
+  double most = 0;
+  s.measure(60, [&] { most = std::max(most, (s.dynamics().energy().total() - start) / scale); });
+  s.print("pendulum of 5, fast");
+  std::printf("    dE at most %+.2f, at the end %+.2f\n", most, (s.dynamics().energy().total() - start) / scale);
+  EXPECT_LE(most, 0.1);
+}
+
+TEST(DynamicsStability, OnFastAHeavyBallOnALightChainGainsNoEnergy) {
+  // It loses what it likes.
+  for (const double degrees : {10.0, 90.0}) heavy_ball(degrees, Rung::Fast, std::numeric_limits<double>::infinity());
+}
+
+TEST(DynamicsStability, OnFastAHeavyTopStaysFinite) {
+  for (const double spin : {20.0, 100.0}) {
+    Hard s(Rung::Fast);
+    Matrix3 inertia = Matrix3::Identity();
+    inertia(2, 2) = 1.5;
+    const ObjectId top = s.rigid(solid(1, inertia), Vector3::Zero());
+    JointDescription is;
+    is.kind = JointKind::Ball;
+    is.child = s.index(top);
+    is.child_point = Vector3(0, 0, -0.5);
+    is.relative_rotation = Quaternion(Eigen::AngleAxisd(0.5, Vector3::UnitY()));
+    s.dynamics().link(is, top);
+    s.world.bodies().set_rotational_velocity(s.index(top), is.relative_rotation * Vector3(0, 0, spin));
+    const double start = s.dynamics().energy().kinetic;
+    double most = 0;
+    s.measure(20, [&] { most = std::max(most, s.dynamics().energy().kinetic / start); });
+    s.print("heavy top, fast");
+    std::printf("    at %.0f rad/s: kinetic energy at most %.2f of the start's\n", spin, most);
+    EXPECT_LE(most, 1.5);
+  }
+}
+
+TEST(DynamicsStability, OnFastAStackOfBoxesStaysFinite) {
+  for (const int count : {10, 20}) {
+    Hard s(Rung::Fast);
+    s.floor();
+    std::vector<ObjectId> boxes;
+    for (int i = 0; i < count; ++i) boxes.push_back(s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3(0, 0.5 + i, 0)));
+    double stands = 0, most = 0;
+    s.measure(60, [&] {
+      const Vector3 top = s.at(boxes.back());
+      if (top.y() > 0.99 * (count - 0.5)) stands = s.world.time();
+      most = std::max(most, s.velocity(boxes.back()).norm());
+    });
+    s.print("stack, fast");
+    std::printf("    %d boxes stand for %.1f s; the top one at most %.1f m/s\n", count, stands, most);
+    EXPECT_LE(most, 1.5 * std::sqrt(2 * 9.81 * count));  // a tower that tips over is faster than what falls
+  }
 }
 
 }  // namespace

@@ -1,0 +1,183 @@
+// The solve of an island's rows, and what follows from its impulses: states, works and losses, forces in joints, and
+// where the next solve begins.
+#include <algorithm>
+
+#include "runtime/articulated/kinematics.hpp"
+#include "runtime/base/rotation_vector.hpp"
+#include "runtime/dynamics/island.hpp"
+
+namespace breve {
+
+void Island::load_velocities() {
+  for (Free& one : free_) {
+    for (int k = 0; k < 3; ++k) {
+      one.v[k] = one.free_v[k] = one.now.velocity[k];
+      one.v[3 + k] = one.free_v[3 + k] = one.now.spin[k];
+    }
+  }
+  for (Tree* tree : trees_) tree->free_v = tree->state.v;
+}
+
+void Island::store_velocities(double moved_h) {
+  for (Free& one : free_) {
+    const Vector3 change(one.v[0] - one.free_v[0], one.v[1] - one.free_v[1], one.v[2] - one.free_v[2]);
+    const Vector3 turn(one.v[3] - one.free_v[3], one.v[4] - one.free_v[4], one.v[5] - one.free_v[5]);
+    one.now.velocity = Vector3(one.v[0], one.v[1], one.v[2]);
+    one.now.spin = Vector3(one.v[3], one.v[4], one.v[5]);
+    if (moved_h == 0) continue;
+    one.now.center += moved_h * change;
+    if (turn != Vector3::Zero()) one.now.orientation = (rotation_by(moved_h * turn) * one.now.orientation).normalized();
+  }
+  if (moved_h == 0) return;
+  for (Tree* tree : trees_) {
+    tree->way = moved_h * (tree->state.v - tree->free_v);
+    articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
+  }
+}
+
+/// Motors, dampers and scripts pushed along the way that smooth motion took; what the rows' impulses added to it, half
+/// of the change of velocity for h, is worked along too.
+void Island::correct_works(double h) {
+  for (const Free& one : free_) {
+    for (int k = 0; k < 3; ++k)
+      free_work_ +=
+          0.5 * h *
+          (one.now.force[k] * (one.v[k] - one.free_v[k]) + one.now.torque[k] * (one.v[3 + k] - one.free_v[3 + k]));
+  }
+  for (Clustered& clustered : clusters_)
+    for (const std::uint32_t index : clustered.entry->trees) {
+      Tree& tree = *core_.trees[index];
+      if (!tree.driven) continue;
+      const articulated::Vector &before = tree.sub_state.v, &free = tree.free_v, &after = tree.state.v;
+      for (int i = 0; i < tree.model.size(); ++i) {
+        const TreeLink& link = tree.links[static_cast<std::size_t>(i)];
+        if (link.joint == kNoJoint) continue;
+        const articulated::Body& body = tree.model.body(i);
+        const double damping = core_.joints[link.joint].drive.damping;
+        for (int k = body.v; k < body.v + articulated::velocity_count(body.type); ++k) {
+          const double change = 0.5 * (after[k] - free[k]);
+          clustered.pending.motor_work += change * tree.motor_impulse[k];
+          clustered.pending.drag_loss += change * damping * h * 0.5 * (before[k] + free[k]);
+          clustered.pending.script_work += change * h * tree.set_tau[k];
+        }
+      }
+    }
+}
+
+void Island::solve() {
+  if (rows_.empty() && scalars_.empty()) return;
+  contact::SolveSettings settings;
+  const int fast = core_.settings.fast_contacts;
+  settings.iterations = fast > 0 ? fast : accuracy_.iterations;
+  constexpr std::size_t kMostDirect = 100;  // contacts
+  constexpr double kSwept = 0.1;            // of the speed that is rest
+  settings.direct = accuracy_.direct && fast == 0 && rows_.size() <= kMostDirect;
+  // Where nothing is solved exactly, sweeps end when they change less than could be seen.
+  if (!accuracy_.direct) settings.tolerance = std::max(settings.tolerance, kSwept * quiet_);
+  const contact::SolveReport report = contact::solve_island(movers_, rows_, scalars_, settings, workspace_);
+  result.counters.solver_iterations += static_cast<std::uint64_t>(report.iterations + report.newton);
+  result.counters.direct += report.direct;
+}
+
+/// Of one side's point along the row's axes, from the movers' v as they are. A tree that touches itself is one side.
+Vector3 Island::rate_of(const contact::Row& row, bool first) const {
+  const int index = first ? row.a : row.b;
+  if (index < 0) return Vector3::Zero();
+  const contact::Mover& mover = movers_[static_cast<std::size_t>(index)];
+  const double *v = mover.v, *j = first ? row.ja : row.jb;
+  if (!j) {
+    const Vector3& arm = first ? row.arm_a : row.arm_b;
+    return row.axes * (Vector3(v[0], v[1], v[2]) + Vector3(v[3], v[4], v[5]).cross(arm));
+  }
+  const Eigen::Map<const articulated::Vector> velocity(v, mover.size);
+  Vector3 rate;
+  for (int k = 0; k < 3; ++k)
+    rate[k] = Eigen::Map<const articulated::Vector>(j + k * mover.size, mover.size).dot(velocity);
+  return rate;
+}
+
+double Island::rate_of(const contact::ScalarRow& row) const {
+  const contact::Mover& mover = movers_[static_cast<std::size_t>(row.a)];
+  return Eigen::Map<const articulated::Vector>(row.ja, mover.size)
+      .dot(Eigen::Map<const articulated::Vector>(mover.v, mover.size));
+}
+
+void Island::account_rows() {
+  // A contact force that is constant over the sub-step works along the mean of the velocities before and after. Each
+  // tree's own account has what left it through the contact, were it into another body.
+  const auto tree_at = [this](int mover) {
+    const int first = static_cast<int>(free_.size());
+    return mover < first ? nullptr : trees_[static_cast<std::size_t>(mover - first)];
+  };
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const contact::Row& row = rows_[i];
+    if (row.impulse == Vector3::Zero()) continue;
+    for (const bool first : {true, false}) {
+      const Vector3 mean = (first ? 0.5 : -0.5) * (rate_of(row, first) + before_[2 * i + (first ? 0 : 1)]);
+      const double along = row.impulse[0] * mean[0], across = row.impulse[1] * mean[1] + row.impulse[2] * mean[2];
+      result.account.contact_loss -= along;
+      result.account.friction_loss -= across;
+      if (Tree* tree = tree_at(first ? row.a : row.b)) {
+        tree->account.contact_loss -= along;
+        tree->account.friction_loss -= across;
+      }
+    }
+  }
+  const std::size_t limits = scalars_.size() - ring_errors_.size();
+  for (std::size_t i = 0; i < limits; ++i) {
+    const contact::ScalarRow& row = scalars_[i];
+    const double loss = -0.5 * row.impulse * (scalars_before_[i] + rate_of(row));
+    result.account.limit_loss += loss;
+    tree_at(row.a)->account.limit_loss += loss;
+  }
+}
+
+/// What contacts and limits did to trees, as forces that last the h seconds of a sub-step, for who asks what joints
+/// hold.
+void Island::note_forces(double h) {
+  for (Tree* tree : trees_) {
+    for (TreeLink& link : tree->links) link.contact = {};
+    tree->limit_force.setZero();
+  }
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (rows_[i].impulse == Vector3::Zero()) continue;
+    const NearPair& pair = *pairs_[touches_[i].pair];
+    const Vector3 force = rows_[i].axes.transpose() * rows_[i].impulse / h;
+    for (const auto& [body, sign] : {std::pair{pair.a, 1.0}, std::pair{pair.b, -1.0}}) {
+      const Side side = side_of(body);
+      if (!side.tree) continue;
+      articulated::Wrench& wrench = side.tree->links[static_cast<std::size_t>(side.link)].contact;
+      const Vector3 arm = touches_[i].point - articulated::com_position(side.tree->model, side.tree->data, side.link);
+      wrench.force += sign * force;
+      wrench.couple += sign * arm.cross(force);
+    }
+  }
+  const std::size_t limits = scalars_.size() - ring_errors_.size();
+  for (std::size_t i = 0; i < limits; ++i) {
+    Tree& tree = *trees_[static_cast<std::size_t>(scalars_[i].a) - free_.size()];
+    tree.limit_force +=
+        scalars_[i].impulse / h * Eigen::Map<const articulated::Vector>(scalars_[i].ja, tree.model.velocities());
+  }
+}
+
+void Island::keep_warm() {
+  for (NearPair* pair : pairs_) {
+    pair->warm_count = 0;
+    pair->touching = false;
+  }
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    NearPair& pair = *pairs_[touches_[i].pair];
+    const Shape &a = *core_.bodies->collision_shape(pair.a), &b = *core_.bodies->collision_shape(pair.b);
+    pair.touching = pair.touching || touches_[i].gap <= kSkin * std::min(a.bounding_radius(), b.bounding_radius()) ||
+                    rows_[i].impulse[0] > 0;
+    if (pair.warm_count == static_cast<int>(pair.warm.size()) || rows_[i].impulse == Vector3::Zero()) continue;
+    pair.warm[static_cast<std::size_t>(pair.warm_count++)] = {touches_[i].feature,
+                                                              rows_[i].axes.transpose() * rows_[i].impulse};
+  }
+  for (const Bound& bound : bounds_) core_.joints[bound.joint].limit[bound.axis] = 0;
+  std::size_t k = 0;
+  for (const Bound& bound : bounds_)
+    if (bound.rests) core_.joints[bound.joint].limit[bound.axis] += bound.sign * scalars_[k++].impulse;
+}
+
+}  // namespace breve
