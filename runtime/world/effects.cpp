@@ -30,6 +30,7 @@ constexpr std::array<Words, static_cast<std::size_t>(EffectId::kCount)> kWords{{
     {"friction", "bodies that touch have a friction that is not zero"},
     {"restitution", "bodies that touch give back some of their speed"},
     {"sleeping", "bodies at rest may sleep"},
+    {"energy ledger", "a body is physics-enabled: what moves it is written down"},
 }};
 
 }  // namespace

@@ -32,6 +32,7 @@ enum class EffectId : std::uint8_t {
   Friction,
   Restitution,
   Sleeping,
+  EnergyLedger,
   kCount
 };
 
