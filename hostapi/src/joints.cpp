@@ -37,6 +37,8 @@ JointDescription description_of(const breve_joint_description& from) {
   to.child_point = vector_of(from.child_point, "child_point");
   to.relative_rotation = rotation_of(from.rotation, "rotation");
   if (to.kind != JointKind::Fixed) to.normal = vector_of(from.normal, "normal");
+  if (to.kind == JointKind::Universal || to.kind == JointKind::Ball)
+    to.other_axis = vector_of(from.other_axis, "other_axis");
   // Before an object is made: a refused call is to leave no trace.
   if (!(to.normal.stableNorm() > 0)) fail(BREVE_ERROR_ARGUMENT, "the normal of the joint has no direction");
   if (from.child.generation != 0 && from.parent.index == from.child.index &&

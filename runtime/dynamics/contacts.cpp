@@ -91,7 +91,9 @@ void NearPairs::update_box(const Bodies& bodies, Proxy& proxy, const Vector3& gr
   const Quaternion orientation = bodies.orientation(proxy.body);
   const bool still = proxy.leaf != BoxTree::kNoLeaf && proxy.shape == shape && proxy.location == location &&
                      proxy.orientation.coeffs() == orientation.coeffs();
-  if (still && (!proxy.moves || proxy.rest.asleep)) return;
+  if (still && !proxy.wide && (!proxy.moves || proxy.rest.asleep)) return;
+  proxy.wide = false;
+  proxy.speed = proxy.moves ? bodies.velocity(proxy.body).norm() : 0;
   proxy.shape = shape;
   proxy.location = location;
   proxy.orientation = orientation;

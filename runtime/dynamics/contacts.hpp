@@ -36,10 +36,11 @@ class NearPairs {
   explicit NearPairs(std::pmr::memory_resource* memory);
 
   /// Brings boxes and pairs up to date for a step of h seconds.
-  /// @param rules  grows when an answer of `wanted` may have changed
+  /// @param rules    grows when an answer of `wanted` may have changed
+  /// @param strikes  what is struck within the step is to meet what it reaches then
   template <class Wanted>
   void update(const Bodies& bodies, const DynamicsClient& client, const Vector3& gravity, double h, std::uint64_t rules,
-              const Wanted& wanted) {
+              bool strikes, const Wanted& wanted) {
     refresh(bodies, client, gravity, h);
     if (rules != seen_rules_ || unasked_)
       for (NearPair& pair : pairs_) wanted(pair);
@@ -47,6 +48,11 @@ class NearPairs {
     unasked_ = true;
     merge();
     for (const std::size_t index : fresh_) wanted(pairs_[index]);
+    constexpr int kMostPassed = 64;  // bodies, one after the other
+    for (int i = 0; strikes && i < kMostPassed && pass_on(bodies, h); ++i) {
+      merge();
+      for (const std::size_t index : fresh_) wanted(pairs_[index]);
+    }
     drop_far();
     unasked_ = incomplete_ = false;
   }
@@ -91,6 +97,8 @@ class NearPairs {
     Quaternion orientation{1, 0, 0, 0};
     const Shape* shape = nullptr;
     Eigen::AlignedBox3d box;  // of what it may reach in this step
+    double speed = 0;         // m/s, that it has or may be given
+    bool wide = false;        // by what may strike it
   };
   void gather(const Bodies& bodies, const DynamicsClient& client);
   void refresh(const Bodies& bodies, const DynamicsClient& client, const Vector3& gravity, double h);
@@ -98,6 +106,8 @@ class NearPairs {
   void leave(ProxyIndex index);
   void update_box(const Bodies& bodies, Proxy& proxy, const Vector3& gravity, double h);
   void seek(ProxyIndex index);
+  bool pass_on(const Bodies& bodies, double h);
+  bool widen(Proxy& proxy, double speed, double h, double far, double more);
   void merge();
   void drop_far();
 

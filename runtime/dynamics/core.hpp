@@ -197,6 +197,7 @@ struct Dynamics::Core : InMemory {
   // step.cpp
   void advance(DynamicsClient& client, double start, double h);
   bool pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client);
+  bool locates() const;  // impacts, somewhere
   void find_islands();
   void step_quiet(double start, double h);
   void run(DynamicsClient& client, double start, double h, int depth);
@@ -212,6 +213,10 @@ struct Dynamics::Core : InMemory {
 
   // rings.cpp
   RingRows ring_rows(const Tree& tree, const JointDescription& is) const;
+
+  // ring_forces.cpp
+  void hold_rings(Tree& tree, double* acceleration);  // (nv), after forward dynamics: adds what rings force
+  JointReaction push_by_rings(Tree& tree, JointIndex wanted);
 
   // ledger.cpp
   Energy energy_of(Tree& tree) const;

@@ -121,6 +121,7 @@ void Island::step_once(DynamicsClient* client, double start, double h) {
 }
 
 void Island::begin(DynamicsClient* client, double h) {
+  locates_ = client && client->locates();
   for (Clustered& one : clusters_) {
     for (const std::uint32_t index : one.entry->trees) {
       Tree& tree = *core_.trees[index];

@@ -46,6 +46,11 @@ class Island {
   void stop();   // all velocities zero
   void write();  // to the arrays
 
+  /// Adds to `j` (nv) how the velocity of a link's point along `axis` (or its spin about it) depends on v; the tree's
+  /// links are placed.
+  static void fill(Tree& tree, int link, const Vector3& point, const Vector3& axis, bool angular, double sign,
+                   double* j);
+
   IslandResult result;
   std::exception_ptr error;  // that ended its step, where others are stepped at the same time
 
@@ -138,8 +143,6 @@ class Island {
   void add_bound_row(const Bound& bound);
   void add_ring_rows(const Tree& tree);
   double* rows_of(Tree& tree, int count);
-  void fill(Tree& tree, int link, const Vector3& point, const Vector3& axis, bool angular, double sign,
-            double* j) const;
   void respond(Tree& tree, const double* j, double* r) const;
   void solve();  // this and what follows: island_results.cpp
   void load_velocities();                 // movers' v from the state
@@ -168,6 +171,7 @@ class Island {
   void push_apart(double h);
   void move_by_rows(std::span<contact::Row> rows, std::span<contact::ScalarRow> scalars, double h);
   bool call(DynamicsClient& client, int pair, double moment, double left);
+  bool holds_rings() const;
   void hold_rings(double time, double h);
   double read_ring_errors();
   void close_rings();
@@ -221,6 +225,7 @@ class Island {
   ResultStart at_start_;
   std::pmr::vector<FreeBody> free_start_;
   std::pmr::vector<NearPair> pair_start_;
+  bool locates_ = false;          // handlers are called at the moment of impact
   double quiet_ = 0;              // m/s: slower than this is at rest, in a sub-step of this one
   double free_work_ = 0;          // J, of scripts on free bodies in the last smooth()
   std::pmr::vector<Role> roles_;  // of pairs

@@ -90,6 +90,10 @@ void Island::find_roles(double h, bool struck) {
     const Speeds speeds = speeds_of(pair.law, size, h);
     Role& role = roles_[touch.pair];
     depths_[touch.pair] = std::max(depths_[touch.pair], -touch.gap);
+    // A first touch that a handler waits for is met, however slow.
+    const bool awaited =
+        locates_ && pair.handled && !pair.touching && touch.gap > kMetSkin * size && touch.approach < 0;
+    if (awaited) continue;
     if (std::abs(touch.approach) <= speeds.slow || (struck && touching && touch.approach < 0))
       role = Role::Rests;
     else if (touching && touch.approach > 0 && role == Role::Far)
@@ -147,7 +151,7 @@ double* Island::rows_of(Tree& tree, int count) {
 }
 
 void Island::fill(Tree& tree, int link, const Vector3& point, const Vector3& axis, bool angular, double sign,
-                  double* j) const {
+                  double* j) {
   using articulated::JointType;
   for (int i = link; i >= 0; i = tree.model.body(i).parent) {
     const articulated::Body& body = tree.model.body(i);

@@ -9,6 +9,9 @@
 
 namespace breve {
 
+/// Where order counts, rings are held inside the stages; elsewhere by a rule that keeps energy in the long run.
+bool Island::holds_rings() const { return accuracy_.rung == Rung::Precise || accuracy_.rung == Rung::Reference; }
+
 double Island::longest(double left) const {
   double step = accuracy_.step > 0 ? accuracy_.step : left;
   const bool touching = !rows_.empty() || !scalars_.empty();
@@ -53,19 +56,23 @@ void Island::step_fast(double start, double h) {
     note_overlaps(part);
     note_forces(part);
     store_velocities(part);
-    push_apart(part);
     keep_warm();
+    push_apart(part);
   }
 }
 
 // --- impacts at their time ---
 
 void Island::advance_once(double time, double h) {
-  if (rows_.empty() && !scalars_.empty() && scalars_.size() == ring_errors_.size()) {
+  const bool only_rings = rows_.empty() && !scalars_.empty() && scalars_.size() == ring_errors_.size();
+  const bool in_stages = !only_rings || holds_rings();
+  for (Clustered& one : clusters_) one.stage->holds_rings = in_stages;
+  if (!in_stages) {
     hold_rings(time, h);
     return;
   }
   smooth(time, h);
+  if (only_rings) return;
   load_velocities();
   set_biases(h);
   for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i].impulse = warm_[i];
@@ -146,8 +153,8 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
     note_overlaps(part);
     note_forces(event.found() ? std::max(event.time, kSliver * h) : part);
     if (!event.found()) {
-      push_apart(part);
       keep_warm();
+      push_apart(part);
       now += part;
       continue;
     }

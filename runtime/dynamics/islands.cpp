@@ -80,10 +80,17 @@ void Dynamics::Core::advance(DynamicsClient& client, double start, double h) {
   for (const BodyIndex body : near.movers()) counters.sleeping += near.rest(body).asleep;
 }
 
+bool Dynamics::Core::locates() const {
+  if (settings.accuracy.locate_impacts) return true;
+  for (const auto& [body, one] : own)
+    if (one.has_accuracy && one.accuracy.locate_impacts) return true;
+  return false;
+}
+
 void Dynamics::Core::run(DynamicsClient& client, double start, double h, int depth) {
   take_changes();
   if (clusters_changed || integrators_changed) build_clusters();
-  near.update(*bodies, client, settings.gravity, h, rules + client.rules(), [&](NearPair& pair) {
+  near.update(*bodies, client, settings.gravity, h, rules + client.rules(), locates(), [&](NearPair& pair) {
     pair.pushes = pushes(pair.a, pair.b, client);
     pair.handled = client.handled(pair.a, pair.b);
   });

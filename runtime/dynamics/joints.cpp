@@ -229,7 +229,7 @@ JointReaction Dynamics::reaction(JointIndex joint) const {
   if (!core_) no_joint();
   core_->take_changes();
   const JointEntry& entry = core_->at(joint);
-  return entry.link < 0 ? JointReaction() : core_->react(entry);
+  return entry.tree == kNone ? JointReaction() : core_->react(entry);
 }
 
 JointReaction Dynamics::Core::react(const JointEntry& joint) {
@@ -241,8 +241,13 @@ JointReaction Dynamics::Core::react(const JointEntry& joint) {
   }
   if (tree.loads.tau.size() == 0) tree.loads.tau.setZero(tree.model.velocities());
   tree.loads.tau += tree.limit_force;
-  const articulated::Vector acceleration =
-      articulated::forward_dynamics(tree.model, tree.data, tree.state, tree.loads, 0);
+  articulated::Vector acceleration = articulated::forward_dynamics(tree.model, tree.data, tree.state, tree.loads, 0);
+  JointReaction of_ring;
+  if (!tree.rings.empty()) {
+    hold_rings(tree, acceleration.data());
+    of_ring = push_by_rings(tree, static_cast<JointIndex>(&joint - joints.data()));
+  }
+  if (joint.link < 0) return of_ring;
   articulated::Vector tau(tree.model.velocities());
   articulated::inverse_dynamics(tree.model, tree.data, tree.state, acceleration, tree.loads, tau);
   // What goes through the joint to the tree's side beyond it, about the joint's point.

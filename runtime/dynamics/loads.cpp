@@ -142,10 +142,11 @@ Stage::Stage(Dynamics::Core& core, const ClusterEntry& cluster, DynamicsClient* 
     const Tree& tree = *core.trees[index];
     aims_ = aims_ || tree.aimed;
     pushed_ = pushed_ || tree.pushed;
+    rings_ = rings_ || !tree.rings.empty();
     for (const TreeLink& link : tree.links) asked_ = asked_ || core.find(link.body)->force_method;
   }
   asked_ = asked_ && client != nullptr;
-  needed_ = aims_ || pushed_ || asked_ || !cluster.ties.empty();
+  needed_ = aims_ || pushed_ || asked_ || rings_ || !cluster.ties.empty();
 }
 
 void Stage::aim() {

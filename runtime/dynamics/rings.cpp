@@ -9,8 +9,10 @@ namespace breve {
 
 namespace {
 
+/// The parent's side of the row is where the child's point is, along a prismatic joint's axis far from its own: what
+/// turns with the parent is then told from what slides.
 void add_linear(const Vector3& axis, const Vector3& child, const Vector3& parent, RingRows& rows) {
-  rows.add({axis, false, child, parent, axis.dot(child - parent)});
+  rows.add({axis, false, child, child, axis.dot(child - parent)});
 }
 
 void add_angular(const Vector3& axis, double error, RingRows& rows) {
@@ -63,6 +65,9 @@ RingRows Dynamics::Core::ring_rows(const Tree& tree, const JointDescription& is)
     case JointKind::Universal: {
       const Vector3 second = child.orientation * (is.relative_rotation.conjugate() * axes_of(is).second);
       const Vector3 across = normal.cross(second);
+      rows.universal = true;
+      rows.first = normal;
+      rows.second = second;
       if (across.norm() > 0) add_angular(across.normalized(), -normal.dot(second), rows);
       break;
     }

@@ -18,7 +18,9 @@ struct RingRow {
 struct RingRows {
   int child = -1, parent = -1;  // links of the tree; -1: what does not move by itself
   int count = 0;
-  std::array<RingRow, 6> rows;
+  std::array<RingRow, kMostRingRows> rows;
+  bool universal = false;
+  Vector3 first = Vector3::Zero(), second = Vector3::Zero();  // of a universal joint: its axes, which stay square
 
   void add(const RingRow& row) { rows[static_cast<std::size_t>(count++)] = row; }
 };

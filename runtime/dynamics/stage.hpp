@@ -17,6 +17,10 @@ class Stage final : public StageForces {
   void aim() override;
   bool adds() const override { return pushed_ || asked_ || !cluster_.ties.empty(); }
   void add(double time) override;
+  void constrain(Tree& tree, double* acceleration) override {
+    if (holds_rings) core_.hold_rings(tree, acceleration);
+  }
+  bool holds_rings = false;  // else somebody else does
   double script_power() const override { return script_; }
   double drag_power() const override { return drag_; }
 
@@ -33,7 +37,7 @@ class Stage final : public StageForces {
   Dynamics::Core& core_;
   const ClusterEntry& cluster_;
   DynamicsClient* client_;
-  bool aims_ = false, pushed_ = false, asked_ = false, needed_ = false;
+  bool aims_ = false, pushed_ = false, asked_ = false, rings_ = false, needed_ = false;
   double script_ = 0, drag_ = 0;
 };
 

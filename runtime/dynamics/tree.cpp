@@ -28,6 +28,9 @@ Tree::Tree(std::pmr::memory_resource* memory, const std::vector<articulated::Lin
       state(articulated::neutral_state(model)),
       links(memory),
       rings(memory),
+      ring_numbers(memory),
+      ring_forces(memory),
+      ring_order(memory),
       anchors(memory) {
   work_q = state.q;
   work_v = work_u = work_w = free_v = way = kick = motor_impulse = limit_force = state.v;

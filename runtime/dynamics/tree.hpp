@@ -53,6 +53,8 @@ class Reservation {
   void* block_;
 };
 
+inline constexpr int kMostRingRows = 6;  // of one joint
+
 struct Tree : InMemory {
   Tree(std::pmr::memory_resource* memory, const std::vector<articulated::Link>& description);
 
@@ -62,8 +64,10 @@ struct Tree : InMemory {
   articulated::State state;
   articulated::Loads loads;
   std::pmr::vector<TreeLink> links;
-  std::pmr::vector<JointIndex> rings;  // joints within the tree (or to the world) that are constraints
-  bool anchored = false;               // held by the world
+  std::pmr::vector<JointIndex> rings;                  // joints within the tree (or to the world) that are constraints
+  std::pmr::vector<double> ring_numbers, ring_forces;  // workspace; forces along the rows, at the last stage
+  std::pmr::vector<int> ring_order;
+  bool anchored = false;  // held by the world
   std::pmr::vector<TreeAnchor> anchors;
   double step = 0;              // s, that step control would try next
   int slot = -1;                // in its island
@@ -87,6 +91,7 @@ struct Tree : InMemory {
     for (const TreeLink& link : links) first = std::min(first, link.body);
     return first;
   }
+  void reserve_rings();  // once `rings` are known
   /// The pose of the body of a link, after forward_kinematics.
   Pose pose(int link) const;
   Vector3 velocity(int link) const;  // of the body's origin, m/s, world

@@ -88,8 +88,8 @@ class Mechanics : public InMemory {
   /// The same for a ball joint, without angles: at zero turned by `turn`, child relative to parent, in the parent's
   /// axes, and spinning so. Errors as above, and if it is no ball joint.
   virtual void set_ball(JointIndex joint, const Quaternion& turn, const Vector3& spin) = 0;
-  /// At this moment, from the forces that act now and those that contacts and limits had in the last sub-step; zero for
-  /// a joint that closes a ring, and without the forces of such joints.
+  /// At this moment, from the forces that act now (those of joints that close rings too) and those that contacts and
+  /// limits had in the last sub-step.
   virtual JointReaction reaction(JointIndex joint) const = 0;
 
   // --- assemblies: bodies that joints connect ---------------------------------------------------------------------

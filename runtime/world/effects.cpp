@@ -31,6 +31,7 @@ constexpr std::array<Words, static_cast<std::size_t>(EffectId::kCount)> kWords{{
     {"restitution", "bodies that touch give back some of their speed"},
     {"sleeping", "bodies at rest may sleep"},
     {"bounds", "space wraps or has walls along an axis"},
+    {"energy ledger", "a body is physics-enabled: what moves it is written down"},
 }};
 
 }  // namespace

@@ -33,6 +33,7 @@ enum class EffectId : std::uint8_t {
   Restitution,
   Sleeping,
   Bounds,
+  EnergyLedger,
   kCount
 };
 

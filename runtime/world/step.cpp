@@ -195,6 +195,7 @@ void World::Parts::count_dynamics() {
       {EffectId::Friction, census.rough != 0, census.first_rough, census.rough, counted.contacts},
       {EffectId::Restitution, census.bouncing != 0, census.first_bouncing, census.bouncing, counted.impacts},
       {EffectId::Sleeping, dynamics->sleeping(), {}, census.asleep, census.asleep},
+      {EffectId::EnergyLedger, census.bodies != 0, world->bodies_->first_rigid(), census.bodies, counted.sub_steps},
   };
   for (const auto& one : all) {
     Effect& effect = effects[one.id];

@@ -328,8 +328,31 @@ static void accuracy_is_a_rung_or_single_settings(void) {
   CHECK_STATUS(BREVE_OK, breve_world_set_guard(s.world, BREVE_GUARD_REPORT));
   CHECK(breve_world_guard(s.world) == BREVE_GUARD_REPORT);
   CHECK_STATUS(BREVE_OK, breve_world_set_workers(s.world, 2));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_workers(s.world, 0));
   CHECK_STATUS(BREVE_OK, breve_world_set_sleeping(s.world, true));
   CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+  scene_close(&s);
+}
+
+/* Its second axis is what the host says, not what the point gives. */
+static void a_universal_joint_turns_about_the_axis_that_is_given(void) {
+  scene s;
+  if (!scene_open_text(&s, scene_text, NULL)) return;
+  breve_joint_description d = breve_joint_description_default(BREVE_JOINT_UNIVERSAL);
+  d.child = make(&s, "Link");
+  d.normal[0] = 1;
+  d.other_axis[0] = 3; /* along the normal: taken off */
+  d.other_axis[2] = 2;
+  breve_object joint;
+  CHECK_STATUS(BREVE_OK, breve_joint_create(s.world, &d, &joint));
+  const double position[3] = {0, 0.5, 0};
+  CHECK_STATUS(BREVE_OK, breve_joint_place(s.world, joint, position, NULL));
+  breve_pose pose;
+  CHECK_STATUS(BREVE_OK, breve_object_pose(s.world, d.child, &pose));
+  /* Positive: the child turns along -z. */
+  CHECK(fabs(pose.rotation[0] - cos(0.25)) < 1e-12 && fabs(pose.rotation[3] + sin(0.25)) < 1e-12);
+  d.other_axis[1] = NAN;
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_joint_create(s.world, &d, &joint));
   scene_close(&s);
 }
 
@@ -450,6 +473,7 @@ void solid_suite(void) {
   RUN(shapes_of_every_kind_are_made_and_weighed);
   RUN(springs_pull);
   RUN(accuracy_is_a_rung_or_single_settings);
+  RUN(a_universal_joint_turns_about_the_axis_that_is_given);
   RUN(the_config_chooses_a_rung);
   RUN(impacts_energy_and_counters_are_told);
   RUN(script_and_host_see_the_same_joints);

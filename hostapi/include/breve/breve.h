@@ -633,6 +633,9 @@ typedef struct breve_joint_description {
                              rotation times this. Default 1, 0, 0, 0 */
   double normal[3];       /* in the parent's own frame, of any length but 0; not read for BREVE_JOINT_FIXED.
                              Default 1, 0, 0 */
+  double other_axis[3];   /* of BREVE_JOINT_UNIVERSAL the second axis, of BREVE_JOINT_BALL the third, at zero, in the
+                             parent's own frame; what of it is along the normal is taken off. Default 0: from
+                             parent_point. Not read for others */
 } breve_joint_description;
 
 /* The defaults named above. */

@@ -1,0 +1,43 @@
+// What a body may reach in a step if something strikes it: as far as what strikes it would go on.
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/dynamics/contacts.hpp"
+
+namespace breve {
+
+/// Passes speed on from body to body along near pairs, and looks for pairs where boxes grow by it.
+/// @return  true if some box grew: new pairs may pass it on further
+bool NearPairs::pass_on(const Bodies& bodies, double h) {
+  // Of the radius: a strike that moves less than this within the step meets what is in the roomy boxes anyway.
+  constexpr double kFar = 0.05, kMore = 1.01;
+  bool grew = false;
+  fresh_.clear();
+  new_pairs_.clear();
+  for (const NearPair& pair : pairs_) {
+    if (!pair.pushes || !near(pair)) continue;
+    Proxy &a = proxies_[proxy_of_[pair.a]], &b = proxies_[proxy_of_[pair.b]];
+    if (!a.moves || !b.moves || a.leaf == BoxTree::kNoLeaf || b.leaf == BoxTree::kNoLeaf) continue;
+    const double mass_a = bodies.mass(pair.a), mass_b = bodies.mass(pair.b);
+    // A lighter body leaves an elastic impact at up to twice the speed of the heavier.
+    grew = widen(b, a.speed * std::max(1.0, 2 * mass_a / (mass_a + mass_b)), h, kFar, kMore) || grew;
+    grew = widen(a, b.speed * std::max(1.0, 2 * mass_b / (mass_a + mass_b)), h, kFar, kMore) || grew;
+  }
+  return grew;
+}
+
+bool NearPairs::widen(Proxy& proxy, double speed, double h, double far, double more) {
+  if (!(speed > more * proxy.speed) || !(speed * h > far * proxy.shape->bounding_radius())) return false;
+  const Vector3 room = Vector3::Constant(2 * h * (speed - proxy.speed));
+  proxy.speed = speed;
+  proxy.wide = true;
+  proxy.box.min() -= room;
+  proxy.box.max() += room;
+  if (!proxy.box.min().allFinite() || !proxy.box.max().allFinite()) return false;
+  if (tree_.box(proxy.leaf).contains(proxy.box)) return true;
+  tree_.move(proxy.leaf, proxy.box);
+  seek(static_cast<ProxyIndex>(&proxy - proxies_.data()));
+  return true;
+}
+
+}  // namespace breve
