@@ -122,8 +122,8 @@ class Island {
   void smooth(double time, double h);
   // island_smooth.cpp
   void smooth_once(Clustered& one, double time, double h);
-  void smooth_in_parts(Clustered& one, double time, double h);
-  bool smooth_part(Clustered& one, double time, double h, bool last, double& energy, double& kinetic);
+  void smooth_by_euler(Clustered& one, double time, double h);
+  double gain_of(Clustered& one, double time, double h, int parts);
   double stored_in(const Clustered& one, double& kinetic);
   void commit();  // the last smooth() counts: its works go to the account
   Pose pose_of(BodyIndex body) const;
@@ -144,7 +144,7 @@ class Island {
   void add_ring_rows(const Tree& tree);
   double* rows_of(Tree& tree, int count);
   void respond(Tree& tree, const double* j, double* r) const;
-  void solve();  // this and what follows: island_results.cpp
+  void solve();                           // this and what follows: island_results.cpp
   void load_velocities();                 // movers' v from the state
   void store_velocities(double moved_h);  // back, and positions by what impulses changed times moved_h
   void correct_works(double h);

@@ -1,7 +1,8 @@
-// Smooth motion of what an island holds; and how Euler's rule, which takes one look a step, is kept from inventing
-// energy where joints turn too far in a step.
+// Smooth motion of what an island holds; and what stands in for Euler's rule, which takes one look a step, where joints
+// turn so far in one that it would invent energy.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "runtime/base/error.hpp"
 #include "runtime/dynamics/island.hpp"
@@ -10,16 +11,12 @@ namespace breve {
 
 namespace {
 
-// Of the energy in motion: what a step of Euler's rule may gain that no account explains. An oscillation of w rad/s
-// gains (w h)^2 in the worst part of its period, so this is where a step turns by a third of a radian.
-constexpr double kMostGain = 0.1;
-// What it gains beyond this is taken from the velocities: many steps that each gain a little would add up to anything.
-// Where something turns further than that angle in a step, rad, a gain does not come back in the next quarter of a
-// period, and nothing is left to it.
+// Of the energy in motion: what a step of Euler's rule may gain that no account explains. Where something turns further
+// than that angle in a step, rad, a gain does not come back in the next quarter of a period, and none is allowed.
 constexpr double kFreeGain = 0.005, kFurthestTurn = 0.5;
 constexpr int kMostParts = 16;  // of a step
 
-double fastest_turn(Cluster& system) {
+double widest_turn(Cluster& system) {
   double most = 0;
   int i = 0;
   for (const Tree* tree : system.trees())
@@ -49,7 +46,7 @@ void Island::smooth(double time, double h) {
   for (Clustered& one : clusters_) {
     one.pending = {};
     if (one.entry->system->accuracy().scheme == articulated::Scheme::SemiImplicitEuler)
-      smooth_in_parts(one, time, h);
+      smooth_by_euler(one, time, h);
     else
       smooth_once(one, time, h);
   }
@@ -78,74 +75,53 @@ double Island::stored_in(const Clustered& one, double& kinetic) {
   return sum;
 }
 
-void Island::smooth_in_parts(Clustered& one, double time, double h) {
-  const auto keep = [&] {
-    for (const std::uint32_t index : one.entry->trees) core_.trees[index]->part_state = core_.trees[index]->state;
-  };
-  const auto back = [&] {
-    for (const std::uint32_t index : one.entry->trees) core_.trees[index]->state = core_.trees[index]->part_state;
-  };
-  keep();
-  double kinetic = 0;
-  const double before = stored_in(one, kinetic);
-  for (int parts = 1; parts <= kMostParts; parts *= 2) {
-    one.pending = {};
-    bool good = true;
-    double energy = before, moving = kinetic;
-    for (int i = 0; i < parts && good; ++i)
-      good = smooth_part(one, time + i * h / parts, h / parts, parts == kMostParts, energy, moving);
-    if (good) return;
-    ++result.counters.rejected;
-    back();
-  }
-}
-
-/// @param last     there are no shorter parts: if the velocities cannot give what was gained, the cluster is stopped
-/// @param energy   J, stored, and `kinetic` of it in motion; before, and then after
-/// @return         false if it gains too much
-bool Island::smooth_part(Clustered& one, double time, double h, bool last, double& energy, double& kinetic) {
-  const Energy works = one.pending;
-  const auto trees = [&](auto&& f) {
+/// Semi-implicit Euler, or where it gains energy Runge-Kutta 4 in as many parts as keep it.
+void Island::smooth_by_euler(Clustered& one, double time, double h) {
+  const auto each_tree = [&](auto&& f) {
     for (const std::uint32_t index : one.entry->trees) f(*core_.trees[index]);
   };
-  double now = 0, moving = 0;
-  bool finite = true;
-  if (last) trees([](Tree& tree) { tree.last_state = tree.state; });
+  each_tree([](Tree& tree) { tree.part_state = tree.state; });
+  const auto back = [&] {
+    each_tree([](Tree& tree) { tree.state = tree.part_state; });
+    one.pending = {};
+  };
+  Cluster& system = *one.entry->system;
+  const double most = h * widest_turn(system) > kFurthestTurn ? 0 : kFreeGain;
+  if (gain_of(one, time, h, 1) <= (most > 0 && has_springs(core_, *one.entry) ? 1 : most)) return;
+  const Accuracy asked = system.accuracy();
+  Accuracy finer = asked;
+  finer.scheme = articulated::Scheme::RungeKutta4;
+  finer.implicit_joints = false;
+  system.set_accuracy(finer);
+  double gain = 0;
+  for (int parts = 1; parts <= kMostParts; parts *= 2) {
+    ++result.counters.rejected;
+    back();
+    gain = gain_of(one, time, h, parts);
+    if (std::abs(gain) <= kFreeGain) break;
+  }
+  system.set_accuracy(asked);
+  if (gain <= kFreeGain) return;
+  back();
+  smooth_once(one, time, h);
+}
+
+/// Takes the step in parts. What it gained that no account explains, by the energy in motion; infinite if it gives no
+/// numbers.
+double Island::gain_of(Clustered& one, double time, double h, int parts) {
+  double kinetic = 0, moving = 0;
+  const double before = stored_in(one, kinetic);
   try {
-    smooth_once(one, time, h);
-    now = stored_in(one, moving);
-    finite = std::isfinite(now);
+    for (int i = 0; i < parts; ++i) smooth_once(one, time + i * h / parts, h / parts);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::Numeric) throw;
-    finite = false;
+    return std::numeric_limits<double>::infinity();
   }
-  const Energy& done = one.pending;
-  const double explained =
-      done.motor_work + done.script_work - done.drag_loss - (works.motor_work + works.script_work - works.drag_loss);
-  const double gain = now - energy - explained, turnover = std::max(kinetic, moving);
-  const double rounding = kTiny * std::abs(energy);
-  const bool turns = h * fastest_turn(*one.entry->system) > kFurthestTurn;
-  const bool springs = !turns && has_springs(core_, *one.entry);
-  if (finite && (springs || gain <= (turns ? 0 : kFreeGain) * turnover + rounding)) {
-    energy = now;
-    kinetic = moving;
-    return true;
-  }
-  if (!last && !(finite && gain <= kMostGain * turnover + rounding)) return false;
-  if (finite && gain < moving) {
-    const double share = std::sqrt(1 - gain / moving);
-    trees([share](Tree& tree) { tree.state.v *= share; });
-    kinetic = moving - gain;
-    energy = now - gain;
-    return true;
-  }
-  trees([](Tree& tree) {
-    tree.state = tree.last_state;
-    tree.state.v.setZero();
-  });
-  one.pending = works;
-  energy = stored_in(one, kinetic);
-  return true;
+  const double after = stored_in(one, moving);
+  if (!std::isfinite(after)) return std::numeric_limits<double>::infinity();
+  const double explained = one.pending.motor_work + one.pending.script_work - one.pending.drag_loss;
+  const double gain = after - before - explained;
+  return std::abs(gain) <= kTiny * std::abs(before) ? 0 : gain / std::max(kinetic, moving);
 }
 
 }  // namespace breve

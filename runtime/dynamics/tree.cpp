@@ -34,7 +34,7 @@ Tree::Tree(std::pmr::memory_resource* memory, const std::vector<articulated::Lin
       anchors(memory) {
   work_q = state.q;
   work_v = work_u = work_w = free_v = way = kick = motor_impulse = limit_force = state.v;
-  step_state = sub_state = part_state = last_state = state;
+  step_state = sub_state = part_state = state;
 }
 
 Pose Tree::pose(int link) const {

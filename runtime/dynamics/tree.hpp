@@ -9,9 +9,9 @@
 #include "runtime/articulated/loads.hpp"
 #include "runtime/articulated/system.hpp"
 #include "runtime/base/memory.hpp"
+#include "runtime/kinematics/bodies.hpp"
 #include "runtime/mechanics/account.hpp"
 #include "runtime/mechanics/joint.hpp"
-#include "runtime/kinematics/bodies.hpp"
 #include "runtime/solid/contact.hpp"
 
 namespace breve {
@@ -78,13 +78,13 @@ struct Tree : InMemory {
   articulated::Vector work_q, work_v, work_u, work_w;
   Energy account;  // works and losses since it was made
   // An island's, kept here so that a step allocates nothing.
-  articulated::State step_state, sub_state;   // as the step, the sub-step began
-  articulated::State part_state, last_state;  // likewise, of parts of smooth motion
-  articulated::Vector free_v, way, kick;      // v without the rows' impulses; the way they make
-  articulated::Vector limit_force;            // (nv) of the joints' limits in the last sub-step
-  articulated::Vector motor_impulse;          // (nv) of motors, in the last smooth motion, N*s or N*m*s
-  Energy step_account;                        // as the step began
-  double step_stored = 0;                     // J, likewise
+  articulated::State step_state, sub_state;  // as the step, the sub-step began
+  articulated::State part_state;             // likewise, at the start of smooth motion
+  articulated::Vector free_v, way, kick;     // v without the rows' impulses; the way they make
+  articulated::Vector limit_force;           // (nv) of the joints' limits in the last sub-step
+  articulated::Vector motor_impulse;         // (nv) of motors, in the last smooth motion, N*s or N*m*s
+  Energy step_account;                       // as the step began
+  double step_stored = 0;                    // J, likewise
 
   BodyIndex first_body() const {  // of the lowest index
     BodyIndex first = kNoBody;
