@@ -44,32 +44,34 @@ struct FlatSpring {
 
 /// A body that Box2D knows: one that moves, or that others touch or hang on.
 struct FlatBody {
+  // What every sub-step looks at comes first: it is read body after body.
   BodyIndex body = kNoBody;
+  bool fixed = false;      // does not move by itself
+  bool solid = true;       // others touch it
+  bool jointed = false;    // some joint holds it
+  bool kicked = false;     // half of this sub-step's acceleration was taken off
+  bool pulled = false;     // a spring or force method acts on it
+  bool has_force = false;  // set by scripts
+  int touching = 0;        // contacts that touch
   b2Body* b2 = nullptr;
-  bool fixed = false;    // does not move by itself
-  bool solid = true;     // others touch it
-  bool jointed = false;  // some joint holds it
-  bool kicked = false;   // half of this sub-step's acceleration was taken off
-  bool pulled = false;   // a spring or force method acts on it
-  int touching = 0;      // contacts that touch
+  b2Vec2 before{0, 0};                       // velocity of the centre of mass at the start of the sub-step
+  b2Vec2 kick{0, 0}, kicked_velocity{0, 0};  // what was taken off, and what was left
+  float before_spin = 0;
   std::uint32_t assembly = kNoSlot;
+  double thickness = 0;             // half its narrowest width, length units
+  double twist = 0;                 // N*m, with `pull`
+  Vector2 pull = Vector2::Zero();   // of springs and joints in this sub-step, N
+  Vector2 force = Vector2::Zero();  // set by scripts, N
+  Vector2 asked = Vector2::Zero();  // of its force method, in this sub-step
+  double torque = 0;                // set by scripts, N*m
+  MassProperties mass;
+  // What is compared once a step.
   std::shared_ptr<Shape> shape;
   Vector3 scale = Vector3::Ones();
-  MassProperties mass;
   Material material;
-  double thickness = 0;  // half its narrowest width, length units
   // What the arrays held when they were last brought together with Box2D's.
   Vector3 location = Vector3::Zero(), velocity = Vector3::Zero(), spin = Vector3::Zero();
   Quaternion orientation{1, 0, 0, 0};
-  bool has_force = false;
-  Vector2 force = Vector2::Zero();  // set by scripts, N
-  double torque = 0;                // N*m
-  Vector2 asked = Vector2::Zero();  // of its force method, in this sub-step
-  Vector2 pull = Vector2::Zero();   // of springs and joints in this sub-step
-  double twist = 0;
-  b2Vec2 kick{0, 0}, kicked_velocity{0, 0};  // what was taken off, and what was left
-  b2Vec2 before{0, 0};                       // velocity of the centre of mass at the start of the sub-step
-  float before_spin = 0;
 
   /// Nothing but gravity and constant forces act on it.
   bool free_flight() const { return !jointed && !pulled && touching == 0; }

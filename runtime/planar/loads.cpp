@@ -140,18 +140,21 @@ void Planar::Core::ask_forces() {
 
 void Planar::Core::apply_forces(double dt) {
   const double u = settings.unit;
-  for (FlatBody& flat : slots) {
-    flat.pulled = false;
-    flat.asked = flat.pull = Vector2::Zero();
-    flat.twist = 0;
-  }
+  // Where nothing ever pulled, nothing is to be cleared.
+  const bool pulls = !joints.empty() || !springs.empty() || !force_methods.empty();
+  if (pulls)
+    for (FlatBody& flat : slots) {
+      flat.pulled = false;
+      flat.asked = flat.pull = Vector2::Zero();
+      flat.twist = 0;
+    }
   if (!force_methods.empty()) ask_forces();
   for (FlatJoint& joint : joints)
     if (joint.used) apply_joint(joint, dt);
   for (FlatSpring& spring : springs)
     if (spring.used) apply_spring(spring, dt);
   for (FlatBody& flat : slots) {
-    if (flat.body == kNoBody || flat.fixed) continue;
+    if ((!pulls && !flat.has_force) || flat.body == kNoBody || flat.fixed) continue;
     const Vector2 force = flat.force + flat.asked + flat.pull;
     const double torque = flat.torque + flat.twist;
     if (force == Vector2::Zero() && torque == 0) continue;

@@ -313,10 +313,14 @@ void Planar::Core::push_velocity(FlatBody& flat) {
 }
 
 void Planar::Core::push_changes() {
+  // A scale belongs to a shape that many may share: it is looked up once for those that follow each other.
+  const Shape* last = nullptr;
+  const Vector3* scale = nullptr;
   for (FlatBody& flat : slots) {
     if (flat.body == kNoBody) continue;
     const Shape& shape = *bodies->collision_shape(flat.body);
-    if (flat.shape.get() != &shape || flat.scale != shape.scale()) {
+    if (&shape != last) scale = &(last = &shape)->scale();
+    if (flat.shape.get() != &shape || flat.scale != *scale) {
       const double before = energy_of(flat.body);
       fit(flat);
       flat.b2->SetAwake(true);

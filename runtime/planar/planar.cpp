@@ -260,7 +260,12 @@ void Planar::set_force_method(BodyIndex body, bool on) {
   const auto place = std::lower_bound(list.begin(), list.end(), body);
   const bool there = place != list.end() && *place == body;
   if (on && !there) list.insert(place, body);
-  if (!on && there) list.erase(place);
+  if (on || !there) return;
+  list.erase(place);
+  if (FlatBody* flat = core_->find(body)) {
+    flat->pulled = false;
+    flat->asked = Vector2::Zero();
+  }
 }
 bool Planar::force_method(BodyIndex body) const {
   return std::binary_search(core_->force_methods.begin(), core_->force_methods.end(), body);
