@@ -45,14 +45,26 @@ Cluster::Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees
   at_.v.setZero(velocities());
   torques_.setZero(nv_);
   if (!trees_.empty()) at_.step = trees_.front()->step;
-  integrator_.emplace(*this, accuracy.scheme, settings_of(accuracy));
+  make_integrators();
+}
+
+// Both at once: a step allocates nothing.
+void Cluster::make_integrators() {
+  integrator_.emplace(*this, accuracy_.scheme, settings_of(accuracy_));
+  finer_.reset();
+  if (accuracy_.scheme != articulated::Scheme::SemiImplicitEuler) return;
+  articulated::Settings finer = settings_of(accuracy_);
+  finer.implicit_joints = false;
+  finer_.emplace(*this, articulated::Scheme::RungeKutta4, finer);
 }
 
 void Cluster::set_accuracy(const Accuracy& accuracy) {
   accuracy_ = accuracy;
   at_.step = 0;
-  integrator_.emplace(*this, accuracy.scheme, settings_of(accuracy));
+  make_integrators();
 }
+
+void Cluster::set_finer(bool on) { finer_now_ = on && finer_.has_value(); }
 
 void Cluster::begin(StageForces* forces) {
   forces_ = forces;
@@ -72,7 +84,7 @@ void Cluster::step(double time, double h) {
   at_.t = time;
   current_step_ = h;
   try {
-    integrator_->step(at_, h);
+    (finer_now_ ? finer_ : integrator_)->step(at_, h);
   } catch (...) {
     scatter(at_.q, at_.v);  // the step leaves `at_` as it was; the trees' states are the last stage's
     throw;
@@ -131,7 +143,8 @@ void Cluster::add_powers(const Tree& tree, double step, const double* v, const d
                          Powers& powers) const {
   // What acts over a semi-implicit step does its work at the mean of the velocities before and after.
   const articulated::Loads& loads = tree.loads;
-  const double half = accuracy_.scheme == articulated::Scheme::SemiImplicitEuler ? 0.5 * current_step_ : 0;
+  const double half =
+      accuracy_.scheme == articulated::Scheme::SemiImplicitEuler && !finer_now_ ? 0.5 * current_step_ : 0;
   const double lag = articulated::motor_lag(loads, step);
   for (int i = 0; i < tree.model.size(); ++i) {
     const articulated::Body& body = tree.model.body(i);

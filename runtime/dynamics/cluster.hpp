@@ -8,8 +8,8 @@
 #include <span>
 
 #include "runtime/articulated/integrator.hpp"
-#include "runtime/mechanics/accuracy.hpp"
 #include "runtime/dynamics/tree.hpp"
+#include "runtime/mechanics/accuracy.hpp"
 
 namespace breve {
 
@@ -40,6 +40,8 @@ class Cluster final : public articulated::System, public InMemory {
   std::span<Tree* const> trees() const { return trees_; }
   const Accuracy& accuracy() const { return accuracy_; }
   void set_accuracy(const Accuracy& accuracy);  // makes another integrator
+  /// Of semi-implicit Euler: the following steps are Runge-Kutta 4's, or its own again.
+  void set_finer(bool on);
 
   /// Call after the loads of the trees were set and before the first step() that uses them.
   void begin(StageForces* forces);
@@ -47,7 +49,7 @@ class Cluster final : public articulated::System, public InMemory {
   void step(double time, double h);
 
   // Of the last step.
-  const articulated::StepCount& count() const { return integrator_->count(); }
+  const articulated::StepCount& count() const { return (finer_now_ ? finer_ : integrator_)->count(); }
   double motor_work() const { return works_[0]; }   // J
   double script_work() const { return works_[1]; }  // J, of forces on joints and bodies
   double drag_loss() const { return works_[2]; }    // J
@@ -78,10 +80,12 @@ class Cluster final : public articulated::System, public InMemory {
   void add_powers(const Tree& tree, double step, const double* v, const double* a, double* torques,
                   Powers& powers) const;
   void keep_impulses();
+  void make_integrators();
   void scatter(const articulated::Vector& q, const articulated::Vector& v);
 
   std::pmr::vector<Tree*> trees_;
   Accuracy accuracy_;
+  bool finer_now_ = false;
   int nq_ = 0, nv_ = 0;
   double mass_ = 0;       // kg: works are kept per kg, so that step control sees numbers of ordinary size
   bool working_ = false;  // some power is not zero
@@ -93,6 +97,7 @@ class Cluster final : public articulated::System, public InMemory {
   articulated::Instant at_;
   double current_step_ = 0;
   std::optional<articulated::Integrator> integrator_;
+  std::optional<articulated::Integrator> finer_;  // what stands in for semi-implicit Euler
 };
 
 }  // namespace breve

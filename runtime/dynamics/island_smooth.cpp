@@ -13,7 +13,7 @@ namespace {
 
 // Of the energy in motion: what a step of Euler's rule may gain that no account explains. Where something turns further
 // than that angle in a step, rad, a gain does not come back in the next quarter of a period, and none is allowed.
-constexpr double kFreeGain = 0.005, kFurthestTurn = 0.5;
+constexpr double kFreeGain = 0.01, kFurthestTurn = 0.5;
 constexpr int kMostParts = 16;  // of a step
 
 double widest_turn(Cluster& system) {
@@ -88,11 +88,7 @@ void Island::smooth_by_euler(Clustered& one, double time, double h) {
   Cluster& system = *one.entry->system;
   const double most = h * widest_turn(system) > kFurthestTurn ? 0 : kFreeGain;
   if (gain_of(one, time, h, 1) <= (most > 0 && has_springs(core_, *one.entry) ? 1 : most)) return;
-  const Accuracy asked = system.accuracy();
-  Accuracy finer = asked;
-  finer.scheme = articulated::Scheme::RungeKutta4;
-  finer.implicit_joints = false;
-  system.set_accuracy(finer);
+  system.set_finer(true);
   double gain = 0;
   for (int parts = 1; parts <= kMostParts; parts *= 2) {
     ++result.counters.rejected;
@@ -100,7 +96,7 @@ void Island::smooth_by_euler(Clustered& one, double time, double h) {
     gain = gain_of(one, time, h, parts);
     if (std::abs(gain) <= kFreeGain) break;
   }
-  system.set_accuracy(asked);
+  system.set_finer(false);
   if (gain <= kFreeGain) return;
   back();
   smooth_once(one, time, h);

@@ -20,11 +20,12 @@ Workers::Workers() = default;
 Workers::~Workers() = default;
 
 void Workers::run(int threads, std::size_t count, const std::function<void(std::size_t)>& task) {
-  threads = std::min(threads, tbb::info::default_concurrency());  // it would warn on stderr, and have no more
-  if (threads <= 1 || count <= 1) {
+  const auto do_all = [&] {
     for (std::size_t i = 0; i < count; ++i) task(i);
-    return;
-  }
+  };
+  if (threads <= 1 || count <= 1) return do_all();
+  threads = std::min(threads, tbb::info::default_concurrency());  // it would warn on stderr, and have no more
+  if (threads <= 1) return do_all();
   if (!arena_ || arena_->threads != threads) arena_ = std::make_unique<Arena>(threads);
   // oneTBB orders what happens before and after a task by itself, but in a library that ThreadSanitizer does not see
   // into: these two say the same in code that it does.

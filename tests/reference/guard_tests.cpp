@@ -97,19 +97,18 @@ TEST(Guard, SeesEnergyFromNowhere) {
   }
 }
 
-/// A plate that no force moves presses a ball into the floor.
+/// Twenty sweeps do not find what holds a million kilograms on one: the lower cube is pressed flat.
 TEST(Guard, SeesAnOverlapThatGrows) {
   for (const breve_guard guard : kModes) {
-    Watched world(guard);
+    Watched world(guard, BREVE_RUNG_FAST);
+    world.set_gravity(Vector3(0, -9.81, 0));
     world.fixed(box(Vector3(10, 1, 10), 1), Vector3(0, -0.5, 0));
-    const breve_object ball = world.body(sphere(0.5, 1), Vector3(0, 0.5, 0));
-    const breve_object plate = world.fixed(box(Vector3(10, 1, 10), 1), Vector3(0, 1.5, 0));
-    for (int i = 1; i < 8; ++i) {
-      world.place(plate, Vector3(0, 1.5 - 0.1 * i, 0), Quaternion::Identity());
-      world.watch(1);
-    }
-    world.expect_ended(guard, "an overlap grows", ball);
-    EXPECT_TRUE(world.at(ball).allFinite());
+    const breve_object lower = world.body(box(Vector3(1, 1, 1), 1), Vector3(0, 0.5, 0));
+    world.body(box(Vector3(1, 1, 1), 1e6), Vector3(0, 1.5, 0));
+    world.watch(60);
+    world.expect_ended(guard, "an overlap grows", lower);
+    EXPECT_TRUE(world.at(lower).allFinite());
+    EXPECT_EQ(world.at(lower).y() > 0, guard >= BREVE_GUARD_REFINE);  // or through the floor
   }
 }
 
