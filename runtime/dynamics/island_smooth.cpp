@@ -11,8 +11,8 @@ namespace breve {
 
 namespace {
 
-// Of the energy in motion: what a step of Euler's rule may gain that no account explains. Where something turns further
-// than that angle in a step, rad, a gain does not come back in the next quarter of a period, and none is allowed.
+// Of the energy in motion: what a step of Euler's rule may gain or lose that no account explains. Where something turns
+// further than that angle in a step, rad, it does not come back in the next quarter of a period, and none is allowed.
 constexpr double kFreeGain = 0.01, kFurthestTurn = 0.5;
 constexpr int kMostParts = 16;  // of a step
 
@@ -87,7 +87,8 @@ void Island::smooth_by_euler(Clustered& one, double time, double h) {
   };
   Cluster& system = *one.entry->system;
   const double most = h * widest_turn(system) > kFurthestTurn ? 0 : kFreeGain;
-  if (gain_of(one, time, h, 1) <= (most > 0 && has_springs(core_, *one.entry) ? 1 : most)) return;
+  const double gained = gain_of(one, time, h, 1);
+  if (std::abs(gained) <= most || (most > 0 && gained <= 1 && has_springs(core_, *one.entry))) return;
   system.set_finer(true);
   double gain = 0;
   for (int parts = 1; parts <= kMostParts; parts *= 2) {
