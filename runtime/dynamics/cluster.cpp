@@ -52,7 +52,7 @@ Cluster::Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees
 void Cluster::make_integrators() {
   integrator_.emplace(*this, accuracy_.scheme, settings_of(accuracy_));
   finer_.reset();
-  if (accuracy_.scheme != articulated::Scheme::SemiImplicitEuler) return;
+  if (accuracy_.rung != Rung::Fast || accuracy_.scheme != articulated::Scheme::SemiImplicitEuler) return;
   articulated::Settings finer = settings_of(accuracy_);
   finer.implicit_joints = false;
   finer_.emplace(*this, articulated::Scheme::RungeKutta4, finer);

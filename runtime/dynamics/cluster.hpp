@@ -40,7 +40,9 @@ class Cluster final : public articulated::System, public InMemory {
   std::span<Tree* const> trees() const { return trees_; }
   const Accuracy& accuracy() const { return accuracy_; }
   void set_accuracy(const Accuracy& accuracy);  // makes another integrator
-  /// Of semi-implicit Euler: the following steps are Runge-Kutta 4's, or its own again.
+  /// Semi-implicit Euler as the rung `fast` has it, not as a setting of its own: a finer scheme may stand in for it.
+  bool can_be_finer() const { return finer_.has_value(); }
+  /// If it can be: the following steps are Runge-Kutta 4's, or its own again.
   void set_finer(bool on);
 
   /// Call after the loads of the trees were set and before the first step() that uses them.

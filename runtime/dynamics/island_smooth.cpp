@@ -45,7 +45,7 @@ void Island::smooth(double time, double h) {
   }
   for (Clustered& one : clusters_) {
     one.pending = {};
-    if (one.entry->system->accuracy().scheme == articulated::Scheme::SemiImplicitEuler)
+    if (one.entry->system->can_be_finer())
       smooth_by_euler(one, time, h);
     else
       smooth_once(one, time, h);

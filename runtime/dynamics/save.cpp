@@ -1,132 +1,56 @@
 // Dynamics in a snapshot and in the world hash: joints, springs, settings, and the exact states of trees. Which trees
 // there are follows from the joints; a tree is built again as it was and then takes up its numbers.
 #include <algorithm>
-#include <concepts>
 
 #include "runtime/base/error.hpp"
 #include "runtime/dynamics/core.hpp"
+#include "runtime/mechanics/members.hpp"
 
 namespace breve {
 
 namespace {
 
-/// Writes and reads the same list of members, so that the two cannot get out of step.
-struct Writer {
-  ByteWriter& out;
-  template <class T>
-  void operator()(const T& value) const {
-    out.put(value);
-  }
-};
-struct Reader {
-  ByteReader& in;
-  void operator()(Vector3& v) const { v = in.get_vector(); }
-  void operator()(Quaternion& q) const { q = in.get_quaternion(); }
-  void operator()(ObjectId& id) const { id = in.get_object(); }
-  void operator()(bool& flag) const { flag = in.get_bool(); }
-  template <class T>
-  void operator()(T& value) const {
-    value = in.get<T>();
-  }
-};
-/// The same list again, for the hash.
-struct Adder {
-  Hasher& hasher;
-  void operator()(const Vector3& v) const { hasher.add(v); }
-  void operator()(const Quaternion& q) const { hasher.add(q); }
-  void operator()(const ObjectId& id) const { hasher.add(std::uint64_t{id.index} << 32 | id.generation); }
-  void operator()(double value) const { hasher.add(value); }
-  template <class T>
-  void operator()(const T& value) const {
-    hasher.add(static_cast<std::uint64_t>(value));
-  }
-};
+using members::Adder;
+using members::each;
+using members::get_free;
+using members::get_table;
+using members::Is;
+using members::put_free;
+using members::put_table;
+using members::Reader;
+using members::Writer;
 
-template <class F, class A>
-void each(const F& f, A& a) requires std::same_as<std::remove_const_t<A>, Accuracy> {
-  f(a.rung), f(a.custom), f(a.scheme), f(a.implicit_joints), f(a.implicit_spin), f(a.step), f(a.tolerance);
-  f(a.contact_step), f(a.iterations), f(a.direct), f(a.locate_impacts), f(a.impacts), f(a.contact_springs);
-  f(a.contact_stiffness), f(a.contact_damping);
-}
+}  // namespace
 
-template <class F, class S>
-void each(const F& f, S& s) requires std::same_as<std::remove_const_t<S>, WorldSettings> {
+template <class F, Is<WorldSettings> S>
+void each(const F& f, S& s) {
   f(s.gravity), each(f, s.accuracy), f(s.guard), f(s.sleeping), f(s.fast_contacts), f(s.erp), f(s.cfm);
 }
 
-template <class F, class S>
-void each(const F& f, S& s) requires std::same_as<std::remove_const_t<S>, AssemblySettings> {
+template <class F, Is<AssemblySettings> S>
+void each(const F& f, S& s) {
   f(s.has_self), f(s.self_collisions), f(s.self_erp), f(s.self_cfm), f(s.has_accuracy), each(f, s.accuracy);
 }
 
-template <class F, class E>
-void each(const F& f, E& e) requires std::same_as<std::remove_const_t<E>, Energy> {
-  f(e.motor_work), f(e.script_work), f(e.contact_loss), f(e.friction_loss), f(e.drag_loss), f(e.limit_loss);
-  f(e.residual);
+template <class F, Is<JointEntry> J>
+void each(const F& f, J& j) {
+  f(j.owner), f(j.serial), f(j.ring), f(j.position), f(j.limit), each(f, j.is), each(f, j.drive);
 }
 
-template <class F, class J>
-void each(const F& f, J& j) requires std::same_as<std::remove_const_t<J>, JointEntry> {
-  f(j.owner), f(j.serial), f(j.ring), f(j.position), f(j.limit);
-  auto& is = j.is;
-  f(is.kind), f(is.parent), f(is.child), f(is.parent_point), f(is.child_point), f(is.relative_rotation);
-  f(is.normal), f(is.other_axis), f(is.keep_rotation);
-  auto& d = j.drive;
-  f(d.motor_speed), f(d.strength_limit), f(d.double_strength), f(d.double_max), f(d.double_min), f(d.damping);
-  f(d.stiffness), f(d.rest), f(d.force), f(d.low), f(d.high), f(d.limit_restitution);
+template <class F, Is<SpringEntry> T>
+void each(const F& f, T& t) {
+  f(t.owner), f(t.force), each(f, t.is);
 }
 
-template <class F, class T>
-void each(const F& f, T& t) requires std::same_as<std::remove_const_t<T>, SpringEntry> {
-  f(t.owner), f(t.force);
-  auto& is = t.is;
-  f(is.a), f(is.b), f(is.point_a), f(is.point_b), f(is.length), f(is.strength), f(is.damping);
-  f(is.maximum_force), f(is.mode);
-}
-
-template <class F, class B>
-void each(const F& f, B& b) requires std::same_as<std::remove_const_t<B>, BodyEntry> {
+template <class F, Is<BodyEntry> B>
+void each(const F& f, B& b) {
   f(b.force_method), f(b.known), f(b.location), f(b.velocity), f(b.spin), f(b.orientation), f(b.step);
 }
 
+namespace {
+
 void put_numbers(ByteWriter& out, const articulated::Vector& v) {
   for (const double x : v) out.put(x);
-}
-
-template <class Table>
-void put_table(ByteWriter& out, const Table& table) {
-  out.put(static_cast<std::uint64_t>(table.size()));
-  for (const auto& entry : table) {
-    out.put(entry.used);
-    if (entry.used) each(Writer{out}, entry);
-  }
-}
-
-template <class Entry>
-void get_table(ByteReader& in, std::pmr::vector<Entry>& table) {
-  const std::size_t count = in.get_count();
-  for (std::size_t i = 0; i < count; ++i) {
-    Entry entry;
-    entry.used = in.get_bool();
-    if (entry.used) each(Reader{in}, entry);
-    table.push_back(entry);
-  }
-}
-
-template <class Index>
-void put_free(ByteWriter& out, const std::pmr::vector<Index>& list) {
-  out.put(static_cast<std::uint64_t>(list.size()));
-  for (const Index index : list) out.put(index);
-}
-
-template <class Table, class Index>
-void get_free(ByteReader& in, const Table& table, std::pmr::vector<Index>& list) {
-  const std::size_t count = in.get_count(sizeof(Index));
-  for (std::size_t i = 0; i < count; ++i) {
-    const Index index = in.get<Index>();
-    if (index >= table.size() || table[index].used) ByteReader::fail();
-    list.push_back(index);
-  }
 }
 
 }  // namespace

@@ -2,56 +2,27 @@
 // what touches, impulses of joints. Once an image was taken the live world is made anew from the same data when it next
 // moves, so that going on after saving is the same as going on after loading, bit for bit.
 #include <algorithm>
-#include <concepts>
 
 #include "runtime/base/error.hpp"
+#include "runtime/mechanics/members.hpp"
 #include "runtime/planar/core.hpp"
 
 namespace breve {
 
 namespace {
 
-/// Writes, reads and hashes the same list of members, so that these cannot get out of step.
-struct Writer {
-  ByteWriter& out;
-  template <class T>
-  void operator()(const T& value) const {
-    out.put(value);
-  }
-};
-struct Reader {
-  ByteReader& in;
-  void operator()(Vector3& v) const { v = in.get_vector(); }
-  void operator()(Quaternion& q) const { q = in.get_quaternion(); }
-  void operator()(ObjectId& id) const { id = in.get_object(); }
-  void operator()(bool& flag) const { flag = in.get_bool(); }
-  template <class T>
-  void operator()(T& value) const {
-    value = in.get<T>();
-  }
-};
-struct Adder {
-  Hasher& hasher;
-  void operator()(const Vector3& v) const { hasher.add(v); }
-  void operator()(const Quaternion& q) const { hasher.add(q); }
-  void operator()(const ObjectId& id) const { hasher.add(std::uint64_t{id.index} << 32 | id.generation); }
-  void operator()(double value) const { hasher.add(value); }
-  void operator()(float value) const { hasher.add(double{value}); }
-  template <class T>
-  void operator()(const T& value) const {
-    hasher.add(static_cast<std::uint64_t>(value));
-  }
-};
+using members::Adder;
+using members::each;
+using members::get_free;
+using members::get_table;
+using members::Is;
+using members::put_free;
+using members::put_table;
+using members::Reader;
+using members::Writer;
 
-template <class T, class U>
-concept Is = std::same_as<std::remove_const_t<T>, U>;
+}  // namespace
 
-template <class F, Is<Accuracy> A>
-void each(const F& f, A& a) {
-  f(a.rung), f(a.custom), f(a.scheme), f(a.implicit_joints), f(a.implicit_spin), f(a.step), f(a.tolerance);
-  f(a.contact_step), f(a.iterations), f(a.direct), f(a.locate_impacts), f(a.impacts), f(a.contact_springs);
-  f(a.contact_stiffness), f(a.contact_damping);
-}
 template <class F, Is<FlatSettings> S>
 void each(const F& f, S& s) {
   f(s.gravity), each(f, s.accuracy), f(s.guard), f(s.sleeping), f(s.fast_contacts), f(s.erp), f(s.cfm), f(s.unit);
@@ -60,26 +31,13 @@ template <class F, Is<OwnSettings> S>
 void each(const F& f, S& s) {
   f(s.has_self), f(s.self_collisions), f(s.has_accuracy), each(f, s.accuracy);
 }
-template <class F, Is<Energy> E>
-void each(const F& f, E& e) {
-  f(e.motor_work), f(e.script_work), f(e.contact_loss), f(e.friction_loss), f(e.drag_loss), f(e.limit_loss);
-}
 template <class F, Is<FlatJoint> J>
 void each(const F& f, J& j) {
-  f(j.owner), f(j.serial), f(j.ring), f(j.position);
-  auto& is = j.is;
-  f(is.kind), f(is.parent), f(is.child), f(is.parent_point), f(is.child_point), f(is.relative_rotation);
-  f(is.normal), f(is.other_axis), f(is.keep_rotation);
-  auto& d = j.drive;
-  f(d.motor_speed), f(d.strength_limit), f(d.double_strength), f(d.double_max), f(d.double_min), f(d.damping);
-  f(d.stiffness), f(d.rest), f(d.force), f(d.low), f(d.high), f(d.limit_restitution);
+  f(j.owner), f(j.serial), f(j.ring), f(j.position), each(f, j.is), each(f, j.drive);
 }
 template <class F, Is<FlatSpring> S>
 void each(const F& f, S& s) {
-  f(s.owner), f(s.force);
-  auto& is = s.is;
-  f(is.a), f(is.b), f(is.point_a), f(is.point_b), f(is.length), f(is.strength), f(is.damping);
-  f(is.maximum_force), f(is.mode);
+  f(s.owner), f(s.force), each(f, s.is);
 }
 template <class F, Is<FrozenBody> B>
 void each(const F& f, B& b) {
@@ -96,38 +54,8 @@ void each(const F& f, J& j) {
   f(j.joint), f(j.warm.x), f(j.warm.y), f(j.warm.turn), f(j.warm.motor), f(j.warm.lower), f(j.warm.upper);
 }
 
-template <class Table>
-void put_table(ByteWriter& out, const Table& table) {
-  out.put(static_cast<std::uint64_t>(table.size()));
-  for (const auto& entry : table) {
-    out.put(entry.used);
-    if (entry.used) each(Writer{out}, entry);
-  }
-}
-template <class Entry, class Index>
-void get_table(ByteReader& in, std::pmr::vector<Entry>& table) {
-  const std::size_t count = in.get_count();
-  for (std::size_t i = 0; i < count; ++i) {
-    Entry entry;
-    entry.used = in.get_bool();
-    if (entry.used) each(Reader{in}, entry);
-    table.push_back(entry);
-  }
-}
-template <class Index>
-void put_free(ByteWriter& out, const std::pmr::vector<Index>& list) {
-  out.put(static_cast<std::uint64_t>(list.size()));
-  for (const Index index : list) out.put(index);
-}
-template <class Table, class Index>
-void get_free(ByteReader& in, const Table& table, std::pmr::vector<Index>& list) {
-  const std::size_t count = in.get_count(sizeof(Index));
-  for (std::size_t i = 0; i < count; ++i) {
-    const Index index = in.get<Index>();
-    if (index >= table.size() || table[index].used) ByteReader::fail();
-    list.push_back(index);
-  }
-}
+namespace {
+
 template <class List>
 void put_list(ByteWriter& out, const List& list) {
   out.put(static_cast<std::uint64_t>(list.size()));
@@ -329,9 +257,9 @@ void Planar::Core::load(ByteReader& in) {
   refined = in.get<int>();
   calm = in.get<int>();
   if (refined < 0 || refined > 8) ByteReader::fail();
-  get_table<FlatJoint, JointIndex>(in, joints);
+  get_table(in, joints);
   get_free(in, joints, free_joints);
-  get_table<FlatSpring, SpringIndex>(in, springs);
+  get_table(in, springs);
   get_free(in, springs, free_springs);
   join_loaded();
   const std::size_t settings_count = in.get_count(sizeof(BodyIndex));
