@@ -31,7 +31,7 @@ constexpr double kFirstStiffness = 1e3, kLeastStiffness = 0.1, kMostStiffness = 
 constexpr double kRoundOff = 1e-15;  // of velocities at rows, per unit
 
 /// Impulses that stop fast or heavy bodies are not known better than to this share of what they change.
-constexpr double kRelative = 2e-11;
+constexpr double kRelative = 2e-12;
 
 }  // namespace
 

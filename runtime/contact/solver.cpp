@@ -13,9 +13,6 @@ namespace breve::contact {
 
 namespace {
 
-/// What a direct solve may leave of the strongest impulse's effect without being followed by sweeps: a millionth of
-/// what weights do in a step moves nothing that could be seen, and sweeps rarely do better.
-constexpr double kEnough = 0;
 constexpr int kPatientSweeps = 1000;
 
 /// Rounds of settling friction. Each point changes its coefficient at most twice, so this ends what could chatter.
@@ -31,10 +28,9 @@ void run_sweeps(Workspace& work, int most, double tolerance, SolveReport& report
 
 void solve_directly(Workspace& work, const SolveSettings& settings, SolveReport& report) {
   report.residual = solve_direct(work, settings.tolerance, report.newton, report.direct);
-  if (report.direct || report.residual <= kEnough * largest_change(work)) return;
+  if (report.direct) return;
   run_sweeps(work, kPatientSweeps, settings.tolerance * 0.1, report);
-  report.residual = violation(work);
-  report.direct = report.residual <= settings.tolerance;
+  report.residual = solve_direct(work, settings.tolerance, report.newton, report.direct);  // from nearer
 }
 
 }  // namespace

@@ -227,7 +227,10 @@ void ProgramBuilder::bind_native(const ast::Method& tree, MethodInfo& method) {
 
 void ProgramBuilder::compile_methods() {
   // Compiling and checking may load further classes of the library: the lists grow while they are worked through.
-  for (std::size_t i = 0; i < checked_.size(); ++i) checked_class(checked_[i]);
+  for (std::size_t i = 0; i < checked_.size(); ++i) {
+    const ast::TypeRef type = checked_[i];
+    checked_class(type);
+  }
   for (; compiled_ < declared_.size(); ++compiled_) {
     const auto index = compiled_;
     std::size_t n = 0;
