@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kTangential = 2.0 / 7.0;
 constexpr double kMostDamping = 0.9;
+constexpr double kLeastDamping = 0.05;  // along the surface, where a slider needs a damper to follow
 
 double time_to_rest(double z) {
   if (std::abs(1 - z) < 1e-9) return 1;
@@ -34,6 +35,12 @@ double invert(double low, double high, double value, F&& f) {
 
 }  // namespace
 
+double damping_ratio(double restitution) {
+  if (!(restitution > 0)) return kMostDamping;
+  const double loss = -std::log(std::min(restitution, 1.0));
+  return std::min(loss / std::hypot(std::numbers::pi, loss), kMostDamping);
+}
+
 Dashpots calibrate(double zeta) {
   zeta = std::clamp(zeta, 0.0, kMostDamping);
   if (zeta == 0) return {};
@@ -53,7 +60,7 @@ Spring make_spring(double stiffness, const Dashpots& dashpots, double mass, cons
   spring.in = dashpots.in * scale;
   spring.out = dashpots.out * scale;
   spring.tangential_stiffness = kTangential * stiffness;
-  spring.tangential_damping = kTangential * 0.5 * (spring.in + spring.out);
+  spring.tangential_damping = kTangential * std::max(0.5 * (spring.in + spring.out), kLeastDamping * scale);
   spring.static_friction = law.static_friction;
   spring.dynamic_friction = law.dynamic_friction;
   return spring;
@@ -81,9 +88,7 @@ Drag drag(const Spring& spring, const Vector2& stretch, const Vector2& slip, dou
   } else {
     const Vector2 limit = held * (std::min(1.0, spring.dynamic_friction * normal_force / size));
     out.force = -limit;
-    // The spring and damper carry what the slider lets through. Without a damper they follow at once, as fast as any
-    // integrator can: the stretch is then shortened by the caller.
-    out.stretch_rate = spring.tangential_damping > 0 ? Vector2((limit - elastic) / spring.tangential_damping) : slip;
+    out.stretch_rate = (limit - elastic) / spring.tangential_damping;  // spring and damper carry what it lets through
   }
   out.loss = elastic.dot(-out.stretch_rate) - out.force.dot(slip);
   return out;

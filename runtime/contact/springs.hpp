@@ -20,16 +20,20 @@ struct Dashpots {
 /// @param zeta  0..0.9; what is outside is brought there
 Dashpots calibrate(double zeta);
 
+/// The ratio that gives a rebound of `restitution`, 0..1; at most 0.9, whose rebound is 0.0015.
+double damping_ratio(double restitution);
+
 struct Spring {
   double stiffness = 0;                              // normal, N/m
   double in = 0, out = 0;                            // dampers, N*s/m
   double tangential_stiffness = 0;                   // N/m
-  double tangential_damping = 0;                     // N*s/m
+  double tangential_damping = 0;                     // N*s/m, > 0
   double static_friction = 0, dynamic_friction = 0;  // coefficients
 };
 
 /// @param mass  what an impulse along the normal moves: 1 / (n . W n), kg
-/// Tangentially everything is 2/7 of normal: a solid sphere then rocks as fast along the surface as against it.
+/// Tangentially everything is 2/7 of normal: a solid sphere then rocks as fast along the surface as against it. There
+/// the damper is never less than a twentieth of critical.
 Spring make_spring(double stiffness, const Dashpots& dashpots, double mass, const Law& law);
 
 /// What the normal spring does.

@@ -73,14 +73,7 @@ void Cluster::begin(StageForces* forces) {
 }
 
 void Cluster::step(double time, double h) {
-  int q = 0, v = 0;
-  for (const Tree* tree : trees_) {
-    at_.q.segment(q, tree->state.q.size()) = tree->state.q;
-    at_.v.segment(v, tree->state.v.size()) = tree->state.v;
-    q += tree->model.positions();
-    v += tree->model.velocities();
-  }
-  at_.v.tail(velocities() - nv_).setZero();
+  read(at_.q, at_.v);
   at_.t = time;
   current_step_ = h;
   try {
@@ -89,15 +82,31 @@ void Cluster::step(double time, double h) {
     scatter(at_.q, at_.v);  // the step leaves `at_` as it was; the trees' states are the last stage's
     throw;
   }
-  scatter(at_.q, at_.v);
-  for (int i = 0; i < kWorks; ++i) works_[static_cast<std::size_t>(i)] = at_.v[nv_ + i] * mass_;
-  keep_impulses();
+  write(at_.q, at_.v);
 }
 
-void Cluster::keep_impulses() {
+void Cluster::read(Vector& q, Vector& v) const {
+  int from_q = 0, from_v = 0;
+  for (const Tree* tree : trees_) {
+    q.segment(from_q, tree->state.q.size()) = tree->state.q;
+    v.segment(from_v, tree->state.v.size()) = tree->state.v;
+    from_q += tree->model.positions();
+    from_v += tree->model.velocities();
+  }
+  v.tail(velocities() - nv_).setZero();
+}
+
+void Cluster::write(const Vector& q, const Vector& v) {
+  scatter(q, v);
+  for (int i = 0; i < kWorks; ++i) works_[static_cast<std::size_t>(i)] = v[nv_ + i] * mass_;
   for (Tree* tree : trees_) tree->motor_impulse.setZero();
   for (std::size_t i = 0; i < motors_.size(); ++i)
-    trees_[motors_[i].tree]->motor_impulse[motors_[i].own] = at_.v[nv_ + kWorks + static_cast<Eigen::Index>(i)] * mass_;
+    trees_[motors_[i].tree]->motor_impulse[motors_[i].own] = v[nv_ + kWorks + static_cast<Eigen::Index>(i)] * mass_;
+}
+
+void Cluster::place(const Vector& q, const Vector& v) {
+  scatter(q, v);
+  for (Tree* tree : trees_) articulated::forward_kinematics(tree->model, tree->data, tree->state);
 }
 
 void Cluster::scatter(const Vector& q, const Vector& v) {

@@ -49,6 +49,10 @@ class Cluster final : public articulated::System, public InMemory {
   void begin(StageForces* forces);
   /// Moves the trees' states from `time` by h seconds, without contacts. Error{Numeric} leaves them as they were.
   void step(double time, double h);
+  // The same by another's integrator, of a larger system that this one is part of.
+  void read(articulated::Vector& q, articulated::Vector& v) const;         // the trees' states; works are zero
+  void write(const articulated::Vector& q, const articulated::Vector& v);  // likewise, and what the step took
+  void place(const articulated::Vector& q, const articulated::Vector& v);  // trees and their links: a stage
 
   // Of the last step.
   const articulated::StepCount& count() const { return (finer_now_ ? finer_ : integrator_)->count(); }
@@ -81,7 +85,6 @@ class Cluster final : public articulated::System, public InMemory {
   };
   void add_powers(const Tree& tree, double step, const double* v, const double* a, double* torques,
                   Powers& powers) const;
-  void keep_impulses();
   void make_integrators();
   void scatter(const articulated::Vector& q, const articulated::Vector& v);
 

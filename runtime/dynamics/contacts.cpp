@@ -223,10 +223,16 @@ void NearPairs::save(ByteWriter& out) const {
     out.put(pair.touching);
     out.put(pair.cache.axis);
     out.put(pair.cache.feature);
+    const contact::Spring& spring = pair.spring;
+    for (const double number :
+         {spring.stiffness, spring.in, spring.out, spring.tangential_stiffness, spring.tangential_damping, pair.stored})
+      out.put(number);
     out.put(pair.warm_count);
     for (int i = 0; i < pair.warm_count; ++i) {
-      out.put(pair.warm[static_cast<std::size_t>(i)].feature);
-      out.put(pair.warm[static_cast<std::size_t>(i)].impulse);
+      const WarmPoint& point = pair.warm[static_cast<std::size_t>(i)];
+      out.put(point.feature);
+      out.put(point.slides);
+      out.put(point.impulse);
     }
   }
   count = 0;
@@ -264,11 +270,17 @@ void NearPairs::load(ByteReader& in, const Bodies& bodies) {
     pair.touching = in.get_bool();
     pair.cache.axis = in.get_vector();
     pair.cache.feature = in.get<std::uint32_t>();
+    contact::Spring& spring = pair.spring;
+    for (double* number : {&spring.stiffness, &spring.in, &spring.out, &spring.tangential_stiffness,
+                           &spring.tangential_damping, &pair.stored})
+      *number = in.get<double>();
     pair.warm_count = in.get<int>();
     if (pair.warm_count < 0 || pair.warm_count > static_cast<int>(pair.warm.size())) ByteReader::fail();
     for (int k = 0; k < pair.warm_count; ++k) {
-      pair.warm[static_cast<std::size_t>(k)].feature = in.get<std::uint32_t>();
-      pair.warm[static_cast<std::size_t>(k)].impulse = in.get_vector();
+      WarmPoint& point = pair.warm[static_cast<std::size_t>(k)];
+      point.feature = in.get<std::uint32_t>();
+      point.slides = in.get_bool();
+      point.impulse = in.get_vector();
     }
     if (!pairs_.empty() && !earlier(pairs_.back(), pair)) ByteReader::fail();
     make(pair.a, pair.serial_a);
@@ -291,6 +303,8 @@ void NearPairs::hash(Hasher& hasher) const {
     hasher.add(pair.serial_b);
     hasher.add(static_cast<std::uint64_t>(pair.touching) | std::uint64_t{pair.cache.feature} << 8);
     hasher.add(pair.cache.axis);
+    hasher.add(pair.spring.stiffness);
+    hasher.add(pair.stored);
     for (int i = 0; i < pair.warm_count; ++i) hasher.add(pair.warm[static_cast<std::size_t>(i)].impulse);
   }
   for (BodyIndex body = 0; body < proxy_of_.size(); ++body)

@@ -5,17 +5,18 @@
 #include <memory_resource>
 #include <vector>
 
-#include "runtime/contact/law.hpp"
+#include "runtime/contact/springs.hpp"
 #include "runtime/dynamics/dynamics.hpp"
 #include "runtime/solid/manifold.hpp"
 #include "runtime/space/box_tree.hpp"
 
 namespace breve {
 
-/// The impulse of a contact point in the last sub-step, to start from in the next.
+/// What a contact point remembers of the last sub-step, world axes.
 struct WarmPoint {
   std::uint32_t feature = 0;
-  Vector3 impulse = Vector3::Zero();  // world axes
+  bool slides = false;                // of a spring
+  Vector3 impulse = Vector3::Zero();  // N*s, to start from in the next; of a spring its stretch along the surface, m
 };
 
 struct NearPair {
@@ -27,6 +28,8 @@ struct NearPair {
   bool reported = false;  // the handler was called in this step
   PairCache cache;
   contact::Law law;
+  contact::Spring spring;  // that its surfaces are, until they part; stiffness 0: they are rigid
+  double stored = 0;       // J, in that
   int warm_count = 0;
   std::array<WarmPoint, 2 * kMostPoints> warm;
 };

@@ -110,9 +110,9 @@ void Dynamics::set_ball(JointIndex joint, const Quaternion& turn, const Vector3&
 
 void Dynamics::set_length_unit(double metres) {
   if (metres != 1)
-    throw Error(ErrorCode::Argument,
-                fmt::format("the length unit is {}, but only a flat world has one (its controller a PlanarControl)",
-                            metres));
+    throw Error(
+        ErrorCode::Argument,
+        fmt::format("the length unit is {}, but only a flat world has one (its controller a PlanarControl)", metres));
 }
 
 void Dynamics::set_gravity(const Vector3& gravity) {

@@ -5,6 +5,7 @@
 
 #include "runtime/articulated/forward_dynamics.hpp"
 #include "runtime/articulated/kinematics.hpp"
+#include "runtime/dynamics/sprung_motion.hpp"
 
 namespace breve {
 
@@ -37,7 +38,10 @@ Island::Island(Dynamics::Core& core, std::pmr::memory_resource* memory)
       warm_(memory),
       scalars_before_(memory),
       overlaps_(memory),
-      workspace_(memory) {}
+      workspace_(memory),
+      followed_(memory) {}
+
+Island::~Island() = default;
 
 void Island::clear() {
   free_.clear();
@@ -130,7 +134,8 @@ void Island::begin(DynamicsClient* client, double h) {
       tree.limit_force.setZero();
     }
     one.stage.emplace(core_, *one.entry, client);
-    one.entry->system->begin(one.stage->needed() ? &*one.stage : nullptr);
+    const bool pressed = accuracy_.contact_springs && !pairs_.empty();
+    one.entry->system->begin(one.stage->needed() || pressed ? &*one.stage : nullptr);
   }
   movers_.clear();
   for (Free& one : free_) {
@@ -176,6 +181,7 @@ void Island::restore() {
 void Island::commit() {
   ++result.counters.sub_steps;
   result.account.script_work += free_work_;
+  if (springs_move()) commit_springs();
   for (const Clustered& one : clusters_) {
     add_works(one.pending, result.account);
     // What springs between trees do is nobody's own.

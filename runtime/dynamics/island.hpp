@@ -25,6 +25,7 @@ struct IslandResult {
 class Island {
  public:
   Island(Dynamics::Core& core, std::pmr::memory_resource* memory);
+  ~Island();
 
   // --- what belongs to it, set before a step
   void clear();
@@ -76,8 +77,8 @@ class Island {
     bool alone() const { return entry->trees.size() == 1 && entry->ties.empty(); }
   };
   /// What a pair is in this sub-step: its impact is looked for on the whole way; or only whether it comes back; or it
-  /// has rows.
-  enum class Role : std::uint8_t { Far, Leaves, Rests };
+  /// has rows; or it is a spring.
+  enum class Role : std::uint8_t { Far, Leaves, Rests, Springs };
   /// A point that touches, or nearly, as rows see it.
   struct Touch {
     std::uint32_t pair;
@@ -108,10 +109,10 @@ class Island {
   };
   /// What comes first in a sub-step.
   struct Event {
-    double time = 0;  // s after the start of the sub-step
-    int pair = -1, bound = -1;
-    double depth = 0;  // m, of overlap when the sub-step began: it is an event if it gets deeper
-    bool found() const { return pair >= 0 || bound >= 0; }
+    double time = 0;                        // s after the start of the sub-step
+    int pair = -1, bound = -1, point = -1;  // the last of a spring
+    double depth = 0;                       // m, of overlap when the sub-step began: it is an event if it gets deeper
+    bool found() const { return pair >= 0 || bound >= 0 || point >= 0; }
   };
 
   // island.cpp
@@ -152,6 +153,7 @@ class Island {
   double rate_of(const contact::ScalarRow& row) const;
   void account_rows();
   void note_forces(double h);
+  void add_force(BodyIndex body, const Vector3& point, const Vector3& force);
   void keep_warm();
 
   // island_step.cpp
@@ -161,7 +163,7 @@ class Island {
   void advance_once(double time, double h);
   Event seek(double h);
   void refine(double time, Event& event, double h);
-  double gap_of(const Event& event, double& rate) const;
+  double gap_of(const Event& event, double& rate);
   void look(double h, bool spent);
   double contact_part(double left) const;
   bool strikes(double h) const;
@@ -178,6 +180,23 @@ class Island {
   void place_links();
   static Motion chord(const Pose& from, const Pose& to, double h);
   double longest(double left) const;
+
+  // island_springs.cpp
+  struct SprungPoint;
+  class SprungMotion;
+  bool springs_for(const contact::Law& law) const;
+  double felt_mass(const NearPair& pair, const Vector3& point, const Vector3& normal) const;
+  void begin_spring(NearPair& pair, const Touch& touch);
+  void end_spring(NearPair& pair);
+  void take_springs();
+  void add_sprung_point(const NearPair& pair, const Touch& touch);
+  bool springs_move() const;
+  void smooth_springs(double time, double h);
+  void commit_springs();
+  void keep_springs();
+  void seek_closing(double h, Event& first);
+  double gap_of_point(int point, double& rate);
+  void note_spring_forces();
 
   // island_guard.cpp
   /// What went wrong, the body that shows it, and how much: J, m or a ratio.
@@ -254,6 +273,10 @@ class Island {
   std::pmr::vector<Overlap> overlaps_;
   double pushed_ = 0;  // J, by which pushing apart lifted all in this step
   contact::Workspace workspace_;
+  std::unique_ptr<SprungMotion> sprung_;     // made when it is first needed
+  std::pmr::vector<std::uint8_t> followed_;  // of pairs: a spring with points
+  double calibrated_ = -1;                   // the ratio of damping that gave
+  contact::Dashpots dashpots_;
 };
 
 }  // namespace breve

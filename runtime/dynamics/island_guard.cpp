@@ -187,6 +187,7 @@ double Island::stored(double& kinetic, bool start) {
   }
   for (const Clustered& one : clusters_)
     for (const SpringIndex tie : one.entry->ties) sum += core_.tie_energy_in(core_.springs[tie].is);
+  for (const NearPair* pair : pairs_) sum += pair->stored;
   kinetic = moving;
   return sum + moving;
 }

@@ -11,7 +11,7 @@ Island::Event Island::seek(double h) {
   first.time = h;
   place_links();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    if (roles_[i] == Role::Rests) continue;
+    if (roles_[i] == Role::Rests || roles_[i] == Role::Springs) continue;
     ++result.counters.searches;
     const NearPair& pair = *pairs_[i];
     const Shape &a = *core_.bodies->collision_shape(pair.a), &b = *core_.bodies->collision_shape(pair.b);
@@ -29,7 +29,7 @@ Island::Event Island::seek(double h) {
       time = h;
     }
     if (!hit || (time >= first.time && first.found())) continue;
-    first = {time, static_cast<int>(i), -1, depths_[i]};
+    first = {time, static_cast<int>(i), -1, -1, depths_[i]};
   }
   for (std::size_t i = 0; i < bounds_.size(); ++i) {
     if (bounds_[i].rests) continue;
@@ -42,10 +42,12 @@ Island::Event Island::seek(double h) {
     event.time = start_gap > 0 ? h * start_gap / (start_gap - gap) : h;
     if (event.time <= first.time || !first.found()) first = event;
   }
+  seek_closing(h, first);
   return first;
 }
 
-double Island::gap_of(const Event& event, double& rate) const {
+double Island::gap_of(const Event& event, double& rate) {
+  if (event.point >= 0) return gap_of_point(event.point, rate);
   if (event.bound >= 0) {
     const Bound& bound = bounds_[static_cast<std::size_t>(event.bound)];
     const JointEntry& joint = core_.joints[bound.joint];
@@ -94,11 +96,15 @@ Motion Island::chord(const Pose& from, const Pose& to, double h) {
 /// What has come to its moment: the handler first, then the impulses.
 void Island::meet(DynamicsClient* client, const Event& event, double moment, double left) {
   ++result.counters.impacts;
+  if (event.point >= 0) return;
   if (event.pair >= 0) {
     NearPair& pair = *pairs_[static_cast<std::size_t>(event.pair)];
     pair.touching = true;
     if (pair.handled && !pair.reported && client && client->locates() && !call(*client, event.pair, moment, left))
       return;
+    double rate = 0;
+    gap_of(event, rate);
+    if (springs_for(pair.law) && rate > -std::max(pair.law.restitution_threshold, quiet_)) return;
   } else {
     rebound(bounds_[static_cast<std::size_t>(event.bound)]);
   }

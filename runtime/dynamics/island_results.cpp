@@ -143,15 +143,10 @@ void Island::note_forces(double h) {
     if (rows_[i].impulse == Vector3::Zero()) continue;
     const NearPair& pair = *pairs_[touches_[i].pair];
     const Vector3 force = rows_[i].axes.transpose() * rows_[i].impulse / h;
-    for (const auto& [body, sign] : {std::pair{pair.a, 1.0}, std::pair{pair.b, -1.0}}) {
-      const Side side = side_of(body);
-      if (!side.tree) continue;
-      articulated::Wrench& wrench = side.tree->links[static_cast<std::size_t>(side.link)].contact;
-      const Vector3 arm = touches_[i].point - articulated::com_position(side.tree->model, side.tree->data, side.link);
-      wrench.force += sign * force;
-      wrench.couple += sign * arm.cross(force);
-    }
+    add_force(pair.a, touches_[i].point, force);
+    add_force(pair.b, touches_[i].point, -force);
   }
+  note_spring_forces();
   const std::size_t limits = scalars_.size() - ring_errors_.size();
   for (std::size_t i = 0; i < limits; ++i) {
     Tree& tree = *trees_[static_cast<std::size_t>(scalars_[i].a) - free_.size()];
@@ -160,8 +155,17 @@ void Island::note_forces(double h) {
   }
 }
 
+void Island::add_force(BodyIndex body, const Vector3& point, const Vector3& force) {
+  const Side side = side_of(body);
+  if (!side.tree) return;
+  articulated::Wrench& wrench = side.tree->links[static_cast<std::size_t>(side.link)].contact;
+  wrench.force += force;
+  wrench.couple += (point - articulated::com_position(side.tree->model, side.tree->data, side.link)).cross(force);
+}
+
 void Island::keep_warm() {
   for (NearPair* pair : pairs_) {
+    if (pair->spring.stiffness > 0) continue;  // keep_springs
     pair->warm_count = 0;
     pair->touching = false;
   }
@@ -171,7 +175,7 @@ void Island::keep_warm() {
     pair.touching = pair.touching || touches_[i].gap <= kSkin * std::min(a.bounding_radius(), b.bounding_radius()) ||
                     rows_[i].impulse[0] > 0;
     if (pair.warm_count == static_cast<int>(pair.warm.size()) || rows_[i].impulse == Vector3::Zero()) continue;
-    pair.warm[static_cast<std::size_t>(pair.warm_count++)] = {touches_[i].feature,
+    pair.warm[static_cast<std::size_t>(pair.warm_count++)] = {touches_[i].feature, false,
                                                               rows_[i].axes.transpose() * rows_[i].impulse};
   }
   for (const Bound& bound : bounds_) core_.joints[bound.joint].limit[bound.axis] = 0;

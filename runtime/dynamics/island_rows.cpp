@@ -82,11 +82,15 @@ bool Island::strikes(double h) const {
 /// @param struck  what touches has collided already: what still approaches then is stopped by rows
 void Island::find_roles(double h, bool struck) {
   roles_.assign(pairs_.size(), Role::Far);
+  for (std::size_t i = 0; i < pairs_.size(); ++i)
+    if (pairs_[i]->spring.stiffness > 0) roles_[i] = Role::Springs;
   depths_.assign(pairs_.size(), 0.0);
   for (const Touch& touch : touches_) {
     const NearPair& pair = *pairs_[touch.pair];
     const double size = size_of_pair(pair);
     const bool touching = touch.gap <= kTouchSkin * size;
+    // It becomes a spring when it meets: that moment is looked for.
+    const bool springs = springs_for(pair.law) && touch.gap >= -kMetSkin * size;
     const Speeds speeds = speeds_of(pair.law, size, h);
     Role& role = roles_[touch.pair];
     depths_[touch.pair] = std::max(depths_[touch.pair], -touch.gap);
@@ -94,7 +98,8 @@ void Island::find_roles(double h, bool struck) {
     const bool awaited =
         locates_ && pair.handled && !pair.touching && touch.gap > kMetSkin * size && touch.approach < 0;
     if (awaited) continue;
-    if (std::abs(touch.approach) <= speeds.slow || (struck && touching && touch.approach < 0))
+    const bool slow = std::abs(touch.approach) <= speeds.slow;
+    if (!springs && (slow || (struck && touching && touch.approach < 0)))
       role = Role::Rests;
     else if (touching && touch.approach > 0 && role == Role::Far)
       role = Role::Leaves;
@@ -107,6 +112,7 @@ void Island::find_touches_now() {
   NarrowCounters narrow;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     NearPair& pair = *pairs_[i];
+    if (pair.spring.stiffness > 0) continue;  // it gives way to what is sudden
     const Shape &a = *core_.bodies->collision_shape(pair.a), &b = *core_.bodies->collision_shape(pair.b);
     manifolds_.clear();
     find_manifolds(a, pose_of(pair.a), b, pose_of(pair.b), kTouchSkin * size_of(a, b), manifolds_, pair.cache, narrow);

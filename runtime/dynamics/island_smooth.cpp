@@ -37,6 +37,7 @@ bool has_springs(const Dynamics::Core& core, const ClusterEntry& cluster) {
 }  // namespace
 
 void Island::smooth(double time, double h) {
+  if (springs_move()) return smooth_springs(time, h);
   free_work_ = 0;
   for (Free& one : free_) {
     const Vector3 center = one.now.center, spin = one.now.spin;

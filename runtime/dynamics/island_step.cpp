@@ -111,6 +111,7 @@ double Island::contact_part(double left) const {
 void Island::look(double h, bool spent) {
   place();
   find_touches(h, spent);
+  take_springs();
   find_bounds();
 }
 
@@ -150,6 +151,7 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
     }
     commit();
     account_rows();
+    keep_springs();
     note_overlaps(part);
     note_forces(event.found() ? std::max(event.time, kSliver * h) : part);
     if (!event.found()) {

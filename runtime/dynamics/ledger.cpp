@@ -70,6 +70,7 @@ void Dynamics::Core::add_stored(Energy& sum) {
   }
   for (const SpringEntry& tie : springs)
     if (tie.used) sum.springs += tie_energy(tie.is);
+  for (const NearPair& pair : near.all()) sum.springs += pair.stored;
 }
 
 Energy Dynamics::energy() const {

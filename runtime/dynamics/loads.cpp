@@ -168,6 +168,9 @@ void Stage::add(double time) {
       if (wrench.force != Vector3::Zero() || wrench.couple != Vector3::Zero())
         script_ += wrench.force.dot(articulated::com_velocity(tree.model, tree.data, i)) +
                    wrench.couple.dot(articulated::spin(tree.data, i));
+      if (!pressed) continue;
+      wrench.force += link.pressed.force;
+      wrench.couple += link.pressed.couple;
     }
   }
   for (const SpringIndex tie : cluster_.ties) pull(core_.springs[tie]);

@@ -15,12 +15,13 @@ class Stage final : public StageForces {
   bool needed() const { return needed_; }
 
   void aim() override;
-  bool adds() const override { return pushed_ || asked_ || !cluster_.ties.empty(); }
+  bool adds() const override { return pressed || pushed_ || asked_ || !cluster_.ties.empty(); }
   void add(double time) override;
   void constrain(Tree& tree, double* acceleration) override {
     if (holds_rings) core_.hold_rings(tree, acceleration);
   }
   bool holds_rings = false;  // else somebody else does
+  bool pressed = false;      // contact springs act on its links
   double script_power() const override { return script_; }
   double drag_power() const override { return drag_; }
 

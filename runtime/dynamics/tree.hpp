@@ -24,6 +24,7 @@ struct TreeLink {
   MassProperties solid;                                       // that the model was made of
   Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // set by scripts, as the step began
   articulated::Wrench contact;                                // of contacts in the last sub-step, about its centre
+  articulated::Wrench pressed;                                // likewise, of contact springs at this stage
   bool slow_spring = false;                                   // its joint's spring is slower than the step
   double slow_damping = 0;                                    // of that, if it is
   bool motor = false;                                         // its joint has one

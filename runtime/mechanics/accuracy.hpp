@@ -24,9 +24,9 @@ struct Accuracy {
   bool direct = true;              // small islands of contacts are solved directly
   bool locate_impacts = true;      // impacts at their time of impact; off: at the end of the sub-step
   int impacts = 100;               // at most, located in one island and sub-step; the rest without restitution
-  bool contact_springs = false;    // wanted: contacts at low speed as springs; kept, without effect yet
-  double contact_stiffness = 1e4;  // N/m of those
-  double contact_damping = 0.2;    // ratio of damping of those
+  bool contact_springs = false;    // contacts with restitution that come slower than its threshold are springs
+  double contact_stiffness = 1e4;  // N/m per kg of what they push apart
+  double contact_damping = 0;      // their ratio of damping, at most 0.9; 0: that of the restitution
 };
 
 /// The settings of a rung.

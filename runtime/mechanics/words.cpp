@@ -102,8 +102,7 @@ void check(const Accuracy& a) {
   need(a.impacts >= 0, "impacts", a.impacts, ">= 0");
   need(std::isfinite(a.contact_stiffness) && a.contact_stiffness > 0, "contact stiffness", a.contact_stiffness,
        "finite and > 0");
-  need(std::isfinite(a.contact_damping) && a.contact_damping >= 0, "contact damping", a.contact_damping,
-       "finite and >= 0");
+  need(a.contact_damping >= 0 && a.contact_damping <= 0.9, "contact damping", a.contact_damping, "0 to 0.9");
   need(static_cast<std::size_t>(a.scheme) < kSchemes.size(), "integrator", static_cast<double>(a.scheme),
        "one that there is");
   need(static_cast<std::size_t>(a.rung) < kRungs.size(), "rung", static_cast<double>(a.rung), "one that there is");
@@ -122,9 +121,10 @@ std::string describe(const Accuracy& a) {
                            : "; impacts at the end of the sub-step";
   text += a.direct ? "; small islands of contacts solved directly, large ones" : "; contacts solved";
   text += fmt::format(" iteratively with at most {} iterations", a.iterations);
-  if (a.contact_springs)
-    text += fmt::format("; springs of {} N/m with damping ratio {} are wanted for slow contacts, which are still rigid",
-                        a.contact_stiffness, a.contact_damping);
+  if (a.contact_springs && a.locate_impacts) {
+    text += fmt::format("; slow contacts with restitution as springs of {} N/m per kg, damped ", a.contact_stiffness);
+    text += a.contact_damping > 0 ? fmt::format("by a ratio of {}", a.contact_damping) : "to that restitution";
+  }
   return text + ".";
 }
 

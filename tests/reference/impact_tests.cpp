@@ -31,10 +31,6 @@ TEST(ReferenceImpacts, ABallBouncesAtTheTimesOfTheFile) {
   for (const std::vector<Row>& rows : groups("bounce_impacts", "case")) {
     Bouncing scene(rows.front(), 1.0 / 60, BREVE_RUNG_PRECISE);
     scene.world.set_guard(BREVE_GUARD_REPORT);
-    // Surfaces are rigid here: the file knows no springs at low speed.
-    breve_accuracy accuracy = scene.world.accuracy();
-    accuracy.contact_springs = false;
-    scene.world.set_accuracy(accuracy);
     std::vector<breve_impact> seen;
     scene.world.run(std::min(20.0, rows.back().number("time") + 0.1), [&] {
       for (const breve_impact& impact : scene.world.impacts()) seen.push_back(impact);
@@ -181,9 +177,6 @@ TEST(ReferenceImpacts, RowsOfBallsPassTheShockOn) {
   for (const std::vector<Row>& rows : groups("collision_chain", "case")) {
     World world(1.0 / 60, BREVE_RUNG_PRECISE);
     world.set_gravity(Vector3::Zero());
-    breve_accuracy accuracy = world.accuracy();
-    accuracy.contact_springs = false;
-    world.set_accuracy(accuracy);
     std::vector<breve_object> balls;
     for (const Row& row : rows) {
       const double gaps = row.number("x0_surface_gap_frame"),
@@ -213,7 +206,6 @@ TEST(ReferenceImpacts, TwoBlocksAndAWallCountTheDigitsOfPi) {
     World world(1.0 / 60, BREVE_RUNG_PRECISE);
     world.set_gravity(Vector3::Zero());
     breve_accuracy accuracy = world.accuracy();
-    accuracy.contact_springs = false;
     accuracy.impacts = 10000;  // 3,141 of them within a few hundredths of a second
     world.set_accuracy(accuracy);
     const double radius = 0.25;

@@ -89,7 +89,7 @@ void World::set_accuracy(const breve_accuracy& accuracy) { must(breve_world_set_
 void World::set_integrator(breve_integrator integrator) {
   breve_accuracy a = accuracy();
   a.integrator = integrator;
-  a.implicit_joints = a.implicit_spin = a.contact_springs = false;
+  a.implicit_joints = a.implicit_spin = false;
   a.step = a.contact_step = 0;
   set_accuracy(a);
 }

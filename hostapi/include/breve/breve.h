@@ -781,15 +781,15 @@ typedef struct breve_accuracy {
   bool implicit_spin;          /* a free body's spin by the implicit midpoint rule */
   bool direct;                 /* small islands of contacts are solved directly */
   bool locate_impacts;         /* impacts at their time of impact; else at the end of the sub-step */
-  bool contact_springs;        /* wanted: contacts at low speed as springs. Kept, without effect yet */
+  bool contact_springs;        /* slow contacts with restitution are springs, where impacts are located */
   bool reserved[3];            /* must be false */
   double step;                 /* s, the longest sub-step; 0: the integration step */
   double contact_step;         /* s, the longest sub-step of bodies in contact; 0: `step` */
   double tolerance;            /* of BREVE_FEHLBERG_ADAPTIVE */
   int32_t iterations;          /* most of the contact solver, where it is iterative */
   int32_t impacts;             /* most that are located in one island and sub-step */
-  double contact_stiffness;    /* N/m of contact springs */
-  double contact_damping;      /* their ratio of damping */
+  double contact_stiffness;    /* of contact springs, N/m per kg of what they push apart; > 0 */
+  double contact_damping;      /* their ratio of damping, 0..0.9; 0: that of the pair's restitution */
 } breve_accuracy;
 
 /* The settings of a rung. BREVE_OK; BREVE_ERROR_ARGUMENT: there is no such rung. */

@@ -1,0 +1,228 @@
+// Contacts that are springs: when slow surfaces become so, which of their points are followed through a sub-step, and
+// when they are rigid again. A pair with restitution that comes slower than its threshold is caught so, instead of
+// being stopped dead: what a touch leaves of a speed does not jump where it becomes slow.
+#include <algorithm>
+
+#include "runtime/articulated/impulse.hpp"
+#include "runtime/articulated/kinematics.hpp"
+#include "runtime/contact/impact_law.hpp"
+#include "runtime/dynamics/sprung_motion.hpp"
+
+namespace breve {
+
+namespace {
+
+// Of the smaller body's radius: deeper than this a spring is too weak for its load, and the surfaces become rigid.
+constexpr double kDeepest = 5e-3;
+constexpr double kRoundOff = 1e-9;
+
+bool sprung(const NearPair& pair) { return pair.spring.stiffness > 0; }
+
+/// Of two masses that may be those of something that does not move: 0.
+double reduced(double a, double b) { return a > 0 && b > 0 ? a * b / (a + b) : std::max(a, b); }
+
+}  // namespace
+
+bool Island::springs_for(const contact::Law& law) const {
+  return accuracy_.contact_springs && law.restitution > 0 && law.restitution_threshold > 0;
+}
+
+/// What an impulse along `normal` has to move there, kg.
+double Island::felt_mass(const NearPair& pair, const Vector3& point, const Vector3& normal) const {
+  const Side a = side_of(pair.a), b = side_of(pair.b);
+  double yields = 0;
+  const auto of_tree = [&](Tree& tree, int first, int second) {
+    const articulated::Symmetric3 w = articulated::collision_matrix(tree.model, tree.data, first, point, second, point);
+    yields += normal.dot(w * normal);
+  };
+  if (a.tree && a.tree == b.tree) {
+    of_tree(*a.tree, a.link, b.link);
+    return yields > 0 ? 1 / yields : 0;
+  }
+  for (const Side& side : {a, b}) {
+    if (side.mover < 0) continue;
+    if (side.tree) {
+      of_tree(*side.tree, -1, side.link);
+      continue;
+    }
+    const contact::Mover& mover = movers_[static_cast<std::size_t>(side.mover)];
+    const Vector3 arm = (point - side.center).cross(normal);
+    const FreeBody& free = free_[static_cast<std::size_t>(side.mover)].now;
+    yields += mover.inverse_mass + arm.dot(Eigen::Matrix3d(free.inertia()).inverse() * arm);
+  }
+  return yields > 0 ? 1 / yields : 0;
+}
+
+/// Surfaces that touch become springs. Their stiffness goes with the whole mass on either side, so that a foot carries
+/// its animal; their dampers with what the point feels.
+void Island::begin_spring(NearPair& pair, const Touch& touch) {
+  const auto whole = [this](const Side& side) {
+    if (side.mover < 0) return 0.0;
+    return side.tree ? side.tree->model.mass() : free_[static_cast<std::size_t>(side.mover)].now.solid->mass;
+  };
+  const double mass = reduced(whole(side_of(pair.a)), whole(side_of(pair.b)));
+  const double felt = felt_mass(pair, touch.point, touch.normal);
+  if (!(felt > 0)) return;
+  const double own = accuracy_.contact_damping;
+  const double zeta = own > 0 ? own : contact::damping_ratio(pair.law.restitution);
+  if (zeta != calibrated_) dashpots_ = contact::calibrate(calibrated_ = zeta);
+  pair.spring = contact::make_spring(accuracy_.contact_stiffness * mass, dashpots_, felt, pair.law);
+  pair.stored = 0;
+  pair.warm_count = 0;
+}
+
+/// The surfaces are rigid from now on; what the spring still held is lost.
+void Island::end_spring(NearPair& pair) {
+  result.account.contact_loss += pair.stored;
+  pair.spring = {};
+  pair.stored = 0;
+  pair.warm_count = 0;
+}
+
+/// Takes the points of pairs that are springs out of touches_ into those that are followed.
+void Island::take_springs() {
+  if (sprung_) sprung_->points.clear();
+  if (!accuracy_.contact_springs) return;
+  followed_.assign(pairs_.size(), 0);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < touches_.size();) {
+    std::size_t end = i;
+    double nearest = JointDrive::kNoLimit;
+    bool arrives = false;
+    NearPair& pair = *pairs_[touches_[i].pair];
+    const double size = size_of_pair(pair), slow = std::max(pair.law.restitution_threshold, quiet_);
+    for (; end < touches_.size() && touches_[end].pair == touches_[i].pair; ++end) {
+      const Touch& touch = touches_[end];
+      nearest = std::min(nearest, touch.gap);
+      arrives =
+          arrives || (std::abs(touch.gap) <= kMetSkin * size && touch.approach <= quiet_ && touch.approach >= -slow);
+    }
+    const bool apart = nearest >= kMetSkin * size, deep = nearest < -kDeepest * size;
+    if (sprung(pair) && (apart || deep)) end_spring(pair);
+    if (!sprung(pair) && arrives && nearest >= -kMetSkin * size && springs_for(pair.law))
+      begin_spring(pair, touches_[i]);
+    followed_[touches_[i].pair] = sprung(pair);
+    for (; i < end; ++i) {
+      if (sprung(pair))
+        add_sprung_point(pair, touches_[i]);
+      else
+        touches_[kept++] = touches_[i];
+    }
+  }
+  touches_.resize(kept);
+  // What is not even near any more.
+  for (std::size_t i = 0; i < pairs_.size(); ++i)
+    if (sprung(*pairs_[i]) && !followed_[i]) end_spring(*pairs_[i]);
+}
+
+void Island::add_sprung_point(const NearPair& pair, const Touch& touch) {
+  if (!sprung_) sprung_ = make_in<SprungMotion>(memory_, *this, memory_);
+  const Shape &a = *core_.bodies->collision_shape(pair.a), &b = *core_.bodies->collision_shape(pair.b);
+  const bool round_a = a.kind() == ShapeKind::Sphere, round_b = b.kind() == ShapeKind::Sphere;
+  const auto patchy = [](const Shape& shape) {
+    return shape.kind() == ShapeKind::Mesh || shape.kind() == ShapeKind::HeightField;
+  };
+  const Pose pa = pose_of(pair.a), pb = pose_of(pair.b);
+  SprungPoint point;
+  point.pair = touch.pair;
+  point.feature = touch.feature;
+  point.round = (round_a || round_b) && !patchy(a) && !patchy(b);
+  point.with_a = round_b || (!round_a && !core_.moves_now(pair.a));
+  const Pose& with = point.with_a ? pa : pb;
+  Vector3 first, second;
+  contact::tangents(touch.normal, first, second);
+  point.normal = with.orientation.conjugate() * touch.normal;
+  point.tangent = with.orientation.conjugate() * first;
+  const double half = 0.5 * touch.gap;
+  point.on_a = pa.orientation.conjugate() * (touch.point + half * touch.normal - pa.location);
+  point.on_b = pb.orientation.conjugate() * (touch.point - half * touch.normal - pb.location);
+  if (!point.round && (round_a || round_b)) {
+    (round_a ? point.on_a : point.on_b).setZero();
+    point.radius = (round_a ? a : b).radius();
+  }
+  point.skin = kMetSkin * size_of_pair(pair);
+  point.apart = touch.gap > point.skin ? touch.gap : 0;
+  point.spring = pair.spring;
+  for (int k = 0; k < pair.warm_count; ++k) {
+    const WarmPoint& warm = pair.warm[static_cast<std::size_t>(k)];
+    if (warm.feature != touch.feature) continue;
+    point.stretch = warm.impulse;
+    point.slides = warm.slides;
+    break;
+  }
+  point.spring.dynamic_friction = pair.law.dynamic_friction;
+  point.spring.static_friction = point.slides ? pair.law.dynamic_friction : pair.law.static_friction;
+  if (!point.slides) point.spring.dynamic_friction = point.spring.static_friction;
+  sprung_->points.push_back(point);
+}
+
+/// After a sub-step that counts: what its springs lost, and what they remember.
+void Island::keep_springs() {
+  if (!sprung_ || sprung_->points.empty()) return;
+  sprung_->look();
+  for (NearPair* pair : pairs_)
+    if (sprung(*pair)) pair->warm_count = 0, pair->stored = 0, pair->touching = true;
+  for (const SprungPoint& point : sprung_->points) {
+    NearPair& pair = *pairs_[point.pair];
+    pair.stored += point.stored;
+    if (pair.warm_count == static_cast<int>(pair.warm.size())) continue;
+    const Vector3 along = point.axes * point.force;
+    const double limit = point.spring.static_friction * along[0];
+    const bool slides = limit > 0 && along.tail<2>().norm() >= limit * (1 - kRoundOff);
+    pair.warm[static_cast<std::size_t>(pair.warm_count++)] = {point.feature, slides, point.stretch};
+  }
+}
+
+bool Island::springs_move() const { return sprung_ && !sprung_->points.empty(); }
+
+void Island::smooth_springs(double time, double h) {
+  sprung_->step(time, h);
+  free_work_ = sprung_->lost().script_work;
+  for (Clustered& one : clusters_) {
+    const Cluster& system = *one.entry->system;
+    one.pending = {};
+    one.pending.motor_work = system.motor_work();
+    one.pending.script_work = system.script_work();
+    one.pending.drag_loss = system.drag_loss();
+  }
+}
+
+void Island::commit_springs() {
+  const auto add = [](const Energy& from, Energy& to) {
+    to.contact_loss += from.contact_loss;
+    to.friction_loss += from.friction_loss;
+  };
+  add(sprung_->lost(), result.account);
+  for (Tree* tree : trees_) add(sprung_->lost(*tree), tree->account);
+}
+
+/// Looks for points of springs that closed in the sub-step; they are to push from that moment on.
+void Island::seek_closing(double h, Event& first) {
+  if (!springs_move()) return;
+  for (std::size_t i = 0; i < sprung_->points.size(); ++i) {
+    const double apart = sprung_->points[i].apart;
+    if (apart == 0) continue;
+    double rate = 0;
+    const double gap = sprung_->gap_of(i, rate);
+    if (!(gap < 0)) continue;
+    const double time = h * apart / (apart - gap);
+    if (first.found() && time >= first.time) continue;
+    first = {};
+    first.time = time;
+    first.point = static_cast<int>(i);
+  }
+}
+
+double Island::gap_of_point(int point, double& rate) { return sprung_->gap_of(static_cast<std::size_t>(point), rate); }
+
+/// What pairs of springs force on links, for who asks what joints hold.
+void Island::note_spring_forces() {
+  if (!springs_move()) return;
+  for (const SprungPoint& point : sprung_->points) {
+    const NearPair& pair = *pairs_[point.pair];
+    add_force(pair.a, point.at, point.force);
+    add_force(pair.b, point.at, -point.force);
+  }
+}
+
+}  // namespace breve

@@ -1,0 +1,322 @@
+// Coordinates and forces of an island with contact springs. Energy closes at every stage: what a spring does to the
+// bodies, what it stores and what it loses are functions of the same gap, gap rate, stretch and slip.
+#include "runtime/dynamics/sprung_motion.hpp"
+
+#include <cmath>
+
+#include "runtime/articulated/kinematics.hpp"
+#include "runtime/articulated/rotation.hpp"
+#include "runtime/base/rotation_vector.hpp"
+
+namespace breve {
+
+using articulated::Kind;
+using articulated::Vector;
+using contact::Vector2;
+
+/// Calls of_free(body, first place, first speed) and of_cluster(cluster, first place, first speed) in their order.
+template <class OfFree, class OfCluster>
+void Island::SprungMotion::each(const OfFree& of_free, const OfCluster& of_cluster) const {
+  int q = 0, v = 0;
+  for (Free& one : island_.free_) {
+    of_free(one, q, v);
+    q += kFreePlaces;
+    v += kFreeSpeeds;
+  }
+  for (Clustered& one : island_.clusters_) {
+    of_cluster(*one.entry->system, q, v);
+    q += one.entry->system->positions();
+    v += one.entry->system->velocities();
+  }
+}
+
+void Island::SprungMotion::lay_out() {
+  kinds_.clear();
+  nq_ = 0;
+  mass_ = 0;
+  each(
+      [this](const Free& one, int, int) {
+        for (int k = 0; k < kFreeSpeeds; ++k) kinds_.push_back(k < 3 ? Kind::Length : Kind::Angle);
+        nq_ += kFreePlaces;
+        mass_ += one.now.solid->mass;
+      },
+      [this](const Cluster& cluster, int, int) {
+        for (int k = 0; k < cluster.velocities(); ++k) kinds_.push_back(cluster.kind(k));
+        nq_ += cluster.positions();
+      });
+  for (const Tree* tree : island_.trees_) mass_ += tree->model.mass();
+  bodies_v_ = static_cast<int>(kinds_.size());
+  const int size = tree_works_at(static_cast<int>(island_.trees_.size()));
+  kinds_.resize(static_cast<std::size_t>(size), Kind::Length);
+  pushes_.assign(island_.free_.size(), {});
+  const Accuracy& accuracy = island_.accuracy_;
+  const bool same = integrator_ && nv_ == size && start_.q.size() == nq_ && scheme_ == accuracy.scheme &&
+                    tolerance_ == accuracy.tolerance;
+  nv_ = size;
+  if (same) return;
+  constexpr std::size_t kVectors = 24;  // of this class and its integrator
+  reserved_.reset();
+  reserved_.emplace(pushes_.get_allocator().resource(),
+                    kVectors * sizeof(double) * static_cast<std::size_t>(nq_ + nv_));
+  start_.q.setZero(nq_);
+  start_.v.setZero(nv_);
+  articulated::Settings settings;
+  settings.tolerance.relative = tolerance_ = accuracy.tolerance;
+  settings.implicit_joints = accuracy.implicit_joints;
+  settings.refine = true;
+  integrator_.emplace(*this, scheme_ = accuracy.scheme, settings);
+}
+
+// --- the state ------------------------------------------------------------------------------------------------------
+
+double Island::SprungMotion::stretch_unit() const { return 1 / std::sqrt(island_.accuracy_.contact_stiffness); }
+
+void Island::SprungMotion::read(articulated::Instant& at) {
+  at.v.setZero();
+  at.step = 0;
+  const auto take_step = [&at](double step) {
+    if (step > 0 && (at.step == 0 || step < at.step)) at.step = step;
+  };
+  each(
+      [&](const Free& one, int q, int v) {
+        const Quaternion& turn = one.now.orientation;
+        at.q.segment<3>(q) = one.now.center;
+        at.q.segment<4>(q + 3) << turn.w(), turn.x(), turn.y(), turn.z();
+        at.v.segment<3>(v) = one.now.velocity;
+        at.v.segment<3>(v + 3) = turn.conjugate() * one.now.spin;
+        take_step(one.next);
+      },
+      [&](const Cluster& cluster, int q, int v) {
+        part_q_.resize(cluster.positions());
+        part_v_.resize(cluster.velocities());
+        cluster.read(part_q_, part_v_);
+        at.q.segment(q, part_q_.size()) = part_q_;
+        at.v.segment(v, part_v_.size()) = part_v_;
+        take_step(cluster.next_step());
+      });
+  island_.place_links();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    follow(points[i]);
+    at.v.segment<2>(stretch_at(i)) = (points[i].axes * points[i].stretch).tail<2>() / stretch_unit();
+  }
+}
+
+/// The bodies' state, without what a step brings about beside it.
+void Island::SprungMotion::place(const Vector& q, const Vector& v) {
+  each(
+      [&](Free& one, int at_q, int at_v) {
+        one.now.center = q.segment<3>(at_q);
+        one.now.orientation = Quaternion(q[at_q + 3], q[at_q + 4], q[at_q + 5], q[at_q + 6]);
+        one.now.velocity = v.segment<3>(at_v);
+        one.now.spin = one.now.orientation * Vector3(v.segment<3>(at_v + 3));
+      },
+      [&](Cluster& cluster, int at_q, int at_v) {
+        part_q_ = q.segment(at_q, cluster.positions());
+        part_v_ = v.segment(at_v, cluster.velocities());
+        cluster.place(part_q_, part_v_);
+      });
+}
+
+void Island::SprungMotion::write(const articulated::Instant& at) {
+  place(at.q, at.v);
+  each([&](Free& one, int, int) { one.next = at.step; },
+       [&](Cluster& cluster, int q, int v) {
+         part_q_ = at.q.segment(q, cluster.positions());
+         part_v_ = at.v.segment(v, cluster.velocities());
+         cluster.write(part_q_, part_v_);
+         cluster.set_next_step(at.step);
+       });
+}
+
+void Island::SprungMotion::step(double time, double h) {
+  lay_out();
+  read(start_);
+  start_.t = time;
+  end_ = start_;
+  const auto press = [this](bool on) {
+    for (Clustered& one : island_.clusters_) one.stage->pressed = on;
+  };
+  press(true);
+  try {
+    integrator_->step(end_, h);
+  } catch (...) {
+    press(false);
+    write(start_);
+    throw;
+  }
+  press(false);
+  write(end_);
+  const articulated::StepCount& count = integrator_->count();
+  island_.result.counters.evaluations += static_cast<std::uint64_t>(count.evaluations);
+  island_.result.counters.rejected += static_cast<std::uint64_t>(count.rejected);
+}
+
+void Island::SprungMotion::look() {
+  island_.place_links();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    follow(points[i]);
+    resist(points[i], end_.v.segment<2>(stretch_at(i)) * stretch_unit());
+  }
+}
+
+double Island::SprungMotion::gap_of(std::size_t index, double& rate) {
+  SprungPoint& point = points[index];
+  follow(point);
+  rate = point.slip[0];
+  return point.gap;
+}
+
+Energy Island::SprungMotion::lost() const {
+  Energy all;
+  all.contact_loss = end_.v[works_at()] * mass_;
+  all.friction_loss = end_.v[works_at() + 1] * mass_;
+  all.script_work = end_.v[works_at() + 2] * mass_;
+  return all;
+}
+
+Energy Island::SprungMotion::lost(const Tree& tree) const {
+  Energy own;
+  own.contact_loss = end_.v[tree_works_at(tree.slot)] * mass_;
+  own.friction_loss = end_.v[tree_works_at(tree.slot) + 1] * mass_;
+  return own;
+}
+
+// --- forces
+// -----------------------------------------------------------------------------------------------------------
+
+/// Where the point is and how fast it slips, at the island's state.
+void Island::SprungMotion::follow(SprungPoint& point) const {
+  const NearPair& pair = *island_.pairs_[point.pair];
+  const Pose a = island_.pose_of(pair.a), b = island_.pose_of(pair.b);
+  const Quaternion& turn = point.with_a ? a.orientation : b.orientation;
+  Vector3 normal = turn * point.normal;
+  if (point.round) {
+    const Bodies& bodies = *island_.core_.bodies;
+    const Contact contact = closest(*bodies.collision_shape(pair.a), a, *bodies.collision_shape(pair.b), b);
+    normal = contact.normal;
+    point.at = contact.point;
+    point.gap = contact.distance;
+  } else {
+    const Vector3 on_a = a.location + a.orientation * point.on_a, on_b = b.location + b.orientation * point.on_b;
+    // On the body without the normal: there the rate of the gap is that of the two bodies' points, exactly.
+    point.at = point.with_a ? Vector3(on_b + point.radius * normal) : Vector3(on_a - point.radius * normal);
+    point.gap = normal.dot(on_a - on_b) - point.radius;
+  }
+  const Vector3 tangent = turn * point.tangent;
+  const Vector3 first = (tangent - normal.dot(tangent) * normal).normalized();
+  point.axes << normal.transpose(), first.transpose(), normal.cross(first).transpose();
+  point.slip = point.axes * (island_.point_velocity(pair.a, point.at) - island_.point_velocity(pair.b, point.at));
+}
+
+/// What the springs of a point do that was followed. What was apart when the sub-step began is met by an event.
+Island::SprungMotion::Resistance Island::SprungMotion::resist(SprungPoint& point, const Vector2& stretch) const {
+  Resistance out;
+  if (point.apart == 0) out.press = contact::press(point.spring, point.gap - point.skin, point.slip[0]);
+  out.drag = contact::drag(point.spring, stretch, point.slip.tail<2>(), out.press.force);
+  const Vector3 force(out.press.force, out.drag.force[0], out.drag.force[1]);
+  point.force = point.axes.transpose() * force;
+  point.stretch = point.axes.transpose() * Vector3(0, stretch[0], stretch[1]);
+  point.stored = out.press.stored + out.drag.stored;
+  return out;
+}
+
+void Island::SprungMotion::push(const SprungPoint& point, Vector& a) {
+  const NearPair& pair = *island_.pairs_[point.pair];
+  for (const auto& [body, sign] : {std::pair{pair.a, 1.0}, std::pair{pair.b, -1.0}}) {
+    const Side side = island_.side_of(body);
+    if (side.mover < 0) continue;
+    const Vector3 force = sign * point.force;
+    if (!side.tree) {
+      articulated::Wrench& on = pushes_[static_cast<std::size_t>(side.mover)];
+      on.force += force;
+      on.couple += (point.at - side.center).cross(force);
+      continue;
+    }
+    articulated::Wrench& on = side.tree->links[static_cast<std::size_t>(side.link)].pressed;
+    on.force += force;
+    on.couple += (point.at - articulated::com_position(side.tree->model, side.tree->data, side.link)).cross(force);
+    const Vector3 velocity = articulated::point_velocity(side.tree->data, side.link, point.at);
+    const double along = point.force.dot(point.axes.row(0)) * point.axes.row(0).dot(velocity);
+    a[tree_works_at(side.tree->slot)] -= sign * along / mass_;
+    a[tree_works_at(side.tree->slot) + 1] -= (force.dot(velocity) - sign * along) / mass_;
+  }
+}
+
+void Island::SprungMotion::acceleration(double t, const Vector& q, const Vector& v, double step, Vector& a) {
+  place(q, v);
+  a.setZero();
+  pushes_.assign(island_.free_.size(), {});
+  for (Tree* tree : island_.trees_)
+    for (TreeLink& link : tree->links) link.pressed = {};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    SprungPoint& point = points[i];
+    follow(point);
+    const Resistance now = resist(point, v.segment<2>(stretch_at(i)) * stretch_unit());
+    a.segment<2>(stretch_at(i)) = now.drag.stretch_rate / stretch_unit();
+    a[works_at()] += now.press.loss / mass_;
+    a[works_at() + 1] += now.drag.loss / mass_;
+    push(point, a);
+  }
+  each(
+      [&](const Free& one, int, int at) {
+        const articulated::Wrench& pushed = pushes_[static_cast<std::size_t>(&one - island_.free_.data())];
+        const MassProperties& solid = *one.now.solid;
+        const Vector3 spin = v.segment<3>(at + 3);
+        const Vector3 torque = one.now.orientation.conjugate() * (one.now.torque + pushed.couple);
+        a.segment<3>(at) = island_.core_.settings.gravity + (one.now.force + pushed.force) / solid.mass;
+        a.segment<3>(at + 3) = Eigen::Matrix3d(solid.inertia).inverse() * (torque - spin.cross(solid.inertia * spin));
+        a[works_at() + 2] += (one.now.force.dot(one.now.velocity) + one.now.torque.dot(one.now.spin)) / mass_;
+      },
+      [&](Cluster& cluster, int at_q, int at_v) {
+        part_q_ = q.segment(at_q, cluster.positions());
+        part_v_ = v.segment(at_v, cluster.velocities());
+        part_a_.resize(part_v_.size());
+        cluster.acceleration(t, part_q_, part_v_, step, part_a_);
+        a.segment(at_v, part_a_.size()) = part_a_;
+      });
+}
+
+// --- the space that positions lie in --------------------------------------------------------------------------------
+
+void Island::SprungMotion::move(const Vector& q, const Vector& d, Vector& out) {
+  out.resize(nq_);
+  each(
+      [&](const Free&, int at, int by) {
+        const Quaternion turn(q[at + 3], q[at + 4], q[at + 5], q[at + 6]);
+        const Quaternion turned = (turn * rotation_by(d.segment<3>(by + 3))).normalized();
+        out.segment<3>(at) = q.segment<3>(at) + d.segment<3>(by);
+        out.segment<4>(at + 3) << turned.w(), turned.x(), turned.y(), turned.z();
+      },
+      [&](Cluster& cluster, int at, int by) {
+        part_q_ = q.segment(at, cluster.positions());
+        part_v_ = d.segment(by, cluster.velocities());
+        cluster.move(part_q_, part_v_, part_q_);
+        out.segment(at, part_q_.size()) = part_q_;
+      });
+}
+
+void Island::SprungMotion::rate_of_move(const Vector& d, const Vector& v, Vector& out) {
+  out.setZero(nv_);  // what is no body's has no position
+  each(
+      [&](const Free&, int, int at) {
+        out.segment<3>(at) = v.segment<3>(at);
+        out.segment<3>(at + 3) = articulated::rate_of_rotation_vector(d.segment<3>(at + 3), v.segment<3>(at + 3));
+      },
+      [&](Cluster& cluster, int, int at) {
+        part_v_ = d.segment(at, cluster.velocities());
+        part_a_ = v.segment(at, cluster.velocities());
+        cluster.rate_of_move(part_v_, part_a_, part_q_);
+        out.segment(at, part_v_.size()) = part_q_;
+      });
+}
+
+void Island::SprungMotion::bend_to_cayley(Vector& d) {
+  each([&](const Free&, int, int at) { d.segment<3>(at + 3) = articulated::cayley(d.segment<3>(at + 3)); },
+       [&](Cluster& cluster, int, int at) {
+         part_v_ = d.segment(at, cluster.velocities());
+         cluster.bend_to_cayley(part_v_);
+         d.segment(at, part_v_.size()) = part_v_;
+       });
+}
+
+}  // namespace breve
