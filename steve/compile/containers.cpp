@@ -268,6 +268,7 @@ void FunctionCompiler::arguments_and_call(const ast::Call& c, Op op, const Opera
   const auto site = [&]() -> CallSite& { return builder_.code().sites[static_cast<std::size_t>(number)]; };
   const Span place = emit_.span();
   std::vector<Operand> values;
+  std::vector<Emitter::FreeRegisters> aside;  // so that no argument is kept where an earlier one was worked out
   Operand counter;
   if (ordered) {
     counter = emit_.temporary(StaticType::Vector);
@@ -282,7 +283,9 @@ void FunctionCompiler::arguments_and_call(const ast::Call& c, Op op, const Opera
     site().arguments[i].type = value.type;
     site().arguments[i].slot = value.slot;
     values.push_back(value);
-    if (ordered) emit_.emit_imm(Op::NextArgument, counter.slot, number);
+    if (!ordered) continue;
+    emit_.emit_imm(Op::NextArgument, counter.slot, number);
+    aside.push_back(emit_.set_aside());
   }
   emit_.at(place);
   site().call = emit_.here();
@@ -290,6 +293,7 @@ void FunctionCompiler::arguments_and_call(const ast::Call& c, Op op, const Opera
     emit_.emit_imm(op, receiver.slot, number);
   else
     emit_.emit_imm(op, 0, number);
+  for (const auto& registers : aside) emit_.give_back(registers);
   if (ordered) emit_.release(counter);
   for (const auto& value : values) emit_.release(value);
 }

@@ -76,6 +76,11 @@ void Emitter::release(const Operand& operand) {
   if (operand.temporary) free_[pool_of(operand.type)].push_back(operand.slot);
 }
 
+void Emitter::give_back(const FreeRegisters& some) {
+  for (std::size_t kind = 0; kind < free_.size(); ++kind)
+    free_[kind].insert(free_[kind].end(), some[kind].begin(), some[kind].end());
+}
+
 std::uint16_t Emitter::reserve(StaticType type, std::uint32_t count) {
   const auto slot = fresh(type, count);
   function_.zeroed_slots = function_.frame_slots;

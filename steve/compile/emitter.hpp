@@ -1,9 +1,11 @@
 // Instructions, registers and jumps of one function while it is being compiled.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "steve/compile/bytecode.hpp"
@@ -35,6 +37,11 @@ class Emitter {
   /// Consecutive registers of the given types, one call's arguments; given back with release_block.
   std::vector<Operand> block(const std::vector<StaticType>& types);
   void release_block(const std::vector<Operand>& block);
+  /// The free temporaries, which are not given out any more until they are given back: for code that may run after code
+  /// that follows it, so that the one's scratch is not the other's result.
+  using FreeRegisters = std::array<std::vector<std::uint16_t>, 5>;  // by kind
+  FreeRegisters set_aside() { return std::exchange(free_, {}); }
+  void give_back(const FreeRegisters& some);
   void finish();
 
   // --- code ----------------------------------------------------------------------------------------------------------
@@ -68,7 +75,7 @@ class Emitter {
   Function& function_;
   Diagnostics& diagnostics_;
   Span span_;
-  std::vector<std::uint16_t> free_[5];
+  FreeRegisters free_;
   std::vector<bool> temporaries_;  // for each slot: it is one, or an argument of a call
   std::map<std::string, std::vector<std::vector<Operand>>> free_blocks_;
   std::int32_t placed_ = -1;  // the last label
