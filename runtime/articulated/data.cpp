@@ -13,6 +13,6 @@ Data::Data(const Model& model, std::pmr::memory_resource* memory)
       rest(neutral_state(model).q),
       deflection(Vector::Zero(model.velocities())),
       held(Vector::Zero(model.velocities())),
-      at_limit(static_cast<std::size_t>(model.size()), memory) {}
+      at_limit(static_cast<std::size_t>(model.velocities()), memory) {}
 
 }  // namespace breve::articulated

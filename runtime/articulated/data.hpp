@@ -66,7 +66,7 @@ class Data {
   Vector rest;                             // (nq) all joints at zero: where springs are slack if nothing else is said
   Vector deflection;                       // (nv) of springs
   Vector held;                             // (nv) forces of motors that are at their limit
-  std::pmr::vector<signed char> at_limit;  // (links) whether the motor is
+  std::pmr::vector<signed char> at_limit;  // (nv) 1 or -1: the motor is, on that side; 0: it is not
 
   Work& of(int link) { return work[static_cast<std::size_t>(link + 1)]; }
   const Work& of(int link) const { return work[static_cast<std::size_t>(link + 1)]; }

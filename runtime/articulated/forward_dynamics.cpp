@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "runtime/articulated/elimination.hpp"
+#include "runtime/articulated/motors.hpp"
 #include "runtime/base/error.hpp"
 
 namespace breve::articulated {
@@ -84,17 +85,18 @@ void start(Data& data, const Loads& loads) {
 
 }  // namespace
 
-const Vector& forward_dynamics(const Model& model, Data& data, const State& state, const Loads& loads, double step) {
+const Vector& forward_dynamics(const Model& model, Data& data, const State& state, const Loads& loads, double step,
+                               MotorGuess guess) {
   const bool motors = motor_lag(loads, step) > 0 && !loads.drives.empty();
-  if (motors) std::fill(data.at_limit.begin(), data.at_limit.end(), 0);
+  if (motors) begin_motors(model, loads, guess, data);
+  MotorSearch search;
   do {
     start(data, loads);
     gather_joint_forces(model, loads, state, step, data);
     outward(model, data, state, loads);
     inward(model, data);
     accelerate(model, data);
-    // Each round holds at least one more motor, so that it ends.
-  } while (motors && hold_motors(model, loads, state, step, data));
+  } while (motors && search.changes(model, loads, state, step, data));
   if (!data.acceleration.allFinite())
     for (int i = 0; i < model.size(); ++i)
       if (!data.acceleration.segment(model.body(i).v, velocity_count(model.body(i).type)).allFinite())

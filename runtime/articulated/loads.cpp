@@ -1,4 +1,4 @@
-// Joint forces from springs, dampers and motors; explicit, or linearly implicit at a step's end.
+// Joint forces from springs and dampers; explicit, or linearly implicit at a step's end. Motors: motors.cpp.
 #include "runtime/articulated/loads.hpp"
 
 #include <fmt/format.h>
@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "runtime/articulated/data.hpp"
+#include "runtime/articulated/motors.hpp"
 #include "runtime/base/error.hpp"
 
 namespace breve::articulated {
@@ -29,44 +30,6 @@ void check_drive(const Model& model, int link, const Drive& drive) {
     if (value > 0 && model.body(link).type == JointType::Free)
       throw Error(ErrorCode::Argument, fmt::format("{}: a free joint has no {}", model.name(link), what));
   }
-}
-
-/// Shortens `force` to the motor's limit; a ball joint's couple as a whole. Returns whether it was too long.
-template <class V>
-bool limit_force(double limit, V force) {
-  const double size = force.norm();
-  if (!(size > limit)) return false;
-  force *= limit / size;
-  return true;
-}
-
-/// Of a universal joint each motor has the limit for itself, of a ball joint all three share it.
-template <class F>
-bool for_each_motor(const Body& body, F f) {
-  if (body.type == JointType::Ball) return f(body.v, 3);
-  bool any = false;
-  for (int k = 0; k < velocity_count(body.type); ++k) any = f(body.v + k, 1) || any;
-  return any;
-}
-
-double motor_speed(const Loads& loads, int i) { return loads.motor_speed.size() ? loads.motor_speed[i] : 0; }
-
-void add_motor(const Loads& loads, const Drive& drive, const Body& body, const State& state, double lag, bool held,
-               Data& data) {
-  for_each_motor(body, [&](int first, int count) {
-    auto force = data.deflection.segment(first, count);  // a place to work in: the springs are done with it
-    for (int k = 0; k < count; ++k) force[k] = drive.motor_gain * (motor_speed(loads, first + k) - state.v[first + k]);
-    if (lag == 0) {
-      limit_force(drive.motor_limit, force);
-      data.tau.segment(first, count) += force;
-    } else if (held) {
-      data.tau.segment(first, count) += data.held.segment(first, count);
-    } else {
-      data.tau.segment(first, count) += force;
-      data.diagonal.segment(first, count).array() += lag * drive.motor_gain;
-    }
-    return false;
-  });
 }
 
 const Vector& rest_of(const Loads& loads, const Data& data) { return loads.rest.size() ? loads.rest : data.rest; }
@@ -111,28 +74,8 @@ void gather_joint_forces(const Model& model, const Loads& loads, const State& st
       data.tau[k] -= drive.stiffness * (data.deflection[k] + step * state.v[k]) + drive.damping * state.v[k];
       data.diagonal[k] += step * (drive.damping + step * drive.stiffness);
     }
-    if (drive.motor_gain > 0)
-      add_motor(loads, drive, body, state, motor_lag(loads, step), data.at_limit[at] != 0, data);
+    if (drive.motor_gain > 0) add_motor(loads, drive, body, state, motor_lag(loads, step), data);
   }
-}
-
-bool hold_motors(const Model& model, const Loads& loads, const State& state, double step, Data& data) {
-  const double lag = motor_lag(loads, step);
-  bool any = false;
-  for (int i = 0; i < model.size(); ++i) {
-    const Body& body = model.body(i);
-    const auto at = static_cast<std::size_t>(i);
-    const Drive& drive = loads.drives[at];
-    if (!(drive.motor_gain > 0) || data.at_limit[at]) continue;
-    const bool beyond = for_each_motor(body, [&](int first, int count) {
-      for (int k = first; k < first + count; ++k)
-        data.held[k] = drive.motor_gain * (motor_speed(loads, k) - state.v[k] - lag * data.acceleration[k]);
-      return limit_force(drive.motor_limit, data.held.segment(first, count));
-    });
-    data.at_limit[at] = beyond;
-    any = any || beyond;
-  }
-  return any;
 }
 
 double spring_energy(const Model& model, const Loads& loads, const Vector& q, Data& data) {

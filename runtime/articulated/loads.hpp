@@ -52,10 +52,6 @@ class Data;
 ///              too large for the step. Motors are implicit but for those that data.at_limit names
 void gather_joint_forces(const Model& model, const Loads& loads, const State& state, double step, Data& data);
 
-/// After a solve in which motors look ahead: marks the motors that gave more than their limit (data.at_limit,
-/// data.held). Returns whether there is a new one, so that the solve must be repeated.
-bool hold_motors(const Model& model, const Loads& loads, const State& state, double step, Data& data);
-
 /// Energy stored in the springs of all joints, J.
 double spring_energy(const Model& model, const Loads& loads, const Vector& q, Data& data);
 

@@ -76,6 +76,7 @@ void Cluster::step(double time, double h) {
   read(at_.q, at_.v);
   at_.t = time;
   current_step_ = h;
+  guess_ = articulated::MotorGuess::None;  // nothing that a step remembers is in no image
   try {
     (finer_now_ ? finer_ : integrator_)->step(at_, h);
   } catch (...) {
@@ -131,12 +132,13 @@ void Cluster::acceleration(double t, const Vector& q, const Vector& v, double st
   Powers powers;
   for (Tree* tree : trees_) {
     const int n = tree->model.velocities();
-    a.segment(from, n) = articulated::forward_dynamics(tree->model, tree->data, tree->state, tree->loads, step);
+    a.segment(from, n) = articulated::forward_dynamics(tree->model, tree->data, tree->state, tree->loads, step, guess_);
     if (forces_ && !tree->rings.empty()) forces_->constrain(*tree, a.data() + from);
     torques_.segment(from, n).setZero();
     if (tree->driven) add_powers(*tree, step, v.data() + from, a.data() + from, torques_.data() + from, powers);
     from += n;
   }
+  guess_ = articulated::MotorGuess::Last;
   a.tail(velocities() - nv_).setZero();
   if (!working_) return;
   if (forces_) {
@@ -164,7 +166,7 @@ void Cluster::add_powers(const Tree& tree, double step, const double* v, const d
       powers.drag += drive.damping * (v[k] + step * a[k]) * mean;
       powers.drag += tree.links[static_cast<std::size_t>(i)].slow_damping * v[k] * mean;
       if (!(drive.motor_gain > 0)) continue;
-      const bool held = tree.data.at_limit[static_cast<std::size_t>(i)] != 0;
+      const bool held = tree.data.at_limit[static_cast<std::size_t>(k)] != 0;
       const double torque = held ? tree.data.held[k] : drive.motor_gain * (loads.motor_speed[k] - v[k] - lag * a[k]);
       powers.motor += torque * mean;
       torques[k] = torque;

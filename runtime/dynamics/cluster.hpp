@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "runtime/articulated/forward_dynamics.hpp"
 #include "runtime/articulated/integrator.hpp"
 #include "runtime/dynamics/tree.hpp"
 #include "runtime/mechanics/accuracy.hpp"
@@ -101,6 +102,7 @@ class Cluster final : public articulated::System, public InMemory {
   std::array<double, kWorks> works_{};
   articulated::Instant at_;
   double current_step_ = 0;
+  articulated::MotorGuess guess_ = articulated::MotorGuess::None;
   std::optional<articulated::Integrator> integrator_;
   std::optional<articulated::Integrator> finer_;  // what stands in for semi-implicit Euler
 };

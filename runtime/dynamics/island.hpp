@@ -124,8 +124,8 @@ class Island {
   // island_smooth.cpp
   void smooth_once(Clustered& one, double time, double h);
   void smooth_by_euler(Clustered& one, double time, double h);
-  double gain_of(Clustered& one, double time, double h, int parts);
-  double stored_in(const Clustered& one, double& kinetic);
+  double gain_of(Clustered& one, double time, double h, int parts, double shift);
+  double stored_in(const Clustered& one, double shift, double& kinetic);
   void commit();  // the last smooth() counts: its works go to the account
   Pose pose_of(BodyIndex body) const;
   Side side_of(BodyIndex body) const;

@@ -21,6 +21,7 @@ Island::Event Island::seek(double h) {
     if (roles_[i] == Role::Far) {
       Contact contact;
       const Motion ma = chord(start_poses_[2 * i], a1, h), mb = chord(start_poses_[2 * i + 1], b1, h);
+      if (pair.cache.axis != Vector3::Zero() && stay_apart(a, ma, b, mb, h, pair.cache.axis)) continue;
       hit = time_of_impact(a, ma, b, mb, h, time, contact);
     }
     if (!hit) {

@@ -19,9 +19,11 @@ bool NearPairs::pass_on(const Bodies& bodies, double h) {
     Proxy &a = proxies_[proxy_of_[pair.a]], &b = proxies_[proxy_of_[pair.b]];
     if (!a.moves || !b.moves || a.leaf == BoxTree::kNoLeaf || b.leaf == BoxTree::kNoLeaf) continue;
     const double mass_a = bodies.mass(pair.a), mass_b = bodies.mass(pair.b);
-    // A lighter body leaves an elastic impact at up to twice the speed of the heavier.
-    grew = widen(b, a.speed * std::max(1.0, 2 * mass_a / (mass_a + mass_b)), h, kFar, kMore) || grew;
-    grew = widen(a, b.speed * std::max(1.0, 2 * mass_b / (mass_a + mass_b)), h, kFar, kMore) || grew;
+    // What leaves an elastic impact with something at rest. That never has more energy than what struck it, so that
+    // the speeds of a crowd of light and heavy bodies end at that of the heaviest times the root of the ratio of
+    // masses.
+    grew = widen(b, a.speed * 2 * mass_a / (mass_a + mass_b), h, kFar, kMore) || grew;
+    grew = widen(a, b.speed * 2 * mass_b / (mass_a + mass_b), h, kFar, kMore) || grew;
   }
   return grew;
 }

@@ -47,4 +47,9 @@ double touch_tolerance(const Shape& a, const Pose& pa, const Shape& b, const Pos
 bool time_of_impact(const Shape& a, const Motion& ma, const Shape& b, const Motion& mb, double h, double& t,
                     Contact& contact);
 
+/// A cheap answer to whether that may be false: two convex solids that stay apart along one axis (unit, in the frame of
+/// a, from b toward a; such as the one of PairCache) for all of [0, h]. Then time_of_impact finds nothing, and they are
+/// apart at the end. False says nothing.
+bool stay_apart(const Shape& a, const Motion& ma, const Shape& b, const Motion& mb, double h, const Vector3& axis);
+
 }  // namespace breve

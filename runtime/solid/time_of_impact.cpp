@@ -269,13 +269,26 @@ bool surface_impact(const Shape& a, const Motion& ma, const Shape& b, const Moti
   return search.found;
 }
 
+double tolerance_of(const Shape& a, const Motion& ma, const Shape& b, const Motion& mb, double h) {
+  return std::max(touch_tolerance(a, ma.start, b, mb.start), touch_tolerance(a, pose_at(ma, h), b, pose_at(mb, h)));
+}
+
 }  // namespace
+
+bool stay_apart(const Shape& a, const Motion& ma, const Shape& b, const Motion& mb, double h, const Vector3& axis) {
+  if (is_surface(a) || is_surface(b)) return false;
+  Scene s{place(a, ma.start), place(b, mb.start), mb.velocity - ma.velocity, ma.rotational_velocity_world,
+          mb.rotational_velocity_world};
+  s.a.location.setZero();
+  s.b.location = mb.start.location - ma.start.location;
+  // The bounds are for n from a's lowest to b's highest vertex.
+  return safe_time(s, s.a.rotation * axis, Vector3::Zero(), tolerance_of(a, ma, b, mb, h), h) >= h;
+}
 
 bool time_of_impact(const Shape& a, const Motion& ma, const Shape& b, const Motion& mb, double h, double& t,
                     Contact& contact) {
   if (!(h > 0)) return false;
-  const double tolerance =
-      std::max(touch_tolerance(a, ma.start, b, mb.start), touch_tolerance(a, pose_at(ma, h), b, pose_at(mb, h)));
+  const double tolerance = tolerance_of(a, ma, b, mb, h);
   const bool surface = is_surface(a) || is_surface(b);
   if (surface && closest(a, ma.start, b, mb.start).distance <= tolerance) return false;
   const bool hit = surface ? surface_impact(a, ma, b, mb, tolerance, h, t)

@@ -93,6 +93,7 @@ void drop_creatures(int count, double seconds) {
 }
 
 TEST(Endurance, TwentyPassiveCreaturesGainNoEnergy) { drop_creatures(20, 5); }
+TEST(Endurance, TwoHundredPassiveCreaturesGainNoEnergyInAMinute) { drop_creatures(200, 60); }
 
 TEST(Endurance, PlatesThatClapForAHundredSecondsStayWhereTheyAre) {
   Hard world(BREVE_RUNG_BALANCED);

@@ -195,6 +195,31 @@ TEST(TimeOfImpact, TumblingSolidsNeverTunnelAndStopAtTheFirstTouch) {
   EXPECT_LT(sharper, hits / 5);
 }
 
+TEST(TimeOfImpact, WhatStaysApartAlongAnAxisIsNeverHit) {
+  oracle::Dice dice(13);
+  int apart = 0, far = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const double h = dice.between(0.01, 0.2);
+    Scene s{dice.polyhedron(i), i % 6 == 5 ? Shape::sphere(dice.between(0.1, 1)) : dice.polyhedron(i / 4), {}, {}};
+    s.ma = {{Vector3::Zero(), dice.turn()}, Vector3::Zero(), dice.vector(5)};
+    const Vector3 at = dice.between(1.2, 5) * dice.direction();
+    s.mb = {{at, dice.turn()}, -at * dice.between(0, 5) + dice.vector(3), dice.vector(5)};
+    // The axis of the closest points at the start, or any.
+    const Contact start = closest(*s.a, s.ma.start, *s.b, s.mb.start);
+    const Vector3 world = i % 5 == 0 ? dice.direction() : start.normal;
+    double t = 0;
+    Contact contact;
+    const bool hit = time_of_impact(*s.a, s.ma, *s.b, s.mb, h, t, contact);
+    far += start.distance > 0 && !hit;
+    if (!stay_apart(*s.a, s.ma, *s.b, s.mb, h, s.ma.start.orientation.conjugate() * world)) continue;
+    ++apart;
+    ASSERT_FALSE(hit) << "case " << i;
+    ASSERT_GT(s.gap(0), 0) << "case " << i;
+    ASSERT_GT(s.gap(h), 0) << "case " << i;
+  }
+  EXPECT_GT(apart, far / 2);  // worth asking
+}
+
 TEST(TimeOfImpact, RotationAloneBringsATouch) {
   // A rod turning at 4 rad/s next to a wall at distance 0.3 from its middle: the tip arrives at asin(0.3/0.5).
   const auto rod = Shape::box(Vector3(1, 1e-9, 1e-9)), wall = Shape::box(Vector3(4, 1, 4));
