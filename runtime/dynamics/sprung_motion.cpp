@@ -14,23 +14,29 @@ using articulated::Kind;
 using articulated::Vector;
 using contact::Vector2;
 
-/// Calls of_free(body, first place, first speed) and of_cluster(cluster, first place, first speed) in their order.
+namespace {
+constexpr std::size_t kLeastRoom = 8;
+}  // namespace
+
+/// Calls of_free(body, first place, first speed) and of_cluster(cluster, part, first place, first speed) in order.
 template <class OfFree, class OfCluster>
-void Island::SprungMotion::each(const OfFree& of_free, const OfCluster& of_cluster) const {
+void Island::SprungMotion::each(const OfFree& of_free, const OfCluster& of_cluster) {
   int q = 0, v = 0;
   for (Free& one : island_.free_) {
     of_free(one, q, v);
     q += kFreePlaces;
     v += kFreeSpeeds;
   }
-  for (Clustered& one : island_.clusters_) {
-    of_cluster(*one.entry->system, q, v);
+  for (std::size_t i = 0; i < island_.clusters_.size(); ++i) {
+    const Clustered& one = island_.clusters_[i];
+    of_cluster(*one.entry->system, parts_[i], q, v);
     q += one.entry->system->positions();
     v += one.entry->system->velocities();
   }
 }
 
 void Island::SprungMotion::lay_out() {
+  parts_.resize(island_.clusters_.size());
   kinds_.clear();
   nq_ = 0;
   mass_ = 0;
@@ -40,12 +46,13 @@ void Island::SprungMotion::lay_out() {
         nq_ += kFreePlaces;
         mass_ += one.now.solid->mass;
       },
-      [this](const Cluster& cluster, int, int) {
+      [this](const Cluster& cluster, const Part&, int, int) {
         for (int k = 0; k < cluster.velocities(); ++k) kinds_.push_back(cluster.kind(k));
         nq_ += cluster.positions();
       });
   for (const Tree* tree : island_.trees_) mass_ += tree->model.mass();
   bodies_v_ = static_cast<int>(kinds_.size());
+  while (room_ < points.size()) room_ = std::max(kLeastRoom, 2 * room_);
   const int size = tree_works_at(static_cast<int>(island_.trees_.size()));
   kinds_.resize(static_cast<std::size_t>(size), Kind::Length);
   pushes_.assign(island_.free_.size(), {});
@@ -86,12 +93,12 @@ void Island::SprungMotion::read(articulated::Instant& at) {
         at.v.segment<3>(v + 3) = turn.conjugate() * one.now.spin;
         take_step(one.next);
       },
-      [&](const Cluster& cluster, int q, int v) {
-        part_q_.resize(cluster.positions());
-        part_v_.resize(cluster.velocities());
-        cluster.read(part_q_, part_v_);
-        at.q.segment(q, part_q_.size()) = part_q_;
-        at.v.segment(v, part_v_.size()) = part_v_;
+      [&](const Cluster& cluster, Part& part, int q, int v) {
+        part.q.resize(cluster.positions());
+        part.v.resize(cluster.velocities());
+        cluster.read(part.q, part.v);
+        at.q.segment(q, part.q.size()) = part.q;
+        at.v.segment(v, part.v.size()) = part.v;
         take_step(cluster.next_step());
       });
   island_.place_links();
@@ -110,20 +117,20 @@ void Island::SprungMotion::place(const Vector& q, const Vector& v) {
         one.now.velocity = v.segment<3>(at_v);
         one.now.spin = one.now.orientation * Vector3(v.segment<3>(at_v + 3));
       },
-      [&](Cluster& cluster, int at_q, int at_v) {
-        part_q_ = q.segment(at_q, cluster.positions());
-        part_v_ = v.segment(at_v, cluster.velocities());
-        cluster.place(part_q_, part_v_);
+      [&](Cluster& cluster, Part& part, int at_q, int at_v) {
+        part.q = q.segment(at_q, cluster.positions());
+        part.v = v.segment(at_v, cluster.velocities());
+        cluster.place(part.q, part.v);
       });
 }
 
 void Island::SprungMotion::write(const articulated::Instant& at) {
   place(at.q, at.v);
   each([&](Free& one, int, int) { one.next = at.step; },
-       [&](Cluster& cluster, int q, int v) {
-         part_q_ = at.q.segment(q, cluster.positions());
-         part_v_ = at.v.segment(v, cluster.velocities());
-         cluster.write(part_q_, part_v_);
+       [&](Cluster& cluster, Part& part, int q, int v) {
+         part.q = at.q.segment(q, cluster.positions());
+         part.v = at.v.segment(v, cluster.velocities());
+         cluster.write(part.q, part.v);
          cluster.set_next_step(at.step);
        });
 }
@@ -267,12 +274,12 @@ void Island::SprungMotion::acceleration(double t, const Vector& q, const Vector&
         a.segment<3>(at + 3) = Eigen::Matrix3d(solid.inertia).inverse() * (torque - spin.cross(solid.inertia * spin));
         a[works_at() + 2] += (one.now.force.dot(one.now.velocity) + one.now.torque.dot(one.now.spin)) / mass_;
       },
-      [&](Cluster& cluster, int at_q, int at_v) {
-        part_q_ = q.segment(at_q, cluster.positions());
-        part_v_ = v.segment(at_v, cluster.velocities());
-        part_a_.resize(part_v_.size());
-        cluster.acceleration(t, part_q_, part_v_, step, part_a_);
-        a.segment(at_v, part_a_.size()) = part_a_;
+      [&](Cluster& cluster, Part& part, int at_q, int at_v) {
+        part.q = q.segment(at_q, cluster.positions());
+        part.v = v.segment(at_v, cluster.velocities());
+        part.a.resize(part.v.size());
+        cluster.acceleration(t, part.q, part.v, step, part.a);
+        a.segment(at_v, part.a.size()) = part.a;
       });
 }
 
@@ -287,11 +294,11 @@ void Island::SprungMotion::move(const Vector& q, const Vector& d, Vector& out) {
         out.segment<3>(at) = q.segment<3>(at) + d.segment<3>(by);
         out.segment<4>(at + 3) << turned.w(), turned.x(), turned.y(), turned.z();
       },
-      [&](Cluster& cluster, int at, int by) {
-        part_q_ = q.segment(at, cluster.positions());
-        part_v_ = d.segment(by, cluster.velocities());
-        cluster.move(part_q_, part_v_, part_q_);
-        out.segment(at, part_q_.size()) = part_q_;
+      [&](Cluster& cluster, Part& part, int at, int by) {
+        part.q = q.segment(at, cluster.positions());
+        part.v = d.segment(by, cluster.velocities());
+        cluster.move(part.q, part.v, part.q);
+        out.segment(at, part.q.size()) = part.q;
       });
 }
 
@@ -302,20 +309,20 @@ void Island::SprungMotion::rate_of_move(const Vector& d, const Vector& v, Vector
         out.segment<3>(at) = v.segment<3>(at);
         out.segment<3>(at + 3) = articulated::rate_of_rotation_vector(d.segment<3>(at + 3), v.segment<3>(at + 3));
       },
-      [&](Cluster& cluster, int, int at) {
-        part_v_ = d.segment(at, cluster.velocities());
-        part_a_ = v.segment(at, cluster.velocities());
-        cluster.rate_of_move(part_v_, part_a_, part_q_);
-        out.segment(at, part_v_.size()) = part_q_;
+      [&](Cluster& cluster, Part& part, int, int at) {
+        part.v = d.segment(at, cluster.velocities());
+        part.a = v.segment(at, cluster.velocities());
+        cluster.rate_of_move(part.v, part.a, part.out);
+        out.segment(at, part.v.size()) = part.out;
       });
 }
 
 void Island::SprungMotion::bend_to_cayley(Vector& d) {
   each([&](const Free&, int, int at) { d.segment<3>(at + 3) = articulated::cayley(d.segment<3>(at + 3)); },
-       [&](Cluster& cluster, int, int at) {
-         part_v_ = d.segment(at, cluster.velocities());
-         cluster.bend_to_cayley(part_v_);
-         d.segment(at, part_v_.size()) = part_v_;
+       [&](Cluster& cluster, Part& part, int, int at) {
+         part.v = d.segment(at, cluster.velocities());
+         cluster.bend_to_cayley(part.v);
+         d.segment(at, part.v.size()) = part.v;
        });
 }
 

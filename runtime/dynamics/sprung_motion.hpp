@@ -36,7 +36,7 @@ struct Island::SprungPoint {
 class Island::SprungMotion final : public articulated::System, public InMemory {
  public:
   SprungMotion(Island& island, std::pmr::memory_resource* memory)
-      : points(memory), island_(island), kinds_(memory), pushes_(memory) {}
+      : points(memory), island_(island), kinds_(memory), pushes_(memory), parts_(memory) {}
 
   std::pmr::vector<SprungPoint> points;  // of the sub-step
 
@@ -71,6 +71,10 @@ class Island::SprungMotion final : public articulated::System, public InMemory {
     contact::Drag drag;
   };
 
+  struct Part {  // what a cluster is given and gives
+    articulated::Vector q, v, a, out;
+  };
+
   void lay_out();
   void read(articulated::Instant& at);
   void write(const articulated::Instant& at);
@@ -79,19 +83,20 @@ class Island::SprungMotion final : public articulated::System, public InMemory {
   Resistance resist(SprungPoint& point, const contact::Vector2& stretch) const;
   void push(const SprungPoint& point, articulated::Vector& a);
   template <class OfFree, class OfCluster>
-  void each(const OfFree& of_free, const OfCluster& of_cluster) const;
+  void each(const OfFree& of_free, const OfCluster& of_cluster);
   double stretch_unit() const;
   int stretch_at(std::size_t point) const { return bodies_v_ + 2 * static_cast<int>(point); }
-  int works_at() const { return stretch_at(points.size()); }
+  int works_at() const { return stretch_at(room_); }
   int tree_works_at(int slot) const { return works_at() + kWorks + kTreeWorks * slot; }
 
   Island& island_;
   std::pmr::vector<articulated::Kind> kinds_;
   std::pmr::vector<articulated::Wrench> pushes_;  // on free bodies
+  std::pmr::vector<Part> parts_;                  // of clusters
   int nq_ = 0, nv_ = 0, bodies_v_ = 0;
-  double mass_ = 1;  // kg: works are kept per kg, so that step control sees numbers of ordinary size
+  std::size_t room_ = 0;  // points that there are coordinates for: more than needed, so that a step takes no memory
+  double mass_ = 1;       // kg: works are kept per kg, so that step control sees numbers of ordinary size
   articulated::Instant start_, end_;
-  articulated::Vector part_q_, part_v_, part_a_;
   std::optional<Reservation> reserved_;
   std::optional<articulated::Integrator> integrator_;
   articulated::Scheme scheme_{};
