@@ -4,6 +4,7 @@
 
 #include <box2d/box2d.h>
 
+#include <cmath>
 #include <exception>
 #include <map>
 #include <optional>
@@ -31,8 +32,10 @@ struct FlatJoint {
   bool ring = false;
   double position = 0;  // rad or m, as last known: whole turns are counted from here
   b2Joint* b2 = nullptr;
-  double rate = 0;  // of its motor at the start of the sub-step, in Box2D's units
-  double pull = 0;  // N or N*m that its spring, damper and set force give in this sub-step
+  double rate = 0;     // of its own axis at the start of the sub-step, in Box2D's units
+  double pull = 0;     // N or N*m that its spring, damper and set force give in this sub-step
+  double bend = 0;     // how `rate` changed in the last sub-step, by time
+  bool loose = false;  // its limit is off, since it is to bounce there
 };
 
 struct FlatSpring {
@@ -135,6 +138,12 @@ struct Frozen {
   explicit Frozen(std::pmr::memory_resource* memory) : bodies(memory), warm(memory) {}
 };
 
+/// What a script set on a body that joints hold.
+struct Strike {
+  BodyIndex body = kNoBody;
+  bool pushed = false, spun = false;  // its velocity, its spin
+};
+
 using BodyPair = std::pair<BodyIndex, BodyIndex>;
 
 struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
@@ -208,6 +217,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void note_known(FlatBody& flat);
   void push_pose(FlatBody& flat);
   void push_velocity(FlatBody& flat);
+  void push_velocity(FlatBody& flat, const Vector3& velocity, double spin);
   void write_back(FlatBody& flat);
   void write_back_all();
   void refresh_rules();
@@ -221,14 +231,19 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void make_b2(FlatJoint& joint);
   void drop_b2(FlatJoint& joint);
   void put_drive(FlatJoint& joint);
+  static bool has_limits(const FlatJoint& joint) {
+    return std::isfinite(joint.drive.low[0]) || std::isfinite(joint.drive.high[0]);
+  }
   double read_position(const FlatJoint& joint) const;
   double read_velocity(const FlatJoint& joint) const;
   WarmJoint warm_of(const FlatJoint& joint) const;
   void set_warm(FlatJoint& joint, const WarmJoint& warm);
-  double gap(const FlatJoint& joint) const;  // m, between the two points of a joint
+  double gap(const FlatJoint& joint) const;       // m, between the two points of a joint
+  Vector2 axis_of(const FlatJoint& joint) const;  // of a prismatic one, unit, as Box2D's bodies stand
 
   // assemblies.cpp
   void collect(BodyIndex body, std::pmr::vector<BodyIndex>& out) const;
+  void collect_beyond(JointIndex joint, std::pmr::vector<BodyIndex>& out);
   bool jointed(BodyIndex a, BodyIndex b) const;
   bool held_by_world(BodyIndex body) const;
   void move_rigidly(std::span<const BodyIndex> some, const Pose& from, const Pose& to);
@@ -237,6 +252,13 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   const OwnSettings* own_of(BodyIndex body, bool (*wanted)(const OwnSettings&)) const;
   bool pushes(BodyIndex a, BodyIndex b, const DynamicsClient& asked) const;
   Pose pose(BodyIndex body) const { return {bodies->location(body), bodies->orientation(body)}; }
+
+  // strikes.cpp: velocities that scripts set on what joints connect
+  void strike_all(std::pmr::vector<Strike>& all);
+  void strike(std::span<const Strike> some);
+  void give_velocities(std::span<const BodyIndex> some);
+  void allow_velocities(BodyIndex body);
+  void take_velocity(FlatBody& flat);
 
   // loads.cpp: forces of a sub-step
   void apply_forces(double dt);
@@ -251,7 +273,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   int position_iterations() const;
   void run(double dt);
   double plan_parts(double dt);
-  void step(double dt);
+  void step(double dt, bool bounce = true);
   void start_warm(double dt);
   void kick(double dt);
   void report_lasting(double moment);
@@ -262,6 +284,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
     int child_a = 0, child_b = 0;
     double t = 0;
     bool handled = false;
+    JointIndex stop = kNoJoint;  // that a joint reaches, instead of two shapes
   };
   bool find_hit(double dt, Hit& best);
   void consider(b2Fixture* a, int child_a, b2Fixture* b, int child_b, bool handled, double dt, Hit& best, bool& found);
@@ -285,6 +308,12 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   bool collide(FlatBody& a, FlatBody& b, const b2WorldManifold& where, int points);
   void spread(FlatBody& a, FlatBody& b);
   double slowest_bounce(const contact::Law& law) const;
+
+  // stops.cpp: limits that bounce
+  void set_stops(bool bounce);
+  bool find_stop(double dt, bool found, Hit& best) const;
+  void rebound(JointIndex joint);
+  double slowest_rebound(const FlatJoint& joint) const;
 
   // ledger.cpp
   Energy stored() const;

@@ -33,7 +33,7 @@ void each(const F& f, S& s) {
 }
 template <class F, Is<FlatJoint> J>
 void each(const F& f, J& j) {
-  f(j.owner), f(j.serial), f(j.ring), f(j.position), each(f, j.is), each(f, j.drive);
+  f(j.owner), f(j.serial), f(j.ring), f(j.position), f(j.bend), each(f, j.is), each(f, j.drive);
 }
 template <class F, Is<FlatSpring> S>
 void each(const F& f, S& s) {

@@ -109,23 +109,31 @@ void Planar::Core::run(double dt) {
   located = 0;
   step_length = dt;
   double left = dt;
-  int handled = 0;
-  Hit hit;
+  int waited = 0;  // met for handlers and stops
+  bool bounce = true;
   while (left > 0 && b2) {
-    const bool found = find_hit(left, hit);
+    Hit hit;
+    bool found = find_hit(left, hit);
+    found = find_stop(left, found, hit);
     if (!found) break;
-    if (hit.handled && ++handled > settings.accuracy.impacts) {
-      intervene(of(hit.a->GetBody()).body, GuardReason::Impacts, handled, now, GuardAction::Reported);
+    const bool stop = hit.stop != kNoJoint;
+    if ((hit.handled || stop) && ++waited > settings.accuracy.impacts) {
+      intervene(stop ? joints[hit.stop].is.child : of(hit.a->GetBody()).body, GuardReason::Impacts, waited, now,
+                GuardAction::Reported);
+      bounce = false;
       break;
     }
-    if (!hit.handled) ++located;
+    if (!hit.handled && !stop) ++located;
     const double t = std::min(hit.t, left);
     if (t > 0) step(t);
     left -= t;
     now += t;
-    deliver(hit, now);
+    if (stop)
+      rebound(hit.stop);
+    else
+      deliver(hit, now);
   }
-  if (left > 0 && b2) step(left);
+  if (left > 0 && b2) step(left, bounce);
   now += left;
 }
 
@@ -133,7 +141,8 @@ void Planar::Core::run(double dt) {
 void Planar::Core::kick(double dt) {
   friction = 0;
   for (FlatJoint& joint : joints)
-    if (joint.used && joint.drive.strength_limit > 0) joint.rate = joint_rate(joint);
+    if (joint.used && (joint.drive.strength_limit > 0 || joint.drive.limit_restitution > 0))
+      joint.rate = joint_rate(joint);
   const b2Vec2 gravity = b2->GetGravity();
   for (FlatBody& flat : slots) {
     flat.kicked = false;
@@ -167,14 +176,19 @@ void Planar::Core::start_warm(double dt) {
   if (whole) kept.reset();
 }
 
-void Planar::Core::step(double dt) {
+void Planar::Core::step(double dt, bool bounce) {
   start_warm(dt);
   apply_forces(dt);
+  set_stops(bounce);
   kick(dt);
   stepping = true;
   b2->Step(static_cast<float>(dt), velocity_iterations(), position_iterations());
   stepping = false;
   end_account(dt);
+  constexpr double kTooShort = 0.1;  // of a sub-step: single precision tells nothing of what changed in it
+  for (FlatJoint& joint : joints)
+    if (joint.used && joint.drive.limit_restitution > 0 && dt >= kTooShort * step_length)
+      joint.bend = (joint_rate(joint) - joint.rate) / dt;
   last_step = static_cast<float>(dt);
   ++sub_step;
   ++counters.sub_steps;
