@@ -94,6 +94,14 @@ bool Planar::Core::collide(FlatBody& a, FlatBody& b, const b2WorldManifold& wher
   const Response response(*this, &a, &b);
   if (response.size() == 0) return false;
   const double before = response.kinetic();
+  if (response.holds()) {
+    // Box2D's solver leaves velocities that the joints do not quite allow: what they forbid would be multiplied.
+    response.give(response.allowed(response.velocities()));
+    for (int i = 0; i < used; ++i) {
+      Point& p = points[static_cast<std::size_t>(i)];
+      p.before = speed_at(b, p.arm_b) - speed_at(a, p.arm_a);
+    }
+  }
   if (used == 1) {
     Point& p = points[0];
     Matrix3 W = Matrix3::Zero();

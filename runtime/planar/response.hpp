@@ -20,6 +20,7 @@ class Response {
 
   Eigen::Index size() const { return 3 * static_cast<Eigen::Index>(bodies_.size()); }
   std::span<FlatBody* const> bodies() const { return bodies_; }
+  bool holds() const { return jacobian_.rows() > 0; }  // joints hold some of them
   /// Where its three numbers are; -1 for what does not move by itself.
   Eigen::Index place(const FlatBody& flat) const;
 

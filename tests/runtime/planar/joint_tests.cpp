@@ -196,6 +196,33 @@ TEST(PlanarStops, BouncingLimitsAreInAnImage) {
   }
 }
 
+TEST(PlanarStops, AChainThatBouncesOnTheGroundGainsNothingInItsImpacts) {
+  for (const Rung rung : kRungs) {
+    Limited flat(rung);
+    flat.material(flat.ground(), 0.3, 1);
+    ObjectId last;
+    for (int i = 0; i < 6; ++i) {
+      const ObjectId link = flat.box(1, 0.2, i + 0.5, 3);
+      flat.material(link, 0.3, 1);
+      if (last) flat.hinge(last, link, {0.5, 0, 0}, {-0.5, 0, 0});
+      last = link;
+    }
+    flat.bodies().set_rotational_velocity(flat.index(last), {0, 0, 5});
+    double lost = 0;
+    flat.world.step();
+    const double start = flat.physics().energy().total();
+    double most = 0;
+    for (int i = 0; i < 1200; ++i) {
+      flat.world.step();
+      const double now = flat.physics().energy().contact_loss + flat.physics().energy().friction_loss;
+      ASSERT_GT(now, lost - 1e-5 * start) << i << " on rung " << static_cast<int>(rung);
+      lost = now;
+      most = std::max(most, flat.physics().energy().total());
+    }
+    EXPECT_LT(most, 1.001 * start);
+  }
+}
+
 // --- strikes --------------------------------------------------------------------------------------------------------
 
 /// Two equal rods in a row, joined end to end, at rest without gravity.
