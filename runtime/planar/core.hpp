@@ -269,6 +269,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   // step.cpp
   void advance(DynamicsClient& asked, double start, double h);
   int sub_steps() const;
+  double longest_step() const;
   int velocity_iterations() const;
   int position_iterations() const;
   void run(double dt);

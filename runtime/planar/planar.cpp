@@ -212,10 +212,12 @@ const Accuracy& Planar::accuracy() const { return core_->settings.accuracy; }
 std::string Planar::describe_accuracy() const {
   const Accuracy& a = accuracy();
   return fmt::format(
-      "{}{}, flat: {} sub-steps of Box2D in an integration step, with {} iterations for velocities and {} "
-      "for positions; {}; single precision at a length unit of {}.",
-      name_of(a.rung), a.custom ? ", with own settings" : "", core_->sub_steps(), core_->velocity_iterations(),
-      core_->position_iterations(),
+      "{}{}, flat: {} sub-steps of Box2D in an integration step{}, with {} iterations for velocities and {} for "
+      "positions; {}; single precision at a length unit of {}. Without meaning here: integrator, tolerance, implicit "
+      "joints and spin, direct solver, contact springs, erp and cfm, workers.",
+      name_of(a.rung), a.custom ? ", with own settings" : "", core_->sub_steps(),
+      core_->longest_step() > 0 ? fmt::format(", of at most {} s each", core_->longest_step()) : "",
+      core_->velocity_iterations(), core_->position_iterations(),
       a.locate_impacts ? "impacts with handlers, and what few bodies there are, at their time of impact"
                        : "impacts with handlers at their time of impact",
       length_unit());

@@ -8,6 +8,8 @@ namespace breve {
 
 namespace {
 
+constexpr double kMostSteps = 1e6;  // sub-steps of an integration step that a setting may ask for
+
 /// How a rung is spent on Box2D. KEEP IN STEP: docs/physics.md.
 struct Effort {
   int sub_steps, velocity, position;
@@ -32,6 +34,17 @@ int Planar::Core::sub_steps() const {
   return most;
 }
 
+/// s, of a sub-step, if it was set alone; 0: as long as the rung's are. All of the world steps as what has contacts
+/// does.
+double Planar::Core::longest_step() const {
+  const Accuracy &set = settings.accuracy, rung = accuracy_of(set.rung);
+  if (!set.custom) return 0;
+  double longest = 0;
+  for (const auto& [own, usual] : {std::pair{set.step, rung.step}, std::pair{set.contact_step, rung.contact_step}})
+    if (own > 0 && own != usual) longest = longest > 0 ? std::min(longest, own) : own;
+  return longest;
+}
+
 int Planar::Core::velocity_iterations() const {
   if (settings.fast_contacts > 0) return settings.fast_contacts;
   return settings.accuracy.custom ? settings.accuracy.iterations : effort_of(settings.accuracy.rung).velocity;
@@ -49,8 +62,8 @@ void Planar::Core::advance(DynamicsClient& asked, double start, double h) {
   sync();
   if (!b2) return;
   int count = sub_steps() << refined;
-  if (settings.accuracy.custom && settings.accuracy.step > 0)
-    count = std::max(count, static_cast<int>(std::ceil(h / settings.accuracy.step - 1e-9)));
+  if (const double longest = longest_step(); longest > 0)
+    count = std::max(count, static_cast<int>(std::min(std::ceil(h / longest - 1e-9), kMostSteps)));
   for (int i = 0; i < count; ++i) {
     // Box2D moves nothing further than two units or a quarter turn in one step: what is faster needs more of them.
     const double dt = h / count;

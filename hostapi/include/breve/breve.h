@@ -801,7 +801,9 @@ BREVE_API breve_status breve_rung_named(const char* name, breve_rung* rung);
 
 BREVE_API breve_status breve_world_accuracy(const breve_world* world, breve_accuracy* accuracy);
 
-/* BREVE_OK; BREVE_ERROR_ARGUMENT: a setting is not finite, negative, or 0 where there must be something. */
+/* Of a flat world the rung, step, contact_step, iterations, impacts and locate_impacts act; the others are of integrators
+   and solvers that it has not, and are kept without effect.
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a setting is not finite, negative, or 0 where there must be something. */
 BREVE_API breve_status breve_world_set_accuracy(breve_world* world, const breve_accuracy* accuracy);
 
 /* What a world's settings mean, in words; owned by the world until the next call of this function on it. */
@@ -843,7 +845,7 @@ BREVE_API breve_status breve_world_set_sleeping(breve_world* world, bool on);
 /* Threads that may compute the physics of a world, the caller's among them, 1 to 256; 1 at first. What comes out does
    not depend on it. Islands (bodies that touch or are joined, and what they touch) are shared among them; those with a
    collision handler or a force method are left to the caller's thread. The threads are the process's: no more than it
-   has cores. BREVE_OK; BREVE_ERROR_ARGUMENT: out of this range. */
+   has cores. A flat world is computed by the caller's thread alone. BREVE_OK; BREVE_ERROR_ARGUMENT: out of this range. */
 BREVE_API breve_status breve_world_set_workers(breve_world* world, uint32_t workers);
 
 /* What happens where physics goes wrong. */

@@ -238,6 +238,28 @@ TEST(PlanarState, SettingsGoOverWhenAWorldBecomesFlatAndABodyWithPhysicsIsTooLat
   EXPECT_THROW(late.world.flatten(), Error);
 }
 
+TEST(PlanarState, StepsThatAreSetAloneActAndItsWordsSayWhatHasNoMeaning) {
+  const auto sub_steps = [](auto&& set) {
+    Flat flat;
+    flat.ball(0.5, 0, 0);
+    Accuracy accuracy = flat.physics().accuracy();
+    accuracy.custom = true;
+    set(accuracy);
+    flat.physics().set_accuracy(accuracy);
+    flat.world.step();
+    return flat.physics().counters().sub_steps;
+  };
+  EXPECT_EQ(sub_steps([](Accuracy&) {}), 4U);
+  EXPECT_EQ(sub_steps([](Accuracy& a) { a.step = 1e-3; }), 17U);
+  EXPECT_EQ(sub_steps([](Accuracy& a) { a.contact_step = 1e-3; }), 17U);
+  EXPECT_EQ(sub_steps([](Accuracy& a) { a.contact_step = 1e-3, a.step = 1.0 / 3000; }), 50U);
+  EXPECT_EQ(sub_steps([](Accuracy& a) { a.tolerance = 1e-9; }), 4U);
+  Flat flat;
+  const std::string words = flat.physics().describe_accuracy();
+  for (const char* what : {"4 sub-steps", "Without meaning here", "integrator", "erp and cfm", "workers"})
+    EXPECT_NE(words.find(what), std::string::npos) << words;
+}
+
 TEST(PlanarState, BodiesThatComeAndGoTakeTheirEnergyAlong) {
   Flat flat;
   const ObjectId first = flat.ball(0.5, 0, 10), second = flat.ball(0.5, 3, 20);
