@@ -57,7 +57,7 @@ struct FlatBody {
   bool has_force = false;  // set by scripts
   int touching = 0;        // contacts that touch
   b2Body* b2 = nullptr;
-  b2Vec2 before{0, 0};                       // velocity of the centre of mass at the start of the sub-step
+  b2Vec2 at{0, 0}, before{0, 0};             // the centre of mass and its velocity at the start of the sub-step
   b2Vec2 kick{0, 0}, kicked_velocity{0, 0};  // what was taken off, and what was left
   float before_spin = 0;
   std::uint32_t assembly = kNoSlot;
@@ -94,6 +94,15 @@ struct FlatSettings {
   int fast_contacts = 0;
   double erp = 0.1, cfm = 1e-6, unit = 1;
   int workers = 1;
+};
+
+/// What the guard knows of the energy of the last steps, J.
+struct EnergyWatch {
+  int steps = 0;        // of this window
+  double gain = 0;      // in it, that no account explains
+  double kinetic = 0;   // the most in it
+  double turnover = 0;  // works and losses in it
+  double slack = 0;     // the most in it
 };
 
 /// Which two shapes meet: indices of bodies, of their fixtures, and of a profile's edge. What is first has the lower
@@ -181,8 +190,10 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
 
   std::pmr::map<BodyPair, bool> met;  // pairs with a handler whose first touch was told; true: told in this step
   std::uint64_t iteration = 0, sub_step = 0;
-  double now = 0;              // s, at the start of the current sub-step
-  int calm = 0;                // steps since something was wrong
+  double now = 0;  // s, at the start of the current sub-step
+  int calm = 0;    // steps since something was wrong
+  EnergyWatch watched;
+  double pushed = 0;           // J, by which positions that were put right have lifted things in this step
   int refined = 0;             // the guard's doublings of the sub-steps
   int awake = 0;               // bodies, when the sub-step was planned
   double step_length = 0;      // s, of the sub-step that is being taken, uncut
@@ -220,6 +231,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void push_velocity(FlatBody& flat, const Vector3& velocity, double spin);
   void write_back(FlatBody& flat);
   void write_back_all();
+  static bool is_finite(const FlatBody& flat);
   void refresh_rules();
   void reserve_memory();
 
@@ -319,13 +331,22 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   // ledger.cpp
   Energy stored() const;
   double kinetic_of(const FlatBody& flat) const;
+  double motion_of(const FlatBody& flat) const;
   double energy_of(BodyIndex body) const;
   void end_account(double dt);
   Energy energy() const;
   double springs_energy() const;
   double joint_rate(const FlatJoint& joint) const;
   // guard.cpp
-  void watch(double moment);
+  void watch(double moment, bool wrong);
+  struct Balance {
+    double kinetic = 0, stored = 0, works = 0, losses = 0;  // J
+    double slack = 0;  // J, that lifts what is awake by the overlap in which bodies rest
+  };
+  Balance balance() const;
+  bool watch_energy(const Balance& before, double moment);
+  GuardAction remedy() const;
+  FlatBody* liveliest();
   void intervene(BodyIndex body, GuardReason reason, double value, double moment, GuardAction action);
   void rest(FlatBody& flat);
 

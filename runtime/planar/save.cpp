@@ -54,6 +54,11 @@ void each(const F& f, J& j) {
   f(j.joint), f(j.warm.x), f(j.warm.y), f(j.warm.turn), f(j.warm.motor), f(j.warm.lower), f(j.warm.upper);
 }
 
+template <class F, Is<EnergyWatch> W>
+void each(const F& f, W& w) {
+  f(w.steps), f(w.gain), f(w.kinetic), f(w.turnover), f(w.slack);
+}
+
 namespace {
 
 template <class List>
@@ -226,6 +231,7 @@ void Planar::Core::save(ByteWriter& out) {
   out.put(sub_step);
   out.put(refined);
   out.put(calm);
+  each(Writer{out}, watched);
   put_table(out, joints);
   put_free(out, free_joints);
   put_table(out, springs);
@@ -256,6 +262,7 @@ void Planar::Core::load(ByteReader& in) {
   sub_step = in.get<std::uint64_t>();
   refined = in.get<int>();
   calm = in.get<int>();
+  each(Reader{in}, watched);
   if (refined < 0 || refined > 8) ByteReader::fail();
   get_table(in, joints);
   get_free(in, joints, free_joints);
@@ -314,6 +321,7 @@ void Planar::Core::hash(Hasher& hasher) const {
   add(base);
   add(refined);
   add(calm);
+  each(add, watched);
   for (const FlatJoint& joint : joints)
     if (joint.used) each(add, joint);
   for (const FlatSpring& tie : springs)
