@@ -336,8 +336,14 @@ Vector3 World::Parts::stage_force(BodyIndex body, double time, std::uint64_t dra
 
 std::uint64_t World::Parts::serial(BodyIndex body) const { return objects.at(world->bodies_->owner(body)).serial; }
 
-void World::Parts::touched(BodyIndex a, BodyIndex b, const Contact& contact, double moment) {
+void World::Parts::touched(BodyIndex a, BodyIndex b, const Contact& found, double moment) {
   if (!world->behaviour_) return;
+  Contact contact = found;
+  if (world->dimension() == 2) {
+    // Solids that meet along edges across the plane have a point anywhere on them.
+    contact.point.z() = contact.normal.z() = 0;
+    contact.normal.stableNormalize();
+  }
   const ObjectId first = world->bodies_->owner(a);
   const ObjectId second = world->bodies_->owner(b);
   const ClassId first_class = objects.at(first).cls;
