@@ -55,6 +55,7 @@ struct FlatBody {
   bool kicked = false;     // half of this sub-step's acceleration was taken off
   bool pulled = false;     // a spring or force method acts on it
   bool has_force = false;  // set by scripts
+  bool drowsy = false;     // may sleep, touches and is slow
   int touching = 0;        // contacts that touch
   b2Body* b2 = nullptr;
   b2Vec2 at{0, 0}, before{0, 0};             // the centre of mass and its velocity at the start of the sub-step
@@ -289,6 +290,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void step(double dt, bool bounce = true);
   void start_warm(double dt);
   void kick(double dt);
+  void resist_rolling(double dt);
   void report_lasting(double moment);
 
   // impacts.cpp: where the next first touch is

@@ -92,13 +92,11 @@ double Planar::Core::plan_parts(double dt) {
   const b2Vec2 gravity = to_b2(settings.gravity);
   b2->SetGravity(gravity);
   const double fall = gravity.Length();
-  // Where bodies may sleep, what creeps or rolls among others at ten times the speed at which Box2D lets it sleep, or
-  // slower, is braked: a disc has no friction against rolling, and one that rolls keeps a whole heap awake.
-  constexpr float kDrowsy = 10 * b2_linearSleepTolerance, kDrowsyTurn = 10 * b2_angularSleepTolerance,
-                  kBrake = 2;  // 1/s
+  // Ten times the speed at which Box2D lets a body sleep.
+  constexpr float kDrowsy = 10 * b2_linearSleepTolerance, kDrowsyTurn = 10 * b2_angularSleepTolerance;
   double parts = 1;
   awake = 0;
-  for (const FlatBody& flat : slots) {
+  for (FlatBody& flat : slots) {
     if (flat.body == kNoBody || flat.fixed || !flat.b2->IsAwake()) continue;
     ++awake;
     const double pull = flat.has_force ? flat.force.norm() / (flat.mass.mass * settings.unit) : 0;
@@ -107,11 +105,9 @@ double Planar::Core::plan_parts(double dt) {
     // Beyond single precision no number of sub-steps helps: the guard sees what becomes of it.
     if (!std::isfinite(static_cast<float>(way + turn))) continue;
     parts = std::max({parts, std::ceil(way / kTravel), std::ceil(turn / kTurn)});
-    const bool drowsy = settings.sleeping && flat.touching > 0 && !flat.jointed &&
-                        flat.b2->GetLinearVelocity().Length() < kDrowsy &&
-                        std::abs(flat.b2->GetAngularVelocity()) < kDrowsyTurn;
-    flat.b2->SetAngularDamping(drowsy ? kBrake : 0);
-    flat.b2->SetLinearDamping(drowsy ? kBrake : 0);
+    flat.drowsy = settings.sleeping && flat.touching > 0 && !flat.jointed &&
+                  flat.b2->GetLinearVelocity().Length() < kDrowsy &&
+                  std::abs(flat.b2->GetAngularVelocity()) < kDrowsyTurn;
     // What moves more than half its width is to meet what moves, too.
     flat.b2->SetBullet(way > flat.thickness);
   }
@@ -184,6 +180,26 @@ void Planar::Core::kick(double dt) {
   }
 }
 
+/// Where bodies may sleep, a heap of discs would roll on in itself for ever, as nothing resists rolling. So two bodies
+/// that both move, slowly, and touch with friction turn against each other ever less. Nothing that rolls or slides on
+/// what does not move feels it, momentum stays, and what is lost is written down as friction.
+void Planar::Core::resist_rolling(double dt) {
+  if (!settings.sleeping) return;
+  constexpr double kRate = 2;  // 1/s
+  const double part = -std::expm1(-kRate * dt), u = settings.unit;
+  for (b2Contact* contact = b2->GetContactList(); contact; contact = contact->GetNext()) {
+    if (!contact->IsTouching() || !(contact->GetFriction() > 0)) continue;
+    FlatBody &a = of(contact->GetFixtureA()->GetBody()), &b = of(contact->GetFixtureB()->GetBody());
+    if (a.fixed || b.fixed || !a.drowsy || !b.drowsy || !a.b2->IsAwake() || !b.b2->IsAwake()) continue;
+    const double ia = a.mass.inertia(2, 2), ib = b.mass.inertia(2, 2);
+    const double turns = double{b.b2->GetAngularVelocity()} - a.b2->GetAngularVelocity();
+    const double impulse = part * turns / (1 / ia + 1 / ib);
+    a.b2->ApplyAngularImpulse(static_cast<float>(impulse / (u * u)), false);
+    b.b2->ApplyAngularImpulse(static_cast<float>(-impulse / (u * u)), false);
+    account.friction_loss += impulse * turns * (1 - part / 2);
+  }
+}
+
 /// Box2D starts from the impulses of the last step, times the ratio of their lengths. What stops an approach in a short
 /// step would be multiplied by much in the next: while steps are cut, each starts from the last that was not.
 void Planar::Core::start_warm(double dt) {
@@ -201,6 +217,7 @@ void Planar::Core::step(double dt, bool bounce) {
   start_warm(dt);
   apply_forces(dt);
   set_stops(bounce);
+  resist_rolling(dt);
   kick(dt);
   stepping = true;
   b2->Step(static_cast<float>(dt), velocity_iterations(), position_iterations());
