@@ -827,8 +827,10 @@ typedef enum breve_edge {
   BREVE_EDGE_WALL = 2  /* it ends at walls that reflect the centres of bodies */
 } breve_edge;
 
-/* Set how space goes on along one axis. At the end of each sub-step kinematic bodies that move, and bodies with physics
-   that have no joints, are brought inside; collisions do not reach across edges. Runs no script.
+/* Set how space goes on along one axis. At the end of each sub-step kinematic bodies that move, and bodies with physics,
+   are brought inside; what joints connect as a whole, by its first body, unless it hangs on the world. Collision handlers
+   of bodies without physics are across edges that wrap; bodies with physics push each other on their own side only. Runs
+   no script.
    @param axis       0, 1, 2 for x, y, z
    @param low, high  m, finite, low < high; not looked at for BREVE_EDGE_OPEN
    BREVE_OK; BREVE_ERROR_ARGUMENT. */
