@@ -105,9 +105,9 @@ double Planar::Core::plan_parts(double dt) {
     // Beyond single precision no number of sub-steps helps: the guard sees what becomes of it.
     if (!std::isfinite(static_cast<float>(way + turn))) continue;
     parts = std::max({parts, std::ceil(way / kTravel), std::ceil(turn / kTurn)});
-    flat.drowsy = settings.sleeping && flat.touching > 0 && !flat.jointed &&
-                  flat.b2->GetLinearVelocity().Length() < kDrowsy &&
-                  std::abs(flat.b2->GetAngularVelocity()) < kDrowsyTurn;
+    if (settings.sleeping)
+      flat.drowsy = flat.touching > 0 && !flat.jointed && flat.b2->GetLinearVelocity().Length() < kDrowsy &&
+                    std::abs(flat.b2->GetAngularVelocity()) < kDrowsyTurn;
     // What moves more than half its width is to meet what moves, too.
     flat.b2->SetBullet(way > flat.thickness);
   }

@@ -841,6 +841,25 @@ BREVE_API breve_status breve_world_set_space(breve_world* world, int axis, breve
 BREVE_API breve_status breve_world_space(const breve_world* world, int axis, breve_edge* edge, double* low,
                                          double* high);
 
+/* The cells of a grid along x, y and z.
+   @param grid    an object of class PatchGrid or PatchToroid
+   @param counts  three numbers from 1
+   BREVE_OK; BREVE_ERROR_STALE; BREVE_ERROR_NOT_FOUND: the object is no grid, or init-with has made no cells yet. */
+BREVE_API breve_status breve_grid_size(const breve_world* world, breve_object grid, uint32_t counts[3]);
+/* Copy what there is of a chemical over all cells of a grid, as get-concentration gives it for one. Runs no script.
+   @param chemical  an object that the grid tracks (track)
+   @param values    amount per volume of space, one number for each cell; the cell with the indices x, y, z is at
+                    (x * ny + y) * nz + z. Room for `capacity` numbers; NULL only if capacity is 0
+   @param count     how many cells there are, also where that is more than capacity: at most capacity are written
+   BREVE_OK; BREVE_ERROR_STALE; BREVE_ERROR_NOT_FOUND as breve_grid_size, and if the grid does not track the chemical. */
+BREVE_API breve_status breve_grid_read(const breve_world* world, breve_object grid, breve_object chemical,
+                                       double* values, size_t capacity, size_t* count);
+/* Set what there is of a chemical over all cells, in the same order. Nothing is changed where it fails. Runs no script.
+   @param count  the number of cells
+   As breve_grid_read; BREVE_ERROR_ARGUMENT: a number that is not finite, or another count. */
+BREVE_API breve_status breve_grid_write(breve_world* world, breve_object grid, breve_object chemical,
+                                        const double* values, size_t count);
+
 /* Let bodies that rest sleep. Off at first. */
 BREVE_API breve_status breve_world_set_sleeping(breve_world* world, bool on);
 
