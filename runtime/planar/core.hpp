@@ -125,6 +125,7 @@ struct WarmContact {
 struct FrozenBody {
   BodyIndex body = kNoBody;
   float x = 0, y = 0, angle = 0, vx = 0, vy = 0, spin = 0;
+  float still = 0;  // s, since when it has been slow enough to sleep
   bool awake = true;
   Vector3 location = Vector3::Zero(), velocity = Vector3::Zero(), turn = Vector3::Zero();
   Quaternion orientation{1, 0, 0, 0};

@@ -9,6 +9,15 @@
 
 namespace breve {
 
+// How long a body has been slow, which Box2D shows to nobody: where a template is instantiated by name, private members
+// may be named.
+float& sleep_time(b2Body& body);
+template <auto Member>
+struct SleepDoor {
+  friend float& sleep_time(b2Body& body) { return body.*Member; }
+};
+template struct SleepDoor<&b2Body::m_sleepTime>;
+
 namespace {
 
 using members::Adder;
@@ -41,7 +50,7 @@ void each(const F& f, S& s) {
 }
 template <class F, Is<FrozenBody> B>
 void each(const F& f, B& b) {
-  f(b.body), f(b.x), f(b.y), f(b.angle), f(b.vx), f(b.vy), f(b.spin), f(b.awake);
+  f(b.body), f(b.x), f(b.y), f(b.angle), f(b.vx), f(b.vy), f(b.spin), f(b.still), f(b.awake);
   f(b.location), f(b.velocity), f(b.turn), f(b.orientation);
 }
 template <class F, Is<WarmContact> C>
@@ -163,6 +172,7 @@ Frozen Planar::Core::freeze() {
     one.vy = flat->b2->GetLinearVelocity().y;
     one.spin = flat->b2->GetAngularVelocity();
     one.awake = flat->b2->IsAwake();
+    one.still = sleep_time(*flat->b2);
     one.location = flat->location;
     one.velocity = flat->velocity;
     one.turn = flat->spin;
@@ -211,10 +221,14 @@ void Planar::Core::thaw_contacts() {
   muted = false;
   rethrow();
   set_contacts(frozen->warm, 1);
-  for (const FrozenBody& one : frozen->bodies)
-    if (FlatBody* flat = find(one.body);
-        flat && !flat->fixed && !one.awake && flat->location == bodies->location(one.body))
+  for (const FrozenBody& one : frozen->bodies) {
+    FlatBody* flat = find(one.body);
+    if (!flat || flat->fixed || flat->location != bodies->location(one.body)) continue;
+    if (one.awake)
+      sleep_time(*flat->b2) = one.still;
+    else
       flat->b2->SetAwake(false);
+  }
   frozen.reset();
 }
 

@@ -127,6 +127,27 @@ TEST(PlanarStability, AStackThatIsSavedAndLoadedAtEveryStepStands) {
   }
 }
 
+TEST(PlanarStability, AStackFallsAsleepAlsoIfItIsSavedAndLoadedAtEveryStep) {
+  int asleep_at[2] = {0, 0};
+  for (const bool saved : {false, true}) {
+    Flat flat;
+    flat.physics().set_sleeping(true);
+    flat.ground();
+    for (int i = 0; i < 20; ++i) flat.box(1, 1, 0, 0.5 + i);
+    int& steps = asleep_at[saved];
+    std::uint64_t sleeping = 0;
+    for (; steps < 60 * 60 && sleeping < 20; ++steps) {
+      flat.world.step();
+      sleeping = flat.physics().counters().sleeping;
+      if (!saved) continue;
+      const auto image = flat.world.save(1);
+      flat.world.load(image.data(), image.size(), 1);
+    }
+    EXPECT_EQ(sleeping, 20U);
+  }
+  EXPECT_NEAR(asleep_at[1], asleep_at[0], 60);  // within a second of each other
+}
+
 TEST(PlanarStability, WhatRollsOrSlidesSlowlyGoesOnWhereOthersMaySleep) {
   Flat flat;
   flat.physics().set_sleeping(true);
