@@ -16,8 +16,12 @@ bool same(const BodyState& x, const BodyState& y) {
 
 }  // namespace
 
-void CollisionStage::begin(const CollisionClient& client, std::uint64_t rules) {
+void CollisionStage::begin(const CollisionClient& client, std::uint64_t rules, const Extent& space) {
   purge();
+  if (!(space == space_)) {
+    space_ = space;
+    look_at_all_ = true;
+  }
   const bool rules_changed = rules != seen_rules_;
   if (rules_changed || bodies_->revision() != seen_bodies_) refresh(client, rules_changed);
   seen_bodies_ = bodies_->revision();
@@ -72,7 +76,7 @@ void CollisionStage::seek_first_impacts(bool at_impact, double h) {
     ++counters_.pairs;
     pair.reported = false;
     pair.ask_at_end = false;
-    if (!proxies_[pair.a].box.intersects(proxies_[pair.b].box)) {
+    if (!boxes_meet(pair)) {
       pair.touching = false;
     } else if (!pair.touching && at_impact) {
       seek_impact(pair, 0, h);
@@ -91,8 +95,10 @@ void CollisionStage::seek_impact(Pair& pair, double from, double h) {
   ++counters_.searches;
   Impact impact;
   double after = 0;
-  if (!time_of_impact(*bodies_->collision_shape(a.body), motion_from(a, from), *bodies_->collision_shape(b.body),
-                      motion_from(b, from), h - from, after, impact.contact)) {
+  Motion of_b = motion_from(b, from);
+  of_b.start.location += image_of_b(pair);
+  if (!time_of_impact(*bodies_->collision_shape(a.body), motion_from(a, from), *bodies_->collision_shape(b.body), of_b,
+                      h - from, after, impact.contact)) {
     return;
   }
   pair.ask_at_end = false;
@@ -197,11 +203,10 @@ void CollisionStage::restart(const Substep& substep, ProxyIndex index, double ti
   if (held) path.velocity = path.rotational_velocity = Vector3::Zero();
   update_box(substep.client, index);
   merge_new_pairs();
-  found_.clear();
-  tree_.query(proxies_[index].box, found_);
+  find_near(proxies_[index].box);
   for (const ProxyIndex other : found_) {
     Pair* pair = other == index ? nullptr : find_pair(index, other);
-    if (!pair || !proxies_[pair->a].box.intersects(proxies_[pair->b].box)) continue;
+    if (!pair || !boxes_meet(*pair)) continue;
     if (pair->touching) {
       // It is another touch only if they have come apart in between.
       Contact contact;

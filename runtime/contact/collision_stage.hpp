@@ -11,6 +11,7 @@
 #include "runtime/kinematics/bodies.hpp"
 #include "runtime/solid/contact.hpp"
 #include "runtime/space/box_tree.hpp"
+#include "runtime/space/extent.hpp"
 
 namespace breve {
 
@@ -34,8 +35,9 @@ class CollisionStage {
 
   void rebind(Bodies& bodies) { bodies_ = &bodies; }  // the same bodies, at another address
 
-  /// Before anything moves. `rules` grows when an answer of takes_part or reported may have changed.
-  void begin(const CollisionClient& client, std::uint64_t rules);
+  /// Before anything moves. `rules` grows when an answer of takes_part or reported may have changed. Bodies meet across
+  /// edges of space that wrap, with that image of each other which is nearest.
+  void begin(const CollisionClient& client, std::uint64_t rules, const Extent& space);
   /// After everything moved from time `start` to `start + h`.
   void finish(CollisionClient& client, double start, double h, const Vector3& gravity, bool at_impact);
   /// A sub-step was left by an exception: forget what belongs to it alone.
@@ -106,6 +108,8 @@ class CollisionStage {
   void purge();
   void enter(const CollisionClient& client, BodyIndex body);
   bool earlier(const Pair& x, const Pair& y) const;
+  void find_near(const Eigen::AlignedBox3d& box);
+  bool boxes_meet(const Pair& pair) const;
   Eigen::AlignedBox3d box_of_path(const Proxy& proxy) const;
   void update_box(const CollisionClient& client, ProxyIndex index);
   void find_pairs(const CollisionClient& client, ProxyIndex index);
@@ -130,6 +134,7 @@ class CollisionStage {
   static BodyState state_at(const Path& path, double time);
   Motion motion_from(const Proxy& proxy, double time) const;
   Pose pose_now(const Proxy& proxy) const;
+  Vector3 image_of_b(const Pair& pair) const;
   void place(BodyIndex body, const BodyState& state);
   bool touching(const Pair& pair, const Pose& pose_a, const Pose& pose_b, Contact& contact) const;
 
@@ -147,6 +152,7 @@ class CollisionStage {
   std::pmr::vector<BodyIndex> log_;
   std::pmr::vector<ProxyIndex> found_;
   std::pmr::vector<std::pair<BodyIndex, BodyIndex>> loaded_touching_;
+  Extent space_;
   std::uint64_t seen_bodies_ = 0, seen_rules_ = 0;
   std::size_t live_ = 0;
   bool look_at_all_ = true;  // pairs must be searched for every proxy, moved or not

@@ -151,9 +151,40 @@ void CollisionStage::update_box(const CollisionClient& client, ProxyIndex index)
   find_pairs(client, index);
 }
 
-void CollisionStage::find_pairs(const CollisionClient& client, ProxyIndex index) {
+/// Those whose boxes a box meets, itself or one of its images across edges that wrap: whoever it meets is inside space,
+/// or sticks out of it by less than its size, so the tree refuses most images at its root.
+void CollisionStage::find_near(const Eigen::AlignedBox3d& box) {
   found_.clear();
-  tree_.query(tree_.box(proxies_[index].leaf), found_);
+  tree_.query(box, found_);
+  if (!space_.wraps()) return;
+  const std::size_t own = found_.size();
+  const auto lengths = [this](int axis) {
+    const Extent::Axis& a = space_.axis(axis);
+    return a.edge == Ending::Wrap ? a.high - a.low : 0;
+  };
+  for (int i = 0; i < 27; ++i) {
+    const int steps[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+    Vector3 shift;
+    bool real = i != 13;  // the box itself
+    for (int k = 0; k < 3; ++k) {
+      shift[k] = steps[k] * lengths(k);
+      real = real && (steps[k] == 0 || lengths(k) > 0);
+    }
+    if (real) tree_.query(box.translated(shift), found_);
+  }
+  if (found_.size() == own) return;
+  std::sort(found_.begin(), found_.end());
+  found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+}
+
+bool CollisionStage::boxes_meet(const Pair& pair) const {
+  const Eigen::AlignedBox3d &a = proxies_[pair.a].box, &b = proxies_[pair.b].box;
+  if (a.isEmpty() || b.isEmpty()) return false;
+  return space_.wraps() ? a.intersects(b.translated(image_of_b(pair))) : a.intersects(b);
+}
+
+void CollisionStage::find_pairs(const CollisionClient& client, ProxyIndex index) {
+  find_near(tree_.box(proxies_[index].leaf));
   const Proxy& self = proxies_[index];
   for (const ProxyIndex other_index : found_) {
     const Proxy& other = proxies_[other_index];
@@ -196,7 +227,8 @@ void CollisionStage::drop_far_pairs() {
     const Proxy& a = proxies_[pair.a];
     const Proxy& b = proxies_[pair.b];
     if (a.leaf == BoxTree::kNoLeaf || b.leaf == BoxTree::kNoLeaf) return true;
-    return !tree_.box(a.leaf).intersects(tree_.box(b.leaf));
+    const Eigen::AlignedBox3d &x = tree_.box(a.leaf), &y = tree_.box(b.leaf);
+    return !x.intersects(space_.wraps() ? y.translated(space_.image(x.center(), y.center())) : y);
   });
 }
 

@@ -61,9 +61,16 @@ void CollisionStage::place(BodyIndex body, const BodyState& state) {
   bodies_->place(body, state.location, state.orientation, state.velocity, state.rotational_velocity);
 }
 
-bool CollisionStage::touching(const Pair& pair, const Pose& pose_a, const Pose& pose_b, Contact& contact) const {
+/// What is to be added to b's place so that it is near a, across edges of space that wrap.
+Vector3 CollisionStage::image_of_b(const Pair& pair) const {
+  if (!space_.wraps()) return Vector3::Zero();
+  return space_.image(proxies_[pair.a].box.center(), proxies_[pair.b].box.center());
+}
+
+bool CollisionStage::touching(const Pair& pair, const Pose& pose_a, const Pose& place_b, Contact& contact) const {
   const Shape& a = *bodies_->collision_shape(proxies_[pair.a].body);
   const Shape& b = *bodies_->collision_shape(proxies_[pair.b].body);
+  const Pose pose_b{place_b.location + image_of_b(pair), place_b.orientation};
   const double tolerance = touch_tolerance(a, pose_a, b, pose_b);
   // Spheres around both that are apart settle it; also refuses what is not finite.
   const double reach = a.bounding_radius() + b.bounding_radius() + tolerance;

@@ -28,6 +28,21 @@ void Planar::Core::collect(BodyIndex body, std::pmr::vector<BodyIndex>& out) con
   }
 }
 
+/// What hangs on the child's side of a joint: the assembly without it.
+void Planar::Core::collect_beyond(JointIndex joint, std::pmr::vector<BodyIndex>& out) {
+  FlatJoint& entry = joints[joint];
+  const BodyIndex held = entry.is.parent;
+  entry.is.parent = kNoBody;
+  std::pmr::vector<JointIndex>* of = held == kNoBody ? nullptr : &joints_at.at(held);
+  if (of) std::erase(*of, joint);
+  collect(entry.is.child, out);
+  entry.is.parent = held;
+  if (of)
+    of->insert(std::lower_bound(of->begin(), of->end(), entry.serial,
+                                [this](JointIndex x, std::uint64_t serial) { return joints[x].serial < serial; }),
+               joint);
+}
+
 bool Planar::Core::jointed(BodyIndex a, BodyIndex b) const {
   const auto found = joints_at.find(a);
   if (found == joints_at.end()) return false;
@@ -60,8 +75,9 @@ void Planar::Core::move_rigidly(std::span<const BodyIndex> some, const Pose& fro
     bodies->set_orientation(body, turn * bodies->orientation(body));
     if (FlatBody* flat = find(body); flat && !flat->fixed) {
       push_pose(*flat);
-      push_velocity(*flat);
-      note_known(*flat);
+      push_velocity(*flat, flat->velocity, flat->spin.z());
+      flat->location = bodies->location(body);
+      flat->orientation = bodies->orientation(body);
     }
   }
 }
@@ -180,13 +196,18 @@ void Planar::move_assembly(BodyIndex body, const Vector3& location, const Quater
 void Planar::set_assembly_velocity(BodyIndex body, const Vector3& velocity, const Vector3& spin) {
   if (!velocity.allFinite()) throw Error(ErrorCode::Argument, "velocity must be finite");
   if (!spin.allFinite()) throw Error(ErrorCode::Argument, "rotational velocity must be finite");
-  const Vector3 center = core_->bodies->location(body);
-  for (const BodyIndex link : links_of(body)) {
-    const Vector3 arm = core_->bodies->location(link) - center;
-    core_->bodies->set_velocity(link, velocity + spin.cross(arm));
-    core_->bodies->set_rotational_velocity(link, spin);
-  }
   take_changes();
+  Core& c = *core_;
+  const Vector3 center = c.bodies->location(body);
+  const std::pmr::vector<BodyIndex> links = links_of(body);
+  for (const BodyIndex link : links) {
+    const Vector3 arm = c.bodies->location(link) - center;
+    c.bodies->set_velocity(link, velocity + spin.cross(arm));
+    c.bodies->set_rotational_velocity(link, spin);
+  }
+  if (!c.b2) return;
+  c.give_velocities(links);
+  c.allow_velocities(body);
 }
 
 void Planar::moved(BodyIndex body) {

@@ -83,6 +83,7 @@ void Planar::Core::make_b2(FlatJoint& joint) {
         static_cast<float>(is.keep_rotation ? at_zero : at_zero - std::remainder(at_zero - wanted, 2 * M_PI));
     joint.b2 = b2->CreateJoint(&def);
   }
+  joint.loose = false;
   put_drive(joint);
   child->SetAwake(true);
   if (parent != ground) parent->SetAwake(true);
@@ -99,7 +100,6 @@ void Planar::Core::put_drive(FlatJoint& joint) {
   const double sign = joint.is.kind == JointKind::Revolute ? -sense(joint.is) : -1;
   const double u = joint.is.kind == JointKind::Revolute ? 1 : settings.unit;
   double low = sign > 0 ? drive.low[0] : -drive.high[0], high = sign > 0 ? drive.high[0] : -drive.low[0];
-  const bool bounded = std::isfinite(low) || std::isfinite(high);
   constexpr double kFar = 1e6;  // rad or length units: no stop
   low = std::clamp(low / u, -kFar, kFar);
   high = std::clamp(high / u, -kFar, kFar);
@@ -112,7 +112,7 @@ void Planar::Core::put_drive(FlatJoint& joint) {
   }
   const auto set = [&](auto* b) {
     b->SetLimits(static_cast<float>(low), static_cast<float>(high));
-    b->EnableLimit(bounded);
+    b->EnableLimit(has_limits(joint) && !joint.loose);
     b->EnableMotor(drive.strength_limit > 0);
     b->SetMotorSpeed(static_cast<float>(sign * speed / u));
   };
@@ -125,6 +125,12 @@ void Planar::Core::put_drive(FlatJoint& joint) {
     set(b);
     b->SetMaxMotorForce(static_cast<float>(drive.strength_limit / settings.unit));
   }
+}
+
+Vector2 Planar::Core::axis_of(const FlatJoint& joint) const {
+  const auto* b = static_cast<const b2PrismaticJoint*>(joint.b2);
+  const b2Vec2 axis = const_cast<b2PrismaticJoint*>(b)->GetBodyA()->GetWorldVector(b->GetLocalAxisA());
+  return Vector2(axis.x, axis.y).normalized();
 }
 
 WarmJoint Planar::Core::warm_of(const FlatJoint& joint) const {

@@ -4,6 +4,7 @@
 
 #include <box2d/box2d.h>
 
+#include <cmath>
 #include <exception>
 #include <map>
 #include <optional>
@@ -31,8 +32,10 @@ struct FlatJoint {
   bool ring = false;
   double position = 0;  // rad or m, as last known: whole turns are counted from here
   b2Joint* b2 = nullptr;
-  double rate = 0;  // of its motor at the start of the sub-step, in Box2D's units
-  double pull = 0;  // N or N*m that its spring, damper and set force give in this sub-step
+  double rate = 0;     // of its own axis at the start of the sub-step, in Box2D's units
+  double pull = 0;     // N or N*m that its spring, damper and set force give in this sub-step
+  double bend = 0;     // how `rate` changed in the last sub-step, by time
+  bool loose = false;  // its limit is off, since it is to bounce there
 };
 
 struct FlatSpring {
@@ -52,9 +55,10 @@ struct FlatBody {
   bool kicked = false;     // half of this sub-step's acceleration was taken off
   bool pulled = false;     // a spring or force method acts on it
   bool has_force = false;  // set by scripts
+  bool drowsy = false;     // may sleep, touches and is slow
   int touching = 0;        // contacts that touch
   b2Body* b2 = nullptr;
-  b2Vec2 before{0, 0};                       // velocity of the centre of mass at the start of the sub-step
+  b2Vec2 at{0, 0}, before{0, 0};             // the centre of mass and its velocity at the start of the sub-step
   b2Vec2 kick{0, 0}, kicked_velocity{0, 0};  // what was taken off, and what was left
   float before_spin = 0;
   std::uint32_t assembly = kNoSlot;
@@ -93,6 +97,15 @@ struct FlatSettings {
   int workers = 1;
 };
 
+/// What the guard knows of the energy of the last steps, J.
+struct EnergyWatch {
+  int steps = 0;        // of this window
+  double gain = 0;      // in it, that no account explains
+  double kinetic = 0;   // the most in it
+  double turnover = 0;  // works and losses in it
+  double slack = 0;     // the most in it
+};
+
 /// Which two shapes meet: indices of bodies, of their fixtures, and of a profile's edge. What is first has the lower
 /// numbers.
 struct ContactKey {
@@ -112,6 +125,7 @@ struct WarmContact {
 struct FrozenBody {
   BodyIndex body = kNoBody;
   float x = 0, y = 0, angle = 0, vx = 0, vy = 0, spin = 0;
+  float still = 0;  // s, since when it has been slow enough to sleep
   bool awake = true;
   Vector3 location = Vector3::Zero(), velocity = Vector3::Zero(), turn = Vector3::Zero();
   Quaternion orientation{1, 0, 0, 0};
@@ -133,6 +147,12 @@ struct Frozen {
   std::pmr::vector<FrozenBody> bodies;  // by body
   Warm warm;
   explicit Frozen(std::pmr::memory_resource* memory) : bodies(memory), warm(memory) {}
+};
+
+/// What a script set on a body that joints hold.
+struct Strike {
+  BodyIndex body = kNoBody;
+  bool pushed = false, spun = false;  // its velocity, its spin
 };
 
 using BodyPair = std::pair<BodyIndex, BodyIndex>;
@@ -172,8 +192,10 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
 
   std::pmr::map<BodyPair, bool> met;  // pairs with a handler whose first touch was told; true: told in this step
   std::uint64_t iteration = 0, sub_step = 0;
-  double now = 0;              // s, at the start of the current sub-step
-  int calm = 0;                // steps since something was wrong
+  double now = 0;  // s, at the start of the current sub-step
+  int calm = 0;    // steps since something was wrong
+  EnergyWatch watched;
+  double pushed = 0;           // J, by which positions that were put right have lifted things in this step
   int refined = 0;             // the guard's doublings of the sub-steps
   int awake = 0;               // bodies, when the sub-step was planned
   double step_length = 0;      // s, of the sub-step that is being taken, uncut
@@ -208,8 +230,10 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void note_known(FlatBody& flat);
   void push_pose(FlatBody& flat);
   void push_velocity(FlatBody& flat);
+  void push_velocity(FlatBody& flat, const Vector3& velocity, double spin);
   void write_back(FlatBody& flat);
   void write_back_all();
+  static bool is_finite(const FlatBody& flat);
   void refresh_rules();
   void reserve_memory();
 
@@ -221,14 +245,19 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void make_b2(FlatJoint& joint);
   void drop_b2(FlatJoint& joint);
   void put_drive(FlatJoint& joint);
+  static bool has_limits(const FlatJoint& joint) {
+    return std::isfinite(joint.drive.low[0]) || std::isfinite(joint.drive.high[0]);
+  }
   double read_position(const FlatJoint& joint) const;
   double read_velocity(const FlatJoint& joint) const;
   WarmJoint warm_of(const FlatJoint& joint) const;
   void set_warm(FlatJoint& joint, const WarmJoint& warm);
-  double gap(const FlatJoint& joint) const;  // m, between the two points of a joint
+  double gap(const FlatJoint& joint) const;       // m, between the two points of a joint
+  Vector2 axis_of(const FlatJoint& joint) const;  // of a prismatic one, unit, as Box2D's bodies stand
 
   // assemblies.cpp
   void collect(BodyIndex body, std::pmr::vector<BodyIndex>& out) const;
+  void collect_beyond(JointIndex joint, std::pmr::vector<BodyIndex>& out);
   bool jointed(BodyIndex a, BodyIndex b) const;
   bool held_by_world(BodyIndex body) const;
   void move_rigidly(std::span<const BodyIndex> some, const Pose& from, const Pose& to);
@@ -237,6 +266,13 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   const OwnSettings* own_of(BodyIndex body, bool (*wanted)(const OwnSettings&)) const;
   bool pushes(BodyIndex a, BodyIndex b, const DynamicsClient& asked) const;
   Pose pose(BodyIndex body) const { return {bodies->location(body), bodies->orientation(body)}; }
+
+  // strikes.cpp: velocities that scripts set on what joints connect
+  void strike_all(std::pmr::vector<Strike>& all);
+  void strike(std::span<const Strike> some);
+  void give_velocities(std::span<const BodyIndex> some);
+  void allow_velocities(BodyIndex body);
+  void take_velocity(FlatBody& flat);
 
   // loads.cpp: forces of a sub-step
   void apply_forces(double dt);
@@ -247,13 +283,15 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   // step.cpp
   void advance(DynamicsClient& asked, double start, double h);
   int sub_steps() const;
+  double longest_step() const;
   int velocity_iterations() const;
   int position_iterations() const;
   void run(double dt);
   double plan_parts(double dt);
-  void step(double dt);
+  void step(double dt, bool bounce = true);
   void start_warm(double dt);
   void kick(double dt);
+  void resist_rolling(double dt);
   void report_lasting(double moment);
 
   // impacts.cpp: where the next first touch is
@@ -262,6 +300,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
     int child_a = 0, child_b = 0;
     double t = 0;
     bool handled = false;
+    JointIndex stop = kNoJoint;  // that a joint reaches, instead of two shapes
   };
   bool find_hit(double dt, Hit& best);
   void consider(b2Fixture* a, int child_a, b2Fixture* b, int child_b, bool handled, double dt, Hit& best, bool& found);
@@ -286,16 +325,31 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void spread(FlatBody& a, FlatBody& b);
   double slowest_bounce(const contact::Law& law) const;
 
+  // stops.cpp: limits that bounce
+  void set_stops(bool bounce);
+  bool find_stop(double dt, bool found, Hit& best) const;
+  void rebound(JointIndex joint);
+  double slowest_rebound(const FlatJoint& joint) const;
+
   // ledger.cpp
   Energy stored() const;
   double kinetic_of(const FlatBody& flat) const;
+  double motion_of(const FlatBody& flat) const;
   double energy_of(BodyIndex body) const;
   void end_account(double dt);
   Energy energy() const;
   double springs_energy() const;
   double joint_rate(const FlatJoint& joint) const;
   // guard.cpp
-  void watch(double moment);
+  void watch(double moment, bool wrong);
+  struct Balance {
+    double kinetic = 0, stored = 0, works = 0, losses = 0;  // J
+    double slack = 0;  // J, that lifts what is awake by the overlap in which bodies rest
+  };
+  Balance balance() const;
+  bool watch_energy(const Balance& before, double moment);
+  GuardAction remedy() const;
+  FlatBody* liveliest();
   void intervene(BodyIndex body, GuardReason reason, double value, double moment, GuardAction action);
   void rest(FlatBody& flat);
 

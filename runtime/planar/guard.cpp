@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/base/error.hpp"
 #include "runtime/planar/core.hpp"
 
 namespace breve {
@@ -28,20 +29,84 @@ void Planar::Core::rest(FlatBody& flat) {
   note_known(flat);
 }
 
-void Planar::Core::watch(double moment) {
-  constexpr int kMostDoublings = 4;
+namespace {
+
+constexpr int kMostDoublings = 4;
+
+bool refines(GuardMode mode) { return mode == GuardMode::Refine || mode == GuardMode::Rest; }
+
+}  // namespace
+
+GuardAction Planar::Core::remedy() const {
+  return refines(settings.guard) && refined < kMostDoublings ? GuardAction::Refined : GuardAction::Reported;
+}
+
+/// The body that has most energy of motion.
+FlatBody* Planar::Core::liveliest() {
+  FlatBody* found = nullptr;
+  double most = -1;
+  for (FlatBody& flat : slots) {
+    if (flat.body == kNoBody || flat.fixed) continue;
+    const double has = motion_of(flat);
+    if (!(has > most)) continue;
+    most = has;
+    found = &flat;
+  }
+  return found;
+}
+
+/// Energy that no account explains. Where things turn round hardly anything moves, and a first-order rule errs by as
+/// much: so it is compared with the most that moved in the last steps. Whether something is wrong.
+bool Planar::Core::watch_energy(const Balance& before, double moment) {
+  constexpr double kResidual = 0.1,
+                   kResidualFast = 1;  // as runtime/dynamics; the fast rung is not meant to keep energy
+  constexpr double kTiny = 1e-6;       // of what is stored: single precision
+  constexpr int kWindow = 16;          // steps
+  if (settings.guard == GuardMode::Off) return false;
+  const Balance after = balance();
+  const double in = after.works - before.works, out = after.losses - before.losses;
+  const double gain = after.stored - before.stored - in + out - std::max(pushed, 0.0);
+  if (watched.steps >= kWindow) watched = {};
+  ++watched.steps;
+  watched.gain += gain;
+  watched.kinetic = std::max({watched.kinetic, before.kinetic, after.kinetic});
+  watched.turnover += std::abs(in) + std::abs(out);
+  watched.slack = std::max(watched.slack, before.slack);
+  const double most = settings.accuracy.rung == Rung::Fast ? kResidualFast : kResidual;
+  const double bound = most * (watched.kinetic + watched.turnover) + watched.slack + kTiny * std::abs(before.stored);
+  if (!(watched.gain > bound)) return false;
+  FlatBody* shows = liveliest();
+  if (!shows) return false;
+  GuardAction action = remedy();
+  if (action == GuardAction::Reported && settings.guard == GuardMode::Rest) {
+    // Refining did not help: the body, with all that hangs on it, ends where it is.
+    std::pmr::vector<BodyIndex> all(memory);
+    collect(shows->body, all);
+    for (const BodyIndex body : all)
+      if (FlatBody* flat = find(body); flat && !flat->fixed) rest(*flat);
+    action = GuardAction::Rested;
+  }
+  intervene(shows->body, GuardReason::Residual, watched.gain, moment, action);
+  watched = {};
+  return true;
+}
+
+void Planar::Core::watch(double moment, bool wrong) {
   constexpr double kGap = 0.02;  // of the smaller body's width: further than this a joint has opened
-  const bool refines = settings.guard == GuardMode::Refine || settings.guard == GuardMode::Rest;
-  const GuardAction action = refines && refined < kMostDoublings ? GuardAction::Refined : GuardAction::Reported;
-  bool wrong = false;
+  const GuardAction action = remedy();
+  BodyIndex lost = kNoBody;
   for (FlatBody& flat : slots) {
     if (flat.body == kNoBody || flat.fixed || !flat.b2->IsAwake()) continue;
-    const b2Vec2 at = flat.b2->GetPosition(), v = flat.b2->GetLinearVelocity();
-    const float all = at.x + at.y + v.x + v.y + flat.b2->GetAngle() + flat.b2->GetAngularVelocity();
-    if (std::isfinite(all)) continue;
-    intervene(flat.body, GuardReason::NotFinite, all, moment, GuardAction::Rested);
+    if (is_finite(flat)) continue;
+    intervene(flat.body, GuardReason::NotFinite, 0, moment, GuardAction::Rested);
     rest(flat);
+    lost = flat.body;
   }
+  if (lost != kNoBody && settings.guard == GuardMode::Off)
+    throw Error(
+        ErrorCode::Numeric,
+        "a place or speed in a flat world is not finite any more; it was put back to where it was, at rest. The "
+        "guard would have told (set-guard, breve_world_set_guard)");
   for (const FlatJoint& joint : joints) {
     if (!joint.used || !joint.b2 || joint.ring) continue;
     double width = find(joint.is.child)->thickness;
@@ -68,7 +133,7 @@ void Planar::Core::watch(double moment) {
     }
   constexpr int kCalm = 240;  // steps without anything wrong, after which the doublings are taken back one by one
   calm = wrong ? 0 : calm + 1;
-  if (wrong && refines && refined < kMostDoublings) ++refined;
+  if (wrong && action == GuardAction::Refined) ++refined;
   if (calm >= kCalm && refined > 0) {
     --refined;
     calm = 0;

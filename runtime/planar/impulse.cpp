@@ -1,155 +1,19 @@
 // Collisions: the impulse of two bodies, with all that joints connect them with, by the laws of runtime/contact; and
 // how it spreads through bodies that touch, pair by pair, the fastest approach first.
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "runtime/contact/impact_law.hpp"
-#include "runtime/planar/core.hpp"
+#include "runtime/planar/response.hpp"
 
 namespace breve {
 
 namespace {
 
-using Matrix = Eigen::MatrixXd;
-using Vector = Eigen::VectorXd;
+using Vector = Response::Vector;
 
 Vector2 vector_of(const b2Vec2& v) { return {v.x, v.y}; }
-
-/// How some bodies answer impulses on two of them: (force, force, torque about the centre of mass) of each, in Box2D's
-/// units. Free bodies answer alone; what joints connect answers as a whole, M^-1 - M^-1 J^T (J M^-1 J^T)^-1 J M^-1.
-class Response {
- public:
-  Response(const Planar::Core& core, FlatBody& a, FlatBody& b) : core_(core), bodies_(core.memory) {
-    gather(a);
-    gather(b);
-    const auto n = static_cast<Eigen::Index>(3 * bodies_.size());
-    columns_ = Matrix::Zero(n, 6);
-    for (const auto& [flat, column] : {std::pair{&a, 0}, std::pair{&b, 3}}) {
-      const Eigen::Index at = place(*flat);
-      if (at < 0) continue;
-      columns_(at, column) = columns_(at + 1, column + 1) = 1 / double{flat->b2->GetMass()};
-      columns_(at + 2, column + 2) = 1 / inertia(*flat);
-    }
-    hold_joints();
-  }
-
-  /// Of the velocity of a point of the first (which = 0) or second body, to an impulse on one of them.
-  Vector2 at_point(const FlatBody& flat, const Vector2& arm, const Vector& answer) const {
-    const Eigen::Index at = place(flat);
-    if (at < 0) return Vector2::Zero();
-    return Vector2(answer[at], answer[at + 1]) + answer[at + 2] * left_of(arm);
-  }
-  /// To the impulse P on the second body and -P on the first, each at its arm.
-  Vector answer(const Vector2& arm_a, const Vector2& arm_b, const Vector2& impulse) const {
-    Eigen::Matrix<double, 6, 1> load;
-    load << -impulse, -cross(arm_a, impulse), impulse, cross(arm_b, impulse);
-    return columns_ * load;
-  }
-  void give(const Vector& change) const {
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      const auto at = static_cast<Eigen::Index>(3 * i);
-      b2Body& b = *bodies_[i]->b2;
-      b.SetLinearVelocity(b.GetLinearVelocity() +
-                          b2Vec2(static_cast<float>(change[at]), static_cast<float>(change[at + 1])));
-      b.SetAngularVelocity(b.GetAngularVelocity() + static_cast<float>(change[at + 2]));
-    }
-  }
-  double kinetic() const {
-    double sum = 0;
-    for (const FlatBody* flat : bodies_)
-      sum += 0.5 * double{flat->b2->GetMass()} * vector_of(flat->b2->GetLinearVelocity()).squaredNorm() +
-             0.5 * inertia(*flat) * std::pow(double{flat->b2->GetAngularVelocity()}, 2);
-    return sum;
-  }
-  Eigen::Index size() const { return columns_.rows(); }
-
- private:
-  static double inertia(const FlatBody& flat) {
-    // Box2D gives it about the origin.
-    return double{flat.b2->GetInertia()} - double{flat.b2->GetMass()} * flat.b2->GetLocalCenter().LengthSquared();
-  }
-  void gather(FlatBody& flat) {
-    if (flat.fixed || place(flat) >= 0) return;
-    if (!flat.jointed) {
-      bodies_.push_back(&flat);
-      return;
-    }
-    std::pmr::vector<BodyIndex> all(core_.memory);
-    core_.collect(flat.body, all);
-    for (const BodyIndex body : all)
-      if (FlatBody* one = const_cast<Planar::Core&>(core_).find(body)) bodies_.push_back(one);
-  }
-  Eigen::Index place(const FlatBody& flat) const {
-    const auto found = std::find(bodies_.begin(), bodies_.end(), &flat);
-    return found == bodies_.end() ? -1 : static_cast<Eigen::Index>(3 * (found - bodies_.begin()));
-  }
-
-  void hold_joints() {
-    std::pmr::vector<JointIndex> held(core_.memory);
-    for (const FlatBody* flat : bodies_) {
-      const auto found = core_.joints_at.find(flat->body);
-      if (found != core_.joints_at.end()) held.insert(held.end(), found->second.begin(), found->second.end());
-    }
-    std::sort(held.begin(), held.end());
-    held.erase(std::unique(held.begin(), held.end()), held.end());
-    constexpr std::size_t kMost = 100;  // joints; larger assemblies answer as if none held, and Box2D's joints follow
-    if (held.empty() || held.size() > kMost) return;
-    Matrix jacobian = Matrix::Zero(static_cast<Eigen::Index>(3 * held.size()), size());
-    Eigen::Index rows = 0;
-    for (const JointIndex index : held) add_rows(core_.joints[index], jacobian, rows);
-    jacobian.conservativeResize(rows, Eigen::NoChange);
-    Vector mobility(size());
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      const auto at = static_cast<Eigen::Index>(3 * i);
-      mobility[at] = mobility[at + 1] = 1 / double{bodies_[i]->b2->GetMass()};
-      mobility[at + 2] = 1 / inertia(*bodies_[i]);
-    }
-    const Matrix spread = mobility.asDiagonal() * jacobian.transpose();
-    Matrix between = jacobian * spread;
-    // Rings hold some things twice: a little softness keeps the matrix regular.
-    constexpr double kSoft = 1e-12;
-    between.diagonal().array() += kSoft * between.diagonal().maxCoeff();
-    columns_ -= spread * between.ldlt().solve(jacobian * columns_);
-  }
-  void add_rows(const FlatJoint& joint, Matrix& jacobian, Eigen::Index& rows) const {
-    const FlatBody* child = core_.find(joint.is.child);
-    const FlatBody* parent = joint.is.parent == kNoBody ? nullptr : core_.find(joint.is.parent);
-    const Vector2 point_a = vector_of(joint.b2->GetAnchorA()), point_b = vector_of(joint.b2->GetAnchorB());
-    const auto point_row = [&](const Vector2& along) {
-      for (const auto& [flat, point, sign] : {std::tuple{parent, point_a, -1.0}, std::tuple{child, point_b, 1.0}}) {
-        const Eigen::Index at = flat ? place(*flat) : -1;
-        if (at < 0) continue;
-        const Vector2 arm = point - vector_of(flat->b2->GetWorldCenter());
-        jacobian(rows, at) = sign * along.x();
-        jacobian(rows, at + 1) = sign * along.y();
-        jacobian(rows, at + 2) = sign * cross(arm, along);
-      }
-      ++rows;
-    };
-    const auto turn_row = [&] {
-      for (const auto& [flat, sign] : {std::pair{parent, -1.0}, std::pair{child, 1.0}})
-        if (const Eigen::Index at = flat ? place(*flat) : -1; at >= 0) jacobian(rows, at + 2) = sign;
-      ++rows;
-    };
-    if (joint.is.kind == JointKind::Prismatic) {
-      const Vector3 axis =
-          (joint.is.parent == kNoBody ? Quaternion(1, 0, 0, 0) : core_.bodies->orientation(joint.is.parent)) *
-          joint.is.normal;
-      point_row(left_of(axis.head<2>()));
-      turn_row();
-      return;
-    }
-    point_row({1, 0});
-    point_row({0, 1});
-    if (joint.is.kind == JointKind::Fixed) turn_row();
-  }
-
-  const Planar::Core& core_;
-  std::pmr::vector<FlatBody*> bodies_;
-  Matrix columns_;
-};
 
 /// One point at which two bodies meet. The normal goes from a to b; impulses are those on b.
 struct Point {
@@ -227,9 +91,17 @@ bool Planar::Core::collide(FlatBody& a, FlatBody& b, const b2WorldManifold& wher
   const contact::Law law = law_of(a, b);
   const double u = settings.unit;
   if (used == 0 || !(fastest * u > slowest_bounce(law))) return false;
-  const Response response(*this, a, b);
+  const Response response(*this, &a, &b);
   if (response.size() == 0) return false;
   const double before = response.kinetic();
+  if (response.holds()) {
+    // Box2D's solver leaves velocities that the joints do not quite allow: what they forbid would be multiplied.
+    response.give(response.allowed(response.velocities()));
+    for (int i = 0; i < used; ++i) {
+      Point& p = points[static_cast<std::size_t>(i)];
+      p.before = speed_at(b, p.arm_b) - speed_at(a, p.arm_a);
+    }
+  }
   if (used == 1) {
     Point& p = points[0];
     Matrix3 W = Matrix3::Zero();

@@ -14,14 +14,35 @@ double square(double x) { return x * x; }
 
 }  // namespace
 
+/// Of a body as Box2D has it, J: motion.
+double Planar::Core::motion_of(const FlatBody& flat) const {
+  const b2Vec2 v = flat.b2->GetLinearVelocity();
+  const double u = settings.unit;
+  return 0.5 * flat.mass.mass * (square(v.x * u) + square(v.y * u)) +
+         0.5 * flat.mass.inertia(2, 2) * square(flat.b2->GetAngularVelocity());
+}
+
 /// Of a body as Box2D has it, J: motion and height.
 double Planar::Core::kinetic_of(const FlatBody& flat) const {
-  const b2Vec2 v = flat.b2->GetLinearVelocity(), at = flat.b2->GetWorldCenter();
-  const double u = settings.unit;
-  const Vector2 center = Vector2(at.x, at.y) * u;
-  return 0.5 * flat.mass.mass * (square(v.x * u) + square(v.y * u)) +
-         0.5 * flat.mass.inertia(2, 2) * square(flat.b2->GetAngularVelocity()) -
-         flat.mass.mass * settings.gravity.head<2>().dot(center);
+  const b2Vec2 at = flat.b2->GetWorldCenter();
+  return motion_of(flat) -
+         flat.mass.mass * settings.unit * settings.gravity.head<2>().dot(Vector2(double{at.x}, double{at.y}));
+}
+
+/// What the guard compares before and after a step: what is stored, less what came and went with bodies.
+Planar::Core::Balance Planar::Core::balance() const {
+  Balance now_is;
+  const double lift = settings.gravity.norm() * b2_linearSlop * settings.unit;
+  for (const FlatBody& flat : slots) {
+    if (flat.body == kNoBody || flat.fixed) continue;
+    if (flat.b2->IsAwake()) now_is.slack += lift * flat.mass.mass;
+    now_is.kinetic += motion_of(flat);
+    now_is.stored += kinetic_of(flat);
+  }
+  now_is.stored += springs_energy() - base;
+  now_is.works = account.motor_work + account.script_work;
+  now_is.losses = account.contact_loss + account.friction_loss + account.drag_loss + account.limit_loss;
+  return now_is;
 }
 
 /// Of a body as the arrays have it, J: motion and height.
@@ -90,11 +111,16 @@ void Planar::Core::end_account(double dt) {
   const double u = settings.unit;
   const Vector2 gravity = settings.gravity.head<2>();
   double held_back = 0;  // work of all that joins and touches
+  const b2Vec2 down = b2->GetGravity();
   for (FlatBody& flat : slots) {
     if (flat.body == kNoBody || flat.fixed) continue;
+    const b2Vec2 moved_by = flat.b2->GetLinearVelocity();
     if (flat.kicked && flat.b2->IsAwake()) flat.b2->SetLinearVelocity(flat.b2->GetLinearVelocity() + flat.kick);
     flat.kicked = false;
     const b2Vec2 v = flat.b2->GetLinearVelocity();
+    // Box2D moves by the velocity at the end; what else was moved are overlaps and gaps that it put right.
+    const b2Vec2 path = flat.b2->GetWorldCenter() - flat.at - static_cast<float>(dt) * moved_by;
+    pushed -= flat.mass.mass * u * u * double{b2Dot(down, path)};
     const double w = flat.b2->GetAngularVelocity();
     const Vector2 sum(u * (double{v.x} + flat.before.x), u * (double{v.y} + flat.before.y));
     const double turn = w + double{flat.before_spin};

@@ -304,10 +304,14 @@ void Planar::Core::push_pose(FlatBody& flat) {
 }
 
 void Planar::Core::push_velocity(FlatBody& flat) {
+  push_velocity(flat, bodies->velocity(flat.body), bodies->rotational_velocity(flat.body).z());
+}
+
+/// Of its origin, m/s and rad/s.
+void Planar::Core::push_velocity(FlatBody& flat, const Vector3& velocity, double spin) {
   if (flat.fixed) return;
-  const double spin = bodies->rotational_velocity(flat.body).z();
   const Vector3 arm = bodies->orientation(flat.body) * flat.mass.center_of_mass;
-  const Vector3 center = bodies->velocity(flat.body) + spin * Vector3(-arm.y(), arm.x(), 0);
+  const Vector3 center = velocity + spin * Vector3(-arm.y(), arm.x(), 0);
   flat.b2->SetLinearVelocity(to_b2(center));
   flat.b2->SetAngularVelocity(static_cast<float>(spin));
 }
@@ -341,29 +345,44 @@ void Planar::Core::push_changes() {
   }
   scratch.clear();
   bodies->take_touched(scratch);
+  std::pmr::vector<Strike> struck(memory);
+  // What was set is found before anything is moved: who is moved takes others along.
+  for (const BodyIndex body : scratch) {
+    const FlatBody* flat = find(body);
+    if (!flat || flat->fixed || !flat->jointed) continue;
+    const bool spun = flat->spin != bodies->rotational_velocity(body),
+               pushed = flat->velocity != bodies->velocity(body);
+    if (pushed || spun) struck.push_back({body, pushed, spun});
+  }
   for (const BodyIndex body : scratch) {
     FlatBody* flat = find(body);
     if (!flat || flat->fixed) continue;
     const bool moved =
         flat->location != bodies->location(body) || flat->orientation.coeffs() != bodies->orientation(body).coeffs();
-    const bool pushed = flat->velocity != bodies->velocity(body) || flat->spin != bodies->rotational_velocity(body);
+    const bool pushed =
+        !flat->jointed && (flat->velocity != bodies->velocity(body) || flat->spin != bodies->rotational_velocity(body));
     const Vector3 &force = bodies->force(body), &torque = bodies->torque(body);
     const bool forced = flat->force != force.head<2>() || flat->torque != torque.z();
     flat->force = force.head<2>();
     flat->torque = torque.z();
     flat->has_force = flat->force != Vector2::Zero() || flat->torque != 0;
-    if (moved) {
-      const Pose from{flat->location, flat->orientation};
-      push_pose(*flat);
-      if (flat->jointed) follow(body, from);
-    }
     if (moved || pushed) {
-      account.script_work += energy_of(body) - kinetic_of(*flat);
-      push_velocity(*flat);
+      const double before = kinetic_of(*flat);
+      const Pose from{flat->location, flat->orientation};
+      if (moved) push_pose(*flat);
+      if (moved && flat->jointed) follow(body, from);
+      if (flat->jointed)
+        push_velocity(*flat, flat->velocity, flat->spin.z());
+      else
+        push_velocity(*flat);
+      account.script_work += kinetic_of(*flat) - before;
     }
     if (moved || pushed || forced) flat->b2->SetAwake(true);
-    note_known(*flat);
+    flat->location = bodies->location(body);
+    flat->orientation = bodies->orientation(body);
+    if (!flat->jointed) note_known(*flat);
   }
+  if (!struck.empty()) strike_all(struck);
 }
 
 void Planar::Core::write_back(FlatBody& flat) {
@@ -380,12 +399,18 @@ void Planar::Core::write_back(FlatBody& flat) {
   flat.spin = {0, 0, spin};
 }
 
+bool Planar::Core::is_finite(const FlatBody& flat) {
+  const b2Vec2 at = flat.b2->GetPosition(), v = flat.b2->GetLinearVelocity();
+  return std::isfinite(at.x + at.y + v.x + v.y + flat.b2->GetAngle() + flat.b2->GetAngularVelocity());
+}
+
 void Planar::Core::write_back_all() {
   constexpr float kWholeTurns = 50;  // rad; beyond it single precision is worth less than 4e-6 rad
   for (FlatBody& flat : slots) {
     if (flat.body == kNoBody || flat.fixed) continue;
     // What fell asleep in this step is written once more.
     if (!flat.b2->IsAwake() && flat.velocity == Vector3::Zero() && flat.spin == Vector3::Zero()) continue;
+    if (!is_finite(flat)) continue;  // the guard puts it where it was
     if (!flat.jointed && std::abs(flat.b2->GetAngle()) > kWholeTurns)
       flat.b2->SetTransform(flat.b2->GetPosition(), std::remainder(flat.b2->GetAngle(), 2 * b2_pi));
     write_back(flat);

@@ -65,19 +65,8 @@ void Planar::set_position(JointIndex joint, const JointVector& position) {
   to.orientation = (parent.orientation * turned(turn) * is.relative_rotation).normalized();
   to.location = parent.location + parent.orientation * is.parent_point - to.orientation * is.child_point;
   if (is.kind == JointKind::Prismatic) to.location -= position[0] * (parent.orientation * is.normal);
-  // What hangs on the child's side moves along: the assembly without this joint.
   std::pmr::vector<BodyIndex> all(memory_);
-  const BodyIndex held = is.parent;
-  entry.is.parent = kNoBody;
-  if (held != kNoBody) std::erase(c.joints_at.at(held), joint);
-  c.collect(is.child, all);
-  entry.is.parent = held;
-  if (held != kNoBody) {
-    auto& of = c.joints_at.at(held);
-    of.insert(std::lower_bound(of.begin(), of.end(), entry.serial,
-                               [&c](JointIndex x, std::uint64_t serial) { return c.joints[x].serial < serial; }),
-              joint);
-  }
+  c.collect_beyond(joint, all);
   c.move_rigidly(all, from, to);
   entry.position = position[0];
   // Box2D counts turns by the bodies' angles.
@@ -96,14 +85,18 @@ void Planar::set_velocity(JointIndex joint, const JointVector& velocity) {
   const JointDescription& is = entry.is;
   const double more = velocity[0] - c.read_velocity(entry);
   const Pose parent = is.parent == kNoBody ? Pose{} : c.pose(is.parent), child = c.pose(is.child);
-  if (is.kind == JointKind::Revolute) {
-    const Vector3 spin(0, 0, -more * is.normal.z());
-    const Vector3 arm = child.location - (child.location + child.orientation * is.child_point);
-    c.bodies->set_rotational_velocity(is.child, c.bodies->rotational_velocity(is.child) + spin);
-    c.bodies->set_velocity(is.child, c.bodies->velocity(is.child) + spin.cross(arm));
-  } else {
-    c.bodies->set_velocity(is.child, c.bodies->velocity(is.child) - more * (parent.orientation * is.normal));
+  // What hangs on the child's side moves as one with it; where the joint closes a ring, the child alone is struck.
+  std::pmr::vector<BodyIndex> all({is.child}, memory_);
+  if (!entry.ring) c.collect_beyond(joint, all);
+  const bool turns = is.kind == JointKind::Revolute;
+  const Vector3 spin = turns ? Vector3(0, 0, -more * is.normal.z()) : Vector3(0, 0, 0);
+  const Vector3 way = turns ? Vector3(0, 0, 0) : Vector3(-more * (parent.orientation * is.normal));
+  const Vector3 point = child.location + child.orientation * is.child_point;
+  for (const BodyIndex body : all) {
+    c.bodies->set_rotational_velocity(body, c.bodies->rotational_velocity(body) + spin);
+    c.bodies->set_velocity(body, c.bodies->velocity(body) + way + spin.cross(c.bodies->location(body) - point));
   }
+  if (c.b2 && !entry.ring) return c.give_velocities(all);
   take_changes();
 }
 
@@ -219,10 +212,12 @@ const Accuracy& Planar::accuracy() const { return core_->settings.accuracy; }
 std::string Planar::describe_accuracy() const {
   const Accuracy& a = accuracy();
   return fmt::format(
-      "{}{}, flat: {} sub-steps of Box2D in an integration step, with {} iterations for velocities and {} "
-      "for positions; {}; single precision at a length unit of {}.",
-      name_of(a.rung), a.custom ? ", with own settings" : "", core_->sub_steps(), core_->velocity_iterations(),
-      core_->position_iterations(),
+      "{}{}, flat: {} sub-steps of Box2D in an integration step{}, with {} iterations for velocities and {} for "
+      "positions; {}; single precision at a length unit of {}. Without meaning here: integrator, tolerance, implicit "
+      "joints and spin, direct solver, contact springs, erp and cfm, workers.",
+      name_of(a.rung), a.custom ? ", with own settings" : "", core_->sub_steps(),
+      core_->longest_step() > 0 ? fmt::format(", of at most {} s each", core_->longest_step()) : "",
+      core_->velocity_iterations(), core_->position_iterations(),
       a.locate_impacts ? "impacts with handlers, and what few bodies there are, at their time of impact"
                        : "impacts with handlers at their time of impact",
       length_unit());

@@ -9,6 +9,15 @@
 
 namespace breve {
 
+// How long a body has been slow, which Box2D shows to nobody: where a template is instantiated by name, private members
+// may be named.
+float& sleep_time(b2Body& body);
+template <auto Member>
+struct SleepDoor {
+  friend float& sleep_time(b2Body& body) { return body.*Member; }
+};
+template struct SleepDoor<&b2Body::m_sleepTime>;
+
 namespace {
 
 using members::Adder;
@@ -33,7 +42,7 @@ void each(const F& f, S& s) {
 }
 template <class F, Is<FlatJoint> J>
 void each(const F& f, J& j) {
-  f(j.owner), f(j.serial), f(j.ring), f(j.position), each(f, j.is), each(f, j.drive);
+  f(j.owner), f(j.serial), f(j.ring), f(j.position), f(j.bend), each(f, j.is), each(f, j.drive);
 }
 template <class F, Is<FlatSpring> S>
 void each(const F& f, S& s) {
@@ -41,7 +50,7 @@ void each(const F& f, S& s) {
 }
 template <class F, Is<FrozenBody> B>
 void each(const F& f, B& b) {
-  f(b.body), f(b.x), f(b.y), f(b.angle), f(b.vx), f(b.vy), f(b.spin), f(b.awake);
+  f(b.body), f(b.x), f(b.y), f(b.angle), f(b.vx), f(b.vy), f(b.spin), f(b.still), f(b.awake);
   f(b.location), f(b.velocity), f(b.turn), f(b.orientation);
 }
 template <class F, Is<WarmContact> C>
@@ -52,6 +61,11 @@ void each(const F& f, C& c) {
 template <class F, Is<FrozenJoint> J>
 void each(const F& f, J& j) {
   f(j.joint), f(j.warm.x), f(j.warm.y), f(j.warm.turn), f(j.warm.motor), f(j.warm.lower), f(j.warm.upper);
+}
+
+template <class F, Is<EnergyWatch> W>
+void each(const F& f, W& w) {
+  f(w.steps), f(w.gain), f(w.kinetic), f(w.turnover), f(w.slack);
 }
 
 namespace {
@@ -158,6 +172,7 @@ Frozen Planar::Core::freeze() {
     one.vy = flat->b2->GetLinearVelocity().y;
     one.spin = flat->b2->GetAngularVelocity();
     one.awake = flat->b2->IsAwake();
+    one.still = sleep_time(*flat->b2);
     one.location = flat->location;
     one.velocity = flat->velocity;
     one.turn = flat->spin;
@@ -206,10 +221,14 @@ void Planar::Core::thaw_contacts() {
   muted = false;
   rethrow();
   set_contacts(frozen->warm, 1);
-  for (const FrozenBody& one : frozen->bodies)
-    if (FlatBody* flat = find(one.body);
-        flat && !flat->fixed && !one.awake && flat->location == bodies->location(one.body))
+  for (const FrozenBody& one : frozen->bodies) {
+    FlatBody* flat = find(one.body);
+    if (!flat || flat->fixed || flat->location != bodies->location(one.body)) continue;
+    if (one.awake)
+      sleep_time(*flat->b2) = one.still;
+    else
       flat->b2->SetAwake(false);
+  }
   frozen.reset();
 }
 
@@ -226,6 +245,7 @@ void Planar::Core::save(ByteWriter& out) {
   out.put(sub_step);
   out.put(refined);
   out.put(calm);
+  each(Writer{out}, watched);
   put_table(out, joints);
   put_free(out, free_joints);
   put_table(out, springs);
@@ -256,6 +276,7 @@ void Planar::Core::load(ByteReader& in) {
   sub_step = in.get<std::uint64_t>();
   refined = in.get<int>();
   calm = in.get<int>();
+  each(Reader{in}, watched);
   if (refined < 0 || refined > 8) ByteReader::fail();
   get_table(in, joints);
   get_free(in, joints, free_joints);
@@ -314,6 +335,7 @@ void Planar::Core::hash(Hasher& hasher) const {
   add(base);
   add(refined);
   add(calm);
+  each(add, watched);
   for (const FlatJoint& joint : joints)
     if (joint.used) each(add, joint);
   for (const FlatSpring& tie : springs)

@@ -8,6 +8,8 @@ namespace breve {
 
 namespace {
 
+constexpr double kMostSteps = 1e6;  // sub-steps of an integration step that a setting may ask for
+
 /// How a rung is spent on Box2D. KEEP IN STEP: docs/physics.md.
 struct Effort {
   int sub_steps, velocity, position;
@@ -32,6 +34,17 @@ int Planar::Core::sub_steps() const {
   return most;
 }
 
+/// s, of a sub-step, if it was set alone; 0: as long as the rung's are. All of the world steps as what has contacts
+/// does.
+double Planar::Core::longest_step() const {
+  const Accuracy &set = settings.accuracy, rung = accuracy_of(set.rung);
+  if (!set.custom) return 0;
+  double longest = 0;
+  for (const auto& [own, usual] : {std::pair{set.step, rung.step}, std::pair{set.contact_step, rung.contact_step}})
+    if (own > 0 && own != usual) longest = longest > 0 ? std::min(longest, own) : own;
+  return longest;
+}
+
 int Planar::Core::velocity_iterations() const {
   if (settings.fast_contacts > 0) return settings.fast_contacts;
   return settings.accuracy.custom ? settings.accuracy.iterations : effort_of(settings.accuracy.rung).velocity;
@@ -49,20 +62,25 @@ void Planar::Core::advance(DynamicsClient& asked, double start, double h) {
   sync();
   if (!b2) return;
   int count = sub_steps() << refined;
-  if (settings.accuracy.custom && settings.accuracy.step > 0)
-    count = std::max(count, static_cast<int>(std::ceil(h / settings.accuracy.step - 1e-9)));
-  for (int i = 0; i < count; ++i) {
+  if (const double longest = longest_step(); longest > 0)
+    count = std::max(count, static_cast<int>(std::min(std::ceil(h / longest - 1e-9), kMostSteps)));
+  const Balance before = balance();
+  pushed = 0;
+  for (int i = 0; i < count && b2; ++i) {
     // Box2D moves nothing further than two units or a quarter turn in one step: what is faster needs more of them.
     const double dt = h / count;
     const auto parts = static_cast<int>(plan_parts(dt));
-    for (int k = 0; k < parts; ++k) {
+    for (int k = 0; k < parts && b2; ++k) {
       now = start + (i + static_cast<double>(k) / parts) * dt;
       run(dt / parts);
     }
   }
+  if (!b2) return;  // a handler set another length unit
   write_back_all();
+  const bool wrong = watch_energy(before, start + h);
   report_lasting(start + h);
-  watch(start + h);
+  if (!b2) return;
+  watch(start + h, wrong);
   counters.sleeping = 0;
   for (const FlatBody& flat : slots) counters.sleeping += flat.body != kNoBody && !flat.fixed && !flat.b2->IsAwake();
   counters.interventions = interventions.size();
@@ -74,24 +92,22 @@ double Planar::Core::plan_parts(double dt) {
   const b2Vec2 gravity = to_b2(settings.gravity);
   b2->SetGravity(gravity);
   const double fall = gravity.Length();
-  // Where bodies may sleep, what creeps or rolls among others at ten times the speed at which Box2D lets it sleep, or
-  // slower, is braked: a disc has no friction against rolling, and one that rolls keeps a whole heap awake.
-  constexpr float kDrowsy = 10 * b2_linearSleepTolerance, kDrowsyTurn = 10 * b2_angularSleepTolerance,
-                  kBrake = 2;  // 1/s
+  // Ten times the speed at which Box2D lets a body sleep.
+  constexpr float kDrowsy = 10 * b2_linearSleepTolerance, kDrowsyTurn = 10 * b2_angularSleepTolerance;
   double parts = 1;
   awake = 0;
-  for (const FlatBody& flat : slots) {
+  for (FlatBody& flat : slots) {
     if (flat.body == kNoBody || flat.fixed || !flat.b2->IsAwake()) continue;
     ++awake;
     const double pull = flat.has_force ? flat.force.norm() / (flat.mass.mass * settings.unit) : 0;
     const double way = (flat.b2->GetLinearVelocity().Length() + (fall + pull) * dt) * dt;
     const double turn = std::abs(flat.b2->GetAngularVelocity()) * dt;
+    // Beyond single precision no number of sub-steps helps: the guard sees what becomes of it.
+    if (!std::isfinite(static_cast<float>(way + turn))) continue;
     parts = std::max({parts, std::ceil(way / kTravel), std::ceil(turn / kTurn)});
-    const bool drowsy = settings.sleeping && flat.touching > 0 && !flat.jointed &&
-                        flat.b2->GetLinearVelocity().Length() < kDrowsy &&
-                        std::abs(flat.b2->GetAngularVelocity()) < kDrowsyTurn;
-    flat.b2->SetAngularDamping(drowsy ? kBrake : 0);
-    flat.b2->SetLinearDamping(drowsy ? kBrake : 0);
+    if (settings.sleeping)
+      flat.drowsy = flat.touching > 0 && !flat.jointed && flat.b2->GetLinearVelocity().Length() < kDrowsy &&
+                    std::abs(flat.b2->GetAngularVelocity()) < kDrowsyTurn;
     // What moves more than half its width is to meet what moves, too.
     flat.b2->SetBullet(way > flat.thickness);
   }
@@ -109,23 +125,31 @@ void Planar::Core::run(double dt) {
   located = 0;
   step_length = dt;
   double left = dt;
-  int handled = 0;
-  Hit hit;
+  int waited = 0;  // met for handlers and stops
+  bool bounce = true;
   while (left > 0 && b2) {
-    const bool found = find_hit(left, hit);
+    Hit hit;
+    bool found = find_hit(left, hit);
+    found = find_stop(left, found, hit);
     if (!found) break;
-    if (hit.handled && ++handled > settings.accuracy.impacts) {
-      intervene(of(hit.a->GetBody()).body, GuardReason::Impacts, handled, now, GuardAction::Reported);
+    const bool stop = hit.stop != kNoJoint;
+    if ((hit.handled || stop) && ++waited > settings.accuracy.impacts) {
+      intervene(stop ? joints[hit.stop].is.child : of(hit.a->GetBody()).body, GuardReason::Impacts, waited, now,
+                GuardAction::Reported);
+      bounce = false;
       break;
     }
-    if (!hit.handled) ++located;
+    if (!hit.handled && !stop) ++located;
     const double t = std::min(hit.t, left);
     if (t > 0) step(t);
     left -= t;
     now += t;
-    deliver(hit, now);
+    if (stop)
+      rebound(hit.stop);
+    else
+      deliver(hit, now);
   }
-  if (left > 0 && b2) step(left);
+  if (left > 0 && b2) step(left, bounce);
   now += left;
 }
 
@@ -133,11 +157,13 @@ void Planar::Core::run(double dt) {
 void Planar::Core::kick(double dt) {
   friction = 0;
   for (FlatJoint& joint : joints)
-    if (joint.used && joint.drive.strength_limit > 0) joint.rate = joint_rate(joint);
+    if (joint.used && (joint.drive.strength_limit > 0 || joint.drive.limit_restitution > 0))
+      joint.rate = joint_rate(joint);
   const b2Vec2 gravity = b2->GetGravity();
   for (FlatBody& flat : slots) {
     flat.kicked = false;
     if (flat.body == kNoBody || flat.fixed) continue;
+    flat.at = flat.b2->GetWorldCenter();
     flat.before = flat.b2->GetLinearVelocity();
     flat.before_spin = flat.b2->GetAngularVelocity();
     if (!flat.free_flight() || !flat.b2->IsAwake()) continue;
@@ -154,6 +180,26 @@ void Planar::Core::kick(double dt) {
   }
 }
 
+/// Where bodies may sleep, a heap of discs would roll on in itself for ever, as nothing resists rolling. So two bodies
+/// that both move, slowly, and touch with friction turn against each other ever less. Nothing that rolls or slides on
+/// what does not move feels it, momentum stays, and what is lost is written down as friction.
+void Planar::Core::resist_rolling(double dt) {
+  if (!settings.sleeping) return;
+  constexpr double kRate = 2;  // 1/s
+  const double part = -std::expm1(-kRate * dt), u = settings.unit;
+  for (b2Contact* contact = b2->GetContactList(); contact; contact = contact->GetNext()) {
+    if (!contact->IsTouching() || !(contact->GetFriction() > 0)) continue;
+    FlatBody &a = of(contact->GetFixtureA()->GetBody()), &b = of(contact->GetFixtureB()->GetBody());
+    if (a.fixed || b.fixed || !a.drowsy || !b.drowsy || !a.b2->IsAwake() || !b.b2->IsAwake()) continue;
+    const double ia = a.mass.inertia(2, 2), ib = b.mass.inertia(2, 2);
+    const double turns = double{b.b2->GetAngularVelocity()} - a.b2->GetAngularVelocity();
+    const double impulse = part * turns / (1 / ia + 1 / ib);
+    a.b2->ApplyAngularImpulse(static_cast<float>(impulse / (u * u)), false);
+    b.b2->ApplyAngularImpulse(static_cast<float>(-impulse / (u * u)), false);
+    account.friction_loss += impulse * turns * (1 - part / 2);
+  }
+}
+
 /// Box2D starts from the impulses of the last step, times the ratio of their lengths. What stops an approach in a short
 /// step would be multiplied by much in the next: while steps are cut, each starts from the last that was not.
 void Planar::Core::start_warm(double dt) {
@@ -167,14 +213,20 @@ void Planar::Core::start_warm(double dt) {
   if (whole) kept.reset();
 }
 
-void Planar::Core::step(double dt) {
+void Planar::Core::step(double dt, bool bounce) {
   start_warm(dt);
   apply_forces(dt);
+  set_stops(bounce);
+  resist_rolling(dt);
   kick(dt);
   stepping = true;
   b2->Step(static_cast<float>(dt), velocity_iterations(), position_iterations());
   stepping = false;
   end_account(dt);
+  constexpr double kTooShort = 0.1;  // of a sub-step: single precision tells nothing of what changed in it
+  for (FlatJoint& joint : joints)
+    if (joint.used && joint.drive.limit_restitution > 0 && dt >= kTooShort * step_length)
+      joint.bend = (joint_rate(joint) - joint.rate) / dt;
   last_step = static_cast<float>(dt);
   ++sub_step;
   ++counters.sub_steps;

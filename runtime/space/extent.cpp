@@ -63,15 +63,20 @@ void Extent::bring_inside(Vector3& location, Vector3& velocity) const {
 }
 
 Vector3 Extent::offset(const Vector3& from, const Vector3& to) const {
-  Vector3 way = to - from;
-  if (!wraps_) return way;
+  const Vector3 way = to - from;
+  return wraps_ ? Vector3(way + image(from, to)) : way;
+}
+
+Vector3 Extent::image(const Vector3& from, const Vector3& to) const {
+  Vector3 shift = Vector3::Zero();
+  if (!wraps_) return shift;
   for (int i = 0; i < 3; ++i) {
     const Axis& a = axis(i);
     if (a.edge != Ending::Wrap) continue;
-    const double length = a.high - a.low;
-    if (std::abs(way[i]) > 0.5 * length) way[i] -= length * std::round(way[i] / length);
+    const double length = a.high - a.low, way = to[i] - from[i];
+    if (std::abs(way) > 0.5 * length) shift[i] = -length * std::round(way / length);
   }
-  return way;
+  return shift;
 }
 
 void Extent::save(ByteWriter& out) const {

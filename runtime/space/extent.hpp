@@ -36,6 +36,9 @@ class Extent {
   /// The shortest way from one place to another, across edges that wrap; of two equally short ones any, but the way
   /// back is its opposite.
   Vector3 offset(const Vector3& from, const Vector3& to) const;
+  /// What is to be added to `to` for that: whole lengths of space along axes that wrap.
+  Vector3 image(const Vector3& from, const Vector3& to) const;
+  friend bool operator==(const Extent&, const Extent&) = default;
 
   void save(ByteWriter& out) const;
   void load(ByteReader& in);  // Error{Image}

@@ -32,6 +32,8 @@ constexpr std::array<Words, static_cast<std::size_t>(EffectId::kCount)> kWords{{
     {"sleeping", "bodies at rest may sleep"},
     {"bounds", "space wraps or has walls along an axis"},
     {"energy ledger", "a body is physics-enabled: what moves it is written down"},
+    {"patches", "a grid of cells was made"},
+    {"diffusion", "numbers over a grid were to diffuse or react"},
 }};
 
 }  // namespace

@@ -34,6 +34,8 @@ enum class EffectId : std::uint8_t {
   Sleeping,
   Bounds,
   EnergyLedger,
+  Patches,
+  Diffusion,
   kCount
 };
 

@@ -40,6 +40,7 @@ struct World::Parts final : CollisionClient, DynamicsClient, InMemory {
   ObjectId who_asked(EffectId effect) const;
   void count_dynamics();
   void bring_inside();
+  bool bring_assembly(BodyIndex body);
 
   // --- CollisionClient ----------------------------------------------------------------------------------------------
   bool takes_part(BodyIndex body) const override;

@@ -1,6 +1,7 @@
 // One iteration of a world, and the stages of a sub-step within it (DESIGN 4, CLASSES 2.1 and 2.2).
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "runtime/base/error.hpp"
@@ -242,11 +243,49 @@ void World::Parts::bring_inside() {
     for (const BodyIndex body : bodies.translating_bodies()) brought += bring(body) ? 1U : 0U;
   if (bodies.rigid() == 0) return;
   for (const BodyIndex body : bodies.rigid_bodies()) {
-    // A machine of joints would be torn apart, or turned as one solid: it is left to real walls.
-    if (space.holds(bodies.location(body)) || !dynamics->joints_of(body).empty() || !bring(body)) continue;
-    dynamics->moved(body);
-    ++brought;
+    if (space.holds(bodies.location(body))) continue;
+    if (!dynamics->joints_of(body).empty()) {
+      brought += bring_assembly(body) ? 1U : 0U;
+    } else if (bring(body)) {
+      dynamics->moved(body);
+      ++brought;
+    }
   }
+}
+
+/// Bodies that joints connect come back as one when the first of them, in the order of indices, has left: all are moved
+/// by the same way. A wall turns the velocity of their centre of mass, and leaves how they move about it. What hangs on
+/// the world, or on something that does not move, stays where it is.
+bool World::Parts::bring_assembly(BodyIndex body) {
+  Bodies& bodies = *world->bodies_;
+  const std::pmr::vector<BodyIndex> links = dynamics->links_of(body);
+  const auto moves = [&bodies](BodyIndex one) { return one != kNoBody && bodies.dynamic(one); };
+  if (*std::find_if(links.begin(), links.end(), moves) != body || !bodies.location(body).allFinite()) return false;
+  for (const JointIndex joint : dynamics->joints_of(body)) {
+    const JointDescription& is = dynamics->joint(joint);
+    if (!moves(is.parent) || !moves(is.child)) return false;
+  }
+  Vector3 location = bodies.location(body), turned = Vector3::Ones();
+  space.bring_inside(location, turned);
+  dynamics->move_assembly(body, location, bodies.orientation(body));
+  double mass = 0;
+  Vector3 momentum = Vector3::Zero();
+  for (const BodyIndex link : links) {
+    const Vector3 arm = bodies.orientation(link) * bodies.mass_properties(link).center_of_mass;
+    mass += bodies.mass(link);
+    momentum += bodies.mass(link) * (bodies.velocity(link) + bodies.rotational_velocity(link).cross(arm));
+  }
+  // Only what goes on outward is thrown back: a limb may have swung the first body out.
+  const Vector3 speed = momentum / mass;
+  Vector3 change = Vector3::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const bool inward = (location[i] - space.axis(i).low < space.axis(i).high - location[i]) == (speed[i] > 0);
+    if (turned[i] < 0 && !inward) change[i] = -2 * speed[i];
+  }
+  if (change == Vector3::Zero()) return true;
+  for (const BodyIndex link : links) bodies.set_velocity(link, bodies.velocity(link) + change);
+  dynamics->take_changes();
+  return true;
 }
 
 ObjectId World::Parts::who_asked(EffectId effect) const {
@@ -274,7 +313,8 @@ void World::Parts::rebuild_stages(std::uint32_t signature) {
     stages.push_back({EffectId::Collision,
                       [](World::Parts& p, double) {
                         p.collisions.begin(
-                            p, p.handlers.revision() + p.dynamics->rules() + p.world->bodies_->physics_revision());
+                            p, p.handlers.revision() + p.dynamics->rules() + p.world->bodies_->physics_revision(),
+                            p.space);
                       },
                       [](const World::Parts&) { return std::size_t{0}; }});
   }
@@ -336,8 +376,14 @@ Vector3 World::Parts::stage_force(BodyIndex body, double time, std::uint64_t dra
 
 std::uint64_t World::Parts::serial(BodyIndex body) const { return objects.at(world->bodies_->owner(body)).serial; }
 
-void World::Parts::touched(BodyIndex a, BodyIndex b, const Contact& contact, double moment) {
+void World::Parts::touched(BodyIndex a, BodyIndex b, const Contact& found, double moment) {
   if (!world->behaviour_) return;
+  Contact contact = found;
+  if (world->dimension() == 2) {
+    // Solids that meet along edges across the plane have a point anywhere on them.
+    contact.point.z() = contact.normal.z() = 0;
+    contact.normal.stableNormalize();
+  }
   const ObjectId first = world->bodies_->owner(a);
   const ObjectId second = world->bodies_->owner(b);
   const ClassId first_class = objects.at(first).cls;

@@ -271,4 +271,12 @@ void World::queue_input(InputEvent event) {
 
 const Effects& World::effects() const { return parts_->effects; }
 
+StageScope World::work(EffectId id, ObjectId asked_by, std::uint64_t items) {
+  Effect& effect = parts_->effects[id];
+  parts_->effects.turn_on(id, clock_.iteration, asked_by);
+  ++effect.calls;
+  effect.items += items;
+  return {effect, observer_};
+}
+
 }  // namespace breve

@@ -153,6 +153,9 @@ class World : public InMemory {
 
   // --- what it cost, what it is --------------------------------------------------------------------------------------
   const Effects& effects() const;
+  /// What scripts call for by themselves, patches and diffusion: `items` are added, and the time until the end of the
+  /// scope that keeps the result.
+  StageScope work(EffectId id, ObjectId asked_by, std::uint64_t items);
   std::uint64_t hash() const;
   /// The whole world with its script side, as a checked, versioned image. Error{Busy} inside a step.
   std::pmr::vector<std::uint8_t> save(std::uint64_t program_fingerprint) const;

@@ -57,6 +57,10 @@ constexpr std::array kSettings = {setting<&Accuracy::step>("step"),
                                   setting<&Accuracy::contact_stiffness>("contact-stiffness"),
                                   setting<&Accuracy::contact_damping>("contact-damping")};
 
+/// What a flat world goes by; the others are of integrators and solvers that it has not.
+constexpr std::array<std::string_view, 5> kFlatSettings = {"step", "contact-step", "iterations", "impacts",
+                                                           "locate-impacts"};
+
 const Setting& setting_named(std::string_view name, std::string_view selector) {
   std::string names;
   for (const Setting& one : kSettings) {
@@ -72,6 +76,11 @@ void set_setting(Machine& machine, Instance&, Text name, double value) {
   finite(value, "set-accuracy-setting: the value");
   if (std::abs(value) > 1e9)
     throw Error(ErrorCode::Argument, "set-accuracy-setting: " + std::to_string(value) + " is too large");
+  if (std::find(kFlatSettings.begin(), kFlatSettings.end(), one.name) == kFlatSettings.end())
+    warn_if_flat(machine, one.name,
+                 "the accuracy setting '" + std::string(one.name) +
+                     "' means nothing in a flat world: set-accuracy chooses its sub-steps, and the settings step, "
+                     "contact-step, iterations, impacts and locate-impacts can be set alone");
   Accuracy accuracy = dynamics_of(machine).accuracy();
   one.set(accuracy, value);
   accuracy.custom = true;
@@ -92,6 +101,9 @@ void set_integrator(Machine& machine, Instance&, Text name) {
   for (std::size_t i = 0; i < kIntegrators.size(); ++i) {
     names += (names.empty() ? "" : ", ") + std::string(kIntegrators[i]);
     if (kIntegrators[i] != view(name)) continue;
+    warn_if_flat(machine, "integrator",
+                 "set-integrator means nothing in a flat world: set-accuracy chooses how many sub-steps it takes, and "
+                 "set-accuracy-setting named \"step\" the longest one");
     Accuracy accuracy = dynamics_of(machine).accuracy();
     accuracy.scheme = static_cast<articulated::Scheme>(i);
     accuracy.custom = true;
@@ -119,6 +131,10 @@ void set_workers(Machine& machine, Instance&, std::int32_t workers) {
   constexpr std::int32_t kMost = 256;
   if (workers < 1 || workers > kMost)
     throw Error(ErrorCode::Argument, "set-workers: " + std::to_string(workers) + " is not between 1 and 256");
+  if (workers > 1)
+    warn_if_flat(machine, "workers",
+                 "set-workers means nothing in a flat world: it is computed by one thread; run several worlds side by "
+                 "side instead");
   dynamics_of(machine).set_workers(workers);
 }
 
@@ -152,6 +168,10 @@ void set_sleeping(Machine& machine, Instance&) {
 
 /// Where contacts are solved exactly nothing reads the softness.
 void say_if_ignored(Machine& machine) {
+  warn_if_flat(machine, "softness",
+               "set-erp and set-cfm mean nothing in a flat world: contacts are rigid and rest with an overlap of 0.005 "
+               "length units (set-length-unit); a Spring is soft");
+  if (dynamics_of(machine).dimension() == 2) return;
   if (dynamics_of(machine).accuracy().direct)
     machine.warn_once("control.softness",
                       "set-erp and set-cfm are ignored where contacts are solved exactly; they are for the iterative "

@@ -117,6 +117,7 @@ void grid_apply_rule(Machine& machine, Instance& self, std::int32_t born, std::i
   constexpr std::size_t kCellsPerTurn = 64;  // what takes about as long as a turn of a script's loop
   for (std::int32_t i = 0; i < times; ++i) {
     machine.charge(1 + resource.grid->cells() / kCellsPerTurn);
+    const StageScope timed = machine.world().work(EffectId::Patches, self.id, resource.grid->cells());
     resource.states.step(*resource.grid, resource.neighborhood, rule, resource.order, machine.world().random());
   }
 }
@@ -194,6 +195,7 @@ void grid_update_states(Machine& machine, Instance& self, StringCell* name) {
                                                    "' with 2 keywords (state, neighbors) or 5 (and x, y, z)");
   const Pin pin(machine, Value::of(Tag::Object, &self));
   Update update(machine, self, "update-states");
+  const StageScope timed = machine.world().work(EffectId::Patches, self.id, update.cells());
   std::span<const std::uint8_t> counts;
   {
     GridResource& resource = own_grid(machine, self);
@@ -222,6 +224,7 @@ void grid_update_states(Machine& machine, Instance& self, StringCell* name) {
 void grid_update_patches(Machine& machine, Instance& self, StringCell* name) {
   const Pin pin(machine, Value::of(Tag::Object, &self));
   Update update(machine, self, "update-patches");
+  const StageScope timed = machine.world().work(EffectId::Patches, self.id, update.cells());
   update.begin();
   const std::string method(view(name));
   for (std::size_t i = 0; i < update.cells(); ++i) {

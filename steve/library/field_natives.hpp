@@ -20,6 +20,11 @@ inline Field& own_field(Machine& machine, Instance& self) { return field_of(mach
 
 namespace fields {
 
+/// Counts and times one pass over a field as the effect `diffusion`.
+inline StageScope diffusing(Machine& machine, const Instance& self, const Field& field) {
+  return machine.world().work(EffectId::Diffusion, self.id, field.size());
+}
+
 inline void set_all_values(Machine& machine, Instance& self, double value) { own_field(machine, self).fill(value); }
 inline double get_absolute_sum(Machine& machine, Instance& self) { return own_field(machine, self).absolute_sum(); }
 inline void add_scalar(Machine& machine, Instance& self, double value) { own_field(machine, self).add_scalar(value); }
@@ -43,11 +48,15 @@ inline void add_product(Machine& machine, Instance& self, Instance* first, Insta
 }
 
 inline void diffuse_in_place(Machine& machine, Instance& self, double factor) {
-  own_field(machine, self).spread(factor);
+  Field& field = own_field(machine, self);
+  const StageScope timed = diffusing(machine, self, field);
+  field.spread(factor);
 }
 
 inline void diffuse_periodically(Machine& machine, Instance& self, double factor) {
-  own_field(machine, self).spread_periodic(factor);
+  Field& field = own_field(machine, self);
+  const StageScope timed = diffusing(machine, self, field);
+  field.spread_periodic(factor);
 }
 
 /// Takes the other's size as well.
@@ -58,11 +67,15 @@ inline void copy(Machine& machine, Instance& self, Instance* other) {
 }
 
 inline void compute_diffusion(Machine& machine, Instance& self, Instance* source, double factor) {
-  own_field(machine, self).diffuse(field_of(machine, source, "compute-diffusion-matrix"), factor);
+  Field& field = own_field(machine, self);
+  const StageScope timed = diffusing(machine, self, field);
+  field.diffuse(field_of(machine, source, "compute-diffusion-matrix"), factor);
 }
 
 inline void compute_periodic_diffusion(Machine& machine, Instance& self, Instance* source, double factor) {
-  own_field(machine, self).diffuse_periodic(field_of(machine, source, "compute-periodic-diffusion-matrix"), factor);
+  Field& field = own_field(machine, self);
+  const StageScope timed = diffusing(machine, self, field);
+  field.diffuse_periodic(field_of(machine, source, "compute-periodic-diffusion-matrix"), factor);
 }
 
 inline void transform(Machine& machine, Instance& self, Instance* matrix, Instance* result) {

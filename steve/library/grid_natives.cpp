@@ -26,6 +26,7 @@ Instance* grid_make(Machine& machine, Instance& self, std::int32_t nx, std::int3
                     Vector3 location, Vector3 size, StringCell* patch_class) {
   const bool code = has_code(machine, view(patch_class));
   const Grid grid({nx, ny, nz}, is_library_kind(self, "PatchToroid"), location, size);
+  const StageScope timed = machine.world().work(EffectId::Patches, self.id, grid.cells());
   std::pmr::memory_resource* memory = machine.heap().memory();
   auto made = make_in<GridResource>(memory, memory);
   made->grid = grid;
@@ -75,6 +76,17 @@ ListCell* grid_get_patches(Machine& machine, Instance& self) {
   for (CellIndex cell = 0; cell < cells; ++cell)
     if (Instance* patch = patch_of(machine, self, cell)) machine.heap().push(*list, Value::of(Tag::Object, patch));
   return list;
+}
+
+/// `all` asks for the objects of a class: cells whose objects would be of it have them from now on.
+void grid_make_patches_of(Machine& machine, Instance& self, StringCell* name) {
+  const GridResource* resource = resource_of<GridResource>(machine, &self);
+  const ClassInfo* wanted = machine.program().find_class(view(name));
+  const Slot* own = library_slot(machine, self, "PatchGrid", "patchClass");
+  const ClassInfo* cls = own->ref ? machine.program().find_class(view(static_cast<StringCell*>(own->ref))) : nullptr;
+  if (!resource || !resource->grid || !wanted || !cls || !cls->derives_from(*wanted)) return;
+  const auto cells = static_cast<CellIndex>(resource->grid->cells());
+  for (CellIndex cell = 0; cell < cells; ++cell) patch_of(machine, self, cell);
 }
 
 template <int (Grid::*Count)() const>
@@ -153,6 +165,7 @@ constexpr Native kGridNatives[] = {
     native<grid_make>("patch-grid.make"),
     native<grid_rebuild>("patch-grid.rebuild"),
     native<grid_free_patches>("patch-grid.free-patches"),
+    native<grid_make_patches_of>("patch-grid.make-patches"),
     native<grid_get_patch_at>("patch-grid.get-patch-at"),
     native<grid_get_patch>("patch-grid.get-patch"),
     native<grid_get_patches>("patch-grid.get-patches"),

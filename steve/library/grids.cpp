@@ -3,6 +3,7 @@
 
 #include "steve/compile/program.hpp"
 #include "steve/library/joints.hpp"
+#include "steve/library/resources.hpp"
 
 namespace breve::steve {
 
@@ -117,6 +118,16 @@ const ClassInfo& class_named(Machine& machine, std::string_view name) {
 }
 
 }  // namespace
+
+Field* chemical_field(Machine& machine, Instance& grid, Instance& chemical) {
+  const Slot* all = library_slot(machine, grid, "PatchGrid", "gridConcentrations");
+  if (!all || !all->ref) return nullptr;
+  const auto& hash = *static_cast<const HashCell*>(all->ref);
+  const Value* found = machine.heap().find(hash, Value::of(Tag::Object, &chemical));
+  if (!found || found->tag != Tag::Object || !found->object() || !found->object()->live()) return nullptr;
+  auto* resource = resource_of<FieldResource>(machine, found->object());
+  return resource && resource->field ? &*resource->field : nullptr;
+}
 
 bool has_code(Machine& machine, std::string_view patch_class) {
   bool code = false;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/patches/cell_states.hpp"
+#include "runtime/patches/field.hpp"
 #include "runtime/patches/grid.hpp"
 #include "runtime/patches/occupants.hpp"
 #include "runtime/world/resource.hpp"
@@ -52,6 +53,9 @@ CellIndex cell_in(const GridResource& resource, std::int32_t x, std::int32_t y, 
 
 /// The Patch object of a cell, made if this is the first time; null if it was freed.
 Instance* patch_of(Machine& machine, Instance& grid, CellIndex cell);
+
+/// The matrix of a chemical that a grid tracks; null if it does not.
+Field* chemical_field(Machine& machine, Instance& grid, Instance& chemical);
 
 /// Does a class of patches have variables or methods of its own, so that its objects cannot be made later?
 /// @throws RunError{UnknownClass}, Error{Argument} if there is no such class or it is no Patch

@@ -26,6 +26,11 @@ inline Instance& must_live(Instance* object, std::string_view what) {
 }
 
 /// The value itself. @throws Error{Argument} "`what` must be finite"
+/// Once for each setting: in a flat world it means nothing, and `text` says what does.
+inline void warn_if_flat(Machine& machine, std::string_view setting, std::string_view text) {
+  if (machine.world().dimension() == 2) machine.warn_once("flat:" + std::string(setting), text);
+}
+
 inline double finite(double value, std::string_view what) {
   if (!std::isfinite(value)) throw Error(ErrorCode::Argument, std::string(what) + " must be finite");
   return value;

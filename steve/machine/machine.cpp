@@ -126,7 +126,10 @@ Instance* Machine::create(const ClassInfo& cls) {
     }
   } catch (...) {
     if (controller_ == instance) controller_ = nullptr;
-    if (instance->live()) forget(*instance);
+    if (instance->live()) {
+      end_native(*instance);
+      forget(*instance);
+    }
     throw;
   }
   return instance;
@@ -143,10 +146,24 @@ void Machine::free_instance(Instance& instance) {
     if (instance.cls->destroy) call_guarded(instance, *instance.cls->destroy, {}, ignored);
     for (const auto* method : instance.cls->delete_chain) call_guarded(instance, *method, {}, ignored);
   } catch (...) {
+    end_native(instance);
     forget(instance);  // cut short by the budget or by the end of memory: it is gone all the same
     throw;
   }
   forget(instance);
+}
+
+/// An object that goes without its `delete` methods: those that are native take no arguments and run no script, and
+/// undo what native code keeps of it elsewhere (a cell that it stands on).
+void Machine::end_native(Instance& instance) noexcept {
+  for (const auto* method : instance.cls->delete_chain) {
+    if (!method->native) continue;
+    try {
+      Value ignored;
+      method->native(*this, instance, nullptr, ignored);
+    } catch (...) {  // it had nothing to undo
+    }
+  }
 }
 
 void Machine::forget(Instance& instance) {

@@ -332,6 +332,8 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   std::string describe(Instance& instance);
   Value make_many(const Value& count, const ClassInfo& cls);
   ListCell* all_of(const ClassInfo& cls);
+  void make_cells_of(const ClassInfo& cls);
+  void end_native(Instance& instance) noexcept;
   void free_value(const Value& value);
   void sort(ListCell& list, Symbol method, Instance& self);
   bool comes_before(Instance& self, const MethodInfo& method, const Value& a, const Value& b);

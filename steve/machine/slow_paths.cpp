@@ -188,7 +188,23 @@ Value Machine::make_many(const Value& count, const ClassInfo& cls) {
   return Value::of(Tag::List, list);
 }
 
+/// A grid makes the object of a plain cell when a program asks for it, and `all` asks for all of them.
+void Machine::make_cells_of(const ClassInfo& cls) {
+  const ClassInfo *grids = program_->find_class("PatchGrid"), *patches = program_->find_class("Patch");
+  if (!grids || !patches || !(cls.derives_from(*patches) || patches->derives_from(cls))) return;
+  std::pmr::vector<ObjectId> found(heap_->memory());
+  for (const auto id : world_.objects())
+    if (program_->cls(world_.class_of(id)).derives_from(*grids)) found.push_back(id);
+  if (found.empty()) return;
+  const Value name = Value::of(Tag::String, heap_->string(cls.name));
+  const Pin pin(*this, name);
+  for (const auto id : found)
+    if (Instance* grid = instance(id); grid && find_method(*grid->cls, "make-patches", 1))
+      call(*grid, "make-patches", {&name, 1});
+}
+
 ListCell* Machine::all_of(const ClassInfo& cls) {
+  make_cells_of(cls);
   auto* list = heap_->list();
   for (const auto id : world_.objects()) {
     if (!program_->cls(world_.class_of(id)).derives_from(cls)) continue;

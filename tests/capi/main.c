@@ -55,6 +55,7 @@ void reentry_all_suite(void);
 void reload_suite(void);
 void snapshot_suite(void);
 void flat_suite(void);
+void grids_suite(void);
 void solid_suite(void);
 void stepping_suite(void);
 void threads_suite(void);
@@ -80,6 +81,7 @@ static const struct {
     {"reload", reload_suite},
     {"snapshot", snapshot_suite},
     {"flat", flat_suite},
+    {"grids", grids_suite},
     {"solid", solid_suite},
     {"stepping", stepping_suite},
     {"threads", threads_suite},

@@ -255,6 +255,14 @@ static breve_status do_springs(place* p) {
   TRY(breve_object_free(w, description.from));
   return breve_object_free(w, description.to);
 }
+static breve_status do_grids(place* p) { /* the controller is no grid */
+  uint32_t counts[3];
+  double value = 0;
+  size_t count;
+  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_grid_size(p->world, p->controller, counts));
+  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_grid_read(p->world, p->controller, p->ball, &value, 1, &count));
+  return breve_grid_write(p->world, p->controller, p->ball, &value, 1);
+}
 static breve_status do_accuracy(place* p) {
   breve_world* w = p->world;
   breve_accuracy accuracy;
@@ -310,6 +318,7 @@ static const struct {
     {"breve_object_set_physics and so on", do_bodies, WORKS, WORKS},
     {"breve_joint_create and so on", do_joints, WORKS, WORKS},
     {"breve_spring_create and so on", do_springs, WORKS, WORKS},
+    {"breve_grid_size and so on", do_grids, NOTHING, NOTHING},
     {"breve_world_accuracy and so on", do_accuracy, WORKS, WORKS},
     {"breve_value_text", do_text, WORKS, WORKS},
     {"breve_list_create and so on", do_list, WORKS, WORKS},

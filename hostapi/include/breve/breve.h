@@ -801,7 +801,9 @@ BREVE_API breve_status breve_rung_named(const char* name, breve_rung* rung);
 
 BREVE_API breve_status breve_world_accuracy(const breve_world* world, breve_accuracy* accuracy);
 
-/* BREVE_OK; BREVE_ERROR_ARGUMENT: a setting is not finite, negative, or 0 where there must be something. */
+/* Of a flat world the rung, step, contact_step, iterations, impacts and locate_impacts act; the others are of integrators
+   and solvers that it has not, and are kept without effect.
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a setting is not finite, negative, or 0 where there must be something. */
 BREVE_API breve_status breve_world_set_accuracy(breve_world* world, const breve_accuracy* accuracy);
 
 /* What a world's settings mean, in words; owned by the world until the next call of this function on it. */
@@ -825,8 +827,10 @@ typedef enum breve_edge {
   BREVE_EDGE_WALL = 2  /* it ends at walls that reflect the centres of bodies */
 } breve_edge;
 
-/* Set how space goes on along one axis. At the end of each sub-step kinematic bodies that move, and bodies with physics
-   that have no joints, are brought inside; collisions do not reach across edges. Runs no script.
+/* Set how space goes on along one axis. At the end of each sub-step kinematic bodies that move, and bodies with physics,
+   are brought inside; what joints connect as a whole, by its first body, unless it hangs on the world. Collision handlers
+   of bodies without physics are across edges that wrap; bodies with physics push each other on their own side only. Runs
+   no script.
    @param axis       0, 1, 2 for x, y, z
    @param low, high  m, finite, low < high; not looked at for BREVE_EDGE_OPEN
    BREVE_OK; BREVE_ERROR_ARGUMENT. */
@@ -837,13 +841,32 @@ BREVE_API breve_status breve_world_set_space(breve_world* world, int axis, breve
 BREVE_API breve_status breve_world_space(const breve_world* world, int axis, breve_edge* edge, double* low,
                                          double* high);
 
+/* The cells of a grid along x, y and z.
+   @param grid    an object of class PatchGrid or PatchToroid
+   @param counts  three numbers from 1
+   BREVE_OK; BREVE_ERROR_STALE; BREVE_ERROR_NOT_FOUND: the object is no grid, or init-with has made no cells yet. */
+BREVE_API breve_status breve_grid_size(const breve_world* world, breve_object grid, uint32_t counts[3]);
+/* Copy what there is of a chemical over all cells of a grid, as get-concentration gives it for one. Runs no script.
+   @param chemical  an object that the grid tracks (track)
+   @param values    amount per volume of space, one number for each cell; the cell with the indices x, y, z is at
+                    (x * ny + y) * nz + z. Room for `capacity` numbers; NULL only if capacity is 0
+   @param count     how many cells there are, also where that is more than capacity: at most capacity are written
+   BREVE_OK; BREVE_ERROR_STALE; BREVE_ERROR_NOT_FOUND as breve_grid_size, and if the grid does not track the chemical. */
+BREVE_API breve_status breve_grid_read(const breve_world* world, breve_object grid, breve_object chemical,
+                                       double* values, size_t capacity, size_t* count);
+/* Set what there is of a chemical over all cells, in the same order. Nothing is changed where it fails. Runs no script.
+   @param count  the number of cells
+   As breve_grid_read; BREVE_ERROR_ARGUMENT: a number that is not finite, or another count. */
+BREVE_API breve_status breve_grid_write(breve_world* world, breve_object grid, breve_object chemical,
+                                        const double* values, size_t count);
+
 /* Let bodies that rest sleep. Off at first. */
 BREVE_API breve_status breve_world_set_sleeping(breve_world* world, bool on);
 
 /* Threads that may compute the physics of a world, the caller's among them, 1 to 256; 1 at first. What comes out does
    not depend on it. Islands (bodies that touch or are joined, and what they touch) are shared among them; those with a
    collision handler or a force method are left to the caller's thread. The threads are the process's: no more than it
-   has cores. BREVE_OK; BREVE_ERROR_ARGUMENT: out of this range. */
+   has cores. A flat world is computed by the caller's thread alone. BREVE_OK; BREVE_ERROR_ARGUMENT: out of this range. */
 BREVE_API breve_status breve_world_set_workers(breve_world* world, uint32_t workers);
 
 /* What happens where physics goes wrong. */

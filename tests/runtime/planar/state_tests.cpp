@@ -7,9 +7,10 @@ namespace {
 /// A pile with joints, springs, a motor and handlers.
 struct Zoo : Flat {
   std::vector<ObjectId> boxes;
-  explicit Zoo(Rung rung = Rung::Balanced) : Flat(rung) {
+  explicit Zoo(int count = 12) {
     ground();
-    for (int i = 0; i < 12; ++i) boxes.push_back(rigid(Shape::box({1, 0.6, 1}), 0.3 * (i % 3), 1 + 0.8 * i, 0.1 * i));
+    for (int i = 0; i < count; ++i)
+      boxes.push_back(rigid(Shape::box({1, 0.6, 1}), 0.3 * (i % 3), 1 + 0.8 * i, 0.1 * i));
     const ObjectId wheel = ball(0.5, 6, 3), arm = box(2, 0.2, 7, 3);
     const JointIndex joint = hinge(wheel, arm, {0, 0, 0}, {-1, 0, 0});
     JointDrive drive = physics().drive(joint);
@@ -26,8 +27,13 @@ struct Zoo : Flat {
 };
 
 TEST(PlanarState, TwoWorldsHaveTheSameHashAtEveryStep) {
-  Zoo a, b;
-  for (int i = 0; i < 1000; ++i) {
+  // A ball that no friction stops keeps them all moving.
+  Zoo a(3), b(3);
+  for (Zoo* zoo : {&a, &b}) {
+    const ObjectId ball = zoo->ball(0.4, 2, 9);
+    zoo->material(ball, 0, 1);
+  }
+  for (int i = 0; i < 10'000; ++i) {
     a.world.step();
     b.world.step();
     ASSERT_EQ(a.world.hash(), b.world.hash()) << "after " << i << " steps";
@@ -236,6 +242,28 @@ TEST(PlanarState, SettingsGoOverWhenAWorldBecomesFlatAndABodyWithPhysicsIsTooLat
   Scene late;
   late.world.bodies().set_physics(late.world.body(late.body(1, {0, 0, 0})), true);
   EXPECT_THROW(late.world.flatten(), Error);
+}
+
+TEST(PlanarState, StepsThatAreSetAloneActAndItsWordsSayWhatHasNoMeaning) {
+  const auto sub_steps = [](auto&& set) {
+    Flat flat;
+    flat.ball(0.5, 0, 0);
+    Accuracy accuracy = flat.physics().accuracy();
+    accuracy.custom = true;
+    set(accuracy);
+    flat.physics().set_accuracy(accuracy);
+    flat.world.step();
+    return flat.physics().counters().sub_steps;
+  };
+  EXPECT_EQ(sub_steps([](Accuracy&) {}), 4U);
+  EXPECT_EQ(sub_steps([](Accuracy& a) { a.step = 1e-3; }), 17U);
+  EXPECT_EQ(sub_steps([](Accuracy& a) { a.contact_step = 1e-3; }), 17U);
+  EXPECT_EQ(sub_steps([](Accuracy& a) { a.contact_step = 1e-3, a.step = 1.0 / 3000; }), 50U);
+  EXPECT_EQ(sub_steps([](Accuracy& a) { a.tolerance = 1e-9; }), 4U);
+  Flat flat;
+  const std::string words = flat.physics().describe_accuracy();
+  for (const char* what : {"4 sub-steps", "Without meaning here", "integrator", "erp and cfm", "workers"})
+    EXPECT_NE(words.find(what), std::string::npos) << words;
 }
 
 TEST(PlanarState, BodiesThatComeAndGoTakeTheirEnergyAlong) {

@@ -1,0 +1,142 @@
+// The guard of a flat world: energy from nowhere, numbers that are not finite, and that quiet scenes give no events.
+#include "scene.hpp"
+
+namespace breve::testing {
+namespace {
+
+constexpr GuardMode kModes[] = {GuardMode::Off, GuardMode::Report, GuardMode::Refine, GuardMode::Rest};
+
+struct Guarded : Flat {
+  std::vector<Intervention> all;
+  explicit Guarded(GuardMode mode, Rung rung = Rung::Balanced) : Flat(rung) { physics().set_guard(mode); }
+  void watch(int steps) {
+    for (int i = 0; i < steps; ++i) {
+      world.step();
+      const auto now = physics().interventions();
+      EXPECT_EQ(now.size(), physics().counters().interventions);
+      all.insert(all.end(), now.begin(), now.end());
+    }
+  }
+  int count(GuardReason reason, GuardAction action) const {
+    return static_cast<int>(std::count_if(
+        all.begin(), all.end(), [&](const Intervention& one) { return one.reason == reason && one.action == action; }));
+  }
+  /// A ball on many springs side by side: each is soft enough to act as it stands, all together are not.
+  ObjectId many_springs(int count) {
+    physics().set_gravity(Vector3::Zero());
+    const ObjectId wall = fixed(Shape::box({1, 1, 1}), 0, 0), ball = this->ball(0.5, 3, 0);
+    constexpr double kSoft = 0.45, kStep = 1.0 / 240;
+    SpringDescription spring;
+    spring.a = index(wall);
+    spring.b = index(ball);
+    spring.length = 2.9;
+    spring.strength = kSoft * bodies().mass(index(ball)) / (kStep * kStep);
+    spring.damping = 0;
+    for (int i = 0; i < count; ++i) physics().tie(spring, ball);
+    return ball;
+  }
+};
+
+TEST(PlanarGuard, EnergyFromNowhereIsAnEventAndMoreSubStepsEndIt) {
+  for (const GuardMode mode : kModes) {
+    Guarded flat(mode);
+    const ObjectId ball = flat.many_springs(20);
+    const double start = flat.physics().energy().total();
+    flat.watch(30);
+    EXPECT_EQ(flat.count(GuardReason::Residual, GuardAction::Reported) > 0, mode == GuardMode::Report);
+    EXPECT_EQ(flat.count(GuardReason::Residual, GuardAction::Refined) > 0, mode >= GuardMode::Refine);
+    EXPECT_EQ(flat.count(GuardReason::Residual, GuardAction::Rested), 0);
+    for (const Intervention& one : flat.all) {
+      EXPECT_EQ(one.body, ball);
+      EXPECT_GT(one.value, 0);
+      EXPECT_TRUE(std::isfinite(one.value));
+    }
+    if (mode == GuardMode::Off) {
+      EXPECT_TRUE(flat.all.empty());
+    }
+    if (mode < GuardMode::Refine) continue;
+    EXPECT_LE(flat.all.size(), 4U);
+    EXPECT_GT(flat.physics().counters().sub_steps, 4U);
+    // What it had gained by then it keeps, and no more.
+    const double then = flat.physics().energy().total();
+    flat.watch(200);
+    EXPECT_LT(flat.physics().energy().total(), 1.5 * then + start);
+  }
+}
+
+TEST(PlanarGuard, WhatGainsEvenSoIsPutToRest) {
+  for (const GuardMode mode : {GuardMode::Refine, GuardMode::Rest}) {
+    Guarded flat(mode);
+    const ObjectId ball = flat.many_springs(3000);
+    flat.watch(8);
+    EXPECT_EQ(flat.count(GuardReason::Residual, GuardAction::Rested) > 0, mode == GuardMode::Rest);
+    EXPECT_TRUE(flat.at(ball).allFinite());
+    EXPECT_TRUE(flat.velocity(ball).allFinite());
+  }
+}
+
+TEST(PlanarGuard, ABodyWhoseNumbersAreNoneRestsWhereItWas) {
+  for (const GuardMode mode : {GuardMode::Report, GuardMode::Refine, GuardMode::Rest}) {
+    Guarded flat(mode);
+    flat.physics().set_gravity(Vector3::Zero());
+    const ObjectId ball = flat.ball(0.5, 1, 2), other = flat.ball(0.5, 0, 20);
+    flat.set_velocity(other, {1, 0, 0});
+    flat.bodies().set_force(flat.index(ball), {1e300, 0, 0});
+    flat.watch(3);
+    EXPECT_GT(flat.count(GuardReason::NotFinite, GuardAction::Rested), 0);
+    EXPECT_EQ(flat.at(ball), Vector3(1, 2, 0));
+    EXPECT_EQ(flat.velocity(ball), Vector3(0, 0, 0));
+    EXPECT_NEAR(flat.at(other).x(), 0.05, 1e-4);
+    flat.bodies().set_force(flat.index(ball), {0, 0, 0});
+    flat.set_velocity(ball, {1, 0, 0});
+    flat.run(1);
+    EXPECT_NEAR(flat.at(ball).x(), 2, 1e-4);
+  }
+}
+
+TEST(PlanarGuard, WithoutItANumberThatIsNoneIsAnErrorAndTheWorldGoesOn) {
+  Guarded flat(GuardMode::Off);
+  const ObjectId ball = flat.ball(0.5, 1, 2);
+  flat.bodies().set_force(flat.index(ball), {1e300, 0, 0});
+  EXPECT_THROW(flat.world.step(), Error);
+  EXPECT_EQ(flat.at(ball), Vector3(1, 2, 0));
+  flat.bodies().set_force(flat.index(ball), {0, 0, 0});
+  flat.run(0.5);
+  EXPECT_TRUE(flat.at(ball).allFinite());
+}
+
+TEST(PlanarGuard, QuietScenesGiveNoEvents) {
+  for (const Rung rung : {Rung::Fast, Rung::Balanced, Rung::Precise}) {
+    Guarded flat(GuardMode::Report, rung);
+    flat.ground();
+    for (int i = 0; i < 5; ++i) flat.box(1, 1, 0, 0.5 + i);
+    for (int i = 0; i < 20; ++i) flat.material(flat.ball(0.3, 5 + i, 1 + i % 3), 0.5, 0.1 * (i % 11));
+    ObjectId last;
+    for (int i = 0; i < 4; ++i) {
+      const ObjectId link = flat.box(1, 0.2, -19.5 + i, 10);
+      flat.hinge(last, link, last ? Vector3(0.5, 0, 0) : Vector3(-20, 10, 0), {-0.5, 0, 0});
+      last = link;
+    }
+    flat.watch(600);
+    EXPECT_TRUE(flat.all.empty()) << words_for(flat.all.front().reason) << " on " << name_of(rung) << " at step "
+                                  << flat.all.front().iteration;
+  }
+}
+
+TEST(PlanarGuard, WhatItKnowsIsInAnImage) {
+  Guarded live(GuardMode::Rest);
+  live.many_springs(20);
+  live.watch(2);
+  const auto image = live.world.save(1);
+  Guarded other(GuardMode::Off);
+  other.world.load(image.data(), image.size(), 1);
+  for (int i = 0; i < 60; ++i) {
+    live.world.step();
+    other.world.step();
+    ASSERT_EQ(live.world.hash(), other.world.hash()) << i;
+    ASSERT_EQ(live.physics().interventions().size(), other.physics().interventions().size()) << i;
+  }
+}
+
+}  // namespace
+}  // namespace breve::testing
