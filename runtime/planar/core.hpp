@@ -206,8 +206,9 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   DynamicsCounters counters;
   std::pmr::vector<Intervention> interventions;
   std::pmr::vector<Impact> impacts;
-  Energy account;   // works and losses
-  double base = 0;  // J: total energy when the ledger began, plus what came and went with bodies
+  Energy account;            // works and losses
+  double base = 0;           // J: total energy when the ledger began, plus what came and went with bodies
+  double springs_known = 0;  // J: of springs, at the end of the last step; what differs since then scripts did
   std::pmr::vector<BodyIndex> scratch;
 
   // members.cpp: which bodies Box2D knows

@@ -87,7 +87,7 @@ Energy Planar::Core::stored() const {
 Energy Planar::Core::energy() const {
   Energy sum = stored();
   sum.motor_work = account.motor_work;
-  sum.script_work = account.script_work;
+  sum.script_work = account.script_work + sum.springs - springs_known;
   sum.contact_loss = account.contact_loss;
   sum.friction_loss = account.friction_loss;
   sum.drag_loss = account.drag_loss;

@@ -241,6 +241,7 @@ void Planar::Core::save(ByteWriter& out) {
   each(Writer{out}, settings);
   each(Writer{out}, account);
   out.put(base);
+  out.put(springs_known);
   out.put(next_serial);
   out.put(sub_step);
   out.put(refined);
@@ -272,6 +273,7 @@ void Planar::Core::load(ByteReader& in) {
   if (!(settings.unit >= 1e-9 && settings.unit <= 1e9)) ByteReader::fail();
   each(Reader{in}, account);
   base = in.get<double>();
+  springs_known = in.get<double>();
   next_serial = in.get<std::uint64_t>();
   sub_step = in.get<std::uint64_t>();
   refined = in.get<int>();
@@ -333,6 +335,7 @@ void Planar::Core::hash(Hasher& hasher) const {
   each(add, settings);
   each(add, account);
   add(base);
+  add(springs_known);
   add(refined);
   add(calm);
   each(add, watched);

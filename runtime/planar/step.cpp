@@ -61,6 +61,8 @@ void Planar::Core::advance(DynamicsClient& asked, double start, double h) {
   now = start;
   sync();
   if (!b2) return;
+  // Springs that scripts tied, changed or stretched meanwhile.
+  account.script_work += springs_energy() - springs_known;
   int count = sub_steps() << refined;
   if (const double longest = longest_step(); longest > 0)
     count = std::max(count, static_cast<int>(std::min(std::ceil(h / longest - 1e-9), kMostSteps)));
@@ -77,6 +79,7 @@ void Planar::Core::advance(DynamicsClient& asked, double start, double h) {
   }
   if (!b2) return;  // a handler set another length unit
   write_back_all();
+  springs_known = springs_energy();
   const bool wrong = watch_energy(before, start + h);
   report_lasting(start + h);
   if (!b2) return;

@@ -279,6 +279,37 @@ TEST(PlanarState, BodiesThatComeAndGoTakeTheirEnergyAlong) {
   EXPECT_NEAR(flat.physics().energy().residual, 0, 0.1);
 }
 
+TEST(PlanarState, WhatScriptsDoToSpringsIsTheirWork) {
+  Flat flat(Rung::Precise);
+  flat.physics().set_gravity(Vector3::Zero());
+  const ObjectId a = flat.fixed(Shape::box({1, 1, 1}), 0, 0), b = flat.box(0.5, 0.5, 3, 0);
+  flat.run(0.1);
+  SpringDescription spring;
+  spring.a = flat.index(a);
+  spring.b = flat.index(b);
+  spring.length = 2;
+  spring.strength = 10;
+  spring.damping = 0;
+  const SpringIndex tie = flat.physics().tie(spring, b);
+  const auto expect_work = [&](double work) {
+    // A first-order rule swings by some thousandths of the energy.
+    EXPECT_NEAR(flat.physics().energy().script_work, work, 0.05);
+    EXPECT_NEAR(flat.physics().energy().residual, 0, 0.05);
+  };
+  expect_work(5);  // stretched by 1 m
+  flat.run(0.1);
+  expect_work(5);
+  flat.bodies().set_velocity(flat.index(b), {0, 0, 0});
+  flat.bodies().set_location(flat.index(b), {4, 0, 0});
+  flat.world.step();
+  const double stretched = flat.physics().energy().script_work;
+  EXPECT_NEAR(flat.physics().energy().total(), 20, 0.1);  // by 2 m, from rest
+  EXPECT_NEAR(stretched, 20, 0.1);
+  expect_work(stretched);
+  flat.physics().untie(tie);
+  expect_work(stretched - 20 + flat.physics().energy().kinetic);
+}
+
 TEST(PlanarState, TheLedgerExplainsWhereEnergyWent) {
   Flat flat;
   flat.ground();
