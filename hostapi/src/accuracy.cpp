@@ -9,11 +9,9 @@ namespace {
 
 constexpr unsigned kRungs = 5, kIntegrators = 9, kGuards = 4;
 
-breve_accuracy accuracy_from(const Accuracy& from) {
-  breve_accuracy to{};
-  to.struct_size = sizeof to;
-  to.rung = static_cast<breve_rung>(from.rung);
-  to.integrator = static_cast<breve_integrator>(from.scheme);
+/// The settings that both structs call by the same name.
+template <class From, class To>
+void copy_settings(const From& from, To& to) {
   to.implicit_joints = from.implicit_joints;
   to.implicit_spin = from.implicit_spin;
   to.direct = from.direct;
@@ -26,6 +24,14 @@ breve_accuracy accuracy_from(const Accuracy& from) {
   to.impacts = from.impacts;
   to.contact_stiffness = from.contact_stiffness;
   to.contact_damping = from.contact_damping;
+}
+
+breve_accuracy accuracy_from(const Accuracy& from) {
+  breve_accuracy to{};
+  to.struct_size = sizeof to;
+  to.rung = static_cast<breve_rung>(from.rung);
+  to.integrator = static_cast<breve_integrator>(from.scheme);
+  copy_settings(from, to);
   return to;
 }
 
@@ -45,18 +51,7 @@ Accuracy accuracy_of_struct(const breve_accuracy* given) {
     if (reserved) fail(BREVE_ERROR_ARGUMENT, "a reserved field is not false");
   Accuracy to = accuracy_of(rung);
   to.scheme = static_cast<articulated::Scheme>(from.integrator);
-  to.implicit_joints = from.implicit_joints;
-  to.implicit_spin = from.implicit_spin;
-  to.direct = from.direct;
-  to.locate_impacts = from.locate_impacts;
-  to.contact_springs = from.contact_springs;
-  to.step = from.step;
-  to.contact_step = from.contact_step;
-  to.tolerance = from.tolerance;
-  to.iterations = from.iterations;
-  to.impacts = from.impacts;
-  to.contact_stiffness = from.contact_stiffness;
-  to.contact_damping = from.contact_damping;
+  copy_settings(from, to);
   const breve_accuracy plain = accuracy_from(accuracy_of(rung)), wanted = accuracy_from(to);
   to.custom = std::memcmp(&plain, &wanted, sizeof plain) != 0;
   check(to);
