@@ -56,7 +56,7 @@ class Adaptive final : public Integrator::Method {
       // Two like steps at the end, rather than a whole one and a sliver.
       const double size = next >= left * (1 - 1e-12) ? left : std::min(next, std::max(0.5 * left, 0.5 * next));
       if (size < std::min(settings_.tolerance.smallest_step, h) || t + size == t) refuse(at, t, size);
-      const double error = attempt(t, size);
+      const double error = attempt(t, size) / at.slack;
       double growth = error > 0 ? kSafety * std::pow(error, -1 / kOrder) : kMostGrowth;
       growth = std::clamp(growth, kMostShrinking, rejected ? 1.0 : kMostGrowth);
       rejected = !(error <= 1);

@@ -38,7 +38,8 @@ class System {
 struct Instant {
   double t = 0;  // s
   Vector q, v;
-  double step = 0;  // s, the next step that step control would try; 0: none yet
+  double step = 0;   // s, the next step that step control would try; 0: none yet
+  double slack = 1;  // how many times its tolerance step control may err by
 };
 
 }  // namespace breve::articulated

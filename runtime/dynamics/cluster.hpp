@@ -62,6 +62,8 @@ class Cluster final : public articulated::System, public InMemory {
   double drag_loss() const { return works_[2]; }    // J
   double next_step() const { return at_.step; }
   void set_next_step(double step) { at_.step = step; }
+  /// How many times the tolerance step control may err by, until set anew.
+  void set_slack(double slack) { at_.slack = slack; }
 
   // --- System
   int positions() const override { return nq_; }

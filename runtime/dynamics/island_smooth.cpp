@@ -16,6 +16,8 @@ namespace {
 // further than that angle in a step, rad, it does not come back in the next quarter of a period, and none is allowed.
 constexpr double kFreeGain = 0.01, kFurthestTurn = 0.5;
 constexpr int kMostParts = 16;  // of a step
+// Of step control where contacts act, if its tolerance is not finer than that.
+constexpr double kContactSlack = 10, kCoarse = 1e-3;
 
 double widest_turn(Cluster& system) {
   double most = 0;
@@ -56,6 +58,8 @@ void Island::smooth(double time, double h) {
 
 void Island::smooth_once(Clustered& one, double time, double h) {
   Cluster& system = *one.entry->system;
+  // Impulses of contacts are taken as constant over a sub-step: where some act, more digits are not seen.
+  system.set_slack(!rows_.empty() && accuracy_.tolerance >= kCoarse ? kContactSlack : 1);
   system.step(time, h);
   result.counters.evaluations += static_cast<std::uint64_t>(system.count().evaluations);
   result.counters.rejected += static_cast<std::uint64_t>(system.count().rejected);

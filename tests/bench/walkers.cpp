@@ -63,6 +63,10 @@ double median(std::vector<double> numbers) {
 Walkers::Walkers(breve_rung rung, double step, int count, int first, int kinds) : World(step, rung) {
   constexpr double kApart = 6;  // m: limbs stretched out reach 2.3 m
   set_material(fixed(reference::box(Vector3(1000, 5, 1000), 1), Vector3(0, -2.5, 0)), kFriction, 0);
+  for (const Section& section : sections()) {
+    const breve_geometry geometry = reference::box(section.size, 1).geometry;  // of density 1
+    must(breve_shape_create(get(), &geometry, &shapes_.emplace_back()));
+  }
   for (int i = 0; i < count; ++i) add(Vector3(kApart * (i % 15), 1.7, kApart * (i / 15)), genes(first + i % kinds));
 }
 
@@ -71,7 +75,10 @@ void Walkers::add(const Vector3& at, const Genes& genes) {
   one.genes = genes;
   std::vector<breve_object> links;
   for (const Section& section : sections()) {
-    links.push_back(body(reference::box(section.size, section.size.prod()), at));
+    links.push_back(make("Mobile"));
+    must(breve_object_set_shape(get(), links.back(), shapes_[links.size() - 1]));
+    must(breve_object_set_physics(get(), links.back(), true));
+    place(links.back(), at, reference::Quaternion::Identity());
     set_material(links.back(), kFriction, 0);
     if (section.parent < 0) continue;
     reference::Hinge hinge;

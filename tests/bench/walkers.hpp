@@ -52,6 +52,7 @@ class Walkers : public reference::World {
   };
   void add(const Vector3& at, const Genes& genes);
   double angle(breve_object parent, breve_object child) const;
+  std::vector<breve_object> shapes_;  // of the sections, which all walkers share
   std::vector<One> walkers_;
 };
 

@@ -278,5 +278,20 @@ TEST(DynamicsStability, OnFastAStackOfBoxesStaysFinite) {
   }
 }
 
+TEST(DynamicsStability, OnFastTwentyBoxesStandWhereSmallIslandsAreSolvedDirectly) {
+  Hard s(Rung::Fast);
+  Accuracy accuracy = accuracy_of(Rung::Fast);
+  accuracy.direct = true;
+  s.dynamics().set_accuracy(accuracy);
+  s.floor();
+  std::vector<ObjectId> boxes;
+  for (int i = 0; i < 20; ++i) boxes.push_back(s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3(0, 0.5 + i, 0)));
+  s.measure(60);
+  s.print("stack, fast, direct");
+  const Vector3 top = s.at(boxes.back());
+  EXPECT_NEAR(top.y(), 19.5, 0.01 * 19.5);
+  EXPECT_LT(std::hypot(top.x(), top.z()), 0.01);
+}
+
 }  // namespace
 }  // namespace breve::testing
