@@ -15,7 +15,9 @@ constexpr double kRebound = 0.526620, kDuration = 0.0320637, kSink = 9.81e-4;
 struct Ground : Physics {
   ObjectId floor;
   explicit Ground(Rung rung, double step = 1.0 / 960) : Physics(step) {
-    dynamics().set_accuracy(rung);
+    Accuracy accuracy = accuracy_of(rung);
+    accuracy.contact_springs = true;
+    dynamics().set_accuracy(accuracy);
     floor = body(2, Vector3(0, -2.5, 0), BodyKind::Stationary, Shape::box(Vector3(1000, 5, 1000)));
     give(floor, kRebound);
   }
@@ -107,6 +109,7 @@ TEST(ContactSpringsInAWorld, OrderIsThatOfTheIntegrator) {
   const auto height = [](double step) {
     Ground s(Rung::Precise, step);
     Accuracy accuracy = accuracy_of(Rung::Precise);
+    accuracy.contact_springs = true;
     accuracy.tolerance = 1e6;  // Runge-Kutta 4 alone
     accuracy.step = step;
     s.dynamics().set_accuracy(accuracy);
