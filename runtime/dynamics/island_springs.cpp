@@ -79,11 +79,17 @@ void Island::end_spring(NearPair& pair) {
   pair.warm_count = 0;
 }
 
-/// Takes the points of pairs that are springs out of touches_ into those that are followed.
+/// Takes the points of pairs that are springs out of touches_ into those that are followed. What was a spring is rigid
+/// where the settings, which may change between steps, know of none any more.
 void Island::take_springs() {
   if (sprung_) sprung_->points.clear();
-  if (!accuracy_.contact_springs) return;
   followed_.assign(pairs_.size(), 0);
+  const bool wanted = accuracy_.contact_springs && accuracy_.locate_impacts;
+  if (!wanted) {
+    for (NearPair* pair : pairs_)
+      if (sprung(*pair)) end_spring(*pair);
+    return;
+  }
   std::size_t kept = 0;
   for (std::size_t i = 0; i < touches_.size();) {
     std::size_t end = i;

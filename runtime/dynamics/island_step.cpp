@@ -39,6 +39,7 @@ void Island::step_fast(double start, double h) {
   for (int i = 0; i < parts; ++i) {
     place();
     find_touches(part, true);
+    take_springs();
     find_bounds();
     for (Bound& bound : bounds_) bound.rests = bound.gap + part * std::min(0.0, 2 * bound.rate) <= kLimitSkin;
     make_rows(part, true);

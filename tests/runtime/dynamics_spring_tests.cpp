@@ -197,6 +197,23 @@ TEST(ContactSpringsInAWorld, AnArticulatedFootStandsOnThem) {
   EXPECT_GT(now.springs, 0);
 }
 
+TEST(ContactSpringsInAWorld, SurfacesAreRigidOnceTheSettingIsOff) {
+  for (const Rung rung : {Rung::Precise, Rung::Fast}) {
+    Ground s(Rung::Precise, 1.0 / 60);
+    const ObjectId ball = s.thing(Shape::sphere(0.5), Vector3(0, 0.5, 0));
+    s.run(1);
+    EXPECT_GT(s.dynamics().energy().springs, 0);
+    s.dynamics().set_accuracy(rung);
+    s.run(1);
+    EXPECT_EQ(s.dynamics().energy().springs, 0);
+    EXPECT_NEAR(s.at(ball).y(), 0.5, kSink) << name_of(rung);
+    EXPECT_LT(s.velocity(ball).norm(), 1e-3) << name_of(rung);
+    s.world.bodies().set_velocity(s.index(ball), Vector3(0, -1, 0));  // an impact takes place again
+    s.run(1.0 / 60);
+    EXPECT_GT(s.velocity(ball).y(), 0.2) << name_of(rung);
+  }
+}
+
 TEST(ContactSpringsInAWorld, ASnapshotGoesOnBitForBit) {
   const auto make = [] {
     auto s = std::make_unique<Ground>(Rung::Precise, 1.0 / 60);
