@@ -93,13 +93,20 @@ class Guarded final : public Integrator::Method {
 
  private:
   bool good(const Instant& at, double h) {
+    bool first = true, smooth = true;
+    std::uint64_t piece = 0;
     try {
-      stages_.run(at.t, at.q, at.v, h,
-                  [this](double t, const Vector& q, const Vector& v, Vector& a) { evaluate(t, q, v, 0, a); });
+      stages_.run(at.t, at.q, at.v, h, [&](double t, const Vector& q, const Vector& v, Vector& a) {
+        evaluate(t, q, v, 0, a);
+        if (first) piece = system_.piece();
+        first = false;
+        smooth = smooth && system_.piece() == piece;
+      });
     } catch (const Error& error) {
       if (error.code() != ErrorCode::Numeric) throw;
       return false;
     }
+    if (!smooth) return false;
     const Tolerance& allowed = settings_.tolerance;
     const Vector &second = stages_.acceleration(1), &third = stages_.acceleration(2);
     for (int i = 0; i < static_cast<int>(second.size()); ++i) {

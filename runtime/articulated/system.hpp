@@ -1,6 +1,8 @@
 // What an integrator needs to know of what it moves: x'' = f(x, v, t), where x may lie on a curved space.
 #pragma once
 
+#include <cstdint>
+
 #include "runtime/articulated/vector.hpp"
 
 namespace breve::articulated {
@@ -21,6 +23,8 @@ class System {
   /// over a step of that length; a is then its mean acceleration.
   /// @throws Error{Numeric} if there is none
   virtual void acceleration(double t, const Vector& q, const Vector& v, double step, Vector& a) = 0;
+  /// Which piece of forces that are smooth in pieces only the last acceleration was of.
+  virtual std::uint64_t piece() const { return 0; }
 
   // A space that is flat needs no more. A curved one is moved along tangents d (nv) from a point.
   virtual void move(const Vector& q, const Vector& d, Vector& out) { out = q + d; }

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kTangential = 2.0 / 7.0;
 constexpr double kMostDamping = 0.9;
+constexpr double kHardening = 4.5;      // at twice its linear depth a spring is ten times as stiff
 constexpr double kLeastDamping = 0.05;  // along the surface, where a slider needs a damper to follow
 
 double time_to_rest(double z) {
@@ -69,9 +70,18 @@ Spring make_spring(double stiffness, const Dashpots& dashpots, double mass, cons
 Press press(const Spring& spring, double gap, double gap_rate) {
   Press out;
   if (!(gap < 0)) return out;
-  const double elastic = -spring.stiffness * gap;
-  out.force = std::max(0.0, elastic - (gap_rate < 0 ? spring.in : spring.out) * gap_rate);
-  out.stored = -0.5 * elastic * gap;
+  const double depth = -gap;
+  double elastic = spring.stiffness * depth;
+  out.stored = 0.5 * elastic * depth;
+  if (spring.linear_depth > 0 && depth > spring.linear_depth) {
+    const double beyond = depth - spring.linear_depth;
+    const double harder = kHardening * spring.stiffness / spring.linear_depth * beyond * beyond;
+    elastic += harder;
+    out.stored += harder * beyond / 3;
+  }
+  const double damper = gap_rate < 0 ? spring.in : spring.out;
+  const double acts = depth < spring.damped_depth ? depth / spring.damped_depth : 1;
+  out.force = std::max(0.0, elastic - acts * damper * gap_rate);
   out.loss = (elastic - out.force) * gap_rate;
   return out;
 }
@@ -86,6 +96,7 @@ Drag drag(const Spring& spring, const Vector2& stretch, const Vector2& slip, dou
     out.force = -held;
     out.stretch_rate = slip;
   } else {
+    out.slides = true;
     const Vector2 limit = held * (std::min(1.0, spring.dynamic_friction * normal_force / size));
     out.force = -limit;
     out.stretch_rate = (limit - elastic) / spring.tangential_damping;  // spring and damper carry what it lets through

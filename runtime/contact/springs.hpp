@@ -29,6 +29,8 @@ struct Spring {
   double tangential_stiffness = 0;                   // N/m
   double tangential_damping = 0;                     // N*s/m, > 0
   double static_friction = 0, dynamic_friction = 0;  // coefficients
+  double linear_depth = 0;                           // m: deeper, the normal spring hardens; 0: it never does
+  double damped_depth = 0;  // m: dampers act in proportion to the depth until here, so that no force jumps; 0: at once
 };
 
 /// @param mass  what an impulse along the normal moves: 1 / (n . W n), kg
@@ -53,6 +55,7 @@ struct Drag {
   Vector2 stretch_rate = Vector2::Zero();  // m/s: the stretch is a state of the integration; zero when contact begins
   double stored = 0;                       // J
   double loss = 0;                         // W, >= 0: d(stored)/dt = -force . slip - loss
+  bool slides = false;                     // the slider gives way
 };
 
 /// A spring and a damper side by side, held by a slider that gives way where their force would leave the cone.

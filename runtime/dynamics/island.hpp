@@ -162,7 +162,9 @@ class Island {
   void step_located(DynamicsClient* client, double start, double h);
   void advance_once(double time, double h);
   Event seek(double h);
+  void locate(double time, Event& event, double h);
   void refine(double time, Event& event, double h);
+  bool is_past(const Event& event);
   double gap_of(const Event& event, double& rate);
   void look(double h, bool spent);
   double contact_part(double left) const;
@@ -190,11 +192,13 @@ class Island {
   void end_spring(NearPair& pair);
   void take_springs();
   void add_sprung_point(const NearPair& pair, const Touch& touch);
+  void hand_on(const NearPair& pair, std::span<SprungPoint> points);
   bool springs_move() const;
   void smooth_springs(double time, double h);
   void commit_springs();
   void keep_springs();
-  void seek_closing(double h, Event& first);
+  void seek_closing(double h);
+  std::size_t pair_of_point(int point) const;
   double gap_of_point(int point, double& rate);
   void note_spring_forces();
 
@@ -265,6 +269,7 @@ class Island {
   std::pmr::vector<double> ring_errors_;
   std::pmr::vector<Pose> start_poses_;  // of each pair's two bodies, as the sub-step began
   std::pmr::vector<Bound> rebound_later_;
+  std::pmr::vector<Event> found_;            // in a sub-step, with times that are guesses
   int impacts_ = 0;                          // located so far in this step
   std::pmr::vector<double> depths_;          // of pairs: overlap when the sub-step began, m
   std::pmr::vector<Vector3> before_;         // of each row's two sides: velocity along its axes as the sub-step began

@@ -6,9 +6,9 @@
 
 namespace breve {
 
+/// The event that seems to come first; found_ has all, whose times are guesses.
 Island::Event Island::seek(double h) {
-  Event first;
-  first.time = h;
+  found_.clear();
   place_links();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     if (roles_[i] == Role::Rests || roles_[i] == Role::Springs) continue;
@@ -29,8 +29,7 @@ Island::Event Island::seek(double h) {
       hit = closest(a, a1, b, b1).distance < -depths_[i];
       time = h;
     }
-    if (!hit || (time >= first.time && first.found())) continue;
-    first = {time, static_cast<int>(i), -1, -1, depths_[i]};
+    if (hit) found_.push_back({time, static_cast<int>(i), -1, -1, depths_[i]});
   }
   for (std::size_t i = 0; i < bounds_.size(); ++i) {
     if (bounds_[i].rests) continue;
@@ -41,10 +40,12 @@ Island::Event Island::seek(double h) {
     if (!(gap < 0)) continue;
     const double start_gap = std::max(bounds_[i].gap, 0.0);
     event.time = start_gap > 0 ? h * start_gap / (start_gap - gap) : h;
-    if (event.time <= first.time || !first.found()) first = event;
+    found_.push_back(event);
   }
-  seek_closing(h, first);
-  return first;
+  seek_closing(h);
+  const auto sooner = [](const Event& a, const Event& b) { return a.time < b.time; };
+  const auto first = std::min_element(found_.begin(), found_.end(), sooner);
+  return first == found_.end() ? Event() : *first;
 }
 
 double Island::gap_of(const Event& event, double& rate) {
@@ -81,6 +82,33 @@ void Island::refine(double time, Event& event, double h) {
     at = next;
   }
   event.time = at;
+}
+
+/// Finds the moment of the event that comes first: not always that which seemed to.
+void Island::locate(double time, Event& event, double h) {
+  refine(time, event, h);
+  for (std::size_t left = found_.size(); left > 0; --left) {
+    place_links();
+    const auto earlier = [this, &event](const Event& other) {
+      const bool same = other.pair == event.pair && other.bound == event.bound && other.point == event.point;
+      return !same && is_past(other);
+    };
+    const auto other = std::find_if(found_.begin(), found_.end(), earlier);
+    if (other == found_.end()) return;
+    const double end = event.time;
+    event = *other;
+    event.time = end;
+    refine(time, event, end);
+  }
+}
+
+/// What was open when the sub-step began and is not where the island stands.
+bool Island::is_past(const Event& event) {
+  double rate = 0;
+  if (event.bound >= 0)
+    return bounds_[static_cast<std::size_t>(event.bound)].gap > 0 && gap_of(event, rate) < -kMetSkin;
+  const std::size_t pair = event.point >= 0 ? pair_of_point(event.point) : static_cast<std::size_t>(event.pair);
+  return gap_of(event, rate) + event.depth < -kMetSkin * size_of_pair(*pairs_[pair]);
 }
 
 Motion Island::chord(const Pose& from, const Pose& to, double h) {

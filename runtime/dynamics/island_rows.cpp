@@ -90,7 +90,7 @@ void Island::find_roles(double h, bool struck) {
     const double size = size_of_pair(pair);
     const bool touching = touch.gap <= kTouchSkin * size;
     // It becomes a spring when it meets: that moment is looked for.
-    const bool springs = springs_for(pair.law) && touch.gap >= -kMetSkin * size;
+    const bool springs = springs_for(pair.law) && touch.gap >= -kTouchSkin * size;
     const Speeds speeds = speeds_of(pair.law, size, h);
     Role& role = roles_[touch.pair];
     depths_[touch.pair] = std::max(depths_[touch.pair], -touch.gap);

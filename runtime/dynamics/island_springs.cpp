@@ -12,9 +12,9 @@ namespace breve {
 
 namespace {
 
-// Of the smaller body's radius: deeper than this a spring is too weak for its load, and the surfaces become rigid.
-constexpr double kDeepest = 5e-3;
-constexpr double kRoundOff = 1e-9;
+// Of the smaller body's radius: deeper than the first a spring hardens, so that it carries what lies on it; deeper than
+// the second it is too weak all the same, and the surfaces become rigid.
+constexpr double kLinear = 5e-3, kDeepest = 0.1;
 
 bool sprung(const NearPair& pair) { return pair.spring.stiffness > 0; }
 
@@ -101,19 +101,20 @@ void Island::take_springs() {
       const Touch& touch = touches_[end];
       nearest = std::min(nearest, touch.gap);
       arrives =
-          arrives || (std::abs(touch.gap) <= kMetSkin * size && touch.approach <= quiet_ && touch.approach >= -slow);
+          arrives || (touch.gap <= kMetSkin * size && touch.approach <= quiet_ && touch.approach >= -slow);
     }
     const bool apart = nearest >= kMetSkin * size, deep = nearest < -kDeepest * size;
     if (sprung(pair) && (apart || deep)) end_spring(pair);
-    if (!sprung(pair) && arrives && nearest >= -kMetSkin * size && springs_for(pair.law))
+    if (!sprung(pair) && arrives && nearest >= -kTouchSkin * size && springs_for(pair.law))
       begin_spring(pair, touches_[i]);
     followed_[touches_[i].pair] = sprung(pair);
-    for (; i < end; ++i) {
-      if (sprung(pair))
-        add_sprung_point(pair, touches_[i]);
-      else
-        touches_[kept++] = touches_[i];
+    if (sprung(pair)) {
+      const std::size_t first = sprung_ ? sprung_->points.size() : 0;
+      for (; i < end; ++i) add_sprung_point(pair, touches_[i]);
+      hand_on(pair, std::span(sprung_->points).subspan(first));
+      continue;
     }
+    for (; i < end; ++i) touches_[kept++] = touches_[i];
   }
   touches_.resize(kept);
   // What is not even near any more.
@@ -149,17 +150,34 @@ void Island::add_sprung_point(const NearPair& pair, const Touch& touch) {
   point.skin = kMetSkin * size_of_pair(pair);
   point.apart = touch.gap > point.skin ? touch.gap : 0;
   point.spring = pair.spring;
-  for (int k = 0; k < pair.warm_count; ++k) {
-    const WarmPoint& warm = pair.warm[static_cast<std::size_t>(k)];
-    if (warm.feature != touch.feature) continue;
-    point.stretch = warm.impulse;
-    point.slides = warm.slides;
-    break;
-  }
-  point.spring.dynamic_friction = pair.law.dynamic_friction;
-  point.spring.static_friction = point.slides ? pair.law.dynamic_friction : pair.law.static_friction;
-  if (!point.slides) point.spring.dynamic_friction = point.spring.static_friction;
+  point.spring.damped_depth = point.skin;
+  point.spring.linear_depth = kLinear * size_of_pair(pair);
   sprung_->points.push_back(point);
+}
+
+/// What the pair's points remember of the sub-step before. Where a corner of one body lies on a corner of the other,
+/// features change their names: a point that is new goes on with what one left that is no more.
+void Island::hand_on(const NearPair& pair, std::span<SprungPoint> points) {
+  const std::span old = std::span(pair.warm).first(static_cast<std::size_t>(pair.warm_count));
+  const auto has = [](const auto& all, std::uint32_t feature) {
+    return std::any_of(all.begin(), all.end(), [feature](const auto& one) { return one.feature == feature; });
+  };
+  auto left = old.begin();
+  for (SprungPoint& point : points) {
+    auto from = std::find_if(old.begin(), old.end(), [&](const WarmPoint& one) { return one.feature == point.feature; });
+    if (from == old.end()) {
+      left = std::find_if(left, old.end(), [&](const WarmPoint& one) { return !has(points, one.feature); });
+      from = left;
+      if (left != old.end()) ++left;
+    }
+    if (from != old.end()) {
+      point.stretch = from->impulse;
+      point.slides = from->slides;
+    }
+    point.spring.dynamic_friction = pair.law.dynamic_friction;
+    point.spring.static_friction = point.slides ? pair.law.dynamic_friction : pair.law.static_friction;
+    if (!point.slides) point.spring.dynamic_friction = point.spring.static_friction;
+  }
 }
 
 /// After a sub-step that counts: what its springs lost, and what they remember.
@@ -172,10 +190,7 @@ void Island::keep_springs() {
     NearPair& pair = *pairs_[point.pair];
     pair.stored += point.stored;
     if (pair.warm_count == static_cast<int>(pair.warm.size())) continue;
-    const Vector3 along = point.axes * point.force;
-    const double limit = point.spring.static_friction * along[0];
-    const bool slides = limit > 0 && along.tail<2>().norm() >= limit * (1 - kRoundOff);
-    pair.warm[static_cast<std::size_t>(pair.warm_count++)] = {point.feature, slides, point.stretch};
+    pair.warm[static_cast<std::size_t>(pair.warm_count++)] = {point.feature, point.slips, point.stretched};
   }
 }
 
@@ -202,8 +217,8 @@ void Island::commit_springs() {
   for (Tree* tree : trees_) add(sprung_->lost(*tree), tree->account);
 }
 
-/// Looks for points of springs that closed in the sub-step; they are to push from that moment on.
-void Island::seek_closing(double h, Event& first) {
+/// Adds to found_ the points of springs that closed in the sub-step; they are to push from that moment on.
+void Island::seek_closing(double h) {
   if (!springs_move()) return;
   for (std::size_t i = 0; i < sprung_->points.size(); ++i) {
     const double apart = sprung_->points[i].apart;
@@ -211,13 +226,14 @@ void Island::seek_closing(double h, Event& first) {
     double rate = 0;
     const double gap = sprung_->gap_of(i, rate);
     if (!(gap < 0)) continue;
-    const double time = h * apart / (apart - gap);
-    if (first.found() && time >= first.time) continue;
-    first = {};
-    first.time = time;
-    first.point = static_cast<int>(i);
+    Event event;
+    event.time = h * apart / (apart - gap);
+    event.point = static_cast<int>(i);
+    found_.push_back(event);
   }
 }
+
+std::size_t Island::pair_of_point(int point) const { return sprung_->points[static_cast<std::size_t>(point)].pair; }
 
 double Island::gap_of_point(int point, double& rate) { return sprung_->gap_of(static_cast<std::size_t>(point), rate); }
 

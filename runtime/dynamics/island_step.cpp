@@ -147,7 +147,7 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
     if (!spent) event = seek(part);
     if (event.found()) {
       ++impacts_;
-      refine(start + now, event, part);
+      locate(start + now, event, part);
       stalls = event.time > kSliver * h ? 0 : stalls + 1;
     }
     commit();

@@ -16,6 +16,9 @@ using contact::Vector2;
 
 namespace {
 constexpr std::size_t kLeastRoom = 8;
+// Surfaces that rattle change from piece to piece of their forces hundreds of times a second: what each errs by adds up.
+constexpr double kCoarsest = 1e-5;
+constexpr std::uint64_t kNoPiece = 0xcbf29ce484222325, kPrime = 0x100000001b3;  // FNV-1a
 }  // namespace
 
 /// Calls of_free(body, first place, first speed) and of_cluster(cluster, part, first place, first speed) in order.
@@ -57,8 +60,9 @@ void Island::SprungMotion::lay_out() {
   kinds_.resize(static_cast<std::size_t>(size), Kind::Length);
   pushes_.assign(island_.free_.size(), {});
   const Accuracy& accuracy = island_.accuracy_;
+  const double tolerance = std::min(accuracy.tolerance, kCoarsest);
   const bool same = integrator_ && nv_ == size && start_.q.size() == nq_ && scheme_ == accuracy.scheme &&
-                    tolerance_ == accuracy.tolerance;
+                    tolerance_ == tolerance;
   nv_ = size;
   if (same) return;
   constexpr std::size_t kVectors = 24;  // of this class and its integrator
@@ -68,7 +72,7 @@ void Island::SprungMotion::lay_out() {
   start_.q.setZero(nq_);
   start_.v.setZero(nv_);
   articulated::Settings settings;
-  settings.tolerance.relative = tolerance_ = accuracy.tolerance;
+  settings.tolerance.relative = tolerance_ = tolerance;
   settings.implicit_joints = accuracy.implicit_joints;
   settings.refine = true;
   integrator_.emplace(*this, scheme_ = accuracy.scheme, settings);
@@ -188,8 +192,7 @@ Energy Island::SprungMotion::lost(const Tree& tree) const {
   return own;
 }
 
-// --- forces
-// -----------------------------------------------------------------------------------------------------------
+// --- forces ----------------------------------------------------------------------------------------------------------
 
 /// Where the point is and how fast it slips, at the island's state.
 void Island::SprungMotion::follow(SprungPoint& point) const {
@@ -220,9 +223,10 @@ Island::SprungMotion::Resistance Island::SprungMotion::resist(SprungPoint& point
   Resistance out;
   if (point.apart == 0) out.press = contact::press(point.spring, point.gap - point.skin, point.slip[0]);
   out.drag = contact::drag(point.spring, stretch, point.slip.tail<2>(), out.press.force);
+  point.slips = out.press.force > 0 && out.drag.slides;
   const Vector3 force(out.press.force, out.drag.force[0], out.drag.force[1]);
   point.force = point.axes.transpose() * force;
-  point.stretch = point.axes.transpose() * Vector3(0, stretch[0], stretch[1]);
+  point.stretched = point.axes.transpose() * Vector3(0, stretch[0], stretch[1]);
   point.stored = out.press.stored + out.drag.stored;
   return out;
 }
@@ -255,11 +259,13 @@ void Island::SprungMotion::acceleration(double t, const Vector& q, const Vector&
   pushes_.assign(island_.free_.size(), {});
   for (Tree* tree : island_.trees_)
     for (TreeLink& link : tree->links) link.pressed = {};
+  piece_ = kNoPiece;
   for (std::size_t i = 0; i < points.size(); ++i) {
     SprungPoint& point = points[i];
     follow(point);
     const Resistance now = resist(point, v.segment<2>(stretch_at(i)) * stretch_unit());
     a.segment<2>(stretch_at(i)) = now.drag.stretch_rate / stretch_unit();
+    piece_ = kPrime * (piece_ ^ ((now.press.force > 0 ? 1u : 0u) + (point.slips ? 2u : 0u)));
     a[works_at()] += now.press.loss / mass_;
     a[works_at() + 1] += now.drag.loss / mass_;
     push(point, a);

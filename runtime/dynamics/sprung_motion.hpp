@@ -23,14 +23,16 @@ struct Island::SprungPoint {
   double skin = 0;                    // m: the gap at which it begins to push, so that one that has just met pushes
   double radius = 0;                  // m, of a sphere whose centre stands in for its point
   contact::Spring spring;             // with one coefficient of friction
-  Vector3 stretch = Vector3::Zero();  // m, world axes: as the sub-step began; after look() as it is
+  Vector3 stretch = Vector3::Zero();  // m, world axes, as the sub-step began: it may begin again
 
   // At the state that was asked for last, world axes.
   Matrix3 axes = Matrix3::Zero();                        // rows: normal, from b toward a, and tangents
   Vector3 at = Vector3::Zero(), slip = Vector3::Zero();  // where it pushes; velocity of a less that of b, along `axes`
   Vector3 force = Vector3::Zero();                       // N, on a
+  Vector3 stretched = Vector3::Zero();                   // m
   double gap = 0;                                        // m
   double stored = 0;                                     // J
+  bool slips = false;                                    // its friction gives way
 };
 
 class Island::SprungMotion final : public articulated::System, public InMemory {
@@ -56,6 +58,7 @@ class Island::SprungMotion final : public articulated::System, public InMemory {
   articulated::Kind kind(int velocity) const override { return kinds_[static_cast<std::size_t>(velocity)]; }
   void acceleration(double t, const articulated::Vector& q, const articulated::Vector& v, double step,
                     articulated::Vector& a) override;
+  std::uint64_t piece() const override { return piece_; }
   void move(const articulated::Vector& q, const articulated::Vector& d, articulated::Vector& out) override;
   void rate_of_move(const articulated::Vector& d, const articulated::Vector& v, articulated::Vector& out) override;
   void bend_to_cayley(articulated::Vector& d) override;
@@ -95,7 +98,8 @@ class Island::SprungMotion final : public articulated::System, public InMemory {
   std::pmr::vector<Part> parts_;                  // of clusters
   int nq_ = 0, nv_ = 0, bodies_v_ = 0;
   std::size_t room_ = 0;  // points that there are coordinates for: more than needed, so that a step takes no memory
-  double mass_ = 1;       // kg: works are kept per kg, so that step control sees numbers of ordinary size
+  std::uint64_t piece_ = 0;  // of the points that press and of those that slip
+  double mass_ = 1;  // kg: works are kept per kg, so that step control sees numbers of ordinary size
   articulated::Instant start_, end_;
   std::optional<Reservation> reserved_;
   std::optional<articulated::Integrator> integrator_;

@@ -81,11 +81,13 @@ Accuracy accuracy_of(Rung rung) {
       a.tolerance = 1e-4;
       a.implicit_spin = false;
       a.step = 1.0 / 480;
+      a.contact_springs = true;
       break;
     case Rung::Reference:
       a.implicit_spin = false;
       a.tolerance = 1e-10;
       a.contact_step = 1.0 / 480;
+      a.contact_springs = true;
       break;
     case Rung::Conserving: a.scheme = Scheme::ImplicitMidpoint; break;
   }

@@ -112,8 +112,10 @@ TEST(ContactSprings, CalibrationHoldsForEveryDamping) {
 
 TEST(ContactSprings, NeverPullAndNeverGainInAnyState) {
   Random random(41);
-  const Spring spring = make_spring(kStiffness, calibrate(kDamping), kMass, Law{0, 0, 0.8, 0.5, 0});
+  Spring spring = make_spring(kStiffness, calibrate(kDamping), kMass, Law{0, 0, 0.8, 0.5, 0});
   for (int i = 0; i < 10000; ++i) {
+    spring.linear_depth = i % 2 * 1e-3;
+    spring.damped_depth = i % 3 * 1e-4;
     const double gap = between(random, -2e-3, 5e-4), rate = between(random, -0.2, 0.2);
     const Press normal = press(spring, gap, rate);
     EXPECT_GE(normal.force, 0);
@@ -129,9 +131,13 @@ TEST(ContactSprings, NeverPullAndNeverGainInAnyState) {
     // The account closes: what the surfaces give is stored or lost.
     const double stored_rate = spring.tangential_stiffness * stretch.dot(tangential.stretch_rate);
     EXPECT_NEAR(stored_rate, -tangential.force.dot(slip) - tangential.loss, 1e-12);
-    const double press_rate = kStiffness * gap * rate;
+    const double beyond = spring.linear_depth > 0 ? std::max(0.0, -gap - spring.linear_depth) : 0;
+    const double elastic = -kStiffness * gap + (beyond > 0 ? 4.5 * kStiffness * beyond * beyond / 1e-3 : 0);
     if (gap < 0) {
-      EXPECT_NEAR(press_rate, -normal.force * rate - normal.loss, 1e-12);
+      EXPECT_NEAR(-elastic * rate, -normal.force * rate - normal.loss, 1e-12);
+      const double tiny = 1e-7 * gap;
+      const double slope = (press(spring, gap + tiny, 0).stored - press(spring, gap - tiny, 0).stored) / (2 * tiny);
+      EXPECT_NEAR(slope, -elastic, 1e-5 * elastic);
     }
   }
 }
