@@ -100,8 +100,7 @@ void Island::take_springs() {
     for (; end < touches_.size() && touches_[end].pair == touches_[i].pair; ++end) {
       const Touch& touch = touches_[end];
       nearest = std::min(nearest, touch.gap);
-      arrives =
-          arrives || (touch.gap <= kMetSkin * size && touch.approach <= quiet_ && touch.approach >= -slow);
+      arrives = arrives || (touch.gap <= kMetSkin * size && touch.approach <= quiet_ && touch.approach >= -slow);
     }
     const bool apart = nearest >= kMetSkin * size, deep = nearest < -kDeepest * size;
     if (sprung(pair) && (apart || deep)) end_spring(pair);
@@ -164,7 +163,8 @@ void Island::hand_on(const NearPair& pair, std::span<SprungPoint> points) {
   };
   auto left = old.begin();
   for (SprungPoint& point : points) {
-    auto from = std::find_if(old.begin(), old.end(), [&](const WarmPoint& one) { return one.feature == point.feature; });
+    auto from =
+        std::find_if(old.begin(), old.end(), [&](const WarmPoint& one) { return one.feature == point.feature; });
     if (from == old.end()) {
       left = std::find_if(left, old.end(), [&](const WarmPoint& one) { return !has(points, one.feature); });
       from = left;

@@ -16,7 +16,8 @@ using contact::Vector2;
 
 namespace {
 constexpr std::size_t kLeastRoom = 8;
-// Surfaces that rattle change from piece to piece of their forces hundreds of times a second: what each errs by adds up.
+// Surfaces that rattle change from piece to piece of their forces hundreds of times a second: what each errs by adds
+// up.
 constexpr double kCoarsest = 1e-5;
 constexpr std::uint64_t kNoPiece = 0xcbf29ce484222325, kPrime = 0x100000001b3;  // FNV-1a
 }  // namespace
@@ -61,8 +62,8 @@ void Island::SprungMotion::lay_out() {
   pushes_.assign(island_.free_.size(), {});
   const Accuracy& accuracy = island_.accuracy_;
   const double tolerance = std::min(accuracy.tolerance, kCoarsest);
-  const bool same = integrator_ && nv_ == size && start_.q.size() == nq_ && scheme_ == accuracy.scheme &&
-                    tolerance_ == tolerance;
+  const bool same =
+      integrator_ && nv_ == size && start_.q.size() == nq_ && scheme_ == accuracy.scheme && tolerance_ == tolerance;
   nv_ = size;
   if (same) return;
   constexpr std::size_t kVectors = 24;  // of this class and its integrator

@@ -97,9 +97,9 @@ class Island::SprungMotion final : public articulated::System, public InMemory {
   std::pmr::vector<articulated::Wrench> pushes_;  // on free bodies
   std::pmr::vector<Part> parts_;                  // of clusters
   int nq_ = 0, nv_ = 0, bodies_v_ = 0;
-  std::size_t room_ = 0;  // points that there are coordinates for: more than needed, so that a step takes no memory
+  std::size_t room_ = 0;     // points that there are coordinates for: more than needed, so that a step takes no memory
   std::uint64_t piece_ = 0;  // of the points that press and of those that slip
-  double mass_ = 1;  // kg: works are kept per kg, so that step control sees numbers of ordinary size
+  double mass_ = 1;          // kg: works are kept per kg, so that step control sees numbers of ordinary size
   articulated::Instant start_, end_;
   std::optional<Reservation> reserved_;
   std::optional<articulated::Integrator> integrator_;

@@ -174,7 +174,8 @@ TEST(ContactSpringsInAWorld, AHeapOfBoxesThatFallOnEachOtherComesToRestAndGainsN
   Ground s(Rung::Precise, 1.0 / 60);
   s.dynamics().set_guard(GuardMode::Report);
   std::vector<ObjectId> boxes;
-  for (int i = 0; i < 10; ++i) boxes.push_back(s.thing(Shape::box(Vector3(1, 1, 1)), Vector3(0, 0.55 + 1.1 * i, 0), 0.4));
+  for (int i = 0; i < 10; ++i)
+    boxes.push_back(s.thing(Shape::box(Vector3(1, 1, 1)), Vector3(0, 0.55 + 1.1 * i, 0), 0.4));
   double most = 0;
   std::uint64_t told = 0;
   for (int i = 0; i < 600; ++i) {
