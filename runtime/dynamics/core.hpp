@@ -8,6 +8,7 @@
 #include "runtime/dynamics/cluster.hpp"
 #include "runtime/dynamics/contacts.hpp"
 #include "runtime/dynamics/dynamics.hpp"
+#include "runtime/dynamics/grouped.hpp"
 #include "runtime/dynamics/rings.hpp"
 #include "runtime/dynamics/tree.hpp"
 #include "runtime/dynamics/workers.hpp"
@@ -120,11 +121,11 @@ struct Dynamics::Core : InMemory {
   std::pmr::vector<int> slot_of;  // by body: of a free one, in its island
   SharedMemory shared;            // of islands, which workers step
   Workers workers;
-  std::pmr::vector<std::unique_ptr<Island>> islands;  // as many as were ever needed at once
-  std::size_t island_count = 0;
-  std::pmr::vector<Island*> quiet;                    // of the step: those that call nobody
-  std::pmr::vector<std::uint8_t> aside;               // by body; empty: all move
-  std::pmr::vector<std::uint32_t> set_of, island_of;  // by body: for finding islands
+  std::pmr::vector<std::unique_ptr<Island>> islands;  // places to work on one
+  std::uint32_t island_count = 0;
+  Grouped island_free, island_clusters, island_pairs;  // by number of the island: bodies without joints, and so on
+  std::pmr::vector<std::uint8_t> aside;                // by body; empty: all move
+  std::pmr::vector<std::uint32_t> set_of, island_of;   // by body: for finding islands
 
   std::uint64_t iteration = 0;
   std::uint64_t sub_step = 0;  // since the beginning, for force methods
@@ -199,7 +200,8 @@ struct Dynamics::Core : InMemory {
   bool pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client);
   bool locates() const;  // impacts, somewhere
   void find_islands();
-  void step_quiet(double start, double h);
+  Island& fill(std::size_t place, std::size_t number);
+  void step_quiet(std::size_t count, double start, double h);
   void run(DynamicsClient& client, double start, double h, int depth);
   void run_only(DynamicsClient& client, double start, double h, int depth, std::span<const BodyIndex> bodies);
   void report_lasting(DynamicsClient& client, double moment);

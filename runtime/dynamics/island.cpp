@@ -49,6 +49,7 @@ void Island::clear() {
   clusters_.clear();
   trees_.clear();
   pairs_.clear();
+  if (sprung_) sprung_->points.clear();
   accuracy_set_ = false;
   unfinished_ = 0;
   error = nullptr;

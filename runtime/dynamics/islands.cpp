@@ -44,29 +44,40 @@ void Dynamics::Core::find_islands() {
     if (pair.pushes && moves_now(pair.a) && moves_now(pair.b) && near.near(pair)) join(pair.a, pair.b);
 
   // Islands in the order of creation of their first bodies.
-  std::size_t used = 0;
+  island_count = 0;
   island_of.assign(bodies->index_end(), kNone);
-  const auto island = [&](BodyIndex body) -> Island& {
+  const auto island = [&](BodyIndex body) {
     std::uint32_t& index = island_of[root(body)];
-    if (index == kNone) {
-      index = static_cast<std::uint32_t>(used++);
-      if (islands.size() < used) islands.push_back(std::make_unique<Island>(*this, &shared));
-      islands[index]->clear();
-    }
-    return *islands[index];
+    if (index == kNone) index = island_count++;
+    return index;
   };
+  for (Grouped* some : {&island_free, &island_clusters, &island_pairs}) some->clear();
   for (const BodyIndex body : near.movers()) {
     if (!moves_now(body)) continue;
     const BodyEntry* known = find(body);
     if (known && known->tree != kNone)
       island(body);
     else
-      island(body).add_free(body);
+      island_free.add(island(body), body);
   }
-  for (const auto& cluster : clusters) island(trees[cluster->trees.front()]->links.front().body).add_cluster(*cluster);
-  for (NearPair& pair : near.all())
-    if (pair.pushes && near.near(pair)) island(bodies->dynamic(pair.a) ? pair.a : pair.b).add_pair(pair);
-  island_count = used;
+  for (std::uint32_t i = 0; i < clusters.size(); ++i)
+    island_clusters.add(island(trees[clusters[i]->trees.front()]->links.front().body), i);
+  for (std::uint32_t i = 0; i < near.all().size(); ++i) {
+    const NearPair& pair = near.all()[i];
+    if (pair.pushes && near.near(pair)) island_pairs.add(island(bodies->dynamic(pair.a) ? pair.a : pair.b), i);
+  }
+  for (Grouped* some : {&island_free, &island_clusters, &island_pairs}) some->sort(island_count);
+}
+
+/// The island of that number, in the place where islands are worked on.
+Island& Dynamics::Core::fill(std::size_t place, std::size_t number) {
+  while (islands.size() <= place) islands.push_back(std::make_unique<Island>(*this, &shared));
+  Island& island = *islands[place];
+  island.clear();
+  for (const std::uint32_t body : island_free.of(number)) island.add_free(body);
+  for (const std::uint32_t cluster : island_clusters.of(number)) island.add_cluster(*clusters[cluster]);
+  for (const std::uint32_t pair : island_pairs.of(number)) island.add_pair(near.all()[pair]);
+  return island;
 }
 
 void Dynamics::Core::advance(DynamicsClient& client, double start, double h) {
@@ -98,17 +109,26 @@ void Dynamics::Core::run(DynamicsClient& client, double start, double h, int dep
   for (NearPair& pair : near.all())
     if (pair.pushes) pair.law = contact::combine(all.material(pair.a), all.material(pair.b));
   find_islands();
-  // Islands that call nobody first: what a handler does must not pull the ground from under them.
+  // Islands that call nobody first: what a handler does must not pull the ground from under them. They are stepped in
+  // lots that take turns in the same places: what an island works with would not fit the caches for all of a crowd.
+  constexpr std::size_t kLot = 64;
   std::pmr::vector<Island*> calling(memory);
-  quiet.clear();
+  std::size_t lot = 0;
   for (std::size_t i = 0; i < island_count; ++i) {
-    Island& island = *islands[i];
+    Island& island = fill(lot, i);
     if (sleep_through(island)) continue;
-    (island.calls_out() ? calling : quiet).push_back(&island);
+    if (island.calls_out()) {
+      const std::size_t aside_at = kLot + calling.size();
+      while (islands.size() <= aside_at) islands.push_back(std::make_unique<Island>(*this, &shared));
+      std::swap(islands[lot], islands[aside_at]);
+      calling.push_back(&island);
+      continue;
+    }
+    if (++lot < kLot) continue;
+    step_quiet(lot, start, h);
+    lot = 0;
   }
-  step_quiet(start, h);
-  for (std::size_t i = 0; i < island_count; ++i)
-    if (!islands[i]->calls_out()) take_result(*islands[i]);
+  step_quiet(lot, start, h);
   constexpr int kDeepest = 64;  // handlers that make or free bodies, in one step
   for (std::size_t i = 0; i < calling.size(); ++i) {
     std::pmr::vector<BodyIndex> mine(memory), others(memory);
@@ -130,22 +150,24 @@ void Dynamics::Core::run(DynamicsClient& client, double start, double h, int dep
   }
 }
 
-/// Islands that call nobody, by the workers. What all see is written when all are done, in their order: so that nothing
-/// depends on which came first, an error neither.
-void Dynamics::Core::step_quiet(double start, double h) {
+/// The first `count` islands, which call nobody, by the workers. What all see is written when all are done, in their
+/// order: so that nothing depends on which came first, an error neither.
+void Dynamics::Core::step_quiet(std::size_t count, double start, double h) {
   const auto step = [&](std::size_t i) {
     try {
-      quiet[i]->step(nullptr, start, h);
+      islands[i]->step(nullptr, start, h);
     } catch (...) {
-      quiet[i]->error = std::current_exception();
+      islands[i]->error = std::current_exception();
     }
   };
-  workers.run(settings.workers, quiet.size(), std::ref(step));
-  for (const Island* island : quiet)
+  workers.run(settings.workers, count, std::ref(step));
+  const std::span all = std::span(islands).first(count);
+  for (const auto& island : all)
     if (island->error) std::rethrow_exception(island->error);
-  for (Island* island : quiet) {
+  for (const auto& island : all) {
     island->write();
     note_rest(*island, h);
+    take_result(*island);
   }
 }
 
