@@ -17,6 +17,7 @@ void copy_settings(const From& from, To& to) {
   to.direct = from.direct;
   to.locate_impacts = from.locate_impacts;
   to.contact_springs = from.contact_springs;
+  to.link_springs = from.link_springs;
   to.step = from.step;
   to.contact_step = from.contact_step;
   to.tolerance = from.tolerance;

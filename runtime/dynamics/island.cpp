@@ -136,7 +136,7 @@ void Island::begin(DynamicsClient* client, double h) {
       tree.limit_force.setZero();
     }
     one.stage.emplace(core_, *one.entry, client);
-    const bool pressed = accuracy_.contact_springs && !pairs_.empty();
+    const bool pressed = has_contact_springs() && !pairs_.empty();
     one.entry->system->begin(one.stage->needed() || pressed ? &*one.stage : nullptr);
   }
   movers_.clear();

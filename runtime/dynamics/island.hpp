@@ -186,6 +186,7 @@ class Island {
   // island_springs.cpp
   struct SprungPoint;
   class SprungMotion;
+  bool has_contact_springs() const;
   bool springs_for(const contact::Law& law) const;
   double felt_mass(const NearPair& pair, const Vector3& point, const Vector3& normal) const;
   void begin_spring(NearPair& pair, const Touch& touch);

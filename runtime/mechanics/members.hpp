@@ -58,7 +58,7 @@ template <class F, Is<Accuracy> A>
 void each(const F& f, A& a) {
   f(a.rung), f(a.custom), f(a.scheme), f(a.implicit_joints), f(a.implicit_spin), f(a.step), f(a.tolerance);
   f(a.contact_step), f(a.iterations), f(a.direct), f(a.locate_impacts), f(a.impacts), f(a.contact_springs);
-  f(a.contact_stiffness), f(a.contact_damping);
+  f(a.link_springs), f(a.contact_stiffness), f(a.contact_damping);
 }
 
 template <class F, Is<Energy> E>

@@ -122,7 +122,8 @@ std::string describe(const Accuracy& a) {
   text += a.direct ? "; small islands of contacts solved directly, large ones" : "; contacts solved";
   text += fmt::format(" iteratively with at most {} iterations", a.iterations);
   if (a.contact_springs && a.locate_impacts) {
-    text += fmt::format("; slow contacts with restitution as springs of {} N/m per kg, damped ", a.contact_stiffness);
+    text += fmt::format("; slow contacts with restitution{} as springs of {} N/m per kg, damped ",
+                        a.link_springs ? "" : " of bodies without joints", a.contact_stiffness);
     text += a.contact_damping > 0 ? fmt::format("by a ratio of {}", a.contact_damping) : "to that restitution";
   }
   return text + ".";

@@ -54,6 +54,7 @@ constexpr std::array kSettings = {setting<&Accuracy::step>("step"),
                                   setting<&Accuracy::implicit_joints>("implicit-joints"),
                                   setting<&Accuracy::implicit_spin>("implicit-spin"),
                                   setting<&Accuracy::contact_springs>("contact-springs"),
+                                  setting<&Accuracy::link_springs>("link-springs"),
                                   setting<&Accuracy::contact_stiffness>("contact-stiffness"),
                                   setting<&Accuracy::contact_damping>("contact-damping")};
 

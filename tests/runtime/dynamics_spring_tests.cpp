@@ -16,7 +16,7 @@ struct Ground : Physics {
   ObjectId floor;
   explicit Ground(Rung rung, double step = 1.0 / 960) : Physics(step) {
     Accuracy accuracy = accuracy_of(rung);
-    accuracy.contact_springs = true;
+    accuracy.contact_springs = accuracy.link_springs = true;
     dynamics().set_accuracy(accuracy);
     floor = body(2, Vector3(0, -2.5, 0), BodyKind::Stationary, Shape::box(Vector3(1000, 5, 1000)));
     give(floor, kRebound);

@@ -782,7 +782,8 @@ typedef struct breve_accuracy {
   bool direct;                 /* small islands of contacts are solved directly */
   bool locate_impacts;         /* impacts at their time of impact; else at the end of the sub-step */
   bool contact_springs;        /* slow contacts with restitution are springs, where impacts are located */
-  bool reserved[3];            /* must be false */
+  bool link_springs;           /* so they are where articulated bodies take part, too: slow */
+  bool reserved[2];            /* must be false */
   double step;                 /* s, the longest sub-step; 0: the integration step */
   double contact_step;         /* s, the longest sub-step of bodies in contact; 0: `step` */
   double tolerance;            /* of BREVE_FEHLBERG_ADAPTIVE */
