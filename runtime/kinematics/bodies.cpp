@@ -41,8 +41,8 @@ Vector3 in_plane(std::string_view property, const Vector3& value, bool flat) {
 const Vector3& in_reach(const Vector3& location, bool flat) {
   constexpr double kFarthest = 1e28;  // 3e38 at the smallest unit of 1e-9, with room for sums
   if (flat && !(location.cwiseAbs().maxCoeff() <= kFarthest))
-    throw Error(ErrorCode::Argument, fmt::format("location is ({}, {}, 0), but a flat world ends at {:g} length units",
-                                                 location.x(), location.y(), kFarthest));
+    throw Error(ErrorCode::Argument, fmt::format("location is ({}, {}, 0), but a flat world ends at {:g}", location.x(),
+                                                 location.y(), kFarthest));
   return location;
 }
 

@@ -347,18 +347,21 @@ void Planar::Core::push_velocity(FlatBody& flat, const Vector3& velocity, double
 }
 
 void Planar::Core::push_changes() {
-  // A scale belongs to a shape that many may share: it is looked up once for the last two that came by.
-  const Shape* known[2] = {nullptr, nullptr};
-  const Vector3* scales[2] = {nullptr, nullptr};
-  for (FlatBody& flat : slots) {
+  // A scale belongs to a shape that many may share: it is looked up once for those that follow each other. Box2D's step
+  // has driven what is compared here out of the caches.
+  constexpr std::size_t kShapeAhead = 4, kAhead = 10;
+  const Shape* last = nullptr;
+  const Vector3* scale = nullptr;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (i + kAhead < slots.size()) {
+      __builtin_prefetch(&slots[i + kAhead].scale);
+      const BodyIndex soon = slots[i + kShapeAhead].body;
+      if (soon != kNoBody) __builtin_prefetch(bodies->collision_shape(soon).get());
+    }
+    FlatBody& flat = slots[i];
     if (flat.body == kNoBody) continue;
     const Shape& shape = *bodies->collision_shape(flat.body);
-    if (&shape != known[0]) {
-      std::swap(known[0], known[1]);
-      std::swap(scales[0], scales[1]);
-      if (&shape != known[0]) scales[0] = &(known[0] = &shape)->scale();
-    }
-    const Vector3* const scale = scales[0];
+    if (&shape != last) scale = &(last = &shape)->scale();
     if (flat.shape.get() != &shape || flat.scale != *scale) {
       const double before = energy_of(flat.body);
       fit(flat);
