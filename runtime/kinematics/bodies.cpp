@@ -37,6 +37,15 @@ Vector3 in_plane(std::string_view property, const Vector3& value, bool flat) {
   return {value.x(), value.y(), 0};
 }
 
+/// In a flat world: a place that single precision can hold, whatever the length unit.
+const Vector3& in_reach(const Vector3& location, bool flat) {
+  constexpr double kFarthest = 1e28;  // 3e38 at the smallest unit of 1e-9, with room for sums
+  if (flat && !(location.cwiseAbs().maxCoeff() <= kFarthest))
+    throw Error(ErrorCode::Argument, fmt::format("location is ({}, {}, 0), but a flat world ends at {:g}", location.x(),
+                                                 location.y(), kFarthest));
+  return location;
+}
+
 /// In a flat world: a vector along z.
 Vector3 about_z(std::string_view property, const Vector3& value, bool flat) {
   if (!flat || (value.x() == 0 && value.y() == 0)) return value;
@@ -248,7 +257,7 @@ Quaternion Bodies::orientation(BodyIndex body) const {
 
 void Bodies::set_location(BodyIndex body, const Vector3& location) {
   require_finite("location", location);
-  arrays_->location[body] = in_plane("location", location, flat_);
+  arrays_->location[body] = in_reach(in_plane("location", location, flat_), flat_);
   arrays_->note(body);
 }
 

@@ -224,6 +224,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void make_world();
   void drop_world();
   void update_members();
+  b2Vec2 place_of(BodyIndex body) const;
   void add_member(BodyIndex body);
   void remove_member(std::uint32_t slot);
   void fit(FlatBody& flat);  // shape and mass

@@ -138,7 +138,20 @@ void Planar::Core::update_members() {
   rules_seen = false;
 }
 
+/// Box2D aborts the process on a body whose place is none in single precision.
+b2Vec2 Planar::Core::place_of(BodyIndex body) const {
+  const Vector3& location = bodies->location(body);
+  const b2Vec2 place = to_b2(location);
+  if (!place.IsValid())
+    throw Error(ErrorCode::Argument,
+                fmt::format("a body is at ({}, {}, 0), which is out of the range of single precision; keep scenes of "
+                            "flat worlds within some 1,000 length units of the origin",
+                            location.x(), location.y()));
+  return place;
+}
+
 void Planar::Core::add_member(BodyIndex body) {
+  const b2Vec2 place = place_of(body);
   held.hold(kPerWorld + static_cast<std::size_t>(b2->GetBodyCount() + 1) * kPerBody);
   if (free_slots.capacity() <= slots.size()) free_slots.reserve(2 * slots.size() + 16);
   std::uint32_t slot;
@@ -157,7 +170,7 @@ void Planar::Core::add_member(BodyIndex body) {
   flat.solid = !flat.fixed || bodies->kind(body) == BodyKind::Stationary;
   b2BodyDef def;
   def.type = flat.fixed ? b2_staticBody : b2_dynamicBody;
-  def.position = to_b2(bodies->location(body));
+  def.position = place;
   def.angle = static_cast<float>(angle_of(bodies->orientation(body)));
   def.userData.pointer = slot + 1;
   flat.b2 = b2->CreateBody(&def);
@@ -226,10 +239,27 @@ b2PolygonShape polygon_of(const std::pmr::vector<Vector2>& points, double unit) 
   return shape;
 }
 
+/// Corners nearer to each other than Box2D can tell are left out, the ends are not: it aborts the process on them.
 void add_profile(FlatBody& flat, const std::pmr::vector<Vector2>& points, double unit, std::uint32_t number) {
+  constexpr float kNearest = 1.01F * b2_linearSlop;
   std::pmr::vector<b2Vec2> corners(points.get_allocator().resource());
-  for (const Vector2& p : points) corners.push_back(scaled(p, unit));
+  for (const Vector2& p : points) {
+    const b2Vec2 corner = scaled(p, unit);
+    if (!b2Vec2(2 * corner).IsValid())
+      throw Error(ErrorCode::Argument,
+                  fmt::format("a corner of a profile is at ({}, {}), which is out of the range of single precision",
+                              p.x(), p.y()));
+    const auto near_last = [&] { return !corners.empty() && b2Distance(corners.back(), corner) < kNearest; };
+    if (near_last() && &p != &points.back()) continue;
+    while (corners.size() > 1 && near_last()) corners.pop_back();
+    corners.push_back(corner);
+  }
   const std::size_t n = corners.size();
+  if (n < 2 || b2Distance(corners[0], corners[1]) < kNearest)
+    throw Error(ErrorCode::Argument,
+                fmt::format("a profile is shorter than a length unit of {} can tell; set the world's length unit to "
+                            "about the size of its bodies (set-length-unit, breve_world_config.length_unit)",
+                            unit));
   b2ChainShape chain;
   chain.CreateChain(corners.data(), static_cast<int32>(n), 2 * corners[0] - corners[1],
                     2 * corners[n - 1] - corners[n - 2]);
@@ -299,7 +329,7 @@ void Planar::Core::push_pose(FlatBody& flat) {
   // Whole turns stay: joints count them.
   const double before = flat.b2->GetAngle();
   const double angle = before + std::remainder(angle_of(bodies->orientation(flat.body)) - before, 2 * M_PI);
-  flat.b2->SetTransform(to_b2(bodies->location(flat.body)), static_cast<float>(angle));
+  flat.b2->SetTransform(place_of(flat.body), static_cast<float>(angle));
   flat.b2->SetAwake(true);
 }
 
@@ -317,10 +347,18 @@ void Planar::Core::push_velocity(FlatBody& flat, const Vector3& velocity, double
 }
 
 void Planar::Core::push_changes() {
-  // A scale belongs to a shape that many may share: it is looked up once for those that follow each other.
+  // A scale belongs to a shape that many may share: it is looked up once for those that follow each other. Box2D's step
+  // has driven what is compared here out of the caches.
+  constexpr std::size_t kShapeAhead = 4, kAhead = 10;
   const Shape* last = nullptr;
   const Vector3* scale = nullptr;
-  for (FlatBody& flat : slots) {
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (i + kAhead < slots.size()) {
+      __builtin_prefetch(&slots[i + kAhead].scale);
+      const BodyIndex soon = slots[i + kShapeAhead].body;
+      if (soon != kNoBody) __builtin_prefetch(bodies->collision_shape(soon).get());
+    }
+    FlatBody& flat = slots[i];
     if (flat.body == kNoBody) continue;
     const Shape& shape = *bodies->collision_shape(flat.body);
     if (&shape != last) scale = &(last = &shape)->scale();

@@ -166,6 +166,9 @@ std::span<const std::uint64_t> World::neighbor_users(ObjectId id) {
 // --- how far space goes ----------------------------------------------------------------------------------------------
 
 void World::set_space(int axis, Ending edge, double low, double high, ObjectId asked_by) {
+  // Wherever else z were brought to, it would not be 0 any more.
+  if (dimension() == 2 && axis == 2 && edge != Ending::Open && !(low <= 0 && 0 < high))
+    throw Error(ErrorCode::Argument, "the bounds of space along z leave out 0, but this world is flat: z must be 0");
   parts_->space.set(axis, edge, low, high);
   if (parts_->space.open())
     parts_->effects.turn_off(EffectId::Bounds);

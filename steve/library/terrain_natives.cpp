@@ -113,7 +113,9 @@ void terrain_generate(Machine& machine, Instance& self, double ruggedness, doubl
   set_heights(machine, self, heights);
   Bodies& bodies = machine.world().bodies();
   const BodyIndex body = body_of(machine, self);
-  bodies.set_location(body, bodies.location(body) + Vector3(grown, 0, grown));
+  // A flat world sees the middle row, which has no low corner along z.
+  const double along_z = machine.world().dimension() == 2 ? 0 : grown;
+  bodies.set_location(body, bodies.location(body) + Vector3(grown, 0, along_z));
 }
 
 void terrain_set_height(Machine& machine, Instance& self, std::int32_t column, std::int32_t row, double height) {

@@ -197,6 +197,83 @@ TEST(PlanarMotion, AShapeTooThinForTheUnitIsAnErrorThatNamesTheRemedy) {
   }
 }
 
+std::string refusal(Flat& flat) {
+  try {
+    flat.world.step();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(PlanarMotion, APlaceBeyondSinglePrecisionIsAnErrorAndNoAbort) {
+  Flat flat;
+  const ObjectId ball = flat.ball(0.5, 0, 5), wall = flat.fixed(Shape::sphere(0.5), 9, 0);
+  for (int i = 0; i < 2; ++i) {
+    for (const ObjectId id : {ball, wall})
+      EXPECT_THROW(flat.bodies().set_location(flat.index(id), {1e300, 0, 0}), Error);
+    flat.world.step();
+  }
+  EXPECT_LT(flat.at(ball).y(), 5);
+  // Who flew there without physics.
+  const ObjectId agent = flat.body(1, {0, 0, 0});
+  flat.set_velocity(agent, {1e300, 0, 0});
+  flat.world.step();
+  flat.bodies().set_physics(flat.index(agent), true);
+  for (int i = 0; i < 2; ++i) EXPECT_NE(refusal(flat).find("single precision"), std::string::npos);
+  flat.bodies().set_location(flat.index(agent), {3, 0, 0});
+  flat.set_velocity(agent, {0, 0, 0});
+  EXPECT_EQ(refusal(flat), "");
+}
+
+TEST(PlanarMotion, AProfileMayHaveCornersNearerThanBox2DCanTell) {
+  // A profile of 4 m with a valley in the middle; a ball of 0.5 m comes to rest there as on a coarse one.
+  std::vector<double> heights;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 2001; ++column) heights.push_back(0.1 * std::cos(M_PI * column / 1000));
+  Flat flat;
+  flat.fixed(Shape::height_field(2001, 3, 0.002, heights), 0, 0);
+  const ObjectId ball = flat.ball(0.25, 0, 0.5);
+  flat.material(ball, 1, 0);
+  flat.run(3);
+  EXPECT_NEAR(flat.at(ball).y(), 0.15, 0.02);
+  Flat tiny;
+  tiny.fixed(Shape::height_field(3, 3, 0.001, std::vector<double>(9)), 0, 0);
+  tiny.ball(0.25, 0, 0.5);
+  EXPECT_NE(refusal(tiny).find("set-length-unit"), std::string::npos);
+  Flat huge;
+  huge.fixed(Shape::height_field(3, 3, 1, std::vector<double>{0, 0, 0, 0, 1e40, 0, 0, 0, 0}), 0, 0);
+  huge.ball(0.25, 0, 0.5);
+  EXPECT_NE(refusal(huge).find("single precision"), std::string::npos);
+}
+
+TEST(PlanarMotion, BoundsAlongZThatLeaveOutThePlaneAreRefused) {
+  Flat flat;
+  EXPECT_THROW(flat.world.set_space(2, Ending::Wrap, 1, 2), Error);
+  EXPECT_THROW(flat.world.set_space(2, Ending::Wall, -2, 0), Error);
+  EXPECT_TRUE(flat.world.space().open());
+  flat.world.set_space(2, Ending::Wrap, -1, 1);
+}
+
+TEST(PlanarMotion, ABulletNeverPassesWhatMovesItself) {
+  // A disc and a plate that is free to move; two discs that come at each other.
+  for (const Rung rung : {Rung::Fast, Rung::Balanced, Rung::Precise})
+    for (int k = 0; k < 7; ++k) {
+      Flat flat(rung);
+      flat.physics().set_gravity(Vector3::Zero());
+      const ObjectId plate = flat.box(0.01, 20, 0, 0);
+      const ObjectId disc = flat.ball(0.05, -4 - 0.37 * k, 0);
+      const ObjectId left = flat.ball(0.05, -4 - 0.37 * k, 40), right = flat.ball(0.05, 4, 40);
+      for (const ObjectId id : {disc, left}) flat.set_velocity(id, {300, 0, 0});
+      flat.set_velocity(right, {-300, 0, 0});
+      for (int i = 0; i < 20; ++i) {
+        flat.world.step();
+        ASSERT_LT(flat.at(disc).x(), flat.at(plate).x()) << "rung " << static_cast<int>(rung);
+        ASSERT_LT(flat.at(left).x(), flat.at(right).x()) << "rung " << static_cast<int>(rung);
+      }
+    }
+}
+
 // --- joints ---------------------------------------------------------------------------------------------------------
 
 TEST(PlanarJoints, AHingeCountsItsTurnsAndItsMotorTurnsIt) {

@@ -255,6 +255,12 @@ TEST(PlanarState, StepsThatAreSetAloneActAndItsWordsSayWhatHasNoMeaning) {
     flat.world.step();
     return flat.physics().counters().sub_steps;
   };
+  for (const auto& [rung, wanted] : {std::pair{Rung::Fast, 1U}, {Rung::Balanced, 4U}, {Rung::Precise, 16U}}) {
+    Flat flat(rung);
+    flat.ball(0.5, 0, 0);
+    flat.world.step();
+    EXPECT_EQ(flat.physics().counters().sub_steps, wanted);
+  }
   EXPECT_EQ(sub_steps([](Accuracy&) {}), 4U);
   EXPECT_EQ(sub_steps([](Accuracy& a) { a.step = 1e-3; }), 17U);
   EXPECT_EQ(sub_steps([](Accuracy& a) { a.contact_step = 1e-3; }), 17U);
