@@ -191,8 +191,8 @@ TEST(ContactSpringsInAWorld, AHeapOfBoxesThatFallOnEachOtherComesToRestAndGainsN
   EXPECT_LT(s.velocity(boxes.back()).norm(), 1e-2);
 }
 
-TEST(ContactSpringsInAWorld, AnArticulatedFootStandsOnThem) {
-  Ground s(Rung::Precise);
+/// A plate on two feet with sprung joints, on the ground.
+ObjectId table(Ground& s) {
   const ObjectId body = s.thing(Shape::box(Vector3(1, 0.2, 0.5)), Vector3(0, 1.1, 0));
   std::vector<ObjectId> feet;
   for (const double x : {-0.4, 0.4}) {
@@ -210,6 +210,12 @@ TEST(ContactSpringsInAWorld, AnArticulatedFootStandsOnThem) {
     drive.damping = 20;
     s.dynamics().set_drive(joint, drive);
   }
+  return body;
+}
+
+TEST(ContactSpringsInAWorld, AnArticulatedFootStandsOnThem) {
+  Ground s(Rung::Precise);
+  const ObjectId body = table(s);
   const double start = s.dynamics().energy().total();
   s.run(2);
   EXPECT_NEAR(s.at(body).y(), 1.1, 2e-3);
@@ -219,6 +225,19 @@ TEST(ContactSpringsInAWorld, AnArticulatedFootStandsOnThem) {
   EXPECT_NEAR(now.residual, 0, 1e-4);
   EXPECT_NEAR(own.residual, 0, 1e-4);
   EXPECT_GT(now.springs, 0);
+}
+
+TEST(ContactSpringsInAWorld, ArticulatedBodiesStandOnRigidGroundUnlessAskedOtherwise) {
+  for (const Rung rung : {Rung::Precise, Rung::Reference}) {
+    Ground s(rung, 1.0 / 60);
+    s.dynamics().set_accuracy(accuracy_of(rung));
+    const ObjectId body = table(s);
+    const ObjectId ball = s.thing(Shape::sphere(0.5), Vector3(5, 0.5, 0));
+    s.run(1);
+    EXPECT_LT(s.velocity(body).norm(), 1e-3);
+    EXPECT_NEAR(s.at(body).y(), 1.1, 1e-5) << "on springs it sinks by some 1e-4 m";
+    EXPECT_NEAR(0.5 - s.at(ball).y(), kSink, 1e-6) << "what has no joints has springs";
+  }
 }
 
 TEST(ContactSpringsInAWorld, SurfacesAreRigidOnceTheSettingIsOff) {
