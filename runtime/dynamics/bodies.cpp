@@ -24,6 +24,7 @@ Dynamics::Core::Core(std::pmr::memory_resource* where, Bodies& of)
       slot_of(where),
       shared(where),
       islands(where),
+      calling(where),
       island_free(where),
       island_clusters(where),
       island_pairs(where),

@@ -122,6 +122,7 @@ struct Dynamics::Core : InMemory {
   SharedMemory shared;            // of islands, which workers step
   Workers workers;
   std::pmr::vector<std::unique_ptr<Island>> islands;  // places to work on one
+  std::pmr::vector<std::unique_ptr<Island>> calling;  // those of the step that need a client
   std::uint32_t island_count = 0;
   Grouped island_free, island_clusters, island_pairs;  // by number of the island: bodies without joints, and so on
   std::pmr::vector<std::uint8_t> aside;                // by body; empty: all move

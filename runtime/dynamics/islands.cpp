@@ -71,7 +71,7 @@ void Dynamics::Core::find_islands() {
 
 /// The island of that number, in the place where islands are worked on.
 Island& Dynamics::Core::fill(std::size_t place, std::size_t number) {
-  while (islands.size() <= place) islands.push_back(std::make_unique<Island>(*this, &shared));
+  if (islands.size() == place) islands.push_back(std::make_unique<Island>(*this, &shared));
   Island& island = *islands[place];
   island.clear();
   for (const std::uint32_t body : island_free.of(number)) island.add_free(body);
@@ -112,16 +112,13 @@ void Dynamics::Core::run(DynamicsClient& client, double start, double h, int dep
   // Islands that call nobody first: what a handler does must not pull the ground from under them. They are stepped in
   // lots that take turns in the same places: what an island works with would not fit the caches for all of a crowd.
   constexpr std::size_t kLot = 64;
-  std::pmr::vector<Island*> calling(memory);
-  std::size_t lot = 0;
+  std::size_t lot = 0, callers = 0;
   for (std::size_t i = 0; i < island_count; ++i) {
     Island& island = fill(lot, i);
     if (sleep_through(island)) continue;
     if (island.calls_out()) {
-      const std::size_t aside_at = kLot + calling.size();
-      while (islands.size() <= aside_at) islands.push_back(std::make_unique<Island>(*this, &shared));
-      std::swap(islands[lot], islands[aside_at]);
-      calling.push_back(&island);
+      if (calling.size() == callers) calling.push_back(std::make_unique<Island>(*this, &shared));
+      std::swap(islands[lot], calling[callers++]);
       continue;
     }
     if (++lot < kLot) continue;
@@ -130,10 +127,10 @@ void Dynamics::Core::run(DynamicsClient& client, double start, double h, int dep
   }
   step_quiet(lot, start, h);
   constexpr int kDeepest = 64;  // handlers that make or free bodies, in one step
-  for (std::size_t i = 0; i < calling.size(); ++i) {
+  for (std::size_t i = 0; i < callers; ++i) {
     std::pmr::vector<BodyIndex> mine(memory), others(memory);
     calling[i]->append_bodies(mine);
-    for (std::size_t k = i + 1; k < calling.size(); ++k) calling[k]->append_bodies(others);
+    for (std::size_t k = i + 1; k < callers; ++k) calling[k]->append_bodies(others);
     calling[i]->step(&client, start, h);
     const double left = calling[i]->unfinished();
     if (left == 0) {

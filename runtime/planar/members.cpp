@@ -239,7 +239,7 @@ b2PolygonShape polygon_of(const std::pmr::vector<Vector2>& points, double unit) 
   return shape;
 }
 
-/// Corners nearer to each other than Box2D can tell are left out, the ends are not: it aborts the process on them.
+/// Corners nearer to each other than Box2D can tell, on which it aborts the process, are left out; the ends are not.
 void add_profile(FlatBody& flat, const std::pmr::vector<Vector2>& points, double unit, std::uint32_t number) {
   constexpr float kNearest = 1.01F * b2_linearSlop;
   std::pmr::vector<b2Vec2> corners(points.get_allocator().resource());
