@@ -8,13 +8,14 @@
 #include "steve/library/library.hpp"
 
 namespace breve::host {
-namespace {
 
 /// A name that may stand somewhere, with texts of its own.
 struct CompletionTexts {
   steve::Completions given;
   std::vector<breve_completion> views;
 };
+
+namespace {
 
 static_assert(static_cast<int>(steve::NameKind::Module) == BREVE_NAME_MODULE);
 static_assert(static_cast<int>(steve::NameKind::Word) == BREVE_NAME_WORD);

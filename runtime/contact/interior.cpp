@@ -11,7 +11,7 @@ namespace breve::contact {
 
 namespace {
 
-constexpr int kSteps = 30;
+constexpr int kMostSteps = 30;
 constexpr int kPatience = 8;            // steps without a better iterate
 constexpr double kNearest = 0.93;       // of the way to the edge of a cone
 constexpr double kFollowed = 0.9;       // of how mu |u_t| changes in a step: all of it goes round in circles at times
@@ -289,7 +289,7 @@ double Interior::solve(double goal, int& solves) {
     const double left = violation(work_);
     since = left < best ? 0 : since + 1;
     best = std::min(best, left);
-    if (left <= goal || since > kPatience || steps_ == kSteps || !std::isfinite(left)) return left;
+    if (left <= goal || since > kPatience || steps_ == kMostSteps || !std::isfinite(left)) return left;
     // The shorter the last step was, the more towards the centre this one.
     const double target = 0.5 * std::clamp(1 - last_, 0.01, 0.9) * gap() / std::max(pairs_, 1.0);
     Lengths lengths;

@@ -9,7 +9,7 @@
 namespace breve::contact {
 
 namespace {
-constexpr int kSteps = 6;
+constexpr int kNewtonSteps = 6;
 constexpr int kHalvings = 5;  // of a step that makes things worse
 }  // namespace
 
@@ -31,7 +31,7 @@ bool Newton::settle(double stiffness, double tolerance, int& solves) {
   stiffness_ = stiffness;
   equations_.read_rows(u_);
   double before = 0, first = 0;
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < kNewtonSteps; ++i) {
     project_all(0);
     const double here = misfit(0);
     if (here <= 0.1 * tolerance) return true;

@@ -12,7 +12,7 @@ namespace breve {
 
 namespace {
 
-void need(bool holds, std::string_view property, double value, std::string_view rule) {
+void require(bool holds, std::string_view property, double value, std::string_view rule) {
   if (!holds) throw Error(ErrorCode::Argument, fmt::format("spring: {} must be {}, but is {}", property, rule, value));
 }
 
@@ -21,10 +21,10 @@ void need(bool holds, std::string_view property, double value, std::string_view 
 void check(const SpringDescription& is) {
   if (!is.point_a.allFinite() || !is.point_b.allFinite())
     throw Error(ErrorCode::Argument, "spring: a point of attachment is not finite");
-  need(std::isfinite(is.length) && is.length >= 0, "length", is.length, "finite and >= 0");
-  need(std::isfinite(is.strength) && is.strength >= 0, "strength", is.strength, "finite and >= 0");
-  need(std::isfinite(is.damping) && is.damping >= 0, "damping", is.damping, "finite and >= 0");
-  need(std::isfinite(is.maximum_force) && is.maximum_force >= 0, "maximum force", is.maximum_force, "finite and >= 0");
+  require(std::isfinite(is.length) && is.length >= 0, "length", is.length, "finite and >= 0");
+  require(std::isfinite(is.strength) && is.strength >= 0, "strength", is.strength, "finite and >= 0");
+  require(std::isfinite(is.damping) && is.damping >= 0, "damping", is.damping, "finite and >= 0");
+  require(std::isfinite(is.maximum_force) && is.maximum_force >= 0, "maximum force", is.maximum_force, "finite and >= 0");
 }
 
 TiePull pull_of(const SpringDescription& is, const Vector3& way, const Vector3& rate) {

@@ -8,9 +8,6 @@ namespace breve {
 
 namespace {
 
-/// Which way a revolute joint counts: +1 if its normal is +z.
-double sense(const JointDescription& is) { return is.normal.z() < 0 ? -1 : 1; }
-
 /// Protected members of Box2D's joints, whose impulses it does not give away otherwise.
 struct RevoluteDoor : b2RevoluteJoint {
   static constexpr auto impulse = &RevoluteDoor::m_impulse;

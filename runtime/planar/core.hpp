@@ -113,14 +113,14 @@ struct ContactKey {
   std::uint32_t fixture_a = 0, fixture_b = 0, child_a = 0, child_b = 0;
   friend auto operator<=>(const ContactKey&, const ContactKey&) = default;
 };
-struct WarmPoint {
+struct ContactImpulse {
   std::uint32_t id = 0;
   float normal = 0, tangent = 0;
 };
 struct WarmContact {
   ContactKey key;
   int count = 0;
-  WarmPoint points[2];
+  ContactImpulse points[2];
 };
 struct FrozenBody {
   BodyIndex body = kNoBody;
@@ -381,7 +381,8 @@ inline double angle_of(const Quaternion& q) { return 2 * std::atan2(q.z(), q.w()
 inline Quaternion turned(double angle) { return {std::cos(angle / 2), 0, 0, std::sin(angle / 2)}; }
 /// v turned left by a right angle.
 inline Vector2 left_of(const Vector2& v) { return {-v.y(), v.x()}; }
-inline double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
+/// Which way a revolute joint counts: +1 if its normal is +z.
+inline double sense(const JointDescription& is) { return is.normal.z() < 0 ? -1 : 1; }
 /// Index of a fixture among those of its body; its shape decides the order.
 inline std::uint32_t number_of(const b2Fixture* fixture) {
   return static_cast<std::uint32_t>(const_cast<b2Fixture*>(fixture)->GetUserData().pointer);

@@ -23,9 +23,6 @@ void need_in_plane(const Vector3& v, const char* what, JointKind kind) {
                        v.y(), v.z()));
 }
 
-/// Which way a revolute joint counts: +1 if its normal is +z.
-double sense(const JointDescription& is) { return is.normal.z() < 0 ? -1 : 1; }
-
 }  // namespace
 
 FlatJoint& Planar::Core::at(JointIndex joint) {

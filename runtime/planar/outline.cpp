@@ -15,7 +15,6 @@ namespace {
 
 using Points = std::pmr::vector<Vector2>;
 
-double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
 double turn(const Vector2& a, const Vector2& b, const Vector2& c) { return cross(b - a, c - b); }
 bool before(const Vector2& a, const Vector2& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); }
 

@@ -11,6 +11,7 @@
 namespace breve {
 
 using Vector2 = Eigen::Vector2d;
+inline double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// Length units, the shape's own frame.
 struct FlatPiece {

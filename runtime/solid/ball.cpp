@@ -38,12 +38,12 @@ Vector3 nearest_on_face(const Polyhedron& solid, std::size_t face, const Vector3
 }
 
 /// Nearest surface point and outward normal there, in the polyhedron's frame; the distance is < 0 inside.
-struct Surface {
+struct SurfacePoint {
   Vector3 point, normal;
   double distance;
 };
 
-Surface nearest_surface(const Polyhedron& solid, double radius, const Vector3& p) {
+SurfacePoint nearest_surface(const Polyhedron& solid, double radius, const Vector3& p) {
   double highest = -std::numeric_limits<double>::infinity();
   std::size_t top = 0;
   for (std::size_t f = 0; f < solid.planes.size(); ++f) {
@@ -56,7 +56,7 @@ Surface nearest_surface(const Polyhedron& solid, double radius, const Vector3& p
   const Vector3& normal = solid.planes[top].normal;
   if (highest <= 0) return {p - highest * normal, normal, highest};
 
-  Surface best{p, normal, std::numeric_limits<double>::infinity()};
+  SurfacePoint best{p, normal, std::numeric_limits<double>::infinity()};
   for (std::size_t f = 0; f < solid.planes.size(); ++f) {
     const double height = solid.planes[f].normal.dot(p) - solid.planes[f].offset;
     if (height <= 0 || height >= best.distance) continue;
@@ -83,7 +83,7 @@ Gap balls_gap(const Placed& a, const Placed& b) {
 
 Gap ball_gap(const Placed& ball, const Placed& b) {
   const Vector3 p = b.rotation.transpose() * (ball.location - b.location);
-  const Surface surface = nearest_surface(*b.solid, b.radius, p);
+  const SurfacePoint surface = nearest_surface(*b.solid, b.radius, p);
   Gap gap;
   gap.normal = b.rotation * surface.normal;
   gap.distance = surface.distance - ball.radius;

@@ -15,11 +15,6 @@ namespace breve {
 
 namespace {
 
-// Closer than this fraction of the sizes, the direction between closest points loses digits to cancellation; the
-// normal of the facing features keeps them all.
-constexpr double kClose = 1e-5;
-constexpr double kAgree = 1e-14;  // round-off of either, relative to the sizes
-
 Gap polyhedra_gap(const Placed& a, const Placed& b) {
   const double size = a.radius + b.radius;
   Gap gap;

@@ -9,8 +9,6 @@ namespace breve {
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// Does the part of the triangle that is farthest along `direction` (its own frame) stand out of the surface? A vertex
 /// does if one of its two edges here does; the whole face does not.
 bool stands_out(const Facet& facet, const Vector3& direction, double tolerance) {

@@ -5,6 +5,11 @@
 
 namespace breve {
 
+// Closer than this fraction of the sizes, the direction between closest points loses digits to cancellation; the
+// normal of the facing features keeps them all.
+constexpr double kClose = 1e-5;
+constexpr double kAgree = 1e-14;  // round-off of either, relative to the sizes
+
 /// A solid at a pose: a polyhedron, or a ball if `solid` is null.
 struct Placed {
   const Polyhedron* solid = nullptr;

@@ -13,11 +13,11 @@ namespace breve {
 
 namespace {
 
-[[noreturn]] void refuse(const std::string& why) { throw Error(ErrorCode::Argument, "a height field " + why); }
+[[noreturn]] void refuse_field(const std::string& why) { throw Error(ErrorCode::Argument, "a height field " + why); }
 
 void check_height(double height, int column, int row) {
   if (!std::isfinite(height)) {
-    refuse(fmt::format("has height {} at column {}, row {} (must be finite)", height, column, row));
+    refuse_field(fmt::format("has height {} at column {}, row {} (must be finite)", height, column, row));
   }
 }
 
@@ -27,12 +27,14 @@ HeightGrid::HeightGrid(int columns, int rows, double tile, std::span<const doubl
                        std::pmr::memory_resource* memory)
     : columns_(columns), rows_(rows), tile_(tile), heights_(memory) {
   if (columns < 2 || rows < 2 || columns > kMostSide || rows > kMostSide) {
-    refuse(fmt::format("has {} columns and {} rows (must be from 2 to {})", columns, rows, kMostSide));
+    refuse_field(fmt::format("has {} columns and {} rows (must be from 2 to {})", columns, rows, kMostSide));
   }
-  if (!std::isfinite(tile) || tile <= 0) refuse(fmt::format("has tiles of size {} (must be finite and > 0)", tile));
+  if (!std::isfinite(tile) || tile <= 0)
+    refuse_field(fmt::format("has tiles of size {} (must be finite and > 0)", tile));
   const auto points = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   if (heights.size() != points) {
-    refuse(fmt::format("of {} columns and {} rows has {} heights (must be {})", columns, rows, heights.size(), points));
+    refuse_field(
+        fmt::format("of {} columns and {} rows has {} heights (must be {})", columns, rows, heights.size(), points));
   }
   for (std::size_t i = 0; i < points; ++i) {
     const auto place = static_cast<int>(i);
@@ -69,7 +71,7 @@ Vector3 HeightGrid::corner(int column, int row) const {
 
 double HeightGrid::height(int column, int row) const {
   if (column < 0 || row < 0 || column >= columns_ || row >= rows_) {
-    refuse(fmt::format("has no column {}, row {} (there are {} and {})", column, row, columns_, rows_));
+    refuse_field(fmt::format("has no column {}, row {} (there are {} and {})", column, row, columns_, rows_));
   }
   return heights_[index(column, row)];
 }

@@ -24,9 +24,7 @@ constexpr double kLevel = 1e-12;   // of the extent: a point so little above a f
 constexpr double kOneFace = 1e-8;  // of the extent: triangles so near to one plane are one face
 constexpr double kWrong = 1e-7;    // of the extent: what may be outside after all
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-[[noreturn]] void refuse(const std::string& why) { throw Error(ErrorCode::Argument, "a convex hull " + why); }
+[[noreturn]] void refuse_hull(const std::string& why) { throw Error(ErrorCode::Argument, "a convex hull " + why); }
 
 struct HullFace {
   std::array<int, 3> corner{}, neighbour{};  // neighbour i is across the edge from corner i to the next
@@ -63,16 +61,17 @@ class Quickhull {
 
 void Quickhull::measure() {
   if (points_.size() < 4 || points_.size() > kMostPoints) {
-    refuse(fmt::format("of {} points (must be from 4 to {})", points_.size(), kMostPoints));
+    refuse_hull(fmt::format("of {} points (must be from 4 to {})", points_.size(), kMostPoints));
   }
   Eigen::AlignedBox3d box;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Vector3& p = points_[i];
-    if (!p.allFinite()) refuse(fmt::format("of point {} at ({}, {}, {}) (must be finite)", i, p.x(), p.y(), p.z()));
+    if (!p.allFinite())
+      refuse_hull(fmt::format("of point {} at ({}, {}, {}) (must be finite)", i, p.x(), p.y(), p.z()));
     box.extend(p);
   }
   extent_ = box.sizes().maxCoeff();
-  if (!std::isfinite(extent_ * extent_ * extent_)) refuse(fmt::format("of points {} apart: too large", extent_));
+  if (!std::isfinite(extent_ * extent_ * extent_)) refuse_hull(fmt::format("of points {} apart: too large", extent_));
 }
 
 /// Two points far apart, the farthest from their line, and the farthest from that plane.
@@ -91,7 +90,8 @@ std::array<int, 4> Quickhull::first_solid() const {
   const Vector3 normal = line.cross(point(c) - point(a)).stableNormalized();
   const int d = farthest([&](const Vector3& p) { return std::abs(normal.dot(p - point(a))); });
   if (!(std::abs(normal.dot(point(d) - point(a))) > kFlat * extent_)) {
-    refuse("of points that lie in one plane, or nearly (a solid needs a thickness; keep a flat mesh as triangles)");
+    refuse_hull(
+        "of points that lie in one plane, or nearly (a solid needs a thickness; keep a flat mesh as triangles)");
   }
   if (normal.dot(point(d) - point(a)) > 0) return {a, c, b, d};
   return {a, b, c, d};
@@ -266,7 +266,8 @@ void Quickhull::check(const Polyhedron& solid) const {
     bool wrong = false;
     for (const Vector3& p : solid.vertices) wrong = wrong || outside(plane, p);
     for (const int p : dropped_) wrong = wrong || outside(plane, point(p));
-    if (wrong) refuse("of points that no closed solid fits in double precision: remove points that nearly coincide");
+    if (wrong)
+      refuse_hull("of points that no closed solid fits in double precision: remove points that nearly coincide");
   }
 }
 
@@ -277,8 +278,8 @@ Polyhedron Quickhull::run() {
   }
   const auto loops = merged();
   if (loops.size() > kMostFaces) {
-    refuse(fmt::format("has {} faces (at most {}): take a coarser mesh, or keep it as triangles", loops.size(),
-                       kMostFaces));
+    refuse_hull(fmt::format("has {} faces (at most {}): take a coarser mesh, or keep it as triangles", loops.size(),
+                            kMostFaces));
   }
   Polyhedron solid;
   std::vector<int> number(points_.size(), -1);

@@ -10,8 +10,6 @@ namespace {
 
 // Edges count as parallel below this sine, and touch along a stretch then.
 constexpr double kSideBySide = 0.02;
-// The direction between nearest points closer than this part of the sizes has lost digits to cancellation.
-constexpr double kClose = 1e-5;
 
 struct EdgeLine {
   Vector3 start, along;

@@ -22,6 +22,9 @@ struct Edge {
   int left, right;
 };
 
+/// Corners and faces are numbered by int, arrays are not.
+inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
 struct Polyhedron {
   std::pmr::vector<Vector3> vertices;
   std::pmr::vector<std::pmr::vector<int>> faces;

@@ -19,8 +19,6 @@ constexpr double kNearlyParallel = 1e-4;
 constexpr double kParallel = 1e-12;
 constexpr double kNear = 1e-4;  // of the sizes: up to such gaps edges are looked at
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// Do the arcs of two edges cross on the Gauss map of a - b? Source: Gregorius 2013, "The separating axis test".
 bool arcs_cross(const Plane& a1, const Plane& a2, const Vector3& edge_a, const Vector3& b1, const Vector3& b2,
                 const Vector3& edge_b) {

@@ -10,12 +10,8 @@ namespace breve {
 
 namespace {
 
-constexpr double kClose = 1e-5;  // KEEP IN STEP: contact.cpp
-constexpr double kAgree = 1e-14;
 constexpr double kParallel = 1e-9;  // sine below which two edges give no axis
 constexpr double kSideways = 1e-9;  // of a direction that still counts as not going backward
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// The point of a triangle nearest to p. Source: Ericson 2005, "Real-Time Collision Detection", 5.1.5.
 Vector3 nearest_on(const std::array<Vector3, 3>& corner, const Vector3& p) {

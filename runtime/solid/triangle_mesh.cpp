@@ -14,9 +14,7 @@ namespace breve {
 
 namespace {
 
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
-
-[[noreturn]] void refuse(const std::string& why) { throw Error(ErrorCode::Argument, "a mesh " + why); }
+[[noreturn]] void refuse_mesh(const std::string& why) { throw Error(ErrorCode::Argument, "a mesh " + why); }
 
 /// Half of an edge as one triangle runs it.
 struct HalfEdge {
@@ -39,7 +37,7 @@ TriangleMesh::TriangleMesh(std::span<const Vector3> corners, std::span<const Tri
       order_(memory),
       nodes_(memory) {
   if (triangles.size() > kMostTriangles) {
-    refuse(fmt::format("has {} triangles (at most {})", triangles.size(), kMostTriangles));
+    refuse_mesh(fmt::format("has {} triangles (at most {})", triangles.size(), kMostTriangles));
   }
   weld(corners, triangles);
   join();
@@ -69,7 +67,8 @@ TriangleMesh::TriangleMesh(const TriangleMesh& other, const Vector3& factors)
 void TriangleMesh::weld(std::span<const Vector3> corners, std::span<const Triangle> triangles) {
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Vector3& p = corners[i];
-    if (!p.allFinite()) refuse(fmt::format("has corner {} at ({}, {}, {}) (must be finite)", i, p.x(), p.y(), p.z()));
+    if (!p.allFinite())
+      refuse_mesh(fmt::format("has corner {} at ({}, {}, {}) (must be finite)", i, p.x(), p.y(), p.z()));
   }
   // Sorted by place, equal corners stand side by side; the first of them stays.
   std::pmr::vector<std::int32_t> sorted(corners.size(), original_.get_allocator()), name(sorted);
@@ -93,7 +92,7 @@ void TriangleMesh::weld(std::span<const Vector3> corners, std::span<const Triang
     Triangle t;
     for (std::size_t k = 0; k < 3; ++k) {
       if (triangles[f][k] < 0 || at(triangles[f][k]) >= corners.size()) {
-        refuse(
+        refuse_mesh(
             fmt::format("has triangle {} with corner {} (there are {} corners)", f, triangles[f][k], corners.size()));
       }
       t[k] = name[at(triangles[f][k])];
@@ -108,7 +107,7 @@ void TriangleMesh::weld(std::span<const Vector3> corners, std::span<const Triang
     }
     triangles_.push_back(t);
   }
-  if (triangles_.empty()) refuse("has no triangle with an area");
+  if (triangles_.empty()) refuse_mesh("has no triangle with an area");
 }
 
 /// Who is whose neighbour. Closed: each edge is run by two triangles, once in each sense.

@@ -11,8 +11,6 @@ namespace {
 
 using Text = StringCell*;
 
-Mechanics& dynamics_of(Machine& machine) { return machine.world().dynamics(); }
-
 // --- accuracy -------------------------------------------------------------------------------------------------------
 
 void set_accuracy(Machine& machine, Instance&, Text rung) { dynamics_of(machine).set_accuracy(rung_named(view(rung))); }

@@ -14,9 +14,6 @@ namespace {
 
 using Text = StringCell*;
 
-Bodies& bodies_of(Machine& machine) { return machine.world().bodies(); }
-Mechanics& dynamics_of(Machine& machine) { return machine.world().dynamics(); }
-
 /// The root of a MultiBody that must have one.
 Instance& need_root(Machine& machine, Instance& self) {
   Instance* root = root_of(machine, self);

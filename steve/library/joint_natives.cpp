@@ -9,8 +9,6 @@ namespace breve::steve {
 
 namespace {
 
-Mechanics& dynamics_of(Machine& machine) { return machine.world().dynamics(); }
-
 JointResource& resource(Machine& machine, Instance& self) { return resource_made<JointResource>(machine, self); }
 
 /// What a setter does to a joint that is linked; otherwise nothing, which is said once for each selector.

@@ -62,11 +62,11 @@ constexpr std::string_view kLaterClasses[] = {"BraitenbergControl",
                                               "Tones",
                                               "URL"};
 
-struct Kind {
+struct ResourceKind {
   std::string_view name;
   ResourceLoader loader;
 };
-constexpr Kind kKinds[] = {
+constexpr ResourceKind kResourceKinds[] = {
     {CameraResource::kKind, &CameraResource::load},     {MenuItemResource::kKind, &MenuItemResource::load},
     {DrawingResource::kKind, &DrawingResource::load},   {LineResource::kKind, &LineResource::load},
     {ShapeResource::kKind, &ShapeResource::load},       {ImageResource::kKind, &ImageResource::load},
@@ -105,11 +105,11 @@ bool is_later_class(std::string_view name_or_alias) {
 }
 
 void register_resource_kinds(World& world) {
-  for (const Kind& kind : kKinds) world.add_resource_kind(kind.name, kind.loader);
+  for (const ResourceKind& kind : kResourceKinds) world.add_resource_kind(kind.name, kind.loader);
 }
 
 std::unique_ptr<Resource> load_resource(std::string_view name, ByteReader& in) {
-  for (const Kind& kind : kKinds)
+  for (const ResourceKind& kind : kResourceKinds)
     if (kind.name == name) return kind.loader(in);
   ByteReader::fail();
 }

@@ -9,8 +9,6 @@ namespace breve::steve {
 
 namespace {
 
-Bodies& bodies_of(Machine& machine) { return machine.world().bodies(); }
-
 void mobile_init(Machine& machine, Instance& self) {
   embody(machine, self, is_library_kind(self, "Link") ? BodyKind::Link : BodyKind::Mobile);
 }

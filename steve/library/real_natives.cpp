@@ -14,8 +14,6 @@ namespace {
 
 using Text = StringCell*;
 
-Bodies& bodies_of(Machine& machine) { return machine.world().bodies(); }
-
 /// What joints hold to it follows at once.
 void moved(Machine& machine, BodyIndex body) { machine.world().dynamics().moved(body); }
 

@@ -14,6 +14,9 @@
 
 namespace breve::steve {
 
+inline Bodies& bodies_of(Machine& machine) { return machine.world().bodies(); }
+inline Mechanics& dynamics_of(Machine& machine) { return machine.world().dynamics(); }
+
 /// The body of an object. Error{Argument} if it has none, Error{Stale} if it is freed.
 inline BodyIndex body_of(Machine& machine, const Instance& self) { return machine.world().body(self.id); }
 
@@ -25,12 +28,12 @@ inline Instance& must_live(Instance* object, std::string_view what) {
   return *object;
 }
 
-/// The value itself. @throws Error{Argument} "`what` must be finite"
 /// Once for each setting: in a flat world it means nothing, and `text` says what does.
 inline void warn_if_flat(Machine& machine, std::string_view setting, std::string_view text) {
   if (machine.world().dimension() == 2) machine.warn_once("flat:" + std::string(setting), text);
 }
 
+/// The value itself. @throws Error{Argument} "`what` must be finite"
 inline double finite(double value, std::string_view what) {
   if (!std::isfinite(value)) throw Error(ErrorCode::Argument, std::string(what) + " must be finite");
   return value;

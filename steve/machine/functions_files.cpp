@@ -129,7 +129,7 @@ void close_file(Machine&, Instance&, PointerCell* pointer) {
   if (pointer != nullptr) file_of(pointer).close();
 }
 
-constexpr std::array kFunctions = {
+constexpr std::array kFileFunctions = {
     native<open_for_reading>("openFileForReading"),
     native<open_for_writing>("openFileForWriting"),
     native<open_for_appending>("openFileForAppending"),
@@ -144,6 +144,6 @@ constexpr std::array kFunctions = {
 
 }  // namespace
 
-std::span<const Native> file_functions() { return kFunctions; }
+std::span<const Native> file_functions() { return kFileFunctions; }
 
 }  // namespace breve::steve

@@ -107,7 +107,7 @@ Vector3 color_to_hsv(Machine&, Instance&, Vector3 rgb) { return rgb_to_hsv(rgb);
 Vector3 color_to_rgb(Machine&, Instance&, Vector3 hsv) { return hsv_to_rgb(hsv); }
 Vector3 color_number(Machine&, Instance&, std::int32_t n) { return unique_color(n); }
 
-constexpr std::array kFunctions = {
+constexpr std::array kMathFunctions = {
     native<sine>("sin"),
     native<cosine>("cos"),
     native<tangent>("tan"),
@@ -142,6 +142,6 @@ constexpr std::array kFunctions = {
 
 }  // namespace
 
-std::span<const Native> math_functions() { return kFunctions; }
+std::span<const Native> math_functions() { return kMathFunctions; }
 
 }  // namespace breve::steve

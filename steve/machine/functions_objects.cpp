@@ -140,7 +140,7 @@ void report_allocation(Machine& machine, Instance&) {
                            machine.heap().live_cells()));
 }
 
-constexpr std::array kFunctions = {
+constexpr std::array kObjectFunctions = {
     native<type_of>("typeof"),
     native<is_a>("isa"),
     native<object_name>("objectName"),
@@ -164,6 +164,6 @@ constexpr std::array kFunctions = {
 
 }  // namespace
 
-std::span<const Native> object_functions() { return kFunctions; }
+std::span<const Native> object_functions() { return kObjectFunctions; }
 
 }  // namespace breve::steve

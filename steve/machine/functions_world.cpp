@@ -82,7 +82,7 @@ StringCell* no_keys(Machine&, Instance&) { return nullptr; }
 void no_sound(Machine&, Instance&) {}
 std::int32_t no_dialog(Machine&, Instance&, StringCell*, StringCell*, StringCell*, StringCell*) { return 0; }
 
-constexpr std::array kFunctions = {
+constexpr std::array kWorldFunctions = {
     native<get_time>("getTime"),
     native<get_real_time>("getRealTime"),
     native<get_running_time>("getRunningTime"),
@@ -106,6 +106,6 @@ constexpr std::array kFunctions = {
 
 }  // namespace
 
-std::span<const Native> world_functions() { return kFunctions; }
+std::span<const Native> world_functions() { return kWorldFunctions; }
 
 }  // namespace breve::steve

@@ -6,8 +6,6 @@
 namespace breve::steve::testing {
 namespace {
 
-std::uint64_t bound(std::uint64_t live) { return (live + 19'999) / 20'000 + 2; }
-
 /// Rings that are too long to be judged by themselves, dropped while a collection runs.
 void drop_long_ring(World& w, int length = 12'000) {
   ListCell* first = w.heap.list();

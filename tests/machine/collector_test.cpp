@@ -10,8 +10,6 @@
 namespace breve::steve::testing {
 namespace {
 
-std::uint64_t bound(std::uint64_t live) { return (live + 19'999) / 20'000 + 2; }
-
 TEST(Collector, ListThatHoldsItselfGoes) {
   World w;
   ListCell* list = w.heap.list();

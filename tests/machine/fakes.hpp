@@ -11,6 +11,9 @@
 
 namespace breve::steve::testing {
 
+/// Iterations after which a cycle is gone at the latest, by the number of live objects: what docs/limits.md promises.
+inline std::uint64_t bound(std::uint64_t live) { return (live + 19'999) / 20'000 + 2; }
+
 struct FakeRoots : RootSource {
   std::vector<Cell*> frames;
   std::vector<Cell*> roots;

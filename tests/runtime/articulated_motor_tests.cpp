@@ -7,7 +7,7 @@
 #include "runtime/articulated/inverse_dynamics.hpp"
 #include "runtime/articulated/mass_matrix.hpp"
 
-namespace breve::articulated {
+namespace breve::articulated::motor_tests {
 namespace {
 
 constexpr double kLag = 0.01;  // s
@@ -122,4 +122,4 @@ TEST(Motors, ThatComeToTheirLimitsMakeNoJump) {
 }
 
 }  // namespace
-}  // namespace breve::articulated
+}  // namespace breve::articulated::motor_tests

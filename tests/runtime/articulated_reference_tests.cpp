@@ -7,7 +7,7 @@
 #include "runtime/articulated/inverse_dynamics.hpp"
 #include "runtime/articulated/kinematics.hpp"
 
-namespace breve::articulated {
+namespace breve::articulated::reference_tests {
 namespace {
 
 using reference::Row;
@@ -101,4 +101,4 @@ INSTANTIATE_TEST_SUITE_P(Files, MultibodyReference, testing::ValuesIn(reference:
                          [](const auto& info) { return info.param; });
 
 }  // namespace
-}  // namespace breve::articulated
+}  // namespace breve::articulated::reference_tests

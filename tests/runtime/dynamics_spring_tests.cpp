@@ -6,7 +6,7 @@
 
 #include "dynamics_scene.hpp"
 
-namespace breve::testing {
+namespace breve::testing::spring_tests {
 namespace {
 
 // Of zeta = 0.2: exp(-pi zeta / sqrt(1 - zeta^2)).
@@ -278,4 +278,4 @@ TEST(ContactSpringsInAWorld, ASnapshotGoesOnBitForBit) {
 }
 
 }  // namespace
-}  // namespace breve::testing
+}  // namespace breve::testing::spring_tests

@@ -8,7 +8,7 @@
 #include "runtime/solid/manifold.hpp"
 #include "tests/runtime/solid_oracle.hpp"
 
-namespace breve {
+namespace breve::manifold_tests {
 namespace {
 
 constexpr double kExact = 1e-12;
@@ -310,4 +310,4 @@ TEST(Manifold, SolidsOfManyFacesTouchAsTheirSmoothOriginalsDo) {
 }
 
 }  // namespace
-}  // namespace breve
+}  // namespace breve::manifold_tests

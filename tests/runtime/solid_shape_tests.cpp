@@ -10,7 +10,7 @@
 #include "runtime/solid/shape.hpp"
 #include "tests/runtime/solid_oracle.hpp"
 
-namespace breve {
+namespace breve::shape_tests {
 namespace {
 
 using std::numbers::pi;
@@ -407,4 +407,4 @@ TEST(Shape, AnImageGivesTheSameShapeBackBitForBit) {
 }
 
 }  // namespace
-}  // namespace breve
+}  // namespace breve::shape_tests

@@ -14,7 +14,7 @@
 #include "runtime/solid/triangle_mesh.hpp"
 #include "tests/runtime/solid_oracle.hpp"
 
-namespace breve {
+namespace breve::surface_tests {
 namespace {
 
 constexpr double kExact = 1e-12;
@@ -488,4 +488,4 @@ TEST(SurfaceManifold, PointsAreOnBothSurfacesAndWithinTheMargin) {
 }
 
 }  // namespace
-}  // namespace breve
+}  // namespace breve::surface_tests

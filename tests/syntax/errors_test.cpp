@@ -4,7 +4,7 @@
 
 #include "reading.hpp"
 
-namespace breve::steve::test {
+namespace breve::steve::test::errors_test {
 namespace {
 
 struct Row {
@@ -171,4 +171,4 @@ TEST(Errors, OfTheScannerSilenceTheirLine) {
 }
 
 }  // namespace
-}  // namespace breve::steve::test
+}  // namespace breve::steve::test::errors_test

@@ -3,7 +3,7 @@
 
 #include "reading.hpp"
 
-namespace breve::steve::test {
+namespace breve::steve::test::expressions_test {
 namespace {
 
 struct Row {
@@ -253,4 +253,4 @@ TEST(ExpressionLints, WarnAndKeepTheMeaning) {
 }
 
 }  // namespace
-}  // namespace breve::steve::test
+}  // namespace breve::steve::test::expressions_test

@@ -3,7 +3,7 @@
 
 #include "reading.hpp"
 
-namespace breve::steve::test {
+namespace breve::steve::test::statements_test {
 namespace {
 
 struct Row {
@@ -107,4 +107,4 @@ TEST(Statements, InteractiveStatementsNeedNoPeriod) {
 }
 
 }  // namespace
-}  // namespace breve::steve::test
+}  // namespace breve::steve::test::statements_test

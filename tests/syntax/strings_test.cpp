@@ -3,7 +3,7 @@
 
 #include "reading.hpp"
 
-namespace breve::steve::test {
+namespace breve::steve::test::strings_test {
 namespace {
 
 struct Row {
@@ -93,4 +93,4 @@ TEST(Strings, ConstantsDefaultsAndFileNamesKeepTheirEscapes) {
 }
 
 }  // namespace
-}  // namespace breve::steve::test
+}  // namespace breve::steve::test::strings_test

@@ -1,7 +1,7 @@
 // Motion in a flat world against closed forms: free flight, pendulums, inclines, rebounds, joints.
 #include "scene.hpp"
 
-namespace breve::testing {
+namespace breve::testing::motion_tests {
 namespace {
 
 constexpr double kG = 9.81;
@@ -365,4 +365,4 @@ TEST(PlanarJoints, ASpringSwingsWithItsPeriodAndItsEnergyIsInTheLedger) {
 }
 
 }  // namespace
-}  // namespace breve::testing
+}  // namespace breve::testing::motion_tests
