@@ -71,8 +71,8 @@ struct FlatBody {
   MassProperties mass;
   // What is compared once a step.
   std::shared_ptr<Shape> shape;
-  Vector3 scale = Vector3::Ones();
   Material material;
+  Vector3 scale = Vector3::Ones();
   // What the arrays held when they were last brought together with Box2D's.
   Vector3 location = Vector3::Zero(), velocity = Vector3::Zero(), spin = Vector3::Zero();
   Quaternion orientation{1, 0, 0, 0};
@@ -185,7 +185,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   std::optional<Warm> kept;                 // while steps are cut: impulses of the last one that was not
   bool muted = false;                       // contacts are being made again: nobody is told
 
-  std::uint64_t seen_revision = 0, seen_rules = 0;
+  std::uint64_t seen_revision = 0, seen_rules = 0, seen_scalings = 0;
   bool rules_seen = false, members_changed = true, materials_changed = true;
   std::uint64_t rules = 0;           // grows when the answer may change whether two bodies push each other
   DynamicsClient* client = nullptr;  // during advance()

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "runtime/base/error.hpp"
 #include "runtime/planar/core.hpp"
@@ -347,22 +348,19 @@ void Planar::Core::push_velocity(FlatBody& flat, const Vector3& velocity, double
 }
 
 void Planar::Core::push_changes() {
-  // A scale belongs to a shape that many may share: it is looked up once for those that follow each other. Box2D's step
-  // has driven what is compared here out of the caches.
-  constexpr std::size_t kShapeAhead = 4, kAhead = 10;
-  const Shape* last = nullptr;
-  const Vector3* scale = nullptr;
+  // Box2D's step has driven what is compared here out of the caches.
+  constexpr std::size_t kAhead = 10;
+  const std::uint64_t scalings = Shape::scalings();
+  const bool scaled = std::exchange(seen_scalings, scalings) != scalings;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     if (i + kAhead < slots.size()) {
-      __builtin_prefetch(&slots[i + kAhead].scale);
-      const BodyIndex soon = slots[i + kShapeAhead].body;
-      if (soon != kNoBody) __builtin_prefetch(bodies->collision_shape(soon).get());
+      __builtin_prefetch(&slots[i + kAhead].body);
+      __builtin_prefetch(&slots[i + kAhead].shape);
     }
     FlatBody& flat = slots[i];
     if (flat.body == kNoBody) continue;
-    const Shape& shape = *bodies->collision_shape(flat.body);
-    if (&shape != last) scale = &(last = &shape)->scale();
-    if (flat.shape.get() != &shape || flat.scale != *scale) {
+    const Shape* shape = bodies->collision_shape(flat.body).get();
+    if (flat.shape.get() != shape || (scaled && flat.scale != shape->scale())) {
       const double before = energy_of(flat.body);
       fit(flat);
       flat.b2->SetAwake(true);

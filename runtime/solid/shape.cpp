@@ -5,6 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -197,6 +198,12 @@ void Shape::set_inertia(const Matrix3& inertia) {
   g.inertia = symmetric;
 }
 
+namespace {
+std::atomic<std::uint64_t> scalings_so_far{0};
+}
+
+std::uint64_t Shape::scalings() { return scalings_so_far.load(std::memory_order_relaxed); }
+
 void Shape::set_scale(const Vector3& factors) {
   static constexpr const char* kWhat[] = {"the scale of a shape along x", "the scale of a shape along y",
                                           "the scale of a shape along z"};
@@ -209,6 +216,7 @@ void Shape::set_scale(const Vector3& factors) {
   next->derive_size();
   next->derive_mass();
   geometry_ = std::move(next);
+  scalings_so_far.fetch_add(1, std::memory_order_relaxed);
 }
 
 }  // namespace breve

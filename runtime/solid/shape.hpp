@@ -85,6 +85,8 @@ class Shape : public InMemory {
   void set_scale(const Vector3& factors);
   const Vector3& scale() const;
   const Vector3& last_scale() const;  // the scale before the last change
+  /// How often any shape of the process was given a scale. Who compares this need not look at each shape.
+  static std::uint64_t scalings();
 
   /// Where a ray from the centre along `direction` leaves the surface; (0,0,0) for a zero direction.
   Vector3 point_on(const Vector3& direction) const;
