@@ -287,7 +287,13 @@ Outline outline_of(const Shape& shape, std::pmr::memory_resource* memory) {
   } else if (shape.surface()) {
     cut_surface(outline, *shape.surface(), memory);
   } else {
+    const auto& corners = shape.polyhedron().vertices;
     add_convex(outline, cut_polyhedron(shape.polyhedron(), memory), memory);
+    const auto [low, high] = std::minmax_element(corners.begin(), corners.end(),
+                                                 [](const Vector3& a, const Vector3& b) { return a.z() < b.z(); });
+    if (outline.pieces.empty() && low->z() < 0 && high->z() > 0)
+      throw Error(ErrorCode::Argument,
+                  "the outline of the shape at z = 0 is a line to double precision: make it wider or less long");
   }
   if (outline.pieces.empty()) no_outline();
   return outline;

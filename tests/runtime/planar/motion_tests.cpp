@@ -247,6 +247,18 @@ TEST(PlanarMotion, AProfileMayHaveCornersNearerThanBox2DCanTell) {
   EXPECT_NE(refusal(huge).find("single precision"), std::string::npos);
 }
 
+TEST(PlanarMotion, AShapeThatIsALineToDoublePrecisionIsRefusedAsSuch) {
+  Flat flat;
+  flat.box(1e14, 1, 0, 0);
+  EXPECT_NE(refusal(flat).find("is a line to double precision"), std::string::npos) << refusal(flat);
+  Flat aside;  // a closed mesh that lies beyond the plane
+  const std::vector<Vector3> corners{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {0, 0, 2}};
+  const std::vector<std::array<std::int32_t, 3>> triangles{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  aside.fixed(Shape::mesh(corners, triangles), 0, 0);
+  aside.ball(1, 0, 5);
+  EXPECT_NE(refusal(aside).find("does not reach the plane z = 0"), std::string::npos) << refusal(aside);
+}
+
 TEST(PlanarMotion, BoundsAlongZThatLeaveOutThePlaneAreRefused) {
   Flat flat;
   EXPECT_THROW(flat.world.set_space(2, Ending::Wrap, 1, 2), Error);

@@ -198,6 +198,33 @@ TEST(PlanarState, AHeightFieldIsAProfileToStandOn) {
   EXPECT_GT(flat.at(ball).y(), 0.4);
 }
 
+TEST(PlanarState, AnOpenMeshIsAProfileToStandOn) {
+  // A valley of two slopes of 1 in 5, one triangle mesh of two rows of corners at z = -1 and 1.
+  constexpr int kColumns = 21;
+  std::vector<Vector3> corners;
+  for (const double z : {-1.0, 1.0})
+    for (int column = 0; column < kColumns; ++column) corners.emplace_back(column - 10, 0.2 * std::abs(column - 10), z);
+  std::vector<std::array<std::int32_t, 3>> triangles;
+  for (int i = 0; i + 1 < kColumns; ++i) {
+    triangles.push_back({i, i + kColumns, i + kColumns + 1});
+    triangles.push_back({i, i + kColumns + 1, i + 1});
+  }
+  Flat flat;
+  flat.fixed(Shape::mesh(corners, triangles), 0, 0);
+  const ObjectId ball = flat.ball(0.5, 3, 2);
+  flat.material(ball, 0.5, 0);
+  flat.run(2);
+  bool crossed = false;
+  for (int i = 0; i < 100; ++i) {  // it rolls to and fro, never higher
+    flat.run(0.1);
+    const Vector3 at = flat.at(ball);
+    crossed = crossed || at.x() < 0;
+    EXPECT_LT(std::abs(at.x()), 3);
+    EXPECT_NEAR(at.y(), 0.2 * std::abs(at.x()) + 0.5 * std::sqrt(1.04), 0.05);
+  }
+  EXPECT_TRUE(crossed);
+}
+
 TEST(PlanarState, EveryRefusedAllocationIsAnErrorAndNothingLeaks) {
   for (std::size_t limit = 0; limit < 400'000; limit += 7001) {
     MemoryMeter memory;
