@@ -46,6 +46,12 @@ void BoxTree::remove(Leaf leaf) {
 }
 
 void BoxTree::move(Leaf leaf, const Eigen::AlignedBox3d& box) {
+  // What goes a little way keeps its place, which rotations make better if need be.
+  if (nodes_[leaf].box.intersects(box)) {
+    nodes_[leaf].box = box;
+    refit_up(nodes_[leaf].parent);
+    return;
+  }
   unlink(leaf);
   nodes_[leaf].box = box;
   link(leaf);
@@ -128,10 +134,15 @@ void BoxTree::fit(std::uint32_t node) {
 
 void BoxTree::refit_up(std::uint32_t node) {
   while (node != kNoLeaf) {
+    const Eigen::AlignedBox3d before = nodes_[node].box;
+    const std::int32_t height = nodes_[node].height;
     fit(node);
     tighten(node);
     node = balance(node);
-    node = nodes_[node].parent;
+    const Node& now = nodes_[node];
+    // Above, nothing has changed.
+    if (now.height == height && now.box.min() == before.min() && now.box.max() == before.max()) return;
+    node = now.parent;
   }
 }
 
