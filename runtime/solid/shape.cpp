@@ -14,11 +14,11 @@
 
 namespace breve {
 
+std::string show(const Vector3& v) { return fmt::format("({}, {}, {})", v.x(), v.y(), v.z()); }
+
 namespace {
 
 constexpr double kSymmetryTolerance = 1e-9;  // relative; a matrix typed with ten digits passes
-
-std::string show(const Vector3& v) { return fmt::format("({}, {}, {})", v.x(), v.y(), v.z()); }
 
 void check_positive(const char* what, double value) {
   if (!std::isfinite(value) || value <= 0) {

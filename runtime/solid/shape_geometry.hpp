@@ -1,10 +1,14 @@
 // What a shape is made of, behind shape.hpp: the original, the scale, and what follows from both.
 #pragma once
 
+#include <string>
+
 #include "runtime/solid/shape.hpp"
 #include "runtime/solid/triangle_mesh.hpp"
 
 namespace breve {
+
+std::string show(const Vector3& v);  // "(x, y, z)", for errors
 
 struct Shape::Geometry : InMemory {
   explicit Geometry(Memory memory) : original_vertices(memory), solid(memory) {}

@@ -12,8 +12,6 @@ namespace breve {
 
 namespace {
 
-std::string show(const Vector3& v) { return fmt::format("({}, {}, {})", v.x(), v.y(), v.z()); }
-
 /// The farthest point of a surface on a ray from the origin; the origin itself if it meets none.
 Vector3 last_point(const Surface& surface, double reach, const Vector3& unit) {
   const double beyond = 2 * reach;
