@@ -7,6 +7,7 @@
 
 #include "runtime/contact/elimination.hpp"
 #include "runtime/contact/pack.hpp"
+#include "runtime/contact/sides.hpp"
 
 namespace breve::contact {
 
@@ -14,42 +15,14 @@ namespace {
 
 constexpr int kMostVelocities = 1200;  // beyond it the matrix is too large: leave the island to the sweeps
 
-/// One side of a row as matrices: of its own, or made from the arm of a free body.
-struct Matrices {
-  const double *j = nullptr, *r = nullptr;
-  int size = 0;
-  double made[36];
-
-  void read(const Packed& m, const double* own_j, const double* own_r, const Point& c, const double arm[3]) {
-    size = m.place == nullptr ? 0 : m.size;
-    j = own_j;
-    r = own_r;
-    if (j != nullptr || size == 0) return;
-    const double* axes[3] = {c.normal, c.tangent1, c.tangent2};
-    for (int k = 0; k < 3; ++k) {
-      const double* n = axes[k];
-      double* jk = made + 6 * k;
-      double* rk = made + 18 + 6 * k;
-      for (int i = 0; i < 3; ++i) {
-        jk[i] = n[i];
-        rk[i] = m.inverse_mass * n[i];
-      }
-      jk[3] = arm[1] * n[2] - arm[2] * n[1];
-      jk[4] = arm[2] * n[0] - arm[0] * n[2];
-      jk[5] = arm[0] * n[1] - arm[1] * n[0];
-      rk[3] = m.inertia[0] * jk[3] + m.inertia[1] * jk[4] + m.inertia[2] * jk[5];
-      rk[4] = m.inertia[1] * jk[3] + m.inertia[3] * jk[4] + m.inertia[4] * jk[5];
-      rk[5] = m.inertia[2] * jk[3] + m.inertia[4] * jk[4] + m.inertia[5] * jk[5];
-    }
-    j = made;
-    r = made + 18;
-  }
-};
-
 }  // namespace
 
 Equations::Equations(Workspace& work) : work_(work), rows_(3 * work.points.size() + work.scalars.size()) {
   work.indices.clear();
+  if (work.condensed) {
+    size_ = static_cast<int>(rows_);
+    return;
+  }
   for (const Packed& mover : work.movers) {
     work.indices.push_back(size_);
     if (mover.place != nullptr) size_ += mover.size;
@@ -91,10 +64,18 @@ void Equations::each_mover(F&& f) {
 }
 
 void Equations::get_velocities(double* out) {
+  if (work_.condensed) {
+    std::copy(work_.rates.begin(), work_.rates.end(), out);
+    return;
+  }
   each_mover([&](Packed& m, int at) { std::copy_n(m.now(), m.size, out + at); });
 }
 
 void Equations::set_velocities(const double* in) {
+  if (work_.condensed) {
+    std::copy_n(in, rows_, work_.rates.begin());
+    return;
+  }
   each_mover([&](Packed& m, int at) { std::copy_n(in + at, m.size, m.now()); });
 }
 
@@ -160,14 +141,15 @@ double& Equations::entry(int i, int k) {
 
 void Equations::add_point(std::size_t point, const Slope& D) {
   if (D.nn == 0) return;
+  if (work_.condensed) return add_condensed(point, D);
   const Point& c = work_.points[point];
   const Sides& own = work_.sides[point];
-  Matrices sides[2];
+  SideMatrices sides[2];
   const int movers[2] = {c.a, c.b};
   sides[0].read(work_.movers[static_cast<std::size_t>(c.a)], own.ja, own.ra, c, c.arm_a);
   sides[1].read(work_.movers[static_cast<std::size_t>(c.b)], own.jb, own.rb, c, c.arm_b);
   for (int y = 0; y < 2; ++y) {
-    const Matrices& J = sides[y];
+    const SideMatrices& J = sides[y];
     const int column = work_.indices[static_cast<std::size_t>(movers[y])];
     // A point of a tree moves with the joints between it and the root: the columns behind them are zero.
     double *const n = columns_[0], *const t1 = columns_[1], *const t2 = columns_[2];
@@ -180,7 +162,7 @@ void Equations::add_point(std::size_t point, const Slope& D) {
       if (j0 != 0 || j1 != 0 || j2 != 0) count = k + 1;
     }
     for (int x = 0; x < 2; ++x) {
-      const Matrices& R = sides[x];
+      const SideMatrices& R = sides[x];
       const int row = work_.indices[static_cast<std::size_t>(movers[x])];
       const double sign = x == y ? 1 : -1;
       for (int i = 0; i < R.size; ++i) {
@@ -192,8 +174,25 @@ void Equations::add_point(std::size_t point, const Slope& D) {
   }
 }
 
+/// The velocities are those of the rows: J is a unit matrix, and R is W.
+void Equations::add_condensed(std::size_t point, const Slope& D) {
+  const double* W = &work_.answers[3 * point * rows_];
+  for (std::size_t i = 0; i < rows_; ++i) {
+    const double r0 = W[i], r1 = W[rows_ + i], r2 = W[2 * rows_ + i];
+    double* line = matrix_ + i * rows_ + 3 * point;
+    line[0] += r0 * D.nn + r1 * D.t1n + r2 * D.t2n;
+    line[1] += r0 * D.n1 + r1 * D.t11 + r2 * D.t21;
+    line[2] += r0 * D.n2 + r1 * D.t12 + r2 * D.t22;
+  }
+}
+
 void Equations::add_scalar(std::size_t scalar, double slope) {
   if (slope == 0) return;
+  if (work_.condensed) {
+    const std::size_t at = 3 * work_.points.size() + scalar;
+    for (std::size_t i = 0; i < rows_; ++i) matrix_[i * rows_ + at] += slope * work_.answers[at * rows_ + i];
+    return;
+  }
   const PackedScalar& row = work_.scalars[scalar];
   const double* j[2] = {row.ja, row.jb};
   const double* r[2] = {row.ra, row.rb};

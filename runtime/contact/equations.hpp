@@ -39,6 +39,7 @@ class Equations {
   void set_velocities(const double* in);
   void push_impulses(const double* p, double sign);
   double& entry(int i, int k);
+  void add_condensed(std::size_t point, const Slope& D);
 
   Workspace& work_;
   std::size_t rows_, offsets_ = 0;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/contact/sides.hpp"
+
 namespace breve::contact {
 
 namespace {
@@ -53,12 +55,6 @@ void add_response(const Packed& m, const double arm[3], const Point& c, LocalMat
   W.s11 += m.inverse_mass + dot(1, 1);
   W.s12 += dot(1, 2);
   W.s22 += m.inverse_mass + dot(2, 2);
-}
-
-double dot(const double* a, const double* b, int size) {
-  double sum = 0;
-  for (int i = 0; i < size; ++i) sum += a[i] * b[i];
-  return sum;
 }
 
 /// Of a side given by its matrices. J R is symmetric; both halves are read, so that round-off is shared.
@@ -146,10 +142,16 @@ void add_velocity(const Point& c, const double arm[3], const Packed& m, double s
   u[2] += sign * (c.tangent2[0] * x + c.tangent2[1] * y + c.tangent2[2] * z);
 }
 
+/// Its place among all rows, of which a point has three.
+std::size_t row_of(const Workspace& work, const PackedScalar& row) {
+  return 3 * work.points.size() + static_cast<std::size_t>(&row - work.scalars.data());
+}
+
 }  // namespace
 
 void pack(std::span<const Mover> movers, std::span<const Row> rows, std::span<const ScalarRow> scalars,
           Workspace& work) {
+  work.condensed = false;
   work.movers.clear();
   work.movers.push_back(world());
   for (const Mover& mover : movers) work.movers.push_back(packed(mover));
@@ -178,6 +180,10 @@ void unpack(const Workspace& work, std::span<Row> rows, std::span<ScalarRow> sca
 }
 
 void velocity(const Workspace& work, std::size_t contact, double u[3]) {
+  if (work.condensed) {
+    std::copy_n(&work.rates[3 * contact], 3, u);
+    return;
+  }
   const Point& c = work.points[contact];
   const Packed& a = work.movers[static_cast<std::size_t>(c.a)];
   const Packed& b = work.movers[static_cast<std::size_t>(c.b)];
@@ -195,6 +201,13 @@ void velocity(const Workspace& work, std::size_t contact, double u[3]) {
 }
 
 void push(Workspace& work, std::size_t contact, const double p[3]) {
+  if (work.condensed) {
+    const std::size_t n = work.rates.size();
+    const double* W = &work.answers[3 * contact * n];
+    double* u = work.rates.data();
+    for (std::size_t i = 0; i < n; ++i) u[i] += W[i] * p[0] + W[n + i] * p[1] + W[2 * n + i] * p[2];
+    return;
+  }
   const Point& c = work.points[contact];
   Packed& a = work.movers[static_cast<std::size_t>(c.a)];
   Packed& b = work.movers[static_cast<std::size_t>(c.b)];
@@ -214,6 +227,7 @@ void push(Workspace& work, std::size_t contact, const double p[3]) {
 }
 
 double velocity(const Workspace& work, const PackedScalar& row) {
+  if (work.condensed) return work.rates[row_of(work, row)];
   double u = 0;
   if (row.ja != nullptr) {
     const Packed& a = work.movers[static_cast<std::size_t>(row.a)];
@@ -227,6 +241,12 @@ double velocity(const Workspace& work, const PackedScalar& row) {
 }
 
 void push(Workspace& work, const PackedScalar& row, double impulse) {
+  if (work.condensed) {
+    const std::size_t n = work.rates.size();
+    const double* W = &work.answers[row_of(work, row) * n];
+    for (std::size_t i = 0; i < n; ++i) work.rates[i] += W[i] * impulse;
+    return;
+  }
   const auto add = [&](int mover, const double* r, double sign) {
     if (r == nullptr) return;
     Packed& m = work.movers[static_cast<std::size_t>(mover)];

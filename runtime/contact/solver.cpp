@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/contact/condensed.hpp"
 #include "runtime/contact/direct.hpp"
 #include "runtime/contact/friction.hpp"
 #include "runtime/contact/pack.hpp"
@@ -39,6 +40,7 @@ SolveReport solve_island(std::span<const Mover> movers, std::span<Row> rows, std
                          const SolveSettings& settings, Workspace& work) {
   SolveReport report;
   pack(movers, rows, scalars, work);
+  condense(work);
   push_all(work);
   for (int round = 0; round < kRounds; ++round) {
     if (settings.direct)
@@ -48,6 +50,7 @@ SolveReport solve_island(std::span<const Mover> movers, std::span<Row> rows, std
     if (round + 1 == kRounds || !settle_friction(rows, settings.tolerance, work)) break;
   }
   hold_energy(work);
+  expand(work);
   unpack(work, rows, scalars);
   return report;
 }

@@ -70,7 +70,7 @@ double sweep(Workspace& work, bool backward) {
   for (std::size_t n = 0; n < count; ++n) {
     const std::size_t i = backward ? count - 1 - n : n;
     Point& c = work.points[i];
-    if (!c.plain) {
+    if (!c.plain || work.condensed) {
       largest = std::max(largest, visit_point(work, i));
       continue;
     }

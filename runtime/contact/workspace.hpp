@@ -79,7 +79,9 @@ struct Workspace {
         firsts(memory),
         saved(memory),
         earlier(memory),
-        biases(memory) {}
+        biases(memory),
+        answers(memory),
+        rates(memory) {}
   std::pmr::vector<Packed> movers;
   std::pmr::vector<Point> points;
   std::pmr::vector<Sides> sides;
@@ -90,6 +92,9 @@ struct Workspace {
   std::pmr::vector<int> indices;
   std::pmr::vector<int> order, firsts;  // of impacts in groups
   std::pmr::vector<double> saved, earlier, biases;
+  bool condensed = false;            // see condensed.hpp:
+  std::pmr::vector<double> answers;  // W, symmetric, row by row
+  std::pmr::vector<double> rates;    // velocities at the rows: three a point, then one a scalar row
 };
 
 }  // namespace breve::contact

@@ -101,7 +101,7 @@ struct Wood {
   SolveReport solve() {
     std::vector<Mover> movers = scene.movers();
     for (Tree& tree : trees) movers.push_back({tree.state.v.data(), tree.model.velocities()});
-    return solve_island(movers, scene.rows, {}, scene.settings, scene.work);
+    return solve_island(movers, scene.rows, scene.scalars, scene.settings, scene.work);
   }
 };
 
@@ -120,6 +120,39 @@ TEST(Trees, NoSolveAddsEnergyAndTheConeHolds) {
     }
   }
   EXPECT_GE(direct, 990);  // of 1000
+}
+
+TEST(Trees, AnIslandSeenFromItsRowsMovesAsOneSeenFromItsVelocities) {
+  int fewer = 0, plain = 0;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    Random first(seed), second(seed), third(seed);
+    // The third shows how far apart round-off alone would bring them: some points can hardly be moved.
+    Wood few(first), many(second), off(third);
+    for (Tree& tree : off.trees) tree.state.v *= 1 + 1e-14;
+    std::size_t velocities = 6;
+    for (const Tree& tree : few.trees) velocities += static_cast<std::size_t>(tree.model.velocities());
+    fewer += 3 * few.scene.rows.size() <= velocities;
+    // Rows that nothing moves: too many to look at the island from.
+    for (Wood* wood : {&many, &off}) wood->scene.scalars.resize(100);
+    for (Wood* wood : {&few, &many, &off}) {
+      wood->scene.settings = {20, false, 0};
+      wood->solve();
+    }
+    double noise = 0;
+    for (std::size_t i = 0; i < few.scene.rows.size(); ++i)
+      noise = std::max(noise, (off.scene.rows[i].impulse - many.scene.rows[i].impulse).norm());
+    plain += noise < 1e-10;
+    const auto near = [noise](const auto& a, const auto& b) {
+      return (a - b).norm() <= 1e-9 * (1 + b.norm()) + 1e3 * noise;
+    };
+    for (std::size_t i = 0; i < few.scene.rows.size(); ++i)
+      EXPECT_TRUE(near(few.scene.rows[i].impulse, many.scene.rows[i].impulse)) << seed;
+    EXPECT_TRUE(near(few.scene.bodies[0].v, many.scene.bodies[0].v)) << seed;
+    for (std::size_t t = 0; t < few.trees.size(); ++t)
+      EXPECT_TRUE(near(few.trees[t].state.v, many.trees[t].state.v)) << seed;
+  }
+  EXPECT_GE(fewer, 100);
+  EXPECT_GE(plain, 270);
 }
 
 TEST(Trees, AFreeBodyGivenByMatricesMovesAsOneGivenByArms) {

@@ -1,0 +1,15 @@
+// A small island seen from its rows alone: where they are fewer than the numbers of its velocities, what each row's
+// impulse does at each other row is all that a solve needs to know.
+#pragma once
+
+#include "runtime/contact/workspace.hpp"
+
+namespace breve::contact {
+
+/// Call after pack(). If it pays, velocity() and push() then work on `work.rates` by the matrix W = J R, and the movers
+/// keep the velocities they had.
+void condense(Workspace& work);
+/// Gives the movers what all impulses do to them. To be called before unpack().
+void expand(Workspace& work);
+
+}  // namespace breve::contact
