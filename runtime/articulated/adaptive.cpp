@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/articulated/midpoint.hpp"
 #include "runtime/articulated/runge_kutta.hpp"
 #include "runtime/base/error.hpp"
 
@@ -36,6 +37,7 @@ class Adaptive final : public Integrator::Method {
         relative_(std::max(kShareOfStep * settings.tolerance.relative, kFinest)),
         beyond_(settings.tolerance.relative >= kCoarse ? kBeyond : 0),
         stages_(system, kFehlberg),
+        midpoint_(system, settings.tolerance),
         q_(system.positions()),
         v_(system.velocities()),
         d4_(v_),
@@ -44,6 +46,11 @@ class Adaptive final : public Integrator::Method {
         dv5_(v_) {}
 
   void step(Instant& at, double h) override {
+    if (at.slack > 1) {
+      const bool moved = midpoint_.step(at, h);
+      count.evaluations += midpoint_.evaluations();
+      if (moved) return;
+    }
     const double end = at.t + h;
     double t = at.t;
     q_ = at.q;
@@ -71,6 +78,7 @@ class Adaptive final : public Integrator::Method {
       v_ += dv5_;
       t = size == left ? end : t + size;
     }
+    if (at.mean.size() == v_.size()) at.mean = (v_ - at.v) / h;
     at.t = end;
     at.q = q_;
     at.v = v_;
@@ -104,7 +112,7 @@ class Adaptive final : public Integrator::Method {
 
   double ratio_of(int i) const {
     const Tolerance& allowed = settings_.tolerance;
-    const bool length = system_.kind(i) == Kind::Length;
+    const bool length = system_.kind(i) != Kind::Angle;
     const double way = relative_ * (length ? allowed.length : allowed.angle);
     const double speed = relative_ * ((length ? allowed.velocity : allowed.angular_velocity) +
                                       std::max(std::abs(v_[i]), std::abs(v_[i] + dv5_[i])));
@@ -123,6 +131,7 @@ class Adaptive final : public Integrator::Method {
   const double relative_;  // error allowed in one step, per unit
   const double beyond_;
   Stages stages_;
+  Midpoint midpoint_;
   Vector q_, v_, d4_, dv4_, d5_, dv5_;
 };
 

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "runtime/articulated/elimination.hpp"
 #include "runtime/articulated/motors.hpp"
 #include "runtime/base/error.hpp"
@@ -29,16 +31,19 @@ void load(const Body& body, const Wrench* wrench, Work& w) {
   w.force -= wrench->force;
 }
 
-void outward(const Model& model, Data& data, const State& state, const Loads& loads) {
+/// @param again  since the last call only loads have changed: everything stands and turns as it did
+void outward(const Model& model, Data& data, const State& state, const Loads& loads, bool again) {
   const double *q = state.q.data(), *v = state.v.data();
   const Wrench* wrench = loads.wrenches.empty() ? nullptr : loads.wrenches.data();
   Work* link = data.work.data();
   for (const Body& body : model.bodies()) {
     Work& w = *++link;
-    const Work& parent = data.of(body.parent);
-    WideWork& wide = data.wide_of(body);
-    place(body, parent, q, w, wide);
-    turn(body, parent, v, w, wide);
+    if (!again) {
+      const Work& parent = data.of(body.parent);
+      WideWork& wide = data.wide_of(body);
+      place(body, parent, q, w, wide);
+      turn(body, parent, v, w, wide);
+    }
     load(body, wrench ? wrench++ : nullptr, w);
   }
 }
@@ -90,10 +95,11 @@ const Vector& forward_dynamics(const Model& model, Data& data, const State& stat
   const bool motors = motor_lag(loads, step) > 0 && !loads.drives.empty();
   if (motors) begin_motors(model, loads, guess, data);
   MotorSearch search;
+  bool again = false;
   do {
     start(data, loads);
     gather_joint_forces(model, loads, state, step, data);
-    outward(model, data, state, loads);
+    outward(model, data, state, loads, std::exchange(again, true));
     inward(model, data);
     accelerate(model, data);
   } while (motors && search.changes(model, loads, state, step, data));

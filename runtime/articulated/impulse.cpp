@@ -7,10 +7,20 @@ namespace breve::articulated {
 
 namespace {
 
+/// A link of a plain joint through which nothing passes: most of a tree, for impulses on one of its links.
+bool idle(const Body& body, const double* f, const Work& w) {
+  return (body.type == JointType::Revolute || body.type == JointType::Prismatic) && (!f || f[body.v] == 0) &&
+         w.couple == Vector3::Zero() && w.force == Vector3::Zero();
+}
+
 void pass_through(const Model& model, Data& data, const double* f, Vector& out) {
   for (int i = model.size() - 1; i >= 0; --i) {
     const Body& body = model.body(i);
     Work& w = data.of(i);
+    if (idle(body, f, w)) {
+      w.push = 0;
+      continue;
+    }
     Vector3 couple = w.couple, force = w.force;
     carry(body, f, w, data.wide_of(body), couple, force);
     Work& parent = data.of(body.parent);

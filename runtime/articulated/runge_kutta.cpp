@@ -110,7 +110,7 @@ class Guarded final : public Integrator::Method {
     const Tolerance& allowed = settings_.tolerance;
     const Vector &second = stages_.acceleration(1), &third = stages_.acceleration(2);
     for (int i = 0; i < static_cast<int>(second.size()); ++i) {
-      const double unit = system_.kind(i) == Kind::Length ? allowed.velocity : allowed.angular_velocity;
+      const double unit = system_.kind(i) == Kind::Angle ? allowed.angular_velocity : allowed.velocity;
       const double differs = h / 3 * std::abs(third[i] - second[i]);
       if (!(differs <= allowed.relative * (unit + std::abs(at.v[i])))) return false;
     }

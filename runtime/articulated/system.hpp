@@ -8,7 +8,11 @@
 namespace breve::articulated {
 
 /// The kind of a coordinate, by which errors are judged: an error of 1e-6 means other things for a way and an angle.
-enum class Kind : signed char { Angle, Length };
+enum class Kind : signed char {
+  Angle,
+  Length,
+  Account  // what is integrated along, in units of lengths: nothing depends on it
+};
 
 /// One virtual call an evaluation of all coordinates, never one a joint.
 class System {
@@ -42,8 +46,10 @@ class System {
 struct Instant {
   double t = 0;  // s
   Vector q, v;
-  double step = 0;   // s, the next step that step control would try; 0: none yet
-  double slack = 1;  // how many times its tolerance step control may err by
+  double step = 0;  // s, the next step that step control would try; 0: none yet
+  Vector mean{};    // (nv) the last step's mean acceleration, where the midpoint rule begins; other sizes: none
+  /// How many times its tolerance step control may err by. Above 1 it first tries the implicit midpoint rule.
+  double slack = 1;
 };
 
 }  // namespace breve::articulated

@@ -40,9 +40,10 @@ Cluster::Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees
         kinds_.push_back(length ? Kind::Length : Kind::Angle);
       }
   }
-  kinds_.insert(kinds_.end(), kWorks + motors_.size(), Kind::Length);
+  kinds_.insert(kinds_.end(), kWorks + motors_.size(), Kind::Account);
   at_.q.setZero(nq_);
   at_.v.setZero(velocities());
+  at_.mean.setZero(velocities());
   torques_.setZero(nv_);
   if (!trees_.empty()) at_.step = trees_.front()->step;
   make_integrators();
@@ -74,6 +75,7 @@ void Cluster::begin(StageForces* forces) {
 
 void Cluster::step(double time, double h) {
   read(at_.q, at_.v);
+  read_mean();
   at_.t = time;
   current_step_ = h;
   guess_ = articulated::MotorGuess::None;  // nothing that a step remembers is in no image
@@ -84,6 +86,25 @@ void Cluster::step(double time, double h) {
     throw;
   }
   write(at_.q, at_.v);
+  write_mean();
+}
+
+/// What the last step may tell the next one is the trees' own, as all that images keep.
+void Cluster::read_mean() {
+  int from = 0;
+  for (const Tree* tree : trees_) {
+    at_.mean.segment(from, tree->mean.size()) = tree->mean;
+    from += tree->model.velocities();
+  }
+  at_.mean.tail(velocities() - nv_).setZero();
+}
+
+void Cluster::write_mean() {
+  int from = 0;
+  for (Tree* tree : trees_) {
+    tree->mean = at_.mean.segment(from, tree->model.velocities());
+    from += tree->model.velocities();
+  }
 }
 
 void Cluster::read(Vector& q, Vector& v) const {

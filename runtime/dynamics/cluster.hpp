@@ -89,6 +89,8 @@ class Cluster final : public articulated::System, public InMemory {
   void add_powers(const Tree& tree, double step, const double* v, const double* a, double* torques,
                   Powers& powers) const;
   void make_integrators();
+  void read_mean();
+  void write_mean();
   void scatter(const articulated::Vector& q, const articulated::Vector& v);
 
   std::pmr::vector<Tree*> trees_;

@@ -163,6 +163,9 @@ class Island {
   void advance_once(double time, double h);
   Event seek(double h);
   void locate(double time, Event& event, double h);
+  const NearPair& pair_of(const Event& event) const;
+  double closeness(const Event& event) const;
+  bool coarse() const;
   void refine(double time, Event& event, double h);
   bool is_past(const Event& event);
   double gap_of(const Event& event, double& rate);

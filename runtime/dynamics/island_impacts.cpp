@@ -64,24 +64,56 @@ double Island::gap_of(const Event& event, double& rate) {
   return contact.distance;
 }
 
+const NearPair& Island::pair_of(const Event& event) const {
+  return *pairs_[event.point >= 0 ? pair_of_point(event.point) : static_cast<std::size_t>(event.pair)];
+}
+
+/// How far from zero the gap may be at the moment of an event, m or rad.
+double Island::closeness(const Event& event) const {
+  constexpr double kRoundOff = 1e-13, kSeen = 1e-6;  // the latter of the radius
+  if (!coarse()) return kRoundOff;
+  return event.bound >= 0 ? kSeen : kSeen * size_of_pair(pair_of(event));
+}
+
+namespace {
+
+/// Of an event: when, how wide the gap is then, and its rate.
+struct Sight {
+  double time, gap, rate;
+};
+
+/// When the gap of two sights is zero, by the cubic for the time through both and their rates.
+double closed_between(const Sight& a, const Sight& b) {
+  const double s = a.gap / (a.gap - b.gap), rest = 1 - s, size = b.gap - a.gap;
+  return (1 + 2 * s) * rest * rest * a.time + s * s * (3 - 2 * s) * b.time +
+         s * rest * size * (rest / a.rate - s / b.rate);
+}
+
+}  // namespace
+
 void Island::refine(double time, Event& event, double h) {
-  // Newton's method on the gap, kept between a time at which they are apart and one at which they overlap.
-  double low = 0, high = h, at = event.time;
+  // Newton's method on the gap, then with a memory of one: between a time at which they are apart and one at which they
+  // overlap.
+  double low = 0, high = h;
+  Sight now{event.time, 0, 0}, last{};
+  const double close = closeness(event);
   constexpr int kMost = 30;
   for (int i = 0; i < kMost; ++i) {
     restore();
-    advance_once(time, at);
+    advance_once(time, now.time);
     place_links();
-    double rate = 0;
-    const double gap = gap_of(event, rate) + event.depth;
-    (gap < 0 ? high : low) = at;
-    const bool done = std::abs(gap) <= 1e-13 + 1e-15 * std::abs(at) || high - low <= 1e-13 * h;
-    double next = rate < 0 ? at - gap / rate : 0.5 * (low + high);
+    now.gap = gap_of(event, now.rate);
+    now.gap += event.depth;
+    (now.gap < 0 ? high : low) = now.time;
+    const bool done = std::abs(now.gap) <= close + 1e-15 * std::abs(now.time) || high - low <= 1e-13 * h;
+    const bool remembers = i > 0 && now.rate < 0 && last.rate < 0 && now.gap != last.gap;
+    double next = remembers ? closed_between(last, now) : now.rate < 0 ? now.time - now.gap / now.rate : low - 1;
     if (!(next > low && next < high)) next = 0.5 * (low + high);
-    if (done || next == at || std::abs(next - at) <= 1e-12 * h) break;
-    at = next;
+    if (done || next == now.time || std::abs(next - now.time) <= 1e-12 * h) break;
+    last = now;
+    now.time = next;
   }
-  event.time = at;
+  event.time = now.time;
 }
 
 /// Finds the moment of the event that comes first: not always that which seemed to.
@@ -107,8 +139,7 @@ bool Island::is_past(const Event& event) {
   double rate = 0;
   if (event.bound >= 0)
     return bounds_[static_cast<std::size_t>(event.bound)].gap > 0 && gap_of(event, rate) < -kMetSkin;
-  const std::size_t pair = event.point >= 0 ? pair_of_point(event.point) : static_cast<std::size_t>(event.pair);
-  return gap_of(event, rate) + event.depth < -kMetSkin * size_of_pair(*pairs_[pair]);
+  return gap_of(event, rate) + event.depth < -kMetSkin * size_of_pair(pair_of(event));
 }
 
 Motion Island::chord(const Pose& from, const Pose& to, double h) {

@@ -56,10 +56,12 @@ void Island::smooth(double time, double h) {
   }
 }
 
+/// Impulses of contacts are taken as constant over a sub-step: where some act, more digits are not seen.
+bool Island::coarse() const { return !rows_.empty() && accuracy_.tolerance >= kCoarse; }
+
 void Island::smooth_once(Clustered& one, double time, double h) {
   Cluster& system = *one.entry->system;
-  // Impulses of contacts are taken as constant over a sub-step: where some act, more digits are not seen.
-  system.set_slack(!rows_.empty() && accuracy_.tolerance >= kCoarse ? kContactSlack : 1);
+  system.set_slack(coarse() ? kContactSlack : 1);
   system.step(time, h);
   result.counters.evaluations += static_cast<std::uint64_t>(system.count().evaluations);
   result.counters.rejected += static_cast<std::uint64_t>(system.count().rejected);

@@ -103,6 +103,7 @@ void Dynamics::Core::save_tree(ByteWriter& out, const Tree& tree) const {
   each(Writer{out}, tree.account);
   put_numbers(out, tree.state.q);
   put_numbers(out, tree.state.v);
+  put_numbers(out, tree.mean);
   put_numbers(out, tree.limit_force);
   for (const TreeLink& link : tree.links)
     out.put(link.gain_unit), out.put(link.contact.force), out.put(link.contact.couple);
@@ -179,6 +180,7 @@ std::uint32_t Dynamics::Core::load_tree(ByteReader& in) {
   each(Reader{in}, tree.account);
   for (double& x : tree.state.q) x = in.get<double>();
   for (double& x : tree.state.v) x = in.get<double>();
+  for (double& x : tree.mean) x = in.get<double>();
   for (double& x : tree.limit_force) x = in.get<double>();
   for (TreeLink& link : tree.links) {
     link.gain_unit = in.get<double>();
@@ -205,6 +207,7 @@ void Dynamics::Core::hash(Hasher& hasher) const {
     add(tree.step);
     for (const double x : tree.state.q) add(x);
     for (const double x : tree.state.v) add(x);
+    for (const double x : tree.mean) add(x);
   }
   near.hash(hasher);
 }

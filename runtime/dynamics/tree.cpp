@@ -33,7 +33,7 @@ Tree::Tree(std::pmr::memory_resource* memory, const std::vector<articulated::Lin
       ring_order(memory),
       anchors(memory) {
   work_q = state.q;
-  work_v = work_u = work_w = free_v = way = kick = motor_impulse = limit_force = state.v;
+  work_v = work_u = work_w = free_v = way = kick = motor_impulse = limit_force = mean = state.v;
   step_state = sub_state = part_state = state;
 }
 
