@@ -2,6 +2,7 @@
 #include "runtime/dynamics/island.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "runtime/articulated/forward_dynamics.hpp"
 #include "runtime/articulated/kinematics.hpp"
@@ -51,6 +52,7 @@ void Island::clear() {
   pairs_.clear();
   if (sprung_) sprung_->points.clear();
   accuracy_set_ = false;
+  placed_ = false;
   unfinished_ = 0;
   error = nullptr;
   result.counters = {};
@@ -118,12 +120,14 @@ void Island::step_once(DynamicsClient* client, double start, double h) {
   }
   rows_.clear();
   scalars_.clear();
-  if (pairs_.empty() && !bounded)
+  if (pairs_.empty() && !bounded) {
+    placed_ = false;
     step_quiet(start, h);
-  else if (accuracy_.locate_impacts)
+  } else if (accuracy_.locate_impacts) {
     step_located(client, start, h);
-  else
+  } else {
     step_fast(start, h);
+  }
 }
 
 void Island::begin(DynamicsClient* client, double h) {
@@ -156,9 +160,10 @@ void Island::begin(DynamicsClient* client, double h) {
 
 void Island::place() {
   const articulated::Loads none;
+  const bool placed = std::exchange(placed_, false);
   for (Tree* tree : trees_) {
     articulated::factorize(tree->model, tree->data, tree->state, none);
-    articulated::forward_kinematics(tree->model, tree->data, tree->state);
+    if (!placed) articulated::forward_kinematics(tree->model, tree->data, tree->state);
   }
 }
 
@@ -199,7 +204,10 @@ void Island::write() {
   for (const Clustered& one : clusters_)
     for (const std::uint32_t index : one.entry->trees) {
       core_.trees[index]->step = one.entry->system->next_step();
-      core_.place_links(*core_.trees[index]);
+      if (placed_)
+        core_.write_back(*core_.trees[index]);
+      else
+        core_.place_links(*core_.trees[index]);
     }
 }
 

@@ -252,6 +252,7 @@ class Island {
   ResultStart at_start_;
   std::pmr::vector<FreeBody> free_start_;
   std::pmr::vector<NearPair> pair_start_;
+  bool placed_ = false;           // links stand where stored() found them: nothing has moved since
   bool locates_ = false;          // handlers are called at the moment of impact
   double quiet_ = 0;              // m/s: slower than this is at rest, in a sub-step of this one
   double free_work_ = 0;          // J, of scripts on free bodies in the last smooth()

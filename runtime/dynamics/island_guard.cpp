@@ -140,6 +140,7 @@ void Island::keep_start() {
 }
 
 void Island::back_to_start() {
+  placed_ = false;
   const std::uint64_t evaluations = result.counters.evaluations;
   result.counters = at_start_.counters;
   result.counters.evaluations = evaluations;
@@ -157,6 +158,7 @@ void Island::back_to_start() {
 
 /// Takes all velocities, and writes down that their energy is gone.
 void Island::stop() {
+  placed_ = false;
   for (Free& one : free_) {
     result.account.residual -= one.now.kinetic();
     one.now.velocity = one.now.spin = Vector3::Zero();
@@ -189,6 +191,7 @@ double Island::stored(double& kinetic, bool start) {
     for (const SpringIndex tie : one.entry->ties) sum += core_.tie_energy_in(core_.springs[tie].is);
   for (const NearPair* pair : pairs_) sum += pair->stored;
   kinetic = moving;
+  placed_ = true;
   return sum + moving;
 }
 
