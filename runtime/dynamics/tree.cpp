@@ -13,7 +13,7 @@ std::size_t estimate(const std::vector<articulated::Link>& links) {
   for (const articulated::Link& link : links)
     numbers +=
         static_cast<std::size_t>(articulated::position_count(link.type) + articulated::velocity_count(link.type));
-  constexpr std::size_t kVectors = 48;  // of an integrator, Data, State and Loads, each (nq) or (nv)
+  constexpr std::size_t kVectors = 58;  // of an integrator, Data, State and Loads, each (nq) or (nv)
   return links.size() * (sizeof(articulated::Body) + sizeof(articulated::Drive) + sizeof(articulated::Wrench) +
                          sizeof(std::string)) +
          kVectors * numbers * sizeof(double);

@@ -71,7 +71,7 @@ struct Tree : InMemory {
   bool anchored = false;  // held by the world
   std::pmr::vector<TreeAnchor> anchors;
   double step = 0;              // s, that step control would try next
-  articulated::Vector mean;     // (nv) acceleration in the last smooth motion, likewise
+  articulated::Vector mean;     // (nv) acceleration in the last smooth motion: there the next one's search begins
   int slot = -1;                // in its island
   bool driven = false;          // some joint has a motor, a damper or a force
   bool aimed = false;           // some of that depends on where joints are
