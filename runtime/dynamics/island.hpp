@@ -22,7 +22,7 @@ struct IslandResult {
   explicit IslandResult(std::pmr::memory_resource* memory) : impacts(memory), interventions(memory) {}
 };
 
-class Island {
+class Island : public InMemory {
  public:
   Island(Dynamics::Core& core, std::pmr::memory_resource* memory);
   ~Island();
@@ -51,6 +51,9 @@ class Island {
   /// links are placed.
   static void fill(Tree& tree, int link, const Vector3& point, const Vector3& axis, bool angular, double sign,
                    double* j);
+  /// The same of a ring's row, and nothing else, into `j`. Zero where the tree itself keeps what the row holds (a plane
+  /// ring its plane): round-off there, taken for a direction to push in, would push without bound.
+  static void fill_ring(Tree& tree, const RingRows& ring, const RingRow& row, double* j);
 
   IslandResult result;
   std::exception_ptr error;  // that ended its step, where others are stepped at the same time
@@ -179,7 +182,7 @@ class Island {
   void move_by_rows(std::span<contact::Row> rows, std::span<contact::ScalarRow> scalars, double h);
   bool call(DynamicsClient& client, int pair, double moment, double left);
   bool holds_rings() const;
-  void hold_rings(double time, double h);
+  bool hold_rings(double time, double h);
   double read_ring_errors();
   void close_rings();
   void place_links();

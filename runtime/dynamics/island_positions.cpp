@@ -104,9 +104,11 @@ void Island::close_rings() {
 /// that; the impulse at the end, which stops what still opens them, is found by close_rings. The rule is the same
 /// forward and backward in time and moves nothing by hand, so that it neither gains nor loses energy in the long run.
 /// Source: Andersen 1983 (RATTLE).
-void Island::hold_rings(double time, double h) {
+/// @return  false if no such impulse is found: near a position in which a ring may fold either way
+bool Island::hold_rings(double time, double h) {
   constexpr int kMost = 8;  // each makes the gap smaller by the square of the angle that a link turns
   constexpr double kClosed = 1e-13;
+  constexpr double kFound = 1e-9;  // what is left of so little is put right by hand
   for (Tree* tree : trees_) tree->kick.setZero();
   contact::SolveSettings settings;
   settings.direct = true;
@@ -119,7 +121,8 @@ void Island::hold_rings(double time, double h) {
     smooth(time, h);
     place_links();
     const double worst = read_ring_errors();
-    if (worst < kClosed || !(worst < last)) break;
+    if (worst < kClosed) return true;
+    if (!(worst < last)) return last < kFound;
     last = worst;
     for (std::size_t k = 0; k < scalars_.size(); ++k) {
       scalars_[k].bias = -ring_errors_[k] / h;
@@ -136,6 +139,7 @@ void Island::hold_rings(double time, double h) {
       tree->state.v = tree->way;
     }
   }
+  return last < kFound;
 }
 
 /// How far the rings are open where the trees stand, m or rad; returns the largest.

@@ -315,11 +315,8 @@ void Island::add_ring_rows(const Tree& of) {
     const RingRows ring = core_.ring_rows(tree, core_.joints[index].is);
     for (int k = 0; k < ring.count; ++k) {
       const RingRow& wanted = ring.rows[static_cast<std::size_t>(k)];
-      const int n = tree.model.velocities();
       double *j = rows_of(tree, 1), *r = rows_of(tree, 1);
-      std::fill(j, j + n, 0.0);
-      if (ring.child >= 0) fill(tree, ring.child, wanted.on_child, wanted.axis, wanted.angular, 1, j);
-      if (ring.parent >= 0) fill(tree, ring.parent, wanted.on_parent, wanted.axis, wanted.angular, -1, j);
+      fill_ring(tree, ring, wanted, j);
       respond(tree, j, r);
       contact::ScalarRow row;
       row.a = static_cast<int>(free_.size()) + tree.slot;

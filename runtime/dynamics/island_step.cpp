@@ -69,8 +69,10 @@ void Island::advance_once(double time, double h) {
   const bool in_stages = !only_rings || holds_rings();
   for (Clustered& one : clusters_) one.stage->holds_rings = in_stages;
   if (!in_stages) {
-    hold_rings(time, h);
-    return;
+    if (hold_rings(time, h)) return;
+    // An impulse that does not close the rings would be energy from nowhere.
+    restore();
+    for (Clustered& one : clusters_) one.stage->holds_rings = true;
   }
   smooth(time, h);
   if (only_rings) return;

@@ -30,6 +30,15 @@ double curvature(const Tree& tree, const RingRows& ring, const RingRow& row) {
   return row.axis.dot(at(ring.child, row.on_child, c) - at(ring.parent, row.on_parent, p) - 2 * p.spin.cross(speed));
 }
 
+/// What a row's column would be by itself if nothing cancelled: arms for what turns, 1 for what slides.
+double natural_size(const Tree& tree, int link, const RingRow& row, int column) {
+  using articulated::JointType;
+  const JointType type = tree.model.body(link).type;
+  if (row.angular || type == JointType::Prismatic || (type == JointType::Free && column < 3)) return 1;
+  const Vector3& origin = tree.data.motion_of(link).origin;
+  return std::max((row.on_child - origin).norm(), (row.on_parent - origin).norm());
+}
+
 /// Solves the symmetric, positive semidefinite A x = b by Cholesky's method with the largest pivot next. Rows that
 /// depend on others (a plane ring holds its plane several times over) get nothing. A is m x m and is overwritten.
 void solve_semidefinite(int m, double* a, double* b, double* scale, int* order) {
@@ -69,6 +78,20 @@ void solve_semidefinite(int m, double* a, double* b, double* scale, int* order) 
 
 }  // namespace
 
+void Island::fill_ring(Tree& tree, const RingRows& ring, const RingRow& row, double* j) {
+  constexpr double kRoundOff = 1e-9;  // of the natural size; arms far from the world's origin have fewer digits
+  const int n = tree.model.velocities();
+  std::fill(j, j + n, 0.0);
+  if (ring.child >= 0) fill(tree, ring.child, row.on_child, row.axis, row.angular, 1, j);
+  if (ring.parent >= 0) fill(tree, ring.parent, row.on_parent, row.axis, row.angular, -1, j);
+  for (int i = 0; i < tree.model.size(); ++i) {
+    const articulated::Body& body = tree.model.body(i);
+    for (int k = 0; k < articulated::velocity_count(body.type); ++k)
+      if (std::abs(j[body.v + k]) > kRoundOff * natural_size(tree, i, row, k)) return;
+  }
+  std::fill(j, j + n, 0.0);
+}
+
 void Dynamics::Core::hold_rings(Tree& tree, double* acceleration) {
   const int n = tree.model.velocities();
   const int most = kMostRingRows * static_cast<int>(tree.rings.size());
@@ -76,14 +99,12 @@ void Dynamics::Core::hold_rings(Tree& tree, double* acceleration) {
   articulated::forward_kinematics(tree.model, tree.data, tree.state);
   int m = 0;
   // All second derivatives first: what answers impulses overwrites the accelerations that they are made of.
-  std::fill(j, j + most * n, 0.0);
   for (const JointIndex index : tree.rings) {
     const RingRows ring = ring_rows(tree, joints[index].is);
     for (int i = 0; i < ring.count; ++i, ++m) {
       const RingRow& row = ring.rows[static_cast<std::size_t>(i)];
       tree.ring_forces[static_cast<std::size_t>(m)] = -curvature(tree, ring, row);
-      if (ring.child >= 0) Island::fill(tree, ring.child, row.on_child, row.axis, row.angular, 1, j + m * n);
-      if (ring.parent >= 0) Island::fill(tree, ring.parent, row.on_parent, row.axis, row.angular, -1, j + m * n);
+      Island::fill_ring(tree, ring, row, j + m * n);
     }
   }
   using Numbers = Eigen::Map<articulated::Vector>;
