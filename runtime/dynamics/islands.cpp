@@ -71,7 +71,7 @@ void Dynamics::Core::find_islands() {
 
 /// The island of that number, in the place where islands are worked on.
 Island& Dynamics::Core::fill(std::size_t place, std::size_t number) {
-  if (islands.size() == place) islands.push_back(std::make_unique<Island>(*this, &shared));
+  if (islands.size() == place) islands.push_back(make_in<Island>(memory, *this, &shared));
   Island& island = *islands[place];
   island.clear();
   for (const std::uint32_t body : island_free.of(number)) island.add_free(body);
@@ -117,7 +117,7 @@ void Dynamics::Core::run(DynamicsClient& client, double start, double h, int dep
     Island& island = fill(lot, i);
     if (sleep_through(island)) continue;
     if (island.calls_out()) {
-      if (calling.size() == callers) calling.push_back(std::make_unique<Island>(*this, &shared));
+      if (calling.size() == callers) calling.push_back(make_in<Island>(memory, *this, &shared));
       std::swap(islands[lot], calling[callers++]);
       continue;
     }
