@@ -2,6 +2,7 @@
 #include "counted_new.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <new>
 
@@ -9,16 +10,16 @@ namespace limits {
 
 namespace {
 
+// Atomic, since workers allocate too; the n-th allocation is the same one only where there are none.
 struct Counts {
-  std::size_t blocks = 0, bytes = 0;
+  std::atomic<std::size_t> blocks = 0, bytes = 0;
 };
 Counts by_new, by_allocator;
-std::uint64_t asked = 0, failing = 0;
-bool has_failed = false, was_nothrow = false;
+std::atomic<std::uint64_t> asked = 0, failing = 0;
+std::atomic<bool> has_failed = false, was_nothrow = false;
 
 bool fails(bool nothrow) {
-  ++asked;
-  if (asked != failing) return false;
+  if (++asked != failing) return false;
   has_failed = true;
   was_nothrow = nothrow;
   return true;
@@ -65,7 +66,8 @@ std::size_t given_bytes() { return by_allocator.bytes; }
 void fail_allocation(std::uint64_t n) {
   asked = 0;
   failing = n;
-  has_failed = was_nothrow = false;
+  has_failed = false;
+  was_nothrow = false;
 }
 std::uint64_t allocations() { return asked; }
 bool failed() { return has_failed; }

@@ -118,4 +118,129 @@ TEST(TrueBytes, AProfileIsInTheMeterToo) {
   EXPECT_GT(with, without + 2048);
 }
 
+/// Bodies with physics that touch nobody but the floor: each an island of its own, stepped by workers, or by the
+/// world's thread where a handler waits.
+constexpr const char* kIslands = R"(
+@use Mobile.
+@use PhysicalControl.
+@use Shape.
+@use Stationary.
+Controller Wide.
+Mobile : Box {
+  + to init:
+    self set-shape to ((new Cube) init-with size (1, 1, 1)).
+    self enable-physics.
+}
+Box : Heard {
+  + to init: self handle-collisions with-type "Stationary" with-method "touch".
+  + to touch with other (object): return 0.
+}
+PhysicalControl : Wide {
+  + variables:
+    boxes (list).
+  + to init:
+    i (int).
+    (new Stationary) register with-shape ((new Cube) init-with size (4000, 1, 4000)) at-location (0, -0.5, 0).
+    self set-gravity to (0, -9.81, 0).
+    for i = 0, i < 400, i++: self put one (new Box) at (3.0 * i - 600, 0.51, -20).
+    for i = 0, i < 400, i++: self put one (new Heard) at (3.0 * i - 600, 0.51, 20).
+  + to put one box (object) at where (vector):
+    box move to where.
+    push box onto boxes.
+}
+)";
+
+/// Runtime, program and a world of kIslands with a limit, whose memory is counted.
+class Islands {
+ public:
+  Islands(int workers, std::size_t limit) {
+    const breve_runtime_config config = counted_config();
+    EXPECT_EQ(breve_runtime_create(&config, &runtime_), BREVE_OK);
+    EXPECT_EQ(breve_program_compile(runtime_, "wide.tz", kIslands, std::string(kIslands).size(), &program_), BREVE_OK)
+        << breve_runtime_last_error(runtime_)->text;
+    breve_world_config of_world = breve_world_config_default();
+    of_world.memory_limit = limit;
+    outside_ = live_bytes(), given_ = given_bytes();
+    status = breve_world_create(runtime_, program_, &of_world, &world);
+    if (status == BREVE_OK) status = breve_world_set_workers(world, static_cast<std::uint32_t>(workers));
+  }
+  ~Islands() {
+    breve_world_destroy(world);
+    EXPECT_EQ(given_bytes(), given_);
+    breve_program_destroy(program_);
+    breve_runtime_destroy(runtime_);
+  }
+  Islands(const Islands&) = delete;
+  Islands& operator=(const Islands&) = delete;
+
+  void run(int steps) {
+    for (int i = 0; i < steps && status == BREVE_OK; ++i) status = breve_world_step(world);
+  }
+  std::string said() const {
+    const breve_error* error = world ? breve_world_last_error(world) : breve_runtime_last_error(runtime_);
+    return error ? error->text : "nothing";
+  }
+  breve_stats stats() const {
+    breve_stats out{};
+    out.struct_size = sizeof out;
+    EXPECT_EQ(breve_world_stats(world, &out), BREVE_OK);
+    return out;
+  }
+  std::size_t outside() const { return live_bytes() - outside_; }
+
+  breve_world* world = nullptr;
+  breve_status status = BREVE_OK;
+
+ private:
+  breve_runtime* runtime_ = nullptr;
+  breve_program* program_ = nullptr;
+  std::size_t outside_ = 0, given_ = 0;
+};
+
+// What threads work in is the world's: the same whatever their number, and in the meter.
+TEST(TrueBytes, WhatWorkersTakeIsInTheMeter) {
+  std::size_t by_one = 0;
+  for (const int workers : {1, 2, 4}) {
+    Islands islands(workers, 0);
+    islands.run(5);
+    ASSERT_EQ(islands.status, BREVE_OK) << islands.said();
+    const std::size_t used = islands.stats().memory_used;
+    std::printf("%d workers: metered %zu, outside %zu bytes\n", workers, used, islands.outside());
+    EXPECT_LE(islands.outside(), used / 100);
+    if (workers == 1) by_one = used;
+    EXPECT_EQ(used, by_one);
+  }
+}
+
+// Wherever a limit cuts, in whichever thread: an error that says so, nothing beyond the limit, nothing lost.
+TEST(TrueBytes, ALimitCutsAWorldWithWorkersAnywhere) {
+  std::size_t begun = 0, most = 0;
+  {
+    Islands islands(3, 0);
+    ASSERT_EQ(islands.status, BREVE_OK) << islands.said();
+    begun = islands.stats().memory_peak;
+    islands.run(5);
+    most = islands.stats().memory_peak;
+  }
+  ASSERT_GT(most, begun + (64U << 10));
+  int cut = 0, through = 0;
+  constexpr std::size_t kTries = 24;
+  for (std::size_t i = 0; i <= kTries; ++i) {
+    Islands islands(3, begun + (most - begun) * i / kTries);
+    ASSERT_EQ(islands.status, BREVE_OK) << islands.said();
+    islands.run(5);
+    const breve_stats stats = islands.stats();
+    EXPECT_LE(stats.memory_peak, stats.memory_limit);
+    (islands.status == BREVE_OK ? through : cut) += 1;
+    if (islands.status == BREVE_OK) continue;
+    EXPECT_EQ(islands.status, BREVE_ERROR_MEMORY) << islands.said();
+    std::uint64_t hash = 0;
+    const breve_status hashed = breve_world_hash(islands.world, &hash);  // which may need more, too
+    EXPECT_TRUE(hashed == BREVE_OK || hashed == BREVE_ERROR_MEMORY) << breve_status_name(hashed);
+  }
+  std::printf("peak %zu bytes when made, %zu after five steps; of %zu limits %d cut\n", begun, most, kTries + 1, cut);
+  EXPECT_GT(cut, 15);
+  EXPECT_GE(through, 1);
+}
+
 }  // namespace
