@@ -11,33 +11,6 @@
 namespace breve::reference {
 namespace {
 
-Quaternion about_z(double angle) { return Quaternion(Eigen::AngleAxisd(angle, Vector3::UnitZ())); }
-
-/// A bar between two points of the plane; its y axis goes from the first to the second.
-struct Bar {
-  breve_object body{};
-  Quaternion turn = Quaternion::Identity();
-  double length = 0;
-  Bar() = default;
-  Bar(World& world, const Vector3& from, const Vector3& to, double mass) : length((to - from).norm()) {
-    turn = about_z(std::atan2(to.y() - from.y(), to.x() - from.x()) - kPi / 2);
-    body = world.body(rod(length, mass), 0.5 * (from + to), turn);
-  }
-  Vector3 begin() const { return Vector3(0, -length / 2, 0); }
-  Vector3 end() const { return Vector3(0, length / 2, 0); }
-};
-
-Hinge pin(const Bar* parent, const Vector3& on_parent, const Bar& child, const Vector3& on_child) {
-  Hinge hinge;
-  if (parent) hinge.parent = parent->body;
-  hinge.child = child.body;
-  hinge.parent_point = on_parent;
-  hinge.child_point = on_child;
-  hinge.normal = -Vector3::UnitZ();  // positive: the child turns counterclockwise
-  hinge.rotation = parent ? parent->turn.conjugate() * child.turn : child.turn;
-  return hinge;
-}
-
 /// What there is to know of a ring with one degree of freedom.
 struct Mechanism : World {
   breve_object crank{};

@@ -48,6 +48,23 @@ void start(World& world, const Chain& chain, const std::vector<double>& angles, 
     world.set_joint(chain.joints[i], angles[i] - (i > 0 ? angles[i - 1] : 0), rates[i] - (i > 0 ? rates[i - 1] : 0));
 }
 
+Bar::Bar(World& world, const Vector3& from, const Vector3& to, double mass) : length((to - from).norm()) {
+  const double angle = std::atan2(to.y() - from.y(), to.x() - from.x()) - kPi / 2;
+  turn = Quaternion(Eigen::AngleAxisd(angle, Vector3::UnitZ()));
+  body = world.body(rod(length, mass), 0.5 * (from + to), turn);
+}
+
+Hinge pin(const Bar* parent, const Vector3& on_parent, const Bar& child, const Vector3& on_child) {
+  Hinge hinge;
+  if (parent) hinge.parent = parent->body;
+  hinge.child = child.body;
+  hinge.parent_point = on_parent;
+  hinge.child_point = on_child;
+  hinge.normal = -Vector3::UnitZ();
+  hinge.rotation = parent ? parent->turn.conjugate() * child.turn : child.turn;
+  return hinge;
+}
+
 Solid needle(const Vector3& tip, double mass, const Matrix3& inertia) {
   Solid out;
   const Vector3 u = 0.02 * tip.norm() * tip.unitOrthogonal(), v = tip.normalized().cross(u);

@@ -21,6 +21,21 @@ Chain hang(World& world, const std::vector<double>& lengths, const std::vector<d
 /// Sets the absolute angles and rates.
 void start(World& world, const Chain& chain, const std::vector<double>& angles, const std::vector<double>& rates);
 
+/// A bar between two points of the plane z = 0; its y axis goes from the first to the second.
+struct Bar {
+  breve_object body{};
+  Quaternion turn = Quaternion::Identity();
+  double length = 0;
+  Bar() = default;
+  Bar(World& world, const Vector3& from, const Vector3& to, double mass);
+  Vector3 begin() const { return Vector3(0, -length / 2, 0); }
+  Vector3 end() const { return Vector3(0, length / 2, 0); }
+};
+
+/// A hinge about z between two bars as they stand; without a parent, to a point of the world. Positive: the child turns
+/// counterclockwise.
+Hinge pin(const Bar* parent, const Vector3& on_parent, const Bar& child, const Vector3& on_child);
+
 /// A double pyramid, thin as a needle, with one tip at `tip` from its centre: what it touches, it touches with a point.
 Solid needle(const Vector3& tip, double mass, const Matrix3& inertia);
 
