@@ -2,7 +2,9 @@
 // reason, action and body, is counted, and the world goes on.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 
 #include "scenes.hpp"
@@ -185,6 +187,109 @@ TEST(Guard, RestIsInTheLedger) {
   const breve_energy after = world.energy();
   EXPECT_EQ(world.velocity(ball), Vector3::Zero());
   EXPECT_NEAR(after.residual - before.residual, -before.kinetic, 1e-15);
+}
+
+constexpr const char* kNoAccount = "energy appears that no account explains";
+
+/// A chain of three links that swings, whose end is then tied to a point above it: closing the ring lifts the links by
+/// hand, however fine the sub-steps.
+struct Lifted : Watched {
+  Chain chain;
+  Hinge tie;
+  double before = 0;
+  explicit Lifted(breve_guard guard) : Watched(guard) {
+    set_gravity(Vector3(0, -9.81, 0));
+    chain = hang(*this, {1, 1, 1}, {1, 1, 1});
+    start(*this, chain, {0.3, 0.5, 0.4}, {0.5, -0.2, 0.3});
+    tie.child = chain.links.back();
+    tie.child_point = Vector3(0, -0.5, 0);
+    tie.parent_point = at(tie.child) + turn(tie.child) * tie.child_point + Vector3(0, 0.3, 0);
+    tie.normal = -Vector3::UnitZ();
+    EXPECT_TRUE(read(join(tie)).ring);
+    before = mechanical();
+  }
+  double fastest() const {
+    double most = 0;
+    for (const breve_object link : chain.links) most = std::max({most, velocity(link).norm(), spin(link).norm()});
+    return most;
+  }
+};
+
+TEST(Guard, RestEndsEnergyFromNowhereThatRefiningLeaves) {
+  for (const breve_guard guard : kModes) {
+    Lifted world(guard);
+    world.watch(1);
+    world.expect_ended(guard, kNoAccount, world.chain.links[0]);
+    if (guard >= BREVE_GUARD_REFINE) {
+      EXPECT_EQ(count(world.all, kNoAccount, "refined"), 2);  // a quarter of the sub-step, then a 64th
+    }
+    EXPECT_LE(world.open(world.tie), 1e-9);
+    const double lifted = world.mechanical();
+    EXPECT_GT(lifted, world.before + 1);  // J: so it is a lift, and not little
+    if (guard != BREVE_GUARD_REST) {
+      EXPECT_GT(world.fastest(), 0.01);
+      continue;
+    }
+    std::printf("  lifted by %.3f J, then at rest; told %.3f J\n", lifted - world.before, world.all.back().value);
+    EXPECT_EQ(world.fastest(), 0);
+    EXPECT_EQ(world.energy().kinetic, 0);
+    // Told is what the step gained; the ledger also has that the speeds are gone.
+    EXPECT_NEAR(world.energy().residual, lifted - world.before, 1e-9);
+    EXPECT_GE(world.all.back().value, world.energy().residual);
+    // From there it goes on, and nothing more comes from nowhere.
+    const std::size_t told = world.all.size();
+    double most = lifted;
+    for (int i = 0; i < 120; ++i) {
+      world.watch(1);
+      most = std::max(most, world.mechanical());
+    }
+    EXPECT_LE(most - lifted, 0.01 * (lifted - world.before));
+    EXPECT_EQ(world.all.size(), told);
+    EXPECT_GT(world.fastest(), 0.01);
+  }
+}
+
+/// A force method may have run script: there is no second try, and what was found at the first ends it.
+TEST(Guard, RestEndsEnergyFromNowhereWhereNothingCanBeTriedAgain) {
+  constexpr const char* kProgram = R"(
+@use Control.
+@use Mobile.
+@use RevoluteJoint.
+Controller Quiet.
+Control : Quiet { }
+Mobile : Pushed {
+  + to init: self set-force-method to "nudge".
+  + to nudge: return (0, 0, 0).
+}
+)";
+  for (const breve_guard guard : {BREVE_GUARD_REPORT, BREVE_GUARD_REFINE, BREVE_GUARD_REST}) {
+    World world(1.0 / 60, BREVE_RUNG_BALANCED, kProgram);
+    world.set_guard(guard);
+    world.set_gravity(Vector3::Zero());
+    world.set_integrator(BREVE_EXPLICIT_EULER);
+    world.body_class = "Pushed";
+    const Chain chain = hang(world, {1}, {1});
+    breve_joint_drive drive = world.drive(chain.joints[0]);
+    drive.stiffness = 10 * (1.0 / 3) * 3600;  // k h^2 / I = 10
+    world.set_drive(chain.joints[0], drive);
+    start(world, chain, {0.1}, {0});
+    const double begin = world.mechanical();
+    int rested = 0, reported = 0;
+    for (int i = 0; i < 10; ++i) {
+      world.step();
+      const std::vector<breve_intervention> told = world.interventions();
+      EXPECT_EQ(count(told, kNoAccount, "refined"), 0);
+      reported += count(told, kNoAccount, "reported");
+      rested += count(told, kNoAccount, "put to rest");
+      if (guard != BREVE_GUARD_REST) continue;
+      EXPECT_EQ(world.velocity(chain.links[0]), Vector3::Zero());
+      EXPECT_EQ(world.spin(chain.links[0]), Vector3::Zero());
+      EXPECT_LE(world.mechanical(), begin * (1 + 1e-12));
+    }
+    EXPECT_EQ(rested, guard == BREVE_GUARD_REST ? 10 : 0);
+    EXPECT_EQ(reported > 0, guard != BREVE_GUARD_REST);
+    EXPECT_EQ(world.mechanical() > 2 * begin, guard != BREVE_GUARD_REST);
+  }
 }
 
 }  // namespace
