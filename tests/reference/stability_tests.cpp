@@ -22,41 +22,81 @@ struct Hard : World {
   }
 };
 
-/// A short pendulum that falls on a stop with e = 1 again and again. By m g l of its start, how much energy it gained.
-double bounce_on_a_stop(breve_rung rung, bool stop, int* impacts, double* apex) {
-  Hard world(rung);
-  const Chain chain = hang(world, {0.1}, {1});
-  breve_joint_drive drive = world.drive(chain.joints[0]);
+/// What fell on a stop with e = 1 again and again, and how high it came.
+struct Bounces {
+  int impacts = 0;
+  double gained = 0, apex = 0, lowest = 0;  // energy by m g l (half of the length), positions by the first one
+};
+
+constexpr double kBounced = 0.1;  // m, at whose pace things fall at a step of 1/60 s
+
+/// A joint with its stop at zero and from `start` at rest, of something `length` large, stepped at its own pace.
+/// @param seconds  that it would take if it were kBounced large
+Bounces bounce(Hard& world, breve_object joint, double length, double start, bool stop, double seconds) {
+  breve_joint_drive drive = world.drive(joint);
   if (stop) drive.low[0] = 0, drive.high[0] = INFINITY;
   drive.limit_restitution = 1;
-  world.set_drive(chain.joints[0], drive);
-  start(world, chain, {0.5}, {0});
+  world.set_drive(joint, drive);
+  world.set_joint(joint, start, 0);
   const double begin = world.mechanical();
-  double most = 0, before = 0;
-  world.run(270, [&] {
-    const breve_joint_info info = world.read(chain.joints[0]);
+  Bounces out;
+  double before = 0;
+  world.run(seconds * std::sqrt(length / kBounced), [&] {
+    const breve_joint_info info = world.read(joint);
     // It came down and goes up again: it struck the stop in between.
-    if (before < 0 && info.velocity[0] > 0) ++*impacts;
+    if (before < 0 && info.velocity[0] > 0) ++out.impacts;
     before = info.velocity[0];
-    most = std::max(most, world.mechanical() - begin);
-    *apex = std::max(*apex, info.position[0]);
-    EXPECT_TRUE(!stop || info.position[0] >= -1e-6);
+    out.gained = std::max(out.gained, (world.mechanical() - begin) / (9.81 * 0.5 * length));
+    out.apex = std::max(out.apex, info.position[0] / start);
+    out.lowest = std::min(out.lowest, info.position[0] / start);
   });
-  return most / (9.81 * 0.05);
+  EXPECT_EQ(world.toll().interventions, 0U);
+  return out;
 }
 
-TEST(Stability, AThousandImpactsOnAStopAddNoEnergy) {
+/// A pendulum of 1 kg whose rod is as long as that, from half a radian.
+Bounces swing_on_a_stop(breve_rung rung, double length, bool stop) {
+  Hard world(rung, kStep * std::sqrt(length / kBounced));
+  return bounce(world, hang(world, {length}, {1}).joints[0], length, 0.5, stop, 270);
+}
+
+/// The same seen in steps of time that are as large by their period, so that bounds hold at every size.
+void expect_no_apex_higher(double length) {
   for (const breve_rung rung : {BREVE_RUNG_BALANCED, BREVE_RUNG_REFERENCE}) {
-    int impacts = 0, none = 0;
-    double apex = 0, free_apex = 0;
-    const double gained = bounce_on_a_stop(rung, true, &impacts, &apex);
-    const double without = bounce_on_a_stop(rung, false, &none, &free_apex);
-    std::printf("  %d impacts: energy %+.1e of m g l, apex %+.1e rad; without a stop %+.1e\n", impacts, gained,
-                apex - 0.5, without);
-    EXPECT_GE(impacts, 1000);
+    const Bounces with = swing_on_a_stop(rung, length, true), without = swing_on_a_stop(rung, length, false);
+    std::printf("  %g m, %d impacts: energy %+.1e of m g l, apex %+.1e; without a stop %+.1e\n", length, with.impacts,
+                with.gained, with.apex - 1, without.gained);
+    EXPECT_GE(with.impacts, 1000);
     // What the integrator gains is not the stop's.
-    EXPECT_LE(gained, 1.01 * without + 1e-12);
-    EXPECT_LE(apex, 0.5 + 1e-9);
+    EXPECT_LE(with.gained, 1.01 * without.gained + 1e-12);
+    EXPECT_LE(with.apex, 1 + 2e-9);
+    EXPECT_GE(with.lowest, -2e-6);
+    EXPECT_LE(without.lowest, -0.99);
+  }
+}
+
+TEST(Stability, AThousandImpactsOnAStopAddNoEnergy) { expect_no_apex_higher(kBounced); }
+TEST(Stability, NorDoTheyForAPendulumOfAMillimetre) { expect_no_apex_higher(1e-3); }
+TEST(Stability, NorDoTheyForAPendulumOfAKilometre) { expect_no_apex_higher(1e3); }
+
+/// A joint whose positions are lengths: what is small by an angle is not by a millimetre.
+TEST(Stability, AThousandImpactsOfASliderAddNoEnergyAtAnySize) {
+  for (const breve_rung rung : {BREVE_RUNG_BALANCED, BREVE_RUNG_REFERENCE}) {
+    for (const double length : {1e-3, 1e3}) {
+      Hard world(rung, kStep * std::sqrt(length / kBounced));
+      Hinge slide;
+      slide.kind = BREVE_JOINT_PRISMATIC;
+      slide.child = world.body(sphere(0.1 * length, 1), Vector3::Zero());
+      slide.normal = -Vector3::UnitY();
+      const Bounces out = bounce(world, world.join(slide), length, length, true, 300);
+      std::printf("  slider of %g m, %d impacts: energy %+.1e of m g l, apex %+.1e\n", length, out.impacts, out.gained,
+                  out.apex - 1);
+      EXPECT_GE(out.impacts, 1000);
+      EXPECT_LE(out.gained, 1e-12);
+      EXPECT_LE(out.apex, 1 + 1e-9);
+      EXPECT_GE(out.apex, 1 - 1e-5);
+      EXPECT_GE(out.lowest, -1e-6);
+    }
   }
 }
 
