@@ -1,4 +1,4 @@
-// Scenes that several tests share: pendulums of rods, a floor, an incline.
+// Scenes that several tests share: pendulums of rods, bars and pins, a floor, an incline.
 #pragma once
 
 #include "world.hpp"
