@@ -117,8 +117,9 @@ void sweep_near(Workspace& work, double tolerance) {
   constexpr int kMost = 24, kPatience = 2;
   constexpr double kWorth = 0.8;  // of the change that the sweep before made
   double last = std::numeric_limits<double>::infinity();
+  Sweeps sweeps(work, false);
   for (int i = 0, slow = 0; i < kMost && slow < kPatience; ++i) {
-    const double now = sweep(work, i % 2 == 1);
+    const double now = sweeps.next();
     if (now <= 0.1 * tolerance) return;
     slow += now > kWorth * last;
     last = now;

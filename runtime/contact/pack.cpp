@@ -155,6 +155,8 @@ void pack(std::span<const Mover> movers, std::span<const Row> rows, std::span<co
   work.movers.clear();
   work.movers.push_back(world());
   for (const Mover& mover : movers) work.movers.push_back(packed(mover));
+  work.has_plain = false;
+  work.answers.clear();
   work.points.resize(rows.size());
   work.sides.resize(rows.size());
   work.grips.resize(rows.size());
@@ -172,9 +174,30 @@ void pack(std::span<const Mover> movers, std::span<const Row> rows, std::span<co
   }
 }
 
-void unpack(const Workspace& work, std::span<Row> rows, std::span<ScalarRow> scalars) {
+void start_over(std::span<const double> row_biases, std::span<const double> scalar_biases, Workspace& work) {
+  for (Packed& mover : work.movers)
+    if (mover.free) std::fill_n(mover.v, 6, 0.0);
+  for (std::size_t i = 0; i < work.points.size(); ++i) {
+    Point& c = work.points[i];
+    std::fill_n(c.impulse, 3, 0.0);
+    c.friction = 0;
+    c.bias = row_biases[i];
+  }
+  for (std::size_t i = 0; i < work.scalars.size(); ++i) {
+    work.scalars[i].impulse = 0;
+    work.scalars[i].bias = scalar_biases[i];
+  }
+  work.condensed = !work.answers.empty();
+  work.rates.assign(work.rates.size(), 0.0);
+}
+
+void unpack_velocities(const Workspace& work) {
   for (const Packed& mover : work.movers)
     if (mover.free && mover.place != nullptr) std::copy_n(mover.v, 6, mover.place);
+}
+
+void unpack(const Workspace& work, std::span<Row> rows, std::span<ScalarRow> scalars) {
+  unpack_velocities(work);
   for (std::size_t i = 0; i < rows.size(); ++i) std::copy_n(work.points[i].impulse, 3, rows[i].impulse.data());
   for (std::size_t i = 0; i < scalars.size(); ++i) scalars[i].impulse = work.scalars[i].impulse;
 }

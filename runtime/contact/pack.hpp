@@ -11,7 +11,13 @@ namespace breve::contact {
 void pack(std::span<const Mover> movers, std::span<const Row> rows, std::span<const ScalarRow> scalars,
           Workspace& work);
 
-/// Velocities of free bodies and all impulses go back where they came from.
+/// What is packed as it were at rest, without friction and impulses, and with other biases. Velocities of trees are
+/// zero.
+void start_over(std::span<const double> row_biases, std::span<const double> scalar_biases, Workspace& work);
+
+/// Velocities of free bodies go back where they came from.
+void unpack_velocities(const Workspace& work);
+/// The same, and all impulses.
 void unpack(const Workspace& work, std::span<Row> rows, std::span<ScalarRow> scalars);
 
 /// Velocity at a plain contact in its own axes.

@@ -20,10 +20,12 @@ constexpr int kPatientSweeps = 1000;
 constexpr int kRounds = 4;
 
 void run_sweeps(Workspace& work, int most, double tolerance, SolveReport& report) {
+  constexpr int kFew = 4;  // are over before momentum is worth its cost
+  Sweeps sweeps(work, most > kFew);
   for (int i = 0; i < most; ++i) {
-    report.residual = sweep(work, i % 2 == 1);
+    report.residual = sweeps.next();
     ++report.iterations;
-    if (report.residual <= tolerance) return;
+    if (report.residual <= tolerance || sweeps.diverge()) return;
   }
 }
 
@@ -32,6 +34,13 @@ void solve_directly(Workspace& work, const SolveSettings& settings, SolveReport&
   if (report.direct) return;
   run_sweeps(work, kPatientSweeps, settings.tolerance * 0.1, report);
   report.residual = solve_direct(work, settings.tolerance, report.newton, report.direct);  // from nearer
+}
+
+void solve_once(Workspace& work, const SolveSettings& settings, SolveReport& report) {
+  if (settings.direct)
+    solve_directly(work, settings, report);
+  else
+    run_sweeps(work, settings.iterations, settings.tolerance, report);
 }
 
 }  // namespace
@@ -43,15 +52,22 @@ SolveReport solve_island(std::span<const Mover> movers, std::span<Row> rows, std
   condense(work);
   push_all(work);
   for (int round = 0; round < kRounds; ++round) {
-    if (settings.direct)
-      solve_directly(work, settings, report);
-    else
-      run_sweeps(work, settings.iterations, settings.tolerance, report);
+    solve_once(work, settings, report);
     if (round + 1 == kRounds || !settle_friction(rows, settings.tolerance, work)) break;
   }
   hold_energy(work);
   expand(work);
   unpack(work, rows, scalars);
+  return report;
+}
+
+SolveReport solve_again(std::span<const double> row_biases, std::span<const double> scalar_biases,
+                        const SolveSettings& settings, Workspace& work) {
+  SolveReport report;
+  start_over(row_biases, scalar_biases, work);
+  solve_once(work, settings, report);
+  expand(work);
+  unpack_velocities(work);
   return report;
 }
 

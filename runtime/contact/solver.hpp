@@ -71,4 +71,9 @@ struct SolveReport {
 SolveReport solve_island(std::span<const Mover> movers, std::span<Row> rows, std::span<ScalarRow> scalars,
                          const SolveSettings& settings, Workspace& workspace);
 
+/// The rows that `workspace` last solved once more, each with another bias, in m/s: from rest, without friction and
+/// without the impulses it had. A free body's v is set to the result; a tree's, which is to be zero before, likewise.
+SolveReport solve_again(std::span<const double> row_biases, std::span<const double> scalar_biases,
+                        const SolveSettings& settings, Workspace& workspace);
+
 }  // namespace breve::contact

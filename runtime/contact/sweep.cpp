@@ -1,48 +1,32 @@
-// The sweeps of the iterative solver. The loop over free bodies is the hot one of a pile: nothing but arithmetic in it.
+// The sweeps of the iterative solver, and the energy that the impulses make.
 #include "runtime/contact/sweep.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "runtime/contact/pack.hpp"
+#include "runtime/contact/plain.hpp"
+#include "runtime/contact/visit.hpp"
 
 namespace breve::contact {
 
 namespace {
 
-/// Of the direction of sliding in one visit; the next sweep goes on from there.
-constexpr int kNewtonPerVisit = 2;
-
-/// The contact's new impulse, `change` being what is added to the old one.
-/// @return the largest change of its velocity
-inline double visit(Point& c, double u[3], double change[3]) {
-  const LocalMatrix& W = c.response;
-  double* p = c.impulse;
-  const double old0 = p[0], old1 = p[1], old2 = p[2];
-  // The velocity as it were without this contact's impulse, less what is wanted. Softness is in W.
-  const double u0[3] = {u[0] - c.bias - (W.nn - c.softness) * old0 - W.n1 * old1 - W.n2 * old2,
-                        u[1] - W.n1 * old0 - W.s11 * old1 - W.s12 * old2,
-                        u[2] - W.n2 * old0 - W.s12 * old1 - W.s22 * old2};
-  sweep_cone(W, c.inverse, u0, c.friction, kNewtonPerVisit, false, p);
-  change[0] = p[0] - old0;
-  change[1] = p[1] - old1;
-  change[2] = p[2] - old2;
-  return std::max({std::abs(change[0]) * W.nn, std::abs(change[1]) * W.s11, std::abs(change[2]) * W.s22});
-}
-
-double sweep_scalars(Workspace& work) {
-  double largest = 0;
+void sweep_scalars(Workspace& work, Moved& moved) {
   for (PackedScalar& row : work.scalars) {
+    row.step = 0;
     if (!(row.response > 0)) continue;
     const double error = velocity(work, row) + row.softness * row.impulse - row.bias;
     const double next = std::clamp(row.impulse - error / row.response, row.lo, row.hi);
     if (!std::isfinite(next)) continue;
     const double change = next - row.impulse;
     row.impulse = next;
+    row.step = change;
     push(work, row, change);
-    largest = std::max(largest, std::abs(change) * row.response);
+    moved.largest = std::max(moved.largest, std::abs(change) * row.response);
+    moved.energy += change * change * row.response;
   }
-  return largest;
 }
 
 }  // namespace
@@ -55,33 +39,89 @@ void push_all(Workspace& work) {
 }
 
 double visit_point(Workspace& work, std::size_t point) {
-  double u[3], change[3];
+  Point& c = work.points[point];
+  double u[3];
   velocity(work, point, u);
-  const double moved = visit(work.points[point], u, change);
-  if (moved > 0) push(work, point, change);
+  const double moved = visit(c, u, c.step);
+  if (moved > 0) push(work, point, c.step);
   return moved;
 }
 
-double sweep(Workspace& work, bool backward) {
-  double largest = sweep_scalars(work);
-  Packed* const movers = work.movers.data();
-  double u[3], change[3];
+namespace {
+
+Moved sweep(Workspace& work, bool backward) {
+  Moved moved;
+  sweep_scalars(work, moved);
   const std::size_t count = work.points.size();
   for (std::size_t n = 0; n < count; ++n) {
     const std::size_t i = backward ? count - 1 - n : n;
-    Point& c = work.points[i];
-    if (!c.plain || work.condensed) {
-      largest = std::max(largest, visit_point(work, i));
-      continue;
-    }
-    Packed &a = movers[c.a], &b = movers[c.b];
-    plain_velocity(c, a, b, u);
-    const double moved = visit(c, u, change);
-    if (!(moved > 0)) continue;
-    plain_push(c, a, b, change);
-    largest = std::max(largest, moved);
+    moved.largest = std::max(moved.largest, visit_point(work, i));
+    const Point& c = work.points[i];
+    const LocalMatrix& W = c.response;
+    moved.energy += c.step[0] * c.step[0] * W.nn + c.step[1] * c.step[1] * W.s11 + c.step[2] * c.step[2] * W.s22;
   }
-  return largest;
+  return moved;
+}
+
+void go_on(Workspace& work, double share) {
+  for (std::size_t i = 0; i < work.points.size(); ++i) {
+    Point& c = work.points[i];
+    double more[3];
+    for (int k = 0; k < 3; ++k) {
+      more[k] = share * c.way[k];
+      c.way[k] = more[k] + c.step[k];
+      c.impulse[k] += more[k];
+    }
+    if (more[0] != 0 || more[1] != 0 || more[2] != 0) push(work, i, more);
+  }
+  for (PackedScalar& row : work.scalars) {
+    const double more = share * row.way;
+    row.way = more + row.step;
+    row.impulse += more;
+    if (more != 0) push(work, row, more);
+  }
+}
+
+bool all_plain(const Workspace& work) {
+  return !work.condensed && work.scalars.empty() &&
+         std::all_of(work.points.begin(), work.points.end(), [](const Point& c) { return c.plain; });
+}
+
+}  // namespace
+
+Sweeps::Sweeps(Workspace& work, bool momentum) : work_(work), plain_(all_plain(work)), momentum_(momentum) {
+  if (plain_) {
+    enter_plain(work_);
+    return;
+  }
+  for (Point& c : work_.points) std::fill_n(c.way, 3, 0.0);
+  for (PackedScalar& row : work_.scalars) row.way = 0;
+}
+
+Sweeps::~Sweeps() {
+  if (plain_) leave_plain(work_);
+}
+
+/// Of the way, for the sweep that follows.
+double Sweeps::share() const {
+  // Where friction is strong against what turns away from it, momentum may throw impulses ever farther.
+  constexpr double kThrown = 4;
+  const double least = std::min(energy_first_, energy_before_);
+  return energy_ < kThrown * least ? std::min(1.0, energy_ / energy_before_) : 0;
+}
+
+bool Sweeps::diverge() const {
+  constexpr double kFar = 1e4;
+  return energy_ > kFar * energy_first_;
+}
+
+double Sweeps::next() {
+  if (momentum_ && count_ > 0) plain_ ? go_on_plain(work_, share()) : go_on(work_, share());
+  const bool backward = count_++ % 2 == 1;
+  const Moved moved = plain_ ? sweep_plain(work_, backward) : sweep(work_, backward);
+  energy_before_ = std::exchange(energy_, moved.energy);
+  if (count_ == 1) energy_first_ = energy_;
+  return moved.largest;
 }
 
 namespace {

@@ -10,12 +10,35 @@ namespace breve::contact {
 /// Push every row by the impulse it starts with.
 void push_all(Workspace& work);
 
-/// One sweep: scalar rows, then contacts, each in the order given; or contacts in the opposite order. Taken by turns a
-/// load goes up a stack as fast as down, and no side is always the last.
-/// @return the largest change of velocity that a row made at itself, m/s
-double sweep(Workspace& work, bool backward = false);
+/// A series of sweeps: scalar rows, then contacts, each in the order given, then in the opposite one, and so on by
+/// turns. So a load goes up a stack as fast as down, and no side is always the last. With momentum the impulses go on
+/// between sweeps as they did before: high stacks take a fraction of the sweeps then. While it lives,
+/// impulses of contacts are not to be read, and they are in their cones after next() only.
+/// Source: Silcowitz, Niebe and Erleben 2010 (nonsmooth nonlinear conjugate gradients: the share of the way is the
+/// ratio of what the last two sweeps changed); here it is 1 at most, where they begin anew;
+/// what is thrown far begins anew here, too.
+class Sweeps {
+ public:
+  Sweeps(Workspace& work, bool momentum);
+  ~Sweeps();
+  Sweeps(const Sweeps&) = delete;
+  Sweeps& operator=(const Sweeps&) = delete;
 
-/// One contact of a sweep.
+  /// One more. @return the largest change of velocity that a row made at itself, m/s
+  double next();
+  /// Impulses grow without end, as they may where friction turns what it holds against itself (Painleve).
+  bool diverge() const;
+
+ private:
+  double share() const;
+
+  Workspace& work_;
+  const bool plain_, momentum_;
+  int count_ = 0;
+  double energy_first_ = 0, energy_before_ = 0, energy_ = 0;  // J, of the changes of the first and the last two
+};
+
+/// One contact of a sweep. @return the largest change of its velocity, m/s
 double visit_point(Workspace& work, std::size_t point);
 
 /// What the impulses do to the kinetic energy, less what the biases demand, J: with p the impulses, u the velocities,

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "runtime/contact/cone.hpp"
+#include "runtime/contact/plain.hpp"
 
 namespace breve::contact {
 
@@ -32,6 +33,7 @@ struct Point {
   LocalMatrix response;  // softness included
   LocalMatrix inverse;   // of it, made regular
   double impulse[3];
+  double step[3], way[3];  // what the last sweep changed, and where it goes on to
 };
 
 /// A contact's matrices, if a side has them, and the velocity it had without any impulse.
@@ -48,6 +50,7 @@ struct PackedScalar {
   double response;  // softness included; 0: nothing can move it
   double impulse;
   double free_velocity;
+  double step, way;
 };
 
 /// What a point whose two coefficients of friction differ was found to do.
@@ -69,6 +72,7 @@ struct Workspace {
   explicit Workspace(std::pmr::memory_resource* memory)
       : movers(memory),
         points(memory),
+        plain(memory),
         sides(memory),
         scalars(memory),
         grips(memory),
@@ -84,6 +88,7 @@ struct Workspace {
         rates(memory) {}
   std::pmr::vector<Packed> movers;
   std::pmr::vector<Point> points;
+  std::pmr::vector<PlainPoint> plain;  // the same for sweeps, where they were asked for
   std::pmr::vector<Sides> sides;
   std::pmr::vector<PackedScalar> scalars;
   std::pmr::vector<Grip> grips;
@@ -92,6 +97,7 @@ struct Workspace {
   std::pmr::vector<int> indices;
   std::pmr::vector<int> order, firsts;  // of impacts in groups
   std::pmr::vector<double> saved, earlier, biases;
+  bool has_plain = false;
   bool condensed = false;            // see condensed.hpp:
   std::pmr::vector<double> answers;  // W, symmetric, row by row
   std::pmr::vector<double> rates;    // velocities at the rows: three a point, then one a scalar row

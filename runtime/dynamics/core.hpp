@@ -90,6 +90,13 @@ struct ClusterEntry : InMemory {
 
 class Island;
 
+/// What a body is in the island that moves it.
+struct BodyPlace {
+  Tree* tree = nullptr;  // null: it is free
+  int mover = -1;        // in the island's order; -1: nothing moves it
+  int link = -1;         // of the tree
+};
+
 struct Dynamics::Core : InMemory {
   Core(std::pmr::memory_resource* memory, Bodies& bodies);
 
@@ -118,8 +125,8 @@ struct Dynamics::Core : InMemory {
   std::uint64_t rules = 0;  // grows when the answer may change whether two bodies push each other
 
   NearPairs near;
-  std::pmr::vector<int> slot_of;  // by body: of a free one, in its island
-  SharedMemory shared;            // of islands, which workers step
+  std::pmr::vector<BodyPlace> place_of;  // by body, since islands were found
+  SharedMemory shared;                   // of islands, which workers step
   Workers workers;
   std::pmr::vector<std::unique_ptr<Island>> islands;  // places to work on one
   std::pmr::vector<std::unique_ptr<Island>> calling;  // those of the step that need a client

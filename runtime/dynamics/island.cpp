@@ -70,7 +70,7 @@ void add_works(const Energy& from, Energy& to) {
 }  // namespace
 
 void Island::add_free(BodyIndex body) {
-  core_.slot_of[body] = static_cast<int>(free_.size());
+  core_.place_of[body].mover = static_cast<int>(free_.size());
   Free one{};
   one.body = body;
   one.now = read_free(*core_.bodies, body);
@@ -87,6 +87,9 @@ void Island::add_cluster(ClusterEntry& cluster) {
     Tree* tree = core_.trees[index].get();
     tree->slot = static_cast<int>(trees_.size());
     trees_.push_back(tree);
+    const int mover = static_cast<int>(free_.size()) + tree->slot;
+    for (std::size_t i = 0; i < tree->links.size(); ++i)
+      core_.place_of[tree->links[i].body] = {tree, mover, static_cast<int>(i)};
   }
   const Accuracy& accuracy = cluster.system->accuracy();
   if (!accuracy_set_ || finer(accuracy.rung, accuracy_.rung)) accuracy_ = accuracy;
@@ -211,23 +214,8 @@ void Island::write() {
     }
 }
 
-Island::Side Island::side_of(BodyIndex body) const {
-  Side side;
-  if (!core_.moves_now(body)) return side;
-  const BodyEntry* known = core_.find(body);
-  if (known && known->tree != kNone) {
-    side.tree = core_.trees[known->tree].get();
-    side.link = known->link;
-    side.mover = static_cast<int>(free_.size()) + side.tree->slot;
-    return side;
-  }
-  side.mover = core_.slot_of[body];
-  side.center = free_[static_cast<std::size_t>(side.mover)].now.center;
-  return side;
-}
-
 Pose Island::pose_of(BodyIndex body) const {
-  const Side side = side_of(body);
+  const BodyPlace& side = core_.place_of[body];
   if (side.mover < 0) return core_.pose(body);
   if (side.tree) return side.tree->pose(side.link);
   const FreeBody& free = free_[static_cast<std::size_t>(side.mover)].now;
@@ -235,7 +223,7 @@ Pose Island::pose_of(BodyIndex body) const {
 }
 
 Vector3 Island::point_velocity(BodyIndex body, const Vector3& point) const {
-  const Side side = side_of(body);
+  const BodyPlace& side = core_.place_of[body];
   if (side.mover < 0) return Vector3::Zero();
   if (side.tree) return articulated::point_velocity(side.tree->data, side.link, point);
   const FreeBody& free = free_[static_cast<std::size_t>(side.mover)].now;

@@ -30,7 +30,7 @@ class Island : public InMemory {
   // --- what belongs to it, set before a step
   void clear();
   void add_free(BodyIndex body);
-  void add_cluster(ClusterEntry& cluster);
+  void add_cluster(ClusterEntry& cluster);  // after all free bodies
   void add_pair(NearPair& pair);
   bool empty() const { return free_.empty() && clusters_.empty(); }
 
@@ -88,7 +88,7 @@ class Island : public InMemory {
     std::uint32_t feature;
     Vector3 point, normal;  // world; the normal from b toward a
     double gap;             // m, at the start of the sub-step
-    double approach;        // m/s, v_n when the sub-step began
+    double approach;        // m/s, v_n when the sub-step began; unknown where nothing is located
   };
   /// Speeds of a pair, m/s, that separate impacts from what the rows of a sub-step do.
   struct Speeds {
@@ -103,12 +103,6 @@ class Island : public InMemory {
     double gap;   // m or rad
     double rate;  // of the gap when the sub-step began
     bool rests;   // it is a row; else it is to be located
-  };
-  struct Side {
-    int mover = -1;
-    Tree* tree = nullptr;
-    int link = -1;
-    Vector3 center = Vector3::Zero();
   };
   /// What comes first in a sub-step.
   struct Event {
@@ -131,7 +125,10 @@ class Island : public InMemory {
   double stored_in(const Clustered& one, double shift, double& kinetic);
   void commit();  // the last smooth() counts: its works go to the account
   Pose pose_of(BodyIndex body) const;
-  Side side_of(BodyIndex body) const;
+  /// Of a point, from the centre of mass of a free body, m.
+  Vector3 arm_of(const BodyPlace& free, const Vector3& point) const {
+    return point - free_[static_cast<std::size_t>(free.mover)].now.center;
+  }
   Vector3 point_velocity(BodyIndex body, const Vector3& point) const;
 
   // island_rows.cpp
@@ -179,9 +176,11 @@ class Island : public InMemory {
   void collide(double time);
   void rebound(const Bound& bound);
   void push_apart(double h);
-  void move_by_rows(std::span<contact::Row> rows, std::span<contact::ScalarRow> scalars, double h);
+  void begin_moves();
+  void end_moves(double h);
   bool call(DynamicsClient& client, int pair, double moment, double left);
   bool holds_rings() const;
+  bool only_rings() const;  // nothing else has rows
   bool hold_rings(double time, double h);
   double read_ring_errors();
   void close_rings();
@@ -238,6 +237,7 @@ class Island : public InMemory {
   Trouble foresee(double h);
   Trouble fastest_turn(double h) const;
   Trouble strongest_damper(double h) const;
+  double fastest_approach() const;
   void note_overlaps(double h);
   Trouble measure_overlaps();
   double height();
@@ -272,8 +272,7 @@ class Island : public InMemory {
   std::pmr::vector<contact::Law> laws_;
   std::pmr::vector<double> numbers_;  // of Jacobians
   std::pmr::vector<Manifold> manifolds_;
-  std::pmr::vector<contact::Row> apart_;
-  std::pmr::vector<contact::ScalarRow> apart_scalars_;
+  std::pmr::vector<double> apart_, apart_scalars_;  // of rows: the velocity that puts positions right, m/s
   std::pmr::vector<double> ring_errors_;
   std::pmr::vector<Pose> start_poses_;  // of each pair's two bodies, as the sub-step began
   std::pmr::vector<Bound> rebound_later_;

@@ -9,56 +9,55 @@
 namespace breve {
 
 void Island::push_apart(double h) {
-  constexpr double kShare = 0.2;      // of the overlap, in one sub-step
+  // Of the overlap, in one sub-step. What sweeps leave of it is uneven: pushed apart faster, stacks begin to sway.
+  const double share = accuracy_.direct ? 0.2 : 0.1;
   constexpr double kFastestPush = 3;  // m/s, along which nothing is moved faster
   bool any = false;
-  apart_.assign(rows_.begin(), rows_.end());
-  for (std::size_t i = 0; i < apart_.size(); ++i) {
-    const NearPair& pair = *pairs_[touches_[i].pair];
-    const Shape &a = *core_.bodies->collision_shape(pair.a), &b = *core_.bodies->collision_shape(pair.b);
-    const double slop = 0.1 * kSkin * std::min(a.bounding_radius(), b.bounding_radius());
-    const double deep = -touches_[i].gap - slop;
-    apart_[i].impulse = Vector3::Zero();
-    apart_[i].static_friction = apart_[i].dynamic_friction = 0;
+  double fastest = 0;
+  const auto want = [&fastest](std::pmr::vector<double>& of, double rate) {
+    of.push_back(rate);
+    fastest = std::max(fastest, rate);
+  };
+  apart_.clear();
+  apart_scalars_.clear();
+  for (const Touch& touch : touches_) {
+    const double deep = -touch.gap - 0.1 * kSkin * size_of_pair(*pairs_[touch.pair]);
     // What is not too deep may come nearer by what room there is.
-    apart_[i].bias = deep > 0 ? std::min(kShare * deep / h, kFastestPush) : std::min(0.0, -touches_[i].gap / h);
+    want(apart_, deep > 0 ? std::min(share * deep / h, kFastestPush) : std::min(0.0, -touch.gap / h));
     any = any || deep > 0;
   }
-  apart_scalars_.assign(scalars_.begin(), scalars_.end());
-  std::size_t k = 0;
   for (const Bound& bound : bounds_) {
     if (!bound.rests) continue;
-    apart_scalars_[k].bias = -kShare * std::min(bound.gap, 0.0) / h;
+    want(apart_scalars_, -share * std::min(bound.gap, 0.0) / h);
     any = any || bound.gap < -kLimitSkin;
-    ++k;
   }
-  for (; k < apart_scalars_.size(); ++k) apart_scalars_[k].bias = 0;
-  for (contact::ScalarRow& row : apart_scalars_) row.impulse = 0;
+  apart_scalars_.resize(scalars_.size(), 0.0);
   if (any) {
     const double before = height();
-    move_by_rows(apart_, apart_scalars_, h);
+    contact::SolveSettings settings;
+    // Only a part of an overlap is put right: how exactly does not matter, least where velocities are not exact either.
+    settings.iterations = accuracy_.direct ? accuracy_.iterations : std::max(4, accuracy_.iterations / 4);
+    settings.direct = rows_.empty();
+    settings.tolerance = std::max(settings.tolerance, 1e-3 * fastest);
+    if (settings.direct) settings.tolerance = 1e-14;
+    begin_moves();
+    contact::solve_again(apart_, apart_scalars_, settings, workspace_);
+    end_moves(h);
     pushed_ += height() - before;
   }
   close_rings();
 }
 
-void Island::move_by_rows(std::span<contact::Row> rows, std::span<contact::ScalarRow> scalars, double h) {
-  // The rows' solution is taken as a velocity that lasts h and then is gone.
+/// The rows' solution is taken as a velocity that lasts h and then is gone. Between these two the movers have none.
+void Island::begin_moves() {
   for (Free& one : free_) std::fill(one.v, one.v + 6, 0.0);
   for (Tree* tree : trees_) {
     tree->free_v = tree->state.v;
     tree->state.v.setZero();
   }
-  contact::SolveSettings settings;
-  // Only a part of an overlap is put right: how exactly does not matter, least where velocities are not exact either.
-  settings.iterations = accuracy_.direct ? accuracy_.iterations : std::max(4, accuracy_.iterations / 4);
-  settings.direct = rows.empty();
-  double fastest = 0;
-  for (const contact::Row& row : rows) fastest = std::max(fastest, row.bias);
-  for (const contact::ScalarRow& row : scalars) fastest = std::max(fastest, row.bias);
-  settings.tolerance = std::max(settings.tolerance, 1e-3 * fastest);
-  if (settings.direct) settings.tolerance = 1e-14;  // a length here: rings are closed to round-off
-  contact::solve_island(movers_, rows, scalars, settings, workspace_);
+}
+
+void Island::end_moves(double h) {
   for (Free& one : free_) {
     one.now.center += h * Vector3(one.v[0], one.v[1], one.v[2]);
     const Vector3 turn = h * Vector3(one.v[3], one.v[4], one.v[5]);
@@ -79,6 +78,11 @@ void Island::close_rings() {
   bounds_.clear();
   constexpr int kMost = 4;  // Newton's method from a small error: two are enough but far from the solution
   constexpr double kClosed = 1e-13;
+  contact::SolveSettings settings;
+  settings.direct = true;
+  settings.iterations = accuracy_.iterations;
+  contact::SolveSettings exact = settings;
+  exact.tolerance = 1e-14;  // a length here: rings are closed to round-off
   for (int i = 0; i < kMost; ++i) {
     place();
     make_rows(1, false);
@@ -88,14 +92,13 @@ void Island::close_rings() {
       worst = std::max(worst, std::abs(ring_errors_[k]));
     }
     if (worst < kClosed) break;
-    move_by_rows({}, scalars_, 1);
+    begin_moves();
+    contact::solve_island(movers_, {}, scalars_, exact, workspace_);
+    end_moves(1);
   }
   // Velocities along the rings where they stand now.
   for (contact::ScalarRow& row : scalars_) row.bias = 0, row.impulse = 0;
   load_velocities();
-  contact::SolveSettings settings;
-  settings.direct = true;
-  settings.iterations = accuracy_.iterations;
   contact::solve_island(movers_, {}, scalars_, settings, workspace_);
   store_velocities(0);
 }

@@ -135,6 +135,7 @@ void Island::account_rows() {
 /// What contacts and limits did to trees, as forces that last the h seconds of a sub-step, for who asks what joints
 /// hold.
 void Island::note_forces(double h) {
+  if (trees_.empty()) return;
   for (Tree* tree : trees_) {
     for (TreeLink& link : tree->links) link.contact = {};
     tree->limit_force.setZero();
@@ -156,7 +157,7 @@ void Island::note_forces(double h) {
 }
 
 void Island::add_force(BodyIndex body, const Vector3& point, const Vector3& force) {
-  const Side side = side_of(body);
+  const BodyPlace& side = core_.place_of[body];
   if (!side.tree) return;
   articulated::Wrench& wrench = side.tree->links[static_cast<std::size_t>(side.link)].contact;
   wrench.force += force;

@@ -46,7 +46,9 @@ void Island::find_touches(double h, bool speculative) {
                     manifold.normal,
                     point.distance,
                     0};
-        touch.approach = manifold.normal.dot(point_velocity(pair.a, touch.point) - point_velocity(pair.b, touch.point));
+        if (!speculative)
+          touch.approach =
+              manifold.normal.dot(point_velocity(pair.a, touch.point) - point_velocity(pair.b, touch.point));
         touches_.push_back(touch);
       }
     }
@@ -229,10 +231,11 @@ void Island::make_rows(double h, bool restitution) {
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const Touch& touch = touches_[i];
     const contact::Law& law = laws_[i];
-    const bool hits = touch.gap + h * touch.approach < 0;
+    const double approach = before_[2 * i][0] - before_[2 * i + 1][0];
+    const bool hits = touch.gap + h * approach < 0;
     // What gravity alone adds in two steps is no impact: resting stacks would hop.
     const double slow = std::max(law.restitution_threshold, 2 * core_.settings.gravity.norm() * h);
-    if (hits && touch.approach < -slow) rows_[i].bias = std::max(rows_[i].bias, -law.restitution * touch.approach);
+    if (hits && approach < -slow) rows_[i].bias = std::max(rows_[i].bias, -law.restitution * approach);
   }
 }
 
@@ -251,14 +254,14 @@ void Island::add_touch_row(const Touch& touch) {
   row.static_friction = pair.law.static_friction;
   row.dynamic_friction = pair.law.dynamic_friction;
   row.pair = static_cast<int>(touch.pair);
-  const Side sides[2] = {side_of(pair.a), side_of(pair.b)};
+  const BodyPlace sides[2] = {core_.place_of[pair.a], core_.place_of[pair.b]};
   const bool same = sides[0].tree && sides[0].tree == sides[1].tree;
   for (int s = 0; s < 2; ++s) {
-    const Side& side = sides[s];
+    const BodyPlace& side = sides[s];
     if (side.mover < 0 || (s == 1 && same)) continue;
     (s == 0 ? row.a : row.b) = side.mover;
     if (!side.tree) {
-      (s == 0 ? row.arm_a : row.arm_b) = touch.point - side.center;
+      (s == 0 ? row.arm_a : row.arm_b) = arm_of(side, touch.point);
       continue;
     }
     const int n = side.tree->model.velocities();

@@ -35,7 +35,7 @@ bool Island::springs_for(const contact::Law& law) const {
 
 /// What an impulse along `normal` has to move there, kg.
 double Island::felt_mass(const NearPair& pair, const Vector3& point, const Vector3& normal) const {
-  const Side a = side_of(pair.a), b = side_of(pair.b);
+  const BodyPlace &a = core_.place_of[pair.a], &b = core_.place_of[pair.b];
   double yields = 0;
   const auto of_tree = [&](Tree& tree, int first, int second) {
     const articulated::Symmetric3 w = articulated::collision_matrix(tree.model, tree.data, first, point, second, point);
@@ -45,14 +45,14 @@ double Island::felt_mass(const NearPair& pair, const Vector3& point, const Vecto
     of_tree(*a.tree, a.link, b.link);
     return yields > 0 ? 1 / yields : 0;
   }
-  for (const Side& side : {a, b}) {
+  for (const BodyPlace& side : {a, b}) {
     if (side.mover < 0) continue;
     if (side.tree) {
       of_tree(*side.tree, -1, side.link);
       continue;
     }
     const contact::Mover& mover = movers_[static_cast<std::size_t>(side.mover)];
-    const Vector3 arm = (point - side.center).cross(normal);
+    const Vector3 arm = arm_of(side, point).cross(normal);
     const FreeBody& free = free_[static_cast<std::size_t>(side.mover)].now;
     yields += mover.inverse_mass + arm.dot(Eigen::Matrix3d(free.inertia()).inverse() * arm);
   }
@@ -62,11 +62,11 @@ double Island::felt_mass(const NearPair& pair, const Vector3& point, const Vecto
 /// Surfaces that touch become springs. Their stiffness goes with the whole mass on either side, so that a foot carries
 /// its animal; their dampers with what the point feels.
 void Island::begin_spring(NearPair& pair, const Touch& touch) {
-  const auto whole = [this](const Side& side) {
+  const auto whole = [this](const BodyPlace& side) {
     if (side.mover < 0) return 0.0;
     return side.tree ? side.tree->model.mass() : free_[static_cast<std::size_t>(side.mover)].now.solid->mass;
   };
-  const double mass = reduced(whole(side_of(pair.a)), whole(side_of(pair.b)));
+  const double mass = reduced(whole(core_.place_of[pair.a]), whole(core_.place_of[pair.b]));
   const double felt = felt_mass(pair, touch.point, touch.normal);
   if (!(felt > 0)) return;
   const double own = accuracy_.contact_damping;

@@ -110,13 +110,28 @@ Island::Trouble Island::strongest_damper(double h) const {
   return worst;
 }
 
+/// No two bodies come nearer by more than that, m/s; links may by any speed.
+double Island::fastest_approach() const {
+  if (!trees_.empty()) return JointDrive::kNoLimit;
+  double fastest = 0;
+  for (const Free& one : free_) {
+    const Vector3 velocity(one.v[0], one.v[1], one.v[2]), spin(one.v[3], one.v[4], one.v[5]);
+    const Shape& shape = *core_.bodies->collision_shape(one.body);
+    const double arm = 2 * shape.bounding_radius();  // of a point of it from its centre of mass, at most
+    fastest = std::max(fastest, velocity.norm() + arm * spin.norm());
+  }
+  return 2 * fastest;
+}
+
 /// After the rows of a sub-step of h seconds were solved: notes pairs that are deep, or will be if they move on as they
 /// do, to be looked at when the step is over.
 void Island::note_overlaps(double h) {
   if (core_.settings.guard == GuardMode::Off) return;
+  const double reach = h * fastest_approach();
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const Touch& touch = touches_[i];
     const double deep = depths_for(accuracy_.rung).deep * size_of_pair(*pairs_[touch.pair]);
+    if (touch.gap - reach > -deep) continue;
     if (touch.gap > 0 && rows_[i].impulse[0] > 0) continue;  // it is stopped before it overlaps
     const double rate = rate_of(rows_[i], true)[0] - rate_of(rows_[i], false)[0];
     if (touch.gap + h * std::min(rate, 0.0) > -deep) continue;

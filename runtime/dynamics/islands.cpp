@@ -29,7 +29,7 @@ bool Dynamics::Core::pushes(BodyIndex a, BodyIndex b, const DynamicsClient& clie
 void Dynamics::Core::find_islands() {
   // Sets of bodies by union-find. A tree's first link stands for the tree, a cluster's first tree for the cluster.
   set_of.resize(bodies->index_end());
-  slot_of.resize(bodies->index_end());
+  place_of.assign(bodies->index_end(), {});
   for (const BodyIndex body : near.movers()) set_of[body] = body;
   const auto root = [this](BodyIndex body) {
     while (set_of[body] != body) body = set_of[body] = set_of[set_of[body]];
@@ -110,8 +110,9 @@ void Dynamics::Core::run(DynamicsClient& client, double start, double h, int dep
     if (pair.pushes) pair.law = contact::combine(all.material(pair.a), all.material(pair.b));
   find_islands();
   // Islands that call nobody first: what a handler does must not pull the ground from under them. They are stepped in
-  // lots that take turns in the same places: what an island works with would not fit the caches for all of a crowd.
-  constexpr std::size_t kLot = 64;
+  // lots that take turns in the same places: what an island works with would not fit the caches for all of a crowd, and
+  // hardly for more than a few. Several workers wait for one another at the end of each lot.
+  const std::size_t most = settings.workers > 1 ? 64 : 4;
   std::size_t lot = 0, callers = 0;
   for (std::size_t i = 0; i < island_count; ++i) {
     Island& island = fill(lot, i);
@@ -121,7 +122,7 @@ void Dynamics::Core::run(DynamicsClient& client, double start, double h, int dep
       std::swap(islands[lot], calling[callers++]);
       continue;
     }
-    if (++lot < kLot) continue;
+    if (++lot < most) continue;
     step_quiet(lot, start, h);
     lot = 0;
   }

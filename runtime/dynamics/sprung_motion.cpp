@@ -235,13 +235,13 @@ Island::SprungMotion::Resistance Island::SprungMotion::resist(SprungPoint& point
 void Island::SprungMotion::push(const SprungPoint& point, Vector& a) {
   const NearPair& pair = *island_.pairs_[point.pair];
   for (const auto& [body, sign] : {std::pair{pair.a, 1.0}, std::pair{pair.b, -1.0}}) {
-    const Side side = island_.side_of(body);
+    const BodyPlace& side = island_.core_.place_of[body];
     if (side.mover < 0) continue;
     const Vector3 force = sign * point.force;
     if (!side.tree) {
       articulated::Wrench& on = pushes_[static_cast<std::size_t>(side.mover)];
       on.force += force;
-      on.couple += (point.at - side.center).cross(force);
+      on.couple += island_.arm_of(side, point.at).cross(force);
       continue;
     }
     articulated::Wrench& on = side.tree->links[static_cast<std::size_t>(side.link)].pressed;

@@ -71,7 +71,7 @@ Accuracy accuracy_of(Rung rung) {
       a.implicit_joints = true;
       a.direct = false;
       a.locate_impacts = false;
-      a.iterations = 20;
+      a.iterations = 12;
       break;
     case Rung::Balanced: a.contact_step = 1.0 / 200; break;
     case Rung::Precise:

@@ -19,10 +19,10 @@ namespace {
 // Beyond these numbers a coarser mesh is meant.
 constexpr std::size_t kMostPoints = 1'000'000;
 constexpr std::size_t kMostFaces = 4000;
-constexpr double kFlat = 1e-6;     // thinner than this part of its extent a cloud is flat: a solid needs a thickness
-constexpr double kLevel = 1e-12;   // of the extent: a point so little above a face is on it
-constexpr double kOneFace = 1e-8;  // of the extent: triangles so near to one plane are one face
-constexpr double kWrong = 1e-7;    // of the extent: what may be outside after all
+constexpr double kFlatCloud = 1e-6;  // thinner than this part of its extent a cloud is flat: a solid needs a thickness
+constexpr double kLevel = 1e-12;     // of the extent: a point so little above a face is on it
+constexpr double kOneFace = 1e-8;    // of the extent: triangles so near to one plane are one face
+constexpr double kWrong = 1e-7;      // of the extent: what may be outside after all
 
 [[noreturn]] void refuse_hull(const std::string& why) { throw Error(ErrorCode::Argument, "a convex hull " + why); }
 
@@ -89,7 +89,7 @@ std::array<int, 4> Quickhull::first_solid() const {
   const int c = farthest([&](const Vector3& p) { return (p - point(a)).cross(line).squaredNorm(); });
   const Vector3 normal = line.cross(point(c) - point(a)).stableNormalized();
   const int d = farthest([&](const Vector3& p) { return std::abs(normal.dot(p - point(a))); });
-  if (!(std::abs(normal.dot(point(d) - point(a))) > kFlat * extent_)) {
+  if (!(std::abs(normal.dot(point(d) - point(a))) > kFlatCloud * extent_)) {
     refuse_hull(
         "of points that lie in one plane, or nearly (a solid needs a thickness; keep a flat mesh as triangles)");
   }

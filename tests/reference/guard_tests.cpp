@@ -99,19 +99,23 @@ TEST(Guard, SeesEnergyFromNowhere) {
   }
 }
 
-/// Twenty sweeps do not find what holds a million kilograms on one: the lower cube is pressed flat.
+/// Ten sweeps do not find what holds a million kilograms on one: a plate on it sinks in. Refined they do; but nothing
+/// finds it where the masses differ by more than the digits of a number.
 TEST(Guard, SeesAnOverlapThatGrows) {
-  for (const breve_guard guard : kModes) {
-    Watched world(guard, BREVE_RUNG_FAST);
-    world.set_gravity(Vector3(0, -9.81, 0));
-    world.fixed(box(Vector3(10, 1, 10), 1), Vector3(0, -0.5, 0));
-    const breve_object lower = world.body(box(Vector3(1, 1, 1), 1), Vector3(0, 0.5, 0));
-    world.body(box(Vector3(1, 1, 1), 1e6), Vector3(0, 1.5, 0));
-    world.watch(60);
-    world.expect_ended(guard, "an overlap grows", lower);
-    EXPECT_TRUE(world.at(lower).allFinite());
-    EXPECT_EQ(world.at(lower).y() > 0, guard >= BREVE_GUARD_REFINE);  // or through the floor
-  }
+  for (const breve_guard guard : kModes)
+    for (const double mass : {1e6, 1e16}) {
+      Watched world(guard, BREVE_RUNG_FAST);
+      world.set_gravity(Vector3(0, -9.81, 0));
+      world.fixed(box(Vector3(10, 1, 10), 1), Vector3(0, -0.5, 0));
+      const breve_object lower = world.body(box(Vector3(1, 1, 1), 1), Vector3(0, 0.5, 0));
+      world.body(box(Vector3(2, 1, 1), mass), Vector3(0, 1.5, 0));
+      world.watch(20);
+      if (mass < 1e7)
+        world.expect_refined(guard, "an overlap grows", lower);
+      else
+        world.expect_ended(guard, "an overlap grows", lower);
+      EXPECT_TRUE(world.at(lower).allFinite());
+    }
 }
 
 TEST(Guard, SeesABodyThatTurnsTooFar) {

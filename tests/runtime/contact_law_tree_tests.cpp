@@ -105,12 +105,14 @@ struct Wood {
   }
 };
 
+/// In case 1539 sweeps alone diverge: the longer, the farther.
 TEST(Trees, NoSolveAddsEnergyAndTheConeHolds) {
   Random random(51);
   int direct = 0;
   for (int i = 0; i < 2000; ++i) {
     Wood wood(random);
     wood.scene.settings = {1 + static_cast<int>(random.below(20)), i % 2 == 0, 1e-9};
+    if (i % 20 == 19) wood.scene.settings.iterations = 200;
     const double before = wood.kinetic();
     direct += wood.solve().direct ? 1 : 0;
     ASSERT_LE(wood.kinetic(), before * (1 + 1e-10)) << i;
