@@ -37,6 +37,11 @@ bool has_springs(const Dynamics::Core& core, const ClusterEntry& cluster) {
   return false;
 }
 
+bool has_rings(const Cluster& system) {
+  const std::span trees = system.trees();
+  return std::any_of(trees.begin(), trees.end(), [](const Tree* tree) { return !tree->rings.empty(); });
+}
+
 }  // namespace
 
 void Island::smooth(double time, double h) {
@@ -100,7 +105,9 @@ void Island::smooth_by_euler(Clustered& one, double time, double h) {
   Cluster& system = *one.entry->system;
   const double most = h * widest_turn(system) > kFurthestTurn ? 0 : kFreeGain;
   // In the air energy itself is kept, which looks better.
-  const double gained = gain_of(one, time, h, 1, rows_.empty() ? 0 : 0.5 * h);
+  // Rings are closed at the end of the step by hand: what Euler's rule leaves open of them is too much for that.
+  const double gained = only_rings() && has_rings(system) ? std::numeric_limits<double>::infinity()
+                                                          : gain_of(one, time, h, 1, rows_.empty() ? 0 : 0.5 * h);
   if (std::abs(gained) <= most || (most > 0 && gained <= 1 && has_springs(core_, *one.entry))) return;
   system.set_finer(true);
   double gain = 0;

@@ -9,8 +9,18 @@
 
 namespace breve {
 
-/// Where order counts, rings are held inside the stages; elsewhere by a rule that keeps energy in the long run.
-bool Island::holds_rings() const { return accuracy_.rung == Rung::Precise || accuracy_.rung == Rung::Reference; }
+/// Schemes of order 4 and 5 hold rings inside their stages, others by a rule of order 2 that is theirs.
+bool Island::holds_rings() const {
+  using articulated::Scheme;
+  const Scheme scheme = accuracy_.scheme;
+  if (scheme == Scheme::RungeKutta4 || scheme == Scheme::Fehlberg4 || scheme == Scheme::Fehlberg5 ||
+      scheme == Scheme::FehlbergAdaptive)
+    return true;
+  return std::all_of(clusters_.begin(), clusters_.end(),
+                     [](const Clustered& one) { return one.entry->system->can_be_finer(); });
+}
+
+bool Island::only_rings() const { return rows_.empty() && !scalars_.empty() && scalars_.size() == ring_errors_.size(); }
 
 double Island::longest(double left) const {
   double step = accuracy_.step > 0 ? accuracy_.step : left;
@@ -49,14 +59,21 @@ void Island::step_fast(double start, double h) {
       if (bounds_[k].rate < -quiet_) scalars_[s].bias = std::max(scalars_[s].bias, -e * bounds_[k].rate);
       ++s;
     }
-    smooth(start + i * part, part);
-    commit();
-    load_velocities();
-    solve();
-    account_rows();
-    note_overlaps(part);
+    if (only_rings()) {
+      remember();
+      advance_once(start + i * part, part);
+      commit();
+    } else {
+      for (Clustered& one : clusters_) one.stage->holds_rings = false;
+      smooth(start + i * part, part);
+      commit();
+      load_velocities();
+      solve();
+      account_rows();
+      note_overlaps(part);
+      store_velocities(part);
+    }
     note_forces(part);
-    store_velocities(part);
     keep_warm();
     push_apart(part);
   }
@@ -65,8 +82,7 @@ void Island::step_fast(double start, double h) {
 // --- impacts at their time ---
 
 void Island::advance_once(double time, double h) {
-  const bool only_rings = rows_.empty() && !scalars_.empty() && scalars_.size() == ring_errors_.size();
-  const bool in_stages = !only_rings || holds_rings();
+  const bool alone = only_rings(), in_stages = !alone || holds_rings();
   for (Clustered& one : clusters_) one.stage->holds_rings = in_stages;
   if (!in_stages) {
     if (hold_rings(time, h)) return;
@@ -75,7 +91,7 @@ void Island::advance_once(double time, double h) {
     for (Clustered& one : clusters_) one.stage->holds_rings = true;
   }
   smooth(time, h);
-  if (only_rings) return;
+  if (alone) return;
   load_velocities();
   set_biases(h);
   for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i].impulse = warm_[i];

@@ -97,7 +97,8 @@ struct Promise {
   breve_rung rung;
   double energy;  // of the most that was in motion
 };
-constexpr Promise kPromises[] = {{BREVE_RUNG_BALANCED, 0.01}, {BREVE_RUNG_PRECISE, 1e-4}};
+constexpr Promise kPromises[] = {
+    {BREVE_RUNG_FAST, 0.01}, {BREVE_RUNG_BALANCED, 1e-4}, {BREVE_RUNG_PRECISE, 1e-4}, {BREVE_RUNG_CONSERVING, 0.05}};
 
 TEST(Linkages, AFourBarKeepsItsEnergyForTenSeconds) {
   for (const Promise& promise : kPromises) {
