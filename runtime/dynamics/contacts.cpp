@@ -8,7 +8,7 @@ namespace breve {
 
 namespace {
 
-bool earlier(const NearPair& x, const NearPair& y) {
+bool earlier(const PairKey& x, const PairKey& y) {
   return x.serial_a != y.serial_a ? x.serial_a < y.serial_a : x.serial_b < y.serial_b;
 }
 
@@ -17,11 +17,14 @@ bool earlier(const NearPair& x, const NearPair& y) {
 NearPairs::NearPairs(std::pmr::memory_resource* memory)
     : tree_(memory),
       proxies_(memory),
+      reach_(memory),
       free_(memory),
       proxy_of_(memory),
       movers_(memory),
+      keys_(memory),
+      new_keys_(memory),
       pairs_(memory),
-      new_pairs_(memory),
+      free_pairs_(memory),
       fresh_(memory),
       found_(memory) {}
 
@@ -30,11 +33,13 @@ void NearPairs::enter(const Bodies& bodies, const DynamicsClient& client, BodyIn
   if (free_.empty()) {
     if (free_.capacity() <= proxies_.size()) free_.reserve(2 * proxies_.size() + 16);  // leave() takes none
     index = static_cast<ProxyIndex>(proxies_.size());
+    reach_.resize(proxies_.size() + 1);
     proxies_.emplace_back();
   } else {
     index = free_.back();
     free_.pop_back();
   }
+  reach_[index] = {};
   Proxy& proxy = proxies_[index] = Proxy();
   proxy.body = body;
   proxy.serial = client.serial(body);
@@ -46,7 +51,11 @@ void NearPairs::leave(ProxyIndex index) {
   Proxy& proxy = proxies_[index];
   if (proxy.leaf != BoxTree::kNoLeaf) tree_.remove(proxy.leaf);
   const BodyIndex body = proxy.body;
-  std::erase_if(pairs_, [body](const NearPair& pair) { return pair.a == body || pair.b == body; });
+  std::erase_if(keys_, [&](PairKey& key) {
+    const bool of_body = key.a == body || key.b == body;
+    if (of_body) release(key);
+    return of_body;
+  });
   proxy_of_[body] = kNoProxy;
   proxy = Proxy();
   free_.push_back(index);
@@ -77,7 +86,9 @@ void NearPairs::refresh(const Bodies& bodies, const DynamicsClient& client, cons
     seen_bodies_ = bodies.revision();
   }
   fresh_.clear();
-  new_pairs_.clear();
+  new_keys_.clear();
+  // After an update that was not ended nobody knows which boxes moved.
+  for (Reach& reach : reach_) reach.moved = again;
   for (Proxy& proxy : proxies_)
     if (proxy.body != kNoBody) update_box(bodies, proxy, gravity, h);
   if (!again) return;
@@ -97,8 +108,10 @@ void NearPairs::update_box(const Bodies& bodies, Proxy& proxy, const Vector3& gr
   proxy.shape = shape;
   proxy.location = location;
   proxy.orientation = orientation;
-  proxy.box = shape->bounds(orientation.toRotationMatrix());
-  proxy.box.translate(location);
+  const auto index = static_cast<ProxyIndex>(&proxy - proxies_.data());
+  Reach& reach = reach_[index];
+  reach.box = shape->bounds(orientation.toRotationMatrix());
+  reach.box.translate(location);
   Vector3 room = Vector3::Constant(1e-3 * shape->bounding_radius());
   if (proxy.moves) {
     // What it may reach: straight on, falling, turning; twice as far, since it may be pushed on the way.
@@ -106,23 +119,24 @@ void NearPairs::update_box(const Bodies& bodies, Proxy& proxy, const Vector3& gr
     const Vector3 way = (bodies.velocity(proxy.body).cwiseAbs() + h * gravity.cwiseAbs()) * (2 * h);
     room += way + Vector3::Constant(2 * std::min(turn, shape->bounding_radius()));
   }
-  proxy.box.min() -= room;
-  proxy.box.max() += room;
-  if (!proxy.box.min().allFinite() || !proxy.box.max().allFinite()) {
+  reach.box.min() -= room;
+  reach.box.max() += room;
+  if (!reach.box.min().allFinite() || !reach.box.max().allFinite()) {
     // A body that flew out of the numbers touches nothing.
-    proxy.box.setEmpty();
+    reach.box.setEmpty();
+    reach.moved = true;
     if (proxy.leaf != BoxTree::kNoLeaf) tree_.remove(std::exchange(proxy.leaf, BoxTree::kNoLeaf));
     return;
   }
-  if (proxy.leaf != BoxTree::kNoLeaf && tree_.box(proxy.leaf).contains(proxy.box)) return;
-  Eigen::AlignedBox3d roomy = proxy.box;
+  if (proxy.leaf != BoxTree::kNoLeaf && tree_.box(proxy.leaf).contains(reach.box)) return;
+  reach.moved = true;
+  Eigen::AlignedBox3d roomy = reach.box;
   if (proxy.moves) {
     constexpr double kRoom = 0.1;  // of the radius: slow bodies keep their box for many steps
     const Vector3 more = Vector3::Constant(kRoom * shape->bounding_radius());
     roomy.min() -= more;
     roomy.max() += more;
   }
-  const auto index = static_cast<ProxyIndex>(&proxy - proxies_.data());
   if (proxy.leaf == BoxTree::kNoLeaf)
     proxy.leaf = tree_.insert(roomy, index);
   else
@@ -137,67 +151,101 @@ void NearPairs::seek(ProxyIndex index) {
   for (const ProxyIndex other_index : found_) {
     const Proxy& other = proxies_[other_index];
     if (other_index == index || !(self.moves || other.moves)) continue;
-    NearPair pair;
+    PairKey key;
     const bool first = self.serial < other.serial;
-    pair.a = first ? self.body : other.body;
-    pair.b = first ? other.body : self.body;
-    pair.serial_a = first ? self.serial : other.serial;
-    pair.serial_b = first ? other.serial : self.serial;
-    if (!find(pair.a, pair.b)) new_pairs_.push_back(pair);
+    key.a = first ? self.body : other.body;
+    key.b = first ? other.body : self.body;
+    key.serial_a = first ? self.serial : other.serial;
+    key.serial_b = first ? other.serial : self.serial;
+    if (!find_key(key.serial_a, key.serial_b)) new_keys_.push_back(key);
   }
+}
+
+PairKey* NearPairs::find_key(std::uint64_t serial_a, std::uint64_t serial_b) {
+  PairKey wanted;
+  wanted.serial_a = serial_a;
+  wanted.serial_b = serial_b;
+  const auto at = std::lower_bound(keys_.begin(), keys_.end(), wanted, earlier);
+  return at != keys_.end() && at->serial_a == serial_a && at->serial_b == serial_b ? &*at : nullptr;
 }
 
 NearPair* NearPairs::find(BodyIndex a, BodyIndex b) {
   if (a >= proxy_of_.size() || b >= proxy_of_.size() || proxy_of_[a] == kNoProxy || proxy_of_[b] == kNoProxy)
     return nullptr;
-  NearPair key;
-  key.serial_a = std::min(serial(a), serial(b));
-  key.serial_b = std::max(serial(a), serial(b));
-  const auto at = std::lower_bound(pairs_.begin(), pairs_.end(), key, earlier);
-  return at != pairs_.end() && at->serial_a == key.serial_a && at->serial_b == key.serial_b ? &*at : nullptr;
+  const PairKey* key = find_key(std::min(serial(a), serial(b)), std::max(serial(a), serial(b)));
+  return key && key->at != PairKey::kNone ? &pairs_[key->at] : nullptr;
+}
+
+void NearPairs::release(PairKey& key) {
+  if (key.at == PairKey::kNone) return;
+  pairs_[key.at] = {};
+  free_pairs_.push_back(std::exchange(key.at, PairKey::kNone));  // place_near() left room for it
 }
 
 void NearPairs::merge() {
-  if (new_pairs_.empty()) return;
-  std::sort(new_pairs_.begin(), new_pairs_.end(), earlier);
-  const auto last = std::unique(new_pairs_.begin(), new_pairs_.end(), [](const NearPair& x, const NearPair& y) {
+  if (new_keys_.empty()) return;
+  std::sort(new_keys_.begin(), new_keys_.end(), earlier);
+  const auto last = std::unique(new_keys_.begin(), new_keys_.end(), [](const PairKey& x, const PairKey& y) {
     return x.serial_a == y.serial_a && x.serial_b == y.serial_b;
   });
-  new_pairs_.erase(last, new_pairs_.end());
+  new_keys_.erase(last, new_keys_.end());
   // Merged from the back, in place.
-  std::size_t old = pairs_.size(), fresh = new_pairs_.size();
+  std::size_t old = keys_.size(), fresh = new_keys_.size();
   fresh_.reserve(fresh);  // so that memory ends before anything is moved, or not at all
-  pairs_.resize(old + fresh);
+  keys_.resize(old + fresh);
   for (std::size_t at = old + fresh; fresh > 0;) {
-    const bool take_old = old > 0 && earlier(new_pairs_[fresh - 1], pairs_[old - 1]);
+    const bool take_old = old > 0 && earlier(new_keys_[fresh - 1], keys_[old - 1]);
     --at;
     if (!take_old) fresh_.push_back(at);
-    pairs_[at] = take_old ? pairs_[--old] : new_pairs_[--fresh];
+    keys_[at] = take_old ? keys_[--old] : new_keys_[--fresh];
   }
 }
 
 void NearPairs::drop_far() {
-  std::erase_if(pairs_, [this](const NearPair& pair) {
-    const Proxy &a = proxies_[proxy_of_[pair.a]], &b = proxies_[proxy_of_[pair.b]];
-    if (a.leaf == BoxTree::kNoLeaf || b.leaf == BoxTree::kNoLeaf) return true;
-    return !tree_.box(a.leaf).intersects(tree_.box(b.leaf));
+  std::erase_if(keys_, [this](PairKey& key) {
+    const ProxyIndex a = proxy_of_[key.a], b = proxy_of_[key.b];
+    if (!reach_[a].moved && !reach_[b].moved) return false;
+    const BoxTree::Leaf leaf_a = proxies_[a].leaf, leaf_b = proxies_[b].leaf;
+    if (leaf_a != BoxTree::kNoLeaf && leaf_b != BoxTree::kNoLeaf && tree_.box(leaf_a).intersects(tree_.box(leaf_b)))
+      return false;
+    release(key);
+    return true;
   });
-  // Whether a pair is in the list depends on the past; what it remembers must not.
-  for (NearPair& pair : pairs_) {
-    if (near(pair)) continue;
-    pair.touching = false;
-    pair.warm_count = 0;
-    pair.cache = {};
+}
+
+/// Whether a pair is in the list depends on the past; what it remembers must not: that is kept from step to step only
+/// by those whose boxes meet in each.
+void NearPairs::place_near() {
+  for (PairKey& key : keys_) {
+    if (!(key.pushes || key.handled) || !near(key)) {
+      release(key);
+      continue;
+    }
+    if (key.at == PairKey::kNone) {
+      if (free_pairs_.empty()) {
+        if (free_pairs_.capacity() <= pairs_.size())
+          free_pairs_.reserve(2 * pairs_.size() + 16);  // release() takes none
+        pairs_.emplace_back();
+        free_pairs_.push_back(static_cast<std::uint32_t>(pairs_.size() - 1));
+      }
+      key.at = free_pairs_.back();
+      free_pairs_.pop_back();
+      pairs_[key.at].a = key.a;
+      pairs_[key.at].b = key.b;
+    }
+    pairs_[key.at].handled = key.handled;
   }
 }
 
-bool NearPairs::near(const NearPair& pair) const {
-  return proxies_[proxy_of_[pair.a]].box.intersects(proxies_[proxy_of_[pair.b]].box);
+/// True if the boxes of what the two may reach in this step meet.
+bool NearPairs::near(const PairKey& key) const {
+  return reach_[proxy_of_[key.a]].box.intersects(reach_[proxy_of_[key.b]].box);
 }
 
 std::size_t NearPairs::bytes() const {
-  return tree_.bytes() + proxies_.capacity() * sizeof(Proxy) +
-         (pairs_.capacity() + new_pairs_.capacity()) * sizeof(NearPair) +
+  return tree_.bytes() + proxies_.capacity() * sizeof(Proxy) + reach_.capacity() * sizeof(Reach) +
+         pairs_.capacity() * sizeof(NearPair) + (keys_.capacity() + new_keys_.capacity()) * sizeof(PairKey) +
+         free_pairs_.capacity() * sizeof(std::uint32_t) +
          (free_.capacity() + proxy_of_.capacity() + movers_.capacity()) * sizeof(BodyIndex);
 }
 
@@ -212,14 +260,14 @@ bool remembers(const NearPair& pair) {
 
 void NearPairs::save(ByteWriter& out) const {
   std::uint64_t count = 0;
-  for (const NearPair& pair : pairs_) count += remembers(pair);
+  each([&count](const PairKey&, const NearPair& pair) { count += remembers(pair); });
   out.put(count);
-  for (const NearPair& pair : pairs_) {
-    if (!remembers(pair)) continue;
-    out.put(pair.a);
-    out.put(pair.b);
-    out.put(pair.serial_a);
-    out.put(pair.serial_b);
+  each([&out](const PairKey& key, const NearPair& pair) {
+    if (!remembers(pair)) return;
+    out.put(key.a);
+    out.put(key.b);
+    out.put(key.serial_a);
+    out.put(key.serial_b);
     out.put(pair.touching);
     out.put(pair.cache.axis);
     out.put(pair.cache.feature);
@@ -234,7 +282,7 @@ void NearPairs::save(ByteWriter& out) const {
       out.put(point.slides);
       out.put(point.impulse);
     }
-  }
+  });
   count = 0;
   for (const Proxy& proxy : proxies_) count += proxy.body != kNoBody && proxy.rest.still > 0;
   out.put(count);
@@ -255,6 +303,7 @@ void NearPairs::load(ByteReader& in, const Bodies& bodies) {
     if (proxy_of_[body] != kNoProxy) return;
     proxy_of_[body] = static_cast<ProxyIndex>(proxies_.size());
     free_.reserve(proxies_.size() + 1);
+    reach_.resize(proxies_.size() + 1);
     proxies_.emplace_back();
     proxies_.back().body = body;
     proxies_.back().serial = serial;
@@ -262,11 +311,12 @@ void NearPairs::load(ByteReader& in, const Bodies& bodies) {
   };
   const std::size_t count = in.get_count(2 * sizeof(BodyIndex));
   for (std::size_t i = 0; i < count; ++i) {
+    PairKey key;
     NearPair pair;
-    pair.a = in.get<BodyIndex>();
-    pair.b = in.get<BodyIndex>();
-    pair.serial_a = in.get<std::uint64_t>();
-    pair.serial_b = in.get<std::uint64_t>();
+    pair.a = key.a = in.get<BodyIndex>();
+    pair.b = key.b = in.get<BodyIndex>();
+    key.serial_a = in.get<std::uint64_t>();
+    key.serial_b = in.get<std::uint64_t>();
     pair.touching = in.get_bool();
     pair.cache.axis = in.get_vector();
     pair.cache.feature = in.get<std::uint32_t>();
@@ -282,11 +332,14 @@ void NearPairs::load(ByteReader& in, const Bodies& bodies) {
       point.slides = in.get_bool();
       point.impulse = in.get_vector();
     }
-    if (!pairs_.empty() && !earlier(pairs_.back(), pair)) ByteReader::fail();
-    make(pair.a, pair.serial_a);
-    make(pair.b, pair.serial_b);
+    if (!keys_.empty() && !earlier(keys_.back(), key)) ByteReader::fail();
+    make(key.a, key.serial_a);
+    make(key.b, key.serial_b);
+    key.at = static_cast<std::uint32_t>(pairs_.size());
     pairs_.push_back(pair);
+    keys_.push_back(key);
   }
+  free_pairs_.reserve(pairs_.size());
   const std::size_t resting = in.get_count(sizeof(BodyIndex));
   for (std::size_t i = 0; i < resting; ++i) {
     const auto body = in.get<BodyIndex>();
@@ -297,16 +350,16 @@ void NearPairs::load(ByteReader& in, const Bodies& bodies) {
 }
 
 void NearPairs::hash(Hasher& hasher) const {
-  for (const NearPair& pair : pairs_) {
-    if (!remembers(pair)) continue;
-    hasher.add(pair.serial_a);
-    hasher.add(pair.serial_b);
+  each([&hasher](const PairKey& key, const NearPair& pair) {
+    if (!remembers(pair)) return;
+    hasher.add(key.serial_a);
+    hasher.add(key.serial_b);
     hasher.add(static_cast<std::uint64_t>(pair.touching) | std::uint64_t{pair.cache.feature} << 8);
     hasher.add(pair.cache.axis);
     hasher.add(pair.spring.stiffness);
     hasher.add(pair.stored);
     for (int i = 0; i < pair.warm_count; ++i) hasher.add(pair.warm[static_cast<std::size_t>(i)].impulse);
-  }
+  });
   for (BodyIndex body = 0; body < proxy_of_.size(); ++body)
     if (const Rest* rest = find_rest(body); rest && rest->still > 0) hasher.add(rest->still);
 }

@@ -19,11 +19,21 @@ struct WarmPoint {
   Vector3 impulse = Vector3::Zero();  // N*s, to start from in the next; of a spring its stretch along the surface, m
 };
 
-struct NearPair {
+/// Two bodies whose roomy boxes meet. There are several times as many as pairs that may touch, and all are gone through
+/// in each step: so they are small.
+struct PairKey {
+  static constexpr std::uint32_t kNone = 0xffffffffU;
   BodyIndex a = kNoBody, b = kNoBody;  // a was created earlier
   std::uint64_t serial_a = 0, serial_b = 0;
-  bool pushes = false;    // contacts of these two are solved
-  bool handled = false;   // a handler wants to know
+  bool pushes = false;       // contacts of these two are solved
+  bool handled = false;      // a handler wants to know
+  std::uint32_t at = kNone;  // of its NearPair, if it has one
+};
+
+/// Two bodies that may touch in this step and push each other, or are waited for: what is known of their contact.
+struct NearPair {
+  BodyIndex a = kNoBody, b = kNoBody;
+  bool handled = false;
   bool touching = false;  // at the end of the last sub-step
   bool reported = false;  // the handler was called in this step
   PairCache cache;
@@ -46,26 +56,37 @@ class NearPairs {
               bool strikes, const Wanted& wanted) {
     refresh(bodies, client, gravity, h);
     if (rules != seen_rules_ || unasked_)
-      for (NearPair& pair : pairs_) wanted(pair);
+      for (PairKey& key : keys_) wanted(key);
     seen_rules_ = rules;
     unasked_ = true;
     merge();
-    for (const std::size_t index : fresh_) wanted(pairs_[index]);
+    for (const std::size_t index : fresh_) wanted(keys_[index]);
     constexpr int kMostPassed = 64;  // bodies, one after the other
     for (int i = 0; strikes && i < kMostPassed && pass_on(bodies, h); ++i) {
       merge();
-      for (const std::size_t index : fresh_) wanted(pairs_[index]);
+      for (const std::size_t index : fresh_) wanted(keys_[index]);
     }
     drop_far();
+    place_near();
     unasked_ = incomplete_ = false;
   }
   void forget(BodyIndex body);
 
-  std::pmr::vector<NearPair>& all() { return pairs_; }
-  const std::pmr::vector<NearPair>& all() const { return pairs_; }
+  /// In the order of creation.
+  const std::pmr::vector<PairKey>& keys() const { return keys_; }
+  NearPair& at(std::uint32_t index) { return pairs_[index]; }
+  /// Calls f(key, pair) for those that have a NearPair, in the order of keys.
+  template <class F>
+  void each(F&& f) {
+    for (const PairKey& key : keys_)
+      if (key.at != PairKey::kNone) f(key, pairs_[key.at]);
+  }
+  template <class F>
+  void each(F&& f) const {
+    for (const PairKey& key : keys_)
+      if (key.at != PairKey::kNone) f(key, pairs_[key.at]);
+  }
   NearPair* find(BodyIndex a, BodyIndex b);
-  /// True if the boxes of what the two may reach in this step meet.
-  bool near(const NearPair& pair) const;
   std::uint64_t serial(BodyIndex body) const { return proxies_[proxy_of_[body]].serial; }
   /// Bodies in the order of creation: those that forces move.
   const std::pmr::vector<BodyIndex>& movers() const { return movers_; }
@@ -99,9 +120,13 @@ class NearPairs {
     Vector3 location = Vector3::Zero();  // of a body that does not move by itself, when its box was found
     Quaternion orientation{1, 0, 0, 0};
     const Shape* shape = nullptr;
-    Eigen::AlignedBox3d box;  // of what it may reach in this step
-    double speed = 0;         // m/s, that it has or may be given
-    bool wide = false;        // by what may strike it
+    double speed = 0;   // m/s, that it has or may be given
+    bool wide = false;  // by what may strike it
+  };
+  /// Apart from the rest of a proxy, since each pair looks at two of them.
+  struct Reach {
+    Eigen::AlignedBox3d box;  // in this step
+    bool moved = false;       // its roomy box, in this update
   };
   void gather(const Bodies& bodies, const DynamicsClient& client);
   void refresh(const Bodies& bodies, const DynamicsClient& client, const Vector3& gravity, double h);
@@ -109,16 +134,23 @@ class NearPairs {
   void leave(ProxyIndex index);
   void update_box(const Bodies& bodies, Proxy& proxy, const Vector3& gravity, double h);
   void seek(ProxyIndex index);
+  PairKey* find_key(std::uint64_t serial_a, std::uint64_t serial_b);
+  bool near(const PairKey& key) const;
+  void release(PairKey& key);
   bool pass_on(const Bodies& bodies, double h);
   bool widen(Proxy& proxy, double speed, double h, double far, double more);
   void merge();
   void drop_far();
+  void place_near();
 
   BoxTree tree_;
   std::pmr::vector<Proxy> proxies_;
+  std::pmr::vector<Reach> reach_;  // of proxies
   std::pmr::vector<ProxyIndex> free_, proxy_of_;
   std::pmr::vector<BodyIndex> movers_;
-  std::pmr::vector<NearPair> pairs_, new_pairs_;
+  std::pmr::vector<PairKey> keys_, new_keys_;
+  std::pmr::vector<NearPair> pairs_;  // in places that are used again
+  std::pmr::vector<std::uint32_t> free_pairs_;
   std::pmr::vector<std::size_t> fresh_;
   std::pmr::vector<std::uint32_t> found_;
   std::uint64_t seen_rules_ = 0, seen_bodies_ = ~std::uint64_t{0};

@@ -200,13 +200,13 @@ Dynamics::Census Dynamics::census() const {
   }
   for (const SpringEntry& tie : core_->springs)
     if (tie.used) count(census.springs, census.first_spring, tie.owner);
-  for (const NearPair& pair : core_->near.all()) {
-    if (!pair.pushes) continue;
+  core_->near.each([&](const PairKey& key, const NearPair& pair) {
+    if (!key.pushes) return;
     const ObjectId owner = bodies_->owner(pair.a);
     count(census.pairs, census.first_pair, owner);
     if (pair.law.static_friction > 0) count(census.rough, census.first_rough, owner);
     if (pair.law.restitution > 0) count(census.bouncing, census.first_bouncing, owner);
-  }
+  });
   census.asleep = core_->counters.sleeping;
   for (const BodyEntry& entry : core_->entries)
     if (entry.body != kNoBody && entry.force_method)

@@ -40,8 +40,9 @@ void Dynamics::Core::find_islands() {
     for (const std::uint32_t index : cluster->trees)
       for (const TreeLink& link : trees[index]->links)
         join(link.body, trees[cluster->trees.front()]->links.front().body);
-  for (const NearPair& pair : near.all())
-    if (pair.pushes && moves_now(pair.a) && moves_now(pair.b) && near.near(pair)) join(pair.a, pair.b);
+  near.each([&](const PairKey& key, const NearPair&) {
+    if (key.pushes && moves_now(key.a) && moves_now(key.b)) join(key.a, key.b);
+  });
 
   // Islands in the order of creation of their first bodies.
   island_count = 0;
@@ -62,10 +63,9 @@ void Dynamics::Core::find_islands() {
   }
   for (std::uint32_t i = 0; i < clusters.size(); ++i)
     island_clusters.add(island(trees[clusters[i]->trees.front()]->links.front().body), i);
-  for (std::uint32_t i = 0; i < near.all().size(); ++i) {
-    const NearPair& pair = near.all()[i];
-    if (pair.pushes && near.near(pair)) island_pairs.add(island(bodies->dynamic(pair.a) ? pair.a : pair.b), i);
-  }
+  near.each([&](const PairKey& key, const NearPair&) {
+    if (key.pushes) island_pairs.add(island(bodies->dynamic(key.a) ? key.a : key.b), key.at);
+  });
   for (Grouped* some : {&island_free, &island_clusters, &island_pairs}) some->sort(island_count);
 }
 
@@ -76,14 +76,14 @@ Island& Dynamics::Core::fill(std::size_t place, std::size_t number) {
   island.clear();
   for (const std::uint32_t body : island_free.of(number)) island.add_free(body);
   for (const std::uint32_t cluster : island_clusters.of(number)) island.add_cluster(*clusters[cluster]);
-  for (const std::uint32_t pair : island_pairs.of(number)) island.add_pair(near.all()[pair]);
+  for (const std::uint32_t pair : island_pairs.of(number)) island.add_pair(near.at(pair));
   return island;
 }
 
 void Dynamics::Core::advance(DynamicsClient& client, double start, double h) {
   ++sub_step;
   aside.clear();
-  for (NearPair& pair : near.all()) pair.reported = false;
+  near.each([](const PairKey&, NearPair& pair) { pair.reported = false; });
   run(client, start, h, 0);
   report_lasting(client, start + h);
   counters.sleeping = 0;
@@ -101,13 +101,14 @@ bool Dynamics::Core::locates() const {
 void Dynamics::Core::run(DynamicsClient& client, double start, double h, int depth) {
   take_changes();
   if (clusters_changed || integrators_changed) build_clusters();
-  near.update(*bodies, client, settings.gravity, h, rules + client.rules(), locates(), [&](NearPair& pair) {
-    pair.pushes = pushes(pair.a, pair.b, client);
-    pair.handled = client.handled(pair.a, pair.b);
+  near.update(*bodies, client, settings.gravity, h, rules + client.rules(), locates(), [&](PairKey& key) {
+    key.pushes = pushes(key.a, key.b, client);
+    key.handled = client.handled(key.a, key.b);
   });
   const Bodies& all = *bodies;
-  for (NearPair& pair : near.all())
-    if (pair.pushes) pair.law = contact::combine(all.material(pair.a), all.material(pair.b));
+  near.each([&](const PairKey& key, NearPair& pair) {
+    if (key.pushes) pair.law = contact::combine(all.material(key.a), all.material(key.b));
+  });
   find_islands();
   // Islands that call nobody first: what a handler does must not pull the ground from under them. They are stepped in
   // lots that take turns in the same places: what an island works with would not fit the caches for all of a crowd, and
@@ -181,8 +182,9 @@ void Dynamics::Core::run_only(DynamicsClient& client, double start, double h, in
 
 void Dynamics::Core::report_lasting(DynamicsClient& client, double moment) {
   std::pmr::vector<std::pair<BodyIndex, BodyIndex>> touching(memory);
-  for (const NearPair& pair : near.all())
-    if (pair.pushes && pair.handled && pair.touching && !pair.reported) touching.emplace_back(pair.a, pair.b);
+  near.each([&touching](const PairKey& key, const NearPair& pair) {
+    if (key.pushes && key.handled && pair.touching && !pair.reported) touching.emplace_back(key.a, key.b);
+  });
   for (const auto& [a, b] : touching) {
     NearPair* pair = near.find(a, b);
     if (!pair || !bodies->used(a) || !bodies->used(b)) continue;

@@ -70,7 +70,7 @@ void Dynamics::Core::add_stored(Energy& sum) {
   }
   for (const SpringEntry& tie : springs)
     if (tie.used) sum.springs += tie_energy(tie.is);
-  for (const NearPair& pair : near.all()) sum.springs += pair.stored;
+  near.each([&sum](const PairKey&, const NearPair& pair) { sum.springs += pair.stored; });
 }
 
 Energy Dynamics::energy() const {

@@ -13,8 +13,8 @@ bool NearPairs::pass_on(const Bodies& bodies, double h) {
   constexpr double kFar = 0.05, kMore = 1.01;
   bool grew = false;
   fresh_.clear();
-  new_pairs_.clear();
-  for (const NearPair& pair : pairs_) {
+  new_keys_.clear();
+  for (const PairKey& pair : keys_) {
     if (!pair.pushes || !near(pair)) continue;
     Proxy &a = proxies_[proxy_of_[pair.a]], &b = proxies_[proxy_of_[pair.b]];
     if (!a.moves || !b.moves || a.leaf == BoxTree::kNoLeaf || b.leaf == BoxTree::kNoLeaf) continue;
@@ -30,15 +30,18 @@ bool NearPairs::pass_on(const Bodies& bodies, double h) {
 
 bool NearPairs::widen(Proxy& proxy, double speed, double h, double far, double more) {
   if (!(speed > more * proxy.speed) || !(speed * h > far * proxy.shape->bounding_radius())) return false;
+  const auto index = static_cast<ProxyIndex>(&proxy - proxies_.data());
+  Reach& reach = reach_[index];
   const Vector3 room = Vector3::Constant(2 * h * (speed - proxy.speed));
   proxy.speed = speed;
   proxy.wide = true;
-  proxy.box.min() -= room;
-  proxy.box.max() += room;
-  if (!proxy.box.min().allFinite() || !proxy.box.max().allFinite()) return false;
-  if (tree_.box(proxy.leaf).contains(proxy.box)) return true;
-  tree_.move(proxy.leaf, proxy.box);
-  seek(static_cast<ProxyIndex>(&proxy - proxies_.data()));
+  reach.box.min() -= room;
+  reach.box.max() += room;
+  if (!reach.box.min().allFinite() || !reach.box.max().allFinite()) return false;
+  if (tree_.box(proxy.leaf).contains(reach.box)) return true;
+  reach.moved = true;
+  tree_.move(proxy.leaf, reach.box);
+  seek(index);
   return true;
 }
 
