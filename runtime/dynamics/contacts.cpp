@@ -217,7 +217,7 @@ void NearPairs::drop_far() {
 /// by those whose boxes meet in each.
 void NearPairs::place_near() {
   for (PairKey& key : keys_) {
-    if (!(key.pushes || key.handled) || !near(key)) {
+    if (!key.pushes || !near(key)) {
       release(key);
       continue;
     }

@@ -30,7 +30,7 @@ struct PairKey {
   std::uint32_t at = kNone;  // of its NearPair, if it has one
 };
 
-/// Two bodies that may touch in this step and push each other, or are waited for: what is known of their contact.
+/// Two bodies that may touch in this step and push each other: what is known of their contact.
 struct NearPair {
   BodyIndex a = kNoBody, b = kNoBody;
   bool handled = false;

@@ -200,8 +200,7 @@ Dynamics::Census Dynamics::census() const {
   }
   for (const SpringEntry& tie : core_->springs)
     if (tie.used) count(census.springs, census.first_spring, tie.owner);
-  core_->near.each([&](const PairKey& key, const NearPair& pair) {
-    if (!key.pushes) return;
+  core_->near.each([&](const PairKey&, const NearPair& pair) {
     const ObjectId owner = bodies_->owner(pair.a);
     count(census.pairs, census.first_pair, owner);
     if (pair.law.static_friction > 0) count(census.rough, census.first_rough, owner);

@@ -41,7 +41,7 @@ void Dynamics::Core::find_islands() {
       for (const TreeLink& link : trees[index]->links)
         join(link.body, trees[cluster->trees.front()]->links.front().body);
   near.each([&](const PairKey& key, const NearPair&) {
-    if (key.pushes && moves_now(key.a) && moves_now(key.b)) join(key.a, key.b);
+    if (moves_now(key.a) && moves_now(key.b)) join(key.a, key.b);
   });
 
   // Islands in the order of creation of their first bodies.
@@ -64,7 +64,7 @@ void Dynamics::Core::find_islands() {
   for (std::uint32_t i = 0; i < clusters.size(); ++i)
     island_clusters.add(island(trees[clusters[i]->trees.front()]->links.front().body), i);
   near.each([&](const PairKey& key, const NearPair&) {
-    if (key.pushes) island_pairs.add(island(bodies->dynamic(key.a) ? key.a : key.b), key.at);
+    island_pairs.add(island(bodies->dynamic(key.a) ? key.a : key.b), key.at);
   });
   for (Grouped* some : {&island_free, &island_clusters, &island_pairs}) some->sort(island_count);
 }
@@ -107,7 +107,7 @@ void Dynamics::Core::run(DynamicsClient& client, double start, double h, int dep
   });
   const Bodies& all = *bodies;
   near.each([&](const PairKey& key, NearPair& pair) {
-    if (key.pushes) pair.law = contact::combine(all.material(key.a), all.material(key.b));
+    pair.law = contact::combine(all.material(key.a), all.material(key.b));
   });
   find_islands();
   // Islands that call nobody first: what a handler does must not pull the ground from under them. They are stepped in
@@ -183,7 +183,7 @@ void Dynamics::Core::run_only(DynamicsClient& client, double start, double h, in
 void Dynamics::Core::report_lasting(DynamicsClient& client, double moment) {
   std::pmr::vector<std::pair<BodyIndex, BodyIndex>> touching(memory);
   near.each([&touching](const PairKey& key, const NearPair& pair) {
-    if (key.pushes && key.handled && pair.touching && !pair.reported) touching.emplace_back(key.a, key.b);
+    if (key.handled && pair.touching && !pair.reported) touching.emplace_back(key.a, key.b);
   });
   for (const auto& [a, b] : touching) {
     NearPair* pair = near.find(a, b);
