@@ -20,7 +20,7 @@ struct PlainPoint {
   double coupling[3];      // what an impulse does to the normal velocity
   double impulse[3];       // on a
   double step[3], way[3];  // as Point has them
-  double pressed;          // its normal part
+  double pressed;          // normal part of the impulse
   double bias, softness, friction;
   double give;     // response along the normal, with softness
   double largest;  // response along any of the contact's axes, at most

@@ -116,7 +116,12 @@ bool Sweeps::diverge() const {
 }
 
 double Sweeps::next() {
-  if (momentum_ && count_ > 0) plain_ ? go_on_plain(work_, share()) : go_on(work_, share());
+  if (momentum_ && count_ > 0) {
+    if (plain_)
+      go_on_plain(work_, share());
+    else
+      go_on(work_, share());
+  }
   const bool backward = count_++ % 2 == 1;
   const Moved moved = plain_ ? sweep_plain(work_, backward) : sweep(work_, backward);
   energy_before_ = std::exchange(energy_, moved.energy);

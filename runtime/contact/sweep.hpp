@@ -12,11 +12,11 @@ void push_all(Workspace& work);
 
 /// A series of sweeps: scalar rows, then contacts, each in the order given, then in the opposite one, and so on by
 /// turns. So a load goes up a stack as fast as down, and no side is always the last. With momentum the impulses go on
-/// between sweeps as they did before: high stacks take a fraction of the sweeps then. While it lives,
-/// impulses of contacts are not to be read, and they are in their cones after next() only.
+/// between sweeps as they did before: high stacks take a fraction of the sweeps then. While it lives, impulses of
+/// contacts are not to be read; they are in their cones after it.
 /// Source: Silcowitz, Niebe and Erleben 2010 (nonsmooth nonlinear conjugate gradients: the share of the way is the
-/// ratio of what the last two sweeps changed); here it is 1 at most, where they begin anew;
-/// what is thrown far begins anew here, too.
+/// ratio of what the last two sweeps changed). Where the ratio is above 1 they begin anew; here it is 1 then, and only
+/// what is thrown far begins anew.
 class Sweeps {
  public:
   Sweeps(Workspace& work, bool momentum);

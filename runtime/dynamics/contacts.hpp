@@ -72,10 +72,8 @@ class NearPairs {
   }
   void forget(BodyIndex body);
 
-  /// In the order of creation.
-  const std::pmr::vector<PairKey>& keys() const { return keys_; }
   NearPair& at(std::uint32_t index) { return pairs_[index]; }
-  /// Calls f(key, pair) for those that have a NearPair, in the order of keys.
+  /// Calls f(key, pair) for those that have a NearPair, in the order of creation.
   template <class F>
   void each(F&& f) {
     for (const PairKey& key : keys_)
