@@ -26,7 +26,8 @@ class StageForces {
   /// Adds what springs, contacts and scripts do to wrenches of the trees' links, which stand where the stage is if
   /// adds() says so.
   virtual void add(double time) = 0;
-  /// Adds what holds rings closed to the accelerations (nv) of a tree that has some, after its forward dynamics.
+  /// Adds what holds rings closed and joints within limits to the accelerations (nv) of a tree that has some, after its
+  /// forward dynamics.
   virtual void constrain(Tree& tree, double* acceleration) = 0;
   /// Power of scripts' forces and of dampers among these, W; after add().
   virtual double script_power() const = 0;

@@ -224,8 +224,9 @@ struct Dynamics::Core : InMemory {
   // rings.cpp
   RingRows ring_rows(const Tree& tree, const JointDescription& is) const;
 
-  // ring_forces.cpp
-  void hold_rings(Tree& tree, double* acceleration);  // (nv), after forward dynamics: adds what rings force
+  // stage_constraints.cpp
+  /// Adds to accelerations (nv), after forward dynamics, what rings force, and limits that are held.
+  void hold(Tree& tree, double* acceleration, bool rings, bool limits);
   JointReaction push_by_rings(Tree& tree, JointIndex wanted);
 
   // ledger.cpp

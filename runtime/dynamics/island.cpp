@@ -141,6 +141,7 @@ void Island::begin(DynamicsClient* client, double h) {
       core_.set_loads(tree, accuracy_, h);
       for (TreeLink& link : tree.links) link.contact = {};
       tree.limit_force.setZero();
+      tree.held.clear();
     }
     one.stage.emplace(core_, *one.entry, client);
     const bool pressed = has_contact_springs() && !pairs_.empty();

@@ -54,6 +54,8 @@ class Island : public InMemory {
   /// The same of a ring's row, and nothing else, into `j`. Zero where the tree itself keeps what the row holds (a plane
   /// ring its plane): round-off there, taken for a direction to push in, would push without bound.
   static void fill_ring(Tree& tree, const RingRows& ring, const RingRow& row, double* j);
+  /// Likewise of a joint's limit: how the room to it grows.
+  static void fill_limit(const Tree& tree, const JointEntry& joint, int axis, double sign, double* j);
 
   IslandResult result;
   std::exception_ptr error;  // that ended its step, where others are stepped at the same time
@@ -197,6 +199,7 @@ class Island : public InMemory {
   void begin_spring(NearPair& pair, const Touch& touch);
   void end_spring(NearPair& pair);
   void take_springs();
+  void hold_limits();
   void add_sprung_point(const NearPair& pair, const Touch& touch);
   void hand_on(const NearPair& pair, std::span<SprungPoint> points);
   bool springs_move() const;

@@ -287,20 +287,22 @@ void Island::add_touch_row(const Touch& touch) {
   laws_.push_back(pair.law);
 }
 
-void Island::add_bound_row(const Bound& bound) {
-  const JointEntry& joint = core_.joints[bound.joint];
-  Tree& tree = *core_.trees[joint.tree];
+/// Rate of the position by each of the joint's velocities, read off column by column.
+void Island::fill_limit(const Tree& tree, const JointEntry& joint, int axis, double sign, double* j) {
+  std::fill(j, j + tree.model.velocities(), 0.0);
   const articulated::Body& body = tree.model.body(joint.link);
-  const int n = tree.model.velocities();
-  double *j = rows_of(tree, 1), *r = rows_of(tree, 1);
-  std::fill(j, j + n, 0.0);
-  // Rate of the position by each of the joint's velocities, read off column by column.
   for (int k = 0; k < articulated::velocity_count(body.type); ++k) {
     double unit[3] = {0, 0, 0};
     unit[k] = 1;
-    j[body.v + k] =
-        bound.sign * joint_velocity(joint.is, joint.flipped, tree.state.q.data() + body.q, unit)[bound.axis];
+    j[body.v + k] = sign * joint_velocity(joint.is, joint.flipped, tree.state.q.data() + body.q, unit)[axis];
   }
+}
+
+void Island::add_bound_row(const Bound& bound) {
+  const JointEntry& joint = core_.joints[bound.joint];
+  Tree& tree = *core_.trees[joint.tree];
+  double *j = rows_of(tree, 1), *r = rows_of(tree, 1);
+  fill_limit(tree, joint, bound.axis, bound.sign, j);
   respond(tree, j, r);
   contact::ScalarRow row;
   row.a = static_cast<int>(free_.size()) + tree.slot;

@@ -23,8 +23,6 @@ double reduced(double a, double b) { return a > 0 && b > 0 ? a * b / (a + b) : s
 
 }  // namespace
 
-/// Limbs that lie against a floor or each other feel a small part of the mass that stiffness goes by: their springs
-/// shake them at a thousand rad/s, and what rests costs twenty times what it costs rigid.
 bool Island::has_contact_springs() const {
   return accuracy_.contact_springs && accuracy_.locate_impacts && (accuracy_.link_springs || trees_.empty());
 }
@@ -124,6 +122,17 @@ void Island::take_springs() {
   // What is not even near any more.
   for (std::size_t i = 0; i < pairs_.size(); ++i)
     if (sprung(*pairs_[i]) && !followed_[i]) end_spring(*pairs_[i]);
+}
+
+/// Limits that joints rest on act inside the stages, as springs do: one that let the joint go and stopped it at the end
+/// of each sub-step would shake what stands on springs.
+void Island::hold_limits() {
+  for (Tree* tree : trees_) tree->held.clear();
+  if (!springs_move()) return;
+  for (const Bound& bound : bounds_)
+    if (bound.rests && bound.rate <= quiet_)
+      core_.trees[core_.joints[bound.joint].tree]->held.push_back({bound.joint, bound.axis, bound.sign});
+  for (Tree* tree : trees_) tree->reserve_rows();
 }
 
 void Island::add_sprung_point(const NearPair& pair, const Touch& touch) {
@@ -245,6 +254,8 @@ double Island::gap_of_point(int point, double& rate) { return sprung_->gap_of(st
 /// What pairs of springs force on links, for who asks what joints hold.
 void Island::note_spring_forces() {
   if (!springs_move()) return;
+  for (Tree* tree : trees_)
+    if (!tree->held.empty()) tree->limit_force += tree->held_force;
   for (const SprungPoint& point : sprung_->points) {
     const NearPair& pair = *pairs_[point.pair];
     add_force(pair.a, point.at, point.force);

@@ -132,6 +132,7 @@ void Island::look(double h, bool spent) {
   find_touches(h, spent);
   take_springs();
   find_bounds();
+  hold_limits();
 }
 
 void Island::step_located(DynamicsClient* client, double start, double h) {

@@ -244,7 +244,7 @@ JointReaction Dynamics::Core::react(const JointEntry& joint) {
   articulated::Vector acceleration = articulated::forward_dynamics(tree.model, tree.data, tree.state, tree.loads, 0);
   JointReaction of_ring;
   if (!tree.rings.empty()) {
-    hold_rings(tree, acceleration.data());
+    hold(tree, acceleration.data(), true, false);
     of_ring = push_by_rings(tree, static_cast<JointIndex>(&joint - joints.data()));
   }
   if (joint.link < 0) return of_ring;

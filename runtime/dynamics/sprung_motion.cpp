@@ -286,6 +286,8 @@ void Island::SprungMotion::acceleration(double t, const Vector& q, const Vector&
         part.v = v.segment(at_v, cluster.velocities());
         part.a.resize(part.v.size());
         cluster.acceleration(t, part.q, part.v, step, part.a);
+        for (const Tree* tree : cluster.trees())
+          for (const HeldLimit& held : tree->held) piece_ = kPrime * (piece_ ^ (held.holds ? 1u : 0u));
         a.segment(at_v, part.a.size()) = part.a;
       });
 }

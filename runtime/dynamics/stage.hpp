@@ -18,7 +18,7 @@ class Stage final : public StageForces {
   bool adds() const override { return pressed || pushed_ || asked_ || !cluster_.ties.empty(); }
   void add(double time) override;
   void constrain(Tree& tree, double* acceleration) override {
-    if (holds_rings) core_.hold_rings(tree, acceleration);
+    if (holds_rings || pressed) core_.hold(tree, acceleration, holds_rings, pressed);
   }
   bool holds_rings = false;  // else somebody else does
   bool pressed = false;      // contact springs act on its links

@@ -56,6 +56,14 @@ class Reservation {
 
 inline constexpr int kMostRingRows = 6;  // of one joint
 
+/// A joint's limit that the joint rests on, as it acts inside the stages of a sub-step.
+struct HeldLimit {
+  JointIndex joint;
+  int axis;
+  double sign;        // the joint may move along sign * position
+  bool holds = true;  // it pushed at the last stage
+};
+
 struct Tree : InMemory {
   Tree(std::pmr::memory_resource* memory, const std::vector<articulated::Link>& description);
 
@@ -65,9 +73,11 @@ struct Tree : InMemory {
   articulated::State state;
   articulated::Loads loads;
   std::pmr::vector<TreeLink> links;
-  std::pmr::vector<JointIndex> rings;                  // joints within the tree (or to the world) that are constraints
-  std::pmr::vector<double> ring_numbers, ring_forces;  // workspace; forces along the rows, at the last stage
-  std::pmr::vector<int> ring_order;
+  std::pmr::vector<JointIndex> rings;  // joints within the tree (or to the world) that are constraints
+  std::pmr::vector<HeldLimit> held;    // limits that act inside the stages of this sub-step
+  // Of the rows of rings, then of limits that are held: workspace; forces along them, at the last stage.
+  std::pmr::vector<double> row_numbers, row_forces;
+  std::pmr::vector<int> row_order;
   bool anchored = false;  // held by the world
   std::pmr::vector<TreeAnchor> anchors;
   double step = 0;              // s, that step control would try next
@@ -84,6 +94,7 @@ struct Tree : InMemory {
   articulated::State part_state;             // likewise, at the start of smooth motion
   articulated::Vector free_v, way, kick;     // v without the rows' impulses; the way they make
   articulated::Vector limit_force;           // (nv) of the joints' limits in the last sub-step
+  articulated::Vector held_force;            // (nv) of those that are held, at the last stage
   articulated::Vector motor_impulse;         // (nv) of motors, in the last smooth motion, N*s or N*m*s
   Energy step_account;                       // as the step began
   double step_stored = 0;                    // J, likewise
@@ -93,7 +104,7 @@ struct Tree : InMemory {
     for (const TreeLink& link : links) first = std::min(first, link.body);
     return first;
   }
-  void reserve_rings();  // once `rings` are known
+  void reserve_rows();  // once `rings` and `held` are known
   /// The pose of the body of a link, after forward_kinematics.
   Pose pose(int link) const;
   Vector3 velocity(int link) const;  // of the body's origin, m/s, world

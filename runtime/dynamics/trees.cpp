@@ -233,7 +233,7 @@ void Dynamics::Core::build_tree(std::span<const BodyIndex> component) {
   tree->anchors = anchors;
   tree->anchored = plan.links().front().joint != kNoJoint;
   tree->rings.assign(plan.rings().begin(), plan.rings().end());
-  tree->reserve_rings();
+  tree->reserve_rows();
   std::uint32_t index = 0;
   while (index < trees.size() && trees[index]) ++index;
   if (index == trees.size()) trees.emplace_back();

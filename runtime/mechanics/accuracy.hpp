@@ -25,7 +25,7 @@ struct Accuracy {
   bool locate_impacts = true;      // impacts at their time of impact; off: at the end of the sub-step
   int impacts = 100;               // at most, located in one island and sub-step; the rest without restitution
   bool contact_springs = false;    // contacts with restitution that come slower than its threshold are springs
-  bool link_springs = false;       // ... also in islands with articulated bodies, whose light limbs they shake
+  bool link_springs = true;        // ... also in islands with articulated bodies
   double contact_stiffness = 1e4;  // N/m per kg of what they push apart
   double contact_damping = 0;      // their ratio of damping, at most 0.9; 0: that of the restitution
 };

@@ -42,7 +42,7 @@ bool make_shapes(Run& run, Scene& scene) {
 
 bool make_joints(Run& run, Scene& scene) {
   breve_world* world = run.world;
-  const breve_pose above = {{0, 1.05, 0}, {1, 0, 0, 0}};
+  const breve_pose above = {{0, 1, 0}, {1, 0, 0, 0}};
   TRY(breve_object_set_pose(world, scene.trunk, &above));
   breve_joint_description hinge = breve_joint_description_default(BREVE_JOINT_REVOLUTE);
   hinge.parent = scene.trunk, hinge.child = scene.leg;
@@ -55,7 +55,7 @@ bool make_joints(Run& run, Scene& scene) {
   drive.struct_size = sizeof drive;
   TRY(breve_joint_get_drive(world, scene.hip, &drive));
   drive.motor_speed[0] = 1, drive.strength_limit = 5;
-  drive.low[0] = -0.5, drive.high[0] = 0.5;
+  drive.low[0] = -0.5, drive.high[0] = 0.1;
   TRY(breve_joint_set_drive(world, scene.hip, &drive));
   const double place[3] = {0.1, 0, 0};
   TRY(breve_joint_place(world, scene.hip, place, place));
@@ -79,7 +79,7 @@ bool set_what_can_be_set(Run& run, const Scene& scene) {
   TRY(breve_object_set_force(world, scene.trunk, push, push));
   TRY(breve_object_set_velocity(world, scene.leg, push));
   TRY(breve_object_set_self_collisions(world, scene.leg, true));
-  const breve_material material = {0.5, 0.4, 0.5, 0, 0};
+  const breve_material material = {0.5, 0.4, 0.5, 0, 10};  // slow enough for contact springs
   for (const breve_object one : {scene.floor, scene.trunk, scene.leg, scene.foot})
     TRY(breve_object_set_material(world, one, &material));
   return true;

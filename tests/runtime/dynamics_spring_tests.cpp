@@ -16,7 +16,7 @@ struct Ground : Physics {
   ObjectId floor;
   explicit Ground(Rung rung, double step = 1.0 / 960) : Physics(step) {
     Accuracy accuracy = accuracy_of(rung);
-    accuracy.contact_springs = accuracy.link_springs = true;
+    accuracy.contact_springs = true;
     dynamics().set_accuracy(accuracy);
     floor = body(2, Vector3(0, -2.5, 0), BodyKind::Stationary, Shape::box(Vector3(1000, 5, 1000)));
     give(floor, kRebound);
@@ -227,10 +227,12 @@ TEST(ContactSpringsInAWorld, AnArticulatedFootStandsOnThem) {
   EXPECT_GT(now.springs, 0);
 }
 
-TEST(ContactSpringsInAWorld, ArticulatedBodiesStandOnRigidGroundUnlessAskedOtherwise) {
+TEST(ContactSpringsInAWorld, ArticulatedBodiesStandOnRigidGroundIfAskedTo) {
   for (const Rung rung : {Rung::Precise, Rung::Reference}) {
     Ground s(rung, 1.0 / 60);
-    s.dynamics().set_accuracy(accuracy_of(rung));
+    Accuracy accuracy = accuracy_of(rung);
+    accuracy.link_springs = false;
+    s.dynamics().set_accuracy(accuracy);
     const ObjectId body = table(s);
     const ObjectId ball = s.thing(Shape::sphere(0.5), Vector3(5, 0.5, 0));
     s.run(1);
@@ -238,6 +240,60 @@ TEST(ContactSpringsInAWorld, ArticulatedBodiesStandOnRigidGroundUnlessAskedOther
     EXPECT_NEAR(s.at(body).y(), 1.1, 1e-5) << "on springs it sinks by some 1e-4 m";
     EXPECT_NEAR(0.5 - s.at(ball).y(), kSink, 1e-6) << "what has no joints has springs";
   }
+}
+
+/// A box with an arm of 0.1 kg that sticks out by 1 m; its joint's limits alone keep it from falling.
+JointIndex arm_on_its_limit(Ground& s, JointKind kind, double low, double high) {
+  const ObjectId box = s.thing(Shape::box(Vector3(1, 0.2, 1)), Vector3(0, 0.1, 0), 0.4);
+  std::shared_ptr<Shape> rod = Shape::box(Vector3(1, 0.1, 0.1));
+  rod->set_mass(0.1);
+  const ObjectId arm = s.rigid(std::move(rod), Vector3(1, 0.1, 0));
+  JointDescription is;
+  is.kind = kind;
+  is.child = s.index(arm);
+  is.parent = s.index(box);
+  is.parent_point = Vector3(0.5, 0, 0);
+  is.child_point = Vector3(-0.5, 0, 0);
+  is.normal = Vector3::UnitZ();
+  const JointIndex joint = s.dynamics().link(is, arm);
+  JointDrive drive = s.dynamics().drive(joint);
+  for (int k = 0; k < axis_count(kind); ++k) drive.low[k] = low, drive.high[k] = high;
+  s.dynamics().set_drive(joint, drive);
+  return joint;
+}
+
+TEST(ContactSpringsInAWorld, LimitsThatJointsRestOnHoldInsideTheStages) {
+  const struct {
+    JointKind kind;
+    double low, high;
+  } cases[] = {{JointKind::Revolute, -1, 0}, {JointKind::Revolute, 0, 0}, {JointKind::Ball, 0, 0}};
+  for (const auto& [kind, low, high] : cases) {
+    Ground s(Rung::Precise, 1.0 / 480);
+    const JointIndex joint = arm_on_its_limit(s, kind, low, high);
+    s.run(3);
+    EXPECT_LT(s.dynamics().velocity(joint).norm(), 1e-9);
+    EXPECT_LT(s.dynamics().position(joint).norm(), 1e-6);
+    EXPECT_NEAR(s.dynamics().reaction(joint).torque.norm(), 0.1 * 9.81 * 0.5, 1e-4);
+    EXPECT_NEAR(s.dynamics().energy().residual, 0, 1e-5);
+    for (int i = 0; i < 240; ++i) {
+      s.world.step();
+      ASSERT_EQ(s.dynamics().counters().sub_steps, 1U) << i;
+      ASSERT_EQ(s.dynamics().counters().evaluations, 4U) << "nothing swings: each is a step of Runge-Kutta 4";
+    }
+  }
+}
+
+TEST(ContactSpringsInAWorld, AJointLeavesALimitThatHoldsWhenItIsPulledAway) {
+  Ground s(Rung::Precise, 1.0 / 480);
+  const JointIndex joint = arm_on_its_limit(s, JointKind::Revolute, -1, 0);
+  s.run(1);
+  JointDrive drive = s.dynamics().drive(joint);
+  drive.force[0] = -2 * 0.1 * 9.81 * 0.5;  // lifts as much as the weight pulls: as if it fell upward
+  s.dynamics().set_drive(joint, drive);
+  s.run(0.1);
+  const double inertia = 0.1 * (1.01 / 12 + 0.25);
+  EXPECT_NEAR(s.dynamics().position(joint)[0], -0.5 * 0.1 * 9.81 * 0.5 / inertia * 0.01, 2e-3);
+  EXPECT_NEAR(s.dynamics().energy().residual, 0, 1e-4);
 }
 
 TEST(ContactSpringsInAWorld, SurfacesAreRigidOnceTheSettingIsOff) {

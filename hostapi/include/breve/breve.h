@@ -782,7 +782,7 @@ typedef struct breve_accuracy {
   bool direct;                 /* small islands of contacts are solved directly */
   bool locate_impacts;         /* impacts at their time of impact; else at the end of the sub-step */
   bool contact_springs;        /* slow contacts with restitution are springs, where impacts are located */
-  bool link_springs;           /* so they are where articulated bodies take part, too: slow */
+  bool link_springs;           /* so they are where articulated bodies take part, too */
   bool reserved[2];            /* must be false */
   double step;                 /* s, the longest sub-step; 0: the integration step */
   double contact_step;         /* s, the longest sub-step of bodies in contact; 0: `step` */

@@ -1,6 +1,7 @@
-// The forces of joints that close rings, inside the stages of an integrator: such that the second derivative of what
-// holds the ring closed is zero (Lagrange's multipliers, with the responses of the articulated body). What is left to
-// drift is an integrator's error; positions and velocities are put on the ring at the end of the sub-step.
+// The forces of joints that close rings and of limits that joints rest on, inside the stages of an integrator: such
+// that the second derivative of what holds the ring closed, or the joint where it is, is zero (Lagrange's multipliers,
+// with the responses of the articulated body). What is left to drift is an integrator's error; positions and velocities
+// are put right at the end of the sub-step.
 #include <algorithm>
 #include <cmath>
 
@@ -76,6 +77,36 @@ void solve_semidefinite(int m, double* a, double* b, double* scale, int* order) 
   for (int i = 0; i < m; ++i) b[i] *= scale[i];
 }
 
+/// Rows of rings, then of limits, in a tree's row_numbers.
+struct HeldRows {
+  int count, first_limit;
+  const double* responses;  // count x count: how a force along one changes the acceleration along another
+  double* part;             // as large
+  const double* wanted;     // accelerations
+  double* scale;            // count
+};
+
+/// Finds the tree's row_forces. Limits push only: what would pull by more than round-off is let go, the strongest
+/// first.
+void solve_pushing(const HeldRows& rows, Tree& tree) {
+  constexpr double kRoundOff = 1e-9;  // of the largest force
+  const int m = rows.count;
+  double* force = tree.row_forces.data();
+  const auto holds = [&](int row) {
+    return row < rows.first_limit || tree.held[static_cast<std::size_t>(row - rows.first_limit)].holds;
+  };
+  for (;;) {
+    for (int i = 0; i < m; ++i) {
+      force[i] = holds(i) ? rows.wanted[i] : 0;
+      for (int k = 0; k < m; ++k) rows.part[i * m + k] = holds(i) && holds(k) ? rows.responses[i * m + k] : 0;
+    }
+    solve_semidefinite(m, rows.part, force, rows.scale, tree.row_order.data());
+    const auto [pulls, pushes] = std::minmax_element(force + rows.first_limit, force + m);
+    if (pulls == force + m || !(*pulls < -kRoundOff * std::abs(*pushes))) return;
+    tree.held[static_cast<std::size_t>(pulls - force - rows.first_limit)].holds = false;
+  }
+}
+
 }  // namespace
 
 void Island::fill_ring(Tree& tree, const RingRows& ring, const RingRow& row, double* j) {
@@ -92,22 +123,31 @@ void Island::fill_ring(Tree& tree, const RingRows& ring, const RingRow& row, dou
   std::fill(j, j + n, 0.0);
 }
 
-void Dynamics::Core::hold_rings(Tree& tree, double* acceleration) {
+void Dynamics::Core::hold(Tree& tree, double* acceleration, bool rings, bool limits) {
   const int n = tree.model.velocities();
-  const int most = kMostRingRows * static_cast<int>(tree.rings.size());
-  double *j = tree.ring_numbers.data(), *r = j + most * n, *a = r + most * n, *scale = a + most * most;
+  const int most = kMostRingRows * static_cast<int>(tree.rings.size()) + static_cast<int>(tree.held.size());
+  double *j = tree.row_numbers.data(), *r = j + most * n, *a = r + most * n, *part = a + most * most,
+         *wanted = part + most * most, *scale = wanted + most;
+  using Numbers = Eigen::Map<articulated::Vector>;
   articulated::forward_kinematics(tree.model, tree.data, tree.state);
   int m = 0;
   // All second derivatives first: what answers impulses overwrites the accelerations that they are made of.
-  for (const JointIndex index : tree.rings) {
-    const RingRows ring = ring_rows(tree, joints[index].is);
+  for (std::size_t k = 0; rings && k < tree.rings.size(); ++k) {
+    const RingRows ring = ring_rows(tree, joints[tree.rings[k]].is);
     for (int i = 0; i < ring.count; ++i, ++m) {
       const RingRow& row = ring.rows[static_cast<std::size_t>(i)];
-      tree.ring_forces[static_cast<std::size_t>(m)] = -curvature(tree, ring, row);
+      wanted[m] = -curvature(tree, ring, row);
       Island::fill_ring(tree, ring, row, j + m * n);
     }
   }
-  using Numbers = Eigen::Map<articulated::Vector>;
+  const int first_limit = m;
+  for (HeldLimit& held : tree.held) {
+    if (!limits) break;
+    Island::fill_limit(tree, joints[held.joint], held.axis, held.sign, j + m * n);
+    wanted[m] = -Numbers(j + m * n, n).dot(Numbers(acceleration, n));
+    held.holds = true;
+    ++m;
+  }
   for (int i = 0; i < m; ++i) {
     tree.work_v = Numbers(j + i * n, n);
     articulated::apply_inverse_mass(tree.model, tree.data, tree.work_v, tree.work_u);
@@ -115,12 +155,16 @@ void Dynamics::Core::hold_rings(Tree& tree, double* acceleration) {
   }
   for (int i = 0; i < m; ++i)
     for (int k = 0; k <= i; ++k) a[i * m + k] = a[k * m + i] = Numbers(j + i * n, n).dot(Numbers(r + k * n, n));
-  solve_semidefinite(m, a, tree.ring_forces.data(), scale, tree.ring_order.data());
-  for (int i = 0; i < m; ++i)
-    Numbers(acceleration, n) += tree.ring_forces[static_cast<std::size_t>(i)] * Numbers(r + i * n, n);
+  solve_pushing({m, first_limit, a, part, wanted, scale}, tree);
+  tree.held_force.setZero();
+  for (int i = 0; i < m; ++i) {
+    const double force = tree.row_forces[static_cast<std::size_t>(i)];
+    Numbers(acceleration, n) += force * Numbers(r + i * n, n);
+    if (i >= first_limit) tree.held_force += force * Numbers(j + i * n, n);
+  }
 }
 
-/// Adds what rings push with, as hold_rings found it last, to the forces on links. Gives that of one joint on its
+/// Adds what rings push with, as hold() found it last, to the forces on links. Gives that of one joint on its
 /// child, about the joint's point.
 JointReaction Dynamics::Core::push_by_rings(Tree& tree, JointIndex wanted) {
   JointReaction of;
@@ -129,7 +173,7 @@ JointReaction Dynamics::Core::push_by_rings(Tree& tree, JointIndex wanted) {
     const RingRows ring = ring_rows(tree, joints[index].is);
     for (int i = 0; i < ring.count; ++i, ++m) {
       const RingRow& row = ring.rows[static_cast<std::size_t>(i)];
-      const Vector3 push = tree.ring_forces[m] * row.axis;
+      const Vector3 push = tree.row_forces[m] * row.axis;
       if (index == wanted) (row.angular ? of.torque : of.force) += push;
       const auto act = [&](int link, const Vector3& point, double sign) {
         if (link < 0) return;
@@ -148,11 +192,11 @@ JointReaction Dynamics::Core::push_by_rings(Tree& tree, JointIndex wanted) {
   return of;
 }
 
-void Tree::reserve_rings() {
-  const std::size_t n = static_cast<std::size_t>(model.velocities()), m = kMostRingRows * rings.size();
-  ring_numbers.resize(2 * m * n + m * m + m);
-  ring_forces.assign(m, 0.0);
-  ring_order.resize(m);
+void Tree::reserve_rows() {
+  const std::size_t n = static_cast<std::size_t>(model.velocities()), m = kMostRingRows * rings.size() + held.size();
+  row_numbers.resize(std::max(row_numbers.size(), 2 * m * (n + m + 1)));
+  row_forces.resize(std::max(row_forces.size(), m));
+  row_order.resize(std::max(row_order.size(), m));
 }
 
 }  // namespace breve
