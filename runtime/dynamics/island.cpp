@@ -34,6 +34,7 @@ Island::Island(Dynamics::Core& core, std::pmr::memory_resource* memory)
       ring_errors_(memory),
       start_poses_(memory),
       rebound_later_(memory),
+      rebounds_(memory),
       found_(memory),
       depths_(memory),
       before_(memory),

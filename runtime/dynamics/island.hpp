@@ -66,6 +66,7 @@ class Island : public InMemory {
   static constexpr double kSkin = 1e-3, kTouchSkin = 1e-4, kMetSkin = 1e-9;
   static constexpr double kTurnRoom = 0.02;   // of the radius, which turning may bring nearer in a sub-step
   static constexpr double kTiny = 1e-9;       // of stored energy: round-off of sums
+  static constexpr double kCoarse = 1e-3;     // tolerances of step control from which contacts are seen less exactly
   static constexpr double kLimitSkin = 1e-6;  // rad or m
 
   struct Free {
@@ -101,16 +102,23 @@ class Island : public InMemory {
   struct Bound {
     JointIndex joint;
     int axis;
-    double sign;  // the gap grows with sign * position
-    double gap;   // m or rad
-    double rate;  // of the gap when the sub-step began
-    bool rests;   // it is a row; else it is to be located
+    double sign;        // the gap grows with sign * position
+    double limit;       // the position, m or rad
+    double gap;         // m or rad
+    double rate;        // of the gap when the sub-step began
+    bool rests;         // it is a row; else it is to be located
+    bool held = false;  // it acts inside the stages
+  };
+  /// When a joint left its limit, s, and how fast.
+  struct Rebound {
+    double time = 0, rate = JointDrive::kNoLimit;
+    bool stays = false;  // no: it rests there for the remainder of the step, as long as it is near
   };
   /// What comes first in a sub-step.
   struct Event {
     double time = 0;                        // s after the start of the sub-step
     int pair = -1, bound = -1, point = -1;  // the last of a spring
-    double depth = 0;                       // m, of overlap when the sub-step began: it is an event if it gets deeper
+    double depth = 0;  // m or rad, of overlap when the sub-step began: it is an event if it gets deeper
     bool found() const { return pair >= 0 || bound >= 0 || point >= 0; }
   };
 
@@ -167,6 +175,7 @@ class Island : public InMemory {
   void locate(double time, Event& event, double h);
   const NearPair& pair_of(const Event& event) const;
   double closeness(const Event& event) const;
+  double met_limit() const;
   bool coarse() const;
   void refine(double time, Event& event, double h);
   bool is_past(const Event& event);
@@ -176,7 +185,7 @@ class Island : public InMemory {
   bool strikes(double h) const;
   void meet(DynamicsClient* client, const Event& event, double moment, double left);
   void collide(double time);
-  void rebound(const Bound& bound);
+  void rebound(std::size_t bound, double time);
   void push_apart(double h);
   void begin_moves();
   void end_moves(double h);
@@ -199,7 +208,7 @@ class Island : public InMemory {
   void begin_spring(NearPair& pair, const Touch& touch);
   void end_spring(NearPair& pair);
   void take_springs();
-  void hold_limits();
+  void hold_limits(double h);
   void add_sprung_point(const NearPair& pair, const Touch& touch);
   void hand_on(const NearPair& pair, std::span<SprungPoint> points);
   bool springs_move() const;
@@ -277,11 +286,12 @@ class Island : public InMemory {
   std::pmr::vector<Manifold> manifolds_;
   std::pmr::vector<double> apart_, apart_scalars_;  // of rows: the velocity that puts positions right, m/s
   std::pmr::vector<double> ring_errors_;
-  std::pmr::vector<Pose> start_poses_;  // of each pair's two bodies, as the sub-step began
-  std::pmr::vector<Bound> rebound_later_;
-  std::pmr::vector<Event> found_;            // in a sub-step, with times that are guesses
-  int impacts_ = 0;                          // located so far in this step
-  std::pmr::vector<double> depths_;          // of pairs: overlap when the sub-step began, m
+  std::pmr::vector<Pose> start_poses_;           // of each pair's two bodies, as the sub-step began
+  std::pmr::vector<std::size_t> rebound_later_;  // of bounds_
+  std::pmr::vector<Rebound> rebounds_;           // likewise, the last of each in this step
+  std::pmr::vector<Event> found_;                // in a sub-step, with times that are guesses
+  int impacts_ = 0;                              // located so far in this step
+  std::pmr::vector<double> depths_;              // of pairs: overlap when the sub-step began, m
   std::pmr::vector<Vector3> before_;         // of each row's two sides: velocity along its axes as the sub-step began
   std::pmr::vector<Vector3> warm_;           // of each row, where its solver begins
   std::pmr::vector<double> scalars_before_;  // of each scalar row

@@ -32,14 +32,16 @@ Island::Event Island::seek(double h) {
     if (hit) found_.push_back({time, static_cast<int>(i), -1, -1, depths_[i]});
   }
   for (std::size_t i = 0; i < bounds_.size(); ++i) {
-    if (bounds_[i].rests) continue;
+    const Bound& bound = bounds_[i];
+    if (bound.rests || bound.held) continue;
     double rate = 0;
     Event event;
     event.bound = static_cast<int>(i);
+    event.depth = std::max(-bound.gap, 0.0);
     const double gap = gap_of(event, rate);
-    if (!(gap < 0)) continue;
-    const double start_gap = std::max(bounds_[i].gap, 0.0);
-    event.time = start_gap > 0 ? h * start_gap / (start_gap - gap) : h;
+    if (!(gap < -event.depth)) continue;
+    const bool leaves = bound.gap <= met_limit() && bound.rate >= 0;  // and comes back
+    event.time = leaves || bound.gap <= 0 ? h : h * bound.gap / (bound.gap - gap);
     found_.push_back(event);
   }
   seek_closing(h);
@@ -53,9 +55,8 @@ double Island::gap_of(const Event& event, double& rate) {
   if (event.bound >= 0) {
     const Bound& bound = bounds_[static_cast<std::size_t>(event.bound)];
     const JointEntry& joint = core_.joints[bound.joint];
-    const double limit = bound.sign > 0 ? joint.drive.low[bound.axis] : joint.drive.high[bound.axis];
     rate = bound.sign * core_.read_velocity(joint)[bound.axis];
-    return bound.sign * (core_.read_position(joint)[bound.axis] - limit);
+    return bound.sign * (core_.read_position(joint)[bound.axis] - bound.limit);
   }
   const NearPair& pair = *pairs_[static_cast<std::size_t>(event.pair)];
   const Shape &a = *core_.bodies->collision_shape(pair.a), &b = *core_.bodies->collision_shape(pair.b);
@@ -68,11 +69,21 @@ const NearPair& Island::pair_of(const Event& event) const {
   return *pairs_[event.point >= 0 ? pair_of_point(event.point) : static_cast<std::size_t>(event.pair)];
 }
 
+namespace {
+constexpr double kSeen = 1e-6;  // rad, or of the radius: closer than that is not looked at where contacts act
+}
+
 /// How far from zero the gap may be at the moment of an event, m or rad.
 double Island::closeness(const Event& event) const {
-  constexpr double kRoundOff = 1e-13, kSeen = 1e-6;  // the latter of the radius
+  constexpr double kRoundOff = 1e-13;
   if (!coarse()) return kRoundOff;
   return event.bound >= 0 ? kSeen : kSeen * size_of_pair(pair_of(event));
+}
+
+/// How far from its limit a joint is taken to have met it, rad or m: as exactly as the moments of events are found.
+double Island::met_limit() const {
+  constexpr double kFound = 1e-12;
+  return accuracy_.tolerance >= kCoarse ? kSeen : kFound;
 }
 
 namespace {
@@ -105,7 +116,9 @@ void Island::refine(double time, Event& event, double h) {
     now.gap = gap_of(event, now.rate);
     now.gap += event.depth;
     (now.gap < 0 ? high : low) = now.time;
-    const bool done = std::abs(now.gap) <= close + 1e-15 * std::abs(now.time) || high - low <= 1e-13 * h;
+    // What is near but goes is on its way to come back.
+    const bool close_by = now.rate <= 0 && std::abs(now.gap) <= close + 1e-15 * std::abs(now.time);
+    const bool done = close_by || high - low <= 1e-13 * h;
     const bool remembers = i > 0 && now.rate < 0 && last.rate < 0 && now.gap != last.gap;
     double next = remembers ? closed_between(last, now) : now.rate < 0 ? now.time - now.gap / now.rate : low - 1;
     if (!(next > low && next < high)) next = 0.5 * (low + high);
@@ -166,12 +179,15 @@ void Island::meet(DynamicsClient* client, const Event& event, double moment, dou
     gap_of(event, rate);
     if (springs_for(pair.law) && rate > -std::max(pair.law.restitution_threshold, quiet_)) return;
   } else {
-    rebound(bounds_[static_cast<std::size_t>(event.bound)]);
+    rebound(static_cast<std::size_t>(event.bound), moment);
   }
   collide(moment);
 }
 
-void Island::rebound(const Bound& bound) {
+/// A joint that since it last came did not get further from its limit than what counts as resting there stays: so that
+/// rebounds come to an end where other contacts press it on.
+void Island::rebound(std::size_t index, double time) {
+  const Bound& bound = bounds_[index];
   const JointEntry& joint = core_.joints[bound.joint];
   rows_.clear();
   touches_.clear();
@@ -185,7 +201,11 @@ void Island::rebound(const Bound& bound) {
   const Eigen::Map<const articulated::Vector> j(row.ja, n), r(row.ra, n);
   const double rate = j.dot(tree.state.v), yields = j.dot(r);
   if (!(rate < 0) || !(yields > 0)) return;
-  const double e = joint.drive.limit_restitution;
+  Rebound& last = rebounds_[index];
+  last.stays = 0.5 * last.rate * (time - last.time) <= kLimitSkin;
+  const double e = last.stays ? 0 : joint.drive.limit_restitution;
+  last.time = time;
+  last.rate = -e * rate;
   tree.state.v -= ((1 + e) * rate / yields) * r;
   const double loss = 0.5 * (1 - e * e) * rate * rate / yields;
   result.account.limit_loss += loss;
@@ -197,19 +217,20 @@ void Island::collide(double time) {
   // Everything that touches now, whatever its speed.
   find_touches_now();
   find_bounds();
-  for (Bound& bound : bounds_) {
-    bound.rests = bound.gap <= 0 && bound.rate <= 0;
-    if (bound.rests && bound.rate < -quiet_) rebound_later_.push_back(bound);
+  const double met = met_limit();
+  for (std::size_t i = 0; i < bounds_.size(); ++i) {
+    Bound& bound = bounds_[i];
+    bound.rests = bound.gap <= met;
+    if (bound.rests && bound.rate < -quiet_) rebound_later_.push_back(i);
   }
-  for (const Bound& bound : rebound_later_) rebound(bound);
+  for (const std::size_t bound : rebound_later_) rebound(bound, time);
   if (!rebound_later_.empty()) {
     rebound_later_.clear();
     find_touches_now();
     find_bounds();
-    for (Bound& bound : bounds_) bound.rests = bound.gap <= 0 && bound.rate <= quiet_;
+    for (Bound& bound : bounds_) bound.rests = bound.gap <= met;
   }
   make_rows(1, false);
-  if (rows_.empty()) return;
   contact::ImpactSettings settings;
   settings.rest.iterations = std::max(50, accuracy_.iterations);
   settings.rest.direct = accuracy_.direct && rows_.size() <= 100;

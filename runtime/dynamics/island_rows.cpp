@@ -77,7 +77,7 @@ bool Island::strikes(double h) const {
     if (touch.gap <= kMetSkin * size && touch.approach < -speeds_of(pair.law, size, h).strike) return true;
   }
   for (const Bound& bound : bounds_)
-    if (bound.gap <= 0 && bound.rate < -quiet_) return true;
+    if (!bound.held && bound.gap <= met_limit() && bound.rate < -quiet_) return true;
   return false;
 }
 
@@ -140,10 +140,11 @@ void Island::find_bounds() {
         for (const double sign : {1.0, -1.0}) {
           const double limit = sign > 0 ? joint.drive.low[k] : joint.drive.high[k];
           if (!std::isfinite(limit)) continue;
-          Bound bound{link.joint, k, sign, sign * (position[k] - limit), sign * velocity[k], false};
+          Bound bound{link.joint, k, sign, limit, sign * (position[k] - limit), sign * velocity[k], false};
           // Inelastic limits may be met by a row; others are located.
           const double slow = joint.drive.limit_restitution > 0 ? quiet_ : JointDrive::kNoLimit;
-          bound.rests = bound.gap <= kLimitSkin && std::abs(bound.rate) <= slow;
+          const bool stays = bounds_.size() < rebounds_.size() && rebounds_[bounds_.size()].stays;
+          bound.rests = bound.gap <= kLimitSkin && (stays || std::abs(bound.rate) <= slow);
           bounds_.push_back(bound);
         }
       }

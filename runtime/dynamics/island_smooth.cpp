@@ -17,7 +17,7 @@ namespace {
 constexpr double kFreeGain = 0.01, kFurthestTurn = 0.5;
 constexpr int kMostParts = 16;  // of a step
 // Of step control where contacts act, if its tolerance is not finer than that.
-constexpr double kContactSlack = 10, kCoarse = 1e-3;
+constexpr double kContactSlack = 10;
 
 double widest_turn(Cluster& system) {
   double most = 0;

@@ -124,15 +124,23 @@ void Island::take_springs() {
     if (sprung(*pairs_[i]) && !followed_[i]) end_spring(*pairs_[i]);
 }
 
-/// Limits that joints rest on act inside the stages, as springs do: one that let the joint go and stopped it at the end
-/// of each sub-step would shake what stands on springs.
-void Island::hold_limits() {
+/// Where springs act, limits that joints are near and slow act inside the stages, too: one that let the joint go and
+/// stopped it at the end of each sub-step would shake what stands on springs.
+/// @param h  s, of the sub-step
+void Island::hold_limits(double h) {
+  constexpr double kNear = 1e-4, kSlow = 0.05;  // rad or m; rad/s or m/s
   for (Tree* tree : trees_) tree->held.clear();
   if (!springs_move()) return;
-  for (const Bound& bound : bounds_)
-    if (bound.rests && bound.rate <= quiet_)
-      core_.trees[core_.joints[bound.joint].tree]->held.push_back({bound.joint, bound.axis, bound.sign});
-  for (Tree* tree : trees_) tree->reserve_rows();
+  for (Bound& bound : bounds_) {
+    if (bound.gap > kNear || std::abs(bound.rate) > kSlow) continue;
+    Tree& tree = *core_.trees[core_.joints[bound.joint].tree];
+    tree.held.push_back({bound.joint, bound.axis, bound.sign, bound.limit});
+    bound.held = true;
+  }
+  for (Tree* tree : trees_) {
+    tree->hold_time = h;
+    tree->reserve_rows();
+  }
 }
 
 void Island::add_sprung_point(const NearPair& pair, const Touch& touch) {
@@ -226,6 +234,7 @@ void Island::commit_springs() {
   const auto add = [](const Energy& from, Energy& to) {
     to.contact_loss += from.contact_loss;
     to.friction_loss += from.friction_loss;
+    to.limit_loss += from.limit_loss;
   };
   add(sprung_->lost(), result.account);
   for (Tree* tree : trees_) add(sprung_->lost(*tree), tree->account);

@@ -132,12 +132,14 @@ void Island::look(double h, bool spent) {
   find_touches(h, spent);
   take_springs();
   find_bounds();
-  hold_limits();
+  hold_limits(h);
+  rebounds_.resize(bounds_.size());
 }
 
 void Island::step_located(DynamicsClient* client, double start, double h) {
   double now = 0;
   impacts_ = 0;
+  rebounds_.clear();
   int stalls = 0;
   constexpr double kSliver = 1e-12;  // of the step
   constexpr int kMostStalls = 8;     // impacts without progress in time

@@ -183,6 +183,7 @@ Energy Island::SprungMotion::lost() const {
   all.contact_loss = end_.v[works_at()] * mass_;
   all.friction_loss = end_.v[works_at() + 1] * mass_;
   all.script_work = end_.v[works_at() + 2] * mass_;
+  for (const Tree* tree : island_.trees_) all.limit_loss += lost(*tree).limit_loss;
   return all;
 }
 
@@ -190,6 +191,7 @@ Energy Island::SprungMotion::lost(const Tree& tree) const {
   Energy own;
   own.contact_loss = end_.v[tree_works_at(tree.slot)] * mass_;
   own.friction_loss = end_.v[tree_works_at(tree.slot) + 1] * mass_;
+  own.limit_loss = end_.v[tree_works_at(tree.slot) + 2] * mass_;
   return own;
 }
 
@@ -286,8 +288,11 @@ void Island::SprungMotion::acceleration(double t, const Vector& q, const Vector&
         part.v = v.segment(at_v, cluster.velocities());
         part.a.resize(part.v.size());
         cluster.acceleration(t, part.q, part.v, step, part.a);
-        for (const Tree* tree : cluster.trees())
+        for (const Tree* tree : cluster.trees()) {
+          if (tree->held.empty()) continue;
           for (const HeldLimit& held : tree->held) piece_ = kPrime * (piece_ ^ (held.holds ? 1u : 0u));
+          a[tree_works_at(tree->slot) + 2] -= tree->held_force.dot(tree->state.v) / mass_;
+        }
         a.segment(at_v, part.a.size()) = part.a;
       });
 }

@@ -1,7 +1,7 @@
-// The forces of joints that close rings and of limits that joints rest on, inside the stages of an integrator: such
-// that the second derivative of what holds the ring closed, or the joint where it is, is zero (Lagrange's multipliers,
-// with the responses of the articulated body). What is left to drift is an integrator's error; positions and velocities
-// are put right at the end of the sub-step.
+// The forces of joints that close rings, inside the stages of an integrator: such that the second derivative of what
+// holds the ring closed is zero (Lagrange's multipliers, with the responses of the articulated body); and those of limits,
+// which push as long as a joint would otherwise come too fast. What is left to drift is an integrator's error; positions
+// and velocities are put right at the end of the sub-step.
 #include <algorithm>
 #include <cmath>
 
@@ -86,24 +86,37 @@ struct HeldRows {
   double* scale;            // count
 };
 
-/// Finds the tree's row_forces. Limits push only: what would pull by more than round-off is let go, the strongest
-/// first.
+/// Finds the tree's row_forces. Limits push only, and where they do not, the acceleration is above what is wanted: a
+/// linear complementarity problem, by principal pivots of the first row that is wrong.
+/// Source: Murty 1974 (finite for rows that are independent; else it ends somewhere, and the next sub-step goes on).
 void solve_pushing(const HeldRows& rows, Tree& tree) {
-  constexpr double kRoundOff = 1e-9;  // of the largest force
-  const int m = rows.count;
+  constexpr double kRoundOff = 1e-9;  // of the largest force, of the largest acceleration
+  const int m = rows.count, first = rows.first_limit;
   double* force = tree.row_forces.data();
-  const auto holds = [&](int row) {
-    return row < rows.first_limit || tree.held[static_cast<std::size_t>(row - rows.first_limit)].holds;
+  const auto holds = [&](int row) { return row < first || tree.held[static_cast<std::size_t>(row - first)].holds; };
+  const auto largest = [m](const double* of) {
+    double most = 0;
+    for (int i = 0; i < m; ++i) most = std::max(most, std::abs(of[i]));
+    return most;
   };
-  for (;;) {
+  const auto wrong = [&](int row, double least_force, double most_lack) {
+    if (holds(row)) return force[row] < -least_force;
+    double lack = rows.wanted[row];
+    for (int k = 0; k < m; ++k) lack -= rows.responses[row * m + k] * force[k];
+    return lack > most_lack;
+  };
+  for (int left = 2 * (m - first) * (m - first) + 1; left > 0; --left) {
     for (int i = 0; i < m; ++i) {
       force[i] = holds(i) ? rows.wanted[i] : 0;
       for (int k = 0; k < m; ++k) rows.part[i * m + k] = holds(i) && holds(k) ? rows.responses[i * m + k] : 0;
     }
     solve_semidefinite(m, rows.part, force, rows.scale, tree.row_order.data());
-    const auto [pulls, pushes] = std::minmax_element(force + rows.first_limit, force + m);
-    if (pulls == force + m || !(*pulls < -kRoundOff * std::abs(*pushes))) return;
-    tree.held[static_cast<std::size_t>(pulls - force - rows.first_limit)].holds = false;
+    const double least_force = kRoundOff * largest(force), most_lack = kRoundOff * largest(rows.wanted);
+    int row = first;
+    while (row < m && !wrong(row, least_force, most_lack)) ++row;
+    if (row == m) return;
+    bool& of_row = tree.held[static_cast<std::size_t>(row - first)].holds;
+    of_row = !of_row;
   }
 }
 
@@ -143,8 +156,13 @@ void Dynamics::Core::hold(Tree& tree, double* acceleration, bool rings, bool lim
   const int first_limit = m;
   for (HeldLimit& held : tree.held) {
     if (!limits) break;
-    Island::fill_limit(tree, joints[held.joint], held.axis, held.sign, j + m * n);
-    wanted[m] = -Numbers(j + m * n, n).dot(Numbers(acceleration, n));
+    const JointEntry& joint = joints[held.joint];
+    Island::fill_limit(tree, joint, held.axis, held.sign, j + m * n);
+    const Numbers row(j + m * n, n);
+    // Overlap is for positions to put right: a force that did would add energy.
+    const double gap = std::max(held.sign * (read_position(joint)[held.axis] - held.limit), 0.0);
+    const double pace = 1 / tree.hold_time;
+    wanted[m] = -row.dot(Numbers(acceleration, n)) - pace * (2 * row.dot(tree.state.v) + pace * gap);
     held.holds = true;
     ++m;
   }

@@ -56,11 +56,12 @@ class Reservation {
 
 inline constexpr int kMostRingRows = 6;  // of one joint
 
-/// A joint's limit that the joint rests on, as it acts inside the stages of a sub-step.
+/// A limit that its joint is near, as it acts inside the stages of a sub-step.
 struct HeldLimit {
   JointIndex joint;
   int axis;
   double sign;        // the joint may move along sign * position
+  double limit;       // the position, rad or m
   bool holds = true;  // it pushed at the last stage
 };
 
@@ -75,6 +76,7 @@ struct Tree : InMemory {
   std::pmr::vector<TreeLink> links;
   std::pmr::vector<JointIndex> rings;  // joints within the tree (or to the world) that are constraints
   std::pmr::vector<HeldLimit> held;    // limits that act inside the stages of this sub-step
+  double hold_time = 0;                // s, in which they bring joints to rest
   // Of the rows of rings, then of limits that are held: workspace; forces along them, at the last stage.
   std::pmr::vector<double> row_numbers, row_forces;
   std::pmr::vector<int> row_order;

@@ -3,8 +3,8 @@
 
 #include <cmath>
 #include <cstdio>
-#include <random>
 
+#include "creatures.hpp"
 #include "scenes.hpp"
 
 namespace breve::reference {
@@ -41,59 +41,8 @@ TEST(Endurance, APendulumOfFiveLinksOnPrecise) {
   EXPECT_LE(swing(fine, 5, 60), 1e-4);
 }
 
-/// A body with one to six limbs of one or two sections, all boxes, lying together around `at`.
-void creature(World& world, std::mt19937& random, const Vector3& at) {
-  const auto between = [&](double low, double high) {
-    return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
-  };
-  const auto any = [&] { return Vector3{between(-1, 1), between(-1, 1), between(-1, 1)}.normalized(); };
-  const auto part = [&](double size) {
-    const Vector3 edges{size * between(0.1, 0.4), size * between(0.5, 1), size * between(0.1, 0.4)};
-    return std::pair(edges, world.body(box(edges, 1000 * edges.prod()), at));
-  };
-  const auto [trunk, body] = part(1);
-  const int limbs = 1 + static_cast<int>(random() % 6);
-  std::vector<breve_object> parts{body};
-  for (int limb = 0; limb < limbs; ++limb) {
-    breve_object parent = body;
-    Vector3 where = 0.5 * trunk.cwiseProduct(any());
-    for (int section = 0; section < 1 + static_cast<int>(random() % 2); ++section) {
-      const auto [edges, made] = part(0.6);
-      Hinge hinge;
-      hinge.parent = parent;
-      hinge.child = made;
-      hinge.parent_point = where;
-      hinge.child_point = Vector3(0, -0.5 * edges.y(), 0);
-      hinge.normal = any();
-      hinge.rotation = Quaternion(Eigen::AngleAxisd(between(0, 2 * kPi), any()));
-      world.join(hinge);
-      parts.push_back(made);
-      parent = made;
-      where = Vector3(0, 0.5 * edges.y(), 0);
-    }
-  }
-  for (const breve_object one : parts) world.set_material(one, between(0, 1), between(0, 0.8));
-  const breve_pose pose{{at.x(), at.y(), at.z()}, {1, 0, 0, 0}};
-  world.must(breve_object_move_assembly(world.get(), body, &pose));
-}
-
-/// Dropped on a plane, what they are at the end and at most, of the energy at the start.
-void drop_creatures(int count, double seconds) {
-  Hard world(BREVE_RUNG_BALANCED);
-  const breve_object floor = world.fixed(box(Vector3(200, 10, 200), 1), Vector3(0, -5, 0));
-  world.set_material(floor, 0.7, 0.3);
-  std::mt19937 random(7);
-  for (int i = 0; i < count; ++i) creature(world, random, Vector3(5.0 * (i % 15) - 35, 2.5, 5.0 * (i / 15) - 35));
-  const double begin = world.mechanical();
-  double most = begin;
-  world.run(seconds, [&] { most = std::max(most, world.mechanical()); });
-  std::printf("  energy %.1f J at the start, %.1f at most, %.1f at the end; %.0f sub-steps a step, %lu interventions\n",
-              begin, most, world.mechanical(), world.toll().per_iteration(), world.toll().interventions);
-  EXPECT_LE(most - begin, 0.01 * begin);
-}
-
-TEST(Endurance, TwentyPassiveCreaturesGainNoEnergy) { drop_creatures(20, 5); }
-TEST(Endurance, TwoHundredPassiveCreaturesGainNoEnergyInAMinute) { drop_creatures(200, 60); }
+TEST(Endurance, TwentyPassiveCreaturesGainNoEnergy) { drop_creatures(BREVE_RUNG_BALANCED, 20, 5); }
+TEST(Endurance, TwoHundredPassiveCreaturesGainNoEnergyInAMinute) { drop_creatures(BREVE_RUNG_BALANCED, 200, 60); }
 
 TEST(Endurance, PlatesThatClapForAHundredSecondsStayWhereTheyAre) {
   Hard world(BREVE_RUNG_BALANCED);

@@ -200,8 +200,9 @@ void drop_loop(const char* name, breve_rung rung, const Quaternion& turn, double
     bent = std::max(bent, loop.bent());
     if (loop.fastest() > 0.01) rested = loop.time();
   });
-  std::printf("  %-6s e %.1f: at rest after %.2f s, open %.0e, bent %.0e, energy %+.1e of %.1f J, at the end %.4f\n",
-              name, restitution, rested, open, bent, most, begin, loop.mechanical());
+  std::printf(
+      "  %-6s e %.1f: at rest after %.2f s, open %.0e, bent %.0e, energy %+.1e of %.1f J, at the end %.4f, %lu told\n",
+      name, restitution, rested, open, bent, most, begin, loop.mechanical(), loop.toll().interventions);
   EXPECT_LE(open, kClosed);
   EXPECT_LE(bent, kClosed);
   EXPECT_LE(most, 0.01 * (begin - lying));
@@ -215,7 +216,7 @@ void drop_loop(const char* name, breve_rung rung, const Quaternion& turn, double
 TEST(Linkages, ALoopThatFallsOnAFloorStaysClosedAndComesToRest) {
   const Quaternion flat(Eigen::AngleAxisd(kPi / 2, Vector3::UnitX()));
   const Quaternion tilted(Eigen::AngleAxisd(0.7, Vector3(1, 0.3, 0.2).normalized()));
-  for (const breve_rung rung : {BREVE_RUNG_FAST, BREVE_RUNG_BALANCED, BREVE_RUNG_PRECISE}) {
+  for (const breve_rung rung : {BREVE_RUNG_FAST, BREVE_RUNG_BALANCED, BREVE_RUNG_PRECISE, BREVE_RUNG_CONSERVING}) {
     for (const double restitution : {0.0, 0.5}) {
       drop_loop("lying", rung, flat, restitution);
       drop_loop("upright", rung, Quaternion::Identity(), restitution);

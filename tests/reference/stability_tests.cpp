@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "creatures.hpp"
 #include "scenes.hpp"
 
 namespace breve::reference {
@@ -198,6 +199,16 @@ TEST(Stability, BodiesCreatedIntoEachOtherPartGently) {
     EXPECT_LT(fastest, 4);
     EXPECT_LE(momentum.norm(), 1e-9);
   }
+}
+
+/// Limbs that lie on the floor, on their limits and on each other: rebounds must come to an end. On `precise` the floor
+/// is springs.
+TEST(Stability, CreaturesWithLimitsHaveNoStormsOfRebounds) {
+  for (const breve_rung rung : {BREVE_RUNG_BALANCED, BREVE_RUNG_PRECISE})
+    for (const double rebound : {0.0, 0.5, 0.9}) {
+      const std::uint64_t told = drop_creatures(rung, 3, 2.5, {true, rebound, 0.05});
+      EXPECT_LE(told, 3U) << "in 150 steps, rebound " << rebound;
+    }
 }
 
 }  // namespace

@@ -1,0 +1,18 @@
+// Random passive creatures on a plane.
+#pragma once
+
+#include "world.hpp"
+
+namespace breve::reference {
+
+struct Habits {
+  bool limits = false;   // joints turn by less than 0.6 rad to either side
+  double rebound = 0;    // of those limits
+  double threshold = 0;  // m/s, of restitution
+};
+
+/// Dropped on a plane, with the guard on `report`: energy may never be above that at the start by 1 %, which is
+/// expected. Prints what was; returns the interventions.
+std::uint64_t drop_creatures(breve_rung rung, int count, double seconds, const Habits& habits = {});
+
+}  // namespace breve::reference
