@@ -107,12 +107,12 @@ class Island : public InMemory {
     double gap;         // m or rad
     double rate;        // of the gap when the sub-step began
     bool rests;         // it is a row; else it is to be located
-    bool held = false;  // it acts inside the stages
+    bool held = false;  // it acts inside the stages, and is not located
   };
   /// When a joint left its limit, s, and how fast.
   struct Rebound {
     double time = 0, rate = JointDrive::kNoLimit;
-    bool stays = false;  // no: it rests there for the remainder of the step, as long as it is near
+    bool stays = false;  // it was back at once: for the remainder of the step it rests where it is near
   };
   /// What comes first in a sub-step.
   struct Event {

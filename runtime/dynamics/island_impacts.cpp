@@ -6,6 +6,10 @@
 
 namespace breve {
 
+namespace {
+constexpr double kSeen = 1e-6;  // rad, or of the radius: closer than that is not looked at where contacts act
+}
+
 /// The event that seems to come first; found_ has all, whose times are guesses.
 Island::Event Island::seek(double h) {
   found_.clear();
@@ -67,10 +71,6 @@ double Island::gap_of(const Event& event, double& rate) {
 
 const NearPair& Island::pair_of(const Event& event) const {
   return *pairs_[event.point >= 0 ? pair_of_point(event.point) : static_cast<std::size_t>(event.pair)];
-}
-
-namespace {
-constexpr double kSeen = 1e-6;  // rad, or of the radius: closer than that is not looked at where contacts act
 }
 
 /// How far from zero the gap may be at the moment of an event, m or rad.
