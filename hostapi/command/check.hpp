@@ -11,6 +11,7 @@ namespace breve::command {
 struct CheckOptions {
   std::vector<std::string> files, paths;
   std::vector<std::string> allowed;  // codes of lints
+  bool strict = false;               // warnings are errors
   bool json = false;
 };
 

@@ -64,7 +64,7 @@ class Documenter {
   /// @param text  empty: the file's own
   void look_at(const std::string& name, const std::string& text) {
     // Each with a search path of its own, so that programs do not see one another's files.
-    Session session(output_, options_.paths, true);
+    Session session(output_, options_.paths, true, false);
     breve_analysis* made = nullptr;
     const char* given = text.empty() ? nullptr : text.c_str();
     if (breve_analysis_create(session.runtime(), name.c_str(), given, text.size(), &made) != BREVE_OK)

@@ -2,12 +2,15 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <csignal>
 #include <functional>
 #include <iostream>
 #include <limits>
 #include <optional>
+#include <string_view>
+#include <vector>
 
 #include "check.hpp"
 #include "doc.hpp"
@@ -68,6 +71,10 @@ void describe_run(CLI::App& app, RunOptions& o) {
   number(app, "--seconds", "S", o.seconds, "number of seconds (0 or more)", "End when S simulated seconds have passed")
       ->excludes(iterations);
   number(app, "--seed", "K", o.seed, kWhole, "Seed of the random numbers. Without it one is drawn and shown");
+  several(app, "--set", "NAME=VALUE", o.settings, "Give a variable of the controller a value before its init");
+  number(app, "--budget", "N", o.budget, kWhole, "End with an error when an iteration takes N loop turns and calls");
+  number(app, "--memory", "MB", o.memory, kWhole, "End with an error when the world takes so much memory");
+  number(app, "--depth", "N", o.depth, kWhole, "End with an error when calls nest deeper than N (5000)");
   several(app, "--path", "DIR", o.paths, "Also search DIR for modules and data files");
   app.add_option("--accuracy", o.accuracy,
                  "How bodies with physics are computed: fast, balanced, precise, reference or conserving")
@@ -75,9 +82,9 @@ void describe_run(CLI::App& app, RunOptions& o) {
       ->check(CLI::IsMember({"fast", "balanced", "precise", "reference", "conserving"}));
   app.add_flag("--watch", o.watch, "When a file of the program changes, go on with the changed program");
   app.add_flag("--coarse-random", o.coarse_random, "Draw random floats from 32,768 values, as the original did");
-  app.add_flag("--strict", o.strict, "Treat doubtful things as errors");
+  app.add_flag("--strict", o.strict, "Treat doubtful things as errors: warnings of the compiler, and in the run");
   app.add_flag("--quiet", o.quiet, "No warnings, no progress");
-  app.add_flag("--verbose", o.verbose, "Say when an obsolete method is used");
+  app.add_flag("--verbose", o.verbose, "Say when an obsolete method is used, and each time the guard acts");
   app.add_flag("--stats", o.stats,
                "End with one line of JSON on standard error: iterations, sim_seconds, wall_seconds, cpu_seconds, "
                "objects, seed, hash");
@@ -100,6 +107,7 @@ void describe_check(CLI::App& app, CheckOptions& o) {
   app.add_option("FILE", o.files, "Programs (.tz)")->required();
   several(app, "--path", "DIR", o.paths, "Also search DIR for modules");
   several(app, "--allow", "CODE", o.allowed, "Do not report lints of that code");
+  app.add_flag("--strict", o.strict, "Treat warnings as errors");
   app.add_flag("--json", o.json, "Print an array of file, line, column, length, severity, code, message, help");
   app.footer(kExitStatuses);
 }
@@ -135,13 +143,58 @@ bool is_command(const CLI::App& app, const std::string& word) {
   return false;
 }
 
+/// Letters to put in, leave out or exchange, to get from one word to the other.
+std::size_t edits(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t corner = row[0]++;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t changed = corner + (a[i - 1] == b[j - 1] ? 0 : 1);
+      corner = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, changed});
+    }
+  }
+  return row[b.size()];
+}
+
+/// The option of the command that was given which is near to one that it does not know; "" if there is none.
+std::string near_option(const CLI::App& app) {
+  for (const CLI::App* command : app.get_subcommands())
+    for (const std::string& given : command->remaining()) {
+      if (!given.starts_with("--")) continue;
+      std::string best;
+      std::size_t fewest = given.size() / 3;
+      for (const CLI::Option* option : command->get_options())
+        for (const std::string& name : option->get_lnames())
+          if (const std::size_t n = edits(given.substr(0, given.find('=')), "--" + name); n <= fewest) {
+            best = "--" + name;
+            fewest = n - (n > 0 ? 1 : 0);
+          }
+      if (!best.empty()) return best;
+    }
+  return {};
+}
+
+/// @param topic  a command; "": all of them
+int show_help(CLI::App& app, const std::string& topic) {
+  if (!topic.empty() && !is_command(app, topic)) {
+    std::cerr << "breve: there is no command '" << topic << "': it must be run, repl, check, doc, lsp or help\n";
+    return breve::command::kWrongUsage;
+  }
+  const CLI::App& shown = topic.empty() ? app : *app.get_subcommand(topic);
+  std::cout << shown.get_formatter()->make_help(
+      &shown, topic.empty() ? app.get_name() : app.get_name() + " " + topic, CLI::AppFormatMode::Normal);
+  return breve::command::kEndedWell;
+}
+
 int main_guarded(int argc, char** argv) {
   // A reader of the output who goes away is seen as an error of write().
   std::signal(SIGPIPE, SIG_IGN);
   CLI::App app("breve: worlds of agents", "breve");
   app.set_version_flag("--version", std::string("breve ") + breve_version());
   app.require_subcommand(1);
-  app.footer("`breve help` shows this text, `breve run --help` the options of a command.");
+  app.footer("`breve help` shows this text, `breve help run` the options of a command.");
   RunOptions run_options;
   ReplOptions repl_options;
   CheckOptions check_options;
@@ -152,7 +205,9 @@ int main_guarded(int argc, char** argv) {
   auto* check = app.add_subcommand("check", "Compile programs and show what the compiler has to say");
   auto* doc = app.add_subcommand("doc", "Make reference pages out of the comments of programs");
   auto* lsp = app.add_subcommand("lsp", "Serve an editor: errors as you type, completion, definitions");
-  auto* help = app.add_subcommand("help", "Show this text");
+  std::string topic;
+  auto* help = app.add_subcommand("help", "Show this text, or the options of a command");
+  help->add_option("COMMAND", topic, "run, repl, check, doc or lsp");
   describe_run(*run, run_options);
   describe_repl(*repl, repl_options);
   describe_check(*check, check_options);
@@ -170,13 +225,12 @@ int main_guarded(int argc, char** argv) {
       app.exit(e, std::cout, std::cerr);
       return breve::command::kEndedWell;
     }
-    std::cerr << "breve: " << e.what() << "\nTry `breve help` or `breve run --help`.\n";
+    const std::string near = near_option(app);
+    std::cerr << "breve: " << e.what() << "\n"
+              << (near.empty() ? "Try `breve help` or `breve help run`.\n" : "Did you mean " + near + "?\n");
     return breve::command::kWrongUsage;
   }
-  if (help->parsed()) {
-    std::cout << app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal);
-    return breve::command::kEndedWell;
-  }
+  if (help->parsed()) return show_help(app, topic);
   if (lsp->parsed()) return breve::command::lsp(lsp_options);
   if (doc->parsed() && doc_options.files.empty() && !doc_options.library) {
     std::cerr << "breve: doc needs a FILE or --library\nTry `breve doc --help`.\n";

@@ -29,7 +29,16 @@ constexpr const char* kHelp =
     "  :quit             leave (Ctrl-D)\n"
     "Tab completes names, Ctrl-C abandons the line or stops what runs.\n";
 
-constexpr std::size_t kMostListed = 50;  // objects
+constexpr std::size_t kMostListed = 50;      // objects
+constexpr std::size_t kLongestValue = 1000;  // bytes of a value that are shown
+
+/// A long text keeps its beginning; a character is not cut.
+std::string shortened(std::string text) {
+  if (text.size() <= kLongestValue) return text;
+  std::size_t end = kLongestValue;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+  return fmt::format("{}… ({} bytes; print shows all of them)", text.substr(0, end), text.size());
+}
 
 /// The whole class library and an empty controller.
 std::string bare_program() {
@@ -77,7 +86,7 @@ class Repl {
   Repl(const ReplOptions& options, Output& output)
       : options_(options),
         output_(output),
-        session_(output, options.paths, options.quiet),
+        session_(output, options.paths, options.quiet, options.strict),
         names_(session_.runtime()) {}
 
   int run() {
@@ -140,7 +149,9 @@ class Repl {
     output_.complain(error ? error->text : "breve: an unknown error\n");
   }
 
-  std::string text_of(const breve_value& value) {
+  std::string text_of(const breve_value& value) { return shortened(whole_text_of(value)); }
+
+  std::string whole_text_of(const breve_value& value) {
     if (value.type == BREVE_STRING) return quoted({value.as.string.bytes, value.as.string.size});
     const char* text = nullptr;
     std::string out = breve_value_text(world_.get(), &value, &text) == BREVE_OK ? text : "?";

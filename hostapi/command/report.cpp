@@ -63,7 +63,8 @@ std::string hash_line(const breve_world* world) {
   return hash.empty() ? hash : "hash " + hash + "\n";
 }
 
-std::string stats_line(const breve_world* world, const RunTimes& times, std::uint64_t seed) {
+std::string stats_line(const breve_world* world, const RunTimes& times, std::uint64_t seed,
+                       const Interventions& interventions) {
   breve_stats stats{};
   stats.struct_size = sizeof stats;
   breve_world_stats(world, &stats);
@@ -75,6 +76,7 @@ std::string stats_line(const breve_world* world, const RunTimes& times, std::uin
   line["objects"] = stats.objects;
   line["seed"] = seed;
   line["hash"] = hash_text(world);
+  for (const char* action : {"reported", "refined", "put to rest"}) line["guard"][action] = interventions.count(action);
   return line.dump() + "\n";
 }
 

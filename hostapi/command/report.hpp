@@ -5,6 +5,7 @@
 #include <string>
 
 #include "breve/breve.h"
+#include "interventions.hpp"
 
 namespace breve::command {
 
@@ -18,9 +19,10 @@ struct RunTimes {
   double wall = 0, cpu = 0;  // s, from the creation of the world to the end of the run
 };
 
-/// One line of JSON: iterations, sim_seconds, wall_seconds, cpu_seconds, objects, seed, hash.
+/// One line of JSON: iterations, sim_seconds, wall_seconds, cpu_seconds, objects, seed, hash, guard.
 /// @param seed  with which the world was made
-std::string stats_line(const breve_world* world, const RunTimes& times, std::uint64_t seed);
+std::string stats_line(const breve_world* world, const RunTimes& times, std::uint64_t seed,
+                       const Interventions& interventions);
 
 /// One row for each object with a place in space: class, location, rotation as a quaternion; full precision.
 /// @throws std::runtime_error if the file cannot be written

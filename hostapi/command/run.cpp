@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "interventions.hpp"
 #include "profile.hpp"
 #include "report.hpp"
 #include "session.hpp"
@@ -45,6 +46,15 @@ ExitStatus exit_status(breve_status status) {
   }
 }
 
+/// "45 s", "2 min 5 s", "3 h 20 min"
+std::string time_words(double seconds) {
+  if (!(seconds < 1e9)) return "a very long time";
+  const auto whole = static_cast<long long>(std::max(0.0, seconds) + 0.5);
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+  return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
+}
+
 /// A line on the terminal about a run that takes long.
 class Progress {
  public:
@@ -57,12 +67,20 @@ class Progress {
     next_ = now + kEvery;
     const auto iteration = breve_world_iteration(world);
     const double elapsed = std::chrono::duration<double>(now - start_).count();
+    const double time = breve_world_time(world);
     std::string of;
-    if (options_.iterations) of = fmt::format(" of {}", *options_.iterations);
-    if (options_.seconds)
-      of = fmt::format(", {:.0f} % of {} s", 100 * breve_world_time(world) / *options_.seconds, *options_.seconds);
-    output_.progress(fmt::format("iteration {}{}, {:.2f} s simulated, {:.0f} iterations/s", iteration, of,
-                                 breve_world_time(world), static_cast<double>(iteration) / elapsed));
+    double done = 0;  // part of the whole
+    if (options_.iterations) {
+      of = fmt::format(" of {}", *options_.iterations);
+      done = static_cast<double>(iteration) / static_cast<double>(*options_.iterations);
+    }
+    if (options_.seconds) {
+      done = time / *options_.seconds;
+      of = fmt::format(", {:.0f} % of {} s", 100 * done, *options_.seconds);
+    }
+    const std::string left = done > 0 ? ", " + time_words(elapsed * (1 - done) / done) + " to go" : "";
+    output_.progress(fmt::format("iteration {}{}, {:.2f} s simulated, {:.3g} x real time, {:.0f} iterations/s{}",
+                                 iteration, of, time, time / elapsed, static_cast<double>(iteration) / elapsed, left));
   }
 
  private:
@@ -94,11 +112,14 @@ bool mended(breve_world* world, Reloader& reloader, Output& output) {
 }
 
 /// @param reloader  may be null: nothing is watched
-breve_status iterate(breve_world* world, const RunOptions& options, Reloader* reloader, Output& output) {
+breve_status iterate(breve_world* world, const RunOptions& options, Reloader* reloader, Interventions& interventions,
+                     Output& output) {
   Progress progress(options, output);
   while (!is_over(world, options, output)) {
     if (reloader) reloader->look(world);
-    if (const breve_status status = breve_world_step(world); status != BREVE_OK) {
+    const breve_status status = breve_world_step(world);
+    interventions.take(world, options.verbose && !options.quiet ? &output : nullptr);
+    if (status != BREVE_OK) {
       if (!reloader || status == BREVE_ERROR_MEMORY) return status;
       if (!mended(world, *reloader, output)) return BREVE_OK;
     }
@@ -108,7 +129,31 @@ breve_status iterate(breve_world* world, const RunOptions& options, Reloader* re
   return BREVE_OK;
 }
 
-std::uint64_t draw_seed() { return std::random_device()(); }
+// A seed that a script can read as an int.
+std::uint64_t draw_seed() { return std::random_device()() & 0x7fffffffU; }
+
+constexpr double kLongIteration = 10;  // s that an iteration may take before it is told where it is
+
+/// What --set gives, taken apart at the first '='.
+class Settings {
+ public:
+  explicit Settings(const std::vector<std::string>& given) {
+    for (const auto& text : given) {
+      const std::size_t equal = text.find('=');
+      names_.push_back(text.substr(0, equal));
+      values_.push_back(text.substr(equal + 1));
+    }
+    for (std::size_t i = 0; i < names_.size(); ++i) list_.push_back({names_[i].c_str(), values_[i].c_str()});
+  }
+  void configure(breve_world_config& config) const {
+    config.settings = list_.data();
+    config.setting_count = list_.size();
+  }
+
+ private:
+  std::vector<std::string> names_, values_;
+  std::vector<breve_setting> list_;
+};
 
 WorldHandle make_world(const Session& session, const breve_program* program, const RunOptions& options,
                        std::uint64_t seed, Profiling& profiling, breve_status& status) {
@@ -122,13 +167,21 @@ WorldHandle make_world(const Session& session, const breve_program* program, con
   config.coarse_random = options.coarse_random;
   config.verbose = options.verbose;
   config.accuracy = options.accuracy.empty() ? nullptr : options.accuracy.c_str();
+  config.budget = options.budget.value_or(0);
+  config.memory_limit = static_cast<std::size_t>(options.memory.value_or(0)) * 1024 * 1024;
+  config.depth_limit = options.depth.value_or(0);
+  config.patience = kLongIteration;
+  const Settings settings(options.settings);
+  settings.configure(config);
   profiling.configure(config);
   breve_world* world = nullptr;
   status = breve_world_create(session.runtime(), program, &config, &world);
   return WorldHandle(world);
 }
 
-void say_what_went_on(const breve_world* world, const RunOptions& options, Output& output) {
+void say_what_went_on(const breve_world* world, const RunOptions& options, const Interventions& interventions,
+                      Output& output) {
+  if (!options.quiet) output.complain(interventions.summary());
   breve_stats stats{};
   stats.struct_size = sizeof stats;
   if (options.quiet || breve_world_stats(world, &stats) != BREVE_OK || stats.errors == 0) return;
@@ -139,8 +192,13 @@ void say_what_went_on(const breve_world* world, const RunOptions& options, Outpu
 }  // namespace
 
 int run(const RunOptions& options, Output& output) {
-  Session session(output, options.paths, options.quiet);
+  Session session(output, options.paths, options.quiet, options.strict);
   ProgramHandle program;
+  for (const auto& setting : options.settings)
+    if (const std::size_t equal = setting.find('='); equal == 0 || equal == std::string::npos) {
+      output.complain(fmt::format("breve: --set: '{}' is no NAME=VALUE\n", setting));
+      return kWrongUsage;
+    }
   if (const ExitStatus loaded = session.load(options.file, program); loaded != kEndedWell) return loaded;
 
   const std::uint64_t seed = options.seed ? *options.seed : draw_seed();
@@ -160,7 +218,8 @@ int run(const RunOptions& options, Output& output) {
   }
   std::optional<Reloader> reloader;
   if (options.watch) reloader.emplace(session, output, options.file);
-  status = iterate(world.get(), options, reloader ? &*reloader : nullptr, output);
+  Interventions interventions;
+  status = iterate(world.get(), options, reloader ? &*reloader : nullptr, interventions, output);
   const RunTimes times{std::chrono::duration<double>(Clock::now() - wall_start).count(), cpu_seconds() - cpu_start};
   if (const breve_error* error = breve_world_last_error(world.get()); status != BREVE_OK && error) {
     output.complain(error->text);
@@ -172,7 +231,7 @@ int run(const RunOptions& options, Output& output) {
   }
 
   int result = exit_status(status);
-  say_what_went_on(world.get(), options, output);
+  say_what_went_on(world.get(), options, interventions, output);
   if (!options.positions.empty()) {
     try {
       write_positions(world.get(), options.positions);
@@ -185,7 +244,7 @@ int run(const RunOptions& options, Output& output) {
   if (options.hash) output.print(hash_line(world.get()));
   output.flush();
   if (!profiling.finish(world.get(), output) && result == kEndedWell) result = kFailed;
-  if (options.stats) output.complain(stats_line(world.get(), times, seed));
+  if (options.stats) output.complain(stats_line(world.get(), times, seed, interventions));
   return result;
 }
 

@@ -16,6 +16,10 @@ struct RunOptions {
   std::optional<std::uint64_t> iterations;  // until the program ends if neither is given
   std::optional<double> seconds;            // simulated
   std::optional<std::uint64_t> seed;        // drawn if not given
+  std::optional<std::uint64_t> budget;      // loop turns and calls of an iteration
+  std::optional<std::uint64_t> memory;      // MB
+  std::optional<std::uint32_t> depth;       // nested calls
+  std::vector<std::string> settings;        // name=value: variables of the controller
   bool watch = false;  // reload the program when its files change
   bool coarse_random = false;
   bool strict = false, quiet = false, verbose = false, stats = false, effects = false, hash = false;

@@ -43,6 +43,15 @@ std::string programs_beside(const std::string& file) {
   return fmt::format("; there are {}{}", fmt::join(names, ", "), more ? ", ..." : "");
 }
 
+/// Make a warning an error. @return  its text as one
+std::string as_error(breve_diagnostic& d) {
+  constexpr std::string_view kWarning = "warning: ";
+  std::string text = d.text;
+  if (const auto at = text.find(kWarning); at != std::string::npos) text.replace(at, kWarning.size(), "error: ");
+  d.severity = BREVE_SEVERITY_ERROR;
+  return text;
+}
+
 }  // namespace
 
 void Session::print(void* user, breve_world*, breve_channel channel, const char* text, std::size_t size) {
@@ -56,8 +65,8 @@ void Session::print(void* user, breve_world*, breve_channel channel, const char*
   }
 }
 
-Session::Session(Output& output, const std::vector<std::string>& paths, bool quiet)
-    : output_(output), paths_(paths), loader_(paths), quiet_(quiet) {
+Session::Session(Output& output, const std::vector<std::string>& paths, bool quiet, bool strict)
+    : output_(output), paths_(paths), loader_(paths), quiet_(quiet), strict_(strict) {
   breve_runtime_config config = breve_runtime_config_default();
   config.user = this;
   config.print = &Session::print;
@@ -79,16 +88,24 @@ Session::Session(Output& output, const std::vector<std::string>& paths, bool qui
 
 Session::~Session() { breve_runtime_destroy(runtime_); }
 
-void Session::show_diagnostics() {
+bool Session::show_diagnostics() {
+  bool fine = true;
   for (std::size_t i = 0; i < breve_runtime_diagnostic_count(runtime_); ++i) {
     breve_diagnostic d;
     if (breve_runtime_diagnostic(runtime_, i, &d) != BREVE_OK) continue;
+    std::string text;
+    if (strict_ && d.severity == BREVE_SEVERITY_WARNING) {
+      text = as_error(d);
+      d.text = text.c_str();
+      fine = false;
+    }
     if (listener_) {
       listener_(d);
     } else if (d.severity == BREVE_SEVERITY_ERROR || (d.severity == BREVE_SEVERITY_WARNING && !quiet_)) {
       output_.complain(d.text);
     }
   }
+  return fine;
 }
 
 bool Session::allow(const std::string& code) { return breve_runtime_allow(runtime_, code.c_str()) == BREVE_OK; }
@@ -126,11 +143,13 @@ ExitStatus Session::compile(const std::string& name, const std::string& text, Pr
 }
 
 ExitStatus Session::finish(breve_status status, breve_program* compiled, ProgramHandle& program) {
-  show_diagnostics();
+  const bool fine = show_diagnostics();
   if (!loader_.complaint().empty()) output_.complain(fmt::format("breve: {}\n", loader_.complaint()));
   if (status == BREVE_OK) {
     program.reset(compiled);
-    return kEndedWell;
+    if (fine) return kEndedWell;
+    program.reset();
+    return kFailed;
   }
   // The diagnostics have said it all, unless there is none.
   const breve_error* error = breve_runtime_last_error(runtime_);

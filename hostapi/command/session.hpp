@@ -27,7 +27,8 @@ using WorldHandle = std::unique_ptr<breve_world, WorldDeleter>;
 
 class Session {
  public:
-  Session(Output& output, const std::vector<std::string>& paths, bool quiet);
+  /// @param strict  warnings of the compiler are errors
+  Session(Output& output, const std::vector<std::string>& paths, bool quiet, bool strict);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -49,7 +50,7 @@ class Session {
   void tell(std::function<void(const breve_diagnostic&)> listener) { listener_ = std::move(listener); }
 
  private:
-  void show_diagnostics();
+  bool show_diagnostics();  // false: there is a warning that is an error
   ExitStatus finish(breve_status status, breve_program* compiled, ProgramHandle& program);
   static void print(void* user, breve_world* world, breve_channel channel, const char* text, std::size_t size);
 
@@ -57,7 +58,7 @@ class Session {
   std::vector<std::string> paths_;
   ModuleLoader loader_;
   std::vector<std::string> files_;
-  bool quiet_;
+  bool quiet_, strict_;
   std::function<void(const breve_diagnostic&)> listener_;
   breve_runtime* runtime_ = nullptr;
 };

@@ -20,7 +20,7 @@ Operand FunctionCompiler::assign(const ast::Assign& a, const ast::Expr& e) {
     emit_.at(e.span);
     const Operand local{variable->type(), variable->local ? variable->local->slot : std::uint16_t{0}, false};
     const bool direct = variable->local && variable->class_name() == kNoSymbol;
-    return store_variable(*variable, n->name, binary(*a.op, current, value, direct ? &local : nullptr));
+    return store_variable(*variable, n->name, changed(*a.op, current, value, direct ? &local : nullptr));
   }
   auto target = place(*a.target);
   if (!a.op) {
@@ -33,9 +33,24 @@ Operand FunctionCompiler::assign(const ast::Assign& a, const ast::Expr& e) {
   const auto current = stable(load(target), *a.value);
   const auto value = operand(*a.value);
   emit_.at(e.span);
-  const auto stored = store(target, binary(*a.op, current, value, nullptr));
+  const auto stored = store(target, changed(*a.op, current, value, nullptr));
   release(target);
   return stored;
+}
+
+/// current op value, for op=, ++ and --: what counts starts at 0 where a hash has no such key yet.
+Operand FunctionCompiler::changed(ast::BinaryOp op, const Operand& current, const Operand& value,
+                                  const Operand* into) {
+  const bool counts = value.type == StaticType::Int || value.type == StaticType::Any;
+  if (current.type != StaticType::Any || !counts) return binary(op, current, value, into);
+  const auto left = boxed(current);
+  const auto right = boxed(value);
+  const auto target = emit_.temporary(StaticType::Any);
+  emit_.emit(Op::Binary, target.slot, left.slot, right.slot);
+  emit_.ext(static_cast<std::uint16_t>(op), kAbsentIsZero);
+  emit_.release(left);
+  emit_.release(right);
+  return target;
 }
 
 Operand FunctionCompiler::step(const ast::Step& s, const ast::Expr& e) {
@@ -55,7 +70,7 @@ Operand FunctionCompiler::step(const ast::Step& s, const ast::Expr& e) {
   const auto one =
       current.type == StaticType::Double ? literal(ast::DoubleLit{1.0}, nullptr) : literal(ast::IntLit{1}, nullptr);
   const auto stored =
-      store(target, binary(s.delta > 0 ? ast::BinaryOp::Add : ast::BinaryOp::Sub, current, one, nullptr));
+      store(target, changed(s.delta > 0 ? ast::BinaryOp::Add : ast::BinaryOp::Sub, current, one, nullptr));
   release(target);
   return stored;
 }

@@ -22,6 +22,7 @@ class ProgramBuilder final : public CompileScope {
   /// One of the library's is loaded if the program has none of that name.
   const ClassInfo* class_named(std::string_view name) override;
   void report_unknown_class(std::string_view name, const Span& span, Severity severity = Severity::Warning) override;
+  bool checks_sums_later() const override { return true; }
 
  private:
   struct Declared {
@@ -48,13 +49,18 @@ class ProgramBuilder final : public CompileScope {
   std::string near_class(std::string_view name) const;
   void choose_controller();
   Symbol checked_class(const ast::TypeRef& type);
+  void gather_foreign_library();  // foreign_library.cpp
 
   // whole-program checks (lints.cpp)
   void check_calls();
   void check_call(const ast::Call& call, const ast::Expr& e, const ast::Method& method, const ClassInfo& cls,
                   const std::vector<const MethodInfo*>& named);
   void report_unknown_method(const ast::Call& call, const ClassInfo* cls);
+  std::string meant_by_method(const std::string& name) const;
   void check_overrides();
+  void check_method_named(const ast::Call& call, const ClassInfo* receiver);
+  // lints_sums.cpp
+  void check_sums();
   // lints_variables.cpp
   void check_unused_variables();
   void check_unused_parameters(const std::set<std::string>& words);

@@ -60,7 +60,7 @@ namespace breve::steve {
   X(ResultInt) X(ResultDouble) X(ResultVector) X(ResultMatrix) X(ResultRef) /* a = result register, type known */ \
   X(CheckClass)   /* object a is null or an instance of class imm; ext.imm: text number */ \
   X(Truth)        /* int a = truth of any b */ \
-  X(Binary)       /* any a = b op c; ext.a: ast::BinaryOp */ \
+  X(Binary)       /* any a = b op c; ext.a: ast::BinaryOp; ext.b: kAbsentIsZero or 0 */ \
   X(AddAny) X(SubAny) X(MulAny)   /* any a = any b op any c (kResult: the result register) */ \
   X(AddDoubleAny) X(SubDoubleAny) X(AddAnyDouble) X(SubAnyDouble) /* double a = b op c, c op b; double b, any c or kResult */ \
   X(AddVectorAny) X(SubVectorAny) X(AddAnyVector) X(SubAnyVector) /* the same with vectors a and b */ \
@@ -139,6 +139,8 @@ struct Instruction {
   }
 };
 static_assert(sizeof(Instruction) == 8);
+
+constexpr std::int32_t kAbsentIsZero = 1;  // of Binary: that b has no value is no mistake
 
 /// One body of code.
 struct Function {

@@ -142,6 +142,7 @@ class FunctionCompiler {
 
   // --- assignment ----------------------------------------------------------------------------------------------------
   Operand assign(const ast::Assign& a, const ast::Expr& e);
+  Operand changed(ast::BinaryOp op, const Operand& current, const Operand& value, const Operand* into);
   Operand step(const ast::Step& s, const ast::Expr& e);
   Operand assign_to_variable(const Variable& variable, std::string_view name, const ast::Expr& value);
   Place place(const ast::Expr& target);

@@ -25,6 +25,7 @@ constexpr std::array kLints{
     Lint{"lint-interpolation", Warning, "a '$' reference in a string that ends sooner than it looks"},
     Lint{"lint-keywords", Warning, "a call whose keywords no method of that name takes"},
     Lint{"lint-leading-percent", Warning, "a line that begins with '%' in the middle of an expression"},
+    Lint{"lint-list-sum", Warning, "two lists are added, which adds their lengths"},
     Lint{"lint-lone-dollar", Warning, "a '$' in a string that refers to nothing"},
     Lint{"lint-minus-spacing", Warning, "'a -1', which is a subtraction"},
     Lint{"lint-new-count", Warning, "'n new Class' with a count that is no literal: one gives no list"},

@@ -7,6 +7,7 @@
 #include "steve/compile/builder.hpp"
 #include "steve/compile/function_compiler.hpp"
 #include "steve/compile/wording.hpp"
+#include "steve/syntax/words.hpp"
 
 namespace breve::steve {
 
@@ -84,6 +85,7 @@ void ProgramBuilder::check_call(const ast::Call& call, const ast::Expr& e, const
   if (call.selector == "iterate" && call.keywords.empty()) return;
   if (super && !cls.parent) return;
   const Receiver receiver{super ? cls.parent : class_of(*call.receiver, method, cls, *program_), super};
+  check_method_named(call, super ? &cls : receiver.cls);
   CallSite site;
   site.selector = symbol(call.selector);
   site.span = call.selector_span;
@@ -112,12 +114,71 @@ void ProgramBuilder::check_call(const ast::Call& call, const ast::Expr& e, const
        help);
 }
 
+// Calls that name a method in a string, which the world calls later: a wrong name is best told of before.
+void ProgramBuilder::check_method_named(const ast::Call& call, const ClassInfo* receiver) {
+  struct Naming {
+    std::string_view selector, keyword;
+    std::size_t most;  // parameters that the method may have
+    const char* what;
+  };
+  static constexpr Naming kNamings[] = {
+      {"schedule", "method-call", 0, "a scheduled call"},
+      {"schedule-repeating", "method-call", 0, "a scheduled call"},
+      {"handle-collisions", "with-method", 5, "a handler of collisions"},
+      {"observe", "with-method", 2, "an observer"},
+      {"add-menu", "for-method", 0, "an entry of a menu"},
+  };
+  for (const Naming& naming : kNamings) {
+    if (call.selector != naming.selector) continue;
+    for (const auto& keyword : call.keywords) {
+      const auto* text = std::get_if<ast::StringLit>(&keyword.value->node);
+      if (keyword.name != naming.keyword || !text || !text->parts.empty()) continue;
+      const std::string& name = text->texts.front();
+      const Symbol wanted = program_->symbols_.find(name);
+      bool named = false;
+      std::vector<std::string_view> near;
+      for (const auto& cls : program_->classes_) {
+        if (!Receiver{receiver, false}.reaches(*cls)) continue;
+        for (const auto& method : cls->methods) {
+          if (method->parameters.size() <= naming.most && method->name == wanted) return;
+          named = named || method->name == wanted;
+          if (method->parameters.size() <= naming.most && !embedded(method->span))
+            near.push_back(symbol_name(method->name));
+        }
+      }
+      const std::string likely = nearest(name, near);
+      const std::string count = naming.most == 0 ? "without keywords" : "with at most " + std::to_string(naming.most) + " keywords";
+      lint(keyword.value->span, "lint-unknown-method",
+           receiver ? "class " + receiver->name + " has no method '" + name + "' " + count + ", which " + naming.what + " needs"
+                    : "no class has a method '" + name + "' " + count + ", which " + naming.what + " needs",
+           !likely.empty() ? "did you mean '" + likely + "'?"
+           : named         ? "take the keywords away, or name another method"
+                           : "define it with: + to " + name + ":");
+    }
+  }
+}
+
+// A method that no class has: a variable, or the word of another language for what is none. "" if neither.
+std::string ProgramBuilder::meant_by_method(const std::string& name) const {
+  if (names_a_size(name)) return "the size of a list or of a text is written with bars: |list|";
+  if (names_a_push(name)) return "to put a value into a list write: push value onto list";
+  const Symbol wanted = program_->symbols_.find(name);
+  for (const auto& cls : program_->classes_)
+    for (const auto& v : cls->variables)
+      if (v.name == wanted) return "'" + name + "' is a variable of class " + cls->name + ": write object::" + name;
+  return {};
+}
+
 void ProgramBuilder::report_unknown_method(const ast::Call& call, const ClassInfo* cls) {
   if (++unknown_methods_ > kMostUnknownMethods) return;
   if (cls) {
     lint(call.selector_span, "lint-unknown-method",
          "neither class " + cls->name + " nor its parents and children have a method '" + call.selector + "'",
          unknown_method_help(call.selector, cls, *program_));
+    return;
+  }
+  if (const std::string help = meant_by_method(call.selector); !help.empty()) {
+    lint(call.selector_span, "lint-unknown-method", "no class has a method '" + call.selector + "'", help);
     return;
   }
   std::vector<std::string_view> selectors;

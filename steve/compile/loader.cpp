@@ -43,6 +43,7 @@ CompileResult ProgramBuilder::build(ModuleSource main, const AllowedLints& allow
   choose_controller();
   if (diagnostics_.error_count() == 0) {
     check_calls();
+    check_sums();
     check_unused_variables();
     check_iterate();
     check_special_methods();
@@ -55,6 +56,7 @@ CompileResult ProgramBuilder::build(ModuleSource main, const AllowedLints& allow
     hasher.add(program_->sources_.file(i).text);
   }
   program_->fingerprint_ = hasher.value();
+  gather_foreign_library();
   diagnostics_ = finished(diagnostics_, program_->sources_, allowed);
   program_->diagnostics_ = diagnostics_.all();
   CompileResult result;
@@ -105,6 +107,11 @@ void ProgramBuilder::load_named(const std::string& name, const ast::Directive& d
   if (is_later_class(wanted)) {
     diagnostics_.error(directive.span, "later-class",
                        "class " + wanted + " is part of a later version of the class library");
+    return;
+  }
+  if (is_later_file(wanted)) {
+    diagnostics_.error(directive.span, "later-class",
+                       "the file '" + wanted + "' is part of a later version of the class library");
     return;
   }
   const bool use = directive.kind == ast::Directive::Kind::Use;

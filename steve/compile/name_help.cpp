@@ -4,6 +4,7 @@
 
 #include "steve/compile/function_compiler.hpp"
 #include "steve/compile/scope.hpp"
+#include "steve/syntax/words.hpp"
 
 namespace breve::steve {
 
@@ -34,6 +35,13 @@ constexpr Habit kHabits[] = {
 };
 
 constexpr std::size_t kLongestApart = 60;  // bytes of a name that is tried as a subtraction: the ways grow fast
+
+constexpr std::size_t kLongestQuote = 60;  // bytes of the program that a help repeats
+
+std::string source_text(std::string_view source, const Span& span) {
+  if (span.line == 0 || span.length > kLongestQuote) return "...";
+  return std::string(source.substr(span.offset, span.length));
+}
 
 bool is_number(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
@@ -69,6 +77,9 @@ std::string FunctionCompiler::unknown_name_help(std::string_view name) {
       return "a dash can be part of a name: for a subtraction write blanks around it, " + apart;
   for (const Habit& habit : kHabits)
     if (habit.word == name) return std::string(habit.help);
+  const std::string small = reserved_in_small(name);
+  if (!small.empty() && builder_.class_named(name) == nullptr)
+    return "the words of the language are written in small letters: " + small;
   if (const auto near = nearest(name, candidates); !near.empty()) return "did you mean '" + near + "'?";
   const std::string text(name);
   if (class_.responds(builder_.symbol(name))) return "'" + text + "' is a method: write (self " + text + ")";
@@ -93,6 +104,11 @@ std::string FunctionCompiler::unknown_function_help(const ast::FunctionCall& f, 
   }
   if (class_.responds(symbol))
     return "'" + f.name + "' is a method: write (self " + f.name + (f.arguments.empty() ? ")" : " keyword value)");
+  const std::string argument = f.arguments.size() == 1 ? source_text(source, f.arguments[0]->span) : "...";
+  if (names_a_size(f.name) && f.arguments.size() == 1)
+    return "the size of a list, a text or a vector is written with bars: |" + argument + "|";
+  if (const std::string small = reserved_in_small(f.name); !small.empty() || names_a_print(f.name))
+    return "write, in small letters and without parentheses: " + (small.empty() ? "print" : small) + " " + argument;
   if (!near.empty()) return "did you mean '" + near + "'?";
   return "a method is called on an object: (object " + f.name + (f.arguments.empty() ? ")" : " keyword value)");
 }
@@ -103,9 +119,10 @@ void FunctionCompiler::lint_operands(ast::BinaryOp op, StaticType a, StaticType 
   const auto string = [](StaticType t) { return t == StaticType::String; };
   const auto number = [](StaticType t) { return t == StaticType::Int || t == StaticType::Double; };
   const auto object = [](StaticType t) { return t == StaticType::Object; };
-  if (op == ast::BinaryOp::Add && pair(string, number))
-    builder_.lint(emit_.span(), "lint-string-sum", "a string and a number are added: the sum is a number, not a text",
-                  "to put a value into a text write its name with a '$' in the string: \"count: $n\"");
+  if (op == ast::BinaryOp::Add && !builder_.checks_sums_later()) {
+    if (pair(string, number)) builder_.lint_text_sum(emit_.span());
+    if (a == StaticType::List && b == StaticType::List) builder_.lint_list_sum(emit_.span());
+  }
   if ((op == ast::BinaryOp::Eq || op == ast::BinaryOp::Ne) && pair(string, object))
     builder_.lint(emit_.span(), "lint-object-string", "an object is never equal to a string",
                   "compare what the object has, for example its name");

@@ -46,4 +46,14 @@ void CompileScope::lint(const Span& span, std::string code, std::string message,
   if (!embedded(span)) diagnostics_.warning(span, std::move(code), std::move(message), std::move(help));
 }
 
+void CompileScope::lint_text_sum(const Span& span) {
+  lint(span, "lint-string-sum", "a string and a number are added: the sum is a number, not a text",
+       "to put a value into a text write its name with a '$' in the string: \"count: $n\"");
+}
+
+void CompileScope::lint_list_sum(const Span& span) {
+  lint(span, "lint-list-sum", "two lists are added: the sum is that of their lengths, not a list",
+       "to append the elements of one to the other: foreach item in second: push item onto first.");
+}
+
 }  // namespace breve::steve

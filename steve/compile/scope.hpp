@@ -47,6 +47,10 @@ class CompileScope {
   bool function_exists(std::string_view name) const { return functions_->contains(name); }
   std::vector<std::string_view> function_names() const;
   void lint(const Span& span, std::string code, std::string message, std::string help = {});
+  /// Are sums looked at when the whole program is known, so that calls have types?
+  virtual bool checks_sums_later() const { return false; }
+  void lint_text_sum(const Span& span);
+  void lint_list_sum(const Span& span);
 
  protected:
   std::shared_ptr<Program> program_;

@@ -34,6 +34,7 @@ void FunctionCompiler::compile() {
     if (has_last_) emit_.emit(Op::ReturnAny, last_.slot);
   }
   emit_.finish();
+  if (method_.broken) return;  // what could not be read may use any of them
   for (const auto& local : method_.locals) {
     const auto found = locals_.find(local.name);
     if (found != locals_.end() && !found->second.used)

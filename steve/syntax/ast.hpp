@@ -266,6 +266,7 @@ struct Method {
   std::vector<StmtPtr> body;
   std::string doc;        // the % lines inside or before it, without the %
   bool is_public = true;  // written with +
+  bool broken = false;    // a statement of it could not be read
   /// Embedded library only: `@native "name" (type).` in place of a body. The type is that of the result; none: no
   /// value.
   std::optional<std::string> native;

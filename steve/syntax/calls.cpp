@@ -48,17 +48,34 @@ ast::ExprPtr Parser::call(std::size_t start, ast::ExprPtr receiver) {
   deepen();
   ast::Call node;
   node.receiver = std::move(receiver);
+  const std::size_t selector = pos_;
+  std::size_t made = 0;
   node.selector = expect_name("a method", node.selector_span);
   while (at_name()) {
     ast::Keyword keyword;
     const std::size_t keyword_start = pos_;
     keyword.name = expect_name("a keyword", keyword.span);
-    if (at_closing() || at(";")) fail_keyword(node, start, keyword_start);
+    if (at_closing() || at(";")) {
+      call_start_ = start;
+      call_method_ = selector;
+      fail_keyword(node, start, keyword_start);
+    }
+    const std::size_t value_start = pos_;
+    if (node.keywords.empty() && at_binary_operator()) {
+      call_start_ = start;
+      call_method_ = selector;
+      if (lacks_self()) throw SyntaxError{without_self()};
+    }
     keyword.value = expression();
+    if (at_name() && std::holds_alternative<ast::NewExpr>(keyword.value->node) && !keyword.value->parenthesised)
+      made = value_start;
     node.keywords.push_back(std::move(keyword));
   }
   call_end_ = pos_;
   call_name_ = node.selector;
+  call_start_ = start;
+  call_method_ = selector;
+  call_new_ = made;
   return make(start, std::move(node));
 }
 
@@ -68,17 +85,15 @@ void Parser::fail_keyword(const ast::Call& call, std::size_t start, std::size_t 
   if (at(":"))
     fail(token().span, "call-arguments", fmt::format("no ':' follows the keyword '{}'", name.text),
          fmt::format("write its value directly: {} {} value", call.selector, name.text));
+  if (call.keywords.empty() && lacks_self()) throw SyntaxError{without_self()};
   const auto* last = call.keywords.empty() ? nullptr : call.keywords.back().value.get();
   const bool object = last != nullptr && !last->parenthesised &&
                       (std::holds_alternative<ast::Name>(last->node) || std::holds_alternative<ast::Self>(last->node) ||
                        std::holds_alternative<ast::Super>(last->node));
   const Token& before = *items_[keyword - 1].token;
   if (object) {
-    Span place = last->span;
-    place.length = name.span.offset + name.span.length - place.offset;
-    fail(place, "call-needs-parentheses",
-         fmt::format("the call of method '{}' is used as a value and needs parentheses", name.text),
-         fmt::format("write it as ({} {})", before.text, name.text));
+    if (auto meant = meant_by_access(keyword - 1, keyword)) throw SyntaxError{std::move(*meant)};
+    throw SyntaxError{needs_parentheses(keyword - 1, keyword, keyword + 1)};
   }
   if (call.keywords.empty() && at(")") && items_[start].token != &before)
     fail(name.span, "call-arguments", fmt::format("keyword '{}' of '{}' has no value", name.text, call.selector),
@@ -89,7 +104,7 @@ void Parser::fail_keyword(const ast::Call& call, std::size_t start, std::size_t 
 }
 
 // What is wrong with a primary that has a selector behind it, where only a value can stand.
-Diagnostic Parser::call_mistake() const {
+Diagnostic Parser::call_mistake() {
   const Token& last = previous();
   const Token& selector = token();
   if (at_text("and") || at_text("or")) {
@@ -106,22 +121,33 @@ Diagnostic Parser::call_mistake() const {
     return {Severity::Error, "syntax", fmt::format("unexpected {} after this value", describe()),
             "a ',' or an operator may be missing between the two", selector.span};
   }
-  const Token& first = *items_[primary_start_].token;
-  Span where = first.span;
-  where.length = selector.span.offset + selector.span.length - where.offset;
+  if (auto meant = meant_by_access(primary_start_, pos_)) return std::move(*meant);
+  return needs_parentheses(primary_start_, pos_, pos_ + 1);
+}
+
+// @param end  the item behind the call
+Diagnostic Parser::needs_parentheses(std::size_t receiver, std::size_t selector, std::size_t end) const {
+  const Token& name = *items_[selector].token;
+  Span where = items_[receiver].token->span;
+  where.length = name.span.offset + name.span.length - where.offset;
   return {Severity::Error, "call-needs-parentheses",
-          fmt::format("the call of method '{}' is used as a value and needs parentheses", selector.text),
-          fmt::format("write it as ({} {}{})", pos_ == primary_start_ + 1 ? first.text : "...", selector.text,
-                      at_name(1) ? " ..." : ""),
-          where};
+          fmt::format("the call of method '{}' is used as a value and needs parentheses", name.text),
+          fmt::format("write it as ({})", source_of(receiver, end)), where};
 }
 
 // Report such a call, and read over it.
 void Parser::unparenthesised_call() {
   Diagnostic mistake = call_mistake();
   if (mistake.code == "syntax") throw SyntaxError{std::move(mistake)};
-  const std::size_t start = primary_start_;
+  const std::size_t start = primary_start_, selector = pos_;
   call(start, make(start, ast::Self{}));
+  if (mistake.code == "call-needs-parentheses") {
+    if (lacks_self()) {
+      mistake = without_self();
+    } else {
+      mistake = needs_parentheses(start, selector, pos_);
+    }
+  }
   report(std::move(mistake));
 }
 

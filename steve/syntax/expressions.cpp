@@ -224,7 +224,13 @@ ast::ExprPtr Parser::list_operation() {
       fail(token().span, "syntax", fmt::format("'{}' takes 'onto', not '{}'", items_[start].token->text, token().text),
            fmt::format("write: {} value onto list", items_[start].token->text));
     if (!at_text("onto")) {
-      if (at_stray_call()) throw SyntaxError{call_mistake()};
+      if (at_stray_call()) {
+        const Diagnostic mistake = call_mistake();
+        std::size_t end = pos_ + 1;
+        while (end < statement_end() && items_[end].token->text != "onto") ++end;
+        if (mistake.code != "call-needs-parentheses") throw SyntaxError{mistake};
+        throw SyntaxError{needs_parentheses(primary_start_, pos_, end)};
+      }
       fail_expected("'onto' and a list", "write: push value onto list");
     }
     advance();

@@ -144,10 +144,13 @@ bool Parser::at_elif() const {
 }
 
 // What is wrong with the sign or word that stands where a statement should end.
-Diagnostic Parser::after_statement(std::size_t start) const {
+Diagnostic Parser::after_statement(std::size_t start) {
   const auto made = [&](std::string code, std::string message, std::string help) {
     return Diagnostic{Severity::Error, std::move(code), std::move(message), std::move(help), token().span};
   };
+  for (auto meant : {meant_by_first_word(start), meant_by_list_word(start), meant_by_value(start),
+                     meant_by_assignment(), meant_by_operator(start)})
+    if (meant) return std::move(*meant);
   const bool behind_call = call_end_ == pos_ && pos_ > 0;
   const std::string_view method = behind_call ? std::string_view(call_name_) : std::string_view();
   if (at(",") && items_[start].word == Word::Return)

@@ -115,7 +115,14 @@ void Scanner::name() {
   push(TokenKind::Name, begin, text_.substr(begin, pos_ - begin));
 }
 
-// Unsigned. Digits, a period and no digit after it are an integer and the end of a statement.
+// 'e', a sign or none, and digits?
+bool Scanner::exponent_at(std::size_t i) const {
+  if (at(i) != 'e' && at(i) != 'E') return false;
+  return is_digit(at(at(i + 1) == '-' || at(i + 1) == '+' ? i + 2 : i + 1));
+}
+
+// Unsigned. Digits, a period and no digit after it are an integer and a period: the parser knows whether it ends a
+// statement or belongs to the number.
 void Scanner::number() {
   const std::size_t begin = pos_;
   bool integer = true;
@@ -123,6 +130,8 @@ void Scanner::number() {
   if (at(pos_) == '.' && is_digit(at(pos_ + 1))) {
     integer = false;
     for (++pos_; is_digit(at(pos_));) ++pos_;
+  } else if (at(pos_) == '.' && pos_ > begin && exponent_at(pos_ + 1)) {
+    ++pos_;
   }
   if (at(pos_) == 'e' || at(pos_) == 'E') {
     std::size_t digits = pos_ + 1;

@@ -143,7 +143,8 @@ void Parser::parameter(ast::Method& result) {
 
 void Parser::body(ast::Method& result) {
   if (at("@") && at_text("native", 1)) return native_body(result);
-  while (at_declaration()) {
+  const std::size_t errors = errors_;
+  while (at_declaration() || at_foreign_declaration()) {
     const std::size_t start = pos_;
     try {
       declaration(result.locals, "a variable");
@@ -160,6 +161,7 @@ void Parser::body(ast::Method& result) {
     advance();
     read_statements(result.body);
   }
+  result.broken = errors_ > errors;
 }
 
 // @native "name" (type).  @native "name" (?).  @native "name".
@@ -290,17 +292,11 @@ void Parser::broken_type(ast::TypeRef& result) {
   } else {
     const std::string_view text = token().text;
     const std::string near = nearest(text, kTypeNames);
-    const bool truth = text == "bool" || text == "boolean";
-    const bool count = text == "integer" || text == "long" || text == "short" || text == "unsigned" || text == "char";
+    const std::string_view foreign = foreign_type(text);
     error(place, "unknown-type", fmt::format("unknown type {}", describe()),
-          truth                             ? "there is none for truth: write int, where 0 is false and 1 is true"
-          : count                           ? "whole numbers are int"
-          : text == "number"                ? "numbers are int or float"
-          : text == "str"                   ? "texts are string"
-          : text == "array"                 ? "write list, or for an array its number of elements: (5 floats)"
-          : text == "dict" || text == "map" ? "write hash"
-          : near.empty()                    ? fmt::format("for an object of a class write ({} object)", token().text)
-                                            : fmt::format("did you mean '{}'?", near));
+          !foreign.empty() ? std::string(foreign)
+          : near.empty()   ? fmt::format("for an object of a class write ({} object)", token().text)
+                           : fmt::format("did you mean '{}'?", near));
   }
   while (!at(")") && !at_end() && !at(".") && token().span.line == place.line) advance();
 }
@@ -348,6 +344,7 @@ double Parser::number(std::string_view where) {
   // 2147483648 is scanned as the least integer, and is valid with a sign only.
   const double magnitude = integer ? std::abs(static_cast<double>(token().int_value)) : token().double_value;
   advance();
+  if (integer && at_fraction_point()) advance();
   return negative ? -magnitude : magnitude;
 }
 

@@ -107,6 +107,8 @@ void Parser::find_braces() {
         open.pop_back();
         break;
       case sign("."):
+        if (around != nullptr && !inside_list(i, open.back().index)) around->block_like = true;
+        break;
       case sign(":"):
         if (around != nullptr) around->block_like = true;
         break;
@@ -116,6 +118,23 @@ void Parser::find_braces() {
       default: break;
     }
   }
+}
+
+// Is the period at `i`, in the braces that open at `open`, part of a number of a list: `{1., (2., 0, 0), 3.}`? Of the
+// statements without a colon only those that print have commas, too.
+bool Parser::inside_list(std::size_t i, std::size_t open) const {
+  if (items_[i - 1].token->kind != TokenKind::Int || items_[i].token->space_before || i + 1 >= items_.size())
+    return false;
+  const std::uint16_t next = items_[i + 1].sign;
+  const Word first = items_[open + 1].word;
+  if (first == Word::Print || first == Word::Printf) return false;
+  if (next == sign("}")) {
+    // A brace on a line of its own closes a list that is written over several lines, no list of the line before.
+    const Token& close = *items_[i + 1].token;
+    const bool apart = close.starts_line && items_[open].token->span.line == items_[i].token->span.line;
+    return !apart && items_[open].has_comma && !items_[open].block_like;
+  }
+  return next == sign(",") || next == sign(")") || next == sign("]");
 }
 
 const Parser::Item& Parser::item(std::size_t ahead) const {

@@ -86,6 +86,7 @@ class Parser {
   Span span_from(std::size_t start) const;
   Span after_previous() const;
   void find_braces();
+  bool inside_list(std::size_t i, std::size_t open) const;
 
   // --- errors (parser.cpp)
   void report(Diagnostic diagnostic);
@@ -104,11 +105,33 @@ class Parser {
   bool foreign_declaration();
   bool foreign_statement();
   bool at_elif() const;
-  Diagnostic after_statement(std::size_t start) const;
+  Diagnostic after_statement(std::size_t start);
   std::optional<ast::BinaryOp> foreign_operator(ast::BinaryOp op);
   bool at_c_for() const;
   std::string loop_pattern(std::string_view variable) const;
   void semicolon();
+
+  // --- meant.cpp
+  struct FileNames {
+    std::set<std::string_view> variables, methods;
+    std::set<std::string_view> sized, unsized;  // variables that are lists or strings, and that are not
+  };
+  const FileNames& names_of_file();
+  bool is_variable(const Token& name);
+  bool is_variable_only(std::string_view name);  // and no method
+  bool is_sized(std::string_view name);          // wherever it is declared
+  std::string source_of(std::size_t first, std::size_t end) const;
+  std::size_t statement_end() const;
+  std::optional<Diagnostic> meant_by_first_word(std::size_t start);
+  std::optional<Diagnostic> meant_by_value(std::size_t start);
+  std::optional<Diagnostic> meant_by_assignment();
+  std::optional<Diagnostic> meant_by_operator(std::size_t start);
+  std::optional<Diagnostic> meant_by_list_word(std::size_t start);
+  std::optional<Diagnostic> meant_by_access(std::size_t receiver, std::size_t selector);
+  bool at_binary_operator() const;
+  bool lacks_self();
+  Diagnostic without_self();
+  bool at_foreign_declaration();
 
   // --- declarations.cpp
   void top_level(ast::File& file);
@@ -195,6 +218,7 @@ class Parser {
   ast::ExprPtr member(std::size_t start, ast::ExprPtr base);
   ast::ExprPtr counted_new(std::size_t start, ast::ExprPtr count);
   ast::ExprPtr primary();
+  bool at_fraction_point() const;
   ast::ExprPtr name_expression(std::size_t start);
   ast::ExprPtr word_expression(std::size_t start);
   ast::ExprPtr parenthesised(std::size_t start);
@@ -213,7 +237,8 @@ class Parser {
   ast::ExprPtr call(std::size_t start, ast::ExprPtr receiver);
   void unparenthesised_call();
   [[noreturn]] void fail_keyword(const ast::Call& call, std::size_t start, std::size_t keyword);
-  Diagnostic call_mistake() const;
+  Diagnostic call_mistake();
+  Diagnostic needs_parentheses(std::size_t receiver, std::size_t selector, std::size_t end) const;
 
   // --- strings.cpp
   ast::ExprPtr string_literal();
@@ -241,7 +266,11 @@ class Parser {
   std::size_t class_close_ = 0;  // the item that closes the class being parsed, 0 if none does
   std::uint32_t last_error_offset_ = 0;
   std::size_t call_end_ = 0;  // the item behind the call that was parsed last
-  std::string call_name_;     // and its selector
+  std::string call_name_;     // its selector
+  std::size_t call_start_ = 0;   // the item that its receiver begins with
+  std::size_t call_method_ = 0;  // the item of its selector
+  std::size_t call_new_ = 0;     // the 'new' of its last argument, if another keyword follows that; else 0
+  std::optional<FileNames> file_names_;  // found when a mistake asks for them
   bool semicolon_reported_ = false;
   bool elif_reported_ = false;
   bool method_brace_ = false;  // a '{' stood in place of the ':' of the method header

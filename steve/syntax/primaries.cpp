@@ -91,6 +91,10 @@ ast::ExprPtr Parser::primary() {
               "write a float, for example with '.0' behind it");
       }
       advance();
+      if (at_fraction_point()) {
+        advance();
+        return make(start, ast::DoubleLit{static_cast<double>(value)});
+      }
       return make(start, ast::IntLit{value});
     }
     case TokenKind::Double: {
@@ -125,6 +129,36 @@ ast::ExprPtr Parser::primary() {
   fail_expected("an expression", behind_sign
                                      ? fmt::format("a value is missing behind '{}'", previous().text)
                                      : "a statement begins with a name or with a word such as if, print, return");
+}
+
+// Is this '.' part of the number before it, as in `(1., 2., 3.)` and `1. * n`? Not where it can end a statement, nor
+// before '%', which may be meant to begin a comment.
+bool Parser::at_fraction_point() const {
+  if (!at(".") || token().space_before || at_kind(TokenKind::End, 1)) return false;
+  if (at("}", 1)) {
+    std::size_t open = pos_;
+    while (open > 0 && items_[open].match != pos_ + 1) --open;
+    return items_[open].match == pos_ + 1 && !items_[open].block_like;
+  }
+  if (at(")", 1) || at("]", 1) || at(",", 1)) return true;
+  if (token(1).starts_line || at_member_header(1) || at_variables_header(1)) return false;
+  switch (item(1).sign) {
+    case sign("*"):
+    case sign("/"):
+    case sign("^"):
+    case sign("+"):
+    case sign("-"):
+    case sign("<"):
+    case sign("<="):
+    case sign(">"):
+    case sign(">="):
+    case sign("=="):
+    case sign("!="):
+    case sign("&&"):
+    case sign("||"):
+    case sign(":"): return true;
+    default: return false;
+  }
 }
 
 ast::ExprPtr Parser::name_expression(std::size_t start) {
@@ -258,9 +292,15 @@ std::vector<ast::ExprPtr> Parser::items(std::string_view close, std::string_view
 ast::ExprPtr Parser::matrix_literal(std::size_t start) {
   advance();
   if (!at("(")) {
-    error(items_[start].token->span, "syntax", "a list is written in braces, not in brackets",
-          "write: { 1, 2, 3 }; a matrix is [ (a, b, c), (d, e, f), (g, h, i) ]");
-    return make(start, ast::ListLit{items("]", "after the elements of the list")});
+    std::vector<ast::ExprPtr> elements = items("]", "after the elements of the list");
+    const std::string inside = elements.empty() ? "" : source_of(start + 1, pos_ - 1);
+    const bool three = elements.size() == 3;
+    error(items_[start].token->span, "syntax",
+          three ? "a vector is written in parentheses and a list in braces, neither in brackets"
+                : "a list is written in braces, not in brackets",
+          three ? fmt::format("for a vector write ({0}), for a list {{ {0} }}", inside)
+                : fmt::format("write: {{ {} }}; a matrix is [ (a, b, c), (d, e, f), (g, h, i) ]", inside));
+    return make(start, ast::ListLit{std::move(elements)});
   }
   ast::MatrixLit matrix;
   for (std::size_t row = 0; row < 3; ++row) {

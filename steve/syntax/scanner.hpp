@@ -45,6 +45,7 @@ class Scanner {
   void token();
   void name();
   void number();
+  bool exponent_at(std::size_t i) const;
   void string();
   void character();
   bool punctuation();

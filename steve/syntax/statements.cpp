@@ -292,6 +292,8 @@ void Parser::expect_period(std::size_t start) {
   if (at(".")) return lint_dot();
   if (at(";")) return semicolon();
   if (interactive_ && at_end()) return;
+  if (!token().starts_line)
+    if (auto meant = meant_by_list_word(start)) throw SyntaxError{std::move(*meant)};
   const bool next_begins = token().starts_line || at("}") || at_end() || (starts_statement(0) && !at_name());
   if (next_begins) return missing(".", "this statement");
   if (at("{")) open_brace_reported_ = true;
@@ -303,7 +305,9 @@ void Parser::lint_dot() {
   const bool glued = previous().kind == TokenKind::Name && !token().space_before && !token().space_after;
   if (glued && at_name(1) && at(".", 2) && token(1).span.line == token().span.line && !token(2).space_before) {
     lint(token().span, "lint-dot", "this '.' ends the statement; what stands behind it does nothing",
-         fmt::format("a variable of an object is read as {}::{}", previous().text, token(1).text));
+         names_a_size(token(1).text) && is_sized(previous().text)
+             ? fmt::format("the size of a list or of a text is |{}|", previous().text)
+             : fmt::format("a variable of an object is read as {}::{}", previous().text, token(1).text));
   }
   advance();
 }

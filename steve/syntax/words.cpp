@@ -69,12 +69,46 @@ constexpr std::array kWords{
 };
 static_assert(std::is_sorted(kWords.begin(), kWords.end()));
 
+/// @param words  with a blank before and behind each
+bool is_one_of(std::string_view word, std::string_view words) {
+  return !word.empty() && words.find(" " + std::string(word) + " ") != std::string_view::npos;
+}
+
 }  // namespace
 
 Word word_of(std::string_view text) {
   const auto found = std::lower_bound(kWords.begin(), kWords.end(), text,
                                       [](const Entry& entry, std::string_view key) { return entry.first < key; });
   return found != kWords.end() && found->first == text ? found->second : Word::None;
+}
+
+std::string_view foreign_type(std::string_view word) {
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kTypes{{
+      {" bool boolean Bool Boolean ", "there is none for truth: write int, where 0 is false and 1 is true"},
+      {" integer Integer Int long short unsigned char uint ", "whole numbers are int"},
+      {" number real Float Double decimal ", "numbers with a fraction are float, whole numbers int"},
+      {" str String text ", "texts are string"},
+      {" dict map Hash dictionary ", "write hash"},
+  }};
+  if (word == "array") return "write list, or for an array its number of elements: (5 floats)";
+  for (const auto& [words, help] : kTypes)
+    if (is_one_of(word, words)) return help;
+  return {};
+}
+
+bool names_a_size(std::string_view word) { return is_one_of(word, " length size count len strlen "); }
+
+bool names_a_push(std::string_view word) {
+  return is_one_of(word, " add append push-back push_back add-item put enqueue ");
+}
+
+bool names_a_print(std::string_view word) { return is_one_of(word, " println echo puts writeln write say log show "); }
+
+std::string reserved_in_small(std::string_view word) {
+  std::string small(word);
+  for (char& c : small)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return small != word && word_of(small) != Word::None ? small : std::string();
 }
 
 }  // namespace breve::steve

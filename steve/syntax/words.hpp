@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace breve::steve {
@@ -65,5 +66,16 @@ enum class Word : std::uint8_t {
 
 /// The reserved word that `text` spells, or None.
 Word word_of(std::string_view text);
+
+/// What to write in place of a type of other languages, such as `integer`; "" if it is not known as one.
+std::string_view foreign_type(std::string_view word);
+/// `length`, `size` and the like: what other languages call the size of a list.
+bool names_a_size(std::string_view word);
+/// `add`, `append` and the like: what other languages call putting something into a list.
+bool names_a_push(std::string_view word);
+/// `println`, `echo` and the like.
+bool names_a_print(std::string_view word);
+/// A word that is reserved in small letters, such as `Print`: that spelling; else "".
+std::string reserved_in_small(std::string_view word);
 
 }  // namespace breve::steve

@@ -148,7 +148,7 @@ TEST(Errors, SayWhatToDo) {
   const std::vector<std::pair<std::string, std::string>> rows{
       {"sort k by compare.", "write: sort list with method-name"},
       {"return self measure.", "write it as (self measure)"},
-      {"return self measure at 5.", "write it as (self measure ...)"},
+      {"return self measure at 5.", "write it as (self measure at 5)"},
       {"if n: { m = 1. }.", "remove it"},
       {"n = ||a| - 2|.", "write a blank between nested bars: | |a| - b |"},
       {"a = b.5", "write a blank behind the '.' that ends a statement"},

@@ -1,0 +1,228 @@
+// What a beginner meant by a statement that cannot be read: a call without its object, a variable of another object
+// without '::', a size without bars, a word of the language in capitals. Asked where the grammar has failed, so that it
+// may look at the whole file.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "steve/syntax/parser_nodes.hpp"
+
+namespace breve::steve {
+
+namespace {
+
+constexpr std::size_t kLongestQuote = 60;  // bytes of the program that a help repeats
+
+bool begins_value(const TokenKind kind) {
+  return kind == TokenKind::Int || kind == TokenKind::Double || kind == TokenKind::String;
+}
+
+}  // namespace
+
+// The names that the file declares as variables, parameters or methods, in whatever class.
+const Parser::FileNames& Parser::names_of_file() {
+  if (file_names_) return *file_names_;
+  FileNames& names = file_names_.emplace();
+  const std::size_t here = pos_;
+  for (pos_ = 0; !at_end(); ++pos_) {
+    if (at_member_header()) names.methods.insert(token(2).text);
+    if (!at_type(1)) continue;
+    const bool sized = item(2).word == Word::List || item(2).word == Word::String;
+    std::size_t last = pos_;  // of `a, b (type)` and `p = 2.5 (type)`
+    if (!at_name() && last >= 2 && items_[last - 1].sign == sign("=")) last -= 2;
+    while (items_[last].token->kind == TokenKind::Name) {
+      names.variables.insert(items_[last].token->text);
+      (sized ? names.sized : names.unsized).insert(items_[last].token->text);
+      if (last < 2 || items_[last - 1].sign != sign(",")) break;
+      last -= 2;
+    }
+  }
+  pos_ = here;
+  return names;
+}
+
+// Any name may be one of a session. Classes of the library give their children one variable. What other languages call
+// the object itself is told of where names are looked up.
+bool Parser::is_variable(const Token& name) {
+  return interactive_ || name.text == "controller" || name.text == "this" || name.text == "me" ||
+         names_of_file().variables.contains(name.text) || constant_named(name.text) != nullptr;
+}
+
+bool Parser::is_variable_only(std::string_view name) {
+  const FileNames& names = names_of_file();
+  return names.variables.contains(name) && !names.methods.contains(name);
+}
+
+bool Parser::is_sized(std::string_view name) {
+  const FileNames& names = names_of_file();
+  return names.sized.contains(name) && !names.unsized.contains(name);
+}
+
+// The text of the program from one item to in front of another.
+std::string Parser::source_of(std::size_t first, std::size_t end) const {
+  const Span& from = items_[first].token->span;
+  const Span& last = items_[end - 1].token->span;
+  std::string text = sources_.file(from.file).text.substr(from.offset, last.offset + last.length - from.offset);
+  if (text.size() > kLongestQuote || text.find('\n') != std::string::npos)
+    text = fmt::format("{} ...", items_[first].token->text);
+  return text;
+}
+
+// The item that ends the statement around the current one, or its line.
+std::size_t Parser::statement_end() const {
+  std::size_t i = pos_;
+  int open = 0;
+  for (; items_[i].token->kind != TokenKind::End && items_[i].token->span.line == token().span.line; ++i) {
+    const std::uint16_t s = items_[i].sign;
+    if (s == sign("(") || s == sign("{") || s == sign("[")) ++open;
+    if ((s == sign(")") || s == sign("}") || s == sign("]")) && --open < 0) break;
+    if (open == 0 && (s == sign(".") || s == sign(";") || s == sign(":") || s == sign(","))) break;
+  }
+  return i;
+}
+
+// Is the receiver of the call that was read last a name that nothing in this file declares?
+bool Parser::lacks_self() {
+  const Item& receiver = items_[call_start_];
+  return call_method_ == call_start_ + 1 && receiver.token->kind == TokenKind::Name && receiver.word == Word::None &&
+         !is_variable(*receiver.token);
+}
+
+Diagnostic Parser::without_self() {
+  const Token& name = *items_[call_start_].token;
+  const std::string call = source_of(call_start_, std::max(statement_end(), call_method_ + 1));
+  const bool method = names_of_file().methods.contains(name.text);
+  return {Severity::Error, "call-without-object",
+          method ? fmt::format("'{}' is a method: a call begins with the object that is called", name.text)
+                 : fmt::format("a call begins with an object, and '{}' is no variable here", name.text),
+          fmt::format("to call a method of the object itself write: self {}", call), name.span};
+}
+
+// `Print 3`, `If n == 3:`, `println "x"`, `ask Bugs: ...`, `set n 3`.
+std::optional<Diagnostic> Parser::meant_by_first_word(std::size_t start) {
+  const Token& first = *items_[start].token;
+  if (first.kind != TokenKind::Name || items_[start].word != Word::None || is_variable(first)) return std::nullopt;
+  const auto made = [&](std::string message, std::string help) {
+    return Diagnostic{Severity::Error, "foreign-statement", std::move(message), std::move(help), first.span};
+  };
+  if (const std::string small = reserved_in_small(first.text); !small.empty())
+    return made(fmt::format("the word '{}' is written in small letters", small), fmt::format("write: {} ...", small));
+  if (names_a_print(first.text) && pos_ == start + 1)
+    return made(fmt::format("there is no '{}'", first.text),
+                fmt::format("write: print {}", source_of(pos_, std::max(statement_end(), pos_ + 1))));
+  if (first.text == "ask" && (at(":") || at("[") || at("{")))
+    return made("there is no 'ask': a call of a list of objects reaches all of them",
+                fmt::format("write: (all {0}) method.   or: foreach item in (all {0}): {{ ... }}", previous().text));
+  if ((first.text == "set" || first.text == "let") && pos_ == start + 2 && begins_value(token().kind))
+    return made(fmt::format("there is no '{}'", first.text),
+                fmt::format("to give a variable a value write: {} = {}", previous().text,
+                            source_of(pos_, std::max(statement_end(), pos_ + 1))));
+  return std::nullopt;
+}
+
+// A value where a keyword should be: `k add 2`, `work at 3`, `self take it new Bug with-energy 3.0`.
+std::optional<Diagnostic> Parser::meant_by_value(std::size_t) {
+  const bool value = begins_value(token().kind) || at("(") || at("|") || at("{");
+  if (call_end_ != pos_ || pos_ == 0 || !value) return std::nullopt;
+  if (at_kind(TokenKind::Double) && token().text.front() == '.') return std::nullopt;
+  if (call_new_ != 0) return needs_parentheses(call_new_, call_new_ + 2, std::max(statement_end(), pos_ + 1));
+  if (lacks_self() && previous().kind == TokenKind::Name) return without_self();
+  if (call_method_ + 1 != pos_ || !names_a_push(call_name_)) return std::nullopt;
+  const Token& method = *items_[call_method_].token;
+  return Diagnostic{Severity::Error, "list-word", fmt::format("a value is put into a list with 'push', not '{}'", method.text),
+                    fmt::format("write: push {} onto {}", source_of(pos_, std::max(statement_end(), pos_ + 1)),
+                                source_of(call_start_, call_method_)),
+                    method.span};
+}
+
+// `b energy = 3.0`, `Bug b = new Bug`.
+std::optional<Diagnostic> Parser::meant_by_assignment() {
+  const bool call = call_end_ == pos_ && pos_ > 0 && call_method_ + 1 == pos_;
+  if (!call || !(at("=") || (at_assignment(0) && !at("::") && !at("{") && !at("[") && !at("(")))) return std::nullopt;
+  const Item& receiver = items_[call_start_];
+  const Token& name = previous();
+  Span place = receiver.token->span;
+  place.length = name.span.offset + name.span.length - place.offset;
+  const std::string rest = source_of(pos_, std::max(statement_end(), pos_ + 1));
+  if (receiver.word == Word::Self)
+    return Diagnostic{Severity::Error, "foreign-member", "a variable of the object itself is written without 'self'",
+                      fmt::format("write: {} {}", name.text, rest), place};
+  if (lacks_self() && receiver.token->text.front() >= 'A' && receiver.token->text.front() <= 'Z')
+    return Diagnostic{Severity::Error, "foreign-declaration", "a variable is declared with its type behind it",
+                      fmt::format("write at the beginning of the method: {} ({} object).", name.text,
+                                  receiver.token->text),
+                      place};
+  const std::string object = source_of(call_start_, call_method_);
+  return Diagnostic{Severity::Error, "foreign-member", "a variable of another object is written with '::'",
+                    fmt::format("write: {}::{} {}", object, name.text, rest), place};
+}
+
+// An operator that no value begins with?
+bool Parser::at_binary_operator() const {
+  switch (item().sign) {
+    case sign("+"):
+    case sign("*"):
+    case sign("/"):
+    case sign("%"):
+    case sign("^"):
+    case sign("<"):
+    case sign("<="):
+    case sign(">"):
+    case sign(">="):
+    case sign("=="):
+    case sign("!="): return true;
+    default: return false;
+  }
+}
+
+// `x = b energy + 1`: a call is the right side of an assignment, and an operator follows it.
+std::optional<Diagnostic> Parser::meant_by_operator(std::size_t start) {
+  const bool operates = at("-") || at_binary_operator();
+  if (call_end_ != pos_ || pos_ == 0 || call_start_ == start || !operates) return std::nullopt;
+  if (auto meant = meant_by_access(call_start_, call_method_)) return meant;
+  return needs_parentheses(call_start_, call_method_, pos_);
+}
+
+// `k push 4`, `k pop`: the words for lists stand in front.
+std::optional<Diagnostic> Parser::meant_by_list_word(std::size_t start) {
+  if (primary_start_ != start || primary_end_ != pos_ || pos_ == 0) return std::nullopt;
+  const std::string list = source_of(start, pos_);
+  const std::size_t end = statement_end();
+  const std::string value = end > pos_ + 1 ? source_of(pos_ + 1, end) : "value";
+  std::string help;
+  switch (item().word) {
+    case Word::Push:
+    case Word::Prepend: help = fmt::format("write: {} {} onto {}", token().text, value, list); break;
+    case Word::Insert: help = fmt::format("write: insert value at {}{{position}}", list); break;
+    case Word::Remove: help = fmt::format("write: remove {}{{position}}", list); break;
+    case Word::Pop:
+    case Word::Unprepend: help = fmt::format("write: {} {}", token().text, list); break;
+    case Word::Sort: help = fmt::format("write: sort {} with method-name", list); break;
+    default: return std::nullopt;
+  }
+  return Diagnostic{Severity::Error, "list-word", fmt::format("'{}' stands in front of the list", token().text), help,
+                    token().span};
+}
+
+// `b energy` and `k length` where a value is meant: no call, but `b::energy` and `|k|`.
+std::optional<Diagnostic> Parser::meant_by_access(std::size_t receiver, std::size_t selector) {
+  const Token& name = *items_[selector].token;
+  Span where = items_[receiver].token->span;
+  where.length = name.span.offset + name.span.length - where.offset;
+  if (is_variable_only(name.text))
+    return Diagnostic{Severity::Error, "foreign-member", "a variable of another object is read with '::'",
+                      fmt::format("write: {}::{}", source_of(receiver, selector), name.text), where};
+  if (names_a_size(name.text) && !names_of_file().methods.contains(name.text))
+    return Diagnostic{Severity::Error, "foreign-size", "the size of a list or of a text is written with bars",
+                      fmt::format("write: |{}|", source_of(receiver, selector)), where};
+  return std::nullopt;
+}
+
+// `n (integer).` at the beginning of a method: no function and no variable can be meant.
+bool Parser::at_foreign_declaration() {
+  return at_name() && token().starts_line && at("(", 1) && at_name(2) && at(")", 3) && at(".", 4) &&
+         !foreign_type(token(2).text).empty() && constant_named(token(2).text) == nullptr &&
+         !names_of_file().variables.contains(token(2).text);
+}
+
+}  // namespace breve::steve
