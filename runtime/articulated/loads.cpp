@@ -63,6 +63,7 @@ void gather_joint_forces(const Model& model, const Loads& loads, const State& st
     data.tau = loads.tau;
   else
     data.tau.setZero();
+  if (loads.reacts) data.tau += loads.reaction;
   data.diagonal.setZero();
   if (loads.drives.empty()) return;
   difference(model, rest_of(loads, data), state.q, data.deflection);

@@ -30,6 +30,8 @@ struct Loads {
   std::vector<Drive> drives;          // one a link; empty: none
   Vector rest;                        // (nq) where springs are slack; empty: joints at zero
   Vector motor_speed;                 // (nv) what motors aim at; empty: 0
+  Vector reaction;                    // (nv) further joint forces, of what holds the tree; only if `reacts`
+  bool reacts = false;
   /// s; above 0 a motor looks ahead by that time, with any `step`: it gives gain * (its speed - v - motor_time * v').
   /// With a gain beyond the joint's inertia over motor_time, v follows its speed as (speed - v) / motor_time, whatever
   /// the load, up to the motor's limit. Smooth, so that every scheme keeps its order.

@@ -31,7 +31,7 @@ void CollisionStage::begin(const CollisionClient& client, std::uint64_t rules, c
 
 void CollisionStage::finish(CollisionClient& client, double start, double h, const Vector3& gravity, bool at_impact) {
   purge();  // handlers of impacts may have freed bodies since
-  for (const ProxyIndex index : order_) {
+  for (const ProxyIndex index : moved_) {
     const Proxy& proxy = proxies_[index];
     if (proxy.path == kNoPath) continue;
     Path& path = paths_[proxy.path];
@@ -41,8 +41,7 @@ void CollisionStage::finish(CollisionClient& client, double start, double h, con
     finish_path(path);
   }
   std::sort(loaded_touching_.begin(), loaded_touching_.end());  // for find_pairs; until here it is in the order saved
-  for (const ProxyIndex index : order_) update_box(client, index);
-  look_at_all_ = false;
+  update_boxes(client);
   merge_new_pairs();
   drop_far_pairs();
   loaded_touching_.clear();
@@ -97,10 +96,11 @@ void CollisionStage::seek_impact(Pair& pair, double from, double h) {
   double after = 0;
   Motion of_b = motion_from(b, from);
   of_b.start.location += image_of_b(pair);
-  if (!time_of_impact(*bodies_->collision_shape(a.body), motion_from(a, from), *bodies_->collision_shape(b.body), of_b,
-                      h - from, after, impact.contact)) {
-    return;
-  }
+  NarrowCounters narrow;
+  const bool hit = time_of_impact(*bodies_->collision_shape(a.body), motion_from(a, from),
+                                  *bodies_->collision_shape(b.body), of_b, h - from, after, impact.contact, &narrow);
+  counters_.facets += narrow.facets;
+  if (!hit) return;
   pair.ask_at_end = false;
   impact.time = std::min(from + after, h);
   impact.a = pair.a;
@@ -129,6 +129,7 @@ void CollisionStage::deliver_impact(const Substep& substep, const Impact& impact
     Proxy& proxy = proxies_[ends[i]];
     if (proxy.path != kNoPath) place(proxy.body, state_at(paths_[proxy.path], impact.time));
     shown[i] = bodies_->state(proxy.body);
+    if (proxy.path == kNoPath && proxy.impacts == 0) moved_.push_back(ends[i]);
     ++proxy.impacts;
   }
   Pair* pair = find_pair(impact.a, impact.b);
@@ -190,8 +191,9 @@ void CollisionStage::restart(const Substep& substep, ProxyIndex index, double ti
   const bool held = proxy.impacts >= kMostImpacts;
   if (held) ++counters_.held;
   if (proxy.path == kNoPath) {
-    proxy.path = static_cast<std::uint32_t>(paths_.size());
+    if (proxy.impacts == 0) moved_.push_back(index);
     paths_.emplace_back();
+    proxy.path = static_cast<std::uint32_t>(paths_.size() - 1);
   }
   Path& path = paths_[proxy.path];
   path.begin = time;

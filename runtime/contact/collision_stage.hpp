@@ -52,6 +52,8 @@ class CollisionStage {
     std::uint64_t reports = 0;   // all calls of touched()
     std::uint64_t held = 0;      // bodies held at their last impact of a sub-step
     std::uint64_t searches = 0;  // time-of-impact searches
+    std::uint64_t facets = 0;    // of surfaces, visited
+    std::uint64_t boxes = 0;     // of bodies, looked at
   };
   Counters take_counters();
   std::size_t bytes() const;
@@ -111,6 +113,7 @@ class CollisionStage {
   void find_near(const Eigen::AlignedBox3d& box);
   bool boxes_meet(const Pair& pair) const;
   Eigen::AlignedBox3d box_of_path(const Proxy& proxy) const;
+  void update_boxes(const CollisionClient& client);
   void update_box(const CollisionClient& client, ProxyIndex index);
   void find_pairs(const CollisionClient& client, ProxyIndex index);
   void merge_new_pairs();
@@ -130,13 +133,14 @@ class CollisionStage {
 
   // paths.cpp: where a body is at a time within the sub-step.
   void start_paths();
+  void start_path(BodyIndex body);
   static void finish_path(Path& path);
   static BodyState state_at(const Path& path, double time);
   Motion motion_from(const Proxy& proxy, double time) const;
   Pose pose_now(const Proxy& proxy) const;
   Vector3 image_of_b(const Pair& pair) const;
   void place(BodyIndex body, const BodyState& state);
-  bool touching(const Pair& pair, const Pose& pose_a, const Pose& pose_b, Contact& contact) const;
+  bool touching(const Pair& pair, const Pose& pose_a, const Pose& pose_b, Contact& contact);
 
   Bodies* bodies_;
   BoxTree tree_;
@@ -146,6 +150,8 @@ class CollisionStage {
   std::pmr::vector<ProxyIndex> proxy_of_;  // by body
   std::pmr::vector<ProxyIndex> order_;     // live proxies in order of creation
   std::pmr::vector<Path> paths_;
+  std::pmr::vector<ProxyIndex> moved_, settling_;  // had a path or an impact, in this sub-step and in the last one
+  std::pmr::vector<BodyIndex> put_;
   std::pmr::vector<Pair> pairs_;  // sorted by (serial of a, serial of b)
   std::pmr::vector<Pair> new_pairs_;
   std::pmr::vector<Impact> impacts_;  // binary heap, earliest first
@@ -153,7 +159,7 @@ class CollisionStage {
   std::pmr::vector<ProxyIndex> found_;
   std::pmr::vector<std::pair<BodyIndex, BodyIndex>> loaded_touching_;
   Extent space_;
-  std::uint64_t seen_bodies_ = 0, seen_rules_ = 0;
+  std::uint64_t seen_bodies_ = 0, seen_rules_ = 0, seen_scalings_ = 0;
   std::size_t live_ = 0;
   bool look_at_all_ = true;  // pairs must be searched for every proxy, moved or not
   Counters counters_;

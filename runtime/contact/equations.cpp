@@ -13,20 +13,19 @@ namespace breve::contact {
 
 namespace {
 
-constexpr int kMostVelocities = 1200;  // beyond it the matrix is too large: leave the island to the sweeps
+constexpr int kMostVelocities = 3000;  // beyond it the matrix is too large: leave the island to the sweeps
 
 }  // namespace
 
 Equations::Equations(Workspace& work) : work_(work), rows_(3 * work.points.size() + work.scalars.size()) {
-  work.indices.clear();
   if (work.condensed) {
+    work.indices.clear();
     size_ = static_cast<int>(rows_);
     return;
   }
-  for (const Packed& mover : work.movers) {
-    work.indices.push_back(size_);
+  work.indices.resize(work.movers.size());
+  for (const Packed& mover : work.movers)
     if (mover.place != nullptr) size_ += mover.size;
-  }
 }
 
 bool Equations::fits() const { return size_ > 0 && size_ <= kMostVelocities; }

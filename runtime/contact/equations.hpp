@@ -9,6 +9,7 @@ namespace breve::contact {
 /// count three numbers a contact, then one a scalar row. All vectors are in the workspace's buffers.
 class Equations {
  public:
+  /// After order_elimination(): its numbers are used.
   explicit Equations(Workspace& work);
 
   bool fits() const;  // the matrix is not too large

@@ -174,14 +174,16 @@ void pack(std::span<const Mover> movers, std::span<const Row> rows, std::span<co
   }
 }
 
-void start_over(std::span<const double> row_biases, std::span<const double> scalar_biases, Workspace& work) {
+void start_over(std::span<const Push> rows, std::span<const double> scalar_biases, Workspace& work) {
   for (Packed& mover : work.movers)
     if (mover.free) std::fill_n(mover.v, 6, 0.0);
   for (std::size_t i = 0; i < work.points.size(); ++i) {
     Point& c = work.points[i];
     std::fill_n(c.impulse, 3, 0.0);
     c.friction = 0;
-    c.bias = row_biases[i];
+    c.bias = rows[i].velocity;
+    c.response.nn += rows[i].softness - c.softness;
+    c.softness = rows[i].softness;
   }
   for (std::size_t i = 0; i < work.scalars.size(); ++i) {
     work.scalars[i].impulse = 0;

@@ -13,7 +13,7 @@ void pack(std::span<const Mover> movers, std::span<const Row> rows, std::span<co
 
 /// What is packed as it were at rest, without friction and impulses, and with other biases. Velocities of trees are
 /// zero.
-void start_over(std::span<const double> row_biases, std::span<const double> scalar_biases, Workspace& work);
+void start_over(std::span<const Push> rows, std::span<const double> scalar_biases, Workspace& work);
 
 /// Velocities of free bodies go back where they came from.
 void unpack_velocities(const Workspace& work);

@@ -15,6 +15,9 @@ CollisionStage::CollisionStage(std::pmr::memory_resource* memory, Bodies& bodies
       proxy_of_(memory),
       order_(memory),
       paths_(memory),
+      moved_(memory),
+      settling_(memory),
+      put_(memory),
       pairs_(memory),
       new_pairs_(memory),
       impacts_(memory),
@@ -121,7 +124,26 @@ Eigen::AlignedBox3d CollisionStage::box_of_path(const Proxy& proxy) const {
   return swept;
 }
 
+/// The boxes that may be others than in the last sub-step.
+void CollisionStage::update_boxes(const CollisionClient& client) {
+  put_.clear();
+  bodies_->take_put(Follower::Collisions, put_);
+  const std::uint64_t scalings = Shape::scalings();
+  if (look_at_all_ || scalings != seen_scalings_) {
+    for (const ProxyIndex index : order_) update_box(client, index);
+  } else {
+    for (const auto* list : {&moved_, &settling_})
+      for (const ProxyIndex index : *list)
+        if (proxies_[index].body != kNoBody) update_box(client, index);
+    for (const BodyIndex body : put_)
+      if (body < proxy_of_.size() && proxy_of_[body] != kNoProxy) update_box(client, proxy_of_[body]);
+  }
+  seen_scalings_ = scalings;
+  look_at_all_ = false;
+}
+
 void CollisionStage::update_box(const CollisionClient& client, ProxyIndex index) {
+  ++counters_.boxes;
   Proxy& proxy = proxies_[index];
   proxy.box = box_of_path(proxy);
   const Vector3 sides = proxy.box.sizes();
@@ -243,6 +265,7 @@ CollisionStage::Pair* CollisionStage::find_pair(ProxyIndex x, ProxyIndex y) {
 
 std::size_t CollisionStage::bytes() const {
   return tree_.bytes() + proxies_.capacity() * sizeof(Proxy) + paths_.capacity() * sizeof(Path) +
+         (moved_.capacity() + settling_.capacity() + put_.capacity()) * sizeof(ProxyIndex) +
          (pairs_.capacity() + new_pairs_.capacity()) * sizeof(Pair) + impacts_.capacity() * sizeof(Impact) +
          (proxy_of_.capacity() + order_.capacity() + free_proxies_.capacity() + left_.capacity()) * sizeof(ProxyIndex);
 }
@@ -266,6 +289,7 @@ void CollisionStage::load(ByteReader& in) {
   for (std::size_t i = 0; i < count; ++i) {
     const auto a = in.get<BodyIndex>();
     const auto b = in.get<BodyIndex>();
+    if (!bodies_->used(a) || !bodies_->used(b) || a == b) ByteReader::fail();
     loaded_touching_.emplace_back(a, b);
   }
 }

@@ -5,17 +5,29 @@
 
 namespace breve {
 
+/// Only what moves, or did, is gone through: a world may have many more bodies that stand.
 void CollisionStage::start_paths() {
   paths_.clear();
-  for (const ProxyIndex index : order_) {
-    Proxy& proxy = proxies_[index];
-    proxy.path = kNoPath;
-    proxy.impacts = 0;
-    if (!bodies_->active(proxy.body)) continue;
-    proxy.path = static_cast<std::uint32_t>(paths_.size());
-    paths_.emplace_back();
-    paths_.back().from = bodies_->state(proxy.body);
+  settling_.swap(moved_);
+  moved_.clear();
+  for (const ProxyIndex index : settling_) {
+    proxies_[index].path = kNoPath;
+    proxies_[index].impacts = 0;
   }
+  if (bodies_->size() == 0) return;
+  for (const BodyIndex body : bodies_->translating_bodies()) start_path(body);
+  for (const BodyIndex body : bodies_->turning_bodies()) start_path(body);
+  for (const BodyIndex body : bodies_->rigid_bodies()) start_path(body);
+}
+
+void CollisionStage::start_path(BodyIndex body) {
+  const ProxyIndex index = body < proxy_of_.size() ? proxy_of_[body] : kNoProxy;
+  if (index == kNoProxy || proxies_[index].path != kNoPath) return;
+  // Its path is known by its place once there is one: memory may end here.
+  moved_.push_back(index);
+  paths_.emplace_back();
+  paths_.back().from = bodies_->state(body);
+  proxies_[index].path = static_cast<std::uint32_t>(paths_.size() - 1);
 }
 
 void CollisionStage::finish_path(Path& path) {
@@ -67,7 +79,7 @@ Vector3 CollisionStage::image_of_b(const Pair& pair) const {
   return space_.image(proxies_[pair.a].box.center(), proxies_[pair.b].box.center());
 }
 
-bool CollisionStage::touching(const Pair& pair, const Pose& pose_a, const Pose& place_b, Contact& contact) const {
+bool CollisionStage::touching(const Pair& pair, const Pose& pose_a, const Pose& place_b, Contact& contact) {
   const Shape& a = *bodies_->collision_shape(proxies_[pair.a].body);
   const Shape& b = *bodies_->collision_shape(proxies_[pair.b].body);
   const Pose pose_b{place_b.location + image_of_b(pair), place_b.orientation};
@@ -75,8 +87,10 @@ bool CollisionStage::touching(const Pair& pair, const Pose& pose_a, const Pose& 
   // Spheres around both that are apart settle it; also refuses what is not finite.
   const double reach = a.bounding_radius() + b.bounding_radius() + tolerance;
   if (!((pose_a.location - pose_b.location).squaredNorm() <= reach * reach)) return false;
-  contact = closest(a, pose_a, b, pose_b);
-  return contact.distance <= tolerance;
+  NarrowCounters narrow;
+  const bool touch = closest_within(a, pose_a, b, pose_b, tolerance, contact, &narrow);
+  counters_.facets += narrow.facets;
+  return touch;
 }
 
 }  // namespace breve

@@ -6,6 +6,7 @@
 
 #include "runtime/contact/condensed.hpp"
 #include "runtime/contact/direct.hpp"
+#include "runtime/contact/elimination_order.hpp"
 #include "runtime/contact/friction.hpp"
 #include "runtime/contact/pack.hpp"
 #include "runtime/contact/sweep.hpp"
@@ -36,11 +37,16 @@ void solve_directly(Workspace& work, const SolveSettings& settings, SolveReport&
   report.residual = solve_direct(work, settings.tolerance, report.newton, report.direct);  // from nearer
 }
 
+bool pays(Workspace& work, const SolveSettings& settings) {
+  constexpr double kSolves = 5;  // linear ones, of a direct solution that begins near the last step's
+  return kSolves * order_elimination(work) <= settings.direct_share * settings.iterations * sweep_operations(work);
+}
+
 void solve_once(Workspace& work, const SolveSettings& settings, SolveReport& report) {
-  if (settings.direct)
+  if (settings.direct && pays(work, settings))
     solve_directly(work, settings, report);
   else
-    run_sweeps(work, settings.iterations, settings.tolerance, report);
+    run_sweeps(work, settings.iterations, std::max(settings.tolerance, settings.swept), report);
 }
 
 }  // namespace
@@ -61,13 +67,14 @@ SolveReport solve_island(std::span<const Mover> movers, std::span<Row> rows, std
   return report;
 }
 
-SolveReport solve_again(std::span<const double> row_biases, std::span<const double> scalar_biases,
-                        const SolveSettings& settings, Workspace& work) {
+SolveReport solve_again(std::span<Push> rows, std::span<const double> scalar_biases, const SolveSettings& settings,
+                        Workspace& work) {
   SolveReport report;
-  start_over(row_biases, scalar_biases, work);
+  start_over(rows, scalar_biases, work);
   solve_once(work, settings, report);
   expand(work);
   unpack_velocities(work);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].impulse = work.points[i].impulse[0];
   return report;
 }
 

@@ -51,9 +51,12 @@ struct ScalarRow {
 };
 
 struct SolveSettings {
-  int iterations = 10;      // sweeps of the iterative solver; an upper bound, also of its share of a direct solve
-  bool direct = false;      // to `tolerance`, for small islands: Newton's method, and sweeps where it fails
-  double tolerance = 1e-9;  // m/s; sweeps end early when no contact's velocity changes by more
+  int iterations = 10;          // sweeps of the iterative solver; an upper bound, also of its share of a direct solve
+  bool direct = false;          // to `tolerance`, by Newton's method, and sweeps where it fails
+  double tolerance = 1e-9;      // m/s; sweeps end early when no contact's velocity changes by more
+  double direct_share = 1e300;  // a direct solution only where its operations, counted before, are at most this many
+                                // times those of the sweeps
+  double swept = 0;             // m/s, instead of `tolerance`, for a solution by sweeps alone; 0: the same
 };
 
 struct SolveReport {
@@ -71,9 +74,16 @@ struct SolveReport {
 SolveReport solve_island(std::span<const Mover> movers, std::span<Row> rows, std::span<ScalarRow> scalars,
                          const SolveSettings& settings, Workspace& workspace);
 
+/// How a contact's overlap is to be moved apart.
+struct Push {
+  double velocity = 0;  // m/s, at which the two points are to part
+  double softness = 0;  // 1/kg, >= 0: what can hardly give way along the normal is not forced to
+  double impulse = 0;   // along the normal; the result
+};
+
 /// The rows that `workspace` last solved once more, each with another bias, in m/s: from rest, without friction and
 /// without the impulses it had. A free body's v is set to the result; a tree's, which is to be zero before, likewise.
-SolveReport solve_again(std::span<const double> row_biases, std::span<const double> scalar_biases,
-                        const SolveSettings& settings, Workspace& workspace);
+SolveReport solve_again(std::span<Push> rows, std::span<const double> scalar_biases, const SolveSettings& settings,
+                        Workspace& workspace);
 
 }  // namespace breve::contact

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory_resource>
+#include <utility>
 #include <vector>
 
 #include "runtime/contact/cone.hpp"
@@ -81,6 +82,7 @@ struct Workspace {
         indices(memory),
         order(memory),
         firsts(memory),
+        neighbors(memory),
         saved(memory),
         earlier(memory),
         biases(memory),
@@ -95,7 +97,8 @@ struct Workspace {
   std::pmr::vector<double> numbers;  // of the direct solver
   std::pmr::vector<Slope> slopes;
   std::pmr::vector<int> indices;
-  std::pmr::vector<int> order, firsts;  // of impacts in groups
+  std::pmr::vector<int> order, firsts;  // of impacts in groups; of an elimination
+  std::pmr::vector<std::pair<int, int>> neighbors;
   std::pmr::vector<double> saved, earlier, biases;
   bool has_plain = false;
   bool condensed = false;            // see condensed.hpp:

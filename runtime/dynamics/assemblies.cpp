@@ -114,7 +114,9 @@ std::size_t Dynamics::self_penetrations(BodyIndex body) const {
       if ((bodies_->location(a) - bodies_->location(b)).norm() > reach || jointed(a, b)) continue;
       const Pose pa = core_->pose(a), pb = core_->pose(b);
       // Feet that stand on one another touch, and do not intersect.
-      count += closest(x, pa, y, pb).distance < -touch_tolerance(x, pa, y, pb);
+      const double tolerance = touch_tolerance(x, pa, y, pb);
+      Contact contact;
+      count += closest_within(x, pa, y, pb, -tolerance, contact) && contact.distance < -tolerance;
     }
   return count;
 }

@@ -33,6 +33,8 @@ Dynamics::Core::Core(std::pmr::memory_resource* where, Bodies& of)
       island_of(where),
       interventions(where),
       impacts(where),
+      booked(where),
+      unsettled(where),
       scratch(where),
       changed(where),
       changes(where) {}

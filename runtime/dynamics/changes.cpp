@@ -6,9 +6,27 @@
 #include "runtime/articulated/forward_dynamics.hpp"
 #include "runtime/articulated/impulse.hpp"
 #include "runtime/articulated/kinematics.hpp"
-#include "runtime/dynamics/core.hpp"
+#include "runtime/dynamics/stale.hpp"
 
 namespace breve {
+
+bool is_stale(const Dynamics::Core& core, const TreeLink& link) {
+  return !core.bodies->dynamic(link.body) || !(core.bodies->mass_properties(link.body) == link.solid);
+}
+
+bool has_moved_anchor(const Dynamics::Core& core, const Tree& tree) {
+  const Bodies& bodies = *core.bodies;
+  return std::any_of(tree.anchors.begin(), tree.anchors.end(), [&bodies](const TreeAnchor& anchor) {
+    return !bodies.used(anchor.body) || bodies.dynamic(anchor.body) ||
+           bodies.location(anchor.body) != anchor.pose.location ||
+           bodies.orientation(anchor.body).coeffs() != anchor.pose.orientation.coeffs();
+  });
+}
+
+bool is_stale(const Dynamics::Core& core, const Tree& tree) {
+  return has_moved_anchor(core, tree) ||
+         std::any_of(tree.links.begin(), tree.links.end(), [&core](const TreeLink& link) { return is_stale(core, link); });
+}
 
 void Dynamics::Core::note_written(BodyIndex body) {
   BodyEntry& known = *find(body);
@@ -41,39 +59,47 @@ void Dynamics::Core::sync_changes() {
   // By index: the order in which a script set them must not matter to which trees are built first.
   std::sort(changed.begin(), changed.end());
   changes.clear();
+  // Trees that are to be built anew go first: an image holds none of them, and what follows must not know the
+  // difference.
+  for (const BodyIndex body : changed) near.wake(body);
+  drop_stale_trees();
+  for (const BodyIndex body : changed) {
+    const BodyEntry* known = find(body);
+    if (known && known->tree != kNone) continue;
+    unsettled.push_back(body);
+    if (!bodies->dynamic(body) && body < booked.size()) booked[body] = kNoBook;
+  }
   bool late = false;  // a link whose tree is not built yet was moved
   for (const BodyIndex body : changed) {
-    near.wake(body);
-    BodyEntry* known = find(body);
-    if (!known) continue;
-    if (known->tree == kNone) {
-      if (!needs_tree(body)) continue;
-      graph_changed = true;
-      late = late || (known->known && note_change(body, changes));
+    const BodyEntry* known = find(body);
+    if (!known || (known->tree == kNone && !needs_tree(body))) continue;
+    if (known->tree != kNone) {
+      note_change(body, changes);
       continue;
     }
-    const TreeLink& link = trees[known->tree]->links[static_cast<std::size_t>(known->link)];
-    if (!bodies->dynamic(body) || !(bodies->mass_properties(body) == link.solid))
-      drop_tree(known->tree);  // what was set besides is found when it is built again
-    else
-      note_change(body, changes);
+    graph_changed = true;
+    late = late || (known->known && note_change(body, changes));
   }
-  drop_trees_with_moved_anchors();
   if (late) build_trees();
   apply_changes(changes);
 }
 
-void Dynamics::Core::drop_trees_with_moved_anchors() {
-  for (std::uint32_t index = 0; index < trees.size(); ++index) {
-    if (!trees[index]) continue;
-    const auto& anchors = trees[index]->anchors;
-    const bool moved = std::any_of(anchors.begin(), anchors.end(), [this](const TreeAnchor& anchor) {
-      return !bodies->used(anchor.body) || bodies->dynamic(anchor.body) ||
-             bodies->location(anchor.body) != anchor.pose.location ||
-             bodies->orientation(anchor.body).coeffs() != anchor.pose.orientation.coeffs();
-    });
-    if (moved) drop_tree(index);
+/// In their order, in which an image adds up what becomes of their books.
+void Dynamics::Core::drop_stale_trees() {
+  std::pmr::vector<std::uint32_t> stale(memory);
+  for (const BodyIndex body : changed) {
+    const BodyEntry* known = find(body);
+    if (known && known->tree != kNone &&
+        is_stale(*this, trees[known->tree]->links[static_cast<std::size_t>(known->link)]))
+      stale.push_back(known->tree);
   }
+  for (const std::uint32_t index : tree_order)
+    if (has_moved_anchor(*this, *trees[index])) stale.push_back(index);
+  if (stale.empty()) return;
+  std::sort(stale.begin(), stale.end());
+  const std::pmr::vector<std::uint32_t> all(tree_order, memory);
+  for (const std::uint32_t index : all)
+    if (std::binary_search(stale.begin(), stale.end(), index)) drop_tree(index);
 }
 
 void Dynamics::Core::apply_changes(std::span<const Change> all) {

@@ -70,12 +70,15 @@ void Cluster::set_finer(bool on) { finer_now_ = on && finer_.has_value(); }
 void Cluster::begin(StageForces* forces) {
   forces_ = forces;
   working_ = forces != nullptr;
-  for (const Tree* tree : trees_) working_ = working_ || tree->driven;
+  driven_ = working_;
+  for (const Tree* tree : trees_) driven_ = driven_ || tree->driven;
 }
 
 void Cluster::step(double time, double h) {
   read(at_.q, at_.v);
   read_mean();
+  working_ = driven_;
+  for (const Tree* tree : trees_) working_ = working_ || tree->loads.reacts;
   at_.t = time;
   current_step_ = h;
   guess_ = articulated::MotorGuess::None;  // nothing that a step remembers is in no image
@@ -121,9 +124,9 @@ void Cluster::read(Vector& q, Vector& v) const {
 void Cluster::write(const Vector& q, const Vector& v) {
   scatter(q, v);
   for (int i = 0; i < kWorks; ++i) works_[static_cast<std::size_t>(i)] = v[nv_ + i] * mass_;
-  for (Tree* tree : trees_) tree->motor_impulse.setZero();
+  for (Tree* tree : trees_) tree->part_impulse.setZero();
   for (std::size_t i = 0; i < motors_.size(); ++i)
-    trees_[motors_[i].tree]->motor_impulse[motors_[i].own] = v[nv_ + kWorks + static_cast<Eigen::Index>(i)] * mass_;
+    trees_[motors_[i].tree]->part_impulse[motors_[i].own] = v[nv_ + kWorks + static_cast<Eigen::Index>(i)] * mass_;
 }
 
 void Cluster::place(const Vector& q, const Vector& v) {
@@ -157,6 +160,11 @@ void Cluster::acceleration(double t, const Vector& q, const Vector& v, double st
     if (forces_ && !(tree->rings.empty() && tree->held.empty())) forces_->constrain(*tree, a.data() + from);
     torques_.segment(from, n).setZero();
     if (tree->driven) add_powers(*tree, step, v.data() + from, a.data() + from, torques_.data() + from, powers);
+    if (tree->loads.reacts) {
+      const Vector& reaction = tree->loads.reaction;
+      const double half = semi_implicit() ? 0.5 * current_step_ : 0;
+      for (int k = 0; k < n; ++k) powers.reaction += reaction[k] * (v[from + k] + half * a[from + k]);
+    }
     from += n;
   }
   guess_ = articulated::MotorGuess::Last;
@@ -166,7 +174,7 @@ void Cluster::acceleration(double t, const Vector& q, const Vector& v, double st
     powers.script += forces_->script_power();
     powers.drag += forces_->drag_power();
   }
-  a.segment<kWorks>(nv_) << powers.motor / mass_, powers.script / mass_, powers.drag / mass_;
+  a.segment<kWorks>(nv_) << powers.motor / mass_, powers.script / mass_, powers.drag / mass_, powers.reaction / mass_;
   for (std::size_t i = 0; i < motors_.size(); ++i)
     a[nv_ + kWorks + static_cast<Eigen::Index>(i)] = torques_[motors_[i].place] / mass_;
 }
@@ -175,8 +183,7 @@ void Cluster::add_powers(const Tree& tree, double step, const double* v, const d
                          Powers& powers) const {
   // What acts over a semi-implicit step does its work at the mean of the velocities before and after.
   const articulated::Loads& loads = tree.loads;
-  const double half =
-      accuracy_.scheme == articulated::Scheme::SemiImplicitEuler && !finer_now_ ? 0.5 * current_step_ : 0;
+  const double half = semi_implicit() ? 0.5 * current_step_ : 0;
   const double lag = articulated::motor_lag(loads, step);
   for (int i = 0; i < tree.model.size(); ++i) {
     const articulated::Body& body = tree.model.body(i);

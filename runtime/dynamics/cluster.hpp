@@ -58,9 +58,10 @@ class Cluster final : public articulated::System, public InMemory {
 
   // Of the last step.
   const articulated::StepCount& count() const { return (finer_now_ ? finer_ : integrator_)->count(); }
-  double motor_work() const { return works_[0]; }   // J
-  double script_work() const { return works_[1]; }  // J, of forces on joints and bodies
-  double drag_loss() const { return works_[2]; }    // J
+  double motor_work() const { return works_[0]; }     // J
+  double script_work() const { return works_[1]; }    // J, of forces on joints and bodies
+  double drag_loss() const { return works_[2]; }      // J
+  double reaction_work() const { return works_[3]; }  // J, of the trees' Loads::reaction
   double next_step() const { return at_.step; }
   void set_next_step(double step) { at_.step = step; }
   /// How many times the tolerance step control may err by, until set anew.
@@ -77,7 +78,7 @@ class Cluster final : public articulated::System, public InMemory {
   void bend_to_cayley(articulated::Vector& d) override;
 
  private:
-  static constexpr int kWorks = 3;
+  static constexpr int kWorks = 4;
   /// A number of v that a motor drives: its place in the whole vector, whose tree, and its place there.
   struct Motor {
     int place;
@@ -85,11 +86,12 @@ class Cluster final : public articulated::System, public InMemory {
     int own;
   };
   struct Powers {
-    double motor = 0, script = 0, drag = 0;
+    double motor = 0, script = 0, drag = 0, reaction = 0;
   };
   void add_powers(const Tree& tree, double step, const double* v, const double* a, double* torques,
                   Powers& powers) const;
   void make_integrators();
+  bool semi_implicit() const { return accuracy_.scheme == articulated::Scheme::SemiImplicitEuler && !finer_now_; }
   void read_mean();
   void write_mean();
   void scatter(const articulated::Vector& q, const articulated::Vector& v);
@@ -99,7 +101,8 @@ class Cluster final : public articulated::System, public InMemory {
   bool finer_now_ = false;
   int nq_ = 0, nv_ = 0;
   double mass_ = 0;       // kg: works are kept per kg, so that step control sees numbers of ordinary size
-  bool working_ = false;  // some power is not zero
+  bool driven_ = false;   // some power may not be zero
+  bool working_ = false;  // likewise, reactions included
   StageForces* forces_ = nullptr;
   std::pmr::vector<articulated::Kind> kinds_;
   std::pmr::vector<Motor> motors_;  // their impulses are further coordinates, after the works

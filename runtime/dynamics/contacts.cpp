@@ -21,6 +21,10 @@ NearPairs::NearPairs(std::pmr::memory_resource* memory)
       free_(memory),
       proxy_of_(memory),
       movers_(memory),
+      put_(memory),
+      drivers_(memory),
+      woken_(memory),
+      moved_(memory),
       keys_(memory),
       new_keys_(memory),
       pairs_(memory),
@@ -31,7 +35,9 @@ NearPairs::NearPairs(std::pmr::memory_resource* memory)
 void NearPairs::enter(const Bodies& bodies, const DynamicsClient& client, BodyIndex body) {
   ProxyIndex index;
   if (free_.empty()) {
-    if (free_.capacity() <= proxies_.size()) free_.reserve(2 * proxies_.size() + 16);  // leave() takes none
+    // leave() and wake() take none.
+    if (free_.capacity() <= proxies_.size()) free_.reserve(2 * proxies_.size() + 16);
+    if (woken_.capacity() <= proxies_.size()) woken_.reserve(2 * proxies_.size() + 16);
     index = static_cast<ProxyIndex>(proxies_.size());
     reach_.resize(proxies_.size() + 1);
     proxies_.emplace_back();
@@ -43,7 +49,7 @@ void NearPairs::enter(const Bodies& bodies, const DynamicsClient& client, BodyIn
   Proxy& proxy = proxies_[index] = Proxy();
   proxy.body = body;
   proxy.serial = client.serial(body);
-  proxy.moves = bodies.kind(body) != BodyKind::Stationary;
+  proxy.moves = bodies.dynamic(body);
   proxy_of_[body] = index;
 }
 
@@ -53,10 +59,12 @@ void NearPairs::leave(ProxyIndex index) {
   const BodyIndex body = proxy.body;
   std::erase_if(keys_, [&](PairKey& key) {
     const bool of_body = key.a == body || key.b == body;
+    if (of_body && key.at != PairKey::kNone) wake(key.a == body ? key.b : key.a);
     if (of_body) release(key);
     return of_body;
   });
   proxy_of_[body] = kNoProxy;
+  std::erase(woken_, index);
   proxy = Proxy();
   free_.push_back(index);
 }
@@ -70,42 +78,87 @@ void NearPairs::gather(const Bodies& bodies, const DynamicsClient& client) {
   proxy_of_.resize(bodies.index_end(), kNoProxy);
   movers_.clear();
   for (BodyIndex body = 0; body < proxy_of_.size(); ++body) {
-    const bool solid = bodies.used(body) && (bodies.kind(body) == BodyKind::Stationary || bodies.physics(body));
-    const bool known = proxy_of_[body] != kNoProxy;
+    const bool dynamic = bodies.dynamic(body), solid = dynamic || bodies.driver(body);
+    bool known = proxy_of_[body] != kNoProxy;
+    if (known && (!solid || proxies_[proxy_of_[body]].moves != dynamic)) {
+      leave(proxy_of_[body]);
+      known = false;
+    }
     if (solid && !known) enter(bodies, client, body);
-    if (!solid && known) leave(proxy_of_[body]);
-    if (solid && bodies.kind(body) != BodyKind::Stationary) movers_.push_back(body);
+    if (dynamic) movers_.push_back(body);
   }
   std::sort(movers_.begin(), movers_.end(), [this](BodyIndex x, BodyIndex y) { return serial(x) < serial(y); });
 }
 
-void NearPairs::refresh(const Bodies& bodies, const DynamicsClient& client, const Vector3& gravity, double h) {
+void NearPairs::refresh(Bodies& bodies, const DynamicsClient& client, const Vector3& gravity, double h) {
   const bool again = std::exchange(incomplete_, true);
-  if (again || bodies.revision() != seen_bodies_) {
+  const bool gathers = again || bodies.revision() != seen_bodies_;
+  if (gathers) {
     gather(bodies, client);
     seen_bodies_ = bodies.revision();
   }
   fresh_.clear();
   new_keys_.clear();
-  // After an update that was not ended nobody knows which boxes moved.
-  for (Reach& reach : reach_) reach.moved = again;
-  for (Proxy& proxy : proxies_)
-    if (proxy.body != kNoBody) update_box(bodies, proxy, gravity, h);
+  for (const ProxyIndex index : moved_) reach_[index].moved = false;
+  moved_.clear();
+  bodies.take_put(Follower::Dynamics, put_);
+  find_drivers(bodies);
+  const std::uint64_t scalings = Shape::scalings();
+  update_boxes(bodies, gathers || scalings != seen_scalings_, gravity, h);
+  put_.clear();
+  seen_scalings_ = scalings;
   if (!again) return;
+  // After an update that was not ended nobody knows which boxes moved.
+  for (ProxyIndex index = 0; index < reach_.size(); ++index) mark_moved(index);
   for (ProxyIndex index = 0; index < proxies_.size(); ++index)
     if (proxies_[index].leaf != BoxTree::kNoLeaf) seek(index);
 }
 
+/// Bodies that move without forces, in the order of their indices: the stages' own order depends on the past.
+void NearPairs::find_drivers(const Bodies& bodies) {
+  drivers_.clear();
+  for (const std::pmr::vector<BodyIndex>* some : {&bodies.translating_bodies(), &bodies.turning_bodies()})
+    for (const BodyIndex body : *some)
+      if (bodies.driver(body)) drivers_.push_back(body);
+  std::sort(drivers_.begin(), drivers_.end());
+  drivers_.erase(std::unique(drivers_.begin(), drivers_.end()), drivers_.end());
+}
+
+/// What stands where it was is not gone through: a world may have many more bodies that stand than bodies that move.
+void NearPairs::update_boxes(const Bodies& bodies, bool all, const Vector3& gravity, double h) {
+  if (all) {
+    for (Proxy& proxy : proxies_)
+      if (proxy.body != kNoBody) update_box(bodies, proxy, gravity, h);
+    return;
+  }
+  for (const BodyIndex body : movers_) update_box(bodies, proxies_[proxy_of_[body]], gravity, h);
+  const auto update_driver = [&](BodyIndex body) {
+    if (body >= proxy_of_.size() || proxy_of_[body] == kNoProxy) return;
+    Proxy& proxy = proxies_[proxy_of_[body]];
+    if (!proxy.moves) update_box(bodies, proxy, gravity, h);
+  };
+  for (const std::pmr::vector<BodyIndex>* some : {&put_, &drivers_})
+    std::for_each(some->begin(), some->end(), update_driver);
+}
+
+void NearPairs::mark_moved(ProxyIndex index) {
+  if (std::exchange(reach_[index].moved, true)) return;
+  moved_.push_back(index);
+}
+
 void NearPairs::update_box(const Bodies& bodies, Proxy& proxy, const Vector3& gravity, double h) {
+  ++boxes_;
   const Shape* shape = bodies.collision_shape(proxy.body).get();
   const Vector3& location = bodies.location(proxy.body);
   const Quaternion orientation = bodies.orientation(proxy.body);
-  const bool still = proxy.leaf != BoxTree::kNoLeaf && proxy.shape == shape && proxy.location == location &&
+  const bool still = proxy.leaf != BoxTree::kNoLeaf && proxy.shape == shape &&
+                     proxy.shape_changes == shape->changes() && proxy.location == location &&
                      proxy.orientation.coeffs() == orientation.coeffs();
   if (still && !proxy.wide && (!proxy.moves || proxy.rest.asleep)) return;
   proxy.wide = false;
   proxy.speed = proxy.moves ? bodies.velocity(proxy.body).norm() : 0;
   proxy.shape = shape;
+  proxy.shape_changes = shape->changes();
   proxy.location = location;
   proxy.orientation = orientation;
   const auto index = static_cast<ProxyIndex>(&proxy - proxies_.data());
@@ -113,6 +166,11 @@ void NearPairs::update_box(const Bodies& bodies, Proxy& proxy, const Vector3& gr
   reach.box = shape->bounds(orientation.toRotationMatrix());
   reach.box.translate(location);
   Vector3 room = Vector3::Constant(1e-3 * shape->bounding_radius());
+  if (!proxy.moves && bodies.moving(proxy.body)) {
+    // It stands at the end of its way, which it turned on too.
+    const double turn = bodies.rotational_velocity(proxy.body).norm() * h * shape->bounding_radius();
+    room += h * bodies.velocity(proxy.body).cwiseAbs() + Vector3::Constant(std::min(turn, shape->bounding_radius()));
+  }
   if (proxy.moves) {
     // What it may reach: straight on, falling, turning; twice as far, since it may be pushed on the way.
     const double turn = bodies.rotational_velocity(proxy.body).norm() * h * shape->bounding_radius();
@@ -124,12 +182,12 @@ void NearPairs::update_box(const Bodies& bodies, Proxy& proxy, const Vector3& gr
   if (!reach.box.min().allFinite() || !reach.box.max().allFinite()) {
     // A body that flew out of the numbers touches nothing.
     reach.box.setEmpty();
-    reach.moved = true;
+    mark_moved(index);
     if (proxy.leaf != BoxTree::kNoLeaf) tree_.remove(std::exchange(proxy.leaf, BoxTree::kNoLeaf));
     return;
   }
   if (proxy.leaf != BoxTree::kNoLeaf && tree_.box(proxy.leaf).contains(reach.box)) return;
-  reach.moved = true;
+  mark_moved(index);
   Eigen::AlignedBox3d roomy = reach.box;
   if (proxy.moves) {
     constexpr double kRoom = 0.1;  // of the radius: slow bodies keep their box for many steps
@@ -246,7 +304,9 @@ std::size_t NearPairs::bytes() const {
   return tree_.bytes() + proxies_.capacity() * sizeof(Proxy) + reach_.capacity() * sizeof(Reach) +
          pairs_.capacity() * sizeof(NearPair) + (keys_.capacity() + new_keys_.capacity()) * sizeof(PairKey) +
          free_pairs_.capacity() * sizeof(std::uint32_t) +
-         (free_.capacity() + proxy_of_.capacity() + movers_.capacity()) * sizeof(BodyIndex);
+         (free_.capacity() + proxy_of_.capacity() + movers_.capacity() + put_.capacity() + drivers_.capacity() +
+          moved_.capacity()) *
+             sizeof(BodyIndex);
 }
 
 // What a pair remembers is state; boxes and which pairs are near are found again. A pair that is kept because boxes are
@@ -271,6 +331,7 @@ void NearPairs::save(ByteWriter& out) const {
     out.put(pair.touching);
     out.put(pair.cache.axis);
     out.put(pair.cache.feature);
+    out.put(pair.cache.apart);
     const contact::Spring& spring = pair.spring;
     for (const double number :
          {spring.stiffness, spring.in, spring.out, spring.tangential_stiffness, spring.tangential_damping, pair.stored})
@@ -280,7 +341,8 @@ void NearPairs::save(ByteWriter& out) const {
       const WarmPoint& point = pair.warm[static_cast<std::size_t>(i)];
       out.put(point.feature);
       out.put(point.slides);
-      out.put(point.impulse);
+      out.put(point.force);
+      out.put(point.before);
     }
   });
   count = 0;
@@ -300,14 +362,18 @@ void NearPairs::load(ByteReader& in, const Bodies& bodies) {
   proxy_of_.resize(bodies.index_end(), kNoProxy);
   const auto make = [&](BodyIndex body, std::uint64_t serial) {
     if (!bodies.used(body)) ByteReader::fail();
-    if (proxy_of_[body] != kNoProxy) return;
+    if (proxy_of_[body] != kNoProxy) {
+      if (proxies_[proxy_of_[body]].serial != serial) ByteReader::fail();
+      return;
+    }
     proxy_of_[body] = static_cast<ProxyIndex>(proxies_.size());
     free_.reserve(proxies_.size() + 1);
+    woken_.reserve(proxies_.size() + 1);
     reach_.resize(proxies_.size() + 1);
     proxies_.emplace_back();
     proxies_.back().body = body;
     proxies_.back().serial = serial;
-    proxies_.back().moves = bodies.kind(body) != BodyKind::Stationary;
+    proxies_.back().moves = bodies.dynamic(body);
   };
   const std::size_t count = in.get_count(2 * sizeof(BodyIndex));
   for (std::size_t i = 0; i < count; ++i) {
@@ -320,6 +386,7 @@ void NearPairs::load(ByteReader& in, const Bodies& bodies) {
     pair.touching = in.get_bool();
     pair.cache.axis = in.get_vector();
     pair.cache.feature = in.get<std::uint32_t>();
+    pair.cache.apart = in.get<std::uint32_t>();
     contact::Spring& spring = pair.spring;
     for (double* number : {&spring.stiffness, &spring.in, &spring.out, &spring.tangential_stiffness,
                            &spring.tangential_damping, &pair.stored})
@@ -330,9 +397,10 @@ void NearPairs::load(ByteReader& in, const Bodies& bodies) {
       WarmPoint& point = pair.warm[static_cast<std::size_t>(k)];
       point.feature = in.get<std::uint32_t>();
       point.slides = in.get_bool();
-      point.impulse = in.get_vector();
+      point.force = in.get_vector();
+      point.before = in.get<double>();
     }
-    if (!keys_.empty() && !earlier(keys_.back(), key)) ByteReader::fail();
+    if (key.a == key.b || (!keys_.empty() && !earlier(keys_.back(), key))) ByteReader::fail();
     make(key.a, key.serial_a);
     make(key.b, key.serial_b);
     key.at = static_cast<std::uint32_t>(pairs_.size());
@@ -354,11 +422,15 @@ void NearPairs::hash(Hasher& hasher) const {
     if (!remembers(pair)) return;
     hasher.add(key.serial_a);
     hasher.add(key.serial_b);
-    hasher.add(static_cast<std::uint64_t>(pair.touching) | std::uint64_t{pair.cache.feature} << 8);
+    hasher.add(static_cast<std::uint64_t>(pair.touching) | std::uint64_t{pair.cache.apart} << 1 |
+               std::uint64_t{pair.cache.feature} << 8);
     hasher.add(pair.cache.axis);
     hasher.add(pair.spring.stiffness);
     hasher.add(pair.stored);
-    for (int i = 0; i < pair.warm_count; ++i) hasher.add(pair.warm[static_cast<std::size_t>(i)].impulse);
+    for (int i = 0; i < pair.warm_count; ++i) {
+      hasher.add(pair.warm[static_cast<std::size_t>(i)].force);
+      hasher.add(pair.warm[static_cast<std::size_t>(i)].before);
+    }
   });
   for (BodyIndex body = 0; body < proxy_of_.size(); ++body)
     if (const Rest* rest = find_rest(body); rest && rest->still > 0) hasher.add(rest->still);

@@ -15,8 +15,9 @@ namespace breve {
 /// What a contact point remembers of the last sub-step, world axes.
 struct WarmPoint {
   std::uint32_t feature = 0;
-  bool slides = false;                // of a spring
-  Vector3 impulse = Vector3::Zero();  // N*s, to start from in the next; of a spring its stretch along the surface, m
+  bool slides = false;              // of a spring
+  Vector3 force = Vector3::Zero();  // N, to start from in the next; of a spring its stretch along the surface, m
+  double before = 0;                // N, along the normal, in the sub-step before
 };
 
 /// Two bodies whose roomy boxes meet. There are several times as many as pairs that may touch, and all are gone through
@@ -38,6 +39,7 @@ struct NearPair {
   bool reported = false;  // the handler was called in this step
   PairCache cache;
   contact::Law law;
+  bool law_known = false;  // `law` is of a step that was taken
   contact::Spring spring;  // that its surfaces are, until they part; stiffness 0: they are rigid
   double stored = 0;       // J, in that
   int warm_count = 0;
@@ -52,11 +54,11 @@ class NearPairs {
   /// @param rules    grows when an answer of `wanted` may have changed
   /// @param strikes  what is struck within the step is to meet what it reaches then
   template <class Wanted>
-  void update(const Bodies& bodies, const DynamicsClient& client, const Vector3& gravity, double h, std::uint64_t rules,
+  void update(Bodies& bodies, const DynamicsClient& client, const Vector3& gravity, double h, std::uint64_t rules,
               bool strikes, const Wanted& wanted) {
     refresh(bodies, client, gravity, h);
     if (rules != seen_rules_ || unasked_)
-      for (PairKey& key : keys_) wanted(key);
+      for (PairKey& key : keys_) ask_again(key, wanted);
     seen_rules_ = rules;
     unasked_ = true;
     merge();
@@ -98,15 +100,31 @@ class NearPairs {
   const Rest* find_rest(BodyIndex body) const {
     return body < proxy_of_.size() && proxy_of_[body] != kNoProxy ? &proxies_[proxy_of_[body]].rest : nullptr;
   }
-  void wake(BodyIndex body) {
-    if (body < proxy_of_.size() && proxy_of_[body] != kNoProxy) proxies_[proxy_of_[body]].rest = {};
+  bool asleep(BodyIndex body) const {
+    const Rest* known = find_rest(body);
+    return known && known->asleep;
   }
+  /// Something about the body changed: it is awake, and so will be what it touches.
+  void wake(BodyIndex body);
+  void wake_all();
+  /// Wakes what touches a body that was woken, moved or scaled since the last update, or made of another material.
+  void wake_disturbed(Bodies& bodies);
   std::size_t bytes() const;
+  std::uint64_t boxes() const { return boxes_; }  // of bodies, looked at so far
   void save(ByteWriter& out) const;
   void load(ByteReader& in, const Bodies& bodies);
   void hash(Hasher& hasher) const;
 
  private:
+  /// Bodies that push each other from now on, or no longer, are awake.
+  template <class Wanted>
+  void ask_again(PairKey& key, const Wanted& wanted) {
+    const bool pushed = key.pushes || key.at != PairKey::kNone;
+    wanted(key);
+    if (key.pushes == pushed) return;
+    wake(key.a);
+    wake(key.b);
+  }
   using ProxyIndex = std::uint32_t;
   static constexpr ProxyIndex kNoProxy = 0xffffffffU;
   struct Proxy {
@@ -118,19 +136,26 @@ class NearPairs {
     Vector3 location = Vector3::Zero();  // of a body that does not move by itself, when its box was found
     Quaternion orientation{1, 0, 0, 0};
     const Shape* shape = nullptr;
+    std::uint64_t shape_changes = 0;
     double speed = 0;   // m/s, that it has or may be given
     bool wide = false;  // by what may strike it
+    bool woken = false;  // from sleep, by what changed it: those that touch it are to wake
   };
   /// Apart from the rest of a proxy, since each pair looks at two of them.
   struct Reach {
     Eigen::AlignedBox3d box;  // in this step
     bool moved = false;       // its roomy box, in this update
   };
+  bool displaced(const Bodies& bodies, const Proxy& proxy) const;
+  void wake_met(const Bodies& bodies, const Proxy& proxy);
   void gather(const Bodies& bodies, const DynamicsClient& client);
-  void refresh(const Bodies& bodies, const DynamicsClient& client, const Vector3& gravity, double h);
+  void find_drivers(const Bodies& bodies);
+  void refresh(Bodies& bodies, const DynamicsClient& client, const Vector3& gravity, double h);
   void enter(const Bodies& bodies, const DynamicsClient& client, BodyIndex body);
   void leave(ProxyIndex index);
+  void update_boxes(const Bodies& bodies, bool all, const Vector3& gravity, double h);
   void update_box(const Bodies& bodies, Proxy& proxy, const Vector3& gravity, double h);
+  void mark_moved(ProxyIndex index);
   void seek(ProxyIndex index);
   PairKey* find_key(std::uint64_t serial_a, std::uint64_t serial_b);
   bool near(const PairKey& key) const;
@@ -145,13 +170,17 @@ class NearPairs {
   std::pmr::vector<Proxy> proxies_;
   std::pmr::vector<Reach> reach_;  // of proxies
   std::pmr::vector<ProxyIndex> free_, proxy_of_;
-  std::pmr::vector<BodyIndex> movers_;
+  std::pmr::vector<BodyIndex> movers_, put_;
+  std::pmr::vector<BodyIndex> drivers_;  // that move without forces
+  std::pmr::vector<ProxyIndex> woken_;
+  std::pmr::vector<ProxyIndex> moved_;  // whose roomy boxes moved in the last update
   std::pmr::vector<PairKey> keys_, new_keys_;
   std::pmr::vector<NearPair> pairs_;  // in places that are used again
   std::pmr::vector<std::uint32_t> free_pairs_;
   std::pmr::vector<std::size_t> fresh_;
   std::pmr::vector<std::uint32_t> found_;
-  std::uint64_t seen_rules_ = 0, seen_bodies_ = ~std::uint64_t{0};
+  std::uint64_t boxes_ = 0;
+  std::uint64_t seen_rules_ = 0, seen_bodies_ = ~std::uint64_t{0}, seen_scalings_ = 0;
   // Memory ended in the last update: all is to be looked for again, and `wanted` to be asked of all.
   bool incomplete_ = false, unasked_ = false;
 };

@@ -2,6 +2,8 @@
 // works on it: joints, assemblies, trees, motion, ledger, save.
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -17,6 +19,10 @@ namespace breve {
 
 inline constexpr std::uint32_t kNone = 0xffffffffU;
 
+/// Energy of what the ledger does not know yet: it comes with what it has when it first takes part in a step.
+inline constexpr double kNoBook = std::numeric_limits<double>::quiet_NaN();
+inline bool in_books(double booked) { return !std::isnan(booked); }
+
 struct JointEntry {
   bool used = false;
   ObjectId owner;
@@ -28,14 +34,18 @@ struct JointEntry {
   bool flipped = false;  // the tree goes from the child to the parent
   bool ring = false;
   JointVector position = Vector3::Zero();  // as last known: whole turns are counted from here
-  JointVector limit = Vector3::Zero();     // impulse of the limits in the last sub-step; > 0: of the lower one
+  // Forces, N or N*m, in the last sub-step: of the limits, > 0 of the lower one; in the one before; of the motor's
+  // rows.
+  JointVector limit = Vector3::Zero(), limit_before = Vector3::Zero(), motor = Vector3::Zero();
 };
 
 struct SpringEntry {
   bool used = false;
   ObjectId owner;
   SpringDescription is;
-  double force = 0;  // N, in the last sub-step
+  double force = 0;         // N, in the last sub-step
+  double booked = kNoBook;  // J, that it holds by the books
+  bool set = true;          // since a step was taken
 };
 
 /// What dynamics knows of a body beside the arrays; only bodies that it has to do with have one.
@@ -141,6 +151,9 @@ struct Dynamics::Core : InMemory {
   std::pmr::vector<Intervention> interventions;
   std::pmr::vector<Impact> impacts;
   Energy account;  // works and losses of all since the ledger began
+  // J, by body: what those without a tree have by the books. What differs when a step begins, scripts did.
+  std::pmr::vector<double> booked;
+  std::pmr::vector<BodyIndex> unsettled;  // of them, those that were set since; may name some twice
   std::pmr::vector<BodyIndex> scratch, changed;
   std::pmr::vector<Change> changes;
   std::uint64_t search = 0;  // the number of the last one
@@ -185,6 +198,8 @@ struct Dynamics::Core : InMemory {
   void build_trees();
   void drop_tree(std::uint32_t tree);
   void build_tree(std::span<const BodyIndex> component);
+  double unbook(const Tree& tree, std::span<double> books) const;
+  double book_together(std::span<const BodyIndex> component);
   void read_state(Tree& tree) const;
   std::pair<Quaternion, Vector3> between(const JointDescription& is) const;  // the child as seen from the parent
   void project_velocities(Tree& tree);
@@ -235,6 +250,12 @@ struct Dynamics::Core : InMemory {
   double tie_energy_in(const SpringDescription& is) const;
   double tie_energy(const SpringDescription& is) const;
   Energy free_energy(BodyIndex body) const;
+  double book_of(BodyIndex body) const { return body < booked.size() ? booked[body] : kNoBook; }
+  void enter_books();
+  double settle_books(bool write);
+  double settle_tree(Tree& tree, bool write);
+  double settle_tie(SpringEntry& tie, bool write);
+  bool known_to_books(BodyIndex body) const;
   void add_stored(Energy& sum);
 
   // save.cpp
@@ -255,7 +276,7 @@ struct Dynamics::Core : InMemory {
   void move_tree(Tree& tree, const Pose& from, const Pose& to);
   bool note_change(BodyIndex body, std::pmr::vector<Change>& out) const;  // false if the arrays hold what was written
   void apply_changes(std::span<const Change> all);
-  void drop_trees_with_moved_anchors();
+  void drop_stale_trees();
   void strike(Tree& tree, std::span<const Change> all);
   void solve_strike(Tree& tree, std::span<const Change* const> struck);
 };

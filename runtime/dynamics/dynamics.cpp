@@ -117,7 +117,13 @@ void Dynamics::set_length_unit(double metres) {
 
 void Dynamics::set_gravity(const Vector3& gravity) {
   if (!gravity.allFinite()) throw Error(ErrorCode::Argument, "gravity must be finite");
-  core().settings.gravity = gravity;
+  if (gravity == core().settings.gravity) return;
+  Core& c = core();
+  c.settings.gravity = gravity;
+  c.near.wake_all();
+  // What it changes of the energy of height is the script's work.
+  c.unsettled.insert(c.unsettled.end(), c.near.movers().begin(), c.near.movers().end());
+  for (const std::uint32_t index : c.tree_order) c.trees[index]->changed = true;
 }
 const Vector3& Dynamics::gravity() const { return core_ ? core_->settings.gravity : kSettings.gravity; }
 
@@ -132,7 +138,10 @@ const Accuracy& Dynamics::accuracy() const { return core_ ? core_->settings.accu
 void Dynamics::set_guard(GuardMode mode) { core().settings.guard = mode; }
 GuardMode Dynamics::guard() const { return core_ ? core_->settings.guard : kSettings.guard; }
 
-void Dynamics::set_sleeping(bool on) { core().settings.sleeping = on; }
+void Dynamics::set_sleeping(bool on) {
+  core().settings.sleeping = on;
+  if (!on) core().near.wake_all();
+}
 bool Dynamics::sleeping() const { return core_ && core_->settings.sleeping; }
 
 void Dynamics::set_fast_contacts(int iterations) {
@@ -238,6 +247,7 @@ void Dynamics::abandon() {
 void Dynamics::forget(BodyIndex body) {
   if (!core_) return;
   core_->near.forget(body);
+  if (body < core_->booked.size()) core_->booked[body] = kNoBook;
   if (core_->find(body)) core_->forget(body);
 }
 

@@ -21,13 +21,16 @@ void Dynamics::Core::forget(BodyIndex body) {
     for (const BodyIndex end : {springs[i].is.a, springs[i].is.b}) {
       BodyEntry& one = *find(end);
       --one.ties;
+      near.wake(end);
       if (!needs_tree(end) && one.tree != kNone) drop_tree(one.tree);
     }
+    if (in_books(springs[i].booked)) account.script_work -= springs[i].booked;
     springs[i] = SpringEntry();
     free_springs.push_back(i);
     clusters_changed = true;
   }
   near.forget(body);
+  if (body < booked.size()) booked[body] = kNoBook;
   own.erase(body);
   const std::uint32_t index = entry_of[body];
   entry_of[body] = kNone;
@@ -37,7 +40,7 @@ void Dynamics::Core::forget(BodyIndex body) {
 
 std::size_t Dynamics::Core::bytes() const {
   std::size_t sum = sizeof(Core) + joints.capacity() * sizeof(JointEntry) + springs.capacity() * sizeof(SpringEntry) +
-                    entries.capacity() * sizeof(BodyEntry) + entry_of.capacity() * sizeof(std::uint32_t);
+                    entries.capacity() * sizeof(BodyEntry) + entry_of.capacity() * sizeof(std::uint32_t) + booked.capacity() * sizeof(double);
   for (const auto& tree : trees)
     if (tree)
       sum += sizeof(Tree) + tree->reserved.bytes() + tree->links.capacity() * sizeof(TreeLink) +

@@ -6,6 +6,7 @@
 
 #include "runtime/articulated/forward_dynamics.hpp"
 #include "runtime/articulated/kinematics.hpp"
+#include "runtime/base/rotation_vector.hpp"
 #include "runtime/dynamics/sprung_motion.hpp"
 
 namespace breve {
@@ -18,6 +19,7 @@ Island::Island(Dynamics::Core& core, std::pmr::memory_resource* memory)
       pair_start_(memory),
       roles_(memory),
       free_(memory),
+      pair_drivers_(memory),
       clusters_(memory),
       trees_(memory),
       pairs_(memory),
@@ -29,8 +31,17 @@ Island::Island(Dynamics::Core& core, std::pmr::memory_resource* memory)
       laws_(memory),
       numbers_(memory),
       manifolds_(memory),
-      apart_(memory),
-      apart_scalars_(memory),
+      pushes_(memory),
+      push_scalars_(memory),
+      outer_(memory),
+      rebounding_(memory),
+      free_rates_(memory),
+      plain_rates_(memory),
+      rates_(memory),
+      plain_impulses_(memory),
+      impulses_(memory),
+      plain_scalars_(memory),
+      motors_(memory),
       ring_errors_(memory),
       start_poses_(memory),
       rebound_later_(memory),
@@ -38,7 +49,10 @@ Island::Island(Dynamics::Core& core, std::pmr::memory_resource* memory)
       found_(memory),
       depths_(memory),
       before_(memory),
-      warm_(memory),
+      predicted_(memory),
+      predicted_limits_(memory),
+      before_force_(memory),
+      struck_(memory),
       scalars_before_(memory),
       overlaps_(memory),
       workspace_(memory),
@@ -48,6 +62,8 @@ Island::~Island() = default;
 
 void Island::clear() {
   free_.clear();
+  drivers_ = 0;
+  pair_drivers_.clear();
   clusters_.clear();
   trees_.clear();
   pairs_.clear();
@@ -82,13 +98,44 @@ void Island::add_free(BodyIndex body) {
   accuracy_set_ = true;
 }
 
+namespace {
+// An impulse on what only moves as it was told: none that could be seen.
+constexpr double kUnmoved = 1e-100;  // 1/kg
+const MassProperties kDriver{1 / kUnmoved, Matrix3::Identity() / kUnmoved, Vector3::Zero(), true};
+}  // namespace
+
+/// One for each pair: what stands on it would else be connected through it, and dear to solve.
+void Island::add_drivers(const NearPair& pair) {
+  pair_drivers_.push_back(-1);
+  for (const BodyIndex body : {pair.a, pair.b}) {
+    if (core_.bodies->dynamic(body) || !core_.bodies->moving(body)) continue;
+    pair_drivers_.back() = static_cast<int>(free_.size());
+    Free one{};
+    one.body = body;
+    one.driver = true;
+    one.now.solid = &kDriver;
+    free_.push_back(one);
+    ++drivers_;
+  }
+}
+
+/// To where it was h seconds ago: the arrays have it at the end of its way.
+void Island::put_driver(Free& one, double h) {
+  FreeBody& now = one.now;
+  now.velocity = core_.bodies->velocity(one.body);
+  now.spin = core_.bodies->spin(one.body);
+  now.center = core_.bodies->location(one.body) - h * now.velocity;
+  now.orientation = (rotation_by(-h * now.spin) * core_.bodies->orientation(one.body)).normalized();
+}
+
 void Island::add_cluster(ClusterEntry& cluster) {
-  clusters_.push_back({&cluster, std::nullopt, 0, {}});
+  clusters_.push_back({&cluster, std::nullopt, 0, false, {}, 0, {}});
   for (const std::uint32_t index : cluster.trees) {
     Tree* tree = core_.trees[index].get();
     tree->slot = static_cast<int>(trees_.size());
     trees_.push_back(tree);
-    const int mover = static_cast<int>(free_.size()) + tree->slot;
+    // What joints hold without a degree of freedom is like what does not move.
+    const int mover = tree->model.velocities() > 0 ? static_cast<int>(free_.size()) + tree->slot : -1;
     for (std::size_t i = 0; i < tree->links.size(); ++i)
       core_.place_of[tree->links[i].body] = {tree, mover, static_cast<int>(i)};
   }
@@ -109,7 +156,7 @@ bool Island::calls_out() const {
 }
 
 void Island::append_bodies(std::pmr::vector<BodyIndex>& out) const {
-  for (const Free& one : free_) out.push_back(one.body);
+  for (const Free& one : loose_bodies()) out.push_back(one.body);
   for (Tree* tree : trees_)
     for (const TreeLink& link : tree->links) out.push_back(link.body);
 }
@@ -120,10 +167,16 @@ void Island::step_once(DynamicsClient* client, double start, double h) {
   for (Tree* tree : trees_) {
     bounded = bounded || !tree->rings.empty();
     for (const TreeLink& link : tree->links)
-      bounded = bounded || (link.joint != kNoJoint && Dynamics::Core::has_limits(core_.joints[link.joint]));
+      bounded =
+          bounded || link.motor || (link.joint != kNoJoint && Dynamics::Core::has_limits(core_.joints[link.joint]));
   }
+  touches_.clear();
+  bounds_.clear();
   rows_.clear();
   scalars_.clear();
+  motors_.clear();
+  ring_errors_.clear();
+  spent_ = false;
   if (pairs_.empty() && !bounded) {
     placed_ = false;
     step_quiet(start, h);
@@ -144,6 +197,7 @@ void Island::begin(DynamicsClient* client, double h) {
       tree.limit_force.setZero();
       tree.held.clear();
     }
+    one.loose = loose(one);
     one.stage.emplace(core_, *one.entry, client);
     const bool pressed = has_contact_springs() && !pairs_.empty();
     one.entry->system->begin(one.stage->needed() || pressed ? &*one.stage : nullptr);
@@ -202,7 +256,7 @@ void Island::commit() {
 }
 
 void Island::write() {
-  for (const Free& one : free_) {
+  for (const Free& one : loose_bodies()) {
     write_free(*core_.bodies, one.body, one.now);
     if (BodyEntry* known = core_.find(one.body)) known->step = one.next;
   }
@@ -214,10 +268,11 @@ void Island::write() {
       else
         core_.place_links(*core_.trees[index]);
     }
+  book();
 }
 
 Pose Island::pose_of(BodyIndex body) const {
-  const BodyPlace& side = core_.place_of[body];
+  const BodyPlace side = place_of(body);
   if (side.mover < 0) return core_.pose(body);
   if (side.tree) return side.tree->pose(side.link);
   const FreeBody& free = free_[static_cast<std::size_t>(side.mover)].now;
@@ -225,7 +280,7 @@ Pose Island::pose_of(BodyIndex body) const {
 }
 
 Vector3 Island::point_velocity(BodyIndex body, const Vector3& point) const {
-  const BodyPlace& side = core_.place_of[body];
+  const BodyPlace side = place_of(body);
   if (side.mover < 0) return Vector3::Zero();
   if (side.tree) return articulated::point_velocity(side.tree->data, side.link, point);
   const FreeBody& free = free_[static_cast<std::size_t>(side.mover)].now;

@@ -30,9 +30,11 @@ class Island : public InMemory {
   // --- what belongs to it, set before a step
   void clear();
   void add_free(BodyIndex body);
+  void add_drivers(const NearPair& pair);   // after all free bodies: of each pair in turn
   void add_cluster(ClusterEntry& cluster);  // after all free bodies
   void add_pair(NearPair& pair);
   bool empty() const { return free_.empty() && clusters_.empty(); }
+  bool has_drivers() const { return drivers_ > 0; }
 
   /// Moves it from `start` by h seconds; write() is to follow, but for a step that is unfinished. Touches nothing that
   /// is not the island's if there is no client: on any thread then.
@@ -44,7 +46,8 @@ class Island : public InMemory {
   void append_bodies(std::pmr::vector<BodyIndex>& out) const;
   /// Slow enough to sleep, all of it.
   bool still() const;
-  void stop();   // all velocities zero
+  enum class Momenta : bool { Take, Keep };  // the last of what nothing outside touches
+  void stop(Momenta momenta);                // all velocities zero but these
   void write();  // to the arrays
 
   /// Adds to `j` (nv) how the velocity of a link's point along `axis` (or its spin about it) depends on v; the tree's
@@ -66,7 +69,9 @@ class Island : public InMemory {
   static constexpr double kSkin = 1e-3, kTouchSkin = 1e-4, kMetSkin = 1e-9;
   static constexpr double kTurnRoom = 0.02;   // of the radius, which turning may bring nearer in a sub-step
   static constexpr double kTiny = 1e-9;       // of stored energy: round-off of sums
+  static constexpr double kStill = 1e-6;      // of weight(): what may be unexplained of a step of what hardly moves
   static constexpr double kCoarse = 1e-3;     // tolerances of step control from which contacts are seen less exactly
+  static constexpr double kFew = 0.01;        // of what moves: what may be taken from it without trying again
   static constexpr double kLimitSkin = 1e-6;  // rad or m
 
   struct Free {
@@ -74,12 +79,23 @@ class Island : public InMemory {
     FreeBody now, before;
     double next = 0, next_before = 0;
     double v[6], free_v[6];  // velocity and spin: as the solver has them, and without its impulses
+    double plain_v[6];       // as the solver had them without rebounds
+    bool driver = false;     // moves as it was told, whatever pushes it; each pair and island has its own of it
+  };
+  /// Energy as a sub-step began, for what its rows did to it.
+  struct Books {
+    double stored = 0;       // J
+    Energy account;          // works and losses
+    double unexplained = 0;  // J, that smooth motion gained
   };
   struct Clustered {
     ClusterEntry* entry;
     std::optional<Stage> stage;
     double next_before = 0;
-    Energy pending;  // of the last smooth()
+    bool loose = false;  // nothing but contacts and gravity acts on it from outside
+    Energy pending;      // of the last smooth()
+    double held_work = 0;  // J, likewise, of forces that were predicted
+    Books books;           // of the sub-step
     bool alone() const { return entry->trees.size() == 1 && entry->ties.empty(); }
   };
   /// What a pair is in this sub-step: its impact is looked for on the whole way; or only whether it comes back; or it
@@ -87,11 +103,15 @@ class Island : public InMemory {
   enum class Role : std::uint8_t { Far, Leaves, Rests, Springs };
   /// A point that touches, or nearly, as rows see it.
   struct Touch {
-    std::uint32_t pair;
-    std::uint32_t feature;
-    Vector3 point, normal;  // world; the normal from b toward a
-    double gap;             // m, at the start of the sub-step
-    double approach;        // m/s, v_n when the sub-step began; unknown where nothing is located
+    std::uint32_t pair = 0;
+    std::uint32_t feature = 0;
+    Vector3 point, normal;                                               // world; the normal from b toward a
+    Vector3 on_a, on_b;                                                  // the point, in the axes of each body
+    Vector3 from_a, from_b;                                              // where the bodies' origins were
+    Quaternion turn_a, turn_b;                                           // how the bodies were turned
+    Vector3 velocity_a = Vector3::Zero(), velocity_b = Vector3::Zero();  // of the bodies there, as the sub-step began
+    double gap = 0;                                                      // m, at the start of the sub-step
+    double approach = 0;  // m/s, v_n when the sub-step began; unknown where nothing is located
   };
   /// Speeds of a pair, m/s, that separate impacts from what the rows of a sub-step do.
   struct Speeds {
@@ -109,6 +129,15 @@ class Island : public InMemory {
     bool rests;         // it is a row; else it is to be located
     bool held = false;  // it acts inside the stages, and is not located
   };
+  /// A motor as a scalar row: one number of its tree's velocity, and the most that it may push with.
+  struct MotorRow {
+    Tree* tree;
+    JointIndex joint;
+    int axis;         // of the joint's numbers
+    int velocity;     // of the tree's numbers
+    int shared;       // rows that share the limit: this and those that follow it; 0: one of those
+    double strength;  // N or N*m
+  };
   /// When a joint left its limit, s, and how fast.
   struct Rebound {
     double time = 0, rate = JointDrive::kNoLimit;
@@ -123,6 +152,23 @@ class Island : public InMemory {
   };
 
   // island.cpp
+  void put_driver(Free& one, double h);
+  static void move_driver(Free& one, double h);
+  /// Where a body is in this island.
+  BodyPlace place_of(BodyIndex body) const {
+    BodyPlace place = core_.place_of[body];
+    const std::size_t first = free_.size() - drivers_;
+    for (std::size_t i = first; place.mover < 0 && i < free_.size(); ++i)
+      if (free_[i].body == body) place.mover = static_cast<int>(i);
+    return place;
+  }
+  bool is_driver(int mover) const {
+    const auto count = static_cast<int>(free_.size());
+    return mover >= count - static_cast<int>(drivers_) && mover < count;
+  }
+  /// The bodies that are free.
+  std::span<Free> loose_bodies() { return {free_.data(), free_.size() - drivers_}; }
+  std::span<const Free> loose_bodies() const { return {free_.data(), free_.size() - drivers_}; }
   void begin(DynamicsClient* client, double h);
   void place();  // kinematics and factors of trees, at the state now
   void remember();
@@ -130,10 +176,28 @@ class Island : public InMemory {
   void smooth(double time, double h);
   // island_smooth.cpp
   void smooth_once(Clustered& one, double time, double h);
-  void smooth_by_euler(Clustered& one, double time, double h);
-  double gain_of(Clustered& one, double time, double h, int parts, double shift);
-  double stored_in(const Clustered& one, double shift, double& kinetic);
+  static void forget_parts(Clustered& one);
+  void smooth_fast(Clustered& one, double time, double h);
+  bool stiff(const Clustered& one) const;
+  double gain_of(Clustered& one, double time, double h, int parts);
+  double stored_in(const Clustered& one, double& kinetic);
+  void open_books();  // this and what follows: island_books.cpp
+  void note_smooth();
+  void close_books();
+  void take_back_rest();
+  double stored_now();
   void commit();  // the last smooth() counts: its works go to the account
+  // island_momentum.cpp
+  bool loose(const Clustered& one) const;
+  void smooth_whole(Clustered& one, double time, double h);
+  static bool take_back(Clustered& one, double gain);
+  double moving() const;
+  void take_from_all(double part);
+  bool touched_from_outside() const;
+  double stop_links(Clustered& one, Momenta momenta);
+  void note_wholes(articulated::Vector Tree::*velocity, bool now);
+  enum class Given : std::uint8_t { All, Places, Pushes };
+  void keep_wholes(double moved_h, Given given);
   Pose pose_of(BodyIndex body) const;
   /// Of a point, from the centre of mass of a free body, m.
   Vector3 arm_of(const BodyPlace& free, const Vector3& point) const {
@@ -148,14 +212,34 @@ class Island : public InMemory {
   void find_roles(double h, bool struck);
   void find_touches_now();
   void find_bounds();
-  void make_rows(double h, bool restitution);
+  enum class Motors : bool { Leave, Drive };
+  void make_rows(Motors motors);
+  void read_rates();
+  void recall_rates();
+  static Touch touch_at(std::size_t pair, const Pose& a, const Pose& b, const Manifold& manifold,
+                        const ContactPoint& point);
   void set_biases(double h);
-  void add_touch_row(const Touch& touch);
+  void add_motor_rows(Tree& tree);
+  void add_touch_row(Touch& touch);
+  Vector3 carried(const Touch& touch) const;
   void add_bound_row(const Bound& bound);
   void add_ring_rows(const Tree& tree);
+  std::size_t limit_rows() const { return scalars_.size() - motors_.size() - ring_errors_.size(); }
   double* rows_of(Tree& tree, int count);
   void respond(Tree& tree, const double* j, double* r) const;
-  void solve();                           // this and what follows: island_results.cpp
+  void solve(double h);  // this and what follows: island_results.cpp
+  void solve_rows();
+  double direct_share() const;
+  void bound_motors(double h);
+  bool shorten_couples(double h);
+  // island_rebound.cpp
+  bool find_rebounds(double h);
+  void read_row_rates(std::pmr::vector<double>& rates) const;
+  void read_impulses(std::pmr::vector<double>& impulses) const;
+  void solve_rebounding();
+  void mix(double share);
+  void reset_velocities();
+  bool is_motor(std::size_t scalar) const { return scalar - limit_rows() < motors_.size(); }
   void load_velocities();                 // movers' v from the state
   void store_velocities(double moved_h);  // back, and positions by what impulses changed times moved_h
   void correct_works(double h);
@@ -164,7 +248,14 @@ class Island : public InMemory {
   void account_rows();
   void note_forces(double h);
   void add_force(BodyIndex body, const Vector3& point, const Vector3& force);
-  void keep_warm();
+  void keep_warm(double h);
+  int size_of_mover(int mover) const { return mover < 0 ? 0 : movers_[static_cast<std::size_t>(mover)].size; }
+  // island_predict.cpp
+  const WarmPoint* warm_of(const Touch& touch) const;
+  void predict();
+  void predict_contact(const Touch& touch, const Vector3& force);
+  void begin_solve(double h);
+  void solve_after(double h);
 
   // island_step.cpp
   void step_quiet(double start, double h);
@@ -181,6 +272,7 @@ class Island : public InMemory {
   bool is_past(const Event& event);
   double gap_of(const Event& event, double& rate);
   void look(double h, bool spent);
+  int located_impacts() const;
   double contact_part(double left) const;
   bool strikes(double h) const;
   void meet(DynamicsClient* client, const Event& event, double moment, double left);
@@ -189,9 +281,15 @@ class Island : public InMemory {
   void push_apart(double h);
   void begin_moves();
   void end_moves(double h);
+  void book_moves(double sign);
+  void book_way(double work, Tree* tree);
+  void pay_for_moves(double given);
+  void hold_off(double h);
+  double natural_response(BodyIndex body) const;
   bool call(DynamicsClient& client, int pair, double moment, double left);
   bool holds_rings() const;
-  bool only_rings() const;  // nothing else has rows
+  bool has_rows() const;
+  bool has_rings() const;
   bool hold_rings(double time, double h);
   double read_ring_errors();
   void close_rings();
@@ -235,11 +333,18 @@ class Island : public InMemory {
   };
   void step_once(DynamicsClient* client, double start, double h);
   Trouble try_step(DynamicsClient* client, double start, double h);
+  Trouble try_in_parts(DynamicsClient* client, double start, double h);
+  double tolerated(double turnover, double h) const;
+  double weight() const;
   void give_in(const Trouble& trouble, double start);
   void keep_start();
-  void balance(double before, double& residual, double& turnover);
+  void balance(double& residual, double& turnover);
   void back_to_start();
   double stored(double& kinetic, bool start);
+  double held_energy() const;
+  double unexplained_since_start(double after) const;
+  void end_unfinished(double held);
+  void book();
   BodyIndex any_body() const;
   void intervene(const Trouble& trouble, GuardAction action, double time);
 
@@ -252,7 +357,6 @@ class Island : public InMemory {
   double fastest_approach() const;
   void note_overlaps(double h);
   Trouble measure_overlaps();
-  double height();
 
   Dynamics::Core& core_;
   std::pmr::memory_resource* memory_;
@@ -267,12 +371,21 @@ class Island : public InMemory {
   ResultStart at_start_;
   std::pmr::vector<FreeBody> free_start_;
   std::pmr::vector<NearPair> pair_start_;
-  bool placed_ = false;           // links stand where stored() found them: nothing has moved since
-  bool locates_ = false;          // handlers are called at the moment of impact
-  double quiet_ = 0;              // m/s: slower than this is at rest, in a sub-step of this one
-  double free_work_ = 0;          // J, of scripts on free bodies in the last smooth()
-  std::pmr::vector<Role> roles_;  // of pairs
-  std::pmr::vector<Free> free_;
+  double unexplained_ = 0, allowed_ = 0;  // J, of the last try of a step
+  double gained_ = 0;                     // J, likewise, that contacts and limits gave
+  bool keeps_books_ = false;              // of this sub-step
+  Books books_;                           // of all, of the sub-step
+  double stored_start_ = 0;               // J, as it began
+  double handled_ = 0;                    // J, that handlers brought in meanwhile
+  bool booked_ = false;                   // the books have what it holds now
+  bool placed_ = false;                   // links stand where stored() found them: nothing has moved since
+  bool locates_ = false;                  // handlers are called at the moment of impact
+  double quiet_ = 0;                      // m/s: slower than this is at rest, in a sub-step of this one
+  double free_work_ = 0;                  // J, of scripts on free bodies in the last smooth()
+  std::pmr::vector<Role> roles_;          // of pairs
+  std::pmr::vector<Free> free_;           // the last ones drivers
+  std::size_t drivers_ = 0;
+  std::pmr::vector<int> pair_drivers_;  // of pairs: the place of the driver in free_, or -1
   std::pmr::vector<Clustered> clusters_;
   std::pmr::vector<Tree*> trees_;
   std::pmr::vector<NearPair*> pairs_;
@@ -284,19 +397,36 @@ class Island : public InMemory {
   std::pmr::vector<contact::Law> laws_;
   std::pmr::vector<double> numbers_;  // of Jacobians
   std::pmr::vector<Manifold> manifolds_;
-  std::pmr::vector<double> apart_, apart_scalars_;  // of rows: the velocity that puts positions right, m/s
+  std::pmr::vector<contact::Push> pushes_;  // of rows: how positions are put right
+  std::pmr::vector<double> push_scalars_;   // of scalar rows: the velocity that does, m/s or rad/s
+  /// Impulse on a tree from outside, and about its centre of mass.
+  struct OuterImpulse {
+    Vector3 linear = Vector3::Zero(), angular = Vector3::Zero();
+  };
+  std::pmr::vector<OuterImpulse> outer_;  // of trees
+  std::pmr::vector<double> rebounding_;   // of rows, then of scalar rows: the speed at which they are to part
+  // Of rows but those of motors, three numbers a contact: velocities without impulses, without and with rebound.
+  std::pmr::vector<double> free_rates_, plain_rates_, rates_, plain_impulses_, impulses_;
+  std::pmr::vector<double> plain_scalars_;  // impulses of all scalar rows without rebound
+  std::pmr::vector<MotorRow> motors_;       // scalar rows: of limits, then these, then of rings
   std::pmr::vector<double> ring_errors_;
   std::pmr::vector<Pose> start_poses_;           // of each pair's two bodies, as the sub-step began
   std::pmr::vector<std::size_t> rebound_later_;  // of bounds_
   std::pmr::vector<Rebound> rebounds_;           // likewise, the last of each in this step
   std::pmr::vector<Event> found_;                // in a sub-step, with times that are guesses
   int impacts_ = 0;                              // located so far in this step
+  bool spent_ = false;                           // none is located any more
   std::pmr::vector<double> depths_;              // of pairs: overlap when the sub-step began, m
-  std::pmr::vector<Vector3> before_;         // of each row's two sides: velocity along its axes as the sub-step began
-  std::pmr::vector<Vector3> warm_;           // of each row, where its solver begins
+  std::pmr::vector<Vector3> before_;  // of each row's two sides: velocity along its axes as the sub-step began
+  // Forces of the last sub-step, N or N*m, that are taken to go on and act inside the stages: of each touch in world
+  // axes, of each limit that is a row.
+  std::pmr::vector<Vector3> predicted_;
+  std::pmr::vector<double> predicted_limits_;
+  std::pmr::vector<double> before_force_;    // of rows: N along the normal, in the last sub-step
+  std::pmr::vector<std::uint8_t> struck_;    // of movers: contacts changed its velocity
+  double solved_h_ = 0;                      // s, of the sub-step that was solved last
   std::pmr::vector<double> scalars_before_;  // of each scalar row
   std::pmr::vector<Overlap> overlaps_;
-  double pushed_ = 0;  // J, by which pushing apart lifted all in this step
   contact::Workspace workspace_;
   std::unique_ptr<SprungMotion> sprung_;     // made when it is first needed
   std::pmr::vector<std::uint8_t> followed_;  // of pairs: a spring with points

@@ -2,9 +2,8 @@
 // and an island for which that does not help is put to rest. Nothing of it is silent.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "runtime/articulated/energy.hpp"
-#include "runtime/articulated/kinematics.hpp"
 #include "runtime/base/error.hpp"
 #include "runtime/dynamics/island.hpp"
 
@@ -13,6 +12,9 @@ namespace breve {
 namespace {
 
 constexpr int kFinest = 2;  // attempts after the first
+// Of a step whose energy does not add up, times the bodies that it moves: so that the step of a crowd stays bounded.
+constexpr std::size_t kMostInParts = 40;
+constexpr double kMended = 0.6;  // of the energy that a step of twice the length left unexplained
 
 Accuracy finer_settings(const Accuracy& from, int attempt, double h) {
   Accuracy to = from;
@@ -38,6 +40,7 @@ void Island::step(DynamicsClient* client, double start, double h) {
   ++result.counters.islands;
   const GuardMode mode = core_.settings.guard;
   const Accuracy asked = accuracy_;
+  for (std::size_t i = free_.size() - drivers_; i < free_.size(); ++i) put_driver(free_[i], h);
   keep_start();
   Trouble trouble;
   int attempt = 0;
@@ -54,7 +57,7 @@ void Island::step(DynamicsClient* client, double start, double h) {
     trouble = foresee(h);
   }
   if (trouble.found) intervene(trouble, GuardAction::Reported, start);
-  trouble = try_step(client, start, h);
+  trouble = refines ? try_in_parts(client, start, h) : try_step(client, start, h);
   // Where a handler may have been called there is no going back.
   while (trouble.found && refines && !calls_out() && attempt < kFinest) {
     back_to_start();
@@ -67,13 +70,58 @@ void Island::step(DynamicsClient* client, double start, double h) {
   if (trouble.found) give_in(trouble, start);
 }
 
+/// A step of articulated bodies whose energy does not add up is taken again in 2, 4, 8, ... parts: what turns far in a
+/// sub-step while a joint meets its limit or a foot the floor is not known well enough. Nothing of that is trouble.
+Island::Trouble Island::try_in_parts(DynamicsClient* client, double start, double h) {
+  const Accuracy asked = accuracy_;
+  Trouble trouble = try_step(client, start, h);
+  if (trees_.empty()) return trouble;
+  std::size_t links = 0;
+  for (const Tree* tree : trees_) links += tree->links.size();
+  const std::size_t bodies = links + free_.size();
+  const int most = bodies > kMostInParts || calls_out() ? 1 : static_cast<int>(std::max<std::size_t>(4, kMostInParts / bodies));
+  double last = std::numeric_limits<double>::infinity();
+  for (int parts = 2; parts <= most && unexplained_ > allowed_; parts *= 2) {
+    // What finer steps do not mend is not theirs to mend.
+    if (!(unexplained_ < kMended * last)) break;
+    last = unexplained_;
+    back_to_start();
+    ++result.counters.rejected;
+    accuracy_.step = (asked.step > 0 ? std::min(asked.step, h) : h) / parts;
+    if (asked.contact_step > 0) accuracy_.contact_step = std::min(asked.contact_step, h) / parts;
+    trouble = try_step(client, start, h);
+  }
+  accuracy_ = asked;
+  take_back_rest();
+  return trouble;
+}
+
+/// Energy that a step of h seconds may leave unexplained, J: of what moves, by the second, and of what is turned over.
+double Island::tolerated(double turnover, double h) const {
+  switch (accuracy_.rung) {
+    case Rung::Fast: return (5e-3 * h + 1e-3) * turnover;
+    case Rung::Balanced:
+    case Rung::Conserving: return (5e-3 * h + 5e-4) * turnover;
+    default: return (5e-5 * h + 5e-6) * turnover;
+  }
+}
+
+/// What lifting all by their own size takes, J: of that, what lies still may err by round-off of its solution.
+double Island::weight() const {
+  double sum = 0;
+  for (const Tree* tree : trees_)
+    for (const TreeLink& link : tree->links)
+      sum += link.solid.mass * core_.bodies->collision_shape(link.body)->bounding_radius();
+  return sum * core_.settings.gravity.norm();
+}
+
 /// What did not help is reported, or ended.
 void Island::give_in(const Trouble& trouble, double start) {
   const bool rest = core_.settings.guard == GuardMode::Rest;
   const bool unusable = trouble.reason == GuardReason::NotFinite || trouble.reason == GuardReason::NoSolution;
   // Energy from nowhere ends with the speeds; positions, put right on the way, are as good as any.
   if (unusable || (rest && trouble.reason == GuardReason::Penetration)) back_to_start();
-  if (rest) stop();
+  if (rest) stop(Momenta::Keep);
   intervene(trouble, rest ? GuardAction::Rested : GuardAction::Reported, start);
 }
 
@@ -81,8 +129,9 @@ Island::Trouble Island::try_step(DynamicsClient* client, double start, double h)
   const bool off = core_.settings.guard == GuardMode::Off;
   double kinetic = 0, residual = 0, turnover = 0;
   overlaps_.clear();
-  pushed_ = 0;
-  const double before = stored(kinetic, true);
+  unexplained_ = allowed_ = gained_ = handled_ = 0;
+  booked_ = false;
+  const double before = stored_start_ = stored(kinetic, true);
   try {
     step_once(client, start, h);
   } catch (const Error& error) {
@@ -91,11 +140,12 @@ Island::Trouble Island::try_step(DynamicsClient* client, double start, double h)
   }
   if (unfinished_ > 0) return {};
   if (const BodyIndex body = not_finite(); body != kNoBody) return {!off, GuardReason::NotFinite, 0, body};
-  balance(before, residual, turnover);
+  balance(residual, turnover);
+  unexplained_ = std::abs(residual) + gained_;
+  allowed_ = tolerated(turnover, h) + kTiny * std::abs(before) + kStill * weight();
   if (off) return {};
   if (const Trouble deeper = measure_overlaps(); deeper.found) return deeper;
-  // Overlap that was pushed apart may have lifted something: that is known, if not a work.
-  return judge_residual(residual - std::max(pushed_, 0.0), turnover, before);
+  return judge_residual(residual, turnover, before);
 }
 
 namespace {
@@ -110,13 +160,19 @@ double losses(const Energy& now, const Energy& then) {
 
 }  // namespace
 
+/// What no account explains of the energy that came in since the step began, J.
+double Island::unexplained_since_start(double after) const {
+  return after - stored_start_ - works(result.account, at_start_.account) + losses(result.account, at_start_.account) -
+         handled_;
+}
+
 /// What of the step's change in energy no account explains, of all and of each tree.
 /// @param turnover  J, of which the residual is to be a small part
-void Island::balance(double before, double& residual, double& turnover) {
+void Island::balance(double& residual, double& turnover) {
   double kinetic = 0;
   const double after = stored(kinetic, false);
   const double in = works(result.account, at_start_.account), out = losses(result.account, at_start_.account);
-  residual = after - before - in + out;
+  residual = unexplained_since_start(after);
   result.account.residual += residual;
   turnover = kinetic + std::abs(in) + std::abs(out);
   for (const Clustered& one : clusters_) {
@@ -140,7 +196,7 @@ void Island::keep_start() {
 }
 
 void Island::back_to_start() {
-  placed_ = false;
+  placed_ = booked_ = false;
   const std::uint64_t evaluations = result.counters.evaluations;
   result.counters = at_start_.counters;
   result.counters.evaluations = evaluations;
@@ -156,28 +212,24 @@ void Island::back_to_start() {
   for (Free& one : free_) one.next = 0;
 }
 
-/// Takes all velocities, and writes down that their energy is gone.
-void Island::stop() {
-  placed_ = false;
-  for (Free& one : free_) {
+/// Takes velocities, and writes down that their energy is gone.
+void Island::stop(Momenta momenta) {
+  placed_ = booked_ = false;
+  for (Free& one : loose_bodies()) {
     result.account.residual -= one.now.kinetic();
     one.now.velocity = one.now.spin = Vector3::Zero();
   }
-  for (const Clustered& one : clusters_)
-    for (const std::uint32_t index : one.entry->trees) {
-      Tree& tree = *core_.trees[index];
-      articulated::forward_kinematics(tree.model, tree.data, tree.state);
-      const double lost = articulated::kinetic_energy(tree.model, tree.data);
-      result.account.residual -= lost;
-      if (one.alone()) tree.account.residual -= lost;
-      tree.state.v.setZero();
-    }
+  for (Clustered& one : clusters_) {
+    const double lost = stop_links(one, momenta);
+    result.account.residual -= lost;
+    if (one.alone()) core_.trees[one.entry->trees.front()]->account.residual -= lost;
+  }
 }
 
 /// Kinetic, potential and in springs, J. Notes for each tree its own: at the start of a step as it is, later as change.
 double Island::stored(double& kinetic, bool start) {
   double sum = 0, moving = 0;
-  for (const Free& one : free_) {
+  for (const Free& one : loose_bodies()) {
     moving += one.now.kinetic();
     sum -= one.now.solid->mass * core_.settings.gravity.dot(one.now.center);
   }
@@ -186,25 +238,62 @@ double Island::stored(double& kinetic, bool start) {
     moving += energy.kinetic;
     sum += energy.potential + energy.springs;
     tree->step_stored = start ? energy.total() : energy.total() - tree->step_stored;
+    if (start) tree->step_kinetic = energy.kinetic;
+    if (!start) tree->booked = energy.total();
   }
   for (const Clustered& one : clusters_)
     for (const SpringIndex tie : one.entry->ties) sum += core_.tie_energy_in(core_.springs[tie].is);
   for (const NearPair* pair : pairs_) sum += pair->stored;
   kinetic = moving;
   placed_ = true;
+  booked_ = !start;
   return sum + moving;
+}
+
+/// The same, of what stands in the arrays: while a handler may change it.
+double Island::held_energy() const {
+  double sum = 0;
+  for (const Free& one : loose_bodies()) sum += core_.free_energy(one.body).total();
+  for (Tree* tree : trees_) sum += core_.energy_of(*tree).total();
+  for (const Clustered& one : clusters_)
+    for (const SpringIndex tie : one.entry->ties) sum += core_.tie_energy(core_.springs[tie].is);
+  return sum;
+}
+
+/// What stands in the arrays is in the books from now on: what differs from it later, scripts did.
+void Island::book() {
+  for (const Free& one : loose_bodies()) {
+    // Read back as it will be when a script sets something: a centre of mass off the origin is rounded on the way.
+    const bool central = one.now.solid->center_of_mass == Vector3::Zero();
+    core_.booked[one.body] =
+        central ? one.now.kinetic() - one.now.solid->mass * core_.settings.gravity.dot(one.now.center)
+                : core_.free_energy(one.body).total();
+  }
+  for (Tree* tree : trees_) {
+    if (!booked_) tree->booked = core_.energy_of(*tree).total();
+    tree->changed = false;
+  }
+  for (const Clustered& one : clusters_)
+    for (const SpringIndex tie : one.entry->ties)
+      core_.springs[tie].booked = core_.tie_energy(core_.springs[tie].is);
 }
 
 bool Island::still() const {
   constexpr double kSlow = 0.02;  // m/s and rad/s
-  for (const Free& one : free_)
+  for (const Free& one : loose_bodies())
     if (one.now.velocity.norm() > kSlow || one.now.spin.norm() > kSlow) return false;
-  for (Tree* tree : trees_)
-    if (tree->state.v.cwiseAbs().maxCoeff() > kSlow) return false;
+  for (Tree* tree : trees_) {
+    if (tree->state.v.size() > 0 && tree->state.v.cwiseAbs().maxCoeff() > kSlow) return false;
+    // A motor that is to turn does not rest, however slowly it turns.
+    const articulated::Vector& wanted = tree->loads.motor_speed;
+    if (wanted.size() > 0 && (wanted.array() != 0).any()) return false;
+  }
   return true;
 }
 
-BodyIndex Island::any_body() const { return free_.empty() ? trees_.front()->links.front().body : free_.front().body; }
+BodyIndex Island::any_body() const {
+  return loose_bodies().empty() ? trees_.front()->links.front().body : free_.front().body;
+}
 
 void Island::intervene(const Trouble& trouble, GuardAction action, double time) {
   result.interventions.push_back(

@@ -30,7 +30,8 @@ Island::Event Island::seek(double h) {
     }
     if (!hit) {
       // It left and came back, or its path bends.
-      hit = closest(a, a1, b, b1).distance < -depths_[i];
+      Contact contact;
+      hit = closest_within(a, a1, b, b1, -depths_[i], contact) && contact.distance < -depths_[i];
       time = h;
     }
     if (hit) found_.push_back({time, static_cast<int>(i), -1, -1, depths_[i]});
@@ -166,6 +167,8 @@ Motion Island::chord(const Pose& from, const Pose& to, double h) {
   return motion;
 }
 
+// --- what happens then -----------------------------------------------------------------------------------------------
+
 /// What has come to its moment: the handler first, then the impulses.
 void Island::meet(DynamicsClient* client, const Event& event, double moment, double left) {
   ++result.counters.impacts;
@@ -192,6 +195,8 @@ void Island::rebound(std::size_t index, double time) {
   rows_.clear();
   touches_.clear();
   scalars_.clear();
+  motors_.clear();
+  ring_errors_.clear();
   numbers_.clear();
   numbers_.reserve(2 * static_cast<std::size_t>(core_.trees[joint.tree]->model.velocities()));
   add_bound_row(bound);
@@ -230,10 +235,13 @@ void Island::collide(double time) {
     find_bounds();
     for (Bound& bound : bounds_) bound.rests = bound.gap <= met;
   }
-  make_rows(1, false);
+  make_rows(Motors::Leave);
+  load_velocities();
+  read_rates();
   contact::ImpactSettings settings;
   settings.rest.iterations = std::max(50, accuracy_.iterations);
-  settings.rest.direct = accuracy_.direct && rows_.size() <= 100;
+  settings.rest.direct = true;
+  settings.rest.direct_share = direct_share();
   for (contact::Row& row : rows_) row.bias = 0, row.impulse = Vector3::Zero();
   for (contact::ScalarRow& row : scalars_) row.bias = 0, row.impulse = 0;
   contact::resolve_impacts(movers_, rows_, laws_, scalars_, settings, workspace_);

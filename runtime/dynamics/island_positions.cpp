@@ -8,42 +8,52 @@
 
 namespace breve {
 
+/// What a push moves there, were the body free, 1/kg.
+double Island::natural_response(BodyIndex body) const {
+  return core_.place_of[body].mover < 0 ? 0 : 1 / core_.bodies->mass(body);
+}
+
 void Island::push_apart(double h) {
   // Of the overlap, in one sub-step. What sweeps leave of it is uneven: pushed apart faster, stacks begin to sway.
   const double share = accuracy_.direct ? 0.2 : 0.1;
-  constexpr double kFastestPush = 3;  // m/s, along which nothing is moved faster
+  constexpr double kFastestPush = 3;  // m/s or rad/s, along which nothing is moved faster
+  // Of what the two bodies would yield if they were free. Where joints leave a body next to no way along the normal,
+  // that way would be long: so none is forced that is longer than some fifty times the overlap.
+  constexpr double kYield = 1e-4;
   bool any = false;
   double fastest = 0;
-  const auto want = [&fastest](std::pmr::vector<double>& of, double rate) {
-    of.push_back(rate);
-    fastest = std::max(fastest, rate);
-  };
-  apart_.clear();
-  apart_scalars_.clear();
+  pushes_.clear();
+  push_scalars_.clear();
   for (const Touch& touch : touches_) {
-    const double deep = -touch.gap - 0.1 * kSkin * size_of_pair(*pairs_[touch.pair]);
+    const NearPair& pair = *pairs_[touch.pair];
+    const double deep = -touch.gap - 0.1 * kSkin * size_of_pair(pair);
     // What is not too deep may come nearer by what room there is.
-    want(apart_, deep > 0 ? std::min(share * deep / h, kFastestPush) : std::min(0.0, -touch.gap / h));
+    const double rate = deep > 0 ? std::min(share * deep / h, kFastestPush) : std::min(0.0, -touch.gap / h);
+    pushes_.push_back({rate, kYield * (natural_response(pair.a) + natural_response(pair.b)), 0});
+    fastest = std::max(fastest, rate);
     any = any || deep > 0;
   }
   for (const Bound& bound : bounds_) {
     if (!bound.rests) continue;
-    want(apart_scalars_, -share * std::min(bound.gap, 0.0) / h);
+    push_scalars_.push_back(std::min(-share * std::min(bound.gap, 0.0) / h, kFastestPush));
+    fastest = std::max(fastest, push_scalars_.back());
     any = any || bound.gap < -kLimitSkin;
   }
-  apart_scalars_.resize(scalars_.size(), 0.0);
+  push_scalars_.resize(scalars_.size(), 0.0);
   if (any) {
-    const double before = height();
     contact::SolveSettings settings;
     // Only a part of an overlap is put right: how exactly does not matter, least where velocities are not exact either.
     settings.iterations = accuracy_.direct ? accuracy_.iterations : std::max(4, accuracy_.iterations / 4);
     settings.direct = rows_.empty();
     settings.tolerance = std::max(settings.tolerance, 1e-3 * fastest);
     if (settings.direct) settings.tolerance = 1e-14;
+    const double before = result.account.contact_loss;
+    book_moves(-1);
     begin_moves();
-    contact::solve_again(apart_, apart_scalars_, settings, workspace_);
+    contact::solve_again(pushes_, push_scalars_, settings, workspace_);
     end_moves(h);
-    pushed_ += height() - before;
+    book_moves(1);
+    pay_for_moves(before - result.account.contact_loss);
   }
   close_rings();
 }
@@ -55,11 +65,14 @@ void Island::begin_moves() {
     tree->free_v = tree->state.v;
     tree->state.v.setZero();
   }
+  note_wholes(&Tree::free_v, false);
 }
 
 void Island::end_moves(double h) {
   for (Free& one : free_) {
-    one.now.center += h * Vector3(one.v[0], one.v[1], one.v[2]);
+    const Vector3 way = h * Vector3(one.v[0], one.v[1], one.v[2]);
+    one.now.center += way;
+    book_way(one.now.force.dot(way), nullptr);
     const Vector3 turn = h * Vector3(one.v[3], one.v[4], one.v[5]);
     if (turn != Vector3::Zero()) one.now.orientation = (rotation_by(turn) * one.now.orientation).normalized();
   }
@@ -67,7 +80,82 @@ void Island::end_moves(double h) {
     tree->way = h * tree->state.v;
     tree->state.v = tree->free_v;
     articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
+    if (tree->driven) book_way(tree->set_tau.dot(tree->way), tree);
   }
+  keep_wholes(h, Given::Pushes);
+}
+
+/// What is met at the end of a sub-step of h seconds, and not before, may not come nearer than it is: what contacts
+/// struck has moved, in the end, with the velocity that they left it, not with the mean.
+void Island::hold_off(double h) {
+  if (rows_.empty() && limit_rows() == 0) return;
+  book_moves(-1);
+  note_wholes(&Tree::smooth_v, true);
+  struck_.assign(movers_.size(), 0);
+  for (const contact::Row& row : rows_) {
+    if (row.impulse == Vector3::Zero()) continue;
+    if (row.a >= 0) struck_[static_cast<std::size_t>(row.a)] = 1;
+    if (row.b >= 0) struck_[static_cast<std::size_t>(row.b)] = 1;
+  }
+  for (std::size_t i = 0; i < limit_rows(); ++i)
+    if (scalars_[i].impulse != 0) struck_[static_cast<std::size_t>(scalars_[i].a)] = 1;
+  // Semi-implicit Euler has moved them with the velocity after, but for the rows' part.
+  const bool semi = semi_implicit(accuracy_);
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    if (!struck_[i]) continue;
+    const Free& one = free_[i];
+    FreeBody& body = free_[i].now;
+    const Vector3 from = semi ? Vector3(one.free_v[0], one.free_v[1], one.free_v[2]) : one.before.velocity;
+    const Vector3 spin = semi ? Vector3(one.free_v[3], one.free_v[4], one.free_v[5]) : one.before.spin;
+    const Vector3 way = 0.5 * h * (body.velocity - from);
+    body.center += way;
+    book_way(one.now.force.dot(way), nullptr);
+    const Vector3 turn = 0.5 * h * (body.spin - spin);
+    if (turn != Vector3::Zero()) body.orientation = (rotation_by(turn) * body.orientation).normalized();
+  }
+  for (std::size_t i = 0; i < trees_.size(); ++i) {
+    if (!struck_[free_.size() + i]) continue;
+    Tree& tree = *trees_[i];
+    tree.way = 0.5 * h * (tree.state.v - tree.sub_state.v);
+    articulated::move(tree.model, tree.state.q, tree.way, tree.state.q);
+    if (tree.driven) book_way(tree.set_tau.dot(tree.way), &tree);
+  }
+  keep_wholes(0.5 * h, Given::Places);
+  book_moves(1);
+}
+
+/// What pushing apart gave or took, as height, in motion or in springs, is booked as what contacts did: with a sign
+/// before and after it.
+void Island::book_moves(double sign) {
+  double sum = 0;
+  for (const Free& one : loose_bodies()) sum -= one.now.solid->mass * core_.settings.gravity.dot(one.now.center);
+  for (const Clustered& one : clusters_) {
+    for (const std::uint32_t index : one.entry->trees) {
+      Tree& tree = *core_.trees[index];
+      const Energy energy = core_.energy_of(tree);
+      const double stored = energy.kinetic + energy.potential + energy.springs;
+      if (one.alone()) tree.account.contact_loss -= sign * stored;
+      sum += stored;
+    }
+    for (const SpringIndex tie : one.entry->ties) sum += core_.tie_energy_in(core_.springs[tie].is);
+  }
+  result.account.contact_loss -= sign * sum;
+}
+
+/// What pushing apart gave, J, is taken from what moves, as far as that is little of it.
+void Island::pay_for_moves(double given) {
+  if (trees_.empty() || !(given > 0)) return;
+  const double all = moving();
+  if (all > 0) take_from_all(std::min(kFew, given / all));
+}
+
+/// Scripts' forces work along the way that contacts and limits move positions, which bear it, J.
+void Island::book_way(double work, Tree* tree) {
+  result.account.script_work += work;
+  result.account.contact_loss += work;
+  if (!tree) return;
+  tree->account.script_work += work;
+  tree->account.contact_loss += work;
 }
 
 void Island::close_rings() {
@@ -85,7 +173,8 @@ void Island::close_rings() {
   exact.tolerance = 1e-14;  // a length here: rings are closed to round-off
   for (int i = 0; i < kMost; ++i) {
     place();
-    make_rows(1, false);
+    make_rows(Motors::Leave);
+    load_velocities();
     double worst = 0;
     for (std::size_t k = 0; k < scalars_.size(); ++k) {
       scalars_[k].bias = -ring_errors_[k];

@@ -15,7 +15,7 @@ void Island::load_velocities() {
       one.v[3 + k] = one.free_v[3 + k] = one.now.spin[k];
     }
   }
-  for (Tree* tree : trees_) tree->free_v = tree->state.v;
+  for (Tree* tree : trees_) tree->free_v = tree->smooth_v = tree->state.v;
 }
 
 void Island::store_velocities(double moved_h) {
@@ -29,10 +29,12 @@ void Island::store_velocities(double moved_h) {
     if (turn != Vector3::Zero()) one.now.orientation = (rotation_by(moved_h * turn) * one.now.orientation).normalized();
   }
   if (moved_h == 0) return;
+  note_wholes(&Tree::smooth_v, false);
   for (Tree* tree : trees_) {
-    tree->way = moved_h * (tree->state.v - tree->free_v);
+    tree->way = moved_h * (tree->state.v - tree->smooth_v);
     articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
   }
+  keep_wholes(moved_h, Given::All);
 }
 
 /// Motors, dampers and scripts pushed along the way that smooth motion took; what the rows' impulses added to it, half
@@ -48,7 +50,7 @@ void Island::correct_works(double h) {
     for (const std::uint32_t index : clustered.entry->trees) {
       Tree& tree = *core_.trees[index];
       if (!tree.driven) continue;
-      const articulated::Vector &before = tree.sub_state.v, &free = tree.free_v, &after = tree.state.v;
+      const articulated::Vector &before = tree.sub_state.v, &free = tree.smooth_v, &after = tree.state.v;
       for (int i = 0; i < tree.model.size(); ++i) {
         const TreeLink& link = tree.links[static_cast<std::size_t>(i)];
         if (link.joint == kNoJoint) continue;
@@ -64,16 +66,79 @@ void Island::correct_works(double h) {
     }
 }
 
-void Island::solve() {
+/// After smooth motion of h seconds: what is left of each motor's strength, and the speed that it is to reach.
+void Island::bound_motors(double h) {
+  if (motors_.empty()) return;
+  for (Tree* tree : trees_)
+    if (tree->aimed) core_.aim(*tree);
+  const std::size_t first = limit_rows();
+  for (std::size_t i = 0; i < motors_.size(); ++i) {
+    const MotorRow& motor = motors_[i];
+    contact::ScalarRow& row = scalars_[first + i];
+    const double given = motor.tree->motor_impulse[motor.velocity], most = motor.strength * h;
+    row.bias = motor.tree->loads.motor_speed[motor.velocity];
+    row.lo = std::min(0.0, -most - given);
+    row.hi = std::max(0.0, most - given);
+  }
+}
+
+/// The couple of a ball joint's motor is bounded as a whole: where its three numbers are more than that together, each
+/// is bounded by its share.
+/// @return  whether some were: the rows are to be solved again
+bool Island::shorten_couples(double h) {
+  constexpr double kRoundOff = 1e-9;
+  bool any = false;
+  for (std::size_t i = 0; i < motors_.size(); ++i) {
+    const MotorRow& motor = motors_[i];
+    if (motor.shared < 3) continue;
+    contact::ScalarRow* rows = &scalars_[limit_rows() + i];
+    const Vector3 given = motor.tree->motor_impulse.segment<3>(motor.velocity);
+    const Vector3 whole = given + Vector3(rows[0].impulse, rows[1].impulse, rows[2].impulse);
+    const double most = motor.strength * h;
+    if (!(whole.norm() > (1 + kRoundOff) * most)) continue;
+    const Vector3 left = whole * (most / whole.norm()) - given;
+    for (int k = 0; k < 3; ++k) {
+      rows[k].lo = std::min(0.0, left[k]);
+      rows[k].hi = std::max(0.0, left[k]);
+    }
+    any = true;
+  }
+  return any;
+}
+
+void Island::solve(double h) {
   if (rows_.empty() && scalars_.empty()) return;
+  const bool rebounds = spent_ && find_rebounds(h);
+  if (rebounds) read_row_rates(free_rates_);
+  rebounds ? solve_rebounding() : solve_rows();
+  if (!shorten_couples(h)) return;
+  reset_velocities();
+  set_biases(h);
+  rebounds ? solve_rebounding() : solve_rows();
+}
+
+/// How many times the operations of the sweeps a direct solution may take: those that a stack would need to come as
+/// near to the solution are many more than are allowed. Only `reference` has no bound.
+double Island::direct_share() const {
+  constexpr double kSwept = 3, kSolved = 10, kExact = 100;
+  // Sweeps hardly close a loop that something presses on.
+  if (!accuracy_.direct) return has_rings() ? kSolved : kSwept;
+  switch (accuracy_.rung) {
+    case Rung::Reference: return JointDrive::kNoLimit;
+    case Rung::Precise: return kExact;
+    default: return kSolved;
+  }
+}
+
+void Island::solve_rows() {
   contact::SolveSettings settings;
   const int fast = core_.settings.fast_contacts;
   settings.iterations = fast > 0 ? fast : accuracy_.iterations;
-  constexpr std::size_t kMostDirect = 100;  // contacts
-  constexpr double kSwept = 0.1;            // of the speed that is rest
-  settings.direct = accuracy_.direct && fast == 0 && rows_.size() <= kMostDirect;
+  constexpr double kSwept = 0.1;  // of the speed that is rest
+  settings.direct = fast == 0;
+  settings.direct_share = direct_share();
   // Where nothing is solved exactly, sweeps end when they change less than could be seen.
-  if (!accuracy_.direct) settings.tolerance = std::max(settings.tolerance, kSwept * quiet_);
+  if (!accuracy_.direct) settings.swept = kSwept * quiet_;
   const contact::SolveReport report = contact::solve_island(movers_, rows_, scalars_, settings, workspace_);
   result.counters.solver_iterations += static_cast<std::uint64_t>(report.iterations + report.newton);
   result.counters.direct += report.direct;
@@ -112,6 +177,11 @@ void Island::account_rows() {
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const contact::Row& row = rows_[i];
     if (row.impulse == Vector3::Zero()) continue;
+    // What the side that moves as it was told gives is the work of who told it.
+    for (const bool first : {true, false}) {
+      const int mover = first ? row.a : row.b;
+      if (is_driver(mover)) result.account.script_work += (first ? -1 : 1) * row.impulse.dot(rate_of(row, first));
+    }
     for (const bool first : {true, false}) {
       const Vector3 mean = (first ? 0.5 : -0.5) * (rate_of(row, first) + before_[2 * i + (first ? 0 : 1)]);
       const double along = row.impulse[0] * mean[0], across = row.impulse[1] * mean[1] + row.impulse[2] * mean[2];
@@ -123,12 +193,18 @@ void Island::account_rows() {
       }
     }
   }
-  const std::size_t limits = scalars_.size() - ring_errors_.size();
-  for (std::size_t i = 0; i < limits; ++i) {
+  const std::size_t limits = limit_rows();
+  for (std::size_t i = 0; i < limits + motors_.size(); ++i) {
     const contact::ScalarRow& row = scalars_[i];
-    const double loss = -0.5 * row.impulse * (scalars_before_[i] + rate_of(row));
-    result.account.limit_loss += loss;
-    tree_at(row.a)->account.limit_loss += loss;
+    const double work = 0.5 * row.impulse * (scalars_before_[i] + rate_of(row));
+    Tree& tree = *tree_at(row.a);
+    if (i < limits) {
+      result.account.limit_loss -= work;
+      tree.account.limit_loss -= work;
+    } else {
+      result.account.motor_work += work;
+      tree.account.motor_work += work;
+    }
   }
 }
 
@@ -148,8 +224,7 @@ void Island::note_forces(double h) {
     add_force(pair.b, touches_[i].point, -force);
   }
   note_spring_forces();
-  const std::size_t limits = scalars_.size() - ring_errors_.size();
-  for (std::size_t i = 0; i < limits; ++i) {
+  for (std::size_t i = 0; i < limit_rows(); ++i) {
     Tree& tree = *trees_[static_cast<std::size_t>(scalars_[i].a) - free_.size()];
     tree.limit_force +=
         scalars_[i].impulse / h * Eigen::Map<const articulated::Vector>(scalars_[i].ja, tree.model.velocities());
@@ -157,17 +232,25 @@ void Island::note_forces(double h) {
 }
 
 void Island::add_force(BodyIndex body, const Vector3& point, const Vector3& force) {
-  const BodyPlace& side = core_.place_of[body];
+  const BodyPlace side = place_of(body);
   if (!side.tree) return;
   articulated::Wrench& wrench = side.tree->links[static_cast<std::size_t>(side.link)].contact;
   wrench.force += force;
   wrench.couple += (point - articulated::com_position(side.tree->model, side.tree->data, side.link)).cross(force);
 }
 
-void Island::keep_warm() {
+void Island::keep_warm(double h) {
+  // An event may cut a sub-step to a sliver: that says nothing of forces.
+  const bool kept = h > 0;
+  // By the old ones, before they are written over.
+  before_force_.clear();
+  for (std::size_t i = 0; kept && i < rows_.size(); ++i) {
+    const WarmPoint* warm = warm_of(touches_[i]);
+    before_force_.push_back(warm ? std::max(0.0, warm->force.dot(touches_[i].normal)) : 0);
+  }
   for (NearPair* pair : pairs_) {
     if (pair->spring.stiffness > 0) continue;  // keep_springs
-    pair->warm_count = 0;
+    if (kept) pair->warm_count = 0;
     pair->touching = false;
   }
   for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -175,14 +258,20 @@ void Island::keep_warm() {
     const Shape &a = *core_.bodies->collision_shape(pair.a), &b = *core_.bodies->collision_shape(pair.b);
     pair.touching = pair.touching || touches_[i].gap <= kSkin * std::min(a.bounding_radius(), b.bounding_radius()) ||
                     rows_[i].impulse[0] > 0;
-    if (pair.warm_count == static_cast<int>(pair.warm.size()) || rows_[i].impulse == Vector3::Zero()) continue;
-    pair.warm[static_cast<std::size_t>(pair.warm_count++)] = {touches_[i].feature, false,
-                                                              rows_[i].axes.transpose() * rows_[i].impulse};
+    if (!kept || pair.warm_count == static_cast<int>(pair.warm.size()) || rows_[i].impulse == Vector3::Zero()) continue;
+    pair.warm[static_cast<std::size_t>(pair.warm_count++)] = {
+        touches_[i].feature, false, rows_[i].axes.transpose() * rows_[i].impulse / h, before_force_[i]};
+  }
+  if (!kept) return;
+  for (const Bound& bound : bounds_) {
+    JointEntry& joint = core_.joints[bound.joint];
+    joint.limit_before[bound.axis] = joint.limit[bound.axis];
   }
   for (const Bound& bound : bounds_) core_.joints[bound.joint].limit[bound.axis] = 0;
   std::size_t k = 0;
   for (const Bound& bound : bounds_)
-    if (bound.rests) core_.joints[bound.joint].limit[bound.axis] += bound.sign * scalars_[k++].impulse;
+    if (bound.rests) core_.joints[bound.joint].limit[bound.axis] += bound.sign * scalars_[k++].impulse / h;
+  for (const MotorRow& motor : motors_) core_.joints[motor.joint].motor[motor.axis] = scalars_[k++].impulse / h;
 }
 
 }  // namespace breve

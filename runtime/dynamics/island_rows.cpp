@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/articulated/energy.hpp"
 #include "runtime/articulated/impulse.hpp"
 #include "runtime/articulated/joints.hpp"
 #include "runtime/articulated/kinematics.hpp"
@@ -16,6 +17,23 @@ namespace {
 double size_of(const Shape& a, const Shape& b) { return std::min(a.bounding_radius(), b.bounding_radius()); }
 
 }  // namespace
+
+Island::Touch Island::touch_at(std::size_t pair, const Pose& a, const Pose& b, const Manifold& manifold,
+                               const ContactPoint& point) {
+  Touch touch;
+  touch.pair = static_cast<std::uint32_t>(pair);
+  touch.feature = point.feature;
+  touch.point = 0.5 * (point.on_a + point.on_b);
+  touch.on_a = a.orientation.conjugate() * (touch.point - a.location);
+  touch.on_b = b.orientation.conjugate() * (touch.point - b.location);
+  touch.from_a = a.location;
+  touch.from_b = b.location;
+  touch.turn_a = a.orientation;
+  touch.turn_b = b.orientation;
+  touch.normal = manifold.normal;
+  touch.gap = point.distance;
+  return touch;
+}
 
 void Island::find_touches(double h, bool speculative) {
   touches_.clear();
@@ -40,15 +58,10 @@ void Island::find_touches(double h, bool speculative) {
       ++result.counters.manifolds;
       for (int k = 0; k < manifold.count; ++k) {
         const ContactPoint& point = manifold.points[static_cast<std::size_t>(k)];
-        Touch touch{static_cast<std::uint32_t>(i),
-                    point.feature,
-                    0.5 * (point.on_a + point.on_b),
-                    manifold.normal,
-                    point.distance,
-                    0};
-        if (!speculative)
-          touch.approach =
-              manifold.normal.dot(point_velocity(pair.a, touch.point) - point_velocity(pair.b, touch.point));
+        Touch touch = touch_at(i, pa, pb, manifold, point);
+        touch.velocity_a = point_velocity(pair.a, touch.point);
+        touch.velocity_b = point_velocity(pair.b, touch.point);
+        if (!speculative) touch.approach = manifold.normal.dot(touch.velocity_a - touch.velocity_b);
         touches_.push_back(touch);
       }
     }
@@ -116,14 +129,14 @@ void Island::find_touches_now() {
     NearPair& pair = *pairs_[i];
     if (pair.spring.stiffness > 0) continue;  // it gives way to what is sudden
     const Shape &a = *core_.bodies->collision_shape(pair.a), &b = *core_.bodies->collision_shape(pair.b);
+    const Pose pa = pose_of(pair.a), pb = pose_of(pair.b);
     manifolds_.clear();
-    find_manifolds(a, pose_of(pair.a), b, pose_of(pair.b), kTouchSkin * size_of(a, b), manifolds_, pair.cache, narrow);
+    find_manifolds(a, pa, b, pb, kTouchSkin * size_of(a, b), manifolds_, pair.cache, narrow);
     for (const Manifold& manifold : manifolds_)
       for (int k = 0; k < manifold.count; ++k) {
         const ContactPoint& point = manifold.points[static_cast<std::size_t>(k)];
         if (point.distance > kTouchSkin * size_of(a, b)) continue;
-        touches_.push_back({static_cast<std::uint32_t>(i), point.feature, 0.5 * (point.on_a + point.on_b),
-                            manifold.normal, point.distance, 0});
+        touches_.push_back(touch_at(i, pa, pb, manifold, point));
       }
   }
 }
@@ -169,8 +182,15 @@ void Island::fill(Tree& tree, int link, const Vector3& point, const Vector3& axi
     const Vector3 turn =
         angular ? Vector3(sign * axis) : Vector3((point - tree.data.motion_of(i).origin).cross(linear));
     double* at = j + body.v;
+    // A push along the axis turns nothing: round-off there, taken for a lever, would turn it without bound.
+    constexpr double kRoundOff = 1e-13;
     switch (body.type) {
-      case JointType::Revolute: at[0] += work.axis.dot(turn); break;
+      case JointType::Revolute: {
+        const double lever = work.axis.dot(turn);
+        const Vector3& origin = tree.data.motion_of(i).origin;
+        if (angular || std::abs(lever) > kRoundOff * (point - origin).lpNorm<1>()) at[0] += lever;
+        break;
+      }
       case JointType::Prismatic: at[0] += work.axis.dot(linear); break;
       case JointType::Universal:
         at[0] += work.axis.dot(turn);
@@ -193,51 +213,68 @@ void Island::respond(Tree& tree, const double* j, double* r) const {
   Eigen::Map<articulated::Vector>(r, n) = tree.work_u;
 }
 
-void Island::make_rows(double h, bool restitution) {
+/// Rows where the island stands, whose links are placed.
+void Island::make_rows(Motors motors) {
   rows_.clear();
   scalars_.clear();
+  motors_.clear();
   laws_.clear();
   numbers_.clear();
   ring_errors_.clear();
-  std::size_t widest = 0, rings = 0;
+  std::size_t widest = 0, rings = 0, driven = 0;
   for (Tree* tree : trees_) {
     widest = std::max(widest, static_cast<std::size_t>(tree->model.velocities()));
     rings += tree->rings.size();
+    for (const TreeLink& link : tree->links) driven += link.motor;
   }
-  numbers_.reserve(widest * (12 * touches_.size() + 2 * bounds_.size() + 12 * rings));
-  for (Free& one : free_) {
+  numbers_.reserve(widest * (12 * touches_.size() + 2 * bounds_.size() + 6 * driven + 12 * rings));
+  for (Free& one : loose_bodies()) {
     const Matrix3 r = one.now.orientation.toRotationMatrix();
     contact::Mover& mover = movers_[static_cast<std::size_t>(&one - free_.data())];
     mover.inverse_inertia = r * Eigen::Matrix3d(one.now.solid->inertia).inverse() * r.transpose();
   }
-  for (const Touch& touch : touches_) add_touch_row(touch);
+  for (Tree* tree : trees_) tree->row_center = articulated::centre_of_mass(tree->model, tree->data);
+  for (Touch& touch : touches_) add_touch_row(touch);
   for (const Bound& bound : bounds_)
     if (bound.rests) add_bound_row(bound);
+  if (motors == Motors::Drive)
+    for (Tree* tree : trees_) add_motor_rows(*tree);
   for (Tree* tree : trees_) add_ring_rows(*tree);
-  load_velocities();
+}
+
+/// Velocities at the rows when the sub-step began: seen then, where the rows were found.
+void Island::recall_rates() {
   before_.clear();
-  warm_.clear();
+  scalars_before_.clear();
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    contact::Row& row = rows_[i];
+    const Touch& touch = touches_[i];
+    const Vector3 a = row.axes * touch.velocity_a, b = row.axes * touch.velocity_b;
+    const BodyPlace of_a = place_of(pairs_[touch.pair]->a), of_b = place_of(pairs_[touch.pair]->b);
+    const bool inner = of_a.tree && of_a.tree == of_b.tree;
+    before_.push_back(inner ? Vector3(a - b) : a);
+    before_.push_back(inner ? Vector3::Zero() : b);
+    row.slip[0] = a[1] - b[1];
+    row.slip[1] = a[2] - b[2];
+  }
+  for (const Bound& bound : bounds_)
+    if (bound.rests) scalars_before_.push_back(bound.rate);
+  for (const MotorRow& motor : motors_) scalars_before_.push_back(motor.tree->sub_state.v[motor.velocity]);
+  scalars_before_.resize(scalars_.size(), 0.0);
+}
+
+/// The same where the movers stand, with the velocities that they have.
+void Island::read_rates() {
+  before_.clear();
   scalars_before_.clear();
   for (contact::Row& row : rows_) {
     const Vector3 a = rate_of(row, true), b = rate_of(row, false);
-    warm_.push_back(row.impulse);
     before_.push_back(a);
     before_.push_back(b);
     row.slip[0] = a[1] - b[1];
     row.slip[1] = a[2] - b[2];
   }
   for (const contact::ScalarRow& row : scalars_) scalars_before_.push_back(rate_of(row));
-  set_biases(h);
-  if (!restitution) return;
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    const Touch& touch = touches_[i];
-    const contact::Law& law = laws_[i];
-    const double approach = before_[2 * i][0] - before_[2 * i + 1][0];
-    const bool hits = touch.gap + h * approach < 0;
-    // What gravity alone adds in two steps is no impact: resting stacks would hop.
-    const double slow = std::max(law.restitution_threshold, 2 * core_.settings.gravity.norm() * h);
-    if (hits && approach < -slow) rows_[i].bias = std::max(rows_[i].bias, -law.restitution * approach);
-  }
 }
 
 void Island::set_biases(double h) {
@@ -246,8 +283,43 @@ void Island::set_biases(double h) {
     if (bounds_[i].rests) scalars_[k++].bias = std::min(0.0, -bounds_[i].gap / h);
 }
 
-void Island::add_touch_row(const Touch& touch) {
-  NearPair& pair = *pairs_[touch.pair];
+namespace {
+
+bool is_round(const Shape& shape) { return shape.kind() == ShapeKind::Sphere || shape.round().is_round(); }
+
+/// The point of a body that stood and was turned so, once it is at `now`: what is round about an axis turns about it
+/// without taking its point along, so that only the shortest rotation of the axis counts; a ball has no axis to turn.
+Vector3 carried_by(const Shape& shape, const Vector3& point, const Vector3& on, const Vector3& from,
+                   const Quaternion& turn, const Pose& now) {
+  if (!is_round(shape)) return now.location + now.orientation * on;
+  if (shape.kind() == ShapeKind::Sphere) return point + now.location - from;
+  const Vector3 axis = Vector3::Unit(shape.round().axis);
+  return now.location + Quaternion::FromTwoVectors(turn * axis, now.orientation * axis) * (point - from);
+}
+
+}  // namespace
+
+/// Where two bodies touch once they have moved: a round body's point goes with its centre, a corner's with its body;
+/// where both are alike and both move, in the middle.
+Vector3 Island::carried(const Touch& touch) const {
+  const NearPair& pair = *pairs_[touch.pair];
+  const Shape &a = *core_.bodies->collision_shape(pair.a), &b = *core_.bodies->collision_shape(pair.b);
+  const auto with_a = [&] {
+    return carried_by(a, touch.point, touch.on_a, touch.from_a, touch.turn_a, pose_of(pair.a));
+  };
+  const auto with_b = [&] {
+    return carried_by(b, touch.point, touch.on_b, touch.from_b, touch.turn_b, pose_of(pair.b));
+  };
+  const bool a_moves = place_of(pair.a).mover >= 0, b_moves = place_of(pair.b).mover >= 0;
+  const bool by_a = a_moves && (is_round(a) || !is_round(b)), by_b = b_moves && (is_round(b) || !is_round(a));
+  if (by_a && by_b) return 0.5 * (with_a() + with_b());
+  if (by_a) return with_a();
+  return by_b ? with_b() : touch.point;
+}
+
+void Island::add_touch_row(Touch& touch) {
+  const NearPair& pair = *pairs_[touch.pair];
+  touch.point = carried(touch);
   contact::Row row;
   Vector3 t1, t2;
   contact::tangents(touch.normal, t1, t2);
@@ -255,7 +327,9 @@ void Island::add_touch_row(const Touch& touch) {
   row.static_friction = pair.law.static_friction;
   row.dynamic_friction = pair.law.dynamic_friction;
   row.pair = static_cast<int>(touch.pair);
-  const BodyPlace sides[2] = {core_.place_of[pair.a], core_.place_of[pair.b]};
+  BodyPlace sides[2] = {place_of(pair.a), place_of(pair.b)};
+  for (BodyPlace& side : sides)
+    if (is_driver(side.mover)) side.mover = pair_drivers_[touch.pair];
   const bool same = sides[0].tree && sides[0].tree == sides[1].tree;
   for (int s = 0; s < 2; ++s) {
     const BodyPlace& side = sides[s];
@@ -276,12 +350,9 @@ void Island::add_touch_row(const Touch& touch) {
     (s == 0 ? row.ja : row.jb) = j;
     (s == 0 ? row.ra : row.rb) = r;
   }
-  for (int k = 0; k < pair.warm_count; ++k) {
-    const WarmPoint& warm = pair.warm[static_cast<std::size_t>(k)];
-    if (warm.feature != touch.feature) continue;
-    row.impulse = row.axes * warm.impulse;
+  if (const WarmPoint* warm = warm_of(touch)) {
+    row.impulse = row.axes * warm->force;  // made an impulse where the sub-step's length is known
     ++result.counters.warm;
-    break;
   }
   ++result.counters.contacts;
   rows_.push_back(row);
@@ -313,6 +384,32 @@ void Island::add_bound_row(const Bound& bound) {
   row.impulse = std::max(0.0, bound.sign * joint.limit[bound.axis]);
   scalars_.push_back(row);
   ++result.counters.limits;
+}
+
+/// Of a universal joint each axis has a motor with the joint's strength, of a ball joint all three share one.
+void Island::add_motor_rows(Tree& tree) {
+  const int n = tree.model.velocities();
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    const TreeLink& link = tree.links[i];
+    if (!link.motor) continue;
+    const articulated::Body& body = tree.model.body(static_cast<int>(i));
+    const JointEntry& joint = core_.joints[link.joint];
+    const int count = articulated::velocity_count(body.type);
+    const bool ball = body.type == articulated::JointType::Ball;
+    for (int k = 0; k < count; ++k) {
+      double *j = rows_of(tree, 1), *r = rows_of(tree, 1);
+      std::fill(j, j + n, 0.0);
+      j[body.v + k] = 1;
+      respond(tree, j, r);
+      contact::ScalarRow row;
+      row.a = static_cast<int>(free_.size()) + tree.slot;
+      row.ja = j;
+      row.ra = r;
+      row.impulse = joint.motor[k];
+      scalars_.push_back(row);
+      motors_.push_back({&tree, link.joint, k, body.v + k, !ball ? 1 : k == 0 ? count : 0, joint.drive.strength_limit});
+    }
+  }
 }
 
 void Island::add_ring_rows(const Tree& of) {

@@ -33,7 +33,7 @@ bool Island::springs_for(const contact::Law& law) const {
 
 /// What an impulse along `normal` has to move there, kg.
 double Island::felt_mass(const NearPair& pair, const Vector3& point, const Vector3& normal) const {
-  const BodyPlace &a = core_.place_of[pair.a], &b = core_.place_of[pair.b];
+  const BodyPlace a = place_of(pair.a), b = place_of(pair.b);
   double yields = 0;
   const auto of_tree = [&](Tree& tree, int first, int second) {
     const articulated::Symmetric3 w = articulated::collision_matrix(tree.model, tree.data, first, point, second, point);
@@ -64,7 +64,7 @@ void Island::begin_spring(NearPair& pair, const Touch& touch) {
     if (side.mover < 0) return 0.0;
     return side.tree ? side.tree->model.mass() : free_[static_cast<std::size_t>(side.mover)].now.solid->mass;
   };
-  const double mass = reduced(whole(core_.place_of[pair.a]), whole(core_.place_of[pair.b]));
+  const double mass = reduced(whole(place_of(pair.a)), whole(place_of(pair.b)));
   const double felt = felt_mass(pair, touch.point, touch.normal);
   if (!(felt > 0)) return;
   const double own = accuracy_.contact_damping;
@@ -193,7 +193,7 @@ void Island::hand_on(const NearPair& pair, std::span<SprungPoint> points) {
       if (left != old.end()) ++left;
     }
     if (from != old.end()) {
-      point.stretch = from->impulse;
+      point.stretch = from->force;
       point.slides = from->slides;
     }
     point.spring.dynamic_friction = pair.law.dynamic_friction;
@@ -212,7 +212,7 @@ void Island::keep_springs() {
     NearPair& pair = *pairs_[point.pair];
     pair.stored += point.stored;
     if (pair.warm_count == static_cast<int>(pair.warm.size())) continue;
-    pair.warm[static_cast<std::size_t>(pair.warm_count++)] = {point.feature, point.slips, point.stretched};
+    pair.warm[static_cast<std::size_t>(pair.warm_count++)] = {point.feature, point.slips, point.stretched, 0};
   }
 }
 
@@ -223,7 +223,8 @@ void Island::smooth_springs(double time, double h) {
   free_work_ = sprung_->lost().script_work;
   for (Clustered& one : clusters_) {
     const Cluster& system = *one.entry->system;
-    one.pending = {};
+    forget_parts(one);
+    for (Tree* tree : system.trees()) tree->motor_impulse = tree->part_impulse;
     one.pending.motor_work = system.motor_work();
     one.pending.script_work = system.script_work();
     one.pending.drag_loss = system.drag_loss();

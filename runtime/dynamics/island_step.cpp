@@ -1,6 +1,7 @@
 // The step of an island: smooth motion, impacts at their moments, contacts that last.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "runtime/articulated/kinematics.hpp"
 #include "runtime/base/rotation_vector.hpp"
@@ -20,15 +21,32 @@ bool Island::holds_rings() const {
                      [](const Clustered& one) { return one.entry->system->can_be_finer(); });
 }
 
-bool Island::only_rings() const { return rows_.empty() && !scalars_.empty() && scalars_.size() == ring_errors_.size(); }
+/// Known before rows are made: whether there will be some beside those of rings, and of rings.
+bool Island::has_rows() const {
+  const auto driven = [](const Tree* tree) {
+    return std::any_of(tree->links.begin(), tree->links.end(), [](const TreeLink& link) { return link.motor; });
+  };
+  return !touches_.empty() || std::any_of(trees_.begin(), trees_.end(), driven) ||
+         std::any_of(bounds_.begin(), bounds_.end(), [](const Bound& bound) { return bound.rests; });
+}
+
+bool Island::has_rings() const {
+  return std::any_of(trees_.begin(), trees_.end(), [](const Tree* tree) { return !tree->rings.empty(); });
+}
+
+namespace {
+/// Into how many equal parts of at most `step` seconds `left` goes; rounding is not to make one more.
+double parts_of(double left, double step) {
+  constexpr double kTolerance = 1e-9, kMost = 1e9;
+  return std::clamp(std::ceil(left / step - kTolerance), 1.0, kMost);
+}
+}  // namespace
 
 double Island::longest(double left) const {
   double step = accuracy_.step > 0 ? accuracy_.step : left;
-  const bool touching = !rows_.empty() || !scalars_.empty();
+  const bool touching = has_rows() || has_rings();
   if (touching && accuracy_.contact_step > 0) step = std::min(step, accuracy_.contact_step);
-  // Equal parts, and rounding is not to make one more.
-  constexpr double kTolerance = 1e-9;
-  return left / std::max(1.0, std::ceil(left / step - kTolerance));
+  return left / parts_of(left, step);
 }
 
 void Island::step_quiet(double start, double h) {
@@ -43,38 +61,23 @@ void Island::step_quiet(double start, double h) {
 // --- fast: one look a sub-step, velocities first ---------------------------------------------------------------------
 
 void Island::step_fast(double start, double h) {
+  spent_ = true;
   const double step = accuracy_.step > 0 ? accuracy_.step : h;
-  const int parts = static_cast<int>(std::max(1.0, std::ceil(h / step - 1e-9)));
+  const int parts = static_cast<int>(parts_of(h, step));
   const double part = h / parts;
   for (int i = 0; i < parts; ++i) {
-    place();
-    find_touches(part, true);
-    take_springs();
-    find_bounds();
+    look(part, true);
     for (Bound& bound : bounds_) bound.rests = bound.gap + part * std::min(0.0, 2 * bound.rate) <= kLimitSkin;
-    make_rows(part, true);
-    for (std::size_t k = 0, s = 0; k < bounds_.size(); ++k) {
-      if (!bounds_[k].rests) continue;
-      const double e = core_.joints[bounds_[k].joint].drive.limit_restitution;
-      if (bounds_[k].rate < -quiet_) scalars_[s].bias = std::max(scalars_[s].bias, -e * bounds_[k].rate);
-      ++s;
-    }
-    if (only_rings()) {
-      remember();
-      advance_once(start + i * part, part);
-      commit();
-    } else {
-      for (Clustered& one : clusters_) one.stage->holds_rings = false;
-      smooth(start + i * part, part);
-      commit();
-      load_velocities();
-      solve();
-      account_rows();
-      note_overlaps(part);
-      store_velocities(part);
-    }
+    predict();
+    remember();
+    open_books();
+    advance_once(start + i * part, part);
+    commit();
+    account_rows();
+    close_books();
+    note_overlaps(part);
     note_forces(part);
-    keep_warm();
+    keep_warm(part);
     push_apart(part);
   }
 }
@@ -82,9 +85,11 @@ void Island::step_fast(double start, double h) {
 // --- impacts at their time ---
 
 void Island::advance_once(double time, double h) {
-  const bool alone = only_rings(), in_stages = !alone || holds_rings();
+  const bool alone = has_rings() && !has_rows(), in_stages = !alone || holds_rings();
   for (Clustered& one : clusters_) one.stage->holds_rings = in_stages;
   if (!in_stages) {
+    place();
+    make_rows(Motors::Leave);
     if (hold_rings(time, h)) return;
     // An impulse that does not close the rings would be energy from nowhere.
     restore();
@@ -92,13 +97,19 @@ void Island::advance_once(double time, double h) {
   }
   smooth(time, h);
   if (alone) return;
-  load_velocities();
-  set_biases(h);
-  for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i].impulse = warm_[i];
-  solve();
+  note_smooth();
+  solve_after(h);
   // A force that is constant over the step moves by half of what its change of velocity would.
   correct_works(h);
   store_velocities(0.5 * h);
+  if (spent_) hold_off(h);
+}
+
+/// What of the part of a step that was taken no account explains; it ends because the island is no longer what it was.
+/// @param held  J, as that part ended, but for contact springs
+void Island::end_unfinished(double held) {
+  for (const NearPair* pair : pairs_) held += pair->stored;
+  result.account.residual += unexplained_since_start(held);
 }
 
 /// Calls the handler of a pair that touches for the first time. False if what it did leaves nothing of the island as it
@@ -108,16 +119,21 @@ bool Island::call(DynamicsClient& client, int index, double moment, double left)
   pair.reported = true;
   const Contact contact = closest(*core_.bodies->collision_shape(pair.a), pose_of(pair.a),
                                   *core_.bodies->collision_shape(pair.b), pose_of(pair.b));
+  booked_ = false;
   write();
+  const double held = held_energy();
   const std::uint64_t before = core_.structure();
   client.impact(pair.a, pair.b, contact, moment);
   core_.sync_changes();
+  core_.settle_books(true);
   if (core_.structure() != before) {
+    end_unfinished(held);
     unfinished_ = left;
     return false;
   }
-  for (Free& one : free_) one.now = read_free(*core_.bodies, one.body);
-  place();
+  handled_ += held_energy() - held;
+  for (Free& one : loose_bodies()) one.now = read_free(*core_.bodies, one.body);
+  place_links();
   return true;
 }
 
@@ -128,7 +144,14 @@ double Island::contact_part(double left) const {
 
 /// @param spent  no impact is located any more: rows are to stop whatever comes within h seconds
 void Island::look(double h, bool spent) {
-  place();
+  if (has_contact_springs())
+    place();
+  else
+    place_links();
+  rows_.clear();
+  scalars_.clear();
+  motors_.clear();
+  ring_errors_.clear();
   find_touches(h, spent);
   take_springs();
   find_bounds();
@@ -141,21 +164,23 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
   impacts_ = 0;
   rebounds_.clear();
   int stalls = 0;
+  constexpr double kTelling = 0.1;   // of a sub-step: a shorter one does not say which forces there are
   constexpr double kSliver = 1e-12;  // of the step
   constexpr int kMostStalls = 8;     // impacts without progress in time
+  const int most_impacts = located_impacts();
   while (now < h * (1 - kSliver)) {
     const double sub = contact_part(h - now);
-    const bool spent = impacts_ > accuracy_.impacts || stalls > kMostStalls;
+    spent_ = impacts_ >= most_impacts || stalls > kMostStalls;
     bool struck = false;
-    look(sub, spent);
-    if (!spent && strikes(sub)) {
+    look(sub, spent_);
+    if (!spent_ && strikes(sub)) {
       ++impacts_;
       struck = true;
       collide(start + now);
-      look(sub, spent);
+      look(sub, spent_);
     }
-    if (!spent) find_roles(sub, struck);
-    make_rows(sub, false);
+    if (!spent_) find_roles(sub, struck);
+    predict();
     const double part = longest(h - now);
     remember();
     start_poses_.clear();
@@ -163,9 +188,10 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
       start_poses_.push_back(pose_of(pair->a));
       start_poses_.push_back(pose_of(pair->b));
     }
+    open_books();
     advance_once(start + now, part);
     Event event;
-    if (!spent) event = seek(part);
+    if (!spent_) event = seek(part);
     if (event.found()) {
       ++impacts_;
       locate(start + now, event, part);
@@ -173,27 +199,40 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
     }
     commit();
     account_rows();
+    close_books();
     keep_springs();
     note_overlaps(part);
     note_forces(event.found() ? std::max(event.time, kSliver * h) : part);
     if (!event.found()) {
-      keep_warm();
+      keep_warm(part);
       push_apart(part);
       now += part;
       continue;
     }
-    keep_warm();
+    keep_warm(event.time > kTelling * part ? event.time : 0);
     now += event.time;
     place();
     meet(client, event, start + now, h - now);
     if (unfinished_ > 0) return;
   }
-  if (impacts_ > accuracy_.impacts && core_.settings.guard != GuardMode::Off)
+  if (impacts_ >= accuracy_.impacts && core_.settings.guard != GuardMode::Off)
     intervene({true, GuardReason::Impacts, static_cast<double>(impacts_), any_body()}, GuardAction::Reported,
               start + h);
 }
 
+/// How many impacts of this step are located in time. Each costs a look at all pairs, and some solutions of all rows:
+/// so that a crowd's step stays as long as its bodies and pairs are many, it has fewer. What comes then is met at the
+/// end of a sub-step, all at once.
+int Island::located_impacts() const {
+  if (accuracy_.rung == Rung::Reference) return accuracy_.impacts;
+  constexpr double kLooks = 4000, kPreciseLooks = 20000;  // at a body or a pair, for impacts of one step
+  const double looks = accuracy_.rung == Rung::Precise ? kPreciseLooks : kLooks;
+  const double items = static_cast<double>(free_.size() + trees_.size() + pairs_.size());
+  return std::clamp(static_cast<int>(looks / std::max(items, 1.0)), 1, std::max(1, accuracy_.impacts));
+}
+
 void Island::place_links() {
+  if (std::exchange(placed_, false)) return;
   for (Tree* tree : trees_) articulated::forward_kinematics(tree->model, tree->data, tree->state);
 }
 

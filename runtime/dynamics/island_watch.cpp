@@ -14,6 +14,9 @@ namespace {
 // Of the energy in motion: what a step may gain that no account explains. The fast rung is not meant to keep energy.
 constexpr double kResidual = 0.1, kResidualFast = 10;
 
+// Of what lifting all by their own size takes: what may be unexplained of what lies still.
+constexpr double kLying = 1e-5;
+
 constexpr double kMostTurn = 0.5;     // rad in a sub-step
 constexpr double kMostDamping = 1.0;  // c h / I
 
@@ -53,7 +56,12 @@ BodyIndex Island::not_finite() const {
 
 Island::Trouble Island::judge_residual(double residual, double turnover, double before) const {
   const double most = accuracy_.rung == Rung::Fast ? kResidualFast : kResidual;
-  if (!(residual > most * turnover + kTiny * std::abs(before))) return {};
+  // What lies still is put right by round-off of its solution, and nothing else is turned over.
+  double still = weight();
+  for (const Free& one : loose_bodies())
+    still += one.now.solid->mass * core_.bodies->collision_shape(one.body)->bounding_radius() *
+             core_.settings.gravity.norm();
+  if (!(residual > most * turnover + kTiny * std::abs(before) + kLying * still)) return {};
   return {true, GuardReason::Residual, residual, any_body()};
 }
 
@@ -76,10 +84,13 @@ Island::Trouble Island::fastest_turn(double h) const {
     if (!one.now.solid->round && (accuracy_.implicit_spin || !controlled(accuracy_.scheme)))
       look(one.now.spin.norm(), one.body);
   if (controlled(accuracy_.scheme)) return worst;
-  for (Tree* tree : trees_) {
-    articulated::forward_kinematics(tree->model, tree->data, tree->state);
-    for (std::size_t i = 0; i < tree->links.size(); ++i)
-      look(articulated::spin(tree->data, static_cast<int>(i)).norm(), tree->links[i].body);
+  for (const Clustered& one : clusters_) {
+    if (one.entry->system->can_be_finer() && !stiff(one)) continue;  // likewise
+    for (Tree* tree : one.entry->system->trees()) {
+      articulated::forward_kinematics(tree->model, tree->data, tree->state);
+      for (std::size_t i = 0; i < tree->links.size(); ++i)
+        look(articulated::spin(tree->data, static_cast<int>(i)).norm(), tree->links[i].body);
+    }
   }
   return worst;
 }
@@ -159,15 +170,6 @@ Island::Trouble Island::measure_overlaps() {
     worst = {true, GuardReason::Penetration, depth, core_.bodies->dynamic(pair.a) ? pair.a : pair.b};
   }
   return worst;
-}
-
-/// Potential energy in the field of gravity, J.
-double Island::height() {
-  double sum = 0;
-  for (const Free& one : free_) sum -= one.now.solid->mass * core_.settings.gravity.dot(one.now.center);
-  place_links();
-  for (const Tree* tree : trees_) sum += articulated::potential_energy(tree->model, tree->data, core_.settings.gravity);
-  return sum;
 }
 
 }  // namespace breve

@@ -8,16 +8,26 @@ namespace breve {
 
 Dynamics::Core::~Core() = default;
 
+namespace {
+
+/// One is moved by forces, the other too or something that such bodies meet.
+bool meet(const Bodies& bodies, BodyIndex a, BodyIndex b) {
+  const bool moves_a = bodies.dynamic(a), moves_b = bodies.dynamic(b);
+  return (moves_a || moves_b) && (moves_a || bodies.driver(a)) && (moves_b || bodies.driver(b));
+}
+
+}  // namespace
+
 bool Dynamics::pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client) const {
   if (core_) return core_->pushes(a, b, client);
   // Nothing has moved yet: no joints, no trees.
-  return (bodies_->dynamic(a) || bodies_->dynamic(b)) && !client.ignored(a, b);
+  return meet(*bodies_, a, b) && !client.ignored(a, b);
 }
 
 std::uint64_t Dynamics::rules() const { return core_ ? core_->rules : 0; }
 
 bool Dynamics::Core::pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client) {
-  if (!bodies->dynamic(a) && !bodies->dynamic(b)) return false;
+  if (!meet(*bodies, a, b)) return false;
   if (jointed(a, b) || client.ignored(a, b)) return false;
   const BodyEntry *x = find(a), *y = find(b);
   const bool same = x && y && x->tree != kNone && x->tree == y->tree;
@@ -75,6 +85,7 @@ Island& Dynamics::Core::fill(std::size_t place, std::size_t number) {
   Island& island = *islands[place];
   island.clear();
   for (const std::uint32_t body : island_free.of(number)) island.add_free(body);
+  for (const std::uint32_t pair : island_pairs.of(number)) island.add_drivers(near.at(pair));
   for (const std::uint32_t cluster : island_clusters.of(number)) island.add_cluster(*clusters[cluster]);
   for (const std::uint32_t pair : island_pairs.of(number)) island.add_pair(near.at(pair));
   return island;
@@ -100,7 +111,9 @@ bool Dynamics::Core::locates() const {
 
 void Dynamics::Core::run(DynamicsClient& client, double start, double h, int depth) {
   take_changes();
+  settle_books(true);
   if (clusters_changed || integrators_changed) build_clusters();
+  if (settings.sleeping) near.wake_disturbed(*bodies);
   near.update(*bodies, client, settings.gravity, h, rules + client.rules(), locates(), [&](PairKey& key) {
     key.pushes = pushes(key.a, key.b, client);
     key.handled = client.handled(key.a, key.b);
@@ -108,7 +121,9 @@ void Dynamics::Core::run(DynamicsClient& client, double start, double h, int dep
   const Bodies& all = *bodies;
   near.each([&](const PairKey& key, NearPair& pair) {
     pair.law = contact::combine(all.material(key.a), all.material(key.b));
+    pair.law_known = true;
   });
+  enter_books();
   find_islands();
   // Islands that call nobody first: what a handler does must not pull the ground from under them. They are stepped in
   // lots that take turns in the same places: what an island works with would not fit the caches for all of a crowd, and
@@ -201,6 +216,7 @@ bool Dynamics::Core::sleep_through(Island& island) {
   island.append_bodies(scratch);
   bool all = true;
   for (const BodyIndex body : scratch) all = all && near.rest(body).asleep;
+  all = all && !island.has_drivers();
   if (all) return true;
   // One that is awake wakes the others.
   for (const BodyIndex body : scratch) {
@@ -224,7 +240,7 @@ void Dynamics::Core::note_rest(Island& island, double h) {
   }
   if (!all) return;
   for (const BodyIndex body : scratch) near.rest(body).asleep = true;
-  island.stop();
+  island.stop(Island::Momenta::Take);
   island.write();
 }
 

@@ -201,6 +201,15 @@ void put_joint_velocity(const JointDescription& is, bool flipped, const double* 
   }
 }
 
+Vector3 joint_deflection(JointKind kind, const double* from, const double* to) {
+  if (kind == JointKind::Ball)
+    return articulated::logarithm(Quaternion(from[0], from[1], from[2], from[3]).conjugate() *
+                                  Quaternion(to[0], to[1], to[2], to[3]));
+  Vector3 way = Vector3::Zero();
+  for (int i = 0; i < axis_count(kind); ++i) way[i] = to[i] - from[i];
+  return way;
+}
+
 void put_joint_force(const JointDescription& is, bool flipped, const double* q, const JointVector& f, double* tau) {
   switch (is.kind) {
     case JointKind::Revolute:

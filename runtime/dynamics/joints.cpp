@@ -8,6 +8,7 @@
 #include "runtime/articulated/inverse_dynamics.hpp"
 #include "runtime/base/error.hpp"
 #include "runtime/dynamics/core.hpp"
+#include "runtime/mechanics/members.hpp"
 
 namespace breve {
 
@@ -21,6 +22,24 @@ Pose place_at_zero(const JointDescription& is, const Pose& parent) {
   child.orientation = (parent.orientation * is.relative_rotation).normalized();
   child.location = parent.location + parent.orientation * is.parent_point - child.orientation * is.child_point;
   return child;
+}
+
+}  // namespace
+
+namespace {
+
+/// The joint is one of its two bodies', in the order of creation.
+void attach(Dynamics::Core& core, JointIndex joint) {
+  const JointEntry& entry = core.joints[joint];
+  for (const BodyIndex end : {entry.is.child, entry.is.parent}) {
+    if (end == kNoBody) continue;
+    core.touch_tree(end);
+    std::pmr::vector<JointIndex>& of = core.entry(end).joints;
+    of.insert(
+        std::lower_bound(of.begin(), of.end(), entry.serial,
+                         [&core](JointIndex x, std::uint64_t serial) { return core.joints[x].serial < serial; }),
+        joint);
+  }
 }
 
 }  // namespace
@@ -97,6 +116,7 @@ void Dynamics::Core::place_child(JointEntry& joint) {
 }
 
 void Dynamics::Core::touch_tree(BodyIndex body) {
+  near.wake(body);
   if (const BodyEntry* known = find(body); known && known->tree != kNone) drop_tree(known->tree);
   graph_changed = true;
 }
@@ -118,6 +138,9 @@ JointIndex Dynamics::link(const JointDescription& description, ObjectId owner) {
     BodyEntry& entry = c.entry(end);
     entry.joints.reserve(entry.joints.size() + 1);
   }
+  for (const BodyIndex end : ends)
+    if (end != kNoBody && c.bodies->kind(end) != BodyKind::Stationary) c.bodies->set_physics(end, true);
+  c.place_child(made);  // the last that may be refused
   JointIndex index;
   if (c.free_joints.empty()) {
     index = static_cast<JointIndex>(c.joints.size());
@@ -126,11 +149,7 @@ JointIndex Dynamics::link(const JointDescription& description, ObjectId owner) {
     index = c.free_joints.back();
     c.free_joints.pop_back();
   }
-  // From here on nothing that has to be undone can fail, but for memory in the placing of many bodies.
-  for (const BodyIndex end : ends)
-    if (end != kNoBody && c.bodies->kind(end) != BodyKind::Stationary) c.bodies->set_physics(end, true);
   made.serial = c.next_serial++;
-  c.place_child(made);
   for (const BodyIndex end : ends) {
     if (end == kNoBody) continue;
     c.touch_tree(end);
@@ -186,16 +205,14 @@ void Dynamics::relink(JointIndex joint, const JointDescription& description) {
   changed.link = -1;
   for (const BodyIndex end : {description.child, description.parent})
     if (end != kNoBody && c.bodies->kind(end) != BodyKind::Stationary) c.bodies->set_physics(end, true);
-  c.place_child(changed);
-  for (const BodyIndex end : {description.child, description.parent}) {
-    if (end == kNoBody) continue;
-    c.touch_tree(end);
-    std::pmr::vector<JointIndex>& of = c.entry(end).joints;
-    of.insert(std::lower_bound(of.begin(), of.end(), changed.serial,
-                               [&c](JointIndex x, std::uint64_t serial) { return c.joints[x].serial < serial; }),
-              joint);
+  try {
+    c.place_child(changed);
+  } catch (...) {
+    attach(c, joint);
+    throw;
   }
   c.joints[joint] = changed;
+  attach(c, joint);
   c.note_joined(joint);
 }
 
@@ -267,8 +284,11 @@ void Dynamics::set_drive(JointIndex joint, const JointDrive& drive) {
   JointEntry& entry = c.at(joint);
   check(drive, entry.is.kind);
   const bool had_motor = entry.drive.strength_limit > 0;
-  entry.drive = drive;
-  entry.drive.strength_limit = std::clamp(drive.strength_limit, 0.0, strength_hard_limit(joint));
+  JointDrive set = drive;
+  set.strength_limit = std::clamp(drive.strength_limit, 0.0, strength_hard_limit(joint));
+  if (c.near.asleep(entry.is.child) && !members::same(set, entry.drive)) c.near.wake(entry.is.child);
+  entry.drive = set;
+  if (entry.tree != kNone) c.trees[entry.tree]->changed = true;  // its spring may hold more or less
   // The integrator keeps the impulse of each motor.
   if (had_motor != (entry.drive.strength_limit > 0)) c.integrators_changed = true;
 }

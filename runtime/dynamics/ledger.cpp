@@ -1,7 +1,10 @@
 // Where energy is and where it went. What is in motion, height and springs is summed when somebody asks; works and
 // losses are written down by those who do them. What is left is the residual. Nothing repairs it.
+#include <algorithm>
+
 #include "runtime/articulated/energy.hpp"
 #include "runtime/articulated/kinematics.hpp"
+#include "runtime/dynamics/joint_frames.hpp"
 #include "runtime/dynamics/motion.hpp"
 
 namespace breve {
@@ -18,11 +21,14 @@ Energy Dynamics::Core::energy_of(Tree& tree) const {
 double Dynamics::Core::joint_springs(Tree& tree) const {
   // From the joints' own numbers: what the loads hold is of the last step.
   double energy = 0;
-  for (const TreeLink& link : tree.links) {
-    if (link.joint == kNoJoint) continue;
-    const JointEntry& joint = joints[link.joint];
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    if (tree.links[i].joint == kNoJoint) continue;
+    const JointEntry& joint = joints[tree.links[i].joint];
     if (!(joint.drive.stiffness > 0)) continue;
-    energy += 0.5 * joint.drive.stiffness * (read_position(joint) - joint.drive.rest).squaredNorm();
+    double rest[4] = {};
+    put_joint_position(joint.is, joint.flipped, joint.drive.rest, rest);
+    const double* q = tree.state.q.data() + tree.model.body(static_cast<int>(i)).q;
+    energy += 0.5 * joint.drive.stiffness * joint_deflection(joint.is.kind, rest, q).squaredNorm();
   }
   return energy;
 }
@@ -52,6 +58,72 @@ Energy Dynamics::Core::free_energy(BodyIndex body) const {
   return now;
 }
 
+// --- what scripts did -----------------------------------------------------------------------------------------------
+
+/// What takes part in a step from now on is in the books, with what it has.
+void Dynamics::Core::enter_books() {
+  if (booked.size() < bodies->index_end()) booked.resize(bodies->index_end(), kNoBook);
+  for (const BodyIndex body : near.movers()) {
+    if (in_books(booked[body]) || !bodies->dynamic(body)) continue;
+    const BodyEntry* known = find(body);
+    if (!known || known->tree == kNone) booked[body] = free_energy(body).total();
+  }
+  for (const std::uint32_t index : tree_order)
+    if (!in_books(trees[index]->booked)) trees[index]->booked = energy_of(*trees[index]).total();
+  for (SpringEntry& tie : springs)
+    if (tie.used && !in_books(tie.booked)) tie.booked = tie_energy(tie.is);
+}
+
+bool Dynamics::Core::known_to_books(BodyIndex body) const {
+  const BodyEntry* known = find(body);
+  return in_books(known && known->tree != kNone ? trees[known->tree]->booked : book_of(body));
+}
+
+/// Energy that came in since the last step by what scripts and hosts set, J.
+/// @param write  to the books, once for each change: how often somebody asks makes no difference
+double Dynamics::Core::settle_books(bool write) {
+  double sum = 0;
+  std::sort(unsettled.begin(), unsettled.end());
+  unsettled.erase(std::unique(unsettled.begin(), unsettled.end()), unsettled.end());
+  for (const BodyIndex body : unsettled) {
+    const BodyEntry* known = find(body);
+    if (!in_books(book_of(body)) || !bodies->dynamic(body) || (known && known->tree != kNone)) continue;
+    const double now = free_energy(body).total();
+    sum += now - booked[body];
+    if (write) booked[body] = now;
+  }
+  if (write) unsettled.clear();
+  bool changed = false;
+  for (const std::uint32_t index : tree_order) {
+    changed = changed || trees[index]->changed;
+    sum += settle_tree(*trees[index], write);
+  }
+  for (SpringEntry& tie : springs)
+    if (tie.used && (changed || tie.set || !bodies->dynamic(tie.is.a) || !bodies->dynamic(tie.is.b)))
+      sum += settle_tie(tie, write);
+  if (write) account.script_work += sum;
+  return sum;
+}
+
+double Dynamics::Core::settle_tree(Tree& tree, bool write) {
+  if (!tree.changed || !in_books(tree.booked)) return 0;
+  const double now = energy_of(tree).total(), work = now - tree.booked;
+  if (!write) return work;
+  tree.account.script_work += work;
+  tree.booked = now;
+  tree.changed = false;
+  return work;
+}
+
+double Dynamics::Core::settle_tie(SpringEntry& tie, bool write) {
+  if (!in_books(tie.booked)) return 0;
+  const double now = tie_energy(tie.is), work = now - tie.booked;
+  if (!write) return work;
+  tie.booked = now;
+  tie.set = false;
+  return work;
+}
+
 void Dynamics::Core::add_stored(Energy& sum) {
   for (const std::uint32_t index : tree_order) {
     const Energy one = energy_of(*trees[index]);
@@ -77,6 +149,7 @@ Energy Dynamics::energy() const {
   if (!core_) return {};
   core_->take_changes();
   Energy sum = core_->account;
+  sum.script_work += core_->settle_books(false);
   core_->add_stored(sum);
   return sum;
 }
@@ -85,13 +158,17 @@ Energy Dynamics::energy(BodyIndex body) const {
   if (!core_) return {};
   core_->take_changes();
   const BodyEntry* known = core_->find(body);
-  if (known && known->tree != kNone) return core_->energy_of(*core_->trees[known->tree]);
+  if (known && known->tree != kNone) {
+    Tree& tree = *core_->trees[known->tree];
+    Energy sum = core_->energy_of(tree);
+    sum.script_work += core_->settle_tree(tree, false);
+    return sum;
+  }
   return core_->bodies->dynamic(body) ? core_->free_energy(body) : Energy{};
 }
 
 bool Dynamics::asleep(BodyIndex body) const {
-  const NearPairs::Rest* rest = core_ ? core_->near.find_rest(body) : nullptr;
-  return rest && rest->asleep;
+  return core_ && core_->near.asleep(body);
 }
 
 }  // namespace breve

@@ -64,6 +64,7 @@ void Dynamics::Core::set_loads(Tree& tree, const Accuracy& accuracy, double h) {
   tree.set_tau.setZero(tree.model.velocities());
   loads.motor_speed.setZero(tree.model.velocities());
   loads.motor_time = std::max(kMotorTime, h);
+  loads.reacts = false;
   tree.driven = tree.aimed = tree.pushed = false;
   double fastest = 0;
   for (const TreeLink& link : tree.links) {
@@ -115,12 +116,14 @@ void Dynamics::Core::aim(Tree& tree) const {
     const articulated::Body& body = tree.model.body(static_cast<int>(i));
     const double* q = tree.state.q.data() + body.q;
     if (tree.loads.tau.size() && (drive.force != JointVector::Zero() || tree.links[i].slow_spring)) {
-      JointVector force = drive.force;
-      if (tree.links[i].slow_spring && tree.loads.drives[i].stiffness == 0 && tree.loads.drives[i].damping == 0)
-        force -= drive.stiffness * (joint_position(joint.is, joint.flipped, q) - drive.rest) +
-                 drive.damping * joint_velocity(joint.is, joint.flipped, q, tree.state.v.data() + body.v);
-      put_joint_force(joint.is, joint.flipped, q, force, tree.loads.tau.data() + body.v);
       put_joint_force(joint.is, joint.flipped, q, drive.force, tree.set_tau.data() + body.v);
+      const int count = axis_count(joint.is.kind);
+      tree.loads.tau.segment(body.v, count) = tree.set_tau.segment(body.v, count);
+      if (tree.links[i].slow_spring && tree.loads.drives[i].stiffness == 0 && tree.loads.drives[i].damping == 0) {
+        const Vector3 way = joint_deflection(joint.is.kind, tree.loads.rest.data() + body.q, q);
+        tree.loads.tau.segment(body.v, count) -=
+            drive.stiffness * way.head(count) + drive.damping * tree.state.v.segment(body.v, count);
+      }
     }
     if (!(drive.strength_limit > 0)) continue;
     JointVector speed = drive.motor_speed;

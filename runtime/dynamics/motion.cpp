@@ -159,10 +159,14 @@ void turn_by_midpoint(FreeBody& body, double h) {
 
 }  // namespace
 
+bool semi_implicit(const Accuracy& accuracy) {
+  return accuracy.scheme == articulated::Scheme::SemiImplicitEuler && accuracy.rung != Rung::Fast;
+}
+
 void move_free(FreeBody& body, const Accuracy& accuracy, const Vector3& gravity, double time, double h,
                double& next_step) {
   const Vector3 pull = gravity + body.force / body.solid->mass;
-  if (accuracy.scheme == articulated::Scheme::SemiImplicitEuler) {
+  if (semi_implicit(accuracy)) {
     body.velocity += h * pull;
     body.center += h * body.velocity;
   } else {

@@ -39,7 +39,7 @@ bool NearPairs::widen(Proxy& proxy, double speed, double h, double far, double m
   reach.box.max() += room;
   if (!reach.box.min().allFinite() || !reach.box.max().allFinite()) return false;
   if (tree_.box(proxy.leaf).contains(reach.box)) return true;
-  reach.moved = true;
+  mark_moved(index);
   tree_.move(proxy.leaf, reach.box);
   seek(index);
   return true;

@@ -1,9 +1,11 @@
 // Dynamics in a snapshot and in the world hash: joints, springs, settings, and the exact states of trees. Which trees
 // there are follows from the joints; a tree is built again as it was and then takes up its numbers.
 #include <algorithm>
+#include <span>
 
 #include "runtime/base/error.hpp"
 #include "runtime/dynamics/core.hpp"
+#include "runtime/dynamics/stale.hpp"
 #include "runtime/mechanics/members.hpp"
 
 namespace breve {
@@ -34,12 +36,13 @@ void each(const F& f, S& s) {
 
 template <class F, Is<JointEntry> J>
 void each(const F& f, J& j) {
-  f(j.owner), f(j.serial), f(j.ring), f(j.position), f(j.limit), each(f, j.is), each(f, j.drive);
+  f(j.owner), f(j.serial), f(j.ring), f(j.position), f(j.limit), f(j.limit_before), f(j.motor), each(f, j.is),
+      each(f, j.drive);
 }
 
 template <class F, Is<SpringEntry> T>
 void each(const F& f, T& t) {
-  f(t.owner), f(t.force), each(f, t.is);
+  f(t.owner), f(t.force), f(t.booked), each(f, t.is);
 }
 
 template <class F, Is<BodyEntry> B>
@@ -53,11 +56,50 @@ void put_numbers(ByteWriter& out, const articulated::Vector& v) {
   for (const double x : v) out.put(x);
 }
 
+/// Which trees are to be dropped when changes are taken next; by index.
+std::pmr::vector<std::uint8_t> stale_trees(const Dynamics::Core& core) {
+  std::pmr::vector<std::uint8_t> stale(core.trees.size(), core.memory);
+  for (std::size_t i = 0; i < stale.size(); ++i) stale[i] = core.trees[i] && is_stale(core, *core.trees[i]);
+  return stale;
+}
+
+/// As dropping its tree will leave it, if that is to go.
+JointEntry as_kept(const Dynamics::Core& core, const JointEntry& joint, std::span<const std::uint8_t> stale) {
+  JointEntry kept = joint;
+  if (joint.tree != kNone && joint.link >= 0 && stale[joint.tree] != 0) kept.position = core.read_position(joint);
+  return kept;
+}
+
+/// By body, what those without a tree have by the books.
+std::pmr::vector<double> books_of_all(const Dynamics::Core& core) {
+  std::pmr::vector<double> books(core.booked, core.memory);
+  books.resize(core.bodies->index_end(), kNoBook);
+  return books;
+}
+
+/// Energy by the books, as dropping these trees will leave it.
+/// @param books  by body, what those without a tree have
+Energy account_kept(const Dynamics::Core& core, std::span<const std::uint8_t> stale, std::span<double> books) {
+  Energy account = core.account;
+  for (const std::uint32_t index : core.tree_order)
+    if (stale[index] != 0) account.script_work += core.unbook(*core.trees[index], books);
+  return account;
+}
+
+/// A number that an image must not make larger than the last of an enumeration.
+template <class Enum>
+bool is_one_of(Enum value, Enum last) {
+  return static_cast<int>(value) <= static_cast<int>(last);
+}
+
 }  // namespace
 
 void Dynamics::save(ByteWriter& out) const {
   out.put(core_ != nullptr);
-  if (core_) core_->save(out);
+  if (!core_) return;
+  // Who is to wake in the next step is awake in the image.
+  if (core_->settings.sleeping) core_->near.wake_disturbed(*bodies_);
+  core_->save(out);
 }
 
 void Dynamics::load(ByteReader& in) {
@@ -69,11 +111,20 @@ void Dynamics::hash(Hasher& hasher) const {
 }
 
 void Dynamics::Core::save(ByteWriter& out) const {
+  const std::pmr::vector<std::uint8_t> stale = stale_trees(*this);
+  std::pmr::vector<double> books = books_of_all(*this);
+  const Energy kept_account = account_kept(*this, stale, books);
   each(Writer{out}, settings);
-  each(Writer{out}, account);
+  each(Writer{out}, kept_account);
   out.put(next_serial);
   out.put(sub_step);
-  put_table(out, joints);
+  out.put(static_cast<std::uint64_t>(joints.size()));
+  for (const JointEntry& joint : joints) {
+    out.put(joint.used);
+    if (!joint.used) continue;
+    const JointEntry kept = as_kept(*this, joint, stale);
+    each(Writer{out}, kept);
+  }
   put_free(out, free_joints);
   put_table(out, springs);
   put_free(out, free_springs);
@@ -91,15 +142,20 @@ void Dynamics::Core::save(ByteWriter& out) const {
     out.put(body);
     each(Writer{out}, *find(body));
   }
-  out.put(graph_changed);
-  out.put(static_cast<std::uint64_t>(tree_order.size()));
-  for (const std::uint32_t index : tree_order) save_tree(out, *trees[index]);
+  for (const double energy : books) out.put(energy);
+  std::pmr::vector<std::uint32_t> kept(memory);
+  for (const std::uint32_t index : tree_order)
+    if (stale[index] == 0) kept.push_back(index);
+  out.put(graph_changed || kept.size() != tree_order.size());
+  out.put(static_cast<std::uint64_t>(kept.size()));
+  for (const std::uint32_t index : kept) save_tree(out, *trees[index]);
   near.save(out);
 }
 
 void Dynamics::Core::save_tree(ByteWriter& out, const Tree& tree) const {
   out.put(tree.first_body());
   out.put(tree.step);
+  out.put(tree.booked);
   each(Writer{out}, tree.account);
   put_numbers(out, tree.state.q);
   put_numbers(out, tree.state.v);
@@ -112,6 +168,7 @@ void Dynamics::Core::save_tree(ByteWriter& out, const Tree& tree) const {
 void Dynamics::Core::load(ByteReader& in) {
   each(Reader{in}, settings);
   breve::check(settings.accuracy);
+  if (!is_one_of(settings.guard, GuardMode::Rest) || !settings.gravity.allFinite()) ByteReader::fail();
   each(Reader{in}, account);
   next_serial = in.get<std::uint64_t>();
   sub_step = in.get<std::uint64_t>();
@@ -122,6 +179,7 @@ void Dynamics::Core::load(ByteReader& in) {
   const std::size_t assemblies = in.get_count(sizeof(BodyIndex));
   for (std::size_t i = 0; i < assemblies; ++i) {
     const auto body = in.get<BodyIndex>();
+    if (!bodies->used(body)) ByteReader::fail();
     each(Reader{in}, own[body]);
     breve::check(own[body].accuracy);
   }
@@ -132,18 +190,24 @@ void Dynamics::Core::load(ByteReader& in) {
     each(Reader{in}, entry(body));
   }
   join_loaded();
+  booked.resize(bodies->index_end(), kNoBook);
+  for (double& energy : booked) energy = in.get<double>();
   const bool pending = in.get_bool();
+  std::pmr::vector<std::uint8_t> rings(memory);
+  for (const JointEntry& joint : joints) rings.push_back(joint.ring);
   loading = true;  // the arrays are as they were saved, and stay so
   build_trees();
   const std::size_t stored = in.get_count(sizeof(BodyIndex));
   std::pmr::vector<std::uint32_t> kept(memory);
   for (std::size_t i = 0; i < stored; ++i) kept.push_back(load_tree(in));
+  std::sort(kept.begin(), kept.end());
   for (std::uint32_t i = 0; i < trees.size(); ++i)
-    if (trees[i] && std::find(kept.begin(), kept.end(), i) == kept.end()) drop_tree(i);
+    if (trees[i] && !std::binary_search(kept.begin(), kept.end(), i)) drop_tree(i);
+  for (JointIndex i = 0; i < joints.size(); ++i)
+    if (joints[i].tree == kNone) joints[i].ring = rings[i] != 0;  // what a tree that was not there made of it
   loading = false;
   graph_changed = pending;
   near.load(in, *bodies);
-  bodies->touch_rigid();  // what was set in the arrays and not taken yet is found by comparing
 }
 
 void Dynamics::Core::join_loaded() {
@@ -154,16 +218,15 @@ void Dynamics::Core::join_loaded() {
             [this](JointIndex x, JointIndex y) { return joints[x].serial < joints[y].serial; });
   for (const JointIndex index : order) {
     const JointDescription& is = joints[index].is;
-    try {
-      check(is, *bodies);
-    } catch (const Error&) {
-      ByteReader::fail();
-    }
+    check(is, *bodies);
+    check(joints[index].drive, is.kind);
     entry(is.child).joints.push_back(index);
     if (is.parent != kNoBody) entry(is.parent).joints.push_back(index);
   }
   for (const SpringEntry& tie : springs) {
     if (!tie.used) continue;
+    check(tie.is);
+    if (!is_one_of(tie.is.mode, SpringMode::ContractOnly) || tie.is.a == tie.is.b) ByteReader::fail();
     for (const BodyIndex end : {tie.is.a, tie.is.b}) {
       if (!bodies->used(end)) ByteReader::fail();
       ++entry(end).ties;
@@ -177,6 +240,7 @@ std::uint32_t Dynamics::Core::load_tree(ByteReader& in) {
   if (!known || known->tree == kNone) ByteReader::fail();
   Tree& tree = *trees[known->tree];
   tree.step = in.get<double>();
+  tree.booked = in.get<double>();
   each(Reader{in}, tree.account);
   for (double& x : tree.state.q) x = in.get<double>();
   for (double& x : tree.state.v) x = in.get<double>();
@@ -192,10 +256,16 @@ std::uint32_t Dynamics::Core::load_tree(ByteReader& in) {
 
 void Dynamics::Core::hash(Hasher& hasher) const {
   const Adder add{hasher};
+  const std::pmr::vector<std::uint8_t> stale = stale_trees(*this);
+  std::pmr::vector<double> books = books_of_all(*this);
+  const Energy kept_account = account_kept(*this, stale, books);
   each(add, settings);
-  each(add, account);
-  for (const JointEntry& joint : joints)
-    if (joint.used) each(add, joint);
+  each(add, kept_account);
+  for (const JointEntry& joint : joints) {
+    if (!joint.used) continue;
+    const JointEntry kept = as_kept(*this, joint, stale);
+    each(add, kept);
+  }
   for (const SpringEntry& tie : springs)
     if (tie.used) each(add, tie);
   for (const auto& [body, assembly] : own) {
@@ -203,6 +273,7 @@ void Dynamics::Core::hash(Hasher& hasher) const {
     each(add, assembly);
   }
   for (const std::uint32_t index : tree_order) {
+    if (stale[index] != 0) continue;
     const Tree& tree = *trees[index];
     add(tree.step);
     for (const double x : tree.state.q) add(x);

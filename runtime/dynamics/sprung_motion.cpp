@@ -48,7 +48,7 @@ void Island::SprungMotion::lay_out() {
       [this](const Free& one, int, int) {
         for (int k = 0; k < kFreeSpeeds; ++k) kinds_.push_back(k < 3 ? Kind::Length : Kind::Angle);
         nq_ += kFreePlaces;
-        mass_ += one.now.solid->mass;
+        if (!one.driver) mass_ += one.now.solid->mass;
       },
       [this](const Cluster& cluster, const Part&, int, int) {
         for (int k = 0; k < cluster.velocities(); ++k) kinds_.push_back(cluster.kind(k));
@@ -237,7 +237,7 @@ Island::SprungMotion::Resistance Island::SprungMotion::resist(SprungPoint& point
 void Island::SprungMotion::push(const SprungPoint& point, Vector& a) {
   const NearPair& pair = *island_.pairs_[point.pair];
   for (const auto& [body, sign] : {std::pair{pair.a, 1.0}, std::pair{pair.b, -1.0}}) {
-    const BodyPlace& side = island_.core_.place_of[body];
+    const BodyPlace side = island_.place_of(body);
     if (side.mover < 0) continue;
     const Vector3 force = sign * point.force;
     if (!side.tree) {
@@ -276,6 +276,11 @@ void Island::SprungMotion::acceleration(double t, const Vector& q, const Vector&
   each(
       [&](const Free& one, int, int at) {
         const articulated::Wrench& pushed = pushes_[static_cast<std::size_t>(&one - island_.free_.data())];
+        if (one.driver) {
+          const double power = pushed.force.dot(one.now.velocity) + pushed.couple.dot(one.now.spin);
+          a[works_at() + 2] -= power / mass_;
+          return;
+        }
         const MassProperties& solid = *one.now.solid;
         const Vector3 spin = v.segment<3>(at + 3);
         const Vector3 torque = one.now.orientation.conjugate() * (one.now.torque + pushed.couple);

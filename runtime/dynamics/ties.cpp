@@ -41,8 +41,11 @@ SpringIndex Dynamics::tie(const SpringDescription& description, ObjectId owner) 
   c.springs[index].used = true;
   c.springs[index].owner = owner;
   c.springs[index].is = description;
+  // Whoever ties moving bodies stretches the spring.
+  c.springs[index].booked = c.known_to_books(description.a) || c.known_to_books(description.b) ? 0 : kNoBook;
   for (const BodyIndex end : {description.a, description.b}) {
     ++c.entry(end).ties;
+    c.near.wake(end);
     if (c.entry(end).tree == kNone) c.graph_changed = true;
   }
   c.clusters_changed = true;
@@ -54,9 +57,11 @@ void Dynamics::untie(SpringIndex spring) {
   const SpringDescription& is = c.tie_at(spring).is;
   for (const BodyIndex end : {is.a, is.b}) {
     --c.entry(end).ties;
+    c.near.wake(end);
     // A free body needs no tree any more.
     if (!c.needs_tree(end) && c.entry(end).tree != kNone) c.drop_tree(c.entry(end).tree);
   }
+  if (in_books(c.springs[spring].booked)) c.account.script_work -= c.springs[spring].booked;
   c.springs[spring] = SpringEntry();
   c.free_springs.push_back(spring);
   c.clusters_changed = true;
@@ -78,6 +83,8 @@ void Dynamics::set_spring(SpringIndex spring, const SpringDescription& descripti
   entry.is = description;
   entry.is.a = a;
   entry.is.b = b;
+  entry.set = true;
+  for (const BodyIndex end : {a, b}) core_->near.wake(end);
 }
 
 double Dynamics::spring_length(SpringIndex spring) const {

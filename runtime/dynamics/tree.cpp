@@ -13,7 +13,7 @@ std::size_t estimate(const std::vector<articulated::Link>& links) {
   for (const articulated::Link& link : links)
     numbers +=
         static_cast<std::size_t>(articulated::position_count(link.type) + articulated::velocity_count(link.type));
-  constexpr std::size_t kVectors = 59;  // of an integrator, Data, State and Loads, each (nq) or (nv)
+  constexpr std::size_t kVectors = 62;  // of an integrator, Data, State and Loads, each (nq) or (nv)
   return links.size() * (sizeof(articulated::Body) + sizeof(articulated::Drive) + sizeof(articulated::Wrench) +
                          sizeof(std::string)) +
          kVectors * numbers * sizeof(double);
@@ -34,7 +34,9 @@ Tree::Tree(std::pmr::memory_resource* memory, const std::vector<articulated::Lin
       row_order(memory),
       anchors(memory) {
   work_q = state.q;
-  work_v = work_u = work_w = free_v = way = kick = motor_impulse = limit_force = held_force = mean = state.v;
+  work_v = work_u = work_w = free_v = smooth_v = way = kick = motor_impulse = part_impulse = limit_force = held_force =
+      mean = state.v;
+  loads.reaction = state.v;
   step_state = sub_state = part_state = state;
 }
 

@@ -1,6 +1,7 @@
 // A tree of bodies that joints connect: its articulated model, its state, and which body and joint each link is.
 #pragma once
 
+#include <limits>
 #include <algorithm>
 #include <memory_resource>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "runtime/articulated/data.hpp"
 #include "runtime/articulated/loads.hpp"
 #include "runtime/articulated/system.hpp"
+#include "runtime/articulated/whole.hpp"
 #include "runtime/base/memory.hpp"
 #include "runtime/kinematics/bodies.hpp"
 #include "runtime/mechanics/account.hpp"
@@ -81,6 +83,7 @@ struct Tree : InMemory {
   std::pmr::vector<double> row_numbers, row_forces;
   std::pmr::vector<int> row_order;
   bool anchored = false;  // held by the world
+  bool loose = false;     // it has a free root, and no joint connects it with what does not move by itself
   std::pmr::vector<TreeAnchor> anchors;
   double step = 0;              // s, that step control would try next
   articulated::Vector mean;     // (nv) acceleration in the last smooth motion: there the next one's search begins
@@ -95,11 +98,20 @@ struct Tree : InMemory {
   articulated::State step_state, sub_state;  // as the step, the sub-step began
   articulated::State part_state;             // likewise, at the start of smooth motion
   articulated::Vector free_v, way, kick;     // v without the rows' impulses; the way they make
+  articulated::Vector smooth_v;              // v after smooth motion, to which reactions belong
+  Vector3 outer_force = Vector3::Zero();     // N, of these reactions from outside
+  Vector3 outer_couple = Vector3::Zero();    // N*m, likewise, about row_center
   articulated::Vector limit_force;           // (nv) of the joints' limits in the last sub-step
   articulated::Vector held_force;            // (nv) of those that are held, at the last stage
-  articulated::Vector motor_impulse;         // (nv) of motors, in the last smooth motion, N*s or N*m*s
+  articulated::Vector part_impulse;          // (nv) of motors, in the last part of smooth motion, N*s or N*m*s
+  articulated::Vector motor_impulse;         // likewise, in all of it
+  articulated::Whole whole;                  // without the impulses of the rows
+  Vector3 row_center = Vector3::Zero();      // centre of mass where the rows were made
   Energy step_account;                       // as the step began
   double step_stored = 0;                    // J, likewise
+  double step_kinetic = 0;                   // J, likewise
+  double booked = std::numeric_limits<double>::quiet_NaN();  // J, that it has by the books
+  bool changed = true;                       // by scripts since
 
   BodyIndex first_body() const {  // of the lowest index
     BodyIndex first = kNoBody;

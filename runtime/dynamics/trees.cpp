@@ -166,6 +166,7 @@ void Dynamics::Core::build_trees() {
 
 void Dynamics::Core::drop_tree(std::uint32_t index) {
   Tree& tree = *trees[index];
+  if (!loading) account.script_work += unbook(tree, booked);
   for (const TreeLink& link : tree.links) {
     if (link.joint != kNoJoint && joints[link.joint].used) {
       JointEntry& joint = joints[link.joint];
@@ -183,7 +184,33 @@ void Dynamics::Core::drop_tree(std::uint32_t index) {
   ++rules;
 }
 
+/// Its bodies have by the books what they have alone; what their joints' springs held is gone, by whoever freed them.
+/// @return the work of that, J
+double Dynamics::Core::unbook(const Tree& tree, std::span<double> books) const {
+  if (!in_books(tree.booked)) return 0;
+  double sum = 0;
+  for (const TreeLink& link : tree.links) sum += books[link.body] = free_energy(link.body).total();
+  return sum - tree.booked;
+}
+
+/// What bodies that joints are about to connect have by the books; kNoBook if the books know none of them. Those that
+/// they do not know come with what they have.
+double Dynamics::Core::book_together(std::span<const BodyIndex> component) {
+  // Room for all: unbook() takes none.
+  if (booked.size() < bodies->index_end()) booked.resize(bodies->index_end(), kNoBook);
+  double sum = 0;
+  bool known = false;
+  for (const BodyIndex body : component) {
+    const bool has = in_books(book_of(body));
+    known = known || has;
+    sum += has ? booked[body] : free_energy(body).total();
+    if (has) booked[body] = kNoBook;
+  }
+  return known ? sum : kNoBook;
+}
+
 void Dynamics::Core::build_tree(std::span<const BodyIndex> component) {
+  const double by_the_books = loading ? kNoBook : book_together(component);
   // A link that was moved or pushed since it was joined takes the assembly along, which therefore is built as it was.
   std::pmr::vector<Change> since(memory);
   if (!loading)
@@ -234,6 +261,12 @@ void Dynamics::Core::build_tree(std::span<const BodyIndex> component) {
   tree->anchored = plan.links().front().joint != kNoJoint;
   tree->rings.assign(plan.rings().begin(), plan.rings().end());
   tree->reserve_rows();
+  const auto within = [&links](BodyIndex body) {
+    return std::any_of(links.begin(), links.end(), [body](const TreeLink& link) { return link.body == body; });
+  };
+  tree->loose = !tree->anchored && std::all_of(tree->rings.begin(), tree->rings.end(), [&](JointIndex ring) {
+    return within(joints[ring].is.parent) && within(joints[ring].is.child);
+  });
   std::uint32_t index = 0;
   while (index < trees.size() && trees[index]) ++index;
   if (index == trees.size()) trees.emplace_back();
@@ -254,6 +287,7 @@ void Dynamics::Core::build_tree(std::span<const BodyIndex> component) {
     joints[ring].ring = true;
   }
   read_state(*tree);
+  tree->booked = by_the_books;
   trees[index] = std::move(tree);
   if (loading) return;
   project_velocities(*trees[index]);
@@ -316,6 +350,7 @@ void Dynamics::Core::project_velocities(Tree& tree) {
 void Dynamics::Core::place_links(Tree& tree) {
   articulated::forward_kinematics(tree.model, tree.data, tree.state);
   write_back(tree);
+  tree.changed = true;
 }
 
 void Dynamics::Core::write_back(Tree& tree) {

@@ -2,6 +2,7 @@
 // appearance) is a row of its own that the body points to, so that a world of points pays for points.
 #pragma once
 
+#include <array>
 #include <deque>
 #include <memory_resource>
 #include <vector>
@@ -100,6 +101,7 @@ struct Bodies::Arrays : InMemory {
   std::pmr::vector<RowIndex> turn_row, rigid_row, material_row, appearance_row;
   std::pmr::vector<std::shared_ptr<Shape>> collision_shape, display_shape;
   std::pmr::vector<double> neighborhood;
+  std::pmr::vector<std::uint8_t> driven;  // was given a velocity while it had no physics
 
   Rows<TurnRow> turn_rows;
   Rows<RigidRow> rigid_rows;
@@ -112,7 +114,9 @@ struct Bodies::Arrays : InMemory {
   std::size_t used = 0;
   std::uint64_t revision = 0, physics_revision = 0;
   std::pmr::vector<BodyIndex>* log = nullptr;
-  std::pmr::vector<BodyIndex> touched;  // may name bodies that are gone
+  std::array<std::pmr::vector<BodyIndex>, kFollowers> put;  // room for all bodies: a body is in each at most once
+  std::pmr::vector<std::uint8_t> in_put;                    // by body: bit i for put[i]
+  std::pmr::vector<BodyIndex> touched;                      // may name bodies that are gone
 
   BodyIndex grow();
   bool physics(BodyIndex body) const { return rigid_row[body] != kNoRow && rigid_rows[rigid_row[body]].physics; }
@@ -127,11 +131,26 @@ struct Bodies::Arrays : InMemory {
   /// Which stages move this body follows from its state.
   void classify(BodyIndex body);
   void copy_mass(BodyIndex body);
+  bool touched_now(BodyIndex body) const {
+    return owner[body] && rigid_row[body] != kNoRow && rigid_rows[rigid_row[body]].touched;
+  }
   void note(BodyIndex body) {
     if (log) log->push_back(body);
     if (rigid_row[body] == kNoRow || rigid_rows[rigid_row[body]].touched) return;
     rigid_rows[rigid_row[body]].touched = true;
     touched.push_back(body);
+  }
+  void note_driven(BodyIndex body, const Vector3& value) {
+    if (driven[body] != 0 || kind[body] == BodyKind::Stationary || physics(body) || value == Vector3::Zero()) return;
+    driven[body] = 1;
+    ++revision;
+  }
+  void note_put(BodyIndex body) {
+    for (std::size_t i = 0; i < kFollowers; ++i) {
+      if ((in_put[body] >> i & 1U) != 0) continue;
+      in_put[body] = static_cast<std::uint8_t>(in_put[body] | 1U << i);
+      put[i].push_back(body);  // never allocates: see grow()
+    }
   }
   void translate_one(BodyIndex body, double h) {
     location[body] += h * velocity[body];

@@ -5,8 +5,8 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cassert>
 #include <cmath>
+#include <stdexcept>
 
 #include "runtime/base/error.hpp"
 #include "runtime/kinematics/arrays.hpp"
@@ -109,6 +109,7 @@ Bodies::Arrays::Arrays(std::pmr::memory_resource* memory)
       collision_shape(memory),
       display_shape(memory),
       neighborhood(memory),
+      driven(memory),
       turn_rows(memory),
       rigid_rows(memory),
       materials(memory),
@@ -117,6 +118,8 @@ Bodies::Arrays::Arrays(std::pmr::memory_resource* memory)
       turning(memory),
       rigid(memory),
       free(memory),
+      put{std::pmr::vector<BodyIndex>(memory), std::pmr::vector<BodyIndex>(memory)},
+      in_put(memory),
       touched(memory) {}
 
 BodyIndex Bodies::Arrays::grow() {
@@ -133,6 +136,10 @@ BodyIndex Bodies::Arrays::grow() {
   collision_shape.resize(size);
   display_shape.resize(size);
   neighborhood.resize(size);
+  driven.resize(size);
+  in_put.resize(size);
+  for (auto& list : put)
+    if (list.capacity() < size) list.reserve(2 * size);
   if (free.capacity() < size) free.reserve(2 * size);  // so that remove() never allocates
   owner.resize(size);
   return static_cast<BodyIndex>(size - 1);
@@ -205,6 +212,8 @@ BodyIndex Bodies::add(BodyKind kind, ObjectId owner) {
   a.location[body] = a.velocity[body] = a.acceleration[body] = kZero;
   a.collision_shape[body] = a.display_shape[body] = a.default_shape;
   a.neighborhood[body] = 0;
+  a.driven[body] = 0;
+  a.note_put(body);
   ++a.used;
   ++a.revision;
   return body;
@@ -212,7 +221,7 @@ BodyIndex Bodies::add(BodyKind kind, ObjectId owner) {
 
 void Bodies::remove(BodyIndex body) {
   Arrays& a = *arrays_;
-  assert(used(body));
+  if (!used(body)) throw std::logic_error("a body is removed that there is not");
   a.translating.set(body, false);
   a.turning.set(body, false);
   a.rigid.set(body, false);
@@ -237,7 +246,8 @@ std::uint64_t Bodies::physics_revision() const { return arrays_ ? arrays_->physi
 std::size_t Bodies::bytes() const {
   if (!arrays_) return 0;
   constexpr std::size_t kColumns = sizeof(ObjectId) + sizeof(BodyKind) + 3 * sizeof(Vector3) + 4 * sizeof(RowIndex) +
-                                   2 * sizeof(std::shared_ptr<Shape>) + sizeof(double);
+                                   2 * sizeof(std::shared_ptr<Shape>) + sizeof(double) + 2 * sizeof(std::uint8_t) +
+                                   kFollowers * sizeof(BodyIndex);
   const Arrays& a = *arrays_;
   return sizeof(Arrays) + a.owner.capacity() * kColumns + a.turn_rows.bytes() + a.rigid_rows.bytes() +
          a.materials.bytes() + a.appearances.bytes() + a.translating.bytes() + a.turning.bytes() + a.rigid.bytes();
@@ -258,6 +268,7 @@ Quaternion Bodies::orientation(BodyIndex body) const {
 void Bodies::set_location(BodyIndex body, const Vector3& location) {
   require_finite("location", location);
   arrays_->location[body] = in_reach(in_plane("location", location, flat_), flat_);
+  arrays_->note_put(body);
   arrays_->note(body);
 }
 
@@ -271,6 +282,7 @@ void Bodies::set_orientation(BodyIndex body, const Quaternion& orientation) {
   if (arrays_->turn_row[body] == kNoRow && orientation.vec() == kZero) return;
   const Quaternion turned = turned_about_z(orientation.normalized(), flat_);
   arrays_->turn(body).orientation = turned;
+  arrays_->note_put(body);
   arrays_->note(body);
 }
 
@@ -290,6 +302,7 @@ const Vector3& Bodies::rotational_acceleration(BodyIndex body) const {
 void Bodies::set_velocity(BodyIndex body, const Vector3& value) {
   require_finite("velocity", value);
   arrays_->velocity[body] = in_plane("velocity", value, flat_);
+  arrays_->note_driven(body, value);
   arrays_->classify(body);
   arrays_->note(body);
 }
@@ -297,6 +310,7 @@ void Bodies::set_velocity(BodyIndex body, const Vector3& value) {
 void Bodies::set_acceleration(BodyIndex body, const Vector3& value) {
   require_finite("acceleration", value);
   arrays_->acceleration[body] = in_plane("acceleration", value, flat_);
+  arrays_->note_driven(body, value);
   arrays_->classify(body);
   arrays_->note(body);
 }
@@ -306,6 +320,7 @@ void Bodies::set_rotational_velocity(BodyIndex body, const Vector3& value) {
   if (arrays_->turn_row[body] == kNoRow && value == kZero) return;
   const Vector3 spin = about_z("rotational velocity", value, flat_);
   arrays_->turn(body).velocity = spin;
+  arrays_->note_driven(body, spin);
   arrays_->classify(body);
   arrays_->note(body);
 }
@@ -315,6 +330,7 @@ void Bodies::set_rotational_acceleration(BodyIndex body, const Vector3& value) {
   if (arrays_->turn_row[body] == kNoRow && value == kZero) return;
   const Vector3 spin = about_z("rotational acceleration", value, flat_);
   arrays_->turn(body).acceleration = spin;
+  arrays_->note_driven(body, spin);
   arrays_->classify(body);
   arrays_->note(body);
 }
@@ -322,6 +338,17 @@ void Bodies::set_rotational_acceleration(BodyIndex body, const Vector3& value) {
 bool Bodies::physics(BodyIndex body) const { return arrays_->physics(body); }
 
 bool Bodies::dynamic(BodyIndex body) const { return used(body) && physics(body) && kind(body) != BodyKind::Stationary; }
+
+bool Bodies::driver(BodyIndex body) const {
+  return used(body) && (kind(body) == BodyKind::Stationary || (arrays_->driven[body] != 0 && !physics(body)));
+}
+
+bool Bodies::moving(BodyIndex body) const { return arrays_->translating.has(body) || arrays_->turning.has(body); }
+
+Vector3 Bodies::spin(BodyIndex body) const {
+  const Vector3& velocity = rotational_velocity(body);
+  return physics(body) ? velocity : Vector3(orientation(body) * velocity);
+}
 
 void Bodies::set_physics(BodyIndex body, bool enabled) {
   Arrays& a = *arrays_;
@@ -377,6 +404,7 @@ const std::shared_ptr<Shape>& Bodies::display_shape(BodyIndex body) const { retu
 void Bodies::set_collision_shape(BodyIndex body, std::shared_ptr<Shape> shape) {
   if (!shape) throw Error(ErrorCode::Argument, "a body needs a shape: the one given is null");
   arrays_->collision_shape[body] = std::move(shape);
+  arrays_->note_put(body);
   if (arrays_->rigid_row[body] != kNoRow) arrays_->copy_mass(body);
   arrays_->note(body);
 }
@@ -394,7 +422,7 @@ Eigen::AlignedBox3d Bodies::bounds(BodyIndex body) const {
 double Bodies::mass(BodyIndex body) const { return arrays_->collision_shape[body]->mass(); }
 
 const MassProperties& Bodies::mass_properties(BodyIndex body) const {
-  assert(arrays_->rigid_row[body] != kNoRow);
+  if (arrays_->rigid_row[body] == kNoRow) throw std::logic_error("mass of a body that never had physics");
   return arrays_->rigid_rows[arrays_->rigid_row[body]].solid;
 }
 

@@ -61,6 +61,10 @@ struct MassProperties {
   friend bool operator==(const MassProperties&, const MassProperties&) = default;
 };
 
+/// Who follows where bodies are put, each at a pace of its own.
+enum class Follower : std::uint8_t { Collisions, Dynamics };
+inline constexpr std::size_t kFollowers = 2;
+
 class Bodies : public InMemory {
  public:
   explicit Bodies(std::pmr::memory_resource* memory);
@@ -105,6 +109,11 @@ class Bodies : public InMemory {
   // Rigid motion: on after enable_physics. Force and torque act at the centre of mass, world frame, until replaced.
   bool physics(BodyIndex body) const;
   bool dynamic(BodyIndex body) const;  // in use, physics-enabled and not Stationary
+  /// Not dynamic, but bodies that are meet it: a Stationary, or one without physics that was once given a velocity, a
+  /// rotational velocity or an acceleration. Contacts do not move it.
+  bool driver(BodyIndex body) const;
+  bool moving(BodyIndex body) const;   // by velocity or rotational velocity alone
+  Vector3 spin(BodyIndex body) const;  // rotational velocity in world axes, with physics or without, rad/s
   void set_physics(BodyIndex body, bool enabled);
   const Vector3& force(BodyIndex body) const;
   const Vector3& torque(BodyIndex body) const;
@@ -132,6 +141,7 @@ class Bodies : public InMemory {
   std::size_t turning() const;      // kinematic bodies with a rotational velocity or acceleration
   std::size_t rigid() const;        // physics-enabled bodies that are not Stationary
   const std::pmr::vector<BodyIndex>& translating_bodies() const;  // the first of these, in no order that matters
+  const std::pmr::vector<BodyIndex>& turning_bodies() const;
   const std::pmr::vector<BodyIndex>& rigid_bodies() const;  // these, in no order that matters
   ObjectId first_translating() const;                       // null if there is none; so the other two
   ObjectId first_turning() const;
@@ -154,6 +164,9 @@ class Bodies : public InMemory {
   /// of the first change; from now on they count as not touched.
   void take_touched(std::pmr::vector<BodyIndex>& out);
   void touch_rigid();  // all physics-enabled bodies count as touched
+  /// Appends the bodies that were added since this follower asked last, or put elsewhere or given another collision
+  /// shape by a setter; each once, and maybe some that are gone. What the stages of a sub-step move is not among them.
+  void take_put(Follower follower, std::pmr::vector<BodyIndex>& out);
   /// While a log is set, each setter that changes how a body moves notes the body there. Null: no log.
   void set_log(std::pmr::vector<BodyIndex>* log);
 

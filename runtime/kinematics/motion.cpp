@@ -60,6 +60,7 @@ std::size_t Bodies::translating() const { return arrays_ ? arrays_->translating.
 std::size_t Bodies::turning() const { return arrays_ ? arrays_->turning.members().size() : 0; }
 std::size_t Bodies::rigid() const { return arrays_ ? arrays_->rigid.members().size() : 0; }
 const std::pmr::vector<BodyIndex>& Bodies::translating_bodies() const { return arrays_->translating.members(); }
+const std::pmr::vector<BodyIndex>& Bodies::turning_bodies() const { return arrays_->turning.members(); }
 const std::pmr::vector<BodyIndex>& Bodies::rigid_bodies() const { return arrays_->rigid.members(); }
 ObjectId Bodies::first_translating() const {
   return arrays_ ? first_of(arrays_->translating, arrays_->owner) : ObjectId{};
@@ -117,6 +118,7 @@ void Bodies::place(BodyIndex body, const Vector3& location, const Quaternion& or
 void Bodies::set_motion(BodyIndex body, const Vector3& location, const Quaternion& orientation, const Vector3& velocity,
                         const Vector3& rotational_velocity) {
   Arrays& a = *arrays_;
+  if (!a.rigid.has(body)) a.note_put(body);
   a.location[body] = location;
   a.velocity[body] = velocity;
   if (a.turn_row[body] == kNoRow && orientation.vec() == Vector3::Zero() && rotational_velocity == Vector3::Zero())
@@ -130,11 +132,20 @@ void Bodies::take_touched(std::pmr::vector<BodyIndex>& out) {
   if (!arrays_) return;
   Arrays& a = *arrays_;
   for (const BodyIndex body : a.touched) {
-    if (!used(body) || a.rigid_row[body] == kNoRow || !a.rigid_rows[a.rigid_row[body]].touched) continue;
+    if (!a.touched_now(body)) continue;
     out.push_back(body);
     a.rigid_rows[a.rigid_row[body]].touched = false;
   }
   a.touched.clear();
+}
+
+void Bodies::take_put(Follower follower, std::pmr::vector<BodyIndex>& out) {
+  if (!arrays_) return;
+  Arrays& a = *arrays_;
+  const auto which = static_cast<std::size_t>(follower);
+  out.insert(out.end(), a.put[which].begin(), a.put[which].end());
+  for (const BodyIndex body : a.put[which]) a.in_put[body] = static_cast<std::uint8_t>(a.in_put[body] & ~(1U << which));
+  a.put[which].clear();
 }
 
 void Bodies::touch_rigid() {

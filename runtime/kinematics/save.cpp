@@ -110,6 +110,7 @@ void Bodies::save(ByteWriter& out) const {
     out.put(a.velocity[body]);
     out.put(a.acceleration[body]);
     out.put(a.neighborhood[body]);
+    out.put(a.driven[body] != 0);
     out.put_shared(a.collision_shape[body]);
     out.put_shared(a.display_shape[body]);
     save_row(out, a.turn_rows, a.turn_row[body]);
@@ -119,6 +120,16 @@ void Bodies::save(ByteWriter& out) const {
   }
   out.put(static_cast<std::uint64_t>(a.free.size()));
   for (const BodyIndex body : a.free) out.put(body);
+  // What setters changed and nobody has taken yet.
+  std::pmr::vector<std::uint8_t> met(a.owner.size(), a.touched.get_allocator());
+  std::pmr::vector<BodyIndex> touched(a.touched.get_allocator());
+  for (const BodyIndex body : a.touched) {
+    if (!a.touched_now(body) || met[body] != 0) continue;
+    met[body] = 1;
+    touched.push_back(body);
+  }
+  out.put(static_cast<std::uint64_t>(touched.size()));
+  for (const BodyIndex body : touched) out.put(body);
 }
 
 void Bodies::load(ByteReader& in) {
@@ -126,6 +137,7 @@ void Bodies::load(ByteReader& in) {
   if (count == 0) return;
   Arrays& a = arrays();
   a.default_shape = in.get_shared<Shape>();
+  if (!a.default_shape) ByteReader::fail();
   for (std::size_t i = 0; i < count; ++i) {
     const BodyIndex body = a.grow();
     a.owner[body] = in.get_object();
@@ -136,6 +148,7 @@ void Bodies::load(ByteReader& in) {
     a.velocity[body] = in.get_vector();
     a.acceleration[body] = in.get_vector();
     a.neighborhood[body] = in.get<double>();
+    a.driven[body] = in.get_bool() ? 1 : 0;
     a.collision_shape[body] = in.get_shared<Shape>();
     a.display_shape[body] = in.get_shared<Shape>();
     if (!a.collision_shape[body] || !a.display_shape[body] || a.kind[body] > BodyKind::Link) ByteReader::fail();
@@ -147,10 +160,17 @@ void Bodies::load(ByteReader& in) {
   }
   const std::size_t free_count = in.get_count(sizeof(BodyIndex));
   if (free_count + a.used != count) ByteReader::fail();
+  std::pmr::vector<std::uint8_t> met(count, in.memory());
   for (std::size_t i = 0; i < free_count; ++i) {
     const auto body = in.get<BodyIndex>();
-    if (body >= count || a.owner[body]) ByteReader::fail();
+    if (body >= count || a.owner[body] || met[body] != 0) ByteReader::fail();
+    met[body] = 1;
     a.free.push_back(body);
+  }
+  for (std::size_t left = in.get_count(sizeof(BodyIndex)); left > 0; --left) {
+    const auto body = in.get<BodyIndex>();
+    if (!used(body) || a.rigid_row[body] == kNoRow || a.touched_now(body)) ByteReader::fail();
+    a.note(body);
   }
 }
 
@@ -165,7 +185,7 @@ void Bodies::hash(Hasher& hasher, BodyIndex body) const {
   hasher.add(rotational_acceleration(body));
   hasher.add(force(body));
   hasher.add(torque(body));
-  hasher.add(static_cast<std::uint64_t>(physics(body)));
+  hasher.add(static_cast<std::uint64_t>(physics(body)) | std::uint64_t{a.driven[body]} << 1);
   if (physics(body)) {
     const RigidRow& row = a.rigid_rows[a.rigid_row[body]];
     hasher.add(row.solid.mass);

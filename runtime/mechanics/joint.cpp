@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "runtime/base/error.hpp"
 
@@ -69,6 +70,12 @@ void check(const JointDescription& is, const Bodies& bodies) {
   if (is.parent == is.child) refuse(fmt::format("{} joint: parent and child are the same body", kind));
   need_finite(is.parent_point, fmt::format("{} joint: the parent's point", kind));
   need_finite(is.child_point, fmt::format("{} joint: the child's point", kind));
+  // Moments of inertia about a joint have products of such lengths: farther away they are no numbers any more.
+  constexpr double kFarthest = 1e15;  // m
+  for (const auto& [point, owner] : {std::pair{&is.parent_point, "parent"}, {&is.child_point, "child"}})
+    if (!(point->cwiseAbs().maxCoeff() <= kFarthest))
+      refuse(fmt::format("{} joint: the {}'s point is ({}, {}, {}), which is farther away than {:g} m", kind, owner,
+                         point->x(), point->y(), point->z(), kFarthest));
   const double norm = is.relative_rotation.norm();
   if (!std::isfinite(norm) || !(norm > 0))
     refuse(fmt::format("{} joint: the relative rotation must be a finite quaternion that is not zero", kind));

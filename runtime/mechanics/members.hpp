@@ -85,6 +85,15 @@ void each(const F& f, S& s) {
   f(s.maximum_force), f(s.mode);
 }
 
+/// Whether all listed members of two are the same, bit for bit.
+template <class T>
+bool same(const T& x, const T& y) {
+  Hasher of_x, of_y;
+  each(Adder{of_x}, x);
+  each(Adder{of_y}, y);
+  return of_x.value() == of_y.value();
+}
+
 /// Entries whose `used` says whether the place is taken; those that are have a list of members.
 template <class Table>
 void put_table(ByteWriter& out, const Table& table) {
@@ -116,9 +125,12 @@ void put_free(ByteWriter& out, const std::pmr::vector<Index>& list) {
 template <class Table, class Index>
 void get_free(ByteReader& in, const Table& table, std::pmr::vector<Index>& list) {
   const std::size_t count = in.get_count(sizeof(Index));
+  std::pmr::vector<std::uint8_t> met(table.size(), in.memory());
+  list.reserve(table.size());  // who gives a place back allocates nothing
   for (std::size_t i = 0; i < count; ++i) {
     const Index index = in.get<Index>();
-    if (index >= table.size() || table[index].used) ByteReader::fail();
+    if (index >= table.size() || table[index].used || met[index] != 0) ByteReader::fail();
+    met[index] = 1;
     list.push_back(index);
   }
 }

@@ -81,13 +81,11 @@ Accuracy accuracy_of(Rung rung) {
       a.tolerance = 1e-4;
       a.implicit_spin = false;
       a.step = 1.0 / 480;
-      a.contact_springs = true;
       break;
     case Rung::Reference:
       a.implicit_spin = false;
       a.tolerance = 1e-10;
       a.contact_step = 1.0 / 480;
-      a.contact_springs = true;
       break;
     case Rung::Conserving: a.scheme = Scheme::ImplicitMidpoint; break;
   }
@@ -95,8 +93,11 @@ Accuracy accuracy_of(Rung rung) {
 }
 
 void check(const Accuracy& a) {
-  need(std::isfinite(a.step) && a.step >= 0, "step", a.step, "finite and >= 0");
-  need(std::isfinite(a.contact_step) && a.contact_step >= 0, "contact step", a.contact_step, "finite and >= 0");
+  // In a shorter sub-step nothing that is metres away moves at all.
+  constexpr double kShortest = 1e-11;
+  const auto is_step = [](double step) { return std::isfinite(step) && (step == 0 || step >= kShortest); };
+  need(is_step(a.step), "step", a.step, "finite, and 0 or at least 1e-11 s");
+  need(is_step(a.contact_step), "contact step", a.contact_step, "finite, and 0 or at least 1e-11 s");
   need(std::isfinite(a.tolerance) && a.tolerance > 0, "tolerance", a.tolerance, "finite and > 0");
   need(a.iterations > 0, "iterations", a.iterations, "> 0");
   need(a.impacts >= 0, "impacts", a.impacts, ">= 0");

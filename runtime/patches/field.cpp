@@ -103,12 +103,12 @@ double Field::max() const {
 }
 
 template <bool kPeriodic>
-void Field::laplacian(const Field& other, double factor, bool added) {
+void Field::laplacian(const Field& other, double factor, int dimensions, bool added) {
   check_same_size(other, "diffuse");
   const auto from = other.values();
   std::pmr::vector<double> scratch(values_.size(), values_.get_allocator());
   Eigen::Map<Eigen::ArrayXd> sum(scratch.data(), length());
-  sum = (-2.0 * dimensions_) * from;
+  sum = (-2.0 * dimensions) * from;
   // Along each axis the grid is a stack of slabs of `slab` elements that touch the next along the axis.
   const auto along = [&](Eigen::Index count, Eigen::Index slab) {
     const Eigen::Index block = count * slab;
@@ -123,18 +123,18 @@ void Field::laplacian(const Field& other, double factor, bool added) {
     }
   };
   along(nx_, static_cast<Eigen::Index>(ny_) * nz_);
-  if (dimensions_ > 1) along(ny_, nz_);
-  if (dimensions_ > 2) along(nz_, 1);
+  if (dimensions > 1) along(ny_, nz_);
+  if (dimensions > 2) along(nz_, 1);
   if (added)
     array() += factor * sum;
   else
     array() = factor * sum;
 }
 
-void Field::diffuse(const Field& other, double factor) { laplacian<false>(other, factor, false); }
-void Field::diffuse_periodic(const Field& other, double factor) { laplacian<true>(other, factor, false); }
-void Field::spread(double factor) { laplacian<false>(*this, factor, true); }
-void Field::spread_periodic(double factor) { laplacian<true>(*this, factor, true); }
+void Field::diffuse(const Field& other, double factor) { laplacian<false>(other, factor, dimensions_, false); }
+void Field::diffuse_periodic(const Field& other, double factor) { laplacian<true>(other, factor, dimensions_, false); }
+void Field::spread(double factor) { laplacian<false>(*this, factor, spans(), true); }
+void Field::spread_periodic(double factor) { laplacian<true>(*this, factor, spans(), true); }
 
 void Field::transform(const Field& matrix, Field& result) const {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

@@ -65,9 +65,11 @@ class Field {
   void diffuse(const Field& other, double factor = 1);           // outside is 0
   void diffuse_periodic(const Field& other, double factor = 1);  // edges wrap, for every size
 
-  /// this += factor * its own Laplacian, as above.
+  /// this += factor * its own Laplacian, as above, over the dimensions that the elements span: a field in space of one
+  /// layer (nz 1) spreads as a plane, so that nothing leaks through the dimension that it lacks.
   void spread(double factor);
   void spread_periodic(double factor);
+  int spans() const { return dimensions_ == 3 && nz_ == 1 ? 2 : dimensions_; }
 
   /// result = matrix * this. For a plane this is the product of matrices with x as row and y as column; for a line the
   /// product with a column. `result` must have the sizes of the product and may be either operand.
@@ -91,7 +93,7 @@ class Field {
   void check_same_size(const Field& other, const char* what) const;
   std::string size_text() const;
   template <bool kPeriodic>
-  void laplacian(const Field& other, double factor, bool added);
+  void laplacian(const Field& other, double factor, int dimensions, bool added);
 
   int dimensions_, nx_, ny_, nz_;
   std::pmr::vector<double> values_;

@@ -158,15 +158,16 @@ void Reaction::step(std::span<Field* const> fields, double dt, bool periodic) {
     for (std::size_t j = 0; j < i; ++j)
       if (fields[i] == fields[j]) throw Error(ErrorCode::Argument, "a reaction names one matrix twice");
   }
-  const auto n = static_cast<std::size_t>(shape.dimensions() == 1   ? shape.nx()
-                                          : shape.dimensions() == 2 ? shape.ny()
-                                                                    : shape.nz());
+  // The elements of one layer in space lie as those of a plane.
+  const auto n = static_cast<std::size_t>(shape.spans() == 1   ? shape.nx()
+                                          : shape.spans() == 2 ? shape.ny()
+                                                               : shape.nz());
   products_.resize(groups_.size());
   for (auto& product : products_) product.resize(n);
   zeros_.assign(n, 0.0);
-  const std::size_t room = shape.dimensions() == 3 ? shape.size() : kKept * n;
+  const std::size_t room = shape.spans() == 3 ? shape.size() : kKept * n;
   for (auto& scratch : scratch_) scratch.resize(room);
-  if (shape.dimensions() == 3)
+  if (shape.spans() == 3)
     step_space(fields, dt, periodic);
   else
     step_plane(fields, dt, periodic);

@@ -74,8 +74,10 @@ void Planar::Core::move_rigidly(std::span<const BodyIndex> some, const Pose& fro
     bodies->set_location(body, to.location + turn * arm);
     bodies->set_orientation(body, turn * bodies->orientation(body));
     if (FlatBody* flat = find(body); flat && !flat->fixed) {
+      const double before = kinetic_of(*flat);
       push_pose(*flat);
       push_velocity(*flat, flat->velocity, flat->spin.z());
+      account.script_work += kinetic_of(*flat) - before;
       flat->location = bodies->location(body);
       flat->orientation = bodies->orientation(body);
     }
@@ -89,14 +91,7 @@ void Planar::Core::follow(BodyIndex leader, const Pose& from) {
   collect(leader, all);
   const Pose to = pose(leader);
   const Quaternion turn = (to.orientation * from.orientation.conjugate()).normalized();
-  const double energy_before = [&] {
-    double sum = 0;
-    for (std::size_t i = 1; i < all.size(); ++i) sum += energy_of(all[i]);
-    return sum;
-  }();
   move_rigidly(std::span<const BodyIndex>(all).subspan(1), from, to);
-  for (std::size_t i = 1; i < all.size(); ++i) account.script_work += energy_of(all[i]);
-  account.script_work -= energy_before;
   for (const BodyIndex body : all) {
     const auto found = joints_at.find(body);
     if (found == joints_at.end()) continue;
@@ -142,8 +137,8 @@ const OwnSettings* Planar::Core::own_of(BodyIndex body, bool (*wanted)(const Own
 
 bool Planar::Core::pushes(BodyIndex a, BodyIndex b, const DynamicsClient& asked) const {
   if (!bodies->dynamic(a) && !bodies->dynamic(b)) return false;
-  const bool solid_a = bodies->dynamic(a) || bodies->kind(a) == BodyKind::Stationary;
-  const bool solid_b = bodies->dynamic(b) || bodies->kind(b) == BodyKind::Stationary;
+  const bool solid_a = bodies->dynamic(a) || bodies->driver(a);
+  const bool solid_b = bodies->dynamic(b) || bodies->driver(b);
   if (!solid_a || !solid_b || asked.ignored(a, b)) return false;
   if (joints_at.empty()) return true;
   if (jointed(a, b)) return false;

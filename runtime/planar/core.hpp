@@ -50,6 +50,7 @@ struct FlatBody {
   // What every sub-step looks at comes first: it is read body after body.
   BodyIndex body = kNoBody;
   bool fixed = false;      // does not move by itself
+  bool driven = false;     // fixed, but moves as it was told in this step
   bool solid = true;       // others touch it
   bool jointed = false;    // some joint holds it
   bool kicked = false;     // half of this sub-step's acceleration was taken off
@@ -202,6 +203,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   std::exception_ptr failure;  // what went wrong in a callback of Box2D, which must come to its end all the same
   bool stepping = false;       // inside b2World::Step
   double friction = 0;         // J, lost in sliding contacts in this sub-step
+  double driven_work = 0;      // J, of what moves as it was told on what it touches in this sub-step
   int located = 0;             // impacts of pairs without handler in this sub-step
   DynamicsCounters counters;
   std::pmr::vector<Intervention> interventions;
@@ -229,6 +231,10 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void remove_member(std::uint32_t slot);
   void fit(FlatBody& flat);  // shape and mass
   void push_changes();
+  void wake(BodyIndex body);
+  void wake_ends(const FlatSpring& spring);
+  static void wake_touching(FlatBody& flat);
+  void wake_met(const FlatBody& flat);
   void note_known(FlatBody& flat);
   void push_pose(FlatBody& flat);
   void push_velocity(FlatBody& flat);
@@ -266,6 +272,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void follow(BodyIndex leader, const Pose& from);
   void number_assemblies();
   const OwnSettings* own_of(BodyIndex body, bool (*wanted)(const OwnSettings&)) const;
+  void place_drivers(double h);
   bool pushes(BodyIndex a, BodyIndex b, const DynamicsClient& asked) const;
   Pose pose(BodyIndex body) const { return {bodies->location(body), bodies->orientation(body)}; }
 
@@ -318,6 +325,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void EndContact(b2Contact* contact) override;
   void PreSolve(b2Contact* contact, const b2Manifold* old) override;
   void PostSolve(b2Contact* contact, const b2ContactImpulse* impulse) override;
+  void note_driven_work(b2Contact* contact, const b2ContactImpulse& impulse);
   bool ShouldCollide(b2Fixture* a, b2Fixture* b) override;
   contact::Law law_of(const FlatBody& a, const FlatBody& b) const;
   void refresh(b2Contact* contact);

@@ -46,10 +46,10 @@ double gap_between(const Proxy& a, const b2Transform& at_a, const Proxy& b, cons
 /// Where a body is after t seconds of the coming step, if nothing touches it.
 b2Transform Planar::Core::place_after(const FlatBody& flat, double t) const {
   const b2Body& b = *flat.b2;
-  if (flat.fixed || !b.IsAwake()) return b.GetTransform();
+  if ((flat.fixed && !flat.driven) || !b.IsAwake()) return b.GetTransform();
   const b2Vec2 v = b.GetLinearVelocity(), c = b.GetWorldCenter();
   double x = c.x + t * v.x, y = c.y + t * v.y;
-  if (flat.free_flight()) {
+  if (!flat.fixed && flat.free_flight()) {
     const Vector2 pull = (settings.gravity.head<2>() + flat.force / flat.mass.mass) / settings.unit;
     x += t * t / 2 * pull.x();
     y += t * t / 2 * pull.y();
@@ -81,7 +81,7 @@ void Planar::Core::consider(b2Fixture* a, int child_a, b2Fixture* b, int child_b
     s.c0 = flat.b2->GetWorldCenter();
     s.c = b2Mul(end, s.localCenter);
     s.a0 = flat.b2->GetAngle();
-    const bool moves = !flat.fixed && flat.b2->IsAwake();
+    const bool moves = (!flat.fixed || flat.driven) && flat.b2->IsAwake();
     s.a = moves ? static_cast<float>(s.a0 + dt * flat.b2->GetAngularVelocity()) : s.a0;
     s.alpha0 = 0;
     return s;

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "runtime/base/error.hpp"
+#include "runtime/mechanics/members.hpp"
 #include "runtime/planar/core.hpp"
 
 namespace breve {
@@ -90,6 +92,30 @@ void Planar::Core::place_child(FlatJoint& joint) {
   joint.position = read_position(joint);
 }
 
+namespace {
+
+/// A body with a list of joints is an anchor: one for which a joint was refused must not stay one.
+void drop_empty_lists(Planar::Core& core, std::span<const BodyIndex> bodies) {
+  for (const BodyIndex body : bodies)
+    if (const auto found = core.joints_at.find(body); found != core.joints_at.end() && found->second.empty())
+      core.joints_at.erase(found);
+}
+
+/// The joint is one of its two bodies', in the order of creation.
+void attach(Planar::Core& core, JointIndex joint) {
+  const FlatJoint& entry = core.joints[joint];
+  for (const BodyIndex end : {entry.is.child, entry.is.parent}) {
+    if (end == kNoBody) continue;
+    std::pmr::vector<JointIndex>& of = core.joints_at.try_emplace(end).first->second;
+    of.insert(
+        std::lower_bound(of.begin(), of.end(), entry.serial,
+                         [&core](JointIndex x, std::uint64_t serial) { return core.joints[x].serial < serial; }),
+        joint);
+  }
+}
+
+}  // namespace
+
 JointIndex Planar::link(const JointDescription& description, ObjectId owner) {
   Core& c = *core_;
   c.check_flat(description);
@@ -105,7 +131,12 @@ JointIndex Planar::link(const JointDescription& description, ObjectId owner) {
   if (c.free_joints.empty()) c.joints.reserve(c.joints.size() + 1);
   for (const BodyIndex end : ends)
     if (end != kNoBody && c.bodies->kind(end) != BodyKind::Stationary) c.bodies->set_physics(end, true);
-  c.place_child(made);
+  try {
+    c.place_child(made);
+  } catch (...) {
+    drop_empty_lists(c, ends);
+    throw;
+  }
   made.serial = c.next_serial++;
   JointIndex index = static_cast<JointIndex>(c.joints.size());
   if (c.free_joints.empty()) {
@@ -153,17 +184,18 @@ void Planar::relink(JointIndex joint, const JointDescription& description) {
   take_changes();
   c.detach(joint);
   FlatJoint& changed = c.joints[joint];
+  const JointDescription before = changed.is;
   changed.is = flattened(description);
   for (const BodyIndex end : {description.child, description.parent})
     if (end != kNoBody && c.bodies->kind(end) != BodyKind::Stationary) c.bodies->set_physics(end, true);
-  c.place_child(changed);
-  for (const BodyIndex end : {description.child, description.parent}) {
-    if (end == kNoBody) continue;
-    std::pmr::vector<JointIndex>& of = c.joints_at.try_emplace(end).first->second;
-    of.insert(std::lower_bound(of.begin(), of.end(), changed.serial,
-                               [&c](JointIndex x, std::uint64_t serial) { return c.joints[x].serial < serial; }),
-              joint);
+  try {
+    c.place_child(changed);
+  } catch (...) {
+    changed.is = before;
+    attach(c, joint);
+    throw;
   }
+  attach(c, joint);
   c.ensure_world();
 }
 
@@ -182,8 +214,10 @@ double Planar::strength_hard_limit(JointIndex joint) const {
 void Planar::set_drive(JointIndex joint, const JointDrive& drive) {
   FlatJoint& entry = core_->at(joint);
   check(drive, entry.is.kind);
-  entry.drive = drive;
-  entry.drive.strength_limit = std::clamp(drive.strength_limit, 0.0, strength_hard_limit(joint));
+  JointDrive set = drive;
+  set.strength_limit = std::clamp(drive.strength_limit, 0.0, strength_hard_limit(joint));
+  if (asleep(entry.is.child) && !members::same(set, entry.drive)) core_->wake(entry.is.child);
+  entry.drive = set;
   core_->put_drive(entry);
 }
 

@@ -135,7 +135,7 @@ void Planar::Core::end_account(double dt) {
   }
   double motors = 0;
   for (const FlatJoint& joint : joints) {
-    if (!joint.used || !joint.b2 || !(joint.drive.strength_limit > 0)) continue;
+    if (!joint.used || !joint.b2 || !(joint.drive.strength_limit > 0) || joint.is.kind == JointKind::Fixed) continue;
     const float rate = static_cast<float>(1 / dt);
     const double strength = joint.is.kind == JointKind::Revolute
                                 ? static_cast<const b2RevoluteJoint*>(joint.b2)->GetMotorTorque(rate)
@@ -143,8 +143,9 @@ void Planar::Core::end_account(double dt) {
     motors += strength * dt * (joint.rate + joint_rate(joint)) / 2 * u * u;
   }
   account.motor_work += motors;
+  account.script_work += driven_work;
   // What is left is lost where bodies touch; if it came in, nothing explains it, and it shows in the residual.
-  const double lost = std::max(0.0, motors - held_back);
+  const double lost = std::max(0.0, motors + driven_work - held_back);
   const double rubbed = std::min(friction, lost);
   account.friction_loss += rubbed;
   account.contact_loss += lost - rubbed;

@@ -124,7 +124,7 @@ void Planar::Core::update_members() {
   for (BodyIndex body = 0; body < slot_of.size(); ++body) {
     const bool used = bodies->used(body);
     const bool moves = used && bodies->dynamic(body);
-    const bool fixed = used && !moves && bodies->kind(body) == BodyKind::Stationary;
+    const bool fixed = used && !moves && bodies->driver(body);
     const bool anchor = used && !moves && joints_at.count(body) != 0;
     FlatBody* flat = find(body);
     const bool right = flat && (moves || fixed || anchor) && flat->fixed == !moves && flat->solid == (moves || fixed);
@@ -139,10 +139,24 @@ void Planar::Core::update_members() {
   rules_seen = false;
 }
 
-/// Box2D aborts the process on a body whose place is none in single precision.
+namespace {
+
+/// As far away as Box2D can tell: nobody meets there what moves without physics.
+constexpr float kFar = 1e15F;
+b2Vec2 nearest_valid(const b2Vec2& place) {
+  const auto clamp = [](float x) { return std::isnan(x) ? kFar : std::clamp(x, -kFar, kFar); };
+  return {clamp(place.x), clamp(place.y)};
+}
+
+}  // namespace
+
+/// Box2D aborts the process on a body whose place or angle is none in single precision.
 b2Vec2 Planar::Core::place_of(BodyIndex body) const {
+  if (!bodies->orientation(body).coeffs().allFinite())
+    throw Error(ErrorCode::Argument, "the orientation of a body is no longer finite");
   const Vector3& location = bodies->location(body);
   const b2Vec2 place = to_b2(location);
+  if (!place.IsValid() && !bodies->dynamic(body)) return nearest_valid(place);
   if (!place.IsValid())
     throw Error(ErrorCode::Argument,
                 fmt::format("a body is at ({}, {}, 0), which is out of the range of single precision; keep scenes of "
@@ -168,7 +182,8 @@ void Planar::Core::add_member(BodyIndex body) {
   flat.body = body;
   slot_of[body] = slot;
   flat.fixed = !bodies->dynamic(body);
-  flat.solid = !flat.fixed || bodies->kind(body) == BodyKind::Stationary;
+  flat.solid = !flat.fixed || bodies->driver(body);
+  flat.material = std::as_const(*bodies).material(body);
   b2BodyDef def;
   def.type = flat.fixed ? b2_staticBody : b2_dynamicBody;
   def.position = place;
@@ -293,6 +308,7 @@ void Planar::Core::fit(FlatBody& flat) {
     for (const FlatPiece& piece : outline.pieces) {
       if (piece.kind == FlatPiece::Kind::Circle) {
         b2CircleShape circle;
+        circle.m_p = scaled(piece.center, settings.unit);
         circle.m_radius = static_cast<float>(piece.radius / settings.unit);
         add_fixture(flat, circle, number);
       } else if (piece.kind == FlatPiece::Kind::Polygon) {
@@ -361,22 +377,27 @@ void Planar::Core::push_changes() {
     if (flat.body == kNoBody) continue;
     const Shape* shape = bodies->collision_shape(flat.body).get();
     if (flat.shape.get() != shape || (scaled && flat.scale != shape->scale())) {
-      const double before = energy_of(flat.body);
+      const double before = flat.fixed ? 0 : kinetic_of(flat);
+      wake_touching(flat);
       fit(flat);
       flat.b2->SetAwake(true);
-      account.script_work += energy_of(flat.body) - before;
+      wake_met(flat);
+      if (!flat.fixed) account.script_work += kinetic_of(flat) - before;
     }
     if (flat.fixed && (flat.location != bodies->location(flat.body) ||
                        flat.orientation.coeffs() != bodies->orientation(flat.body).coeffs())) {
       push_pose(flat);
       note_known(flat);
       // What stood on it is to notice.
-      for (b2ContactEdge* edge = flat.b2->GetContactList(); edge; edge = edge->next) edge->other->SetAwake(true);
+      wake_touching(flat);
+      wake_met(flat);
     }
     const Material& material = std::as_const(*bodies).material(flat.body);
     if (std::memcmp(&material, &flat.material, sizeof material) != 0) {
       flat.material = material;
       materials_changed = true;
+      flat.b2->SetAwake(true);
+      wake_touching(flat);
     }
   }
   scratch.clear();

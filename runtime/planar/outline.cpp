@@ -246,6 +246,23 @@ void cut_surface(Outline& outline, const Surface& surface, std::pmr::memory_reso
   }
 }
 
+void add_circle(Outline& outline, const Vector2& center, double radius, std::pmr::memory_resource* memory) {
+  FlatPiece circle(memory);
+  circle.center = center;
+  circle.radius = radius;
+  outline.thickness = std::min(outline.thickness, radius);
+  outline.pieces.push_back(std::move(circle));
+}
+
+/// About z a disc; else along y a rectangle, with a disc at either end of a capsule.
+void add_round(Outline& outline, const Round& round, std::pmr::memory_resource* memory) {
+  if (round.axis == 2) return add_circle(outline, Vector2::Zero(), round.radius, memory);
+  const double r = round.radius, h = round.half;
+  add_polygon(outline, Points({{-r, -h}, {r, -h}, {r, h}, {-r, h}}, memory), memory);
+  if (!round.is_capsule()) return;
+  for (const double end : {-h, h}) add_circle(outline, Vector2(0, end), r, memory);
+}
+
 }  // namespace
 
 double half_width(const Points& polygon) {
@@ -281,9 +298,9 @@ Outline outline_of(const Shape& shape, std::pmr::memory_resource* memory) {
   Outline outline(memory);
   outline.thickness = std::numeric_limits<double>::infinity();
   if (shape.kind() == ShapeKind::Sphere) {
-    FlatPiece circle(memory);
-    circle.radius = outline.thickness = shape.radius();
-    outline.pieces.push_back(std::move(circle));
+    add_circle(outline, Vector2::Zero(), shape.radius(), memory);
+  } else if (shape.round().is_round()) {
+    add_round(outline, shape.round(), memory);
   } else if (shape.surface()) {
     cut_surface(outline, *shape.surface(), memory);
   } else {

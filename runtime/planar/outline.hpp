@@ -1,5 +1,6 @@
 // What a shape is in a flat world: where the plane z = 0 of its own frame cuts it. A ball gives a circle, a box a
-// rectangle, any solid its outline, cut into convex pieces of at most eight corners; a height field gives a profile.
+// rectangle, a capsule a rectangle between two circles, any solid its outline, cut into convex pieces of at most eight
+// corners; a height field gives a profile.
 #pragma once
 
 #include <memory_resource>
@@ -17,7 +18,8 @@ inline double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() -
 struct FlatPiece {
   enum class Kind : std::uint8_t { Circle, Polygon, Profile };
   Kind kind = Kind::Circle;
-  double radius = 0;  // Circle: about the origin
+  double radius = 0;                 // Circle
+  Vector2 center = Vector2::Zero();  // Circle
   std::pmr::vector<Vector2>
       points;  // Polygon: convex, counter-clockwise, at most kMostCorners; Profile: solid to the left
 

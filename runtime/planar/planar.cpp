@@ -145,10 +145,12 @@ SpringIndex Planar::tie(const SpringDescription& description, ObjectId owner) {
     c.free_springs.pop_back();
   }
   c.springs[index] = {true, owner, description, 0};
+  c.wake_ends(c.springs[index]);
   return index;
 }
 
 void Planar::untie(SpringIndex spring) {
+  core_->wake_ends(at(*core_, spring));
   at(*core_, spring) = FlatSpring();
   core_->free_springs.push_back(spring);
 }
@@ -164,6 +166,7 @@ void Planar::set_spring(SpringIndex spring, const SpringDescription& description
   entry.is = description;
   entry.is.a = a;
   entry.is.b = b;
+  core_->wake_ends(entry);
 }
 
 double Planar::spring_length(SpringIndex spring) const {
@@ -196,7 +199,7 @@ void Planar::set_gravity(const Vector3& gravity) {
   if (gravity == c.settings.gravity) return;
   const double before = c.stored().total();
   c.settings.gravity = gravity;
-  if (c.b2 || c.frozen) c.base += c.stored().total() - before;  // else no body has been counted yet
+  if (c.b2 || c.frozen) c.account.script_work += c.stored().total() - before;  // else no body has been counted yet
   for (FlatBody& flat : c.slots)
     if (flat.body != kNoBody && !flat.fixed) flat.b2->SetAwake(true);
 }
@@ -273,7 +276,12 @@ bool Planar::asleep(BodyIndex body) const {
   return flat && !flat->fixed && !flat->b2->IsAwake();
 }
 
-Energy Planar::energy() const { return core_->energy(); }
+Energy Planar::energy() const {
+  // What scripts set since the last step is theirs.
+  core_->ensure_world();
+  if (core_->b2) core_->push_changes();
+  return core_->energy();
+}
 
 Energy Planar::energy(BodyIndex body) const {
   Energy sum;

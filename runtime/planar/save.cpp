@@ -2,6 +2,8 @@
 // what touches, impulses of joints. Once an image was taken the live world is made anew from the same data when it next
 // moves, so that going on after saving is the same as going on after loading, bit for bit.
 #include <algorithm>
+#include <cmath>
+#include <initializer_list>
 
 #include "runtime/base/error.hpp"
 #include "runtime/mechanics/members.hpp"
@@ -82,6 +84,30 @@ void get_list(ByteReader& in, std::pmr::vector<Entry>& list) {
     Entry entry;
     each(Reader{in}, entry);
     list.push_back(entry);
+  }
+}
+
+bool all_finite(std::initializer_list<float> numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](float number) { return std::isfinite(number); });
+}
+
+/// Box2D aborts the process where a number is none.
+void check_frozen(const Frozen& frozen, const Bodies& bodies, std::size_t joints) {
+  BodyIndex next = 0;
+  for (const FrozenBody& one : frozen.bodies) {
+    if (one.body < next || !bodies.used(one.body)) ByteReader::fail();
+    if (!all_finite({one.x, one.y, one.angle, one.vx, one.vy, one.spin, one.still})) ByteReader::fail();
+    next = one.body + 1;
+  }
+  if (!std::isfinite(frozen.warm.step)) ByteReader::fail();
+  for (const FrozenJoint& one : frozen.warm.joints) {
+    const WarmJoint& w = one.warm;
+    if (one.joint >= joints || !all_finite({w.x, w.y, w.turn, w.motor, w.lower, w.upper})) ByteReader::fail();
+  }
+  for (const WarmContact& one : frozen.warm.contacts) {
+    if (one.count < 0 || one.count > b2_maxManifoldPoints) ByteReader::fail();
+    for (const ContactImpulse& point : one.points)
+      if (!all_finite({point.normal, point.tangent})) ByteReader::fail();
   }
 }
 
@@ -270,6 +296,8 @@ void Planar::Core::save(ByteWriter& out) {
 void Planar::Core::load(ByteReader& in) {
   each(Reader{in}, settings);
   breve::check(settings.accuracy);
+  if (static_cast<int>(settings.guard) > static_cast<int>(GuardMode::Rest)) ByteReader::fail();
+  if (!settings.gravity.allFinite() || settings.gravity.z() != 0) ByteReader::fail();
   if (!(settings.unit >= 1e-9 && settings.unit <= 1e9)) ByteReader::fail();
   each(Reader{in}, account);
   base = in.get<double>();
@@ -288,15 +316,20 @@ void Planar::Core::load(ByteReader& in) {
   const std::size_t settings_count = in.get_count(sizeof(BodyIndex));
   for (std::size_t i = 0; i < settings_count; ++i) {
     const auto body = in.get<BodyIndex>();
+    if (!bodies->used(body)) ByteReader::fail();
     each(Reader{in}, own[body]);
     breve::check(own[body].accuracy);
   }
   const std::size_t methods = in.get_count(sizeof(BodyIndex));
-  for (std::size_t i = 0; i < methods; ++i) force_methods.push_back(in.get<BodyIndex>());
+  for (std::size_t i = 0; i < methods; ++i) {
+    force_methods.push_back(in.get<BodyIndex>());
+    if (!bodies->used(force_methods.back())) ByteReader::fail();
+  }
   const std::size_t pairs = in.get_count(2 * sizeof(BodyIndex));
   for (std::size_t i = 0; i < pairs; ++i) {
-    const auto first = in.get<BodyIndex>();
-    met[{first, in.get<BodyIndex>()}] = false;
+    const auto first = in.get<BodyIndex>(), second = in.get<BodyIndex>();
+    if (!bodies->used(first) || !bodies->used(second)) ByteReader::fail();
+    met[{first, second}] = false;
   }
   if (!in.get_bool()) return;
   frozen.emplace(memory);
@@ -304,10 +337,7 @@ void Planar::Core::load(ByteReader& in) {
   get_list(in, frozen->bodies);
   get_list(in, frozen->warm.contacts);
   get_list(in, frozen->warm.joints);
-  for (const FrozenJoint& one : frozen->warm.joints)
-    if (one.joint >= joints.size()) ByteReader::fail();
-  for (const WarmContact& one : frozen->warm.contacts)
-    if (one.count < 0 || one.count > b2_maxManifoldPoints) ByteReader::fail();
+  check_frozen(*frozen, *bodies, joints.size());
 }
 
 void Planar::Core::join_loaded() {
@@ -318,16 +348,19 @@ void Planar::Core::join_loaded() {
             [this](JointIndex x, JointIndex y) { return joints[x].serial < joints[y].serial; });
   for (const JointIndex index : order) {
     const JointDescription& is = joints[index].is;
-    try {
-      check_flat(is);
-    } catch (const Error&) {
-      ByteReader::fail();
-    }
+    check_flat(is);
+    check(joints[index].drive, is.kind);
+    if (!std::isfinite(joints[index].position) || !std::isfinite(joints[index].bend)) ByteReader::fail();
     joints_at[is.child].push_back(index);
     if (is.parent != kNoBody) joints_at[is.parent].push_back(index);
   }
-  for (const FlatSpring& tie : springs)
-    if (tie.used && (!bodies->used(tie.is.a) || !bodies->used(tie.is.b))) ByteReader::fail();
+  for (const FlatSpring& tie : springs) {
+    if (!tie.used) continue;
+    check(tie.is);
+    if (!bodies->used(tie.is.a) || !bodies->used(tie.is.b) || tie.is.a == tie.is.b ||
+        static_cast<int>(tie.is.mode) > static_cast<int>(SpringMode::ContractOnly))
+      ByteReader::fail();
+  }
 }
 
 void Planar::Core::hash(Hasher& hasher) const {
@@ -360,6 +393,7 @@ void Planar::Core::forget(BodyIndex body) {
   }
   for (SpringIndex i = 0; i < springs.size(); ++i)
     if (springs[i].used && (springs[i].is.a == body || springs[i].is.b == body)) {
+      wake_ends(springs[i]);
       springs[i] = FlatSpring();
       free_springs.push_back(i);
     }

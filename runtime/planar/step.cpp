@@ -61,6 +61,7 @@ void Planar::Core::advance(DynamicsClient& asked, double start, double h) {
   now = start;
   sync();
   if (!b2) return;
+  place_drivers(h);
   // Springs that scripts tied, changed or stretched meanwhile.
   account.script_work += springs_energy() - springs_known;
   int count = sub_steps() << refined;
@@ -158,7 +159,7 @@ void Planar::Core::run(double dt) {
 
 /// Notes the velocities at the start of a sub-step, and takes off half of the acceleration where it is known.
 void Planar::Core::kick(double dt) {
-  friction = 0;
+  friction = driven_work = 0;
   for (FlatJoint& joint : joints)
     if (joint.used && (joint.drive.strength_limit > 0 || joint.drive.limit_restitution > 0))
       joint.rate = joint_rate(joint);

@@ -98,7 +98,24 @@ void Planar::Core::before_solving(b2Contact* contact) {
   contact->SetFriction(static_cast<float>(rests ? law.static_friction : law.dynamic_friction));
 }
 
+/// What moves as it was told works on what it touches: the impulses along its velocity.
+void Planar::Core::note_driven_work(b2Contact* contact, const b2ContactImpulse& impulse) {
+  b2Body *a = contact->GetFixtureA()->GetBody(), *b = contact->GetFixtureB()->GetBody();
+  if (!of(a).driven && !of(b).driven) return;
+  b2WorldManifold where;
+  contact->GetWorldManifold(&where);
+  const b2Vec2 along = b2Cross(where.normal, 1.0F);
+  for (int i = 0; i < impulse.count; ++i) {
+    const b2Vec2 on_b = impulse.normalImpulses[i] * where.normal + impulse.tangentImpulses[i] * along;
+    double work = 0;
+    if (of(a).driven) work += double{b2Dot(on_b, a->GetLinearVelocityFromWorldPoint(where.points[i]))};
+    if (of(b).driven) work -= double{b2Dot(on_b, b->GetLinearVelocityFromWorldPoint(where.points[i]))};
+    driven_work += work * settings.unit * settings.unit;
+  }
+}
+
 void Planar::Core::PostSolve(b2Contact* contact, const b2ContactImpulse* impulse) {
+  note_driven_work(contact, *impulse);
   const float mu = contact->GetFriction();
   if (mu == 0) return;
   float sliding = 0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace breve {
@@ -36,7 +37,7 @@ struct Frame {
   Vector3 place(double u, double v, double height) const { return origin + u * x + v * y + height * normal; }
 };
 
-/// False if nothing is cut off: `out` is then not written.
+/// False if nothing is cut off: `out` is then not written. Two corners are a line, not a polygon.
 bool cut(const CutPolygon& in, double ax, double ay, double nx, double ny, double rim, int side, CutPolygon& out) {
   const auto inside = [&](const CutCorner& c) { return (c.x - ax) * nx + (c.y - ay) * ny + rim; };
   double least = inside(in[0]);
@@ -44,7 +45,8 @@ bool cut(const CutPolygon& in, double ax, double ay, double nx, double ny, doubl
   if (least >= 0) return false;
   out.count = 0;
   double here = inside(in[0]);
-  for (int i = 0; i < in.count; ++i) {
+  const int edges = in.count > 2 ? in.count : in.count - 1;
+  for (int i = 0; i < edges; ++i) {
     const CutCorner& p = in[i];
     const CutCorner& q = in[i + 1 < in.count ? i + 1 : 0];
     const double next = inside(q);
@@ -57,6 +59,7 @@ bool cut(const CutPolygon& in, double ax, double ay, double nx, double ny, doubl
     }
     here = next;
   }
+  if (edges < in.count && here >= 0) out.add(in[edges]);
   return true;
 }
 
@@ -154,7 +157,57 @@ std::uint32_t feature_name(std::uint32_t kind, std::uint32_t first, std::uint32_
   return static_cast<std::uint32_t>(word >> 32);
 }
 
+namespace {
+
+constexpr int kLineName = 1 << 20, kCapName = kLineName + 2, kTiltedCapName = kCapName + 2 * kMostCorners;
+
+/// A cap as a polygon. Its corners stay with the body while it is level with what `toward` is the direction of, to
+/// 1e-4 of its radius; else the first is the farthest along `toward`.
+void place_cap(const Placed& cylinder, int cap, const Vector3& toward, PlacedFace& out) {
+  constexpr double kLevel = 1e-4;
+  const Vector3 normal = cap_normal(cylinder, cap);
+  Vector3 first = toward - normal.dot(toward) * normal;
+  const double slope = first.norm();
+  const bool level = slope < kLevel;
+  first = level ? Vector3(cylinder.rotation.col((cylinder.round.axis + 1) % 3)) : Vector3(first / slope);
+  const Vector3 second = normal.cross(first), center = cylinder.location + cylinder.round.half * normal;
+  out.normal = normal;
+  out.index = cap;
+  out.count = kMostCorners;
+  for (int i = 0; i < kMostCorners; ++i) {
+    const double angle = i * 2 * std::numbers::pi / kMostCorners;
+    out.corner[at(i)] = center + cylinder.round.radius * (std::cos(angle) * first + std::sin(angle) * second);
+    out.vertex[at(i)] = (level ? kCapName : kTiltedCapName) + cap * kMostCorners + i;
+  }
+}
+
+/// The line of a side along `direction`, between the points of both ends that are farthest.
+void place_line(const Placed& solid, const Vector3& direction, PlacedFace& out) {
+  const Vector3 axis = solid.axis();
+  Vector3 outward = direction;
+  if (solid.round.is_cylinder()) outward = (direction - direction.dot(axis) * axis).normalized();
+  out.normal = direction;
+  out.index = 0;
+  out.count = 2;
+  for (int i = 0; i < 2; ++i) {
+    out.corner[at(i)] = solid.location + (2 * i - 1) * solid.round.half * axis + solid.round.radius * outward;
+    out.vertex[at(i)] = kLineName + i;
+  }
+}
+
+}  // namespace
+
+void place_facing(const Placed& solid, const Vector3& direction, PlacedFace& out) {
+  if (!solid.round.is_round()) return place_face(solid, face_along(solid, direction), out);
+  const double along = direction.dot(solid.axis());
+  if (solid.round.is_cylinder() && std::abs(along) > std::numbers::sqrt2 / 2)
+    place_cap(solid, along > 0 ? 1 : 0, direction, out);
+  else
+    place_line(solid, direction, out);
+}
+
 void place_face(const Placed& solid, int index, PlacedFace& out) {
+  if (solid.round.is_cylinder()) return place_cap(solid, index, cap_normal(solid, index), out);
   const auto& face = solid.solid->faces[static_cast<std::size_t>(index)];
   const int corners = static_cast<int>(face.size());
   out.normal = solid.rotation * solid.solid->planes[static_cast<std::size_t>(index)].normal;

@@ -39,8 +39,11 @@ bool clip_faces(const PlacedFace& reference, const PlacedFace& incident, Owner o
 /// The points that a manifold keeps of all that were found, named and measured already; at most 2 kMostPoints.
 void select_points(std::span<const ContactPoint> all, double slack, Manifold& out);
 
-/// Face `index` of a solid, and the face that looks most along `direction`; of equals (1e-6) the first.
+/// Face `index` of a polyhedron or cylinder, and the face of a polyhedron that looks most along `direction`; of equals
+/// (1e-6) the first.
 void place_face(const Placed& solid, int index, PlacedFace& out);
+/// What of a solid looks along `direction` (unit): a face, a cap, or the line of a side as a face of two corners.
+void place_facing(const Placed& solid, const Vector3& direction, PlacedFace& out);
 int face_along(const Placed& solid, const Vector3& direction);
 
 /// A number that names a feature: `kind` tells what the two indices mean.

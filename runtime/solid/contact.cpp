@@ -20,7 +20,7 @@ Gap polyhedra_gap(const Placed& a, const Placed& b) {
   Gap gap;
   const bool apart = separated(a, b, gap);
   if (apart && gap.distance > kClose * size) return gap;
-  Gap axis = best_axis(a, b);
+  Gap axis = best_axis(a, b, apart ? gap.distance : 0);
   if (apart && axis.distance < gap.distance - kAgree * size) return gap;
   place_witnesses(a, b, axis);
   return axis;
@@ -47,32 +47,62 @@ void place_witnesses(const Placed& a, const Placed& b, Gap& gap) {
     gap.on_a = apart.on_a;
     gap.on_b = apart.on_b + lift * gap.normal;
   } else {
-    gap.on_a = gap.on_b = a.vertex(a.support(-gap.normal));
+    gap.on_a = gap.on_b = a.extreme(-gap.normal);
   }
 }
 
 Placed place(const Shape& shape, const Pose& pose) {
-  const bool round = shape.kind() == ShapeKind::Sphere;  // a surface stands for its hull, or nothing
-  return {round ? nullptr : &shape.polyhedron(), shape.bounding_radius(), pose.location,
-          pose.orientation.toRotationMatrix()};
+  const bool ball = shape.kind() == ShapeKind::Sphere;  // a surface stands for its hull, or nothing
+  return {ball ? nullptr : &shape.polyhedron(),
+          shape.bounding_radius(),
+          pose.location,
+          pose.orientation.toRotationMatrix(),
+          false,
+          false,
+          shape.round()};
 }
 
 Gap find_gap(const Placed& a, const Placed& b) {
   if (b.flat) return triangle_gap(a, b);
   if (a.flat) return flipped(triangle_gap(b, a));
+  if (a.round.is_round() || b.round.is_round()) return round_gap(a, b);
   if (a.solid == nullptr && b.solid == nullptr) return balls_gap(a, b);
   if (a.solid == nullptr) return ball_gap(a, b);
   if (b.solid == nullptr) return flipped(ball_gap(b, a));
   return polyhedra_gap(a, b);
 }
 
-Contact closest(const Shape& a, const Pose& pa, const Shape& b, const Pose& pb) {
+namespace {
+
+/// With a limit as surface_gap has.
+Contact find_contact(const Shape& a, const Pose& pa, const Shape& b, const Pose& pb, double limit,
+                     NarrowCounters* counters) {
   // Coordinates relative to a keep digits far from the origin.
   Placed at = place(a, pa), other = place(b, pb);
   other.location = pb.location - pa.location;
   at.location.setZero();
-  const Gap gap = is_surface(a) || is_surface(b) ? surface_gap(a, at, b, other) : find_gap(at, other);
+  const bool surface = is_surface(a) || is_surface(b);
+  const Gap gap = surface ? surface_gap(a, at, b, other, limit, counters) : find_gap(at, other);
   return {pa.location + (gap.on_a + gap.on_b) / 2, gap.normal, gap.distance};
+}
+
+}  // namespace
+
+Contact closest(const Shape& a, const Pose& pa, const Shape& b, const Pose& pb) {
+  return find_contact(a, pa, b, pb, std::numeric_limits<double>::infinity(), nullptr);
+}
+
+bool closest_within(const Shape& a, const Pose& pa, const Shape& b, const Pose& pb, double limit, Contact& contact,
+                    NarrowCounters* counters) {
+  // Spheres around both that are apart settle it, a hair farther than round-off; also refuses what is not finite. What
+  // is deep in the ground may be outside the sphere around the surface.
+  const bool ground = a.kind() == ShapeKind::HeightField || b.kind() == ShapeKind::HeightField;
+  const double reach = (a.bounding_radius() + b.bounding_radius()) * (1 + 1e-12) + std::max(limit, 0.0);
+  if (!ground && !((pa.location - pb.location).squaredNorm() <= reach * reach)) return false;
+  const Contact found = find_contact(a, pa, b, pb, limit, counters);
+  if (!(found.distance <= limit)) return false;
+  contact = found;
+  return true;
 }
 
 Pose pose_at(const Motion& motion, double t) {

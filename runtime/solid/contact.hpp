@@ -1,8 +1,11 @@
 // Where two solids are closest, how deep they overlap, and when two moving solids first touch.
 #pragma once
 
+#include <cstdint>
+
 #include "runtime/base/math.hpp"
 #include "runtime/solid/shape.hpp"
+#include "runtime/solid/surface.hpp"
 
 namespace breve {
 
@@ -26,9 +29,29 @@ struct Contact {
   double distance;
 };
 
+/// What the narrow phase did, for tests and reports.
+struct NarrowCounters {
+  std::uint64_t pairs = 0;     // asked for and not told apart by the spheres around them
+  std::uint64_t warm = 0;      // started from what the pair remembered
+  std::uint64_t separate = 0;  // decided by the remembered axis alone
+  std::uint64_t facets = 0;    // of surfaces, visited
+  std::uint64_t boxes = 0;     // about facets, looked at to find these
+
+  void add(const FacetCounters& search) {
+    facets += search.facets;
+    boxes += search.boxes;
+  }
+};
+
 /// Closest or deepest points of two solids. Spheres in closed form, polyhedra exact to round-off.
 /// Sources: Gilbert, Johnson, Keerthi 1988 (distance); Gottschalk 1996 and Gregorius 2013 (separating axes).
 Contact closest(const Shape& a, const Pose& pa, const Shape& b, const Pose& pb);
+
+/// Are two solids at most `limit` apart (m; not positive: do they overlap by at least so much)? `contact` is then what
+/// `closest` gives, and not written otherwise. What is far costs next to nothing, whatever surface it is far from.
+/// @param counters  may be null
+bool closest_within(const Shape& a, const Pose& pa, const Shape& b, const Pose& pb, double limit, Contact& contact,
+                    NarrowCounters* counters = nullptr);
 
 /// The pose after `t` seconds; rotation by the exponential map, the orientation normalised.
 Pose pose_at(const Motion& motion, double t);
@@ -44,8 +67,9 @@ double touch_tolerance(const Shape& a, const Pose& pa, const Shape& b, const Pos
 /// Two spheres in closed form. Otherwise conservative advancement (Mirtich 1996) with bounds of second order: it never
 /// steps over a touch that lasts longer than 1e-13 h; t is exact to 1e-10 h or to what a gap of 1e-14 of the sizes
 /// means.
+/// @param counters  may be null
 bool time_of_impact(const Shape& a, const Motion& ma, const Shape& b, const Motion& mb, double h, double& t,
-                    Contact& contact);
+                    Contact& contact, NarrowCounters* counters = nullptr);
 
 /// A cheap answer to whether that may be false: two convex solids that stay apart along one axis (unit, in the frame of
 /// a, from b toward a; such as the one of PairCache) for all of [0, h]. Then time_of_impact finds nothing, and they are

@@ -58,8 +58,9 @@ bool ball_on_facet(const ConvexPair& pair, const Facet& facet, const Gap& gap, c
 /// By the face of the solid that is farthest from the triangle, if it is nearly as good an axis as the best.
 bool face_of_solid(const ConvexPair& pair, const Gap& gap, Manifold& out) {
   const FaceAxis face = best_face(pair.a, pair.b);
-  const Vector3 outward = pair.a.rotation * pair.a.solid->planes[at(face.face)].normal;
-  if (face.distance < gap.distance - pair.slack.preference || outward.dot(gap.normal) > -0.99) return false;
+  if (face.distance < gap.distance - pair.slack.preference) return false;
+  const Vector3 outward = face_normal(pair.a, face.face);
+  if (outward.dot(gap.normal) > -0.99) return false;
   PlacedFace reference, incident;
   place_face(pair.a, face.face, reference);
   place_triangle(pair.b, outward.dot(pair.b.rotation * pair.b.solid->planes[0].normal) > 0, incident);
@@ -75,7 +76,7 @@ bool solid_on_facet(const ConvexPair& pair, const Facet& facet, const Gap& gap, 
   if (!out_standing || height >= gap.distance - pair.slack.preference) {
     PlacedFace reference, incident;
     place_triangle(pair.b, turned, reference);
-    place_face(pair.a, face_along(pair.a, -normal), incident);
+    place_facing(pair.a, -normal, incident);
     const bool clipped = clip_faces(reference, incident, Owner::B, pair.margin, pair.slack.rim, out);
     // Much deeper than the shortest way out, which leads over a seam: the facet beyond has the contact.
     const bool face = clipped && out.points[0].distance >= gap.distance - 2 * pair.slack.preference;
@@ -92,7 +93,7 @@ bool solid_on_facet(const ConvexPair& pair, const Facet& facet, const Gap& gap, 
 
 bool facet_manifold(const ConvexPair& pair, const Facet& facet, bool& near, Manifold& out) {
   constexpr double kBehind = -1e-6;
-  const Gap gap = triangle_gap(pair.a, pair.b);
+  const Gap gap = triangle_gap(pair.a, pair.b, pair.margin);
   if (gap.distance >= pair.margin) return false;
   near = true;
   Vector3 normal = pair.b.rotation * facet.normal;

@@ -25,7 +25,7 @@ void check_height(double height, int column, int row) {
 
 HeightGrid::HeightGrid(int columns, int rows, double tile, std::span<const double> heights,
                        std::pmr::memory_resource* memory)
-    : columns_(columns), rows_(rows), tile_(tile), heights_(memory) {
+    : columns_(columns), rows_(rows), tile_(tile), heights_(memory), blocks_(memory) {
   if (columns < 2 || rows < 2 || columns > kMostSide || rows > kMostSide) {
     refuse_field(fmt::format("has {} columns and {} rows (must be from 2 to {})", columns, rows, kMostSide));
   }
@@ -49,15 +49,35 @@ HeightGrid::HeightGrid(const HeightGrid& other, const Vector3& factors)
       rows_(other.rows_),
       tile_(other.tile_),
       scale_(factors),
-      heights_(other.heights_, other.heights_.get_allocator()) {
-  measure();
+      heights_(other.heights_, other.heights_.get_allocator()),
+      blocks_(other.blocks_, other.heights_.get_allocator()) {
+  measure_bounds();
 }
 
 void HeightGrid::measure() {
-  const auto [low, high] = std::minmax_element(heights_.begin(), heights_.end());
-  const Vector3 first = corner(0, 0), last = corner(columns_ - 1, rows_ - 1);
-  bounds_ = Eigen::AlignedBox3d(Vector3(first.x(), *low * scale_.y(), first.z()),
-                                Vector3(last.x(), *high * scale_.y(), last.z()));
+  blocks_.resize(static_cast<std::size_t>(blocks_across()) * static_cast<std::size_t>(blocks_along()));
+  for (int along = 0; along < blocks_along(); ++along)
+    for (int across = 0; across < blocks_across(); ++across) measure_block(across, along);
+  measure_bounds();
+}
+
+void HeightGrid::measure_block(int across, int along) {
+  const int last_column = std::min((across + 1) * kBlock, columns_ - 1),
+            last_row = std::min((along + 1) * kBlock, rows_ - 1);
+  Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (int r = along * kBlock; r <= last_row; ++r) {
+    for (int c = across * kBlock; c <= last_column; ++c) {
+      range.low = std::min(range.low, heights_[index(c, r)]);
+      range.high = std::max(range.high, heights_[index(c, r)]);
+    }
+  }
+  block(across, along) = range;
+}
+
+void HeightGrid::measure_bounds() {
+  Range range = blocks_.front();
+  for (const Range& block : blocks_) range = {std::min(range.low, block.low), std::max(range.high, block.high)};
+  bounds_ = box_of({0, 0, columns_ - 2, rows_ - 2}, range);
 }
 
 std::size_t HeightGrid::index(int column, int row) const {
@@ -80,12 +100,22 @@ void HeightGrid::set_height(int column, int row, double value) {
   const double before = height(column, row);
   check_height(value, column, row);
   heights_[index(column, row)] = value;
-  const double y = value * scale_.y();
+  bool narrower = false;
+  // A corner of the grid belongs to the cells on either side of it.
+  for (int along = std::max(row - 1, 0) / kBlock; along <= std::min(row, rows_ - 2) / kBlock; ++along) {
+    for (int across = std::max(column - 1, 0) / kBlock; across <= std::min(column, columns_ - 2) / kBlock; ++across) {
+      Range& range = block(across, along);
+      // Only a height that made the range can narrow it.
+      const bool made_it = before <= range.low || before >= range.high;
+      range = {std::min(range.low, value), std::max(range.high, value)};
+      if (made_it) measure_block(across, along);
+      narrower = narrower || made_it;
+    }
+  }
+  const double y = value * scale_.y(), old = before * scale_.y();
   bounds_.min().y() = std::min(bounds_.min().y(), y);
   bounds_.max().y() = std::max(bounds_.max().y(), y);
-  // Only a height that made the bounds can narrow them.
-  const double old = before * scale_.y();
-  if (old <= bounds_.min().y() || old >= bounds_.max().y()) measure();
+  if (narrower && (old <= bounds_.min().y() || old >= bounds_.max().y())) measure_bounds();
 }
 
 int HeightGrid::column_at(double x) const {
@@ -117,12 +147,13 @@ bool HeightGrid::neighbour(int column, int row, int half, int edge, Vector3& nor
   return true;
 }
 
-Facet HeightGrid::facet(int column, int row, int half) const {
+Facet HeightGrid::facet(int column, int row, int half, bool with_active) const {
   Facet f;
   f.corner = corners(column, row, half);
   f.normal = normal_of(f.corner[0], f.corner[1], f.corner[2]);
   f.index = static_cast<std::uint32_t>(2 * (row * (columns_ - 1) + column) + half);
   f.active = 0;
+  if (!with_active) return f;
   for (int edge = 0; edge < 3; ++edge) {
     Vector3 normal, opposite;
     if (!neighbour(column, row, half, edge, normal, opposite) ||
@@ -153,19 +184,55 @@ bool HeightGrid::inside(const Vector3& point) const {
   return height_at(point.x(), point.z(), height) && point.y() <= height;
 }
 
+Eigen::AlignedBox3d HeightGrid::box_of(const Area& cells, const Range& heights) const {
+  const Vector3 low = corner(cells.first_column, cells.first_row),
+                high = corner(cells.last_column + 1, cells.last_row + 1);
+  return {Vector3(low.x(), heights.low * scale_.y(), low.z()), Vector3(high.x(), heights.high * scale_.y(), high.z())};
+}
+
+void HeightGrid::visit_cell(int column, int row, const Eigen::AlignedBox3d& box, FacetVisitor& visitor) const {
+  for (int half = 0; half < 2; ++half) {
+    const auto at = corners(column, row, half);
+    Eigen::AlignedBox3d around(at[0]);
+    around.extend(at[1]).extend(at[2]);
+    ++visitor.counters.boxes;
+    if (!around.intersects(box) || !visitor.wants(around)) continue;
+    ++visitor.counters.facets;
+    visitor.visit(facet(column, row, half, visitor.reads_active()));
+  }
+}
+
 void HeightGrid::under(const Eigen::AlignedBox3d& box, FacetVisitor& visitor) const {
   if (!box.intersects(bounds_)) return;
-  const int last_column = column_at(box.max().x()), last_row = row_at(box.max().z());
-  for (int r = row_at(box.min().z()); r <= last_row; ++r) {
-    for (int c = column_at(box.min().x()); c <= last_column; ++c) {
-      const double a = heights_[index(c, r)], b = heights_[index(c + 1, r)], d = heights_[index(c, r + 1)],
-                   e = heights_[index(c + 1, r + 1)];
-      if (std::min({a, b, d, e}) * scale_.y() > box.max().y() || std::max({a, b, d, e}) * scale_.y() < box.min().y()) {
-        continue;
-      }
-      visitor.visit(facet(c, r, 0));
-      visitor.visit(facet(c, r, 1));
+  const Area area{column_at(box.min().x()), row_at(box.min().z()), column_at(box.max().x()), row_at(box.max().z())};
+  const int first_across = area.first_column / kBlock, last_across = area.last_column / kBlock;
+  std::array<bool, (kMostSide - 2) / kBlock + 1> wanted;
+  for (int along = area.first_row / kBlock; along <= area.last_row / kBlock; ++along) {
+    const int first_row = std::max(along * kBlock, area.first_row),
+              last_row = std::min(along * kBlock + kBlock - 1, area.last_row);
+    const auto cells_of = [&](int across) -> Area {
+      return {std::max(across * kBlock, area.first_column), first_row,
+              std::min(across * kBlock + kBlock - 1, area.last_column), last_row};
+    };
+    bool any = false;
+    for (int across = first_across; across <= last_across; ++across) {
+      const Eigen::AlignedBox3d around = box_of(cells_of(across), block(across, along));
+      ++visitor.counters.boxes;
+      any |= wanted[static_cast<std::size_t>(across)] = around.intersects(box) && visitor.wants(around);
     }
+    // Facets come row after row, whatever the blocks.
+    for (int row = first_row; any && row <= last_row; ++row)
+      for (int across = first_across; across <= last_across; ++across)
+        if (wanted[static_cast<std::size_t>(across)]) visit_row(row, cells_of(across), box, visitor);
+  }
+}
+
+void HeightGrid::visit_row(int row, const Area& cells, const Eigen::AlignedBox3d& box, FacetVisitor& visitor) const {
+  for (int c = cells.first_column; c <= cells.last_column; ++c) {
+    const double a = heights_[index(c, row)], b = heights_[index(c + 1, row)], d = heights_[index(c, row + 1)],
+                 e = heights_[index(c + 1, row + 1)];
+    if (std::min({a, b, d, e}) * scale_.y() <= box.max().y() && std::max({a, b, d, e}) * scale_.y() >= box.min().y())
+      visit_cell(c, row, box, visitor);
   }
 }
 
@@ -193,7 +260,7 @@ bool HeightGrid::raycast(const Vector3& origin, const Vector3& direction, double
       const double t = ray_meets(corners(c, r, half), origin, direction);
       if (t >= best) continue;
       best = t;
-      hit = facet(c, r, half);
+      hit = facet(c, r, half, true);
     }
     if (std::isfinite(best)) {
       fraction = best;

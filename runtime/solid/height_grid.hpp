@@ -47,8 +47,29 @@ class HeightGrid final : public Surface {
   /// The cell at (x, z), at the rim the last one.
   int column_at(double x) const;
   int row_at(double z) const;
+  /// Lowest and highest height of a square of cells; before scaling.
+  struct Range {
+    double low, high;
+  };
+  static constexpr int kBlock = 16;  // cells along the side of a block
+  int blocks_across() const { return (columns_ - 2) / kBlock + 1; }
+  int blocks_along() const { return (rows_ - 2) / kBlock + 1; }
+  Range& block(int across, int along) {
+    return blocks_[static_cast<std::size_t>(along) * static_cast<std::size_t>(blocks_across()) +
+                   static_cast<std::size_t>(across)];
+  }
+  const Range& block(int across, int along) const { return const_cast<HeightGrid*>(this)->block(across, along); }
   void measure();
-  Facet facet(int column, int row, int half) const;
+  void measure_block(int across, int along);
+  void measure_bounds();
+  /// Cells from the first to the last, with bounds; of an area of the grid.
+  struct Area {
+    int first_column, first_row, last_column, last_row;
+  };
+  Eigen::AlignedBox3d box_of(const Area& cells, const Range& heights) const;
+  void visit_row(int row, const Area& cells, const Eigen::AlignedBox3d& box, FacetVisitor& visitor) const;
+  void visit_cell(int column, int row, const Eigen::AlignedBox3d& box, FacetVisitor& visitor) const;
+  Facet facet(int column, int row, int half, bool with_active) const;
   /// Normal of a triangle and its corner off the shared edge; false beyond the rim.
   bool neighbour(int column, int row, int half, int edge, Vector3& normal, Vector3& opposite) const;
   std::array<Vector3, 3> corners(int column, int row, int half) const;
@@ -57,6 +78,7 @@ class HeightGrid final : public Surface {
   double tile_;
   Vector3 scale_ = Vector3::Ones();
   std::pmr::vector<double> heights_;
+  std::pmr::vector<Range> blocks_;  // row after row
   Eigen::AlignedBox3d bounds_;
 };
 

@@ -17,7 +17,7 @@ namespace breve {
 namespace {
 
 // Beyond these numbers a coarser mesh is meant.
-constexpr std::size_t kMostPoints = 1'000'000;
+constexpr std::size_t kMostHullPoints = 1'000'000;
 constexpr std::size_t kMostFaces = 4000;
 constexpr double kFlatCloud = 1e-6;  // thinner than this part of its extent a cloud is flat: a solid needs a thickness
 constexpr double kLevel = 1e-12;     // of the extent: a point so little above a face is on it
@@ -60,8 +60,8 @@ class Quickhull {
 };
 
 void Quickhull::measure() {
-  if (points_.size() < 4 || points_.size() > kMostPoints) {
-    refuse_hull(fmt::format("of {} points (must be from 4 to {})", points_.size(), kMostPoints));
+  if (points_.size() < 4 || points_.size() > kMostHullPoints) {
+    refuse_hull(fmt::format("of {} points (must be from 4 to {})", points_.size(), kMostHullPoints));
   }
   Eigen::AlignedBox3d box;
   for (std::size_t i = 0; i < points_.size(); ++i) {

@@ -30,6 +30,7 @@ bool far_apart(const ConvexPair& pair) {
 
 bool convex_manifold(const Shape& a, const Shape& b, const ConvexPair& pair, Manifold& out) {
   if (a.kind() == ShapeKind::Sphere || b.kind() == ShapeKind::Sphere) return ball_manifold(pair, out);
+  if (pair.a.round.is_round() || pair.b.round.is_round()) return round_manifold(pair, out);
   if (a.kind() == ShapeKind::Box && b.kind() == ShapeKind::Box) {
     return boxes_manifold(pair, a.size() / 2, b.size() / 2, out);
   }
@@ -55,7 +56,7 @@ void find(const Shape& a, const Pose& pa, const Shape& b, const Pose& pb, double
   if (is_surface(a) || is_surface(b)) {
     if (far_apart(pair)) return;
     if (counters != nullptr) ++counters->pairs;
-    surface_manifolds(a, pair.a, b, pair.b, margin, pair.slack, out);
+    surface_manifolds(a, pair.a, b, pair.b, margin, pair.slack, out, counters);
   } else if (!find_convex(a, b, pair, out.emplace_back())) {
     out.pop_back();
   }

@@ -35,13 +35,6 @@ struct PairCache {
   std::uint32_t apart = 0;         // 1 if the pair was apart: the axis is tried first
 };
 
-/// What the narrow phase did, for tests and reports.
-struct NarrowCounters {
-  std::uint64_t pairs = 0;     // asked for and not told apart by the spheres around them
-  std::uint64_t warm = 0;      // started from what the pair remembered
-  std::uint64_t separate = 0;  // decided by the remembered axis alone
-};
-
 /// All manifolds of a pair whose gap is below `margin` (m, finite, >= 0), appended to `out`. Two convex solids give
 /// none or one; a mesh or height field gives one for each patch of nearly coplanar triangles. Deterministic; allocates
 /// in `out` only.

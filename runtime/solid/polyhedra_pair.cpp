@@ -1,6 +1,7 @@
 // Two polyhedra: by their faces, by two edges, or by the exact nearest points, in this order of preference.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "runtime/solid/pair.hpp"
 
@@ -49,7 +50,8 @@ bool gap_manifold(const ConvexPair& pair, const Gap& gap, Manifold& out) {
   if (gap.distance >= pair.margin) return false;
   out.normal = gap.normal;
   const double sides = gap.edge_a.norm() * gap.edge_b.norm();
-  if (gap.distance > 0 && sides > 0 && gap.edge_a.cross(gap.edge_b).norm() < kSideBySide * sides &&
+  const bool sides_known = gap.distance > 0 || pair.a.round.is_round() || pair.b.round.is_round();
+  if (sides_known && sides > 0 && gap.edge_a.cross(gap.edge_b).norm() < kSideBySide * sides &&
       side_by_side({gap.start_a, gap.edge_a}, {gap.start_b, gap.edge_b}, gap.distance + pair.slack.preference,
                    kNearestPoint, out)) {
     if (out.points[1].distance >= pair.margin) out.count = 1;
@@ -60,11 +62,12 @@ bool gap_manifold(const ConvexPair& pair, const Gap& gap, Manifold& out) {
   return true;
 }
 
-/// Overlap is known: the steadiest of the axes that separate nearly best.
-bool overlap_manifold(const ConvexPair& pair, const FaceAxis& of_a, const FaceAxis& of_b, bool take_a, Manifold& out) {
+/// They overlap, or are less than a hair apart: the steadiest of the axes that separate nearly best.
+bool overlap_manifold(const ConvexPair& pair, const FaceAxis& of_a, const FaceAxis& of_b, bool take_a, double apart,
+                      Manifold& out) {
   const double face = take_a ? of_a.distance : of_b.distance, preference = pair.slack.preference;
   EdgeAxis edges;
-  if (best_edges(pair.a, pair.b, face + preference, edges)) {
+  if (best_edges(pair.a, pair.b, face + preference, apart, edges)) {
     const std::uint32_t feature = kEdges | (feature_name(kEdges, static_cast<std::uint32_t>(edges.edge_a),
                                                          static_cast<std::uint32_t>(edges.edge_b)) &
                                             ~kEdges);
@@ -81,7 +84,35 @@ bool overlap_manifold(const ConvexPair& pair, const FaceAxis& of_a, const FaceAx
   return nearest_manifold(pair, out);
 }
 
+/// The face of `own` that looks at the other along `toward`, and how far the other is over it; minus infinity if none
+/// looks that way.
+FaceAxis facing(const Placed& own, const Placed& other, const Vector3& toward) {
+  constexpr double kFacing = 0.99;
+  constexpr FaceAxis kNone{-std::numeric_limits<double>::infinity(), 0};
+  if (own.round.is_capsule()) return kNone;
+  const int face = own.round.is_cylinder() ? (toward.dot(own.axis()) > 0 ? 1 : 0) : face_along(own, toward);
+  const Vector3 normal = face_normal(own, face);
+  if (normal.dot(toward) < kFacing) return kNone;
+  return {-other.reach(-normal) - own.reach(normal), face};
+}
+
 }  // namespace
+
+bool round_manifold(const ConvexPair& pair, Manifold& out) {
+  const Gap gap = round_gap(pair.a, pair.b);
+  pair.remember(gap.normal, kNearestPoint);
+  if (gap.distance >= pair.margin) return false;
+  const FaceAxis of_a = facing(pair.a, pair.b, -gap.normal), of_b = facing(pair.b, pair.a, gap.normal);
+  const double preference = pair.slack.preference;
+  const bool a_first = pair.a.radius >= pair.b.radius;
+  const bool take_a = of_a.distance + (a_first ? preference / 2 : 0) >= of_b.distance + (a_first ? 0 : preference / 2);
+  const FaceAxis& face = take_a ? of_a : of_b;
+  if (face.distance >= gap.distance - preference && face_manifold(pair, take_a ? Owner::A : Owner::B, face.face, out) &&
+      out.points[0].distance <= gap.distance + preference) {
+    return true;
+  }
+  return gap_manifold(pair, gap, out);
+}
 
 bool ConvexPair::apart_by_cache() const {
   if (cache == nullptr) return false;
@@ -123,7 +154,7 @@ bool face_manifold(const ConvexPair& pair, Owner owner, int index, Manifold& out
   const Placed &own = owner == Owner::A ? pair.a : pair.b, &other = owner == Owner::A ? pair.b : pair.a;
   PlacedFace reference, incident;
   place_face(own, index, reference);
-  place_face(other, face_along(other, -reference.normal), incident);
+  place_facing(other, -reference.normal, incident);
   return clip_faces(reference, incident, owner, pair.margin, pair.slack.rim, out);
 }
 
@@ -154,7 +185,8 @@ bool polyhedra_manifold(const ConvexPair& pair, Manifold& out) {
   };
   remember_face();
   if (face >= pair.margin) return false;
-  if (!apart || gap.distance <= kClose * size) return overlap_manifold(pair, of_a, of_b, take_a, out);
+  if (!apart || gap.distance <= kClose * size)
+    return overlap_manifold(pair, of_a, of_b, take_a, apart ? gap.distance : 0, out);
   if (face >= gap.distance - preference &&
       face_manifold(pair, take_a ? Owner::A : Owner::B, take_a ? of_a.face : of_b.face, out) &&
       out.points[0].distance <= gap.distance + preference) {

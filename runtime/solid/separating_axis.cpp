@@ -53,7 +53,23 @@ Eigen::AlignedBox3d grown(const Vector3& p, const Vector3& q, double by) {
 
 }  // namespace
 
+namespace {
+
+/// Of a cylinder that has only caps, and b of any kind but a ball.
+FaceAxis best_cap(const Placed& a, const Placed& b) {
+  const auto over = [&](int cap) {
+    const Vector3 normal = cap_normal(a, cap);
+    return FaceAxis{-b.reach(-normal) - normal.dot(a.location) - a.round.half, cap};
+  };
+  const FaceAxis low = over(0), high = over(1);
+  return low.distance > high.distance ? low : high;
+}
+
+}  // namespace
+
 FaceAxis best_face(const Placed& a, const Placed& b) {
+  if (a.round.is_capsule()) return {-std::numeric_limits<double>::infinity(), 0};
+  if (a.round.is_cylinder()) return best_cap(a, b);
   const Matrix3 turn = a.rotation.transpose() * b.rotation;
   const Vector3 shift = a.rotation.transpose() * (b.location - a.location);
   Deepest deepest;
@@ -78,7 +94,8 @@ FaceAxis best_face(const Placed& a, const Placed& b) {
   return best;
 }
 
-bool best_edges(const Placed& a, const Placed& b, double to_beat, EdgeAxis& best) {
+bool best_edges(const Placed& a, const Placed& b, double to_beat, double apart, EdgeAxis& best) {
+  if (to_beat >= std::max(0.0, apart) + kAgree * (a.radius + b.radius)) return false;
   // Edges in the frame of a.
   const Matrix3 turn = a.rotation.transpose() * b.rotation;
   const Vector3 shift = a.rotation.transpose() * (b.location - a.location);
@@ -118,7 +135,7 @@ bool best_edges(const Placed& a, const Placed& b, double to_beat, EdgeAxis& best
   return found;
 }
 
-Gap best_axis(const Placed& a, const Placed& b) {
+Gap best_axis(const Placed& a, const Placed& b, double apart) {
   const FaceAxis of_a = best_face(a, b), of_b = best_face(b, a);
   Gap best;
   const bool take_a = of_a.distance >= of_b.distance;
@@ -126,7 +143,7 @@ Gap best_axis(const Placed& a, const Placed& b) {
   best.normal = take_a ? Vector3(-(a.rotation * a.solid->planes[at(of_a.face)].normal))
                        : Vector3(b.rotation * b.solid->planes[at(of_b.face)].normal);
   EdgeAxis edges;
-  if (best_edges(a, b, best.distance + kEdgeHandicap * (a.radius + b.radius), edges)) {
+  if (best_edges(a, b, best.distance + kEdgeHandicap * (a.radius + b.radius), apart, edges)) {
     const Edge &ea = a.solid->edges[at(edges.edge_a)], &eb = b.solid->edges[at(edges.edge_b)];
     best.distance = edges.distance;
     best.normal = edges.normal;

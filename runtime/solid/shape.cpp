@@ -66,6 +66,13 @@ void Shape::Geometry::derive_size() {
     solid.vertices[i] = original_vertices[i].cwiseProduct(f);
     bounding_radius = std::max(bounding_radius, solid.vertices[i].stableNorm());
   }
+  if (original_round.is_round()) {
+    round = original_round;
+    round.radius = radius = original_round.radius * f.x();
+    round.half = original_round.half * f[round.axis];
+    bounding_radius = round.is_capsule() ? round.radius + round.half : std::hypot(round.radius, round.half);
+    place_corners(round, solid.vertices);
+  }
   update_planes(solid);
   if (!surface) return;
   const Eigen::AlignedBox3d& box = surface->bounds();
@@ -119,6 +126,27 @@ std::shared_ptr<Shape> Shape::of(ShapeKind kind, const Polyhedron& solid, double
   return shared(std::move(g));
 }
 
+std::shared_ptr<Shape> Shape::of(const Round& round, Memory memory) {
+  auto g = make_in<Geometry>(memory, memory);
+  g->kind = round.is_cylinder() ? ShapeKind::Cylinder : ShapeKind::Capsule;
+  g->original_round = round;
+  g->original = moments(round);
+  g->solid = make_polygons(round);
+  return shared(std::move(g));
+}
+
+std::shared_ptr<Shape> Shape::cylinder(double height, double radius, int axis, Memory memory) {
+  check_positive("the height of a cylinder", height);
+  check_positive("the radius of a cylinder", radius);
+  return of({RoundKind::Cylinder, axis, radius, height / 2}, memory);
+}
+
+std::shared_ptr<Shape> Shape::capsule(double length, double radius, int axis, Memory memory) {
+  check_positive("the length of a capsule", length);
+  check_positive("the radius of a capsule", radius);
+  return of({RoundKind::Capsule, axis, radius, length / 2}, memory);
+}
+
 std::shared_ptr<Shape> Shape::box(const Vector3& size, Memory memory) {
   return of(ShapeKind::Box, make_box(size), 1, memory);
 }
@@ -138,6 +166,7 @@ std::shared_ptr<Shape> Shape::convex(const std::vector<std::vector<Vector3>>& fa
 
 ShapeKind Shape::kind() const { return geometry_->kind; }
 double Shape::radius() const { return geometry_->radius; }
+const Round& Shape::round() const { return geometry_->round; }
 Vector3 Shape::size() const {
   return geometry_->kind == ShapeKind::Box ? Vector3(geometry_->solid.vertices.back() * 2) : Vector3(Vector3::Zero());
 }
@@ -149,6 +178,10 @@ double Shape::bounding_radius() const { return geometry_->bounding_radius; }
 
 Eigen::AlignedBox3d Shape::bounds(const Matrix3& rotation) const {
   if (kind() == ShapeKind::Sphere) return {Vector3::Constant(-radius()), Vector3::Constant(radius())};
+  if (round().is_round()) {
+    const Vector3 half = half_extent(round(), rotation);
+    return {-half, half};
+  }
   Eigen::AlignedBox3d box;
   if (kind() == ShapeKind::HeightField) {
     for (int i = 0; i < 8; ++i) {
@@ -216,6 +249,11 @@ void Shape::set_scale(const Vector3& factors) {
   next->derive_size();
   next->derive_mass();
   geometry_ = std::move(next);
+  note_change();
+}
+
+void Shape::note_change() {
+  ++changes_;
   scalings_so_far.fetch_add(1, std::memory_order_relaxed);
 }
 

@@ -12,6 +12,7 @@
 #include "runtime/base/math.hpp"
 #include "runtime/base/memory.hpp"
 #include "runtime/solid/polyhedron.hpp"
+#include "runtime/solid/round.hpp"
 
 namespace breve {
 
@@ -19,7 +20,7 @@ class Surface;
 class TriangleMesh;
 class HeightGrid;
 
-enum class ShapeKind : std::uint8_t { Sphere, Box, Convex, Mesh, HeightField };
+enum class ShapeKind : std::uint8_t { Sphere, Box, Convex, Mesh, HeightField, Cylinder, Capsule };
 
 class Shape : public InMemory {
  public:
@@ -36,6 +37,12 @@ class Shape : public InMemory {
   /// PolygonCone, apex at +height/2.
   static std::shared_ptr<Shape> cone(int sides, double height, double radius,
                                      Memory memory = std::pmr::get_default_resource());
+  /// Exact, about `axis`: 1 (y) or 2 (z, for flat worlds). Polygons only show it.
+  static std::shared_ptr<Shape> cylinder(double height, double radius, int axis = 1,
+                                         Memory memory = std::pmr::get_default_resource());
+  /// All points within `radius` of a piece of the axis that is `length` long.
+  static std::shared_ptr<Shape> capsule(double length, double radius, int axis = 1,
+                                        Memory memory = std::pmr::get_default_resource());
   /// CustomShape.
   static std::shared_ptr<Shape> convex(const std::vector<std::vector<Vector3>>& faces, double density,
                                        Memory memory = std::pmr::get_default_resource());
@@ -56,12 +63,14 @@ class Shape : public InMemory {
 
   ~Shape();
   ShapeKind kind() const;
-  double radius() const;                              // Sphere
+  double radius() const;                              // Sphere, Cylinder, Capsule
+  const Round& round() const;                         // Cylinder, Capsule; after scaling
   Vector3 size() const;                               // Box: full edge lengths after scaling
-  const std::pmr::vector<Vector3>& vertices() const;  // Box, Convex: after scaling, own frame; Mesh: of its hull
+  const std::pmr::vector<Vector3>& vertices() const;  // Box, Convex: after scaling, own frame; Mesh: of its hull;
+                                                      // Cylinder, Capsule: of the polygons that show it
   /// Indices into vertices, counter-clockwise from outside.
   const std::pmr::vector<std::pmr::vector<int>>& faces() const;
-  const Polyhedron& polyhedron() const;   // Box, Convex, Mesh: the same with planes and edges; empty for others
+  const Polyhedron& polyhedron() const;   // the same with planes and edges; empty for Sphere, HeightField
   const Surface* surface() const;         // Mesh, HeightField: its triangles after scaling; null for others
   const TriangleMesh* triangles() const;  // Mesh
   const HeightGrid* heights() const;      // HeightField
@@ -81,12 +90,14 @@ class Shape : public InMemory {
   /// symmetric, positive definite, and no principal moment exceeds the sum of the other two (no solid has such).
   void set_inertia(const Matrix3& inertia);
 
-  /// Absolute factors of the original size per axis, finite and > 0; a sphere uses x only. The density stays.
+  /// Absolute factors of the original size per axis, finite and > 0; a sphere and a capsule use x only, a cylinder x
+  /// for its radius and the factor of its axis for its height. The density stays.
   void set_scale(const Vector3& factors);
   const Vector3& scale() const;
   const Vector3& last_scale() const;  // the scale before the last change
-  /// How often any shape of the process was given a scale. Who compares this need not look at each shape.
+  /// How often any shape of the process was given a scale or a height. Who compares this need not look at each shape.
   static std::uint64_t scalings();
+  std::uint64_t changes() const { return changes_; }  // how often this one was
 
   /// Where a ray from the centre along `direction` leaves the surface; (0,0,0) for a zero direction.
   Vector3 point_on(const Vector3& direction) const;
@@ -103,11 +114,14 @@ class Shape : public InMemory {
  private:
   struct Geometry;
   explicit Shape(std::unique_ptr<Geometry> geometry);
+  static std::shared_ptr<Shape> of(const Round& round, Memory memory);
   static std::shared_ptr<Shape> of(ShapeKind kind, const Polyhedron& solid, double density, Memory memory);
   static std::shared_ptr<Shape> mesh(std::shared_ptr<TriangleMesh> surface, const Polyhedron* hull, Memory memory);
   static std::shared_ptr<Shape> height_field(std::shared_ptr<HeightGrid> grid, Memory memory);
   static std::shared_ptr<Shape> shared(std::unique_ptr<Geometry> geometry);
+  void note_change();
   std::unique_ptr<Geometry> geometry_;
+  std::uint64_t changes_ = 0;
 };
 
 }  // namespace breve

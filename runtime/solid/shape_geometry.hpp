@@ -19,6 +19,7 @@ struct Shape::Geometry : InMemory {
 
   ShapeKind kind{};
   double original_radius = 0;                   // Sphere
+  Round original_round;                         // Cylinder, Capsule
   std::pmr::vector<Vector3> original_vertices;  // Box, Convex; Mesh: of its hull
   std::shared_ptr<Surface> surface;             // Mesh, HeightField; at the scale, and of this geometry alone
   Moments original{};                           // at scale 1 and density 1; set_inertia changes `second`
@@ -28,12 +29,18 @@ struct Shape::Geometry : InMemory {
 
   // What follows from the above.
   double radius = 0;
+  Round round;
   Polyhedron solid;
   double bounding_radius = 0;
   double volume = 0;
   Matrix3 inertia = Matrix3::Zero();
 
-  Vector3 factors() const { return kind == ShapeKind::Sphere ? Vector3::Constant(scale.x()) : scale; }
+  Vector3 factors() const {
+    if (kind != ShapeKind::Sphere && !original_round.is_round()) return scale;
+    Vector3 factors = Vector3::Constant(scale.x());
+    if (kind == ShapeKind::Cylinder) factors[original_round.axis] = scale[original_round.axis];
+    return factors;
+  }
   /// Radius, vertices and planes from the original and the scale.
   void derive_size();
   /// Volume and inertia. Error{Argument} if a mass or moment is too large or too small for a number.

@@ -11,12 +11,19 @@ void Shape::save(ByteWriter& out) const {
   const Geometry& g = *geometry_;
   out.put(g.kind);
   out.put(g.original_radius);
+  if (g.original_round.is_round()) {
+    out.put(static_cast<std::int32_t>(g.original_round.axis));
+    out.put(g.original_round.radius);
+    out.put(g.original_round.half);
+  }
+  // The polygons that show a round solid are made again.
+  const bool polygons = !g.original_round.is_round();
   out.put(static_cast<std::uint64_t>(g.original_vertices.size()));
   for (const Vector3& v : g.original_vertices) out.put(v);
-  out.put(static_cast<std::uint64_t>(g.solid.faces.size()));
-  for (const auto& face : g.solid.faces) {
-    out.put(static_cast<std::uint64_t>(face.size()));
-    for (const int v : face) out.put(static_cast<std::int32_t>(v));
+  out.put(static_cast<std::uint64_t>(polygons ? g.solid.faces.size() : 0));
+  for (std::size_t f = 0; polygons && f < g.solid.faces.size(); ++f) {
+    out.put(static_cast<std::uint64_t>(g.solid.faces[f].size()));
+    for (const int v : g.solid.faces[f]) out.put(static_cast<std::int32_t>(v));
   }
   if (g.kind == ShapeKind::Mesh) static_cast<const TriangleMesh&>(*g.surface).save(out);
   if (g.kind == ShapeKind::HeightField) static_cast<const HeightGrid&>(*g.surface).save(out);
@@ -52,9 +59,22 @@ Polyhedron load_polyhedron(ByteReader& in) {
 
 bool positive(double value) { return std::isfinite(value) && value > 0; }
 
+Round load_round(ByteReader& in, ShapeKind kind) {
+  Round round;
+  if (kind != ShapeKind::Cylinder && kind != ShapeKind::Capsule) return round;
+  round.kind = kind == ShapeKind::Cylinder ? RoundKind::Cylinder : RoundKind::Capsule;
+  round.axis = in.get<std::int32_t>();
+  round.radius = in.get<double>();
+  round.half = in.get<double>();
+  if (round.axis < 1 || round.axis > 2 || !positive(round.radius) || !positive(round.half)) ByteReader::fail();
+  return round;
+}
+
 /// The polyhedron that an image may hold beside a kind of shape.
 bool fits(ShapeKind kind, const Polyhedron& solid) {
-  if (kind == ShapeKind::Sphere || kind == ShapeKind::HeightField) return solid.faces.empty() && solid.vertices.empty();
+  const bool bare = kind == ShapeKind::Sphere || kind == ShapeKind::HeightField || kind == ShapeKind::Cylinder ||
+                    kind == ShapeKind::Capsule;
+  if (bare) return solid.faces.empty() && solid.vertices.empty();
   if (kind == ShapeKind::Mesh && solid.faces.empty()) return solid.vertices.empty();
   return solid.faces.size() >= 4 && (kind != ShapeKind::Box || solid.vertices.size() == 8);
 }
@@ -64,8 +84,9 @@ bool fits(ShapeKind kind, const Polyhedron& solid) {
 std::shared_ptr<Shape> Shape::load(ByteReader& in) {
   const auto kind = in.get<ShapeKind>();
   const double radius = in.get<double>();
-  if (kind > ShapeKind::HeightField) ByteReader::fail();
+  if (kind > ShapeKind::Capsule) ByteReader::fail();
   try {
+    const Round round = load_round(in, kind);
     Polyhedron solid = load_polyhedron(in);
     if (!fits(kind, solid)) ByteReader::fail();
     std::shared_ptr<Shape> shape;
@@ -75,6 +96,8 @@ std::shared_ptr<Shape> Shape::load(ByteReader& in) {
       case ShapeKind::Convex: shape = of(kind, solid, 1, in.memory()); break;
       case ShapeKind::Mesh: shape = mesh(TriangleMesh::load(in), &solid, in.memory()); break;
       case ShapeKind::HeightField: shape = height_field(HeightGrid::load(in), in.memory()); break;
+      case ShapeKind::Cylinder:
+      case ShapeKind::Capsule: shape = of(round, in.memory()); break;
     }
     Geometry& g = *shape->geometry_;
     g.original.second = in.get_matrix();
@@ -98,6 +121,7 @@ void Shape::hash(Hasher& hasher) const {
   const Geometry& g = *geometry_;
   hasher.add(static_cast<std::uint64_t>(g.kind));
   hasher.add(g.radius);
+  if (g.round.is_round()) hasher.add(g.round.half);
   for (const Vector3& v : g.solid.vertices) hasher.add(v);
   for (const auto& face : g.solid.faces) {
     for (const int v : face) hasher.add(static_cast<std::uint64_t>(v));

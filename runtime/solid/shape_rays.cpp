@@ -31,6 +31,10 @@ Vector3 Shape::point_on(const Vector3& direction) const {
   if (unit.squaredNorm() < 0.5) return Vector3::Zero();
   if (kind() == ShapeKind::Sphere) return radius() * unit;
   if (surface() != nullptr) return last_point(*surface(), bounding_radius(), unit);
+  if (round().is_round()) {
+    const double beyond = 2 * bounding_radius();  // the way back meets the surface, since the origin is inside
+    return (beyond - enter(round(), beyond * unit, -unit)) * unit;
+  }
   double distance = std::numeric_limits<double>::infinity();
   for (const Plane& plane : polyhedron().planes) {
     const double rise = plane.normal.dot(unit);
@@ -41,19 +45,7 @@ Vector3 Shape::point_on(const Vector3& direction) const {
 
 namespace {
 
-/// Where origin + t direction enters the ball: t >= 0, or infinity.
-double enter_ball(double radius, const Vector3& origin, const Vector3& direction) {
-  constexpr double kMiss = std::numeric_limits<double>::infinity();
-  const double a = direction.squaredNorm(), b = origin.dot(direction);
-  const double c = (origin.norm() - radius) * (origin.norm() + radius);
-  if (c <= 0) return 0;
-  // |o x d|^2 = a |o|^2 - b^2 has no cancellation for rays that graze.
-  const double discriminant = a * radius * radius - origin.cross(direction).squaredNorm();
-  if (b >= 0 || discriminant < 0) return kMiss;
-  return c / (-b + std::sqrt(discriminant));
-}
-
-/// The same for the intersection of half-spaces (Cyrus and Beck, 1978).
+/// Where origin + t direction enters the intersection of half-spaces: t >= 0, or infinity (Cyrus and Beck, 1978).
 double enter_planes(const std::pmr::vector<Plane>& planes, const Vector3& origin, const Vector3& direction) {
   constexpr double kMiss = std::numeric_limits<double>::infinity();
   double first = 0, last = kMiss;
@@ -85,6 +77,7 @@ bool Shape::raycast(const Vector3& origin, const Vector3& direction, double& fra
     return true;
   }
   const double t = kind() == ShapeKind::Sphere ? enter_ball(radius(), origin, direction)
+                   : round().is_round()        ? enter(round(), origin, direction)
                                                : enter_planes(polyhedron().planes, origin, direction);
   if (!std::isfinite(t)) return false;
   fraction = t;

@@ -96,6 +96,7 @@ void Shape::set_height(int column, int row, double height) {
   if (kind() != ShapeKind::HeightField) throw Error(ErrorCode::Argument, "only a height field has heights to set");
   static_cast<HeightGrid&>(*geometry_->surface).set_height(column, row, height);
   geometry_->derive_size();
+  note_change();
 }
 
 }  // namespace breve

@@ -23,6 +23,24 @@ double ray_meets(const std::array<Vector3, 3>& corner, const Vector3& origin, co
   return t;
 }
 
+namespace {
+
+/// Ends at the first facet.
+class AnyFacet final : public FacetVisitor {
+ public:
+  bool wants(const Eigen::AlignedBox3d&) const override { return !found; }
+  void visit(const Facet&) override { found = true; }
+  bool found = false;
+};
+
+}  // namespace
+
+bool Surface::meets(const Eigen::AlignedBox3d& box) const {
+  AnyFacet any;
+  under(box, any);
+  return any.found;
+}
+
 bool stands_out(const Vector3& normal, const Vector3& neighbour, const Vector3& opposite, bool solid) {
   constexpr double kFlat = 0.99996;  // the cosine of half a degree
   if (normal.dot(neighbour) > kFlat) return false;

@@ -22,10 +22,23 @@ struct Facet {
                             // nearly coplanar or fold inward: a contact there is the face's (no ghost contacts)
 };
 
+/// What a search for facets did, for tests and reports.
+struct FacetCounters {
+  std::uint64_t boxes = 0;   // of many facets or one, that were looked at
+  std::uint64_t facets = 0;  // visited
+};
+
 /// Called for each facet found.
 class FacetVisitor {
  public:
+  /// May a facet in this box be of interest? Asked of boxes about many facets and of the box about one, before any
+  /// facet is made; the answer may become false as the search goes on, and never true again.
+  virtual bool wants(const Eigen::AlignedBox3d&) const { return true; }
   virtual void visit(const Facet& facet) = 0;
+  /// Does it read Facet::active? A surface may leave that out otherwise: it costs more than all the rest.
+  virtual bool reads_active() const { return false; }
+
+  FacetCounters counters;
 
  protected:
   ~FacetVisitor() = default;
@@ -36,10 +49,13 @@ class Surface : public InMemory {
   virtual ~Surface() = default;
   /// The same surface, stretched from its original size.
   virtual std::shared_ptr<Surface> scaled(const Vector3& factors) const = 0;
-  /// Visit the facets whose bounds meet `box`, and perhaps a few more near it.
+  /// Visit the facets whose bounds meet `box` and are wanted. Cost: what is not wanted as a whole is left out as a
+  /// whole.
   virtual void under(const Eigen::AlignedBox3d& box, FacetVisitor& visitor) const = 0;
   /// First facet on a ray at t >= 0 in lengths of `direction`; false on a miss.
   virtual bool raycast(const Vector3& origin, const Vector3& direction, double& fraction, Facet& hit) const = 0;
+  /// Do the bounds of some facet meet `box`?
+  bool meets(const Eigen::AlignedBox3d& box) const;
   virtual const Eigen::AlignedBox3d& bounds() const = 0;
   /// Does it bound a solid? Then it has an outside, and what is inside is pushed out; else both sides are alike.
   virtual bool solid() const = 0;

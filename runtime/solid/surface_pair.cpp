@@ -2,9 +2,11 @@
 #include "runtime/solid/surface_pair.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
+#include "runtime/solid/clearance.hpp"
 #include "runtime/solid/place.hpp"
 #include "runtime/solid/triangle.hpp"
 
@@ -19,32 +21,42 @@ Eigen::AlignedBox3d grown(const Eigen::AlignedBox3d& box, double by) {
   return {box.min() - Vector3::Constant(by), box.max() + Vector3::Constant(by)};
 }
 
+Clearance clearance_of(const SurfacePair& pair) { return {pair.convex, pair.frame, pair.surface->bounds()}; }
+
 /// The narrowest gap of all facets; of equals that of the first.
 class Narrowest final : public FacetVisitor {
  public:
   /// @param outer  out of an overlap to the outer side only
-  Narrowest(const SurfacePair& pair, bool outer)
-      : pair_(pair), box_(bounds_in(pair.frame, pair.convex)), outer_(outer) {
-    gap.distance = std::numeric_limits<double>::infinity();
+  Narrowest(const SurfacePair& pair, bool outer) : pair_(pair), clearance_(clearance_of(pair)), outer_(outer) {
+    gap.distance = kFar;
   }
+  /// All facets whose gap is at most `reach`, and perhaps some that are farther.
+  void search(double reach) {
+    reach_ = reach;
+    pair_.surface->under(grown(clearance_.bounds(), reach), *this);
+  }
+  bool wants(const Eigen::AlignedBox3d& box) const override { return clearance_.of(box) <= farthest(); }
   void visit(const Facet& facet) override {
-    Eigen::AlignedBox3d around(facet.corner[0]);
-    around.extend(facet.corner[1]).extend(facet.corner[2]);
-    if (around.exteriorDistance(box_) > std::max(gap.distance, 0.0)) return;
+    if (clearance_.of_plane(facet) > farthest()) return;
     triangle_.set(facet);
-    const Gap here = triangle_gap(pair_.convex, triangle_.placed(pair_.frame, outer_));
-    if (here.distance >= gap.distance) return;
+    const Gap here = triangle_gap(pair_.convex, triangle_.placed(pair_.frame, outer_), farthest());
+    if (here.distance >= gap.distance || here.distance > reach_) return;
     gap = here;
     nearest = facet;
   }
+  const Clearance& clearance() const { return clearance_; }
 
   Gap gap;
   Facet nearest;
 
  private:
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+  double farthest() const { return std::min(reach_, std::max(gap.distance, 0.0)); }
+
   const SurfacePair& pair_;
-  Eigen::AlignedBox3d box_;  // of the convex solid, in the surface's frame
+  const Clearance clearance_;
   bool outer_;
+  double reach_ = 0;
   TriangleSolid triangle_;
 };
 
@@ -62,26 +74,34 @@ void push_out(const SurfacePair& pair, const Facet& nearest, Gap& gap) {
   const double plane = gap.normal.dot(pair.frame.location + pair.frame.rotation * nearest.corner[0]);
   const double low = c.solid == nullptr ? gap.normal.dot(c.location) - c.radius : -c.reach(-gap.normal);
   gap.distance = low - plane;
-  gap.on_a = c.solid == nullptr ? Vector3(c.location - c.radius * gap.normal) : c.vertex(c.support(-gap.normal));
+  gap.on_a = c.solid == nullptr ? Vector3(c.location - c.radius * gap.normal) : c.extreme(-gap.normal);
   gap.on_b = gap.on_a - gap.distance * gap.normal;
 }
 
-/// The gap with the convex solid as a.
-Gap narrowest_gap(const SurfacePair& pair) {
+/// May the convex solid be as near as that to some facet? By the ball around it.
+bool may_reach(const SurfacePair& pair, double distance) {
+  const Vector3 center = pair.frame.rotation.transpose() * (pair.convex.location - pair.frame.location);
+  return pair.surface->meets(grown({center, center}, pair.convex.radius * (1 + 1e-12) + distance));
+}
+
+/// The gap with the convex solid as a. What is farther apart than `limit` may have an infinite one.
+Gap narrowest_gap(const SurfacePair& pair, double limit, NarrowCounters* counters) {
   const bool sunk = ball_inside(pair);
-  Narrowest search(pair, pair.surface->solid() && !sunk);
-  const Eigen::AlignedBox3d box = bounds_in(pair.frame, pair.convex);
-  // The search widens until something is found, and then to what that may hide.
-  const Eigen::AlignedBox3d& all = pair.surface->bounds();
-  const double farthest = box.merged(all).diagonal().norm();
-  double reach = 1e-3 * pair.convex.radius;
-  pair.surface->under(grown(box, reach), search);
-  while (search.gap.distance > reach && reach < farthest) {
-    reach = std::min(std::min(8 * reach, farthest), std::max(search.gap.distance, 2 * reach));
-    pair.surface->under(grown(box, reach), search);
+  Narrowest narrowest(pair, pair.surface->solid() && !sunk);
+  // The search widens until something is found.
+  const double least = 1e-3 * pair.convex.radius;
+  double reach = std::min(least, std::max(limit, 0.0));
+  narrowest.search(reach);
+  const bool inside = sunk || (narrowest.gap.distance > 0 && center_inside(pair));
+  const double all = narrowest.clearance().bounds().merged(pair.surface->bounds()).diagonal().norm();
+  const double farthest = inside ? all : std::min(all, limit);
+  while (narrowest.gap.distance > reach && reach < farthest) {
+    reach = std::min(std::max(8 * reach, least), farthest);
+    narrowest.search(reach);
   }
-  Gap gap = search.gap;
-  if (sunk || (gap.distance > 0 && center_inside(pair))) push_out(pair, search.nearest, gap);
+  if (counters != nullptr) counters->add(narrowest.counters);
+  Gap gap = narrowest.gap;
+  if (inside) push_out(pair, narrowest.nearest, gap);
   return gap;
 }
 
@@ -89,12 +109,16 @@ Gap narrowest_gap(const SurfacePair& pair) {
 class Patches final : public FacetVisitor {
  public:
   Patches(const SurfacePair& pair, double margin, const Slack& slack, std::pmr::vector<Manifold>& out)
-      : pair_(pair), slack_(slack), out_(out), first_(out.size()) {
+      : pair_(pair), clearance_(clearance_of(pair)), slack_(slack), out_(out), first_(out.size()) {
     convex_.a = pair.convex;
     convex_.margin = margin;
     convex_.slack = slack;
   }
+  void search() { pair_.surface->under(grown(clearance_.bounds(), convex_.margin), *this); }
+  bool wants(const Eigen::AlignedBox3d& box) const override { return clearance_.of(box) < convex_.margin; }
+  bool reads_active() const override { return true; }
   void visit(const Facet& facet) override {
+    if (clearance_.of_plane(facet) >= convex_.margin) return;
     triangle_.set(facet);
     convex_.b = triangle_.placed(pair_.frame, pair_.surface->solid());
     Manifold found;
@@ -113,6 +137,7 @@ class Patches final : public FacetVisitor {
 
  private:
   const SurfacePair& pair_;
+  const Clearance clearance_;
   const Slack& slack_;
   std::pmr::vector<Manifold>& out_;
   std::size_t first_;
@@ -146,38 +171,54 @@ Eigen::AlignedBox3d bounds_in(const Placed& frame, const Placed& solid) {
     return {center - Vector3::Constant(solid.radius), center + Vector3::Constant(solid.radius)};
   }
   const Matrix3 turn = frame.rotation.transpose() * solid.rotation;
+  if (solid.round.is_round()) {
+    const Vector3 half = half_extent(solid.round, turn);
+    return {center - half, center + half};
+  }
   Eigen::AlignedBox3d box;
   for (const Vector3& v : solid.solid->vertices) box.extend(center + turn * v);
   return box;
 }
 
-Gap surface_gap(const Shape& a, const Placed& pa, const Shape& b, const Placed& pb) {
+namespace {
+
+Gap never(const Placed& a, const Placed& b) {
+  Gap gap;
+  gap.on_a = a.location;
+  gap.on_b = b.location;
+  gap.distance = std::numeric_limits<double>::infinity();
+  return gap;
+}
+
+}  // namespace
+
+Gap surface_gap(const Shape& a, const Placed& pa, const Shape& b, const Placed& pb, double limit,
+                NarrowCounters* counters) {
   const SurfacePair pair(a, pa, b, pb);
-  if (pair.surface == nullptr) {
-    Gap never;
-    never.on_a = pa.location;
-    never.on_b = pb.location;
-    never.distance = std::numeric_limits<double>::infinity();
-    return never;
-  }
-  const Gap gap = narrowest_gap(pair);
+  if (pair.surface == nullptr) return never(pa, pb);
+  const bool near =
+      std::isinf(limit) || may_reach(pair, std::max(limit, 0.0)) || (pair.surface->solid() && center_inside(pair));
+  const Gap gap = near ? narrowest_gap(pair, limit, counters) : never(pa, pb);
   return pair.convex_is_a ? gap : flipped(gap);
 }
 
 void surface_manifolds(const Shape& a, const Placed& pa, const Shape& b, const Placed& pb, double margin,
-                       const Slack& slack, std::pmr::vector<Manifold>& out) {
+                       const Slack& slack, std::pmr::vector<Manifold>& out, NarrowCounters* counters) {
   const SurfacePair pair(a, pa, b, pb);
   if (pair.surface == nullptr) return;
   const std::size_t first = out.size();
   bool near = true;
-  if (!ball_inside(pair)) {
+  if (!may_reach(pair, margin)) {
+    near = pair.surface->solid() && center_inside(pair);
+  } else if (!ball_inside(pair)) {
     Patches patches(pair, margin, slack, out);
-    pair.surface->under(grown(bounds_in(pair.frame, pair.convex), margin), patches);
+    patches.search();
+    if (counters != nullptr) counters->add(patches.counters);
     near = patches.near || (pair.surface->solid() && center_inside(pair));
   }
   // Wholly inside, or in among facets smaller than the depth, which all left the contact to their neighbours.
   if (out.size() == first && near) {
-    const Gap gap = narrowest_gap(pair);
+    const Gap gap = narrowest_gap(pair, std::numeric_limits<double>::infinity(), counters);
     Manifold& manifold = out.emplace_back();
     manifold.normal = gap.normal;
     manifold.count = 1;

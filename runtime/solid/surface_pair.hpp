@@ -17,12 +17,14 @@ struct SurfacePair {
   SurfacePair(const Shape& a, const Placed& pa, const Shape& b, const Placed& pb);
 };
 
-/// As find_gap. Never touching: an infinite distance.
-Gap surface_gap(const Shape& a, const Placed& pa, const Shape& b, const Placed& pb);
+/// As find_gap. Never touching: an infinite distance; so perhaps what is farther apart than `limit`. `counters` may be
+/// null.
+Gap surface_gap(const Shape& a, const Placed& pa, const Shape& b, const Placed& pb, double limit,
+                NarrowCounters* counters);
 
 /// Append the manifolds, in the world axes and origin of `pa` and `pb`.
 void surface_manifolds(const Shape& a, const Placed& pa, const Shape& b, const Placed& pb, double margin,
-                       const Slack& slack, std::pmr::vector<Manifold>& out);
+                       const Slack& slack, std::pmr::vector<Manifold>& out, NarrowCounters* counters);
 
 /// The bounds of a placed convex solid in the frame of another.
 Eigen::AlignedBox3d bounds_in(const Placed& frame, const Placed& solid);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "runtime/solid/clearance.hpp"
 #include "runtime/solid/contact.hpp"
 #include "runtime/solid/gap.hpp"
 #include "runtime/solid/place.hpp"
@@ -22,11 +23,25 @@ constexpr int kMaxStops = 4000;          // a touch is reported if even these do
 constexpr int kMaxPairs = 64;
 constexpr int kNewtonSteps = 8;
 
-/// Two bodies at one moment, seen from the origin of a.
+/// Two bodies at one moment, seen from the origin of a. What is round about an axis has no points that turn about it,
+/// so that only the rest of its spin moves it; that rest turns itself, by at most `drift` (rad/s^2).
 struct Scene {
   Placed a, b;       // a.location is zero
   Vector3 velocity;  // of b relative to a
   Vector3 spin_a, spin_b;
+  double drift_a = 0, drift_b = 0;
+
+  void set_spins(const Vector3& of_a, const Vector3& of_b) {
+    set_spin(a, of_a, spin_a, drift_a);
+    set_spin(b, of_b, spin_b, drift_b);
+  }
+  static void set_spin(const Placed& body, const Vector3& whole, Vector3& spin, double& drift) {
+    spin = whole;
+    if (!body.round.is_round()) return;
+    const double along = whole.dot(body.axis());
+    spin -= along * body.axis();
+    drift = std::abs(along) * spin.norm();
+  }
 };
 
 /// Vertices of one body along the turning direction: value and rate of each, and the extreme at a later time.
@@ -41,9 +56,13 @@ struct Along {
   /// The vertex whose line is lowest (sign = 1) or highest (sign = -1) after t; a ball's centre less its radius.
   Line extreme(double t, double sign) const {
     if (body.solid == nullptr) return {value0 - sign * body.radius, rate0};
+    const Vector3 later = sign * (value + t * rate);
+    if (body.round.is_round()) {
+      const Vector3 r = body.round.core(-later);
+      return {value.dot(r) + value0 - sign * body.round.margin(), rate.dot(r) + rate0};
+    }
     Line best{};
     double least = std::numeric_limits<double>::infinity();
-    const Vector3 later = sign * (value + t * rate);
     for (const Vector3& r : body.solid->vertices) {
       const double height = later.dot(r);
       if (height >= least) continue;
@@ -55,11 +74,11 @@ struct Along {
 };
 
 /// Bound on |second derivative| of n . r for a vertex r of a body, with n turning at `turn` and the body at `spin`.
-double bend(const Placed& body, const Vector3& n, const Vector3& turn, const Vector3& spin) {
-  if (body.solid == nullptr || turn == spin) return 0;
-  if (turn.isZero(0)) return spin.cross(n).norm() * spin.norm() * body.radius;
+double bend(const Placed& body, const Vector3& n, const Vector3& turn, const Vector3& spin, double drift) {
+  if (body.solid == nullptr || (turn == spin && drift == 0)) return 0;
+  if (turn.isZero(0)) return (spin.cross(n).norm() * spin.norm() + drift) * body.radius;
   const double rate = turn.norm() + spin.norm();
-  return rate * rate * body.radius;
+  return (rate * rate + drift) * body.radius;
 }
 
 /// A time up to which the gap along `n`, turning at `turn`, stays above `target`; `span` if it is so for all of it.
@@ -69,7 +88,7 @@ double safe_time(const Scene& s, const Vector3& n, const Vector3& turn, double t
   const Along b{s.b, s.b.rotation.transpose() * n, s.b.rotation.transpose() * (n_rate + n.cross(s.spin_b)),
                 n.dot(s.b.location), n_rate.dot(s.b.location) + n.dot(s.velocity)};
   const double w = turn.norm(), v = s.velocity.norm();
-  const double curve = bend(s.a, n, turn, s.spin_a) + bend(s.b, n, turn, s.spin_b) +
+  const double curve = bend(s.a, n, turn, s.spin_a, s.drift_a) + bend(s.b, n, turn, s.spin_b, s.drift_b) +
                        w * w * (s.b.location.norm() + v * span) + 2 * w * v;
   // The lowest parabola is a minimum of concave functions that is positive at 0: roots from the right fall to the
   // first.
@@ -146,7 +165,7 @@ class Advancement {
   bool run(double& t);
 
  private:
-  bool both_round() const { return a_.body.solid == nullptr && b_.body.solid == nullptr; }
+  bool both_balls() const { return a_.body.solid == nullptr && b_.body.solid == nullptr; }
   Scene scene(double t) const;
   bool touches(double t, Gap& gap) const {
     const Scene s = scene(t);
@@ -161,8 +180,8 @@ class Advancement {
 };
 
 Scene Advancement::scene(double t) const {
-  Scene s{a_.at(t), b_.at(t), b_.motion.velocity - a_.motion.velocity, a_.motion.rotational_velocity_world,
-          b_.motion.rotational_velocity_world};
+  Scene s{a_.at(t), b_.at(t), b_.motion.velocity - a_.motion.velocity, Vector3::Zero(), Vector3::Zero()};
+  s.set_spins(a_.motion.rotational_velocity_world, b_.motion.rotational_velocity_world);
   s.a.location.setZero();
   s.b.location = b_.motion.start.location - a_.motion.start.location + t * s.velocity;
   return s;
@@ -191,12 +210,12 @@ bool Advancement::run(double& t) {
   const Scene start = scene(0);
   const double reach = a_.body.radius + b_.body.radius;
   double now = balls_meet(start.b.location, start.velocity, reach);
-  if (both_round() && now <= h_) {
+  if (both_balls() && now <= h_) {
     t = now;
     return true;
   }
   // What touches at the end must not count as touching from the start in the next interval: it is a hit at h.
-  const bool decided = both_round() || now > h_;
+  const bool decided = both_balls() || now > h_;
   now = decided ? h_ : now * (1 - 1e-12);
   for (int stop = 0; stop < kMaxStops; ++stop) {
     if (touches(now, gap)) {
@@ -211,12 +230,32 @@ bool Advancement::run(double& t) {
   return true;
 }
 
+/// How far a point of one body, within `radius` of its place, goes in a second as seen from the other body at most. The
+/// two are up to `apart` from one another.
+double speed_seen(const Mover& body, const Mover& from, double radius, double apart) {
+  return (body.motion.velocity - from.motion.velocity).norm() + body.motion.rotational_velocity_world.norm() * radius +
+         from.motion.rotational_velocity_world.norm() * (apart + radius);
+}
+
 /// A convex solid against the facets it may meet on its way; each that is met shortens the rest of the search.
 class FacetAdvancement final : public FacetVisitor {
  public:
-  FacetAdvancement(const Mover& convex, const Mover& frame, bool solid, double tolerance, double h)
-      : convex_(convex), frame_(frame), solid_(solid), tolerance_(tolerance), first(h) {}
+  FacetAdvancement(const Mover& convex, const Mover& frame, const Surface& surface, double tolerance, double h)
+      : convex_(convex),
+        frame_(frame),
+        clearance_(convex.body, frame.body, surface.bounds()),
+        solid_(surface.solid()),
+        tolerance_(tolerance),
+        first(h) {
+    // The gap to a facet closes no faster than the facet moves as seen from the convex solid, or this as seen from it.
+    const double apart = (convex.motion.start.location - frame.motion.start.location).norm() +
+                         h * (convex.motion.velocity - frame.motion.velocity).norm();
+    speed_ = std::min(speed_seen(convex, frame, convex.body.radius, apart),
+                      speed_seen(frame, convex, frame.body.radius, apart));
+  }
+  bool wants(const Eigen::AlignedBox3d& box) const override { return clearance_.of(box) <= farthest(); }
   void visit(const Facet& facet) override {
+    if (clearance_.of_plane(facet) > farthest()) return;
     triangle_.set(facet);
     const Mover triangle{triangle_.placed(frame_.body, solid_), frame_.motion};
     double t;
@@ -226,9 +265,13 @@ class FacetAdvancement final : public FacetVisitor {
   }
 
  private:
+  /// What is farther at the start is not met in time; a hair more than round-off.
+  double farthest() const { return (speed_ * first + tolerance_) * (1 + 1e-12); }
+
   const Mover &convex_, &frame_;
+  const Clearance clearance_;  // at the start
   bool solid_;
-  double tolerance_;
+  double tolerance_, speed_ = 0;
   TriangleSolid triangle_;
 
  public:
@@ -237,15 +280,15 @@ class FacetAdvancement final : public FacetVisitor {
 };
 
 /// All that a convex solid may pass in the frame of the surface: a ball about its place that holds it, along a path
-/// that the turning frame bends.
-Eigen::AlignedBox3d swept(const Mover& convex, const Mover& frame, double h) {
-  constexpr int kPieces = 16;
+/// that the turning frame bends; and what is `more` beyond.
+Eigen::AlignedBox3d swept(const Mover& convex, const Mover& frame, double h, double more) {
   const double spin = frame.motion.rotational_velocity_world.norm();
+  const int pieces = spin > 0 ? 16 : 1;
   const double speed = (convex.motion.velocity - frame.motion.velocity).norm();
   double farthest = 0;
   Eigen::AlignedBox3d box;
-  for (int i = 0; i <= kPieces; ++i) {
-    const double t = h * i / kPieces;
+  for (int i = 0; i <= pieces; ++i) {
+    const double t = h * i / pieces;
     const Placed at = frame.at(t);
     const Vector3 apart = convex.motion.start.location - frame.motion.start.location +
                           t * (convex.motion.velocity - frame.motion.velocity);
@@ -253,18 +296,23 @@ Eigen::AlignedBox3d swept(const Mover& convex, const Mover& frame, double h) {
     box.extend(at.rotation.transpose() * apart);
   }
   // Between two moments a piece of the path leaves the chord by at most its length.
-  const double piece = spin > 0 ? (speed + spin * (farthest + speed * h)) * h / kPieces : 0;
-  const double margin = convex.body.radius + piece;
+  const double piece = spin > 0 ? (speed + spin * (farthest + speed * h)) * h / pieces : 0;
+  const double margin = convex.body.radius * (1 + 1e-12) + piece + more;
   return {box.min() - Vector3::Constant(margin), box.max() + Vector3::Constant(margin)};
 }
 
+/// One that does not touch already. What meets no facet on its way touches none at the start either, or is inside.
 bool surface_impact(const Shape& a, const Motion& ma, const Shape& b, const Motion& mb, double tolerance, double h,
-                    double& t) {
+                    double& t, NarrowCounters* counters) {
   const SurfacePair pair(a, place(a, ma.start), b, place(b, mb.start));
   if (pair.surface == nullptr) return false;
   const Mover convex{pair.convex, pair.convex_is_a ? ma : mb}, frame{pair.frame, pair.convex_is_a ? mb : ma};
-  FacetAdvancement search(convex, frame, pair.surface->solid(), tolerance, h);
-  pair.surface->under(swept(convex, frame, h), search);
+  const Eigen::AlignedBox3d way = swept(convex, frame, h, tolerance);
+  Contact before;
+  if (!pair.surface->meets(way) || closest_within(a, ma.start, b, mb.start, tolerance, before, counters)) return false;
+  FacetAdvancement search(convex, frame, *pair.surface, tolerance, h);
+  pair.surface->under(way, search);
+  if (counters != nullptr) counters->add(search.counters);
   if (search.found) t = search.first;
   return search.found;
 }
@@ -277,8 +325,8 @@ double tolerance_of(const Shape& a, const Motion& ma, const Shape& b, const Moti
 
 bool stay_apart(const Shape& a, const Motion& ma, const Shape& b, const Motion& mb, double h, const Vector3& axis) {
   if (is_surface(a) || is_surface(b)) return false;
-  Scene s{place(a, ma.start), place(b, mb.start), mb.velocity - ma.velocity, ma.rotational_velocity_world,
-          mb.rotational_velocity_world};
+  Scene s{place(a, ma.start), place(b, mb.start), mb.velocity - ma.velocity, Vector3::Zero(), Vector3::Zero()};
+  s.set_spins(ma.rotational_velocity_world, mb.rotational_velocity_world);
   s.a.location.setZero();
   s.b.location = mb.start.location - ma.start.location;
   // The bounds are for n from a's lowest to b's highest vertex.
@@ -286,12 +334,11 @@ bool stay_apart(const Shape& a, const Motion& ma, const Shape& b, const Motion& 
 }
 
 bool time_of_impact(const Shape& a, const Motion& ma, const Shape& b, const Motion& mb, double h, double& t,
-                    Contact& contact) {
+                    Contact& contact, NarrowCounters* counters) {
   if (!(h > 0)) return false;
   const double tolerance = tolerance_of(a, ma, b, mb, h);
   const bool surface = is_surface(a) || is_surface(b);
-  if (surface && closest(a, ma.start, b, mb.start).distance <= tolerance) return false;
-  const bool hit = surface ? surface_impact(a, ma, b, mb, tolerance, h, t)
+  const bool hit = surface ? surface_impact(a, ma, b, mb, tolerance, h, t, counters)
                            : Advancement({place(a, ma.start), ma}, {place(b, mb.start), mb}, tolerance, h).run(t);
   if (hit) contact = closest(a, pose_at(ma, t), b, pose_at(mb, t));
   return hit;

@@ -155,11 +155,12 @@ void TriangleSolid::set(const Facet& facet) {
   solid_.planes[1] = {-facet.normal, -solid_.planes[0].offset};
 }
 
-Gap triangle_gap(const Placed& a, const Placed& b) {
+Gap triangle_gap(const Placed& a, const Placed& b, double enough) {
   if (a.solid == nullptr) return ball_triangle(a, b);
+  if (a.round.is_round()) return round_triangle_gap(a, b, enough);
   const double size = a.radius;
   Gap gap;
-  const bool apart = separated(a, b, gap);
+  const bool apart = separated(a, b, gap, std::max(enough, kClose * size));
   if (apart && gap.distance > kClose * size) return gap;
   const Local local(a, b);
   Axis axis;

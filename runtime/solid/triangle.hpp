@@ -32,7 +32,8 @@ class TriangleSolid {
 
 /// a is a ball or polyhedron, b a triangle (Placed::flat). Exact apart; else the shortest way out: of a triangle that
 /// bounds a solid (Placed::outer) to the side of its normal, of a sheet to the side where a's origin is.
-Gap triangle_gap(const Placed& a, const Placed& b);
+/// @param enough  what is farther apart than this has no more than a distance, a lower bound beyond it
+Gap triangle_gap(const Placed& a, const Placed& b, double enough = std::numeric_limits<double>::infinity());
 
 /// The manifold of a convex solid (pair.a) and the triangle pair.b, which is `facet` placed; false if there is none.
 /// At edges that do not stand out the contact is the face's, or its neighbour's. `near` becomes true if they are within

@@ -250,8 +250,18 @@ void TriangleMesh::under(const Eigen::AlignedBox3d& box, FacetVisitor& visitor) 
   while (top > 0) {
     const std::uint32_t number = stack[--top];
     const Node& node = nodes_[number];
-    if (!node.box.intersects(box)) continue;
-    for (std::uint32_t i = 0; i < node.count; ++i) visitor.visit(facet(order_[node.first + i]));
+    ++visitor.counters.boxes;
+    if (!node.box.intersects(box) || !visitor.wants(node.box)) continue;
+    for (std::uint32_t i = 0; i < node.count; ++i) {
+      const std::uint32_t triangle = order_[node.first + i];
+      const Triangle& t = triangles_[triangle];
+      Eigen::AlignedBox3d around(corners_[at(t[0])]);
+      around.extend(corners_[at(t[1])]).extend(corners_[at(t[2])]);
+      ++visitor.counters.boxes;
+      if (!around.intersects(box) || !visitor.wants(around)) continue;
+      ++visitor.counters.facets;
+      visitor.visit(facet(triangle));
+    }
     if (node.count > 0) continue;
     stack[top++] = node.first;
     stack[top++] = number + 1;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "runtime/base/error.hpp"
+#include "runtime/space/walls.hpp"
 
 namespace breve {
 
@@ -39,26 +40,62 @@ Vector3 Extent::inside(const Vector3& location) const {
   return place;
 }
 
+namespace {
+
+/// Wrapped, or folded back by walls: as what moves at a constant speed.
+void fold(const Extent::Axis& a, double& x, double& v) {
+  if (a.edge == Ending::Open || (x >= a.low && x < a.high)) return;
+  const double length = a.high - a.low;
+  const double turns = std::floor((x - a.low) / length);
+  // Rounding may leave a place at, or just beyond, an edge.
+  double rest = std::clamp(x - a.low - turns * length, 0.0, length);
+  if (a.edge == Ending::Wrap) {
+    x = a.low + (rest < length ? rest : 0.0);
+    if (x >= a.high) x = a.low;
+    return;
+  }
+  if (x == a.high) return;
+  if (std::fmod(turns, 2.0) != 0) {
+    rest = length - rest;
+    v = -v;
+  }
+  x = std::clamp(a.low + rest, a.low, a.high);
+}
+
+/// Turned once, at the wall that lies between. Outward are the distance from the wall, the speed and the acceleration.
+void bounce(double wall, double out, double& x, double& v, double acceleration) {
+  const double far = out * (x - wall), speed = out * v, pull = out * acceleration;
+  const double met = std::sqrt(std::max(0.0, speed * speed - 2 * pull * far));  // speed at the wall, by its energy
+  double since = std::max(0.0, (speed - met) / pull);                         // s, since it was there
+  // What is pulled outward comes back to the wall again and again.
+  if (pull > 0) since = met > 0 ? std::fmod(since, 2 * met / pull) : 0;
+  x = wall + out * since * (0.5 * pull * since - met);
+  v = out * (pull * since - met);
+}
+
+}  // namespace
+
 void Extent::bring_inside(Vector3& location, Vector3& velocity) const {
+  for (int i = 0; i < 3; ++i) fold(axis(i), location[i], velocity[i]);
+}
+
+void throw_back(const Extent& space, Vector3& location, Vector3& velocity, const Vector3& acceleration) {
+  constexpr int kMost = 100;  // bounces between two walls: what is so fast does not feel the acceleration
   for (int i = 0; i < 3; ++i) {
-    const Axis& a = axis(i);
-    double& x = location[i];
-    if (a.edge == Ending::Open || (x >= a.low && x < a.high)) continue;
-    const double length = a.high - a.low;
-    const double turns = std::floor((x - a.low) / length);
-    // Rounding may leave a place at, or just beyond, an edge.
-    double rest = std::clamp(x - a.low - turns * length, 0.0, length);
-    if (a.edge == Ending::Wrap) {
-      x = a.low + (rest < length ? rest : 0.0);
-      if (x >= a.high) x = a.low;
+    const Extent::Axis& a = space.axis(i);
+    double &x = location[i], &v = velocity[i];
+    const double pull = acceleration[i];
+    const auto outside = [&] { return x < a.low || x > a.high; };
+    if (a.edge == Ending::Wall && pull != 0 && std::isfinite(v))
+      for (int k = 0; k < kMost && outside(); ++k)
+        bounce(x < a.low ? a.low : a.high, x < a.low ? -1 : 1, x, v, pull);
+    if (a.edge != Ending::Wall || !outside()) {
+      fold(a, x, v);
       continue;
     }
-    if (x == a.high) continue;
-    if (std::fmod(turns, 2.0) != 0) {
-      rest = length - rest;
-      velocity[i] = -velocity[i];
-    }
-    x = std::clamp(a.low + rest, a.low, a.high);
+    const double from = x, energy = v * v;
+    fold(a, x, v);
+    v = std::copysign(std::sqrt(std::max(0.0, energy + 2 * pull * (x - from))), v);
   }
 }
 

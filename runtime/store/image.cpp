@@ -42,6 +42,12 @@ void Image::set_byte(int x, int y, Channel channel, std::uint8_t value) {
   changed_ = true;
 }
 
+std::span<std::uint8_t> Image::row(int y) {
+  const std::size_t begin = at(0, y, Channel::Red);
+  changed_ = true;
+  return std::span(pixels_).subspan(begin, 4 * static_cast<std::size_t>(width_));
+}
+
 void Image::set_bytes(std::span<const std::uint8_t> bytes) {
   if (bytes.size() != pixels_.size()) {
     throw Error(ErrorCode::Argument, fmt::format("{} bytes for an image of {} x {} (must be {})", bytes.size(), width_,

@@ -34,6 +34,9 @@ class Image {
   std::uint8_t byte(int x, int y, Channel channel) const { return pixels_[at(x, y, channel)]; }
   void set_byte(int x, int y, Channel channel, std::uint8_t value);
 
+  /// Four bytes for each pixel of a row, to be written. Error{Argument} if there is no such row.
+  std::span<std::uint8_t> row(int y);
+
   /// Pixels changed since the flag was last cleared; whoever draws clears it.
   bool changed() const { return changed_; }
   void clear_changed() { changed_ = false; }

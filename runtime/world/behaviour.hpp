@@ -54,6 +54,9 @@ class Behaviour {
 
   /// Snapshot of the whole script side: heap, variables, serial numbers. Called between iterations only.
   virtual void save(ByteWriter& out) const = 0;
+  /// The world's objects are those of the image by now. What `save` wrote is the last in it. Nothing of the script side
+  /// changes before the whole rest was read and found good; nothing fails afterwards.
+  /// @throws Error{Image} if the rest is not what `save` writes of such objects, to its last byte
   virtual void load(ByteReader& in) = 0;
   virtual void hash(Hasher& hasher) const = 0;
 };

@@ -195,6 +195,41 @@ void ObjectTable::load(ByteReader& in, FindLoader find_loader, const void* conte
   load_ids(in, joining_);
   serials_ = in.get<std::uint64_t>();
   joined_ = in.get<std::uint64_t>();
+  check_loaded(in.memory());
+  free_.reserve(slots_.size());  // release() never allocates
+}
+
+/// An image may have a right checksum and be forged: nobody is in a list twice, is left out, or is free and alive.
+void ObjectTable::check_loaded(std::pmr::memory_resource* memory) const {
+  enum : std::uint8_t { Ordered = 1, Iterating = 2, PostIterating = 4, Joining = 8, Free = 16 };
+  std::pmr::vector<std::uint8_t> met(slots_.size(), memory);
+  const auto meet = [&met](std::uint32_t index, std::uint8_t list) {
+    if ((met[index] & list) != 0) ByteReader::fail();
+    met[index] |= list;
+  };
+  std::uint64_t last = 0;
+  for (const ObjectId id : order_.ids) {
+    if (!alive(id) || !id || at(id).serial <= last || at(id).serial > serials_) ByteReader::fail();
+    last = at(id).serial;
+    meet(id.index, Ordered);
+  }
+  if (order_.ids.size() != live_) ByteReader::fail();
+  for (const ObjectId id : joining_) {
+    if (!alive(id)) ByteReader::fail();
+    meet(id.index, Joining | Iterating | PostIterating);
+  }
+  for (const ObjectId id : iterating_.ids) {
+    if (!alive(id) || !at(id).iterates) ByteReader::fail();
+    meet(id.index, Iterating);
+  }
+  for (const ObjectId id : post_iterating_.ids) {
+    if (!alive(id) || !at(id).post_iterates) ByteReader::fail();
+    meet(id.index, PostIterating);
+  }
+  for (const std::uint32_t index : free_) {
+    if (slots_[index].generation == std::numeric_limits<std::uint32_t>::max()) ByteReader::fail();
+    meet(index, Free);
+  }
 }
 
 void ObjectTable::hash(Hasher& hasher) const {

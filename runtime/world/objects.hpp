@@ -59,6 +59,8 @@ class ObjectTable {
   Reclassed prepare_reclass(std::span<const ClassChange> classes) const;
   void reclass(std::span<const ClassChange> classes, Reclassed& lists) noexcept;
 
+  std::uint64_t last_serial() const { return serials_; }  // of the object created last
+
   void save(ByteWriter& out) const;
   void load(ByteReader& in, FindLoader find_loader, const void* context);  // into a fresh table
   void hash(Hasher& hasher) const;
@@ -76,6 +78,7 @@ class ObjectTable {
   bool joined(const Slot& slot) const { return slot.serial <= joined_; }
   void save_ids(ByteWriter& out, const std::pmr::vector<ObjectId>& ids) const;
   void load_slot(ByteReader& in, Slot& slot, FindLoader find_loader, const void* context);
+  void check_loaded(std::pmr::memory_resource* memory) const;
 
   std::pmr::vector<Slot> slots_;
   std::pmr::vector<std::uint32_t> free_;  // last freed, first reused

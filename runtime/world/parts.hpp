@@ -40,6 +40,12 @@ struct World::Parts final : CollisionClient, DynamicsClient, InMemory {
   ObjectId who_asked(EffectId effect) const;
   void count_dynamics();
   void bring_inside();
+  // targets.cpp
+  void aim_at_places();
+  void reach_targets();
+  void save_targets(ByteWriter& out) const;
+  void load_targets(ByteReader& in);
+  void hash_targets(Hasher& hasher) const;
   bool bring_assembly(BodyIndex body);
 
   // --- CollisionClient ----------------------------------------------------------------------------------------------
@@ -74,6 +80,15 @@ struct World::Parts final : CollisionClient, DynamicsClient, InMemory {
   bool at_impact = true;
   ObjectId first_handler;  // who registered the first collision handler
   double substep_start = 0;
+
+  struct Target {
+    ObjectId object;
+    Vector3 location = Vector3::Zero();
+    Quaternion orientation = Quaternion::Identity();
+  };
+  std::pmr::vector<Target> targets;       // of bodies that go there in the next iteration
+  std::pmr::map<BodyIndex, Target> left;  // where bodies were that scripts have put elsewhere since the last one
+  std::uint64_t advanced = 0;             // the last serial of an object that was there in it
 
   Extent space;
   NeighborRecord near;  // the last update of neighbours

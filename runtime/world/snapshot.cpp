@@ -11,7 +11,7 @@ namespace breve {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'b', 'r', 'e', 'v', 'e', 'i', 'm', 'g'};
-constexpr std::uint32_t kVersion = 8;  // grows with every change of what follows the header
+constexpr std::uint32_t kVersion = 9;  // grows with every change of what follows the header
 
 std::uint64_t checksum(const std::uint8_t* data, std::size_t size) {
   Hasher hasher;
@@ -19,7 +19,7 @@ std::uint64_t checksum(const std::uint8_t* data, std::size_t size) {
   return hasher.value();
 }
 
-[[noreturn]] void refuse(const char* why) { throw Error(ErrorCode::Image, why); }
+[[noreturn]] void refuse(const std::string& why) { throw Error(ErrorCode::Image, why); }
 
 /// Checks the header and gives a reader of what it covers.
 ByteReader open_image(const std::uint8_t* data, std::size_t size, std::uint64_t fingerprint,
@@ -101,6 +101,7 @@ void World::write_image(ByteWriter& out) const {
   out.put(parts.exact_schedule);
   out.put(parts.at_impact);
   out.put(parts.first_handler);
+  parts.save_targets(out);
   parts.space.save(out);
   parts.near.save(out);
   save_input(out, parts.input);
@@ -117,7 +118,10 @@ void World::read_image(ByteReader& in, World& fresh) const {
   fresh.clock_.iteration = in.get<std::uint64_t>();
   fresh.clock_.end_requested = in.get_bool();
   fresh.clock_.paused = in.get_bool();
-  if (!(fresh.clock_.iteration_step > 0) || !(fresh.clock_.integration_step > 0)) ByteReader::fail();
+  for (const double seconds : {fresh.clock_.time, fresh.clock_.residue})
+    if (!std::isfinite(seconds)) ByteReader::fail();
+  for (const double step : {fresh.clock_.iteration_step, fresh.clock_.integration_step})
+    if (!std::isfinite(step) || !(step > 0)) ByteReader::fail();
   if (in.get_bool()) fresh.flatten();
   fresh.random_.load(in);
   fresh.view_.load(in);
@@ -148,6 +152,7 @@ void World::read_image(ByteReader& in, World& fresh) const {
   parts.exact_schedule = in.get_bool();
   parts.at_impact = in.get_bool();
   parts.first_handler = in.get_object();
+  parts.load_targets(in);
   parts.space.load(in);
   parts.near.load(in, parts.objects);
   parts.near.close(parts.space);
@@ -169,14 +174,19 @@ void World::load(const std::uint8_t* data, std::size_t size, std::uint64_t progr
   if (stepping_ || advancing_) throw Error(ErrorCode::Busy, "a world cannot be loaded from inside a step");
   ByteReader in = open_image(data, size, program_fingerprint, memory_);
   World fresh(memory_);
-  read_image(in, fresh);
+  try {
+    read_image(in, fresh);
+  } catch (const Error& error) {  // of whatever looked at a part
+    if (error.code() == ErrorCode::Image || error.code() == ErrorCode::Memory) throw;
+    refuse("the image is damaged: " + std::string(error.what()));
+  }
   const bool scripted = in.get_bool();
   if (scripted != (behaviour_ != nullptr)) refuse("the image is of a world with another kind of script side");
-  // The script side may look at the objects while it reads its own part; it restores itself if it cannot.
+  if (!scripted && in.left() != 0) ByteReader::fail();
+  // The script side may look at the objects while it reads its own part, and takes it only if all of it is good.
   swap_state(fresh);
   try {
     if (behaviour_) behaviour_->load(in);
-    if (in.left() != 0) ByteReader::fail();
   } catch (...) {
     swap_state(fresh);
     throw;
@@ -205,6 +215,7 @@ std::uint64_t World::hash() const {
   parts.handlers.hash(hasher, parts.names);
   parts.collisions.hash(hasher);
   parts.dynamics->hash(hasher);
+  parts.hash_targets(hasher);
   hasher.add(static_cast<std::uint64_t>(parts.exact_schedule) | static_cast<std::uint64_t>(parts.at_impact) << 1);
   parts.space.hash(hasher);
   parts.near.hash(hasher);

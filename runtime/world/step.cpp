@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "runtime/base/error.hpp"
+#include "runtime/space/walls.hpp"
 #include "runtime/world/parts.hpp"
 
 namespace breve {
@@ -54,7 +55,7 @@ void World::Clock::advance(double seconds) {
 
 void World::set_iteration_step(double seconds) {
   require_step("iteration step", seconds);
-  clock_.iteration_step = std::max(seconds, clock_.integration_step);
+  clock_.iteration_step = seconds;
 }
 
 void World::set_integration_step(double seconds) {
@@ -141,19 +142,26 @@ void World::count_bytes() {
 void World::advance_bodies() {
   if (advancing_) throw Error(ErrorCode::Busy, "the bodies cannot be advanced from inside a collision handler");
   const Flag advancing(advancing_);
+  // A program may set other steps from inside a handler: they hold from the next iteration on.
+  const double iteration = clock_.iteration_step;
+  const std::uint64_t count = substeps();
+  parts_->aim_at_places();
+  run_substeps(iteration / static_cast<double>(count), count);
+  parts_->reach_targets();
+  parts_->count_dynamics();
+  clock_.advance(iteration);
+}
+
+std::uint64_t World::substeps() const {
   // 0.06 / 0.02 is a little more than 3: the tolerance keeps rounding from making a sub-step.
   constexpr double kTolerance = 1e-9;
   constexpr double kMostSubsteps = 1e9;
-  const double h = clock_.integration_step;
-  const double exact = clock_.iteration_step / h;
+  const double exact = clock_.iteration_step / clock_.integration_step;
   if (!(exact <= kMostSubsteps)) {
     throw Error(ErrorCode::Argument, fmt::format("an iteration step of {} s has too many integration steps of {} s",
-                                                 clock_.iteration_step, h));
+                                                 clock_.iteration_step, clock_.integration_step));
   }
-  const auto count = static_cast<std::uint64_t>(std::max(1.0, std::ceil(exact - kTolerance)));
-  run_substeps(h, count);
-  parts_->count_dynamics();
-  clock_.advance(static_cast<double>(count) * h);
+  return static_cast<std::uint64_t>(std::max(1.0, std::ceil(exact - kTolerance)));
 }
 
 void World::run_substeps(double h, std::uint64_t count) {
@@ -229,28 +237,20 @@ std::uint32_t World::Parts::signature() const {
 /// Whatever has left space comes back into it: after collisions, which look at whole paths.
 void World::Parts::bring_inside() {
   Bodies& bodies = *world->bodies_;
+  std::uint64_t& brought = effects[EffectId::Bounds].items;
   const auto bring = [&](BodyIndex body) {
-    if (space.holds(bodies.location(body))) return false;
     Vector3 location = bodies.location(body), velocity = bodies.velocity(body);
-    if (!location.allFinite()) return false;
+    if (space.holds(location) || !location.allFinite()) return false;
     space.bring_inside(location, velocity);
     bodies.set_location(body, location);
     if (velocity != bodies.velocity(body)) bodies.set_velocity(body, velocity);
     return true;
   };
-  std::uint64_t& brought = effects[EffectId::Bounds].items;
   if (bodies.translating() != 0)
     for (const BodyIndex body : bodies.translating_bodies()) brought += bring(body) ? 1U : 0U;
   if (bodies.rigid() == 0) return;
-  for (const BodyIndex body : bodies.rigid_bodies()) {
-    if (space.holds(bodies.location(body))) continue;
-    if (!dynamics->joints_of(body).empty()) {
-      brought += bring_assembly(body) ? 1U : 0U;
-    } else if (bring(body)) {
-      dynamics->moved(body);
-      ++brought;
-    }
-  }
+  for (const BodyIndex body : bodies.rigid_bodies())
+    if (!space.holds(bodies.location(body))) brought += bring_assembly(body) ? 1U : 0U;
 }
 
 /// Bodies that joints connect come back as one when the first of them, in the order of indices, has left: all are moved
@@ -261,30 +261,36 @@ bool World::Parts::bring_assembly(BodyIndex body) {
   const std::pmr::vector<BodyIndex> links = dynamics->links_of(body);
   const auto moves = [&bodies](BodyIndex one) { return one != kNoBody && bodies.dynamic(one); };
   if (*std::find_if(links.begin(), links.end(), moves) != body || !bodies.location(body).allFinite()) return false;
-  for (const JointIndex joint : dynamics->joints_of(body)) {
+  const std::pmr::vector<JointIndex> joints = dynamics->joints_of(body);
+  for (const JointIndex joint : joints) {
     const JointDescription& is = dynamics->joint(joint);
     if (!moves(is.parent) || !moves(is.child)) return false;
   }
-  Vector3 location = bodies.location(body), turned = Vector3::Ones();
-  space.bring_inside(location, turned);
-  dynamics->move_assembly(body, location, bodies.orientation(body));
   double mass = 0;
-  Vector3 momentum = Vector3::Zero();
+  Vector3 momentum = Vector3::Zero(), force = Vector3::Zero();
   for (const BodyIndex link : links) {
-    const Vector3 arm = bodies.orientation(link) * bodies.mass_properties(link).center_of_mass;
-    mass += bodies.mass(link);
-    momentum += bodies.mass(link) * (bodies.velocity(link) + bodies.rotational_velocity(link).cross(arm));
+    const MassProperties& solid = bodies.mass_properties(link);
+    const Vector3 arm = bodies.orientation(link) * solid.center_of_mass;
+    mass += solid.mass;
+    momentum += solid.mass * (bodies.velocity(link) + bodies.rotational_velocity(link).cross(arm));
+    force += bodies.force(link);
   }
-  // Only what goes on outward is thrown back: a limb may have swung the first body out.
-  const Vector3 speed = momentum / mass;
-  Vector3 change = Vector3::Zero();
+  const Vector3 pull = dynamics->gravity() + force / mass, came = momentum / mass;
+  Vector3 location = bodies.location(body), goes = came;
+  throw_back(space, location, goes, pull);
   for (int i = 0; i < 3; ++i) {
-    const bool inward = (location[i] - space.axis(i).low < space.axis(i).high - location[i]) == (speed[i] > 0);
-    if (turned[i] < 0 && !inward) change[i] = -2 * speed[i];
+    // Only what goes on outward is thrown back: a limb may have swung the first body out.
+    const bool inward = (location[i] - space.axis(i).low < space.axis(i).high - location[i]) == (came[i] > 0);
+    if (pull[i] == 0 && inward) goes[i] = came[i];
   }
+  if (joints.empty())
+    bodies.set_location(body, location);
+  else
+    dynamics->move_assembly(body, location, bodies.orientation(body));
+  const Vector3 change = goes - came;
   if (change == Vector3::Zero()) return true;
   for (const BodyIndex link : links) bodies.set_velocity(link, bodies.velocity(link) + change);
-  dynamics->take_changes();
+  if (!joints.empty()) dynamics->take_changes();
   return true;
 }
 

@@ -22,6 +22,8 @@ World::Parts::Parts(World& owner, std::pmr::memory_resource* memory)
       collisions(memory, *owner.bodies_),
       dynamics(make_in<Dynamics>(memory, memory, *owner.bodies_)),
       stages(memory),
+      targets(memory),
+      left(memory),
       near(memory),
       input(memory),
       loaders(memory) {}
@@ -63,6 +65,10 @@ std::uint64_t World::user(ObjectId id) const { return parts_->objects.at(id).use
 void World::set_user(ObjectId id, std::uint64_t user) {
   parts_->objects.at(id).user = user;
   parts_->near.set_user(id, user);
+}
+bool World::runs(ObjectId id, bool iterates, bool post_iterates) const {
+  const ObjectTable::Slot& slot = parts_->objects.at(id);
+  return slot.iterates == iterates && slot.post_iterates == post_iterates;
 }
 ClassId World::class_of(ObjectId id) const { return parts_->objects.at(id).cls; }
 std::size_t World::object_count() const { return parts_->objects.count(); }
@@ -118,9 +124,9 @@ std::pmr::vector<ObjectId> World::touching(ObjectId id) const {
     const bool solvable = bodies_->kind(b) == BodyKind::Stationary || bodies_->physics(b);
     if (!solvable || !bodies_->bounds(b).intersects(box)) continue;
     const Pose other_pose{bodies_->location(b), bodies_->orientation(b)};
-    if (closest(*bodies_->collision_shape(self), pose, *bodies_->collision_shape(b), other_pose).distance <= 0) {
+    Contact contact;
+    if (closest_within(*bodies_->collision_shape(self), pose, *bodies_->collision_shape(b), other_pose, 0, contact))
       found.push_back(other);
-    }
   }
   return found;
 }

@@ -47,6 +47,7 @@ class World : public InMemory {
   std::uint64_t user(ObjectId id) const;  // Error{Stale} if not alive
   void set_user(ObjectId id, std::uint64_t user);
   ClassId class_of(ObjectId id) const;
+  bool runs(ObjectId id, bool iterates, bool post_iterates) const;  // was it made so?
   /// Live objects in order of creation.
   std::pmr::vector<ObjectId> objects() const;
   std::size_t object_count() const;
@@ -100,8 +101,11 @@ class World : public InMemory {
   double time() const { return clock_.time; }
   double iteration_step() const { return clock_.iteration_step; }
   double integration_step() const { return clock_.integration_step; }
-  void set_iteration_step(double seconds);    // raised to the integration step if smaller; must be finite and > 0
-  void set_integration_step(double seconds);  // finite and > 0
+  void set_iteration_step(double seconds);    // how long an iteration lasts, exactly; finite and > 0
+  void set_integration_step(double seconds);  // the longest sub-step; finite and > 0
+  /// Equal sub-steps of an iteration: as few as are no longer than the integration step. Error{Argument} if they are
+  /// more than 1e9.
+  std::uint64_t substeps() const;
   std::uint64_t iteration() const { return clock_.iteration; }
   /// One iteration: input, iterate, post-iterate, scheduled calls, the script side's own end. Errors of scripts pass
   /// through; the rest of the iteration is then not run and not counted, and the world may be stepped, saved or
@@ -111,6 +115,13 @@ class World : public InMemory {
   /// iterate. The clock moves once, at the end; while a handler runs it reads the moment of the contact.
   /// Error{Busy} from inside itself; Error{Argument} if an iteration step has too many sub-steps.
   void advance_bodies();
+  /// The body, which has no physics, goes straight and evenly and is there at the end of the next iteration; then it
+  /// stands. It pushes and carries what it touches. What is not given stays as it was set for that iteration, or is.
+  /// Error{Argument}: it has physics, or the target is not finite.
+  void set_target(BodyIndex body, const Vector3* location, const Quaternion* orientation);
+  /// A script or host is about to put the body elsewhere. One that bodies with physics meet goes there in the next
+  /// iteration, as to a target, if that is no farther than its bounding radius and half a radian; else it jumps.
+  void leave(BodyIndex body);
   /// Acts on physics-enabled bodies, (0, -9.81, 0) until set. Error{Argument} if not finite.
   void set_gravity(const Vector3& gravity);
   const Vector3& gravity() const;

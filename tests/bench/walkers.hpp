@@ -2,39 +2,24 @@
 // same links, masses, joints and motors on the same floor.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "tests/reference/world.hpp"
+#include "tests/scenes/nine_links.hpp"
 
 namespace breve::bench {
 
 using reference::Vector3;
 
-inline constexpr int kHinges = 8;
-inline constexpr double kStrength = 6, kDamping = 0.05;  // N*m, N*m*s
+using scenes::Genes;
+using scenes::genes;
+using scenes::kHinges;
+using scenes::Section;
+using scenes::sections;
+
+inline constexpr double kStrength = scenes::kHingeStrength, kDamping = 0.05;  // N*m, N*m*s
 inline constexpr double kFriction = 1;
-
-/// How the hinges are driven: each motor aims at a sine of time.
-struct Genes {
-  double wavelength = 1;
-  std::array<double, kHinges> phases{}, amplitudes{};
-  double goal(int hinge, double time) const;                  // rad
-  double speed(int hinge, double time, double angle) const {  // rad/s
-    return 8 * (goal(hinge, time) - angle);
-  }
-};
-/// The n-th of a series that is always the same.
-Genes genes(int n);
-
-/// A box and where it hangs: numbers of both walkers. Links 2 k + 1 hang on the trunk, 2 k + 2 on the one before.
-struct Section {
-  Vector3 size, on_parent, on_child;
-  int parent;  // -1: it is the trunk
-};
-const std::array<Section, kHinges + 1>& sections();
 
 /// Walkers on a floor, too far from one another to meet.
 class Walkers : public reference::World {

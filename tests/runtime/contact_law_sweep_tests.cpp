@@ -77,16 +77,16 @@ TEST(SolveAgain, IsASolveFromRestWithoutFriction) {
     fresh.rows = scene.rows;
     fresh.settings = {5, i % 3 == 0, 1e-9};
     scene.solve();
-    std::vector<double> biases;
+    std::vector<Push> pushes;
     for (Row& row : fresh.rows) {
       row.static_friction = row.dynamic_friction = 0;
       row.impulse.setZero();
       row.bias = between(random, -0.1, 0.1);
-      biases.push_back(row.bias);
+      pushes.push_back({row.bias, 0, 0});
     }
     for (FreeBody& body : fresh.bodies) body.v.setZero();
     solve_island(fresh.movers(), fresh.rows, {}, fresh.settings, fresh.work);
-    const SolveReport again = solve_again(biases, {}, fresh.settings, scene.work);
+    const SolveReport again = solve_again(pushes, {}, fresh.settings, scene.work);
     EXPECT_EQ(again.direct, fresh.settings.direct);
     for (int k = 0; k < boxes; ++k) {
       const auto at = static_cast<std::size_t>(k);

@@ -29,8 +29,8 @@ TEST(DynamicsCrowd, MotorsAtTheirLimitsDoNotHoldUpStepControl) {
   EXPECT_LT(most, 1500U * kWalkers);
 }
 
-TEST(DynamicsCrowd, OnFastAWalkerThatStandsIsSteppedByEulersRule) {
-  // Within a step it falls and is caught: that is no loss for which a finer scheme would have to stand in.
+TEST(DynamicsCrowd, OnFastAWalkerThatStandsTakesOneRungeKuttaStep) {
+  // What its feet hold acts inside the stages: nothing moves for which a finer step would have to stand in.
   Walker s(Rung::Fast);
   for (int i = 0; i < 180; ++i) s.world.step();
   std::uint64_t evaluations = 0;
@@ -38,7 +38,7 @@ TEST(DynamicsCrowd, OnFastAWalkerThatStandsIsSteppedByEulersRule) {
     s.world.step();
     evaluations += s.dynamics().counters().evaluations;
   }
-  EXPECT_LE(evaluations, 66U);
+  EXPECT_LE(evaluations, 4 * 60U);
 }
 
 TEST(DynamicsCrowd, WalkersThatDoNotMeetAreIslandsOfTheirOwn) {

@@ -112,6 +112,7 @@ TEST(ContactSpringsInAWorld, OrderIsThatOfTheIntegrator) {
     Ground s(Rung::Precise, step);
     s.dynamics().set_gravity(Vector3(0, -kWeak, 0));
     Accuracy accuracy = accuracy_of(Rung::Precise);
+    accuracy.contact_springs = true;
     accuracy.step = step;
     s.dynamics().set_accuracy(accuracy);
     const ObjectId ball = s.thing(Shape::sphere(0.5), Vector3(0, 0.5, 0), 1);
@@ -231,6 +232,7 @@ TEST(ContactSpringsInAWorld, ArticulatedBodiesStandOnRigidGroundIfAskedTo) {
   for (const Rung rung : {Rung::Precise, Rung::Reference}) {
     Ground s(rung, 1.0 / 60);
     Accuracy accuracy = accuracy_of(rung);
+    accuracy.contact_springs = true;
     accuracy.link_springs = false;
     s.dynamics().set_accuracy(accuracy);
     const ObjectId body = table(s);

@@ -113,6 +113,28 @@ TEST(Field, DiffusionTakesTheOutsideAsZero) {
   }
 }
 
+TEST(Field, OneLayerInSpaceSpreadsAsAPlaneAndLeaksAtItsEdgesOnly) {
+  Field layer = Field::space(9, 7, 1), plane = Field::plane(9, 7);
+  layer.set(4, 3, 0, 100);
+  plane.set(4, 3, 0, 100);
+  for (int step = 0; step < 3; ++step) {  // in which nothing reaches an edge
+    layer.spread(0.05);
+    plane.spread(0.05);
+  }
+  EXPECT_NEAR(layer.absolute_sum(), 100, 1e-12);
+  for (int step = 0; step < 50; ++step) {
+    layer.spread(0.05);
+    plane.spread(0.05);
+  }
+  EXPECT_LT(layer.absolute_sum(), 99);
+  EXPECT_TRUE((layer.values() == plane.values()).all());
+  // Several layers have six neighbours.
+  Field space = Field::space(5, 5, 3);
+  space.set(2, 2, 1, 1);
+  space.spread(0.1);
+  EXPECT_NEAR(space.get(2, 2, 1), 0.4, 1e-15);
+}
+
 TEST(Field, PeriodicDiffusionWrapsForEverySize) {
   for (const Field& a : fields()) {
     Field d = a;

@@ -39,6 +39,22 @@ TEST(Reaction, PeriodicDiffusionAloneKeepsTheMass) {
   EXPECT_NEAR(v.absolute_sum() / mass_v, 1, kBound);
 }
 
+TEST(Reaction, OneLayerInSpaceReactsAsAPlane) {
+  for (const bool periodic : {false, true}) {
+    Field plane = random_field(11, 8, 1, 5), layer = Field::space(11, 8, 1);
+    for (int x = 0; x < 11; ++x)
+      for (int y = 0; y < 8; ++y) layer.set(x, y, 0, plane.get(x, y));
+    Reaction reaction(1, memory());
+    reaction.set_diffusion(0, 0.2);
+    reaction.add_term(0, 0.1, {2});
+    for (int i = 0; i < 20; ++i) {
+      step(reaction, {&plane}, 0.5, periodic);
+      step(reaction, {&layer}, 0.5, periodic);
+    }
+    EXPECT_TRUE((plane.values() == layer.values()).all());
+  }
+}
+
 TEST(Reaction, GrayScottTurnsOneIntoTheOtherWithoutFeedAndKill) {
   constexpr double kBound = 1e-12;
   Field u = random_field(32, 32, 1, 3), v = random_field(32, 32, 1, 4);

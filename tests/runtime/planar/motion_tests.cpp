@@ -1,4 +1,6 @@
 // Motion in a flat world against closed forms: free flight, pendulums, inclines, rebounds, joints.
+#include <numbers>
+
 #include "scene.hpp"
 
 namespace breve::testing::motion_tests {
@@ -287,6 +289,46 @@ TEST(PlanarMotion, ABulletNeverPassesWhatMovesItself) {
 }
 
 // --- joints ---------------------------------------------------------------------------------------------------------
+
+TEST(PlanarMotion, ACapsuleLiesOnItsSideAndStandsOnItsEnd) {
+  Flat scene;
+  scene.material(scene.ground(), 0.5, 0);
+  const ObjectId lying = scene.rigid(Shape::capsule(1, 0.5), 0, 0.5, std::numbers::pi / 2);
+  const ObjectId standing = scene.rigid(Shape::capsule(1, 0.5), 5, 1);
+  for (const ObjectId id : {lying, standing}) scene.material(id, 0.5, 0);
+  scene.run(1);
+  EXPECT_NEAR(scene.bodies().location(scene.index(lying)).y(), 0.5, 0.006);
+  EXPECT_NEAR(scene.bodies().location(scene.index(standing)).y(), 1, 0.006);
+  EXPECT_NEAR(scene.angle(lying), std::numbers::pi / 2, 1e-3);
+}
+
+TEST(PlanarMotion, ACylinderAboutZRollsDownAnInclineByTwoThirds) {
+  Flat scene(Rung::Precise);
+  const double slope = 0.2;
+  scene.physics().set_gravity({9.81 * std::sin(slope), -9.81 * std::cos(slope), 0});
+  scene.material(scene.ground(), 1, 0);
+  const ObjectId wheel = scene.rigid(Shape::cylinder(0.3, 0.5, 2), 0, 0.5);
+  scene.material(wheel, 1, 0);
+  scene.run(2);
+  const double wanted = 2 * 2.0 / 3 * 9.81 * std::sin(slope);
+  EXPECT_NEAR(scene.bodies().velocity(scene.index(wheel)).x(), wanted, 0.01 * wanted);
+}
+
+TEST(PlanarMotion, APlateThatMovesAsItIsToldCarriesAndLifts) {
+  Flat scene;
+  const ObjectId plate = scene.fixed(Shape::box({20, 1, 1}), 0, -0.5), box = scene.box(1, 1, 0, 0.5);
+  scene.material(plate, 0.8, 0);
+  scene.material(box, 0.8, 0);
+  scene.bodies().set_velocity(scene.index(plate), {1, 0.5, 0});
+  scene.run(2);
+  EXPECT_NEAR(scene.bodies().location(scene.index(plate)).y(), 0.5, 1e-9);
+  EXPECT_NEAR(scene.bodies().velocity(scene.index(box)).x(), 1, 1e-3);
+  EXPECT_NEAR(scene.bodies().velocity(scene.index(box)).y(), 0.5, 1e-2);
+  EXPECT_NEAR(scene.bodies().location(scene.index(box)).y(), 1.5, 0.01);
+  const Energy energy = scene.physics().energy();
+  EXPECT_NEAR(energy.residual, 0, 0.02 * energy.script_work);
+  EXPECT_NEAR(energy.script_work, 9.81 + 1 + 0.25, 0.5);
+}
 
 TEST(PlanarJoints, AHingeCountsItsTurnsAndItsMotorTurnsIt) {
   Flat flat;

@@ -1,0 +1,90 @@
+// The books of a sub-step whose rows are solved at its end. They take forces as constant: works by the mean of
+// velocities are of second order only. What rows did in fact is known all the same, since smooth motion is measured by
+// itself: it is what the energy changed by after that. Contacts and limits give nothing: what the solution gave is taken
+// back from the motion of links among one another.
+#include <algorithm>
+
+#include "runtime/dynamics/island.hpp"
+
+namespace breve {
+
+namespace {
+
+double works_of(const Energy& account) { return account.motor_work + account.script_work; }
+
+/// Of contacts and limits, J.
+double rows_took(const Energy& account) { return account.contact_loss + account.friction_loss + account.limit_loss; }
+
+/// Of `change`, what works and losses since `start` do not explain, J.
+double missing(double change, const Energy& start, const Energy& now) {
+  return change - works_of(now) + works_of(start) + rows_took(now) + now.drag_loss - rows_took(start) - start.drag_loss;
+}
+
+}  // namespace
+
+/// Kinetic, potential and in springs, J.
+double Island::stored_now() {
+  double sum = 0, kinetic = 0;
+  for (const Free& one : loose_bodies())
+    sum += one.now.kinetic() - one.now.solid->mass * core_.settings.gravity.dot(one.now.center);
+  for (const Clustered& one : clusters_) sum += stored_in(one, kinetic);
+  return sum;
+}
+
+/// At the start of a sub-step, once it is known which touches and limits will be rows.
+void Island::open_books() {
+  keeps_books_ = !trees_.empty() && has_rows() && !springs_move();
+  if (!keeps_books_) return;
+  double kinetic = 0;
+  for (Clustered& one : clusters_)
+    one.books = {stored_in(one, kinetic), core_.trees[one.entry->trees.front()]->account, 0};
+  books_ = {stored_now(), result.account, 0};
+}
+
+/// After smooth motion: what it gained that nothing explains is its error, not the rows'.
+void Island::note_smooth() {
+  if (!keeps_books_) return;
+  double kinetic = 0;
+  for (Clustered& one : clusters_) {
+    const Energy& did = one.pending;
+    one.books.unexplained = stored_in(one, kinetic) - one.books.stored - did.motor_work - did.script_work - one.held_work +
+                            did.drag_loss;
+  }
+  placed_ = true;
+}
+
+/// After commit() and account_rows().
+void Island::close_books() {
+  if (!keeps_books_ || (rows_.empty() && scalars_.empty())) return;
+  const bool only_motors = rows_.empty() && limit_rows() == 0;
+  const auto close = [only_motors](const Books& books, double stored, Energy& account) {
+    const double more = missing(stored - books.stored - books.unexplained, books.account, account);
+    if (only_motors)
+      account.motor_work += more;
+    else
+      account.contact_loss -= more;
+  };
+  double kinetic = 0;
+  for (Clustered& one : clusters_) {
+    books_.unexplained += one.books.unexplained;
+    if (one.alone()) close(one.books, stored_in(one, kinetic), core_.trees[one.entry->trees.front()]->account);
+  }
+  close(books_, stored_now(), result.account);
+  const double gained = rows_took(books_.account) - rows_took(result.account);
+  if (!(gained > kTiny * std::abs(books_.stored))) return;
+  const double all = moving();
+  if (gained <= kFew * all)
+    take_from_all(gained / all);
+  else
+    gained_ += gained;
+}
+
+/// What they gave all the same, however finely the step was taken.
+void Island::take_back_rest() {
+  constexpr double kMost = 0.9;
+  const double all = moving();
+  if (gained_ > 0 && all > 0) take_from_all(std::min(kMost, gained_ / all));
+  gained_ = 0;
+}
+
+}  // namespace breve

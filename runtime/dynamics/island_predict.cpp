@@ -1,0 +1,117 @@
+// Forces of contacts and limits that go on. Those that held something in the last two sub-steps act on trees inside the
+// stages of smooth motion, as joint forces that do not change on the way: a limb that is pressed on its limit would
+// else be let go and brought back in each sub-step. The solver, after it, finds what was wrong with that.
+#include <algorithm>
+
+#include "runtime/articulated/energy.hpp"
+#include "runtime/dynamics/island.hpp"
+
+namespace breve {
+
+namespace {
+
+/// The part of a force that is taken to go on: as much as there was in the last two sub-steps. What stopped something
+/// in one of them only is no more.
+double steady(double last, double before) { return last > 0 ? std::clamp(before / last, 0.0, 1.0) : 0; }
+
+void add(Tree& tree, const articulated::Vector& j, double force) {
+  articulated::Loads& loads = tree.loads;
+  if (!loads.reacts) loads.reaction.setZero();
+  loads.reacts = true;
+  loads.reaction += force * j;
+}
+
+}  // namespace
+
+const WarmPoint* Island::warm_of(const Touch& touch) const {
+  const NearPair& pair = *pairs_[touch.pair];
+  for (int k = 0; k < pair.warm_count; ++k) {
+    const WarmPoint& warm = pair.warm[static_cast<std::size_t>(k)];
+    if (warm.feature == touch.feature) return &warm;
+  }
+  return nullptr;
+}
+
+/// After find_touches() and find_bounds(), for the smooth motion that follows.
+void Island::predict() {
+  predicted_.clear();
+  predicted_limits_.clear();
+  for (Tree* tree : trees_) {
+    tree->loads.reacts = false;
+    tree->outer_force.setZero();
+    tree->outer_couple.setZero();
+    tree->row_center = articulated::centre_of_mass(tree->model, tree->data);
+  }
+  for (const Touch& touch : touches_) {
+    const WarmPoint* warm = warm_of(touch);
+    const double share = warm ? steady(warm->force.dot(touch.normal), warm->before) : 0;
+    predicted_.push_back(share > 0 ? Vector3(share * warm->force) : Vector3::Zero());
+    if (share > 0) predict_contact(touch, predicted_.back());
+  }
+  for (const Bound& bound : bounds_) {
+    if (!bound.rests) continue;
+    const JointEntry& joint = core_.joints[bound.joint];
+    const double last = std::max(0.0, bound.sign * joint.limit[bound.axis]);
+    const double force = last * steady(last, bound.sign * joint.limit_before[bound.axis]);
+    predicted_limits_.push_back(force);
+    if (force == 0) continue;
+    Tree& tree = *core_.trees[joint.tree];
+    fill_limit(tree, joint, bound.axis, bound.sign, tree.work_v.data());
+    add(tree, tree.work_v, force);
+  }
+}
+
+void Island::predict_contact(const Touch& touch, const Vector3& force) {
+  const NearPair& pair = *pairs_[touch.pair];
+  const BodyPlace a = place_of(pair.a), b = place_of(pair.b);
+  const bool inner = a.tree && a.tree == b.tree;
+  for (const auto& [side, sign] : {std::pair(&a, 1.0), std::pair(&b, -1.0)}) {
+    if (!side->tree || side->mover < 0) continue;
+    Tree& tree = *side->tree;
+    tree.work_v.setZero();
+    fill(tree, side->link, touch.point, force, false, sign, tree.work_v.data());
+    add(tree, tree.work_v, 1);
+    if (inner) continue;
+    tree.outer_force += sign * force;
+    tree.outer_couple += (touch.point - tree.row_center).cross(sign * force);
+  }
+}
+
+/// After smooth motion of h seconds, of which rows were made: velocities as they were without what was predicted, and
+/// the impulses at which the solver begins.
+void Island::begin_solve(double h) {
+  solved_h_ = h;
+  load_velocities();
+  const auto take = [&](int mover, const double* r, int axis, double force) {
+    if (mover < static_cast<int>(free_.size()) || force == 0) return;
+    Tree& tree = *trees_[static_cast<std::size_t>(mover) - free_.size()];
+    const int n = tree.model.velocities();
+    tree.free_v -= h * force * Eigen::Map<const articulated::Vector>(r + axis * n, n);
+  };
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    contact::Row& row = rows_[i];
+    row.impulse *= h;
+    if (predicted_[i] == Vector3::Zero()) continue;
+    const Vector3 force = row.axes * predicted_[i];
+    for (int k = 0; k < 3; ++k) {
+      take(row.a, row.ra, k, force[k]);
+      take(row.b, row.rb, k, -force[k]);
+    }
+  }
+  for (std::size_t i = 0; i < predicted_limits_.size(); ++i) take(scalars_[i].a, scalars_[i].ra, 0, predicted_limits_[i]);
+  for (contact::ScalarRow& row : scalars_) row.impulse *= h;
+  for (Tree* tree : trees_) tree->state.v = tree->free_v;
+  set_biases(h);
+  bound_motors(h);
+}
+
+/// Rows where smooth motion of h seconds has led to, from what began at `before`, and their solution.
+void Island::solve_after(double h) {
+  place();
+  make_rows(Motors::Drive);
+  recall_rates();
+  begin_solve(h);
+  solve(h);
+}
+
+}  // namespace breve

@@ -1,0 +1,53 @@
+// What moves without forces in a flat world, and what wakes those that sleep.
+#include "runtime/planar/core.hpp"
+
+namespace breve {
+
+/// What moves as it was told goes the way of the coming h seconds from where it was to where the arrays have it.
+void Planar::Core::place_drivers(double h) {
+  for (FlatBody& flat : slots) {
+    if (flat.body == kNoBody || !flat.fixed || !flat.solid) continue;
+    const bool moving = bodies->moving(flat.body) && to_b2(bodies->velocity(flat.body)).IsValid();
+    if (!moving && !flat.driven) continue;
+    flat.driven = moving;
+    const Vector3 velocity = moving ? bodies->velocity(flat.body) : Vector3(Vector3::Zero());
+    const double spin = moving ? bodies->rotational_velocity(flat.body).z() : 0;
+    if (flat.b2->GetType() != b2_kinematicBody) flat.b2->SetType(b2_kinematicBody);
+    const b2Vec2 back = to_b2(h * velocity);
+    flat.b2->SetTransform(place_of(flat.body) - back, static_cast<float>(flat.b2->GetAngle() - h * spin));
+    flat.b2->SetLinearVelocity(to_b2(velocity));
+    flat.b2->SetAngularVelocity(static_cast<float>(spin));
+    flat.b2->SetAwake(true);
+  }
+}
+
+void Planar::Core::wake(BodyIndex body) {
+  if (FlatBody* flat = find(body); flat && !flat->fixed) flat->b2->SetAwake(true);
+}
+
+void Planar::Core::wake_ends(const FlatSpring& spring) {
+  wake(spring.is.a);
+  wake(spring.is.b);
+}
+
+void Planar::Core::wake_touching(FlatBody& flat) {
+  for (b2ContactEdge* edge = flat.b2->GetContactList(); edge; edge = edge->next) edge->other->SetAwake(true);
+}
+
+/// What may touch the body where it stands now.
+void Planar::Core::wake_met(const FlatBody& flat) {
+  struct Waker : b2QueryCallback {
+    bool ReportFixture(b2Fixture* fixture) override {
+      fixture->GetBody()->SetAwake(true);
+      return true;
+    }
+  } waker;
+  for (b2Fixture* fixture = flat.b2->GetFixtureList(); fixture; fixture = fixture->GetNext())
+    for (int32 child = 0; child < fixture->GetShape()->GetChildCount(); ++child) {
+      b2AABB box;
+      fixture->GetShape()->ComputeAABB(&box, flat.b2->GetTransform(), child);
+      b2->QueryAABB(&waker, box);
+    }
+}
+
+}  // namespace breve

@@ -1,0 +1,124 @@
+// Bodies that are on their way to a target: at an even speed until the end of an iteration, then they stand there.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/base/error.hpp"
+#include "runtime/world/parts.hpp"
+
+namespace breve {
+
+void World::set_target(BodyIndex body, const Vector3* new_location, const Quaternion* new_orientation) {
+  if (bodies_->dynamic(body))
+    throw Error(ErrorCode::Argument, "forces move a body with physics: only one without can be given a target");
+  const ObjectId object = bodies_->owner(body);
+  parts_->targets.reserve(parts_->targets.size() + 1);  // before anything is changed
+  const auto pending = std::find_if(parts_->targets.begin(), parts_->targets.end(),
+                                    [object](const Parts::Target& one) { return one.object == object; });
+  const bool known = pending != parts_->targets.end();
+  Vector3 location = known ? pending->location : bodies_->location(body);
+  Quaternion orientation = known ? pending->orientation : bodies_->orientation(body);
+  if (new_location) location = *new_location;
+  if (new_orientation) orientation = *new_orientation;
+  if (!location.allFinite() || !orientation.coeffs().allFinite() || !(orientation.norm() > 0))
+    throw Error(ErrorCode::Argument, "a target's location and rotation must be finite");
+  const Quaternion now = bodies_->orientation(body);
+  const Eigen::AngleAxisd turn(now.conjugate() * orientation.normalized());
+  const double seconds = clock_.iteration_step;
+  bodies_->set_velocity(body, (location - bodies_->location(body)) / seconds);
+  bodies_->set_rotational_velocity(body, turn.angle() / seconds * turn.axis());
+  if (!known) parts_->targets.emplace_back().object = object;
+  Parts::Target& target = known ? *pending : parts_->targets.back();
+  target.location = location;
+  target.orientation = orientation.normalized();
+}
+
+void World::leave(BodyIndex body) {
+  if (bodies_->rigid() == 0 || !bodies_->driver(body) || bodies_->moving(body)) return;
+  parts_->left.try_emplace(body,
+                           Parts::Target{bodies_->owner(body), bodies_->location(body), bodies_->orientation(body)});
+}
+
+/// What was put nearby is on its way there; what is new, or was put far away, is there already.
+void World::Parts::aim_at_places() {
+  constexpr double kMostTurn = 0.5;  // rad
+  Bodies& bodies = *world->bodies_;
+  for (const auto& [body, from] : left) {
+    if (!objects.alive(from.object) || objects.at(from.object).serial > advanced) continue;
+    if (!bodies.driver(body) || bodies.moving(body)) continue;
+    const Vector3 location = bodies.location(body);
+    const Quaternion orientation = bodies.orientation(body);
+    const bool near = (location - from.location).norm() <= bodies.collision_shape(body)->bounding_radius() &&
+                      orientation.angularDistance(from.orientation) <= kMostTurn;
+    if (!near) continue;
+    bodies.set_location(body, from.location);
+    bodies.set_orientation(body, from.orientation);
+    world->set_target(body, &location, &orientation);
+  }
+  left.clear();
+  advanced = objects.last_serial();
+}
+
+void World::Parts::reach_targets() {
+  Bodies& bodies = *world->bodies_;
+  for (const Target& target : targets) {
+    if (!objects.alive(target.object)) continue;
+    const BodyIndex body = objects.at(target.object).body;
+    if (bodies.dynamic(body)) continue;  // physics was enabled on the way
+    bodies.set_velocity(body, Vector3::Zero());
+    bodies.set_rotational_velocity(body, Vector3::Zero());
+    bodies.set_location(body, target.location);
+    bodies.set_orientation(body, target.orientation);
+  }
+  targets.clear();
+}
+
+// Objects that were freed meanwhile are left out: nothing refers to them.
+
+void World::Parts::save_targets(ByteWriter& out) const {
+  const auto save = [this, &out](const auto& some, const auto& of) {
+    const auto lives = [&](const auto& one) { return objects.alive(of(one).object); };
+    out.put(static_cast<std::uint64_t>(std::count_if(some.begin(), some.end(), lives)));
+    for (const auto& one : some) {
+      if (!lives(one)) continue;
+      out.put(of(one).object);
+      out.put(of(one).location);
+      out.put(of(one).orientation);
+    }
+  };
+  save(targets, [](const Target& one) -> const Target& { return one; });
+  save(left, [](const auto& one) -> const Target& { return one.second; });
+  out.put(advanced);
+}
+
+void World::Parts::load_targets(ByteReader& in) {
+  const auto load = [this, &in](const auto& keep) {
+    const std::size_t count = in.get_count(sizeof(Vector3));
+    for (std::size_t i = 0; i < count; ++i) {
+      Target target;
+      target.object = in.get_object();
+      target.location = in.get_vector();
+      target.orientation = in.get_quaternion();
+      const bool embodied = objects.alive(target.object) && objects.at(target.object).body != kNoBody;
+      if (!embodied || !target.location.allFinite() || !target.orientation.coeffs().allFinite()) ByteReader::fail();
+      keep(target);
+    }
+  };
+  load([this](const Target& target) { targets.push_back(target); });
+  load([this](const Target& target) { left.try_emplace(objects.at(target.object).body, target); });
+  advanced = in.get<std::uint64_t>();
+}
+
+void World::Parts::hash_targets(Hasher& hasher) const {
+  const auto add = [this, &hasher](const Target& target) {
+    if (!objects.alive(target.object)) return;
+    hasher.add(objects.at(target.object).serial);
+    hasher.add(target.location);
+    hasher.add(target.orientation);
+  };
+  for (const Target& target : targets) add(target);
+  for (const auto& [body, target] : left) add(target);
+}
+
+}  // namespace breve

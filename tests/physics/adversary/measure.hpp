@@ -1,0 +1,32 @@
+// Energy and momentum of a creature from its poses and velocities, by the searcher's own masses, inertias and springs.
+#pragma once
+
+#include "creature.hpp"
+
+namespace adversary {
+
+struct State {
+  double kinetic = 0, potential = 0, springs = 0;  // J
+  Vector3 momentum = Vector3::Zero();              // N s
+  Vector3 spin = Vector3::Zero();                  // angular momentum about the centre of mass, N m s
+  Vector3 center = Vector3::Zero();                // of mass, m
+  double mass = 0;                                 // kg
+  double roundness = 0;                            // kg m2: bound of the moment of inertia about the centre of mass
+  double size = 0;                                 // m: farthest body from the centre of mass
+  double told = 0;  // rad or m: how far the positions that joints tell are from the poses
+
+  double total() const { return kinetic + potential + springs; }
+  bool finite() const;
+};
+
+State measure(Creature& creature);
+
+/// Positions of a joint, from poses alone but for whole turns, which are as the joint tells them.
+struct Positions {
+  Vector3 q = Vector3::Zero();
+  double told = 0;    // the greatest difference to what the joint tells
+  double square = 0;  // squared deflection from where the spring in it is slack
+};
+Positions positions_of(Creature& creature, const Joint& joint);
+
+}  // namespace adversary
