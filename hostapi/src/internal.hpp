@@ -150,6 +150,20 @@ class ScriptScope {
   int exceptions_ = std::uncaught_exceptions();
 };
 
+/// A callback of the host runs while this stands: the world is busy even if no script runs, as when a function that
+/// runs none has a warning to tell. References die at its end.
+class CallbackScope {
+ public:
+  explicit CallbackScope(breve_world& world);
+  ~CallbackScope();
+  CallbackScope(const CallbackScope&) = delete;
+  CallbackScope& operator=(const CallbackScope&) = delete;
+
+ private:
+  breve_world& world_;
+  bool holds_;  // no script runs: it is this callback that makes the world busy
+};
+
 /// Begin a profile; an earlier one is gone. Only while nothing runs.
 void start_profile(breve_world& world, breve_trace_fn trace, void* user);
 

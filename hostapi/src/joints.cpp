@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "physical.hpp"
+#include "steve/library/motors.hpp"
 
 namespace breve::host {
 namespace {
@@ -20,6 +21,17 @@ const char* class_of_kind(breve_joint_kind kind) {
 Instance* object_or_world(const breve_world& world, breve_object object) {
   return id_of(object) ? &live_instance(world, object) : nullptr;
 }
+
+/// Two objects that stay what they are while another one is made: that runs script, which may free them.
+class Kept {
+ public:
+  Kept(breve_world& world, Instance* one, Instance* other)
+      : one_(*world.machine, steve::Value::of(steve::Tag::Object, one)),
+        other_(*world.machine, steve::Value::of(steve::Tag::Object, other)) {}
+
+ private:
+  steve::Pin one_, other_;
+};
 
 /// The joint behind an object that must be a linked one.
 JointIndex linked(const breve_world& world, breve_object joint) {
@@ -135,6 +147,7 @@ breve_status breve_joint_create(breve_world* world, const breve_joint_descriptio
     auto& child = live_instance(*world, given.child);
     if (parent) live_body(*world, given.parent);
     live_body(*world, given.child);
+    const Kept kept(*world, parent, &child);
     *joint = make_with(*world, cls, [&](breve::steve::Instance& object) {
       breve::steve::link_joint(*world->machine, object, is, parent, &child);
     });
@@ -191,7 +204,8 @@ breve_status breve_joint_set_drive(breve_world* world, breve_object joint, const
     const JointIndex index = linked(*world, joint);
     Mechanics& dynamics = world->world->dynamics();
     // What an older header does not have stays as it is.
-    dynamics.set_drive(index, drive_of(read_config(drive, drive_from(dynamics.drive(index)), "breve_joint_drive")));
+    breve::steve::drive_joint(*world->machine, object_of_kind(*world, joint, "Joint"), index,
+                              drive_of(read_config(drive, drive_from(dynamics.drive(index)), "breve_joint_drive")));
   });
 }
 
@@ -229,6 +243,7 @@ breve_status breve_spring_create(breve_world* world, const breve_spring* descrip
       fail(BREVE_ERROR_ARGUMENT, "both ends of the spring are one body");
     auto& from = live_instance(*world, given.from);
     auto& to = live_instance(*world, given.to);
+    const Kept kept(*world, &from, &to);
     *spring = make_with(*world, "Spring", [&](breve::steve::Instance& object) {
       breve::steve::connect_spring(*world->machine, object, is, &from, &to);
     });

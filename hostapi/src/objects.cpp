@@ -58,6 +58,17 @@ breve_status set_vector(breve_world* world, breve_object object, const double* i
   });
 }
 
+/// Of a pose whose numbers are checked here.
+breve::Quaternion rotation_of(const breve_pose& pose) {
+  need_finite(pose.location, 3, "pose.location");
+  need_finite(pose.rotation, 4, "pose.rotation");
+  // Scaled by its largest part first, so that the length of no finite quaternion overflows or vanishes.
+  Eigen::Vector4d q(pose.rotation[1], pose.rotation[2], pose.rotation[3], pose.rotation[0]);
+  const double largest = q.cwiseAbs().maxCoeff();
+  if (largest == 0) fail(BREVE_ERROR_ARGUMENT, "pose.rotation has length 0: it is no rotation");
+  return breve::Quaternion(Eigen::Vector4d((q / largest).normalized()));
+}
+
 const Shape& display_shape(const breve_world& world, breve_object object) {
   const BodyIndex body = live_body(world, object);
   return *std::as_const(*world.world).bodies().display_shape(body);
@@ -71,6 +82,8 @@ breve_shape describe(const Shape& shape) {
     case ShapeKind::Convex: out.kind = BREVE_SHAPE_CONVEX; break;
     case ShapeKind::Mesh: out.kind = BREVE_SHAPE_MESH; break;
     case ShapeKind::HeightField: out.kind = BREVE_SHAPE_HEIGHT_FIELD; break;
+    case ShapeKind::Cylinder: out.kind = BREVE_SHAPE_CYLINDER; break;
+    case ShapeKind::Capsule: out.kind = BREVE_SHAPE_CAPSULE; break;
   }
   out.radius = shape.bounding_radius();
   if (shape.kind() == ShapeKind::Sphere) {
@@ -173,18 +186,24 @@ breve_status breve_object_set_pose(breve_world* world, breve_object object, cons
   return guard(world->error, [&] {
     need(pose, "pose");
     const BodyIndex body = live_body(*world, object);
-    need_finite(pose->location, 3, "pose.location");
-    need_finite(pose->rotation, 4, "pose.rotation");
-    // Scaled by its largest part first, so that the length of no finite quaternion overflows or vanishes.
-    Eigen::Vector4d q(pose->rotation[1], pose->rotation[2], pose->rotation[3], pose->rotation[0]);
-    const double largest = q.cwiseAbs().maxCoeff();
-    if (largest == 0) fail(BREVE_ERROR_ARGUMENT, "pose.rotation has length 0: it is no rotation");
-    q = (q / largest).normalized();
+    const breve::Quaternion rotation = rotation_of(*pose);
     Bodies& bodies = world->world->bodies();
+    world->world->leave(body);
     const Vector3 place(pose->location[0], pose->location[1], pose->location[2]);
     bodies.set_location(body, world->world->space().inside(place));
-    bodies.set_orientation(body, breve::Quaternion(q));
+    bodies.set_orientation(body, rotation);
     world->world->dynamics().moved(body);
+  });
+}
+
+breve_status breve_object_set_target(breve_world* world, breve_object object, const breve_pose* pose) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need(pose, "pose");
+    const BodyIndex body = live_body(*world, object);
+    const breve::Quaternion rotation = rotation_of(*pose);
+    const Vector3 place(pose->location[0], pose->location[1], pose->location[2]);
+    world->world->set_target(body, &place, &rotation);
   });
 }
 

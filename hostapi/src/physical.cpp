@@ -82,7 +82,7 @@ std::shared_ptr<Shape> heights_of(const breve_geometry& geometry, std::pmr::memo
                              heights, memory);
 }
 
-std::shared_ptr<Shape> shape_of(const breve_geometry& geometry, std::pmr::memory_resource* memory) {
+std::shared_ptr<Shape> shape_of(const breve_geometry& geometry, bool flat, std::pmr::memory_resource* memory) {
   if (!(std::isfinite(geometry.density) && geometry.density > 0))
     fail(BREVE_ERROR_ARGUMENT, "breve_geometry.density must be finite and > 0");
   if (geometry.reserved != 0) fail(BREVE_ERROR_ARGUMENT, "a reserved field is not 0");
@@ -90,6 +90,8 @@ std::shared_ptr<Shape> shape_of(const breve_geometry& geometry, std::pmr::memory
   switch (geometry.kind) {
     case BREVE_SHAPE_SPHERE: shape = Shape::sphere(geometry.radius, memory); break;
     case BREVE_SHAPE_BOX: shape = Shape::box(vector_of(geometry.size, "breve_geometry.size"), memory); break;
+    case BREVE_SHAPE_CYLINDER: shape = Shape::cylinder(geometry.height, geometry.radius, flat ? 2 : 1, memory); break;
+    case BREVE_SHAPE_CAPSULE: shape = Shape::capsule(geometry.height, geometry.radius, 1, memory); break;
     case BREVE_SHAPE_MESH: shape = mesh_of(geometry, memory); break;
     case BREVE_SHAPE_HEIGHT_FIELD: shape = heights_of(geometry, memory); break;
     case BREVE_SHAPE_CONVEX: return Shape::convex(faces_of(geometry), geometry.density, memory);
@@ -119,6 +121,7 @@ breve_geometry breve_geometry_default(void) {
   std::fill_n(geometry.size, 3, 1.0);
   geometry.tile = 1;
   geometry.density = 1;
+  geometry.height = 1;
   return geometry;
 }
 
@@ -128,7 +131,7 @@ breve_status breve_shape_create(breve_world* world, const breve_geometry* geomet
     need(geometry, "geometry");
     need(shape, "shape");
     const auto wanted = read_config(geometry, breve_geometry_default(), "breve_geometry");
-    auto made = shape_of(wanted, &world->meter);
+    auto made = shape_of(wanted, world->world->dimension() == 2, &world->meter);
     *shape = make_with(*world, "Shape", [&](breve::steve::Instance& object) {
       auto& resource = breve::steve::resource_made<breve::steve::ShapeResource>(*world->machine, object);
       resource.shape = std::move(made);

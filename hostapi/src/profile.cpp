@@ -34,6 +34,7 @@ steve::Profiler::Trace tracer(breve_world& world, breve_trace_fn trace, void* us
     world.tracing = true;
     trace(user, &e);
     world.tracing = false;
+    world.references.forget_all();
   };
 }
 

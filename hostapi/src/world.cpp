@@ -20,8 +20,8 @@ void speak(breve_world& world, breve_channel channel, std::string_view text) {
   std::string ended(text);
   const bool lines = channel != BREVE_CHANNEL_PRINT;
   if (lines && !ended.empty() && ended.back() != '\n') ended += '\n';
+  const CallbackScope callback(world);
   config.print(config.user, &world, channel, ended.c_str(), ended.size());
-  world.references.forget_all();
 }
 
 /// What a callback of this kind writes; "" if it says no.
@@ -41,8 +41,11 @@ std::string answer(breve_world& world, Callback callback, std::string_view quest
       to.full = true;
     }
   };
-  const bool found = callback(world.runtime->config.user, &world, asked.c_str(), write, &written);
-  world.references.forget_all();
+  const auto asks = [&] {
+    const CallbackScope busy(world);
+    return callback(world.runtime->config.user, &world, asked.c_str(), write, &written);
+  };
+  const bool found = asks();
   if (written.full) throw std::bad_alloc();
   return found ? std::move(written.text) : std::string();
 }
@@ -63,6 +66,14 @@ steve::MachineHost machine_host(breve_world& world) {
     need(config.arguments[i], "one of breve_world_config.arguments");
     host.arguments.emplace_back(config.arguments[i]);
   }
+  for (std::size_t i = 0; i < config.setting_count; ++i) {
+    need(config.settings, "breve_world_config.settings");
+    need(config.settings[i].name, "the name of one of breve_world_config.settings");
+    need(config.settings[i].value, "the value of one of breve_world_config.settings");
+    host.settings.emplace_back(config.settings[i].name, config.settings[i].value);
+  }
+  host.patience = config.patience;
+  host.seed = config.seed;
   host.verbose = config.verbose;
   host.strict = config.strict;
   host.budget = config.budget;
@@ -81,6 +92,8 @@ void check(const breve_world_config& config) {
     if (reserved) fail(BREVE_ERROR_ARGUMENT, "a reserved field is not false");
   if (config.dimension != 0 && config.dimension != 2 && config.dimension != 3)
     fail(BREVE_ERROR_ARGUMENT, "dimension must be 2, 3, or 0 for the script's own");
+  if (!std::isfinite(config.patience) || config.patience < 0)
+    fail(BREVE_ERROR_ARGUMENT, "patience must be finite and >= 0");
   if (!std::isfinite(config.length_unit) || config.length_unit < 0)
     fail(BREVE_ERROR_ARGUMENT, "length_unit must be finite and >= 0");
   if (config.length_unit > 0 && config.length_unit != 1 && config.dimension == 3)
@@ -162,6 +175,17 @@ ScriptScope::~ScriptScope() {
   world_.references.forget_all();
 }
 
+CallbackScope::CallbackScope(breve_world& world) : world_(world), holds_(world.running == 0) {
+  if (!holds_) return;
+  ++world_.running;
+  if (world_.machine) world_.machine->begin_run();
+}
+
+CallbackScope::~CallbackScope() {
+  if (holds_) --world_.running;
+  world_.references.forget_all();
+}
+
 void need_idle(const breve_world& world, const char* what) {
   if (world.running != 0)
     fail(BREVE_ERROR_BUSY, std::string(what) + " may not be called while a script of this world runs");
@@ -192,7 +216,8 @@ breve_status breve_world_create(breve_runtime* runtime, const breve_program* pro
     handle->program = program->program;
     handle->meter.set_limit(c.memory_limit);
     auto host = machine_host(*handle);
-    handle->config.arguments = nullptr;  // copied; the host's array may go
+    handle->config.arguments = nullptr;  // copied; the host's arrays may go
+    handle->config.settings = nullptr;
     handle->world = breve::make_in<breve::World>(&handle->meter, &handle->meter, c.seed);
     handle->world->random().set_coarse(c.coarse_random);
     breve::steve::register_resource_kinds(*handle->world);

@@ -92,7 +92,11 @@ class Writer {
     archive.append_attribute("version") = kVersion;
     archive.append_attribute("root") = numbers_.at(root.serial);
     ValueWriter values(numbers_);
-    for (Instance* object : order_) write_object(archive.append_child("object"), *object, values);
+    for (Instance* object : order_) {
+      if (!object->live())
+        throw Error(ErrorCode::Argument, name_of(*object) + " was freed by an archive method of another object");
+      write_object(archive.append_child("object"), *object, values);
+    }
     TextWriter out;
     document.save(out, " ");
     return out.text();
@@ -115,6 +119,7 @@ class Writer {
   /// Depth first without recursion, dependencies before what depends on them. The controller is the world's, not an
   /// object's: it is in an archive only as its root.
   void gather(Instance& root) {
+    keep(root);
     std::vector<std::pair<Instance*, bool>> stack{{&root, false}};
     while (!stack.empty()) {
       const auto [object, done] = stack.back();
@@ -124,16 +129,24 @@ class Writer {
         order_.push_back(object);
         continue;
       }
+      if (!object->live()) continue;  // freed by an archive method since it was found
       if (!met_.insert(object->serial).second || (object == machine_.controller() && object != &root)) continue;
       prepare(*object);
       stack.emplace_back(object, true);
       const std::vector<Instance*> needs = needs_of(*object);
-      for (auto need = needs.rbegin(); need != needs.rend(); ++need) stack.emplace_back(*need, false);
+      for (auto need = needs.rbegin(); need != needs.rend(); ++need) {
+        keep(**need);
+        stack.emplace_back(*need, false);
+      }
     }
   }
 
+  /// Archive methods may free anything: what was found stays a cell of its own until the archive is written.
+  void keep(Instance& object) {
+    if (kept_.insert(object.serial).second) pins_.emplace_back(machine_, Value::of(Tag::Object, &object));
+  }
+
   void prepare(Instance& object) {
-    pins_.emplace_back(machine_, Value::of(Tag::Object, &object));
     const MethodInfo* hook = machine_.find_method(*object.cls, "archive", 0);
     if (!hook) return;
     const Value answer = machine_.call(object, *hook);
@@ -165,7 +178,7 @@ class Writer {
 
   Machine& machine_;
   std::deque<Pin> pins_;
-  std::set<std::uint64_t> met_;
+  std::set<std::uint64_t> kept_, met_;
   std::map<std::uint64_t, int> numbers_;
   std::vector<Instance*> order_;
 };
@@ -218,7 +231,7 @@ class Reader {
       throw;
     }
     const auto root = objects_.find(archive_.attribute("root").as_int());
-    return root == objects_.end() ? nullptr : root->second;
+    return root == objects_.end() || !root->second->live() ? nullptr : root->second;
   }
 
  private:
@@ -237,6 +250,7 @@ class Reader {
       const int id = element.attribute("id").as_int();
       if (id <= 0 || objects_.contains(id)) refuse("the archive is damaged: an object without a number of its own");
       objects_.emplace(id, make(class_of(machine_, element)));
+      pins_.emplace_back(machine_, Value::of(Tag::Object, objects_.at(id)));
       elements_.emplace_back(objects_.at(id), element);
     }
   }
@@ -256,6 +270,7 @@ class Reader {
 
   void announce_objects() {
     for (const auto& [object, element] : elements_) {
+      if (!object->live()) continue;  // freed by a method of an earlier one
       if (const MethodInfo* hook = machine_.find_method(*object->cls, "post-dearchive-set-controller", 0))
         machine_.call(*object, *hook);
       const MethodInfo* hook = object->live() ? machine_.find_method(*object->cls, "dearchive", 0) : nullptr;
@@ -269,6 +284,7 @@ class Reader {
   pugi::xml_node archive_;
   std::map<int, Instance*> objects_;
   std::vector<std::pair<Instance*, pugi::xml_node>> elements_;
+  std::deque<Pin> pins_;  // methods of the objects, and hosts that hear warnings, may free any of them
 };
 
 }  // namespace

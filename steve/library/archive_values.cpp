@@ -144,6 +144,7 @@ Value ValueReader::read_list(pugi::xml_node node, int depth) {
   if (node.attribute("same")) return read_same(node, Tag::List);
   ListCell* list = machine_.heap().list();
   const Value value = Value::of(Tag::List, list);
+  pins_.emplace_back(machine_, value);
   containers_.emplace(node.attribute("id").as_int(), value);
   for (const pugi::xml_node element : node.children())
     if (element.type() == pugi::node_element) machine_.heap().push(*list, read(element, depth + 1));
@@ -154,6 +155,7 @@ Value ValueReader::read_hash(pugi::xml_node node, int depth) {
   if (node.attribute("same")) return read_same(node, Tag::Hash);
   HashCell* hash = machine_.heap().hash();
   const Value value = Value::of(Tag::Hash, hash);
+  pins_.emplace_back(machine_, value);
   containers_.emplace(node.attribute("id").as_int(), value);
   for (const pugi::xml_node entry : node.children("entry")) {
     const Value key = read_in(entry.child("key"), depth + 1);

@@ -1,6 +1,7 @@
 // Script values as XML elements, for archives.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <pugixml.hpp>
 #include <string>
@@ -46,6 +47,7 @@ class ValueReader {
   Machine& machine_;
   const std::map<int, Instance*>& objects_;
   std::map<int, Value> containers_;
+  std::deque<Pin> pins_;  // of the containers: a host that hears a warning may drop the variable that holds one
 };
 
 }  // namespace breve::steve

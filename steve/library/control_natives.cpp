@@ -1,9 +1,8 @@
 // Natives of Control that move the simulation: the clock, the step, selection, the main camera and its pans.
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
-#include "steve/library/joints.hpp"
+#include "steve/library/motors.hpp"
 #include "steve/library/tables.hpp"
 
 namespace breve::steve {
@@ -48,9 +47,8 @@ void control_iterate(Machine& machine, Instance&) {
   ViewState& view = view_of(machine);
   follow(machine, view.camera);
   if (!view.frozen) {
-    const World& world = machine.world();
-    machine.charge(static_cast<std::uint64_t>(
-        std::llround(std::clamp(world.iteration_step() / world.integration_step(), 1.0, 1e9))));
+    machine.charge(machine.world().substeps());
+    check_motors(machine);
     machine.world().advance_bodies();
   }
   if (view.offset_pan.steps > 0) view.camera.set_offset(view.offset_pan.advance(view.camera.offset));
@@ -70,6 +68,12 @@ void control_set_integration_step(Machine& machine, Instance&, double seconds) {
   machine.world().set_integration_step(seconds);
 }
 double control_get_integration_step(Machine& machine, Instance&) { return machine.world().integration_step(); }
+Value control_get_random_seed(Machine& machine, Instance&) {
+  const std::uint64_t seed = machine.host().seed;
+  if (seed > std::uint64_t{std::numeric_limits<std::int32_t>::max()}) return Value::of(static_cast<double>(seed));
+  return Value::of(static_cast<std::int32_t>(seed));
+}
+
 void control_update_neighbors(Machine& machine, Instance&) { machine.world().update_neighbors(); }
 
 // --- how far space goes
@@ -229,6 +233,7 @@ constexpr Native kControlNatives[] = {
     native<control_get_iteration_step>("control.get-iteration-step"),
     native<control_set_integration_step>("control.set-integration-step"),
     native<control_get_integration_step>("control.get-integration-step"),
+    native<control_get_random_seed>("control.get-random-seed"),
     native<control_update_neighbors>("control.update-neighbors"),
     native<control_close_space<Ending::Wrap>>("control.wrap-space"),
     native<control_close_space<Ending::Wall>>("control.wall-space"),

@@ -117,6 +117,19 @@ const ClassInfo& class_named(Machine& machine, std::string_view name) {
   return *cls;
 }
 
+[[noreturn]] void fail_patch_class(std::string_view name) {
+  throw Error(ErrorCode::Argument, "the cells of a grid must be of class Patch or derived from it, which '" +
+                                       std::string(name) + "' is not");
+}
+
+/// A class whose objects have the variables of a Patch: scripts may set the name that a grid keeps.
+const ClassInfo& patch_class_named(Machine& machine, std::string_view name) {
+  const ClassInfo& named = class_named(machine, name);
+  for (const ClassInfo* cls = &named; cls; cls = cls->parent)
+    if (cls->name == "Patch") return named;
+  fail_patch_class(name);
+}
+
 }  // namespace
 
 Field* chemical_field(Machine& machine, Instance& grid, Instance& chemical) {
@@ -135,22 +148,26 @@ bool has_code(Machine& machine, std::string_view patch_class) {
     if (cls->name == "Patch") return code;
     code = code || !cls->methods.empty() || !cls->variables.empty();
   }
-  throw Error(ErrorCode::Argument, "the cells of a grid must be of class Patch or derived from it, which '" +
-                                       std::string(patch_class) + "' is not");
+  fail_patch_class(patch_class);
 }
 
 Instance* patch_of(Machine& machine, Instance& grid, CellIndex cell) {
+  const auto made_anew = [&] {
+    Machine::fail(RunErrorKind::World, name_of(grid) + " was made anew by an init of its patches");
+  };
   GridResource& resource = own_grid(machine, grid);
+  if (cell >= resource.grid->cells()) made_anew();
   if (resource.patches.empty()) resource.patches.resize(resource.grid->cells());
   if (const ObjectId id = resource.patches[cell]) return machine.instance(id);
   const Slot* name = library_slot(machine, grid, "PatchGrid", "patchClass");
-  const ClassInfo& cls = class_named(machine, view(static_cast<StringCell*>(name->ref)));
+  const ClassInfo& cls = patch_class_named(machine, view(static_cast<StringCell*>(name->ref)));
+  const Pin pin(machine, Value::of(Tag::Object, &grid));
   Instance* made = machine.create(cls);
   // Its init may have run anything: look at the grid anew.
   GridResource& after = own_grid(machine, grid);
-  if (cell >= after.grid->cells())
-    Machine::fail(RunErrorKind::World, name_of(grid) + " was made anew by an init of its patches");
+  if (cell >= after.grid->cells()) made_anew();
   if (after.patches.empty()) after.patches.resize(after.grid->cells());
+  if (after.patches[cell]) made_anew();
   if (!made->live()) return nullptr;
   const Cell3 c = after.grid->cell(cell);
   machine.heap().store(made->slots[kPatchGridSlot], &grid);

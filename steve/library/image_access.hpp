@@ -2,14 +2,18 @@
 #pragma once
 
 #include "runtime/store/image_resource.hpp"
+#include "steve/library/joints.hpp"
 #include "steve/library/support.hpp"
 
 namespace breve::steve {
 
 /// The picture of an Image argument; empty (0 x 0) if it was never given a size.
-/// @throws RunError{NullObject, FreedObject} naming `what`
+/// @throws RunError{NullObject, FreedObject, Type} naming `what`
 inline Image& image_of(Machine& machine, Instance* object, std::string_view what) {
-  return resource_made<ImageResource>(machine, must_live(object, what)).image;
+  const Instance& live = must_live(object, what);
+  if (!is_library_kind(live, "Image"))
+    Machine::fail(RunErrorKind::Type, std::string(what) + " must be an Image, not " + name_of(live));
+  return resource_made<ImageResource>(machine, live).image;
 }
 
 }  // namespace breve::steve

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "steve/library/joints.hpp"
+#include "steve/library/motors.hpp"
 #include "steve/library/tables.hpp"
 
 namespace breve::steve {
@@ -22,7 +22,7 @@ void change_drive(Machine& machine, Instance& self, std::string_view selector, C
   }
   JointDrive drive = dynamics_of(machine).drive(joint);
   change(drive);
-  dynamics_of(machine).set_drive(joint, drive);
+  drive_joint(machine, self, joint, drive);
 }
 
 /// Of a linked joint, or else zero.
@@ -171,7 +171,7 @@ void set_force_vector(Machine& machine, Instance& self, Vector3 forces) {
   change_drive(machine, self, "set-joint-torque-vector", [&](JointDrive& d) { d.force = forces; });
 }
 
-/// Clamped to 0 .. the hard limit; dynamics cuts above.
+/// Clamped to 0 .. the hard limit; what is cut above is said once.
 void set_strength_limit(Machine& machine, Instance& self, double limit) {
   finite(limit, "set-strength-limit: the limit");
   change_drive(machine, self, "set-strength-limit", [&](JointDrive& d) { d.strength_limit = std::max(0.0, limit); });

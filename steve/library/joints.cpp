@@ -1,5 +1,7 @@
 // Joint, Spring and MultiBody objects: linking and breaking, which MultiBody a body belongs to, what archives need.
-#include "steve/library/joints.hpp"
+#include "steve/library/motors.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -136,6 +138,50 @@ void relink_joint(Machine& machine, Instance& joint) {
   // Bodies do not know how many turns a joint has made.
   dynamics.set_position(index, saved.position);
   dynamics.set_velocity(index, saved.velocity);
+}
+
+void drive_joint(Machine& machine, Instance& joint, JointIndex index, const JointDrive& drive) {
+  Mechanics& dynamics = machine.world().dynamics();
+  dynamics.set_drive(index, drive);
+  if (!(drive.strength_limit > 0)) return;
+  if (Slot* had = library_slot(machine, joint, "Joint", "hadStrength")) had->i = 1;
+  const double most = dynamics.strength_hard_limit(index);
+  if (drive.strength_limit <= most) return;
+  machine.warn_once("joint:strength-cut",
+                    fmt::format("the strength limit {:g} of {} is cut to {:g}, 500 times the mass of its child, {:g} kg "
+                                "(a body weighs 1 kg per cubic length unit unless its shape has another mass)",
+                                drive.strength_limit, name_of(joint), most, most / 500));
+}
+
+void check_motors(Machine& machine) {
+  const Mechanics& dynamics = machine.world().dynamics();
+  const Bodies& bodies = machine.world().bodies();
+  constexpr double kLight = 1e-3;  // kg per N*m or N
+  std::size_t left = dynamics.joint_count();
+  for (JointIndex i = 0; left > 0; ++i) {
+    if (!dynamics.linked(i)) continue;
+    --left;
+    const JointDrive& drive = dynamics.drive(i);
+    if (drive.strength_limit == 0 && drive.motor_speed == JointVector::Zero()) continue;
+    Instance* joint = machine.instance(dynamics.joint_owner(i));
+    if (!joint) continue;
+    if (drive.strength_limit == 0) {
+      const Slot* had = library_slot(machine, *joint, "Joint", "hadStrength");
+      if (had && had->i == 0)
+        machine.warn_once("joint:no-strength", "the motor of " + name_of(*joint) +
+                                                   " is to turn, but has no strength: nothing moves it "
+                                                   "(give it some with set-strength-limit)");
+      continue;
+    }
+    for (const BodyIndex body : {dynamics.joint(i).child, dynamics.joint(i).parent}) {
+      if (body == kNoBody || !bodies.dynamic(body) || !(bodies.mass(body) < kLight * drive.strength_limit)) continue;
+      machine.warn_once("joint:light-body",
+                        fmt::format("a motor of strength {:g} drives a body of {:g} kg, less than a gram per unit of "
+                                    "strength (a body weighs 1 kg per cubic length unit unless its shape has another "
+                                    "mass: set-mass, set-density)",
+                                    drive.strength_limit, bodies.mass(body)));
+    }
+  }
 }
 
 // --- springs --------------------------------------------------------------------------------------------------------

@@ -62,6 +62,8 @@ constexpr std::string_view kLaterClasses[] = {"BraitenbergControl",
                                               "Tones",
                                               "URL"};
 
+constexpr std::string_view kLaterFiles[] = {"Braitenberg", "DirectedGraph", "Push", "QGAME", "SFFNetwork"};
+
 struct ResourceKind {
   std::string_view name;
   ResourceLoader loader;
@@ -99,6 +101,10 @@ const LibraryFile* find_library_file(std::string_view name) {
 }
 
 std::span<const std::string_view> later_classes() { return kLaterClasses; }
+
+bool is_later_file(std::string_view name) {
+  return std::find(std::begin(kLaterFiles), std::end(kLaterFiles), name) != std::end(kLaterFiles);
+}
 
 bool is_later_class(std::string_view name_or_alias) {
   return std::find(std::begin(kLaterClasses), std::end(kLaterClasses), name_or_alias) != std::end(kLaterClasses);

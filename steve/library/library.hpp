@@ -16,6 +16,8 @@ std::span<const LibraryFile> library_files();
 /// Classes that the documents name and that this version does not have, aliases too.
 std::span<const std::string_view> later_classes();
 bool is_later_class(std::string_view name_or_alias);
+/// A file of the library that has another name than its classes, and comes with a later version.
+bool is_later_file(std::string_view name);
 
 /// Teach a world to load the native data of library objects from snapshots. Once per world, before the first load.
 void register_resource_kinds(World& world);

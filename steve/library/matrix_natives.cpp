@@ -38,8 +38,14 @@ void copy_plane(Machine& machine, const Field& field, int z, Instance* target, d
   Image& picture = image_of(machine, target, "copy-to-channel: the image");
   const int width = std::min(picture.width(), field.nx());
   const int height = std::min(picture.height(), field.ny());
-  for (int x = 0; x < width; ++x)
-    for (int y = 0; y < height; ++y) picture.set_byte(x, y, channel, Field::channel_byte(field.get(x, y, z), factor));
+  if (width == 0) return;
+  const double* const values = field.values().data();
+  const auto column = static_cast<std::ptrdiff_t>(field.ny()) * field.nz();
+  for (int y = 0; y < height; ++y) {
+    const double* value = values + static_cast<std::ptrdiff_t>(y) * field.nz() + z;
+    std::uint8_t* pixel = picture.row(y).data() + static_cast<std::size_t>(channel);
+    for (int x = 0; x < width; ++x, value += column, pixel += 4) *pixel = Field::channel_byte(*value, factor);
+  }
 }
 
 template <Channel C>

@@ -47,6 +47,7 @@ void mobile_rotate(Machine& machine, Instance& self, Vector3 axis, double radian
   const Quaternion turn = turn_about(axis, radians);
   const BodyIndex body = body_of(machine, self);
   if (axis.isZero(0)) return;
+  machine.world().leave(body);
   bodies_of(machine).set_orientation(body, turn);
   machine.world().dynamics().moved(body);
 }
@@ -54,6 +55,7 @@ void mobile_rotate(Machine& machine, Instance& self, Vector3 axis, double radian
 void mobile_relative_rotate(Machine& machine, Instance& self, Vector3 axis, double radians) {
   const Quaternion turn = turn_about(axis, radians);
   const BodyIndex body = body_of(machine, self);
+  machine.world().leave(body);
   bodies_of(machine).set_orientation(body, turn * bodies_of(machine).orientation(body));
   machine.world().dynamics().moved(body);
 }
@@ -61,6 +63,7 @@ void mobile_relative_rotate(Machine& machine, Instance& self, Vector3 axis, doub
 void mobile_offset(Machine& machine, Instance& self, Vector3 displacement) {
   const BodyIndex body = body_of(machine, self);
   const Vector3 place = bodies_of(machine).location(body) + displacement;
+  machine.world().leave(body);
   bodies_of(machine).set_location(body, place.allFinite() ? machine.world().space().inside(place) : place);
   machine.world().dynamics().moved(body);
 }

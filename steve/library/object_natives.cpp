@@ -40,7 +40,15 @@ std::int32_t object_can_respond(Machine& machine, Instance& self, Text method) {
 
 // --- schedule --------------------------------------------------------------------------------------------------------
 
+// The method may come with a reload, so that it is no error yet.
+void check_scheduled(Machine& machine, const Instance& self, Text method) {
+  if (!machine.find_method(*self.cls, view(method), 0))
+    machine.report_unknown_method(Severity::Warning, self, view(method),
+                                  "a scheduled call needs one without parameters, and the run ends when its time comes");
+}
+
 void object_schedule(Machine& machine, Instance& self, Text method, double when) {
+  check_scheduled(machine, self, method);
   if (!std::isfinite(when) || !machine.world().schedule(self.id, view(method), when))
     machine.warn("schedule: time " + std::to_string(when) + " is not in the future; '" + std::string(view(method)) +
                  "' will not be called");
@@ -53,6 +61,7 @@ void object_schedule_repeating(Machine& machine, Instance& self, Text method, do
                  std::string(view(method)) + "' will not be called");
     return;
   }
+  check_scheduled(machine, self, method);
   // First at the absolute time `interval`; the world starts an interval from now instead if that is past.
   world.schedule(self.id, view(method), interval, interval);
 }
@@ -71,8 +80,8 @@ std::int32_t object_observe(Machine& machine, Instance& self, Instance* announce
     machine.world().observe(self.id, source.id, view(message), name);
     return 0;
   }
-  machine.warn("observe: " + name_of(self) + " has no method '" + name +
-               "' with 0, 1 or 2 keywords; nothing registered");
+  machine.report_unknown_method(Severity::Warning, self, name,
+                                "an observer needs one with 0, 1 or 2 keywords; nothing is registered");
   return -1;
 }
 

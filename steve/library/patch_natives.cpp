@@ -102,7 +102,7 @@ ListCell* patch_neighborhood(Machine& machine, Instance& self, std::int32_t size
     throw Error(ErrorCode::Argument, "the size " + std::to_string(size) + " of a neighborhood (must be >= 0)");
   const Grid grid = *place.resource->grid;
   ListCell* list = machine.heap().list();
-  const Pin pin(machine, Value::of(Tag::List, list));
+  const Pin pin(machine, Value::of(Tag::List, list)), pin_grid(machine, Value::of(Tag::Object, place.grid));
   const auto add = [&](CellIndex cell) {
     if (Instance* patch = patch_of(machine, *place.grid, cell))
       machine.heap().push(*list, Value::of(Tag::Object, patch));

@@ -19,9 +19,25 @@ void moved(Machine& machine, BodyIndex body) { machine.world().dynamics().moved(
 
 // --- pose ------------------------------------------------------------------------------------------------------------
 
+void real_set_target(Machine& machine, Instance& self, Vector3 location) {
+  const BodyIndex body = body_of(machine, self);
+  machine.world().set_target(body, &location, nullptr);
+}
+
+void real_set_target_rotation(Machine& machine, Instance& self, Matrix3 rotation) {
+  const BodyIndex body = body_of(machine, self);
+  constexpr double kOrthonormal = 1e-6;
+  const double off = (rotation * rotation.transpose() - Matrix3::Identity()).cwiseAbs().maxCoeff();
+  if (!(off <= kOrthonormal) || !(rotation.determinant() > 0))
+    throw Error(ErrorCode::Argument, "set-target-rotation: the matrix must be a rotation");
+  const Quaternion orientation(Eigen::Matrix3d{rotation});
+  machine.world().set_target(body, nullptr, &orientation);
+}
+
 void real_move(Machine& machine, Instance& self, Vector3 location) {
   const BodyIndex body = body_of(machine, self);
   // What is not finite is refused as it is.
+  machine.world().leave(body);
   bodies_of(machine).set_location(body, location.allFinite() ? machine.world().space().inside(location) : location);
   moved(machine, body);
 }
@@ -46,6 +62,7 @@ MatrixCell* real_get_rotation(Machine& machine, Instance& self) {
 
 void real_set_rotation(Machine& machine, Instance& self, Matrix3 rotation) {
   const BodyIndex body = body_of(machine, self);
+  machine.world().leave(body);
   bodies_of(machine).set_rotation(body, rotation);
   moved(machine, body);
 }
@@ -56,6 +73,7 @@ void real_set_rotation_around(Machine& machine, Instance& self, Vector3 axis, do
   const BodyIndex body = body_of(machine, self);
   const double length = axis.stableNorm();
   if (length == 0) return;
+  machine.world().leave(body);
   bodies_of(machine).set_orientation(body, Quaternion(Eigen::AngleAxisd(radians, axis / length)));
   moved(machine, body);
 }
@@ -66,6 +84,7 @@ void real_set_rotation_euler_angles(Machine& machine, Instance& self, Vector3 an
                           Eigen::AngleAxisd(angles.y(), Vector3::UnitY()) *
                           Eigen::AngleAxisd(angles.x(), Vector3::UnitX());
   const BodyIndex body = body_of(machine, self);
+  machine.world().leave(body);
   bodies_of(machine).set_orientation(body, turn);
   moved(machine, body);
 }
@@ -83,6 +102,7 @@ void real_point(Machine& machine, Instance& self, Vector3 vertex, Vector3 direct
   constexpr double kParallel = 1e-12, kParallelTurn = 0.01;
   const Eigen::AngleAxisd turn = sine < kParallel ? Eigen::AngleAxisd(kParallelTurn, from)
                                                   : Eigen::AngleAxisd(std::atan2(sine, from.dot(to)), axis / sine);
+  machine.world().leave(body);
   bodies_of(machine).set_orientation(body, Quaternion(turn));
   moved(machine, body);
 }
@@ -195,6 +215,8 @@ double real_get_neighborhood_size(Machine& machine, Instance& self) {
 
 ListCell* real_get_neighbors(Machine& machine, Instance& self) {
   body_of(machine, self);
+  if (!machine.world().effects()[EffectId::Neighbors].active) [[unlikely]]
+    machine.warn_once("get-neighbors", "get-neighbors finds nobody before 'update-neighbors' of the controller is called");
   const std::span<const std::uint64_t> neighbors = machine.world().neighbor_users(self.id);
   ListCell* list = machine.heap().list(static_cast<std::uint32_t>(neighbors.size()));
   for (const std::uint64_t neighbor : neighbors)
@@ -217,9 +239,7 @@ const ClassInfo* class_named(Machine& machine, Text name, std::string_view selec
 void real_handle_collisions(Machine& machine, Instance& self, Text type, Text method) {
   const ClassInfo* other = class_named(machine, type, "handle-collisions");
   if (!machine.responds(*self.cls, view(method))) {
-    const std::string message = "handle-collisions: " + name_of(self) + " has no method '" + std::string(view(method)) +
-                                "'; nothing registered";
-    if (machine.host().error) machine.host().error(message);
+    machine.report_unknown_method(Severity::Error, self, view(method), "the handler of collisions is not registered");
     return;
   }
   if (other) machine.world().handle_collisions(self.cls->id, other->id, view(method), self.id);
@@ -238,13 +258,15 @@ void stationary_init(Machine& machine, Instance& self) {
   const MethodInfo* texture = controller ? machine.find_method(*controller->cls, "get-stationary-texture", 0) : nullptr;
   if (!texture) return;
   const Value image = machine.call(*controller, *texture);
-  if (image.tag != Tag::Object) return;
+  if (image.tag != Tag::Object || !self.live()) return;
   set_library_object(machine, self, "Real", "textureImage", image.object());
   bodies_of(machine).appearance(body_of(machine, self)).texture = machine.id_of(image.object());
 }
 
 constexpr Native kRealNatives[] = {
     native<real_move>("real.move"),
+    native<real_set_target>("real.set-target"),
+    native<real_set_target_rotation>("real.set-target-rotation"),
     vector_native<real_get_location>("real.get-location"),
     vector_native<real_get_offset>("real.get-offset"),
     vector_native<real_get_offset_to_point>("real.get-offset-to-point"),

@@ -103,6 +103,16 @@ Instance* build_cone(Machine& machine, Instance& self, std::int32_t sides, doubl
   return build(machine, self, Shape::cone(sides, height, radius, machine.heap().memory()));
 }
 
+Instance* build_cylinder(Machine& machine, Instance& self, double height, double radius) {
+  // As a disk: in a flat world its axis is z.
+  const int axis = machine.world().dimension() == 2 ? 2 : 1;
+  return build(machine, self, Shape::cylinder(height, radius, axis, machine.heap().memory()));
+}
+
+Instance* build_capsule(Machine& machine, Instance& self, double length, double radius) {
+  return build(machine, self, Shape::capsule(length, radius, 1, machine.heap().memory()));
+}
+
 /// The builders of Shape itself leave the shape without geometry where those of its subclasses fail.
 template <Instance* (*Build)(Machine&, Instance&, std::int32_t, double, double)>
 Instance* build_or_leave(Machine& machine, Instance& self, std::int32_t sides, double height, double radius) {
@@ -172,6 +182,8 @@ constexpr Native kShapeNatives[] = {
     native<build_cube>("cube.init-with"),
     native<build_disk>("polygon-disk.init-with"),
     native<build_cone>("polygon-cone.init-with"),
+    native<build_cylinder>("cylinder.init-with"),
+    native<build_capsule>("capsule.init-with"),
     native<custom_shape_check_face>("custom-shape.check-face"),
     native<custom_shape_build>("custom-shape.build"),
 };

@@ -43,6 +43,9 @@ inline const Vector3& finite(const Vector3& value, std::string_view what) {
   return value;
 }
 
+/// RunError{Type}: the object has native data of one kind where that of another is needed.
+[[noreturn]] void fail_kind(const Instance& object, std::string_view kind, std::string_view needed);
+
 /// The native data of an object if it is exactly an R, else null. A null or freed object: null.
 template <class R>
 R* resource_of(Machine& machine, const Instance* object) {
@@ -53,9 +56,12 @@ R* resource_of(Machine& machine, const Instance* object) {
 }
 
 /// The native data of an object, made and attached on first use.
+/// @throws RunError{Type} if it has native data of another kind: others may hold references into it
 template <class R>
 R& resource_made(Machine& machine, const Instance& self) {
   if (R* found = resource_of<R>(machine, &self)) return *found;
+  if (const Resource* other = self.live() ? machine.world().resource(self.id) : nullptr)
+    fail_kind(self, other->kind(), R::kKind);
   std::pmr::memory_resource* memory = machine.heap().memory();
   std::unique_ptr<R> made;
   if constexpr (std::is_constructible_v<R, std::pmr::memory_resource*>)

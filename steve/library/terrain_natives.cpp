@@ -35,7 +35,18 @@ const std::shared_ptr<Shape>& shape_of(Machine& machine, Instance& self) {
   return resource->shape;
 }
 
-const HeightGrid& grid_of(Machine& machine, Instance& self) { return *shape_of(machine, self)->heights(); }
+/// What the natives rely on: a square height field with 2^n + 1 points a side. An archive may hold any shape.
+const HeightGrid* square_grid(const Shape& shape) {
+  const HeightGrid* grid = shape.heights();
+  const int cells = grid ? grid->columns() - 1 : 0;
+  return grid && grid->rows() == grid->columns() && cells > 0 && (cells & (cells - 1)) == 0 ? grid : nullptr;
+}
+
+const HeightGrid& grid_of(Machine& machine, Instance& self) {
+  const HeightGrid* grid = square_grid(*shape_of(machine, self));
+  if (!grid) Machine::fail(RunErrorKind::Type, name_of(self) + " holds a shape that is not a square height field");
+  return *grid;
+}
 
 void use(Machine& machine, Instance& self, const std::shared_ptr<Shape>& shape) {
   Bodies& bodies = machine.world().bodies();
@@ -69,7 +80,12 @@ void terrain_init(Machine& machine, Instance& self) {
   set_heights(machine, self, Heights(kFirstSide));
 }
 
-void terrain_dearchive(Machine& machine, Instance& self) { use(machine, self, shape_of(machine, self)); }
+void terrain_dearchive(Machine& machine, Instance& self) {
+  const std::shared_ptr<Shape>& shape = shape_of(machine, self);
+  if (!square_grid(*shape))
+    throw Error(ErrorCode::File, "the archive is damaged: a Terrain holds a shape that is not a square height field");
+  use(machine, self, shape);
+}
 
 /// Midpoint displacement: squares get their middles, then edges theirs, level by level.
 void displace(Heights& heights, double factor, Random& random) {

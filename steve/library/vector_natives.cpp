@@ -28,11 +28,12 @@ template <Channel C>
 void copy_to_channel(Machine& machine, Instance& self, Instance* target, double factor) {
   const Field& field = own_field(machine, self);
   Image& picture = image_of(machine, target, "copy-to-channel: the image");
-  const int width = picture.width(), height = picture.height();
   int i = 0;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width && i < field.nx(); ++x, ++i)
-      picture.set_byte(x, y, C, Field::channel_byte(field.get(i), factor));
+  for (int y = 0; y < picture.height() && i < field.nx(); ++y) {
+    std::uint8_t* pixel = picture.row(y).data() + static_cast<std::size_t>(C);
+    for (int x = 0; x < picture.width() && i < field.nx(); ++x, ++i, pixel += 4)
+      *pixel = Field::channel_byte(field.values()[i], factor);
+  }
 }
 
 constexpr Native kVectorNatives[] = {

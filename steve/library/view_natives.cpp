@@ -109,11 +109,13 @@ void set_skybox_images(Machine& machine, Instance&, ListCell* files) {
   for (const Value& file : *files) {
     if (file.tag != Tag::String) Machine::fail(RunErrorKind::Type, "set-skybox-images: every element must be a string");
     names.emplace_back(view(file.string()));
-    const bool found = !machine.host().find_file || !machine.host().find_file(names.back()).empty();
+  }
+  // Only now: the host that is asked may change the list.
+  for (const std::string& name : names) {
+    const bool found = !machine.host().find_file || !machine.host().find_file(name).empty();
     if (!found)
-      machine.warn_once(
-          "image:" + names.back(),
-          "image '" + names.back() + "' not found; check its name, or add the directory it is in with @path");
+      machine.warn_once("image:" + name,
+                        "image '" + name + "' not found; check its name, or add the directory it is in with @path");
   }
   auto& skybox = view_of(machine).backdrop.skybox;
   std::pmr::vector<std::pmr::string> fresh(names.begin(), names.end(), skybox.get_allocator());

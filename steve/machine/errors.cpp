@@ -1,6 +1,7 @@
 // Run-time errors: where they happened, through which calls, and what the reader can do about it.
 #include <fmt/format.h>
 
+#include "steve/compile/wording.hpp"
 #include "steve/machine/machine.hpp"
 #include "steve/machine/trace.hpp"
 
@@ -106,15 +107,26 @@ std::string Machine::stack_trace() const {
   return out;
 }
 
+/// The innermost running statement of the program's own files; line 0: there is none.
+Span Machine::place_of_caller() const {
+  for (const Frame* frame = frame_; frame; frame = frame->caller)
+    if (const auto span = span_of(*frame, frame->pc); !program_->sources().file(span.file).embedded) return span;
+  return {};
+}
+
 void Machine::warn(std::string_view text) {
   if (!host_.warn) return;
-  for (const Frame* frame = frame_; frame; frame = frame->caller) {
-    const auto span = span_of(*frame, frame->pc);
-    if (program_->sources().file(span.file).embedded) continue;
-    host_.warn(format({Severity::Warning, "run-time", std::string(text), {}, span}, program_->sources()));
-    return;
-  }
-  host_.warn("warning: " + std::string(text) + "\n");
+  host_.warn(format({Severity::Warning, "run-time", std::string(text), {}, place_of_caller()}, program_->sources()));
+}
+
+void Machine::report_unknown_method(Severity severity, const Instance& self, std::string_view method,
+                                    std::string_view consequence) {
+  const bool error = severity == Severity::Error;
+  const auto& tell = error ? host_.error : host_.warn;
+  if (!tell || (!error && !warned_.emplace(self.cls->name + " " + std::string(method)).second)) return;
+  tell(format({severity, "run-time", fmt::format("class {} has no method '{}': {}", self.cls->name, method, consequence),
+               unknown_method_help(method, self.cls, *program_), place_of_caller()},
+              program_->sources()));
 }
 
 void Machine::warn_once(std::string_view key, std::string_view text) {

@@ -80,6 +80,7 @@ Value Machine::evaluate(Instance& self, std::string_view text) {
     fragments_ = std::make_unique<Fragments>(*program_);
     program_ = fragments_->program();
   }
+  const Pin pin(*this, Value::of(Tag::Object, &self));  // who hears a warning may free it
   std::vector<std::string_view> known;
   if (session_)
     for (std::uint32_t i = 0; i < session_->used; ++i)

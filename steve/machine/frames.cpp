@@ -61,6 +61,10 @@ Value Machine::invoke(Instance& receiver, const MethodInfo& method, std::span<co
     Slot* args = top_;
     top_ += kNativeRoom;
     write_all(args);
+    // No frame holds what a native was given, nor the texts that were made of it.
+    for (const Value& argument : arguments) pins_.push_back(argument);
+    for (const auto& parameter : method.parameters)
+      if (parameter.type == StaticType::String) pins_.push_back(Value::of(Tag::String, args[parameter.slot].ref));
     Value result;
     method.native(*this, receiver, args, result);
     return result;

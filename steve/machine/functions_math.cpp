@@ -34,6 +34,16 @@ double logarithm(Machine& m, Instance&, double x) { return checked(m, "log", x, 
 double absolute(Machine& m, Instance&, double x) { return checked(m, "abs", x, std::abs(x)); }
 double least(Machine&, Instance&, double a, double b) { return b < a ? b : a; }
 double most(Machine&, Instance&, double a, double b) { return b > a ? b : a; }
+double rounded_down(Machine& m, Instance&, double x) { return checked(m, "floor", x, std::floor(x)); }
+double rounded_up(Machine& m, Instance&, double x) { return checked(m, "ceil", x, std::ceil(x)); }
+/// To the nearest whole number; halves away from zero.
+double rounded(Machine& m, Instance&, double x) { return checked(m, "round", x, std::round(x)); }
+double raised(Machine& m, Instance&, double x, double y) {
+  const double result = std::pow(x, y);
+  if (!std::isfinite(result)) [[unlikely]]
+    m.warn_once("pow", fmt::format("pow({:f}, {:f}) is {:f}", x, y, result));
+  return result;
+}
 double arc_tangent_of_two(Machine&, Instance&, double y, double x) { return std::atan2(y, x); }
 double arc_tangent_of_one(Machine& machine, Instance&, double x) {
   machine.warn_once("atan2", "atan2 with one argument is atan; for an angle in all four quadrants write atan2(y, x)");
@@ -82,6 +92,15 @@ double standard_deviation(Machine& machine, Instance&, ListCell* list) {
   return std::sqrt(squares / (n - 1));
 }
 
+constexpr std::int32_t kMostDigits = 100;
+
+/// A number with so many decimals, rounded.
+StringCell* formatted(Machine& machine, Instance&, double x, std::int32_t digits) {
+  if (digits < 0 || digits > kMostDigits)
+    Machine::fail(RunErrorKind::Math, fmt::format("format takes 0 to {} decimals, not {}", kMostDigits, digits));
+  return machine.heap().string(fmt::format("{:.{}f}", x, digits));
+}
+
 double random_gauss(Machine& machine, Instance&) { return machine.world().random().gauss(); }
 double random_exponential(Machine& machine, Instance&) { return machine.world().random().exponential(); }
 double random_gamma(Machine& machine, Instance&, std::int32_t order) {
@@ -120,6 +139,10 @@ constexpr std::array kMathFunctions = {
     native<absolute>("abs"),
     native<least>("min"),
     native<most>("max"),
+    native<rounded_down>("floor"),
+    native<rounded_up>("ceil"),
+    native<rounded>("round"),
+    native<raised>("pow"),
     native<arc_tangent_of_two>("atan2"),
     native<arc_tangent_of_one>("atan2"),
     native<is_nan>("isnan"),
@@ -130,6 +153,7 @@ constexpr std::array kMathFunctions = {
     native<transposed>("transpose"),
     native<rotation_matrix>("rotationMatrix"),
     native<standard_deviation>("stddev"),
+    native<formatted>("format"),
     native<random_gauss>("randomGauss"),
     native<random_exponential>("randomExponential"),
     native<random_gamma>("randomGamma"),

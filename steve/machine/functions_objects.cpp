@@ -110,8 +110,7 @@ void add_collision_handler(Machine& machine, Instance&, Instance* object, String
     machine.world().handle_collisions(owner.cls->id, other.id, view(method), owner.id);
     return;
   }
-  machine.warn(fmt::format("class {} has no method '{}' to handle collisions with {}", owner.cls->name, view(method),
-                           other.name));
+  machine.report_unknown_method(Severity::Warning, owner, view(method), "the handler of collisions is not registered");
 }
 
 // --- lifetimes -------------------------------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 
 #include "steve/machine/brief.hpp"
 #include "steve/machine/operators.hpp"
+#include "steve/syntax/words.hpp"
 
 namespace breve::steve {
 
@@ -40,7 +41,9 @@ int component(const Value& base, const StringCell* name) {
     if (text[0] >= 'X' && text[0] <= 'Z') return text[0] - 'X';
   }
   std::string message = fmt::format("{} has no member '{}'", a_type(base.tag), text);
-  const std::string help = base.tag == Tag::Vector ? "a vector has x, y and z" : "objects and hashes have members";
+  const std::string help = base.tag == Tag::Vector ? "a vector has x, y and z"
+                           : names_a_size(text)    ? "the size of a list or of a text is written with bars: |list|"
+                                                   : "objects and hashes have members";
   const auto dash = text.find('-');
   if (dash != std::string_view::npos)
     message += fmt::format("; for a subtraction write spaces around the minus: {} - {}", text.substr(0, dash),

@@ -390,7 +390,8 @@ void Machine::execute(std::size_t depth) {
   }
   op_Truth: R(in->a).i = true_any(ANY(in->b)); NEXT();
   op_Binary: {
-    const auto op = static_cast<ast::BinaryOp>((pc++)->a);
+    const Instruction& ext = *pc++;
+    const auto op = static_cast<ast::BinaryOp>(ext.a);
     const Value &x = ANY(in->b), &y = ANY(in->c);
     if (x.tag == Tag::Int && y.tag == Tag::Int && (op <= ast::BinaryOp::Mul || op >= ast::BinaryOp::Lt)) {
       ANY(in->a) = Value::of(int_binary(op, x.i, y.i));
@@ -401,7 +402,7 @@ void Machine::execute(std::size_t depth) {
       ANY(in->a) = Value::of(Vector3(x.v[0] + s * y.v[0], x.v[1] + s * y.v[1], x.v[2] + s * y.v[2]));
     } else {
       SAVE();
-      ANY(in->a) = binary(*heap_, op, x, y);
+      ANY(in->a) = calculate(op, x, y, ext.b != 0, in);
     }
     NEXT();
   }
@@ -414,7 +415,7 @@ void Machine::execute(std::size_t depth) {
       BOX(in->a, Double, word(x.d op y.d));                                            \
     } else {                                                                           \
       SAVE();                                                                          \
-      copy_any(&R(in->a), binary(*heap_, ast::BinaryOp::kind, x, y));                  \
+      copy_any(&R(in->a), calculate(ast::BinaryOp::kind, x, y, false, in));            \
     }                                                                                  \
     NEXT();                                                                            \
   }

@@ -1,6 +1,8 @@
 // One program running in one world: creation and freeing of objects, calls from outside, events of the world.
 #include "steve/machine/machine.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "runtime/world/menu.hpp"
@@ -60,12 +62,13 @@ std::vector<std::string> Machine::reload(std::shared_ptr<const Program> program)
 void Machine::start() {
   const auto* cls = program_->controller_class();
   if (!cls) throw Error(ErrorCode::Argument, "the program has no controller");
-  controller_ = create(*cls);
+  create(*cls);  // it is the controller from its init on, and none if that freed it
 }
 
 void Machine::begin_run() {
   interrupted_.store(false, std::memory_order_relaxed);
   budget_.begin_run(host_.budget);
+  if (host_.patience > 0) run_began_ = std::chrono::steady_clock::now();
 }
 
 void Machine::end_of_piece() {
@@ -73,7 +76,16 @@ void Machine::end_of_piece() {
     budget_.hold();
     throw RunError(RunErrorKind::Interrupted, "interrupted");
   }
+  if (host_.patience > 0) look_at_the_clock();
   if (!budget_.next_piece()) fail_budget();
+}
+
+// Says once where a run is that takes so long that it may never end.
+void Machine::look_at_the_clock() {
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - run_began_;
+  if (taken.count() < host_.patience) return;
+  warn(fmt::format("this has been running for {:.0f} s without an end: a loop here may never end", taken.count()));
+  host_.patience = 0;
 }
 
 void Machine::charge(std::uint64_t turns) {
@@ -118,7 +130,10 @@ Instance* Machine::create(const ClassInfo& cls) {
   try {
     instance->id = world_.create(cls.id, reinterpret_cast<std::uint64_t>(instance), cls.iterate != nullptr,
                                  cls.post_iterate != nullptr);
-    if (!controller_ && program_->controller_class() == &cls) controller_ = instance;
+    if (!controller_ && program_->controller_class() == &cls) {
+      controller_ = instance;
+      apply_settings(*instance);
+    }
     for (std::size_t i = 0; i < cls.init_chain.size(); ++i) {
       invoke(*instance, *cls.init_chain[i], {});
       if (!instance->live() && i + 1 < cls.init_chain.size())

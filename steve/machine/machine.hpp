@@ -31,11 +31,14 @@ struct MachineHost {
   std::function<std::string(std::string_view command)> system;  // run a shell command; empty: not allowed
   std::vector<std::string> arguments;                           // [0] is the program file
   std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
-  bool verbose = false;  // say once when an obsolete selector is used
+  std::uint64_t seed = 1;  // that the world was made with
+  bool verbose = false;    // say once when an obsolete selector is used
   bool strict = false;
   std::uint32_t depth_limit = 5000;  // nested calls
   std::uint64_t budget = 0;          // loop turns and calls in an iteration or a call from the host; 0 = none
   std::uint64_t call_budget = 0;     // in one call by the world, within an iteration; 0 = none
+  double patience = 0;  // s of real time that an iteration or a call from the host may take before it is warned of; 0 = any
+  std::vector<std::pair<std::string, std::string>> settings;  // variables of the controller, set before its init
 };
 
 /// One active method, for reports.
@@ -136,6 +139,11 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   void warn(std::string_view text);
   /// The same, at most once per world for each `key`.
   void warn_once(std::string_view key, std::string_view text);
+  /// Say, at the place of the running statement, that `self` has no such method and which may be meant. An error is told
+  /// each time, and a warning once for each class.
+  /// @param consequence  "nothing is registered"
+  void report_unknown_method(Severity severity, const Instance& self, std::string_view method,
+                             std::string_view consequence);
   [[noreturn]] static void fail(RunErrorKind kind, const std::string& message) { throw RunError(kind, message); }
   std::string text(const Value& v);  // as `print` shows it, asking objects for their get-description
   std::string stack_trace() const;   // one line per active method, outermost first
@@ -354,6 +362,7 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   [[noreturn]] void throw_out_of_memory(std::size_t depth, const Instruction* pc);
   void survive(const ScriptError& error);
   Span span_of(const Frame& frame, const Instruction* pc) const;
+  Span place_of_caller() const;
   std::vector<const Frame*> active_frames() const;  // outermost first
   const Instruction* running() const { return frame_ ? frame_->pc : nullptr; }
   void input_key(const InputEvent& event);
@@ -364,6 +373,11 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
       end_of_piece();
   }
   void end_of_piece();
+  void look_at_the_clock();
+  void apply_settings(Instance& controller);
+  /// A binary operator whose operands have no short way.
+  /// @param absent_is_zero  an operand without a value counts as 0, and nothing is said: h{k} += 1
+  Value calculate(ast::BinaryOp op, const Value& x, const Value& y, bool absent_is_zero, const Instruction* pc);
   [[noreturn]] void fail_budget() const;
   template <class Body>
   void called_by_world(Body&& body);  // with a budget of its own; being cut does not end the iteration
@@ -377,6 +391,10 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   void call_native_profiled(const Plan& plan, Instance& receiver, const Slot* caller);
   void call_function_profiled(const Native& function, Instance& self, const Slot* args, Value& result);
   void reclaim_profiled();
+
+  // snapshot.cpp
+  void check_loaded(const HashCell* session, const Instance* controller) const;
+  void name_objects(std::span<Instance* const> instances);
 
   static std::pmr::vector<StringCell*> make_constants(Heap& heap, const Program& program);
   void choose_menu(ObjectId item);
@@ -412,6 +430,7 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   bool in_stage_ = false;  // a force method runs
   Budget budget_;
   std::atomic<bool> interrupted_{false};
+  std::chrono::steady_clock::time_point run_began_{};  // if there is a limit to patience
   std::unique_ptr<Fragments> fragments_;  // once something was evaluated
   HashCell* session_ = nullptr;
   std::uint32_t nesting_ = 0;  // interpreter loops on the C++ stack

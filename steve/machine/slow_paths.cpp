@@ -1,4 +1,6 @@
 // What instructions do when the short way does not apply: conversions, members, containers, creation, printing.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 
@@ -28,6 +30,18 @@ Value Machine::null_default(StaticType type, std::uint32_t what, const Instructi
     case StaticType::Null: return {};
     default: return Value::of(static_cast<Tag>(type), nullptr);
   }
+}
+
+Value Machine::calculate(ast::BinaryOp op, const Value& x, const Value& y, bool absent_is_zero,
+                         const Instruction* pc) {
+  const bool missing = (x.tag == Tag::Null && !absent_is_zero) || y.tag == Tag::Null;
+  const Value result = binary(*heap_, op, x, y);
+  if (!missing || op > ast::BinaryOp::Pow) return result;
+  constexpr const char* kHelp = "a missing key of a hash and a method without 'return' give none";
+  if (host_.strict) throw RunError(RunErrorKind::Conversion, "no value (NULL) is used in arithmetic", kHelp);
+  if (warned_sites_.insert(pc).second)
+    warn(fmt::format("no value (NULL) is used in arithmetic; it counts as 0 ({})", kHelp));
+  return result;
 }
 
 Slot Machine::converted_reference(StaticType type, const Value& given, std::uint32_t what, bool strict,
@@ -161,8 +175,11 @@ void Machine::set_variable(Instance& instance, const VariableInfo& variable, con
   const auto what = "variable '" + program_->symbols().name(variable.name) + "' of class " + instance.cls->name;
   if (variable.array_size >= 0)
     throw RunError(RunErrorKind::Type, what + " is an array and cannot be assigned as a whole");
+  const Pin pin(*this, Value::of(Tag::Object, &instance));
   Value value = given;
   if (value.tag == Tag::Null) value = null_default(variable.type, 0, running());
+  // Whoever hears the warning may free the object.
+  if (!instance.live()) throw RunError(RunErrorKind::FreedObject, "a variable of a freed object cannot be set");
   Slot converted[9] = {};
   write_value(converted, variable.type, value, what);
   if (variable.class_name != kNoSymbol)

@@ -177,6 +177,7 @@ void Machine::load(ByteReader& in) {
 
   const auto containers = in.get_count(9);
   std::pmr::vector<Instance*> instances(memory_);
+  std::size_t promised = 0;  // slots that instances have: what the image must hold yet
   for (std::size_t i = 0; i < containers; ++i) {
     const auto tag = in.get<Tag>();
     if (tag == Tag::List) {
@@ -190,7 +191,10 @@ void Machine::load(ByteReader& in) {
     } else if (tag == Tag::Object) {
       const auto cls = in.get<ClassId>();
       if (cls >= program_->classes().size()) ByteReader::fail();
-      auto* instance = heap->instance(program_->cls(cls));
+      const ClassInfo& made = program_->cls(cls);
+      promised += made.slot_count;
+      if (promised > in.left() / sizeof(Slot)) ByteReader::fail();
+      auto* instance = heap->instance(made);
       instance->serial = in.get<std::uint64_t>();
       instance->state = in.get<Instance::State>();
       instance->auto_free = in.get_bool();
@@ -262,17 +266,40 @@ void Machine::load(ByteReader& in) {
   heap->load_state(in, cell_at);
   auto* controller = static_cast<Instance*>(reference(Tag::Object));
   const auto survived = in.get<std::uint64_t>();
-  for (auto* instance : instances) {
-    if (instance->state == Instance::State::Freed) continue;
-    if (!world_.alive(instance->id)) ByteReader::fail();
-    world_.set_user(instance->id, reinterpret_cast<std::uint64_t>(instance));
-  }
+  if (in.left() != 0) ByteReader::fail();
+  check_loaded(session, controller);
+  name_objects(instances);
   result_ = Value();
   heap_ = std::move(heap);
   strings_ = std::move(constants);
   controller_ = controller;
   session_ = session;
   survived_errors_ = survived;
+}
+
+void Machine::check_loaded(const HashCell* session, const Instance* controller) const {
+  if (controller && (!controller->live() || controller->cls != program_->controller_class())) ByteReader::fail();
+  for (std::uint32_t i = 0; session && i < session->used; ++i) {
+    const HashCell::Entry& entry = session->entries[i];
+    if (entry.live() && (entry.key.tag != Tag::String || !entry.key.ref)) ByteReader::fail();
+  }
+}
+
+/// Every object of the world is one of these, and each of these that was not freed is an object of the world.
+void Machine::name_objects(std::span<Instance* const> instances) {
+  for (const ObjectId id : world_.objects()) world_.set_user(id, 0);
+  std::size_t live = 0;
+  for (Instance* instance : instances) {
+    if (!instance->live()) continue;
+    const ObjectId id = instance->id;
+    const ClassInfo& cls = *instance->cls;
+    if (!world_.alive(id) || world_.user(id) != 0 || world_.class_of(id) != cls.id ||
+        !world_.runs(id, cls.iterate != nullptr, cls.post_iterate != nullptr))
+      ByteReader::fail();
+    world_.set_user(id, reinterpret_cast<std::uint64_t>(instance));
+    ++live;
+  }
+  if (live != world_.object_count()) ByteReader::fail();
 }
 
 void Machine::hash(Hasher& hasher) const {

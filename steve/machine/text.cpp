@@ -1,4 +1,5 @@
-// The text of values (9): the same bytes as the C library's printf in the "C" locale, without its cost.
+// The text of values (9): the same bytes as the C library's printf in the "C" locale, without its cost. A number that six
+// decimals would show as another one, such as 1e-9 as 0.000000, is the shortest text that reads back.
 #include <algorithm>
 #include <charconv>
 
@@ -19,6 +20,18 @@ void append_number(std::string& out, double d, std::chars_format format, int dec
   char buffer[kLongestDouble];
   const auto result = std::to_chars(buffer, buffer + sizeof buffer, d, format, decimals);
   out.append(buffer, result.ptr);
+}
+
+// Six decimals are off by half a millionth at most: that is too much of a number below this, unless it is a round one.
+constexpr double kSmall = 1e-3;
+
+// @return  the end of the text
+char* write_double(char* begin, char* end, double d) {
+  char* last = std::to_chars(begin, end, d, std::chars_format::fixed, 6).ptr;
+  if (d == 0 || !(std::abs(d) < kSmall)) return last;
+  double shown = 0;
+  std::from_chars(begin, last, shown);
+  return shown == d ? last : std::to_chars(begin, end, d).ptr;
 }
 
 void append_triple(std::string& out, const double* v, std::chars_format format) {
@@ -58,10 +71,11 @@ void append_object(std::string& out, Instance* instance, const Describe& describ
   if (describe && instance->live()) out += describe(*instance);
 }
 
-/// One open list: where its text goes on. Keeps the list alive while descriptions run script.
-struct OpenList {
-  ListCell* list;
-  std::uint32_t next;
+/// One open list or hash: where its text goes on. Keeps it alive while descriptions run script.
+struct Open {
+  Cell* cell;
+  std::uint32_t next = 0;
+  bool empty = true;  // nothing of it is written yet
 };
 
 class Writer {
@@ -75,16 +89,10 @@ class Writer {
   void write(const Value& v) {
     append(v);
     while (!open_.empty()) {
-      OpenList& top = open_.back();
-      if (top.next >= top.list->size) {
-        out_ += " }";
-        close();
-        continue;
-      }
       if (out_.size() >= check_at_) check_room();
-      out_ += top.next == 0 ? " " : ", ";
-      const Value element = (*top.list)[top.next++];
-      append(element);
+      if (open_.back().cell->tag == Tag::List ? next_element() : next_entry()) continue;
+      out_ += " }";
+      close();
     }
   }
 
@@ -98,8 +106,8 @@ class Writer {
       case Tag::Matrix: append_matrix(v.matrix()); break;
       case Tag::String: out_ += view(v.string()); break;
       case Tag::Object: append_object(out_, v.object(), describe_); break;
-      case Tag::List: append_list(v.list()); break;
-      case Tag::Hash: out_ += "{ hash table }"; break;
+      case Tag::List: open(v.list(), v.list() != nullptr ? v.list()->size : 0, "list"); break;
+      case Tag::Hash: open(v.hash(), v.hash() != nullptr ? v.hash()->count_live : 0, "hash"); break;
       case Tag::Pointer:
         if (v.pointer() == nullptr)
           out_ += "(NULL pointer)";
@@ -121,24 +129,75 @@ class Writer {
     out_ += " ]";
   }
 
-  void append_list(ListCell* list) {
-    if (list == nullptr || list->size == 0) {
+  template <class Container>
+  void open(Container* cell, std::uint32_t size, std::string_view kind) {
+    if (size == 0) {
       out_ += "{ }";
-    } else if (std::any_of(open_.begin(), open_.end(), [list](const OpenList& o) { return o.list == list; })) {
-      out_ += "[circular list reference ";
-      append_address(out_, list->serial);
+    } else if (std::any_of(open_.begin(), open_.end(), [cell](const Open& o) { return o.cell == cell; })) {
+      fmt::format_to(std::back_inserter(out_), "[circular {} reference ", kind);
+      append_address(out_, cell->serial);
       out_ += ']';
     } else if (open_.size() >= kDeepest) {
       out_ += "{ ... }";
     } else {
-      open_.push_back({list, 0});
-      if (pins_) heap_->retain(list);
+      open_.push_back({cell});
+      if (pins_) heap_->retain(cell);
       out_ += '{';
     }
   }
 
+  /// @return  false at the end of the innermost list
+  bool next_element() {
+    Open& top = open_.back();
+    auto& list = static_cast<ListCell&>(*top.cell);
+    if (top.next >= list.size) return false;
+    separate(top);
+    const Value element = list[top.next++];
+    append(element);
+    return true;
+  }
+
+  /// The next `key: value` of the innermost hash, in the order in which the keys came.
+  bool next_entry() {
+    Open& top = open_.back();
+    auto& hash = static_cast<HashCell&>(*top.cell);
+    while (top.next < hash.used && !hash.entries[top.next].live()) ++top.next;
+    if (top.next >= hash.used) return false;
+    separate(top);
+    const HashCell::Entry entry = hash.entries[top.next++];
+    append_key(entry.key);
+    out_ += ": ";
+    append(entry.value);
+    return true;
+  }
+
+  // A key that is a container or an object is known by what it is, not by what is in it. No script runs for it, which
+  // could take the value away.
+  void append_key(const Value& key) {
+    if (key.tag == Tag::Object) {
+      append_object(out_, key.object(), {});
+      if (key.object() != nullptr) out_.pop_back();  // the blank that a description would follow
+    } else if (key.tag == Tag::List || key.tag == Tag::Hash) {
+      out_ += key.tag == Tag::List ? "[list " : "[hash ";
+      append_address(out_, key.tag == Tag::List ? serial_of(key.list()) : serial_of(key.hash()));
+      out_ += ']';
+    } else {
+      append(key);
+    }
+  }
+
+  template <class Container>
+  static std::uint64_t serial_of(const Container* cell) {
+    return cell != nullptr ? cell->serial : 0;
+  }
+
+  void separate(Open& top) {
+    out_ += top.empty ? " " : ", ";
+    top.empty = false;
+  }
+
   void close() {
-    if (pins_) heap_->release(open_.back().list);
+    if (pins_) heap_->release(open_.back().cell);
     open_.pop_back();
   }
 
@@ -153,7 +212,7 @@ class Writer {
   Heap* heap_;
   bool pins_;  // descriptions run script, which may drop what is being written
   std::size_t check_at_ = std::size_t{1} << 20;
-  std::vector<OpenList> open_;
+  std::vector<Open> open_;
 };
 
 }  // namespace
@@ -163,7 +222,10 @@ void append_int(std::string& out, std::int32_t i) {
   out.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, i).ptr);
 }
 
-void append_double(std::string& out, double d) { append_number(out, d, std::chars_format::fixed, 6); }
+void append_double(std::string& out, double d) {
+  char buffer[kLongestDouble];
+  out.append(buffer, write_double(buffer, buffer + sizeof buffer, d));
+}
 
 void append_vector(std::string& out, const Vector3& v) { append_vector(out, v.data()); }
 
@@ -185,7 +247,7 @@ StringCell* number_to_string(Heap& heap, std::int32_t i) {
 
 StringCell* number_to_string(Heap& heap, double d) {
   char buffer[kLongestDouble];
-  const char* end = std::to_chars(buffer, buffer + sizeof buffer, d, std::chars_format::fixed, 6).ptr;
+  const char* end = write_double(buffer, buffer + sizeof buffer, d);
   return heap.string({buffer, static_cast<std::size_t>(end - buffer)});
 }
 

@@ -40,6 +40,8 @@ help)
   expect 0 help && has out "run" && has out "check"
   expect 0 --help && has out "run"
   expect 0 run --help && has out "--iterations" && has out "Exit status"
+  expect 0 help run && has out "--iterations" && has out "Exit status"
+  expect 2 help fly && has err "fly"
   expect 0 --version && same "$(cut -d. -f1 out)" "breve 0"
   ;;
 wrong_usage)
@@ -111,9 +113,41 @@ stats)
   tail -n 1 err | python3 -c '
 import json, sys
 s = json.loads(sys.stdin.read())
-assert list(s) == ["iterations", "sim_seconds", "wall_seconds", "cpu_seconds", "objects", "seed", "hash"], s
+assert list(s) == ["iterations", "sim_seconds", "wall_seconds", "cpu_seconds", "objects", "seed", "hash", "guard"], s
+assert s["guard"] == {"reported": 0, "refined": 0, "put to rest": 0}, s
 assert s["iterations"] == 7 and abs(s["sim_seconds"] - 0.42) < 1e-12 and s["seed"] == 3 and s["objects"] > 1, s
 assert s["wall_seconds"] > 0 and s["cpu_seconds"] >= 0 and s["hash"].startswith("0x"), s' || fail "the statistics"
+  ;;
+guard)
+  cat >a.tz <<END
+@use PhysicalControl.
+@use Shape.
+Controller A.
+PhysicalControl : A {
+  + to init:
+    spinner (object).
+    spinner = new Mobile.
+    spinner set-shape to (new Cube init-with size (1, 2, 3)).
+    spinner enable-physics.
+    spinner set-rotational-velocity to (1, 400, 2).
+    self set-accuracy to "fast".
+}
+END
+  expect 0 run a.tz --iterations 3 --seed 1 --stats
+  has err '^breve: the guard acted [1-9][0-9]* times$'
+  has err ' times: Mobile, refined: .* (first at 0 s, largest value '
+  ! grep -q '^breve: guard:' err || fail "each is told with --verbose alone"
+  tail -n 1 err | python3 -c '
+import json, sys
+s = json.loads(sys.stdin.read())["guard"]
+assert s["refined"] > 0, s' || fail "the counts"
+  expect 0 run a.tz --iterations 3 --seed 1 --verbose
+  has err '^breve: guard: 0 s: Mobile, refined: '
+  acted=$(sed -n 's/^breve: the guard acted \([0-9]*\) times$/\1/p' err)
+  same "$(grep -c '^breve: guard:' err)" "$acted"
+  expect 0 run a.tz --iterations 3 --seed 1 --verbose --quiet && same "$(cat err)" ""
+  program b.tz '' ''
+  expect 0 run b.tz --iterations 3 --seed 1 --verbose && same "$(cat err)" ""
   ;;
 hash)
   program a.tz 'bug = new Mobile.' 'bug set-velocity to random[(1, 1, 1)].'
@@ -163,6 +197,39 @@ strict)
   sed -i 's/^}$/  + to nothing: return.\n}/' a.tz
   expect 0 run a.tz --iterations 1
   expect 1 run a.tz --iterations 1 --strict
+  ;;
+strict_warnings)
+  program a.tz 'print "ready".' ''
+  sed -i 's/bug (object)\./spare, bug (object)./' a.tz
+  expect 0 run a.tz --iterations 1 --seed 1 && has err "warning: .*spare"
+  expect 1 run a.tz --iterations 1 --strict && has err "error: .*spare" && same "$(cat out)" ""
+  expect 1 run a.tz --iterations 1 --strict --quiet && has err "spare"
+  expect 0 check a.tz && expect 1 check a.tz --strict && has err "error: .*spare" && has out "1 error, 0 warnings"
+  expect 0 check a.tz --strict --allow lint-unused-variable
+  ;;
+set)
+  program a.tz 'print turns, (self get-random-seed).' ''
+  expect 0 run a.tz --iterations 1 --quiet --seed 42 --set turns=5 && same "$(cat out)" "5 42"
+  expect 0 run a.tz --iterations 1 --quiet --seed 42 --set turns=5 --set turns=6 && same "$(cat out)" "6 42"
+  expect 2 run a.tz --iterations 1 --set turns && has err "NAME=VALUE"
+  expect 1 run a.tz --iterations 1 --set trns=5 && has err "turns"
+  expect 1 run a.tz --iterations 1 --set turns=many && has err "int"
+  ;;
+limits_given)
+  program a.tz "" 'while 1: turns += 1.'
+  expect 3 run a.tz --iterations 1 --budget 1000 && has err "budget"
+  program a.tz "" 'self down.'
+  sed -i 's/^}$/  + to down: self down.\n}/' a.tz
+  expect 3 run a.tz --iterations 1 --depth 100 && has err "100"
+  program a.tz "" 'while 1: push 1 onto bugs.'
+  sed -i 's/turns (int)\./turns (int). bugs (list)./' a.tz
+  expect 3 run a.tz --iterations 1 --memory 20
+  ;;
+near_option)
+  program a.tz "" ""
+  expect 2 run a.tz --iteration 3 && has err "Did you mean --iterations?"
+  expect 2 run a.tz --iterations 1 --sede 3 && has err "Did you mean --seed?"
+  expect 2 run a.tz --zzz && has err "breve help run"
   ;;
 includes)
   mkdir -p sub/deep elsewhere

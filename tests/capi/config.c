@@ -166,6 +166,58 @@ static void programs_and_worlds_outlive_the_runtime_handle(void) {
   scene_close(&s);
 }
 
+static const char* const settings_text =
+    "@use Control. Controller Set. Control : Set {\n"
+    "  + variables: n, seen (int). x (float). v (vector). s (string). k (list).\n"
+    "  + to init: seen = n.\n"
+    "}\n";
+
+static void variables_of_the_controller_are_set_before_its_init(void) {
+  breve_setting settings[] = {{"n", "-7"}, {"x", "2.5e3"}, {"v", "(1, 2.5, -3)"}, {"s", "7 = seven"}};
+  breve_world_config config = breve_world_config_default();
+  config.settings = settings;
+  config.setting_count = 4;
+  scene s;
+  if (!scene_open_text(&s, settings_text, &config)) return;
+  CHECK(int_of(&s, "n") == -7 && int_of(&s, "seen") == -7);
+  CHECK(value_of(&s, "x").as.number == 2500);
+  CHECK(value_of(&s, "v").as.vector[1] == 2.5);
+  CHECK(strncmp(value_of(&s, "s").as.string.bytes, "7 = seven", 9) == 0);
+  const breve_setting wrong[] = {{"nn", "1"}, {"n", "1.5"}, {"n", ""}, {"x", "fast"}, {"v", "1, 2"}, {"k", "{}"}};
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
+    breve_world* world = NULL;
+    config.settings = &wrong[i];
+    config.setting_count = 1;
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_create(s.runtime, s.program, &config, &world));
+    CHECK(strstr(breve_runtime_last_error(s.runtime)->message, wrong[i].name) != NULL);
+    CHECK(world == NULL);
+  }
+  scene_close(&s);
+}
+
+static void what_takes_longer_than_patience_is_told_once_with_its_place(void) {
+  breve_world_config config = breve_world_config_default();
+  config.patience = 0.01;
+  config.budget = 200000000;
+  scene s;
+  if (!scene_open_text(&s,
+                       "@use Control. Controller Long. Control : Long {\n"
+                       "  + to go:\n"
+                       "    n (int).\n"
+                       "    while n < 20000000: n += 1.\n"
+                       "}\n",
+                       &config))
+    return;
+  CHECK(s.said.warnings == 0);
+  for (int i = 0; i < 2; ++i) CHECK_STATUS(BREVE_OK, breve_object_call(s.world, breve_world_controller(s.world), "go", NULL, 0, NULL));
+  CHECK(s.said.warnings == 1);
+  CHECK(strstr(s.said.warning, ":4:") != NULL);
+  config.patience = -1;
+  breve_world* world = NULL;
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_create(s.runtime, s.program, &config, &world));
+  scene_close(&s);
+}
+
 static void two_runtimes_share_nothing(void) {
   scene a, b;
   if (!scene_open(&a) || !scene_open(&b)) return;
@@ -194,4 +246,6 @@ void config_suite(void) {
   RUN(beyond_the_memory_limit_no_world_is_made);
   RUN(programs_and_worlds_outlive_the_runtime_handle);
   RUN(two_runtimes_share_nothing);
+  RUN(variables_of_the_controller_are_set_before_its_init);
+  RUN(what_takes_longer_than_patience_is_told_once_with_its_place);
 }

@@ -45,7 +45,9 @@ void calls_suite(void);
 void config_suite(void);
 void errors_suite(void);
 void evaluate_suite(void);
+void images_suite(void);
 void input_suite(void);
+void moments_suite(void);
 void nulls_suite(void);
 void objects_suite(void);
 void profile_suite(void);
@@ -71,7 +73,9 @@ static const struct {
     {"config", config_suite},
     {"errors", errors_suite},
     {"evaluate", evaluate_suite},
+    {"images", images_suite},
     {"input", input_suite},
+    {"moments", moments_suite},
     {"nulls", nulls_suite},
     {"objects", objects_suite},
     {"profile", profile_suite},

@@ -48,6 +48,7 @@ static void null_handles_give_an_argument_error_or_nothing(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_free(NULL, o));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_pose(NULL, o, &pose));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_pose(NULL, o, &pose));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_target(NULL, o, &pose));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_velocity(NULL, o, d));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_velocity(NULL, o, d));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_rotational_velocity(NULL, o, d));
@@ -134,6 +135,7 @@ static void null_arguments_give_an_argument_error(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_create(w, "Ball", NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_pose(w, ball, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_pose(w, ball, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_target(w, ball, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_velocity(w, ball, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_velocity(w, ball, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_rotational_velocity(w, ball, NULL));

@@ -66,6 +66,7 @@ static void a_freed_object_is_stale_everywhere(void) {
   CHECK_STATUS(BREVE_ERROR_STALE, breve_object_is_a(s.world, ball, "Ball", &is));
   CHECK_STATUS(BREVE_ERROR_STALE, breve_object_pose(s.world, ball, &pose));
   CHECK_STATUS(BREVE_ERROR_STALE, breve_object_set_pose(s.world, ball, &pose));
+  CHECK_STATUS(BREVE_ERROR_STALE, breve_object_set_target(s.world, ball, &pose));
   CHECK_STATUS(BREVE_ERROR_STALE, breve_object_velocity(s.world, ball, v));
   CHECK_STATUS(BREVE_ERROR_STALE, breve_object_set_velocity(s.world, ball, v));
   CHECK_STATUS(BREVE_ERROR_STALE, breve_object_rotational_velocity(s.world, ball, v));

@@ -74,6 +74,10 @@ static breve_status do_pose(place* p) {
   const breve_status status = breve_object_pose(p->world, p->ball, &pose);
   return status != BREVE_OK ? status : breve_object_set_pose(p->world, p->ball, &pose);
 }
+static breve_status do_target(place* p) {
+  const breve_pose pose = {{0, 0, 0}, {1, 0, 0, 0}};
+  return breve_object_set_target(p->world, p->ball, &pose);
+}
 static breve_status do_velocity(place* p) {
   double v[3];
   const breve_status status = breve_object_velocity(p->world, p->ball, v);
@@ -310,6 +314,7 @@ static const struct {
     {"breve_object_is_a", do_is_a, WORKS, WORKS},
     {"breve_object_create and _free", do_create_and_free, WORKS, WORKS},
     {"breve_object_pose", do_pose, WORKS, WORKS},
+    {"breve_object_set_target", do_target, WORKS, WORKS},
     {"breve_object_velocity", do_velocity, WORKS, WORKS},
     {"breve_object_rotational_velocity", do_turning, WORKS, WORKS},
     {"breve_object_color", do_color, WORKS, WORKS},

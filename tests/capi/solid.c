@@ -205,8 +205,8 @@ static void shapes_of_every_kind_are_made_and_weighed(void) {
   const breve_object body = make(&s, "Mobile");
   static const double corners[] = {-1, 0, -1, 1, 0, -1, 1, 0, 1, -1, 0, 1, 0, 1, 0};
   static const uint32_t sizes[] = {4, 3, 3, 3, 3}, indices[] = {0, 1, 2, 3, 0, 4, 1, 1, 4, 2, 2, 4, 3, 3, 4, 0};
-  breve_geometry g[5];
-  for (int i = 0; i < 5; ++i) {
+  breve_geometry g[7];
+  for (int i = 0; i < 7; ++i) {
     g[i] = breve_geometry_default();
     g[i].kind = (breve_shape_kind)i;
     g[i].density = 2;
@@ -226,8 +226,11 @@ static void shapes_of_every_kind_are_made_and_weighed(void) {
   g[4].heights = heights;
   g[4].columns = 3;
   g[4].rows = 2;
-  const double masses[] = {2 * 4.0 / 3 * 3.14159265358979323846, 6, 2 * 4.0 / 3, 2 * 4.0 / 3};
-  for (int i = 0; i < 5; ++i) {
+  g[5].height = 3;
+  g[6].height = 3;
+  const double pi = 3.14159265358979323846;
+  const double masses[] = {2 * 4.0 / 3 * pi, 6, 2 * 4.0 / 3, 2 * 4.0 / 3, 0, 6 * pi, 6 * pi + 2 * 4.0 / 3 * pi};
+  for (int i = 0; i < 7; ++i) {
     breve_object shape;
     breve_shape drawn;
     double mass = 0;
@@ -237,15 +240,21 @@ static void shapes_of_every_kind_are_made_and_weighed(void) {
     }
     CHECK_STATUS(BREVE_OK, breve_object_set_shape(s.world, body, shape));
     CHECK_STATUS(BREVE_OK, breve_object_mass(s.world, body, &mass));
-    if (i < 4) CHECK_NEAR(masses[i], mass, 1e-9);
+    if (i != 4) CHECK_NEAR(masses[i], mass, 1e-9);
     CHECK_STATUS(BREVE_OK, breve_object_shape(s.world, body, &drawn));
     CHECK(drawn.kind == g[i].kind);
+    if (i >= 5) CHECK(drawn.vertex_count >= 64 && drawn.face_count >= 34);
+    if (i == 6) CHECK_NEAR(5, drawn.size[1], 1e-12);
   }
   breve_object shape = nobody;
   g[1].size[2] = 0;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_shape_create(s.world, &g[1], &shape));
   g[0].density = -1;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_shape_create(s.world, &g[0], &shape));
+  g[5].height = 0;
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_shape_create(s.world, &g[5], &shape));
+  g[6].radius = -1;
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_shape_create(s.world, &g[6], &shape));
   g[3].index_count = 15;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_shape_create(s.world, &g[3], &shape));
   g[2].vertex_count = 4;
@@ -255,6 +264,44 @@ static void shapes_of_every_kind_are_made_and_weighed(void) {
   g[4].kind = (breve_shape_kind)11;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_shape_create(s.world, &g[4], &shape));
   CHECK_STATUS(BREVE_ERROR_SCRIPT, breve_object_set_shape(s.world, body, body));
+  scene_close(&s);
+}
+
+static void what_has_a_target_carries(void) {
+  scene s;
+  if (!open_library(&s)) return;
+  const breve_object plate = make(&s, "Stationary"), ball = make(&s, "Mobile");
+  breve_geometry box = breve_geometry_default();
+  breve_object shape;
+  box.kind = BREVE_SHAPE_BOX;
+  box.size[0] = box.size[2] = 4;
+  CHECK_STATUS(BREVE_OK, breve_shape_create(s.world, &box, &shape));
+  CHECK_STATUS(BREVE_OK, breve_object_set_shape(s.world, plate, shape));
+  box.size[0] = box.size[2] = 1;
+  CHECK_STATUS(BREVE_OK, breve_shape_create(s.world, &box, &shape));
+  CHECK_STATUS(BREVE_OK, breve_object_set_shape(s.world, ball, shape));
+  const breve_material rough = {1, 1, 0, 0, 0};
+  CHECK_STATUS(BREVE_OK, breve_object_set_material(s.world, plate, &rough));
+  CHECK_STATUS(BREVE_OK, breve_object_set_material(s.world, ball, &rough));
+  breve_pose pose = {{0, 1, 0}, {1, 0, 0, 0}};
+  CHECK_STATUS(BREVE_OK, breve_object_set_pose(s.world, ball, &pose));
+  CHECK_STATUS(BREVE_OK, breve_object_set_physics(s.world, ball, true));
+  pose.location[1] = 0;
+  double x = 0;
+  for (int i = 0; i < 60; ++i) {
+    x += 0.02;
+    pose.location[0] = x;
+    CHECK_STATUS(BREVE_OK, breve_object_set_target(s.world, plate, &pose));
+    CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+  }
+  CHECK_STATUS(BREVE_OK, breve_object_pose(s.world, plate, &pose));
+  CHECK_NEAR(x, pose.location[0], 1e-15);
+  CHECK_STATUS(BREVE_OK, breve_object_pose(s.world, ball, &pose));
+  CHECK(pose.location[0] > 0.9 * x && pose.location[0] <= x);
+  CHECK_NEAR(1, pose.location[1], 1e-3);
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_target(s.world, ball, &pose));
+  memset(pose.rotation, 0, sizeof pose.rotation);
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_target(s.world, plate, &pose));
   scene_close(&s);
 }
 
@@ -477,5 +524,6 @@ void solid_suite(void) {
   RUN(the_config_chooses_a_rung);
   RUN(impacts_energy_and_counters_are_told);
   RUN(script_and_host_see_the_same_joints);
+  RUN(what_has_a_target_carries);
   RUN(a_class_that_the_program_lacks_is_named);
 }

@@ -54,6 +54,20 @@ static void advance_runs_whole_iterations_and_keeps_the_rest(void) {
   scene_close(&s);
 }
 
+static void sixty_frames_of_a_sixtieth_are_one_second(void) {
+  const double steps[] = {1.0 / 60, 1.0 / 30, 0.025, 0.2};
+  for (int k = 0; k < 4; ++k) {
+    scene s;
+    breve_world_config config = breve_world_config_default();
+    config.iteration_step = steps[k];
+    config.integration_step = 0.0125;
+    if (!scene_open_text(&s, scene_text, &config)) return;
+    for (int i = 0; i < 60; ++i) CHECK_STATUS(BREVE_OK, breve_world_advance(s.world, 1.0 / 60, NULL));
+    CHECK_NEAR(1.0, breve_world_time(s.world), 1e-9);
+    scene_close(&s);
+  }
+}
+
 static void the_advance_limit_drops_time_that_cannot_be_caught_up(void) {
   scene s;
   breve_world_config config = breve_world_config_default();
@@ -269,6 +283,7 @@ void stepping_suite(void) {
   RUN(steps_advance_the_clock_by_the_iteration_step);
   RUN(configured_steps_replace_the_scripts_own);
   RUN(advance_runs_whole_iterations_and_keeps_the_rest);
+  RUN(sixty_frames_of_a_sixtieth_are_one_second);
   RUN(the_advance_limit_drops_time_that_cannot_be_caught_up);
   RUN(nothing_passes_while_paused);
   RUN(a_program_can_end_the_simulation);

@@ -3,6 +3,7 @@
 //   replay TARGET --seeds FIRST COUNT    what bytes_of_seed makes
 //   replay --program FILE                print the program that fuzz_run generates of a file
 //   replay --program-of-seed SEED        the same of a seed
+//   replay --selectors-of-seed SEED      print the program that fuzz_select generates of a seed
 //   replay --checksum FIRST COUNT        FNV-1a of the programs of seeds: each compiler must give the same
 #include <algorithm>
 #include <cstdio>
@@ -30,6 +31,8 @@ std::vector<std::uint8_t> read(const std::filesystem::path& path) {
 void (*target_named(std::string_view name))(Bytes) {
   if (name == "compile") return breve::fuzz::fuzz_compile;
   if (name == "run") return breve::fuzz::fuzz_run;
+  if (name == "select") return breve::fuzz::fuzz_select;
+  if (name == "image") return breve::fuzz::fuzz_image;
   return nullptr;
 }
 
@@ -72,6 +75,10 @@ int main(int argc, char** argv) {
   if (arguments.size() == 2 && arguments[0] == "--program") return show(read(arguments[1]));
   if (arguments.size() == 2 && arguments[0] == "--program-of-seed")
     return show(breve::fuzz::bytes_of_seed(number(arguments[1])));
+  if (arguments.size() == 2 && arguments[0] == "--selectors-of-seed") {
+    std::fputs(breve::fuzz::select_program_of(breve::fuzz::bytes_of_seed(number(arguments[1]))).c_str(), stdout);
+    return 0;
+  }
   if (arguments.size() == 3 && arguments[0] == "--checksum")
     return show_checksum(number(arguments[1]), number(arguments[2]));
   auto* const target = arguments.size() >= 2 ? target_named(arguments[0]) : nullptr;

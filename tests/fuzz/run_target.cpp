@@ -112,20 +112,6 @@ std::string iterate(breve_world* world, Run& run, std::size_t count, const Plan&
   return seen + run.printed;
 }
 
-/// The image of a world; nothing if the memory limit leaves no room for it.
-std::string snapshot(const breve_world* world, const std::string& program) {
-  std::size_t size = 0;
-  std::string image;
-  breve_status status = breve_world_snapshot(world, nullptr, 0, &size);
-  if (status == BREVE_OK) {
-    image.resize(size);
-    status = breve_world_snapshot(world, image.data(), size, &size);
-  }
-  if (status == BREVE_ERROR_MEMORY) return "";
-  if (status != BREVE_OK) finding(breve_world_last_error(world)->text, program);
-  return image;
-}
-
 /// A world that has no memory left may get by with other amounts after a restore.
 bool out_of_memory(const std::string& seen) { return seen.find("BREVE_ERROR_MEMORY") != std::string::npos; }
 
@@ -173,7 +159,7 @@ void fuzz_run(Bytes bytes) {
   const std::string one_before = iterate(one.get(), run, plan.before, plan, text);
   const std::string hash = hash_of(one.get(), text);
   const bool whole = !out_of_memory(one_before) && !out_of_memory(hash);
-  const std::string image = whole ? snapshot(one.get(), text) : "";
+  const std::string image = whole ? image_of(one.get(), text) : "";
   const std::string one_after = iterate(one.get(), run, plan.after, plan, text);
   const std::string other_before = iterate(other.get(), run, plan.before, plan, text);
   const std::string other_after = iterate(other.get(), run, plan.after, plan, text);

@@ -1,9 +1,11 @@
-// What the fuzzers share: handles of breve.h that let go of themselves, and the word with which a finding ends.
+// What the fuzzers share: handles of breve.h that let go of themselves, images of worlds, and the word with which a
+// finding ends.
 #pragma once
 
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include "breve/breve.h"
@@ -28,6 +30,20 @@ using World = std::unique_ptr<breve_world, Destroy>;
 
 inline void require(bool condition, std::string_view what, std::string_view about = {}) {
   if (!condition) finding(what, about);
+}
+
+/// The image of a world; nothing if the memory limit leaves no room for it.
+inline std::string image_of(const breve_world* world, std::string_view program) {
+  std::size_t size = 0;
+  std::string image;
+  breve_status status = breve_world_snapshot(world, nullptr, 0, &size);
+  if (status == BREVE_OK) {
+    image.resize(size);
+    status = breve_world_snapshot(world, image.data(), size, &size);
+  }
+  if (status == BREVE_ERROR_MEMORY) return "";
+  if (status != BREVE_OK) finding(breve_world_last_error(world)->text, program);
+  return image;
 }
 
 inline Runtime make_runtime(const breve_runtime_config& config) {

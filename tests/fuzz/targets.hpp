@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 
 #include "choices.hpp"
 
@@ -13,6 +14,14 @@ using Bytes = std::span<const std::uint8_t>;
 
 /// Any bytes as the text of a program and of its modules, which are parted by bytes 0x1e.
 void fuzz_compile(Bytes bytes);
+
+/// Bytes as a choice of a world and of changes to an image of it. See image_target.cpp.
+void fuzz_image(Bytes bytes);
+
+/// Bytes as the choices of a generator of programs that call any selector of the class library. See select_target.cpp.
+void fuzz_select(Bytes bytes);
+/// The program that fuzz_select makes of them.
+std::string select_program_of(Bytes bytes);
 
 /// Bytes as the choices of a generator of valid programs, which are compiled and run. See run_target.cpp.
 void fuzz_run(Bytes bytes);

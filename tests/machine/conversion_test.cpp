@@ -75,7 +75,7 @@ TEST(Conversion, StringTakesEverything) {
   EXPECT_EQ(as_text(Tag::Vector), "(1.00000, 2.00000, 3.00000)");
   EXPECT_EQ(as_text(Tag::String), "3.75x");
   EXPECT_EQ(as_text(Tag::List), "{ 1, ab }");
-  EXPECT_EQ(as_text(Tag::Hash), "{ hash table }");
+  EXPECT_EQ(as_text(Tag::Hash), "{ }");
   EXPECT_EQ(as_text(Tag::Data), "01ab");
   EXPECT_EQ(as_text(Tag::Object).substr(0, 8), "Node (0x");
 }

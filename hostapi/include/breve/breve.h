@@ -326,6 +326,13 @@ typedef struct breve_trace_event {
    functions that do give BREVE_ERROR_BUSY. */
 typedef void (*breve_trace_fn)(void* user, const breve_trace_event* event);
 
+/* A variable of the controller, and the text of the value that it has before the controller's `init` runs: an int, a
+   float, a vector as (x, y, z), or for a string any text. */
+typedef struct breve_setting {
+  const char* name;
+  const char* value;
+} breve_setting;
+
 typedef struct breve_world_config {
   size_t struct_size; /* as breve_world_config_default gives it; a smaller one of an older header is accepted */
   uint64_t seed;      /* of the world's generator of random numbers: any number. Default 1 */
@@ -338,8 +345,10 @@ typedef struct breve_world_config {
   uint32_t depth_limit;         /* nested calls; 0: the default of 5000. Beyond it: BREVE_ERROR_DEPTH */
   uint32_t advance_limit;       /* iterations that one breve_world_advance may run; time that is left over is then
                                    dropped; 0: none. Default 0 */
-  double iteration_step;        /* s, set after the controller's init; 0: the script's own. Default 0 */
-  double integration_step;      /* s, set after the controller's init; 0: the script's own. Default 0 */
+  double iteration_step;        /* s, how long each iteration lasts, exactly; set after the controller's init; 0: the
+                                   script's own. Default 0 */
+  double integration_step;      /* s, the longest sub-step: an iteration is divided into equal sub-steps, as few as are
+                                   no longer. Set after the controller's init; 0: the script's own. Default 0 */
   bool strict;                  /* doubtful things that are warnings become errors. Default false */
   bool verbose;                 /* say more: once for each obsolete method that is used. Default false */
   bool coarse_random;           /* random[] of floats and vectors draws from 32,768 values, as programs written for
@@ -360,6 +369,11 @@ typedef struct breve_world_config {
                                    controller's init; copied; NULL: the script's own. Default NULL */
   double length_unit;           /* m, what a flat world computes with as 1, set after the controller's init: sizes of 0.1
                                    to 10 of it are best; 0: the script's own. Default 0 */
+  const breve_setting* settings; /* copied; NULL: none. A name that the controller has no variable of, or a text that is
+                                   no value of its type: BREVE_ERROR_ARGUMENT. Default NULL */
+  size_t setting_count;         /* 0 if settings is NULL. Default 0 */
+  double patience;              /* s of real time: what runs longer in one iteration, or in one call by the host, is told
+                                   once on BREVE_CHANNEL_WARNING, with the place where it is; 0: never. Default 0 */
 } breve_world_config;
 
 /* Budgets. Each turn of a loop, each call of a method or function and each new object counts 1, whoever makes the call:
@@ -478,10 +492,16 @@ BREVE_API breve_status breve_object_pose(const breve_world* world, breve_object 
    BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: not finite, or a quaternion of length 0; nothing is changed. */
 BREVE_API breve_status breve_object_set_pose(breve_world* world, breve_object object, const breve_pose* pose);
 
+/* Let an object without physics be somewhere at the end of the next iteration: it goes straight and evenly, pushes and
+   carries on the way the bodies with physics that it touches, and stands then.
+   BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: as breve_object_set_pose, or the object has physics. */
+BREVE_API breve_status breve_object_set_target(breve_world* world, breve_object object, const breve_pose* pose);
+
 /* Velocity of the centre, length units a second, world frame. BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_velocity(const breve_world* world, breve_object object, double velocity[3]);
 
-/* BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: not finite. */
+/* An object without physics that was given a velocity, a Stationary too, pushes and carries bodies that have physics.
+   BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: not finite. */
 BREVE_API breve_status breve_object_set_velocity(breve_world* world, breve_object object, const double velocity[3]);
 
 /* Rotational velocity, rad/s; a kinematic object's is in its own frame. BREVE_OK; BREVE_ERROR_NO_BODY. */
@@ -503,7 +523,9 @@ typedef enum breve_shape_kind {
   BREVE_SHAPE_BOX = 1,
   BREVE_SHAPE_CONVEX = 2,
   BREVE_SHAPE_MESH = 3,        /* triangles; they need not be convex, nor closed */
-  BREVE_SHAPE_HEIGHT_FIELD = 4 /* ground: a grid of triangles, seen from above */
+  BREVE_SHAPE_HEIGHT_FIELD = 4, /* ground: a grid of triangles, seen from above */
+  BREVE_SHAPE_CYLINDER = 5,     /* exact; the polygons show it with 32 sides */
+  BREVE_SHAPE_CAPSULE = 6       /* likewise: all points within a radius of a straight piece */
 } breve_shape_kind;
 
 /* The shape that an object is drawn with, in its own frame about its centre. */
@@ -552,7 +574,7 @@ typedef struct breve_geometry {
   size_t struct_size;     /* as breve_geometry_default gives it */
   breve_shape_kind kind;  /* Default BREVE_SHAPE_SPHERE */
   uint32_t reserved;      /* must be 0 */
-  double radius;          /* of a sphere, > 0. Default 1 */
+  double radius;          /* of a sphere, cylinder or capsule, > 0. Default 1 */
   double size[3];         /* edges of a box, each > 0. Default 1, 1, 1 */
   const double* vertices; /* of a convex solid or a mesh: x, y, z of each corner. Default NULL */
   size_t vertex_count;    /* Default 0 */
@@ -567,6 +589,8 @@ typedef struct breve_geometry {
   uint32_t columns, rows;     /* 2 to 4097. Default 0 */
   double tile;                /* edge of a cell, > 0. Default 1 */
   double density;             /* > 0; mass is density times volume. Default 1 */
+  double height; /* of a cylinder about y, whose caps are at +-height/2 (in a flat world it is about z, a disc); of a
+                    capsule along y, between the centres of its round ends; > 0. Default 1 */
 } breve_geometry;
 
 /* The defaults named above. */
@@ -674,7 +698,7 @@ BREVE_API breve_status breve_joint_read(breve_world* world, breve_object joint, 
 typedef struct breve_joint_drive {
   size_t struct_size;      /* sizeof(breve_joint_drive); breve_joint_get_drive fills it in */
   double motor_speed[3];   /* what the motor aims at, for each axis. Default 0 */
-  double strength_limit;   /* most that it uses for that, cut to 0 .. hard_limit; 0: no motor. Default 0 */
+  double strength_limit;   /* most that it uses for that, cut to 0 .. hard_limit, told once; 0: no motor. Default 0 */
   double double_strength;  /* 1/s, added to the motor's speed outside of double_min .. double_max. Default 0 */
   double double_min, double_max; /* Default 0 */
   double damping;                /* force per speed, >= 0. Default 0 */
@@ -921,7 +945,7 @@ typedef struct breve_energy {
   double potential;     /* in the field of gravity, 0 at the world's origin */
   double springs;       /* of joints, of Springs and of contacts */
   double motor_work;    /* of the motors of joints */
-  double script_work;   /* of forces that scripts and hosts set, and of moving, striking and changing bodies */
+  double script_work;   /* of forces that scripts and hosts set, and of all else that they change (docs/physics.md) */
   double contact_loss;  /* in contacts, along the normal */
   double friction_loss; /* in contacts, along the surface */
   double drag_loss;     /* of dampers */

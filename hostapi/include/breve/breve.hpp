@@ -200,6 +200,9 @@ class World {
     return {status(s), pose};
   }
   Status set_pose(Object object, const breve_pose& pose) { return status(breve_object_set_pose(get(), object, &pose)); }
+  Status set_target(Object object, const breve_pose& pose) {
+    return status(breve_object_set_target(get(), object, &pose));
+  }
   Result<Vector> velocity(Object object) const {
     Vector v{};
     const breve_status s = breve_object_velocity(get(), object, v.data());
