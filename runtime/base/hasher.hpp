@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <string_view>
 
 #include "runtime/base/math.hpp"
@@ -17,7 +18,10 @@ class Hasher {
     const Wide product = static_cast<Wide>(state_ ^ word) * kMultiplier;
     state_ = static_cast<std::uint64_t>(product) ^ static_cast<std::uint64_t>(product >> 64) ^ kIncrement;
   }
-  void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
+  /// All that are not a number count as one: which of them arithmetic gives depends on the processor's instructions.
+  void add(double value) {
+    add(std::bit_cast<std::uint64_t>(value == value ? value : std::numeric_limits<double>::quiet_NaN()));
+  }
   void add(const Vector3& v) {
     for (int i = 0; i < 3; ++i) add(v[i]);
   }

@@ -331,6 +331,8 @@ class Island : public InMemory {
     std::uint32_t pair;
     double before;  // m, when it was noted
   };
+  void step_guarded(DynamicsClient* client, double start, double h);
+  void use_accuracy(const Accuracy& accuracy);
   void step_once(DynamicsClient* client, double start, double h);
   Trouble try_step(DynamicsClient* client, double start, double h);
   Trouble try_in_parts(DynamicsClient* client, double start, double h);

@@ -38,16 +38,37 @@ Accuracy finer_settings(const Accuracy& from, int attempt, double h) {
 
 void Island::step(DynamicsClient* client, double start, double h) {
   ++result.counters.islands;
-  const GuardMode mode = core_.settings.guard;
   const Accuracy asked = accuracy_;
+  const std::uint64_t structure = core_.structure();
   for (std::size_t i = free_.size() - drivers_; i < free_.size(); ++i) put_driver(free_[i], h);
   keep_start();
+  try {
+    step_guarded(client, start, h);
+  } catch (...) {
+    // What a failed step got to is no state that anyone could go on from.
+    if (core_.structure() == structure) {
+      use_accuracy(asked);
+      back_to_start();
+      place_links();
+      if (calls_out()) write();  // a handler has seen more of the step
+    }
+    throw;
+  }
+}
+
+void Island::use_accuracy(const Accuracy& accuracy) {
+  accuracy_ = accuracy;
+  for (Clustered& one : clusters_) one.entry->system->set_accuracy(accuracy);
+}
+
+void Island::step_guarded(DynamicsClient* client, double start, double h) {
+  const GuardMode mode = core_.settings.guard;
+  const Accuracy asked = accuracy_;
   Trouble trouble;
   int attempt = 0;
   const auto refine_from = [&] {
     intervene(trouble, GuardAction::Refined, start);
-    accuracy_ = finer_settings(asked, ++attempt, h);
-    for (Clustered& one : clusters_) one.entry->system->set_accuracy(accuracy_);
+    use_accuracy(finer_settings(asked, ++attempt, h));
   };
   const bool refines = mode == GuardMode::Refine || mode == GuardMode::Rest;
   // What is too fast for the sub-steps is seen before anything has moved.
@@ -64,9 +85,7 @@ void Island::step(DynamicsClient* client, double start, double h) {
     refine_from();
     trouble = try_step(client, start, h);
   }
-  if (attempt > 0)
-    for (Clustered& one : clusters_) one.entry->system->set_accuracy(asked);
-  accuracy_ = asked;
+  if (attempt > 0) use_accuracy(asked);
   if (trouble.found) give_in(trouble, start);
 }
 

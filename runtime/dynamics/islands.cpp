@@ -176,13 +176,17 @@ void Dynamics::Core::step_quiet(std::size_t count, double start, double h) {
   };
   workers.run(settings.workers, count, std::ref(step));
   const std::span all = std::span(islands).first(count);
-  for (const auto& island : all)
-    if (island->error) std::rethrow_exception(island->error);
+  std::exception_ptr first;
   for (const auto& island : all) {
+    if (island->error) {
+      if (!first) first = island->error;
+      continue;
+    }
     island->write();
     note_rest(*island, h);
     take_result(*island);
   }
+  if (first) std::rethrow_exception(first);
 }
 
 void Dynamics::Core::run_only(DynamicsClient& client, double start, double h, int depth,
@@ -261,6 +265,7 @@ void Dynamics::Core::take_result(Island& island) {
   counters.direct += c.direct;
   counters.limits += c.limits;
   counters.interventions += from.interventions.size();
+  counters.residual = std::max(counters.residual, c.residual);
   account.motor_work += from.account.motor_work;
   account.script_work += from.account.script_work;
   account.drag_loss += from.account.drag_loss;
