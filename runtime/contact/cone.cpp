@@ -2,7 +2,10 @@
 #include "runtime/contact/cone.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <numbers>
 
 namespace breve::contact {
 
@@ -68,25 +71,46 @@ bool turn_to_root(const Sliding& sliding, int steps, double& x, double& y) {
   return false;
 }
 
+/// Unit vectors all around the circle, the first and the last the same.
+class Directions {
+ public:
+  static constexpr int kCount = 48;
+  struct Direction {
+    double x, y;
+  };
+  static const Direction& at(int i) {
+    static const Directions all;
+    return all.directions_[static_cast<std::size_t>(i)];
+  }
+
+ private:
+  Directions() {
+    for (int i = 0; i <= kCount; ++i) {
+      const double turn = i % kCount * (2 * std::numbers::pi / kCount);
+      directions_[static_cast<std::size_t>(i)] = {std::cos(turn), std::sin(turn)};
+    }
+  }
+  std::array<Direction, kCount + 1> directions_;
+};
+
 /// Every root lies between two of these directions where the sign changes; the first good one of the scan.
 bool scan_for_root(const Sliding& sliding, double& x, double& y) {
-  constexpr int kDirections = 48;
-  constexpr double kTurn = 6.283185307179586476925 / kDirections;
   double along = 0, slope = 0;
   double before = sliding.across(1, 0, along, slope);
-  for (int i = 1; i <= kDirections; ++i) {
-    const double here = sliding.across(std::cos(i * kTurn), std::sin(i * kTurn), along, slope);
+  for (int i = 1; i <= Directions::kCount; ++i) {
+    Directions::Direction low = Directions::at(i - 1), high = Directions::at(i);
+    const double here = sliding.across(high.x, high.y, along, slope);
     if ((before <= 0) != (here <= 0)) {
-      double low = (i - 1) * kTurn, high = i * kTurn;
       for (int halving = 0; halving < 52; ++halving) {
-        const double middle = 0.5 * (low + high);
-        const bool as_before = (sliding.across(std::cos(middle), std::sin(middle), along, slope) <= 0) == (before <= 0);
+        Directions::Direction middle{low.x + high.x, low.y + high.y};
+        const double scale = 1 / std::sqrt(middle.x * middle.x + middle.y * middle.y);
+        middle = {middle.x * scale, middle.y * scale};
+        const bool as_before = (sliding.across(middle.x, middle.y, along, slope) <= 0) == (before <= 0);
         (as_before ? low : high) = middle;
       }
-      const double cx = std::cos(high), cy = std::sin(high);
-      if (sliding.good(cx, cy)) {
-        x = cx;
-        y = cy;
+      if (sliding.good(high.x, high.y)) {
+        x = high.x;
+        y = high.y;
         return true;
       }
     }
@@ -103,21 +127,26 @@ void stop_without_friction(const LocalMatrix& W, const double u0[3], double p[3]
 
 }  // namespace
 
+namespace {
+/// Newton's method from a direction, which need not be a unit vector, to a good one.
+bool search_from(const Sliding& sliding, int steps, bool exact, double x, double y, double p[3]) {
+  const double length = std::sqrt(x * x + y * y);
+  if (!(length > 0)) return false;
+  x /= length;
+  y /= length;
+  const bool root = turn_to_root(sliding, steps, x, y);
+  if (!(root || !exact) || !sliding.good(x, y)) return false;
+  sliding.impulse(x, y, p);
+  return true;
+}
+}  // namespace
+
 void slide_in_cone(const LocalMatrix& W, const double u0[3], double mu, int newton, bool exact, double p[3]) {
   const Sliding sliding(W, u0, mu);
-  double x = p[1], y = p[2];
-  double length = std::sqrt(x * x + y * y);
-  if (!(length > 0)) {
-    x = -sliding.c1;
-    y = -sliding.c2;
-    length = std::sqrt(x * x + y * y);
-  }
-  if (length > 0) {
-    x /= length;
-    y /= length;
-    const bool root = turn_to_root(sliding, newton, x, y);
-    if ((root || !exact) && sliding.good(x, y)) return sliding.impulse(x, y, p);
-  }
+  if (search_from(sliding, newton, exact, p[1], p[2], p)) return;
+  // Against the way it would slide if friction pushed on nothing but that: as it does on a ball.
+  if (search_from(sliding, newton, exact, -sliding.c1, -sliding.c2, p)) return;
+  double x = 0, y = 0;
   if (scan_for_root(sliding, x, y)) return sliding.impulse(x, y, p);
   stop_without_friction(W, u0, p);
 }
