@@ -54,13 +54,13 @@ double attainable(const Workspace& work, double tolerance) { return tolerance + 
 /// @param left      the violation; in and out
 /// @return          whether it is within the tolerance; the island is at the best centre in any case
 bool approach(Newton& newton, const Workspace& work, double stiffness, int most, int failures, double tolerance,
-              int& solves, double& left) {
+              LinearSolves& solves, double& left) {
   newton.begin();
   newton.keep();
   // Round-off of velocities, this much larger in the impulses, is not to be seen.
   const double stiffest = std::min(kMostStiffness, attainable(work, tolerance) / (kRoundOff * largest_change(work)));
   stiffness = std::clamp(stiffness, kLeastStiffness, stiffest);
-  for (int i = 0; i < most; ++i) {
+  for (int i = 0; i < most && !solves.spent(); ++i) {
     const bool settled = newton.settle(stiffness, tolerance, solves);
     const double now = newton.take();
     if (now < left) {
@@ -128,7 +128,7 @@ void sweep_near(Workspace& work, double tolerance) {
 
 }  // namespace
 
-double solve_direct(Workspace& work, double tolerance, int& solves, bool& solved) {
+double solve_direct(Workspace& work, double tolerance, LinearSolves& solves, bool& solved) {
   double best = violation(work);
   solved = best <= attainable(work, tolerance);
   if (solved) return best;
@@ -146,7 +146,8 @@ double solve_direct(Workspace& work, double tolerance, int& solves, bool& solved
   Newton newton(work, equations, room);
   if (largest_change(work) > 0)
     solved = approach(newton, work, kFirstStiffness, kFirstCentres, 0, tolerance, solves, best);
-  if (solved) return best;
+  constexpr int kInterior = 12;  // it begins from far: fewer lead nowhere
+  if (solved || solves.left() < kInterior) return best;
   equations.get_impulses(start);
   Interior interior(work, equations, room + Newton::numbers(rows));
   for (const double part : kNear) {
@@ -158,7 +159,7 @@ double solve_direct(Workspace& work, double tolerance, int& solves, bool& solved
       best = left;
       equations.get_impulses(start);
     }
-    if (solved) break;
+    if (solved || solves.spent()) break;
   }
   equations.take(start);
   return best;

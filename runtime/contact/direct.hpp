@@ -5,12 +5,19 @@
 
 namespace breve::contact {
 
+/// Linear solves: how many there were, and how many there may be.
+struct LinearSolves {
+  int made = 0, most = 0;
+  int left() const { return most - made; }
+  bool spent() const { return left() <= 0; }
+};
+
 /// Solve the packed island from the impulses it has. Velocities and impulses of `work` are those of the best iterate,
 /// consistent with each other, inside cones and bounds.
-/// @param solves  grows by the number of linear solves
+/// @param solves  grows; where they are spent, the best of what they gave is the result
 /// @param solved  whether the violation is within the tolerance, or as near to it as round-off allows
 /// @return        the violation left, m/s
-double solve_direct(Workspace& work, double tolerance, int& solves, bool& solved);
+double solve_direct(Workspace& work, double tolerance, LinearSolves& solves, bool& solved);
 
 /// By how much the worst row violates its law, m/s: the distance to the projected point of a step of the row alone.
 double violation(const Workspace& work);

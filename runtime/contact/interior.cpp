@@ -281,7 +281,7 @@ bool Interior::step(double target, Lengths& lengths) {
   return true;
 }
 
-double Interior::solve(double goal, int& solves) {
+double Interior::solve(double goal, LinearSolves& solves) {
   double best = std::numeric_limits<double>::infinity();
   int since = 0;
   while (true) {
@@ -289,12 +289,12 @@ double Interior::solve(double goal, int& solves) {
     const double left = violation(work_);
     since = left < best ? 0 : since + 1;
     best = std::min(best, left);
-    if (left <= goal || since > kPatience || steps_ == kMostSteps || !std::isfinite(left)) return left;
+    if (left <= goal || since > kPatience || steps_ == kMostSteps || solves.spent() || !std::isfinite(left)) return left;
     // The shorter the last step was, the more towards the centre this one.
     const double target = 0.5 * std::clamp(1 - last_, 0.01, 0.9) * gap() / std::max(pairs_, 1.0);
     Lengths lengths;
     if (!step(target, lengths)) return left;
-    ++solves;
+    ++solves.made;
     ++steps_;
     const double x = std::min(1.0, kNearest * lengths.x), y = std::min(1.0, kNearest * lengths.y);
     last_ = std::min(x, y);

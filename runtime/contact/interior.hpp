@@ -1,6 +1,7 @@
 // The interior-point method of the direct solver: it comes near the solution from anywhere, in some twenty steps.
 #pragma once
 
+#include "runtime/contact/direct.hpp"
 #include "runtime/contact/equations.hpp"
 
 namespace breve::contact {
@@ -18,7 +19,7 @@ class Interior {
   Interior(Workspace& work, Equations& equations, double* room);
   /// Goes on from where it stands until the violation is within the goal or nothing helps any more.
   /// @return the violation, m/s, of the impulses and velocities that the island then has
-  double solve(double goal, int& solves);
+  double solve(double goal, LinearSolves& solves);
   double speed() const { return speed_; }  // m/s, what the rows have to stop
 
  private:

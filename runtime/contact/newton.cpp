@@ -27,7 +27,7 @@ void Newton::begin() {
   equations_.apply(q_);
 }
 
-bool Newton::settle(double stiffness, double tolerance, int& solves) {
+bool Newton::settle(double stiffness, double tolerance, LinearSolves& solves) {
   stiffness_ = stiffness;
   equations_.read_rows(u_);
   double before = 0, first = 0;
@@ -39,8 +39,8 @@ bool Newton::settle(double stiffness, double tolerance, int& solves) {
     if (i > 1 && here > 10 * first) return false;
     before = here;
     if (i == 0) first = here;
-    if (!find_step()) return false;
-    ++solves;
+    if (solves.spent() || !find_step()) return false;
+    ++solves.made;
     const double length = search(here);
     for (std::size_t k = 0; k < rows_; ++k) q_[k] -= length * dq_[k];
     equations_.apply(q_);

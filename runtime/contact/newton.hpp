@@ -1,6 +1,7 @@
 // Newton's method of the direct solver on Coulomb's law around one centre; direct.cpp moves the centre.
 #pragma once
 
+#include "runtime/contact/direct.hpp"
 #include "runtime/contact/equations.hpp"
 
 namespace breve::contact {
@@ -15,7 +16,7 @@ class Newton {
 
   /// Steps for v = v* + R q, q = p(J v).
   /// @return whether q and p agree within a tenth of `tolerance`, or as near as round-off allows
-  bool settle(double stiffness, double tolerance, int& solves);
+  bool settle(double stiffness, double tolerance, LinearSolves& solves);
 
   /// The impulses p become those of the island, and the next centre. @return the violation, m/s
   double take();

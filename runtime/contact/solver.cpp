@@ -30,21 +30,26 @@ void run_sweeps(Workspace& work, int most, double tolerance, SolveReport& report
   }
 }
 
-void solve_directly(Workspace& work, const SolveSettings& settings, SolveReport& report) {
-  report.residual = solve_direct(work, settings.tolerance, report.newton, report.direct);
-  if (report.direct) return;
-  run_sweeps(work, kPatientSweeps, settings.tolerance * 0.1, report);
-  report.residual = solve_direct(work, settings.tolerance, report.newton, report.direct);  // from nearer
-}
-
-bool pays(Workspace& work, const SolveSettings& settings) {
-  constexpr double kSolves = 5;  // linear ones, of a direct solution that begins near the last step's
-  return kSolves * order_elimination(work) <= settings.direct_share * settings.iterations * sweep_operations(work);
+/// @param most  operations of the linear solves
+/// @param each  of one of them
+void solve_directly(Workspace& work, const SolveSettings& settings, double most, double each, SolveReport& report) {
+  constexpr double kAlways = 3e5, kUnbounded = 1e6;  // operations that are not seen; solves
+  LinearSolves solves{0, static_cast<int>(std::min((most + kAlways) / each, kUnbounded))};
+  report.residual = solve_direct(work, settings.tolerance, solves, report.direct);
+  if (!report.direct) {
+    const int sweeps = solves.spent() ? settings.iterations : kPatientSweeps;
+    run_sweeps(work, sweeps, settings.tolerance * 0.1, report);
+    report.residual = solve_direct(work, settings.tolerance, solves, report.direct);  // from nearer
+  }
+  report.newton += solves.made;
 }
 
 void solve_once(Workspace& work, const SolveSettings& settings, SolveReport& report) {
-  if (settings.direct && pays(work, settings))
-    solve_directly(work, settings, report);
+  constexpr double kSolves = 5;  // of a direct solution that begins near the last step's
+  const double most = settings.direct ? settings.direct_share * settings.iterations * sweep_operations(work) : 0;
+  const double each = settings.direct ? order_elimination(work) : 1;
+  if (kSolves * each <= most)
+    solve_directly(work, settings, most, each, report);
   else
     run_sweeps(work, settings.iterations, std::max(settings.tolerance, settings.swept), report);
 }

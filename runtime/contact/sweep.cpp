@@ -107,7 +107,8 @@ double Sweeps::share() const {
   // Where friction is strong against what turns away from it, momentum may throw impulses ever farther.
   constexpr double kThrown = 4;
   const double least = std::min(energy_first_, energy_before_);
-  return energy_ < kThrown * least ? std::min(1.0, energy_ / energy_before_) : 0;
+  if (energy_ >= energy_before_) return 0;
+  return energy_ < kThrown * least ? energy_ / energy_before_ : 0;
 }
 
 bool Sweeps::diverge() const {

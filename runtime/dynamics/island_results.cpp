@@ -138,10 +138,11 @@ void Island::solve_rows() {
   settings.direct = fast == 0;
   settings.direct_share = direct_share();
   // Where nothing is solved exactly, sweeps end when they change less than could be seen.
-  if (!accuracy_.direct) settings.swept = kSwept * quiet_;
+  settings.swept = (accuracy_.direct ? 0.01 * kSwept : kSwept) * quiet_;
   const contact::SolveReport report = contact::solve_island(movers_, rows_, scalars_, settings, workspace_);
   result.counters.solver_iterations += static_cast<std::uint64_t>(report.iterations + report.newton);
   result.counters.direct += report.direct;
+  result.counters.residual = std::max(result.counters.residual, report.residual);
 }
 
 /// Of one side's point along the row's axes, from the movers' v as they are. A tree that touches itself is one side.

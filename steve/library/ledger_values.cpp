@@ -55,6 +55,7 @@ HashCell* counters_value(Machine& machine, const DynamicsCounters& c) {
                                                                 {"sleeping", c.sleeping},
                                                                 {"interventions", c.interventions}};
   for (const auto& [key, number] : numbers) put(machine, *hash, key, count(number));
+  put(machine, *hash, "residual", Value::of(c.residual));
   return hash;
 }
 

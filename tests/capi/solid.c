@@ -463,6 +463,27 @@ static void impacts_energy_and_counters_are_told(void) {
   scene_close(&s);
 }
 
+static void how_exactly_rows_were_solved_is_told(void) {
+  static const char* const rungs[] = {"fast", "balanced", "precise"};
+  for (size_t i = 0; i < 3; ++i) {
+    scene s;
+    breve_world_config config = breve_world_config_default();
+    config.accuracy = rungs[i];
+    if (!scene_open_text(&s, scene_text, &config)) return;
+    make(&s, "Floor");
+    const breve_object ball = make(&s, "Mobile");
+    const breve_pose pose = {{0, 1, 0}, {1, 0, 0, 0}};
+    CHECK_STATUS(BREVE_OK, breve_object_set_pose(s.world, ball, &pose));
+    CHECK_STATUS(BREVE_OK, breve_object_set_physics(s.world, ball, true));
+    for (int k = 0; k < 60; ++k) CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+    breve_physics_counters counters = {.struct_size = sizeof counters};
+    CHECK_STATUS(BREVE_OK, breve_world_physics_counters(s.world, &counters));
+    CHECK(counters.contacts != 0 && counters.direct != 0);
+    CHECK(counters.residual >= 0 && counters.residual <= 1e-8);
+    scene_close(&s);
+  }
+}
+
 static void script_and_host_see_the_same_joints(void) {
   static const char* const text =
       "@use PhysicalControl.\n@use MultiBody.\nController Lab.\n"
@@ -523,6 +544,7 @@ void solid_suite(void) {
   RUN(a_universal_joint_turns_about_the_axis_that_is_given);
   RUN(the_config_chooses_a_rung);
   RUN(impacts_energy_and_counters_are_told);
+  RUN(how_exactly_rows_were_solved_is_told);
   RUN(script_and_host_see_the_same_joints);
   RUN(what_has_a_target_carries);
   RUN(a_class_that_the_program_lacks_is_named);
