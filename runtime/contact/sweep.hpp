@@ -15,8 +15,7 @@ void push_all(Workspace& work);
 /// between sweeps as they did before: high stacks take a fraction of the sweeps then. While it lives, impulses of
 /// contacts are not to be read; they are in their cones after it.
 /// Source: Silcowitz, Niebe and Erleben 2010 (nonsmooth nonlinear conjugate gradients: the share of the way is the
-/// ratio of what the last two sweeps changed). Where the ratio is above 1 they begin anew; here it is 1 then, and only
-/// what is thrown far begins anew.
+/// ratio of what the last two sweeps changed, and they begin anew where that is above 1).
 class Sweeps {
  public:
   Sweeps(Workspace& work, bool momentum);
