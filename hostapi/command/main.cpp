@@ -21,6 +21,7 @@
 
 namespace {
 
+using breve::command::AccessOptions;
 using breve::command::CheckOptions;
 using breve::command::DocOptions;
 using breve::command::LspOptions;
@@ -57,9 +58,24 @@ CLI::Option* number(CLI::App& app, const char* name, const char* type, std::opti
 }
 
 /// An option that may be given several times, each time with one value.
-void several(CLI::App& app, const char* name, const char* type, std::vector<std::string>& out,
-             const std::string& help) {
-  app.add_option(name, out, help + "; may be repeated")->type_name(type)->expected(1)->take_all();
+CLI::Option* several(CLI::App& app, const char* name, const char* type, std::vector<std::string>& out,
+                     const std::string& help) {
+  return app.add_option(name, out, help + "; may be repeated")->type_name(type)->expected(1)->take_all();
+}
+
+void describe_access(CLI::App& app, AccessOptions& o) {
+  several(app, "--allow-read", "DIR", o.read,
+          "Let the program read files below DIR, as it may below the current directory, its own and those of --path")
+      ->check(CLI::ExistingDirectory)
+      ->type_name("DIR");
+  several(app, "--allow-write", "DIR", o.write,
+          "Let the program write and read files below DIR, as it may below the current directory")
+      ->check(CLI::ExistingDirectory)
+      ->type_name("DIR");
+  app.add_flag("--no-files", o.no_files, "Let the program read and write no files")
+      ->excludes("--allow-read")
+      ->excludes("--allow-write");
+  app.add_flag("--allow-system", o.system, "Let the program run commands of the operating system");
 }
 
 void describe_run(CLI::App& app, RunOptions& o) {
@@ -76,6 +92,7 @@ void describe_run(CLI::App& app, RunOptions& o) {
   number(app, "--memory", "MB", o.memory, kWhole, "End with an error when the world takes so much memory");
   number(app, "--depth", "N", o.depth, kWhole, "End with an error when calls nest deeper than N (5000)");
   several(app, "--path", "DIR", o.paths, "Also search DIR for modules and data files");
+  describe_access(app, o.access);
   app.add_option("--accuracy", o.accuracy,
                  "How bodies with physics are computed: fast, balanced, precise, reference or conserving")
       ->type_name("RUNG")
@@ -116,6 +133,7 @@ void describe_repl(CLI::App& app, ReplOptions& o) {
   app.add_option("FILE", o.file, "The program (.tz). Without it: a world with an empty controller");
   number(app, "--seed", "K", o.seed, "whole number (0 or more)", "Seed of the random numbers (1)");
   several(app, "--path", "DIR", o.paths, "Also search DIR for modules and data files");
+  describe_access(app, o.access);
   app.add_flag("--strict", o.strict, "Treat doubtful things as errors");
   app.add_flag("--quiet", o.quiet, "No warnings");
   app.footer("`:help` there tells what can be typed.\n" + std::string(kExitStatuses));

@@ -77,11 +77,6 @@ const LoadedFile* ModuleLoader::open(const fs::path& path) {
   return &files_.emplace(key, LoadedFile{path.string(), std::move(text)}).first->second;
 }
 
-std::string ModuleLoader::find(const std::string& name) const {
-  const auto path = search(name, {});
-  return path ? path->string() : std::string();
-}
-
 void ModuleLoader::add_path(const std::string& directory) {
   fs::path path(directory);
   if (std::find(paths_.begin(), paths_.end(), path) == paths_.end()) paths_.push_back(std::move(path));

@@ -1,4 +1,4 @@
-// Where the command looks for modules and data files (language, section 2.3).
+// Where the command looks for modules (language, section 2.3).
 #pragma once
 
 #include <filesystem>
@@ -29,8 +29,6 @@ class ModuleLoader {
   /// Its directory joins the search path.
   /// @param from  name of the file that asks, "" for the main file
   const LoadedFile* load(const std::string& name, const std::string& from);
-  /// The path of a data file, "" if there is none.
-  std::string find(const std::string& name) const;
   void add_path(const std::string& directory);
   const std::string& complaint() const { return complaint_; }
   /// The files that were read, by the paths by which they were found.

@@ -86,7 +86,7 @@ class Repl {
   Repl(const ReplOptions& options, Output& output)
       : options_(options),
         output_(output),
-        session_(output, options.paths, options.quiet, options.strict),
+        session_(output, options.paths, options.quiet, options.strict, &options.access),
         names_(session_.runtime()) {}
 
   int run() {

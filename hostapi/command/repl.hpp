@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "access.hpp"
 #include "output.hpp"
 
 namespace breve::command {
@@ -14,6 +15,7 @@ struct ReplOptions {
   std::string file;  // "": a world with an empty controller and the whole class library
   std::vector<std::string> paths;
   std::optional<std::uint64_t> seed;  // 1 if not given: what is tried out can be tried again
+  AccessOptions access;
   bool strict = false, quiet = false;
 };
 

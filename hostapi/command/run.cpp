@@ -192,7 +192,7 @@ void say_what_went_on(const breve_world* world, const RunOptions& options, const
 }  // namespace
 
 int run(const RunOptions& options, Output& output) {
-  Session session(output, options.paths, options.quiet, options.strict);
+  Session session(output, options.paths, options.quiet, options.strict, &options.access);
   ProgramHandle program;
   for (const auto& setting : options.settings)
     if (const std::size_t equal = setting.find('='); equal == 0 || equal == std::string::npos) {

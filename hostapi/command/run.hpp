@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "access.hpp"
 #include "output.hpp"
 
 namespace breve::command {
@@ -22,6 +23,7 @@ struct RunOptions {
   std::vector<std::string> settings;        // name=value: variables of the controller
   bool watch = false;  // reload the program when its files change
   bool coarse_random = false;
+  AccessOptions access;
   bool strict = false, quiet = false, verbose = false, stats = false, effects = false, hash = false;
   std::string accuracy;                      // rung, "" for the program's own
   std::string positions;                     // CSV file, "" for none

@@ -65,7 +65,19 @@ void Session::print(void* user, breve_world*, breve_channel channel, const char*
   }
 }
 
-Session::Session(Output& output, const std::vector<std::string>& paths, bool quiet, bool strict)
+/// Where a program's files are looked for: the current directory, which may be written, and where its modules are.
+void Session::allow_files(const AccessOptions& access) {
+  no_files_ = access.no_files;
+  if (no_files_) return;
+  access_.add(".", true);
+  for (const auto& directory : access.write) access_.add(directory, true);
+  for (const auto& directory : access.read) access_.add(directory, false);
+  for (const char* launch : {"lib/classes", "lib"}) access_.add_if_there(launch);
+  for (const auto& directory : paths_) access_.add_if_there(directory);
+}
+
+Session::Session(Output& output, const std::vector<std::string>& paths, bool quiet, bool strict,
+                 const AccessOptions* access)
     : output_(output), paths_(paths), loader_(paths), quiet_(quiet), strict_(strict) {
   breve_runtime_config config = breve_runtime_config_default();
   config.user = this;
@@ -73,16 +85,21 @@ Session::Session(Output& output, const std::vector<std::string>& paths, bool qui
   config.resolve_module = [](void* user, const char* name, const char* from, breve_module* module) {
     return static_cast<Session*>(user)->loader_.resolve(name, from, *module);
   };
-  config.add_path = [](void* user, const char* directory) { static_cast<Session*>(user)->loader_.add_path(directory); };
-  config.find_file = [](void* user, breve_world*, const char* name, breve_write_fn write, void* sink) {
-    const std::string path = static_cast<Session*>(user)->loader_.find(name);
-    write(sink, path.data(), path.size());
-    return !path.empty();
+  config.add_path = [](void* user, const char* directory) {
+    auto& session = *static_cast<Session*>(user);
+    session.loader_.add_path(directory);
+    if (!session.no_files_) session.access_.add_below(directory);
   };
-  config.system = [](void* user, breve_world*, const char* command, breve_write_fn write, void* sink) {
-    static_cast<Session*>(user)->output_.flush();  // what the program printed comes before what the command prints
-    return run_command(command, write, sink);
-  };
+  if (access) {
+    allow_files(*access);
+    if (!no_files_) config.files = access_.files();
+    config.rights = BREVE_RIGHT_SLEEP | BREVE_RIGHT_REAL_TIME | BREVE_RIGHT_ENTROPY;
+  }
+  if (access && access->system)
+    config.system = [](void* user, breve_world*, const char* command, breve_write_fn write, void* sink) {
+      static_cast<Session*>(user)->output_.flush();  // what the program printed comes before what the command prints
+      return run_command(command, write, sink);
+    };
   if (breve_runtime_create(&config, &runtime_) != BREVE_OK) throw std::runtime_error("cannot make a runtime");
 }
 
@@ -121,6 +138,7 @@ ExitStatus Session::load(const std::string& file, ProgramHandle& program) {
     output_.complain(fmt::format("breve: {}\n", loader_.complaint()));
     return kWrongUsage;
   }
+  if (!no_files_) access_.add_if_there(std::filesystem::path(file).parent_path());
   breve_program* compiled = nullptr;
   const breve_status status =
       breve_program_compile(runtime_, main->name.c_str(), main->text.data(), main->text.size(), &compiled);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "access.hpp"
 #include "breve/breve.h"
 #include "module_loader.hpp"
 #include "output.hpp"
@@ -28,7 +29,9 @@ using WorldHandle = std::unique_ptr<breve_world, WorldDeleter>;
 class Session {
  public:
   /// @param strict  warnings of the compiler are errors
-  Session(Output& output, const std::vector<std::string>& paths, bool quiet, bool strict);
+  /// @param access  what programs may touch; null: they are not run. Throws std::runtime_error for what is no directory
+  Session(Output& output, const std::vector<std::string>& paths, bool quiet, bool strict,
+          const AccessOptions* access = nullptr);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -52,13 +55,15 @@ class Session {
  private:
   bool show_diagnostics();  // false: there is a warning that is an error
   ExitStatus finish(breve_status status, breve_program* compiled, ProgramHandle& program);
+  void allow_files(const AccessOptions& access);
   static void print(void* user, breve_world* world, breve_channel channel, const char* text, std::size_t size);
 
   Output& output_;
   std::vector<std::string> paths_;
   ModuleLoader loader_;
   std::vector<std::string> files_;
-  bool quiet_, strict_;
+  bool quiet_, strict_, no_files_ = true;
+  FileAccess access_;
   std::function<void(const breve_diagnostic&)> listener_;
   breve_runtime* runtime_ = nullptr;
 };

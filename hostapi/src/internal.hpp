@@ -33,7 +33,12 @@ class HostAllocator final : public std::pmr::memory_resource {
 
 /// What programs and worlds keep of a runtime after its handle is gone.
 struct RuntimeState {
-  explicit RuntimeState(const breve_runtime_config& c) : config(c), allocator(config) {}
+  explicit RuntimeState(const breve_runtime_config& c) : config(c), allocator(config) {
+    if (config.files.retain) config.files.retain(config.files.user);
+  }
+  ~RuntimeState() {
+    if (config.files.release) config.files.release(config.files.user);
+  }
   RuntimeState(const RuntimeState&) = delete;
   RuntimeState& operator=(const RuntimeState&) = delete;
   std::pmr::memory_resource* memory() {
@@ -61,6 +66,28 @@ class References {
  private:
   std::pmr::vector<steve::Cell*> cells_;
   std::uint32_t epoch_ = 1;
+};
+
+/// What a callback writes as its answer. No exception passes through the host's code.
+class Answer {
+ public:
+  static void add(void* sink, const char* bytes, std::size_t size) noexcept {
+    auto& to = *static_cast<Answer*>(sink);
+    try {
+      if (bytes && size != 0) to.text_.append(bytes, size);
+    } catch (...) {
+      to.full_ = true;
+    }
+  }
+  /// @throws  std::bad_alloc if there was no memory for it
+  std::string text() const {
+    if (full_) throw std::bad_alloc();
+    return text_;
+  }
+
+ private:
+  std::string text_;
+  bool full_ = false;
 };
 
 /// A method name with keywords, and what they mean for the class that was called last.
@@ -166,6 +193,9 @@ class CallbackScope {
 
 /// Begin a profile; an earlier one is gone. Only while nothing runs.
 void start_profile(breve_world& world, breve_trace_fn trace, void* user);
+
+/// What of the runtime's breve_files its machine may ask for.
+void open_files(breve_world& world, steve::MachineHost& host);
 
 /// BREVE_ERROR_BUSY if script of `world` runs now.
 void need_idle(const breve_world& world, const char* what);

@@ -24,30 +24,13 @@ void speak(breve_world& world, breve_channel channel, std::string_view text) {
   config.print(config.user, &world, channel, ended.c_str(), ended.size());
 }
 
-/// What a callback of this kind writes; "" if it says no.
-template <class Callback>
-std::string answer(breve_world& world, Callback callback, std::string_view question) {
-  const std::string asked(question);
-  struct Sink {
-    std::string text;
-    bool full = false;
-  } written;
-  // No exception may pass through the host's code.
-  const breve_write_fn write = [](void* sink, const char* bytes, std::size_t size) {
-    auto& to = *static_cast<Sink*>(sink);
-    try {
-      if (bytes && size != 0) to.text.append(bytes, size);
-    } catch (...) {
-      to.full = true;
-    }
-  };
-  const auto asks = [&] {
-    const CallbackScope busy(world);
-    return callback(world.runtime->config.user, &world, asked.c_str(), write, &written);
-  };
-  const bool found = asks();
-  if (written.full) throw std::bad_alloc();
-  return found ? std::move(written.text) : std::string();
+/// What the runtime's `system` writes; "" if it says no.
+std::string run_command(breve_world& world, std::string_view command) {
+  const std::string asked(command);
+  Answer answer;
+  const CallbackScope busy(world);
+  const auto& config = world.runtime->config;
+  return config.system(config.user, &world, asked.c_str(), &Answer::add, &answer) ? answer.text() : std::string();
 }
 
 steve::MachineHost machine_host(breve_world& world) {
@@ -57,10 +40,12 @@ steve::MachineHost machine_host(breve_world& world) {
   host.warn = [&world](std::string_view text) { speak(world, BREVE_CHANNEL_WARNING, text); };
   host.error = [&world](std::string_view text) { speak(world, BREVE_CHANNEL_ERROR, text); };
   const auto& callbacks = world.runtime->config;
-  if (callbacks.find_file)
-    host.find_file = [&world](std::string_view name) { return answer(world, world.runtime->config.find_file, name); };
+  open_files(world, host);
+  host.may_sleep = (callbacks.rights & BREVE_RIGHT_SLEEP) != 0;
+  host.may_read_clock = (callbacks.rights & BREVE_RIGHT_REAL_TIME) != 0;
+  host.may_draw_entropy = (callbacks.rights & BREVE_RIGHT_ENTROPY) != 0;
   if (callbacks.system)
-    host.system = [&world](std::string_view text) { return answer(world, world.runtime->config.system, text); };
+    host.system = [&world](std::string_view command) { return run_command(world, command); };
   for (std::size_t i = 0; i < config.argument_count; ++i) {
     need(config.arguments, "breve_world_config.arguments");
     need(config.arguments[i], "one of breve_world_config.arguments");

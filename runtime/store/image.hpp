@@ -5,6 +5,7 @@
 #include <memory_resource>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "runtime/base/bytes.hpp"
@@ -46,9 +47,13 @@ class Image {
   /// Replace all pixels; Error{Argument} unless there are 4 * width * height bytes.
   void set_bytes(std::span<const std::uint8_t> bytes);
 
-  /// PNG, JPEG or TGA. Error{File} names the file and says why.
-  static Image read(const std::string& path, std::pmr::memory_resource* memory = std::pmr::get_default_resource());
-  void write_png(const std::string& path) const;
+  static constexpr std::size_t kMostFileBytes = std::size_t{256} << 20;
+  /// The picture in the bytes of a PNG, JPEG or TGA file. Error{File} names the file, which is only a name here, and
+  /// says why there is none.
+  static Image parse(std::string_view bytes, const std::string& name,
+                     std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+  /// The bytes of a PNG file. Error{Argument} if the image is empty.
+  std::string png() const;
   /// Bytes of the pixels after deflation: a measure of how regular the picture is.
   std::size_t deflated_size() const;
 
@@ -64,8 +69,8 @@ class Image {
   std::pmr::vector<std::uint8_t> pixels_;
 };
 
-/// A 16-bit grayscale PNG, rows from the top: 0 is black, 1 white; values are clamped, NaN is black.
-/// Error{Argument} unless there are width * height values (sides as for Image); Error{File} names the file.
-void write_gray16_png(const std::string& path, int width, int height, std::span<const double> values);
+/// The bytes of a 16-bit grayscale PNG, rows from the top: 0 is black, 1 white; values are clamped, NaN is black.
+/// Error{Argument} unless there are width * height values (sides as for Image).
+std::string gray16_png(int width, int height, std::span<const double> values);
 
 }  // namespace breve

@@ -1,12 +1,10 @@
-// Pictures from and to files by stb; 16-bit PNG, which stb does not write, is put together here.
+// Pictures from and to the bytes of files by stb; 16-bit PNG, which stb does not write, is put together here.
 #include <fmt/format.h>
 #include <zlib.h>
 
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
+#include <cstdlib>
 #include <memory>
 
 #include "runtime/base/error.hpp"
@@ -36,21 +34,8 @@ namespace breve {
 
 namespace {
 
-using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
-
-[[noreturn]] void fail(const char* verb, const std::string& path, const char* why) {
-  throw Error(ErrorCode::File, fmt::format("cannot {} image file '{}': {}", verb, path, why));
-}
-
-File open(const std::string& path, const char* mode, const char* verb) {
-  File file(std::fopen(path.c_str(), mode), &std::fclose);
-  if (!file) fail(verb, path, std::strerror(errno));
-  return file;
-}
-
-/// Close with the last bytes written out, so that a full disk is noticed.
-void finish(File file, const std::string& path) {
-  if (std::ferror(file.get()) != 0 || std::fclose(file.release()) != 0) fail("write", path, std::strerror(errno));
+[[noreturn]] void fail(const std::string& name, const char* why) {
+  throw Error(ErrorCode::File, fmt::format("cannot read image file '{}': {}", name, why));
 }
 
 void put_big_endian(std::vector<std::uint8_t>& out, std::uint32_t value) {
@@ -79,30 +64,30 @@ std::vector<std::uint8_t> deflated(const std::vector<std::uint8_t>& bytes) {
 }  // namespace
 
 // The pixels are made before the file is decoded: an image that is too large for its world is refused early.
-Image Image::read(const std::string& path, std::pmr::memory_resource* memory) {
-  const File file = open(path, "rb", "read");
+Image Image::parse(std::string_view bytes, const std::string& name, std::pmr::memory_resource* memory) {
+  const auto* const data = reinterpret_cast<const stbi_uc*>(bytes.data());
+  if (bytes.size() > kMostFileBytes) fail(name, "it is too large");
+  const int size = static_cast<int>(bytes.size());
   int width = 0, height = 0, channels = 0;
-  if (stbi_info_from_file(file.get(), &width, &height, &channels) == 0) fail("read", path, stbi_failure_reason());
+  if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) fail(name, stbi_failure_reason());
   Image image(width, height, memory);
-  const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(stbi_load_from_file(file.get(), &width, &height, &channels, 4),
-                                                         &stbi_image_free);
-  if (!pixels) fail("read", path, stbi_failure_reason());
+  const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
+      stbi_load_from_memory(data, size, &width, &height, &channels, 4), &stbi_image_free);
+  if (!pixels) fail(name, stbi_failure_reason());
   image.set_bytes({pixels.get(), image.pixels_.size()});
   return image;
 }
 
-void Image::write_png(const std::string& path) const {
-  if (empty()) fail("write", path, "the image is empty");
+std::string Image::png() const {
+  if (empty()) throw Error(ErrorCode::Argument, "the image is empty");
   int size = 0;
   const std::unique_ptr<unsigned char, void (*)(void*)> png(
       stbi_write_png_to_mem(pixels_.data(), width_ * 4, width_, height_, 4, &size), &std::free);
-  if (!png) fail("write", path, "no memory");
-  File file = open(path, "wb", "write");
-  std::fwrite(png.get(), 1, static_cast<std::size_t>(size), file.get());
-  finish(std::move(file), path);
+  if (!png) throw Error(ErrorCode::Memory, "no memory to deflate an image");
+  return {reinterpret_cast<const char*>(png.get()), static_cast<std::size_t>(size)};
 }
 
-void write_gray16_png(const std::string& path, int width, int height, std::span<const double> values) {
+std::string gray16_png(int width, int height, std::span<const double> values) {
   const Image sizes(width, height);  // checks them
   const auto columns = static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height);
   if (values.size() != columns * rows) {
@@ -127,9 +112,7 @@ void write_gray16_png(const std::string& path, int width, int height, std::span<
   put_chunk(png, "IHDR", header);
   put_chunk(png, "IDAT", deflated(scanlines));
   put_chunk(png, "IEND", {});
-  File file = open(path, "wb", "write");
-  std::fwrite(png.data(), 1, png.size(), file.get());
-  finish(std::move(file), path);
+  return {png.begin(), png.end()};
 }
 
 }  // namespace breve

@@ -10,10 +10,8 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <string_view>
 
@@ -27,19 +25,6 @@ using Bytes = std::pmr::vector<std::uint8_t>;
 
 [[noreturn]] void fail(const std::string& name, const std::string& why) {
   throw Error(ErrorCode::File, fmt::format("cannot use mesh file '{}': {}", name, why));
-}
-
-Bytes read_bytes(const std::string& path, std::pmr::memory_resource* memory) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
-  if (!file) fail(path, std::strerror(errno));
-  Bytes bytes(memory);
-  std::array<std::uint8_t, 65536> block;
-  for (std::size_t got; (got = std::fread(block.data(), 1, block.size(), file.get())) > 0;) {
-    if (bytes.size() + got > kMostMeshBytes) fail(path, fmt::format("it is larger than {} bytes", kMostMeshBytes));
-    bytes.insert(bytes.end(), block.data(), block.data() + got);
-  }
-  if (std::ferror(file.get()) != 0) fail(path, std::strerror(errno));
-  return bytes;
 }
 
 // --- 3DS
@@ -242,10 +227,6 @@ MeshData parse_mesh(std::span<const std::uint8_t> bytes, const std::string& name
   return data;
 }
 
-MeshData read_mesh(const std::string& path, std::pmr::memory_resource* memory) {
-  return parse_mesh(read_bytes(path, memory), path, memory);
-}
-
 std::shared_ptr<Shape> make_mesh(const MeshData& data, const std::string& name, MeshUse use, double size,
                                  std::pmr::memory_resource* memory) {
   if (!std::isfinite(size) || size < 0) {
@@ -276,10 +257,6 @@ std::shared_ptr<Shape> make_mesh(const MeshData& data, const std::string& name, 
     if (error.code() != ErrorCode::Argument) throw;
     fail(name, error.what());
   }
-}
-
-std::shared_ptr<Shape> load_mesh(const std::string& path, MeshUse use, double size, std::pmr::memory_resource* memory) {
-  return make_mesh(read_mesh(path, memory), path, use, size, memory);
 }
 
 }  // namespace breve

@@ -20,11 +20,9 @@ struct MeshData {
   std::pmr::vector<std::array<std::int32_t, 3>> triangles;
 };
 
-/// Error{File} names the file and says why it cannot be used: it cannot be read, is neither 3DS nor OBJ, is damaged,
-/// too large (kMostMeshBytes), or has no triangles. Materials and textures are not looked for.
-MeshData read_mesh(const std::string& path, std::pmr::memory_resource* memory = std::pmr::get_default_resource());
-/// The same from bytes in memory; `name` stands for the file in messages. What begins with the mark of 3DS (0x4d4d) is
-/// 3DS, all else OBJ.
+/// From the bytes of a file; `name` stands for it in messages. What begins with the mark of 3DS (0x4d4d) is 3DS, all
+/// else OBJ. Error{File} names the file and says why it cannot be used: it is neither 3DS nor OBJ, is damaged, too large
+/// (kMostMeshBytes), or has no triangles. Materials and textures are not looked for.
 MeshData parse_mesh(std::span<const std::uint8_t> bytes, const std::string& name,
                     std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 constexpr std::size_t kMostMeshBytes = std::size_t{64} << 20;
@@ -37,8 +35,6 @@ enum class MeshUse : std::uint8_t {
 /// A shape from a mesh, its centre of mass at the origin, scaled so that its longest side along an axis is `size` (0:
 /// the file's own size). Error{File} as above, or if no such shape can be made of it; Error{Argument} if `size` is not
 /// finite and >= 0.
-std::shared_ptr<Shape> load_mesh(const std::string& path, MeshUse use, double size,
-                                 std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 std::shared_ptr<Shape> make_mesh(const MeshData& data, const std::string& name, MeshUse use, double size,
                                  std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 

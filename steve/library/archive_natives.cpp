@@ -1,5 +1,4 @@
 // Natives that write objects to XML files and read them back.
-#include "runtime/store/file.hpp"
 #include "steve/library/archive.hpp"
 #include "steve/library/support.hpp"
 #include "steve/library/tables.hpp"
@@ -24,24 +23,10 @@ bool try_archive(Machine& machine, std::string_view what, Work work) {
   }
 }
 
-/// Read from the name as it stands, else from where the host finds it.
-std::string read_file(Machine& machine, const std::string& name) {
-  try {
-    return TextFile(name, TextFile::Mode::Read).read_all();
-  } catch (const Error&) {
-    const std::string path = machine.host().find_file ? machine.host().find_file(name) : std::string();
-    if (path.empty()) throw;
-    return TextFile(path, TextFile::Mode::Read).read_all();
-  }
-}
-
 std::int32_t save(Machine& machine, Instance& self, Text file) {
   const std::string name(view(file));
   const bool done = try_archive(machine, "archive '" + name + "' not written", [&] {
-    const std::string xml = to_archive(machine, self);
-    TextFile out(name, TextFile::Mode::Write);
-    out.write(xml);
-    out.close();
+    write_file(machine, name, to_archive(machine, self));
   });
   return done ? 0 : -1;
 }

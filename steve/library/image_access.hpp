@@ -16,4 +16,10 @@ inline Image& image_of(Machine& machine, Instance* object, std::string_view what
   return resource_made<ImageResource>(machine, live).image;
 }
 
+inline void warn_of_missing_image(Machine& machine, const std::string& name) {
+  machine.warn_once("image:" + name, "image '" + name +
+                                         "' not found; check its name, and the directories that the host lets scripts "
+                                         "read");
+}
+
 }  // namespace breve::steve

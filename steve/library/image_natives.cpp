@@ -25,21 +25,13 @@ Instance* image_set_size(Machine& machine, Instance& self, std::int32_t width, s
   return &self;
 }
 
-/// The path of a file to read: what the host finds, or the name itself where there is no host to ask.
-std::string path_of(Machine& machine, const std::string& name) {
-  return machine.host().find_file ? machine.host().find_file(name) : name;
-}
-
 Instance* image_load(Machine& machine, Instance& self, Text file) {
   const std::string name(view(file));
-  const std::string path = path_of(machine, name);
-  if (path.empty()) {
-    machine.warn_once("image:" + name,
-                      "image '" + name + "' not found; check its name, or add the directory it is in with @path");
-    return nullptr;
-  }
   try {
-    image(machine, self) = Image::read(path, machine.heap().memory());
+    image(machine, self) = Image::parse(read_file(machine, name), name, machine.heap().memory());
+  } catch (const MissingFile&) {
+    warn_of_missing_image(machine, name);
+    return nullptr;
   } catch (const Error& error) {
     if (error.code() != ErrorCode::File) throw;
     machine.warn_once("image:" + name, "image '" + name + "' not loaded: " + error.what());
@@ -63,7 +55,7 @@ std::int32_t try_to_write(Machine& machine, const std::string& name, Write write
 
 std::int32_t image_write(Machine& machine, Instance& self, Text file) {
   const std::string name(view(file));
-  return try_to_write(machine, name, [&] { image(machine, self).write_png(name); });
+  return try_to_write(machine, name, [&] { write_file(machine, name, image(machine, self).png()); });
 }
 
 std::int32_t image_write_16_bit(Machine& machine, Instance& self, Text file) {
@@ -75,7 +67,8 @@ std::int32_t image_write_16_bit(Machine& machine, Instance& self, Text file) {
   for (int y = 0; y < picture.height(); ++y)
     for (int x = 0; x < picture.width(); ++x)
       greys.push_back((picture.byte(x, y, Channel::Red) * 256 + picture.byte(x, y, Channel::Green)) / kHighest);
-  return try_to_write(machine, name, [&] { write_gray16_png(name, picture.width(), picture.height(), greys); });
+  return try_to_write(machine, name, 
+                      [&] { write_file(machine, name, gray16_png(picture.width(), picture.height(), greys)); });
 }
 
 // --- the library's own pictures --------------------------------------------------------------------------------------

@@ -11,9 +11,11 @@ namespace {
 template <MeshUse Use>
 Instance* load(Machine& machine, Instance& self, StringCell* file, double size) {
   const std::string name(view(file));
-  const std::string path = machine.host().find_file ? machine.host().find_file(name) : name;
+  const std::string file_bytes = read_file(machine, name);
+  const std::span bytes(reinterpret_cast<const std::uint8_t*>(file_bytes.data()), file_bytes.size());
   ShapeResource& own = resource_made<ShapeResource>(machine, self);
-  auto shape = load_mesh(path.empty() ? name : path, Use, size, machine.heap().memory());
+  std::pmr::memory_resource* const memory = machine.heap().memory();
+  auto shape = make_mesh(parse_mesh(bytes, name, memory), name, Use, size, memory);
   shape->set_density(own.density);
   own.shape = std::move(shape);
   return &self;

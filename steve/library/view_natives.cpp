@@ -1,4 +1,5 @@
 // Natives of Control that set what is drawn around the bodies: lights, shadows, backdrop, fog, text, pictures.
+#include "steve/library/image_access.hpp"
 #include "steve/library/support.hpp"
 #include "steve/library/tables.hpp"
 
@@ -112,10 +113,7 @@ void set_skybox_images(Machine& machine, Instance&, ListCell* files) {
   }
   // Only now: the host that is asked may change the list.
   for (const std::string& name : names) {
-    const bool found = !machine.host().find_file || !machine.host().find_file(name).empty();
-    if (!found)
-      machine.warn_once("image:" + name,
-                        "image '" + name + "' not found; check its name, or add the directory it is in with @path");
+    if (find_file(machine, name).empty()) warn_of_missing_image(machine, name);
   }
   auto& skybox = view_of(machine).backdrop.skybox;
   std::pmr::vector<std::pmr::string> fresh(names.begin(), names.end(), skybox.get_allocator());

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "steve/machine/native.hpp"
 
@@ -12,6 +13,11 @@ std::span<const Native> math_functions();
 std::span<const Native> object_functions();
 std::span<const Native> world_functions();
 std::span<const Native> file_functions();
+
+/// Throws RunError{World}: the host does not let scripts do this.
+/// @param what   "sleep"; "read the clock on the wall"
+/// @param right  of breve_right
+[[noreturn]] void refuse_right(std::string_view function, std::string_view what, std::string_view right);
 
 /// Colours are red, green, blue in 0 to 1; hue in degrees 0 to 360, saturation and value in 0 to 1. A grey has hue -1.
 Vector3 rgb_to_hsv(const Vector3& rgb);

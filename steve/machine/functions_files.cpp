@@ -1,9 +1,8 @@
-// Files as scripts see them: lines and whole texts through a pointer (language, section 13). Files that a program
-// writes go to the current directory unless their path is absolute; files it reads are looked for by the host too.
+// Files as scripts see them: lines and whole texts through a pointer (language, section 13).
 #include <array>
-#include <cstdio>
 #include <memory>
 
+#include "steve/machine/files.hpp"
 #include "steve/machine/functions.hpp"
 #include "steve/machine/machine.hpp"
 
@@ -11,21 +10,44 @@ namespace breve::steve {
 
 namespace {
 
+/// A file that is open for reading or for writing, or closed.
 class FilePointer final : public NativePointer {
  public:
-  explicit FilePointer(std::FILE* file) : file_(file) {}
-  ~FilePointer() override { close(); }
-  FilePointer(const FilePointer&) = delete;
-  FilePointer& operator=(const FilePointer&) = delete;
+  explicit FilePointer(std::unique_ptr<FileReader> reader) : reader_(std::move(reader)) {}
+  explicit FilePointer(std::unique_ptr<FileWriter> writer) : writer_(std::move(writer)) {}
 
-  std::FILE* get() const { return file_; }
+  FileReader& reader() const {
+    if (!reader_) Machine::fail(RunErrorKind::Type, writer_ ? "this file was opened for writing" : kClosed);
+    return *reader_;
+  }
+  FileWriter& writer() const {
+    if (!writer_) Machine::fail(RunErrorKind::Type, reader_ ? "this file was opened for reading" : kClosed);
+    return *writer_;
+  }
   void close() {
-    if (file_ != nullptr) std::fclose(file_);
-    file_ = nullptr;
+    reader_.reset();
+    if (const auto writer = std::move(writer_)) writer->close();
   }
 
+  /// The next byte, -1 at the end.
+  int next() {
+    if (at_ == size_) {
+      at_ = 0;
+      size_ = reader().read(block_.data(), block_.size());
+      end_ = size_ == 0;
+    }
+    return end_ ? -1 : static_cast<unsigned char>(block_[at_++]);
+  }
+  bool end() const { return end_; }
+
  private:
-  std::FILE* file_;
+  static constexpr const char* kClosed = "this file is closed";
+
+  std::unique_ptr<FileReader> reader_;
+  std::unique_ptr<FileWriter> writer_;
+  std::array<char, 4096> block_;
+  std::size_t at_ = 0, size_ = 0;
+  bool end_ = false;
 };
 
 FilePointer& file_of(PointerCell* pointer) {
@@ -37,50 +59,56 @@ FilePointer& file_of(PointerCell* pointer) {
   return *file;
 }
 
-std::FILE* open_file(PointerCell* pointer) {
-  std::FILE* file = file_of(pointer).get();
-  if (file == nullptr) Machine::fail(RunErrorKind::Type, "this file is closed");
-  return file;
+/// NULL if it cannot be opened: with a warning unless there is no such file, which the program is to find out.
+template <class Open>
+PointerCell* open_file(Machine& machine, std::string_view name, Open open) {
+  try {
+    return machine.heap().pointer(std::make_unique<FilePointer>(open()));
+  } catch (const MissingFile&) {
+    return nullptr;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::File) throw;
+    machine.warn_once("file:" + std::string(name), error.what());
+    return nullptr;
+  }
 }
 
-PointerCell* open(Machine& machine, const std::string& path, const char* mode) {
-  std::FILE* file = path.empty() ? nullptr : std::fopen(path.c_str(), mode);
-  if (file == nullptr) return nullptr;
-  return machine.heap().pointer(std::make_unique<FilePointer>(file));
+PointerCell* open_to_read(Machine& machine, Instance&, StringCell* name) {
+  return open_file(machine, view(name), [&] { return open_for_reading(machine, view(name)); });
+}
+PointerCell* open_to_write(Machine& machine, Instance&, StringCell* name) {
+  return open_file(machine, view(name), [&] { return open_for_writing(machine, view(name), false); });
+}
+PointerCell* open_to_append(Machine& machine, Instance&, StringCell* name) {
+  return open_file(machine, view(name), [&] { return open_for_writing(machine, view(name), true); });
 }
 
-PointerCell* open_for_reading(Machine& machine, Instance&, StringCell* name) {
-  const std::string path(view(name));
-  PointerCell* file = open(machine, path, "rb");
-  if (file == nullptr && machine.host().find_file) file = open(machine, machine.host().find_file(path), "rb");
-  return file;
-}
-PointerCell* open_for_writing(Machine& machine, Instance&, StringCell* name) {
-  return open(machine, std::string(view(name)), "wb");
-}
-PointerCell* open_for_appending(Machine& machine, Instance&, StringCell* name) {
-  return open(machine, std::string(view(name)), "ab");
+void need_room(std::size_t size) {
+  if (size >= kMostFileBytes)
+    Machine::fail(RunErrorKind::Bounds, "the text that is read from this file is longer than 256 MiB");
 }
 
 /// One line without its end, which may be "\n" or "\r\n".
-std::string line_of(std::FILE* file) {
+std::string line_of(FilePointer& file) {
   std::string line;
-  for (int c = std::getc(file); c != EOF && c != '\n'; c = std::getc(file)) line += static_cast<char>(c);
+  for (int c = file.next(); c != -1 && c != '\n'; c = file.next()) {
+    need_room(line.size());
+    line += static_cast<char>(c);
+  }
   if (!line.empty() && line.back() == '\r') line.pop_back();
   return line;
 }
 
 StringCell* read_line(Machine& machine, Instance&, PointerCell* pointer) {
-  return machine.heap().string(line_of(open_file(pointer)));
+  return machine.heap().string(line_of(file_of(pointer)));
 }
 
 StringCell* read_whole(Machine& machine, Instance&, PointerCell* pointer) {
-  std::FILE* file = open_file(pointer);
+  FilePointer& file = file_of(pointer);
   std::string text;
-  std::array<char, 4096> buffer;
-  for (std::size_t n = 1; n > 0;) {
-    n = std::fread(buffer.data(), 1, buffer.size(), file);
-    text.append(buffer.data(), n);
+  for (int c = file.next(); c != -1; c = file.next()) {
+    need_room(text.size());
+    text += static_cast<char>(c);
   }
   return machine.heap().string(text);
 }
@@ -91,7 +119,7 @@ void push_text(Heap& heap, ListCell& list, std::string_view text) {
 
 /// Split at every delimiter, which may be several bytes long; none: the line is the only element. "" gives {}.
 ListCell* read_delimited(Machine& machine, Instance&, PointerCell* pointer, StringCell* delimiter) {
-  const std::string line = line_of(open_file(pointer));
+  const std::string line = line_of(file_of(pointer));
   const std::string_view cut = view(delimiter);
   ListCell* list = machine.heap().list();
   if (line.empty()) return list;
@@ -107,7 +135,7 @@ ListCell* read_delimited(Machine& machine, Instance&, PointerCell* pointer, Stri
 
 ListCell* read_words(Machine& machine, Instance&, PointerCell* pointer) {
   constexpr std::string_view kBlanks = " \t\r\v\f";
-  const std::string line = line_of(open_file(pointer));
+  const std::string line = line_of(file_of(pointer));
   ListCell* list = machine.heap().list();
   for (auto start = line.find_first_not_of(kBlanks); start != std::string::npos;) {
     const auto end = line.find_first_of(kBlanks, start);
@@ -118,21 +146,29 @@ ListCell* read_words(Machine& machine, Instance&, PointerCell* pointer) {
 }
 
 void write_string(Machine& machine, Instance&, PointerCell* pointer, StringCell* text) {
-  const std::string_view bytes = view(text);
-  if (std::fwrite(bytes.data(), 1, bytes.size(), open_file(pointer)) != bytes.size())
-    machine.warn("writeString: the text could not be written, or not whole");
+  FileWriter& file = file_of(pointer).writer();
+  try {
+    file.write(view(text));
+  } catch (const Error& error) {
+    machine.warn(std::string("writeString: the text could not be written, or not whole: ") + error.what());
+  }
 }
 
-std::int32_t at_end(Machine&, Instance&, PointerCell* pointer) { return std::feof(open_file(pointer)) != 0 ? 1 : 0; }
+std::int32_t at_end(Machine&, Instance&, PointerCell* pointer) { return file_of(pointer).end() ? 1 : 0; }
 
-void close_file(Machine&, Instance&, PointerCell* pointer) {
-  if (pointer != nullptr) file_of(pointer).close();
+void close_file(Machine& machine, Instance&, PointerCell* pointer) {
+  if (pointer == nullptr) return;
+  try {
+    file_of(pointer).close();
+  } catch (const Error& error) {
+    machine.warn(std::string("closeFile: ") + error.what());
+  }
 }
 
 constexpr std::array kFileFunctions = {
-    native<open_for_reading>("openFileForReading"),
-    native<open_for_writing>("openFileForWriting"),
-    native<open_for_appending>("openFileForAppending"),
+    native<open_to_read>("openFileForReading"),
+    native<open_to_write>("openFileForWriting"),
+    native<open_to_append>("openFileForAppending"),
     native<read_line>("readLine"),
     native<read_whole>("readFileAsString"),
     native<read_delimited>("readDelimitedList"),

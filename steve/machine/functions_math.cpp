@@ -113,6 +113,8 @@ void random_seed(Machine& machine, Instance&, std::int32_t seed) {
 }
 /// The one place where the outside enters a run; the seed that it drew is returned, so that the run can be repeated.
 std::int32_t random_seed_from_device(Machine& machine, Instance& self) {
+  if (!machine.host().may_draw_entropy)
+    refuse_right("randomSeedFromDevRandom", "draw a seed from the operating system", "BREVE_RIGHT_ENTROPY");
   try {
     const auto seed = static_cast<std::int32_t>(std::random_device{}() & 0x7fffffffU);
     random_seed(machine, self, seed);

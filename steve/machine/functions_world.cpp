@@ -11,17 +11,28 @@
 
 namespace breve::steve {
 
+void refuse_right(std::string_view function, std::string_view what, std::string_view right) {
+  throw RunError(RunErrorKind::World, fmt::format("{}: the host does not let scripts {}", function, what),
+                 fmt::format("the host allows it with {} in the rights of its runtime", right));
+}
+
 namespace {
 
 double get_time(Machine& machine, Instance&) { return machine.world().time(); }
 
-double get_real_time(Machine&, Instance&) {
+void need_clock(Machine& machine, const char* function) {
+  if (!machine.host().may_read_clock) refuse_right(function, "read the clock on the wall", "BREVE_RIGHT_REAL_TIME");
+}
+
+double get_real_time(Machine& machine, Instance&) {
+  need_clock(machine, "getRealTime");
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   return std::chrono::duration<double>(now).count();
 }
 
 /// Wall-clock seconds since the embedder made the machine's host.
 double get_running_time(Machine& machine, Instance&) {
+  need_clock(machine, "getRunningTime");
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - machine.host().started).count();
 }
 
@@ -48,15 +59,17 @@ void end_simulation(Machine& machine, Instance&) { machine.world().request_end()
 void pause_simulation(Machine& machine, Instance&) { machine.world().set_paused(true); }
 void unpause_simulation(Machine& machine, Instance&) { machine.world().set_paused(false); }
 
-void sleep_for(Machine&, Instance&, double seconds) {
+void sleep_for(Machine& machine, Instance&, double seconds) {
+  if (!machine.host().may_sleep) refuse_right("sleep", "sleep", "BREVE_RIGHT_SLEEP");
   constexpr double kLongest = 86400;  // a day: keeps the conversion to the clock's integer sound
   if (seconds > 0) std::this_thread::sleep_for(std::chrono::duration<double>(std::fmin(seconds, kLongest)));
 }
 
 StringCell* run_command(Machine& machine, Instance&, StringCell* command) {
   if (!machine.host().system)
-    Machine::fail(RunErrorKind::World,
-                  "system: the host does not allow scripts to run commands of the operating system");
+    throw RunError(RunErrorKind::World,
+                   "system: the host does not allow scripts to run commands of the operating system",
+                   "the host allows it with a callback `system`, and `breve run` with --allow-system");
   return machine.heap().string(machine.host().system(view(command)));
 }
 
@@ -72,9 +85,9 @@ StringCell* argument_at(Machine& machine, Instance&, std::int32_t i) {
   return machine.heap().string(arguments[static_cast<std::size_t>(i)]);
 }
 
-StringCell* find_file(Machine& machine, Instance&, StringCell* name) {
-  if (!machine.host().find_file) return nullptr;
-  return machine.heap().string(machine.host().find_file(view(name)));
+StringCell* path_of_file(Machine& machine, Instance&, StringCell* name) {
+  if (!machine.host().open_for_reading) return nullptr;
+  return machine.heap().string(find_file(machine, view(name)));
 }
 
 void show_stack_trace(Machine& machine, Instance&) { machine.warn("stacktrace\n" + machine.stack_trace()); }
@@ -98,7 +111,7 @@ constexpr std::array kWorldFunctions = {
     native<run_command>("system"),
     native<argument_count>("getArgc"),
     native<argument_at>("getArgv"),
-    native<find_file>("findFile"),
+    native<path_of_file>("findFile"),
     native<show_stack_trace>("stacktrace"),
     native<no_mouse>("getMouseX"),
     native<no_mouse>("getMouseY"),

@@ -16,6 +16,7 @@
 #include "steve/compile/bytecode.hpp"
 #include "steve/compile/program.hpp"
 #include "steve/machine/budget.hpp"
+#include "steve/machine/files.hpp"
 #include "steve/machine/handler_methods.hpp"
 #include "steve/machine/heap.hpp"
 #include "steve/machine/native.hpp"
@@ -27,8 +28,11 @@ struct MachineHost {
   std::function<void(std::string_view text)> print;             // what scripts print, as written
   std::function<void(std::string_view text)> warn;              // one warning, one or more whole lines
   std::function<void(std::string_view text)> error;             // a run-time error that did not stop the run (F27)
-  std::function<std::string(std::string_view name)> find_file;  // path of a data file (images, sounds), "" if none
+  // Open a file; null with a reason, or without one if there is none.
+  std::function<std::unique_ptr<FileReader>(std::string_view name, std::string& why)> open_for_reading;
+  std::function<std::unique_ptr<FileWriter>(std::string_view name, bool append, std::string& why)> open_for_writing;
   std::function<std::string(std::string_view command)> system;  // run a shell command; empty: not allowed
+  bool may_sleep = false, may_read_clock = false, may_draw_entropy = false;
   std::vector<std::string> arguments;                           // [0] is the program file
   std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
   std::uint64_t seed = 1;  // that the world was made with

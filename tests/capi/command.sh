@@ -279,7 +279,49 @@ files_written_here)
   ;;
 system)
   program a.tz 'print "before". print system("echo inside").' ''
-  expect 0 run a.tz --iterations 1 --quiet && has out inside && same "$(head -n 1 out)" before
+  expect 0 run a.tz --iterations 1 --quiet --allow-system && has out inside && same "$(head -n 1 out)" before
+  expect 1 run a.tz --iterations 1 --quiet && has err 'does not allow scripts to run commands' && has err allow-system
+  ;;
+access)
+  mkdir program data
+  echo secret >data/a.txt
+  echo own >program/own.txt
+  cat >program/a.tz <<END
+@use Control.
+Controller Main.
+Control : Main {
+  + to look at s (string):
+    f (pointer).
+    f = openFileForReading(s).
+    if f: print readLine(f). else print "none".
+  + to put into s (string):
+    f (pointer).
+    f = openFileForWriting(s).
+    if f: writeString(f, "made"). else print "not written".
+  + to init:
+    self look at "own.txt".
+    self look at "a.txt".
+    self look at "program/../data/a.txt".
+    self look at "$PWD/data/a.txt".
+    self look at "/etc/passwd".
+    self put into "here.txt".
+    self put into "/tmp/breve-not-here.txt".
+}
+END
+  expect 0 run program/a.tz --iterations 1
+  same "$(cat out)" "$(printf 'own\nnone\nsecret\nsecret\nnone\nnot written')"
+  has err "none of the directories that the program may use; --allow-read DIR adds one"
+  same "$(cat here.txt)" made
+  mkdir other && cd other
+  expect 0 run ../program/a.tz --iterations 1 --quiet && same "$(cat out)" "$(printf 'own\nnone\nnone\nnone\nnone\nnot written')"
+  expect 0 run ../program/a.tz --iterations 1 --quiet --allow-read ../data
+  same "$(cat out)" "$(printf 'own\nsecret\nnone\nsecret\nnone\nnot written')"
+  rm here.txt
+  expect 0 run ../program/a.tz --iterations 1 --quiet --no-files
+  same "$(cat out)" "$(printf 'none\nnone\nnone\nnone\nnone\nnot written\nnot written')"
+  [ ! -e here.txt ] || fail "written in spite of --no-files"
+  expect 2 run ../program/a.tz --allow-read nowhere && has err nowhere
+  expect 2 run ../program/a.tz --no-files --allow-read . && has err no-files
   ;;
 order_of_output)
   program a.tz 'print "one". print "two". die "three".' ''

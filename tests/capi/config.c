@@ -91,7 +91,7 @@ static void reserved_fields_and_half_an_allocator_are_refused(void) {
   config.worker_threads = 2;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_runtime_create(&config, &runtime));
   config = breve_runtime_config_default();
-  config.reserved = 1;
+  config.rights = 1u << 20;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_runtime_create(&config, &runtime));
   config = breve_runtime_config_default();
   config.release = count_release;

@@ -46,10 +46,11 @@ static void a_reference_of_a_trace_callback_dies_with_it(void) {
 
 static breve_world* asked;
 
-static bool push_many(void* user, breve_world* world, const char* name, breve_write_fn write, void* sink) {
+static bool push_many(void* user, breve_world* world, const char* name, breve_file* file, breve_write_fn reason,
+                      void* sink) {
   breve_value list;
   const breve_value one = breve_value_int(1);
-  (void)user, (void)name, (void)write, (void)sink;
+  (void)user, (void)name, (void)file, (void)reason, (void)sink;
   if (!asked) return false;
   if (breve_object_get(world, breve_world_controller(world), "k", &list) == BREVE_OK)
     for (int i = 0; i < 100; ++i) CHECK_STATUS(BREVE_OK, breve_list_push(world, &list, &one));
@@ -68,7 +69,7 @@ static void a_host_that_looks_for_files_may_change_the_list_of_their_names(void)
   breve_runtime* runtime = NULL;
   breve_program* program = NULL;
   breve_world* world = NULL;
-  config.find_file = push_many;
+  config.files.open_for_reading = push_many;
   asked = NULL;
   CHECK_STATUS(BREVE_OK, breve_runtime_create(&config, &runtime));
   CHECK_STATUS(BREVE_OK, breve_program_compile(runtime, "sky.tz", text, strlen(text), &program));

@@ -21,6 +21,8 @@ static void null_handles_give_an_argument_error_or_nothing(void) {
   const char* text;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_runtime_create(NULL, NULL));
   CHECK_STATUS(BREVE_OK, breve_runtime_destroy(NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_files_within(NULL, false, 0, NULL));
+  CHECK_STATUS(BREVE_OK, breve_files_release(NULL));
   CHECK(breve_runtime_last_error(NULL) == NULL);
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_program_load(NULL, "x", &program));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_program_compile(NULL, "x", "", 0, &program));

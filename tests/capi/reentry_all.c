@@ -20,6 +20,18 @@ static const char* const small_text = "@use Control.\nController Small.\nControl
 
 /* --- one function a function of breve.h that can do anything; those that only look are in look_around ------------- */
 
+static breve_status do_files_within(place* p) {
+  (void)p;
+  breve_files files = {0};
+  const breve_status status = breve_files_within(".", false, 0, &files);
+  breve_files_release(&files);
+  return status;
+}
+static breve_status do_files_release(place* p) {
+  (void)p;
+  breve_files files = {0};
+  return breve_files_release(&files);
+}
 static breve_status do_runtime_destroy(place* p) { return breve_runtime_destroy(p->runtime); }
 static breve_status do_runtime_allow(place* p) { return breve_runtime_allow(p->runtime, "lint-unused-variable"); }
 static breve_status do_load(place* p) {
@@ -349,6 +361,8 @@ static const struct {
     {"breve_world_evaluate", do_evaluate, WORKS, WORKS},
     {"breve_world_session", do_session, WORKS, WORKS},
     {"breve_world_destroy", do_destroy, BUSY, BUSY /* not called there: it would work */},
+    {"breve_files_within", do_files_within, WORKS, WORKS},
+    {"breve_files_release", do_files_release, WORKS, WORKS},
     {"breve_runtime_destroy", do_runtime_destroy, BUSY /* only while the runtime itself works */, BUSY},
 };
 
@@ -432,14 +446,22 @@ static void on_print(void* user, breve_world* world, breve_channel channel, cons
   visit_script(v);
 }
 
-static bool on_find_file(void* user, breve_world* world, const char* name, breve_write_fn write, void* sink) {
+static bool on_open(void* user, breve_world* world, const char* name, breve_file* file, breve_write_fn reason,
+                    void* sink) {
   visitor* v = user;
   (void)world;
   (void)name;
+  (void)file;
   ++v->files;
-  write(sink, "/nowhere", 8);
+  reason(sink, "not today", 9);
   visit_script(v);
-  return true;
+  return false;
+}
+
+static bool on_open_for_writing(void* user, breve_world* world, const char* name, bool append, breve_file* file,
+                                breve_write_fn reason, void* sink) {
+  (void)append;
+  return on_open(user, world, name, file, reason, sink);
 }
 
 static bool on_system(void* user, breve_world* world, const char* command, breve_write_fn write, void* sink) {
@@ -484,13 +506,15 @@ static bool open_visited(visitor* v) {
   v->active = true;
   const char* methods =
       "  + to be-loud:\n    print \"loud\".\n    free blank.\n    sqrt(-1.0).\n"
-      "    print findFile(\"a\"), system(\"b\").\n";
+      "    print findFile(\"a\"), system(\"b\"), !openFileForWriting(\"c\").\n";
   const char* at = strstr(scene_text, "  + to touch:");
   snprintf(text, sizeof text, "%.*s%s%s", (int)(at - scene_text), scene_text, methods, at);
   breve_runtime_config config = breve_runtime_config_default();
   config.user = v;
   config.print = on_print;
-  config.find_file = on_find_file;
+  config.files.user = v;
+  config.files.open_for_reading = on_open;
+  config.files.open_for_writing = on_open_for_writing;
   config.system = on_system;
   config.resolve_module = on_resolve;
   config.release_module = on_release;
@@ -527,7 +551,7 @@ static void every_function_works_or_is_busy_inside_callbacks_of_a_script(void) {
   place* p = &v.at;
   CHECK_STATUS(BREVE_OK, breve_object_call(p->world, p->controller, "be-loud", NULL, 0, NULL));
   CHECK(v.in_channel[BREVE_CHANNEL_PRINT] > 0 && v.in_channel[BREVE_CHANNEL_WARNING] > 0);
-  CHECK(v.files == 1 && v.commands == 1);
+  CHECK(v.files == 2 && v.commands == 1);
   /* A handler that fails: its report is a callback, too. */
   const char* fails =
       "self observe instance self for-notification \"x\" with-method \"fail-now\". self announce message \"x\".";

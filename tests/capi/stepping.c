@@ -198,17 +198,29 @@ static void a_failing_init_makes_no_world(void) {
   CHECK_STATUS(BREVE_OK, breve_runtime_destroy(runtime));
 }
 
-static bool find_nothing(void* user, breve_world* world, const char* name, breve_write_fn write, void* sink) {
+static bool read_nothing(void* handle, void* bytes, size_t size, size_t* got) {
+  (void)handle, (void)bytes, (void)size;
+  *got = 0;
+  return true;
+}
+
+static bool open_empty(void* user, breve_world* world, const char* name, breve_file* file, breve_write_fn reason,
+                       void* sink) {
   transcript* t = user;
+  (void)reason, (void)sink;
   CHECK(world != NULL);
   snprintf(t->error, sizeof t->error, "%s", name);
-  write(sink, "part one, ", 10);
-  write(sink, "part two", 8);
+  file->read = read_nothing;
   return true;
 }
 
 static bool run_nothing(void* user, breve_world* world, const char* command, breve_write_fn write, void* sink) {
-  return find_nothing(user, world, command, write, sink);
+  transcript* t = user;
+  CHECK(world != NULL);
+  snprintf(t->error, sizeof t->error, "%s", command);
+  write(sink, "part one, ", 10);
+  write(sink, "part two", 8);
+  return true;
 }
 
 static void files_and_commands_are_asked_of_the_host(void) {
@@ -223,16 +235,18 @@ static void files_and_commands_are_asked_of_the_host(void) {
   breve_world* world = NULL;
   config.user = &t;
   config.print = remember;
-  config.find_file = find_nothing;
+  config.files.user = &t;
+  config.files.open_for_reading = open_empty;
   config.system = run_nothing;
   CHECK_STATUS(BREVE_OK, breve_runtime_create(&config, &runtime));
   CHECK_STATUS(BREVE_OK, breve_program_compile(runtime, "asker.tz", text, strlen(text), &program));
   CHECK_STATUS(BREVE_OK, breve_world_create(runtime, program, NULL, &world));
   CHECK_STATUS(BREVE_OK, breve_object_call(world, breve_world_controller(world), "find", NULL, 0, NULL));
   CHECK_TEXT("picture.png", t.error);
-  CHECK_TEXT("part one, part two\n", t.print);
+  CHECK_TEXT("picture.png\n", t.print);
   CHECK_STATUS(BREVE_OK, breve_object_call(world, breve_world_controller(world), "run", NULL, 0, NULL));
   CHECK_TEXT("date", t.error);
+  CHECK_TEXT("picture.png\npart one, part two\n", t.print);
   CHECK_STATUS(BREVE_OK, breve_world_destroy(world));
   breve_program_destroy(program);
   CHECK_STATUS(BREVE_OK, breve_runtime_destroy(runtime));

@@ -113,11 +113,12 @@ bool make_runtime(Run& run) {
   config.resolve_module = resolve_program;
   config.print = [](void*, breve_world*, breve_channel, const char*, std::size_t) {};
   config.add_path = [](void*, const char*) {};
-  config.find_file = [](void*, breve_world*, const char* name, breve_write_fn write, void* sink) {
-    write(sink, name, std::strlen(name));
-    return true;
-  };
-  TRY(breve_runtime_create(&config, &run.runtime));
+  breve_files files{};
+  TRY(breve_files_within(".", true, 0, &files));
+  config.files = files;
+  const breve_status made = breve_runtime_create(&config, &run.runtime);
+  breve_files_release(&files);
+  TRY(made);
   return true;
 }
 

@@ -1,43 +1,15 @@
-// Pictures and text files: what is written is read back, and every failure is named.
+// Pictures: what is written is read back, and every failure is named.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 
 #include "runtime/base/error.hpp"
-#include "runtime/store/file.hpp"
 #include "runtime/store/image.hpp"
 
 namespace breve {
 namespace {
-
-/// A folder of its own for each test.
-class Store : public testing::Test {
- protected:
-  void SetUp() override {
-    std::string name = testing::TempDir() + "breve_store_XXXXXX";
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::string path(const std::string& name) const { return folder_ / name; }
-  std::string content(const std::string& name) const {
-    std::ifstream in(path(name), std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-  void put(const std::string& name, const std::string& text) const {
-    std::ofstream(path(name), std::ios::binary) << text;
-  }
-
- private:
-  std::filesystem::path folder_;
-};
-using ImageStore = Store;
-using TextStore = Store;
 
 std::string message(ErrorCode code, auto act) {
   try {
@@ -99,17 +71,16 @@ TEST(Image, PlacesAndSizesAreChecked) {
             std::string::npos);
 }
 
-TEST_F(ImageStore, PngRoundTripKeepsEveryByte) {
+TEST(ImageFile, PngRoundTripKeepsEveryByte) {
   const Image image = sample();
-  image.write_png(path("a.png"));
-  const Image back = Image::read(path("a.png"));
+  const Image back = Image::parse(image.png(), "a.png");
   EXPECT_EQ(back.width(), 5);
   EXPECT_EQ(back.height(), 3);
   EXPECT_EQ(back.bytes(), image.bytes());
   EXPECT_TRUE(back.changed());
 }
 
-TEST_F(ImageStore, TgaIsReadAndGivenAlpha) {
+TEST(ImageFile, TgaIsReadAndGivenAlpha) {
   // An uncompressed 24-bit TGA of 2 x 1, top-left origin: blue, green, red a pixel.
   std::string tga(18, '\0');
   tga[2] = 2;
@@ -118,31 +89,23 @@ TEST_F(ImageStore, TgaIsReadAndGivenAlpha) {
   tga[16] = 24;
   tga[17] = 0x20;
   tga += std::string("\x01\x02\x03\x04\x05\x06", 6);
-  put("a.tga", tga);
-  const Image image = Image::read(path("a.tga"));
+  const Image image = Image::parse(tga, "a.tga");
   EXPECT_EQ(image.bytes(), (std::pmr::vector<std::uint8_t>{3, 2, 1, 255, 6, 5, 4, 255}));
 }
 
-TEST_F(ImageStore, FailuresNameTheFile) {
-  const std::string none = path("none.png");
-  EXPECT_EQ(message(ErrorCode::File, [&] { Image::read(none); }),
-            "cannot read image file '" + none + "': No such file or directory");
-  put("text.png", "this is no picture");
-  EXPECT_NE(message(ErrorCode::File, [&] { Image::read(path("text.png")); }).find("text.png"), std::string::npos);
-  sample().write_png(path("cut.png"));
-  put("cut.png", content("cut.png").substr(0, 40));
-  EXPECT_NE(message(ErrorCode::File, [&] { Image::read(path("cut.png")); }).find("cut.png"), std::string::npos);
-  EXPECT_NE(message(ErrorCode::File, [&] { sample().write_png(path("no/where.png")); }).find("no/where.png"),
-            std::string::npos);
-  EXPECT_NE(message(ErrorCode::File, [&] { Image().write_png(path("empty.png")); }).find("the image is empty"),
-            std::string::npos);
-  EXPECT_THROW(Image::read(path("")), Error);  // a folder
+TEST(ImageFile, FailuresNameTheFile) {
+  const auto refusal = [](const std::string& bytes) {
+    return message(ErrorCode::File, [&] { Image::parse(bytes, "a.png"); });
+  };
+  EXPECT_EQ(refusal("this is no picture").find("cannot read image file 'a.png': "), 0U);
+  EXPECT_EQ(refusal(sample().png().substr(0, 40)).find("cannot read image file 'a.png': "), 0U);
+  EXPECT_NE(refusal(""), "");
+  EXPECT_EQ(message(ErrorCode::Argument, [] { (void)Image().png(); }), "the image is empty");
 }
 
-TEST_F(ImageStore, SixteenBitGrayKeepsSixteenBits) {
+TEST(ImageFile, SixteenBitGrayKeepsSixteenBits) {
   const std::vector<double> values{0, 1, 0.5, -3, 7, std::numeric_limits<double>::quiet_NaN()};
-  write_gray16_png(path("gray.png"), 3, 2, values);
-  const std::string png = content("gray.png");
+  const std::string png = gray16_png(3, 2, values);
   // IHDR: width 3, height 2, depth 16, colour type 0.
   EXPECT_EQ(png.substr(16, 10), std::string("\0\0\0\x03\0\0\0\x02\x10\0", 10));
   // The one IDAT chunk, inflated: rows of a filter byte 0 and big-endian samples.
@@ -155,8 +118,8 @@ TEST_F(ImageStore, SixteenBitGrayKeepsSixteenBits) {
   raw.resize(size);
   EXPECT_EQ(raw, (std::vector<std::uint8_t>{0, 0, 0, 255, 255, 128, 0, 0, 0, 0, 255, 255, 0, 0}));
   // Another reader takes it too, checksums and all.
-  EXPECT_EQ(Image::read(path("gray.png")).byte(1, 0, Channel::Red), 255);
-  EXPECT_NE(message(ErrorCode::Argument, [&] { write_gray16_png(path("x.png"), 2, 2, values); }).find("6 values"),
+  EXPECT_EQ(Image::parse(png, "gray.png").byte(1, 0, Channel::Red), 255);
+  EXPECT_NE(message(ErrorCode::Argument, [&] { (void)gray16_png(2, 2, values); }).find("6 values"),
             std::string::npos);
 }
 
@@ -192,77 +155,6 @@ TEST(Image, ASnapshotGivesTheSameImageBack) {
     ByteReader cut(bytes.data(), size);
     EXPECT_THROW(Image::load(cut), Error);
   }
-}
-
-TEST_F(TextStore, LinesComeWithoutTheirEnds) {
-  put("a.txt", "one\r\ntwo\n\nfo\rur\nlast");
-  TextFile file(path("a.txt"), TextFile::Mode::Read);
-  EXPECT_EQ(file.read_line(), "one");
-  EXPECT_EQ(file.read_line(), "two");
-  EXPECT_EQ(file.read_line(), "");
-  EXPECT_FALSE(file.is_end());
-  EXPECT_EQ(file.read_line(), "fo\rur");
-  EXPECT_EQ(file.read_line(), "last");
-  EXPECT_TRUE(file.is_end());
-  EXPECT_EQ(file.read_line(), "");
-}
-
-TEST_F(TextStore, TheEndIsKnownOnlyAfterARead) {
-  put("a.txt", "one\n");
-  TextFile file(path("a.txt"), TextFile::Mode::Read);
-  EXPECT_FALSE(file.is_end());
-  EXPECT_EQ(file.read_line(), "one");
-  EXPECT_FALSE(file.is_end());
-  EXPECT_EQ(file.read_line(), "");
-  EXPECT_TRUE(file.is_end());
-}
-
-TEST_F(TextStore, WhatIsWrittenIsReadBackWhole) {
-  const std::string text("a\0b\nc\xff", 6);
-  TextFile out(path("a.txt"), TextFile::Mode::Write);
-  out.write(text);
-  out.write("!");
-  out.close();
-  EXPECT_FALSE(out.open());
-  TextFile more(path("a.txt"), TextFile::Mode::Append);
-  more.write("?");
-  more.close();
-  TextFile in(path("a.txt"), TextFile::Mode::Read);
-  EXPECT_EQ(in.read_all(), text + "!?");
-  EXPECT_TRUE(in.is_end());
-  TextFile over(path("a.txt"), TextFile::Mode::Write);
-  over.close();
-  EXPECT_EQ(content("a.txt"), "");
-}
-
-TEST_F(TextStore, FailuresNameTheFile) {
-  const std::string none = path("none.txt");
-  EXPECT_EQ(message(ErrorCode::File, [&] { TextFile(none, TextFile::Mode::Read); }),
-            "cannot read file '" + none + "': No such file or directory");
-  EXPECT_NE(message(ErrorCode::File, [&] { TextFile(path(""), TextFile::Mode::Read); }).find("directory"),
-            std::string::npos);
-  EXPECT_NE(message(ErrorCode::File, [&] { TextFile(path("no/x"), TextFile::Mode::Write); }).find("no/x"),
-            std::string::npos);
-  EXPECT_NE(
-      message(ErrorCode::File, [&] { TextFile(path(std::string("a\0b", 3)), TextFile::Mode::Write); }).find("zero"),
-      std::string::npos);
-  TextFile out(path("a.txt"), TextFile::Mode::Write);
-  EXPECT_NE(message(ErrorCode::File, [&] { out.read_line(); }).find("opened for writing"), std::string::npos);
-  out.close();
-  EXPECT_NE(message(ErrorCode::File, [&] { out.write("x"); }).find("it is closed"), std::string::npos);
-  TextFile in(path("a.txt"), TextFile::Mode::Read);
-  EXPECT_NE(message(ErrorCode::File, [&] { in.write("x"); }).find("opened for reading"), std::string::npos);
-}
-
-TEST_F(TextStore, AFullDiskIsNoticed) {
-#ifdef __linux__
-  ASSERT_TRUE(std::filesystem::exists("/dev/full"));
-#else
-  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
-#endif
-  TextFile out("/dev/full", TextFile::Mode::Write);
-  out.write("x");
-  EXPECT_NE(message(ErrorCode::File, [&] { out.close(); }).find("/dev/full"), std::string::npos);
 }
 
 }  // namespace

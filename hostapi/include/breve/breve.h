@@ -53,7 +53,7 @@ extern "C" {
 /* ---- versions ---------------------------------------------------------------------------------------------------- */
 
 /* Number of the binary interface that this header describes. A library with another number is another interface. */
-#define BREVE_ABI 1
+#define BREVE_ABI 2
 
 /* "major.minor.patch" of the library. Never NULL. */
 BREVE_API const char* breve_version(void);
@@ -183,8 +183,48 @@ typedef void (*breve_add_path_fn)(void* user, const char* directory);
 /* Given to callbacks that answer with bytes: call it with `sink` as often as needed; the pieces are put together. */
 typedef void (*breve_write_fn)(void* sink, const char* bytes, size_t size);
 
-/* Find a data file (image, mesh, text) by the name that a script used, and write its path. False: there is none. */
-typedef bool (*breve_find_file_fn)(void* user, breve_world* world, const char* name, breve_write_fn write, void* sink);
+/* A file that a host has opened for a script. The functions get `handle`; no other call may be made in them. Frozen: it
+   never grows. */
+typedef struct breve_file {
+  void* handle;
+  /* Of a file for reading: read up to `size` bytes and say how many; 0 is the end. False: they cannot be read. */
+  bool (*read)(void* handle, void* bytes, size_t size, size_t* got);
+  /* Of a file for writing: write all the bytes. False: they cannot all be written. */
+  bool (*write)(void* handle, const void* bytes, size_t size);
+  /* Called once, last. `keep` is false where writing failed: what was written is better dropped than kept. False: it was
+     not kept. NULL: nothing to do. */
+  bool (*close)(void* handle, bool keep);
+  const char* path; /* what `findFile` tells the script; copied at once. NULL: the name as it was spelled */
+} breve_file;
+
+/* Open the file that a script names (text, image, mesh, archive), just as the script spells it.
+   @param file    zeroed; to be filled
+   @param reason  to be called with `sink` and why a file that may be there is refused, as the end of a sentence
+   Returns false if it is not opened; without a reason: there is no such file. */
+typedef bool (*breve_open_for_reading_fn)(void* user, breve_world* world, const char* name, breve_file* file,
+                                          breve_write_fn reason, void* sink);
+
+/* The same for a file to be written. @param append  what is in it stays; otherwise it is replaced when it is closed */
+typedef bool (*breve_open_for_writing_fn)(void* user, breve_world* world, const char* name, bool append, breve_file* file,
+                                          breve_write_fn reason, void* sink);
+
+/* Which files the scripts of a runtime may touch. All zero: none. Frozen: it never grows. */
+typedef struct breve_files {
+  void* user; /* handed to the callbacks */
+  breve_open_for_reading_fn open_for_reading; /* NULL: none is read */
+  breve_open_for_writing_fn open_for_writing; /* NULL: none is written */
+  /* A runtime retains when it is created, and releases when neither it nor its programs and worlds can ask any more. NULL:
+     nothing to do. */
+  void (*retain)(void* user);
+  void (*release)(void* user);
+} breve_files;
+
+/* What else of the outside scripts may touch, in breve_runtime_config.rights. See docs/sandbox.md. */
+typedef enum breve_right {
+  BREVE_RIGHT_SLEEP = 1,     /* `sleep` stops the thread */
+  BREVE_RIGHT_REAL_TIME = 2, /* the clock on the wall: `getRealTime`, `getRunningTime` */
+  BREVE_RIGHT_ENTROPY = 4    /* a seed from the operating system: `randomSeedFromDevRandom` */
+} breve_right;
 
 /* Run a shell command for a script (`system`), and write what it printed. False: it could not be run. */
 typedef bool (*breve_system_fn)(void* user, breve_world* world, const char* command, breve_write_fn write, void* sink);
@@ -198,10 +238,10 @@ typedef struct breve_runtime_config {
   breve_resolve_module_fn resolve_module; /* NULL: only the class library. Default NULL */
   breve_release_module_fn release_module; /* NULL: modules need no release. Default NULL */
   breve_add_path_fn add_path;             /* NULL: @path does nothing. Default NULL */
-  breve_find_file_fn find_file; /* NULL: data files are not found, which is a warning to the script. Default NULL */
-  breve_system_fn system;       /* NULL: scripts may not run commands; it is an error in them. Default NULL */
-  uint32_t worker_threads;      /* reserved: must be 0. Default 0 */
-  uint32_t reserved;            /* must be 0 */
+  breve_files files;        /* which files scripts may touch. Default: none */
+  breve_system_fn system;   /* NULL: scripts may not run commands; it is an error in them. Default NULL */
+  uint32_t worker_threads;  /* reserved: must be 0. Default 0 */
+  uint32_t rights;          /* of breve_right, added. Default 0 */
 } breve_runtime_config;
 
 /* The defaults named above. */
@@ -211,8 +251,25 @@ BREVE_API breve_runtime_config breve_runtime_config_default(void);
    @param config  copied; NULL: the defaults
    @param runtime to be given back to breve_runtime_destroy
    BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, allocate without release or release without
-   allocate, a reserved field that is not 0. */
+   allocate, a right that there is none of, a reserved field that is not 0. */
 BREVE_API breve_status breve_runtime_create(const breve_runtime_config* config, breve_runtime** runtime);
+
+/* Let scripts read, and perhaps write, the files below a directory: for breve_runtime_config.files. A file is named by its
+   path from there, with '/'. Refused are absolute paths, '..', symbolic links, what is no plain file, and files beyond a
+   size; nothing else of the file system can be reached, whatever happens to it meanwhile. What is written gets its name
+   when it is closed, in the place of an older file; what is appended is written at once. Directories are not made.
+   @param directory  exists. It is opened now and stays open until the files are released
+   @param may_write  without it, nothing below it is written
+   @param most_bytes of one file, to be read or written; 0: 256 MiB
+   @param files      all zero, or filled by an earlier call: files are then looked for in this directory after those
+   BREVE_OK; BREVE_ERROR_ARGUMENT: NULL, or `files` has callbacks of another origin; BREVE_ERROR_FILE: there is no such
+   directory; BREVE_ERROR_MEMORY. After an error `files` is as it was. */
+BREVE_API breve_status breve_files_within(const char* directory, bool may_write, uint64_t most_bytes,
+                                          breve_files* files);
+
+/* The host has made its runtimes with `files`, or needs none. @param files  of breve_files_within; all zero afterwards.
+   BREVE_OK, also for NULL. */
+BREVE_API breve_status breve_files_release(breve_files* files);
 
 /* Let go of a runtime. Programs and worlds made with it live on, with its callbacks, until they are destroyed.
    BREVE_OK, also for NULL; BREVE_ERROR_BUSY from a callback of a compilation or of breve_world_create on it. */

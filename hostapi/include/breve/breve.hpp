@@ -519,6 +519,27 @@ class Analysis {
   std::unique_ptr<breve_analysis, Destroy> handle_;
 };
 
+/// The files below some directories, for breve_runtime_config.files. Runtimes that were made with them keep them.
+class Files {
+ public:
+  Files() = default;
+  Files(Files&& other) noexcept : files_(std::exchange(other.files_, breve_files{})) {}
+  Files& operator=(Files&& other) noexcept {
+    std::swap(files_, other.files_);
+    return *this;
+  }
+  ~Files() { breve_files_release(&files_); }
+
+  /// As breve_files_within: after those of earlier calls.
+  Status add(const char* directory, bool may_write = false, std::uint64_t most_bytes = 0) {
+    return {breve_files_within(directory, may_write, most_bytes, &files_), nullptr};
+  }
+  const breve_files& get() const { return files_; }
+
+ private:
+  breve_files files_{};
+};
+
 class Runtime {
  public:
   Runtime() = default;

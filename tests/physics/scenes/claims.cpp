@@ -66,15 +66,7 @@ std::filesystem::path beside(const char* program, const char* name) {
   return std::filesystem::path(program).parent_path() / name;
 }
 
-/// A program may load files that lie beside it.
-bool find_beside(void* program, breve_world*, const char* name, breve_write_fn write, void* sink) {
-  const std::string path = beside(static_cast<const char*>(program), name).string();
-  if (!std::filesystem::exists(path)) return false;
-  write(sink, path.data(), path.size());
-  return true;
-}
-
-/// And include them.
+/// A program may include files that lie beside it.
 bool include_beside(void* program, const char* name, const char*, breve_module* module) {
   std::ifstream file(beside(static_cast<const char*>(program), name), std::ios::binary);
   if (!file) return false;
@@ -94,7 +86,9 @@ class Run {
   Run(const char* name, const std::string& rung) : scene_(read_scene(name, rung)) {
     breve_runtime_config of_runtime = breve_runtime_config_default();
     of_runtime.user = const_cast<char*>(name);
-    of_runtime.find_file = find_beside;
+    const std::string folder = std::filesystem::absolute(name).parent_path().string();
+    if (!files_.add(folder.c_str())) throw std::runtime_error("cannot read " + folder);
+    of_runtime.files = files_.get();
     of_runtime.resolve_module = include_beside;
     of_runtime.release_module = release_module;
     runtime_ = breve::Runtime::create(of_runtime).or_throw();
@@ -145,6 +139,7 @@ class Run {
   }
 
   Scene scene_;
+  breve::Files files_;
   breve::Runtime runtime_;
   breve::Program program_;
   breve::World world_;
