@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <sstream>
 #include <string_view>
 
 #include "source_file.hpp"
@@ -26,24 +27,21 @@ fs::path identity(const fs::path& path) {
   return error ? fs::absolute(path) : canonical;
 }
 
-void append_list(std::vector<fs::path>& paths, const char* list) {
-  if (!list) return;
-  std::string_view rest(list);
-  while (!rest.empty()) {
-    const auto end = rest.find(':');
-    const auto entry = rest.substr(0, end);
-    if (!entry.empty()) paths.emplace_back(entry);
-    if (end == std::string_view::npos) break;
-    rest.remove_prefix(end + 1);
-  }
-}
-
 }  // namespace
+
+std::vector<fs::path> class_path() {
+  std::vector<fs::path> folders;
+  const char* const list = std::getenv("BREVE_CLASS_PATH");
+  std::istringstream rest(list ? list : "");
+  for (std::string entry; std::getline(rest, entry, ':');)
+    if (!entry.empty()) folders.emplace_back(entry);
+  return folders;
+}
 
 ModuleLoader::ModuleLoader(const std::vector<std::string>& paths) {
   for (const char* launch : {"", "lib/classes", "lib", "."}) paths_.emplace_back(launch);
   for (const auto& path : paths) paths_.emplace_back(path);
-  append_list(paths_, std::getenv("BREVE_CLASS_PATH"));
+  for (const auto& path : class_path()) paths_.push_back(path);
   if (const char* home = std::getenv("HOME"); home && *home) paths_.emplace_back(home);
 }
 

@@ -18,6 +18,9 @@ struct LoadedFile {
   std::string text;
 };
 
+/// The folders of BREVE_CLASS_PATH.
+std::vector<std::filesystem::path> class_path();
+
 class ModuleLoader {
  public:
   /// @param paths  directories given on the command line, searched right after those of the launch directory

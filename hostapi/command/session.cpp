@@ -74,6 +74,7 @@ void Session::allow_files(const AccessOptions& access) {
   for (const auto& directory : access.read) access_.add(directory, false);
   for (const char* launch : {"lib/classes", "lib"}) access_.add_if_there(launch);
   for (const auto& directory : paths_) access_.add_if_there(directory);
+  for (const auto& directory : class_path()) access_.add_if_there(directory);
 }
 
 Session::Session(Output& output, const std::vector<std::string>& paths, bool quiet, bool strict,

@@ -14,10 +14,10 @@ namespace {
 /// Closes the file once.
 class OpenFile {
  public:
-  OpenFile(const breve_file& file, std::string name) : file_(file), name_(std::move(name)) {}
+  OpenFile(const breve_file& file, std::string name) noexcept : file_(file), name_(std::move(name)) {}
+  OpenFile(OpenFile&& other) noexcept : file_(std::exchange(other.file_, {})), name_(std::move(other.name_)) {}
   ~OpenFile() { close(); }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
+  OpenFile& operator=(OpenFile&&) = delete;
 
   const breve_file& functions() const { return file_; }
   const std::string& name() const { return name_; }
@@ -35,16 +35,17 @@ class OpenFile {
 
 class HostReader final : public steve::FileReader {
  public:
-  HostReader(const breve_file& file, std::string name) : file_(file, std::move(name)), path_(file_.name()) {
-    if (file.path) path_ = file.path;
+  explicit HostReader(OpenFile file) : file_(std::move(file)), path_(file_.name()) {
+    if (file_.functions().path) path_ = file_.functions().path;
   }
-  const std::string& path() const override { return path_; }
+  static bool fits(const breve_file& file) { return file.read; }
   std::size_t read(char* bytes, std::size_t size) override {
     std::size_t got = 0;
     if (!file_.functions().read(file_.functions().handle, bytes, size, &got) || got > size)
       fail_at("read", file_.name());
     return got;
   }
+  const std::string& path() const override { return path_; }
 
  private:
   OpenFile file_;
@@ -53,7 +54,8 @@ class HostReader final : public steve::FileReader {
 
 class HostWriter final : public steve::FileWriter {
  public:
-  HostWriter(const breve_file& file, std::string name) : file_(file, std::move(name)) {}
+  explicit HostWriter(OpenFile file) : file_(std::move(file)) {}
+  static bool fits(const breve_file& file) { return file.write; }
   void write(std::string_view bytes) override {
     if (bytes.empty() || file_.functions().write(file_.functions().handle, bytes.data(), bytes.size())) return;
     file_.spoil();
@@ -70,7 +72,7 @@ class HostWriter final : public steve::FileWriter {
 /// Asks the host. @param open  of the name, the file and the reason's two arguments
 template <class Wrapper, class Open>
 std::unique_ptr<Wrapper> ask(breve_world& world, std::string_view name, std::string& why, Open open) {
-  const std::string asked(name);
+  std::string asked(name);
   Answer answer;
   breve_file file{};
   const bool opened = [&] {
@@ -79,15 +81,13 @@ std::unique_ptr<Wrapper> ask(breve_world& world, std::string_view name, std::str
   }();
   if (!opened) {
     why = answer.text();
+    if (why == kNoMemory) throw std::bad_alloc();
     return nullptr;
   }
-  auto wrapper = std::make_unique<Wrapper>(file, asked);
-  constexpr bool kReads = std::is_same_v<Wrapper, HostReader>;
-  if (kReads ? file.read == nullptr : file.write == nullptr) {
-    why = fmt::format("the host opened it without a function to {}", kReads ? "read" : "write");
-    return nullptr;
-  }
-  return wrapper;
+  OpenFile whole(file, std::move(asked));
+  if (Wrapper::fits(file)) return std::make_unique<Wrapper>(std::move(whole));
+  why = "the host opened it without a function for that";
+  return nullptr;
 }
 
 }  // namespace

@@ -213,8 +213,7 @@ bool open_in(Roots& roots, breve_file* file, breve_write_fn reason, void* sink, 
     }
     if (!why.empty()) reason(sink, why.data(), why.size());
   } catch (const std::bad_alloc&) {
-    constexpr std::string_view kNone = "there is no memory for it";
-    reason(sink, kNone.data(), kNone.size());
+    reason(sink, kNoMemory.data(), kNoMemory.size());
   }
   return false;
 }

@@ -90,6 +90,9 @@ class Answer {
   bool full_ = false;
 };
 
+/// The reason by which breve_files_within says that it ran out of memory.
+inline constexpr std::string_view kNoMemory = "there is no memory for it";
+
 /// A method name with keywords, and what they mean for the class that was called last.
 struct Selector {
   explicit Selector(std::pmr::memory_resource* memory) : method(memory), keywords(memory), order(memory) {}

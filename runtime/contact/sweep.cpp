@@ -104,11 +104,11 @@ Sweeps::~Sweeps() {
 
 /// Of the way, for the sweep that follows.
 double Sweeps::share() const {
-  // Where friction is strong against what turns away from it, momentum may throw impulses ever farther.
-  constexpr double kThrown = 4;
+  // Where friction is strong against what turns away from it, and in clumps, momentum may throw impulses ever farther.
+  constexpr double kMore = 1.2, kThrown = 4;
   const double least = std::min(energy_first_, energy_before_);
-  if (energy_ >= energy_before_) return 0;
-  return energy_ < kThrown * least ? energy_ / energy_before_ : 0;
+  if (energy_ >= kMore * energy_before_ || energy_ >= kThrown * least) return 0;
+  return std::min(1.0, energy_ / energy_before_);
 }
 
 bool Sweeps::diverge() const {

@@ -59,14 +59,14 @@ std::int32_t data_load(Machine& machine, Instance& self, Text file) {
 }
 
 constexpr Native kArchiveNatives[] = {
-    native<save>("object.archive-as-xml"),
+    native<save>("object.archive-as-xml", Reach::Writes),
     native<archive_as_xml_string>("object.archive-as-xml-string"),
-    native<dearchive_xml>("control.dearchive-xml"),
+    native<dearchive_xml>("control.dearchive-xml", Reach::Reads),
     native<parse_request>("control.parse-xml-network-request"),
-    native<save>("data.save-to"),
-    native<save>("data.save-as-xml"),
-    native<data_load>("data.load-from"),
-    native<data_load>("data.load-from-xml"),
+    native<save>("data.save-to", Reach::Writes),
+    native<save>("data.save-as-xml", Reach::Writes),
+    native<data_load>("data.load-from", Reach::Reads),
+    native<data_load>("data.load-from-xml", Reach::Reads),
 };
 
 }  // namespace

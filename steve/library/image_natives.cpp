@@ -176,7 +176,7 @@ void image_read_depth(Machine& machine, Instance&, std::int32_t, std::int32_t, s
 constexpr Native kImageNatives[] = {
     native<image_init>("image.init"),
     native<image_iterate>("image.iterate"),
-    native<image_load>("image.load"),
+    native<image_load>("image.load", Reach::Reads),
     native<image_set_size>("image.init-with"),
     native<image_set_size>("image.set-size"),
     native<image_paint_pattern>("image.paint-pattern"),
@@ -198,8 +198,8 @@ constexpr Native kImageNatives[] = {
     native<set_rgb>("image.set-rgb-pixel"),
     native<image_read_pixels>("image.read-pixels"),
     native<image_read_depth>("image.read-depth"),
-    native<image_write>("image.write"),
-    native<image_write_16_bit>("image.write-16-bit-grayscale"),
+    native<image_write>("image.write", Reach::Writes),
+    native<image_write_16_bit>("image.write-16-bit-grayscale", Reach::Writes),
 };
 
 }  // namespace

@@ -22,8 +22,8 @@ Instance* load(Machine& machine, Instance& self, StringCell* file, double size) 
 }
 
 constexpr Native kMeshNatives[] = {
-    native<load<MeshUse::Triangles>>("mesh-shape.load-triangles"),
-    native<load<MeshUse::Hull>>("mesh-shape.load-hull"),
+    native<load<MeshUse::Triangles>>("mesh-shape.load-triangles", Reach::Reads),
+    native<load<MeshUse::Hull>>("mesh-shape.load-hull", Reach::Reads),
 };
 
 }  // namespace

@@ -19,7 +19,7 @@ void call_for_vector(Machine& machine, Instance& self, const Slot* args, Value& 
 
 template <auto F, class... A>
 constexpr Native bind_vector(std::string_view name, Vector3 (*f)(Machine&, Instance&, A...)) {
-  return {name, &call_for_vector<F, A...>, bind<F>(name, f).signature};
+  return {name, &call_for_vector<F, A...>, bind<F>(name, Reach::World, f).signature, Reach::World};
 }
 
 }  // namespace detail

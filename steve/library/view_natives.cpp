@@ -236,7 +236,7 @@ constexpr Native kViewNatives[] = {
     native<set_background_texture_image>("control.set-background-texture-image"),
     native<set_background_texture>("control.set-background-texture"),
     native<set_background_scroll_rate>("control.set-background-scroll-rate"),
-    native<set_skybox_images>("control.set-skybox-images"),
+    native<set_skybox_images>("control.set-skybox-images", Reach::Reads),
     native<set_mountain_skybox>("control.set-mountain-skybox"),
     native<enable<&Flags::text>>("control.enable-text"),
     native<disable<&Flags::text>>("control.disable-text"),

@@ -166,9 +166,9 @@ void close_file(Machine& machine, Instance&, PointerCell* pointer) {
 }
 
 constexpr std::array kFileFunctions = {
-    native<open_to_read>("openFileForReading"),
-    native<open_to_write>("openFileForWriting"),
-    native<open_to_append>("openFileForAppending"),
+    native<open_to_read>("openFileForReading", Reach::Reads),
+    native<open_to_write>("openFileForWriting", Reach::Writes),
+    native<open_to_append>("openFileForAppending", Reach::Writes),
     native<read_line>("readLine"),
     native<read_whole>("readFileAsString"),
     native<read_delimited>("readDelimitedList"),

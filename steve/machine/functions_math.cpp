@@ -160,7 +160,7 @@ constexpr std::array kMathFunctions = {
     native<random_exponential>("randomExponential"),
     native<random_gamma>("randomGamma"),
     native<random_seed>("randomSeed"),
-    native<random_seed_from_device>("randomSeedFromDevRandom"),
+    native<random_seed_from_device>("randomSeedFromDevRandom", Reach::Entropy),
     native<color_to_hsv>("RGBtoHSV"),
     native<color_to_rgb>("HSVtoRGB"),
     native<color_number>("uniqueColor"),

@@ -20,10 +20,14 @@ class Machine;
 /// @param result  NULL on entry
 using NativeFunction = void (*)(Machine& machine, Instance& self, const Slot* args, Value& result);
 
+/// What of the outside a native touches, if the host lets it.
+enum class Reach : std::uint8_t { World, Reads, Writes, Sleeps, RealTime, Entropy, Commands };
+
 struct Native {
   std::string_view name;  // "real.get-location" (class file, selector) or, for functions, "dot"
   NativeFunction function;
   std::string_view signature;  // one letter a parameter, then ':' and that of the result; see SlotType
+  Reach reach;
 };
 
 /// How a C++ type stands in slots. Letters: i d v m s o l h p b(data) a(any) n(nothing).
@@ -110,9 +114,9 @@ struct Binder {
 };
 
 template <auto F, class R, class... A>
-constexpr Native bind(std::string_view name, R (*)(Machine&, Instance&, A...)) {
+constexpr Native bind(std::string_view name, Reach reach, R (*)(Machine&, Instance&, A...)) {
   using B = Binder<F, R, A...>;
-  return {name, &B::call, std::string_view(B::kSignature.data(), sizeof...(A) + 2)};
+  return {name, &B::call, std::string_view(B::kSignature.data(), sizeof...(A) + 2), reach};
 }
 
 }  // namespace detail
@@ -120,8 +124,8 @@ constexpr Native bind(std::string_view name, R (*)(Machine&, Instance&, A...)) {
 /// native<f>("real.move"), with `R f(Machine&, Instance& self, parameters...)`. A function that yields a matrix
 /// returns machine.heap().matrix(m); one that yields a string, machine.heap().string(text).
 template <auto F>
-constexpr Native native(std::string_view name) {
-  return detail::bind<F>(name, F);
+constexpr Native native(std::string_view name, Reach reach = Reach::World) {
+  return detail::bind<F>(name, reach, F);
 }
 
 /// Every native method of the class library, and every function that scripts may call. Tables of the folders that

@@ -1,0 +1,73 @@
+// What scripts can reach outside their world: the table of docs/sandbox.md is made of the natives, and no source reaches
+// out but those that are known here.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "steve/machine/native.hpp"
+
+namespace breve::steve {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string table() {
+  const std::pair<Reach, const char*> rows[] = {
+      {Reach::Reads, "reads files | `breve_runtime_config.files.open_for_reading` | current directory, the program's own, `--path`, `--allow-read`"},
+      {Reach::Writes, "writes files | `breve_runtime_config.files.open_for_writing` | current directory, `--allow-write`"},
+      {Reach::Sleeps, "stops the thread | `BREVE_RIGHT_SLEEP` | yes"},
+      {Reach::RealTime, "reads the clock on the wall | `BREVE_RIGHT_REAL_TIME` | yes"},
+      {Reach::Entropy, "draws a seed from the operating system | `BREVE_RIGHT_ENTROPY` | yes"},
+      {Reach::Commands, "runs commands | `breve_runtime_config.system` | with `--allow-system`"}};
+  std::map<Reach, std::set<std::string>> names;
+  for (const auto natives : {functions(), library_natives()})
+    for (const Native& native : natives) names[native.reach].insert(std::string(native.name));
+  std::ostringstream out;
+  out << "| what | given by the host with | with `breve run` | by |\n| --- | --- | --- | --- |\n";
+  for (const auto& [reach, text] : rows) {
+    out << "| " << text << " |";
+    for (const std::string& name : names[reach]) out << (name == *names[reach].begin() ? " `" : ", `") << name << "`";
+    out << " |\n";
+  }
+  return out.str();
+}
+
+TEST(Reach, TheTableOfTheDocumentationIsThatOfTheNatives) {
+  const std::string page = read(fs::path(BREVE_SOURCES) / "docs/sandbox.md");
+  EXPECT_NE(page.find(table()), std::string::npos) << "docs/sandbox.md is to have this table:\n" << table();
+}
+
+/// Words by which a source reaches out, and the only files that may have them.
+TEST(Reach, NothingElseReachesOut) {
+  const std::regex words(R"(\b(fopen|freopen|ifstream|ofstream|fstream|popen|getenv|random_device|sleep_for|sleep_until)"
+                         R"(|system_clock|openat|stbi_load|stbi_write_png|ReadFile)\b|::open\(|std::system|<filesystem>)");
+  const std::set<std::string> known = {
+      "hostapi/src/files_within.cpp",       // files below directories that the host names
+      "steve/machine/functions_math.cpp",   // a seed from the operating system
+      "steve/machine/functions_world.cpp",  // sleep and the clock on the wall
+  };
+  std::set<std::string> found;
+  for (const char* room : {"runtime", "steve", "hostapi/src"})
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(BREVE_SOURCES) / room)) {
+      const std::string extension = entry.path().extension();
+      if (extension != ".cpp" && extension != ".hpp") continue;
+      std::istringstream lines(read(entry.path()));
+      for (std::string line; std::getline(lines, line);)
+        if (std::regex_search(line.substr(0, line.find("//")), words))
+          found.insert(fs::relative(entry.path(), BREVE_SOURCES).string());
+    }
+  EXPECT_EQ(found, known);
+}
+
+}  // namespace
+}  // namespace breve::steve
