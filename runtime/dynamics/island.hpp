@@ -92,6 +92,7 @@ class Island : public InMemory {
     ClusterEntry* entry;
     std::optional<Stage> stage;
     double next_before = 0;
+    bool semi = false;   // its last smooth motion was semi-implicit Euler's
     bool loose = false;  // nothing but contacts and gravity acts on it from outside
     Energy pending;      // of the last smooth()
     double held_work = 0;  // J, likewise, of forces that were predicted
@@ -170,7 +171,7 @@ class Island : public InMemory {
   std::span<Free> loose_bodies() { return {free_.data(), free_.size() - drivers_}; }
   std::span<const Free> loose_bodies() const { return {free_.data(), free_.size() - drivers_}; }
   void begin(DynamicsClient* client, double h);
-  void place();  // kinematics and factors of trees, at the state now
+  void place(double h = 0);  // kinematics and factors of trees, at the state now; for rows of h seconds
   void remember();
   void restore();
   void smooth(double time, double h);
@@ -191,6 +192,7 @@ class Island : public InMemory {
   bool loose(const Clustered& one) const;
   void smooth_whole(Clustered& one, double time, double h);
   static bool take_back(Clustered& one, double gain);
+  static void take_back_most(Clustered& one, double gain);
   double moving() const;
   void take_from_all(double part);
   bool touched_from_outside() const;
@@ -279,6 +281,8 @@ class Island : public InMemory {
   void collide(double time);
   void rebound(std::size_t bound, double time);
   void push_apart(double h);
+  void move_by_pushes(double fastest, double h);
+  void hold_bounds(double h);
   void begin_moves();
   void end_moves(double h);
   void book_moves(double sign);

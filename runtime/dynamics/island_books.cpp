@@ -81,9 +81,8 @@ void Island::close_books() {
 
 /// What they gave all the same, however finely the step was taken.
 void Island::take_back_rest() {
-  constexpr double kMost = 0.9;
   const double all = moving();
-  if (gained_ > 0 && all > 0) take_from_all(std::min(kMost, gained_ / all));
+  if (gained_ > 0 && all > 0) take_from_all(std::min(1.0, gained_ / all));
   gained_ = 0;
 }
 

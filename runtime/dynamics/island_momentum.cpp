@@ -127,6 +127,14 @@ bool Island::take_back(Clustered& one, double gain) {
   return true;
 }
 
+/// The same where no finer step would help: whatever it is, down to links at rest among one another.
+void Island::take_back_most(Clustered& one, double gain) {
+  if (!(gain > 0)) return;
+  const std::span trees = one.entry->system->trees();
+  const Common common = common_of(trees);
+  if (common.inner > 0) shorten_inner(trees, common, std::sqrt(std::max(0.0, 1 - gain / common.inner)));
+}
+
 /// Something that is not the tree itself touches a tree of the island.
 bool Island::touched_from_outside() const {
   return std::any_of(rows_.begin(), rows_.end(), [this](const contact::Row& row) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "runtime/articulated/energy.hpp"
+#include "runtime/articulated/impulse.hpp"
 #include "runtime/dynamics/island.hpp"
 
 namespace breve {
@@ -82,23 +83,14 @@ void Island::predict_contact(const Touch& touch, const Vector3& force) {
 void Island::begin_solve(double h) {
   solved_h_ = h;
   load_velocities();
-  const auto take = [&](int mover, const double* r, int axis, double force) {
-    if (mover < static_cast<int>(free_.size()) || force == 0) return;
-    Tree& tree = *trees_[static_cast<std::size_t>(mover) - free_.size()];
-    const int n = tree.model.velocities();
-    tree.free_v -= h * force * Eigen::Map<const articulated::Vector>(r + axis * n, n);
-  };
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    contact::Row& row = rows_[i];
-    row.impulse *= h;
-    if (predicted_[i] == Vector3::Zero()) continue;
-    const Vector3 force = row.axes * predicted_[i];
-    for (int k = 0; k < 3; ++k) {
-      take(row.a, row.ra, k, force[k]);
-      take(row.b, row.rb, k, -force[k]);
-    }
+  // It acted along the rows as they lay when the sub-step began: what is taken away is what it gave, so that nothing is
+  // left that no row pushes along.
+  for (Tree* tree : trees_) {
+    if (!tree->loads.reacts) continue;
+    articulated::apply_inverse_mass(tree->model, tree->data, tree->loads.reaction, tree->work_u);
+    tree->free_v -= h * tree->work_u;
   }
-  for (std::size_t i = 0; i < predicted_limits_.size(); ++i) take(scalars_[i].a, scalars_[i].ra, 0, predicted_limits_[i]);
+  for (contact::Row& row : rows_) row.impulse *= h;
   for (contact::ScalarRow& row : scalars_) row.impulse *= h;
   for (Tree* tree : trees_) tree->state.v = tree->free_v;
   set_biases(h);
@@ -107,7 +99,7 @@ void Island::begin_solve(double h) {
 
 /// Rows where smooth motion of h seconds has led to, from what began at `before`, and their solution.
 void Island::solve_after(double h) {
-  place();
+  place(h);
   make_rows(Motors::Drive);
   recall_rates();
   begin_solve(h);

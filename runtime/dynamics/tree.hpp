@@ -75,6 +75,7 @@ struct Tree : InMemory {
   articulated::Data data;
   articulated::State state;
   articulated::Loads loads;
+  articulated::Loads springs;  // stiffness and damping of the drives in `loads`, and nothing else
   std::pmr::vector<TreeLink> links;
   std::pmr::vector<JointIndex> rings;  // joints within the tree (or to the world) that are constraints
   std::pmr::vector<HeldLimit> held;    // limits that act inside the stages of this sub-step
