@@ -50,7 +50,6 @@ Island::Island(Dynamics::Core& core, std::pmr::memory_resource* memory)
       depths_(memory),
       before_(memory),
       predicted_(memory),
-      predicted_limits_(memory),
       before_force_(memory),
       struck_(memory),
       scalars_before_(memory),

@@ -85,6 +85,9 @@ class Island : public InMemory {
   /// Energy as a sub-step began, for what its rows did to it.
   struct Books {
     double stored = 0;       // J
+    double kinetic = 0;      // J, of all trees
+    double smooth_kinetic = 0;  // J, likewise, after smooth motion
+    double predicted = 0;       // J, that predicted forces give from rest
     Energy account;          // works and losses
     double unexplained = 0;  // J, that smooth motion gained
   };
@@ -254,9 +257,13 @@ class Island : public InMemory {
   int size_of_mover(int mover) const { return mover < 0 ? 0 : movers_[static_cast<std::size_t>(mover)].size; }
   // island_predict.cpp
   const WarmPoint* warm_of(const Touch& touch) const;
-  void predict();
+  void predict(double h);
+  bool overpressed(double h) const;
   void predict_contact(const Touch& touch, const Vector3& force);
   void begin_solve(double h);
+  bool misled(double h);
+  bool strained() const;
+  void forget_prediction();
   void solve_after(double h);
 
   // island_step.cpp
@@ -264,6 +271,7 @@ class Island : public InMemory {
   void step_fast(double start, double h);
   void step_located(DynamicsClient* client, double start, double h);
   void advance_once(double time, double h);
+  bool catch_bounds(double time, double h);
   Event seek(double h);
   void locate(double time, Event& event, double h);
   const NearPair& pair_of(const Event& event) const;
@@ -377,6 +385,7 @@ class Island : public InMemory {
   std::pmr::vector<NearPair> pair_start_;
   double unexplained_ = 0, allowed_ = 0;  // J, of the last try of a step
   double gained_ = 0;                     // J, likewise, that contacts and limits gave
+  bool touched_ = false;                  // something outside was there when they did
   bool keeps_books_ = false;              // of this sub-step
   Books books_;                           // of all, of the sub-step
   double stored_start_ = 0;               // J, as it began
@@ -425,7 +434,6 @@ class Island : public InMemory {
   // Forces of the last sub-step, N or N*m, that are taken to go on and act inside the stages: of each touch in world
   // axes, of each limit that is a row.
   std::pmr::vector<Vector3> predicted_;
-  std::pmr::vector<double> predicted_limits_;
   std::pmr::vector<double> before_force_;    // of rows: N along the normal, in the last sub-step
   std::pmr::vector<std::uint8_t> struck_;    // of movers: contacts changed its velocity
   double solved_h_ = 0;                      // s, of the sub-step that was solved last

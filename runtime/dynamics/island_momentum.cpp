@@ -135,9 +135,9 @@ void Island::take_back_most(Clustered& one, double gain) {
   if (common.inner > 0) shorten_inner(trees, common, std::sqrt(std::max(0.0, 1 - gain / common.inner)));
 }
 
-/// Something that is not the tree itself touches a tree of the island.
+/// Something that is not the tree itself touches a tree of the island, or did in this step.
 bool Island::touched_from_outside() const {
-  return std::any_of(rows_.begin(), rows_.end(), [this](const contact::Row& row) {
+  return touched_ || std::any_of(rows_.begin(), rows_.end(), [this](const contact::Row& row) {
     const NearPair& pair = *pairs_[static_cast<std::size_t>(row.pair)];
     const Tree* tree = core_.place_of[pair.a].tree;
     return !tree || tree != core_.place_of[pair.b].tree;
