@@ -200,6 +200,7 @@ class Island : public InMemory {
   void take_from_all(double part);
   bool touched_from_outside() const;
   double stop_links(Clustered& one, Momenta momenta);
+  void coast(double h);
   void note_wholes(articulated::Vector Tree::*velocity, bool now);
   enum class Given : std::uint8_t { All, Places, Pushes };
   void keep_wholes(double moved_h, Given given);
@@ -291,6 +292,7 @@ class Island : public InMemory {
   void push_apart(double h);
   void move_by_pushes(double fastest, double h);
   void hold_bounds(double h);
+  bool find_struck(double h);
   void begin_moves();
   void end_moves(double h);
   void book_moves(double sign);
@@ -348,7 +350,7 @@ class Island : public InMemory {
   Trouble try_in_parts(DynamicsClient* client, double start, double h);
   double tolerated(double turnover, double h) const;
   double weight() const;
-  void give_in(const Trouble& trouble, double start);
+  void give_in(const Trouble& trouble, double start, double h);
   void keep_start();
   void balance(double& residual, double& turnover);
   void back_to_start();

@@ -67,7 +67,7 @@ void Island::step(DynamicsClient* client, double start, double h) {
   if (attempt > 0)
     for (Clustered& one : clusters_) one.entry->system->set_accuracy(asked);
   accuracy_ = asked;
-  if (trouble.found) give_in(trouble, start);
+  if (trouble.found) give_in(trouble, start, h);
 }
 
 /// A step of articulated bodies whose energy does not add up is taken again in 2, 4, 8, ... parts: what turns far in a
@@ -116,12 +116,14 @@ double Island::weight() const {
 }
 
 /// What did not help is reported, or ended.
-void Island::give_in(const Trouble& trouble, double start) {
+void Island::give_in(const Trouble& trouble, double start, double h) {
   const bool rest = core_.settings.guard == GuardMode::Rest;
   const bool unusable = trouble.reason == GuardReason::NotFinite || trouble.reason == GuardReason::NoSolution;
   // Energy from nowhere ends with the speeds; positions, put right on the way, are as good as any.
-  if (unusable || (rest && trouble.reason == GuardReason::Penetration)) back_to_start();
+  const bool back = unusable || (rest && trouble.reason == GuardReason::Penetration);
+  if (back) back_to_start();
   if (rest) stop(Momenta::Keep);
+  if (rest && back) coast(h);
   intervene(trouble, rest ? GuardAction::Rested : GuardAction::Reported, start);
 }
 

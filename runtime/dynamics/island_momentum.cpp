@@ -182,6 +182,31 @@ double Island::stop_links(Clustered& one, Momenta momenta) {
   return common.inner;
 }
 
+/// Clusters whose links stand still among one another, and which nothing holds or touches, go on as rigid bodies for h
+/// seconds: their centres of mass stay on their way.
+void Island::coast(double h) {
+  if (touched_from_outside()) return;
+  for (Clustered& one : clusters_) {
+    if (!one.loose) continue;
+    const std::span trees = one.entry->system->trees();
+    const Vector3 fall = h * core_.settings.gravity;
+    double kinetic = 0;
+    const double before = stored_in(one, kinetic);
+    Whole wanted = measure(trees);
+    wanted.center += h * (wanted.momentum / wanted.mass + 0.5 * fall);
+    wanted.momentum += wanted.mass * fall;
+    for (Tree* tree : trees) {
+      tree->way = h * tree->state.v;
+      articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
+    }
+    impose(trees, measure(trees), wanted);
+    const double more = stored_in(one, kinetic) - before;
+    result.account.residual += more;
+    if (one.alone()) trees.front()->account.residual += more;
+  }
+  placed_ = booked_ = false;
+}
+
 /// Each tree as it moves with one of the velocities that are kept for it.
 /// @param now  that of its state
 void Island::note_wholes(articulated::Vector Tree::*velocity, bool now) {

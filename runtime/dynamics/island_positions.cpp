@@ -117,20 +117,42 @@ void Island::end_moves(double h) {
   keep_wholes(h, Given::Pushes);
 }
 
-/// What is met at the end of a sub-step of h seconds, and not before, may not come nearer than it is: what contacts
-/// struck has moved, in the end, with the velocity that they left it, not with the mean.
-void Island::hold_off(double h) {
-  if (rows_.empty() && limit_rows() == 0) return;
-  book_moves(-1);
-  note_wholes(&Tree::smooth_v, true);
+/// Notes what contacts and limits struck so that it is nearer, having moved for h seconds with the mean of the
+/// velocities before and after, than it may be. What rests, rolls or slides is not.
+/// @return  whether there is something
+bool Island::find_struck(double h) {
   struck_.assign(movers_.size(), 0);
-  for (const contact::Row& row : rows_) {
+  bool any = false;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const contact::Row& row = rows_[i];
     if (row.impulse == Vector3::Zero()) continue;
+    const double gap = touches_[i].gap, before = before_[2 * i][0] - before_[2 * i + 1][0];
+    const double after = rate_of(row, true)[0] - rate_of(row, false)[0];
+    if (gap + 0.5 * h * (before + after) >= std::min(gap, 0.0) - kTouchSkin * size_of_pair(*pairs_[touches_[i].pair]))
+      continue;
+    any = true;
     if (row.a >= 0) struck_[static_cast<std::size_t>(row.a)] = 1;
     if (row.b >= 0) struck_[static_cast<std::size_t>(row.b)] = 1;
   }
-  for (std::size_t i = 0; i < limit_rows(); ++i)
-    if (scalars_[i].impulse != 0) struck_[static_cast<std::size_t>(scalars_[i].a)] = 1;
+  std::size_t k = 0;
+  for (const Bound& bound : bounds_) {
+    if (!bound.rests) continue;
+    const contact::ScalarRow& row = scalars_[k++];
+    if (row.impulse == 0) continue;
+    const double reached = bound.gap + 0.5 * h * (bound.rate + rate_of(row));
+    if (reached >= std::min(bound.gap, 0.0) - kLimitSkin) continue;
+    any = true;
+    struck_[static_cast<std::size_t>(row.a)] = 1;
+  }
+  return any;
+}
+
+/// What is met at the end of a sub-step of h seconds, and not before, may not come nearer than it is: what contacts
+/// struck has moved, in the end, with the velocity that they left it, not with the mean.
+void Island::hold_off(double h) {
+  if (!find_struck(h)) return;
+  book_moves(-1);
+  note_wholes(&Tree::smooth_v, true);
   // Semi-implicit Euler has moved them with the velocity after, but for the rows' part.
   const bool semi = semi_implicit(accuracy_);
   for (std::size_t i = 0; i < free_.size(); ++i) {
