@@ -190,7 +190,8 @@ void Cluster::add_powers(const Tree& tree, double step, const double* v, const d
     const articulated::Drive& drive = loads.drives[static_cast<std::size_t>(i)];
     for (int k = body.v; k < body.v + articulated::velocity_count(body.type); ++k) {
       const double mean = v[k] + half * a[k];
-      if (loads.tau.size()) powers.script += tree.set_tau[k] * mean;
+      // A force that is set works along the way.
+      if (loads.tau.size()) powers.script += tree.set_tau[k] * (semi_implicit() ? v[k] + current_step_ * a[k] : v[k]);
       powers.drag += drive.damping * (v[k] + step * a[k]) * mean;
       powers.drag += tree.links[static_cast<std::size_t>(i)].slow_damping * v[k] * mean;
       if (!(drive.motor_gain > 0)) continue;

@@ -50,7 +50,6 @@ Island::Island(Dynamics::Core& core, std::pmr::memory_resource* memory)
       depths_(memory),
       before_(memory),
       predicted_(memory),
-      predicted_limits_(memory),
       before_force_(memory),
       struck_(memory),
       scalars_before_(memory),
@@ -129,7 +128,7 @@ void Island::put_driver(Free& one, double h) {
 }
 
 void Island::add_cluster(ClusterEntry& cluster) {
-  clusters_.push_back({&cluster, std::nullopt, 0, false, {}, 0, {}});
+  clusters_.push_back({&cluster, std::nullopt, 0, false, false, {}, 0, {}});
   for (const std::uint32_t index : cluster.trees) {
     Tree* tree = core_.trees[index].get();
     tree->slot = static_cast<int>(trees_.size());
@@ -217,12 +216,20 @@ void Island::begin(DynamicsClient* client, double h) {
   }
 }
 
-void Island::place() {
+/// Where a tree has moved by semi-implicit Euler, springs and dampers give way to the rows of its h seconds as they did
+/// to the forces in them: by how much they will be stretched, and how fast.
+void Island::place(double h) {
   const articulated::Loads none;
   const bool placed = std::exchange(placed_, false);
-  for (Tree* tree : trees_) {
-    articulated::factorize(tree->model, tree->data, tree->state, none);
-    if (!placed) articulated::forward_kinematics(tree->model, tree->data, tree->state);
+  for (const Clustered& one : clusters_) {
+    const bool implicit = h > 0 && one.semi && accuracy_.implicit_joints;
+    for (Tree* tree : one.entry->system->trees()) {
+      if (implicit)
+        articulated::factorize(tree->model, tree->data, tree->state, tree->springs, h);
+      else
+        articulated::factorize(tree->model, tree->data, tree->state, none);
+      if (!placed) articulated::forward_kinematics(tree->model, tree->data, tree->state);
+    }
   }
 }
 

@@ -85,6 +85,9 @@ class Island : public InMemory {
   /// Energy as a sub-step began, for what its rows did to it.
   struct Books {
     double stored = 0;       // J
+    double kinetic = 0;      // J, of all trees
+    double smooth_kinetic = 0;  // J, likewise, after smooth motion
+    double predicted = 0;       // J, that predicted forces give from rest
     Energy account;          // works and losses
     double unexplained = 0;  // J, that smooth motion gained
   };
@@ -92,6 +95,7 @@ class Island : public InMemory {
     ClusterEntry* entry;
     std::optional<Stage> stage;
     double next_before = 0;
+    bool semi = false;   // its last smooth motion was semi-implicit Euler's
     bool loose = false;  // nothing but contacts and gravity acts on it from outside
     Energy pending;      // of the last smooth()
     double held_work = 0;  // J, likewise, of forces that were predicted
@@ -170,7 +174,7 @@ class Island : public InMemory {
   std::span<Free> loose_bodies() { return {free_.data(), free_.size() - drivers_}; }
   std::span<const Free> loose_bodies() const { return {free_.data(), free_.size() - drivers_}; }
   void begin(DynamicsClient* client, double h);
-  void place();  // kinematics and factors of trees, at the state now
+  void place(double h = 0);  // kinematics and factors of trees, at the state now; for rows of h seconds
   void remember();
   void restore();
   void smooth(double time, double h);
@@ -191,10 +195,12 @@ class Island : public InMemory {
   bool loose(const Clustered& one) const;
   void smooth_whole(Clustered& one, double time, double h);
   static bool take_back(Clustered& one, double gain);
+  static void take_back_most(Clustered& one, double gain);
   double moving() const;
   void take_from_all(double part);
   bool touched_from_outside() const;
   double stop_links(Clustered& one, Momenta momenta);
+  void coast(double h);
   void note_wholes(articulated::Vector Tree::*velocity, bool now);
   enum class Given : std::uint8_t { All, Places, Pushes };
   void keep_wholes(double moved_h, Given given);
@@ -252,9 +258,13 @@ class Island : public InMemory {
   int size_of_mover(int mover) const { return mover < 0 ? 0 : movers_[static_cast<std::size_t>(mover)].size; }
   // island_predict.cpp
   const WarmPoint* warm_of(const Touch& touch) const;
-  void predict();
+  void predict(double h);
+  bool overpressed(double h) const;
   void predict_contact(const Touch& touch, const Vector3& force);
   void begin_solve(double h);
+  bool misled(double h);
+  bool strained() const;
+  void forget_prediction();
   void solve_after(double h);
 
   // island_step.cpp
@@ -262,6 +272,7 @@ class Island : public InMemory {
   void step_fast(double start, double h);
   void step_located(DynamicsClient* client, double start, double h);
   void advance_once(double time, double h);
+  bool catch_bounds(double time, double h);
   Event seek(double h);
   void locate(double time, Event& event, double h);
   const NearPair& pair_of(const Event& event) const;
@@ -279,6 +290,9 @@ class Island : public InMemory {
   void collide(double time);
   void rebound(std::size_t bound, double time);
   void push_apart(double h);
+  void move_by_pushes(double fastest, double h);
+  void hold_bounds(double h);
+  bool find_struck(double h);
   void begin_moves();
   void end_moves(double h);
   void book_moves(double sign);
@@ -338,7 +352,7 @@ class Island : public InMemory {
   Trouble try_in_parts(DynamicsClient* client, double start, double h);
   double tolerated(double turnover, double h) const;
   double weight() const;
-  void give_in(const Trouble& trouble, double start);
+  void give_in(const Trouble& trouble, double start, double h);
   void keep_start();
   void balance(double& residual, double& turnover);
   void back_to_start();
@@ -375,6 +389,7 @@ class Island : public InMemory {
   std::pmr::vector<NearPair> pair_start_;
   double unexplained_ = 0, allowed_ = 0;  // J, of the last try of a step
   double gained_ = 0;                     // J, likewise, that contacts and limits gave
+  bool touched_ = false;                  // something outside was there when they did
   bool keeps_books_ = false;              // of this sub-step
   Books books_;                           // of all, of the sub-step
   double stored_start_ = 0;               // J, as it began
@@ -423,7 +438,6 @@ class Island : public InMemory {
   // Forces of the last sub-step, N or N*m, that are taken to go on and act inside the stages: of each touch in world
   // axes, of each limit that is a row.
   std::pmr::vector<Vector3> predicted_;
-  std::pmr::vector<double> predicted_limits_;
   std::pmr::vector<double> before_force_;    // of rows: N along the normal, in the last sub-step
   std::pmr::vector<std::uint8_t> struck_;    // of movers: contacts changed its velocity
   double solved_h_ = 0;                      // s, of the sub-step that was solved last

@@ -35,20 +35,25 @@ double Island::stored_now() {
 void Island::open_books() {
   keeps_books_ = !trees_.empty() && has_rows() && !springs_move();
   if (!keeps_books_) return;
-  double kinetic = 0;
-  for (Clustered& one : clusters_)
-    one.books = {stored_in(one, kinetic), core_.trees[one.entry->trees.front()]->account, 0};
-  books_ = {stored_now(), result.account, 0};
+  double moving = 0;
+  for (Clustered& one : clusters_) {
+    double kinetic = 0;
+    one.books = {stored_in(one, kinetic), 0, 0, 0, core_.trees[one.entry->trees.front()]->account, 0};
+    moving += kinetic;
+  }
+  books_ = {stored_now(), moving, 0, 0, result.account, 0};
 }
 
 /// After smooth motion: what it gained that nothing explains is its error, not the rows'.
 void Island::note_smooth() {
   if (!keeps_books_) return;
-  double kinetic = 0;
+  books_.smooth_kinetic = 0;
   for (Clustered& one : clusters_) {
     const Energy& did = one.pending;
+    double kinetic = 0;
     one.books.unexplained = stored_in(one, kinetic) - one.books.stored - did.motor_work - did.script_work - one.held_work +
                             did.drag_loss;
+    books_.smooth_kinetic += kinetic;
   }
   placed_ = true;
 }
@@ -73,17 +78,18 @@ void Island::close_books() {
   const double gained = rows_took(books_.account) - rows_took(result.account);
   if (!(gained > kTiny * std::abs(books_.stored))) return;
   const double all = moving();
-  if (gained <= kFew * all)
+  if (gained <= kFew * all) {
     take_from_all(gained / all);
-  else
-    gained_ += gained;
+    return;
+  }
+  gained_ += gained;
+  touched_ = touched_from_outside();
 }
 
 /// What they gave all the same, however finely the step was taken.
 void Island::take_back_rest() {
-  constexpr double kMost = 0.9;
   const double all = moving();
-  if (gained_ > 0 && all > 0) take_from_all(std::min(kMost, gained_ / all));
+  if (gained_ > 0 && all > 0) take_from_all(std::min(1.0, gained_ / all));
   gained_ = 0;
 }
 

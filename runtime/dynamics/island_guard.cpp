@@ -86,7 +86,7 @@ void Island::step_guarded(DynamicsClient* client, double start, double h) {
     trouble = try_step(client, start, h);
   }
   if (attempt > 0) use_accuracy(asked);
-  if (trouble.found) give_in(trouble, start);
+  if (trouble.found) give_in(trouble, start, h);
 }
 
 /// A step of articulated bodies whose energy does not add up is taken again in 2, 4, 8, ... parts: what turns far in a
@@ -135,12 +135,14 @@ double Island::weight() const {
 }
 
 /// What did not help is reported, or ended.
-void Island::give_in(const Trouble& trouble, double start) {
+void Island::give_in(const Trouble& trouble, double start, double h) {
   const bool rest = core_.settings.guard == GuardMode::Rest;
   const bool unusable = trouble.reason == GuardReason::NotFinite || trouble.reason == GuardReason::NoSolution;
   // Energy from nowhere ends with the speeds; positions, put right on the way, are as good as any.
-  if (unusable || (rest && trouble.reason == GuardReason::Penetration)) back_to_start();
+  const bool back = unusable || (rest && trouble.reason == GuardReason::Penetration);
+  if (back) back_to_start();
   if (rest) stop(Momenta::Keep);
+  if (rest && back) coast(h);
   intervene(trouble, rest ? GuardAction::Rested : GuardAction::Reported, start);
 }
 
@@ -148,6 +150,7 @@ Island::Trouble Island::try_step(DynamicsClient* client, double start, double h)
   const bool off = core_.settings.guard == GuardMode::Off;
   double kinetic = 0, residual = 0, turnover = 0;
   overlaps_.clear();
+  touched_ = false;
   unexplained_ = allowed_ = gained_ = handled_ = 0;
   booked_ = false;
   const double before = stored_start_ = stored(kinetic, true);

@@ -127,9 +127,17 @@ bool Island::take_back(Clustered& one, double gain) {
   return true;
 }
 
-/// Something that is not the tree itself touches a tree of the island.
+/// The same where no finer step would help: whatever it is, down to links at rest among one another.
+void Island::take_back_most(Clustered& one, double gain) {
+  if (!(gain > 0)) return;
+  const std::span trees = one.entry->system->trees();
+  const Common common = common_of(trees);
+  if (common.inner > 0) shorten_inner(trees, common, std::sqrt(std::max(0.0, 1 - gain / common.inner)));
+}
+
+/// Something that is not the tree itself touches a tree of the island, or did in this step.
 bool Island::touched_from_outside() const {
-  return std::any_of(rows_.begin(), rows_.end(), [this](const contact::Row& row) {
+  return touched_ || std::any_of(rows_.begin(), rows_.end(), [this](const contact::Row& row) {
     const NearPair& pair = *pairs_[static_cast<std::size_t>(row.pair)];
     const Tree* tree = core_.place_of[pair.a].tree;
     return !tree || tree != core_.place_of[pair.b].tree;
@@ -172,6 +180,31 @@ double Island::stop_links(Clustered& one, Momenta momenta) {
   if (common.energy > kMost * start) common = common_of(trees, true);
   shorten_inner(trees, common, 0);
   return common.inner;
+}
+
+/// Clusters whose links stand still among one another, and which nothing holds or touches, go on as rigid bodies for h
+/// seconds: their centres of mass stay on their way.
+void Island::coast(double h) {
+  if (touched_from_outside()) return;
+  for (Clustered& one : clusters_) {
+    if (!one.loose) continue;
+    const std::span trees = one.entry->system->trees();
+    const Vector3 fall = h * core_.settings.gravity;
+    double kinetic = 0;
+    const double before = stored_in(one, kinetic);
+    Whole wanted = measure(trees);
+    wanted.center += h * (wanted.momentum / wanted.mass + 0.5 * fall);
+    wanted.momentum += wanted.mass * fall;
+    for (Tree* tree : trees) {
+      tree->way = h * tree->state.v;
+      articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
+    }
+    impose(trees, measure(trees), wanted);
+    const double more = stored_in(one, kinetic) - before;
+    result.account.residual += more;
+    if (one.alone()) trees.front()->account.residual += more;
+  }
+  placed_ = booked_ = false;
 }
 
 /// Each tree as it moves with one of the velocities that are kept for it.

@@ -8,6 +8,14 @@
 
 namespace breve {
 
+namespace {
+
+// Of what the two bodies would yield if they were free. Where joints leave a body next to no way along the normal,
+// that way would be long: so none is forced that is longer than some fifty times the overlap.
+constexpr double kYield = 1e-4;
+
+}  // namespace
+
 /// What a push moves there, were the body free, 1/kg.
 double Island::natural_response(BodyIndex body) const {
   return core_.place_of[body].mover < 0 ? 0 : 1 / core_.bodies->mass(body);
@@ -17,9 +25,6 @@ void Island::push_apart(double h) {
   // Of the overlap, in one sub-step. What sweeps leave of it is uneven: pushed apart faster, stacks begin to sway.
   const double share = accuracy_.direct ? 0.2 : 0.1;
   constexpr double kFastestPush = 3;  // m/s or rad/s, along which nothing is moved faster
-  // Of what the two bodies would yield if they were free. Where joints leave a body next to no way along the normal,
-  // that way would be long: so none is forced that is longer than some fifty times the overlap.
-  constexpr double kYield = 1e-4;
   bool any = false;
   double fastest = 0;
   pushes_.clear();
@@ -41,21 +46,48 @@ void Island::push_apart(double h) {
   }
   push_scalars_.resize(scalars_.size(), 0.0);
   if (any) {
-    contact::SolveSettings settings;
-    // Only a part of an overlap is put right: how exactly does not matter, least where velocities are not exact either.
-    settings.iterations = accuracy_.direct ? accuracy_.iterations : std::max(4, accuracy_.iterations / 4);
-    settings.direct = rows_.empty();
-    settings.tolerance = std::max(settings.tolerance, 1e-3 * fastest);
-    if (settings.direct) settings.tolerance = 1e-14;
     const double before = result.account.contact_loss;
-    book_moves(-1);
-    begin_moves();
-    contact::solve_again(pushes_, push_scalars_, settings, workspace_);
-    end_moves(h);
-    book_moves(1);
+    move_by_pushes(fastest, h);
     pay_for_moves(before - result.account.contact_loss);
   }
   close_rings();
+}
+
+/// Moves everything for h seconds by the velocities that pushes_ and push_scalars_ ask for, the fastest of which is told.
+void Island::move_by_pushes(double fastest, double h) {
+  contact::SolveSettings settings;
+  // Only a part of an overlap is put right: how exactly does not matter, least where velocities are not exact either.
+  settings.iterations = accuracy_.direct ? accuracy_.iterations : std::max(4, accuracy_.iterations / 4);
+  settings.direct = rows_.empty();
+  settings.tolerance = std::max(settings.tolerance, 1e-3 * fastest);
+  if (settings.direct) settings.tolerance = 1e-14;
+  book_moves(-1);
+  begin_moves();
+  contact::solve_again(pushes_, push_scalars_, settings, workspace_);
+  end_moves(h);
+  book_moves(1);
+}
+
+/// The way of a sub-step is that of a constant force. Where it is another (what presses on a limit may swing there and
+/// back meanwhile) a joint that was stopped would stand beyond its limit: it is put where it began, or to the limit.
+void Island::hold_bounds(double h) {
+  push_scalars_.clear();
+  double fastest = 0;
+  for (const Bound& bound : bounds_) {
+    if (!bound.rests) continue;
+    const double gap = bound.sign * (core_.read_position(core_.joints[bound.joint])[bound.axis] - bound.limit);
+    push_scalars_.push_back((std::min(bound.gap, 0.0) - gap) / h);
+    fastest = std::max(fastest, push_scalars_.back());
+  }
+  if (!(fastest * h > kLimitSkin)) return;
+  push_scalars_.resize(scalars_.size(), 0.0);
+  pushes_.clear();
+  for (const Touch& touch : touches_) {
+    const NearPair& pair = *pairs_[touch.pair];
+    const double yields = natural_response(pair.a) + natural_response(pair.b);
+    pushes_.push_back({std::min(0.0, -touch.gap / h), kYield * yields, 0});
+  }
+  move_by_pushes(fastest, h);
 }
 
 /// The rows' solution is taken as a velocity that lasts h and then is gone. Between these two the movers have none.
@@ -85,20 +117,42 @@ void Island::end_moves(double h) {
   keep_wholes(h, Given::Pushes);
 }
 
-/// What is met at the end of a sub-step of h seconds, and not before, may not come nearer than it is: what contacts
-/// struck has moved, in the end, with the velocity that they left it, not with the mean.
-void Island::hold_off(double h) {
-  if (rows_.empty() && limit_rows() == 0) return;
-  book_moves(-1);
-  note_wholes(&Tree::smooth_v, true);
+/// Notes what contacts and limits struck so that it is nearer, having moved for h seconds with the mean of the
+/// velocities before and after, than it may be. What rests, rolls or slides is not.
+/// @return  whether there is something
+bool Island::find_struck(double h) {
   struck_.assign(movers_.size(), 0);
-  for (const contact::Row& row : rows_) {
+  bool any = false;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const contact::Row& row = rows_[i];
     if (row.impulse == Vector3::Zero()) continue;
+    const double gap = touches_[i].gap, before = before_[2 * i][0] - before_[2 * i + 1][0];
+    const double after = rate_of(row, true)[0] - rate_of(row, false)[0];
+    if (gap + 0.5 * h * (before + after) >= std::min(gap, 0.0) - kTouchSkin * size_of_pair(*pairs_[touches_[i].pair]))
+      continue;
+    any = true;
     if (row.a >= 0) struck_[static_cast<std::size_t>(row.a)] = 1;
     if (row.b >= 0) struck_[static_cast<std::size_t>(row.b)] = 1;
   }
-  for (std::size_t i = 0; i < limit_rows(); ++i)
-    if (scalars_[i].impulse != 0) struck_[static_cast<std::size_t>(scalars_[i].a)] = 1;
+  std::size_t k = 0;
+  for (const Bound& bound : bounds_) {
+    if (!bound.rests) continue;
+    const contact::ScalarRow& row = scalars_[k++];
+    if (row.impulse == 0) continue;
+    const double reached = bound.gap + 0.5 * h * (bound.rate + rate_of(row));
+    if (reached >= std::min(bound.gap, 0.0) - kLimitSkin) continue;
+    any = true;
+    struck_[static_cast<std::size_t>(row.a)] = 1;
+  }
+  return any;
+}
+
+/// What is met at the end of a sub-step of h seconds, and not before, may not come nearer than it is: what contacts
+/// struck has moved, in the end, with the velocity that they left it, not with the mean.
+void Island::hold_off(double h) {
+  if (!find_struck(h)) return;
+  book_moves(-1);
+  note_wholes(&Tree::smooth_v, true);
   // Semi-implicit Euler has moved them with the velocity after, but for the rows' part.
   const bool semi = semi_implicit(accuracy_);
   for (std::size_t i = 0; i < free_.size(); ++i) {
@@ -113,13 +167,13 @@ void Island::hold_off(double h) {
     const Vector3 turn = 0.5 * h * (body.spin - spin);
     if (turn != Vector3::Zero()) body.orientation = (rotation_by(turn) * body.orientation).normalized();
   }
-  for (std::size_t i = 0; i < trees_.size(); ++i) {
-    if (!struck_[free_.size() + i]) continue;
-    Tree& tree = *trees_[i];
-    tree.way = 0.5 * h * (tree.state.v - tree.sub_state.v);
-    articulated::move(tree.model, tree.state.q, tree.way, tree.state.q);
-    if (tree.driven) book_way(tree.set_tau.dot(tree.way), &tree);
-  }
+  for (const Clustered& one : clusters_)
+    for (Tree* tree : one.entry->system->trees()) {
+      if (one.semi || !struck_[free_.size() + static_cast<std::size_t>(tree->slot)]) continue;
+      tree->way = 0.5 * h * (tree->state.v - tree->sub_state.v);
+      articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
+      if (tree->driven) book_way(tree->set_tau.dot(tree->way), tree);
+    }
   keep_wholes(0.5 * h, Given::Places);
   book_moves(1);
 }
@@ -171,7 +225,7 @@ void Island::close_rings() {
   settings.iterations = accuracy_.iterations;
   contact::SolveSettings exact = settings;
   exact.tolerance = 1e-14;  // a length here: rings are closed to round-off
-  for (int i = 0; i < kMost; ++i) {
+  for (int i = 0;; ++i) {
     place();
     make_rows(Motors::Leave);
     load_velocities();
@@ -180,7 +234,7 @@ void Island::close_rings() {
       scalars_[k].bias = -ring_errors_[k];
       worst = std::max(worst, std::abs(ring_errors_[k]));
     }
-    if (worst < kClosed) break;
+    if (worst < kClosed || i == kMost) break;
     begin_moves();
     contact::solve_island(movers_, {}, scalars_, exact, workspace_);
     end_moves(1);

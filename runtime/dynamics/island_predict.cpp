@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "runtime/articulated/energy.hpp"
+#include "runtime/articulated/impulse.hpp"
 #include "runtime/dynamics/island.hpp"
 
 namespace breve {
@@ -32,10 +33,9 @@ const WarmPoint* Island::warm_of(const Touch& touch) const {
   return nullptr;
 }
 
-/// After find_touches() and find_bounds(), for the smooth motion that follows.
-void Island::predict() {
+/// After find_touches(), find_bounds() and open_books(), for the smooth motion of h seconds that follows.
+void Island::predict(double h) {
   predicted_.clear();
-  predicted_limits_.clear();
   for (Tree* tree : trees_) {
     tree->loads.reacts = false;
     tree->outer_force.setZero();
@@ -53,12 +53,26 @@ void Island::predict() {
     const JointEntry& joint = core_.joints[bound.joint];
     const double last = std::max(0.0, bound.sign * joint.limit[bound.axis]);
     const double force = last * steady(last, bound.sign * joint.limit_before[bound.axis]);
-    predicted_limits_.push_back(force);
     if (force == 0) continue;
     Tree& tree = *core_.trees[joint.tree];
     fill_limit(tree, joint, bound.axis, bound.sign, tree.work_v.data());
     add(tree, tree.work_v, force);
   }
+  if (overpressed(h)) forget_prediction();
+}
+
+/// What is predicted is far beyond all that moves and falls in h seconds: contacts on several sides of a link press
+/// against one another, and parts of that do not balance.
+bool Island::overpressed(double h) const {
+  constexpr double kMost = 1e6;
+  if (!keeps_books_) return false;
+  double pressed = 0, mass = 0;
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    const NearPair& pair = *pairs_[touches_[i].pair];
+    pressed += (h * predicted_[i]).squaredNorm() * (natural_response(pair.a) + natural_response(pair.b));
+  }
+  for (const Tree* tree : trees_) mass += tree->model.mass();
+  return pressed > kMost * (books_.kinetic + mass * (h * core_.settings.gravity).squaredNorm());
 }
 
 void Island::predict_contact(const Touch& touch, const Vector3& force) {
@@ -82,32 +96,59 @@ void Island::predict_contact(const Touch& touch, const Vector3& force) {
 void Island::begin_solve(double h) {
   solved_h_ = h;
   load_velocities();
-  const auto take = [&](int mover, const double* r, int axis, double force) {
-    if (mover < static_cast<int>(free_.size()) || force == 0) return;
-    Tree& tree = *trees_[static_cast<std::size_t>(mover) - free_.size()];
-    const int n = tree.model.velocities();
-    tree.free_v -= h * force * Eigen::Map<const articulated::Vector>(r + axis * n, n);
-  };
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    contact::Row& row = rows_[i];
-    row.impulse *= h;
-    if (predicted_[i] == Vector3::Zero()) continue;
-    const Vector3 force = row.axes * predicted_[i];
-    for (int k = 0; k < 3; ++k) {
-      take(row.a, row.ra, k, force[k]);
-      take(row.b, row.rb, k, -force[k]);
-    }
+  // It acted along the rows as they lay when the sub-step began: what is taken away is what it gave, so that nothing is
+  // left that no row pushes along.
+  for (Tree* tree : trees_) {
+    if (tree->loads.reacts) tree->free_v -= h * tree->reacted;
   }
-  for (std::size_t i = 0; i < predicted_limits_.size(); ++i) take(scalars_[i].a, scalars_[i].ra, 0, predicted_limits_[i]);
+  for (contact::Row& row : rows_) row.impulse *= h;
+  if (strained())
+    for (contact::Row& row : rows_) row.impulse = Vector3::Zero();
   for (contact::ScalarRow& row : scalars_) row.impulse *= h;
   for (Tree* tree : trees_) tree->state.v = tree->free_v;
   set_biases(h);
   bound_motors(h);
 }
 
-/// Rows where smooth motion of h seconds has led to, from what began at `before`, and their solution.
+/// After place(): whether smooth motion of h seconds made of what was predicted motion, more than there was, where it
+/// should have balanced other forces. What stops something in two sub-steps may be taken for a force that lasts.
+bool Island::misled(double h) {
+  constexpr double kUnbalanced = 0.01;  // of the energy that the prediction gives by itself
+  double alone = 0;
+  for (Tree* tree : trees_) {
+    if (!tree->loads.reacts) continue;
+    articulated::apply_inverse_mass(tree->model, tree->data, tree->loads.reaction, tree->reacted);
+    alone += 0.5 * h * h * tree->loads.reaction.dot(tree->reacted);
+  }
+  books_.predicted = alone;
+  return keeps_books_ && alone > books_.kinetic && books_.smooth_kinetic - books_.kinetic > kUnbalanced * alone;
+}
+
+/// Contacts on several sides of a link may press against one another as much as they like: no velocity tells. Impulses
+/// of the last sub-step that are beyond all that moves and acts are no place to begin.
+bool Island::strained() const {
+  constexpr double kMost = 1e8;  // times: a stack of many bodies with light ones below has some thousands
+  if (!keeps_books_) return false;
+  double pressed = 0;  // J
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const NearPair& pair = *pairs_[touches_[i].pair];
+    pressed += rows_[i].impulse.squaredNorm() * (natural_response(pair.a) + natural_response(pair.b));
+  }
+  return pressed > kMost * (books_.smooth_kinetic + books_.predicted);
+}
+
+void Island::forget_prediction() {
+  predicted_.assign(touches_.size(), Vector3::Zero());
+  books_.predicted = 0;
+  for (Tree* tree : trees_) {
+    tree->loads.reacts = false;
+    tree->outer_force.setZero();
+    tree->outer_couple.setZero();
+  }
+}
+
+/// Rows where smooth motion of h seconds has led to, where the trees are placed, and their solution.
 void Island::solve_after(double h) {
-  place();
   make_rows(Motors::Drive);
   recall_rates();
   begin_solve(h);

@@ -30,10 +30,12 @@ void Island::store_velocities(double moved_h) {
   }
   if (moved_h == 0) return;
   note_wholes(&Tree::smooth_v, false);
-  for (Tree* tree : trees_) {
-    tree->way = moved_h * (tree->state.v - tree->smooth_v);
-    articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
-  }
+  // Semi-implicit Euler moves with the velocity after.
+  for (const Clustered& one : clusters_)
+    for (Tree* tree : one.entry->system->trees()) {
+      tree->way = (one.semi ? 2 : 1) * moved_h * (tree->state.v - tree->smooth_v);
+      articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
+    }
   keep_wholes(moved_h, Given::All);
 }
 
@@ -50,6 +52,7 @@ void Island::correct_works(double h) {
     for (const std::uint32_t index : clustered.entry->trees) {
       Tree& tree = *core_.trees[index];
       if (!tree.driven) continue;
+      const bool semi = clustered.semi;
       const articulated::Vector &before = tree.sub_state.v, &free = tree.smooth_v, &after = tree.state.v;
       for (int i = 0; i < tree.model.size(); ++i) {
         const TreeLink& link = tree.links[static_cast<std::size_t>(i)];
@@ -57,10 +60,14 @@ void Island::correct_works(double h) {
         const articulated::Body& body = tree.model.body(i);
         const double damping = core_.joints[link.joint].drive.damping;
         for (int k = body.v; k < body.v + articulated::velocity_count(body.type); ++k) {
-          const double change = 0.5 * (after[k] - free[k]);
-          clustered.pending.motor_work += change * tree.motor_impulse[k];
-          clustered.pending.drag_loss += change * damping * h * 0.5 * (before[k] + free[k]);
-          clustered.pending.script_work += change * h * tree.set_tau[k];
+          const double change = after[k] - free[k], mean = 0.5 * (before[k] + free[k]);
+          clustered.pending.motor_work += 0.5 * change * tree.motor_impulse[k];
+          clustered.pending.script_work += (semi ? 1 : 0.5) * change * h * tree.set_tau[k];
+          // An implicit damper pushes against the velocity that comes of it.
+          if (semi && !link.slow_spring)
+            clustered.pending.drag_loss += damping * h * (after[k] * after[k] - free[k] * mean);
+          else
+            clustered.pending.drag_loss += 0.5 * change * damping * h * (semi ? before[k] : mean);
         }
       }
     }

@@ -38,7 +38,8 @@ void Island::smooth(double time, double h) {
   }
   for (Clustered& one : clusters_) {
     forget_parts(one);
-    if (one.entry->system->can_be_finer() && !stiff(one))
+    one.semi = semi_implicit(accuracy_);
+    if (one.entry->system->can_be_finer())
       smooth_fast(one, time, h);
     else
       smooth_whole(one, time, h);
@@ -80,26 +81,37 @@ double Island::stored_in(const Clustered& one, double& kinetic) {
   return sum;
 }
 
-/// Runge-Kutta 4, in as many parts as leave little for projection to the energy.
+/// Runge-Kutta 4, or semi-implicit Euler where springs are too fast for it, in as many parts as leave little for
+/// projection to the energy. What is gained even so is taken back; what implicit springs lose is lost.
 void Island::smooth_fast(Clustered& one, double time, double h) {
   Cluster& system = *one.entry->system;
   for (Tree* tree : system.trees()) tree->part_state = tree->state;
-  system.set_finer(true);
+  bool implicit = stiff(one);
+  system.set_finer(!implicit);
   const double still = kStill * weight();
-  for (int parts = 1; parts <= kMostParts; parts *= 2) {
+  for (int parts = 1;; parts *= 2) {
+    const bool last = 2 * parts > kMostParts;
     double gain = std::numeric_limits<double>::infinity();
     try {
       gain = gain_of(one, time, h, parts);
     } catch (const Error& error) {
-      if (error.code() != ErrorCode::Numeric) throw;
+      if (error.code() != ErrorCode::Numeric || (last && implicit)) throw;
     }
-    if (std::abs(gain) <= still || take_back(one, gain)) break;
-    if (2 * parts > kMostParts) break;
+    if ((implicit && gain <= 0) || std::abs(gain) <= still || take_back(one, gain)) break;
+    if (last && (implicit || std::isfinite(gain))) {
+      take_back_most(one, gain);
+      break;
+    }
     ++result.counters.rejected;
     for (Tree* tree : system.trees()) tree->state = tree->part_state;
     forget_parts(one);
+    if (!last) continue;
+    implicit = true;
+    system.set_finer(false);
+    parts /= 2;
   }
   system.set_finer(false);
+  one.semi = implicit;
 }
 
 /// Some joint has a spring or damper that a step may not follow: semi-implicit Euler holds it whatever its stiffness,

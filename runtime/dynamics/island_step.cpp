@@ -68,9 +68,9 @@ void Island::step_fast(double start, double h) {
   for (int i = 0; i < parts; ++i) {
     look(part, true);
     for (Bound& bound : bounds_) bound.rests = bound.gap + part * std::min(0.0, 2 * bound.rate) <= kLimitSkin;
-    predict();
     remember();
     open_books();
+    predict(part);
     advance_once(start + i * part, part);
     commit();
     account_rows();
@@ -80,6 +80,25 @@ void Island::step_fast(double start, double h) {
     keep_warm(part);
     push_apart(part);
   }
+}
+
+/// Limits that smooth motion of h seconds has run over, where they are not located, are rows as well. The books of the
+/// sub-step are opened for them, if they are not.
+/// @return  whether there are some
+bool Island::catch_bounds(double time, double h) {
+  if (!spent_) return false;
+  bool any = false;
+  for (Bound& bound : bounds_) {
+    if (bound.rests || bound.held) continue;
+    const double gap = bound.sign * (core_.read_position(core_.joints[bound.joint])[bound.axis] - bound.limit);
+    bound.rests = gap < std::min(bound.gap, 0.0) - kLimitSkin;
+    any = any || bound.rests;
+  }
+  if (!any || keeps_books_) return any;
+  restore();
+  open_books();
+  smooth(time, h);
+  return true;
 }
 
 // --- impacts at their time ---
@@ -96,13 +115,22 @@ void Island::advance_once(double time, double h) {
     for (Clustered& one : clusters_) one.stage->holds_rings = true;
   }
   smooth(time, h);
-  if (alone) return;
+  if (!catch_bounds(time, h) && alone) return;
   note_smooth();
+  place(h);
+  if (misled(h)) {
+    forget_prediction();
+    restore();
+    smooth(time, h);
+    note_smooth();
+    place(h);
+  }
   solve_after(h);
   // A force that is constant over the step moves by half of what its change of velocity would.
   correct_works(h);
   store_velocities(0.5 * h);
   if (spent_) hold_off(h);
+  hold_bounds(h);
 }
 
 /// What of the part of a step that was taken no account explains; it ends because the island is no longer what it was.
@@ -180,7 +208,6 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
       look(sub, spent_);
     }
     if (!spent_) find_roles(sub, struck);
-    predict();
     const double part = longest(h - now);
     remember();
     start_poses_.clear();
@@ -189,6 +216,7 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
       start_poses_.push_back(pose_of(pair->b));
     }
     open_books();
+    predict(part);
     advance_once(start + now, part);
     Event event;
     if (!spent_) event = seek(part);

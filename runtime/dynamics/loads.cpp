@@ -58,6 +58,7 @@ void Dynamics::Core::set_loads(Tree& tree, const Accuracy& accuracy, double h) {
   loads.gravity = settings.gravity;
   loads.wrenches.resize(size);
   loads.drives.resize(size);
+  tree.springs.drives.resize(size);
   loads.rest.resize(tree.model.positions());
   loads.rest = tree.data.rest;
   loads.tau.setZero(tree.model.velocities());
@@ -81,6 +82,7 @@ void Dynamics::Core::set_loads(Tree& tree, const Accuracy& accuracy, double h) {
     loads.wrenches[i] = {link.torque, link.force};
     tree.pushed = tree.pushed || link.force != Vector3::Zero() || link.torque != Vector3::Zero();
     articulated::Drive& made = loads.drives[i] = {};
+    tree.springs.drives[i] = {};
     if (link.joint == kNoJoint) continue;
     const JointEntry& joint = joints[link.joint];
     const JointDrive& drive = joint.drive;
@@ -91,7 +93,9 @@ void Dynamics::Core::set_loads(Tree& tree, const Accuracy& accuracy, double h) {
       made.stiffness = drive.stiffness;
       made.damping = drive.damping;
     }
-    if (drive.strength_limit > 0) {
+    tree.springs.drives[i] = made;
+    // What a motor gives inside the stages does not know of the forces that hold rings: there all of it is the row's.
+    if (drive.strength_limit > 0 && tree.rings.empty()) {
       made.motor_gain = kMotorStiffness * link.gain_unit / kMotorTime;
       made.motor_limit = drive.strength_limit;
     }

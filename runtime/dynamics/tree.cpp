@@ -34,8 +34,8 @@ Tree::Tree(std::pmr::memory_resource* memory, const std::vector<articulated::Lin
       row_order(memory),
       anchors(memory) {
   work_q = state.q;
-  work_v = work_u = work_w = free_v = smooth_v = way = kick = motor_impulse = part_impulse = limit_force = held_force =
-      mean = state.v;
+  work_v = work_u = work_w = free_v = smooth_v = way = kick = reacted = motor_impulse = part_impulse = state.v;
+  limit_force = held_force = mean = state.v;
   loads.reaction = state.v;
   step_state = sub_state = part_state = state;
 }

@@ -75,6 +75,7 @@ struct Tree : InMemory {
   articulated::Data data;
   articulated::State state;
   articulated::Loads loads;
+  articulated::Loads springs;  // stiffness and damping of the drives in `loads`, and nothing else
   std::pmr::vector<TreeLink> links;
   std::pmr::vector<JointIndex> rings;  // joints within the tree (or to the world) that are constraints
   std::pmr::vector<HeldLimit> held;    // limits that act inside the stages of this sub-step
@@ -97,6 +98,7 @@ struct Tree : InMemory {
   // An island's, kept here so that a step allocates nothing.
   articulated::State step_state, sub_state;  // as the step, the sub-step began
   articulated::State part_state;             // likewise, at the start of smooth motion
+  articulated::Vector reacted;               // (nv) what Loads::reaction gives in a second
   articulated::Vector free_v, way, kick;     // v without the rows' impulses; the way they make
   articulated::Vector smooth_v;              // v after smooth motion, to which reactions belong
   Vector3 outer_force = Vector3::Zero();     // N, of these reactions from outside
