@@ -291,6 +291,8 @@ class Island : public InMemory {
   void rebound(std::size_t bound, double time);
   void push_apart(double h);
   void move_by_pushes(double fastest, double h);
+  double payable() const;
+  void take_back_pushes(double part, double h);
   void hold_bounds(double h);
   bool find_struck(double h);
   void begin_moves();

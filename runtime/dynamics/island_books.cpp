@@ -71,6 +71,8 @@ void Island::close_books() {
   };
   double kinetic = 0;
   for (Clustered& one : clusters_) {
+    // An implicit step and its rows are one: what it lost on the way to them is not the motion's error.
+    if (one.semi && !only_motors) one.books.unexplained = std::max(0.0, one.books.unexplained);
     books_.unexplained += one.books.unexplained;
     if (one.alone()) close(one.books, stored_in(one, kinetic), core_.trees[one.entry->trees.front()]->account);
   }

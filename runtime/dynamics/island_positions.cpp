@@ -48,6 +48,8 @@ void Island::push_apart(double h) {
   if (any) {
     const double before = result.account.contact_loss;
     move_by_pushes(fastest, h);
+    const double given = before - result.account.contact_loss, most = payable();
+    if (given > most) take_back_pushes(1 - most / given, h);
     pay_for_moves(before - result.account.contact_loss);
   }
   close_rings();
@@ -65,6 +67,25 @@ void Island::move_by_pushes(double fastest, double h) {
   begin_moves();
   contact::solve_again(pushes_, push_scalars_, settings, workspace_);
   end_moves(h);
+  book_moves(1);
+}
+
+/// What pushing trees apart may give, J: a little of what moves, and what lifts them by a little of their size. Springs
+/// that press bodies into one another, or beyond limits, are not to be wound up for nothing.
+double Island::payable() const {
+  constexpr double kLift = 1e-3;
+  return trees_.empty() ? JointDrive::kNoLimit : kFew * moving() + kLift * weight();
+}
+
+/// Takes back a part of the way that move_by_pushes() made in h seconds.
+void Island::take_back_pushes(double part, double h) {
+  book_moves(-1);
+  for (Tree* tree : trees_) {
+    tree->free_v = tree->state.v;
+    tree->state.v = tree->way / h;
+  }
+  note_wholes(&Tree::free_v, false);
+  end_moves(-part * h);
   book_moves(1);
 }
 

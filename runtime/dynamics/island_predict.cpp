@@ -113,7 +113,7 @@ void Island::begin_solve(double h) {
 /// After place(): whether smooth motion of h seconds made of what was predicted motion, more than there was, where it
 /// should have balanced other forces. What stops something in two sub-steps may be taken for a force that lasts.
 bool Island::misled(double h) {
-  constexpr double kUnbalanced = 0.01;  // of the energy that the prediction gives by itself
+  constexpr double kUnbalanced = 0.25;  // of the energy that the prediction gives by itself
   double alone = 0;
   for (Tree* tree : trees_) {
     if (!tree->loads.reacts) continue;
