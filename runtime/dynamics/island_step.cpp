@@ -130,7 +130,7 @@ void Island::advance_once(double time, double h) {
   correct_works(h);
   store_velocities(0.5 * h);
   if (spent_) hold_off(h);
-  hold_bounds(h);
+  if (spent_) hold_bounds(h);
 }
 
 /// What of the part of a step that was taken no account explains; it ends because the island is no longer what it was.
