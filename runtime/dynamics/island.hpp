@@ -48,7 +48,7 @@ class Island : public InMemory {
   bool still() const;
   enum class Momenta : bool { Take, Keep };  // the last of what nothing outside touches
   void stop(Momenta momenta);                // all velocities zero but these
-  void write();  // to the arrays
+  void write();                              // to the arrays
 
   /// Adds to `j` (nv) how the velocity of a link's point along `axis` (or its spin about it) depends on v; the tree's
   /// links are placed.
@@ -84,20 +84,20 @@ class Island : public InMemory {
   };
   /// Energy as a sub-step began, for what its rows did to it.
   struct Books {
-    double stored = 0;       // J
-    double kinetic = 0;      // J, of all trees
+    double stored = 0;          // J
+    double kinetic = 0;         // J, of all trees
     double smooth_kinetic = 0;  // J, likewise, after smooth motion
     double predicted = 0;       // J, that predicted forces give from rest
-    Energy account;          // works and losses
-    double unexplained = 0;  // J, that smooth motion gained
+    Energy account;             // works and losses
+    double unexplained = 0;     // J, that smooth motion gained
   };
   struct Clustered {
     ClusterEntry* entry;
     std::optional<Stage> stage;
     double next_before = 0;
-    bool semi = false;   // its last smooth motion was semi-implicit Euler's
-    bool loose = false;  // nothing but contacts and gravity acts on it from outside
-    Energy pending;      // of the last smooth()
+    bool semi = false;     // its last smooth motion was semi-implicit Euler's
+    bool loose = false;    // nothing but contacts and gravity acts on it from outside
+    Energy pending;        // of the last smooth()
     double held_work = 0;  // J, likewise, of forces that were predicted
     Books books;           // of the sub-step
     bool alone() const { return entry->trees.size() == 1 && entry->ties.empty(); }

@@ -1,7 +1,7 @@
 // The books of a sub-step whose rows are solved at its end. They take forces as constant: works by the mean of
 // velocities are of second order only. What rows did in fact is known all the same, since smooth motion is measured by
-// itself: it is what the energy changed by after that. Contacts and limits give nothing: what the solution gave is taken
-// back from the motion of links among one another.
+// itself: it is what the energy changed by after that. Contacts and limits give nothing: what the solution gave is
+// taken back from the motion of links among one another.
 #include <algorithm>
 
 #include "runtime/dynamics/island.hpp"
@@ -51,8 +51,8 @@ void Island::note_smooth() {
   for (Clustered& one : clusters_) {
     const Energy& did = one.pending;
     double kinetic = 0;
-    one.books.unexplained = stored_in(one, kinetic) - one.books.stored - did.motor_work - did.script_work - one.held_work +
-                            did.drag_loss;
+    one.books.unexplained =
+        stored_in(one, kinetic) - one.books.stored - did.motor_work - did.script_work - one.held_work + did.drag_loss;
     books_.smooth_kinetic += kinetic;
   }
   placed_ = true;

@@ -98,7 +98,8 @@ Island::Trouble Island::try_in_parts(DynamicsClient* client, double start, doubl
   std::size_t links = 0;
   for (const Tree* tree : trees_) links += tree->links.size();
   const std::size_t bodies = links + free_.size();
-  const int most = bodies > kMostInParts || calls_out() ? 1 : static_cast<int>(std::max<std::size_t>(4, kMostInParts / bodies));
+  const int most =
+      bodies > kMostInParts || calls_out() ? 1 : static_cast<int>(std::max<std::size_t>(4, kMostInParts / bodies));
   double last = std::numeric_limits<double>::infinity();
   for (int parts = 2; parts <= most && unexplained_ > allowed_; parts *= 2) {
     // What finer steps do not mend is not theirs to mend.
@@ -287,17 +288,16 @@ void Island::book() {
   for (const Free& one : loose_bodies()) {
     // Read back as it will be when a script sets something: a centre of mass off the origin is rounded on the way.
     const bool central = one.now.solid->center_of_mass == Vector3::Zero();
-    core_.booked[one.body] =
-        central ? one.now.kinetic() - one.now.solid->mass * core_.settings.gravity.dot(one.now.center)
-                : core_.free_energy(one.body).total();
+    core_.booked[one.body] = central
+                                 ? one.now.kinetic() - one.now.solid->mass * core_.settings.gravity.dot(one.now.center)
+                                 : core_.free_energy(one.body).total();
   }
   for (Tree* tree : trees_) {
     if (!booked_) tree->booked = core_.energy_of(*tree).total();
     tree->changed = false;
   }
   for (const Clustered& one : clusters_)
-    for (const SpringIndex tie : one.entry->ties)
-      core_.springs[tie].booked = core_.tie_energy(core_.springs[tie].is);
+    for (const SpringIndex tie : one.entry->ties) core_.springs[tie].booked = core_.tie_energy(core_.springs[tie].is);
 }
 
 bool Island::still() const {

@@ -138,14 +138,14 @@ void Island::take_back_most(Clustered& one, double gain) {
 /// Something that is not the tree itself touches a tree of the island, or did in this step.
 bool Island::touched_from_outside() const {
   return touched_ || std::any_of(rows_.begin(), rows_.end(), [this](const contact::Row& row) {
-    const NearPair& pair = *pairs_[static_cast<std::size_t>(row.pair)];
-    const Tree* tree = core_.place_of[pair.a].tree;
-    return !tree || tree != core_.place_of[pair.b].tree;
-  });
+           const NearPair& pair = *pairs_[static_cast<std::size_t>(row.pair)];
+           const Tree* tree = core_.place_of[pair.a].tree;
+           return !tree || tree != core_.place_of[pair.b].tree;
+         });
 }
 
-/// Energy that take_from_all() may take, J: of links among one another; where something outside touches, momenta are not
-/// kept, and it is all that trees have.
+/// Energy that take_from_all() may take, J: of links among one another; where something outside touches, momenta are
+/// not kept, and it is all that trees have.
 double Island::moving() const {
   const bool held = touched_from_outside();
   double sum = 0;

@@ -55,7 +55,8 @@ void Island::push_apart(double h) {
   close_rings();
 }
 
-/// Moves everything for h seconds by the velocities that pushes_ and push_scalars_ ask for, the fastest of which is told.
+/// Moves everything for h seconds by the velocities that pushes_ and push_scalars_ ask for, the fastest of which is
+/// told.
 void Island::move_by_pushes(double fastest, double h) {
   contact::SolveSettings settings;
   // Only a part of an overlap is put right: how exactly does not matter, least where velocities are not exact either.

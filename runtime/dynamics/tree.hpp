@@ -1,8 +1,8 @@
 // A tree of bodies that joints connect: its articulated model, its state, and which body and joint each link is.
 #pragma once
 
-#include <limits>
 #include <algorithm>
+#include <limits>
 #include <memory_resource>
 #include <vector>
 
@@ -113,7 +113,7 @@ struct Tree : InMemory {
   double step_stored = 0;                    // J, likewise
   double step_kinetic = 0;                   // J, likewise
   double booked = std::numeric_limits<double>::quiet_NaN();  // J, that it has by the books
-  bool changed = true;                       // by scripts since
+  bool changed = true;                                       // by scripts since
 
   BodyIndex first_body() const {  // of the lowest index
     BodyIndex first = kNoBody;

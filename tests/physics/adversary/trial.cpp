@@ -77,7 +77,8 @@ class Books {
   void tell() const {
     std::printf(
         "t %7.4f  kinetic %11.5g potential %11.5g springs %11.5g  motor %11.5g force %11.5g  less works %13.7g  "
-        "ledger's residual %11.5g own %11.5g  losses: contact %11.5g friction %11.5g drag %11.5g limits %11.5g  |dP| %9.3g "
+        "ledger's residual %11.5g own %11.5g  losses: contact %11.5g friction %11.5g drag %11.5g limits %11.5g  |dP| "
+        "%9.3g "
         "|dL| %9.3g\n",
         time_, now_.kinetic, now_.potential, now_.springs, motor(), forces_, now_.total() - motor() - forces_,
         ledger_.residual - ledger0_.residual, own_residual(), ledger_.contact_loss - ledger0_.contact_loss,
