@@ -33,7 +33,7 @@ void run_sweeps(Workspace& work, int most, double tolerance, SolveReport& report
 /// @param most  operations of the linear solves
 /// @param each  of one of them
 void solve_directly(Workspace& work, const SolveSettings& settings, double most, double each, SolveReport& report) {
-  constexpr double kAlways = 3e5, kUnbounded = 1e6;  // operations that are not seen; solves
+  constexpr double kAlways = 1e6, kUnbounded = 1e6;  // operations that are not seen; solves
   LinearSolves solves{0, static_cast<int>(std::min((most + kAlways) / each, kUnbounded))};
   report.residual = solve_direct(work, settings.tolerance, solves, report.direct);
   if (!report.direct) {

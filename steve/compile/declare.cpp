@@ -1,4 +1,5 @@
 // Classes from tree to ClassInfo: parents, variables and their slots, methods and their parameters, natives.
+#include <algorithm>
 #include <set>
 
 #include "steve/compile/builder.hpp"
@@ -9,6 +10,8 @@
 namespace breve::steve {
 
 namespace {
+
+constexpr std::uint32_t kDeepestClass = 256;  // each class has the tables of all its ancestors
 
 char letter_of(StaticType type) {
   static constexpr char kLetters[] = "nidvmsolhpba";
@@ -68,6 +71,14 @@ void ProgramBuilder::declare(ast::Class tree) {
   info.alias = tree.alias;
   info.doc = tree.doc;
   info.parent = parent;
+  info.depth = parent ? parent->depth + 1 : 0;
+  if (info.depth > kDeepestClass) {
+    diagnostics_.error(tree.name_span, "too-deep",
+                       "class " + tree.name + " has more than " + std::to_string(kDeepestClass) + " ancestors",
+                       "derive it from a class that is nearer to Object");
+    info.parent = class_named("Object");
+    info.depth = 1;
+  }
   info.version = tree.version;
   info.span = tree.name_span;
   program_->class_names_[info.name] = &info;
@@ -256,7 +267,8 @@ Symbol ProgramBuilder::checked_class(const ast::TypeRef& type) {
 void ProgramBuilder::finish_class(ClassInfo& info) {
   const auto init = symbol("init"), remove = symbol("delete");
   std::vector<const ClassInfo*> line;
-  for (const ClassInfo* c = &info; c; c = c->parent) line.insert(line.begin(), c);
+  for (const ClassInfo* c = &info; c; c = c->parent) line.push_back(c);
+  std::reverse(line.begin(), line.end());
   for (const auto* c : line)
     for (const auto& method : c->methods) {
       if (!method->parameters.empty()) continue;

@@ -108,6 +108,7 @@ struct ClassInfo {
   ClassId id = kNoClass;
   std::string name, alias, doc;
   const ClassInfo* parent = nullptr;
+  std::uint32_t depth = 0;  // ancestors
   double version = 1.0;
   std::vector<VariableInfo> variables;                      // its own; ancestors' come before in the instance
   std::uint32_t slot_count = 0;                             // with ancestors

@@ -185,6 +185,8 @@ class Writer {
 
 // --- reading ---------------------------------------------------------------------------------------------------------
 
+constexpr std::uint64_t kOfByte = 4;  // to read one, in elements of a list
+
 pugi::xml_node parse(pugi::xml_document& document, std::string_view xml) {
   const auto result = document.load_buffer(xml.data(), xml.size(), pugi::parse_default | pugi::parse_ws_pcdata);
   const pugi::xml_node archive = document.child("breve-archive");
@@ -293,11 +295,13 @@ std::string to_archive(Machine& machine, Instance& root) { return Writer(machine
 
 Instance* from_archive(Machine& machine, std::string_view xml) {
   pugi::xml_document document;
+  machine.charge_for(kOfByte * xml.size());
   return Reader(machine, parse(document, xml)).read();
 }
 
 void variables_from_archive(Machine& machine, std::string_view xml, Instance& target) {
   pugi::xml_document document;
+  machine.charge_for(kOfByte * xml.size());
   const pugi::xml_node archive = parse(document, xml);
   const std::string root = archive.attribute("root").value();
   const pugi::xml_node element = archive.find_child_by_attribute("object", "id", root.c_str());

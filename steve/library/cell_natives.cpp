@@ -39,6 +39,7 @@ void grid_set_state(Machine& machine, Instance& self, std::int32_t state, std::i
 
 void grid_set_all_states(Machine& machine, Instance& self, std::int32_t state) {
   GridResource& resource = own_grid(machine, self);
+  machine.charge_for(resource.grid->cells());
   resource.states.make(*resource.grid);
   for (CellIndex cell = 0; cell < resource.grid->cells(); ++cell) resource.states.set(cell, state_of(state));
 }
@@ -54,6 +55,7 @@ void grid_randomize_states(Machine& machine, Instance& self, double density) {
 std::int32_t grid_count_states(Machine& machine, Instance& self, std::int32_t state) {
   const GridResource& resource = own_grid(machine, self);
   if (!resource.states.made()) return state == 0 ? static_cast<std::int32_t>(resource.grid->cells()) : 0;
+  machine.charge_for(resource.grid->cells() / 16);  // bytes, many at once
   return static_cast<std::int32_t>(resource.states.count(state_of(state)));
 }
 

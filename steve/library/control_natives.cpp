@@ -47,7 +47,10 @@ void control_iterate(Machine& machine, Instance&) {
   ViewState& view = view_of(machine);
   follow(machine, view.camera);
   if (!view.frozen) {
-    machine.charge(machine.world().substeps());
+    // A sub-step looks at each object.
+    const std::uint64_t steps = machine.world().substeps();
+    machine.charge(steps);
+    machine.charge_for(steps * machine.world().object_count());
     check_motors(machine);
     machine.world().advance_bodies();
   }

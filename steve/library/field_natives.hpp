@@ -18,6 +18,13 @@ inline Field& field_of(Machine& machine, Instance* object, std::string_view what
 
 inline Field& own_field(Machine& machine, Instance& self) { return field_of(machine, &self, "this object"); }
 
+/// The same, for work on all its elements.
+inline Field& whole_field(Machine& machine, Instance& self) {
+  Field& field = own_field(machine, self);
+  machine.charge_for(field.size());
+  return field;
+}
+
 namespace fields {
 
 /// Counts and times one pass over a field as the effect `diffusion`.
@@ -25,36 +32,36 @@ inline StageScope diffusing(Machine& machine, const Instance& self, const Field&
   return machine.world().work(EffectId::Diffusion, self.id, field.size());
 }
 
-inline void set_all_values(Machine& machine, Instance& self, double value) { own_field(machine, self).fill(value); }
-inline double get_absolute_sum(Machine& machine, Instance& self) { return own_field(machine, self).absolute_sum(); }
-inline void add_scalar(Machine& machine, Instance& self, double value) { own_field(machine, self).add_scalar(value); }
-inline void scale(Machine& machine, Instance& self, double factor) { own_field(machine, self).scale(factor); }
+inline void set_all_values(Machine& machine, Instance& self, double value) { whole_field(machine, self).fill(value); }
+inline double get_absolute_sum(Machine& machine, Instance& self) { return whole_field(machine, self).absolute_sum(); }
+inline void add_scalar(Machine& machine, Instance& self, double value) { whole_field(machine, self).add_scalar(value); }
+inline void scale(Machine& machine, Instance& self, double factor) { whole_field(machine, self).scale(factor); }
 
 inline void add_values(Machine& machine, Instance& self, Instance* other, double factor) {
-  own_field(machine, self).add(field_of(machine, other, "add-values"), factor);
+  whole_field(machine, self).add(field_of(machine, other, "add-values"), factor);
 }
 
 inline void subtract_values(Machine& machine, Instance& self, Instance* other, double factor) {
-  own_field(machine, self).subtract(field_of(machine, other, "subtract-values"), factor);
+  whole_field(machine, self).subtract(field_of(machine, other, "subtract-values"), factor);
 }
 
 inline void multiply_with_values(Machine& machine, Instance& self, Instance* other) {
-  own_field(machine, self).multiply(field_of(machine, other, "multiply-with-values"));
+  whole_field(machine, self).multiply(field_of(machine, other, "multiply-with-values"));
 }
 
 inline void add_product(Machine& machine, Instance& self, Instance* first, Instance* second, double factor) {
   const Field& a = field_of(machine, first, "add-product");
-  own_field(machine, self).add_product(a, field_of(machine, second, "add-product"), factor);
+  whole_field(machine, self).add_product(a, field_of(machine, second, "add-product"), factor);
 }
 
 inline void diffuse_in_place(Machine& machine, Instance& self, double factor) {
-  Field& field = own_field(machine, self);
+  Field& field = whole_field(machine, self);
   const StageScope timed = diffusing(machine, self, field);
   field.spread(factor);
 }
 
 inline void diffuse_periodically(Machine& machine, Instance& self, double factor) {
-  Field& field = own_field(machine, self);
+  Field& field = whole_field(machine, self);
   const StageScope timed = diffusing(machine, self, field);
   field.spread_periodic(factor);
 }
@@ -62,29 +69,34 @@ inline void diffuse_periodically(Machine& machine, Instance& self, double factor
 /// Takes the other's size as well.
 inline void copy(Machine& machine, Instance& self, Instance* other) {
   const Field& source = field_of(machine, other, "copy");
+  machine.charge_for(source.size());
   Field made(source, machine.heap().memory());
   resource_made<FieldResource>(machine, self).field = std::move(made);
 }
 
 inline void compute_diffusion(Machine& machine, Instance& self, Instance* source, double factor) {
-  Field& field = own_field(machine, self);
+  Field& field = whole_field(machine, self);
   const StageScope timed = diffusing(machine, self, field);
   field.diffuse(field_of(machine, source, "compute-diffusion-matrix"), factor);
 }
 
 inline void compute_periodic_diffusion(Machine& machine, Instance& self, Instance* source, double factor) {
-  Field& field = own_field(machine, self);
+  Field& field = whole_field(machine, self);
   const StageScope timed = diffusing(machine, self, field);
   field.diffuse_periodic(field_of(machine, source, "compute-periodic-diffusion-matrix"), factor);
 }
 
 inline void transform(Machine& machine, Instance& self, Instance* matrix, Instance* result) {
   const Field& left = field_of(machine, matrix, "transform: the matrix");
-  own_field(machine, self).transform(left, field_of(machine, result, "transform: the result"));
+  machine.charge_for(left.size() * static_cast<std::uint64_t>(own_field(machine, self).nx()));  // a product of matrices
+  whole_field(machine, self).transform(left, field_of(machine, result, "transform: the result"));
 }
 
 inline void print_matlab_style(Machine& machine, Instance& self) {
-  machine.print(own_field(machine, self).matlab() + "\n");
+  constexpr std::uint64_t kOfText = 16;  // a number's digits
+  const Field& field = whole_field(machine, self);
+  machine.charge_for(kOfText * field.size());
+  machine.print(field.matlab() + "\n");
 }
 
 }  // namespace fields

@@ -26,6 +26,7 @@ Instance* grid_make(Machine& machine, Instance& self, std::int32_t nx, std::int3
                     Vector3 location, Vector3 size, StringCell* patch_class) {
   const bool code = has_code(machine, view(patch_class));
   const Grid grid({nx, ny, nz}, is_library_kind(self, "PatchToroid"), location, size);
+  machine.charge_for(grid.cells());
   const StageScope timed = machine.world().work(EffectId::Patches, self.id, grid.cells());
   std::pmr::memory_resource* memory = machine.heap().memory();
   auto made = make_in<GridResource>(memory, memory);

@@ -21,6 +21,7 @@ void image_iterate(Machine&, Instance&) {}
 // --- size and files --------------------------------------------------------------------------------------------------
 
 Instance* image_set_size(Machine& machine, Instance& self, std::int32_t width, std::int32_t height) {
+  if (width > 0 && height > 0) machine.charge_for(static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height));
   image(machine, self) = Image(width, height, machine.heap().memory());
   return &self;
 }
@@ -40,6 +41,11 @@ Instance* image_load(Machine& machine, Instance& self, Text file) {
   return &self;
 }
 
+void charge_for_deflation(Machine& machine, const Image& picture) {
+  constexpr std::uint64_t kOfByte = 16;
+  machine.charge_for(kOfByte * picture.bytes().size());
+}
+
 /// Run something that writes a file: 1, or 0 with a message.
 template <class Write>
 std::int32_t try_to_write(Machine& machine, const std::string& name, Write write) {
@@ -55,12 +61,14 @@ std::int32_t try_to_write(Machine& machine, const std::string& name, Write write
 
 std::int32_t image_write(Machine& machine, Instance& self, Text file) {
   const std::string name(view(file));
+  charge_for_deflation(machine, image(machine, self));
   return try_to_write(machine, name, [&] { write_file(machine, name, image(machine, self).png()); });
 }
 
 std::int32_t image_write_16_bit(Machine& machine, Instance& self, Text file) {
   const std::string name(view(file));
   const Image& picture = image(machine, self);
+  charge_for_deflation(machine, picture);
   constexpr double kHighest = 65535;
   std::pmr::vector<double> greys(machine.heap().memory());
   greys.reserve(picture.bytes().size() / 4);
@@ -158,6 +166,7 @@ DataCell* image_get_data(Machine& machine, Instance& self) {
 std::int32_t image_get_texture_number(Machine&, Instance& self) { return static_cast<std::int32_t>(self.id.index); }
 
 std::int32_t image_get_compression_size(Machine& machine, Instance& self) {
+  charge_for_deflation(machine, image(machine, self));
   return static_cast<std::int32_t>(image(machine, self).deflated_size());
 }
 

@@ -31,7 +31,7 @@ void plane_set_value(Machine& machine, Instance& self, double value, std::int32_
   own_field(machine, self).set(x, y, 0, value);
 }
 
-double plane_get_max_value(Machine& machine, Instance& self) { return own_field(machine, self).max(); }
+double plane_get_max_value(Machine& machine, Instance& self) { return whole_field(machine, self).max(); }
 
 /// Element (x, y, z) to pixel (x, y), as far as both go.
 void copy_plane(Machine& machine, const Field& field, int z, Instance* target, double factor, Channel channel) {
@@ -50,7 +50,7 @@ void copy_plane(Machine& machine, const Field& field, int z, Instance* target, d
 
 template <Channel C>
 void plane_copy_to_channel(Machine& machine, Instance& self, Instance* target, double factor) {
-  copy_plane(machine, own_field(machine, self), 0, target, factor, C);
+  copy_plane(machine, whole_field(machine, self), 0, target, factor, C);
 }
 
 // --- Matrix3D --------------------------------------------------------------------------------------------------------

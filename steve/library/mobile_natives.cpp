@@ -122,8 +122,12 @@ bool tested(const Mechanics& dynamics, BodyIndex a, BodyIndex b) {
 ListCell* mobile_get_colliding_objects(Machine& machine, Instance& self) {
   const BodyIndex body = body_of(machine, self);
   const Mechanics& dynamics = machine.world().dynamics();
+  constexpr std::uint64_t kOfPair = 512;  // that may touch
+  machine.charge_for(machine.world().object_count());
+  const auto touching = machine.world().touching(self.id);
+  machine.charge_for(kOfPair * touching.size());
   ListCell* list = machine.heap().list(0);
-  for (const ObjectId id : machine.world().touching(self.id)) {
+  for (const ObjectId id : touching) {
     const BodyIndex other = machine.world().body(id);
     if (dynamics.jointed(body, other)) continue;
     if (dynamics.same_assembly(body, other) && !tested(dynamics, body, other)) continue;

@@ -121,6 +121,8 @@ void terrain_generate(Machine& machine, Instance& self, double ruggedness, doubl
   if (side > HeightGrid::kMostSide)
     throw Error(ErrorCode::Argument, "generate: the grid has " + std::to_string(grid.columns()) +
                                          " points a side and cannot be doubled again");
+  constexpr std::uint64_t kOfPoint = 8;
+  machine.charge_for(kOfPoint * static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side));
   Heights heights(side);
   heights.tile = grid.tile();
   const double grown = (grid.columns() - 1) * grid.tile() / 2;

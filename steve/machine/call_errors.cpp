@@ -64,13 +64,17 @@ Machine::Receiver Machine::receiver_of_site(const Span& selector) const {
   return receiver;
 }
 
-// Where the program assigns to a variable of this instance: found in its text, since nobody keeps it otherwise.
-std::string Machine::where_assigned(const Receiver& receiver) const {
+// Where the program assigns to a variable of this instance: found in its text, since nobody keeps it otherwise. Null once
+// much has been looked through: errors that do not stop a run may be many.
+std::optional<std::string> Machine::where_assigned(const Receiver& receiver) const {
   std::vector<std::string> places;
   std::size_t more = 0;
   const auto& sources = program_->sources();
+  constexpr std::uint64_t kMostBytes = 8 << 20;  // of text that is looked through in the life of a machine
   for (std::uint32_t file = 0; file < sources.size(); ++file) {
     if (sources.file(file).embedded) continue;
+    searched_ += sources.file(file).text.size();
+    if (searched_ > kMostBytes) return std::nullopt;
     Diagnostics ignored;
     const auto tokens = lex(sources, file, ignored);
     for (std::size_t i = 1; i + 1 < tokens.size(); ++i) {
@@ -130,9 +134,10 @@ void Machine::fail_null_receiver(const CallSite& site) const {
   const std::string cls = who.member && who.member->class_name != kNoSymbol
                               ? program_->symbols().name(who.member->class_name)
                               : std::string("CLASS");
-  if (who.member == nullptr)
+  const auto found = who.member ? where_assigned(who) : std::nullopt;
+  if (!found)
     throw error(null, fmt::format("assign an object before this line, as in   {} = new {}.", who.text, cls));
-  const std::string places = where_assigned(who);
+  const std::string& places = *found;
   if (places.empty())
     throw error(null, fmt::format("nothing assigns it yet: do so in 'init', as in   {} = new {}.", who.text, cls));
   throw error(null, fmt::format("it is assigned in {}: has that been called for this object?", places));

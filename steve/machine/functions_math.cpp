@@ -80,6 +80,7 @@ double number_in_list(const Value& v) {
 /// Sample deviation (n - 1); nan for fewer than two elements.
 double standard_deviation(Machine& machine, Instance&, ListCell* list) {
   const std::uint32_t n = list != nullptr ? list->size : 0;
+  machine.charge_for(2 * std::uint64_t{n});
   double sum = 0;
   for (std::uint32_t i = 0; i < n; ++i) sum += number_in_list((*list)[i]);
   if (n < 2) {

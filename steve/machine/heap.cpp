@@ -168,6 +168,7 @@ StringCell* Heap::raw_string(std::size_t size) {
   check_length(size);
   reserve_tables(false);
   note_fresh(size);
+  move_bytes(size);
   auto* cell = new (take(string_cell_bytes(size))) StringCell(static_cast<std::uint32_t>(size));
   char* bytes = cell->bytes;
   bytes[size] = 0;
@@ -195,6 +196,7 @@ StringCell* Heap::concat(std::string_view a, std::string_view b) {
 SharedText* Heap::make_text(std::string_view begin, std::size_t capacity) {
   auto* text = static_cast<SharedText*>(memory_->allocate(sizeof(SharedText) + capacity, alignof(SharedText)));
   const auto size = static_cast<std::uint32_t>(begin.size());
+  move_bytes(size);
   *text = {nullptr, texts_, 0, size, static_cast<std::uint32_t>(capacity), {}};
   char* to = body(text);
   std::memcpy(to, begin.data(), begin.size());

@@ -12,10 +12,12 @@
 #include <memory_resource>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "runtime/base/bytes.hpp"
 #include "runtime/base/memory.hpp"
+#include "steve/machine/budget.hpp"
 #include "steve/machine/cells.hpp"
 
 namespace breve::steve {
@@ -150,6 +152,11 @@ class Heap : public InMemory {
   /// @throws std::bad_alloc if not, RunError{Bounds} if no string can be so long
   void check_room(std::size_t bytes) const;
 
+  /// Bytes of strings and lists that were written or moved since this was asked last. When they are many, the budget
+  /// looks in at the next turn.
+  std::uint64_t take_moved() { return std::exchange(moved_, 0); }
+  void set_budget(Budget* budget) { budget_ = budget; }
+
   std::uint64_t next_serial() { return ++serial_; }
   std::uint64_t live_cells() const { return cells_; }
   std::pmr::memory_resource* memory() const { return memory_; }
@@ -172,6 +179,15 @@ class Heap : public InMemory {
   void load_state(ByteReader& in, const std::function<Cell*(std::uint64_t)>& cell);
 
  private:
+  void move_bytes(std::size_t bytes) {
+    constexpr std::uint64_t kMany = 1 << 16;
+    moved_ += bytes;
+    if (moved_ >= kMany && budget_ != nullptr) budget_->hold();
+  }
+
+  std::uint64_t moved_ = 0;
+  Budget* budget_ = nullptr;
+
   // Each phase passes over containers_ once; places before passed_ have been passed. New cells of a running collection
   // are black and come last.
   //   Mark:     roots are looked for and become grey; grey cells are scanned and become black

@@ -145,9 +145,11 @@ void Heap::insert(ListCell& list, std::uint32_t position, const Value& value) {
   settle(list);
   if (list.first > 0 && position <= list.size / 2) {
     --list.first;
+    move_bytes(position * sizeof(Value));
     shift(list, list.first, list.first + 1, position);
   } else {
     if (list.first + list.size == list.capacity) make_room_behind(list);
+    move_bytes((list.size - position) * sizeof(Value));
     shift(list, list.first + position + 1, list.first + position, list.size - position);
   }
   retain(value);
@@ -161,9 +163,11 @@ Value Heap::remove(ListCell& list, std::uint32_t position) {
   settle(list);
   const Value removed = list[position];
   if (position < list.size / 2) {
+    move_bytes(position * sizeof(Value));
     shift(list, list.first + 1, list.first, position);
     ++list.first;
   } else {
+    move_bytes((list.size - position - 1) * sizeof(Value));
     shift(list, list.first + position, list.first + position + 1, list.size - position - 1);
   }
   --list.size;
@@ -196,6 +200,7 @@ ListCell* Heap::copy(const ListCell& original) {
     for (std::size_t next = 0; next < pending.size(); ++next) {
       const ListCell& from = *pending[next];
       ListCell& to = *made[next];
+      move_bytes(from.size * sizeof(Value));
       for (const Value& v : from) {
         const bool nested = v.tag == Tag::List && v.ref != nullptr;
         push(to, nested ? Value::of(Tag::List, twin(v.list())) : v);

@@ -29,6 +29,7 @@ Machine::Machine(std::shared_ptr<const Program> program, World& world, std::pmr:
       functions_(steve::functions()),
       warned_sites_(memory),
       warned_(memory) {
+  heap_->set_budget(&budget_);
   caches_.resize(program_->code().sites.size());
   strings_ = make_constants(*heap_, *program_);
   next_segment(kNativeRoom);
@@ -68,6 +69,7 @@ void Machine::start() {
 void Machine::begin_run() {
   interrupted_.store(false, std::memory_order_relaxed);
   budget_.begin_run(host_.budget);
+  heap_->take_moved();
   if (host_.patience > 0) run_began_ = std::chrono::steady_clock::now();
 }
 
@@ -77,7 +79,8 @@ void Machine::end_of_piece() {
     throw RunError(RunErrorKind::Interrupted, "interrupted");
   }
   if (host_.patience > 0) look_at_the_clock();
-  if (!budget_.next_piece()) fail_budget();
+  constexpr std::uint64_t kBytesPerTurn = 128;
+  if (!budget_.charge(heap_->take_moved() / kBytesPerTurn)) fail_budget();
 }
 
 // Says once where a run is that takes so long that it may never end.

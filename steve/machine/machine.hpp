@@ -107,6 +107,12 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   void begin_run();
   /// Count work of native code as so many turns. RunError{Budget} if the budget is used up.
   void charge(std::uint64_t turns);
+  /// The same, of work that looks at so many elements (numbers, pixels, cells, values of a list): some sixteen take as
+  /// long as a turn. Before the work, where it is known, so that what exceeds the budget does not begin.
+  void charge_for(std::uint64_t elements) {
+    constexpr std::uint64_t kElementsPerTurn = 16;
+    if (elements >= kElementsPerTurn) charge(elements / kElementsPerTurn);
+  }
 
   // --- objects ------------------------------------------------------------------------------------------------------
   /// A new instance with its `init` chain run. RunError if `init` fails or frees it.
@@ -316,7 +322,8 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
     const VariableInfo* member = nullptr;  // Variable of the instance
   };
   Receiver receiver_of_site(const Span& selector) const;
-  std::string where_assigned(const Receiver& receiver) const;
+  std::optional<std::string> where_assigned(const Receiver& receiver) const;
+  mutable std::uint64_t searched_ = 0;  // bytes of text, by where_assigned
   const CallSite* broadcast_site() const;
   void apply(const Plan& plan, const Slot* caller, Slot* callee) {
     for (const auto& move : plan.moves) {

@@ -328,8 +328,10 @@ StringCell* Machine::interpolate(const std::vector<std::string>& texts, const Va
   StringCell* begin = texts[0].empty() && values[0].tag == Tag::String ? values[0].string() : nullptr;
   std::string out = begin ? texts[1] : texts[0];
   for (std::size_t i = begin ? 1 : 0; i < count; ++i) {
-    if (values[i].tag == Tag::String)
+    if (values[i].tag == Tag::String) {
+      heap_->check_room(out.size() + view(values[i].string()).size());
       out += view(values[i].string());
+    }
     else if (values[i].tag == Tag::Int)
       append_int(out, values[i].i);
     else if (values[i].tag == Tag::Double)

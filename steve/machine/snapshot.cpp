@@ -149,6 +149,7 @@ void Machine::save(ByteWriter& out) const {
 
 void Machine::load(ByteReader& in) {
   auto heap = make_in<Heap>(memory_, memory_, *this);
+  heap->set_budget(&budget_);
   auto constants = make_constants(*heap, *program_);
   std::pmr::vector<Cell*> cells(memory_);
   const auto cell_at = [&](std::uint64_t number) {

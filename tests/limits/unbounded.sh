@@ -1,0 +1,96 @@
+#!/bin/bash
+# Programs whose natives could work for minutes: under a budget and a memory limit each ends at once with a status.
+# unbounded.sh PATH-OF-BREVE CASE. A test's time limit is that of its registration.
+set -u
+breve=$(realpath "$1")
+case=$2
+. "$(dirname "$0")/../case.sh"
+
+# ends STATUS CLASSES INIT: a controller with these statements; STATUS 3: a limit is hit.
+ends() {
+  local wanted=$1 classes=$2 status
+  {
+    echo "@use PhysicalControl."
+    for name in $classes; do echo "@use $name."; done
+    cat <<END
+Controller Main.
+PhysicalControl : Main {
+  + variables:
+    text (string).
+    items (list).
+    one, other (object).
+    i, n (int).
+    x (float).
+  + to init:
+    $3
+}
+END
+  } >a.tz
+  "$breve" run a.tz --iterations 3 --seed 1 --budget 1000000 --memory 256 --quiet >out 2>err
+  status=$?
+  [ $status = "$wanted" ] || fail "status $status and not $wanted"
+}
+
+case $case in
+matrix_product)
+  ends 3 Matrix "one = (new Matrix2D init-with x-size 3000 y-size 3000). other = (new Matrix2D init-with x-size 3000 y-size 3000).
+    one transform with-matrix other with-result other."
+  ;;
+matrix_printed) ends 3 Matrix "(new Matrix2D init-with x-size 5000 y-size 5000) print-matlab-style." ;;
+image_deflated) ends 3 Image "n = ((new Image init-with width 5500 height 5500) get-compression-size)." ;;
+image_written) ends 3 Image "(new Image init-with width 5500 height 5500) write to \"a.png\"." ;;
+list_copied) ends 3 "" "for i = 0, i < 100000, i++: push i onto items. for i = 0, i < 100000, i++: n = |copylist items|." ;;
+list_inserted_into)
+  ends 3 "" "for i = 0, i < 400000, i++: push i onto items. for i = 0, i < 300000, i++: insert 5 at items{200000}."
+  ;;
+list_taken_from)
+  ends 3 "" "for i = 0, i < 400000, i++: push i onto items. for i = 0, i < 200000, i++: n = remove items{100000}."
+  ;;
+deviation) ends 3 "" "for i = 0, i < 300000, i++: push 1.5 onto items. for i = 0, i < 100000, i++: x = stddev(items)." ;;
+string_doubled) ends 3 "" "text = \"0123456789abcdef\". for i = 0, i < 40, i++: text = text + text." ;;
+string_interpolated)
+  ends 3 "" "text = \"0123456789abcdef\". for i = 0, i < 22, i++: text = text + text.
+    text = \"\$text\$text\$text\$text\$text\$text\$text\$text\"."
+  ;;
+string_changed)
+  ends 3 "" "text = \"x\". for i = 0, i < 24, i++: text = text + text. for i = 0, i < 100000, i++: text{3} = \"y\"."
+  ;;
+cells_counted)
+  ends 3 PatchGrid "one = new PatchGrid. one init-with x-count 500 y-count 500 z-count 500. one randomize-states with-density 0.5."
+  ;;
+terrain_grown) ends 3 Terrain "one = new Terrain. for i = 0, i < 8, i++: one generate." ;;
+archive_parsed)
+  ends 3 "" "text = \"<a><a><a><a>\". for i = 0, i < 20, i++: text = text + text. self parse-xml-network-request from-string text."
+  ;;
+sub_steps)
+  ends 3 Mobile "self set-integration-step to 0.000001. self set-iteration-step to 0.9. for i = 0, i < 300, i++: new Mobile."
+  ;;
+bodies_asked)
+  ends 3 "Mobile Shape" "one = (new Cube init-with size (1, 1, 1)).
+    for i = 0, i < 3000, i++: { other = new Mobile. other set-shape to one. other enable-physics. }
+    for i = 0, i < 1000, i++: items = (other get-colliding-objects)."
+  ;;
+classes_in_a_chain)
+  {
+    printf '@use Control.\nController Main.\nControl : Main {}\nObject : C0 {}\n'
+    for ((i = 1; i < 3000; ++i)); do printf 'C%d : C%d {}\n' $((i - 1)) "$i"; done
+  } >a.tz
+  "$breve" run a.tz --iterations 1 >out 2>err
+  same "$?" 1
+  has err "class C256 has more than 256 ancestors"
+  same "$(grep -c 'ancestors' err)" 11
+  ;;
+errors_in_a_long_text)
+  {
+    printf '@use Control.\nController Main.\nControl : Main {\n  + variables:\n    other (object).\n    i (int).\n'
+    printf '  + to fly:\n    other land.\n  + to init:\n    for i = 0, i < 2000, i++: callMethodNamed(self, "fly", {}).\n'
+    sum=$(printf '1 + %.0s' {1..200})
+    for ((i = 0; i < 1500; ++i)); do printf '  + to pad%d:\n    return %s1.\n' "$i" "$sum"; done
+    printf '}\n'
+  } >a.tz
+  "$breve" run a.tz --iterations 1 --seed 1 >out 2>err
+  same "$?" 0
+  has err "assign an object before this line"
+  ;;
+*) fail "there is no case $case" ;;
+esac
