@@ -142,7 +142,9 @@ void Island::give_in(const Trouble& trouble, double start, double h) {
   // Energy from nowhere ends with the speeds; positions, put right on the way, are as good as any.
   const bool back = unusable || (rest && trouble.reason == GuardReason::Penetration);
   if (back) back_to_start();
-  if (rest) stop(Momenta::Keep);
+  // What is slow enough to sleep and cannot be moved lies: it does not move by its velocities.
+  const bool lies = trouble.reason == GuardReason::NoSolution && still();
+  if (rest || lies) stop(Momenta::Keep);
   if (rest && back) coast(h);
   intervene(trouble, rest ? GuardAction::Rested : GuardAction::Reported, start);
 }

@@ -290,9 +290,14 @@ void Dynamics::Core::build_tree(std::span<const BodyIndex> component) {
   tree->booked = by_the_books;
   trees[index] = std::move(tree);
   if (loading) return;
-  project_velocities(*trees[index]);
-  place_links(*trees[index]);
-  apply_changes(since);
+  try {
+    project_velocities(*trees[index]);
+    place_links(*trees[index]);
+    apply_changes(since);
+  } catch (...) {
+    drop_tree(index);  // half made, it would be taken for whole
+    throw;
+  }
   ++counters.rebuilt;
 }
 
