@@ -5,26 +5,11 @@
 #include <cstddef>
 
 #include "steve/compile/program.hpp"
-
-#if defined(__SANITIZE_ADDRESS__)
-#include <sanitizer/asan_interface.h>
-#endif
+#include "steve/machine/poison.hpp"
 
 namespace breve::steve {
 
 namespace {
-
-// A freed slot of a size class stays ours: the address sanitizer is told, so that it sees uses of dead cells.
-void poison([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
-#if defined(__SANITIZE_ADDRESS__)
-  ASAN_POISON_MEMORY_REGION(memory, bytes);
-#endif
-}
-void unpoison([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
-#if defined(__SANITIZE_ADDRESS__)
-  ASAN_UNPOISON_MEMORY_REGION(memory, bytes);
-#endif
-}
 
 constexpr std::size_t kFirstChunk = 2048;
 constexpr std::size_t kLargestChunk = 65536;
@@ -88,10 +73,10 @@ void* Heap::carve(std::size_t units) {
     auto* slot = reinterpret_cast<FreeSlot*>(base + i * size);
     slot->next = head;
     head = slot;
-    poison(slot + 1, size - sizeof(FreeSlot));
+    poison(slot, size);
   }
-  free_[units] = head->next;
   unpoison(head, size);
+  free_[units] = head->next;
   return head;
 }
 
@@ -100,18 +85,19 @@ void* Heap::take(std::size_t bytes) {
   if (units > kClasses) return take_single(bytes);
   FreeSlot* slot = free_[units];
   if (slot == nullptr) return carve(units);
-  free_[units] = slot->next;
   unpoison(slot, units * kUnit);
+  free_[units] = slot->next;
   return slot;
 }
 
+// A freed slot of a size class stays ours: it is poisoned, so that the address sanitizer sees uses of dead cells.
 void Heap::give(void* memory, std::size_t bytes) {
   const std::size_t units = (bytes + kUnit - 1) / kUnit;
   if (units > kClasses) return give_single(memory);
   auto* slot = static_cast<FreeSlot*>(memory);
   slot->next = free_[units];
   free_[units] = slot;
-  poison(slot + 1, units * kUnit - sizeof(FreeSlot));
+  poison(slot, units * kUnit);
 }
 
 void* Heap::take_single(std::size_t bytes) {

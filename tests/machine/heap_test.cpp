@@ -1,6 +1,7 @@
 // Counted cells: who lives, who goes, when, in which order, and what a failed allocation leaves behind.
 #include <gtest/gtest.h>
 
+#include "steve/machine/poison.hpp"
 #include "tests/machine/fakes.hpp"
 
 namespace breve::steve::testing {
@@ -22,6 +23,22 @@ TEST(Heap, TemporaryIsGoneAfterReclaim) {
   EXPECT_EQ(w.heap.live_cells(), 5u);
   w.heap.reclaim();
   EXPECT_EQ(w.heap.live_cells(), 0u);
+}
+
+// Slots of freed cells stay with the heap, so the address sanitizer finds such a use only if the heap tells it.
+TEST(HeapDeathTest, AddressSanitizerSeesAFreedCellRead) {
+  if (!kPoisonIsSeen) GTEST_SKIP() << "built without AddressSanitizer";
+  World w;
+  // The first byte is the cell's own, the last one its contents'.
+  const auto check = [&w](const auto* cell) {
+    const auto* bytes = reinterpret_cast<const volatile unsigned char*>(cell);
+    w.heap.reclaim();
+    EXPECT_DEATH(static_cast<void>(bytes[0]), "use-after-poison");
+    EXPECT_DEATH(static_cast<void>(bytes[sizeof *cell - 1]), "use-after-poison");
+  };
+  check(w.heap.string("abc"));
+  check(w.heap.list(3));
+  check(w.heap.matrix(Matrix3::Identity()));
 }
 
 TEST(Heap, EmptyStringIsTheNullReference) {
