@@ -41,10 +41,6 @@ struct Loads {
 /// How far ahead motors look in a solve with `step`, s.
 inline double motor_lag(const Loads& loads, double step) { return loads.motor_time > 0 ? loads.motor_time : step; }
 
-/// @throws Error{Argument} if a size is not the model's, a number is not finite, or a drive's number is negative; the
-///         message names the link
-void check_loads(const Model& model, const Loads& loads);
-
 class Data;
 
 /// Gathers joint forces into data.tau and what the implicit treatment adds to the joints' inertia into data.diagonal.

@@ -1,10 +1,7 @@
 // Joint by joint over q and v; only ball and free joints have anything curved.
 #include "runtime/articulated/state.hpp"
 
-#include <fmt/format.h>
-
 #include "runtime/articulated/rotation.hpp"
-#include "runtime/base/error.hpp"
 
 namespace breve::articulated {
 
@@ -51,24 +48,6 @@ State neutral_state(const Model& model) {
   State state{Vector::Zero(model.positions()), Vector::Zero(model.velocities())};
   for_each_turn(model, [&](Turn t) { state.q[t.q] = 1; });
   return state;
-}
-
-void check_state(const Model& model, const State& state) {
-  if (state.q.size() != model.positions() || state.v.size() != model.velocities())
-    throw Error(ErrorCode::Argument,
-                fmt::format("the state has {} positions and {} velocities, the model {} and {}", state.q.size(),
-                            state.v.size(), model.positions(), model.velocities()));
-  for (int i = 0; i < model.size(); ++i) {
-    const Body& body = model.body(i);
-    const bool finite = state.q.segment(body.q, position_count(body.type)).allFinite() &&
-                        state.v.segment(body.v, velocity_count(body.type)).allFinite();
-    if (!finite) throw Error(ErrorCode::Argument, model.name(i) + ": a joint position or velocity is not finite");
-    const bool turns = body.type == JointType::Ball || body.type == JointType::Free;
-    const double length = turns ? quaternion_at(state.q, body.type == JointType::Free ? body.q + 3 : body.q).norm() : 1;
-    if (std::abs(length - 1) > 1e-6)
-      throw Error(ErrorCode::Argument,
-                  fmt::format("{}: the quaternion of its joint has length {} (must be 1)", model.name(i), length));
-  }
 }
 
 void move(const Model& model, const Vector& q, const Vector& d, Vector& out) {

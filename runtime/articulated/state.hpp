@@ -14,11 +14,6 @@ struct State {
 /// All joints at zero, at rest.
 State neutral_state(const Model& model);
 
-/// @throws Error{Argument} if a size is not the model's, a number is not finite or a quaternion is further than 1e-6
-/// from
-///         unit length; the message names the link
-void check_state(const Model& model, const State& state);
-
 /// q moved along the tangent `d` (nv): angles and ways add, quaternions become q * exp(d) and have unit length again.
 /// A free joint's place moves by the first three of its numbers. `out` may be q. No allocation.
 void move(const Model& model, const Vector& q, const Vector& d, Vector& out);

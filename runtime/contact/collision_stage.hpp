@@ -45,7 +45,6 @@ class CollisionStage {
   /// The body is going; at any time, also from within touched().
   void forget(BodyIndex body);
 
-  std::size_t participants() const { return live_; }
   struct Counters {
     std::uint64_t pairs = 0;     // pairs looked at
     std::uint64_t impacts = 0;   // first touches at their time of impact

@@ -166,11 +166,6 @@ LocalMatrix regular_inverse(const LocalMatrix& W) {
           (a * f - c * c) * over, (b * c - a * e) * over, (a * d - b * b) * over};
 }
 
-void solve_cone(const LocalMatrix& W, const double u0[3], double mu, const double guess[3], double p[3]) {
-  for (int i = 0; i < 3; ++i) p[i] = guess[i];
-  sweep_cone(W, regular_inverse(W), u0, mu, 30, true, p);
-}
-
 void clip_to_cone(double mu, double p[3]) {
   if (!(p[0] > 0)) {
     p[0] = p[1] = p[2] = 0;

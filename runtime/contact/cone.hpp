@@ -13,15 +13,6 @@ struct LocalMatrix {
 inline constexpr double kRegular = 1e-11;
 LocalMatrix regular_inverse(const LocalMatrix& matrix);
 
-/// The impulse p = (p_n, p_1, p_2) of one contact for which u = W p + u0 obeys: u_n >= 0, p_n >= 0, one of them zero;
-/// |p_t| <= mu p_n; u_t = 0, or p_t has that length and points against u_t. If several do (Painleve), the one without
-/// impulse, then the one that sticks. Never adds energy, lies in the cone to round-off, always finite.
-/// @param u0     the velocity without the impulse, less what is wanted, m/s
-/// @param guess  an impulse nearby; its direction is where the search for the direction of sliding begins
-/// Source: the sliding direction is a root of a quartic (Bonnefon and Daviet 2011, "Quartic formulation of Coulomb 3D
-/// frictional contact"), found here on the circle by Newton's method, and by bracketing where that fails.
-void solve_cone(const LocalMatrix& W, const double u0[3], double mu, const double guess[3], double p[3]);
-
 /// The impulse of a point that can neither open nor stick.
 /// @param newton  steps for the direction at most
 /// @param exact   search all directions if they do not end at a root; otherwise the direction is as good as they made
@@ -29,7 +20,17 @@ void solve_cone(const LocalMatrix& W, const double u0[3], double mu, const doubl
 /// @param p       in: where the direction begins; out: the impulse
 void slide_in_cone(const LocalMatrix& W, const double u0[3], double mu, int newton, bool exact, double p[3]);
 
-/// solve_cone with the inverse at hand, for sweeps: the direction of sliding gets better from visit to visit.
+/// The impulse p = (p_n, p_1, p_2) of one contact for which u = W p + u0 obeys: u_n >= 0, p_n >= 0, one of them zero;
+/// |p_t| <= mu p_n; u_t = 0, or p_t has that length and points against u_t. If several do (Painleve), the one without
+/// impulse, then the one that sticks. Never adds energy, lies in the cone to round-off, always finite.
+/// @param u0       the velocity without the impulse, less what is wanted, m/s
+/// @param inverse  of W, as regular_inverse makes it
+/// @param newton   steps for the direction of sliding at most
+/// @param exact    search all directions if they do not end at a root; otherwise the direction gets better from visit to
+/// visit
+/// @param p        in: an impulse nearby, whose direction is where the search for the direction begins; out: the impulse
+/// Source: the sliding direction is a root of a quartic (Bonnefon and Daviet 2011, "Quartic formulation of Coulomb 3D
+/// frictional contact"), found here on the circle by Newton's method, and by bracketing where that fails.
 inline void sweep_cone(const LocalMatrix& W, const LocalMatrix& inverse, const double u0[3], double mu, int newton,
                        bool exact, double p[3]) {
   if (!(u0[0] < 0) || !(W.nn > 0)) {

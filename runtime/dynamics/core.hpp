@@ -218,7 +218,7 @@ struct Dynamics::Core : InMemory {
   // motion.cpp
   void build_clusters();
 
-  // step.cpp
+  // islands.cpp
   void advance(DynamicsClient& client, double start, double h);
   bool pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client);
   bool locates() const;  // impacts, somewhere
@@ -232,7 +232,8 @@ struct Dynamics::Core : InMemory {
   void note_rest(Island& island, double h);
   void take_result(Island& island);
   ~Core();
-  void abandon();
+
+  // forget.cpp
   void forget(BodyIndex body);
   std::size_t bytes() const;
 

@@ -240,10 +240,6 @@ void Dynamics::take_changes() {
   if (core_) core_->take_changes();
 }
 
-void Dynamics::abandon() {
-  if (core_) core_->abandon();
-}
-
 void Dynamics::forget(BodyIndex body) {
   if (!core_) return;
   core_->near.forget(body);

@@ -5,8 +5,6 @@
 
 namespace breve {
 
-void Dynamics::Core::abandon() {}
-
 void Dynamics::Core::forget(BodyIndex body) {
   BodyEntry& known = *find(body);
   if (known.tree != kNone) drop_tree(known.tree);

@@ -157,6 +157,8 @@ class Island : public InMemory {
 
   // island.cpp
   void put_driver(Free& one, double h);
+
+  // island_smooth.cpp
   static void move_driver(Free& one, double h);
   /// Where a body is in this island.
   BodyPlace place_of(BodyIndex body) const {
@@ -173,10 +175,14 @@ class Island : public InMemory {
   /// The bodies that are free.
   std::span<Free> loose_bodies() { return {free_.data(), free_.size() - drivers_}; }
   std::span<const Free> loose_bodies() const { return {free_.data(), free_.size() - drivers_}; }
+
+  // island.cpp
   void begin(DynamicsClient* client, double h);
   void place(double h = 0);  // kinematics and factors of trees, at the state now; for rows of h seconds
   void remember();
   void restore();
+
+  // island_smooth.cpp
   void smooth(double time, double h);
   // island_smooth.cpp
   void smooth_once(Clustered& one, double time, double h);
@@ -185,11 +191,15 @@ class Island : public InMemory {
   bool stiff(const Clustered& one) const;
   double gain_of(Clustered& one, double time, double h, int parts);
   double stored_in(const Clustered& one, double& kinetic);
+
+  // island_books.cpp
   void open_books();  // this and what follows: island_books.cpp
   void note_smooth();
   void close_books();
   void take_back_rest();
   double stored_now();
+
+  // island.cpp
   void commit();  // the last smooth() counts: its works go to the account
   // island_momentum.cpp
   bool loose(const Clustered& one) const;
@@ -204,6 +214,8 @@ class Island : public InMemory {
   void note_wholes(articulated::Vector Tree::*velocity, bool now);
   enum class Given : std::uint8_t { All, Places, Pushes };
   void keep_wholes(double moved_h, Given given);
+
+  // island.cpp
   Pose pose_of(BodyIndex body) const;
   /// Of a point, from the centre of mass of a free body, m.
   Vector3 arm_of(const BodyPlace& free, const Vector3& point) const {
@@ -233,6 +245,8 @@ class Island : public InMemory {
   std::size_t limit_rows() const { return scalars_.size() - motors_.size() - ring_errors_.size(); }
   double* rows_of(Tree& tree, int count);
   void respond(Tree& tree, const double* j, double* r) const;
+
+  // island_results.cpp
   void solve(double h);  // this and what follows: island_results.cpp
   void solve_rows();
   double direct_share() const;
@@ -246,6 +260,8 @@ class Island : public InMemory {
   void mix(double share);
   void reset_velocities();
   bool is_motor(std::size_t scalar) const { return scalar - limit_rows() < motors_.size(); }
+
+  // island_results.cpp
   void load_velocities();                 // movers' v from the state
   void store_velocities(double moved_h);  // back, and positions by what impulses changed times moved_h
   void correct_works(double h);
@@ -255,7 +271,6 @@ class Island : public InMemory {
   void note_forces(double h);
   void add_force(BodyIndex body, const Vector3& point, const Vector3& force);
   void keep_warm(double h);
-  int size_of_mover(int mover) const { return mover < 0 ? 0 : movers_[static_cast<std::size_t>(mover)].size; }
   // island_predict.cpp
   const WarmPoint* warm_of(const Touch& touch) const;
   void predict(double h);
@@ -273,22 +288,36 @@ class Island : public InMemory {
   void step_located(DynamicsClient* client, double start, double h);
   void advance_once(double time, double h);
   bool catch_bounds(double time, double h);
+
+  // island_impacts.cpp
   Event seek(double h);
   void locate(double time, Event& event, double h);
   const NearPair& pair_of(const Event& event) const;
   double closeness(const Event& event) const;
   double met_limit() const;
+
+  // island_smooth.cpp
   bool coarse() const;
+
+  // island_impacts.cpp
   void refine(double time, Event& event, double h);
   bool is_past(const Event& event);
   double gap_of(const Event& event, double& rate);
+
+  // island_step.cpp
   void look(double h, bool spent);
   int located_impacts() const;
   double contact_part(double left) const;
+
+  // island_rows.cpp
   bool strikes(double h) const;
+
+  // island_impacts.cpp
   void meet(DynamicsClient* client, const Event& event, double moment, double left);
   void collide(double time);
   void rebound(std::size_t bound, double time);
+
+  // island_positions.cpp
   void push_apart(double h);
   void move_by_pushes(double fastest, double h);
   double payable() const;
@@ -302,15 +331,25 @@ class Island : public InMemory {
   void pay_for_moves(double given);
   void hold_off(double h);
   double natural_response(BodyIndex body) const;
+
+  // island_step.cpp
   bool call(DynamicsClient& client, int pair, double moment, double left);
   bool holds_rings() const;
   bool has_rows() const;
   bool has_rings() const;
+
+  // island_positions.cpp
   bool hold_rings(double time, double h);
   double read_ring_errors();
   void close_rings();
+
+  // island_step.cpp
   void place_links();
+
+  // island_impacts.cpp
   static Motion chord(const Pose& from, const Pose& to, double h);
+
+  // island_step.cpp
   double longest(double left) const;
 
   // island_springs.cpp

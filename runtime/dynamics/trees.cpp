@@ -209,6 +209,95 @@ double Dynamics::Core::book_together(std::span<const BodyIndex> component) {
   return known ? sum : kNoBook;
 }
 
+namespace {
+
+/// The links of a plan: for the solver of trees into `description`, for dynamics into `links`; `anchors` are the bodies
+/// without a tree that joints of the world's side hold on to.
+void describe_links(const Dynamics::Core& core, std::span<const Planned> plan,
+                    std::vector<articulated::Link>& description, std::pmr::vector<TreeLink>& links,
+                    std::pmr::vector<TreeAnchor>& anchors) {
+  for (const Planned& planned : plan) {
+    TreeLink link;
+    link.body = planned.body;
+    link.joint = planned.joint;
+    link.solid = core.bodies->mass_properties(planned.body);
+    articulated::Link made;
+    made.parent = planned.parent;
+    made.mass = link.solid.mass;
+    made.inertia = link.solid.inertia;
+    if (planned.joint == kNoJoint) {
+      made.type = articulated::JointType::Free;
+      link.origin = link.solid.center_of_mass;
+    } else {
+      const JointDescription& is = core.joints[planned.joint].is;
+      const BodyIndex from = planned.flipped ? is.child : is.parent;
+      const Vector3& point = planned.flipped ? is.child_point : is.parent_point;
+      link.origin = planned.flipped ? is.parent_point : is.child_point;
+      Quaternion outer = Quaternion::Identity();
+      if (planned.parent >= 0) {
+        made.position = point - links[static_cast<std::size_t>(planned.parent)].origin;
+      } else {
+        const Pose held = from == kNoBody ? Pose{} : core.pose(from);
+        if (from != kNoBody) anchors.push_back({from, held});
+        made.position = held.location + held.orientation * point;
+        outer = held.orientation;
+      }
+      describe_joint(is, planned.flipped, outer, made);
+    }
+    made.com = link.solid.center_of_mass - link.origin;
+    description.push_back(made);
+    links.push_back(link);
+  }
+}
+
+/// The tree of a plan, in no table yet.
+std::unique_ptr<Tree> make_tree(const Dynamics::Core& core, const Plan& plan) {
+  std::pmr::memory_resource* memory = core.memory;
+  std::vector<articulated::Link> description;
+  std::pmr::vector<TreeLink> links(memory);
+  std::pmr::vector<TreeAnchor> anchors(memory);
+  describe_links(core, plan.links(), description, links, anchors);
+  std::unique_ptr<Tree> tree = make_in<Tree>(memory, memory, description);
+  tree->links = links;
+  tree->anchors = anchors;
+  tree->anchored = plan.links().front().joint != kNoJoint;
+  tree->rings.assign(plan.rings().begin(), plan.rings().end());
+  tree->reserve_rows();
+  const auto within = [&links](BodyIndex body) {
+    return std::any_of(links.begin(), links.end(), [body](const TreeLink& link) { return link.body == body; });
+  };
+  tree->loose = !tree->anchored && std::all_of(tree->rings.begin(), tree->rings.end(), [&](JointIndex ring) {
+    return within(core.joints[ring].is.parent) && within(core.joints[ring].is.child);
+  });
+  return tree;
+}
+
+/// A place among the trees, which bodies and joints of `tree` then name.
+std::uint32_t enter_tree(Dynamics::Core& core, const Tree& tree, std::span<const Planned> plan) {
+  std::uint32_t index = 0;
+  while (index < core.trees.size() && core.trees[index]) ++index;
+  if (index == core.trees.size()) core.trees.emplace_back();
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    BodyEntry& known = *core.find(tree.links[i].body);
+    known.tree = index;
+    known.link = static_cast<int>(i);
+    if (tree.links[i].joint == kNoJoint) continue;
+    JointEntry& joint = core.joints[tree.links[i].joint];
+    joint.tree = index;
+    joint.link = static_cast<int>(i);
+    joint.flipped = plan[i].flipped;
+    joint.ring = false;
+  }
+  for (const JointIndex ring : tree.rings) {
+    core.joints[ring].tree = index;
+    core.joints[ring].link = -1;
+    core.joints[ring].ring = true;
+  }
+  return index;
+}
+
+}  // namespace
+
 void Dynamics::Core::build_tree(std::span<const BodyIndex> component) {
   const double by_the_books = loading ? kNoBook : book_together(component);
   // A link that was moved or pushed since it was joined takes the assembly along, which therefore is built as it was.
@@ -220,72 +309,8 @@ void Dynamics::Core::build_tree(std::span<const BodyIndex> component) {
         bodies->set_motion(body, known.location, known.orientation, known.velocity, known.spin);
     }
   const Plan plan(*this, component, memory);
-  std::vector<articulated::Link> description;
-  std::pmr::vector<TreeLink> links(memory);
-  std::pmr::vector<TreeAnchor> anchors(memory);
-  for (const Planned& planned : plan.links()) {
-    TreeLink link;
-    link.body = planned.body;
-    link.joint = planned.joint;
-    link.solid = bodies->mass_properties(planned.body);
-    articulated::Link made;
-    made.parent = planned.parent;
-    made.mass = link.solid.mass;
-    made.inertia = link.solid.inertia;
-    if (planned.joint == kNoJoint) {
-      made.type = articulated::JointType::Free;
-      link.origin = link.solid.center_of_mass;
-    } else {
-      const JointDescription& is = joints[planned.joint].is;
-      const BodyIndex from = planned.flipped ? is.child : is.parent;
-      const Vector3& point = planned.flipped ? is.child_point : is.parent_point;
-      link.origin = planned.flipped ? is.parent_point : is.child_point;
-      Quaternion outer = Quaternion::Identity();
-      if (planned.parent >= 0) {
-        made.position = point - links[static_cast<std::size_t>(planned.parent)].origin;
-      } else {
-        const Pose held = from == kNoBody ? Pose{} : pose(from);
-        if (from != kNoBody) anchors.push_back({from, held});
-        made.position = held.location + held.orientation * point;
-        outer = held.orientation;
-      }
-      describe_joint(is, planned.flipped, outer, made);
-    }
-    made.com = link.solid.center_of_mass - link.origin;
-    description.push_back(made);
-    links.push_back(link);
-  }
-  std::unique_ptr<Tree> tree = make_in<Tree>(memory, memory, description);
-  tree->links = links;
-  tree->anchors = anchors;
-  tree->anchored = plan.links().front().joint != kNoJoint;
-  tree->rings.assign(plan.rings().begin(), plan.rings().end());
-  tree->reserve_rows();
-  const auto within = [&links](BodyIndex body) {
-    return std::any_of(links.begin(), links.end(), [body](const TreeLink& link) { return link.body == body; });
-  };
-  tree->loose = !tree->anchored && std::all_of(tree->rings.begin(), tree->rings.end(), [&](JointIndex ring) {
-    return within(joints[ring].is.parent) && within(joints[ring].is.child);
-  });
-  std::uint32_t index = 0;
-  while (index < trees.size() && trees[index]) ++index;
-  if (index == trees.size()) trees.emplace_back();
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    BodyEntry& known = *find(links[i].body);
-    known.tree = index;
-    known.link = static_cast<int>(i);
-    if (links[i].joint == kNoJoint) continue;
-    JointEntry& joint = joints[links[i].joint];
-    joint.tree = index;
-    joint.link = static_cast<int>(i);
-    joint.flipped = plan.links()[i].flipped;
-    joint.ring = false;
-  }
-  for (const JointIndex ring : tree->rings) {
-    joints[ring].tree = index;
-    joints[ring].link = -1;
-    joints[ring].ring = true;
-  }
+  std::unique_ptr<Tree> tree = make_tree(*this, plan);
+  const std::uint32_t index = enter_tree(*this, *tree, plan.links());
   read_state(*tree);
   tree->booked = by_the_books;
   trees[index] = std::move(tree);

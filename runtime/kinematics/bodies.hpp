@@ -148,7 +148,6 @@ class Bodies : public InMemory {
   ObjectId first_rigid() const;
   void translate(double h);
   void turn(double h);
-  void move_rigid(double h, const Vector3& gravity);
 
   // --- for the stage that stops bodies at their time of impact -------------------------------------------------------
   bool active(BodyIndex body) const;  // some stage moves it

@@ -78,11 +78,6 @@ void Bodies::turn(double h) {
   for (const BodyIndex body : arrays_->turning.members()) arrays_->turn_one(body, h);
 }
 
-void Bodies::move_rigid(double h, const Vector3& gravity) {
-  if (!arrays_) return;
-  for (const BodyIndex body : arrays_->rigid.members()) arrays_->move_rigid_one(body, h, gravity);
-}
-
 bool Bodies::active(BodyIndex body) const {
   return arrays_->translating.has(body) || arrays_->turning.has(body) || arrays_->rigid.has(body);
 }

@@ -49,7 +49,6 @@ class CellStates {
   void step(const Grid& grid, Neighborhood kind, const TotalisticRule& rule, UpdateOrder order, Random& random);
 
   // A synchronous update cell by cell: begin, set() what changes, end (or abandon: nothing has changed).
-  bool buffered() const { return buffered_; }
   void begin();
   void end();
   void abandon() { buffered_ = false; }

@@ -74,7 +74,8 @@ void Reaction::clear_terms() {
   groups_.clear();
 }
 
-void Reaction::step_row(const Row& row, double dt) {
+/// The products of the terms, for one row.
+void Reaction::multiply(const Row& row) {
   const Eigen::Index n = row.length;
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     Eigen::Map<Eigen::ArrayXd> product(products_[g].data(), n);
@@ -96,53 +97,60 @@ void Reaction::step_row(const Row& row, double dt) {
       }
     }
   }
-  for (std::size_t i = 0; i < count_; ++i) {
-    const double* const c = row.own[i];
-    double* const to = row.to[i];
-    const std::array<const double*, 4>& near = row.near[i];
-    const double beside = dt * diffusion_[i];
-    const double own = 1 + dt * linear_[i] - (2 + row.beside) * beside;
-    const double flow = dt * constant_[i];
-    // The first product of this field goes along with the stencil.
-    const double* product = nullptr;
-    double rate = 0;
-    for (std::size_t g = 0; g < groups_.size() && !product; ++g) {
-      for (const Term& term : groups_[g].terms) {
-        if (term.field != i || product) continue;
-        product = products_[g].data();
-        rate = dt * term.rate;
-      }
+}
+
+void Reaction::step_row(const Row& row, double dt) {
+  multiply(row);
+  for (std::size_t i = 0; i < count_; ++i) step_field(i, row, dt);
+}
+
+void Reaction::step_field(std::size_t i, const Row& row, double dt) {
+  const Eigen::Index n = row.length;
+  const double* const c = row.own[i];
+  double* const to = row.to[i];
+  const std::array<const double*, 4>& near = row.near[i];
+  const double beside = dt * diffusion_[i];
+  const double own = 1 + dt * linear_[i] - (2 + row.beside) * beside;
+  const double flow = dt * constant_[i];
+  // The first product of this field goes along with the stencil.
+  const double* product = nullptr;
+  double rate = 0;
+  for (std::size_t g = 0; g < groups_.size() && !product; ++g) {
+    for (const Term& term : groups_[g].terms) {
+      if (term.field != i || product) continue;
+      product = products_[g].data();
+      rate = dt * term.rate;
     }
-    const auto one = [&](Eigen::Index j, double before, double after) {
-      double sum = before + after;
-      for (int r = 0; r < row.beside; ++r) sum += near[static_cast<std::size_t>(r)][j];
-      to[j] = own * c[j] + beside * sum + flow + (product ? rate * product[j] : 0.0);
+  }
+  const auto one = [&](Eigen::Index j, double before, double after) {
+    double sum = before + after;
+    for (int r = 0; r < row.beside; ++r) sum += near[static_cast<std::size_t>(r)][j];
+    to[j] = own * c[j] + beside * sum + flow + (product ? rate * product[j] : 0.0);
+  };
+  const double low = row.wraps ? c[n - 1] : 0.0, high = row.wraps ? c[0] : 0.0;
+  one(0, low, n > 1 ? c[1] : high);
+  if (n > 1) one(n - 1, c[n - 2], high);
+  if (const Eigen::Index m = n - 2; m > 0) {
+    Eigen::Map<Eigen::ArrayXd> out(to + 1, m);
+    const auto line = [&](const double* values) { return Array(values, m); };
+    const auto along = line(c) + line(c + 2);
+    const auto write = [&](const auto& sum) {
+      if (product)
+        out = own * line(c + 1) + beside * sum + flow + rate * line(product + 1);
+      else
+        out = own * line(c + 1) + beside * sum + flow;
     };
-    const double low = row.wraps ? c[n - 1] : 0.0, high = row.wraps ? c[0] : 0.0;
-    one(0, low, n > 1 ? c[1] : high);
-    if (n > 1) one(n - 1, c[n - 2], high);
-    if (const Eigen::Index m = n - 2; m > 0) {
-      Eigen::Map<Eigen::ArrayXd> out(to + 1, m);
-      const auto line = [&](const double* values) { return Array(values, m); };
-      const auto along = line(c) + line(c + 2);
-      const auto write = [&](const auto& sum) {
-        if (product)
-          out = own * line(c + 1) + beside * sum + flow + rate * line(product + 1);
-        else
-          out = own * line(c + 1) + beside * sum + flow;
-      };
-      if (row.beside == 0) write(along);
-      if (row.beside == 2) write(along + line(near[0] + 1) + line(near[1] + 1));
-      if (row.beside == 4) write(along + line(near[0] + 1) + line(near[1] + 1) + line(near[2] + 1) + line(near[3] + 1));
-    }
-    bool skipped = false;
-    Eigen::Map<Eigen::ArrayXd> out(to, n);
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
-      for (const Term& term : groups_[g].terms) {
-        if (term.field != i) continue;
-        if (skipped) out += (dt * term.rate) * Array(products_[g].data(), n);
-        skipped = true;
-      }
+    if (row.beside == 0) write(along);
+    if (row.beside == 2) write(along + line(near[0] + 1) + line(near[1] + 1));
+    if (row.beside == 4) write(along + line(near[0] + 1) + line(near[1] + 1) + line(near[2] + 1) + line(near[3] + 1));
+  }
+  bool skipped = false;
+  Eigen::Map<Eigen::ArrayXd> out(to, n);
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    for (const Term& term : groups_[g].terms) {
+      if (term.field != i) continue;
+      if (skipped) out += (dt * term.rate) * Array(products_[g].data(), n);
+      skipped = true;
     }
   }
 }

@@ -25,7 +25,6 @@ class Reaction {
   std::size_t fields() const { return count_; }
   /// @param rate  in cells^2 / s. A step of dt is stable while 4 rate dt <= 1 in a plane, 6 rate dt <= 1 in space.
   void set_diffusion(std::size_t field, double rate);
-  double diffusion(std::size_t field) const { return diffusion_[field]; }
   /// A term rate * product of c_j^powers_j of the change of one field.
   void add_term(std::size_t field, double rate, const Powers& powers);
   void clear_terms();
@@ -50,6 +49,8 @@ class Reaction {
     std::pmr::vector<Term> terms;
   };
   struct Row;
+  void multiply(const Row& row);
+  void step_field(std::size_t i, const Row& row, double dt);
   void step_row(const Row& row, double dt);
   void step_plane(std::span<Field* const> fields, double dt, bool periodic);
   void step_space(std::span<Field* const> fields, double dt, bool periodic);

@@ -230,11 +230,16 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void add_member(BodyIndex body);
   void remove_member(std::uint32_t slot);
   void fit(FlatBody& flat);  // shape and mass
+  void push_shapes();
   void push_changes();
+
+  // waking.cpp
   void wake(BodyIndex body);
   void wake_ends(const FlatSpring& spring);
   static void wake_touching(FlatBody& flat);
   void wake_met(const FlatBody& flat);
+
+  // members.cpp
   void note_known(FlatBody& flat);
   void push_pose(FlatBody& flat);
   void push_velocity(FlatBody& flat);
@@ -250,17 +255,27 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void check_flat(const JointDescription& is) const;
   void place_child(FlatJoint& joint);
   void detach(JointIndex joint);
+
+  // box_joints.cpp
   void make_b2(FlatJoint& joint);
   void drop_b2(FlatJoint& joint);
   void put_drive(FlatJoint& joint);
   static bool has_limits(const FlatJoint& joint) {
     return std::isfinite(joint.drive.low[0]) || std::isfinite(joint.drive.high[0]);
   }
+
+  // joints.cpp
   double read_position(const FlatJoint& joint) const;
   double read_velocity(const FlatJoint& joint) const;
+
+  // box_joints.cpp
   WarmJoint warm_of(const FlatJoint& joint) const;
   void set_warm(FlatJoint& joint, const WarmJoint& warm);
+
+  // joints.cpp
   double gap(const FlatJoint& joint) const;       // m, between the two points of a joint
+
+  // box_joints.cpp
   Vector2 axis_of(const FlatJoint& joint) const;  // of a prismatic one, unit, as Box2D's bodies stand
 
   // assemblies.cpp
@@ -272,7 +287,11 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void follow(BodyIndex leader, const Pose& from);
   void number_assemblies();
   const OwnSettings* own_of(BodyIndex body, bool (*wanted)(const OwnSettings&)) const;
+
+  // waking.cpp
   void place_drivers(double h);
+
+  // assemblies.cpp
   bool pushes(BodyIndex a, BodyIndex b, const DynamicsClient& asked) const;
   Pose pose(BodyIndex body) const { return {bodies->location(body), bodies->orientation(body)}; }
 
@@ -367,8 +386,12 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   Frozen freeze();
   void thaw();  // bodies and joints
   void thaw_contacts();
+
+  // touch.cpp
   void rethrow();
   void before_solving(b2Contact* contact);
+
+  // save.cpp
   Warm warm() const;
   void set_contacts(const Warm& from, double factor);
   void set_joints(const Warm& from, double factor);

@@ -61,6 +61,45 @@ double gain_of(const Response& response, FlatBody& a, FlatBody& b, const std::ar
   return gain;
 }
 
+/// Those of Box2D's points that touch, with the speed at which b leaves a there. Returns how many.
+int take_points(FlatBody& a, FlatBody& b, const b2WorldManifold& where, int count, std::array<Point, 2>& points) {
+  int used = 0;
+  double deepest = where.separations[0];
+  if (count == 2) deepest = std::min(deepest, double{where.separations[1]});
+  for (int i = 0; i < count; ++i) {
+    // A box that lands on its corner touches there alone.
+    constexpr double kTogether = 0.25 * b2_linearSlop;
+    if (where.separations[i] > deepest + kTogether) continue;
+    Point& p = points[static_cast<std::size_t>(used++)];
+    p.where = vector_of(where.points[i]);
+    p.arm_a = p.where - vector_of(a.b2->GetWorldCenter());
+    p.arm_b = p.where - vector_of(b.b2->GetWorldCenter());
+    p.before = speed_at(b, p.arm_b) - speed_at(a, p.arm_a);
+  }
+  return used;
+}
+
+void solve_one(const Response& response, FlatBody& a, FlatBody& b, Point& p, const Vector2& n,
+               const contact::Law& law) {
+  Matrix3 W = Matrix3::Zero();
+  for (int i = 0; i < 2; ++i) {
+    const Vector unit = response.answer(p.arm_a, p.arm_b, i == 0 ? Vector2(1, 0) : Vector2(0, 1));
+    W.col(i).head<2>() = response.at_point(b, p.arm_b, unit) - response.at_point(a, p.arm_a, unit);
+  }
+  p.impulse = contact::impact_impulse(W, {p.before.x(), p.before.y(), 0}, {n.x(), n.y(), 0}, law).head<2>();
+}
+
+/// Two points at once, with as much restitution as gains no energy.
+void solve_both(const Response& response, FlatBody& a, FlatBody& b, std::array<Point, 2>& points, const Vector2& n,
+                const contact::Law& law) {
+  for (const double part : {1.0, 0.75, 0.5, 0.25, 0.0}) {
+    solve_two(response, a, b, points, n, law.dynamic_friction, part * law.restitution);
+    if (!(gain_of(response, a, b, points) > 0)) return;
+  }
+  // Sweeps over cones that are wide and coupled need not come to an end; without friction they do.
+  solve_two(response, a, b, points, n, 0, 0);
+}
+
 }  // namespace
 
 /// Approaches slower than this rest, m/s. What rests on something takes up the speed of a sub-step's fall.
@@ -73,21 +112,8 @@ bool Planar::Core::collide(FlatBody& a, FlatBody& b, const b2WorldManifold& wher
   const Vector2 n = vector_of(where.normal).normalized();
   std::array<Point, 2> points;
   double fastest = 0;
-  int used = 0;
-  double deepest = where.separations[0];
-  if (count == 2) deepest = std::min(deepest, double{where.separations[1]});
-  for (int i = 0; i < count; ++i) {
-    // A box that lands on its corner touches there alone.
-    constexpr double kTogether = 0.25 * b2_linearSlop;
-    if (where.separations[i] > deepest + kTogether) continue;
-    Point p;
-    p.where = vector_of(where.points[i]);
-    p.arm_a = p.where - vector_of(a.b2->GetWorldCenter());
-    p.arm_b = p.where - vector_of(b.b2->GetWorldCenter());
-    p.before = speed_at(b, p.arm_b) - speed_at(a, p.arm_a);
-    fastest = std::max(fastest, -n.dot(p.before));
-    points[static_cast<std::size_t>(used++)] = p;
-  }
+  const int used = take_points(a, b, where, count, points);
+  for (int i = 0; i < used; ++i) fastest = std::max(fastest, -n.dot(points[static_cast<std::size_t>(i)].before));
   const contact::Law law = law_of(a, b);
   const double u = settings.unit;
   if (used == 0 || !(fastest * u > slowest_bounce(law))) return false;
@@ -102,24 +128,10 @@ bool Planar::Core::collide(FlatBody& a, FlatBody& b, const b2WorldManifold& wher
       p.before = speed_at(b, p.arm_b) - speed_at(a, p.arm_a);
     }
   }
-  if (used == 1) {
-    Point& p = points[0];
-    Matrix3 W = Matrix3::Zero();
-    for (int i = 0; i < 2; ++i) {
-      const Vector unit = response.answer(p.arm_a, p.arm_b, i == 0 ? Vector2(1, 0) : Vector2(0, 1));
-      W.col(i).head<2>() = response.at_point(b, p.arm_b, unit) - response.at_point(a, p.arm_a, unit);
-    }
-    p.impulse = contact::impact_impulse(W, {p.before.x(), p.before.y(), 0}, {n.x(), n.y(), 0}, law).head<2>();
-  } else {
-    bool gains = true;
-    for (const double part : {1.0, 0.75, 0.5, 0.25, 0.0}) {
-      if (!gains) break;
-      solve_two(response, a, b, points, n, law.dynamic_friction, part * law.restitution);
-      gains = gain_of(response, a, b, points) > 0;
-    }
-    // Sweeps over cones that are wide and coupled need not come to an end; without friction they do.
-    if (gains) solve_two(response, a, b, points, n, 0, 0);
-  }
+  if (used == 1)
+    solve_one(response, a, b, points[0], n, law);
+  else
+    solve_both(response, a, b, points, n, law);
   Vector change = Vector::Zero(response.size());
   Vector2 sum = Vector2::Zero(), middle = Vector2::Zero();
   for (int i = 0; i < used; ++i) {

@@ -363,7 +363,8 @@ void Planar::Core::push_velocity(FlatBody& flat, const Vector3& velocity, double
   flat.b2->SetAngularVelocity(static_cast<float>(spin));
 }
 
-void Planar::Core::push_changes() {
+/// What may change of any body: its shape, its material, and where it is if it is fixed.
+void Planar::Core::push_shapes() {
   // Box2D's step has driven what is compared here out of the caches.
   constexpr std::size_t kAhead = 10;
   const std::uint64_t scalings = Shape::scalings();
@@ -400,6 +401,10 @@ void Planar::Core::push_changes() {
       wake_touching(flat);
     }
   }
+}
+
+void Planar::Core::push_changes() {
+  push_shapes();
   scratch.clear();
   bodies->take_touched(scratch);
   std::pmr::vector<Strike> struck(memory);

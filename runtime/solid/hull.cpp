@@ -47,6 +47,10 @@ class Quickhull {
   int add_face(int a, int b, int c);
   void start(const std::array<int, 4>& corners);
   void claim(const std::vector<int>& candidates, std::size_t first_face);
+  struct Rim {
+    int from, to, beyond;  // corners, and the face on the other side
+  };
+  std::vector<Rim> rim_seen_from(int apex, int face, std::vector<int>& seen);
   void raise(int face);
   std::vector<std::vector<int>> merged() const;
   bool outline(const std::vector<int>& group, const std::vector<int>& group_of, std::vector<int>& corners) const;
@@ -138,20 +142,11 @@ void Quickhull::claim(const std::vector<int>& candidates, std::size_t first_face
   }
 }
 
-/// Replace all faces that the farthest point over `face` sees by a fan from that point to their rim.
-void Quickhull::raise(int face) {
-  auto& outside = faces_[at(face)].outside;
-  const auto top = std::max_element(outside.begin(), outside.end(), [&](int p, int q) {
-    return height(faces_[at(face)], p) < height(faces_[at(face)], q);
-  });
-  const int apex = *top;
-  outside.erase(top);
-  std::vector<int> seen{face};
-  faces_[at(face)].alive = false;
-  struct Rim {
-    int from, to, beyond;
-  };
+/// The edges around all faces that a point over `face` sees, which are taken out and appended to `seen`.
+std::vector<Quickhull::Rim> Quickhull::rim_seen_from(int apex, int face, std::vector<int>& seen) {
   std::vector<Rim> rim;
+  seen.push_back(face);
+  faces_[at(face)].alive = false;
   for (std::size_t i = 0; i < seen.size(); ++i) {
     for (std::size_t e = 0; e < 3; ++e) {
       const int here = seen[i], next = faces_[at(here)].neighbour[e];
@@ -165,6 +160,19 @@ void Quickhull::raise(int face) {
       }
     }
   }
+  return rim;
+}
+
+/// Replace all faces that the farthest point over `face` sees by a fan from that point to their rim.
+void Quickhull::raise(int face) {
+  auto& outside = faces_[at(face)].outside;
+  const auto top = std::max_element(outside.begin(), outside.end(), [&](int p, int q) {
+    return height(faces_[at(face)], p) < height(faces_[at(face)], q);
+  });
+  const int apex = *top;
+  outside.erase(top);
+  std::vector<int> seen;
+  const std::vector<Rim> rim = rim_seen_from(apex, face, seen);
   // A rim that meets itself is round-off at work: the point is then not worth raising.
   bool simple = true;
   for (const Rim& r : rim) {

@@ -17,7 +17,7 @@ Vector3 point_about(int axis, double along, double u, double w) {
   return axis == 1 ? Vector3(u, along, w) : Vector3(u, -w, along);
 }
 
-void add_ring(const Round& round, double along, double radius, std::pmr::vector<Vector3>& out) {
+void add_circle(const Round& round, double along, double radius, std::pmr::vector<Vector3>& out) {
   for (int i = 0; i < kSides; ++i) {
     const double angle = (i + 0.5) * 2 * std::numbers::pi / kSides;
     out.push_back(point_about(round.axis, along, radius * std::cos(angle), radius * std::sin(angle)));
@@ -77,15 +77,15 @@ Moments moments(const Round& round) {
 void place_corners(const Round& round, std::pmr::vector<Vector3>& corners) {
   corners.clear();
   if (round.is_cylinder()) {
-    add_ring(round, -round.half, round.radius, corners);
-    add_ring(round, round.half, round.radius, corners);
+    add_circle(round, -round.half, round.radius, corners);
+    add_circle(round, round.half, round.radius, corners);
     return;
   }
   const auto latitude = [](int i) { return i * std::numbers::pi / 2 / kRingsHalf; };
   for (int i = kRingsHalf - 1; i >= 0; --i)
-    add_ring(round, -round.half - round.radius * std::sin(latitude(i)), round.radius * std::cos(latitude(i)), corners);
+    add_circle(round, -round.half - round.radius * std::sin(latitude(i)), round.radius * std::cos(latitude(i)), corners);
   for (int i = 0; i < kRingsHalf; ++i)
-    add_ring(round, round.half + round.radius * std::sin(latitude(i)), round.radius * std::cos(latitude(i)), corners);
+    add_circle(round, round.half + round.radius * std::sin(latitude(i)), round.radius * std::cos(latitude(i)), corners);
   corners.push_back(point_about(round.axis, -round.half - round.radius, 0, 0));
   corners.push_back(point_about(round.axis, round.half + round.radius, 0, 0));
 }

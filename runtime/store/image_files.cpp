@@ -34,7 +34,7 @@ namespace breve {
 
 namespace {
 
-[[noreturn]] void fail(const std::string& name, const char* why) {
+[[noreturn]] void refuse_picture(const std::string& name, const char* why) {
   throw Error(ErrorCode::File, fmt::format("cannot read image file '{}': {}", name, why));
 }
 
@@ -66,14 +66,14 @@ std::vector<std::uint8_t> deflated(const std::vector<std::uint8_t>& bytes) {
 // The pixels are made before the file is decoded: an image that is too large for its world is refused early.
 Image Image::parse(std::string_view bytes, const std::string& name, std::pmr::memory_resource* memory) {
   const auto* const data = reinterpret_cast<const stbi_uc*>(bytes.data());
-  if (bytes.size() > kMostFileBytes) fail(name, "it is too large");
+  if (bytes.size() > kMostFileBytes) refuse_picture(name, "it is too large");
   const int size = static_cast<int>(bytes.size());
   int width = 0, height = 0, channels = 0;
-  if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) fail(name, stbi_failure_reason());
+  if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) refuse_picture(name, stbi_failure_reason());
   Image image(width, height, memory);
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(data, size, &width, &height, &channels, 4), &stbi_image_free);
-  if (!pixels) fail(name, stbi_failure_reason());
+  if (!pixels) refuse_picture(name, stbi_failure_reason());
   image.set_bytes({pixels.get(), image.pixels_.size()});
   return image;
 }

@@ -23,7 +23,7 @@ namespace {
 
 using Bytes = std::pmr::vector<std::uint8_t>;
 
-[[noreturn]] void fail(const std::string& name, const std::string& why) {
+[[noreturn]] void refuse_mesh(const std::string& name, const std::string& why) {
   throw Error(ErrorCode::File, fmt::format("cannot use mesh file '{}': {}", name, why));
 }
 
@@ -44,14 +44,14 @@ void check_chunks(std::span<const std::uint8_t> bytes, const std::string& name) 
   const auto walk = [&](std::size_t begin, std::size_t end, auto&& inside) -> void {
     for (std::size_t at = begin; at < end;) {
       if (end - at < kHead || length(at) < kHead || length(at) > end - at) {
-        fail(name, fmt::format("it is damaged or cut off: the chunk at byte {} does not end in the file", at));
+        refuse_mesh(name, fmt::format("it is damaged or cut off: the chunk at byte {} does not end in the file", at));
       }
       inside(at, at + length(at));
       at += length(at);
     }
   };
   if (bytes.size() < kHead || length(0) < kHead || length(0) > bytes.size()) {
-    fail(name, "it is cut off: a 3DS file must be as long as its first chunk says");
+    refuse_mesh(name, "it is cut off: a 3DS file must be as long as its first chunk says");
   }
   walk(kHead, length(0), [&](std::size_t at, std::size_t end) {
     std::uint16_t id;
@@ -73,7 +73,7 @@ class ObjFilter {
     put("o mesh\n");
     while (!text_.empty()) line(next_line());
     if (vertices_ == 0 || faces_ == 0) {
-      fail(name_, "it has no vertices and faces: is it a 3DS or OBJ file?");
+      refuse_mesh(name_, "it has no vertices and faces: is it a 3DS or OBJ file?");
     }
   }
 
@@ -99,7 +99,7 @@ class ObjFilter {
     return word;
   }
 
-  [[noreturn]] void refuse(const std::string& why) { fail(name_, fmt::format("line {}: {}", number_, why)); }
+  [[noreturn]] void refuse(const std::string& why) { refuse_mesh(name_, fmt::format("line {}: {}", number_, why)); }
 
   void line(std::string_view rest) {
     const std::string_view kind = next_word(rest);
@@ -181,7 +181,7 @@ void collect(const aiScene& scene, MeshData& out, const std::string& name) {
     for (unsigned m = 0; m < task.node->mNumMeshes; ++m) {
       const aiMesh& mesh = *scene.mMeshes[task.node->mMeshes[m]];
       const std::size_t first = out.corners.size();
-      if (first + mesh.mNumVertices > 0x7fffffffU) fail(name, "it has too many vertices");
+      if (first + mesh.mNumVertices > 0x7fffffffU) refuse_mesh(name, "it has too many vertices");
       for (unsigned v = 0; v < mesh.mNumVertices; ++v) out.corners.push_back(vector_of(task.place * mesh.mVertices[v]));
       for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
         const aiFace& face = mesh.mFaces[f];
@@ -189,7 +189,7 @@ void collect(const aiScene& scene, MeshData& out, const std::string& name) {
         std::array<std::int32_t, 3> triangle;
         for (unsigned k = 0; k < 3; ++k) {
           if (face.mIndices[k] >= mesh.mNumVertices)
-            fail(name, "it is damaged: a face names a vertex that is not there");
+            refuse_mesh(name, "it is damaged: a face names a vertex that is not there");
           triangle[k] = static_cast<std::int32_t>(first + face.mIndices[k]);
         }
         out.triangles.push_back(triangle);
@@ -205,7 +205,7 @@ void collect(const aiScene& scene, MeshData& out, const std::string& name) {
 }  // namespace
 
 MeshData parse_mesh(std::span<const std::uint8_t> bytes, const std::string& name, std::pmr::memory_resource* memory) {
-  if (bytes.size() > kMostMeshBytes) fail(name, fmt::format("it is larger than {} bytes", kMostMeshBytes));
+  if (bytes.size() > kMostMeshBytes) refuse_mesh(name, fmt::format("it is larger than {} bytes", kMostMeshBytes));
   const bool three_ds = is_3ds(bytes);
   Bytes filtered(memory);
   if (three_ds) {
@@ -219,11 +219,11 @@ MeshData parse_mesh(std::span<const std::uint8_t> bytes, const std::string& name
   const aiScene* scene =
       importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, three_ds ? "3ds" : "obj");
   if (scene == nullptr || scene->mRootNode == nullptr) {
-    fail(name, fmt::format("it is damaged ({})", importer.GetErrorString()));
+    refuse_mesh(name, fmt::format("it is damaged ({})", importer.GetErrorString()));
   }
   MeshData data{std::pmr::vector<Vector3>(memory), std::pmr::vector<std::array<std::int32_t, 3>>(memory)};
   collect(*scene, data, name);
-  if (data.triangles.empty()) fail(name, "it has no triangles");
+  if (data.triangles.empty()) refuse_mesh(name, "it has no triangles");
   return data;
 }
 
@@ -255,7 +255,7 @@ std::shared_ptr<Shape> make_mesh(const MeshData& data, const std::string& name, 
     return build();
   } catch (const Error& error) {
     if (error.code() != ErrorCode::Argument) throw;
-    fail(name, error.what());
+    refuse_mesh(name, error.what());
   }
 }
 

@@ -38,14 +38,4 @@ MenuItemResource* menu_item(World& world, ObjectId item) {
   return dynamic_cast<MenuItemResource*>(world.resource(item));
 }
 
-std::pmr::vector<ObjectId> menu_of(const World& world, ObjectId owner) {
-  const auto objects = world.objects();
-  std::pmr::vector<ObjectId> entries(objects.get_allocator());
-  for (ObjectId id : objects) {
-    const MenuItemResource* item = menu_item(world, id);
-    if (item && item->owner == owner) entries.push_back(id);
-  }
-  return entries;
-}
-
 }  // namespace breve

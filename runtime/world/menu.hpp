@@ -41,9 +41,6 @@ class MenuItemResource final : public Resource {
 const MenuItemResource* menu_item(const World& world, ObjectId item);
 MenuItemResource* menu_item(World& world, ObjectId item);
 
-/// The entries of an object's menu, in the order in which they were made. O(objects in the world).
-std::pmr::vector<ObjectId> menu_of(const World& world, ObjectId owner);
-
 /// Entries that every body has besides its own. They are not objects: a host that offers them calls the method.
 struct StandardEntry {
   std::string_view name;

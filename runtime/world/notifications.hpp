@@ -32,7 +32,6 @@ class Notifications {
                std::pmr::vector<Registration>& out) const;
   /// An announcer is going. (Observers that went are skipped, and swept out as lists grow.)
   void forget(ObjectId announcer) { by_announcer_.erase(announcer.index); }
-  std::size_t announcers() const { return by_announcer_.size(); }
   std::size_t bytes() const;
 
   void save(ByteWriter& out, const ObjectTable& objects) const;

@@ -46,6 +46,8 @@ struct World::Parts final : CollisionClient, DynamicsClient, InMemory {
   void save_targets(ByteWriter& out) const;
   void load_targets(ByteReader& in);
   void hash_targets(Hasher& hasher) const;
+
+  // step.cpp
   bool bring_assembly(BodyIndex body);
 
   // --- CollisionClient ----------------------------------------------------------------------------------------------

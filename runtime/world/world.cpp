@@ -111,7 +111,6 @@ BodyIndex World::body(ObjectId id) const {
   return body;
 }
 
-ObjectId World::object_of(BodyIndex body) const { return bodies_->used(body) ? bodies_->owner(body) : ObjectId{}; }
 
 std::pmr::vector<ObjectId> World::touching(ObjectId id) const {
   const BodyIndex self = body(id);
@@ -252,7 +251,6 @@ void World::handle_collisions(ClassId owner, ClassId other, std::string_view met
 
 void World::ignore_collisions(ClassId owner, ClassId other) { parts_->handlers.ignore(owner, other); }
 void World::set_impact_timing(bool at_impact) { parts_->at_impact = at_impact; }
-bool World::impact_timing() const { return parts_->at_impact; }
 
 void World::set_gravity(const Vector3& gravity) { parts_->dynamics->set_gravity(gravity); }
 const Vector3& World::gravity() const { return parts_->dynamics->gravity(); }

@@ -67,7 +67,6 @@ class World : public InMemory {
   void embody(ObjectId id, BodyKind kind);
   bool has_body(ObjectId id) const;
   BodyIndex body(ObjectId id) const;  // Error{Stale} if not alive, Error{Argument} if it has no body
-  ObjectId object_of(BodyIndex body) const;
   Bodies& bodies() { return *bodies_; }
   const Bodies& bodies() const { return *bodies_; }
   /// Joints, springs, accuracy, energy: whatever has to do with forces. Valid until the world is loaded or destroyed.
@@ -154,7 +153,6 @@ class World : public InMemory {
   void ignore_collisions(ClassId owner, ClassId other);
   /// "impact" (first touch at its time of impact, the default) or "step" (calls at the end of the sub-step).
   void set_impact_timing(bool at_impact);
-  bool impact_timing() const;
 
   // --- input, random numbers, view -----------------------------------------------------------------------------------
   void queue_input(InputEvent event);

@@ -126,73 +126,82 @@ FunctionCompiler::Place FunctionCompiler::place(const ast::Expr& target) {
   Place p;
   p.expr = &target;
   emit_.at(target.span);
-  if (const auto* n = std::get_if<ast::Name>(&target.node)) {
-    const auto variable = need(n->name, target.span);
-    if (!variable || variable->array_size() >= 0) {
-      if (variable)
-        builder_.diagnostics().error(target.span, "whole-array",
-                                     "'" + n->name + "' is an array and can only be used element by element");
-      p.value = emit_.temporary(StaticType::Any);
-      return p;
-    }
-    p.kind = Place::Kind::Variable;
-    p.variable = *variable;
-    p.name = n->name;
-    return p;
-  }
-  if (const auto* a = std::get_if<ast::ArrayItem>(&target.node)) {
-    const auto variable = need(a->name, target.span);
-    if (!variable || variable->array_size() < 0) {
-      if (variable) emit_.release(array_slot(*variable, *a->index, a->name));
-      p.value = emit_.temporary(StaticType::Any);
-      return p;
-    }
-    p.kind = Place::Kind::ArrayItem;
-    p.variable = *variable;
-    p.name = a->name;
-    p.key = array_slot(*variable, *a->index, a->name);
-    return p;
-  }
-  if (const auto* m = std::get_if<ast::Member>(&target.node)) {
-    const int axis = m->name == "x" ? 0 : m->name == "y" ? 1 : m->name == "z" ? 2 : -1;
-    if (const auto* n = std::get_if<ast::Name>(&m->base->node); n && axis >= 0) {
-      const auto variable = find(n->name);
-      if (variable && variable->type() == StaticType::Vector && variable->array_size() < 0) {
-        p.kind = Place::Kind::Component;
-        p.variable = *variable;
-        p.name = n->name;
-        p.axis = axis;
-        return p;
-      }
-    }
-    p.base = std::make_unique<Place>(place(*m->base));
-    p.kind = Place::Kind::Member;
-    p.site = member_site(m->name);
-    p.value = boxed(load(*p.base));
-    return p;
-  }
-  if (const auto* i = std::get_if<ast::IndexExpr>(&target.node)) {
-    p.base = std::make_unique<Place>(place(*i->base));
-    p.kind = Place::Kind::Index;
-    p.value = load(*p.base);
-    if (p.value.type == StaticType::List) {
-      p.value = stable(p.value, *i->index);
-      p.key = expr(*i->index);
-      if (p.key.type == StaticType::Int) {
-        if (!p.key.temporary) p.key = copy(p.key);
-        return p;
-      }
-      p.key = boxed(p.key);
-      p.value = boxed(p.value);
-      return p;
-    }
-    p.value = boxed(p.value);
-    if (!p.value.temporary) p.value = copy(p.value);
-    p.key = any(*i->index);
-    return p;
-  }
-  p.value = boxed(expr(target));  // a value, not a place: changing a vector or string in it is an error when it runs
+  if (const auto* n = std::get_if<ast::Name>(&target.node))
+    place_variable(p, *n);
+  else if (const auto* a = std::get_if<ast::ArrayItem>(&target.node))
+    place_array_item(p, *a);
+  else if (const auto* m = std::get_if<ast::Member>(&target.node))
+    place_member(p, *m);
+  else if (const auto* i = std::get_if<ast::IndexExpr>(&target.node))
+    place_index(p, *i);
+  else
+    p.value = boxed(expr(target));  // a value, not a place: changing a vector or string in it is an error when it runs
   return p;
+}
+
+void FunctionCompiler::place_variable(Place& p, const ast::Name& n) {
+  const auto variable = need(n.name, p.expr->span);
+  if (!variable || variable->array_size() >= 0) {
+    if (variable)
+      builder_.diagnostics().error(p.expr->span, "whole-array",
+                                   "'" + n.name + "' is an array and can only be used element by element");
+    p.value = emit_.temporary(StaticType::Any);
+    return;
+  }
+  p.kind = Place::Kind::Variable;
+  p.variable = *variable;
+  p.name = n.name;
+}
+
+void FunctionCompiler::place_array_item(Place& p, const ast::ArrayItem& a) {
+  const auto variable = need(a.name, p.expr->span);
+  if (!variable || variable->array_size() < 0) {
+    if (variable) emit_.release(array_slot(*variable, *a.index, a.name));
+    p.value = emit_.temporary(StaticType::Any);
+    return;
+  }
+  p.kind = Place::Kind::ArrayItem;
+  p.variable = *variable;
+  p.name = a.name;
+  p.key = array_slot(*variable, *a.index, a.name);
+}
+
+void FunctionCompiler::place_member(Place& p, const ast::Member& m) {
+  const int axis = m.name == "x" ? 0 : m.name == "y" ? 1 : m.name == "z" ? 2 : -1;
+  if (const auto* n = std::get_if<ast::Name>(&m.base->node); n && axis >= 0) {
+    const auto variable = find(n->name);
+    if (variable && variable->type() == StaticType::Vector && variable->array_size() < 0) {
+      p.kind = Place::Kind::Component;
+      p.variable = *variable;
+      p.name = n->name;
+      p.axis = axis;
+      return;
+    }
+  }
+  p.base = std::make_unique<Place>(place(*m.base));
+  p.kind = Place::Kind::Member;
+  p.site = member_site(m.name);
+  p.value = boxed(load(*p.base));
+}
+
+void FunctionCompiler::place_index(Place& p, const ast::IndexExpr& i) {
+  p.base = std::make_unique<Place>(place(*i.base));
+  p.kind = Place::Kind::Index;
+  p.value = load(*p.base);
+  if (p.value.type == StaticType::List) {
+    p.value = stable(p.value, *i.index);
+    p.key = expr(*i.index);
+    if (p.key.type == StaticType::Int) {
+      if (!p.key.temporary) p.key = copy(p.key);
+      return;
+    }
+    p.key = boxed(p.key);
+    p.value = boxed(p.value);
+    return;
+  }
+  p.value = boxed(p.value);
+  if (!p.value.temporary) p.value = copy(p.value);
+  p.key = any(*i.index);
 }
 
 Operand FunctionCompiler::load(Place& p) {

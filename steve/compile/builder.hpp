@@ -39,16 +39,23 @@ class ProgramBuilder final : public CompileScope {
 
   // classes (declare.cpp)
   void declare(ast::Class tree);
+  const ClassInfo* parent_of(ast::Class& tree);
   void declare_variables(const ast::Class& tree, ClassInfo& info);
   void declare_methods(const ast::Class& tree, ClassInfo& info);
   void declare_parameter(const ast::Parameter& tree, MethodInfo& method, std::set<std::string>& variables);
   void bind_native(const ast::Method& tree, MethodInfo& method);
   void compile_methods();
   void finish_class(ClassInfo& info);
+
+  // loader.cpp
   void check_versions();
   std::string near_class(std::string_view name) const;
   void choose_controller();
+
+  // declare.cpp
   Symbol checked_class(const ast::TypeRef& type);
+
+  // foreign_library.cpp
   void gather_foreign_library();  // foreign_library.cpp
 
   // whole-program checks (lints.cpp)
@@ -65,6 +72,8 @@ class ProgramBuilder final : public CompileScope {
   void check_unused_variables();
   void check_unused_parameters(const std::set<std::string>& words);
   void check_implicit_returns();
+
+  // lints.cpp
   void check_iterate();
   void check_special_methods();
 

@@ -26,6 +26,29 @@ std::string number_text(double d) {
 
 }  // namespace
 
+/// The class that a new one is derived from; null for Object itself. `Bird : Mobile` where `Mobile : Bird` is meant is
+/// reported, and turned round.
+const ClassInfo* ProgramBuilder::parent_of(ast::Class& tree) {
+  if (tree.parent == "NULL") return nullptr;
+  if (const ClassInfo* parent = class_named(tree.parent)) return parent;
+  // The one that is known is the parent.
+  const ClassInfo* known = class_named(tree.name);
+  if (known && !is_later_class(tree.parent)) {
+    diagnostics_.error(tree.parent_span, "class-header", "the parent stands before the ':', the new class behind it",
+                       "write: " + tree.name + " : " + tree.parent + " {");
+    std::swap(tree.name, tree.parent);
+    return known;
+  }
+  if (is_later_class(tree.parent)) {
+    report_unknown_class(tree.parent, tree.parent_span);
+  } else {
+    const auto near = near_class(tree.parent);
+    diagnostics_.error(tree.parent_span, "unknown-class", "unknown parent class '" + tree.parent + "'",
+                       near.empty() ? "a parent must be defined before its children" : "did you mean '" + near + "'?");
+  }
+  return class_named("Object");
+}
+
 void ProgramBuilder::declare(ast::Class tree) {
   const auto clash = [&](const std::string& name, const Span& span) {
     if (name.empty()) return false;
@@ -38,31 +61,7 @@ void ProgramBuilder::declare(ast::Class tree) {
                                  std::to_string(other->span.line) + "; choose another name");
     return true;
   };
-  const ClassInfo* parent = nullptr;
-  bool reversed = false;
-  if (tree.parent != "NULL") {
-    parent = class_named(tree.parent);
-    if (!parent) {
-      // `Bird : Mobile` where `Mobile : Bird` is meant: the one that is known is the parent.
-      const ClassInfo* known = class_named(tree.name);
-      reversed = known != nullptr && !is_later_class(tree.parent);
-      if (reversed) {
-        diagnostics_.error(tree.parent_span, "class-header",
-                           "the parent stands before the ':', the new class behind it",
-                           "write: " + tree.name + " : " + tree.parent + " {");
-        std::swap(tree.name, tree.parent);
-        parent = known;
-      } else if (is_later_class(tree.parent)) {
-        report_unknown_class(tree.parent, tree.parent_span);
-      } else {
-        const auto near = near_class(tree.parent);
-        diagnostics_.error(
-            tree.parent_span, "unknown-class", "unknown parent class '" + tree.parent + "'",
-            near.empty() ? "a parent must be defined before its children" : "did you mean '" + near + "'?");
-      }
-      if (!parent) parent = class_named("Object");
-    }
-  }
+  const ClassInfo* parent = parent_of(tree);
   if (clash(tree.name, tree.name_span) || clash(tree.alias, tree.alias_span)) return;
   auto owned = std::make_unique<ClassInfo>();
   auto& info = *owned;

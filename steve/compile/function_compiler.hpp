@@ -146,6 +146,10 @@ class FunctionCompiler {
   Operand step(const ast::Step& s, const ast::Expr& e);
   Operand assign_to_variable(const Variable& variable, std::string_view name, const ast::Expr& value);
   Place place(const ast::Expr& target);
+  void place_variable(Place& p, const ast::Name& n);
+  void place_array_item(Place& p, const ast::ArrayItem& a);
+  void place_member(Place& p, const ast::Member& m);
+  void place_index(Place& p, const ast::IndexExpr& i);
   Operand load(Place& place);
   Operand store(Place& place, const Operand& value);  // yields the converted value
   Operand store_variable(const Variable& variable, std::string_view name, const Operand& value);

@@ -43,7 +43,7 @@ std::string source_text(std::string_view source, const Span& span) {
   return std::string(source.substr(span.offset, span.length));
 }
 
-bool is_number(std::string_view text) {
+bool is_number_text(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
@@ -70,7 +70,7 @@ std::string FunctionCompiler::unknown_name_help(std::string_view name) {
     for (const auto& v : c->variables) candidates.push_back(builder_.symbol_name(v.name));
   for (const auto& [constant, value] : builder_.defines()) candidates.push_back(constant);
   const auto known = [&](std::string_view part) {
-    return is_number(part) || find(part).has_value() || builder_.defines().contains(part);
+    return is_number_text(part) || find(part).has_value() || builder_.defines().contains(part);
   };
   if (name.size() < kLongestApart)
     if (const std::string apart = spaced(name, known); !apart.empty())

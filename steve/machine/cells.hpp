@@ -58,8 +58,6 @@ constexpr std::size_t string_cell_bytes(std::size_t size) {
   return (sizeof(Cell) + 8 + size + 1 + 7) & ~std::size_t{7};
 }
 static_assert(sizeof(StringCell) == sizeof(Cell) + 16);
-/// Make a literal of a program in `memory`, which holds string_cell_bytes(text.size()) bytes: immortal, hash computed.
-StringCell* make_immortal_string(void* memory, std::string_view text);
 std::uint32_t string_hash(std::string_view text);  // never 0 nor 0xffffffff
 
 struct MatrixCell : Cell {

@@ -165,8 +165,6 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
     if (in_stage_) [[unlikely]]
       fail_in_stage(what);
   }
-  /// Errors reported that did not stop the run (F27).
-  std::uint64_t survived_errors() const { return survived_errors_; }
 
   // --- Behaviour, RootSource -----------------------------------------------------------------------------------------
   void iterate(ObjectId agent) override;
@@ -296,8 +294,12 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   void next_segment(std::size_t slots);
   [[noreturn]] void fail_depth(const MethodInfo& method) const;
   void unwind(std::size_t depth);
+
+  // interpreter.cpp
   template <bool kProfiled>
   void execute(std::size_t depth);  // run the top frame until `depth` frames are left
+
+  // frames.cpp
   Value invoke(Instance& receiver, const MethodInfo& method, std::span<const Value> arguments);
   void write_parameter(Slot* base, const ParameterInfo& parameter, const Value& value, std::string_view what);
   void write_default(Slot* to, const ParameterInfo& parameter);
@@ -312,6 +314,8 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   const Plan& make_plan(std::uint32_t site, const ClassInfo& cls);
   const MethodInfo* choose(const CallSite& site, const ClassInfo& cls) const;
   static bool accepts(const MethodInfo& method, const CallSite& site);
+
+  // call_errors.cpp
   [[noreturn]] void fail_call(const CallSite& site, const ClassInfo& cls, const MethodInfo* best) const;
   [[noreturn]] void fail_unknown_method(const CallSite& site, const ClassInfo* start) const;
   /// What stands before a selector, as it is written, and where it comes from if it is a variable.
@@ -334,10 +338,14 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
     }
     if (!plan.steps.empty()) apply_steps(plan, caller, callee);
   }
+
+  // calls.cpp
   void apply_steps(const Plan& plan, const Slot* caller, Slot* callee);
   void convert_argument(const PlanStep& step, const Slot* caller, Slot* callee);
   void call_native(const Plan& plan, Instance& receiver, const Slot* caller);
   void check_class(Instance* object, const ClassInfo& cls, std::string_view what);
+
+  // call_errors.cpp
   [[noreturn]] void fail_receiver(const Instance* receiver, std::uint32_t site) const;
 
   // slow instructions (slow_paths.cpp)
@@ -352,7 +360,11 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   Value make_many(const Value& count, const ClassInfo& cls);
   ListCell* all_of(const ClassInfo& cls);
   void make_cells_of(const ClassInfo& cls);
+
+  // machine.cpp
   void end_native(Instance& instance) noexcept;
+
+  // slow_paths.cpp
   void free_value(const Value& value);
   void sort(ListCell& list, Symbol method, Instance& self);
   bool comes_before(Instance& self, const MethodInfo& method, const Value& a, const Value& b);
@@ -361,34 +373,51 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   void print_value(const Value& value, int ending);
   Value random(const Value& bound);
   const VariableInfo* member_variable(const Instance& instance, Symbol name) const;
-  Instance* instance_of(const Value& value) const;
   Instance& need_live(const Value& base, std::string_view name) const;
 
   // errors (errors.cpp)
   ErrorReport report(const RunError& error, const Instruction* pc) const;
+
+  // trace.cpp
   std::vector<TraceLine> trace(const std::vector<const Frame*>& frames, const Instruction* pc) const;
   void describe_call(TraceLine& line, const Frame& frame) const;
   bool half_made(const Frame& frame, const Instruction* pc) const;
+
+  // errors.cpp
   [[noreturn]] void rethrow(std::size_t depth, const Instruction* pc);  // from inside a catch block
   [[noreturn]] void throw_out_of_memory(std::size_t depth, const Instruction* pc);
   void survive(const ScriptError& error);
   Span span_of(const Frame& frame, const Instruction* pc) const;
   Span place_of_caller() const;
+
+  // trace.cpp
   std::vector<const Frame*> active_frames() const;  // outermost first
   const Instruction* running() const { return frame_ ? frame_->pc : nullptr; }
+
+  // machine.cpp
   void input_key(const InputEvent& event);
   void call_if_present(Instance& receiver, std::string_view method, std::span<const Value> arguments = {});
+
+  // stage_force.cpp
   [[noreturn]] static void fail_in_stage(std::string_view what);
   void count_call() {
     if (budget_.turn()) [[unlikely]]
       end_of_piece();
   }
+
+  // machine.cpp
   void end_of_piece();
   void look_at_the_clock();
+
+  // settings.cpp
   void apply_settings(Instance& controller);
+
+  // slow_paths.cpp
   /// A binary operator whose operands have no short way.
   /// @param absent_is_zero  an operand without a value counts as 0, and nothing is said: h{k} += 1
   Value calculate(ast::BinaryOp op, const Value& x, const Value& y, bool absent_is_zero, const Instruction* pc);
+
+  // machine.cpp
   [[noreturn]] void fail_budget() const;
   template <class Body>
   void called_by_world(Body&& body);  // with a budget of its own; being cut does not end the iteration
@@ -407,10 +436,13 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   void check_loaded(const HashCell* session, const Instance* controller) const;
   void name_objects(std::span<Instance* const> instances);
 
+  // machine.cpp
   static std::pmr::vector<StringCell*> make_constants(Heap& heap, const Program& program);
   void choose_menu(ObjectId item);
   void forget(Instance& instance);
   Value default_value(const ParameterInfo& parameter);
+
+  // call_errors.cpp
   Instance* broadcast_member(const Value& element) const;
   [[noreturn]] void fail_call_on(const Value& value) const;
   [[noreturn]] void fail_null_receiver(const CallSite& site) const;

@@ -62,7 +62,6 @@ Slot Machine::converted_reference(StaticType type, const Value& given, std::uint
 
 // --- members of objects ----------------------------------------------------------------------------------------------
 
-Instance* Machine::instance_of(const Value& value) const { return value.tag == Tag::Object ? value.object() : nullptr; }
 
 const VariableInfo* Machine::member_variable(const Instance& instance, Symbol name) const {
   const auto* variable = instance.cls->find_variable(name);

@@ -1,5 +1,6 @@
 // The script side of a snapshot and of the world hash: every cell of the heap, by number instead of address.
 #include <cstring>
+#include <span>
 #include <unordered_map>
 
 #include "steve/machine/machine.hpp"
@@ -94,6 +95,144 @@ void put_value(ByteWriter& out, const Value& v, const Numbering& numbering) {
   }
 }
 
+/// Reads what Machine::save wrote of the cells: the heads of containers, what holds no references, then all contents.
+class CellReader {
+ public:
+  CellReader(ByteReader& in, Heap& heap, const Program& program, std::span<StringCell* const> constants)
+      : cells_(heap.memory()), instances_(heap.memory()), in_(in), heap_(heap), program_(program), constants_(constants) {}
+
+  void read() {
+    const auto containers = in_.get_count(9);
+    for (std::size_t i = 0; i < containers; ++i) cells_.push_back(container());
+    for (auto others = in_.get_count(2); others > 0; --others) cells_.push_back(leaf());
+    for (std::size_t i = 0; i < containers; ++i) fill(*cells_[i]);
+  }
+  Cell* cell(std::uint64_t number) const {
+    if (number >= cells_.size()) ByteReader::fail();
+    return cells_[static_cast<std::size_t>(number)];
+  }
+  Cell* reference(Tag tag) {
+    const auto number = in_.get<std::uint64_t>();
+    if (number == kNull) return nullptr;
+    Cell* found = cell(number);
+    if (found->tag != tag) ByteReader::fail();
+    return found;
+  }
+  std::span<Instance* const> instances() const { return instances_; }
+
+ private:
+  Value value() {
+    const auto tag = in_.get<Tag>();
+    switch (tag) {
+      case Tag::Null: return Value();
+      case Tag::Int: return Value::of(in_.get<std::int32_t>());
+      case Tag::Double: return Value::of(in_.get<double>());
+      case Tag::Vector: return Value::of(in_.get_vector());
+      default: break;
+    }
+    if (tag > Tag::Data) ByteReader::fail();
+    return Value::of(tag, reference(tag));
+  }
+
+  Cell* container() {
+    const auto tag = in_.get<Tag>();
+    if (tag == Tag::List) {
+      auto* list = heap_.list();
+      list->serial = in_.get<std::uint64_t>();
+      return list;
+    }
+    if (tag == Tag::Hash) {
+      auto* hash = heap_.hash();
+      hash->serial = in_.get<std::uint64_t>();
+      return hash;
+    }
+    if (tag != Tag::Object) ByteReader::fail();
+    return instance();
+  }
+
+  Instance* instance() {
+    const auto cls = in_.get<ClassId>();
+    if (cls >= program_.classes().size()) ByteReader::fail();
+    const ClassInfo& made = program_.cls(cls);
+    promised_ += made.slot_count;
+    if (promised_ > in_.left() / sizeof(Slot)) ByteReader::fail();
+    auto* instance = heap_.instance(made);
+    instance->serial = in_.get<std::uint64_t>();
+    instance->state = in_.get<Instance::State>();
+    instance->auto_free = in_.get_bool();
+    instance->id = in_.get_object();
+    if (instance->state > Instance::State::Freed) ByteReader::fail();
+    if (instance->state != Instance::State::Freed && !instance->auto_free) heap_.retain(instance);
+    instances_.push_back(instance);
+    return instance;
+  }
+
+  Cell* leaf() {
+    const auto tag = in_.get<Tag>();
+    if (tag == Tag::String) return string();
+    if (tag == Tag::Matrix) return heap_.matrix(in_.get_matrix());
+    if (tag == Tag::Pointer) {
+      auto* pointer = heap_.pointer(nullptr);  // what it pointed to, a file perhaps, is not part of a snapshot
+      pointer->serial = in_.get<std::uint64_t>();
+      return pointer;
+    }
+    if (tag != Tag::Data) ByteReader::fail();
+    const auto serial = in_.get<std::uint64_t>();
+    auto* data = heap_.data(in_.get_text());
+    if (!data) ByteReader::fail();
+    data->serial = serial;
+    return data;
+  }
+
+  StringCell* string() {
+    if (in_.get_bool()) {
+      const auto number = in_.get<std::uint32_t>();
+      if (number >= constants_.size() || !constants_[number]) ByteReader::fail();
+      return constants_[number];
+    }
+    auto* string = heap_.string(in_.get_text());
+    if (!string) ByteReader::fail();
+    return string;
+  }
+
+  void fill(Cell& cell) {
+    if (cell.tag == Tag::List) {
+      auto& list = static_cast<ListCell&>(cell);
+      for (auto n = in_.get_count(); n > 0; --n) heap_.push(list, value());
+    } else if (cell.tag == Tag::Hash) {
+      auto& hash = static_cast<HashCell&>(cell);
+      for (auto n = in_.get_count(); n > 0; --n) {
+        const auto key = value();
+        heap_.set(hash, key, value());
+      }
+    } else {
+      fill_instance(static_cast<Instance&>(cell));
+    }
+  }
+
+  void fill_instance(Instance& instance) {
+    for_each_number(instance, [&](std::uint64_t& bits) { bits = in_.get<std::uint64_t>(); });
+    for (const ClassInfo* c = instance.cls; c; c = c->parent)
+      for (const auto& v : c->variables) {
+        if (v.type < StaticType::String || v.type > StaticType::Data) continue;
+        const int count = v.array_size < 0 ? 1 : v.array_size;
+        for (int k = 0; k < count; ++k) {
+          const auto read = value();
+          if (static_cast<int>(read.tag) != static_cast<int>(v.type)) ByteReader::fail();
+          heap_.store(instance.slots[v.slot + static_cast<std::uint32_t>(k)], read.ref);
+        }
+      }
+  }
+
+  std::pmr::vector<Cell*> cells_;
+  std::pmr::vector<Instance*> instances_;
+  ByteReader& in_;
+  Heap& heap_;
+  const Program& program_;
+  std::span<StringCell* const> constants_;
+  std::size_t promised_ = 0;  // slots that instances have: what the image must hold yet
+};
+
 }  // namespace
 
 void Machine::save(ByteWriter& out) const {
@@ -151,125 +290,16 @@ void Machine::load(ByteReader& in) {
   auto heap = make_in<Heap>(memory_, memory_, *this);
   heap->set_budget(&budget_);
   auto constants = make_constants(*heap, *program_);
-  std::pmr::vector<Cell*> cells(memory_);
-  const auto cell_at = [&](std::uint64_t number) {
-    if (number >= cells.size()) ByteReader::fail();
-    return cells[static_cast<std::size_t>(number)];
-  };
-  const auto reference = [&](Tag tag) -> Cell* {
-    const auto number = in.get<std::uint64_t>();
-    if (number == kNull) return nullptr;
-    Cell* cell = cell_at(number);
-    if (cell->tag != tag) ByteReader::fail();
-    return cell;
-  };
-  const auto get_value = [&]() {
-    const auto tag = in.get<Tag>();
-    switch (tag) {
-      case Tag::Null: return Value();
-      case Tag::Int: return Value::of(in.get<std::int32_t>());
-      case Tag::Double: return Value::of(in.get<double>());
-      case Tag::Vector: return Value::of(in.get_vector());
-      default: break;
-    }
-    if (tag > Tag::Data) ByteReader::fail();
-    return Value::of(tag, reference(tag));
-  };
-
-  const auto containers = in.get_count(9);
-  std::pmr::vector<Instance*> instances(memory_);
-  std::size_t promised = 0;  // slots that instances have: what the image must hold yet
-  for (std::size_t i = 0; i < containers; ++i) {
-    const auto tag = in.get<Tag>();
-    if (tag == Tag::List) {
-      auto* list = heap->list();
-      list->serial = in.get<std::uint64_t>();
-      cells.push_back(list);
-    } else if (tag == Tag::Hash) {
-      auto* hash = heap->hash();
-      hash->serial = in.get<std::uint64_t>();
-      cells.push_back(hash);
-    } else if (tag == Tag::Object) {
-      const auto cls = in.get<ClassId>();
-      if (cls >= program_->classes().size()) ByteReader::fail();
-      const ClassInfo& made = program_->cls(cls);
-      promised += made.slot_count;
-      if (promised > in.left() / sizeof(Slot)) ByteReader::fail();
-      auto* instance = heap->instance(made);
-      instance->serial = in.get<std::uint64_t>();
-      instance->state = in.get<Instance::State>();
-      instance->auto_free = in.get_bool();
-      instance->id = in.get_object();
-      if (instance->state > Instance::State::Freed) ByteReader::fail();
-      if (instance->state != Instance::State::Freed && !instance->auto_free) heap->retain(instance);
-      instances.push_back(instance);
-      cells.push_back(instance);
-    } else {
-      ByteReader::fail();
-    }
-  }
-  const auto others = in.get_count(2);
-  for (std::size_t i = 0; i < others; ++i) {
-    const auto tag = in.get<Tag>();
-    if (tag == Tag::String) {
-      if (in.get_bool()) {
-        const auto number = in.get<std::uint32_t>();
-        if (number >= constants.size() || !constants[number]) ByteReader::fail();
-        cells.push_back(constants[number]);
-      } else {
-        auto* string = heap->string(in.get_text());
-        if (!string) ByteReader::fail();
-        cells.push_back(string);
-      }
-    } else if (tag == Tag::Matrix) {
-      cells.push_back(heap->matrix(in.get_matrix()));
-    } else if (tag == Tag::Pointer) {
-      auto* pointer = heap->pointer(nullptr);  // what it pointed to, a file perhaps, is not part of a snapshot
-      pointer->serial = in.get<std::uint64_t>();
-      cells.push_back(pointer);
-    } else if (tag == Tag::Data) {
-      const auto serial = in.get<std::uint64_t>();
-      auto* data = heap->data(in.get_text());
-      if (!data) ByteReader::fail();
-      data->serial = serial;
-      cells.push_back(data);
-    } else {
-      ByteReader::fail();
-    }
-  }
-  for (std::size_t i = 0; i < containers; ++i) {
-    if (cells[i]->tag == Tag::List) {
-      auto& list = static_cast<ListCell&>(*cells[i]);
-      for (auto n = in.get_count(); n > 0; --n) heap->push(list, get_value());
-    } else if (cells[i]->tag == Tag::Hash) {
-      auto& hash = static_cast<HashCell&>(*cells[i]);
-      for (auto n = in.get_count(); n > 0; --n) {
-        const auto key = get_value();
-        heap->set(hash, key, get_value());
-      }
-    } else {
-      auto& instance = static_cast<Instance&>(*cells[i]);
-      for_each_number(instance, [&](std::uint64_t& bits) { bits = in.get<std::uint64_t>(); });
-      for (const ClassInfo* c = instance.cls; c; c = c->parent)
-        for (const auto& v : c->variables) {
-          if (v.type < StaticType::String || v.type > StaticType::Data) continue;
-          const int count = v.array_size < 0 ? 1 : v.array_size;
-          for (int k = 0; k < count; ++k) {
-            const auto value = get_value();
-            if (static_cast<int>(value.tag) != static_cast<int>(v.type)) ByteReader::fail();
-            heap->store(instance.slots[v.slot + static_cast<std::uint32_t>(k)], value.ref);
-          }
-        }
-    }
-  }
-  auto* session = static_cast<HashCell*>(reference(Tag::Hash));
+  CellReader reader(in, *heap, *program_, constants);
+  reader.read();
+  auto* session = static_cast<HashCell*>(reader.reference(Tag::Hash));
   heap->retain(session);
-  heap->load_state(in, cell_at);
-  auto* controller = static_cast<Instance*>(reference(Tag::Object));
+  heap->load_state(in, [&reader](std::uint64_t number) { return reader.cell(number); });
+  auto* controller = static_cast<Instance*>(reader.reference(Tag::Object));
   const auto survived = in.get<std::uint64_t>();
   if (in.left() != 0) ByteReader::fail();
   check_loaded(session, controller);
-  name_objects(instances);
+  name_objects(reader.instances());
   result_ = Value();
   heap_ = std::move(heap);
   strings_ = std::move(constants);

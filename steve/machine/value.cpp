@@ -21,14 +21,4 @@ std::uint32_t string_hash(std::string_view text) {
   return folded == 0 || folded == HashCell::kRemoved ? 1 : folded;
 }
 
-StringCell* make_immortal_string(void* memory, std::string_view text) {
-  auto* cell = new (memory) StringCell(static_cast<std::uint32_t>(text.size()));
-  char* bytes = cell->bytes;
-  std::memcpy(bytes, text.data(), text.size());
-  bytes[text.size()] = 0;
-  cell->immortal = true;
-  cell->hash_cache = string_hash(text);
-  return cell;
-}
-
 }  // namespace breve::steve

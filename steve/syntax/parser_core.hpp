@@ -80,7 +80,11 @@ class Parser {
   bool at_run_on_header() const;
   bool at_variables_header(std::size_t ahead = 0) const;
   bool at_class_header(std::size_t ahead = 0) const;
+
+  // methods.cpp
   bool at_type(std::size_t ahead = 0) const;  // "(" and a type
+
+  // parser.cpp
   const ast::Constant* constant_named(std::string_view name) const;
   std::string describe(std::size_t ahead = 0) const;
   Span span_from(std::size_t start) const;
@@ -96,6 +100,7 @@ class Parser {
   [[noreturn]] void fail_expected(std::string_view what, std::string help = {}) const;
   void missing(std::string_view text, std::string_view where, std::string help = {});
 
+  // habits.cpp
   // --- habits.cpp
   bool adjacent(std::size_t ahead) const;
   std::size_t behind_parentheses(std::size_t ahead) const;

@@ -42,6 +42,7 @@ class Scanner {
   void note_long_string(std::size_t begin, std::size_t close);
   bool blame_long_string();
 
+  // lexer.cpp
   void token();
   void name();
   void number();

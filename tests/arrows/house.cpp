@@ -1,5 +1,6 @@
-// The house of docs/architecture.md, checked from the sources themselves: who includes whom, how long files are, and
-// that each folder and file says what it is. Usage: house SOURCE_DIR. Prints every offence; exits 1 if there is one.
+// The house of docs/architecture.md, checked from the sources themselves: who includes whom, how long files are, that
+// each folder and file says what it is, and the inside of files (inside.hpp). Prints every offence; exits 1 if there is
+// one. Usage: house SOURCE_DIR; house --lots SOURCE_DIR BUILD_DIR looks for names that meet in a lot of the build.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -10,6 +11,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "inside.hpp"
 
 namespace fs = std::filesystem;
 
@@ -93,13 +96,17 @@ const std::map<std::string_view, std::string_view> kMayBeLonger = {
 
 class House {
  public:
-  explicit House(fs::path root) : root_(std::move(root)) {}
+  explicit House(fs::path root) : root_(std::move(root)), inside_(root_) {}
 
   int check() {
     for (const char* top : {"runtime", "steve", "hostapi", "samples"})
       if (fs::exists(root_ / top))
         for (const auto& entry : fs::recursive_directory_iterator(root_ / top))
           if (entry.is_regular_file() && is_source(entry.path())) check_file(entry.path());
+    if (fs::exists(root_ / "tests"))
+      for (const auto& entry : fs::recursive_directory_iterator(root_ / "tests"))
+        if (is_source(entry.path()) && entry.path().extension() != ".tz") inside_.add(relative(entry.path()));
+    for (const breve::house::Offence& found : inside_.offences()) offend(found.file, found.line, found.what);
     check_readmes();
     for (const std::string& offence : offences_) std::cout << offence << '\n';
     std::cout << files_ << " files, " << includes_ << " includes, " << offences_.size() << " offences\n";
@@ -112,6 +119,8 @@ class House {
     static const std::set<std::string> kExtensions = {".h", ".hpp", ".c", ".cpp", ".tz"};
     return kExtensions.count(path.extension().string()) > 0;
   }
+
+  std::string relative(const fs::path& path) const { return fs::relative(path, root_).generic_string(); }
 
   static const Part* part_of(std::string_view file) {
     const Part* best = nullptr;
@@ -127,9 +136,10 @@ class House {
   }
 
   void check_file(const fs::path& path) {
-    const std::string file = fs::relative(path, root_).generic_string();
+    const std::string file = relative(path);
     const bool code = path.extension() != ".tz";
     ++files_;
+    if (code) inside_.add(file);
     std::ifstream in(path);
     std::string line;
     std::size_t number = 0;
@@ -194,10 +204,16 @@ class House {
       offend(file, number, std::string(from.folder) + " may not include " + name);
   }
 
+  /// The parts of the house, the floors they are on, and each folder of tests.
   void check_readmes() {
+    std::set<std::string> folders{"cmake", "docs", "hostapi", "runtime", "samples", "steve", "tests"};
     for (const Part& part : kParts)
-      if (fs::exists(root_ / part.folder) && has_files(root_ / part.folder) && !has_readme(part.folder))
-        offend(std::string(part.folder), 0, "no README.md");
+      if (fs::exists(root_ / part.folder) && has_files(root_ / part.folder)) folders.emplace(part.folder);
+    if (fs::exists(root_ / "tests"))
+      for (const auto& entry : fs::directory_iterator(root_ / "tests"))
+        if (entry.is_directory()) folders.insert(relative(entry.path()));
+    for (const std::string& folder : folders)
+      if (fs::exists(root_ / folder) && !has_readme(folder)) offend(folder, 0, "no README.md");
   }
 
   /// A folder that only a compiler looks into (hostapi/include) may be described by its parent's page.
@@ -213,15 +229,23 @@ class House {
   }
 
   fs::path root_;
+  breve::house::Inside inside_;
   std::set<std::string> offences_;
   std::size_t files_ = 0, includes_ = 0;
 };
 
+int check_lots(const fs::path& root, const fs::path& build) {
+  const auto offences = breve::house::names_that_meet(root, build);
+  for (const auto& found : offences) std::cout << found.file << ':' << found.line << ": " << found.what << '\n';
+  return offences.empty() ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc == 4 && std::string_view(argv[1]) == "--lots") return check_lots(argv[2], argv[3]);
   if (argc != 2) {
-    std::cerr << "usage: house SOURCE_DIR\n";
+    std::cerr << "usage: house SOURCE_DIR, or house --lots SOURCE_DIR BUILD_DIR\n";
     return 2;
   }
   return House(argv[1]).check();

@@ -14,10 +14,10 @@ namespace {
 
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
-/// Text to tokens. Lines of the preprocessor are skipped.
+/// Text to tokens. Lines of the preprocessor are none, but what they say is used: a macro's body may call.
 class Lexer {
  public:
-  Lexer(std::string text, std::vector<Comment>& comments) : text_(std::move(text)), comments_(comments) {}
+  Lexer(std::string text, Source& out) : text_(std::move(text)), out_(out), comments_(out.comments) {}
 
   std::vector<Token> read() {
     while (at_ < text_.size()) step();
@@ -64,7 +64,13 @@ class Lexer {
         ++line_;
         ++at_;
       }
-      ++at_;
+      if (!is_word(peek())) {
+        ++at_;
+        continue;
+      }
+      const std::size_t begin = at_;
+      while (is_word(peek())) ++at_;
+      out_.uses.push_back({text_.substr(begin, at_ - begin), ""});
     }
   }
 
@@ -107,6 +113,7 @@ class Lexer {
   }
 
   const std::string text_;
+  Source& out_;
   std::vector<Comment>& comments_;
   std::vector<Token> tokens_;
   std::size_t at_ = 0, line_ = 1;
@@ -408,7 +415,7 @@ Source read_source(const std::filesystem::path& path) {
   std::ostringstream text;
   text << in.rdbuf();
   Source out;
-  const std::vector<Token> tokens = Lexer(text.str(), out.comments).read();
+  const std::vector<Token> tokens = Lexer(text.str(), out).read();
   Walk(tokens, out).run();
   return out;
 }

@@ -40,7 +40,7 @@ struct Pair {
   breve_object a, b;
 };
 
-Pair build(World& world, const Row& row) {
+Pair build_pair(World& world, const Row& row) {
   const Vector3 c = numbers(row, "c"), n = numbers(row, "n").normalized();
   Pair out;
   Quaternion turn;
@@ -73,7 +73,7 @@ TEST(ReferenceImpulses, FreeBodiesCollideAsTheFileSays) {
     World world(kStep, BREVE_RUNG_PRECISE);
     world.set_guard(BREVE_GUARD_REPORT);
     world.set_gravity(Vector3::Zero());
-    const Pair pair = build(world, row);
+    const Pair pair = build_pair(world, row);
     world.step();
     const std::vector<breve_impact> impacts = world.impacts();
     ++cases;

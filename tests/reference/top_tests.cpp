@@ -14,7 +14,7 @@ constexpr breve_rung kRungs[] = {BREVE_RUNG_FAST, BREVE_RUNG_BALANCED, BREVE_RUN
                                  BREVE_RUNG_CONSERVING};
 constexpr const char* kNames[] = {"fast", "balanced", "precise", "reference", "conserving"};
 
-Vector3 numbers(const Row& row, const std::string& x, const std::string& y, const std::string& z) {
+Vector3 three_numbers(const Row& row, const std::string& x, const std::string& y, const std::string& z) {
   return Vector3(row.number(x), row.number(y), row.number(z));
 }
 
@@ -24,7 +24,7 @@ Quaternion attitude(const Row& row) {
 
 /// Which row of a file is wrong by how much: spin in body axes relative to its size, attitude in rad.
 double error_of(const World& world, breve_object body, const Row& row) {
-  const Vector3 expected = numbers(row, "w1", "w2", "w3");
+  const Vector3 expected = three_numbers(row, "w1", "w2", "w3");
   const Vector3 own = world.turn(body).conjugate() * world.spin(body);
   return std::max((own - expected).norm() / std::max(1.0, expected.norm()),
                   world.turn(body).angularDistance(attitude(row)));
@@ -35,11 +35,11 @@ struct FreeTop {
   Matrix3 inertia;
   breve_object body;
   FreeTop(const Row& row, double step, breve_rung rung)
-      : world(step, rung), inertia(numbers(row, "I1", "I2", "I3").asDiagonal()) {
+      : world(step, rung), inertia(three_numbers(row, "I1", "I2", "I3").asDiagonal()) {
     world.set_guard(BREVE_GUARD_REPORT);
     world.set_gravity(Vector3::Zero());
     body = world.body(lump(1, inertia), Vector3::Zero());
-    world.set_spin(body, numbers(row, "w1_0", "w2_0", "w3_0"));
+    world.set_spin(body, three_numbers(row, "w1_0", "w2_0", "w3_0"));
   }
 };
 

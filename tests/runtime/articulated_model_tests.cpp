@@ -81,56 +81,6 @@ TEST(Model, CallsALinkWithoutANameByItsNumber) {
   }
 }
 
-TEST(States, OfAnotherSizeOrWithoutNumbersAreRefused) {
-  std::vector<Link> links(2);
-  links[0].type = JointType::Free;
-  links[1].parent = 0;
-  links[1].name = "leg";
-  const Model model(links);
-  const State good = neutral_state(model);
-  EXPECT_NO_THROW(check_state(model, good));
-  State bad = good;
-  bad.q.conservativeResize(3);
-  EXPECT_THROW(check_state(model, bad), Error);
-  bad = good;
-  bad.v[6] = kNan;
-  try {
-    check_state(model, bad);
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("link 'leg'"), std::string::npos) << error.what();
-  }
-  bad = good;
-  bad.q[3] = 2;
-  EXPECT_THROW(check_state(model, bad), Error);
-}
-
-TEST(LoadsOf, BadNumbersAreRefusedByName) {
-  std::vector<Link> links(2);
-  links[0].type = JointType::Free;
-  links[1].parent = 0;
-  links[1].name = "leg";
-  const Model model(links);
-  const auto refused = [&](const std::function<void(Loads&)>& spoil, const char* words) {
-    Loads loads;
-    loads.drives.resize(2);
-    spoil(loads);
-    try {
-      check_loads(model, loads);
-      ADD_FAILURE() << "accepted: " << words;
-    } catch (const Error& error) {
-      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
-    }
-  };
-  refused([](Loads& l) { l.gravity.x() = kNan; }, "gravity");
-  refused([](Loads& l) { l.tau = Vector::Zero(3); }, "joint forces: 3 given, the model needs 7");
-  refused([](Loads& l) { l.tau = Vector::Constant(7, kNan); }, "link 0");
-  refused([](Loads& l) { l.wrenches.resize(1); }, "wrenches on links");
-  refused([](Loads& l) { l.drives[1].stiffness = -1; }, "link 'leg': stiffness of its joint is -1");
-  refused([](Loads& l) { l.drives[1].motor_limit = kInfinity; }, "limit of the motor");
-  refused([](Loads& l) { l.drives[0].damping = 1; }, "a free joint has no damping");
-}
-
 TEST(ForwardDynamics, OfAStateThatIsNoNumberIsAnErrorWithTheLinksName) {
   std::vector<Link> links(3);
   for (int i = 0; i < 3; ++i) links[static_cast<std::size_t>(i)].parent = i - 1;
