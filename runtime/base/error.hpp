@@ -20,7 +20,8 @@ enum class ErrorCode {
   Unsupported,
   Interrupted,  // a call that the host asked to stop
   Reload,       // a program that cannot take the place of the running one
-  Numeric,  // an equation without a usable solution: a singular inertia, a step size that shrinks to nothing
+  Internal,     // something that only a defect of this library makes happen: see invariant.hpp
+  Numeric,      // an equation without a usable solution: a singular inertia, a step size that shrinks to nothing
 };
 
 class Error : public std::runtime_error {

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <array>
-#include <cassert>
 #include <cstdint>
 #include <functional>
 #include <memory_resource>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "runtime/base/bytes.hpp"
+#include "runtime/base/invariant.hpp"
 #include "runtime/base/memory.hpp"
 #include "steve/machine/budget.hpp"
 #include "steve/machine/cells.hpp"
@@ -66,7 +66,7 @@ class Heap : public InMemory {
     if (!cell || cell->immortal) return;
     if (barrier_) [[unlikely]]
       shade(cell);
-    assert(cell->count > 0);
+    invariant(cell->count > 0, "a reference to a cell is released once more than it was taken");
     if (--cell->count == 0) {
       if (!cell->listed) enlist(cell);
     } else if (is_container(cell->tag)) {
