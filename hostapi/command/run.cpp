@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <ctime>
 #include <optional>
@@ -49,7 +50,7 @@ ExitStatus exit_status(breve_status status) {
 /// "45 s", "2 min 5 s", "3 h 20 min"
 std::string time_words(double seconds) {
   if (!(seconds < 1e9)) return "a very long time";
-  const auto whole = static_cast<long long>(std::max(0.0, seconds) + 0.5);
+  const auto whole = std::llround(std::max(0.0, seconds));
   if (whole < 60) return fmt::format("{} s", whole);
   if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
   return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);

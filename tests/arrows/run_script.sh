@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# `./run` on a machine that lacks everything and has no apt-get: it names what is missing, exits 1 and builds nothing;
-# a word it does not know is wrong usage. Usage: run_script.sh REPOSITORY
+# `./run` on a machine that lacks everything and has no apt-get: it names what is missing for what it was asked to do, and
+# nothing else, exits 1 and builds nothing; a word it does not know is wrong usage. Usage: run_script.sh REPOSITORY
 set -uo pipefail
 
 repository=$(realpath "$1")
@@ -18,10 +18,32 @@ fail() {
   exit 1
 }
 
-env -i PATH="$scratch/path" "$(command -v bash)" "$scratch/run" tests >"$scratch/said" 2>&1
-(($? == 1)) || fail "exit status is not 1"
-grep -q 'missing.*g++.*libbullet-dev' "$scratch/said" || fail "does not name what is missing"
-[[ ! -e $scratch/build ]] || fail "built all the same"
+run() { env -i PATH="$scratch/path" "$(command -v bash)" "$scratch/run" "$@" >"$scratch/said" 2>&1; }
 
-env -i PATH="$scratch/path" "$(command -v bash)" "$scratch/run" no-such-word >"$scratch/said" 2>&1
+# lacks WORD PACKAGE… [-- PACKAGE…]: ./run WORD names the first packages as missing, and not those behind the --.
+lacks() {
+  local word=$1 package wanted=yes
+  shift
+  run "$word"
+  (($? == 1)) || fail "./run $word: exit status is not 1"
+  for package in "$@"; do
+    if [[ $package == -- ]]; then
+      wanted=no
+    elif [[ $wanted == yes ]]; then
+      grep -q "missing.* $package\( \|$\)" "$scratch/said" || fail "./run $word does not name $package"
+    else
+      ! grep -q " $package\( \|$\)" "$scratch/said" || fail "./run $word names $package"
+    fi
+  done
+  [[ ! -e $scratch/build ]] || fail "./run $word: built all the same"
+}
+
+lacks build g++ libbullet-dev libcli11-dev -- libgtest-dev clang lua5.4 clang-format
+lacks demo g++ libbullet-dev -- libgtest-dev clang lua5.4 clang-format
+lacks bench g++ libgtest-dev lua5.4 libode-dev -- clang libonig-dev clang-format
+lacks format clang-format -- g++ libgtest-dev
+lacks lint g++ clang-tidy -- libgtest-dev lua5.4
+lacks tests g++ libbullet-dev libgtest-dev clang clang-tidy clang-format
+
+run no-such-word
 (($? == 2)) || fail "exit status of wrong usage is not 2"
