@@ -10,7 +10,6 @@ namespace breve::host {
 
 using steve::ClassInfo;
 using steve::Instance;
-using steve::MethodInfo;
 using steve::Value;
 
 namespace {

@@ -155,12 +155,6 @@ void parts_of_gain(const Workspace& work, double& linear, double& quadratic) {
 
 }  // namespace
 
-double gain(const Workspace& work) {
-  double linear = 0, quadratic = 0;
-  parts_of_gain(work, linear, quadratic);
-  return linear + quadratic;
-}
-
 void hold_energy(Workspace& work) {
   double linear = 0, quadratic = 0;
   parts_of_gain(work, linear, quadratic);

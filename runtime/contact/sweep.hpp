@@ -41,11 +41,9 @@ class Sweeps {
 /// One contact of a sweep. @return the largest change of its velocity, m/s
 double visit_point(Workspace& work, std::size_t point);
 
-/// What the impulses do to the kinetic energy, less what the biases demand, J: with p the impulses, u the velocities,
-/// half of p.(u without + u with) - p.bias + softness p^2 / 2. Not positive for every exact solution.
-double gain(const Workspace& work);
-
-/// If `gain` is positive, shorten all impulses by the one factor that makes it least; cones and bounds contain what is
+/// The gain is what the impulses do to the kinetic energy, less what the biases demand, J: with p the impulses, u the
+/// velocities, half of p.(u without + u with) - p.bias + softness p^2 / 2. It is not positive for any exact solution.
+/// If it is positive, shorten all impulses by the one factor that makes it least; cones and bounds contain what is
 /// shorter. So even a solve that was stopped early adds no energy.
 void hold_energy(Workspace& work);
 

@@ -173,7 +173,6 @@ struct Dynamics::Core : InMemory {
 
   // joints.cpp
   JointEntry& at(JointIndex joint);
-  const JointEntry& at(JointIndex joint) const;
   void place_child(JointEntry& joint);
   void detach(JointIndex joint);
   void note_joined(JointIndex joint);

@@ -38,7 +38,8 @@ void Dynamics::Core::forget(BodyIndex body) {
 
 std::size_t Dynamics::Core::bytes() const {
   std::size_t sum = sizeof(Core) + joints.capacity() * sizeof(JointEntry) + springs.capacity() * sizeof(SpringEntry) +
-                    entries.capacity() * sizeof(BodyEntry) + entry_of.capacity() * sizeof(std::uint32_t) + booked.capacity() * sizeof(double);
+                    entries.capacity() * sizeof(BodyEntry) + entry_of.capacity() * sizeof(std::uint32_t) +
+                    booked.capacity() * sizeof(double) + near.bytes();
   for (const auto& tree : trees)
     if (tree)
       sum += sizeof(Tree) + tree->reserved.bytes() + tree->links.capacity() * sizeof(TreeLink) +

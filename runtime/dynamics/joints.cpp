@@ -49,8 +49,6 @@ JointEntry& Dynamics::Core::at(JointIndex joint) {
   return joints[joint];
 }
 
-const JointEntry& Dynamics::Core::at(JointIndex joint) const { return const_cast<Core*>(this)->at(joint); }
-
 void Dynamics::Core::collect(BodyIndex body, std::pmr::vector<BodyIndex>& out) {
   out.clear();
   out.push_back(body);

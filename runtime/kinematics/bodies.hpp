@@ -150,7 +150,6 @@ class Bodies : public InMemory {
   void turn(double h);
 
   // --- for the stage that stops bodies at their time of impact -------------------------------------------------------
-  bool active(BodyIndex body) const;  // some stage moves it
   BodyState state(BodyIndex body) const;
   /// Put it there, moving so, without a note in the log.
   void place(BodyIndex body, const Vector3& location, const Quaternion& orientation, const Vector3& velocity,

@@ -78,10 +78,6 @@ void Bodies::turn(double h) {
   for (const BodyIndex body : arrays_->turning.members()) arrays_->turn_one(body, h);
 }
 
-bool Bodies::active(BodyIndex body) const {
-  return arrays_->translating.has(body) || arrays_->turning.has(body) || arrays_->rigid.has(body);
-}
-
 BodyState Bodies::state(BodyIndex body) const {
   BodyState s;
   s.location = location(body);

@@ -57,11 +57,6 @@ void BoxTree::move(Leaf leaf, const Eigen::AlignedBox3d& box) {
   link(leaf);
 }
 
-void BoxTree::clear() {
-  nodes_.clear();
-  root_ = free_ = kNoLeaf;
-}
-
 std::uint32_t BoxTree::best_sibling(const Eigen::AlignedBox3d& box) const {
   std::uint32_t node = root_;
   while (nodes_[node].left != kNoLeaf) {

@@ -25,7 +25,6 @@ class BoxTree {
   const Eigen::AlignedBox3d& box(Leaf leaf) const { return nodes_[leaf].box; }
   /// Append the items whose boxes meet `box` (touching counts). Cost O(log n + found) for boxes that spread.
   void query(const Eigen::AlignedBox3d& box, std::pmr::vector<std::uint32_t>& items);
-  void clear();
   std::size_t bytes() const { return nodes_.capacity() * sizeof(Node); }
 
  private:

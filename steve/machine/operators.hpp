@@ -109,7 +109,6 @@ void append_text(std::string& out, const Value& v, const Describe& describe = {}
 std::string text(const Value& v, const Describe& describe = {}, Heap* heap = nullptr);
 void append_int(std::string& out, std::int32_t i);
 void append_double(std::string& out, double d);  // %f
-void append_vector(std::string& out, const Vector3& v);
 StringCell* number_to_string(Heap& heap, std::int32_t i);
 StringCell* number_to_string(Heap& heap, double d);
 

@@ -227,8 +227,6 @@ void append_double(std::string& out, double d) {
   out.append(buffer, write_double(buffer, buffer + sizeof buffer, d));
 }
 
-void append_vector(std::string& out, const Vector3& v) { append_vector(out, v.data()); }
-
 void append_text(std::string& out, const Value& v, const Describe& describe, Heap* heap) {
   Writer(out, describe, heap).write(v);
 }

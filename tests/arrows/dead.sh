@@ -15,8 +15,9 @@ mapfile -t objects < <(find "$build/hostapi" "$build/runtime" "$build/steve" -na
 clang++ -shared -o "$work/all.so" "${objects[@]}" -Wl,--gc-sections -Wl,--print-gc-sections \
   -Wl,--version-script="$work/roots" 2>"$work/dropped"
 
-# Sections of functions, by their names: of ours, neither written by the compiler nor called through an operator.
-sed -n "s/.*removing unused section '\.text\.\([^']*\)'.*/\1/p" "$work/dropped" | sort -u | c++filt |
+# Sections of functions, by their names: of ours, neither written by the compiler nor called through an operator. Names with
+# a group behind them are copies of inline functions.
+sed -n "s/.*removing unused section '\.text\.\([^'[]*\)'.*/\1/p" "$work/dropped" | sort -u | c++filt |
   grep -E '^breve::' | grep -vE '\{lambda|::~|operator|::\(anonymous namespace\)::.*<' >"$work/functions" || true
 
 # Constructors and assignments belong to their class; what only tests call has its reason.
@@ -27,7 +28,8 @@ while IFS= read -r function; do
   short=${name##*::}
   owner=${name%::*}
   [[ $short != "${owner##*::}" ]] || continue
-  ! grep -q "^$short " "$here/for_tests.txt" || continue
+  # By its name, or by that and its class.
+  ! grep -qE "^($short|${owner##*::}::$short) " "$here/for_tests.txt" || continue
   echo "nothing calls $function"
   found=1
 done <"$work/functions"

@@ -68,6 +68,7 @@ static const struct {
   const char* name;
   void (*run)(void);
 } suites[] = {
+    /* clang-format off */
     {"analysis", analysis_suite},
     {"budget", budget_suite},
     {"calls", calls_suite},
@@ -92,6 +93,7 @@ static const struct {
     {"stepping", stepping_suite},
     {"threads", threads_suite},
     {"values", values_suite},
+    /* clang-format on */
 };
 
 int main(int argc, char** argv) {
