@@ -201,8 +201,8 @@ int show_help(CLI::App& app, const std::string& topic) {
     return breve::command::kWrongUsage;
   }
   const CLI::App& shown = topic.empty() ? app : *app.get_subcommand(topic);
-  std::cout << shown.get_formatter()->make_help(
-      &shown, topic.empty() ? app.get_name() : app.get_name() + " " + topic, CLI::AppFormatMode::Normal);
+  std::cout << shown.get_formatter()->make_help(&shown, topic.empty() ? app.get_name() : app.get_name() + " " + topic,
+                                                CLI::AppFormatMode::Normal);
   return breve::command::kEndedWell;
 }
 

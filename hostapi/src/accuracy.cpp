@@ -248,9 +248,8 @@ breve_status breve_world_physics_counters(const breve_world* world, breve_physic
   return guard(world->error, [&] {
     const breve::DynamicsCounters& c = dynamics_of(*world).counters();
     const breve_physics_counters filled{
-        0,      c.sub_steps, c.evaluations, c.rejected,          c.islands, c.pairs,    c.contacts,
-        c.warm, c.impacts,   c.searches,    c.solver_iterations, c.direct,  c.sleeping, c.interventions,
-        c.residual};
+        0,         c.sub_steps, c.evaluations,       c.rejected, c.islands,  c.pairs,         c.contacts, c.warm,
+        c.impacts, c.searches,  c.solver_iterations, c.direct,   c.sleeping, c.interventions, c.residual};
     write_struct(counters, filled, "breve_physics_counters");
   });
 }

@@ -122,8 +122,8 @@ SpringDescription spring_of(const breve_spring& from) {
 }  // namespace breve::host
 
 using namespace breve::host;
-using breve::Mechanics;
 using breve::JointIndex;
+using breve::Mechanics;
 
 breve_joint_description breve_joint_description_default(breve_joint_kind kind) {
   breve_joint_description description{};

@@ -60,8 +60,8 @@ breve_status breve_runtime_create(const breve_runtime_config* config, breve_runt
     if (c.worker_threads != 0) fail(BREVE_ERROR_ARGUMENT, "a reserved field is not 0");
     constexpr std::uint32_t kRights = BREVE_RIGHT_SLEEP | BREVE_RIGHT_REAL_TIME | BREVE_RIGHT_ENTROPY;
     if ((c.rights & ~kRights) != 0)
-      fail(BREVE_ERROR_ARGUMENT, "breve_runtime_config.rights is " + std::to_string(c.rights) + ", but the rights are " +
-                                     std::to_string(kRights) + " in sum");
+      fail(BREVE_ERROR_ARGUMENT, "breve_runtime_config.rights is " + std::to_string(c.rights) +
+                                     ", but the rights are " + std::to_string(kRights) + " in sum");
     auto handle = std::make_unique<breve_runtime>();
     handle->state = std::make_shared<RuntimeState>(c);
     *runtime = handle.release();

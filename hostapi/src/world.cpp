@@ -44,8 +44,7 @@ steve::MachineHost machine_host(breve_world& world) {
   host.may_sleep = (callbacks.rights & BREVE_RIGHT_SLEEP) != 0;
   host.may_read_clock = (callbacks.rights & BREVE_RIGHT_REAL_TIME) != 0;
   host.may_draw_entropy = (callbacks.rights & BREVE_RIGHT_ENTROPY) != 0;
-  if (callbacks.system)
-    host.system = [&world](std::string_view command) { return run_command(world, command); };
+  if (callbacks.system) host.system = [&world](std::string_view command) { return run_command(world, command); };
   for (std::size_t i = 0; i < config.argument_count; ++i) {
     need(config.arguments, "breve_world_config.arguments");
     need(config.arguments[i], "one of breve_world_config.arguments");

@@ -26,11 +26,11 @@ void slide_in_cone(const LocalMatrix& W, const double u0[3], double mu, int newt
 /// @param u0       the velocity without the impulse, less what is wanted, m/s
 /// @param inverse  of W, as regular_inverse makes it
 /// @param newton   steps for the direction of sliding at most
-/// @param exact    search all directions if they do not end at a root; otherwise the direction gets better from visit to
-/// visit
-/// @param p        in: an impulse nearby, whose direction is where the search for the direction begins; out: the impulse
-/// Source: the sliding direction is a root of a quartic (Bonnefon and Daviet 2011, "Quartic formulation of Coulomb 3D
-/// frictional contact"), found here on the circle by Newton's method, and by bracketing where that fails.
+/// @param exact    search all directions if they do not end at a root; otherwise the direction gets better from visit
+/// to visit
+/// @param p        in: an impulse nearby, whose direction is where the search for the direction begins; out: the
+/// impulse Source: the sliding direction is a root of a quartic (Bonnefon and Daviet 2011, "Quartic formulation of
+/// Coulomb 3D frictional contact"), found here on the circle by Newton's method, and by bracketing where that fails.
 inline void sweep_cone(const LocalMatrix& W, const LocalMatrix& inverse, const double u0[3], double mu, int newton,
                        bool exact, double p[3]) {
   if (!(u0[0] < 0) || !(W.nn > 0)) {

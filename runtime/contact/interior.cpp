@@ -289,7 +289,8 @@ double Interior::solve(double goal, LinearSolves& solves) {
     const double left = violation(work_);
     since = left < best ? 0 : since + 1;
     best = std::min(best, left);
-    if (left <= goal || since > kPatience || steps_ == kMostSteps || solves.spent() || !std::isfinite(left)) return left;
+    if (left <= goal || since > kPatience || steps_ == kMostSteps || solves.spent() || !std::isfinite(left))
+      return left;
     // The shorter the last step was, the more towards the centre this one.
     const double target = 0.5 * std::clamp(1 - last_, 0.01, 0.9) * gap() / std::max(pairs_, 1.0);
     Lengths lengths;

@@ -15,8 +15,8 @@ void push_all(Workspace& work);
 /// between sweeps as they did before: high stacks take a fraction of the sweeps then. While it lives, impulses of
 /// contacts are not to be read; they are in their cones after it.
 /// Source: Silcowitz, Niebe and Erleben 2010 (nonsmooth nonlinear conjugate gradients: the share of the way is the
-/// ratio of what the last two sweeps changed, and they begin anew where that is above 1). Here it is 1 up to 1.2: a high
-/// stack needs that.
+/// ratio of what the last two sweeps changed, and they begin anew where that is above 1). Here it is 1 up to 1.2: a
+/// high stack needs that.
 class Sweeps {
  public:
   Sweeps(Workspace& work, bool momentum);

@@ -24,8 +24,8 @@ bool has_moved_anchor(const Dynamics::Core& core, const Tree& tree) {
 }
 
 bool is_stale(const Dynamics::Core& core, const Tree& tree) {
-  return has_moved_anchor(core, tree) ||
-         std::any_of(tree.links.begin(), tree.links.end(), [&core](const TreeLink& link) { return is_stale(core, link); });
+  return has_moved_anchor(core, tree) || std::any_of(tree.links.begin(), tree.links.end(),
+                                                     [&core](const TreeLink& link) { return is_stale(core, link); });
 }
 
 void Dynamics::Core::note_written(BodyIndex body) {

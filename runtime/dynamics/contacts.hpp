@@ -137,8 +137,8 @@ class NearPairs {
     Quaternion orientation{1, 0, 0, 0};
     const Shape* shape = nullptr;
     std::uint64_t shape_changes = 0;
-    double speed = 0;   // m/s, that it has or may be given
-    bool wide = false;  // by what may strike it
+    double speed = 0;    // m/s, that it has or may be given
+    bool wide = false;   // by what may strike it
     bool woken = false;  // from sleep, by what changed it: those that touch it are to wake
   };
   /// Apart from the rest of a proxy, since each pair looks at two of them.

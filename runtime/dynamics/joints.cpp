@@ -35,10 +35,9 @@ void attach(Dynamics::Core& core, JointIndex joint) {
     if (end == kNoBody) continue;
     core.touch_tree(end);
     std::pmr::vector<JointIndex>& of = core.entry(end).joints;
-    of.insert(
-        std::lower_bound(of.begin(), of.end(), entry.serial,
-                         [&core](JointIndex x, std::uint64_t serial) { return core.joints[x].serial < serial; }),
-        joint);
+    of.insert(std::lower_bound(of.begin(), of.end(), entry.serial,
+                               [&core](JointIndex x, std::uint64_t serial) { return core.joints[x].serial < serial; }),
+              joint);
   }
 }
 

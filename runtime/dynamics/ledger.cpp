@@ -167,8 +167,6 @@ Energy Dynamics::energy(BodyIndex body) const {
   return core_->bodies->dynamic(body) ? core_->free_energy(body) : Energy{};
 }
 
-bool Dynamics::asleep(BodyIndex body) const {
-  return core_ && core_->near.asleep(body);
-}
+bool Dynamics::asleep(BodyIndex body) const { return core_ && core_->near.asleep(body); }
 
 }  // namespace breve

@@ -24,7 +24,8 @@ void check(const SpringDescription& is) {
   require(std::isfinite(is.length) && is.length >= 0, "length", is.length, "finite and >= 0");
   require(std::isfinite(is.strength) && is.strength >= 0, "strength", is.strength, "finite and >= 0");
   require(std::isfinite(is.damping) && is.damping >= 0, "damping", is.damping, "finite and >= 0");
-  require(std::isfinite(is.maximum_force) && is.maximum_force >= 0, "maximum force", is.maximum_force, "finite and >= 0");
+  require(std::isfinite(is.maximum_force) && is.maximum_force >= 0, "maximum force", is.maximum_force,
+          "finite and >= 0");
 }
 
 TiePull pull_of(const SpringDescription& is, const Vector3& way, const Vector3& rate) {

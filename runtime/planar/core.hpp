@@ -273,7 +273,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void set_warm(FlatJoint& joint, const WarmJoint& warm);
 
   // joints.cpp
-  double gap(const FlatJoint& joint) const;       // m, between the two points of a joint
+  double gap(const FlatJoint& joint) const;  // m, between the two points of a joint
 
   // box_joints.cpp
   Vector2 axis_of(const FlatJoint& joint) const;  // of a prismatic one, unit, as Box2D's bodies stand

@@ -107,10 +107,9 @@ void attach(Planar::Core& core, JointIndex joint) {
   for (const BodyIndex end : {entry.is.child, entry.is.parent}) {
     if (end == kNoBody) continue;
     std::pmr::vector<JointIndex>& of = core.joints_at.try_emplace(end).first->second;
-    of.insert(
-        std::lower_bound(of.begin(), of.end(), entry.serial,
-                         [&core](JointIndex x, std::uint64_t serial) { return core.joints[x].serial < serial; }),
-        joint);
+    of.insert(std::lower_bound(of.begin(), of.end(), entry.serial,
+                               [&core](JointIndex x, std::uint64_t serial) { return core.joints[x].serial < serial; }),
+              joint);
   }
 }
 

@@ -83,7 +83,8 @@ void place_corners(const Round& round, std::pmr::vector<Vector3>& corners) {
   }
   const auto latitude = [](int i) { return i * std::numbers::pi / 2 / kRingsHalf; };
   for (int i = kRingsHalf - 1; i >= 0; --i)
-    add_circle(round, -round.half - round.radius * std::sin(latitude(i)), round.radius * std::cos(latitude(i)), corners);
+    add_circle(round, -round.half - round.radius * std::sin(latitude(i)), round.radius * std::cos(latitude(i)),
+               corners);
   for (int i = 0; i < kRingsHalf; ++i)
     add_circle(round, round.half + round.radius * std::sin(latitude(i)), round.radius * std::cos(latitude(i)), corners);
   corners.push_back(point_about(round.axis, -round.half - round.radius, 0, 0));

@@ -66,7 +66,7 @@ void fold(const Extent::Axis& a, double& x, double& v) {
 void bounce(double wall, double out, double& x, double& v, double acceleration) {
   const double far = out * (x - wall), speed = out * v, pull = out * acceleration;
   const double met = std::sqrt(std::max(0.0, speed * speed - 2 * pull * far));  // speed at the wall, by its energy
-  double since = std::max(0.0, (speed - met) / pull);                         // s, since it was there
+  double since = std::max(0.0, (speed - met) / pull);                           // s, since it was there
   // What is pulled outward comes back to the wall again and again.
   if (pull > 0) since = met > 0 ? std::fmod(since, 2 * met / pull) : 0;
   x = wall + out * since * (0.5 * pull * since - met);
@@ -87,8 +87,7 @@ void throw_back(const Extent& space, Vector3& location, Vector3& velocity, const
     const double pull = acceleration[i];
     const auto outside = [&] { return x < a.low || x > a.high; };
     if (a.edge == Ending::Wall && pull != 0 && std::isfinite(v))
-      for (int k = 0; k < kMost && outside(); ++k)
-        bounce(x < a.low ? a.low : a.high, x < a.low ? -1 : 1, x, v, pull);
+      for (int k = 0; k < kMost && outside(); ++k) bounce(x < a.low ? a.low : a.high, x < a.low ? -1 : 1, x, v, pull);
     if (a.edge != Ending::Wall || !outside()) {
       fold(a, x, v);
       continue;

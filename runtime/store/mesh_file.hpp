@@ -21,8 +21,8 @@ struct MeshData {
 };
 
 /// From the bytes of a file; `name` stands for it in messages. What begins with the mark of 3DS (0x4d4d) is 3DS, all
-/// else OBJ. Error{File} names the file and says why it cannot be used: it is neither 3DS nor OBJ, is damaged, too large
-/// (kMostMeshBytes), or has no triangles. Materials and textures are not looked for.
+/// else OBJ. Error{File} names the file and says why it cannot be used: it is neither 3DS nor OBJ, is damaged, too
+/// large (kMostMeshBytes), or has no triangles. Materials and textures are not looked for.
 MeshData parse_mesh(std::span<const std::uint8_t> bytes, const std::string& name,
                     std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 constexpr std::size_t kMostMeshBytes = std::size_t{64} << 20;

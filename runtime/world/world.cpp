@@ -111,7 +111,6 @@ BodyIndex World::body(ObjectId id) const {
   return body;
 }
 
-
 std::pmr::vector<ObjectId> World::touching(ObjectId id) const {
   const BodyIndex self = body(id);
   const Pose pose{bodies_->location(self), bodies_->orientation(self)};

@@ -39,8 +39,7 @@ Operand FunctionCompiler::assign(const ast::Assign& a, const ast::Expr& e) {
 }
 
 /// current op value, for op=, ++ and --: what counts starts at 0 where a hash has no such key yet.
-Operand FunctionCompiler::changed(ast::BinaryOp op, const Operand& current, const Operand& value,
-                                  const Operand* into) {
+Operand FunctionCompiler::changed(ast::BinaryOp op, const Operand& current, const Operand& value, const Operand* into) {
   const bool counts = value.type == StaticType::Int || value.type == StaticType::Any;
   if (current.type != StaticType::Any || !counts) return binary(op, current, value, into);
   const auto left = boxed(current);

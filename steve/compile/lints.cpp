@@ -147,9 +147,11 @@ void ProgramBuilder::check_method_named(const ast::Call& call, const ClassInfo* 
         }
       }
       const std::string likely = nearest(name, near);
-      const std::string count = naming.most == 0 ? "without keywords" : "with at most " + std::to_string(naming.most) + " keywords";
+      const std::string count =
+          naming.most == 0 ? "without keywords" : "with at most " + std::to_string(naming.most) + " keywords";
       lint(keyword.value->span, "lint-unknown-method",
-           receiver ? "class " + receiver->name + " has no method '" + name + "' " + count + ", which " + naming.what + " needs"
+           receiver ? "class " + receiver->name + " has no method '" + name + "' " + count + ", which " + naming.what +
+                          " needs"
                     : "no class has a method '" + name + "' " + count + ", which " + naming.what + " needs",
            !likely.empty() ? "did you mean '" + likely + "'?"
            : named         ? "take the keywords away, or name another method"

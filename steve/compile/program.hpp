@@ -151,7 +151,7 @@ class Program {
   friend class ProgramBuilder;
   friend class Fragments;
   Program();
-  Program(const Program& base, std::size_t room);  // with room behind the tables for fragments (evaluate.cpp)
+  Program(const Program& base, std::size_t room);    // with room behind the tables for fragments (evaluate.cpp)
   std::vector<std::shared_ptr<ClassInfo>> classes_;  // shared with the programs that extend this one by fragments
   std::unordered_map<std::string, ClassInfo*> class_names_;  // names and aliases
   const ClassInfo* controller_ = nullptr;

@@ -25,9 +25,8 @@ bool try_archive(Machine& machine, std::string_view what, Work work) {
 
 std::int32_t save(Machine& machine, Instance& self, Text file) {
   const std::string name(view(file));
-  const bool done = try_archive(machine, "archive '" + name + "' not written", [&] {
-    write_file(machine, name, to_archive(machine, self));
-  });
+  const bool done = try_archive(machine, "archive '" + name + "' not written",
+                                [&] { write_file(machine, name, to_archive(machine, self)); });
   return done ? 0 : -1;
 }
 

@@ -21,7 +21,8 @@ void image_iterate(Machine&, Instance&) {}
 // --- size and files --------------------------------------------------------------------------------------------------
 
 Instance* image_set_size(Machine& machine, Instance& self, std::int32_t width, std::int32_t height) {
-  if (width > 0 && height > 0) machine.charge_for(static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height));
+  if (width > 0 && height > 0)
+    machine.charge_for(static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height));
   image(machine, self) = Image(width, height, machine.heap().memory());
   return &self;
 }
@@ -75,7 +76,7 @@ std::int32_t image_write_16_bit(Machine& machine, Instance& self, Text file) {
   for (int y = 0; y < picture.height(); ++y)
     for (int x = 0; x < picture.width(); ++x)
       greys.push_back((picture.byte(x, y, Channel::Red) * 256 + picture.byte(x, y, Channel::Green)) / kHighest);
-  return try_to_write(machine, name, 
+  return try_to_write(machine, name,
                       [&] { write_file(machine, name, gray16_png(picture.width(), picture.height(), greys)); });
 }
 

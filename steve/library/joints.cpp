@@ -147,10 +147,11 @@ void drive_joint(Machine& machine, Instance& joint, JointIndex index, const Join
   if (Slot* had = library_slot(machine, joint, "Joint", "hadStrength")) had->i = 1;
   const double most = dynamics.strength_hard_limit(index);
   if (drive.strength_limit <= most) return;
-  machine.warn_once("joint:strength-cut",
-                    fmt::format("the strength limit {:g} of {} is cut to {:g}, 500 times the mass of its child, {:g} kg "
-                                "(a body weighs 1 kg per cubic length unit unless its shape has another mass)",
-                                drive.strength_limit, name_of(joint), most, most / 500));
+  machine.warn_once(
+      "joint:strength-cut",
+      fmt::format("the strength limit {:g} of {} is cut to {:g}, 500 times the mass of its child, {:g} kg "
+                  "(a body weighs 1 kg per cubic length unit unless its shape has another mass)",
+                  drive.strength_limit, name_of(joint), most, most / 500));
 }
 
 void check_motors(Machine& machine) {

@@ -13,8 +13,8 @@
 
 namespace breve::steve {
 
-/// The native data of a Joint object. Mechanics has the truth while the joint is linked; what stands here is for linking
-/// it, and for archives.
+/// The native data of a Joint object. Mechanics has the truth while the joint is linked; what stands here is for
+/// linking it, and for archives.
 class JointResource final : public Resource {
  public:
   static constexpr std::string_view kKind = "joint";

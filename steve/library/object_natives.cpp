@@ -43,8 +43,9 @@ std::int32_t object_can_respond(Machine& machine, Instance& self, Text method) {
 // The method may come with a reload, so that it is no error yet.
 void check_scheduled(Machine& machine, const Instance& self, Text method) {
   if (!machine.find_method(*self.cls, view(method), 0))
-    machine.report_unknown_method(Severity::Warning, self, view(method),
-                                  "a scheduled call needs one without parameters, and the run ends when its time comes");
+    machine.report_unknown_method(
+        Severity::Warning, self, view(method),
+        "a scheduled call needs one without parameters, and the run ends when its time comes");
 }
 
 void object_schedule(Machine& machine, Instance& self, Text method, double when) {

@@ -216,7 +216,8 @@ double real_get_neighborhood_size(Machine& machine, Instance& self) {
 ListCell* real_get_neighbors(Machine& machine, Instance& self) {
   body_of(machine, self);
   if (!machine.world().effects()[EffectId::Neighbors].active) [[unlikely]]
-    machine.warn_once("get-neighbors", "get-neighbors finds nobody before 'update-neighbors' of the controller is called");
+    machine.warn_once("get-neighbors",
+                      "get-neighbors finds nobody before 'update-neighbors' of the controller is called");
   const std::span<const std::uint64_t> neighbors = machine.world().neighbor_users(self.id);
   ListCell* list = machine.heap().list(static_cast<std::uint32_t>(neighbors.size()));
   for (const std::uint64_t neighbor : neighbors)

@@ -78,7 +78,9 @@ Instance* build_sphere(Machine& machine, Instance& self, double radius) {
   return build(machine, self, Shape::sphere(radius, machine.heap().memory()));
 }
 
-Instance* build_cube(Machine& machine, Instance& self, Vector3 size) { return build(machine, self, Shape::box(size, machine.heap().memory())); }
+Instance* build_cube(Machine& machine, Instance& self, Vector3 size) {
+  return build(machine, self, Shape::box(size, machine.heap().memory()));
+}
 
 /// In a flat world a disk lies in the plane: turned so that its axis is z.
 std::shared_ptr<Shape> lying(const Shape& prism, std::pmr::memory_resource* memory) {

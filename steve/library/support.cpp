@@ -31,9 +31,10 @@ void set_library_object(Machine& machine, Instance& self, std::string_view owner
 std::string name_of(const Instance& object) { return fmt::format("{} (0x{:x})", object.cls->name, object.serial); }
 
 void fail_kind(const Instance& object, std::string_view kind, std::string_view needed) {
-  Machine::fail(RunErrorKind::Type, fmt::format("{} has native data of kind '{}' where '{}' is needed: it is an object of "
-                                                "another kind, or comes from a damaged archive",
-                                                name_of(object), kind, needed));
+  Machine::fail(RunErrorKind::Type,
+                fmt::format("{} has native data of kind '{}' where '{}' is needed: it is an object of "
+                            "another kind, or comes from a damaged archive",
+                            name_of(object), kind, needed));
 }
 
 ObjectId object_with_index(Machine& machine, std::int32_t index) {

@@ -64,8 +64,8 @@ Machine::Receiver Machine::receiver_of_site(const Span& selector) const {
   return receiver;
 }
 
-// Where the program assigns to a variable of this instance: found in its text, since nobody keeps it otherwise. Null once
-// much has been looked through: errors that do not stop a run may be many.
+// Where the program assigns to a variable of this instance: found in its text, since nobody keeps it otherwise. Null
+// once much has been looked through: errors that do not stop a run may be many.
 std::optional<std::string> Machine::where_assigned(const Receiver& receiver) const {
   std::vector<std::string> places;
   std::size_t more = 0;
@@ -135,8 +135,7 @@ void Machine::fail_null_receiver(const CallSite& site) const {
                               ? program_->symbols().name(who.member->class_name)
                               : std::string("CLASS");
   const auto found = who.member ? where_assigned(who) : std::nullopt;
-  if (!found)
-    throw error(null, fmt::format("assign an object before this line, as in   {} = new {}.", who.text, cls));
+  if (!found) throw error(null, fmt::format("assign an object before this line, as in   {} = new {}.", who.text, cls));
   const std::string& places = *found;
   if (places.empty())
     throw error(null, fmt::format("nothing assigns it yet: do so in 'init', as in   {} = new {}.", who.text, cls));

@@ -20,7 +20,8 @@ std::string help_for(const Value& v, std::string_view to) {
   if (to == "a list" && v.tag == Tag::Hash) return "a list of the keys of a hash is keys(hash)";
   if (to == "a list") return "a list is written { a, b, c }; a loop that counts: for n = 0, n < 10, n++: ...";
   if (to == "an object" && v.tag == Tag::Int) return "of all numbers only 0 stands for no object";
-  if (to == "an object") return "a call gives what its method returns: one that gives its own object ends with 'return self.'";
+  if (to == "an object")
+    return "a call gives what its method returns: one that gives its own object ends with 'return self.'";
   return {};
 }
 

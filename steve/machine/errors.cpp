@@ -125,9 +125,10 @@ void Machine::report_unknown_method(Severity severity, const Instance& self, std
   const bool error = severity == Severity::Error;
   const auto& tell = error ? host_.error : host_.warn;
   if (!tell || (!error && !warned_.emplace(self.cls->name + " " + std::string(method)).second)) return;
-  tell(format({severity, "run-time", fmt::format("class {} has no method '{}': {}", self.cls->name, method, consequence),
-               unknown_method_help(method, self.cls, *program_), place_of_caller()},
-              program_->sources()));
+  tell(
+      format({severity, "run-time", fmt::format("class {} has no method '{}': {}", self.cls->name, method, consequence),
+              unknown_method_help(method, self.cls, *program_), place_of_caller()},
+             program_->sources()));
 }
 
 void Machine::warn_once(std::string_view key, std::string_view text) {

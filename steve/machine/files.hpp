@@ -38,8 +38,8 @@ class MissingFile : public Error {
 /// The largest file that is read as a whole.
 constexpr std::size_t kMostFileBytes = std::size_t{256} << 20;
 
-/// Open the file that a script names. Throws MissingFile; or Error{File} with the name and the reason if the host refuses
-/// it, or gives scripts no files at all.
+/// Open the file that a script names. Throws MissingFile; or Error{File} with the name and the reason if the host
+/// refuses it, or gives scripts no files at all.
 std::unique_ptr<FileReader> open_for_reading(Machine& machine, std::string_view name);
 /// @param append  what is in the file stays; otherwise it is lost as soon as the file is closed
 std::unique_ptr<FileWriter> open_for_writing(Machine& machine, std::string_view name, bool append);

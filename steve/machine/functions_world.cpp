@@ -43,8 +43,9 @@ void add_event(Machine& machine, Instance& self, StringCell* method, double time
   const ObjectId id = machine.id_of(&self);
   if (!id) return;
   if (!machine.find_method(*self.cls, view(method), 0))
-    machine.report_unknown_method(Severity::Warning, self, view(method),
-                                  "a scheduled call needs one without parameters, and the run ends when its time comes");
+    machine.report_unknown_method(
+        Severity::Warning, self, view(method),
+        "a scheduled call needs one without parameters, and the run ends when its time comes");
   if (interval > 0 && time <= world.time()) time = world.time() + interval;
   if (world.schedule(id, view(method), time, interval)) return;
   machine.warn(fmt::format("'{}' is not scheduled: the time {:f} is not in the future, the clock reads {:f}",

@@ -25,15 +25,15 @@ namespace breve::steve {
 
 /// What a machine needs from whoever embeds it. Every member may be empty.
 struct MachineHost {
-  std::function<void(std::string_view text)> print;             // what scripts print, as written
-  std::function<void(std::string_view text)> warn;              // one warning, one or more whole lines
-  std::function<void(std::string_view text)> error;             // a run-time error that did not stop the run (F27)
+  std::function<void(std::string_view text)> print;  // what scripts print, as written
+  std::function<void(std::string_view text)> warn;   // one warning, one or more whole lines
+  std::function<void(std::string_view text)> error;  // a run-time error that did not stop the run (F27)
   // Open a file; null with a reason, or without one if there is none.
   std::function<std::unique_ptr<FileReader>(std::string_view name, std::string& why)> open_for_reading;
   std::function<std::unique_ptr<FileWriter>(std::string_view name, bool append, std::string& why)> open_for_writing;
   std::function<std::string(std::string_view command)> system;  // run a shell command; empty: not allowed
   bool may_sleep = false, may_read_clock = false, may_draw_entropy = false;
-  std::vector<std::string> arguments;                           // [0] is the program file
+  std::vector<std::string> arguments;  // [0] is the program file
   std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
   std::uint64_t seed = 1;  // that the world was made with
   bool verbose = false;    // say once when an obsolete selector is used
@@ -41,7 +41,8 @@ struct MachineHost {
   std::uint32_t depth_limit = 5000;  // nested calls
   std::uint64_t budget = 0;          // loop turns and calls in an iteration or a call from the host; 0 = none
   std::uint64_t call_budget = 0;     // in one call by the world, within an iteration; 0 = none
-  double patience = 0;  // s of real time that an iteration or a call from the host may take before it is warned of; 0 = any
+  // s of real time that an iteration or a call from the host may take before it is warned of; 0 = any
+  double patience = 0;
   std::vector<std::pair<std::string, std::string>> settings;  // variables of the controller, set before its init
 };
 
@@ -149,8 +150,8 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   void warn(std::string_view text);
   /// The same, at most once per world for each `key`.
   void warn_once(std::string_view key, std::string_view text);
-  /// Say, at the place of the running statement, that `self` has no such method and which may be meant. An error is told
-  /// each time, and a warning once for each class.
+  /// Say, at the place of the running statement, that `self` has no such method and which may be meant. An error is
+  /// told each time, and a warning once for each class.
   /// @param consequence  "nothing is registered"
   void report_unknown_method(Severity severity, const Instance& self, std::string_view method,
                              std::string_view consequence);
@@ -474,7 +475,7 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   Budget budget_;
   std::atomic<bool> interrupted_{false};
   std::chrono::steady_clock::time_point run_began_{};  // if there is a limit to patience
-  std::unique_ptr<Fragments> fragments_;  // once something was evaluated
+  std::unique_ptr<Fragments> fragments_;               // once something was evaluated
   HashCell* session_ = nullptr;
   std::uint32_t nesting_ = 0;  // interpreter loops on the C++ stack
 };

@@ -48,8 +48,8 @@ std::optional<Vector3> vector_in(std::string_view text) {
   for (const ClassInfo* c = &controller; c; c = c->parent)
     for (const auto& v : c->variables) names.push_back(symbols.name(v.name));
   const std::string near = nearest(name, names);
-  throw Error(ErrorCode::Argument, fmt::format("the controller's class {} has no variable '{}'{}", controller.name, name,
-                                               near.empty() ? "" : fmt::format(": did you mean '{}'?", near)));
+  throw Error(ErrorCode::Argument, fmt::format("the controller's class {} has no variable '{}'{}", controller.name,
+                                               name, near.empty() ? "" : fmt::format(": did you mean '{}'?", near)));
 }
 
 }  // namespace
@@ -60,9 +60,8 @@ void Machine::apply_settings(Instance& controller) {
     const VariableInfo* variable = symbol == kNoSymbol ? nullptr : controller.cls->find_variable(symbol);
     if (!variable) fail_unknown_setting(*controller.cls, name, program_->symbols());
     const auto refuse = [&, &key = name, &value = text](const char* wanted) {
-      throw Error(ErrorCode::Argument,
-                  fmt::format("the variable '{}' of class {} cannot be set to '{}': {}", key, controller.cls->name, value,
-                              wanted));
+      throw Error(ErrorCode::Argument, fmt::format("the variable '{}' of class {} cannot be set to '{}': {}", key,
+                                                   controller.cls->name, value, wanted));
     };
     if (variable->array_size >= 0) refuse("it is an array");
     std::optional<Value> value;

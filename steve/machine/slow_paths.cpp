@@ -32,8 +32,7 @@ Value Machine::null_default(StaticType type, std::uint32_t what, const Instructi
   }
 }
 
-Value Machine::calculate(ast::BinaryOp op, const Value& x, const Value& y, bool absent_is_zero,
-                         const Instruction* pc) {
+Value Machine::calculate(ast::BinaryOp op, const Value& x, const Value& y, bool absent_is_zero, const Instruction* pc) {
   const bool missing = (x.tag == Tag::Null && !absent_is_zero) || y.tag == Tag::Null;
   const Value result = binary(*heap_, op, x, y);
   if (!missing || op > ast::BinaryOp::Pow) return result;
@@ -61,7 +60,6 @@ Slot Machine::converted_reference(StaticType type, const Value& given, std::uint
 }
 
 // --- members of objects ----------------------------------------------------------------------------------------------
-
 
 const VariableInfo* Machine::member_variable(const Instance& instance, Symbol name) const {
   const auto* variable = instance.cls->find_variable(name);
@@ -330,8 +328,7 @@ StringCell* Machine::interpolate(const std::vector<std::string>& texts, const Va
     if (values[i].tag == Tag::String) {
       heap_->check_room(out.size() + view(values[i].string()).size());
       out += view(values[i].string());
-    }
-    else if (values[i].tag == Tag::Int)
+    } else if (values[i].tag == Tag::Int)
       append_int(out, values[i].i);
     else if (values[i].tag == Tag::Double)
       append_double(out, values[i].d);

@@ -99,7 +99,12 @@ void put_value(ByteWriter& out, const Value& v, const Numbering& numbering) {
 class CellReader {
  public:
   CellReader(ByteReader& in, Heap& heap, const Program& program, std::span<StringCell* const> constants)
-      : cells_(heap.memory()), instances_(heap.memory()), in_(in), heap_(heap), program_(program), constants_(constants) {}
+      : cells_(heap.memory()),
+        instances_(heap.memory()),
+        in_(in),
+        heap_(heap),
+        program_(program),
+        constants_(constants) {}
 
   void read() {
     const auto containers = in_.get_count(9);

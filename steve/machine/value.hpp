@@ -28,7 +28,7 @@ struct Cell {
   std::uint8_t mark = 0;       // while frames are looked at or suspects are judged; else 0
   bool listed : 1 = false;     // in the table of zero counts
   bool suspected : 1 = false;  // of being in a cycle that nothing refers to: held by the table of suspects
-  bool immortal = false;  // a literal of the program: never freed, never counted
+  bool immortal = false;       // a literal of the program: never freed, never counted
   explicit Cell(Tag t) : tag(t) {}
 };
 

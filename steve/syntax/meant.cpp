@@ -129,7 +129,8 @@ std::optional<Diagnostic> Parser::meant_by_value(std::size_t) {
   if (lacks_self() && previous().kind == TokenKind::Name) return without_self();
   if (call_method_ + 1 != pos_ || !names_a_push(call_name_)) return std::nullopt;
   const Token& method = *items_[call_method_].token;
-  return Diagnostic{Severity::Error, "list-word", fmt::format("a value is put into a list with 'push', not '{}'", method.text),
+  return Diagnostic{Severity::Error, "list-word",
+                    fmt::format("a value is put into a list with 'push', not '{}'", method.text),
                     fmt::format("write: push {} onto {}", source_of(pos_, std::max(statement_end(), pos_ + 1)),
                                 source_of(call_start_, call_method_)),
                     method.span};
@@ -148,10 +149,9 @@ std::optional<Diagnostic> Parser::meant_by_assignment() {
     return Diagnostic{Severity::Error, "foreign-member", "a variable of the object itself is written without 'self'",
                       fmt::format("write: {} {}", name.text, rest), place};
   if (lacks_self() && receiver.token->text.front() >= 'A' && receiver.token->text.front() <= 'Z')
-    return Diagnostic{Severity::Error, "foreign-declaration", "a variable is declared with its type behind it",
-                      fmt::format("write at the beginning of the method: {} ({} object).", name.text,
-                                  receiver.token->text),
-                      place};
+    return Diagnostic{
+        Severity::Error, "foreign-declaration", "a variable is declared with its type behind it",
+        fmt::format("write at the beginning of the method: {} ({} object).", name.text, receiver.token->text), place};
   const std::string object = source_of(call_start_, call_method_);
   return Diagnostic{Severity::Error, "foreign-member", "a variable of another object is written with '::'",
                     fmt::format("write: {}::{} {}", object, name.text, rest), place};

@@ -270,15 +270,15 @@ class Parser {
   std::size_t lints_ = 0;
   std::size_t class_close_ = 0;  // the item that closes the class being parsed, 0 if none does
   std::uint32_t last_error_offset_ = 0;
-  std::size_t call_end_ = 0;  // the item behind the call that was parsed last
-  std::string call_name_;     // its selector
-  std::size_t call_start_ = 0;   // the item that its receiver begins with
-  std::size_t call_method_ = 0;  // the item of its selector
-  std::size_t call_new_ = 0;     // the 'new' of its last argument, if another keyword follows that; else 0
+  std::size_t call_end_ = 0;             // the item behind the call that was parsed last
+  std::string call_name_;                // its selector
+  std::size_t call_start_ = 0;           // the item that its receiver begins with
+  std::size_t call_method_ = 0;          // the item of its selector
+  std::size_t call_new_ = 0;             // the 'new' of its last argument, if another keyword follows that; else 0
   std::optional<FileNames> file_names_;  // found when a mistake asks for them
   bool semicolon_reported_ = false;
   bool elif_reported_ = false;
-  bool method_brace_ = false;  // a '{' stood in place of the ':' of the method header
+  bool method_brace_ = false;               // a '{' stood in place of the ':' of the method header
   bool header_colon_ = false;               // the ':' of the method header was read, too early
   bool open_brace_reported_ = false;        // a '{' has no '}': that those around it lack theirs is no news
   bool cut_off_ = false;                    // the scanner gave up: what the parser misses is no news

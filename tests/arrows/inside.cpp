@@ -47,7 +47,8 @@ std::vector<std::string> files_of_heading(const Comment& comment) {
   static const std::regex list(R"(^// ([a-z_0-9]+\.cpp(, [a-z_0-9]+\.cpp)*)(: .*)?$)");
   static const std::regex behind(R"(^// [^.]*\(([a-z_0-9]+\.cpp)\)$)");
   std::smatch found;
-  if (!comment.alone || (!std::regex_match(comment.text, found, list) && !std::regex_match(comment.text, found, behind)))
+  if (!comment.alone ||
+      (!std::regex_match(comment.text, found, list) && !std::regex_match(comment.text, found, behind)))
     return {};
   static const std::regex file(R"([a-z_0-9]+\.cpp)");
   const std::string text = found[1];
@@ -126,17 +127,20 @@ void Inside::find_false_headings(const std::string& file, const Source& source, 
         if (name.function && name.defined) (named ? defined : elsewhere).emplace(last_part(name.owner), name.name);
     }
     for (const std::string& name : names)
-      if (files_.count(folder + name) == 0) out.push_back({file, line, "the heading names " + name + ", which is not there"});
+      if (files_.count(folder + name) == 0)
+        out.push_back({file, line, "the heading names " + name + ", which is not there"});
     std::size_t end = i + 1 < headings.size() ? headings[i + 1].first : ~std::size_t{0};
     // Nested classes have ends of their own; the scope's is the first that closes no name below the heading.
     for (const Name& name : source.names) {
-      if (!name.function || name.defined || name.overrides || name.first_line < line || name.first_line >= end) continue;
+      if (!name.function || name.defined || name.overrides || name.first_line < line || name.first_line >= end)
+        continue;
       const bool past = std::any_of(source.breaks.begin(), source.breaks.end(),
                                     [&](std::size_t at) { return at > line && at < name.first_line; });
       if (past) break;
       const std::tuple key(last_part(name.owner), name.name);
       if (defined.count(key) == 0 && elsewhere.count(key) != 0)
-        out.push_back({file, name.first_line, "'" + name.name + "' stands below a heading that names another file than it is in"});
+        out.push_back({file, name.first_line,
+                       "'" + name.name + "' stands below a heading that names another file than it is in"});
     }
   }
 }
@@ -160,7 +164,8 @@ std::vector<Offence> names_that_meet(const fs::path& root, const fs::path& build
       for (const Name& name : read[path].names) {
         const bool local = name.owner.empty() && (name.space.find("{}") != std::string::npos || name.is_static);
         if (!local || !name.defined || name.name == "TEST" || name.name == "TEST_F" || name.name == "TEST_P") continue;
-        // Two names meet if they are looked up in the same places: the unnamed namespace is a part of what is around it.
+        // Two names meet if they are looked up in the same places: the unnamed namespace is a part of what is around
+        // it.
         const std::string space = std::regex_replace(name.space, std::regex(R"((::)?\{\})"), "");
         const auto [at, is_new] = first.emplace(std::pair(space, name.name), file);
         if (!is_new && at->second != file)

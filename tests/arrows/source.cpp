@@ -1,4 +1,5 @@
-// Tokens first, then a walk over them that knows what each pair of braces is: a namespace, a class, a function, a value.
+// Tokens first, then a walk over them that knows what each pair of braces is: a namespace, a class, a function, a
+// value.
 #include "source.hpp"
 
 #include <algorithm>
@@ -103,7 +104,8 @@ class Lexer {
   }
 
   void sign() {
-    static constexpr std::string_view kPairs[] = {"::", "->", "==", "!=", "<=", ">=", "&&", "||", "+=", "-=", "|=", "++", "--"};
+    static constexpr std::string_view kPairs[] = {"::", "->", "==", "!=", "<=", ">=", "&&",
+                                                  "||", "+=", "-=", "|=", "++", "--"};
     for (const std::string_view pair : kPairs)
       if (text_.compare(at_, 2, pair) == 0) {
         at_ += 2;
@@ -301,7 +303,8 @@ class Walk {
       if (t == "[") at = behind(at) - 1;
       if (t == "<") at = behind_angles(at) - 1;
       if (t != "(") continue;
-      if (is(at - 1, "alignas") || is(at - 1, "decltype") || is(at - 1, "__attribute__") || is(at - 1, "noexcept") || is(at - 1, "explicit")) {
+      if (is(at - 1, "alignas") || is(at - 1, "decltype") || is(at - 1, "__attribute__") || is(at - 1, "noexcept") ||
+          is(at - 1, "explicit")) {
         at = behind(at) - 1;
         continue;
       }

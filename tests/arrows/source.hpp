@@ -1,5 +1,5 @@
-// What stands in a source file of C or C++: functions, names that are used, comments. A reader of tokens and braces, not
-// a compiler: it knows the forms that this repository is written in, and needs no build.
+// What stands in a source file of C or C++: functions, names that are used, comments. A reader of tokens and braces,
+// not a compiler: it knows the forms that this repository is written in, and needs no build.
 #pragma once
 
 #include <cstddef>

@@ -209,7 +209,8 @@ static void what_takes_longer_than_patience_is_told_once_with_its_place(void) {
                        &config))
     return;
   CHECK(s.said.warnings == 0);
-  for (int i = 0; i < 2; ++i) CHECK_STATUS(BREVE_OK, breve_object_call(s.world, breve_world_controller(s.world), "go", NULL, 0, NULL));
+  for (int i = 0; i < 2; ++i)
+    CHECK_STATUS(BREVE_OK, breve_object_call(s.world, breve_world_controller(s.world), "go", NULL, 0, NULL));
   CHECK(s.said.warnings == 1);
   CHECK(strstr(s.said.warning, ":4:") != NULL);
   config.patience = -1;

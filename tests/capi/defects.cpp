@@ -82,7 +82,8 @@ TEST(Defects, AnInvariantThatFailsNamesItsFile) {
 }
 
 TEST(Defects, AnExceptionThatNobodyExpectsIsAStatus) {
-  Host host([](void*, breve_world*, breve_channel, const char*, size_t) { throw std::logic_error("not of this house"); });
+  Host host(
+      [](void*, breve_world*, breve_channel, const char*, size_t) { throw std::logic_error("not of this house"); });
   EXPECT_EQ(host.call("say"), BREVE_ERROR_INTERNAL);
   EXPECT_NE(host.text().find("not of this house"), std::string::npos);
 }

@@ -111,8 +111,8 @@ static void close_clerk(clerk* c) {
 
 /* One of the methods above; of two texts the second is `name`. */
 static breve_status ask(clerk* c, const char* method, const char* what, const char* name, breve_value* result) {
-  static const char* const words[][2] = {{"read", "name"},    {"look", "at"},     {"draw", "into"},
-                                         {"archive", "into"}, {"find", "name"}};
+  static const char* const words[][2] = {
+      {"read", "name"}, {"look", "at"}, {"draw", "into"}, {"archive", "into"}, {"find", "name"}};
   breve_keyword args[2];
   size_t count = 0;
   if (what) args[count++] = (breve_keyword){"text", breve_value_string(what)};
@@ -220,9 +220,20 @@ static void nothing_leads_out_of_a_directory(void) {
   if (!open_clerk(&c, with_root(&files, "root", true, 0))) return;
   char absolute[256];
   path_in_box(absolute, sizeof absolute, "root/a.txt");
-  const char* const names[] = {"../outside.txt", "sub/../../outside.txt", absolute,    "/etc/passwd", "link.txt",
-                               "way/outside.txt", "way/other/c.txt",       "pipe",      "sub",         ".",
-                               "..",              "sub/",                  "/dev/zero", ""};
+  const char* const names[] = {"../outside.txt",
+                               "sub/../../outside.txt",
+                               absolute,
+                               "/etc/passwd",
+                               "link.txt",
+                               "way/outside.txt",
+                               "way/other/c.txt",
+                               "pipe",
+                               "sub",
+                               ".",
+                               "..",
+                               "sub/",
+                               "/dev/zero",
+                               ""};
   for (size_t i = 0; i < sizeof names / sizeof *names; ++i) {
     reads(&c, names[i], "none");
     CHECK(!does(&c, "write", "x", names[i]));
@@ -380,7 +391,6 @@ static void a_host_may_open_files_itself(void) {
   breve_files others = config.files;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_files_within("/", false, 0, &others));
 }
-
 
 void files_suite(void) {
   if (!make_box()) return;

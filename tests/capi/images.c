@@ -216,7 +216,8 @@ static void a_flat_link_that_is_refused_leaves_nothing(void) {
       "@use PlanarControl.\n@use Link.\n@use Joint.\nController A.\n"
       "PlanarControl : A {\n"
       "  + variables:\n    l, j (object).\n"
-      "  + to refused:\n    j link parent 0 to-child l with-parent-point (3.0, -1.0e14, 0) with-child-point (-1.0, 2.0, 0).\n"
+      "  + to refused:\n    j link parent 0 to-child l with-parent-point (3.0, -1.0e14, 0) with-child-point (-1.0, "
+      "2.0, 0).\n"
       "  + to init:\n    l = new Link.\n    j = new FixedJoint.\n    l move to (0, 9.0e27, 0).\n"
       "    callMethodNamed(self, \"refused\", {}).\n"
       "  + to iterate:\n    super iterate.\n"
@@ -226,7 +227,8 @@ static void a_flat_link_that_is_refused_leaves_nothing(void) {
       "@use PlanarControl.\n@use Link.\n@use Joint.\nController A.\n"
       "PlanarControl : A {\n"
       "  + variables:\n    l, j (object).\n"
-      "  + to refused:\n    j link parent 0 to-child l with-parent-point (3.0, -1.0e300, 0) with-child-point (-1.0, 2.0, 0).\n"
+      "  + to refused:\n    j link parent 0 to-child l with-parent-point (3.0, -1.0e300, 0) with-child-point (-1.0, "
+      "2.0, 0).\n"
       "  + to init:\n    l = new Link.\n    j = new FixedJoint.\n    callMethodNamed(self, \"refused\", {}).\n"
       "}\n",
       5);

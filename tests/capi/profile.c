@@ -4,44 +4,44 @@
 #include "scene.h"
 
 static const char* const program_text =
-    "@use Control.\n"                                             /*  1 */
-    "@use Mobile.\n"                                              /*  2 */
-    "Controller Main.\n"                                          /*  3 */
-    "Control : Main {\n"                                          /*  4 */
-    "  + variables:\n"                                            /*  5 */
-    "    worker (object).\n"                                      /*  6 */
-    "  + to init:\n"                                              /*  7 */
-    "    worker = new Worker.\n"                                  /*  8 */
-    "    worker set-velocity to (1, 0, 0).\n"                     /*  9 */
-    "  + to iterate:\n"                                           /* 10 */
-    "    worker work turns 3.\n"                                  /* 11 */
-    "    worker work turns 2.\n"                                  /* 12 */
-    "    super iterate.\n"                                        /* 13 */
-    "  + to count-down from n (int):\n"                           /* 14 */
-    "    if n > 0: self count-down from n - 1.\n"                 /* 15 */
-    "  + to fall:\n"                                              /* 16 */
-    "    self stumble.\n"                                         /* 17 */
-    "  + to stumble:\n"                                           /* 18 */
-    "    sqrt(4.0).\n"                                            /* 19 */
-    "    die \"fallen\".\n"                                       /* 20 */
-    "  + to ask:\n"                                               /* 21 */
-    "    print \"asked\".\n"                                      /* 22 */
-    "    free (new Worker).\n"                                    /* 23 */
-    "  + to order:\n"                                             /* 24 */
-    "    l (list).\n"                                             /* 25 */
-    "    l = { 3, 1, 2 }.\n"                                      /* 26 */
-    "    sort l with compare.\n"                                  /* 27 */
-    "    return l{0}.\n"                                          /* 28 */
-    "  + to compare a x (int) b y (int):\n"                       /* 29 */
-    "    return x - y.\n"                                         /* 30 */
-    "  + to spin:\n"                                              /* 31 */
-    "    while 1: self compare a 1 b 2.\n"                        /* 32 */
+    "@use Control.\n"                             /*  1 */
+    "@use Mobile.\n"                              /*  2 */
+    "Controller Main.\n"                          /*  3 */
+    "Control : Main {\n"                          /*  4 */
+    "  + variables:\n"                            /*  5 */
+    "    worker (object).\n"                      /*  6 */
+    "  + to init:\n"                              /*  7 */
+    "    worker = new Worker.\n"                  /*  8 */
+    "    worker set-velocity to (1, 0, 0).\n"     /*  9 */
+    "  + to iterate:\n"                           /* 10 */
+    "    worker work turns 3.\n"                  /* 11 */
+    "    worker work turns 2.\n"                  /* 12 */
+    "    super iterate.\n"                        /* 13 */
+    "  + to count-down from n (int):\n"           /* 14 */
+    "    if n > 0: self count-down from n - 1.\n" /* 15 */
+    "  + to fall:\n"                              /* 16 */
+    "    self stumble.\n"                         /* 17 */
+    "  + to stumble:\n"                           /* 18 */
+    "    sqrt(4.0).\n"                            /* 19 */
+    "    die \"fallen\".\n"                       /* 20 */
+    "  + to ask:\n"                               /* 21 */
+    "    print \"asked\".\n"                      /* 22 */
+    "    free (new Worker).\n"                    /* 23 */
+    "  + to order:\n"                             /* 24 */
+    "    l (list).\n"                             /* 25 */
+    "    l = { 3, 1, 2 }.\n"                      /* 26 */
+    "    sort l with compare.\n"                  /* 27 */
+    "    return l{0}.\n"                          /* 28 */
+    "  + to compare a x (int) b y (int):\n"       /* 29 */
+    "    return x - y.\n"                         /* 30 */
+    "  + to spin:\n"                              /* 31 */
+    "    while 1: self compare a 1 b 2.\n"        /* 32 */
     "}\n"
-    "Mobile : Worker {\n"                                         /* 34 */
-    "  + to work turns n (int):\n"                                /* 35 */
+    "Mobile : Worker {\n"          /* 34 */
+    "  + to work turns n (int):\n" /* 35 */
     "    i (int).\n"
-    "    for i = 0, i < n, i++: self rest.\n"                     /* 37 */
-    "  + to rest:\n"                                              /* 38 */
+    "    for i = 0, i < n, i++: self rest.\n" /* 37 */
+    "  + to rest:\n"                          /* 38 */
     "    return random[1.0].\n"
     "}\n";
 
@@ -112,7 +112,7 @@ static void init_and_what_the_engine_does_are_in_the_tree(void) {
     const breve_profile_node n = node_at(&s, i);
     if (n.kind == BREVE_PROFILE_NATIVE && n.line != 0) native = true;
     if (strcmp(n.name, "motion") == 0) {
-      motion = n.calls == 3 && node_at(&s, n.parent).kind == BREVE_PROFILE_NATIVE;  /* 3 integration steps */
+      motion = n.calls == 3 && node_at(&s, n.parent).kind == BREVE_PROFILE_NATIVE; /* 3 integration steps */
       CHECK_STATUS(BREVE_OK, breve_world_profile_stop(s.world));
     }
   }
@@ -226,8 +226,7 @@ static void watch(void* user, const breve_trace_event* event) {
   if (strcmp(event->name, "rest") == 0 && event->begins)
     r->rest_seen = strcmp(event->class_name, "Worker") == 0 && event->line == 38 && event->call_line == 37 &&
                    strcmp(event->file, "scene.tz") == 0 && event->kind == BREVE_PROFILE_METHOD;
-  if (r->world)
-    r->status = breve_object_call(r->world, breve_world_controller(r->world), "ask", NULL, 0, NULL);
+  if (r->world) r->status = breve_object_call(r->world, breve_world_controller(r->world), "ask", NULL, 0, NULL);
 }
 
 static void events_nest_and_follow_the_clock(void) {
@@ -235,8 +234,7 @@ static void events_nest_and_follow_the_clock(void) {
   record r = {0};
   if (!open_profiled(&s, watch, &r)) return;
   CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
-  CHECK_STATUS(BREVE_ERROR_SCRIPT,
-               breve_object_call(s.world, breve_world_controller(s.world), "fall", NULL, 0, NULL));
+  CHECK_STATUS(BREVE_ERROR_SCRIPT, breve_object_call(s.world, breve_world_controller(s.world), "fall", NULL, 0, NULL));
   CHECK(r.depth == 0 && r.deepest >= 5 && r.wrong == 0 && r.rest_seen);
   uint64_t calls = 0;
   for (size_t i = 0; i < count_of(&s); ++i) calls += node_at(&s, i).calls;

@@ -62,11 +62,11 @@ constexpr std::uint64_t kWords[] = {0,
                                     0x7fffffffffffffffU,
                                     0x8000000000000000U,
                                     0xffffffffffffffffU,
-                                    0x3ff0000000000000U,   // 1.0
-                                    0xbff0000000000000U,   // -1.0
-                                    0x7fefffffffffffffU,   // the largest double
-                                    0x0000000000000001U,   // the smallest
-                                    0x7ff0000000000000U,   // infinity
+                                    0x3ff0000000000000U,  // 1.0
+                                    0xbff0000000000000U,  // -1.0
+                                    0x7fefffffffffffffU,  // the largest double
+                                    0x0000000000000001U,  // the smallest
+                                    0x7ff0000000000000U,  // infinity
                                     0xfff0000000000000U,
                                     0x7ff8000000000000U};  // no number
 

@@ -88,8 +88,7 @@ void fuzz_select(Bytes bytes) {
   const std::string text = selector_program(choices);
   const Runtime runtime = make_runtime(breve_runtime_config_default());
   breve_program* compiled = nullptr;
-  const breve_status status =
-      breve_program_compile(runtime.get(), "generated.tz", text.data(), text.size(), &compiled);
+  const breve_status status = breve_program_compile(runtime.get(), "generated.tz", text.data(), text.size(), &compiled);
   if (status == BREVE_ERROR_COMPILE) return;
   if (status != BREVE_OK) finding(breve_runtime_last_error(runtime.get())->text, text);
   const Program program(compiled);

@@ -29,12 +29,24 @@ constexpr std::array<std::array<const char*, 8>, 6> kThemes = {{
 
 /// What waits, reaches outside the world, ends it, or reads the clock on the wall.
 bool is_left_out(std::string_view name) {
-  constexpr std::array kNames = {"sleep",           "system",          "get-real-time",
-                                 "randomSeed",      "getRealTime",     "getRunningTime",
-                                 "die",             "end-simulation",  "endSimulation",
-                                 "stacktrace",      "dearchive-xml",   "get-real-running-time",
-                                 "archive-as-xml",  "load-from-xml",   "save-as-xml",
-                                 "save-to",         "load-from",       "set-random-seed-from-dev-random",
+  constexpr std::array kNames = {"sleep",
+                                 "system",
+                                 "get-real-time",
+                                 "randomSeed",
+                                 "getRealTime",
+                                 "getRunningTime",
+                                 "die",
+                                 "end-simulation",
+                                 "endSimulation",
+                                 "stacktrace",
+                                 "dearchive-xml",
+                                 "get-real-running-time",
+                                 "archive-as-xml",
+                                 "load-from-xml",
+                                 "save-as-xml",
+                                 "save-to",
+                                 "load-from",
+                                 "set-random-seed-from-dev-random",
                                  "readFileAsString"};
   return std::find(kNames.begin(), kNames.end(), name) != kNames.end() ||
          name.find("DevRandom") != std::string_view::npos || name.find("openFile") != std::string_view::npos ||
@@ -106,8 +118,8 @@ class SelectorProgram {
   }
   std::string real() {
     if (choose_.chance(65)) return pick({"0.0", "1.0", "0.5", "2.0", "0.1", "-1.0", "10.0", "random[1.0]", "6.3"});
-    return pick({"1.0e300", "-1.0e300", "1.0e-300", "sqrt(-1.0)", "exp(1000.0)", "(0.0 - exp(1000.0))", "real", "1.0e10",
-                 "1.0e-10", "-0.5", "1.0e38"});
+    return pick({"1.0e300", "-1.0e300", "1.0e-300", "sqrt(-1.0)", "exp(1000.0)", "(0.0 - exp(1000.0))", "real",
+                 "1.0e10", "1.0e-10", "-0.5", "1.0e38"});
   }
   std::string vector() {
     if (choose_.chance(70))
@@ -130,7 +142,8 @@ class SelectorProgram {
     if (choose_.chance(70)) {
       if (has(about, "class") || has(about, "type")) return "\"" + class_name() + "\"";
       if (has(about, "method") || has(about, "named"))
-        return "\"" + (choose_.chance(60) ? action() : pick({"hit", "heard", "iterate", "init", "destroy", "due", "none"})) +
+        return "\"" +
+               (choose_.chance(60) ? action() : pick({"hit", "heard", "iterate", "init", "destroy", "due", "none"})) +
                "\"";
       if (has(about, "rung") || has(about, "accuracy"))
         return "\"" + pick({"fast", "balanced", "precise", "conserving", "none"}) + "\"";
@@ -172,7 +185,8 @@ class SelectorProgram {
       return pick({"items", "{}", "{ 1, 2, 3 }", "{ (0, 0, 0), (1, 0, 0), (0, 1, 0) }", "{ 0.5 }", "{ \"a\", \"b\" }",
                    "ring", "{ { 1 }, { 2 } }"});
     std::string text = "{ ";
-    for (std::size_t i = choose_.below(4); i > 0; --i) text += (choose_.chance(50) ? any_object() : value("any", "")) + ", ";
+    for (std::size_t i = choose_.below(4); i > 0; --i)
+      text += (choose_.chance(50) ? any_object() : value("any", "")) + ", ";
     return text + "1 }";
   }
   std::string value(const std::string& type, const std::string& hint) {
@@ -250,7 +264,8 @@ class SelectorProgram {
     const std::string joint = object_of({"Joint"}), parent = object_of({"Link", "Mobile"}),
                       child = object_of({"Link", "Mobile"});
     if (joint.empty() || child.empty()) return "";
-    const auto cls = std::find_if(objects_.begin(), objects_.end(), [&](const Object& o) { return o.variable == joint; });
+    const auto cls =
+        std::find_if(objects_.begin(), objects_.end(), [&](const Object& o) { return o.variable == joint; });
     const bool plain = cls->cls == "FixedJoint" || cls->cls == "BallJoint";
     const auto point = [this] { return pick({"(0, 0, 0)", "(1, 0, 0)", "(0, -1, 0)", "(0.5, 0.2, 0)"}); };
     std::string text = joint + " link ";
@@ -291,8 +306,8 @@ class SelectorProgram {
         return pick({"sort items with compare.", "items = copylist items.", "pop items.", "push items onto items.",
                      "text = \"$items\".", "print items, table, got, me, gone, ring.", "text = text + text."});
       case 16:
-        return "callMethodNamed(" + any_object() + ", \"" + pick({"act1", "free-me", "hit", "due", "archive", "iterate"}) +
-               "\", " + list() + ").";
+        return "callMethodNamed(" + any_object() + ", \"" +
+               pick({"act1", "free-me", "hit", "due", "archive", "iterate"}) + "\", " + list() + ").";
       case 17: return "self call-method named \"" + action() + "\".";
       case 18: return call("self", base_);
       case 19: return link_statement();
@@ -332,8 +347,8 @@ class SelectorProgram {
       hook(6, "move to p (vector)", "super move to p.");
       hook(10, "get-force-at time t (float)", "return (0, 1, 0).");
     }
-    for (const char* head : {"hit with-object o (object) at p (vector) norm n (vector)",
-                             "heard from o (object) text t (string)"}) {
+    for (const char* head :
+         {"hit with-object o (object) at p (vector) norm n (vector)", "heard from o (object) text t (string)"}) {
       line(std::string("  + to ") + head + ":");
       line("    (getController()) run of self with o action \"" + action() + "\".");
     }
@@ -364,7 +379,8 @@ class SelectorProgram {
   }
 
   void write_actions(std::size_t most) {
-    for (std::size_t i = 1 + choose_.below(most); i > 0; --i) line("    callMethodNamed(self, \"" + action() + "\", {}).");
+    for (std::size_t i = 1 + choose_.below(most); i > 0; --i)
+      line("    callMethodNamed(self, \"" + action() + "\", {}).");
   }
 
   void write_controller() {
@@ -383,7 +399,8 @@ class SelectorProgram {
     line("  + to init:");
     line("    self set-iteration-step to 0.1.\n    self set-integration-step to 0.05.");
     line("    ring = { 1, 2 }.\n    push ring onto ring.\n    gone = new TObject.\n    free gone.");
-    for (std::size_t i = 0; i < objects_.size(); ++i) line("    callMethodNamed(self, \"make" + std::to_string(i) + "\", {}).");
+    for (std::size_t i = 0; i < objects_.size(); ++i)
+      line("    callMethodNamed(self, \"make" + std::to_string(i) + "\", {}).");
     line("  + to iterate:\n    depth = 0.");
     write_actions(4);
     line("    super iterate.");

@@ -1,5 +1,5 @@
-// What scripts can reach outside their world: the table of docs/sandbox.md is made of the natives, and no source reaches
-// out but those that are known here.
+// What scripts can reach outside their world: the table of docs/sandbox.md is made of the natives, and no source
+// reaches out but those that are known here.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -23,8 +23,11 @@ std::string read(const fs::path& path) {
 
 std::string table() {
   const std::pair<Reach, const char*> rows[] = {
-      {Reach::Reads, "reads files | `breve_runtime_config.files.open_for_reading` | current directory, the program's own, `--path`, `--allow-read`"},
-      {Reach::Writes, "writes files | `breve_runtime_config.files.open_for_writing` | current directory, `--allow-write`"},
+      {Reach::Reads,
+       "reads files | `breve_runtime_config.files.open_for_reading` | current directory, the program's own, `--path`, "
+       "`--allow-read`"},
+      {Reach::Writes,
+       "writes files | `breve_runtime_config.files.open_for_writing` | current directory, `--allow-write`"},
       {Reach::Sleeps, "stops the thread | `BREVE_RIGHT_SLEEP` | yes"},
       {Reach::RealTime, "reads the clock on the wall | `BREVE_RIGHT_REAL_TIME` | yes"},
       {Reach::Entropy, "draws a seed from the operating system | `BREVE_RIGHT_ENTROPY` | yes"},
@@ -49,8 +52,9 @@ TEST(Reach, TheTableOfTheDocumentationIsThatOfTheNatives) {
 
 /// Words by which a source reaches out, and the only files that may have them.
 TEST(Reach, NothingElseReachesOut) {
-  const std::regex words(R"(\b(fopen|freopen|ifstream|ofstream|fstream|popen|getenv|random_device|sleep_for|sleep_until)"
-                         R"(|system_clock|openat|stbi_load|stbi_write_png|ReadFile)\b|::open\(|std::system|<filesystem>)");
+  const std::regex words(
+      R"(\b(fopen|freopen|ifstream|ofstream|fstream|popen|getenv|random_device|sleep_for|sleep_until)"
+      R"(|system_clock|openat|stbi_load|stbi_write_png|ReadFile)\b|::open\(|std::system|<filesystem>)");
   const std::set<std::string> known = {
       "hostapi/src/files_within.cpp",       // files below directories that the host names
       "steve/machine/functions_math.cpp",   // a seed from the operating system

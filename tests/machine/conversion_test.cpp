@@ -130,8 +130,7 @@ TEST(Conversion, ErrorNamesTypesAndPlace) {
   EXPECT_EQ(error_of([] { to_int(Value::of(Vector3(0, 0, 0)), "variable 'n'"); }),
             "variable 'n' must be an int, not the vector (0, 0, 0)");
   EXPECT_EQ(error_of([] { to_list(number(3), "keyword 'to'"); }), "keyword 'to' must be a list, not the int 3");
-  EXPECT_EQ(error_of([] { to_double(Value()); }),
-            "a double is needed here, not no value (NULL)");
+  EXPECT_EQ(error_of([] { to_double(Value()); }), "a double is needed here, not no value (NULL)");
 }
 
 TEST(Conversion, StringsGiveTheirLeadingInteger) {

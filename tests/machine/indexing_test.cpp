@@ -120,8 +120,7 @@ TEST_F(Indexing, MembersOfHashesAndVectors) {
 TEST_F(Indexing, WrongMembersAreTypeErrorsAndSuggestSpaces) {
   EXPECT_EQ(kind_of([&] { member(w.heap, list, name("x")); }), RunErrorKind::Type);
   EXPECT_EQ(kind_of([&] { member(w.heap, vector, name("x-1")); }), RunErrorKind::Type);
-  EXPECT_EQ(message,
-            "a vector has no member 'x-1'; for a subtraction write spaces around the minus: x - 1");
+  EXPECT_EQ(message, "a vector has no member 'x-1'; for a subtraction write spaces around the minus: x - 1");
   EXPECT_EQ(kind_of([&] { member(w.heap, Value(), name("x")); }), RunErrorKind::Type);
   EXPECT_EQ(kind_of([&] { set_member(w.heap, list, name("x"), number(1)); }), RunErrorKind::Type);
 }

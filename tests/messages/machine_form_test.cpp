@@ -28,7 +28,8 @@ Answer check(const std::string& words) {
   std::FILE* pipe = popen(line.c_str(), "r");
   if (pipe == nullptr) return answer;
   std::array<char, 4096> chunk;
-  while (const std::size_t size = std::fread(chunk.data(), 1, chunk.size(), pipe)) answer.out.append(chunk.data(), size);
+  while (const std::size_t size = std::fread(chunk.data(), 1, chunk.size(), pipe))
+    answer.out.append(chunk.data(), size);
   const int status = pclose(pipe);
   answer.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return answer;
@@ -89,7 +90,8 @@ TEST(MachineForm, OfSeveralFilesIsOneArray) {
 }
 
 TEST(MachineForm, IsJsonWhateverBytesTheProgramHolds) {
-  const ProgramFile file("@use Control.\nController A.\nControl : A {\n\t+ to init:\n\t\tprint \xE9\x80 \"\xFF$x\".\n}\n");
+  const ProgramFile file(
+      "@use Control.\nController A.\nControl : A {\n\t+ to init:\n\t\tprint \xE9\x80 \"\xFF$x\".\n}\n");
   const Answer answer = check("--json " + file.path().string());
   EXPECT_EQ(answer.status, 1);
   EXPECT_GE(Json::parse(answer.out).size(), 1U);

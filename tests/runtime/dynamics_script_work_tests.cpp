@@ -264,9 +264,7 @@ TEST_P(ScriptWork, IsTheSameAfterARestore) {
 
 INSTANTIATE_TEST_SUITE_P(InSpace, ScriptWorkInSpace, ::testing::Values(3));
 INSTANTIATE_TEST_SUITE_P(InSpaceAndInThePlane, ScriptWork, ::testing::Values(3, 2),
-                         [](const ::testing::TestParamInfo<int>& info) {
-                           return info.param == 2 ? "flat" : "space";
-                         });
+                         [](const ::testing::TestParamInfo<int>& info) { return info.param == 2 ? "flat" : "space"; });
 
 /// In space a joint closes when it is linked; in the plane in the next step.
 TEST(ScriptWorkOfJoints, ThatCloseOnMovingBodiesIsWhatStops) {

@@ -285,9 +285,7 @@ TEST_P(SleepInSpace, GoesOnAfterARestoreAsItWouldHave) {
 
 INSTANTIATE_TEST_SUITE_P(InSpace, SleepInSpace, ::testing::Values(3));
 INSTANTIATE_TEST_SUITE_P(InSpaceAndInThePlane, Sleep, ::testing::Values(3, 2),
-                         [](const ::testing::TestParamInfo<int>& info) {
-                           return info.param == 2 ? "flat" : "space";
-                         });
+                         [](const ::testing::TestParamInfo<int>& info) { return info.param == 2 ? "flat" : "space"; });
 
 }  // namespace
 }  // namespace breve::testing

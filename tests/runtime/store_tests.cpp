@@ -119,8 +119,7 @@ TEST(ImageFile, SixteenBitGrayKeepsSixteenBits) {
   EXPECT_EQ(raw, (std::vector<std::uint8_t>{0, 0, 0, 255, 255, 128, 0, 0, 0, 0, 255, 255, 0, 0}));
   // Another reader takes it too, checksums and all.
   EXPECT_EQ(Image::parse(png, "gray.png").byte(1, 0, Channel::Red), 255);
-  EXPECT_NE(message(ErrorCode::Argument, [&] { (void)gray16_png(2, 2, values); }).find("6 values"),
-            std::string::npos);
+  EXPECT_NE(message(ErrorCode::Argument, [&] { (void)gray16_png(2, 2, values); }).find("6 values"), std::string::npos);
 }
 
 TEST(Image, ARegularPictureDeflatesToLess) {

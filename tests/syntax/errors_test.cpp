@@ -124,10 +124,10 @@ NULL : Second {
 }
 Controller First
 )");
-  EXPECT_EQ(
-      reading.errors(),
-      "1:13 missing-period, 5:8 unknown-type, 8:11 missing-parenthesis, 9:12 syntax, 10:10 missing-period, 11:9 syntax, "
-      "12:8 reserved-word, 12:24 syntax, 18:5 missing-brace, 20:11 syntax, 22:17 missing-period");
+  EXPECT_EQ(reading.errors(),
+            "1:13 missing-period, 5:8 unknown-type, 8:11 missing-parenthesis, 9:12 syntax, 10:10 missing-period, 11:9 "
+            "syntax, "
+            "12:8 reserved-word, 12:24 syntax, 18:5 missing-brace, 20:11 syntax, 22:17 missing-period");
   EXPECT_EQ(reading.file.classes.size(), 2U);
   EXPECT_EQ(reading.only_class().methods.size(), 3U);
   EXPECT_EQ(reading.method(2).parameters.size(), 1U);
@@ -141,7 +141,8 @@ TEST(Errors, StrayBracesDoNotEndTheClass) {
 }
 
 TEST(Errors, ABrokenConditionDoesNotHideItsBody) {
-  expect_errors({{"if n + : m = .", "1:8 syntax, 1:14 syntax"}, {"while (n: { m = . }", "1:9 missing-parenthesis, 1:17 syntax"}});
+  expect_errors(
+      {{"if n + : m = .", "1:8 syntax, 1:14 syntax"}, {"while (n: { m = . }", "1:9 missing-parenthesis, 1:17 syntax"}});
 }
 
 TEST(Errors, SayWhatToDo) {
