@@ -26,7 +26,7 @@ void make_rigid(Point& c) {
   c.inverse = regular_inverse(c.response);
 }
 
-double approach(const Workspace& work, int point) {
+double approach_speed(const Workspace& work, int point) {
   double u[3];
   velocity(work, static_cast<std::size_t>(point), u);
   return -u[0];
@@ -61,7 +61,7 @@ int next_pair(const Workspace& work, std::span<const Law> laws, double tolerance
   for (std::size_t pair = 0; pair < work.firsts.size(); ++pair)
     for (const int point : points_of(work, pair)) {
       const Law& law = laws[static_cast<std::size_t>(point)];
-      const double speed = approach(work, point);
+      const double speed = approach_speed(work, point);
       if (!(law.restitution > 0) || speed < law.restitution_threshold || speed < fastest) continue;
       if (speed == fastest && point > first_point) continue;
       fastest = speed;
@@ -210,7 +210,7 @@ ImpactReport resolve_impacts(std::span<const Mover> movers, std::span<Row> rows,
   }
   report.settled = scalars.empty();
   for (std::size_t i = 0; i < rows.size(); ++i)
-    report.settled = report.settled && approach(work, static_cast<int>(i)) <= settings.tolerance;
+    report.settled = report.settled && approach_speed(work, static_cast<int>(i)) <= settings.tolerance;
   unpack(work, rows, scalars);
   if (!report.settled) {
     work.biases.clear();
