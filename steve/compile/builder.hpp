@@ -87,6 +87,7 @@ class ProgramBuilder final : public CompileScope {
   Span controller_span_;
   std::unordered_map<std::string_view, const Native*> natives_;
   int depth_ = 0;
+  std::size_t bytes_ = 0, tokens_ = 0;  // of the files that are not the library's
   std::size_t unknown_methods_ = 0;
 };
 

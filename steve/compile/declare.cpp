@@ -119,7 +119,7 @@ void ProgramBuilder::declare_variables(const ast::Class& tree, ClassInfo& info) 
     if (variable.type >= StaticType::String && variable.type <= StaticType::Data)
       for (std::uint64_t i = 0; i < count; ++i) info.reference_slots.push_back(static_cast<std::uint16_t>(slot + i));
     slot += count * size;
-    info.variables.push_back(variable);
+    info.add_variable(variable);
   }
   info.slot_count = static_cast<std::uint32_t>(slot);
 }
@@ -133,10 +133,7 @@ void ProgramBuilder::declare_methods(const ast::Class& tree, ClassInfo& info) {
     method->span = m.name_span;
     std::set<std::string> variables;
     for (const auto& p : m.parameters) declare_parameter(p, *method, variables);
-    bool duplicate = false;
-    for (const auto& other : info.methods)
-      duplicate = duplicate || (other->name == method->name && other->parameters.size() == method->parameters.size());
-    if (duplicate)
+    if (info.own_method(method->name, method->parameters.size()))
       diagnostics_.error(m.name_span, "redefinition",
                          "class " + tree.name + " defines method '" + m.name + "' with " +
                              std::to_string(m.parameters.size()) +
@@ -147,7 +144,7 @@ void ProgramBuilder::declare_methods(const ast::Class& tree, ClassInfo& info) {
       bind_native(m, *method);
     else
       method->function = std::make_unique<Function>();
-    info.methods.push_back(std::move(method));
+    info.add_method(std::move(method));
   }
 }
 

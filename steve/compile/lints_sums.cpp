@@ -40,9 +40,8 @@ void ProgramBuilder::check_sums() {
   ValueTypes types(*program_, *this);
   for (const auto& [tree, info] : declared_)
     for (const auto& method : tree.methods)
-      for (const auto& made : info->methods)
-        if (made->name == symbol(method.name) && made->parameters.size() == method.parameters.size())
-          types.add(*info, method, *made);
+      if (const MethodInfo* made = info->own_method(symbol(method.name), method.parameters.size()))
+        types.add(*info, method, *made);
   for (const auto& [tree, info] : declared_) {
     if (embedded(info->span)) continue;
     for (const auto& method : tree.methods)

@@ -73,10 +73,27 @@ void ProgramBuilder::load(ModuleSource module, bool embedded) {
                        "include fewer files from one another");
     return;
   }
+  constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+  constexpr std::string_view kTooLarge = "read large data from files while the program runs";
+  bytes_ += embedded ? 0 : module.text.size();
+  if (bytes_ > kMostBytes) {
+    diagnostics_.error({}, "program-too-large",
+                       "the files of the program have more than 64 MB together, with '" + module.name + "'",
+                       std::string(kTooLarge));
+    return;
+  }
   ++depth_;
   const auto name = module.name;
   const auto file = program_->sources_.add(std::move(module.name), std::move(module.text), embedded);
   const auto tokens = lex(program_->sources_, file, diagnostics_);
+  tokens_ += embedded ? 0 : tokens.size();
+  if (tokens_ > kMaxTokens + 1) {
+    diagnostics_.error({file, 0, 1, 1, 1}, "program-too-large",
+                       fmt::format("the files of the program have more than {} words and signs together", kMaxTokens),
+                       std::string(kTooLarge));
+    --depth_;
+    return;
+  }
   for (const auto& directive : scan_directives(tokens)) load_directive(directive, name, embedded);
   auto tree = parse(tokens, program_->defines_, diagnostics_, program_->sources_, embedded);
   for (const auto& directive : tree.directives) late_directive(directive);

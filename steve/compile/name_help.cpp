@@ -63,6 +63,7 @@ std::string spaced(std::string_view name, const Known& known) {
 }  // namespace
 
 std::string FunctionCompiler::unknown_name_help(std::string_view name) {
+  if (builder_.diagnostics().full()) return {};
   std::vector<std::string_view> candidates;
   for (const auto& [local, unused] : locals_) candidates.push_back(local);
   std::sort(candidates.begin(), candidates.end());
@@ -91,6 +92,7 @@ std::string FunctionCompiler::unknown_name_help(std::string_view name) {
 }
 
 std::string FunctionCompiler::unknown_function_help(const ast::FunctionCall& f, const Span& span) {
+  if (builder_.diagnostics().full()) return {};
   const auto& source = builder_.source(span.file);
   const bool dotted = span.offset >= 2 && source[span.offset - 1] == '.' && source[span.offset - 2] != ' ';
   const auto near = nearest(f.name, builder_.function_names());

@@ -8,8 +8,9 @@
 namespace breve::steve {
 
 Symbol SymbolTable::intern(std::string_view name) {
-  const auto [at, added] = by_name_.try_emplace(std::string(name), static_cast<Symbol>(names_.size()));
-  if (added) names_.push_back(&at->first);
+  if (const auto known = by_name_.find(name); known != by_name_.end()) return known->second;
+  const auto at = by_name_.emplace(name, static_cast<Symbol>(names_.size())).first;
+  names_.push_back(&at->first);
   return at->second;
 }
 
@@ -26,7 +27,7 @@ void SymbolTable::truncate(std::size_t count) {
 }
 
 Symbol SymbolTable::find(std::string_view name) const {
-  const auto at = by_name_.find(std::string(name));
+  const auto at = by_name_.find(name);
   return at == by_name_.end() ? kNoSymbol : at->second;
 }
 
@@ -34,24 +35,42 @@ MethodInfo::MethodInfo() = default;
 MethodInfo::~MethodInfo() = default;
 MethodInfo::MethodInfo(MethodInfo&&) noexcept = default;
 
+namespace {
+std::uint64_t key_of(Symbol name, std::size_t count) { return std::uint64_t{name} << 32 | count; }
+}  // namespace
+
+void ClassInfo::add_variable(const VariableInfo& variable) {
+  variable_places_.emplace(variable.name, variables.size());
+  variables.push_back(variable);
+}
+
+void ClassInfo::add_method(std::unique_ptr<MethodInfo> method) {
+  by_count_.emplace(key_of(method->name, method->parameters.size()), method.get());
+  responds_.insert(method->name);
+  methods.push_back(std::move(method));
+}
+
 const VariableInfo* ClassInfo::find_variable(Symbol wanted) const {
   for (const ClassInfo* c = this; c; c = c->parent)
-    for (const auto& variable : c->variables)
-      if (variable.name == wanted) return &variable;
+    if (const auto place = c->variable_places_.find(wanted); place != c->variable_places_.end())
+      return &c->variables[place->second];
   return nullptr;
+}
+
+const MethodInfo* ClassInfo::own_method(Symbol wanted, std::size_t count) const {
+  const auto found = by_count_.find(key_of(wanted, count));
+  return found == by_count_.end() ? nullptr : found->second;
 }
 
 const MethodInfo* ClassInfo::find_method(Symbol wanted, std::size_t count) const {
   for (const ClassInfo* c = this; c; c = c->parent)
-    for (const auto& method : c->methods)
-      if (method->name == wanted && method->parameters.size() == count) return method.get();
+    if (const MethodInfo* method = c->own_method(wanted, count)) return method;
   return nullptr;
 }
 
 bool ClassInfo::responds(Symbol wanted) const {
   for (const ClassInfo* c = this; c; c = c->parent)
-    for (const auto& method : c->methods)
-      if (method->name == wanted) return true;
+    if (c->responds_.contains(wanted)) return true;
   return false;
 }
 
@@ -59,7 +78,7 @@ Program::Program() : code_(std::make_unique<CodeTables>()) {}
 Program::~Program() = default;
 
 const ClassInfo* Program::find_class(std::string_view name) const {
-  const auto at = class_names_.find(std::string(name));
+  const auto at = class_names_.find(name);
   return at == class_names_.end() ? nullptr : at->second;
 }
 

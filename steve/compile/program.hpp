@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "runtime/base/ids.hpp"
@@ -18,6 +19,17 @@
 #include "steve/syntax/parser.hpp"
 
 namespace breve::steve {
+
+/// For tables of names that are asked with any text, also one of megabytes.
+struct NameHash {
+  using is_transparent = void;
+  std::size_t operator()(std::string_view name) const {
+    constexpr std::size_t kMost = 1000;
+    return std::hash<std::string_view>()(name.substr(0, kMost));
+  }
+};
+template <class T>
+using NameTable = std::unordered_map<std::string, T, NameHash, std::equal_to<>>;
 
 using Symbol = std::uint32_t;
 inline constexpr Symbol kNoSymbol = 0xffffffffU;
@@ -35,7 +47,7 @@ class SymbolTable {
   void truncate(std::size_t count);  // forget the names behind the first `count`
 
  private:
-  std::unordered_map<std::string, Symbol> by_name_;
+  NameTable<Symbol> by_name_;
   std::vector<const std::string*> names_;
 };
 
@@ -110,10 +122,10 @@ struct ClassInfo {
   const ClassInfo* parent = nullptr;
   std::uint32_t depth = 0;  // ancestors
   double version = 1.0;
-  std::vector<VariableInfo> variables;                      // its own; ancestors' come before in the instance
+  std::vector<VariableInfo> variables;                      // its own; ancestors' come before in the instance; add_variable
   std::uint32_t slot_count = 0;                             // with ancestors
   std::vector<std::uint16_t> reference_slots;               // with ancestors: slots that hold a Cell*
-  std::vector<std::unique_ptr<MethodInfo>> methods;         // its own
+  std::vector<std::unique_ptr<MethodInfo>> methods;         // its own; add_method
   std::vector<const MethodInfo*> init_chain, delete_chain;  // root first
   const MethodInfo* iterate = nullptr;                      // inherited ones too; null if there is none
   const MethodInfo* post_iterate = nullptr;
@@ -121,6 +133,9 @@ struct ClassInfo {
   const MethodInfo* get_description = nullptr;
   Span span;
 
+  void add_variable(const VariableInfo& variable);
+  void add_method(std::unique_ptr<MethodInfo> method);
+  const MethodInfo* own_method(Symbol name, std::size_t count) const;
   bool derives_from(const ClassInfo& other) const {
     for (const ClassInfo* c = this; c; c = c->parent)
       if (c == &other) return true;
@@ -129,6 +144,11 @@ struct ClassInfo {
   const VariableInfo* find_variable(Symbol name) const;                 // own or inherited; the most derived wins
   const MethodInfo* find_method(Symbol name, std::size_t count) const;  // own or inherited, exactly `count` parameters
   bool responds(Symbol name) const;                                     // any number of parameters
+
+ private:
+  std::unordered_map<Symbol, std::size_t> variable_places_;        // in `variables`: of several, the first
+  std::unordered_map<std::uint64_t, const MethodInfo*> by_count_;  // by name and number of parameters, likewise
+  std::unordered_set<Symbol> responds_;
 };
 
 class Program {
@@ -153,7 +173,7 @@ class Program {
   Program();
   Program(const Program& base, std::size_t room);    // with room behind the tables for fragments (evaluate.cpp)
   std::vector<std::shared_ptr<ClassInfo>> classes_;  // shared with the programs that extend this one by fragments
-  std::unordered_map<std::string, ClassInfo*> class_names_;  // names and aliases
+  NameTable<ClassInfo*> class_names_;  // names and aliases
   const ClassInfo* controller_ = nullptr;
   SymbolTable symbols_;
   Sources sources_;

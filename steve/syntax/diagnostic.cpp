@@ -127,8 +127,21 @@ void Diagnostics::warning(const Span& span, std::string code, std::string messag
 void Diagnostics::add(Diagnostic diagnostic) {
   shorten(diagnostic.message);
   shorten(diagnostic.help);
-  if (diagnostic.severity == Severity::Error) ++errors_;
+  const bool error = diagnostic.severity == Severity::Error;
+  std::size_t& count = error ? errors_ : others_;
+  ++count;
+  if (count > kMost + 1) return;
+  if (count == kMost + 1) {
+    diagnostic.message = error ? "more errors follow" : "more warnings follow";
+    diagnostic.help.clear();
+  }
   all_.push_back(std::move(diagnostic));
+}
+
+std::string cut(std::string_view text, std::size_t bytes) {
+  if (text.size() <= bytes) return std::string(text);
+  while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xC0U) == 0x80U) --bytes;
+  return std::string(text.substr(0, bytes)) + "…";
 }
 
 std::string format(const Diagnostic& diagnostic, const Sources& sources) {
@@ -136,11 +149,11 @@ std::string format(const Diagnostic& diagnostic, const Sources& sources) {
   std::string text;
   const bool placed = span.line > 0 && span.file < sources.size();
   if (placed) text = fmt::format("{}:{}:{}: ", sources.file(span.file).name, span.line, span.column);
-  text += fmt::format("{}: {}", name_of(diagnostic.severity), diagnostic.message);
+  text += fmt::format("{}: {}", name_of(diagnostic.severity), cut(diagnostic.message, kLongestMessage));
   if (diagnostic.code.starts_with("lint-")) text += fmt::format(" [{}]", diagnostic.code);  // what turns it off
   text += '\n';
   if (placed && span.column > 0) text += picture(sources.line_text(span), span);
-  if (!diagnostic.help.empty()) text += fmt::format("help: {}\n", diagnostic.help);
+  if (!diagnostic.help.empty()) text += fmt::format("help: {}\n", cut(diagnostic.help, kLongestMessage));
   return text;
 }
 

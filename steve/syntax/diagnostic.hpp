@@ -25,14 +25,24 @@ class Diagnostics {
  public:
   void error(const Span& span, std::string code, std::string message, std::string help = {});
   void warning(const Span& span, std::string code, std::string message, std::string help = {});
+  /// Of errors a thousand are kept, and of the rest too; one of each kind says that there are more.
   void add(Diagnostic diagnostic);
+  /// Will no more errors be kept? What would help with them need not be looked for.
+  bool full() const { return errors_ >= kMost; }
   const std::vector<Diagnostic>& all() const { return all_; }
   std::size_t error_count() const { return errors_; }
 
  private:
   std::vector<Diagnostic> all_;
-  std::size_t errors_ = 0;
+  static constexpr std::size_t kMost = 1000;
+  std::size_t errors_ = 0, others_ = 0;
 };
+
+/// At most `bytes` of a text, cut between characters and ended by `…`.
+std::string cut(std::string_view text, std::size_t bytes);
+
+/// How much of a message is told.
+inline constexpr std::size_t kLongestMessage = 4000;  // bytes
 
 /// "file:line:col: error: message", the source line with a caret under the span, and "help: ..." on a line of its own.
 std::string format(const Diagnostic& diagnostic, const Sources& sources);
