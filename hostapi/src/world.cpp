@@ -16,7 +16,7 @@ void speak(breve_world& world, breve_channel channel, std::string_view text) {
   if (channel == BREVE_CHANNEL_WARNING) ++world.warnings;
   if (channel == BREVE_CHANNEL_ERROR) ++world.errors;
   const auto& config = world.runtime->config;
-  if (!config.print) return;
+  if (!config.print || text.empty()) return;
   std::string ended(text);
   const bool lines = channel != BREVE_CHANNEL_PRINT;
   if (lines && !ended.empty() && ended.back() != '\n') ended += '\n';

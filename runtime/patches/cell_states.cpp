@@ -101,8 +101,9 @@ std::span<const std::uint8_t> CellStates::neighbor_counts(const Grid& grid, Neig
   return {sum, n};
 }
 
-void CellStates::step_at_once(const Grid& grid, Neighborhood kind, const TotalisticRule& rule) {
+void CellStates::step_at_once(const Grid& grid, Neighborhood kind, const TotalisticRule& rule, const Poll& poll) {
   sum_block(grid, kind);
+  if (poll) poll();
   const std::size_t n = now_.size();
   const Byte* const alive = rows_.data();
   const Byte* const sum = rows_.data() + n;
@@ -115,16 +116,19 @@ void CellStates::step_at_once(const Grid& grid, Neighborhood kind, const Totalis
       mark(out, sum + start, alive + start, static_cast<Byte>(std::countr_zero(bits)), 0, count);
     for (std::uint32_t bits = rule.survive; bits != 0; bits &= bits - 1)
       mark(out, sum + start, alive + start, static_cast<Byte>(std::countr_zero(bits) + 1), 1, count);
+    if (poll) poll();
   }
   now_.swap(next_);
 }
 
 void CellStates::step(const Grid& grid, Neighborhood kind, const TotalisticRule& rule, UpdateOrder order,
-                      Random& random) {
-  if (order == UpdateOrder::Synchronous) return step_at_once(grid, kind, rule);
+                      Random& random, const Poll& poll) {
+  if (order == UpdateOrder::Synchronous) return step_at_once(grid, kind, rule, poll);
   std::pmr::vector<CellIndex> cells(now_.get_allocator());
   if (order == UpdateOrder::Random) shuffled(now_.size(), random, cells);
+  constexpr std::size_t kBetweenPolls = 1 << 16;
   for (std::size_t i = 0; i < now_.size(); ++i) {
+    if (poll && i % kBetweenPolls == 0) poll();
     const CellIndex cell = order == UpdateOrder::Random ? cells[i] : static_cast<CellIndex>(i);
     const std::uint32_t mask = now_[cell] != 0 ? rule.survive : rule.born;
     now_[cell] = static_cast<Byte>(mask >> neighbors(grid, kind, cell) & 1U);

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "runtime/base/poll.hpp"
 #include "runtime/base/random.hpp"
 #include "runtime/patches/grid.hpp"
 
@@ -46,7 +47,9 @@ class CellStates {
   /// The same for every cell. Valid until the next call.
   std::span<const std::uint8_t> neighbor_counts(const Grid& grid, Neighborhood kind);
   /// Every cell by the rule. @throws std::bad_alloc, and nothing has changed then
-  void step(const Grid& grid, Neighborhood kind, const TotalisticRule& rule, UpdateOrder order, Random& random);
+  /// Where `poll` throws, nothing has changed, or the cells before some cell where the order is not Synchronous.
+  void step(const Grid& grid, Neighborhood kind, const TotalisticRule& rule, UpdateOrder order, Random& random,
+            const Poll& poll = {});
 
   // A synchronous update cell by cell: begin, set() what changes, end (or abandon: nothing has changed).
   void begin();
@@ -59,7 +62,7 @@ class CellStates {
 
  private:
   void sum_block(const Grid& grid, Neighborhood kind);
-  void step_at_once(const Grid& grid, Neighborhood kind, const TotalisticRule& rule);
+  void step_at_once(const Grid& grid, Neighborhood kind, const TotalisticRule& rule, const Poll& poll);
 
   std::pmr::vector<std::uint8_t> now_, next_;
   std::pmr::vector<std::uint8_t> rows_;  // scratch: 1 where a cell is not 0, then sums

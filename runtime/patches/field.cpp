@@ -64,79 +64,130 @@ void Field::check_same_size(const Field& other, const char* what) const {
                                                size_text(), other.size_text()));
 }
 
-void Field::add(const Field& other, double factor) {
+/// `work(begin, count)` for all elements, piece by piece.
+template <class Work>
+void Field::in_pieces(const Poll& poll, Work&& work) const {
+  constexpr Eigen::Index kPiece = Eigen::Index{1} << 19;  // elements: a few milliseconds
+  for (Eigen::Index begin = 0; begin < length(); begin += kPiece) {
+    work(begin, std::min(kPiece, length() - begin));
+    if (poll) poll();
+  }
+}
+
+void Field::fill(double value, const Poll& poll) {
+  in_pieces(poll, [&](auto begin, auto count) { array().segment(begin, count).setConstant(value); });
+}
+
+void Field::scale(double factor, const Poll& poll) {
+  in_pieces(poll, [&](auto begin, auto count) { array().segment(begin, count) *= factor; });
+}
+
+void Field::add_scalar(double value, const Poll& poll) {
+  in_pieces(poll, [&](auto begin, auto count) { array().segment(begin, count) += value; });
+}
+
+void Field::add(const Field& other, double factor, const Poll& poll) {
   check_same_size(other, "add");
-  array() += factor * other.values();
+  in_pieces(poll, [&](auto begin, auto count) {
+    array().segment(begin, count) += factor * other.values().segment(begin, count);
+  });
 }
 
-void Field::subtract(const Field& other, double factor) {
+void Field::subtract(const Field& other, double factor, const Poll& poll) {
   check_same_size(other, "subtract");
-  array() -= factor * other.values();
+  in_pieces(poll, [&](auto begin, auto count) {
+    array().segment(begin, count) -= factor * other.values().segment(begin, count);
+  });
 }
 
-void Field::multiply(const Field& other) {
+void Field::multiply(const Field& other, const Poll& poll) {
   check_same_size(other, "multiply");
-  array() *= other.values();
+  in_pieces(poll,
+            [&](auto begin, auto count) { array().segment(begin, count) *= other.values().segment(begin, count); });
 }
 
-void Field::add_product(const Field& a, const Field& b, double factor) {
+void Field::add_product(const Field& a, const Field& b, double factor, const Poll& poll) {
   check_same_size(a, "add the product of");
   check_same_size(b, "add the product of");
-  array() += factor * a.values() * b.values();
+  in_pieces(poll, [&](auto begin, auto count) {
+    array().segment(begin, count) += factor * a.values().segment(begin, count) * b.values().segment(begin, count);
+  });
 }
 
-void Field::copy(const Field& other) {
+void Field::copy(const Field& other, const Poll& poll) {
   check_same_size(other, "copy");
-  values_ = other.values_;
+  in_pieces(poll,
+            [&](auto begin, auto count) { array().segment(begin, count) = other.values().segment(begin, count); });
 }
 
-double Field::absolute_sum() const {
+double Field::absolute_sum(const Poll& poll) const {
   double sum = 0;
-  for (const double value : values_) sum += std::abs(value);
+  in_pieces(poll, [&](auto begin, auto count) {
+    for (const double value : values().segment(begin, count)) sum += std::abs(value);
+  });
   return sum;
 }
 
-double Field::max() const {
+double Field::max(const Poll& poll) const {
   double largest = values_[0];
-  for (const double value : values_) largest = std::max(largest, value);
+  in_pieces(poll, [&](auto begin, auto count) {
+    for (const double value : values().segment(begin, count)) largest = std::max(largest, value);
+  });
   return largest;
 }
 
 template <bool kPeriodic>
-void Field::laplacian(const Field& other, double factor, int dimensions, bool added) {
+void Field::laplacian(const Field& other, double factor, int dimensions, bool added, const Poll& poll) {
   check_same_size(other, "diffuse");
   const auto from = other.values();
   std::pmr::vector<double> scratch(values_.size(), values_.get_allocator());
   Eigen::Map<Eigen::ArrayXd> sum(scratch.data(), length());
-  sum = (-2.0 * dimensions) * from;
+  in_pieces(poll, [&](auto begin, auto count) {
+    sum.segment(begin, count) = (-2.0 * dimensions) * from.segment(begin, count);
+  });
   // Along each axis the grid is a stack of slabs of `slab` elements that touch the next along the axis.
+  const auto add_shifted = [&](Eigen::Index to, Eigen::Index source, Eigen::Index count) {
+    constexpr Eigen::Index kPiece = Eigen::Index{1} << 19;
+    for (Eigen::Index done = 0; done < count; done += kPiece) {
+      const Eigen::Index piece = std::min(kPiece, count - done);
+      sum.segment(to + done, piece) += from.segment(source + done, piece);
+      if (poll && count > kPiece) poll();
+    }
+  };
   const auto along = [&](Eigen::Index count, Eigen::Index slab) {
     const Eigen::Index block = count * slab;
     for (Eigen::Index start = 0; start < from.size(); start += block) {
       const Eigen::Index inner = block - slab;
-      sum.segment(start, inner) += from.segment(start + slab, inner);
-      sum.segment(start + slab, inner) += from.segment(start, inner);
+      add_shifted(start, start + slab, inner);
+      add_shifted(start + slab, start, inner);
       if constexpr (kPeriodic) {
-        sum.segment(start + inner, slab) += from.segment(start, slab);
-        sum.segment(start, slab) += from.segment(start + inner, slab);
+        add_shifted(start + inner, start, slab);
+        add_shifted(start, start + inner, slab);
       }
+      if (poll && start % (Eigen::Index{1} << 16) < block) poll();
     }
   };
   along(nx_, static_cast<Eigen::Index>(ny_) * nz_);
   if (dimensions > 1) along(ny_, nz_);
   if (dimensions > 2) along(nz_, 1);
-  if (added)
-    array() += factor * sum;
-  else
-    array() = factor * sum;
+  in_pieces(poll, [&](auto begin, auto count) {
+    if (added)
+      array().segment(begin, count) += factor * sum.segment(begin, count);
+    else
+      array().segment(begin, count) = factor * sum.segment(begin, count);
+  });
 }
 
-void Field::diffuse(const Field& other, double factor) { laplacian<false>(other, factor, dimensions_, false); }
-void Field::diffuse_periodic(const Field& other, double factor) { laplacian<true>(other, factor, dimensions_, false); }
-void Field::spread(double factor) { laplacian<false>(*this, factor, spans(), true); }
-void Field::spread_periodic(double factor) { laplacian<true>(*this, factor, spans(), true); }
+void Field::diffuse(const Field& other, double factor, const Poll& poll) {
+  laplacian<false>(other, factor, dimensions_, false, poll);
+}
+void Field::diffuse_periodic(const Field& other, double factor, const Poll& poll) {
+  laplacian<true>(other, factor, dimensions_, false, poll);
+}
+void Field::spread(double factor, const Poll& poll) { laplacian<false>(*this, factor, spans(), true, poll); }
+void Field::spread_periodic(double factor, const Poll& poll) { laplacian<true>(*this, factor, spans(), true, poll); }
 
-void Field::transform(const Field& matrix, Field& result) const {
+void Field::transform(const Field& matrix, Field& result, const Poll& poll) const {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   if (matrix.dimensions_ != 2 || dimensions_ > 2 || matrix.ny_ != nx_) {
     throw Error(ErrorCode::Argument,
@@ -152,7 +203,14 @@ void Field::transform(const Field& matrix, Field& result) const {
   const Eigen::Map<const RowMajor> right(values_.data(), nx_, ny_);
   std::pmr::vector<double> scratch(result.size(), result.values_.get_allocator());
   Eigen::Map<RowMajor> product(scratch.data(), result.nx_, result.ny_);
-  product.noalias() = left * right;
+  // So many rows at a time that a piece takes some milliseconds.
+  constexpr Eigen::Index kPiece = Eigen::Index{1} << 24;  // multiplications
+  const Eigen::Index rows = std::max<Eigen::Index>(1, kPiece / std::max<Eigen::Index>(1, length()));
+  for (Eigen::Index row = 0; row < left.rows(); row += rows) {
+    const Eigen::Index count = std::min(rows, left.rows() - row);
+    product.middleRows(row, count).noalias() = left.middleRows(row, count) * right;
+    if (poll) poll();
+  }
   result.values_.swap(scratch);
 }
 
@@ -162,12 +220,15 @@ std::uint8_t Field::channel_byte(double value, double factor) {
   return static_cast<std::uint8_t>(std::min(level, 255.0));
 }
 
-std::string Field::matlab() const {
+std::string Field::matlab(const Poll& poll) const {
   if (dimensions_ > 2) throw Error(ErrorCode::Argument, "a 3D matrix has no rows to print");
   std::string text = "[";
   for (int x = 0; x < nx_; ++x) {
     if (x > 0 && dimensions_ == 2) text += ";";
-    for (int y = 0; y < ny_; ++y) text += fmt::format(" {}", get(x, y));
+    for (int y = 0; y < ny_; ++y) {
+      text += fmt::format(" {}", get(x, y));
+      if (poll && (static_cast<unsigned>(y) & 0xfffU) == 0) poll();
+    }
   }
   return text + " ]";
 }

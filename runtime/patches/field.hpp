@@ -10,6 +10,7 @@
 
 #include "runtime/base/bytes.hpp"
 #include "runtime/base/hasher.hpp"
+#include "runtime/base/poll.hpp"
 
 namespace breve {
 
@@ -48,38 +49,38 @@ class Field {
   double get(int x, int y = 0, int z = 0) const { return values_[at(x, y, z)]; }
   void set(int x, int y, int z, double value) { values_[at(x, y, z)] = value; }
 
-  // Whole fields; the other field must have the same sizes.
-  void fill(double value) { array().setConstant(value); }
-  void scale(double factor) { array() *= factor; }
-  void add_scalar(double value) { array() += value; }
-  void add(const Field& other, double factor = 1);
-  void subtract(const Field& other, double factor = 1);
-  void multiply(const Field& other);  // element by element
-  void add_product(const Field& a, const Field& b, double factor = 1);
-  void copy(const Field& other);
+  // Whole fields; the other field must have the same sizes. Where `poll` throws, a part of the elements is changed.
+  void fill(double value, const Poll& poll = {});
+  void scale(double factor, const Poll& poll = {});
+  void add_scalar(double value, const Poll& poll = {});
+  void add(const Field& other, double factor = 1, const Poll& poll = {});
+  void subtract(const Field& other, double factor = 1, const Poll& poll = {});
+  void multiply(const Field& other, const Poll& poll = {});  // element by element
+  void add_product(const Field& a, const Field& b, double factor = 1, const Poll& poll = {});
+  void copy(const Field& other, const Poll& poll = {});
 
-  double absolute_sum() const;  // in the order of the elements: the same on every machine
-  double max() const;
+  double absolute_sum(const Poll& poll = {}) const;  // in the order of the elements: the same on every machine
+  double max(const Poll& poll = {}) const;
 
   /// this = factor * (sum of the 2 d neighbours - 2 d * other), d dimensions. `other` may be this field.
-  void diffuse(const Field& other, double factor = 1);           // outside is 0
-  void diffuse_periodic(const Field& other, double factor = 1);  // edges wrap, for every size
+  void diffuse(const Field& other, double factor = 1, const Poll& poll = {});           // outside is 0
+  void diffuse_periodic(const Field& other, double factor = 1, const Poll& poll = {});  // edges wrap, for every size
 
   /// this += factor * its own Laplacian, as above, over the dimensions that the elements span: a field in space of one
   /// layer (nz 1) spreads as a plane, so that nothing leaks through the dimension that it lacks.
-  void spread(double factor);
-  void spread_periodic(double factor);
+  void spread(double factor, const Poll& poll = {});
+  void spread_periodic(double factor, const Poll& poll = {});
   int spans() const { return dimensions_ == 3 && nz_ == 1 ? 2 : dimensions_; }
 
   /// result = matrix * this. For a plane this is the product of matrices with x as row and y as column; for a line the
   /// product with a column. `result` must have the sizes of the product and may be either operand.
-  void transform(const Field& matrix, Field& result) const;
+  void transform(const Field& matrix, Field& result, const Poll& poll = {}) const;
 
   /// Channel bytes as an image takes them: floor(255 * factor * value), not below 0 nor above 255; NaN gives 0.
   static std::uint8_t channel_byte(double value, double factor);
 
   /// Rows as a matrix is typed into MATLAB: "[ 1 2; 3 4 ]"; a line or a plane.
-  std::string matlab() const;
+  std::string matlab(const Poll& poll = {}) const;
 
   void save(ByteWriter& out) const;
   static Field load(ByteReader& in);  // Error{Image}
@@ -93,7 +94,9 @@ class Field {
   void check_same_size(const Field& other, const char* what) const;
   std::string size_text() const;
   template <bool kPeriodic>
-  void laplacian(const Field& other, double factor, int dimensions, bool added);
+  void laplacian(const Field& other, double factor, int dimensions, bool added, const Poll& poll);
+  template <class Work>
+  void in_pieces(const Poll& poll, Work&& work) const;
 
   int dimensions_, nx_, ny_, nz_;
   std::pmr::vector<double> values_;

@@ -24,7 +24,7 @@ void check_height(double height, int column, int row) {
 }  // namespace
 
 HeightGrid::HeightGrid(int columns, int rows, double tile, std::span<const double> heights,
-                       std::pmr::memory_resource* memory)
+                       std::pmr::memory_resource* memory, const Poll& poll)
     : columns_(columns), rows_(rows), tile_(tile), heights_(memory), blocks_(memory) {
   if (columns < 2 || rows < 2 || columns > kMostSide || rows > kMostSide) {
     refuse_field(fmt::format("has {} columns and {} rows (must be from 2 to {})", columns, rows, kMostSide));
@@ -36,12 +36,15 @@ HeightGrid::HeightGrid(int columns, int rows, double tile, std::span<const doubl
     refuse_field(
         fmt::format("of {} columns and {} rows has {} heights (must be {})", columns, rows, heights.size(), points));
   }
-  for (std::size_t i = 0; i < points; ++i) {
-    const auto place = static_cast<int>(i);
-    check_height(heights[i], place % columns, place / columns);
+  heights_.reserve(points);
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      check_height(heights[heights_.size()], column, row);
+      heights_.push_back(heights[heights_.size()]);
+    }
+    if (poll) poll();
   }
-  heights_.assign(heights.begin(), heights.end());
-  measure();
+  measure(poll);
 }
 
 HeightGrid::HeightGrid(const HeightGrid& other, const Vector3& factors)
@@ -54,10 +57,12 @@ HeightGrid::HeightGrid(const HeightGrid& other, const Vector3& factors)
   measure_bounds();
 }
 
-void HeightGrid::measure() {
+void HeightGrid::measure(const Poll& poll) {
   blocks_.resize(static_cast<std::size_t>(blocks_across()) * static_cast<std::size_t>(blocks_along()));
-  for (int along = 0; along < blocks_along(); ++along)
+  for (int along = 0; along < blocks_along(); ++along) {
     for (int across = 0; across < blocks_across(); ++across) measure_block(across, along);
+    if (poll) poll();
+  }
   measure_bounds();
 }
 

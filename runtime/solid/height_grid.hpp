@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "runtime/base/bytes.hpp"
+#include "runtime/base/poll.hpp"
 #include "runtime/solid/surface.hpp"
 
 namespace breve {
@@ -17,7 +18,8 @@ class HeightGrid final : public Surface {
 
   /// `heights` has rows * columns values, row after row. Error{Argument}: a side that is not from 2 to kMostSide, a
   /// count that does not fit, a tile that is not finite and > 0, a height that is not finite.
-  HeightGrid(int columns, int rows, double tile, std::span<const double> heights, std::pmr::memory_resource* memory);
+  HeightGrid(int columns, int rows, double tile, std::span<const double> heights, std::pmr::memory_resource* memory,
+             const Poll& poll = {});
 
   int columns() const { return columns_; }
   int rows() const { return rows_; }
@@ -59,7 +61,7 @@ class HeightGrid final : public Surface {
                    static_cast<std::size_t>(across)];
   }
   const Range& block(int across, int along) const { return const_cast<HeightGrid*>(this)->block(across, along); }
-  void measure();
+  void measure(const Poll& poll = {});
   void measure_block(int across, int along);
   void measure_bounds();
   /// Cells from the first to the last, with bounds; of an area of the grid.

@@ -11,6 +11,7 @@
 #include "runtime/base/hasher.hpp"
 #include "runtime/base/math.hpp"
 #include "runtime/base/memory.hpp"
+#include "runtime/base/poll.hpp"
 #include "runtime/solid/polyhedron.hpp"
 #include "runtime/solid/round.hpp"
 
@@ -59,7 +60,7 @@ class Shape : public InMemory {
   /// Heights over a grid in x and z, see HeightGrid. Ground: what is below is inside. Its mass, which nothing should
   /// need, is that of its bounds, at least a tile thick, when it was built.
   static std::shared_ptr<Shape> height_field(int columns, int rows, double tile, std::span<const double> heights,
-                                             Memory memory = std::pmr::get_default_resource());
+                                             Memory memory = std::pmr::get_default_resource(), const Poll& poll = {});
 
   ~Shape();
   ShapeKind kind() const;

@@ -67,9 +67,9 @@ std::shared_ptr<Shape> Shape::hull(std::span<const Vector3> points, double densi
 }
 
 std::shared_ptr<Shape> Shape::height_field(int columns, int rows, double tile, std::span<const double> heights,
-                                           Memory memory) {
+                                           Memory memory, const Poll& poll) {
   return height_field(
-      std::shared_ptr<HeightGrid>(new (memory) HeightGrid(columns, rows, tile, heights, memory),
+      std::shared_ptr<HeightGrid>(new (memory) HeightGrid(columns, rows, tile, heights, memory, poll),
                                   std::default_delete<HeightGrid>(), std::pmr::polymorphic_allocator<>(memory)),
       memory);
 }

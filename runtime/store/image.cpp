@@ -2,7 +2,6 @@
 #include "runtime/store/image.hpp"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -55,15 +54,6 @@ void Image::set_bytes(std::span<const std::uint8_t> bytes) {
   }
   std::copy(bytes.begin(), bytes.end(), pixels_.begin());
   changed_ = true;
-}
-
-std::size_t Image::deflated_size() const {
-  uLongf size = compressBound(static_cast<uLong>(pixels_.size()));
-  std::pmr::vector<std::uint8_t> out(size, pixels_.get_allocator());
-  if (compress2(out.data(), &size, pixels_.data(), static_cast<uLong>(pixels_.size()), Z_DEFAULT_COMPRESSION) != Z_OK) {
-    throw Error(ErrorCode::Memory, fmt::format("no memory to deflate an image of {} x {}", width_, height_));
-  }
-  return size;
 }
 
 void Image::save(ByteWriter& out) const {

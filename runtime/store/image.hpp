@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory_resource>
 #include <span>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "runtime/base/bytes.hpp"
 #include "runtime/base/hasher.hpp"
+#include "runtime/store/png.hpp"
 
 namespace breve {
 
@@ -50,12 +52,14 @@ class Image {
   static constexpr std::size_t kMostFileBytes = std::size_t{256} << 20;
   /// The picture in the bytes of a PNG, JPEG or TGA file. Error{File} names the file, which is only a name here, and
   /// says why there is none.
+  /// @param before  is told the size before the pixels are decoded, and may throw
   static Image parse(std::string_view bytes, const std::string& name,
-                     std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+                     std::pmr::memory_resource* memory = std::pmr::get_default_resource(),
+                     const std::function<void(int width, int height)>& before = {});
   /// The bytes of a PNG file. Error{Argument} if the image is empty.
-  std::string png() const;
+  std::string png(const Poll& poll = {}) const;
   /// Bytes of the pixels after deflation: a measure of how regular the picture is.
-  std::size_t deflated_size() const;
+  std::size_t deflated_size(const Poll& poll = {}) const { return breve::deflated_size(pixels_, poll); }
 
   void save(ByteWriter& out) const;
   static Image load(ByteReader& in);  // Error{Image}
@@ -71,6 +75,6 @@ class Image {
 
 /// The bytes of a 16-bit grayscale PNG, rows from the top: 0 is black, 1 white; values are clamped, NaN is black.
 /// Error{Argument} unless there are width * height values (sides as for Image).
-std::string gray16_png(int width, int height, std::span<const double> values);
+std::string gray16_png(int width, int height, std::span<const double> values, const Poll& poll = {});
 
 }  // namespace breve

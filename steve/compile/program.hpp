@@ -122,10 +122,10 @@ struct ClassInfo {
   const ClassInfo* parent = nullptr;
   std::uint32_t depth = 0;  // ancestors
   double version = 1.0;
-  std::vector<VariableInfo> variables;                      // its own; ancestors' come before in the instance; add_variable
-  std::uint32_t slot_count = 0;                             // with ancestors
-  std::vector<std::uint16_t> reference_slots;               // with ancestors: slots that hold a Cell*
-  std::vector<std::unique_ptr<MethodInfo>> methods;         // its own; add_method
+  std::vector<VariableInfo> variables;               // its own; ancestors' come before in the instance; add_variable
+  std::uint32_t slot_count = 0;                      // with ancestors
+  std::vector<std::uint16_t> reference_slots;        // with ancestors: slots that hold a Cell*
+  std::vector<std::unique_ptr<MethodInfo>> methods;  // its own; add_method
   std::vector<const MethodInfo*> init_chain, delete_chain;  // root first
   const MethodInfo* iterate = nullptr;                      // inherited ones too; null if there is none
   const MethodInfo* post_iterate = nullptr;
@@ -173,7 +173,7 @@ class Program {
   Program();
   Program(const Program& base, std::size_t room);    // with room behind the tables for fragments (evaluate.cpp)
   std::vector<std::shared_ptr<ClassInfo>> classes_;  // shared with the programs that extend this one by fragments
-  NameTable<ClassInfo*> class_names_;  // names and aliases
+  NameTable<ClassInfo*> class_names_;                // names and aliases
   const ClassInfo* controller_ = nullptr;
   SymbolTable symbols_;
   Sources sources_;

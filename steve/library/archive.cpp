@@ -58,14 +58,18 @@ VariableInfo element_of(const VariableInfo& variable, int element) {
   return one;
 }
 
+constexpr std::uint64_t kOfByte = 4;  // to read or write one, in elements of a list
+
 // --- writing ---------------------------------------------------------------------------------------------------------
 
 /// What pugixml writes, in a string. A stream of the standard library would hide that memory has run out.
 class TextWriter : public pugi::xml_writer {
  public:
+  explicit TextWriter(Machine& machine) : machine_(machine) {}
   void write(const void* data, std::size_t size) override {
     if (failure_) return;
     try {
+      machine_.charge_for(kOfByte * size);
       text_.append(static_cast<const char*>(data), size);
     } catch (...) {
       failure_ = std::current_exception();  // not through the library: it is not ours
@@ -77,6 +81,7 @@ class TextWriter : public pugi::xml_writer {
   }
 
  private:
+  Machine& machine_;
   std::string text_;
   std::exception_ptr failure_;
 };
@@ -91,13 +96,13 @@ class Writer {
     pugi::xml_node archive = document.append_child("breve-archive");
     archive.append_attribute("version") = kVersion;
     archive.append_attribute("root") = numbers_.at(root.serial);
-    ValueWriter values(numbers_);
+    ValueWriter values(machine_, numbers_);
     for (Instance* object : order_) {
       if (!object->live())
         throw Error(ErrorCode::Argument, name_of(*object) + " was freed by an archive method of another object");
       write_object(archive.append_child("object"), *object, values);
     }
-    TextWriter out;
+    TextWriter out(machine_);
     document.save(out, " ");
     return out.text();
   }
@@ -163,6 +168,7 @@ class Writer {
       ByteWriter out;
       resource->save(out);
       const auto bytes = out.take();
+      machine_.charge_for(kOfByte * bytes.size());
       pugi::xml_node native = element.append_child("native");
       native.append_attribute("kind") = std::string(resource->kind()).c_str();
       native.text() = to_hex({reinterpret_cast<const char*>(bytes.data()), bytes.size()}).c_str();
@@ -184,8 +190,6 @@ class Writer {
 };
 
 // --- reading ---------------------------------------------------------------------------------------------------------
-
-constexpr std::uint64_t kOfByte = 4;  // to read one, in elements of a list
 
 pugi::xml_node parse(pugi::xml_document& document, std::string_view xml) {
   const auto result = document.load_buffer(xml.data(), xml.size(), pugi::parse_default | pugi::parse_ws_pcdata);

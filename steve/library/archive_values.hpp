@@ -18,13 +18,14 @@ std::string from_hex(std::string_view digits);
 /// Writes the values of one archive. Objects are named by the numbers in `objects`; any other is null.
 class ValueWriter {
  public:
-  explicit ValueWriter(const std::map<std::uint64_t, int>& numbers) : numbers_(numbers) {}
+  ValueWriter(Machine& machine, const std::map<std::uint64_t, int>& numbers) : machine_(machine), numbers_(numbers) {}
   /// @throws Error{Argument} for lists and hashes nested too deeply
   void write(pugi::xml_node parent, const Value& value, int depth = 0);
 
  private:
   bool seen_before(pugi::xml_node node, std::uint64_t serial);
 
+  Machine& machine_;
   const std::map<std::uint64_t, int>& numbers_;  // serial of an instance to its number in the archive
   std::map<std::uint64_t, int> containers_;      // serial of a list or hash to the number it got
 };

@@ -37,19 +37,31 @@ void grid_set_state(Machine& machine, Instance& self, std::int32_t state, std::i
   resource.states.set(cell, state_of(state));
 }
 
+template <class Work>
+void for_each_cell(Machine& machine, const Grid& grid, Work&& work) {
+  constexpr CellIndex kBetweenPolls = 1 << 16;
+  for (CellIndex cell = 0; cell < grid.cells(); ++cell) {
+    if (cell % kBetweenPolls == 0) machine.poll();
+    work(cell);
+  }
+}
+
 void grid_set_all_states(Machine& machine, Instance& self, std::int32_t state) {
   GridResource& resource = own_grid(machine, self);
   machine.charge_for(resource.grid->cells());
   resource.states.make(*resource.grid);
-  for (CellIndex cell = 0; cell < resource.grid->cells(); ++cell) resource.states.set(cell, state_of(state));
+  for_each_cell(machine, *resource.grid, [&](CellIndex cell) { resource.states.set(cell, state_of(state)); });
 }
 
 void grid_randomize_states(Machine& machine, Instance& self, double density) {
   GridResource& resource = own_grid(machine, self);
   finite(density, "randomize-states: the density");
+  constexpr std::uint64_t kOfCell = 4;
+  machine.charge_for(kOfCell * resource.grid->cells());
   resource.states.make(*resource.grid);
-  for (CellIndex cell = 0; cell < resource.grid->cells(); ++cell)
+  for_each_cell(machine, *resource.grid, [&](CellIndex cell) {
     resource.states.set(cell, machine.world().random().uniform() < density ? 1 : 0);
+  });
 }
 
 std::int32_t grid_count_states(Machine& machine, Instance& self, std::int32_t state) {
@@ -116,11 +128,12 @@ void grid_apply_rule(Machine& machine, Instance& self, std::int32_t born, std::i
   refuse_updating(resource, "apply-rule");
   resource.states.make(*resource.grid);
   const TotalisticRule rule{static_cast<std::uint32_t>(born), static_cast<std::uint32_t>(survive)};
-  constexpr std::size_t kCellsPerTurn = 64;  // what takes about as long as a turn of a script's loop
+  constexpr std::size_t kCellsPerTurn = 32;  // what takes about as long as a turn of a script's loop
   for (std::int32_t i = 0; i < times; ++i) {
     machine.charge(1 + resource.grid->cells() / kCellsPerTurn);
     const StageScope timed = machine.world().work(EffectId::Patches, self.id, resource.grid->cells());
-    resource.states.step(*resource.grid, resource.neighborhood, rule, resource.order, machine.world().random());
+    resource.states.step(*resource.grid, resource.neighborhood, rule, resource.order, machine.world().random(),
+                         machine.poller());
   }
 }
 

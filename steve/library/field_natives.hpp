@@ -18,6 +18,14 @@ inline Field& field_of(Machine& machine, Instance* object, std::string_view what
 
 inline Field& own_field(Machine& machine, Instance& self) { return field_of(machine, &self, "this object"); }
 
+/// Before a field of these sides is made, whether they are good or not.
+template <class... Sides>
+void charge_for_making(Machine& machine, Sides... sides) {
+  constexpr double kOfElement = 2, kMost = 1e18;
+  const double elements = (1.0 * ... * std::max<double>(sides, 0));
+  machine.charge_for(static_cast<std::uint64_t>(std::min(kOfElement * elements, kMost)));
+}
+
 /// The same, for work on all its elements.
 inline Field& whole_field(Machine& machine, Instance& self) {
   Field& field = own_field(machine, self);
@@ -32,38 +40,46 @@ inline StageScope diffusing(Machine& machine, const Instance& self, const Field&
   return machine.world().work(EffectId::Diffusion, self.id, field.size());
 }
 
-inline void set_all_values(Machine& machine, Instance& self, double value) { whole_field(machine, self).fill(value); }
-inline double get_absolute_sum(Machine& machine, Instance& self) { return whole_field(machine, self).absolute_sum(); }
-inline void add_scalar(Machine& machine, Instance& self, double value) { whole_field(machine, self).add_scalar(value); }
-inline void scale(Machine& machine, Instance& self, double factor) { whole_field(machine, self).scale(factor); }
+inline void set_all_values(Machine& machine, Instance& self, double value) {
+  whole_field(machine, self).fill(value, machine.poller());
+}
+inline double get_absolute_sum(Machine& machine, Instance& self) {
+  return whole_field(machine, self).absolute_sum(machine.poller());
+}
+inline void add_scalar(Machine& machine, Instance& self, double value) {
+  whole_field(machine, self).add_scalar(value, machine.poller());
+}
+inline void scale(Machine& machine, Instance& self, double factor) {
+  whole_field(machine, self).scale(factor, machine.poller());
+}
 
 inline void add_values(Machine& machine, Instance& self, Instance* other, double factor) {
-  whole_field(machine, self).add(field_of(machine, other, "add-values"), factor);
+  whole_field(machine, self).add(field_of(machine, other, "add-values"), factor, machine.poller());
 }
 
 inline void subtract_values(Machine& machine, Instance& self, Instance* other, double factor) {
-  whole_field(machine, self).subtract(field_of(machine, other, "subtract-values"), factor);
+  whole_field(machine, self).subtract(field_of(machine, other, "subtract-values"), factor, machine.poller());
 }
 
 inline void multiply_with_values(Machine& machine, Instance& self, Instance* other) {
-  whole_field(machine, self).multiply(field_of(machine, other, "multiply-with-values"));
+  whole_field(machine, self).multiply(field_of(machine, other, "multiply-with-values"), machine.poller());
 }
 
 inline void add_product(Machine& machine, Instance& self, Instance* first, Instance* second, double factor) {
   const Field& a = field_of(machine, first, "add-product");
-  whole_field(machine, self).add_product(a, field_of(machine, second, "add-product"), factor);
+  whole_field(machine, self).add_product(a, field_of(machine, second, "add-product"), factor, machine.poller());
 }
 
 inline void diffuse_in_place(Machine& machine, Instance& self, double factor) {
   Field& field = whole_field(machine, self);
   const StageScope timed = diffusing(machine, self, field);
-  field.spread(factor);
+  field.spread(factor, machine.poller());
 }
 
 inline void diffuse_periodically(Machine& machine, Instance& self, double factor) {
   Field& field = whole_field(machine, self);
   const StageScope timed = diffusing(machine, self, field);
-  field.spread_periodic(factor);
+  field.spread_periodic(factor, machine.poller());
 }
 
 /// Takes the other's size as well.
@@ -77,26 +93,26 @@ inline void copy(Machine& machine, Instance& self, Instance* other) {
 inline void compute_diffusion(Machine& machine, Instance& self, Instance* source, double factor) {
   Field& field = whole_field(machine, self);
   const StageScope timed = diffusing(machine, self, field);
-  field.diffuse(field_of(machine, source, "compute-diffusion-matrix"), factor);
+  field.diffuse(field_of(machine, source, "compute-diffusion-matrix"), factor, machine.poller());
 }
 
 inline void compute_periodic_diffusion(Machine& machine, Instance& self, Instance* source, double factor) {
   Field& field = whole_field(machine, self);
   const StageScope timed = diffusing(machine, self, field);
-  field.diffuse_periodic(field_of(machine, source, "compute-periodic-diffusion-matrix"), factor);
+  field.diffuse_periodic(field_of(machine, source, "compute-periodic-diffusion-matrix"), factor, machine.poller());
 }
 
 inline void transform(Machine& machine, Instance& self, Instance* matrix, Instance* result) {
   const Field& left = field_of(machine, matrix, "transform: the matrix");
   machine.charge_for(left.size() * static_cast<std::uint64_t>(own_field(machine, self).nx()));  // a product of matrices
-  whole_field(machine, self).transform(left, field_of(machine, result, "transform: the result"));
+  whole_field(machine, self).transform(left, field_of(machine, result, "transform: the result"), machine.poller());
 }
 
 inline void print_matlab_style(Machine& machine, Instance& self) {
   constexpr std::uint64_t kOfText = 16;  // a number's digits
   const Field& field = whole_field(machine, self);
   machine.charge_for(kOfText * field.size());
-  machine.print(field.matlab() + "\n");
+  machine.print(field.matlab(machine.poller()) + "\n");
 }
 
 }  // namespace fields

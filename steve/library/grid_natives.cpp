@@ -13,9 +13,15 @@ namespace {
 // --- making ----------------------------------------------------------------------------------------------------------
 
 /// Every cell's object, then init-patch of each: the whole grid exists by then.
+void patches_of(Machine& machine, Instance& self, CellIndex cells) {
+  constexpr std::uint64_t kOfCell = 8;
+  machine.charge_for(kOfCell * static_cast<std::uint64_t>(cells));
+  for (CellIndex cell = 0; cell < cells; ++cell) patch_of(machine, self, cell);
+}
+
 void make_patches(Machine& machine, Instance& self) {
   const auto cells = static_cast<CellIndex>(own_grid(machine, self).grid->cells());
-  for (CellIndex cell = 0; cell < cells; ++cell) patch_of(machine, self, cell);
+  patches_of(machine, self, cells);
   for (CellIndex cell = 0; cell < cells; ++cell) {
     Instance* patch = patch_of(machine, self, cell);
     if (patch && patch->live()) machine.call(*patch, "init-patch");
@@ -86,8 +92,7 @@ void grid_make_patches_of(Machine& machine, Instance& self, StringCell* name) {
   const Slot* own = library_slot(machine, self, "PatchGrid", "patchClass");
   const ClassInfo* cls = own->ref ? machine.program().find_class(view(static_cast<StringCell*>(own->ref))) : nullptr;
   if (!resource || !resource->grid || !wanted || !cls || !cls->derives_from(*wanted)) return;
-  const auto cells = static_cast<CellIndex>(resource->grid->cells());
-  for (CellIndex cell = 0; cell < cells; ++cell) patch_of(machine, self, cell);
+  patches_of(machine, self, static_cast<CellIndex>(resource->grid->cells()));
 }
 
 template <int (Grid::*Count)() const>

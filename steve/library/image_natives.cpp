@@ -27,10 +27,16 @@ Instance* image_set_size(Machine& machine, Instance& self, std::int32_t width, s
   return &self;
 }
 
+void charge_for_decoding(Machine& machine, int width, int height) {
+  constexpr std::uint64_t kOfPixel = 32;
+  machine.charge_for(kOfPixel * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height));
+}
+
 Instance* image_load(Machine& machine, Instance& self, Text file) {
   const std::string name(view(file));
   try {
-    image(machine, self) = Image::parse(read_file(machine, name), name, machine.heap().memory());
+    image(machine, self) = Image::parse(read_file(machine, name), name, machine.heap().memory(),
+                                        [&](int width, int height) { charge_for_decoding(machine, width, height); });
   } catch (const MissingFile&) {
     warn_of_missing_image(machine, name);
     return nullptr;
@@ -63,7 +69,7 @@ std::int32_t try_to_write(Machine& machine, const std::string& name, Write write
 std::int32_t image_write(Machine& machine, Instance& self, Text file) {
   const std::string name(view(file));
   charge_for_deflation(machine, image(machine, self));
-  return try_to_write(machine, name, [&] { write_file(machine, name, image(machine, self).png()); });
+  return try_to_write(machine, name, [&] { write_file(machine, name, image(machine, self).png(machine.poller())); });
 }
 
 std::int32_t image_write_16_bit(Machine& machine, Instance& self, Text file) {
@@ -76,8 +82,9 @@ std::int32_t image_write_16_bit(Machine& machine, Instance& self, Text file) {
   for (int y = 0; y < picture.height(); ++y)
     for (int x = 0; x < picture.width(); ++x)
       greys.push_back((picture.byte(x, y, Channel::Red) * 256 + picture.byte(x, y, Channel::Green)) / kHighest);
-  return try_to_write(machine, name,
-                      [&] { write_file(machine, name, gray16_png(picture.width(), picture.height(), greys)); });
+  return try_to_write(machine, name, [&] {
+    write_file(machine, name, gray16_png(picture.width(), picture.height(), greys, machine.poller()));
+  });
 }
 
 // --- the library's own pictures --------------------------------------------------------------------------------------
@@ -168,13 +175,14 @@ std::int32_t image_get_texture_number(Machine&, Instance& self) { return static_
 
 std::int32_t image_get_compression_size(Machine& machine, Instance& self) {
   charge_for_deflation(machine, image(machine, self));
-  return static_cast<std::int32_t>(image(machine, self).deflated_size());
+  return static_cast<std::int32_t>(image(machine, self).deflated_size(machine.poller()));
 }
 
 // --- the view --------------------------------------------------------------------------------------------------------
 
 void image_read_pixels(Machine& machine, Instance& self, std::int32_t, std::int32_t) {
   Image& picture = image(machine, self);
+  machine.charge_for(picture.bytes().size() / 4);
   if (!picture.empty()) picture = Image(picture.width(), picture.height(), machine.heap().memory());
   machine.warn_once("renderer:read-pixels", "read-pixels: nothing draws this world; the image is black");
 }

@@ -12,6 +12,7 @@ namespace {
 // --- Matrix2D --------------------------------------------------------------------------------------------------------
 
 Instance* plane_set_size(Machine& machine, Instance& self, std::int32_t nx, std::int32_t ny) {
+  charge_for_making(machine, nx, ny);
   resource_made<FieldResource>(machine, self).field = Field::plane(nx, ny, machine.heap().memory());
   return &self;
 }
@@ -31,7 +32,9 @@ void plane_set_value(Machine& machine, Instance& self, double value, std::int32_
   own_field(machine, self).set(x, y, 0, value);
 }
 
-double plane_get_max_value(Machine& machine, Instance& self) { return whole_field(machine, self).max(); }
+double plane_get_max_value(Machine& machine, Instance& self) {
+  return whole_field(machine, self).max(machine.poller());
+}
 
 /// Element (x, y, z) to pixel (x, y), as far as both go.
 void copy_plane(Machine& machine, const Field& field, int z, Instance* target, double factor, Channel channel) {
@@ -56,6 +59,7 @@ void plane_copy_to_channel(Machine& machine, Instance& self, Instance* target, d
 // --- Matrix3D --------------------------------------------------------------------------------------------------------
 
 Instance* space_set_size(Machine& machine, Instance& self, std::int32_t nx, std::int32_t ny, std::int32_t nz) {
+  charge_for_making(machine, nx, ny, nz);
   resource_made<FieldResource>(machine, self).field = Field::space(nx, ny, nz, machine.heap().memory());
   return &self;
 }

@@ -95,23 +95,34 @@ std::shared_ptr<Shape> lying(const Shape& prism, std::pmr::memory_resource* memo
   return Shape::convex(faces, 1, memory);
 }
 
+constexpr std::int32_t kRoundSides = 64;  // as many as a round shape is worth
+
+void charge_for_sides(Machine& machine, std::int32_t sides) {
+  constexpr std::uint64_t kOfSide = 64;  // turns
+  if (sides > 0) machine.charge(kOfSide * static_cast<std::uint64_t>(sides));
+}
+
 Instance* build_disk(Machine& machine, Instance& self, std::int32_t sides, double height, double radius) {
+  charge_for_sides(machine, sides);
   std::shared_ptr<Shape> prism = Shape::prism(sides, height, radius, machine.heap().memory());
   if (machine.world().dimension() == 2) prism = lying(*prism, machine.heap().memory());
   return build(machine, self, prism);
 }
 
 Instance* build_cone(Machine& machine, Instance& self, std::int32_t sides, double height, double radius) {
+  charge_for_sides(machine, sides);
   return build(machine, self, Shape::cone(sides, height, radius, machine.heap().memory()));
 }
 
 Instance* build_cylinder(Machine& machine, Instance& self, double height, double radius) {
+  charge_for_sides(machine, kRoundSides);
   // As a disk: in a flat world its axis is z.
   const int axis = machine.world().dimension() == 2 ? 2 : 1;
   return build(machine, self, Shape::cylinder(height, radius, axis, machine.heap().memory()));
 }
 
 Instance* build_capsule(Machine& machine, Instance& self, double length, double radius) {
+  charge_for_sides(machine, kRoundSides);
   return build(machine, self, Shape::capsule(length, radius, 1, machine.heap().memory()));
 }
 

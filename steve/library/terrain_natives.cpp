@@ -55,17 +55,25 @@ void use(Machine& machine, Instance& self, const std::shared_ptr<Shape>& shape) 
   bodies.set_display_shape(body, shape);
 }
 
+void charge_for_points(Machine& machine, std::uint64_t side) {
+  constexpr std::uint64_t kOfPoint = 8;
+  machine.charge_for(kOfPoint * side * side);
+}
+
 void set_heights(Machine& machine, Instance& self, const Heights& heights) {
-  auto shape = Shape::height_field(heights.side, heights.side, heights.tile, heights.values, machine.heap().memory());
+  auto shape = Shape::height_field(heights.side, heights.side, heights.tile, heights.values, machine.heap().memory(),
+                                   machine.poller());
   use(machine, self, shape);
   resource_made<ShapeResource>(machine, self).shape = std::move(shape);
 }
 
-Heights copy_of(const HeightGrid& grid) {
+Heights copy_of(const Machine& machine, const HeightGrid& grid) {
   Heights heights(grid.columns());
   heights.tile = grid.tile();
-  for (int row = 0; row < heights.side; ++row)
+  for (int row = 0; row < heights.side; ++row) {
     for (int column = 0; column < heights.side; ++column) heights.at(column, row) = grid.height(column, row);
+    machine.poller()();
+  }
   return heights;
 }
 
@@ -88,18 +96,18 @@ void terrain_dearchive(Machine& machine, Instance& self) {
 }
 
 /// Midpoint displacement: squares get their middles, then edges theirs, level by level.
-void displace(Heights& heights, double factor, Random& random) {
+void displace(Heights& heights, double factor, Random& random, const Poll& poll) {
   const int last = heights.side - 1;
   double reach = 1;
   for (int step = last; step > 1; step /= 2, reach *= factor) {
     const int half = step / 2;
     const auto offset = [&] { return (random.uniform() - 0.5) * reach; };
-    for (int z = half; z < last; z += step)
+    for (int z = half; z < last; z += step, poll())
       for (int x = half; x < last; x += step)
         heights.at(x, z) = offset() + (heights.at(x - half, z - half) + heights.at(x + half, z - half) +
                                        heights.at(x - half, z + half) + heights.at(x + half, z + half)) /
                                           4;
-    for (int z = 0; z <= last; z += half)
+    for (int z = 0; z <= last; z += half, poll())
       for (int x = (z / half) % 2 == 0 ? half : 0; x <= last; x += step) {
         double sum = 0;
         int count = 0;
@@ -121,12 +129,11 @@ void terrain_generate(Machine& machine, Instance& self, double ruggedness, doubl
   if (side > HeightGrid::kMostSide)
     throw Error(ErrorCode::Argument, "generate: the grid has " + std::to_string(grid.columns()) +
                                          " points a side and cannot be doubled again");
-  constexpr std::uint64_t kOfPoint = 8;
-  machine.charge_for(kOfPoint * static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side));
+  charge_for_points(machine, static_cast<std::uint64_t>(side));
   Heights heights(side);
   heights.tile = grid.tile();
   const double grown = (grid.columns() - 1) * grid.tile() / 2;
-  displace(heights, std::pow(2.0, -(1 - ruggedness)), machine.world().random());
+  displace(heights, std::pow(2.0, -(1 - ruggedness)), machine.world().random(), machine.poller());
   for (double& value : heights.values) value *= height;
   set_heights(machine, self, heights);
   Bodies& bodies = machine.world().bodies();
@@ -168,7 +175,8 @@ void terrain_set_scale(Machine& machine, Instance& self, double tile) {
   finite(tile, "set-scale: the tile size");
   constexpr double kSmallest = 0.001;
   if (tile < kSmallest) return;
-  Heights heights = copy_of(grid_of(machine, self));
+  charge_for_points(machine, static_cast<std::uint64_t>(grid_of(machine, self).columns()));
+  Heights heights = copy_of(machine, grid_of(machine, self));
   heights.tile = tile;
   set_heights(machine, self, heights);
 }

@@ -8,6 +8,7 @@ namespace breve::steve {
 namespace {
 
 Instance* set_size(Machine& machine, Instance& self, std::int32_t size) {
+  charge_for_making(machine, size);
   resource_made<FieldResource>(machine, self).field = Field::line(size, machine.heap().memory());
   return &self;
 }

@@ -27,12 +27,6 @@ std::string hash_of(const HashCell* hash) {
 
 }  // namespace
 
-std::string cut(std::string_view text, std::size_t bytes) {
-  if (text.size() <= bytes) return std::string(text);
-  while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xC0U) == 0x80U) --bytes;
-  return std::string(text.substr(0, bytes)) + "…";
-}
-
 std::string brief_text(std::string_view text) {
   std::string out = "\"";
   for (const char c : cut(text, kLongestText)) {

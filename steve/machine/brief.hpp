@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "steve/machine/cells.hpp"
+#include "steve/syntax/diagnostic.hpp"
 
 namespace breve::steve {
 
@@ -17,7 +18,5 @@ std::string brief(const Vector3& vector);
 std::string brief_text(std::string_view text);
 /// With the name of its type: `the int 7`, `the string "text"`, `a list of 12`, `the object Bird 0xc`, `a null object`.
 std::string typed_brief(const Value& value);
-/// At most `bytes` of a text, cut between characters and ended by `…`.
-std::string cut(std::string_view text, std::size_t bytes);
 
 }  // namespace breve::steve

@@ -172,6 +172,7 @@ void Machine::call_native(const Plan& plan, Instance& receiver, const Slot* call
   const std::size_t pinned = pins_.size();
   apply(plan, caller, args);
   top_ = args + kNativeRoom;
+  poll();
   plan.method->native(*this, receiver, args, result_);
   top_ = args;
   if (pins_.size() != pinned) pins_.resize(pinned);

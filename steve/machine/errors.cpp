@@ -18,7 +18,7 @@ Span Machine::span_of(const Frame& frame, const Instruction* pc) const {
 ErrorReport Machine::report(const RunError& error, const Instruction* pc) const {
   ErrorReport r;
   r.kind = error.kind();
-  r.message = error.what();
+  r.message = cut(error.what(), kLongestMessage);
   r.help = error.help();
   const auto& sources = program_->sources();
   auto frames = active_frames();
@@ -90,9 +90,42 @@ void Machine::throw_out_of_memory(std::size_t depth, const Instruction* pc) {
   throw ScriptError(ErrorCode::Memory, std::move(r));
 }
 
+void Machine::print(std::string_view text) {
+  refuse_in_stage("print");
+  if (!host_.print) return;
+  constexpr std::uint64_t kMost = std::uint64_t{64} << 20, kBytesPerTurn = 16;
+  charge(text.size() / kBytesPerTurn);
+  printed_ += text.size();
+  if (printed_ > kMost)
+    throw RunError(RunErrorKind::Bounds, "more than 64 MB are printed in one iteration or call by the host",
+                   "print less, or write to a file");
+  host_.print(text);
+}
+
+/// Counts each, and makes the text of those alone that are told.
+template <class Text>
+void Machine::tell(Severity severity, Text&& text) {
+  const auto& to = severity == Severity::Error ? host_.error : host_.warn;
+  if (!to) return;
+  constexpr std::uint32_t kMost = 1000;
+  if (told_ <= kMost) ++told_;
+  if (told_ <= kMost) return to(text());
+  if (told_ == kMost + 1) {
+    host_.warn(fmt::format(
+        "{} warnings and errors in one iteration or call by the host: what follows is counted, not shown", kMost));
+    ++told_;
+  }
+  to({});
+}
+
+void Machine::survive(const RunError& error) {
+  ++survived_errors_;
+  tell(Severity::Error, [&] { return report(error, running()).text; });
+}
+
 void Machine::survive(const ScriptError& error) {
   ++survived_errors_;
-  if (host_.error) host_.error(error.report().text);
+  tell(Severity::Error, [&] { return error.report().text; });
 }
 
 std::string Machine::stack_trace() const {
@@ -116,19 +149,20 @@ Span Machine::place_of_caller() const {
 }
 
 void Machine::warn(std::string_view text) {
-  if (!host_.warn) return;
-  host_.warn(format({Severity::Warning, "run-time", std::string(text), {}, place_of_caller()}, program_->sources()));
+  tell(Severity::Warning, [&] {
+    return format({Severity::Warning, "run-time", std::string(text), {}, place_of_caller()}, program_->sources());
+  });
 }
 
 void Machine::report_unknown_method(Severity severity, const Instance& self, std::string_view method,
                                     std::string_view consequence) {
-  const bool error = severity == Severity::Error;
-  const auto& tell = error ? host_.error : host_.warn;
-  if (!tell || (!error && !warned_.emplace(self.cls->name + " " + std::string(method)).second)) return;
-  tell(
-      format({severity, "run-time", fmt::format("class {} has no method '{}': {}", self.cls->name, method, consequence),
-              unknown_method_help(method, self.cls, *program_), place_of_caller()},
-             program_->sources()));
+  if (severity != Severity::Error && !warned_.emplace(self.cls->name + " " + std::string(method)).second) return;
+  tell(severity, [&] {
+    return format(
+        {severity, "run-time", fmt::format("class {} has no method '{}': {}", self.cls->name, method, consequence),
+         unknown_method_help(method, self.cls, *program_), place_of_caller()},
+        program_->sources());
+  });
 }
 
 void Machine::warn_once(std::string_view key, std::string_view text) {

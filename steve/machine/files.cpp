@@ -21,11 +21,14 @@ void check_name(const char* verb, std::string_view name) {
     refuse(verb, name.substr(0, zero), "the name contains a zero byte");
 }
 
+constexpr std::uint64_t kOfOpening = 4000;  // turns: what operating systems take for it
+
 }  // namespace
 
 std::unique_ptr<FileReader> open_for_reading(Machine& machine, std::string_view name) {
   check_name("read", name);
   if (!machine.host().open_for_reading) refuse("read", name, "the host gives scripts no files to read");
+  machine.charge(kOfOpening);
   std::string why;
   auto file = machine.host().open_for_reading(name, why);
   if (!file && why.empty()) throw MissingFile(fmt::format("cannot read file '{}': there is no such file", name));
@@ -36,6 +39,7 @@ std::unique_ptr<FileReader> open_for_reading(Machine& machine, std::string_view 
 std::unique_ptr<FileWriter> open_for_writing(Machine& machine, std::string_view name, bool append) {
   check_name("write", name);
   if (!machine.host().open_for_writing) refuse("write", name, "the host lets scripts write no files");
+  machine.charge(kOfOpening);
   std::string why;
   auto file = machine.host().open_for_writing(name, append, why);
   if (!file) refuse("write", name, why.empty() ? "it cannot be opened" : why);
@@ -49,6 +53,7 @@ std::string read_file(Machine& machine, std::string_view name) {
   while (const std::size_t got = file->read(block.data(), block.size())) {
     if (bytes.size() + got > kMostFileBytes)
       refuse("read", name, fmt::format("it is larger than {} bytes", kMostFileBytes));
+    machine.charge_for(got);
     bytes.append(block.data(), got);
   }
   return bytes;

@@ -3,7 +3,14 @@
 
 #include <vector>
 
+#include "steve/machine/machine.hpp"
+
 namespace breve::steve {
+
+void charge_for_argument(Machine& machine, std::size_t bytes) {
+  constexpr std::size_t kBytesPerTurn = 64;
+  machine.charge(bytes / kBytesPerTurn);
+}
 
 std::span<const Native> functions() {
   static const std::vector<Native> kAll = [] {

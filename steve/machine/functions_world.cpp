@@ -62,8 +62,17 @@ void unpause_simulation(Machine& machine, Instance&) { machine.world().set_pause
 
 void sleep_for(Machine& machine, Instance&, double seconds) {
   if (!machine.host().may_sleep) refuse_right("sleep", "sleep", "BREVE_RIGHT_SLEEP");
-  constexpr double kLongest = 86400;  // a day: keeps the conversion to the clock's integer sound
-  if (seconds > 0) std::this_thread::sleep_for(std::chrono::duration<double>(std::fmin(seconds, kLongest)));
+  constexpr double kLongest = 86400;       // a day: keeps the conversion to integers sound
+  constexpr double kTurnsPerSecond = 1e7;  // what is slept counts as much as work that takes as long
+  constexpr double kPiece = 0.01;          // s: how soon an interrupt is seen
+  if (!(seconds > 0)) return;
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(std::fmin(seconds, kLongest));
+  machine.charge(static_cast<std::uint64_t>(std::fmin(seconds, kLongest) * kTurnsPerSecond));
+  for (auto now = std::chrono::steady_clock::now(); now < end; now = std::chrono::steady_clock::now()) {
+    std::this_thread::sleep_for(
+        std::min<std::chrono::duration<double>>(end - now, std::chrono::duration<double>(kPiece)));
+    machine.poll();
+  }
 }
 
 StringCell* run_command(Machine& machine, Instance&, StringCell* command) {

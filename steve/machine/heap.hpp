@@ -155,7 +155,17 @@ class Heap : public InMemory {
   /// Bytes of strings and lists that were written or moved since this was asked last. When they are many, the budget
   /// looks in at the next turn.
   std::uint64_t take_moved() { return std::exchange(moved_, 0); }
-  void set_budget(Budget* budget) { budget_ = budget; }
+  /// @param settle  charges what take_moved() gives; it throws where the budget is used up
+  void set_budget(Budget* budget, std::function<void()> settle) {
+    budget_ = budget;
+    settle_ = std::move(settle);
+  }
+  /// In the middle of long work, where memory may run out as well: count so many bytes, and settle when they are many.
+  void work_on(std::size_t bytes) {
+    constexpr std::uint64_t kMany = 1 << 20;
+    moved_ += bytes;
+    if (moved_ >= kMany && settle_) settle_();
+  }
 
   std::uint64_t next_serial() { return ++serial_; }
   std::uint64_t live_cells() const { return cells_; }
@@ -187,6 +197,7 @@ class Heap : public InMemory {
 
   std::uint64_t moved_ = 0;
   Budget* budget_ = nullptr;
+  std::function<void()> settle_;
 
   // Each phase passes over containers_ once; places before passed_ have been passed. New cells of a running collection
   // are black and come last.

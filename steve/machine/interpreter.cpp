@@ -745,6 +745,7 @@ void Machine::execute(std::size_t depth) {
   }
   op_Function: {
     SAVE();
+    poll();
     const auto& callee = functions_[static_cast<std::size_t>(in->imm())];
     if constexpr (kProfiled) call_function_profiled(callee, *self, &R(in->a), result_);
     else callee.function(*this, *self, &R(in->a), result_);

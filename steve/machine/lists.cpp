@@ -200,8 +200,10 @@ ListCell* Heap::copy(const ListCell& original) {
     for (std::size_t next = 0; next < pending.size(); ++next) {
       const ListCell& from = *pending[next];
       ListCell& to = *made[next];
-      move_bytes(from.size * sizeof(Value));
+      constexpr std::size_t kOfCell = 3072;  // as long as making a cell and looking for its twin takes
+      work_on(kOfCell);
       for (const Value& v : from) {
+        work_on(sizeof v);
         const bool nested = v.tag == Tag::List && v.ref != nullptr;
         push(to, nested ? Value::of(Tag::List, twin(v.list())) : v);
       }

@@ -29,7 +29,7 @@ Machine::Machine(std::shared_ptr<const Program> program, World& world, std::pmr:
       functions_(steve::functions()),
       warned_sites_(memory),
       warned_(memory) {
-  heap_->set_budget(&budget_);
+  budget_heap(*heap_);
   caches_.resize(program_->code().sites.size());
   strings_ = make_constants(*heap_, *program_);
   next_segment(kNativeRoom);
@@ -70,17 +70,19 @@ void Machine::begin_run() {
   interrupted_.store(false, std::memory_order_relaxed);
   budget_.begin_run(host_.budget);
   heap_->take_moved();
+  printed_ = 0;
+  told_ = 0;
   if (host_.patience > 0) run_began_ = std::chrono::steady_clock::now();
 }
 
 void Machine::end_of_piece() {
-  if (interrupted_.load(std::memory_order_relaxed)) {
-    budget_.hold();
-    throw RunError(RunErrorKind::Interrupted, "interrupted");
-  }
   if (host_.patience > 0) look_at_the_clock();
+  settle();
+}
+
+void Machine::settle() {
   constexpr std::uint64_t kBytesPerTurn = 128;
-  if (!budget_.charge(heap_->take_moved() / kBytesPerTurn)) fail_budget();
+  charge(heap_->take_moved() / kBytesPerTurn);
 }
 
 // Says once where a run is that takes so long that it may never end.
@@ -92,7 +94,13 @@ void Machine::look_at_the_clock() {
 }
 
 void Machine::charge(std::uint64_t turns) {
+  poll();
   if (!budget_.charge(turns)) fail_budget();
+}
+
+void Machine::fail_interrupted() {
+  budget_.hold();
+  throw RunError(RunErrorKind::Interrupted, "interrupted");
 }
 
 void Machine::fail_budget() const {

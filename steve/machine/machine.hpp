@@ -12,39 +12,17 @@
 #include <unordered_set>
 #include <vector>
 
+#include "runtime/base/poll.hpp"
 #include "runtime/world/world.hpp"
 #include "steve/compile/bytecode.hpp"
 #include "steve/compile/program.hpp"
 #include "steve/machine/budget.hpp"
-#include "steve/machine/files.hpp"
 #include "steve/machine/handler_methods.hpp"
 #include "steve/machine/heap.hpp"
+#include "steve/machine/machine_host.hpp"
 #include "steve/machine/native.hpp"
 
 namespace breve::steve {
-
-/// What a machine needs from whoever embeds it. Every member may be empty.
-struct MachineHost {
-  std::function<void(std::string_view text)> print;  // what scripts print, as written
-  std::function<void(std::string_view text)> warn;   // one warning, one or more whole lines
-  std::function<void(std::string_view text)> error;  // a run-time error that did not stop the run (F27)
-  // Open a file; null with a reason, or without one if there is none.
-  std::function<std::unique_ptr<FileReader>(std::string_view name, std::string& why)> open_for_reading;
-  std::function<std::unique_ptr<FileWriter>(std::string_view name, bool append, std::string& why)> open_for_writing;
-  std::function<std::string(std::string_view command)> system;  // run a shell command; empty: not allowed
-  bool may_sleep = false, may_read_clock = false, may_draw_entropy = false;
-  std::vector<std::string> arguments;  // [0] is the program file
-  std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
-  std::uint64_t seed = 1;  // that the world was made with
-  bool verbose = false;    // say once when an obsolete selector is used
-  bool strict = false;
-  std::uint32_t depth_limit = 5000;  // nested calls
-  std::uint64_t budget = 0;          // loop turns and calls in an iteration or a call from the host; 0 = none
-  std::uint64_t call_budget = 0;     // in one call by the world, within an iteration; 0 = none
-  // s of real time that an iteration or a call from the host may take before it is warned of; 0 = any
-  double patience = 0;
-  std::vector<std::pair<std::string, std::string>> settings;  // variables of the controller, set before its init
-};
 
 /// One active method, for reports.
 struct TraceLine {
@@ -106,8 +84,14 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   void interrupt() noexcept { interrupted_.store(true, std::memory_order_relaxed); }
   /// The host calls, or an iteration begins: what runs from now on shares one budget, and old interrupts are forgotten.
   void begin_run();
-  /// Count work of native code as so many turns. RunError{Budget} if the budget is used up.
+  /// Count work of native code as so many turns. RunError{Budget} if the budget is used up, {Interrupted} by the host.
   void charge(std::uint64_t turns);
+  /// `poll` for the work of the runtime.
+  const Poll& poller() const { return poller_; }
+  /// Within long work that is charged already: RunError{Interrupted} if the host wants the end.
+  void poll() {
+    if (interrupted_.load(std::memory_order_relaxed)) fail_interrupted();
+  }
   /// The same, of work that looks at so many elements (numbers, pixels, cells, values of a list): some sixteen take as
   /// long as a turn. Before the work, where it is known, so that what exceeds the budget does not begin.
   void charge_for(std::uint64_t elements) {
@@ -142,11 +126,10 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   void set_variable(Instance& instance, const VariableInfo& variable, const Value& value);  // converts, checks class
 
   // --- talking -------------------------------------------------------------------------------------------------------
-  void print(std::string_view text) {
-    refuse_in_stage("print");
-    if (host_.print) host_.print(text);
-  }
-  /// A warning with the place of the running statement in front.
+  /// RunError{Bounds} where an iteration or a call by the host has printed too much.
+  void print(std::string_view text);
+  /// A warning with the place of the running statement in front. Of warnings and errors that do not stop the run the
+  /// first thousand of an iteration, or of a call by the host, are told.
   void warn(std::string_view text);
   /// The same, at most once per world for each `key`.
   void warn_once(std::string_view key, std::string_view text);
@@ -159,7 +142,7 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   std::string text(const Value& v);  // as `print` shows it, asking objects for their get-description
   std::string stack_trace() const;   // one line per active method, outermost first
   /// Report an error that does not stop the run, with the place of the running statement.
-  void survive(const RunError& error) { survive(ScriptError(error.code(), report(error, running()))); }
+  void survive(const RunError& error);
   [[noreturn]] void fail_unknown_class(std::string_view name) const;
   /// RunError{World} inside a force method, which runs at stages that may be tried again. `what` is what it does.
   void refuse_in_stage(std::string_view what) const {
@@ -388,6 +371,8 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   [[noreturn]] void rethrow(std::size_t depth, const Instruction* pc);  // from inside a catch block
   [[noreturn]] void throw_out_of_memory(std::size_t depth, const Instruction* pc);
   void survive(const ScriptError& error);
+  template <class Text>
+  void tell(Severity severity, Text&& text);
   Span span_of(const Frame& frame, const Instruction* pc) const;
   Span place_of_caller() const;
 
@@ -419,7 +404,12 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   Value calculate(ast::BinaryOp op, const Value& x, const Value& y, bool absent_is_zero, const Instruction* pc);
 
   // machine.cpp
+  void budget_heap(Heap& heap) {
+    heap.set_budget(&budget_, [this] { settle(); });
+  }
+  void settle();
   [[noreturn]] void fail_budget() const;
+  [[noreturn]] void fail_interrupted();
   template <class Body>
   void called_by_world(Body&& body);  // with a budget of its own; being cut does not end the iteration
 
@@ -471,9 +461,12 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   std::pmr::unordered_set<const Instruction*> warned_sites_;
   std::pmr::unordered_set<std::pmr::string> warned_;
   std::uint64_t survived_errors_ = 0;
-  bool in_stage_ = false;  // a force method runs
+  std::uint64_t printed_ = 0;  // bytes, in this iteration or call by the host
+  std::uint32_t told_ = 0;     // reports, likewise
+  bool in_stage_ = false;      // a force method runs
   Budget budget_;
   std::atomic<bool> interrupted_{false};
+  const Poll poller_ = [this] { poll(); };
   std::chrono::steady_clock::time_point run_began_{};  // if there is a limit to patience
   std::unique_ptr<Fragments> fragments_;               // once something was evaluated
   HashCell* session_ = nullptr;

@@ -75,7 +75,23 @@ struct SlotType<Value> {
   static Value to(const Value& x) { return x; }
 };
 
+/// Count the work of looking through so many bytes of an argument.
+void charge_for_argument(Machine& machine, std::size_t bytes);
+
 namespace detail {
+
+/// A large argument is work, whatever the native does with it.
+template <class T>
+void meter(Machine& machine, const T& argument) {
+  constexpr std::size_t kLarge = 4096;  // bytes
+  std::size_t bytes = 0;
+  if constexpr (std::is_same_v<T, StringCell*>)
+    bytes = argument ? argument->size : 0;
+  else if constexpr (std::is_same_v<T, ListCell*>)
+    bytes = argument ? argument->size * sizeof(Value) : 0;
+  if (bytes > kLarge) [[unlikely]]
+    charge_for_argument(machine, bytes);
+}
 
 template <class T>
 using Plain = std::remove_cv_t<std::remove_reference_t<T>>;
@@ -101,6 +117,7 @@ struct Binder {
       return sum;
     };
     (void)args;
+    (meter<Plain<A>>(machine, SlotType<Plain<A>>::from(args + offset(I, sizes))), ...);
     return F(machine, self, SlotType<Plain<A>>::from(args + offset(I, sizes))...);
   }
   static void call(Machine& machine, Instance& self, const Slot* args, Value& result) {

@@ -39,7 +39,7 @@ std::vector<std::string> Reload::run() {
   find_classes();
   check_controller();
   heap_ = make_in<Heap>(machine_.memory_, machine_.memory_, machine_);
-  heap_->set_budget(&machine_.budget_);
+  machine_.budget_heap(*heap_);
   strings_ = machine_.make_constants(*heap_, *program_);
   number_cells();
   make_containers();

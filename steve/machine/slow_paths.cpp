@@ -219,6 +219,8 @@ void Machine::make_cells_of(const ClassInfo& cls) {
 
 ListCell* Machine::all_of(const ClassInfo& cls) {
   make_cells_of(cls);
+  constexpr std::uint64_t kOfObject = 2;
+  charge_for(kOfObject * world_.object_count());
   auto* list = heap_->list();
   for (const auto id : world_.objects()) {
     if (!program_->cls(world_.class_of(id)).derives_from(cls)) continue;

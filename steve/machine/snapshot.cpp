@@ -293,7 +293,7 @@ void Machine::save(ByteWriter& out) const {
 
 void Machine::load(ByteReader& in) {
   auto heap = make_in<Heap>(memory_, memory_, *this);
-  heap->set_budget(&budget_);
+  budget_heap(*heap);
   auto constants = make_constants(*heap, *program_);
   CellReader reader(in, *heap, *program_, constants);
   reader.read();

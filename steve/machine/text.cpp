@@ -89,7 +89,7 @@ class Writer {
   void write(const Value& v) {
     append(v);
     while (!open_.empty()) {
-      if (out_.size() >= check_at_) check_room();
+      if (out_.size() >= check_at_) check();
       if (open_.back().cell->tag == Tag::List ? next_element() : next_entry()) continue;
       out_ += " }";
       close();
@@ -202,16 +202,22 @@ class Writer {
   }
 
   // A list that holds one list twice, which holds another twice, and so on, is small and has an endless text.
-  void check_room() {
-    if (heap_ != nullptr) heap_->check_room(out_.size());
-    check_at_ = 2 * out_.size();
+  void check() {
+    constexpr std::size_t kOfByte = 8;  // what is written takes so many times as long as what is moved
+    if (heap_ != nullptr) {
+      heap_->check_room(out_.size());
+      heap_->work_on(kOfByte * (out_.size() - checked_));
+    }
+    checked_ = out_.size();
+    check_at_ = out_.size() + kCheck;
   }
 
   std::string& out_;
   const Describe& describe_;
   Heap* heap_;
   bool pins_;  // descriptions run script, which may drop what is being written
-  std::size_t check_at_ = std::size_t{1} << 20;
+  static constexpr std::size_t kCheck = std::size_t{1} << 16;  // bytes
+  std::size_t checked_ = out_.size(), check_at_ = checked_ + kCheck;
   std::vector<Open> open_;
 };
 

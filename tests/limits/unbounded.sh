@@ -92,5 +92,50 @@ errors_in_a_long_text)
   same "$?" 0
   has err "assign an object before this line"
   ;;
+print_bounded)
+  printf '@use Control.\nController Main.\nControl : Main {\n  + variables:\n    text (string).\n    i (int).\n' >a.tz
+  printf '  + to init:\n    text = "0123456789abcdef".\n    for i = 0, i < 16, i++: text = text + text.\n' >>a.tz
+  printf '    for i = 0, i < 100, i++: print text.\n}\n' >>a.tz
+  "$breve" run a.tz --iterations 1 --seed 1 >out 2>err
+  same "$?" 1
+  has err "more than 64 MB are printed in one iteration"
+  same "$(wc -l <out)" 63
+  rm out
+  ;;
+reports_bounded)
+  printf '@use Control.\nController Main.\nControl : Main {\n  + variables:\n    i (int).\n' >a.tz
+  printf '  + to iterate:\n    super iterate.\n    for i = 0, i < 5000, i++: callMethodNamed(self, "fly", {}).\n}\n' >>a.tz
+  "$breve" run a.tz --iterations 2 --seed 1 --stats >out 2>err
+  same "$?" 0
+  same "$(grep -c 'warning: class Main has no method .fly. with 0 parameters' err)" 2000
+  same "$(grep -c 'what follows is counted, not shown' err)" 2
+  ;;
+program_bounded)
+  printf '@use Control.\n' >a.tz
+  for part in 1 2 3; do
+    printf '@include "part%d.tz".\n' $part >>a.tz
+    {
+      printf 'Object : P%d {\n  + variables:\n    x (int).\n' $part
+      for ((i = 0; i < 125; ++i)); do
+        printf '  + to m%d:\n' $i
+        printf '    x = x + %d * 3.\n' {1..800}
+      done
+      printf '}\n'
+    } >part$part.tz
+  done
+  printf 'Controller Main.\nControl : Main {\n  + to init:\n    print 1.\n}\n' >>a.tz
+  "$breve" check a.tz >out 2>err
+  same "$?" 1
+  has err "part3.tz:1:1: error: the files of the program have more than 2000000 words and signs together"
+  {
+    printf '@use Control.\nController Main.\nControl : Main {\n  + to init:\n'
+    printf '    y%d = 1.\n' {1..5000}
+    printf '}\n'
+  } >b.tz
+  "$breve" check b.tz >out 2>err
+  same "$?" 1
+  same "$(grep -c 'error: more errors follow' err)" 1
+  same "$(grep -c 'error: ' err)" 1001
+  ;;
 *) fail "there is no case $case" ;;
 esac

@@ -435,8 +435,9 @@ typedef struct breve_world_config {
 
 /* Budgets. Each turn of a loop, each call of a method or function and each new object counts 1, whoever makes the call:
    sort, broadcasts, announcements, init and destroy, calls by name; an integration step of the world counts 1 too.
-   Nothing else counts, so that a cut falls at the same place in every run, on every machine and in every build. A call
-   on the budget's last turn is still made; the one after it is the error.
+   What works on much counts as so many turns as take about as long (docs/limits.md). Neither time nor instructions
+   count, so that a cut falls at the same place in every run, on every machine and in every build. A call on the
+   budget's last turn is still made; the one after it is the error.
    - `budget` is for a whole iteration, and for each function of this header that runs script outside of one. Where it is
      used up the call is abandoned as by a run-time error, the rest of the iteration is not run, and the function gives
      BREVE_ERROR_BUDGET. Calls that a callback makes count to the call that it is a callback of.
@@ -1334,8 +1335,8 @@ BREVE_API breve_status breve_world_session(breve_world* world, breve_value* hash
    an empty one. */
 BREVE_API bool breve_statements_complete(const char* text, size_t size);
 
-/* Stop the script that runs in a world: the function of this header that runs it gives BREVE_ERROR_INTERRUPTED soon
-   after, and the call is abandoned as by a run-time error. Where it is cut is not determined: two runs that are
+/* Stop the script that runs in a world: the function of this header that runs it gives BREVE_ERROR_INTERRUPTED within
+   50 ms (callbacks of the host and the physics of a step apart), and the call is abandoned as by a run-time error. Where it is cut is not determined: two runs that are
    interrupted are not equal. Nothing if no script runs; NULL is nothing. May be called by any thread, and by a signal
    handler, as long as the world exists. */
 BREVE_API void breve_world_interrupt(breve_world* world);

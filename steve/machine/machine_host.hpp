@@ -1,0 +1,40 @@
+// The door between a machine and whoever embeds it.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "steve/machine/files.hpp"
+
+namespace breve::steve {
+
+/// What a machine needs from whoever embeds it. Every member may be empty.
+struct MachineHost {
+  std::function<void(std::string_view text)> print;  // what scripts print, as written
+  std::function<void(std::string_view text)> warn;   // one warning, one or more whole lines
+  std::function<void(std::string_view text)> error;  // a run-time error that did not stop the run (F27)
+  // Open a file; null with a reason, or without one if there is none.
+  std::function<std::unique_ptr<FileReader>(std::string_view name, std::string& why)> open_for_reading;
+  std::function<std::unique_ptr<FileWriter>(std::string_view name, bool append, std::string& why)> open_for_writing;
+  std::function<std::string(std::string_view command)> system;  // run a shell command; empty: not allowed
+  bool may_sleep = false, may_read_clock = false, may_draw_entropy = false;
+  std::vector<std::string> arguments;  // [0] is the program file
+  std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
+  std::uint64_t seed = 1;  // that the world was made with
+  bool verbose = false;    // say once when an obsolete selector is used
+  bool strict = false;
+  std::uint32_t depth_limit = 5000;  // nested calls
+  std::uint64_t budget = 0;          // loop turns and calls in an iteration or a call from the host; 0 = none
+  std::uint64_t call_budget = 0;     // in one call by the world, within an iteration; 0 = none
+  // s of real time that an iteration or a call from the host may take before it is warned of; 0 = any
+  double patience = 0;
+  std::vector<std::pair<std::string, std::string>> settings;  // variables of the controller, set before its init
+};
+
+}  // namespace breve::steve

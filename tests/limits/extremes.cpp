@@ -1,0 +1,253 @@
+// Calls natives with extreme arguments, and measures how long each takes: under a budget, and where a host interrupts
+// it.
+//
+//   limits_extremes budget     each is over within 0.2 s of processor time under a budget of 1,000,000
+//   limits_extremes interrupt  each that has no budget ends within 50 ms after breve_world_interrupt
+//   limits_extremes table      the table of docs/limits.md
+// A second argument runs the programs about that class alone ("Image", "functions", "language").
+#include <pthread.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "../fuzz/support.hpp"
+#include "extreme_cases.hpp"
+
+namespace breve::limits {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint64_t kBudget = 1000000;
+constexpr std::size_t kMemory = std::size_t{256} << 20;
+constexpr double kLongest = 0.2;           // s of processor time under that budget
+constexpr double kLongestAfter = 0.05;     // s from an interrupt to the end of the call
+constexpr double kBeforeInterrupt = 0.01;  // s
+constexpr double kHangs = 60;              // s: the process ends with a message
+constexpr int kTries = 3;                  // the least of so many counts: the machine may be busy
+
+double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+double processor_time(clockid_t clock = CLOCK_THREAD_CPUTIME_ID) {
+  timespec now;
+  clock_gettime(clock, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// Interrupts the call that runs, and ends the process where one hangs.
+class Watch {
+ public:
+  explicit Watch(bool interrupts) : interrupts_(interrupts), thread_([this] { watch(); }) {}
+  ~Watch() {
+    {
+      const std::lock_guard lock(mutex_);
+      ended_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+  }
+  void begin(breve_world* world, const std::string& name) {
+    const std::lock_guard lock(mutex_);
+    world_ = world;
+    waits_ = name == "sleep()";
+    pthread_getcpuclockid(pthread_self(), &processor_);
+    name_ = name;
+    began_ = Clock::now();
+    interrupted_ = Clock::time_point();
+    changed_.notify_all();
+  }
+  /// @return s since the first interrupt, of processor time unless the call waits; 0: there was none
+  double end() {
+    const std::lock_guard lock(mutex_);
+    world_ = nullptr;
+    if (interrupted_ == Clock::time_point()) return 0;
+    return waits_ ? seconds(Clock::now() - interrupted_) : processor_time(processor_) - used_;
+  }
+
+ private:
+  void watch() {
+    std::unique_lock lock(mutex_);
+    while (!ended_) {
+      changed_.wait_for(lock, std::chrono::milliseconds(world_ ? 2 : 1000));
+      if (!world_) continue;
+      const double taken = seconds(Clock::now() - began_);
+      if (interrupts_ && taken > kBeforeInterrupt) {
+        if (interrupted_ == Clock::time_point()) {
+          interrupted_ = Clock::now();
+          used_ = processor_time(processor_);
+        }
+        breve_world_interrupt(world_);
+      }
+      if (taken > kHangs) {
+        std::fprintf(stderr, "hangs: %s\n", name_.c_str());
+        std::_Exit(1);
+      }
+    }
+  }
+
+  const bool interrupts_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool ended_ = false;
+  breve_world* world_ = nullptr;
+  std::string name_;
+  Clock::time_point began_, interrupted_;
+  clockid_t processor_ = CLOCK_THREAD_CPUTIME_ID;  // of the thread that calls
+  double used_ = 0;                                // of it, at the interrupt
+  bool waits_ = false;                             // takes time and no processor
+  std::thread thread_;
+};
+
+/// The worst that was seen of each name.
+struct Worst {
+  double time = 0;
+  std::string statement;
+};
+
+class Extremes {
+ public:
+  Extremes(bool interrupts, std::string only) : interrupts_(interrupts), only_(std::move(only)), watch_(interrupts) {
+    char name[] = "/tmp/breve-extremes-XXXXXX";
+    fuzz::require(mkdtemp(name) != nullptr, "no folder to write to");
+    folder_ = name;
+    breve_runtime_config config = breve_runtime_config_default();
+    constexpr std::uint64_t kMostBytes = 64 << 20;
+    fuzz::require(breve_files_within(name, true, kMostBytes, &config.files) == BREVE_OK, "no files");
+    config.rights = BREVE_RIGHT_SLEEP | BREVE_RIGHT_REAL_TIME | BREVE_RIGHT_ENTROPY;
+    runtime_ = fuzz::make_runtime(config);
+    breve_files_release(&config.files);
+  }
+  ~Extremes() { std::filesystem::remove_all(folder_); }
+
+  void run() {
+    for (const ExtremeProgram& program : extreme_programs())
+      if (only_.empty() || program.about == only_) run(program);
+  }
+  const std::map<std::string, Worst>& worst() const { return worst_; }
+  std::size_t calls() const { return calls_; }
+
+ private:
+  fuzz::World make_world(const ExtremeProgram& text, const breve_program* program) {
+    breve_world_config config = breve_world_config_default();
+    config.memory_limit = kMemory;
+    config.budget = interrupts_ ? 0 : kBudget;
+    breve_world* world = nullptr;
+    if (breve_world_create(runtime_.get(), program, &config, &world) != BREVE_OK)
+      fuzz::finding(breve_runtime_last_error(runtime_.get())->text, text.about);
+    return fuzz::World(world);
+  }
+
+  void run(const ExtremeProgram& text) {
+    breve_program* compiled = nullptr;
+    if (breve_program_compile(runtime_.get(), "extremes.tz", text.text.data(), text.text.size(), &compiled) != BREVE_OK)
+      fuzz::finding(breve_runtime_last_error(runtime_.get())->text, text.about);
+    const fuzz::Program program(compiled);
+    fuzz::World world;
+    for (std::size_t i = 0; i < text.cases.size(); ++i) {
+      const std::string method = "case-" + std::to_string(i);
+      double least = 1e9;
+      for (int tries = 0; tries < kTries && least > (interrupts_ ? kLongestAfter : kLongest); ++tries) {
+        world = make_ready(text, program.get(), std::move(world));
+        least = std::min(least, time(world.get(), text.cases[i].name, method));
+      }
+      Worst& worst = worst_[text.cases[i].name];
+      if (least > worst.time) worst = {least, text.cases[i].statement};
+    }
+  }
+
+  /// A world whose values are made: this one, if it is as it should be.
+  fuzz::World make_ready(const ExtremeProgram& text, const breve_program* program, fuzz::World world) {
+    for (int fresh = 0; fresh < 2; ++fresh) {
+      if (!world || fresh == 1) world = make_world(text, program);
+      const breve_object controller = breve_world_controller(world.get());
+      // Twice: what does not fit one budget fits two.
+      breve_object_call(world.get(), controller, "ready", nullptr, 0, nullptr);
+      if (breve_object_call(world.get(), controller, "ready", nullptr, 0, nullptr) == BREVE_OK) break;
+    }
+    return world;
+  }
+
+  double time(breve_world* world, const std::string& name, const std::string& method) {
+    ++calls_;
+    watch_.begin(world, name);
+    const double began = processor_time();
+    breve_object_call(world, breve_world_controller(world), method.c_str(), nullptr, 0, nullptr);
+    const double taken = processor_time() - began;
+    const double after = watch_.end();
+    return interrupts_ ? after : taken;
+  }
+
+  const bool interrupts_;
+  const std::string only_;
+  std::string folder_;
+  fuzz::Runtime runtime_;
+  Watch watch_;
+  std::map<std::string, Worst> worst_;
+  std::size_t calls_ = 0;
+};
+
+std::vector<std::pair<std::string, Worst>> slowest_first(const std::map<std::string, Worst>& worst) {
+  std::vector<std::pair<std::string, Worst>> sorted(worst.begin(), worst.end());
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto& a, const auto& b) { return a.second.time > b.second.time; });
+  return sorted;
+}
+
+void print_table(const Extremes& extremes) {
+  constexpr double kShown = 0.025;  // s
+  std::printf("| what | worst time, ms | statement |\n| --- | ---: | --- |\n");
+  std::size_t others = 0;
+  for (const auto& [name, worst] : slowest_first(extremes.worst())) {
+    if (worst.time < kShown)
+      ++others;
+    else
+      std::printf("| `%s` | %.0f | `%s` |\n", name.c_str(), 1e3 * worst.time, worst.statement.c_str());
+  }
+  std::printf("| %zu others | < %.0f | |\n", others, 1e3 * kShown);
+}
+
+int run(std::string_view mode, std::string only) {
+  const bool interrupts = mode == "interrupt";
+  Extremes extremes(interrupts, std::move(only));
+  extremes.run();
+  if (mode == "table") {
+    print_table(extremes);
+    return 0;
+  }
+  const double bound = interrupts ? kLongestAfter : kLongest;
+  int failed = 0;
+  for (const auto& [name, worst] : slowest_first(extremes.worst())) {
+    if (worst.time <= bound) break;
+    std::printf("%s takes %.0f ms: %s\n", name.c_str(), 1e3 * worst.time, worst.statement.c_str());
+    ++failed;
+  }
+  std::printf("%zu calls of %zu natives, %d of them take longer than %.0f ms\n", extremes.calls(),
+              extremes.worst().size(), failed, 1e3 * bound);
+  return failed == 0 ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace breve::limits
+
+int main(int count, char** arguments) {
+  const std::string_view mode = count > 1 ? arguments[1] : "";
+  if (mode != "budget" && mode != "interrupt" && mode != "table") {
+    std::fprintf(stderr, "limits_extremes budget|interrupt|table [CLASS]\n");
+    return 2;
+  }
+  return breve::limits::run(mode, count > 2 ? arguments[2] : "");
+}
