@@ -130,6 +130,7 @@ class Island : public InMemory {
     double limit;       // the position, m or rad
     double gap;         // m or rad
     double rate;        // of the gap when the sub-step began
+    double slow;        // slower than this it is caught by a row, and does not strike
     bool rests;         // it is a row; else it is to be located
     bool held = false;  // it acts inside the stages, and is not located
   };
@@ -229,6 +230,7 @@ class Island : public InMemory {
   void find_touches(double h, bool speculative);
   void find_roles(double h, bool struck);
   void find_touches_now();
+  double falling(const JointEntry& joint) const;
   void find_bounds();
   enum class Motors : bool { Leave, Drive };
   void make_rows(Motors motors);
@@ -439,6 +441,7 @@ class Island : public InMemory {
   bool placed_ = false;                   // links stand where stored() found them: nothing has moved since
   bool locates_ = false;                  // handlers are called at the moment of impact
   double quiet_ = 0;                      // m/s: slower than this is at rest, in a sub-step of this one
+  double looked_h_ = 0;                   // s, of the sub-step that was looked at last
   double free_work_ = 0;                  // J, of scripts on free bodies in the last smooth()
   std::pmr::vector<Role> roles_;          // of pairs
   std::pmr::vector<Free> free_;           // the last ones drivers

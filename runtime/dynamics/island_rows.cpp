@@ -40,6 +40,7 @@ void Island::find_touches(double h, bool speculative) {
   NarrowCounters narrow;
   const double fall = core_.settings.gravity.norm() * h;
   quiet_ = 1e-3 * fall + 1e-12;
+  looked_h_ = h;
   // What comes as slowly as something at rest falls in a sub-step is caught by a row before it touches.
   constexpr double kMostRoom = 0.05;  // of the size
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
@@ -90,7 +91,7 @@ bool Island::strikes(double h) const {
     if (touch.gap <= kMetSkin * size && touch.approach < -speeds_of(pair.law, size, h).strike) return true;
   }
   for (const Bound& bound : bounds_)
-    if (!bound.held && bound.gap <= met_limit() && bound.rate < -quiet_) return true;
+    if (!bound.held && bound.gap <= met_limit() && bound.rate < -bound.slow) return true;
   return false;
 }
 
@@ -141,7 +142,15 @@ void Island::find_touches_now() {
   }
 }
 
+/// How fast what rests falls in a sub-step, as the rate of a joint: twice that of a free link's rim, m/s or rad/s.
+double Island::falling(const JointEntry& joint) const {
+  const double fall = 2 * core_.settings.gravity.norm() * looked_h_;
+  if (joint.is.kind == JointKind::Prismatic) return fall;
+  return fall / core_.bodies->collision_shape(joint.is.child)->bounding_radius();
+}
+
 void Island::find_bounds() {
+  constexpr double kMostRoom = 1e-3;  // rad or m
   bounds_.clear();
   for (Tree* tree : trees_) {
     for (const TreeLink& link : tree->links) {
@@ -153,11 +162,17 @@ void Island::find_bounds() {
         for (const double sign : {1.0, -1.0}) {
           const double limit = sign > 0 ? joint.drive.low[k] : joint.drive.high[k];
           if (!std::isfinite(limit)) continue;
-          Bound bound{link.joint, k, sign, limit, sign * (position[k] - limit), sign * velocity[k], false};
-          // Inelastic limits may be met by a row; others are located.
-          const double slow = joint.drive.limit_restitution > 0 ? quiet_ : JointDrive::kNoLimit;
+          Bound bound{link.joint, k, sign, limit, sign * (position[k] - limit), sign * velocity[k], quiet_, false};
           const bool stays = bounds_.size() < rebounds_.size() && rebounds_[bounds_.size()].stays;
-          bound.rests = bound.gap <= kLimitSkin && (stays || std::abs(bound.rate) <= slow);
+          // Inelastic limits may be met by a row; others are located. What comes as slowly as something at rest falls
+          // in a sub-step, and is not driven, is caught by it before it is there.
+          if (joint.drive.limit_restitution > 0) {
+            bound.rests = bound.gap <= kLimitSkin && (stays || std::abs(bound.rate) <= quiet_);
+          } else {
+            if (!link.motor) bound.slow += falling(joint);
+            const bool caught = bound.gap <= std::min(bound.slow * looked_h_, kMostRoom);
+            bound.rests = bound.gap <= kLimitSkin || (caught && std::abs(bound.rate) <= bound.slow);
+          }
           bounds_.push_back(bound);
         }
       }
