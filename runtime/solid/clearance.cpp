@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "runtime/solid/surface_pair.hpp"
 
@@ -61,12 +60,9 @@ double Clearance::of_plane(const Facet& facet) const {
   if (solid_ == nullptr) return std::abs(height) - radius_ - hair_;
   const Vector3 normal = turn_.transpose() * facet.normal;
   if (round_.is_round()) return std::abs(height) - normal.dot(round_.extreme(normal)) - hair_;
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Vector3& vertex : solid_->vertices) {
-    const double along = normal.dot(vertex);
-    low = std::min(low, along);
-    high = std::max(high, along);
-  }
+  lowest_ = solid_->farthest(-normal, lowest_);
+  highest_ = solid_->farthest(normal, highest_);
+  const double low = normal.dot(solid_->vertices[at(lowest_)]), high = normal.dot(solid_->vertices[at(highest_)]);
   return std::max(height + low, -height - high) - hair_;
 }
 

@@ -36,6 +36,7 @@ class Clearance {
   Eigen::AlignedBox3d bounds_;
   std::array<Plane, kMostPlanes> planes_;  // of the solid, those that face the middle of the surface
   std::size_t plane_count_ = 0;
+  mutable int lowest_ = 0, highest_ = 0;  // vertices over the plane of the last facet
 };
 
 }  // namespace breve

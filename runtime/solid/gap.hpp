@@ -23,10 +23,13 @@ struct Placed {
   bool flat = false;   // a triangle of a surface: `solid` has its two sides
   bool outer = false;  // a triangle of a surface that bounds a solid: the way out of an overlap is outward
   Round round{};
+  mutable int last = 0;  // vertex that was found last: the next search begins there
 
   Vector3 vertex(int index) const { return location + rotation * solid->vertices[static_cast<std::size_t>(index)]; }
-  /// The vertex of a polyhedron farthest along `direction` (world); of equals the first.
-  int support(const Vector3& direction) const;
+  /// The vertex of a polyhedron farthest along `direction` (world).
+  int support(const Vector3& direction) const {
+    return last = solid->farthest(rotation.transpose() * direction, last);
+  }
   /// The point of a polyhedron, cylinder or capsule farthest along `direction`.
   Vector3 extreme(const Vector3& direction) const;
   /// The same; of a line or cap that is farthest as a whole its middle.

@@ -237,21 +237,6 @@ bool cores_apart(const Placed& a, const Placed& b, Gap& gap, double enough) {
 
 }  // namespace
 
-int Placed::support(const Vector3& direction) const {
-  const Vector3 local = rotation.transpose() * direction;
-  const auto& vertices = solid->vertices;
-  int best = 0;
-  double farthest = local.dot(vertices[0]);
-  for (std::size_t i = 1; i < vertices.size(); ++i) {
-    const double along = local.dot(vertices[i]);
-    if (along > farthest) {
-      farthest = along;
-      best = static_cast<int>(i);
-    }
-  }
-  return best;
-}
-
 Vector3 Placed::extreme(const Vector3& direction) const {
   if (!round.is_round()) return vertex(support(direction));
   return location + rotation * round.extreme(rotation.transpose() * direction);

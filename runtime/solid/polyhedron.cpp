@@ -129,6 +129,63 @@ void connect(Polyhedron& solid) {
   }
 }
 
+namespace {
+
+constexpr std::size_t kManyVertices = 32;  // fewer are looked at one by one
+
+/// Do the faces at each edge fold outward? Then what is higher than all its neighbors is the highest.
+bool folds_outward(const Polyhedron& solid) {
+  constexpr double kRoundOff = 1e-12;  // of the extent
+  double extent = 0;
+  for (const Vector3& p : solid.vertices) extent = std::max(extent, p.lpNorm<Eigen::Infinity>());
+  return std::all_of(solid.edges.begin(), solid.edges.end(), [&](const Edge& edge) {
+    const Vector3 &normal = solid.planes[at(edge.left)].normal, &start = solid.vertices[at(edge.a)];
+    const auto& beyond = solid.faces[at(edge.right)];
+    return std::all_of(beyond.begin(), beyond.end(), [&](int v) {
+      return normal.dot(solid.vertices[at(v)] - start) <= kRoundOff * extent;
+    });
+  });
+}
+
+void find_neighbors(Polyhedron& solid) {
+  solid.neighbors.clear();
+  solid.first_neighbor.clear();
+  const std::size_t count = solid.vertices.size();
+  if (count < kManyVertices || solid.edges.empty() || !folds_outward(solid)) return;
+  std::pmr::vector<int>& first = solid.first_neighbor;
+  first.assign(count + 1, 0);
+  for (const Edge& edge : solid.edges) ++first[at(edge.a) + 1], ++first[at(edge.b) + 1];
+  for (std::size_t i = 1; i <= count; ++i) first[i] += first[i - 1];
+  solid.neighbors.resize(2 * solid.edges.size());
+  std::pmr::vector<int> next = first;
+  for (const Edge& edge : solid.edges) {
+    solid.neighbors[at(next[at(edge.a)]++)] = edge.b;
+    solid.neighbors[at(next[at(edge.b)]++)] = edge.a;
+  }
+}
+
+}  // namespace
+
+int Polyhedron::farthest(const Vector3& direction, int from) const {
+  int best = neighbors.empty() ? 0 : from;
+  double most = direction.dot(vertices[at(best)]);
+  const auto look = [&](int i) {
+    const double along = direction.dot(vertices[at(i)]);
+    if (!(along > most || (along == most && i < best))) return;
+    most = along;
+    best = i;
+  };
+  if (neighbors.empty()) {
+    for (std::size_t i = 1; i < vertices.size(); ++i) look(static_cast<int>(i));
+    return best;
+  }
+  for (int here = -1; here != best;) {
+    here = best;
+    for (int k = first_neighbor[at(here)]; k < first_neighbor[at(here) + 1]; ++k) look(neighbors[at(k)]);
+  }
+  return best;
+}
+
 void update_planes(Polyhedron& solid) {
   solid.planes.clear();
   for (const auto& face : solid.faces) {
@@ -138,6 +195,7 @@ void update_planes(Polyhedron& solid) {
     for (const int v : face) offset = std::max(offset, normal.dot(solid.vertices[static_cast<std::size_t>(v)]));
     solid.planes.push_back({normal, offset});
   }
+  find_neighbors(solid);
 }
 
 void add_tetrahedron(const Vector3& a, const Vector3& b, const Vector3& c, Moments& sum) {

@@ -30,15 +30,24 @@ struct Polyhedron {
   std::pmr::vector<std::pmr::vector<int>> faces;
   std::pmr::vector<Plane> planes;  // one a face
   std::pmr::vector<Edge> edges;    // in the order in which the faces first name them
+  // The vertices at the other ends of each vertex' edges, and where each one's begin: of solids with many vertices that
+  // are convex to round-off, else empty.
+  std::pmr::vector<int> neighbors, first_neighbor;
 
   explicit Polyhedron(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
-      : vertices(memory), faces(memory), planes(memory), edges(memory) {}
+      : vertices(memory), faces(memory), planes(memory), edges(memory), neighbors(memory), first_neighbor(memory) {}
   /// A copy in `memory`.
   Polyhedron(const Polyhedron& other, std::pmr::memory_resource* memory)
       : vertices(other.vertices, memory),
         faces(other.faces, memory),
         planes(other.planes, memory),
-        edges(other.edges, memory) {}
+        edges(other.edges, memory),
+        neighbors(other.neighbors, memory),
+        first_neighbor(other.first_neighbor, memory) {}
+
+  /// The vertex farthest along `direction`; of equals the first, as far as edges lead there. With neighbors the search
+  /// goes up from vertex `from`: a few steps where that is near.
+  int farthest(const Vector3& direction, int from) const;
 };
 
 /// Integrals of 1, x and x x^T over the solid at density 1.
@@ -64,7 +73,7 @@ Polyhedron make_hull(std::span<const Vector3> points);
 
 /// Find the edges from the faces. Error{Argument} if some edge is not shared by exactly two faces, once in each sense.
 void connect(Polyhedron& solid);
-/// Recompute the planes after the vertices moved.
+/// Recompute the planes, and who is whose neighbor, after the vertices moved.
 void update_planes(Polyhedron& solid);
 
 /// Exact moments of a closed polyhedron about the origin.

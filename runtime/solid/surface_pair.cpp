@@ -176,7 +176,19 @@ Eigen::AlignedBox3d bounds_in(const Placed& frame, const Placed& solid) {
     return {center - half, center + half};
   }
   Eigen::AlignedBox3d box;
-  for (const Vector3& v : solid.solid->vertices) box.extend(center + turn * v);
+  const auto& vertices = solid.solid->vertices;
+  if (solid.solid->neighbors.empty()) {
+    for (const Vector3& v : vertices) box.extend(center + turn * v);
+    return box;
+  }
+  int from = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Vector3 axis = turn.row(i);
+    for (const double sign : {-1.0, 1.0}) {
+      from = solid.solid->farthest(sign * axis, from);
+      box.extend(center + turn * vertices[at(from)]);
+    }
+  }
   return box;
 }
 

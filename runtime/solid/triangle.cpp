@@ -82,9 +82,8 @@ struct Axis {
   int edge_a = -1, edge_b = -1;
 };
 
-void try_faces(const Polyhedron& a, const Local& t, Axis& best) {
-  double low = std::numeric_limits<double>::infinity();
-  for (const Vector3& v : a.vertices) low = std::min(low, t.side.normal.dot(v));
+void try_faces(const Polyhedron& a, int from, const Local& t, Axis& best) {
+  const double low = t.side.normal.dot(a.vertices[at(a.farthest(-t.side.normal, from))]);
   best.distance = low - t.side.offset;
   best.normal = t.side.normal;
   for (const Plane& plane : a.planes) {
@@ -164,7 +163,7 @@ Gap triangle_gap(const Placed& a, const Placed& b, double enough) {
   if (apart && gap.distance > kClose * size) return gap;
   const Local local(a, b);
   Axis axis;
-  try_faces(*a.solid, local, axis);
+  try_faces(*a.solid, a.last, local, axis);
   try_edges(*a.solid, local, 1e-4 * size, axis);
   if (apart && axis.distance < gap.distance - kAgree * size) return gap;
   Gap out;
