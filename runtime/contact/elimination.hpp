@@ -1,13 +1,37 @@
 // Gaussian elimination with partial pivoting that skips what is zero: stacked bodies couple with their neighbours only.
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 namespace breve::contact {
 
-/// Solve A x = b in place: `b` becomes x, `matrix` (n x n, row-major) is destroyed.
-/// @param ends  n numbers of workspace
+/// A square matrix, row-major, of which numbers farther than `band` from the diagonal are zero. Where that is worth it
+/// they are not stored; what exchanging rows makes of the band is.
+class BandMatrix {
+ public:
+  BandMatrix() = default;
+  BandMatrix(int size, int band);
+  /// What memory it needs.
+  std::size_t numbers() const { return numbers_; }
+  void use(double* memory) { numbers_at_ = memory; }
+
+  int size() const { return size_; }
+  int band() const { return band_; }
+  /// Number k of it is at [k], for those that are stored.
+  double* row(int i) const { return numbers_at_ + shift_ + static_cast<std::ptrdiff_t>(i) * stride_; }
+  void clear() const;
+
+ private:
+  int size_ = 0, band_ = 0;
+  std::ptrdiff_t stride_ = 0, shift_ = 0;
+  std::size_t numbers_ = 0;
+  double* numbers_at_ = nullptr;
+};
+
+/// Solve A x = b in place: `b` becomes x, the matrix is destroyed.
+/// @param ends  as many numbers of workspace
 /// @return      false if a pivot vanishes or is not finite; b is then of no use
-bool eliminate(std::span<double> matrix, std::span<double> b, std::span<int> ends);
+bool eliminate(const BandMatrix& matrix, std::span<double> b, std::span<int> ends);
 
 }  // namespace breve::contact

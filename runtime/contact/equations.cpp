@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "runtime/contact/elimination.hpp"
 #include "runtime/contact/pack.hpp"
 #include "runtime/contact/sides.hpp"
 
@@ -37,10 +36,11 @@ double* Equations::begin(std::size_t numbers) {
   int widest = 0;
   for (const Packed& mover : work_.movers) widest = std::max(widest, mover.size);
   const auto width = static_cast<std::size_t>(widest);
-  work_.numbers.resize(n * n + 2 * n + 3 * width + rows_ + numbers);
+  matrix_ = BandMatrix(size_, band());
+  work_.numbers.resize(matrix_.numbers() + 2 * n + 3 * width + rows_ + numbers);
   double* next = work_.numbers.data();
   const auto take = [&](std::size_t count) { return std::exchange(next, next + count); };
-  matrix_ = take(n * n);
+  matrix_.use(take(matrix_.numbers()));
   free_ = take(n);
   step_ = take(n);
   for (double*& columns : columns_) columns = take(width);
@@ -115,8 +115,8 @@ void Equations::read_rows(double* out) {
 }
 
 void Equations::clear() {
-  std::fill_n(matrix_, static_cast<std::size_t>(size_) * static_cast<std::size_t>(size_), 0.0);
-  for (int k = 0; k < size_; ++k) entry(k, k) = 1;
+  matrix_.clear();
+  for (int k = 0; k < size_; ++k) matrix_.row(k)[k] = 1;
 }
 
 bool Equations::solve(const double* q, double* du) {
@@ -128,14 +128,27 @@ bool Equations::solve(const double* q, double* du) {
   // What is infinite or none leaves no trace, neither here nor in the world, which takes part in every push.
   std::fill_n(work_.movers.front().v, 6, 0.0);
   if (!std::all_of(step_, step_ + size_, [](double v) { return std::isfinite(v); })) return false;
-  if (!eliminate({matrix_, n * n}, {step_, n}, {work_.indices.data() + offsets_, n})) return false;
+  if (!eliminate(matrix_, {step_, n}, {work_.indices.data() + offsets_, n})) return false;
   set_velocities(step_);
   read_rows(du);
   return std::all_of(du, du + rows_, [](double u) { return std::isfinite(u); });
 }
 
-double& Equations::entry(int i, int k) {
-  return matrix_[static_cast<std::size_t>(i) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(k)];
+/// How far from the diagonal rows couple velocities.
+int Equations::band() const {
+  if (work_.condensed) return size_;
+  int widest = 0;
+  const auto look = [&](int a, int b) {
+    const Packed &of_a = work_.movers[static_cast<std::size_t>(a)], &of_b = work_.movers[static_cast<std::size_t>(b)];
+    const int at_a = work_.indices[static_cast<std::size_t>(a)], at_b = work_.indices[static_cast<std::size_t>(b)];
+    if (of_a.place != nullptr) widest = std::max(widest, of_a.size - 1);
+    if (of_b.place != nullptr) widest = std::max(widest, of_b.size - 1);
+    if (of_a.place == nullptr || of_b.place == nullptr) return;
+    widest = std::max(widest, std::max(at_a + of_a.size, at_b + of_b.size) - std::min(at_a, at_b) - 1);
+  };
+  for (const Point& c : work_.points) look(c.a, c.b);
+  for (const PackedScalar& row : work_.scalars) look(row.a, row.b);
+  return widest;
 }
 
 void Equations::add_point(std::size_t point, const Slope& D) {
@@ -166,7 +179,7 @@ void Equations::add_point(std::size_t point, const Slope& D) {
       const double sign = x == y ? 1 : -1;
       for (int i = 0; i < R.size; ++i) {
         const double r0 = sign * R.r[i], r1 = sign * R.r[R.size + i], r2 = sign * R.r[2 * R.size + i];
-        double* __restrict line = &entry(row + i, column);
+        double* __restrict line = matrix_.row(row + i) + column;
         for (int k = 0; k < count; ++k) line[k] += r0 * n[k] + r1 * t1[k] + r2 * t2[k];
       }
     }
@@ -178,7 +191,7 @@ void Equations::add_condensed(std::size_t point, const Slope& D) {
   const double* W = &work_.answers[3 * point * rows_];
   for (std::size_t i = 0; i < rows_; ++i) {
     const double r0 = W[i], r1 = W[rows_ + i], r2 = W[2 * rows_ + i];
-    double* line = matrix_ + i * rows_ + 3 * point;
+    double* line = matrix_.row(static_cast<int>(i)) + 3 * point;
     line[0] += r0 * D.nn + r1 * D.t1n + r2 * D.t2n;
     line[1] += r0 * D.n1 + r1 * D.t11 + r2 * D.t21;
     line[2] += r0 * D.n2 + r1 * D.t12 + r2 * D.t22;
@@ -189,7 +202,8 @@ void Equations::add_scalar(std::size_t scalar, double slope) {
   if (slope == 0) return;
   if (work_.condensed) {
     const std::size_t at = 3 * work_.points.size() + scalar;
-    for (std::size_t i = 0; i < rows_; ++i) matrix_[i * rows_ + at] += slope * work_.answers[at * rows_ + i];
+    for (std::size_t i = 0; i < rows_; ++i)
+      matrix_.row(static_cast<int>(i))[at] += slope * work_.answers[at * rows_ + i];
     return;
   }
   const PackedScalar& row = work_.scalars[scalar];
@@ -204,7 +218,7 @@ void Equations::add_scalar(std::size_t scalar, double slope) {
       const double sign = x == y ? slope : -slope;
       for (int i = 0; i < work_.movers[static_cast<std::size_t>(movers[x])].size; ++i) {
         const double yields = sign * r[x][i];
-        double* line = &entry(top + i, left);
+        double* line = matrix_.row(top + i) + left;
         for (int k = 0; k < work_.movers[static_cast<std::size_t>(movers[y])].size; ++k) line[k] += yields * j[y][k];
       }
     }

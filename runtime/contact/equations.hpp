@@ -1,6 +1,7 @@
 // All rows of an island as one linear system over its velocities, for the direct solver's methods.
 #pragma once
 
+#include "runtime/contact/elimination.hpp"
 #include "runtime/contact/projection.hpp"
 
 namespace breve::contact {
@@ -39,13 +40,14 @@ class Equations {
   void get_velocities(double* out);
   void set_velocities(const double* in);
   void push_impulses(const double* p, double sign);
-  double& entry(int i, int k);
+  int band() const;
   void add_condensed(std::size_t point, const Slope& D);
 
   Workspace& work_;
   std::size_t rows_, offsets_ = 0;
   int size_ = 0;  // numbers in v
-  double *matrix_ = nullptr, *free_ = nullptr, *step_ = nullptr;
+  BandMatrix matrix_;
+  double *free_ = nullptr, *step_ = nullptr;
   double* columns_[3] = {};  // D J of the row that is added, one side
 };
 
