@@ -253,10 +253,13 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
 /// end of a sub-step, all at once.
 int Island::located_impacts() const {
   if (accuracy_.rung == Rung::Reference) return accuracy_.impacts;
-  constexpr double kLooks = 4000, kPreciseLooks = 20000;  // at a body or a pair, for impacts of one step
-  const double looks = accuracy_.rung == Rung::Precise ? kPreciseLooks : kLooks;
+  // At a body or a pair, for impacts of one step.
+  constexpr double kFewLooks = 1000, kLooks = 4000, kPreciseLooks = 20000;
+  const bool coarse = accuracy_.rung == Rung::Balanced;
+  const double looks = coarse ? kFewLooks : accuracy_.rung == Rung::Precise ? kPreciseLooks : kLooks;
   const double items = static_cast<double>(free_.size() + trees_.size() + pairs_.size());
-  return std::clamp(static_cast<int>(looks / std::max(items, 1.0)), 1, std::max(1, accuracy_.impacts));
+  const int least = coarse ? 0 : 1;
+  return std::clamp(static_cast<int>(looks / std::max(items, 1.0)), least, std::max(least, accuracy_.impacts));
 }
 
 void Island::place_links() {
