@@ -65,8 +65,7 @@ std::string hash_line(const breve_world* world) {
 
 std::string stats_line(const breve_world* world, const RunTimes& times, std::uint64_t seed,
                        const Interventions& interventions) {
-  breve_stats stats{};
-  stats.struct_size = sizeof stats;
+  breve_stats stats = breve_stats_default();
   breve_world_stats(world, &stats);
   nlohmann::ordered_json line;
   line["iterations"] = stats.iterations;

@@ -183,8 +183,7 @@ WorldHandle make_world(const Session& session, const breve_program* program, con
 void say_what_went_on(const breve_world* world, const RunOptions& options, const Interventions& interventions,
                       Output& output) {
   if (!options.quiet) output.complain(interventions.summary());
-  breve_stats stats{};
-  stats.struct_size = sizeof stats;
+  breve_stats stats = breve_stats_default();
   if (options.quiet || breve_world_stats(world, &stats) != BREVE_OK || stats.errors == 0) return;
   output.complain(
       fmt::format("breve: {} run-time error{} did not stop the run\n", stats.errors, stats.errors == 1 ? "" : "s"));

@@ -42,9 +42,10 @@ Rung rung_of(breve_rung rung) {
   return static_cast<Rung>(rung);
 }
 
-Accuracy accuracy_of_struct(const breve_accuracy* given) {
+/// @param now  what is set: it stays in the fields that an older header does not have
+Accuracy accuracy_of_struct(const breve_accuracy* given, const Accuracy& now) {
   need(given, "accuracy");
-  const breve_accuracy from = read_config(given, accuracy_from(accuracy_of(Rung::Balanced)), "breve_accuracy");
+  const breve_accuracy from = read_config(given, accuracy_from(now), "breve_accuracy");
   const Rung rung = rung_of(from.rung);
   if (static_cast<unsigned>(from.integrator) >= kIntegrators)
     fail(BREVE_ERROR_ARGUMENT, "breve_accuracy.integrator is no integrator");
@@ -84,10 +85,7 @@ using namespace breve::host;
 // --- accuracy -------------------------------------------------------------------------------------------------------
 
 breve_status breve_accuracy_of_rung(breve_rung rung, breve_accuracy* accuracy) {
-  return guard([&] {
-    need(accuracy, "accuracy");
-    *accuracy = accuracy_from(breve::accuracy_of(rung_of(rung)));
-  });
+  return guard([&] { write_struct(accuracy, accuracy_from(breve::accuracy_of(rung_of(rung))), "breve_accuracy"); });
 }
 
 breve_status breve_rung_named(const char* name, breve_rung* rung) {
@@ -105,15 +103,15 @@ breve_status breve_rung_named(const char* name, breve_rung* rung) {
 
 breve_status breve_world_accuracy(const breve_world* world, breve_accuracy* accuracy) {
   if (!world) return BREVE_ERROR_ARGUMENT;
-  return guard(world->error, [&] {
-    need(accuracy, "accuracy");
-    *accuracy = accuracy_from(dynamics_of(*world).accuracy());
-  });
+  return guard(world->error,
+               [&] { write_struct(accuracy, accuracy_from(dynamics_of(*world).accuracy()), "breve_accuracy"); });
 }
 
 breve_status breve_world_set_accuracy(breve_world* world, const breve_accuracy* accuracy) {
   if (!world) return BREVE_ERROR_ARGUMENT;
-  return guard(world->error, [&] { world->world->dynamics().set_accuracy(accuracy_of_struct(accuracy)); });
+  return guard(world->error, [&] {
+    world->world->dynamics().set_accuracy(accuracy_of_struct(accuracy, dynamics_of(*world).accuracy()));
+  });
 }
 
 breve_status breve_world_describe_accuracy(breve_world* world, const char** text) {
@@ -130,7 +128,7 @@ breve_status breve_object_set_accuracy(breve_world* world, breve_object object, 
   return guard(world->error, [&] {
     const breve::BodyIndex body = live_body(*world, object);
     if (!accuracy) return world->world->dynamics().clear_accuracy(body);
-    world->world->dynamics().set_accuracy(body, accuracy_of_struct(accuracy));
+    world->world->dynamics().set_accuracy(body, accuracy_of_struct(accuracy, dynamics_of(*world).accuracy(body)));
   });
 }
 

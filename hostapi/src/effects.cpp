@@ -1,8 +1,7 @@
 // What a world does and what it costs: effects and counters.
 #include <algorithm>
-#include <cstring>
 
-#include "internal.hpp"
+#include "physical.hpp"
 
 using namespace breve::host;
 
@@ -36,12 +35,8 @@ breve_status breve_world_effects(const breve_world* world, breve_effect* effects
 breve_status breve_world_stats(const breve_world* world, breve_stats* stats) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
-    need(stats, "stats");
-    const std::size_t room = stats->struct_size;
-    read_config(stats, breve_stats{}, "breve_stats");  // for its check of struct_size
     const auto& w = std::as_const(*world->world);
     breve_stats s{};
-    s.struct_size = room;
     s.iterations = w.iteration();
     s.time = w.time();
     s.objects = w.object_count();
@@ -52,6 +47,6 @@ breve_status breve_world_stats(const breve_world* world, breve_stats* stats) {
     s.memory_limit = world->meter.limit();
     s.errors = world->errors;
     s.warnings = world->warnings;
-    std::memcpy(stats, &s, room);
+    write_struct(stats, s, "breve_stats");
   });
 }

@@ -105,14 +105,19 @@ struct Selector {
 };
 
 /// A copy of a versioned struct that an older header may have made smaller: fields that it lacks take the defaults.
-/// @throws  StatusError if its struct_size is none that any header gave
+/// @throws  StatusError if its struct_size is none that this header or an older one gave
 template <class Config>
 Config read_config(const Config* given, const Config& defaults, const char* name) {
   if (!given) return defaults;
   const std::size_t size = given->struct_size;
-  if (size < 2 * sizeof(std::size_t) || size > sizeof(Config) || size % alignof(Config) != 0)
-    fail(BREVE_ERROR_ARGUMENT, std::string(name) + ".struct_size is " + std::to_string(size) + " (must be as " + name +
-                                   "_default gives it, " + std::to_string(sizeof(Config)) + ")");
+  const auto refuse = [&](const std::string& why) {
+    fail(BREVE_ERROR_ARGUMENT, std::string(name) + ".struct_size is " + std::to_string(size) + why);
+  };
+  if (size < 2 * sizeof(std::size_t) || size % alignof(Config) != 0)
+    refuse(" (must be as " + std::string(name) + "_default gives it)");
+  if (size > sizeof(Config))
+    refuse(", more than this library knows (" + std::to_string(sizeof(Config)) +
+           "): the host was compiled with the header of a later one");
   Config config = defaults;
   std::memcpy(&config, given, size);
   config.struct_size = sizeof(Config);

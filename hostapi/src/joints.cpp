@@ -99,6 +99,18 @@ breve_joint_drive drive_from(const JointDrive& from) {
   return to;
 }
 
+breve_spring spring_from(const SpringDescription& from) {
+  breve_spring to = breve_spring_default();
+  copy_to(to.from_point, from.point_a);
+  copy_to(to.to_point, from.point_b);
+  to.mode = static_cast<breve_spring_mode>(from.mode);
+  to.length = from.length;
+  to.strength = from.strength;
+  to.damping = from.damping;
+  to.maximum_force = from.maximum_force;
+  return to;
+}
+
 SpringDescription spring_of(const breve_spring& from) {
   constexpr unsigned kModes = 3;
   if (static_cast<unsigned>(from.mode) >= kModes)
@@ -124,15 +136,6 @@ SpringDescription spring_of(const breve_spring& from) {
 using namespace breve::host;
 using breve::JointIndex;
 using breve::Mechanics;
-
-breve_joint_description breve_joint_description_default(breve_joint_kind kind) {
-  breve_joint_description description{};
-  description.struct_size = sizeof description;
-  description.kind = kind;
-  description.rotation[0] = 1;
-  description.normal[0] = 1;
-  return description;
-}
 
 breve_status breve_joint_create(breve_world* world, const breve_joint_description* description, breve_object* joint) {
   if (!world) return BREVE_ERROR_ARGUMENT;
@@ -224,14 +227,6 @@ breve_status breve_joint_place(breve_world* world, breve_object joint, const dou
 
 // --- springs --------------------------------------------------------------------------------------------------------
 
-breve_spring breve_spring_default(void) {
-  breve_spring spring{};
-  spring.struct_size = sizeof spring;
-  spring.strength = 100;
-  spring.damping = 0.01;
-  return spring;
-}
-
 breve_status breve_spring_create(breve_world* world, const breve_spring* description, breve_object* spring) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
@@ -255,8 +250,8 @@ breve_status breve_spring_set(breve_world* world, breve_object spring, const bre
   return guard(world->error, [&] {
     need(description, "description");
     auto& object = object_of_kind(*world, spring, "Spring");
-    const auto given = read_config(description, breve_spring_default(), "breve_spring");
     auto& resource = breve::steve::resource_made<breve::steve::SpringResource>(*world->machine, object);
+    const auto given = read_config(description, spring_from(resource.is), "breve_spring");
     auto changed = spring_of(given);
     changed.point_a = resource.is.point_a;
     changed.point_b = resource.is.point_b;

@@ -188,10 +188,15 @@ breve_status breve_object_set_pose(breve_world* world, breve_object object, cons
     const BodyIndex body = live_body(*world, object);
     const breve::Quaternion rotation = rotation_of(*pose);
     Bodies& bodies = world->world->bodies();
+    const Vector3 place(pose->location[0], pose->location[1], pose->location[2]), before = bodies.location(body);
     world->world->leave(body);
-    const Vector3 place(pose->location[0], pose->location[1], pose->location[2]);
     bodies.set_location(body, world->world->space().inside(place));
-    bodies.set_orientation(body, rotation);
+    try {
+      bodies.set_orientation(body, rotation);
+    } catch (...) {
+      bodies.set_location(body, before);  // all or nothing
+      throw;
+    }
     world->world->dynamics().moved(body);
   });
 }

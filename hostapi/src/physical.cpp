@@ -113,18 +113,6 @@ double within(double value, double low, double high, const char* what) {
 using namespace breve::host;
 using breve::BodyIndex;
 
-breve_geometry breve_geometry_default(void) {
-  breve_geometry geometry{};
-  geometry.struct_size = sizeof geometry;
-  geometry.kind = BREVE_SHAPE_SPHERE;
-  geometry.radius = 1;
-  std::fill_n(geometry.size, 3, 1.0);
-  geometry.tile = 1;
-  geometry.density = 1;
-  geometry.height = 1;
-  return geometry;
-}
-
 breve_status breve_shape_create(breve_world* world, const breve_geometry* geometry, breve_object* shape) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
@@ -177,9 +165,16 @@ breve_status breve_object_set_force(breve_world* world, breve_object object, con
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     const BodyIndex body = live_body(*world, object);
-    if (force) vector_of(force, "force");
-    if (torque) world->world->bodies().set_torque(body, vector_of(torque, "torque"));
-    if (force) world->world->bodies().set_force(body, vector_of(force, "force"));
+    breve::Bodies& bodies = world->world->bodies();
+    const breve::Vector3 before = bodies.force(body);
+    if (force) bodies.set_force(body, vector_of(force, "force"));
+    if (!torque) return;
+    try {
+      bodies.set_torque(body, vector_of(torque, "torque"));
+    } catch (...) {
+      if (force) bodies.set_force(body, before);  // all or nothing
+      throw;
+    }
   });
 }
 

@@ -45,15 +45,12 @@ const char* breve_status_name(breve_status status) {
   return "BREVE_ERROR_INTERNAL";
 }
 
-breve_runtime_config breve_runtime_config_default(void) {
-  breve_runtime_config config{};
-  config.struct_size = sizeof config;
-  return config;
-}
-
-breve_status breve_runtime_create(const breve_runtime_config* config, breve_runtime** runtime) {
+breve_status breve_runtime_create_for(uint32_t abi, const breve_runtime_config* config, breve_runtime** runtime) {
   return guard([&] {
     need(runtime, "runtime");
+    if (abi != BREVE_ABI)
+      fail(BREVE_ERROR_UNSUPPORTED, "the host was compiled for BREVE_ABI " + std::to_string(abi) +
+                                        ", and this library has " + std::to_string(BREVE_ABI));
     const auto c = read_config(config, breve_runtime_config_default(), "breve_runtime_config");
     if ((c.allocate == nullptr) != (c.release == nullptr))
       fail(BREVE_ERROR_ARGUMENT, "allocate and release must both be given, or both be NULL");

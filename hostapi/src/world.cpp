@@ -179,13 +179,6 @@ void need_idle(const breve_world& world, const char* what) {
 
 using namespace breve::host;
 
-breve_world_config breve_world_config_default(void) {
-  breve_world_config config{};
-  config.struct_size = sizeof config;
-  config.seed = 1;
-  return config;
-}
-
 breve_status breve_world_create(breve_runtime* runtime, const breve_program* program, const breve_world_config* config,
                                 breve_world** world) {
   if (!runtime) return BREVE_ERROR_ARGUMENT;

@@ -56,10 +56,8 @@ std::vector<breve_pose> poses(breve::World& world) {
 }
 
 void run(breve::World& world, Measured& measured) {
-  breve_energy energy{};
-  energy.struct_size = sizeof energy;
-  breve_physics_counters counters{};
-  counters.struct_size = sizeof counters;
+  breve_energy energy = breve_energy_default();
+  breve_physics_counters counters = breve_physics_counters_default();
   double largest = 0;
   double spent = 0;
   measured.forces = 0;
@@ -86,7 +84,7 @@ Measured measure(breve::Runtime& runtime, const breve::Program& program, breve_r
     breve_world_config config = breve_world_config_default();
     config.seed = 1;
     auto world = runtime.world(program, config).or_throw();
-    breve_accuracy accuracy{};
+    breve_accuracy accuracy = breve_accuracy_default();
     check(world, breve_accuracy_of_rung(rung, &accuracy));
     check(world, breve_world_set_accuracy(world.get(), &accuracy));
     check(world, breve_world_set_guard(world.get(), BREVE_GUARD_REPORT));

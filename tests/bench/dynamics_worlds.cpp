@@ -44,7 +44,7 @@ struct Ours {
     breve_world_config config = breve_world_config_default();
     config.iteration_step = config.integration_step = kStep;
     must(breve_world_create(runtime, program, &config, &world));
-    breve_accuracy accuracy;
+    breve_accuracy accuracy = breve_accuracy_default();
     must(breve_accuracy_of_rung(rung, &accuracy));
     must(breve_world_set_accuracy(world, &accuracy));
   }
@@ -73,8 +73,7 @@ struct Ours {
   }
   void step() { must(breve_world_step(world)); }
   breve_physics_counters counters() const {
-    breve_physics_counters out{};
-    out.struct_size = sizeof out;
+    breve_physics_counters out = breve_physics_counters_default();
     must(breve_world_physics_counters(world, &out));
     return out;
   }

@@ -125,7 +125,7 @@ static void the_hosts_allocator_gives_and_gets_back_all_memory_of_worlds(void) {
   CHECK_STATUS(BREVE_OK, breve_program_compile(runtime, "scene.tz", scene_text, strlen(scene_text), &program));
   CHECK_STATUS(BREVE_OK, breve_world_create(runtime, program, NULL, &world));
   for (int i = 0; i < 10; ++i) CHECK_STATUS(BREVE_OK, breve_world_step(world));
-  breve_stats stats = {.struct_size = sizeof stats};
+  breve_stats stats = breve_stats_default();
   CHECK_STATUS(BREVE_OK, breve_world_stats(world, &stats));
   CHECK(l.calls > 0);
   CHECK(stats.memory_used > 0);

@@ -64,7 +64,35 @@ static void dimension_and_length_unit_are_checked(void) {
   scene_close(&s);
 }
 
+/* A setter takes all of its input, or nothing of it. */
+static void what_is_refused_in_part_changes_nothing(void) {
+  scene s;
+  breve_world_config config = breve_world_config_default();
+  config.dimension = 2;
+  if (!CHECK_STATUS(BREVE_OK, open_world(&s, NULL, &config))) return;
+  breve_object link = {0, 0};
+  CHECK_STATUS(BREVE_OK, breve_object_create(s.world, "Link", &link));
+  const breve_pose good = {{1, 2, 0}, {1, 0, 0, 0}}, tilted = {{3, 4, 0}, {0.7, 0.7, 0, 0}},
+                   high = {{3, 4, 1}, {0, 0, 0, 1}};
+  CHECK_STATUS(BREVE_OK, breve_object_set_pose(s.world, link, &good));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_pose(s.world, link, &tilted));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_pose(s.world, link, &high));
+  breve_pose pose;
+  CHECK_STATUS(BREVE_OK, breve_object_pose(s.world, link, &pose));
+  CHECK(memcmp(&pose, &good, sizeof pose) == 0);
+  const double force[3] = {1, 2, 0}, out_of_plane[3] = {1, 2, 3}, torque[3] = {0, 0, 5};
+  uint64_t before = 0, after = 0;
+  CHECK_STATUS(BREVE_OK, breve_world_hash(s.world, &before));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_force(s.world, link, force, out_of_plane));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_force(s.world, link, out_of_plane, torque));
+  CHECK_STATUS(BREVE_OK, breve_world_hash(s.world, &after));
+  CHECK(before == after);
+  CHECK_STATUS(BREVE_OK, breve_object_set_force(s.world, link, force, torque));
+  scene_close(&s);
+}
+
 void flat_suite(void) {
   RUN(the_config_makes_a_world_flat);
   RUN(dimension_and_length_unit_are_checked);
+  RUN(what_is_refused_in_part_changes_nothing);
 }

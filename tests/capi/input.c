@@ -86,7 +86,7 @@ static void an_error_in_a_handler_is_reported_and_the_run_goes_on(void) {
   CHECK(s.said.errors == 1);
   CHECK(strstr(s.said.error, "do not press") != NULL);
   CHECK(s.said.error[strlen(s.said.error) - 1] == '\n');
-  breve_stats stats = {.struct_size = sizeof stats};
+  breve_stats stats = breve_stats_default();
   CHECK_STATUS(BREVE_OK, breve_world_stats(s.world, &stats));
   CHECK(stats.errors == 1);
   scene_close(&s);

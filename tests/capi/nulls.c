@@ -13,7 +13,7 @@ static void null_handles_give_an_argument_error_or_nothing(void) {
   breve_world* world = NULL;
   breve_diagnostic diagnostic;
   breve_class_info info;
-  breve_stats stats = {.struct_size = sizeof stats};
+  breve_stats stats = breve_stats_default();
   double d[4] = {0};
   uint64_t hash;
   size_t size;
@@ -207,12 +207,12 @@ static void null_handles_and_arguments_of_bodies_with_physics(void) {
   breve_geometry geometry = breve_geometry_default();
   breve_joint_description joint = breve_joint_description_default(BREVE_JOINT_BALL);
   breve_joint_info info;
-  breve_joint_drive drive = {.struct_size = sizeof drive};
+  breve_joint_drive drive = breve_joint_drive_default();
   breve_spring spring = breve_spring_default();
-  breve_accuracy accuracy;
+  breve_accuracy accuracy = breve_accuracy_default();
   breve_rung rung;
-  breve_energy energy = {.struct_size = sizeof energy};
-  breve_physics_counters counters = {.struct_size = sizeof counters};
+  breve_energy energy = breve_energy_default();
+  breve_physics_counters counters = breve_physics_counters_default();
   const breve_material material = {0, 0, 0, 0, 0};
   const breve_pose pose = {{0}, {1, 0, 0, 0}};
   double d[4] = {0};

@@ -353,7 +353,7 @@ static void a_budget_cuts_at_the_same_place(void) {
 
 static void a_profile_without_memory_ends_and_the_run_goes_on(void) {
   scene s;
-  breve_stats stats = {.struct_size = sizeof stats};
+  breve_stats stats = breve_stats_default();
   if (!scene_open_text(&s, program_text, NULL)) return;
   CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
   CHECK_STATUS(BREVE_OK, breve_world_stats(s.world, &stats));

@@ -175,8 +175,7 @@ static breve_status do_effects(place* p) {
   return breve_world_effects(p->world, NULL, 0, &count);
 }
 static breve_status do_stats(place* p) {
-  breve_stats stats;
-  stats.struct_size = sizeof stats;
+  breve_stats stats = breve_stats_default();
   return breve_world_stats(p->world, &stats);
 }
 static breve_status do_profile_start(place* p) { return breve_world_profile_start(p->world, NULL, NULL); }
@@ -221,7 +220,7 @@ static breve_status do_bodies(place* p) {
   double mass;
   bool is;
   size_t count;
-  breve_energy energy = {.struct_size = sizeof energy};
+  breve_energy energy = breve_energy_default();
   TRY(breve_object_create(w, "Mobile", &body));
   TRY(breve_shape_create(w, &geometry, &shape));
   TRY(breve_object_set_shape(w, body, shape));
@@ -244,7 +243,7 @@ static breve_status do_joints(place* p) {
   breve_world* w = p->world;
   breve_joint_description description = breve_joint_description_default(BREVE_JOINT_REVOLUTE);
   breve_joint_info info;
-  breve_joint_drive drive = {.struct_size = sizeof drive};
+  breve_joint_drive drive = breve_joint_drive_default();
   breve_object joint;
   const double still[3] = {0};
   TRY(breve_object_create(w, "Mobile", &description.child));
@@ -281,10 +280,10 @@ static breve_status do_grids(place* p) { /* the controller is no grid */
 }
 static breve_status do_accuracy(place* p) {
   breve_world* w = p->world;
-  breve_accuracy accuracy;
+  breve_accuracy accuracy = breve_accuracy_default();
   breve_rung rung;
-  breve_energy energy = {.struct_size = sizeof energy};
-  breve_physics_counters counters = {.struct_size = sizeof counters};
+  breve_energy energy = breve_energy_default();
+  breve_physics_counters counters = breve_physics_counters_default();
   const char* text;
   size_t count;
   double gravity[3];
@@ -378,6 +377,7 @@ static void look_around(place* p) {
   const double rows[9] = {0};
   CHECK(breve_version() != NULL && breve_abi() == BREVE_ABI && breve_status_name(BREVE_OK) != NULL);
   CHECK(config.struct_size != 0);
+  CHECK_STATUS(BREVE_ERROR_UNSUPPORTED, breve_runtime_create_for(BREVE_ABI + 1, &runtime_config, &other));
   CHECK_STATUS(BREVE_OK, breve_runtime_create(&runtime_config, &other));
   CHECK_STATUS(BREVE_OK, breve_runtime_destroy(other));
   breve_runtime_last_error(p->runtime);

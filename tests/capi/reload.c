@@ -169,8 +169,7 @@ static void instances_keep_their_values_by_name(void) {
   const breve_object stage = breve_world_controller(s.world);
   for (int i = 0; i < 3; ++i) CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
   const breve_object bug = value_of(&s, "bug").as.object;
-  breve_stats stats;
-  stats.struct_size = sizeof stats;
+  breve_stats stats = breve_stats_default();
   CHECK_STATUS(BREVE_OK, breve_world_stats(s.world, &stats));
   const uint64_t objects = stats.objects;
   CHECK_STATUS(BREVE_OK, reload(&s, after));

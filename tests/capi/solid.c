@@ -67,7 +67,7 @@ static void a_creature_is_built_and_driven_without_a_script(void) {
 
   const double weightless[3] = {0, 0, 0};
   CHECK_STATUS(BREVE_OK, breve_world_set_gravity(s.world, weightless));
-  breve_joint_drive drive = {.struct_size = sizeof drive};
+  breve_joint_drive drive = breve_joint_drive_default();
   CHECK_STATUS(BREVE_OK, breve_joint_get_drive(s.world, elbow, &drive));
   CHECK(drive.strength_limit == 0 && drive.high[0] == INFINITY && drive.low[0] == -INFINITY);
   drive.strength_limit = 1e6;
@@ -79,7 +79,7 @@ static void a_creature_is_built_and_driven_without_a_script(void) {
   CHECK_STATUS(BREVE_OK, breve_joint_read(s.world, elbow, &info));
   CHECK_NEAR(2, info.velocity[0], 1e-3);
   CHECK_NEAR(2, info.position[0], 0.05);
-  breve_energy energy = {.struct_size = sizeof energy};
+  breve_energy energy = breve_energy_default();
   CHECK_STATUS(BREVE_OK, breve_object_energy(s.world, upper, &energy));
   CHECK(energy.kinetic > 0 && energy.motor_work > 0);
 
@@ -118,7 +118,7 @@ static void every_kind_of_joint_has_its_axes(void) {
     CHECK_TEXT(classes[kind], breve_object_class(s.world, joint));
     CHECK_STATUS(BREVE_OK, breve_joint_read(s.world, joint, &info));
     CHECK(info.kind == (breve_joint_kind)kind && info.linked);
-    breve_joint_drive drive = {.struct_size = sizeof drive};
+    breve_joint_drive drive = breve_joint_drive_default();
     CHECK_STATUS(BREVE_OK, breve_joint_get_drive(s.world, joint, &drive));
     if (kind == BREVE_JOINT_PRISMATIC) CHECK(drive.low[0] == -2 && drive.high[0] == 2);
     if (kind == BREVE_JOINT_BALL) CHECK_NEAR(1.2207963267948966, drive.high[1], 1e-12);
@@ -164,7 +164,7 @@ static void what_cannot_be_joined_is_refused_and_nothing_changes(void) {
 
   const breve_object elbow = hinge(&s, nobody, link);
   CHECK_STATUS(BREVE_OK, breve_world_hash(s.world, &before));
-  breve_joint_drive drive = {.struct_size = sizeof drive};
+  breve_joint_drive drive = breve_joint_drive_default();
   CHECK_STATUS(BREVE_OK, breve_joint_get_drive(s.world, elbow, &drive));
   drive.damping = -1;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_joint_set_drive(s.world, elbow, &drive));
@@ -348,7 +348,7 @@ static void springs_pull(void) {
 static void accuracy_is_a_rung_or_single_settings(void) {
   scene s;
   if (!open_library(&s)) return;
-  breve_accuracy accuracy;
+  breve_accuracy accuracy = breve_accuracy_default();
   breve_rung rung = BREVE_RUNG_FAST;
   const char* text = NULL;
   CHECK_STATUS(BREVE_OK, breve_world_accuracy(s.world, &accuracy));
@@ -409,7 +409,7 @@ static void the_config_chooses_a_rung(void) {
   CHECK(config.accuracy == NULL);
   config.accuracy = "precise";
   if (!scene_open_text(&s, scene_text, &config)) return;
-  breve_accuracy accuracy;
+  breve_accuracy accuracy = breve_accuracy_default();
   CHECK_STATUS(BREVE_OK, breve_world_accuracy(s.world, &accuracy));
   CHECK(accuracy.rung == BREVE_RUNG_PRECISE);
   breve_world* other = NULL;
@@ -446,13 +446,13 @@ static void impacts_energy_and_counters_are_told(void) {
   CHECK(of_any != 0);
   /* It falls half a length: v^2 = 2 g / 2, and comes back at half that speed. */
   CHECK_NEAR(1.5 * mass * sqrt(9.8), impulse, 1e-2 * impulse);
-  breve_energy energy = {.struct_size = sizeof energy};
+  breve_energy energy = breve_energy_default();
   CHECK_STATUS(BREVE_OK, breve_world_energy(s.world, &energy));
   CHECK_NEAR(0.75 * mass * 9.8 * 0.5, energy.contact_loss, 0.02 * energy.contact_loss);
   CHECK_NEAR(0, energy.residual, 1e-3 * mass * 9.8);
   energy.struct_size = 3;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_energy(s.world, &energy));
-  breve_physics_counters counters = {.struct_size = sizeof counters};
+  breve_physics_counters counters = breve_physics_counters_default();
   CHECK_STATUS(BREVE_OK, breve_world_physics_counters(s.world, &counters));
   CHECK(counters.islands != 0);
   CHECK_STATUS(BREVE_OK, breve_world_interventions(s.world, NULL, 0, &count));
@@ -476,7 +476,7 @@ static void how_exactly_rows_were_solved_is_told(void) {
     CHECK_STATUS(BREVE_OK, breve_object_set_pose(s.world, ball, &pose));
     CHECK_STATUS(BREVE_OK, breve_object_set_physics(s.world, ball, true));
     for (int k = 0; k < 60; ++k) CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
-    breve_physics_counters counters = {.struct_size = sizeof counters};
+    breve_physics_counters counters = breve_physics_counters_default();
     CHECK_STATUS(BREVE_OK, breve_world_physics_counters(s.world, &counters));
     CHECK(counters.contacts != 0 && counters.direct != 0);
     CHECK(counters.residual >= 0 && counters.residual <= 1e-8);

@@ -255,7 +255,7 @@ static void files_and_commands_are_asked_of_the_host(void) {
 static void stats_count_objects_bodies_and_errors(void) {
   scene s;
   if (!scene_open(&s)) return;
-  breve_stats stats = {.struct_size = sizeof stats};
+  breve_stats stats = breve_stats_default();
   size_t count = 0, shaped = 0;
   CHECK_STATUS(BREVE_OK, breve_world_objects(s.world, NULL, NULL, 0, &count));
   CHECK_STATUS(BREVE_OK, breve_world_objects(s.world, "Real", NULL, 0, &shaped));

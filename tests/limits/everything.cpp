@@ -153,8 +153,7 @@ bool use_images(Run& run) {
   breve_effect effects[32];
   std::size_t count = 0;
   TRY(breve_world_effects(run.world, effects, 32, &count));
-  breve_stats stats{};
-  stats.struct_size = sizeof stats;
+  breve_stats stats = breve_stats_default();
   TRY(breve_world_stats(run.world, &stats));
   return true;
 }

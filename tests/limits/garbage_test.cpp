@@ -110,8 +110,7 @@ class Garbage : public ::testing::Test {
         << breve_world_last_error(world_)->text;
   }
   std::uint64_t cells() const {
-    breve_stats stats{};
-    stats.struct_size = sizeof stats;
+    breve_stats stats = breve_stats_default();
     EXPECT_EQ(breve_world_stats(world_, &stats), BREVE_OK);
     return stats.heap_cells;
   }

@@ -113,8 +113,7 @@ class MemoryLimit : public ::testing::TestWithParam<const char*> {
     ASSERT_EQ(call("drop-all"), BREVE_OK) << breve_world_last_error(world_)->text;
   }
   breve_stats stats() const {
-    breve_stats s{};
-    s.struct_size = sizeof s;
+    breve_stats s = breve_stats_default();
     EXPECT_EQ(breve_world_stats(world_, &s), BREVE_OK);
     return s;
   }

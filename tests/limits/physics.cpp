@@ -51,8 +51,7 @@ bool make_joints(Run& run, Scene& scene) {
   hinge.kind = BREVE_JOINT_BALL;
   hinge.parent = scene.leg, hinge.child = scene.foot;
   TRY(breve_joint_create(world, &hinge, &scene.knee));
-  breve_joint_drive drive{};
-  drive.struct_size = sizeof drive;
+  breve_joint_drive drive = breve_joint_drive_default();
   TRY(breve_joint_get_drive(world, scene.hip, &drive));
   drive.motor_speed[0] = 1, drive.strength_limit = 5;
   drive.low[0] = -0.5, drive.high[0] = 0.1;
@@ -69,7 +68,7 @@ bool make_joints(Run& run, Scene& scene) {
 
 bool set_what_can_be_set(Run& run, const Scene& scene) {
   breve_world* world = run.world;
-  breve_accuracy accuracy;
+  breve_accuracy accuracy = breve_accuracy_default();
   TRY(breve_accuracy_of_rung(BREVE_RUNG_PRECISE, &accuracy));
   TRY(breve_object_set_accuracy(world, scene.foot, &accuracy));
   const double down[3] = {0, -9, 0}, push[3] = {0, 0, 0.1};
@@ -101,12 +100,10 @@ bool look(Run& run, const Scene& scene) {
   TRY(breve_joint_read(world, scene.knee, &info));
   double length = 0, force = 0;
   TRY(breve_spring_read(world, scene.spring, &length, &force));
-  breve_energy energy{};
-  energy.struct_size = sizeof energy;
+  breve_energy energy = breve_energy_default();
   TRY(breve_world_energy(world, &energy));
   TRY(breve_object_energy(world, scene.foot, &energy));
-  breve_physics_counters counters{};
-  counters.struct_size = sizeof counters;
+  breve_physics_counters counters = breve_physics_counters_default();
   TRY(breve_world_physics_counters(world, &counters));
   return true;
 }

@@ -93,8 +93,7 @@ std::size_t compare_with_meter(bool profile) {
     EXPECT_EQ(breve_world_profile_node(world, nodes - 1, &node), BREVE_OK);
   }
   const std::size_t outside = live_bytes() - outside_before, given = given_bytes() - given_before;
-  breve_stats stats{};
-  stats.struct_size = sizeof stats;
+  breve_stats stats = breve_stats_default();
   EXPECT_EQ(breve_world_stats(world, &stats), BREVE_OK);
   std::printf("metered %zu, given by the allocator %zu, outside %zu bytes\n", stats.memory_used, given, outside);
   EXPECT_GT(stats.memory_used, 10U << 20);
@@ -187,8 +186,7 @@ class Islands {
     return error ? error->text : "nothing";
   }
   breve_stats stats() const {
-    breve_stats out{};
-    out.struct_size = sizeof out;
+    breve_stats out = breve_stats_default();
     EXPECT_EQ(breve_world_stats(world, &out), BREVE_OK);
     return out;
   }

@@ -160,8 +160,7 @@ struct Mixed {
     start(world, chain, {1.5, 1}, {0, 0});
   }
   double pendulum_energy() const {
-    breve_energy energy{};
-    energy.struct_size = sizeof energy;
+    breve_energy energy = breve_energy_default();
     world.must(breve_object_energy(world.get(), chain.links[0], &energy));
     return energy.kinetic + energy.potential;
   }

@@ -73,13 +73,13 @@ void World::must(breve_status status) const {
 void World::set_gravity(const Vector3& gravity) { must(breve_world_set_gravity(world_, gravity.data())); }
 
 void World::set_rung(breve_rung rung) {
-  breve_accuracy accuracy;
+  breve_accuracy accuracy = breve_accuracy_default();
   must(breve_accuracy_of_rung(rung, &accuracy));
   set_accuracy(accuracy);
 }
 
 breve_accuracy World::accuracy() const {
-  breve_accuracy accuracy;
+  breve_accuracy accuracy = breve_accuracy_default();
   must(breve_world_accuracy(world_, &accuracy));
   return accuracy;
 }
@@ -213,8 +213,7 @@ breve_joint_info World::read(breve_object joint) const {
 }
 
 breve_joint_drive World::drive(breve_object joint) const {
-  breve_joint_drive drive{};
-  drive.struct_size = sizeof drive;
+  breve_joint_drive drive = breve_joint_drive_default();
   must(breve_joint_get_drive(world_, joint, &drive));
   return drive;
 }
@@ -271,8 +270,7 @@ std::vector<breve_intervention> World::interventions() const {
 }
 
 breve_energy World::energy() const {
-  breve_energy energy{};
-  energy.struct_size = sizeof energy;
+  breve_energy energy = breve_energy_default();
   must(breve_world_energy(world_, &energy));
   return energy;
 }
@@ -283,8 +281,7 @@ double World::mechanical() const {
 }
 
 breve_physics_counters World::counters() const {
-  breve_physics_counters counters{};
-  counters.struct_size = sizeof counters;
+  breve_physics_counters counters = breve_physics_counters_default();
   must(breve_world_physics_counters(world_, &counters));
   return counters;
 }

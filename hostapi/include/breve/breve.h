@@ -25,6 +25,12 @@
  *   the runtime's callbacks are called by those threads.
  * - Functions marked "Runs script" may call the callbacks of the runtime. A callback may call any function of this
  *   header; one that cannot work inside a running script says so and gives BREVE_ERROR_BUSY there.
+ * - Structs that begin with struct_size grow: later headers append fields. Their initialisers, breve_X_default, are
+ *   compiled into the host, so that struct_size says how much of the struct the host knows. A function reads and writes
+ *   no more than that; fields that the host does not know have their defaults, and a setter leaves them as they are. A
+ *   host runs with the library of its header or a later one: a struct_size that is larger than the library's is
+ *   BREVE_ERROR_ARGUMENT. All other structs are frozen, as are enumerators: they never change while BREVE_ABI stays, which
+ *   rises with whatever would break a host that is not compiled again. breve_runtime_create compares it.
  * - Units: lengths, masses and angles are the program's own (length units, kg, rad); times are simulated seconds.
  */
 #ifndef BREVE_BREVE_H
@@ -50,10 +56,16 @@
 extern "C" {
 #endif
 
+/* For the initialisers below: all bytes are 0, those between the fields too. */
+static inline void breve_clear(void* bytes, size_t size) {
+  size_t i;
+  for (i = 0; i < size; ++i) ((unsigned char*)bytes)[i] = 0;
+}
+
 /* ---- versions ---------------------------------------------------------------------------------------------------- */
 
 /* Number of the binary interface that this header describes. A library with another number is another interface. */
-#define BREVE_ABI 2
+#define BREVE_ABI 3
 
 /* "major.minor.patch" of the library. Never NULL. */
 BREVE_API const char* breve_version(void);
@@ -230,7 +242,7 @@ typedef enum breve_right {
 typedef bool (*breve_system_fn)(void* user, breve_world* world, const char* command, breve_write_fn write, void* sink);
 
 typedef struct breve_runtime_config {
-  size_t struct_size; /* as breve_runtime_config_default gives it; a smaller one of an older header is accepted */
+  size_t struct_size; /* as breve_runtime_config_default gives it */
   void* user;         /* handed to every callback. Default NULL */
   breve_allocate_fn allocate; /* memory of worlds; NULL with `release` NULL: the C++ allocator. Default NULL */
   breve_release_fn release;   /* both or none. Default NULL */
@@ -245,14 +257,26 @@ typedef struct breve_runtime_config {
 } breve_runtime_config;
 
 /* The defaults named above. */
-BREVE_API breve_runtime_config breve_runtime_config_default(void);
+static inline breve_runtime_config breve_runtime_config_default(void) {
+  breve_runtime_config config;
+  breve_clear(&config, sizeof config);
+  config.struct_size = sizeof config;
+  return config;
+}
+
+/* What breve_runtime_create calls. @param abi  BREVE_ABI of the header that the host was compiled with */
+BREVE_API breve_status breve_runtime_create_for(uint32_t abi, const breve_runtime_config* config,
+                                                breve_runtime** runtime);
 
 /* Make a runtime. Runs no script, calls no callback.
    @param config  copied; NULL: the defaults
    @param runtime to be given back to breve_runtime_destroy
    BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, allocate without release or release without
-   allocate, a right that there is none of, a reserved field that is not 0. */
-BREVE_API breve_status breve_runtime_create(const breve_runtime_config* config, breve_runtime** runtime);
+   allocate, a right that there is none of, a reserved field that is not 0.
+   BREVE_ERROR_UNSUPPORTED: the library has another BREVE_ABI than this header. */
+static inline breve_status breve_runtime_create(const breve_runtime_config* config, breve_runtime** runtime) {
+  return breve_runtime_create_for(BREVE_ABI, config, runtime);
+}
 
 /* Let scripts read, and perhaps write, the files below a directory: for breve_runtime_config.files. A file is named by its
    path from there, with '/'. Refused are absolute paths, '..', symbolic links, what is no plain file, and files beyond a
@@ -391,7 +415,7 @@ typedef struct breve_setting {
 } breve_setting;
 
 typedef struct breve_world_config {
-  size_t struct_size; /* as breve_world_config_default gives it; a smaller one of an older header is accepted */
+  size_t struct_size; /* as breve_world_config_default gives it */
   uint64_t seed;      /* of the world's generator of random numbers: any number. Default 1 */
   const char* const* arguments; /* what scripts read as arguments, copied; [0] is the program's name. Default NULL */
   size_t argument_count;        /* 0 if arguments is NULL. Default 0 */
@@ -447,7 +471,13 @@ typedef struct breve_world_config {
      of announcements uses the announcer's. Scheduled calls may schedule calls: only `budget` bounds an iteration. */
 
 /* The defaults named above. */
-BREVE_API breve_world_config breve_world_config_default(void);
+static inline breve_world_config breve_world_config_default(void) {
+  breve_world_config config;
+  breve_clear(&config, sizeof config);
+  config.struct_size = sizeof config;
+  config.seed = 1;
+  return config;
+}
 
 /* Make a world of `program`, its controller, and run the controller's `init`. Runs script.
    @param config  copied; NULL: the defaults
@@ -652,7 +682,18 @@ typedef struct breve_geometry {
 } breve_geometry;
 
 /* The defaults named above. */
-BREVE_API breve_geometry breve_geometry_default(void);
+static inline breve_geometry breve_geometry_default(void) {
+  breve_geometry geometry;
+  breve_clear(&geometry, sizeof geometry);
+  geometry.struct_size = sizeof geometry;
+  geometry.kind = BREVE_SHAPE_SPHERE;
+  geometry.radius = 1;
+  geometry.size[0] = geometry.size[1] = geometry.size[2] = 1;
+  geometry.tile = 1;
+  geometry.density = 1;
+  geometry.height = 1;
+  return geometry;
+}
 
 /* Make a Shape object. Many bodies may use one. Runs script (`init`).
    BREVE_OK; BREVE_ERROR_ARGUMENT: a size or density that is not finite and > 0, faces that are no convex solid around
@@ -721,7 +762,15 @@ typedef struct breve_joint_description {
 } breve_joint_description;
 
 /* The defaults named above. */
-BREVE_API breve_joint_description breve_joint_description_default(breve_joint_kind kind);
+static inline breve_joint_description breve_joint_description_default(breve_joint_kind kind) {
+  breve_joint_description description;
+  breve_clear(&description, sizeof description);
+  description.struct_size = sizeof description;
+  description.kind = kind;
+  description.rotation[0] = 1;
+  description.normal[0] = 1;
+  return description;
+}
 
 /* Make a joint: an object of class RevoluteJoint and so on. Both bodies get physics; the child, with all that hangs on
    it, is placed so that the two points coincide. A joint between bodies that are connected already closes a ring, and
@@ -754,7 +803,7 @@ BREVE_API breve_status breve_joint_read(breve_world* world, breve_object joint, 
 
 /* What drives and bounds a joint. Forces are N*m or N, positions rad or m, speeds rad/s or m/s. */
 typedef struct breve_joint_drive {
-  size_t struct_size;      /* sizeof(breve_joint_drive); breve_joint_get_drive fills it in */
+  size_t struct_size;      /* as breve_joint_drive_default gives it */
   double motor_speed[3];   /* what the motor aims at, for each axis. Default 0 */
   double strength_limit;   /* most that it uses for that, cut to 0 .. hard_limit, told once; 0: no motor. Default 0 */
   double double_strength;  /* 1/s, added to the motor's speed outside of double_min .. double_max. Default 0 */
@@ -766,6 +815,14 @@ typedef struct breve_joint_drive {
   double low[3], high[3];        /* stops; -INFINITY and INFINITY: none. Default none, but see breve_joint_kind */
   double limit_restitution;      /* at the stops, 0 to 1. Default 0 */
 } breve_joint_drive;
+
+/* All zero, to be filled in by breve_joint_get_drive. */
+static inline breve_joint_drive breve_joint_drive_default(void) {
+  breve_joint_drive drive;
+  breve_clear(&drive, sizeof drive);
+  drive.struct_size = sizeof drive;
+  return drive;
+}
 
 /* BREVE_OK; BREVE_ERROR_TYPE: the object is no joint; BREVE_ERROR_ARGUMENT: it is not linked. */
 BREVE_API breve_status breve_joint_get_drive(const breve_world* world, breve_object joint, breve_joint_drive* drive);
@@ -817,7 +874,14 @@ typedef struct breve_spring {
 } breve_spring;
 
 /* The defaults named above. */
-BREVE_API breve_spring breve_spring_default(void);
+static inline breve_spring breve_spring_default(void) {
+  breve_spring spring;
+  breve_clear(&spring, sizeof spring);
+  spring.struct_size = sizeof spring;
+  spring.strength = 100;
+  spring.damping = 0.01;
+  return spring;
+}
 
 /* Make a spring: an object of class Spring. Runs script (`init`).
    BREVE_OK; BREVE_ERROR_NOT_FOUND: the program does not have the class; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: both
@@ -856,7 +920,7 @@ typedef enum breve_integrator {
 
 /* How bodies with physics are computed. */
 typedef struct breve_accuracy {
-  size_t struct_size; /* as breve_accuracy_of_rung gives it */
+  size_t struct_size; /* as breve_accuracy_default gives it */
   breve_rung rung;    /* where the settings come from */
   breve_integrator integrator; /* of smooth motion */
   bool implicit_joints;        /* springs, dampers and motors of joints implicit (Euler's schemes) */
@@ -875,7 +939,15 @@ typedef struct breve_accuracy {
   double contact_damping;      /* their ratio of damping, 0..0.9; 0: that of the pair's restitution */
 } breve_accuracy;
 
-/* The settings of a rung. BREVE_OK; BREVE_ERROR_ARGUMENT: there is no such rung. */
+/* All zero, to be filled in by breve_accuracy_of_rung or breve_world_accuracy. */
+static inline breve_accuracy breve_accuracy_default(void) {
+  breve_accuracy accuracy;
+  breve_clear(&accuracy, sizeof accuracy);
+  accuracy.struct_size = sizeof accuracy;
+  return accuracy;
+}
+
+/* The settings of a rung. BREVE_OK; BREVE_ERROR_ARGUMENT: there is no such rung, or a wrong struct_size. */
 BREVE_API breve_status breve_accuracy_of_rung(breve_rung rung, breve_accuracy* accuracy);
 
 /* The rung of that name: "fast", "balanced", "precise", "reference" or "conserving".
@@ -998,7 +1070,7 @@ BREVE_API breve_status breve_world_impacts(const breve_world* world, breve_impac
 /* Where energy is and where it went, J. The first three are of now, the rest since the start:
    kinetic + potential + springs - (their sum at the start) = works - losses + residual. */
 typedef struct breve_energy {
-  size_t struct_size; /* to be set to sizeof(breve_energy); a smaller one of an older header is filled in part */
+  size_t struct_size; /* as breve_energy_default gives it */
   double kinetic;
   double potential;     /* in the field of gravity, 0 at the world's origin */
   double springs;       /* of joints, of Springs and of contacts */
@@ -1011,6 +1083,14 @@ typedef struct breve_energy {
   double residual;      /* what no account explains: the error of the method */
 } breve_energy;
 
+/* All zero, to be filled in. */
+static inline breve_energy breve_energy_default(void) {
+  breve_energy energy;
+  breve_clear(&energy, sizeof energy);
+  energy.struct_size = sizeof energy;
+  return energy;
+}
+
 /* Of all bodies with physics. BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
 BREVE_API breve_status breve_world_energy(const breve_world* world, breve_energy* energy);
 
@@ -1019,7 +1099,7 @@ BREVE_API breve_status breve_object_energy(const breve_world* world, breve_objec
 
 /* What the physics of the last iteration took: counts only, so that runs can be compared. */
 typedef struct breve_physics_counters {
-  size_t struct_size;   /* to be set to sizeof(breve_physics_counters); a smaller one is filled in part */
+  size_t struct_size;   /* as breve_physics_counters_default gives it */
   uint64_t sub_steps;   /* of islands; rejected ones are not counted */
   uint64_t evaluations; /* of forces, by trees of bodies */
   uint64_t rejected;    /* steps of step control that were tried again */
@@ -1037,6 +1117,14 @@ typedef struct breve_physics_counters {
      were swept, by which the last sweep still changed one. 0 in a flat world, whose engine does not tell. */
   double residual;
 } breve_physics_counters;
+
+/* All zero, to be filled in. */
+static inline breve_physics_counters breve_physics_counters_default(void) {
+  breve_physics_counters counters;
+  breve_clear(&counters, sizeof counters);
+  counters.struct_size = sizeof counters;
+  return counters;
+}
 
 /* BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
 BREVE_API breve_status breve_world_physics_counters(const breve_world* world, breve_physics_counters* counters);
@@ -1230,7 +1318,7 @@ BREVE_API breve_status breve_world_effects(const breve_world* world, breve_effec
                                            size_t* count);
 
 typedef struct breve_stats {
-  size_t struct_size; /* to be set to sizeof(breve_stats); a smaller one of an older header is filled in part */
+  size_t struct_size; /* as breve_stats_default gives it */
   uint64_t iterations;
   double time;         /* simulated, s */
   uint64_t objects;    /* live */
@@ -1242,6 +1330,14 @@ typedef struct breve_stats {
   uint64_t errors;     /* run-time errors that did not stop the run */
   uint64_t warnings;
 } breve_stats;
+
+/* All zero, to be filled in. */
+static inline breve_stats breve_stats_default(void) {
+  breve_stats stats;
+  breve_clear(&stats, sizeof stats);
+  stats.struct_size = sizeof stats;
+  return stats;
+}
 
 /* BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
 BREVE_API breve_status breve_world_stats(const breve_world* world, breve_stats* stats);
@@ -1336,9 +1432,9 @@ BREVE_API breve_status breve_world_session(breve_world* world, breve_value* hash
 BREVE_API bool breve_statements_complete(const char* text, size_t size);
 
 /* Stop the script that runs in a world: the function of this header that runs it gives BREVE_ERROR_INTERRUPTED within
-   50 ms (callbacks of the host and the physics of a step apart), and the call is abandoned as by a run-time error. Where it is cut is not determined: two runs that are
-   interrupted are not equal. Nothing if no script runs; NULL is nothing. May be called by any thread, and by a signal
-   handler, as long as the world exists. */
+   50 ms (callbacks of the host and the physics of a step apart), and the call is abandoned as by a run-time error. Where
+   it is cut is not determined: two runs that are interrupted are not equal. Nothing if no script runs; NULL is nothing.
+   May be called by any thread, and by a signal handler, as long as the world exists. */
 BREVE_API void breve_world_interrupt(breve_world* world);
 
 /* ---- what a program is made of ----------------------------------------------------------------------------------- */

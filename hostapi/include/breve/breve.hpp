@@ -290,8 +290,7 @@ class World {
     return {status(s), info};
   }
   Result<breve_joint_drive> drive(Object joint) const {
-    breve_joint_drive drive{};
-    drive.struct_size = sizeof drive;
+    breve_joint_drive drive = breve_joint_drive_default();
     const breve_status s = breve_joint_get_drive(get(), joint, &drive);
     return {status(s), drive};
   }
@@ -314,7 +313,7 @@ class World {
     return {status(s), made};
   }
   Result<breve_accuracy> accuracy() const {
-    breve_accuracy accuracy{};
+    breve_accuracy accuracy = breve_accuracy_default();
     const breve_status s = breve_world_accuracy(get(), &accuracy);
     return {status(s), accuracy};
   }
@@ -325,8 +324,7 @@ class World {
     return status(breve_world_set_space(get(), axis, edge, low, high));
   }
   Result<breve_energy> energy() const {
-    breve_energy energy{};
-    energy.struct_size = sizeof energy;
+    breve_energy energy = breve_energy_default();
     const breve_status s = breve_world_energy(get(), &energy);
     return {status(s), energy};
   }
@@ -437,8 +435,7 @@ class World {
     });
   }
   Result<breve_stats> stats() const {
-    breve_stats stats{};
-    stats.struct_size = sizeof stats;
+    breve_stats stats = breve_stats_default();
     const breve_status s = breve_world_stats(get(), &stats);
     return {status(s), stats};
   }

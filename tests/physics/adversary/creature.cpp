@@ -49,7 +49,7 @@ Creature::Creature(const Case& is, breve_rung rung, double step) {
   breve_world_config config = breve_world_config_default();
   config.iteration_step = config.integration_step = step;
   world_ = runtime_.world(program_, config).or_throw();
-  breve_accuracy accuracy{};
+  breve_accuracy accuracy = breve_accuracy_default();
   if (breve_accuracy_of_rung(rung, &accuracy) != BREVE_OK) throw breve::Failure(BREVE_ERROR_ARGUMENT, "no such rung");
   accuracy.contact_springs = accuracy.link_springs = false;  // what they store cannot be measured from outside
   world_.set_accuracy(accuracy).or_throw();

@@ -139,8 +139,7 @@ constexpr double kMostWork = 3e7, kMostTime = 30;  // s of CPU
 
 /// Of the last iteration.
 double work_of(const breve::World& world) {
-  breve_physics_counters counted{};
-  counted.struct_size = sizeof counted;
+  breve_physics_counters counted = breve_physics_counters_default();
   if (breve_world_physics_counters(world.get(), &counted) != BREVE_OK) return 0;
   return static_cast<double>(counted.evaluations + counted.pairs + counted.searches +
                              counted.solver_iterations *
