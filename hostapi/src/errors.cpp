@@ -25,7 +25,7 @@ breve_status status_of(ErrorCode code) {
     case ErrorCode::Interrupted: return BREVE_ERROR_INTERRUPTED;
     case ErrorCode::Reload: return BREVE_ERROR_RELOAD;
     case ErrorCode::Internal: return BREVE_ERROR_INTERNAL;
-    case ErrorCode::Numeric: return BREVE_ERROR_INTERNAL;  // the world's guard deals with it; none may get this far
+    case ErrorCode::Numeric: return BREVE_ERROR_SCRIPT;  // only with the world's guard off
   }
   return BREVE_ERROR_INTERNAL;
 }

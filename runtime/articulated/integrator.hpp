@@ -61,8 +61,8 @@ class Integrator {
   /// it would use next in `at.step`.
   /// @throws Error{Argument} if h is not a finite number > 0 or a size is not the system's; Error{Numeric} if the
   /// system
-  ///         has no acceleration somewhere, an implicit equation has no solution that Newton's method finds, or steps
-  ///         become smaller than allowed. `at` is then unchanged but for `step`.
+  ///         has no acceleration somewhere, an implicit equation has no solution that Newton's method finds, steps
+  ///         become smaller than allowed, or too many of them are needed. `at` is then unchanged but for `step`.
   void step(Instant& at, double h);
 
   const StepCount& count() const;  // of the last step()

@@ -181,6 +181,36 @@ static void a_failing_step_leaves_a_world_that_can_go_on(void) {
   scene_close(&s);
 }
 
+/* A step that the control of step sizes would cut into billions is not taken: the guard deals with it, or an error
+ * tells. */
+static void what_turns_too_fast_for_any_step_ends_soon(void) {
+  scene s;
+  breve_world_config config = breve_world_config_default();
+  config.accuracy = "reference";
+  if (!scene_open_text(&s, "@use PhysicalControl.\n@use Link.\nController Spun.\nPhysicalControl : Spun {}\n", &config))
+    return;
+  breve_geometry brick = breve_geometry_default();
+  brick.kind = BREVE_SHAPE_BOX;
+  brick.size[1] = 2;
+  brick.size[2] = 3;
+  breve_object link = {0, 0}, shape = {0, 0};
+  CHECK_STATUS(BREVE_OK, breve_object_create(s.world, "Link", &link));
+  CHECK_STATUS(BREVE_OK, breve_shape_create(s.world, &brick, &shape));
+  CHECK_STATUS(BREVE_OK, breve_object_set_shape(s.world, link, shape));
+  CHECK_STATUS(BREVE_OK, breve_object_set_physics(s.world, link, true));
+  const double spin[3] = {1e9, 2e9, 3e9};
+  CHECK_STATUS(BREVE_OK, breve_object_set_rotational_velocity(s.world, link, spin));
+  CHECK_STATUS(BREVE_OK, breve_world_set_guard(s.world, BREVE_GUARD_OFF));
+  CHECK_STATUS(BREVE_ERROR_SCRIPT, breve_world_step(s.world));
+  CHECK(strstr(breve_world_last_error(s.world)->message, "too fast") != NULL);
+  CHECK_STATUS(BREVE_OK, breve_world_set_guard(s.world, BREVE_GUARD_REST));
+  CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+  size_t count = 0;
+  CHECK_STATUS(BREVE_OK, breve_world_interventions(s.world, NULL, 0, &count));
+  CHECK(count > 0);
+  scene_close(&s);
+}
+
 static void a_failing_init_makes_no_world(void) {
   const char* text = "@use Control.\nController Never.\nControl : Never {\n  + to init:\n    die \"not today\".\n}\n";
   breve_runtime* runtime = NULL;
@@ -305,6 +335,7 @@ void stepping_suite(void) {
   RUN(scripts_read_their_arguments);
   RUN(the_hosts_pointer_comes_back);
   RUN(a_failing_step_leaves_a_world_that_can_go_on);
+  RUN(what_turns_too_fast_for_any_step_ends_soon);
   RUN(a_failing_init_makes_no_world);
   RUN(files_and_commands_are_asked_of_the_host);
   RUN(stats_count_objects_bodies_and_errors);

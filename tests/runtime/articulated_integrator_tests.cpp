@@ -227,6 +227,23 @@ TEST(Integrators, StepControlEndsInAnErrorWhereNoStepIsSmallEnough) {
   EXPECT_EQ(at.q[0], 0);
 }
 
+TEST(Integrators, StepControlEndsInAnErrorWhereItTakesTooManyAttempts) {
+  Plain fast([](double x, double) { return -1e12 * x; });
+  Integrator integrator(fast, Scheme::FehlbergAdaptive);
+  Instant at{0, Vector::Ones(1), Vector::Zero(1), 0};
+  try {
+    integrator.step(at, 1);
+    FAIL() << "some 160,000 swings in a step";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::Numeric);
+    EXPECT_NE(std::string(error.what()).find("after 100000 attempts"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(at.t, 0);
+  EXPECT_EQ(at.q[0], 1);
+  integrator.step(at, 1e-6);  // a shorter one is taken
+  EXPECT_NEAR(at.q[0], std::cos(1), 1e-4);
+}
+
 TEST(Integrators, StepControlGoesOnAfterASliver) {
   // An event right after the start of a step leaves a first piece of next to nothing, and a tiny size to go on from.
   const auto system = plain("harmonic");

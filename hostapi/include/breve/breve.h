@@ -1026,7 +1026,7 @@ BREVE_API breve_status breve_world_set_workers(breve_world* world, uint32_t work
 
 /* What happens where physics goes wrong. */
 typedef enum breve_guard {
-  BREVE_GUARD_OFF = 0,
+  BREVE_GUARD_OFF = 0, /* a step whose motion cannot be computed gives BREVE_ERROR_SCRIPT */
   BREVE_GUARD_REPORT = 1,
   BREVE_GUARD_REFINE = 2, /* compute that part of the world more finely */
   BREVE_GUARD_REST = 3    /* and stop it, if that does not help. The default */
