@@ -76,8 +76,8 @@ void Machine::begin_run() {
 }
 
 void Machine::end_of_piece() {
-  if (host_.patience > 0) look_at_the_clock();
   settle();
+  if (host_.patience > 0) look_at_the_clock();  // the host may call back: there is a next piece by now
 }
 
 void Machine::settle() {
@@ -89,8 +89,8 @@ void Machine::settle() {
 void Machine::look_at_the_clock() {
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - run_began_;
   if (taken.count() < host_.patience) return;
-  warn(fmt::format("this has been running for {:.0f} s without an end: a loop here may never end", taken.count()));
   host_.patience = 0;
+  warn(fmt::format("this has been running for {:.0f} s without an end: a loop here may never end", taken.count()));
 }
 
 void Machine::charge(std::uint64_t turns) {

@@ -229,6 +229,23 @@ static void what_a_callback_calls_counts_to_the_call_it_is_in(void) {
   scene_close(&s);
 }
 
+/* The warning comes between two pieces of the budget: what the host calls there has a piece, too. */
+static void what_the_warning_of_lost_patience_calls_has_the_same_budget(void) {
+  scene s;
+  breve_world_config config = breve_world_config_default();
+  config.budget = 200000;
+  config.patience = 1e-9;
+  if (!scene_open_text(&s, "@use Control. Controller Slow. Control : Slow { + to spin: while 1: {} }\n", &config))
+    return;
+  breve_status inner = BREVE_OK;
+  s.said.on_warning = loop_inside;
+  s.said.context = &inner;
+  CHECK_STATUS(BREVE_ERROR_BUDGET, call(&s, "spin"));
+  CHECK_STATUS(BREVE_ERROR_BUDGET, inner);
+  CHECK(s.said.warnings == 1);
+  scene_close(&s);
+}
+
 static void every_function_that_runs_script_has_a_budget_of_its_own(void) {
   scene s;
   breve_world_config config = breve_world_config_default();
@@ -324,6 +341,7 @@ void budget_suite(void) {
   RUN(a_call_budget_cuts_one_object_and_leaves_the_others_their_turn);
   RUN(the_whole_iteration_is_bounded_also_where_each_call_is);
   RUN(what_a_callback_calls_counts_to_the_call_it_is_in);
+  RUN(what_the_warning_of_lost_patience_calls_has_the_same_budget);
   RUN(every_function_that_runs_script_has_a_budget_of_its_own);
   RUN(a_cut_falls_at_the_same_turn_in_every_build);
 }

@@ -119,6 +119,7 @@ void remember(void* user, breve_world* world, breve_channel channel, const char*
     case BREVE_CHANNEL_WARNING:
       append(t->warning, sizeof t->warning, text, size);
       ++t->warnings;
+      if (t->on_warning) t->on_warning(world, t->context);
       break;
     case BREVE_CHANNEL_ERROR:
       append(t->error, sizeof t->error, text, size);
