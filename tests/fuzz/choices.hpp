@@ -24,7 +24,7 @@ class Choices {
   bool empty() const { return at_ == bytes_.size(); }
 
   template <class Container>
-  auto& one_of(Container& from) {
+  auto& one_of(Container&& from) {
     return from[below(std::size(from))];
   }
 

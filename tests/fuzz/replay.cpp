@@ -1,10 +1,11 @@
 // The fuzzers' targets without libFuzzer: on files, or on bytes made from seeds. Usage:
 //   replay TARGET FILE-OR-FOLDER…        each file (a finding: the word about it, and an abort)
-//   replay TARGET --seeds FIRST COUNT    what bytes_of_seed makes
+//   replay TARGET --seeds FIRST COUNT    what bytes_of_seed, or calls_of_seed, makes
 //   replay --program FILE                print the program that fuzz_run generates of a file
 //   replay --program-of-seed SEED        the same of a seed
 //   replay --selectors-of-seed SEED      print the program that fuzz_select generates of a seed
-//   replay --checksum FIRST COUNT        FNV-1a of the programs of seeds: each compiler must give the same
+//   replay --functions FIRST COUNT       the functions of breve.h that fuzz_call calls, and how often it does with
+//   seeds replay --checksum FIRST COUNT        FNV-1a of the programs of seeds: each compiler must give the same
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -15,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "call_functions.hpp"
 #include "generator.hpp"
 #include "seeds.hpp"
 #include "targets.hpp"
@@ -29,6 +31,7 @@ std::vector<std::uint8_t> read(const std::filesystem::path& path) {
 }
 
 void (*target_named(std::string_view name))(Bytes) {
+  if (name == "call") return breve::fuzz::fuzz_call;
   if (name == "compile") return breve::fuzz::fuzz_compile;
   if (name == "run") return breve::fuzz::fuzz_run;
   if (name == "select") return breve::fuzz::fuzz_select;
@@ -58,6 +61,22 @@ int show_checksum(std::uint64_t first, std::uint64_t count) {
   return 0;
 }
 
+/// An error if one of them never succeeds: its call is worth nothing then.
+int show_functions(std::uint64_t first, std::uint64_t count) {
+  for (std::uint64_t seed = first; seed < first + count; ++seed)
+    breve::fuzz::fuzz_call(breve::fuzz::calls_of_seed(seed));
+  int result = 0;
+  std::puts("function                                     calls succeeded from callbacks");
+  for (std::size_t i = 0; i < breve::fuzz::all_functions().size(); ++i) {
+    const breve::fuzz::Tally& tally = breve::fuzz::tallies()[i];
+    const bool works = tally.succeeded != 0 || count == 0;
+    std::printf("%-40s %9zu %9zu %9zu%s\n", breve::fuzz::all_functions()[i].name, tally.calls, tally.succeeded,
+                tally.called_back, works ? "" : " never succeeds");
+    if (!works) result = 1;
+  }
+  return result;
+}
+
 /// Files in the order of their names.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& path) {
   if (!std::filesystem::is_directory(path)) return {path};
@@ -81,6 +100,8 @@ int main(int argc, char** argv) {
   }
   if (arguments.size() == 3 && arguments[0] == "--checksum")
     return show_checksum(number(arguments[1]), number(arguments[2]));
+  if (arguments.size() == 3 && arguments[0] == "--functions")
+    return show_functions(number(arguments[1]), number(arguments[2]));
   auto* const target = arguments.size() >= 2 ? target_named(arguments[0]) : nullptr;
   if (!target) {
     std::fputs("usage: replay TARGET FILE-OR-FOLDER... | TARGET --seeds FIRST COUNT | --program FILE\n", stderr);
@@ -92,7 +113,8 @@ int main(int argc, char** argv) {
     const auto count = number(arguments[3]);
     for (; done < count; ++done) {
       std::fprintf(stderr, "seed %llu\n", static_cast<unsigned long long>(first + done));
-      target(breve::fuzz::bytes_of_seed(first + done));
+      target(target == breve::fuzz::fuzz_call ? breve::fuzz::calls_of_seed(first + done)
+                                              : breve::fuzz::bytes_of_seed(first + done));
     }
   } else {
     for (std::size_t i = 1; i < arguments.size(); ++i)
@@ -102,6 +124,9 @@ int main(int argc, char** argv) {
         ++done;
       }
   }
+  std::size_t calls = 0;
+  for (const breve::fuzz::Tally& tally : breve::fuzz::tallies()) calls += tally.calls;
+  if (calls != 0) std::printf("%zu calls\n", calls);
   std::printf("%zu inputs, no finding\n", done);
   return done != 0 ? 0 : 1;
 }

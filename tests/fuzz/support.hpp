@@ -22,13 +22,13 @@ using Program = std::unique_ptr<breve_program, Destroy>;
 using World = std::unique_ptr<breve_world, Destroy>;
 
 /// A finding: print what is wrong and what it happened to, and abort.
-[[noreturn]] inline void finding(std::string_view what, std::string_view about = {}) {
+[[noreturn]] inline void finding(std::string_view what, std::string_view about = "") {
   std::fprintf(stderr, "FINDING: %.*s\n%.*s\n", static_cast<int>(what.size()), what.data(),
                static_cast<int>(about.size()), about.data());
   std::abort();
 }
 
-inline void require(bool condition, std::string_view what, std::string_view about = {}) {
+inline void require(bool condition, std::string_view what, std::string_view about = "") {
   if (!condition) finding(what, about);
 }
 

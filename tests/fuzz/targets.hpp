@@ -15,6 +15,9 @@ using Bytes = std::span<const std::uint8_t>;
 /// Any bytes as the text of a program and of its modules, which are parted by bytes 0x1e.
 void fuzz_compile(Bytes bytes);
 
+/// Bytes as the choices of a host that calls any function of breve.h, also from callbacks. See call_target.cpp.
+void fuzz_call(Bytes bytes);
+
 /// Bytes as a choice of a world and of changes to an image of it. See image_target.cpp.
 void fuzz_image(Bytes bytes);
 

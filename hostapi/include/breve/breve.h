@@ -1148,7 +1148,9 @@ typedef enum breve_type {
 /* A value of a script. Numbers, vectors, matrices and objects stand in place. Bytes that the library gives are its own,
    and a list or hash is a reference: both are good until script runs in that world again, that is until the next
    function marked "Runs script", or, in a callback, until it returns. An older reference gives BREVE_ERROR_STALE; copy
-   bytes that are needed longer. Bytes that the host gives are copied by the call. */
+   bytes that are needed longer. Bytes that the host gives are copied by the call. A function that takes a value gives
+   BREVE_ERROR_UNSUPPORTED for a BREVE_POINTER, BREVE_ERROR_STALE for an object that is gone, and BREVE_ERROR_ARGUMENT
+   for a type that is not a breve_type. */
 typedef struct breve_value {
   uint32_t type; /* breve_type */
   uint32_t reserved;
