@@ -30,7 +30,7 @@ configures() { configure "$@" || fail "host $1 does not configure"; }
 refused() { ! configure "$@" || fail "host $1 configures and should not"; }
 
 # CMake breaks its messages into lines.
-says() { tr -s ' \n' ' ' <"$scratch/said" | grep -qF -- "$1" || fail "does not say: $1"; }
+says() { tr -s ' \n' ' ' <"$scratch/said" | grep -F -- "$1" >/dev/null || fail "does not say: $1"; }
 
 # commands [-v] TEXT: the commands that compile breve's sources have it, or with -v do not.
 commands() {
@@ -44,7 +44,8 @@ commands() {
   ((with == want * all)) || fail "of $all commands $with have $1"
 }
 
-has_target() { ninja -C "$scratch/build" -t targets all | grep -q "^$1: "; }
+# To the end of the list: who stops to listen breaks the pipe.
+has_target() { ninja -C "$scratch/build" -t targets all | grep "^$1: " >/dev/null; }
 
 # As though only what the library needs were installed.
 bare=()
