@@ -27,9 +27,7 @@ struct Placed {
 
   Vector3 vertex(int index) const { return location + rotation * solid->vertices[static_cast<std::size_t>(index)]; }
   /// The vertex of a polyhedron farthest along `direction` (world).
-  int support(const Vector3& direction) const {
-    return last = solid->farthest(rotation.transpose() * direction, last);
-  }
+  int support(const Vector3& direction) const { return last = solid->farthest(rotation.transpose() * direction, last); }
   /// The point of a polyhedron, cylinder or capsule farthest along `direction`.
   Vector3 extreme(const Vector3& direction) const;
   /// The same; of a line or cap that is farthest as a whole its middle.

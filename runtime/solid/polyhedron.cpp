@@ -141,9 +141,8 @@ bool folds_outward(const Polyhedron& solid) {
   return std::all_of(solid.edges.begin(), solid.edges.end(), [&](const Edge& edge) {
     const Vector3 &normal = solid.planes[at(edge.left)].normal, &start = solid.vertices[at(edge.a)];
     const auto& beyond = solid.faces[at(edge.right)];
-    return std::all_of(beyond.begin(), beyond.end(), [&](int v) {
-      return normal.dot(solid.vertices[at(v)] - start) <= kRoundOff * extent;
-    });
+    return std::all_of(beyond.begin(), beyond.end(),
+                       [&](int v) { return normal.dot(solid.vertices[at(v)] - start) <= kRoundOff * extent; });
   });
 }
 

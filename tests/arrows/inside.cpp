@@ -118,7 +118,8 @@ void Inside::find_false_headings(const std::string& file, const Source& source, 
   for (const Comment& comment : source.comments)
     if (auto names = files_of_heading(comment); !names.empty()) headings.emplace_back(comment.line, std::move(names));
   for (std::size_t i = 0; i < headings.size(); ++i) {
-    const auto& [line, names] = headings[i];
+    const auto& line = headings[i].first;
+    const auto& names = headings[i].second;
     std::set<std::tuple<std::string, std::string>> defined, elsewhere;
     for (const auto& [other, content] : files_) {
       if (!begins(other, folder) || is_header(other)) continue;

@@ -8,7 +8,7 @@
 typedef struct transcript {
   char print[8192], warning[8192], error[8192];
   int prints, warnings, errors;
-  void (*on_print)(breve_world* world, void* context); /* called for each print, if set */
+  void (*on_print)(breve_world* world, void* context);   /* called for each print, if set */
   void (*on_warning)(breve_world* world, void* context); /* for each warning */
   void* context;
 } transcript;
