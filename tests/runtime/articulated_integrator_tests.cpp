@@ -158,7 +158,10 @@ TEST(Integrators, OscillatorsMeetTheirClosedForm) {
     settings.tolerance.velocity = settings.tolerance.length * frequency;
     Integrator integrator(system, Scheme::FehlbergAdaptive, settings);
     Instant at{0, Vector::Constant(1, row.number("x0")), Vector::Constant(1, row.number("v0")), 0};
-    integrator.step(at, row.number("t"));
+    // In iterations, as worlds do it: what one step may cost is bounded.
+    const double fastest = std::max(frequency, row.number("damping") / row.number("mass"));
+    const int iterations = static_cast<int>(std::ceil(fastest * row.number("t") / 100));
+    for (int i = 0; i < iterations; ++i) integrator.step(at, row.number("t") / iterations);
     const double periods = 1 + frequency * row.number("t");
     const double error = std::max(std::abs(at.q[0] - row.number("x")) / settings.tolerance.length,
                                   std::abs(at.v[0] - row.number("v")) / settings.tolerance.velocity);
