@@ -89,6 +89,8 @@ void describe_run(CLI::App& app, RunOptions& o) {
   number(app, "--seed", "K", o.seed, kWhole, "Seed of the random numbers. Without it one is drawn and shown");
   several(app, "--set", "NAME=VALUE", o.settings, "Give a variable of the controller a value before its init");
   number(app, "--budget", "N", o.budget, kWhole, "End with an error when an iteration takes N loop turns and calls");
+  number(app, "--physics-budget", "N", o.physics_budget, kWhole,
+         "Move bodies coarsely where an iteration's physics takes N units of work");
   number(app, "--memory", "MB", o.memory, kWhole, "End with an error when the world takes so much memory");
   number(app, "--depth", "N", o.depth, kWhole, "End with an error when calls nest deeper than N (5000)");
   several(app, "--path", "DIR", o.paths, "Also search DIR for modules and data files");

@@ -169,6 +169,7 @@ WorldHandle make_world(const Session& session, const breve_program* program, con
   config.verbose = options.verbose;
   config.accuracy = options.accuracy.empty() ? nullptr : options.accuracy.c_str();
   config.budget = options.budget.value_or(0);
+  config.physics_budget = options.physics_budget.value_or(0);
   config.memory_limit = static_cast<std::size_t>(options.memory.value_or(0)) * 1024 * 1024;
   config.depth_limit = options.depth.value_or(0);
   config.patience = kLongIteration;

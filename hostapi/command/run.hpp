@@ -14,14 +14,15 @@ namespace breve::command {
 struct RunOptions {
   std::string file;
   std::vector<std::string> arguments, paths;
-  std::optional<std::uint64_t> iterations;  // until the program ends if neither is given
-  std::optional<double> seconds;            // simulated
-  std::optional<std::uint64_t> seed;        // drawn if not given
-  std::optional<std::uint64_t> budget;      // loop turns and calls of an iteration
-  std::optional<std::uint64_t> memory;      // MB
-  std::optional<std::uint32_t> depth;       // nested calls
-  std::vector<std::string> settings;        // name=value: variables of the controller
-  bool watch = false;                       // reload the program when its files change
+  std::optional<std::uint64_t> iterations;      // until the program ends if neither is given
+  std::optional<double> seconds;                // simulated
+  std::optional<std::uint64_t> seed;            // drawn if not given
+  std::optional<std::uint64_t> budget;          // loop turns and calls of an iteration
+  std::optional<std::uint64_t> physics_budget;  // units of work of an iteration's physics
+  std::optional<std::uint64_t> memory;          // MB
+  std::optional<std::uint32_t> depth;           // nested calls
+  std::vector<std::string> settings;            // name=value: variables of the controller
+  bool watch = false;                           // reload the program when its files change
   bool coarse_random = false;
   AccessOptions access;
   bool strict = false, quiet = false, verbose = false, stats = false, effects = false, hash = false;

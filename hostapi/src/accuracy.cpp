@@ -247,7 +247,7 @@ breve_status breve_world_physics_counters(const breve_world* world, breve_physic
     const breve::DynamicsCounters& c = dynamics_of(*world).counters();
     const breve_physics_counters filled{
         0,         c.sub_steps, c.evaluations,       c.rejected, c.islands,  c.pairs,         c.contacts, c.warm,
-        c.impacts, c.searches,  c.solver_iterations, c.direct,   c.sleeping, c.interventions, c.residual};
+        c.impacts, c.searches,  c.solver_iterations, c.direct,   c.sleeping, c.interventions, c.residual, c.work};
     write_struct(counters, filled, "breve_physics_counters");
   });
 }

@@ -33,6 +33,13 @@ std::string run_command(breve_world& world, std::string_view command) {
   return config.system(config.user, &world, asked.c_str(), &Answer::add, &answer) ? answer.text() : std::string();
 }
 
+/// Physics is as untrusted as the script that asks for it; but scripts that run in a small budget have bodies, too.
+std::uint64_t physics_budget(const breve_world_config& config) {
+  constexpr std::uint64_t kLeast = 10'000'000;  // some 0.3 s
+  if (config.physics_budget != 0 || config.budget == 0) return config.physics_budget;
+  return std::max(kLeast, config.budget);
+}
+
 steve::MachineHost machine_host(breve_world& world) {
   const auto& config = world.config;
   steve::MachineHost host;
@@ -62,6 +69,7 @@ steve::MachineHost machine_host(breve_world& world) {
   host.strict = config.strict;
   host.budget = config.budget;
   host.call_budget = config.call_budget;
+  host.physics_budget = physics_budget(config);
   if (config.depth_limit != 0) host.depth_limit = config.depth_limit;
   return host;
 }

@@ -64,7 +64,7 @@ class Adaptive final : public Integrator::Method {
     bool rejected = false;
     for (int attempts = 0; t < end; ++attempts) {
       const double left = end - t;
-      if (attempts == kMostAttempts) refuse_cost(at, t, next);
+      if (attempts == kMostAttempts || system_.over()) refuse_cost(at, t, next, attempts);
       // Two like steps at the end, rather than a whole one and a sliver.
       const double size = next >= left * (1 - 1e-12) ? left : std::min(next, std::max(0.5 * left, 0.5 * next));
       if (size < std::min(settings_.tolerance.smallest_step, h) || t + size == t) refuse(at, t, size);
@@ -133,11 +133,11 @@ class Adaptive final : public Integrator::Method {
                     t, size, settings_.tolerance.relative));
   }
 
-  [[noreturn]] void refuse_cost(Instant& at, double t, double size) const {
+  [[noreturn]] void refuse_cost(Instant& at, double t, double size, int attempts) const {
     at.step = size;
     throw Error(ErrorCode::Numeric, fmt::format("at {} s the step size is {} s after {} attempts: the motion is too "
                                                 "fast for the tolerance {}",
-                                                t, size, kMostAttempts, settings_.tolerance.relative));
+                                                t, size, attempts, settings_.tolerance.relative));
   }
 
   const double relative_;  // error allowed in one step, per unit

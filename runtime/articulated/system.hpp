@@ -29,6 +29,8 @@ class System {
   virtual void acceleration(double t, const Vector& q, const Vector& v, double step, Vector& a) = 0;
   /// Which piece of forces that are smooth in pieces only the last acceleration was of.
   virtual std::uint64_t piece() const { return 0; }
+  /// The work of the step is used up: step control gives up.
+  virtual bool over() const { return false; }
 
   // A space that is flat needs no more. A curved one is moved along tangents d (nv) from a point.
   virtual void move(const Vector& q, const Vector& d, Vector& out) { out = q + d; }

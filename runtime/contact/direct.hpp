@@ -1,6 +1,7 @@
 // The direct solver for small islands: Newton's method on all rows at once, to tolerance.
 #pragma once
 
+#include "runtime/base/meter.hpp"
 #include "runtime/contact/workspace.hpp"
 
 namespace breve::contact {
@@ -8,7 +9,14 @@ namespace breve::contact {
 /// Linear solves: how many there were, and how many there may be.
 struct LinearSolves {
   int made = 0, most = 0;
-  int left() const { return most - made; }
+  std::uint64_t units = 0;  // of work, each
+  Meter* meter = nullptr;   // null: nobody counts
+
+  void make() {
+    ++made;
+    if (meter) meter->add(units);
+  }
+  int left() const { return meter && meter->over() ? 0 : most - made; }
   bool spent() const { return left() <= 0; }
 };
 

@@ -295,7 +295,7 @@ double Interior::solve(double goal, LinearSolves& solves) {
     const double target = 0.5 * std::clamp(1 - last_, 0.01, 0.9) * gap() / std::max(pairs_, 1.0);
     Lengths lengths;
     if (!step(target, lengths)) return left;
-    ++solves.made;
+    solves.make();
     ++steps_;
     const double x = std::min(1.0, kNearest * lengths.x), y = std::min(1.0, kNearest * lengths.y);
     last_ = std::min(x, y);

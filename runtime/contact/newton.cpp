@@ -40,7 +40,7 @@ bool Newton::settle(double stiffness, double tolerance, LinearSolves& solves) {
     before = here;
     if (i == 0) first = here;
     if (solves.spent() || !find_step()) return false;
-    ++solves.made;
+    solves.make();
     const double length = search(here);
     for (std::size_t k = 0; k < rows_; ++k) q_[k] -= length * dq_[k];
     equations_.apply(q_);

@@ -16,17 +16,22 @@ namespace breve::contact {
 namespace {
 
 constexpr int kPatientSweeps = 1000;
+constexpr double kOperations = 64;  // in a unit of work
 
 /// Rounds of settling friction. Each point changes its coefficient at most twice, so this ends what could chatter.
 constexpr int kRounds = 4;
 
-void run_sweeps(Workspace& work, int most, double tolerance, SolveReport& report) {
+void run_sweeps(Workspace& work, int most, double tolerance, Meter* meter, SolveReport& report) {
+  const auto units = static_cast<std::uint64_t>(sweep_operations(work) / kOperations) + 1;
   constexpr int kFew = 4;  // are over before momentum is worth its cost
   Sweeps sweeps(work, most > kFew);
   for (int i = 0; i < most; ++i) {
     report.residual = sweeps.next();
     ++report.iterations;
     if (report.residual <= tolerance || sweeps.diverge()) return;
+    if (!meter) continue;
+    meter->add(units);
+    if (meter->over()) return;
   }
 }
 
@@ -34,11 +39,12 @@ void run_sweeps(Workspace& work, int most, double tolerance, SolveReport& report
 /// @param each  of one of them
 void solve_directly(Workspace& work, const SolveSettings& settings, double most, double each, SolveReport& report) {
   constexpr double kAlways = 1e6, kUnbounded = 1e6;  // operations that are not seen; solves
-  LinearSolves solves{0, static_cast<int>(std::min((most + kAlways) / each, kUnbounded))};
+  const auto units = static_cast<std::uint64_t>(each / kOperations) + 1;
+  LinearSolves solves{0, static_cast<int>(std::min((most + kAlways) / each, kUnbounded)), units, settings.meter};
   report.residual = solve_direct(work, settings.tolerance, solves, report.direct);
   if (!report.direct) {
     const int sweeps = solves.spent() ? settings.iterations : kPatientSweeps;
-    run_sweeps(work, sweeps, settings.tolerance * 0.1, report);
+    run_sweeps(work, sweeps, settings.tolerance * 0.1, settings.meter, report);
     report.residual = solve_direct(work, settings.tolerance, solves, report.direct);  // from nearer
   }
   report.newton += solves.made;
@@ -51,7 +57,7 @@ void solve_once(Workspace& work, const SolveSettings& settings, SolveReport& rep
   if (kSolves * each <= most)
     solve_directly(work, settings, most, each, report);
   else
-    run_sweeps(work, settings.iterations, std::max(settings.tolerance, settings.swept), report);
+    run_sweeps(work, settings.iterations, std::max(settings.tolerance, settings.swept), settings.meter, report);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "runtime/base/math.hpp"
+#include "runtime/base/meter.hpp"
 #include "runtime/contact/workspace.hpp"
 
 namespace breve::contact {
@@ -57,6 +58,7 @@ struct SolveSettings {
   double direct_share = 1e300;  // a direct solution only where its operations, counted before, are at most this many
                                 // times those of the sweeps
   double swept = 0;             // m/s, instead of `tolerance`, for a solution by sweeps alone; 0: the same
+  Meter* meter = nullptr;       // counts the work, and ends it where it is over; null: nobody does
 };
 
 struct SolveReport {

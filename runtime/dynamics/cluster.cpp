@@ -8,6 +8,8 @@ namespace breve {
 
 namespace {
 
+constexpr std::uint64_t kUnits = 16;  // of work, of a link's part in an evaluation
+
 using articulated::Kind;
 using articulated::Vector;
 
@@ -33,6 +35,7 @@ Cluster::Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees
     nq_ += tree->model.positions();
     nv_ += tree->model.velocities();
     mass_ += tree->model.mass();
+    units_ += kUnits * static_cast<std::uint64_t>(tree->model.size());
     for (const articulated::Body& body : tree->model.bodies())
       for (int k = 0; k < articulated::velocity_count(body.type); ++k) {
         const bool length =
@@ -67,8 +70,9 @@ void Cluster::set_accuracy(const Accuracy& accuracy) {
 
 void Cluster::set_finer(bool on) { finer_now_ = on && finer_.has_value(); }
 
-void Cluster::begin(StageForces* forces) {
+void Cluster::begin(StageForces* forces, Meter& meter) {
   forces_ = forces;
+  meter_ = &meter;
   working_ = forces != nullptr;
   driven_ = working_;
   for (const Tree* tree : trees_) driven_ = driven_ || tree->driven;
@@ -145,6 +149,7 @@ void Cluster::scatter(const Vector& q, const Vector& v) {
 }
 
 void Cluster::acceleration(double t, const Vector& q, const Vector& v, double step, Vector& a) {
+  if (meter_) meter_->add(units_);
   scatter(q, v);
   if (forces_) {
     forces_->aim();

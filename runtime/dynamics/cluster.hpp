@@ -9,6 +9,7 @@
 
 #include "runtime/articulated/forward_dynamics.hpp"
 #include "runtime/articulated/integrator.hpp"
+#include "runtime/base/meter.hpp"
 #include "runtime/dynamics/tree.hpp"
 #include "runtime/mechanics/accuracy.hpp"
 
@@ -48,7 +49,8 @@ class Cluster final : public articulated::System, public InMemory {
   void set_finer(bool on);
 
   /// Call after the loads of the trees were set and before the first step() that uses them.
-  void begin(StageForces* forces);
+  /// @param meter  counts the evaluations of the following steps; outlives them
+  void begin(StageForces* forces, Meter& meter);
   /// Moves the trees' states from `time` by h seconds, without contacts. Error{Numeric} leaves them as they were.
   void step(double time, double h);
   // The same by another's integrator, of a larger system that this one is part of.
@@ -76,6 +78,7 @@ class Cluster final : public articulated::System, public InMemory {
   void move(const articulated::Vector& q, const articulated::Vector& d, articulated::Vector& out) override;
   void rate_of_move(const articulated::Vector& d, const articulated::Vector& v, articulated::Vector& out) override;
   void bend_to_cayley(articulated::Vector& d) override;
+  bool over() const override { return meter_ && meter_->over(); }
 
  private:
   static constexpr int kWorks = 4;
@@ -104,6 +107,8 @@ class Cluster final : public articulated::System, public InMemory {
   bool driven_ = false;   // some power may not be zero
   bool working_ = false;  // likewise, reactions included
   StageForces* forces_ = nullptr;
+  Meter* meter_ = nullptr;
+  std::uint64_t units_ = 0;  // of work, an evaluation
   std::pmr::vector<articulated::Kind> kinds_;
   std::pmr::vector<Motor> motors_;  // their impulses are further coordinates, after the works
   articulated::Vector torques_;     // (nv_) of motors, at the last stage

@@ -146,7 +146,9 @@ struct Dynamics::Core : InMemory {
   std::pmr::vector<std::uint32_t> set_of, island_of;   // by body: for finding islands
 
   std::uint64_t iteration = 0;
-  std::uint64_t sub_step = 0;  // since the beginning, for force methods
+  std::uint64_t sub_step = 0;   // since the beginning, for force methods
+  WorkBound bound;              // of the iteration
+  std::uint64_t work_most = 0;  // of the sub-step: what counters.work may become
   DynamicsCounters counters;
   std::pmr::vector<Intervention> interventions;
   std::pmr::vector<Impact> impacts;
@@ -218,7 +220,10 @@ struct Dynamics::Core : InMemory {
   void build_clusters();
 
   // islands.cpp
-  void advance(DynamicsClient& client, double start, double h);
+  void advance(DynamicsClient& client, double start, double h, double share);
+  bool over() const;
+  std::uint64_t work_left() const;
+  std::uint64_t part_of(std::uint64_t work, const Island& island) const;
   bool pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client);
   bool locates() const;  // impacts, somewhere
   void find_islands();

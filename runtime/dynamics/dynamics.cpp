@@ -145,7 +145,7 @@ void Dynamics::set_sleeping(bool on) {
 bool Dynamics::sleeping() const { return core_ && core_->settings.sleeping; }
 
 void Dynamics::set_fast_contacts(int iterations) {
-  need_range("the number of iterations", iterations, 0, 1e6);
+  need_range("the number of iterations", iterations, 0, kMostIterations);
   core().settings.fast_contacts = iterations;
 }
 
@@ -226,7 +226,8 @@ std::size_t Dynamics::bytes() const { return core_ ? core_->bytes() : 0; }
 
 // --- the world's side -----------------------------------------------------------------------------------------------
 
-void Dynamics::begin_iteration(std::uint64_t iteration) {
+void Dynamics::begin_iteration(std::uint64_t iteration, const WorkBound& bound) {
+  bound_ = bound;
   if (!core_) return;
   core_->iteration = iteration;
   core_->counters = {};
@@ -234,7 +235,11 @@ void Dynamics::begin_iteration(std::uint64_t iteration) {
   core_->impacts.clear();
 }
 
-void Dynamics::advance(DynamicsClient& client, double start, double h) { core().advance(client, start, h); }
+void Dynamics::advance(DynamicsClient& client, double start, double h, double share) {
+  core().bound = bound_;
+  core().advance(client, start, h, share);
+}
+bool Dynamics::over() const { return core_ && core_->over(); }
 
 void Dynamics::take_changes() {
   if (core_) core_->take_changes();

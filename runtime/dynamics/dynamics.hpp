@@ -97,8 +97,9 @@ class Dynamics final : public Mechanics {
   Census census() const override;
 
   // --- the world's side ---------------------------------------------------------------------------------------------
-  void begin_iteration(std::uint64_t iteration) override;
-  void advance(DynamicsClient& client, double start, double h) override;
+  void begin_iteration(std::uint64_t iteration, const WorkBound& bound) override;
+  void advance(DynamicsClient& client, double start, double h, double share) override;
+  bool over() const override;
   void abandon() override {}  // a step keeps nothing that the next one would find
   void take_changes() override;
   bool pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client) const override;
@@ -116,6 +117,7 @@ class Dynamics final : public Mechanics {
   std::pmr::memory_resource* memory_;
   Bodies* bodies_;
   std::unique_ptr<Core> core_;
+  WorkBound bound_;  // of the iteration
 };
 
 }  // namespace breve

@@ -15,6 +15,7 @@ class Grouped {
   explicit Grouped(std::pmr::memory_resource* memory) : added_(memory), ends_(memory), sorted_(memory) {}
 
   void clear() { added_.clear(); }
+  std::size_t size() const { return added_.size(); }
   void add(std::uint32_t group, std::uint32_t thing) { added_.emplace_back(group, thing); }
 
   /// After all were added.

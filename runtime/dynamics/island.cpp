@@ -6,6 +6,7 @@
 
 #include "runtime/articulated/forward_dynamics.hpp"
 #include "runtime/articulated/kinematics.hpp"
+#include "runtime/base/error.hpp"
 #include "runtime/base/rotation_vector.hpp"
 #include "runtime/dynamics/sprung_motion.hpp"
 
@@ -75,6 +76,12 @@ void Island::clear() {
   result.account = {};
   result.impacts.clear();
   result.interventions.clear();
+}
+
+std::size_t Island::items() const {
+  std::size_t count = free_.size() + pairs_.size();
+  for (const Tree* tree : trees_) count += tree->links.size();
+  return count;
 }
 
 namespace {
@@ -176,13 +183,26 @@ void Island::step_once(DynamicsClient* client, double start, double h) {
   motors_.clear();
   ring_errors_.clear();
   spent_ = false;
-  if (pairs_.empty() && !bounded) {
-    placed_ = false;
-    step_quiet(start, h);
-  } else if (accuracy_.locate_impacts) {
-    step_located(client, start, h);
-  } else {
-    step_fast(start, h);
+  const bool quiet = pairs_.empty() && !bounded;
+  try {
+    if (quiet) {
+      placed_ = false;
+      step_quiet(start, h);
+    } else if (accuracy_.locate_impacts) {
+      step_located(client, start, h);
+    } else {
+      step_fast(start, h);
+    }
+  } catch (const Error& error) {
+    // Step control gave up since the work is used up.
+    if (error.code() != ErrorCode::Numeric || !meter_.over() || finished_) throw;
+    if (quiet) {
+      back_to_start();
+      gone_ = 0;
+    } else {
+      restore();
+    }
+    finish(start + gone_, h - gone_);
   }
 }
 
@@ -199,7 +219,7 @@ void Island::begin(DynamicsClient* client, double h) {
     one.loose = loose(one);
     one.stage.emplace(core_, *one.entry, client);
     const bool pressed = has_contact_springs() && !pairs_.empty();
-    one.entry->system->begin(one.stage->needed() || pressed ? &*one.stage : nullptr);
+    one.entry->system->begin(one.stage->needed() || pressed ? &*one.stage : nullptr, meter_);
   }
   movers_.clear();
   for (Free& one : free_) {

@@ -41,6 +41,10 @@ class Island : public InMemory {
   /// @param client  for handlers and force methods; then on the world's thread only
   void step(DynamicsClient* client, double start, double h);
   bool calls_out() const;  // step() needs a client
+  /// Work that step() may take, from now on; where it is used up, what is left of the step is finished coarsely.
+  void bound_work(std::uint64_t most, const std::atomic<bool>* ended) { meter_.begin(most, ended); }
+  std::size_t items() const;  // bodies and pairs, by which work is shared out
+  std::uint64_t work() const { return meter_.done(); }
   /// Seconds of the step that are left because a handler made or freed bodies or joints; 0: none.
   double unfinished() const { return unfinished_; }
   void append_bodies(std::pmr::vector<BodyIndex>& out) const;
@@ -158,6 +162,17 @@ class Island : public InMemory {
 
   // island.cpp
   void put_driver(Free& one, double h);
+  void begin(DynamicsClient* client, double h);
+  void place(double h = 0);  // kinematics and factors of trees, at the state now; for rows of h seconds
+  void remember();
+  void restore();
+  void commit();  // the last smooth() counts: its works go to the account
+  Pose pose_of(BodyIndex body) const;
+  /// Of a point, from the centre of mass of a free body, m.
+  Vector3 arm_of(const BodyPlace& free, const Vector3& point) const {
+    return point - free_[static_cast<std::size_t>(free.mover)].now.center;
+  }
+  Vector3 point_velocity(BodyIndex body, const Vector3& point) const;
 
   // island_smooth.cpp
   static void move_driver(Free& one, double h);
@@ -176,22 +191,14 @@ class Island : public InMemory {
   /// The bodies that are free.
   std::span<Free> loose_bodies() { return {free_.data(), free_.size() - drivers_}; }
   std::span<const Free> loose_bodies() const { return {free_.data(), free_.size() - drivers_}; }
-
-  // island.cpp
-  void begin(DynamicsClient* client, double h);
-  void place(double h = 0);  // kinematics and factors of trees, at the state now; for rows of h seconds
-  void remember();
-  void restore();
-
-  // island_smooth.cpp
   void smooth(double time, double h);
-  // island_smooth.cpp
   void smooth_once(Clustered& one, double time, double h);
   static void forget_parts(Clustered& one);
   void smooth_fast(Clustered& one, double time, double h);
   bool stiff(const Clustered& one) const;
   double gain_of(Clustered& one, double time, double h, int parts);
   double stored_in(const Clustered& one, double& kinetic);
+  bool coarse() const;
 
   // island_books.cpp
   void open_books();  // this and what follows: island_books.cpp
@@ -200,8 +207,6 @@ class Island : public InMemory {
   void take_back_rest();
   double stored_now();
 
-  // island.cpp
-  void commit();  // the last smooth() counts: its works go to the account
   // island_momentum.cpp
   bool loose(const Clustered& one) const;
   void smooth_whole(Clustered& one, double time, double h);
@@ -215,14 +220,6 @@ class Island : public InMemory {
   void note_wholes(articulated::Vector Tree::*velocity, bool now);
   enum class Given : std::uint8_t { All, Places, Pushes };
   void keep_wholes(double moved_h, Given given);
-
-  // island.cpp
-  Pose pose_of(BodyIndex body) const;
-  /// Of a point, from the centre of mass of a free body, m.
-  Vector3 arm_of(const BodyPlace& free, const Vector3& point) const {
-    return point - free_[static_cast<std::size_t>(free.mover)].now.center;
-  }
-  Vector3 point_velocity(BodyIndex body, const Vector3& point) const;
 
   // island_rows.cpp
   double size_of_pair(const NearPair& pair) const;
@@ -247,6 +244,7 @@ class Island : public InMemory {
   std::size_t limit_rows() const { return scalars_.size() - motors_.size() - ring_errors_.size(); }
   double* rows_of(Tree& tree, int count);
   void respond(Tree& tree, const double* j, double* r) const;
+  bool strikes(double h) const;
 
   // island_results.cpp
   void solve(double h);  // this and what follows: island_results.cpp
@@ -254,16 +252,6 @@ class Island : public InMemory {
   double direct_share() const;
   void bound_motors(double h);
   bool shorten_couples(double h);
-  // island_rebound.cpp
-  bool find_rebounds(double h);
-  void read_row_rates(std::pmr::vector<double>& rates) const;
-  void read_impulses(std::pmr::vector<double>& impulses) const;
-  void solve_rebounding();
-  void mix(double share);
-  void reset_velocities();
-  bool is_motor(std::size_t scalar) const { return scalar - limit_rows() < motors_.size(); }
-
-  // island_results.cpp
   void load_velocities();                 // movers' v from the state
   void store_velocities(double moved_h);  // back, and positions by what impulses changed times moved_h
   void correct_works(double h);
@@ -273,6 +261,16 @@ class Island : public InMemory {
   void note_forces(double h);
   void add_force(BodyIndex body, const Vector3& point, const Vector3& force);
   void keep_warm(double h);
+
+  // island_rebound.cpp
+  bool find_rebounds(double h);
+  void read_row_rates(std::pmr::vector<double>& rates) const;
+  void read_impulses(std::pmr::vector<double>& impulses) const;
+  void solve_rebounding();
+  void mix(double share);
+  void reset_velocities();
+  bool is_motor(std::size_t scalar) const { return scalar - limit_rows() < motors_.size(); }
+
   // island_predict.cpp
   const WarmPoint* warm_of(const Touch& touch) const;
   void predict(double h);
@@ -287,9 +285,22 @@ class Island : public InMemory {
   // island_step.cpp
   void step_quiet(double start, double h);
   void step_fast(double start, double h);
+  void take_fast(double time, double h);
+  void finish(double time, double left);
+  bool worn() const { return finished_ || meter_.over(); }  // nothing is to be tried again
+  void note_start_poses();
   void step_located(DynamicsClient* client, double start, double h);
   void advance_once(double time, double h);
   bool catch_bounds(double time, double h);
+  void look(double h, bool spent);
+  int located_impacts() const;
+  double contact_part(double left) const;
+  bool call(DynamicsClient& client, int pair, double moment, double left);
+  bool holds_rings() const;
+  bool has_rows() const;
+  bool has_rings() const;
+  void place_links();
+  double longest(double left) const;
 
   // island_impacts.cpp
   Event seek(double h);
@@ -297,27 +308,13 @@ class Island : public InMemory {
   const NearPair& pair_of(const Event& event) const;
   double closeness(const Event& event) const;
   double met_limit() const;
-
-  // island_smooth.cpp
-  bool coarse() const;
-
-  // island_impacts.cpp
   void refine(double time, Event& event, double h);
   bool is_past(const Event& event);
   double gap_of(const Event& event, double& rate);
-
-  // island_step.cpp
-  void look(double h, bool spent);
-  int located_impacts() const;
-  double contact_part(double left) const;
-
-  // island_rows.cpp
-  bool strikes(double h) const;
-
-  // island_impacts.cpp
   void meet(DynamicsClient* client, const Event& event, double moment, double left);
   void collide(double time);
   void rebound(std::size_t bound, double time);
+  static Motion chord(const Pose& from, const Pose& to, double h);
 
   // island_positions.cpp
   void push_apart(double h);
@@ -333,26 +330,9 @@ class Island : public InMemory {
   void pay_for_moves(double given);
   void hold_off(double h);
   double natural_response(BodyIndex body) const;
-
-  // island_step.cpp
-  bool call(DynamicsClient& client, int pair, double moment, double left);
-  bool holds_rings() const;
-  bool has_rows() const;
-  bool has_rings() const;
-
-  // island_positions.cpp
   bool hold_rings(double time, double h);
   double read_ring_errors();
   void close_rings();
-
-  // island_step.cpp
-  void place_links();
-
-  // island_impacts.cpp
-  static Motion chord(const Pose& from, const Pose& to, double h);
-
-  // island_step.cpp
-  double longest(double left) const;
 
   // island_springs.cpp
   struct SprungPoint;
@@ -421,6 +401,9 @@ class Island : public InMemory {
   std::pmr::memory_resource* memory_;
   Accuracy accuracy_;
   bool accuracy_set_ = false;
+  Meter meter_;
+  bool finished_ = false;  // coarsely: the accuracy is not what was asked for
+  double gone_ = 0;        // s, of the step, that are over
   double unfinished_ = 0;
   struct ResultStart {  // what the result was when the step began, for one that is tried again
     DynamicsCounters counters;

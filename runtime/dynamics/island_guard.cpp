@@ -38,6 +38,7 @@ Accuracy finer_settings(const Accuracy& from, int attempt, double h) {
 
 void Island::step(DynamicsClient* client, double start, double h) {
   ++result.counters.islands;
+  finished_ = false;
   const Accuracy asked = accuracy_;
   const std::uint64_t structure = core_.structure();
   for (std::size_t i = free_.size() - drivers_; i < free_.size(); ++i) put_driver(free_[i], h);
@@ -80,12 +81,12 @@ void Island::step_guarded(DynamicsClient* client, double start, double h) {
   if (trouble.found) intervene(trouble, GuardAction::Reported, start);
   trouble = refines ? try_in_parts(client, start, h) : try_step(client, start, h);
   // Where a handler may have been called there is no going back.
-  while (trouble.found && refines && !calls_out() && attempt < kFinest) {
+  while (trouble.found && refines && !calls_out() && attempt < kFinest && !worn()) {
     back_to_start();
     refine_from();
     trouble = try_step(client, start, h);
   }
-  if (attempt > 0) use_accuracy(asked);
+  if (attempt > 0 || finished_) use_accuracy(asked);
   if (trouble.found) give_in(trouble, start, h);
 }
 
@@ -101,7 +102,7 @@ Island::Trouble Island::try_in_parts(DynamicsClient* client, double start, doubl
   const int most =
       bodies > kMostInParts || calls_out() ? 1 : static_cast<int>(std::max<std::size_t>(4, kMostInParts / bodies));
   double last = std::numeric_limits<double>::infinity();
-  for (int parts = 2; parts <= most && unexplained_ > allowed_; parts *= 2) {
+  for (int parts = 2; parts <= most && unexplained_ > allowed_ && !worn(); parts *= 2) {
     // What finer steps do not mend is not theirs to mend.
     if (!(unexplained_ < kMended * last)) break;
     last = unexplained_;

@@ -12,6 +12,8 @@ constexpr double kSeen = 1e-6;  // rad, or of the radius: closer than that is no
 
 /// The event that seems to come first; found_ has all, whose times are guesses.
 Island::Event Island::seek(double h) {
+  constexpr std::uint64_t kUnits = 10;  // of work, a pair
+  meter_.add(kUnits * pairs_.size());
   found_.clear();
   place_links();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
@@ -242,6 +244,7 @@ void Island::collide(double time) {
   settings.rest.iterations = std::max(50, accuracy_.iterations);
   settings.rest.direct = true;
   settings.rest.direct_share = direct_share();
+  settings.rest.meter = &meter_;
   for (contact::Row& row : rows_) row.bias = 0, row.impulse = Vector3::Zero();
   for (contact::ScalarRow& row : scalars_) row.bias = 0, row.impulse = 0;
   contact::resolve_impacts(movers_, rows_, laws_, scalars_, settings, workspace_);

@@ -144,6 +144,7 @@ void Island::solve_rows() {
   constexpr double kSwept = 0.1;  // of the speed that is rest
   settings.direct = fast == 0;
   settings.direct_share = direct_share();
+  settings.meter = &meter_;
   // Sweeps that no exact solution follows end when they change less than could be seen, or a hundredth of that.
   settings.swept = (accuracy_.direct ? 0.01 * kSwept : kSwept) * quiet_;
   const contact::SolveReport report = contact::solve_island(movers_, rows_, scalars_, settings, workspace_);

@@ -68,6 +68,8 @@ void Island::find_touches(double h, bool speculative) {
     }
   }
   result.counters.pairs += narrow.pairs;
+  constexpr std::uint64_t kUnits = 10;  // of work, a pair
+  meter_.add(kUnits * (pairs_.size() + narrow.pairs) + narrow.facets + narrow.boxes + touches_.size());
 }
 
 double Island::size_of_pair(const NearPair& pair) const {

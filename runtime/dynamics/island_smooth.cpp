@@ -27,13 +27,15 @@ void Island::move_driver(Free& one, double h) {
 void Island::smooth(double time, double h) {
   if (springs_move()) return smooth_springs(time, h);
   free_work_ = 0;
+  constexpr std::uint64_t kUnits = 10;  // of work, a body
+  meter_.add(kUnits * free_.size());
   for (Free& one : free_) {
     if (one.driver) {
       move_driver(one, h);
       continue;
     }
     const Vector3 center = one.now.center, spin = one.now.spin;
-    move_free(one.now, accuracy_, core_.settings.gravity, time, h, one.next);
+    move_free(one.now, accuracy_, core_.settings.gravity, time, h, one.next, meter_);
     free_work_ += one.now.force.dot(one.now.center - center) + 0.5 * h * one.now.torque.dot(spin + one.now.spin);
   }
   for (Clustered& one : clusters_) {
@@ -86,11 +88,11 @@ double Island::stored_in(const Clustered& one, double& kinetic) {
 void Island::smooth_fast(Clustered& one, double time, double h) {
   Cluster& system = *one.entry->system;
   for (Tree* tree : system.trees()) tree->part_state = tree->state;
-  bool implicit = stiff(one);
+  bool implicit = stiff(one) || finished_;
   system.set_finer(!implicit);
   const double still = kStill * weight();
   for (int parts = 1;; parts *= 2) {
-    const bool last = 2 * parts > kMostParts;
+    const bool last = 2 * parts > kMostParts || worn();
     double gain = std::numeric_limits<double>::infinity();
     try {
       gain = gain_of(one, time, h, parts);

@@ -53,9 +53,24 @@ void Island::step_quiet(double start, double h) {
   const double part = longest(h);
   const auto parts = static_cast<int>(std::llround(h / part));
   for (int i = 0; i < parts; ++i) {
-    smooth(start + i * part, part);
+    gone_ = i * part;
+    if (meter_.over()) return finish(start + gone_, h - gone_);
+    smooth(start + gone_, part);
     commit();
   }
+}
+
+/// What is left of a step whose work is used up, in one sub-step as coarse as there is.
+void Island::finish(double time, double left) {
+  constexpr int kFew = 8;
+  Accuracy coarse = breve::accuracy_of(Rung::Fast);
+  coarse.iterations = std::min(coarse.iterations, kFew);
+  use_accuracy(coarse);
+  finished_ = true;
+  meter_.open();
+  intervene({true, GuardReason::Work, static_cast<double>(meter_.done()), any_body()}, GuardAction::Finished, time);
+  spent_ = true;
+  take_fast(time, left);
 }
 
 // --- fast: one look a sub-step, velocities first ---------------------------------------------------------------------
@@ -66,20 +81,26 @@ void Island::step_fast(double start, double h) {
   const int parts = static_cast<int>(parts_of(h, step));
   const double part = h / parts;
   for (int i = 0; i < parts; ++i) {
-    look(part, true);
-    for (Bound& bound : bounds_) bound.rests = bound.gap + part * std::min(0.0, 2 * bound.rate) <= kLimitSkin;
-    remember();
-    open_books();
-    predict(part);
-    advance_once(start + i * part, part);
-    commit();
-    account_rows();
-    close_books();
-    note_overlaps(part);
-    note_forces(part);
-    keep_warm(part);
-    push_apart(part);
+    gone_ = i * part;
+    if (meter_.over()) return finish(start + gone_, h - gone_);
+    take_fast(start + gone_, part);
   }
+}
+
+void Island::take_fast(double time, double h) {
+  look(h, true);
+  for (Bound& bound : bounds_) bound.rests = bound.gap + h * std::min(0.0, 2 * bound.rate) <= kLimitSkin;
+  remember();
+  open_books();
+  predict(h);
+  advance_once(time, h);
+  commit();
+  account_rows();
+  close_books();
+  note_overlaps(h);
+  note_forces(h);
+  keep_warm(h);
+  push_apart(h);
 }
 
 /// Limits that smooth motion of h seconds has run over, where they are not located, are rows as well. The books of the
@@ -187,6 +208,14 @@ void Island::look(double h, bool spent) {
   rebounds_.resize(bounds_.size());
 }
 
+void Island::note_start_poses() {
+  start_poses_.clear();
+  for (const NearPair* pair : pairs_) {
+    start_poses_.push_back(pose_of(pair->a));
+    start_poses_.push_back(pose_of(pair->b));
+  }
+}
+
 void Island::step_located(DynamicsClient* client, double start, double h) {
   double now = 0;
   impacts_ = 0;
@@ -197,6 +226,8 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
   constexpr int kMostStalls = 8;     // impacts without progress in time
   const int most_impacts = located_impacts();
   while (now < h * (1 - kSliver)) {
+    gone_ = now;
+    if (meter_.over()) return finish(start + now, h - now);
     const double sub = contact_part(h - now);
     spent_ = impacts_ >= most_impacts || stalls > kMostStalls;
     bool struck = false;
@@ -210,11 +241,7 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
     if (!spent_) find_roles(sub, struck);
     const double part = longest(h - now);
     remember();
-    start_poses_.clear();
-    for (const NearPair* pair : pairs_) {
-      start_poses_.push_back(pose_of(pair->a));
-      start_poses_.push_back(pose_of(pair->b));
-    }
+    note_start_poses();
     open_books();
     predict(part);
     advance_once(start + now, part);

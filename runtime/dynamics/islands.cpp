@@ -91,7 +91,28 @@ Island& Dynamics::Core::fill(std::size_t place, std::size_t number) {
   return island;
 }
 
-void Dynamics::Core::advance(DynamicsClient& client, double start, double h) {
+bool Dynamics::Core::over() const {
+  if (bound.ended && bound.ended->load(std::memory_order_relaxed)) return true;
+  return bound.most > 0 && counters.work >= bound.most;
+}
+
+/// That the sub-step may take.
+std::uint64_t Dynamics::Core::work_left() const {
+  if (bound.most == 0) return Meter::kNoBound;
+  return work_most > counters.work ? work_most - counters.work : 0;
+}
+
+/// An island's part of that, by what it consists of: so that it does not depend on what the others do.
+std::uint64_t Dynamics::Core::part_of(std::uint64_t work, const Island& island) const {
+  if (work == Meter::kNoBound) return work;
+  const double items = static_cast<double>(near.movers().size() + island_pairs.size());
+  const double part = std::min(1.0, static_cast<double>(island.items()) / items);
+  return static_cast<std::uint64_t>(part * static_cast<double>(work));
+}
+
+void Dynamics::Core::advance(DynamicsClient& client, double start, double h, double share) {
+  const double left = bound.most > counters.work ? static_cast<double>(bound.most - counters.work) : 0;
+  work_most = counters.work + static_cast<std::uint64_t>(share * left);
   ++sub_step;
   aside.clear();
   near.each([](const PairKey&, NearPair& pair) { pair.reported = false; });
@@ -125,6 +146,8 @@ void Dynamics::Core::run(DynamicsClient& client, double start, double h, int dep
   });
   enter_books();
   find_islands();
+  counters.work += near.movers().size() + island_pairs.size();
+  const std::uint64_t work = work_left();
   // Islands that call nobody first: what a handler does must not pull the ground from under them. They are stepped in
   // lots that take turns in the same places: what an island works with would not fit the caches for all of a crowd, and
   // hardly for more than a few. Several workers wait for one another at the end of each lot.
@@ -133,6 +156,7 @@ void Dynamics::Core::run(DynamicsClient& client, double start, double h, int dep
   for (std::size_t i = 0; i < island_count; ++i) {
     Island& island = fill(lot, i);
     if (sleep_through(island)) continue;
+    island.bound_work(part_of(work, island), bound.ended);
     if (island.calls_out()) {
       if (calling.size() == callers) calling.push_back(make_in<Island>(memory, *this, &shared));
       std::swap(islands[lot], calling[callers++]);
@@ -265,6 +289,7 @@ void Dynamics::Core::take_result(Island& island) {
   counters.direct += c.direct;
   counters.limits += c.limits;
   counters.interventions += from.interventions.size();
+  counters.work += island.work();
   counters.residual = std::max(counters.residual, c.residual);
   account.motor_work += from.account.motor_work;
   account.script_work += from.account.script_work;

@@ -98,13 +98,15 @@ namespace {
 /// The spin and attitude of one body, as a system for integrators: q the quaternion, v the spin in its own axes.
 class Spin final : public articulated::System {
  public:
-  explicit Spin(const FreeBody& body) : body_(body), inverse_(Eigen::Matrix3d(body.solid->inertia).inverse()) {}
+  Spin(const FreeBody& body, Meter& meter)
+      : body_(body), meter_(meter), inverse_(Eigen::Matrix3d(body.solid->inertia).inverse()) {}
 
   int positions() const override { return 4; }
   int velocities() const override { return 3; }
   articulated::Kind kind(int) const override { return articulated::Kind::Angle; }
   void acceleration(double, const articulated::Vector& q, const articulated::Vector& v, double,
                     articulated::Vector& a) override {
+    meter_.add(1);
     const Vector3 spin = v, torque = Quaternion(q[0], q[1], q[2], q[3]).conjugate() * body_.torque;
     a = inverse_ * (torque - spin.cross(body_.solid->inertia * spin));
   }
@@ -117,14 +119,16 @@ class Spin final : public articulated::System {
     out = articulated::rate_of_rotation_vector(d.head<3>(), v.head<3>());
   }
   void bend_to_cayley(articulated::Vector& d) override { d = articulated::cayley(d.head<3>()); }
+  bool over() const override { return meter_.over(); }
 
  private:
   const FreeBody& body_;
+  Meter& meter_;
   const Eigen::Matrix3d inverse_;
 };
 
-void turn_by_scheme(FreeBody& body, const Accuracy& accuracy, double time, double h, double& next_step) {
-  Spin system(body);
+void turn_by_scheme(FreeBody& body, const Accuracy& accuracy, double time, double h, double& next_step, Meter& meter) {
+  Spin system(body, meter);
   articulated::Settings settings;
   settings.tolerance.relative = accuracy.tolerance;
   settings.refine = true;
@@ -164,7 +168,7 @@ bool semi_implicit(const Accuracy& accuracy) {
 }
 
 void move_free(FreeBody& body, const Accuracy& accuracy, const Vector3& gravity, double time, double h,
-               double& next_step) {
+               double& next_step, Meter& meter) {
   const Vector3 pull = gravity + body.force / body.solid->mass;
   if (semi_implicit(accuracy)) {
     body.velocity += h * pull;
@@ -183,7 +187,7 @@ void move_free(FreeBody& body, const Accuracy& accuracy, const Vector3& gravity,
   } else if (accuracy.implicit_spin) {
     turn_by_midpoint(body, h);
   } else {
-    turn_by_scheme(body, accuracy, time, h, next_step);
+    turn_by_scheme(body, accuracy, time, h, next_step, meter);
   }
 }
 

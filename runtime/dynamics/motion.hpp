@@ -31,7 +31,7 @@ bool semi_implicit(const Accuracy& accuracy);
 /// One step of h seconds without contacts. Translation is exact (on `fast` semi-implicit), rotation by the rung's rule.
 /// @param next_step  s, of step control; in and out
 void move_free(FreeBody& body, const Accuracy& accuracy, const Vector3& gravity, double time, double h,
-               double& next_step);
+               double& next_step, Meter& meter);
 
 /// Whether a rung is finer than another: an island takes the finest of its bodies.
 bool finer(Rung a, Rung b);

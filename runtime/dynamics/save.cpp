@@ -168,6 +168,8 @@ void Dynamics::Core::save_tree(ByteWriter& out, const Tree& tree) const {
 void Dynamics::Core::load(ByteReader& in) {
   each(Reader{in}, settings);
   breve::check(settings.accuracy);
+  if (settings.fast_contacts < 0 || settings.fast_contacts > kMostIterations) ByteReader::fail();
+  if (!(settings.erp >= 0 && settings.erp <= 1) || !(settings.cfm >= 0)) ByteReader::fail();
   if (!is_one_of(settings.guard, GuardMode::Rest) || !settings.gravity.allFinite()) ByteReader::fail();
   each(Reader{in}, account);
   next_serial = in.get<std::uint64_t>();

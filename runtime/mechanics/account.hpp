@@ -33,12 +33,21 @@ std::string_view name_of(GuardMode mode);
 GuardMode guard_named(std::string_view name);
 
 /// Why the guard looked up.
-enum class GuardReason : std::uint8_t { NotFinite, Residual, Penetration, FastTurn, FastDamping, Impacts, NoSolution };
+enum class GuardReason : std::uint8_t {
+  NotFinite,
+  Residual,
+  Penetration,
+  FastTurn,
+  FastDamping,
+  Impacts,
+  NoSolution,
+  Work
+};
 /// In words: "a number is not finite".
 std::string_view words_for(GuardReason reason);
 
 /// What the guard did about it.
-enum class GuardAction : std::uint8_t { Reported, Refined, Rested };
+enum class GuardAction : std::uint8_t { Reported, Refined, Rested, Finished };
 std::string_view name_of(GuardAction action);
 
 struct Intervention {
@@ -47,7 +56,7 @@ struct Intervention {
   ObjectId body;    // the one that showed it
   GuardReason reason = GuardReason::NotFinite;
   GuardAction action = GuardAction::Reported;
-  double value = 0;  // what was measured: J, m, |w| h, c h / I
+  double value = 0;  // what was measured: J, m, |w| h, c h / I, units of work
 };
 
 /// An impulse at a contact, for hosts: in the order in which they happened.
@@ -77,6 +86,7 @@ struct DynamicsCounters {
   std::uint64_t rebuilt = 0;   // trees
   std::uint64_t sleeping = 0;  // bodies asleep now
   std::uint64_t interventions = 0;
+  std::uint64_t work = 0;  // units of it, see Meter
   // Of the solutions of all rows, the worst, m/s: by how much some row's velocity misses its law; where rows were
   // swept, by how much the last sweep still changed one. A flat world's engine does not tell.
   double residual = 0;

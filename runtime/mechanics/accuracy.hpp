@@ -30,6 +30,8 @@ struct Accuracy {
   double contact_damping = 0;      // their ratio of damping, at most 0.9; 0: that of the restitution
 };
 
+constexpr int kMostIterations = 10'000;  // that may be asked for
+
 /// The settings of a rung.
 Accuracy accuracy_of(Rung rung);
 /// "fast", "balanced", "precise", "reference", "conserving".

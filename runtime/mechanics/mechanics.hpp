@@ -15,6 +15,7 @@
 #include "runtime/base/bytes.hpp"
 #include "runtime/base/hasher.hpp"
 #include "runtime/base/memory.hpp"
+#include "runtime/base/meter.hpp"
 #include "runtime/kinematics/bodies.hpp"
 #include "runtime/mechanics/account.hpp"
 #include "runtime/mechanics/accuracy.hpp"
@@ -181,9 +182,14 @@ class Mechanics : public InMemory {
   virtual Census census() const = 0;
 
   // --- the world's side ---------------------------------------------------------------------------------------------
-  virtual void begin_iteration(std::uint64_t iteration) = 0;  // counters, interventions and impacts start again
+  /// Counters, interventions and impacts start again.
+  /// @param bound  of the work of all advance() until the next iteration
+  virtual void begin_iteration(std::uint64_t iteration, const WorkBound& bound) = 0;
   /// Moves all physics-enabled bodies from time `start` to `start + h`. Error{Numeric} only with the guard off.
-  virtual void advance(DynamicsClient& client, double start, double h) = 0;
+  /// @param share  of the work that is left of the bound, that this may take: what needs more is finished coarsely, and
+  ///               the guard tells. In (0, 1]
+  virtual void advance(DynamicsClient& client, double start, double h, double share) = 0;
+  virtual bool over() const = 0;  // the work of the iteration is used up, or ended
   /// Something left advance() by an exception.
   virtual void abandon() = 0;
   /// Finds what was changed in the arrays since, and brings assemblies in step with it.

@@ -19,14 +19,15 @@ using Words = std::string_view;
 constexpr std::array<Words, 5> kKinds{"revolute", "prismatic", "fixed", "universal", "ball"};
 constexpr std::array<Words, 5> kRungs{"fast", "balanced", "precise", "reference", "conserving"};
 constexpr std::array<Words, 4> kModes{"off", "report", "refine", "rest"};
-constexpr std::array<Words, 3> kActions{"reported", "refined", "put to rest"};
-constexpr std::array<Words, 7> kReasons{"a number is not finite",
+constexpr std::array<Words, 4> kActions{"reported", "refined", "put to rest", "finished coarsely"};
+constexpr std::array<Words, 8> kReasons{"a number is not finite",
                                         "energy appears that no account explains",
                                         "an overlap grows",
                                         "a body turns too far in one sub-step",
                                         "a damper is too strong for the sub-step",
                                         "more impacts in one sub-step than are located",
-                                        "an equation of the step has no solution that is found"};
+                                        "an equation of the step has no solution that is found",
+                                        "the work that a step may take is used up"};
 constexpr std::array<Words, 9> kSchemes{
     "explicit Euler",          "semi-implicit Euler",     "implicit Euler",
     "velocity Verlet",         "implicit midpoint",       "Runge-Kutta 4",
@@ -99,7 +100,7 @@ void check(const Accuracy& a) {
   need(is_step(a.step), "step", a.step, "finite, and 0 or at least 1e-11 s");
   need(is_step(a.contact_step), "contact step", a.contact_step, "finite, and 0 or at least 1e-11 s");
   need(std::isfinite(a.tolerance) && a.tolerance > 0, "tolerance", a.tolerance, "finite and > 0");
-  need(a.iterations > 0, "iterations", a.iterations, "> 0");
+  need(a.iterations > 0 && a.iterations <= kMostIterations, "iterations", a.iterations, "1 to 10,000");
   need(a.impacts >= 0, "impacts", a.impacts, ">= 0");
   need(std::isfinite(a.contact_stiffness) && a.contact_stiffness > 0, "contact stiffness", a.contact_stiffness,
        "finite and > 0");

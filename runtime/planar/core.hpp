@@ -205,6 +205,9 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   double friction = 0;         // J, lost in sliding contacts in this sub-step
   double driven_work = 0;      // J, of what moves as it was told on what it touches in this sub-step
   int located = 0;             // impacts of pairs without handler in this sub-step
+  WorkBound bound;             // of the iteration
+  std::uint64_t work_most = Meter::kNoBound;  // of the sub-step: what counters.work may become
+  bool finishing = false;                     // it is that: the rest is taken coarsely
   DynamicsCounters counters;
   std::pmr::vector<Intervention> interventions;
   std::pmr::vector<Impact> impacts;
@@ -309,10 +312,15 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void ask_forces();
 
   // step.cpp
-  void advance(DynamicsClient& asked, double start, double h);
+  void advance(DynamicsClient& asked, double start, double h, double share);
+  bool over() const;
+  bool worn() const;
+  void count_work(int iterations);
+  void finish(double left);
   int sub_steps() const;
   double longest_step() const;
   int velocity_iterations() const;
+  int iterations_now() const;
   int position_iterations() const;
   void run(double dt);
   double plan_parts(double dt);

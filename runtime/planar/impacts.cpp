@@ -69,6 +69,8 @@ void Planar::Core::consider(b2Fixture* a, int child_a, b2Fixture* b, int child_b
     met.erase(pair);
   }
   ++counters.searches;
+  constexpr std::uint64_t kUnits = 20;  // of work
+  counters.work += kUnits;
   const Proxy pa(a, child_a), pb(b, child_b);
   b2TOIInput in;
   in.proxyA = pa.proxy;

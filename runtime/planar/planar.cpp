@@ -233,7 +233,7 @@ void Planar::set_sleeping(bool on) { core_->settings.sleeping = on; }
 bool Planar::sleeping() const { return core_->settings.sleeping; }
 
 void Planar::set_fast_contacts(int iterations) {
-  need_range("the number of iterations", iterations, 0, 1e6);
+  need_range("the number of iterations", iterations, 0, kMostIterations);
   core_->settings.fast_contacts = iterations;
 }
 
@@ -337,14 +337,18 @@ Mechanics::Census Planar::census() const {
 
 // --- the world's side -----------------------------------------------------------------------------------------------
 
-void Planar::begin_iteration(std::uint64_t iteration) {
+void Planar::begin_iteration(std::uint64_t iteration, const WorkBound& bound) {
   core_->iteration = iteration;
+  core_->bound = bound;
   core_->counters = {};
   core_->interventions.clear();
   core_->impacts.clear();
 }
 
-void Planar::advance(DynamicsClient& client, double start, double h) { core_->advance(client, start, h); }
+void Planar::advance(DynamicsClient& client, double start, double h, double share) {
+  core_->advance(client, start, h, share);
+}
+bool Planar::over() const { return core_->over(); }
 void Planar::abandon() { core_->client = nullptr; }
 
 void Planar::take_changes() {

@@ -101,8 +101,9 @@ class Planar final : public Mechanics {
   Census census() const override;
 
   // --- the world's side ---------------------------------------------------------------------------------------------
-  void begin_iteration(std::uint64_t iteration) override;
-  void advance(DynamicsClient& client, double start, double h) override;
+  void begin_iteration(std::uint64_t iteration, const WorkBound& bound) override;
+  void advance(DynamicsClient& client, double start, double h, double share) override;
+  bool over() const override;
   void abandon() override;
   void take_changes() override;
   bool pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client) const override;

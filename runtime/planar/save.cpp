@@ -296,6 +296,8 @@ void Planar::Core::save(ByteWriter& out) {
 void Planar::Core::load(ByteReader& in) {
   each(Reader{in}, settings);
   breve::check(settings.accuracy);
+  if (settings.fast_contacts < 0 || settings.fast_contacts > kMostIterations) ByteReader::fail();
+  if (!(settings.erp >= 0 && settings.erp <= 1) || !(settings.cfm >= 0)) ByteReader::fail();
   if (static_cast<int>(settings.guard) > static_cast<int>(GuardMode::Rest)) ByteReader::fail();
   if (!settings.gravity.allFinite() || settings.gravity.z() != 0) ByteReader::fail();
   if (!(settings.unit >= 1e-9 && settings.unit <= 1e9)) ByteReader::fail();

@@ -52,7 +52,46 @@ int Planar::Core::velocity_iterations() const {
 
 int Planar::Core::position_iterations() const { return effort_of(settings.accuracy.rung).position; }
 
-void Planar::Core::advance(DynamicsClient& asked, double start, double h) {
+bool Planar::Core::over() const {
+  if (bound.ended && bound.ended->load(std::memory_order_relaxed)) return true;
+  return bound.most > 0 && counters.work >= bound.most;
+}
+
+/// No more of the sub-step is to be begun than has to be.
+bool Planar::Core::worn() const { return finishing || counters.work >= work_most || over(); }
+
+/// Box2D sweeps at least so often, and no more often than what is left of the work allows.
+int Planar::Core::iterations_now() const {
+  constexpr int kFew = 8;
+  const int wanted = velocity_iterations();
+  if (finishing) return std::min(wanted, kFew);
+  if (work_most == Meter::kNoBound) return wanted;
+  // It finds contacts only as it begins.
+  const auto each = static_cast<std::uint64_t>(4 * awake + b2->GetContactCount() + b2->GetJointCount() + 1);
+  const std::uint64_t left = work_most > counters.work ? (work_most - counters.work) / each : 0;
+  return static_cast<int>(std::clamp<std::uint64_t>(left, kFew, static_cast<std::uint64_t>(std::max(wanted, kFew))));
+}
+
+/// Of a step of Box2D.
+void Planar::Core::count_work(int iterations) {
+  const int rows = b2->GetContactCount() + b2->GetJointCount();
+  counters.work += static_cast<std::uint64_t>(10 * (awake + rows) + rows * (iterations + position_iterations()));
+}
+
+/// What is left of a sub-step whose work is used up, by one step of Box2D without impacts at their moments.
+void Planar::Core::finish(double left) {
+  finishing = true;
+  const FlatBody* shows = liveliest();
+  intervene(shows ? shows->body : kNoBody, GuardReason::Work, static_cast<double>(counters.work), now,
+            GuardAction::Finished);
+  step(left, false);
+  now += left;
+}
+
+void Planar::Core::advance(DynamicsClient& asked, double start, double h, double share) {
+  const double work_left = bound.most > counters.work ? static_cast<double>(bound.most - counters.work) : 0;
+  work_most = bound.most == 0 ? Meter::kNoBound : counters.work + static_cast<std::uint64_t>(share * work_left);
+  finishing = false;
   struct Asking {
     Core& core;
     Asking(Core& c, DynamicsClient& who) : core(c) { core.client = &who; }
@@ -72,9 +111,19 @@ void Planar::Core::advance(DynamicsClient& asked, double start, double h) {
   for (int i = 0; i < count && b2; ++i) {
     // Box2D moves nothing further than two units or a quarter turn in one step: what is faster needs more of them.
     const double dt = h / count;
+    if (finishing) break;
+    if (worn()) {
+      now = start + i * dt;
+      finish((count - i) * dt);
+      break;
+    }
     const auto parts = static_cast<int>(plan_parts(dt));
     for (int k = 0; k < parts && b2; ++k) {
       now = start + (i + static_cast<double>(k) / parts) * dt;
+      if (worn()) {
+        finish((count - i - static_cast<double>(k) / parts) * dt);
+        break;
+      }
       run(dt / parts);
     }
   }
@@ -131,7 +180,7 @@ void Planar::Core::run(double dt) {
   double left = dt;
   int waited = 0;  // met for handlers and stops
   bool bounce = true;
-  while (left > 0 && b2) {
+  while (left > 0 && b2 && !worn()) {
     Hit hit;
     bool found = find_hit(left, hit);
     found = find_stop(left, found, hit);
@@ -224,7 +273,8 @@ void Planar::Core::step(double dt, bool bounce) {
   resist_rolling(dt);
   kick(dt);
   stepping = true;
-  b2->Step(static_cast<float>(dt), velocity_iterations(), position_iterations());
+  const int iterations = iterations_now();
+  b2->Step(static_cast<float>(dt), iterations, position_iterations());
   stepping = false;
   end_account(dt);
   constexpr double kTooShort = 0.1;  // of a sub-step: single precision tells nothing of what changed in it
@@ -235,7 +285,8 @@ void Planar::Core::step(double dt, bool bounce) {
   ++sub_step;
   ++counters.sub_steps;
   ++counters.evaluations;
-  counters.solver_iterations += static_cast<std::uint64_t>(velocity_iterations());
+  counters.solver_iterations += static_cast<std::uint64_t>(iterations);
+  count_work(iterations);
   counters.pairs += static_cast<std::uint64_t>(b2->GetContactCount());
   rethrow();
 }

@@ -82,6 +82,7 @@ struct World::Parts final : CollisionClient, DynamicsClient, InMemory {
   bool at_impact = true;
   ObjectId first_handler;  // who registered the first collision handler
   double substep_start = 0;
+  double share = 1;  // of the work that is left to physics, of this sub-step
 
   struct Target {
     ObjectId object;

@@ -69,7 +69,7 @@ void World::step() {
   const StageScope iteration("iteration", observer_);
   Parts& parts = *parts_;
   parts.effects.begin_step();
-  parts.dynamics->begin_iteration(clock_.iteration);
+  parts.dynamics->begin_iteration(clock_.iteration, physics_bound_);
   deliver_input();
   parts.objects.join();
   if (behaviour_) {
@@ -167,7 +167,11 @@ std::uint64_t World::substeps() const {
 void World::run_substeps(double h, std::uint64_t count) {
   Parts& parts = *parts_;
   try {
-    for (std::uint64_t i = 0; i < count; ++i) {
+    for (std::uint64_t i = 0, taken = 1; i < count; i += taken) {
+      // What physics has no work left for is taken at once.
+      taken = parts.dynamics->over() ? count - i : 1;
+      const double length = static_cast<double>(taken) * h;
+      parts.share = static_cast<double>(taken) / static_cast<double>(count - i);
       parts.substep_start = clock_.time + static_cast<double>(i) * h;
       const std::uint32_t signature = parts.signature();
       if (signature != parts.stage_signature) parts.rebuild_stages(signature);
@@ -176,7 +180,7 @@ void World::run_substeps(double h, std::uint64_t count) {
         const StageScope scope(effect, observer_);
         ++effect.calls;
         effect.items += stage.items(parts);
-        stage.run(parts, h);
+        stage.run(parts, length);
       }
     }
   } catch (...) {
@@ -333,7 +337,8 @@ void World::Parts::rebuild_stages(std::uint32_t signature) {
                       [](const World::Parts& p) { return p.world->bodies_->turning(); }});
   }
   if ((signature & bit(EffectId::Rigid)) != 0) {
-    stages.push_back({EffectId::Rigid, [](World::Parts& p, double h) { p.dynamics->advance(p, p.substep_start, h); },
+    stages.push_back({EffectId::Rigid,
+                      [](World::Parts& p, double h) { p.dynamics->advance(p, p.substep_start, h, p.share); },
                       [](const World::Parts& p) { return p.world->bodies_->rigid(); }});
   }
   if (collide) {

@@ -105,6 +105,8 @@ class World : public InMemory {
   /// Equal sub-steps of an iteration: as few as are no longer than the integration step. Error{Argument} if they are
   /// more than 1e9.
   std::uint64_t substeps() const;
+  /// Of the physics of each iteration, see Mechanics::advance.
+  void bound_physics(const WorkBound& bound) { physics_bound_ = bound; }
   std::uint64_t iteration() const { return clock_.iteration; }
   /// One iteration: input, iterate, post-iterate, scheduled calls, the script side's own end. Errors of scripts pass
   /// through; the rest of the iteration is then not run and not counted, and the world may be stepped, saved or
@@ -203,6 +205,7 @@ class World : public InMemory {
   Random random_;
   ViewState view_;
   Clock clock_;
+  WorkBound physics_bound_;
   bool stepping_ = false;
   bool advancing_ = false;
 };

@@ -53,6 +53,7 @@ void control_iterate(Machine& machine, Instance&) {
     machine.charge_for(steps * machine.world().object_count());
     check_motors(machine);
     machine.world().advance_bodies();
+    machine.poll();  // physics ends early, and leaves it to others to say so
   }
   if (view.offset_pan.steps > 0) view.camera.set_offset(view.offset_pan.advance(view.camera.offset));
   if (view.target_pan.steps > 0) view.camera.set_target(view.target_pan.advance(view.camera.target));

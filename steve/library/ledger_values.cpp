@@ -53,7 +53,8 @@ HashCell* counters_value(Machine& machine, const DynamicsCounters& c) {
                                                                 {"limits", c.limits},
                                                                 {"rebuilt", c.rebuilt},
                                                                 {"sleeping", c.sleeping},
-                                                                {"interventions", c.interventions}};
+                                                                {"interventions", c.interventions},
+                                                                {"work", c.work}};
   for (const auto& [key, number] : numbers) put(machine, *hash, key, count(number));
   put(machine, *hash, "residual", Value::of(c.residual));
   return hash;

@@ -34,10 +34,12 @@ Machine::Machine(std::shared_ptr<const Program> program, World& world, std::pmr:
   strings_ = make_constants(*heap_, *program_);
   next_segment(kNativeRoom);
   world_.set_behaviour(this);
+  world_.bound_physics({host_.physics_budget, &interrupted_});
 }
 
 Machine::~Machine() {
   world_.set_behaviour(nullptr);
+  world_.bound_physics({});
   for (const auto& [slots, size] : segments_) memory_->deallocate(slots, size * sizeof(Slot), alignof(Slot));
 }
 

@@ -218,6 +218,10 @@ set)
 limits_given)
   program a.tz "" 'while 1: turns += 1.'
   expect 3 run a.tz --iterations 1 --budget 1000 && has err "budget"
+  printf '@use PhysicalControl.\n@use Mobile.\nController Main.\nPhysicalControl : Main {\n  + to init:\n' >a.tz
+  printf '    (new Mobile) enable-physics.\n    self set-accuracy-setting named "step" to 0.00001.\n}\n' >>a.tz
+  expect 0 run a.tz --iterations 1 && ! grep -q "finished coarsely" err
+  expect 0 run a.tz --iterations 1 --physics-budget 1000 && has err "finished coarsely"
   program a.tz "" 'self down.'
   sed -i 's/^}$/  + to down: self down.\n}/' a.tz
   expect 3 run a.tz --iterations 1 --depth 100 && has err "100"

@@ -45,6 +45,7 @@ void calls_suite(void);
 void config_suite(void);
 void errors_suite(void);
 void evaluate_suite(void);
+void physics_budget_suite(void);
 void files_suite(void);
 void images_suite(void);
 void input_suite(void);
@@ -75,6 +76,7 @@ static const struct {
     {"config", config_suite},
     {"errors", errors_suite},
     {"evaluate", evaluate_suite},
+    {"physics_budget", physics_budget_suite},
     {"files", files_suite},
     {"images", images_suite},
     {"input", input_suite},

@@ -65,6 +65,18 @@ archive_parsed)
 sub_steps)
   ends 3 Mobile "self set-integration-step to 0.000001. self set-iteration-step to 0.9. for i = 0, i < 300, i++: new Mobile."
   ;;
+physics_steps)
+  ends 0 Mobile "one = new Mobile. one enable-physics. self set-accuracy to \"precise\".
+    self set-accuracy-setting named \"step\" to 1.0e-11."
+  ;;
+physics_stiff)
+  ends 0 "Mobile Shape Spring" "self set-accuracy to \"reference\".
+    for i = 0, i < 40, i++: {
+      other = new Mobile. other set-shape to (new Cube init-with size (1, 1, 1)). other move to (i * 2, 0, 0). other enable-physics.
+      if one: (new Spring) connect from one to other with-length 1.0 with-strength 1.0e12 with-damping 0.0.
+      one = other.
+    }"
+  ;;
 bodies_asked)
   ends 3 "Mobile Shape" "one = (new Cube init-with size (1, 1, 1)).
     for i = 0, i < 3000, i++: { other = new Mobile. other set-shape to one. other enable-physics. }

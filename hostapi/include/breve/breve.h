@@ -264,7 +264,9 @@ static inline breve_runtime_config breve_runtime_config_default(void) {
   return config;
 }
 
-/* What breve_runtime_create calls. @param abi  BREVE_ABI of the header that the host was compiled with */
+/* What breve_runtime_create calls, and gives.
+   @param abi  BREVE_ABI of the header that the host was compiled with
+   BREVE_OK; BREVE_ERROR_ARGUMENT; BREVE_ERROR_UNSUPPORTED: the library has another. */
 BREVE_API breve_status breve_runtime_create_for(uint32_t abi, const breve_runtime_config* config,
                                                 breve_runtime** runtime);
 
@@ -455,6 +457,8 @@ typedef struct breve_world_config {
   size_t setting_count;         /* 0 if settings is NULL. Default 0 */
   double patience;              /* s of real time: what runs longer in one iteration, or in one call by the host, is told
                                    once on BREVE_CHANNEL_WARNING, with the place where it is; 0: never. Default 0 */
+  uint64_t physics_budget;      /* work of the physics of one iteration, see "budgets" below; 0: 10,000,000 or `budget`,
+                                   whichever is more, and none if that is 0. Default 0 */
 } breve_world_config;
 
 /* Budgets. Each turn of a loop, each call of a method or function and each new object counts 1, whoever makes the call:
@@ -468,7 +472,11 @@ typedef struct breve_world_config {
    - `call_budget` is for each `iterate`, `post-iterate`, scheduled call, input or collision handler, and `destroy` of
      auto-free: one object that does not end leaves the others their turn. What is cut is told on BREVE_CHANNEL_ERROR and
      counted in breve_stats.errors; the iteration goes on. A collision handler does not use up its controller's; a handler
-     of announcements uses the announcer's. Scheduled calls may schedule calls: only `budget` bounds an iteration. */
+     of announcements uses the announcer's. Scheduled calls may schedule calls: only `budget` bounds an iteration.
+   - `physics_budget` is for what moves bodies, in units that take about as long as a turn; breve_physics_counters.work
+     says how many an iteration took. It is an error for nobody: bodies that used up their part of it are moved to the
+     end of the iteration in one coarse step of rung `fast`, and the guard tells ("finished coarsely"). So are all bodies
+     when breve_world_interrupt is called. */
 
 /* The defaults named above. */
 static inline breve_world_config breve_world_config_default(void) {
@@ -1116,6 +1124,7 @@ typedef struct breve_physics_counters {
   /* Of the solver, m/s: the most by which a velocity misses what its contact, limit, motor or loop demands; where rows
      were swept, by which the last sweep still changed one. 0 in a flat world, whose engine does not tell. */
   double residual;
+  uint64_t work; /* units, see `physics_budget` */
 } breve_physics_counters;
 
 /* All zero, to be filled in. */

@@ -1,0 +1,89 @@
+/* The budget of physics: what a host sets, reads and is told; interrupts within a step. */
+#define _POSIX_C_SOURCE 200809L
+#include <pthread.h>
+#include <time.h>
+
+#include "scene.h"
+
+/* A body whose step is so short that an iteration takes forever. */
+static const char* const kSlow =
+    "@use PhysicalControl.\n@use Mobile.\nController Lab.\n"
+    "PhysicalControl : Lab {\n"
+    "  + to init:\n    (new Mobile) enable-physics.\n"
+    "    self set-accuracy to \"precise\".\n    self set-accuracy-setting named \"step\" to 1.0e-11.\n"
+    "}\n";
+
+static uint64_t work_of(const breve_world* world) {
+  breve_physics_counters counters = breve_physics_counters_default();
+  CHECK_STATUS(BREVE_OK, breve_world_physics_counters(world, &counters));
+  return counters.work;
+}
+
+static size_t finished(const breve_world* world) {
+  breve_intervention all[64];
+  size_t count = 0, told = 0;
+  CHECK_STATUS(BREVE_OK, breve_world_interventions(world, all, 64, &count));
+  for (size_t i = 0; i < count && i < 64; ++i) {
+    if (strcmp(all[i].action, "finished coarsely") != 0) continue;
+    CHECK_TEXT("the work that a step may take is used up", all[i].reason);
+    ++told;
+  }
+  return told;
+}
+
+static void a_step_takes_what_it_may(void) {
+  breve_world_config config = breve_world_config_default();
+  config.physics_budget = 100000;
+  scene s;
+  if (!scene_open_text(&s, kSlow, &config)) return;
+  for (int i = 0; i < 3; ++i) {
+    CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+    CHECK(work_of(s.world) >= 90000 && work_of(s.world) <= 110000);
+    CHECK(finished(s.world) != 0);
+  }
+  /* Another machine is put in the world's place, with the same budget. */
+  static char image[1 << 20];
+  size_t size = 0;
+  CHECK_STATUS(BREVE_OK, breve_world_snapshot(s.world, image, sizeof image, &size));
+  CHECK_STATUS(BREVE_OK, breve_world_restore(s.world, image, size));
+  CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+  CHECK(work_of(s.world) <= 110000);
+  scene_close(&s);
+}
+
+static void who_bounds_the_script_bounds_its_physics(void) {
+  breve_world_config config = breve_world_config_default();
+  config.budget = 1000;
+  scene s;
+  if (!scene_open_text(&s, kSlow, &config)) return;
+  CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+  CHECK(finished(s.world) != 0);
+  CHECK(work_of(s.world) >= 9900000 && work_of(s.world) <= 10100000);
+  scene_close(&s);
+}
+
+static void* interrupt_later(void* world) {
+  for (int i = 0; i < 20; ++i) {
+    const struct timespec pause = {0, 5000000};
+    nanosleep(&pause, NULL);
+    breve_world_interrupt(world);
+  }
+  return NULL;
+}
+
+static void an_interrupt_ends_a_step(void) {
+  scene s;
+  if (!scene_open_text(&s, kSlow, NULL)) return;
+  pthread_t other;
+  CHECK(pthread_create(&other, NULL, interrupt_later, s.world) == 0);
+  CHECK_STATUS(BREVE_ERROR_INTERRUPTED, breve_world_step(s.world));
+  pthread_join(other, NULL);
+  CHECK(finished(s.world) != 0);
+  scene_close(&s);
+}
+
+void physics_budget_suite(void) {
+  RUN(a_step_takes_what_it_may);
+  RUN(who_bounds_the_script_bounds_its_physics);
+  RUN(an_interrupt_ends_a_step);
+}

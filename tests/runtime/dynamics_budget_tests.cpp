@@ -1,0 +1,151 @@
+// The budget of physics: what is counted, where a step ends when it is used up, and that nothing else changes.
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "dynamics_scene.hpp"
+
+namespace breve::testing {
+namespace {
+
+/// Balls and chains that fall on one another.
+struct Heap : Physics {
+  std::vector<ObjectId> bodies;
+
+  explicit Heap(Rung rung = Rung::Balanced, int count = 30, int workers = 1) {
+    dynamics().set_accuracy(rung);
+    dynamics().set_workers(workers);
+    body(2, Vector3(0, -2.5, 0), BodyKind::Stationary, Shape::box(Vector3(1000, 5, 1000)));
+    for (int i = 0; i < count; ++i) {
+      const Vector3 at(1.05 * (i % 3), 0.5 + 1.05 * (i / 9), 1.05 * (i / 3 % 3));
+      bodies.push_back(i % 2 ? rigid(Shape::sphere(0.5), at) : rigid(Shape::box(Vector3(1, 1, 1)), at));
+      if (i % 5 != 4) continue;
+      JointDescription is;
+      is.parent = index(bodies[bodies.size() - 2]);
+      is.child = index(bodies.back());
+      is.parent_point = Vector3(0, 0.6, 0);
+      is.child_point = Vector3(0, -0.6, 0);
+      dynamics().link(is, bodies.back());
+    }
+  }
+  void check_finite() {
+    for (const ObjectId id : bodies) EXPECT_TRUE(world.bodies().location(index(id)).allFinite());
+  }
+  int finished() {
+    int count = 0;
+    for (const Intervention& one : dynamics().interventions())
+      count += one.reason == GuardReason::Work && one.action == GuardAction::Finished;
+    return count;
+  }
+};
+
+constexpr Rung kRungs[] = {Rung::Fast, Rung::Balanced, Rung::Precise, Rung::Reference, Rung::Conserving};
+
+TEST(DynamicsBudget, OneThatIsNotReachedChangesNothing) {
+  for (const Rung rung : kRungs) {
+    Heap free(rung, 12), bounded(rung, 12);
+    bounded.world.bound_physics({1'000'000'000, nullptr});
+    for (int i = 0; i < 30; ++i) {
+      free.world.step();
+      bounded.world.step();
+      ASSERT_EQ(bounded.finished(), 0);
+      ASSERT_EQ(free.world.hash(), bounded.world.hash()) << name_of(rung) << ", iteration " << i;
+      ASSERT_EQ(free.dynamics().counters().work, bounded.dynamics().counters().work);
+      ASSERT_GT(free.dynamics().counters().work, 0U);
+    }
+  }
+}
+
+TEST(DynamicsBudget, WhereItIsUsedUpTheStepIsFinishedCoarselyAndTheGuardTells) {
+  for (const Rung rung : kRungs) {
+    Heap alone(rung, 16);
+    std::uint64_t usual = 0;
+    for (int i = 0; i < 20; ++i) {
+      alone.world.step();
+      usual = std::max(usual, alone.dynamics().counters().work);
+    }
+    Heap heap(rung, 16);
+    const std::uint64_t bound = usual / 10;
+    heap.world.bound_physics({bound, nullptr});
+    int finished = 0;
+    for (int i = 0; i < 50; ++i) {
+      heap.world.step();
+      finished += heap.finished();
+      // What was begun comes to its end; then one look and one solution of few sweeps, however small the budget.
+      constexpr std::uint64_t kLeast = 60'000;
+      EXPECT_LE(heap.dynamics().counters().work, bound + bound / 10 + kLeast) << name_of(rung) << ", iteration " << i;
+      heap.check_finite();
+    }
+    // A sub-step of `fast` is as coarse as there is.
+    EXPECT_EQ(finished > 0, rung != Rung::Fast) << name_of(rung);
+    // All of it still lies on the floor, and nothing flew off.
+    for (const ObjectId id : heap.bodies) EXPECT_LT(heap.world.bodies().location(heap.index(id)).norm(), 20);
+  }
+}
+
+TEST(DynamicsBudget, WhatIsCutDoesNotDependOnWorkers) {
+  Heap one(Rung::Balanced, 60), two(Rung::Balanced, 60, 2);
+  for (Heap* heap : {&one, &two}) heap->world.bound_physics({20'000, nullptr});
+  int finished = 0;
+  for (int i = 0; i < 60; ++i) {
+    one.world.step();
+    two.world.step();
+    finished += one.finished();
+    ASSERT_EQ(one.world.hash(), two.world.hash()) << i;
+    ASSERT_EQ(one.finished(), two.finished());
+  }
+  EXPECT_GT(finished, 0);
+}
+
+TEST(DynamicsBudget, AnotherIslandsTroubleCostsNobodyItsAccuracy) {
+  // A heap, and far from it a ball that falls: the ball's part of the budget is its own.
+  Heap heap(Rung::Precise);
+  const ObjectId ball = heap.rigid(Shape::sphere(0.5), Vector3(500, 100, 0));
+  heap.world.bound_physics({50'000, nullptr});
+  int finished = 0;
+  for (int i = 0; i < 60; ++i) {
+    heap.world.step();
+    for (const Intervention& one : heap.dynamics().interventions()) {
+      finished += one.reason == GuardReason::Work;
+      EXPECT_NE(one.body, ball);
+    }
+  }
+  EXPECT_GT(finished, 0);
+  EXPECT_NEAR(heap.world.bodies().location(heap.index(ball)).y(), 100 - 0.5 * 9.81, 1e-9);
+}
+
+TEST(DynamicsBudget, StepsThatAreFarTooManyAreTakenAtOnce) {
+  for (const bool world_step : {false, true}) {
+    Physics s;
+    const ObjectId ball = s.rigid(Shape::sphere(0.5), Vector3(0, 10, 0));
+    Accuracy accuracy = accuracy_of(Rung::Precise);
+    accuracy.custom = true;
+    if (world_step)
+      s.world.set_integration_step(1e-9);
+    else
+      accuracy.step = 1e-11;
+    s.dynamics().set_accuracy(accuracy);
+    s.world.bound_physics({1'000'000, nullptr});
+    s.run(0.5);
+    EXPECT_NEAR(s.world.bodies().location(s.index(ball)).y(), 10 - 0.5 * 9.81 * 0.25, 1e-2);
+    EXPECT_LE(s.dynamics().counters().work, 1'100'000U);
+  }
+}
+
+TEST(DynamicsBudget, AnEndThatIsAskedForIsAsIfItWereUsedUp) {
+  for (const Rung rung : kRungs) {
+    Heap heap(rung);
+    std::atomic<bool> ended{true};
+    heap.world.bound_physics({0, &ended});
+    heap.world.step();
+    EXPECT_GT(heap.finished(), 0) << name_of(rung);
+    EXPECT_LT(heap.dynamics().counters().work, 60'000U) << name_of(rung);
+    ended = false;
+    heap.world.step();
+    EXPECT_EQ(heap.finished(), 0) << name_of(rung);
+    heap.check_finite();
+  }
+}
+
+}  // namespace
+}  // namespace breve::testing
