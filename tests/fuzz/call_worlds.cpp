@@ -20,6 +20,7 @@ breve_world_config draw_config(Caller& c) {
   config.memory_limit = c.choose().one_of(kMemory);
   config.budget = c.chance(80) ? 20'000 : 200;
   config.call_budget = c.chance(50) ? 2'000 : 0;
+  config.physics_budget = 100'000;
   config.depth_limit = c.chance(40) ? 40 : 0;
   config.advance_limit = static_cast<std::uint32_t>(1 + c.choose().below(5));
   config.nesting_limit = c.chance(30) ? static_cast<std::uint32_t>(c.choose().below(6)) : 0;

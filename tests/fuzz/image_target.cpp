@@ -149,6 +149,7 @@ struct Scene {
     config.memory_limit = std::size_t{64} << 20;
     config.budget = 30'000;
     config.call_budget = 3'000;
+    config.physics_budget = 100'000;
     config.accuracy = "fast";
     breve_world* created = nullptr;
     if (breve_world_create(runtime.get(), made, &config, &created) != BREVE_OK)

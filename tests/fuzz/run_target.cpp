@@ -20,6 +20,7 @@ struct Plan {
     config = breve_world_config_default();
     config.seed = choices.below(4);
     config.budget = choices.one_of(kBudgets);
+    config.physics_budget = 200'000;
     config.memory_limit = choices.one_of(kMemory);
     config.depth_limit = choices.chance(50) ? 100 : 0;
     config.strict = choices.chance(15);

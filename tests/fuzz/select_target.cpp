@@ -24,6 +24,7 @@ struct SelectPlan {
     config.seed = choices.below(16);
     config.memory_limit = choices.one_of(kMemory);
     config.budget = 60'000;
+    config.physics_budget = 200'000;
     config.call_budget = choices.chance(50) ? 5'000 : 0;
     config.depth_limit = 60;
     config.accuracy = choices.one_of(kRungs);
