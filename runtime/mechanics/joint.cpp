@@ -60,8 +60,8 @@ void explain(const JointDrive& drive, JointKind kind) {
 }  // namespace
 
 void check(const JointDescription& is, const Bodies& bodies) {
-  const std::string_view kind = name_of(is.kind);
   if (static_cast<int>(is.kind) > static_cast<int>(JointKind::Ball)) refuse("there is no such kind of joint");
+  const std::string_view kind = name_of(is.kind);
   if (!bodies.used(is.child)) refuse(fmt::format("{} joint: the child is no body in the world", kind));
   if (bodies.kind(is.child) == BodyKind::Stationary)
     refuse(fmt::format("{} joint: the child is Stationary; make it the parent", kind));

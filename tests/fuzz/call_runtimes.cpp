@@ -212,7 +212,7 @@ constexpr Function kFunctions[] = {
     {"breve_version", version},
     {"breve_abi", abi},
     {"breve_status_name", status_name},
-    {"breve_runtime_create_for", runtime_create},
+    {"breve_runtime_create_for", runtime_create, kUnsupported},
     {"breve_runtime_destroy", runtime_destroy, kBusy},
     {"breve_runtime_last_error", runtime_last_error, kPlain},
     {"breve_runtime_diagnostic_count", runtime_diagnostic_count, kPlain},
