@@ -10,7 +10,7 @@ namespace breve {
 /// How much work there may be, and who may end it early.
 struct WorkBound {
   std::uint64_t most = 0;                    // units, see Meter; 0: no bound
-  const std::atomic<bool>* ended = nullptr;  // true: as if the bound were reached. Outlives the work
+  const std::atomic<bool>* ended = nullptr;  // true: nothing more is to be done at all. Outlives the work
 };
 
 /// One unit takes about as long as a turn of a script's loop, some 30 ns: a row swept once, a facet looked at, a
@@ -31,8 +31,9 @@ class Meter {
   }
   void add(std::uint64_t units) { done_ += units; }
   std::uint64_t done() const { return done_; }
+  bool ended() const { return ended_ && ended_->load(std::memory_order_relaxed); }
   /// No more is to be begun than has to be.
-  bool over() const { return done_ >= most_ || (ended_ && ended_->load(std::memory_order_relaxed)); }
+  bool over() const { return done_ >= most_ || ended(); }
 
  private:
   std::uint64_t done_ = 0, most_ = kNoBound;

@@ -271,9 +271,18 @@ void NearPairs::drop_far() {
   });
 }
 
+/// Where many pairs are new, what they will need at once: what there is no memory for does not begin.
+void NearPairs::reserve_near() {
+  constexpr std::size_t kMany = 10'000;
+  if (new_keys_.size() < kMany) return;
+  const auto is_new = [this](const PairKey& key) { return key.at == PairKey::kNone && key.pushes && near(key); };
+  pairs_.reserve(pairs_.size() + static_cast<std::size_t>(std::count_if(keys_.begin(), keys_.end(), is_new)));
+}
+
 /// Whether a pair is in the list depends on the past; what it remembers must not: that is kept from step to step only
 /// by those whose boxes meet in each.
 void NearPairs::place_near() {
+  reserve_near();
   for (PairKey& key : keys_) {
     if (!key.pushes || !near(key)) {
       release(key);

@@ -164,6 +164,7 @@ class NearPairs {
   bool widen(Proxy& proxy, double speed, double h, double far, double more);
   void merge();
   void drop_far();
+  void reserve_near();
   void place_near();
 
   BoxTree tree_;

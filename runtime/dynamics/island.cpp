@@ -55,6 +55,7 @@ Island::Island(Dynamics::Core& core, std::pmr::memory_resource* memory)
       struck_(memory),
       scalars_before_(memory),
       overlaps_(memory),
+      overlapped_(memory),
       workspace_(memory),
       followed_(memory) {}
 

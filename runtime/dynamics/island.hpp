@@ -470,6 +470,7 @@ class Island : public InMemory {
   double solved_h_ = 0;                      // s, of the sub-step that was solved last
   std::pmr::vector<double> scalars_before_;  // of each scalar row
   std::pmr::vector<Overlap> overlaps_;
+  std::pmr::vector<std::uint8_t> overlapped_;  // of pairs: it is one of these
   contact::Workspace workspace_;
   std::unique_ptr<SprungMotion> sprung_;     // made when it is first needed
   std::pmr::vector<std::uint8_t> followed_;  // of pairs: a spring with points

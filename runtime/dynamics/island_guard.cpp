@@ -154,6 +154,7 @@ Island::Trouble Island::try_step(DynamicsClient* client, double start, double h)
   const bool off = core_.settings.guard == GuardMode::Off;
   double kinetic = 0, residual = 0, turnover = 0;
   overlaps_.clear();
+  overlapped_.clear();
   touched_ = false;
   unexplained_ = allowed_ = gained_ = handled_ = 0;
   booked_ = false;

@@ -63,6 +63,7 @@ void Island::move_by_pushes(double fastest, double h) {
   settings.iterations = accuracy_.direct ? accuracy_.iterations : std::max(4, accuracy_.iterations / 4);
   settings.direct = rows_.empty();
   settings.tolerance = std::max(settings.tolerance, 1e-3 * fastest);
+  settings.meter = &meter_;
   if (settings.direct) settings.tolerance = 1e-14;
   book_moves(-1);
   begin_moves();

@@ -60,15 +60,17 @@ void Island::step_quiet(double start, double h) {
   }
 }
 
-/// What is left of a step whose work is used up, in one sub-step as coarse as there is.
+/// What is left of a step whose work is used up, in one sub-step as coarse as there is. If somebody wants the end at
+/// once, it is left out: the bodies stay where they are.
 void Island::finish(double time, double left) {
   constexpr int kFew = 8;
+  finished_ = true;
+  intervene({true, GuardReason::Work, static_cast<double>(meter_.done()), any_body()}, GuardAction::Finished, time);
+  if (meter_.ended()) return;
   Accuracy coarse = breve::accuracy_of(Rung::Fast);
   coarse.iterations = std::min(coarse.iterations, kFew);
   use_accuracy(coarse);
-  finished_ = true;
   meter_.open();
-  intervene({true, GuardReason::Work, static_cast<double>(meter_.done()), any_body()}, GuardAction::Finished, time);
   spent_ = true;
   take_fast(time, left);
 }

@@ -2,6 +2,7 @@
 // or is damped too fast for its sub-steps.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "runtime/articulated/energy.hpp"
 #include "runtime/articulated/kinematics.hpp"
@@ -139,6 +140,7 @@ double Island::fastest_approach() const {
 void Island::note_overlaps(double h) {
   if (core_.settings.guard == GuardMode::Off) return;
   const double reach = h * fastest_approach();
+  overlapped_.resize(pairs_.size(), 0);
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const Touch& touch = touches_[i];
     const double deep = depths_for(accuracy_.rung).deep * size_of_pair(*pairs_[touch.pair]);
@@ -146,9 +148,8 @@ void Island::note_overlaps(double h) {
     if (touch.gap > 0 && rows_[i].impulse[0] > 0) continue;  // it is stopped before it overlaps
     const double rate = rate_of(rows_[i], true)[0] - rate_of(rows_[i], false)[0];
     if (touch.gap + h * std::min(rate, 0.0) > -deep) continue;
-    const auto same = [&touch](const Overlap& one) { return one.pair == touch.pair; };
-    if (std::none_of(overlaps_.begin(), overlaps_.end(), same))
-      overlaps_.push_back({touch.pair, std::max(-touch.gap, 0.0)});
+    if (std::exchange(overlapped_[touch.pair], std::uint8_t{1}) != 0) continue;
+    overlaps_.push_back({touch.pair, std::max(-touch.gap, 0.0)});
   }
 }
 

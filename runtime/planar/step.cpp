@@ -78,12 +78,14 @@ void Planar::Core::count_work(int iterations) {
   counters.work += static_cast<std::uint64_t>(10 * (awake + rows) + rows * (iterations + position_iterations()));
 }
 
-/// What is left of a sub-step whose work is used up, by one step of Box2D without impacts at their moments.
+/// What is left of a sub-step whose work is used up, by one step of Box2D without impacts at their moments; left out if
+/// somebody wants the end at once.
 void Planar::Core::finish(double left) {
   finishing = true;
   const FlatBody* shows = liveliest();
   intervene(shows ? shows->body : kNoBody, GuardReason::Work, static_cast<double>(counters.work), now,
             GuardAction::Finished);
+  if (bound.ended && bound.ended->load(std::memory_order_relaxed)) return;
   step(left, false);
   now += left;
 }

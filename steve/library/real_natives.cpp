@@ -219,6 +219,7 @@ ListCell* real_get_neighbors(Machine& machine, Instance& self) {
     machine.warn_once("get-neighbors",
                       "get-neighbors finds nobody before 'update-neighbors' of the controller is called");
   const std::span<const std::uint64_t> neighbors = machine.world().neighbor_users(self.id);
+  machine.charge_for(neighbors.size());
   ListCell* list = machine.heap().list(static_cast<std::uint32_t>(neighbors.size()));
   for (const std::uint64_t neighbor : neighbors)
     machine.heap().push(*list, Value::of(Tag::Object, reinterpret_cast<Instance*>(neighbor)));

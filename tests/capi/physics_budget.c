@@ -58,7 +58,7 @@ static void who_bounds_the_script_bounds_its_physics(void) {
   if (!scene_open_text(&s, kSlow, &config)) return;
   CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
   CHECK(finished(s.world) != 0);
-  CHECK(work_of(s.world) >= 9900000 && work_of(s.world) <= 10100000);
+  CHECK(work_of(s.world) >= 900000 && work_of(s.world) <= 1100000);
   scene_close(&s);
 }
 

@@ -457,7 +457,7 @@ typedef struct breve_world_config {
   size_t setting_count;         /* 0 if settings is NULL. Default 0 */
   double patience;              /* s of real time: what runs longer in one iteration, or in one call by the host, is told
                                    once on BREVE_CHANNEL_WARNING, with the place where it is; 0: never. Default 0 */
-  uint64_t physics_budget;      /* work of the physics of one iteration, see "budgets" below; 0: 10,000,000 or `budget`,
+  uint64_t physics_budget;      /* work of the physics of one iteration, see "budgets" below; 0: 1,000,000 or `budget`,
                                    whichever is more, and none if that is 0. Default 0 */
 } breve_world_config;
 
@@ -475,8 +475,7 @@ typedef struct breve_world_config {
      of announcements uses the announcer's. Scheduled calls may schedule calls: only `budget` bounds an iteration.
    - `physics_budget` is for what moves bodies, in units that take about as long as a turn; breve_physics_counters.work
      says how many an iteration took. It is an error for nobody: bodies that used up their part of it are moved to the
-     end of the iteration in one coarse step of rung `fast`, and the guard tells ("finished coarsely"). So are all bodies
-     when breve_world_interrupt is called. */
+     end of the iteration in one coarse step of rung `fast`, and the guard tells ("finished coarsely"). */
 
 /* The defaults named above. */
 static inline breve_world_config breve_world_config_default(void) {
@@ -1443,8 +1442,9 @@ BREVE_API breve_status breve_world_session(breve_world* world, breve_value* hash
 BREVE_API bool breve_statements_complete(const char* text, size_t size);
 
 /* Stop the script that runs in a world: the function of this header that runs it gives BREVE_ERROR_INTERRUPTED within
-   50 ms (callbacks of the host and the physics of a step apart), and the call is abandoned as by a run-time error. Where
-   it is cut is not determined: two runs that are interrupted are not equal. Nothing if no script runs; NULL is nothing.
+   50 ms (callbacks of the host apart, and one sub-step of physics, which comes to its end), and the call is abandoned as
+   by a run-time error. Where it is cut is not determined: two runs that are interrupted are not equal. Nothing if no
+   script runs; NULL is nothing.
    May be called by any thread, and by a signal handler, as long as the world exists. */
 BREVE_API void breve_world_interrupt(breve_world* world);
 
