@@ -149,7 +149,7 @@ breve_status spring_read(Caller& c) {
   return force.after(status);
 }
 
-constexpr Statuses kJoint = kStale | kType;
+constexpr Statuses kJoint = kScriptError | kStale | kType;
 
 constexpr Function kFunctions[] = {
     {"breve_joint_create", joint_create, kScript | kBody | kNotFound, 3},

@@ -283,7 +283,7 @@ constexpr Function kFunctions[] = {
     {"breve_value_matrix", value_matrix},
     {"breve_value_string", value_string},
     {"breve_value_object", value_object},
-    {"breve_value_text", value_text, kScript | kValue, 2},
+    {"breve_value_text", value_text, kScript | kValue | kType, 2},
     {"breve_list_create", list_create},
     {"breve_list_size", list_size, kContainer},
     {"breve_list_get", list_get, kContainer | kNotFound},

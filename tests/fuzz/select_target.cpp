@@ -75,17 +75,11 @@ void run(breve_world* one, breve_world* other, std::size_t iterations, const std
   }
 }
 
-}  // namespace
-
-std::string select_program_of(Bytes bytes) {
+/// @param change  what is not to be as the plan says
+void run_selected(Bytes bytes, void (*change)(SelectPlan&)) {
   Choices choices(bytes);
-  const SelectPlan plan(choices);
-  return selector_program(choices);
-}
-
-void fuzz_select(Bytes bytes) {
-  Choices choices(bytes);
-  const SelectPlan plan(choices);
+  SelectPlan plan(choices);
+  change(plan);
   const std::string text = selector_program(choices);
   const Runtime runtime = make_runtime(breve_runtime_config_default());
   breve_program* compiled = nullptr;
@@ -101,6 +95,27 @@ void fuzz_select(Bytes bytes) {
   };
   const World one = create(), other = create();
   if (one && other) run(one.get(), other.get(), plan.iterations, text);
+}
+
+}  // namespace
+
+std::string select_program_of(Bytes bytes) {
+  Choices choices(bytes);
+  const SelectPlan plan(choices);
+  return selector_program(choices);
+}
+
+void fuzz_select(Bytes bytes) {
+  run_selected(bytes, [](SelectPlan&) {});
+}
+
+void fuzz_restore(Bytes bytes) {
+  run_selected(bytes, [](SelectPlan& plan) {
+    plan.iterations = 50;
+    // Short ones: it is the restoring that is looked at.
+    plan.config.budget = 6'000;
+    plan.config.physics_budget = 20'000;
+  });
 }
 
 }  // namespace breve::fuzz

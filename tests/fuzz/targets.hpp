@@ -23,6 +23,8 @@ void fuzz_image(Bytes bytes);
 
 /// Bytes as the choices of a generator of programs that call any selector of the class library. See select_target.cpp.
 void fuzz_select(Bytes bytes);
+/// The same, each world for 50 iterations and after each restored into another.
+void fuzz_restore(Bytes bytes);
 /// The program that fuzz_select makes of them.
 std::string select_program_of(Bytes bytes);
 

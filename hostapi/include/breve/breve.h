@@ -18,7 +18,8 @@
  *   returns its result. Numbers that are NaN or infinite where a finite one is needed give BREVE_ERROR_ARGUMENT.
  * - An id of an object that is gone gives BREVE_ERROR_STALE; it never names another object. The null object, where a
  *   live one is needed, gives BREVE_ERROR_ARGUMENT.
- * - Any function may run out of memory and give BREVE_ERROR_MEMORY.
+ * - Any function may run out of memory and give BREVE_ERROR_MEMORY. Any that reads or changes joints, springs or the
+ *   energy of bodies may give BREVE_ERROR_SCRIPT where their state cannot be computed with: numbers that overflow.
  * - Texts are UTF-8 or plain bytes, ended by a zero byte; a text given with a size may hold zero bytes.
  * - Threads: a world, with all its objects, is used by one thread at a time; so is a runtime while it compiles or makes
  *   a world. A program may be used by any number of threads. Different worlds may be used by different threads; then
@@ -1187,7 +1188,8 @@ BREVE_API breve_value breve_value_object(breve_object object);
 
 /* The text of a value as `print` shows it, owned by the world until the next call of this function on it. Runs script
    (objects describe themselves).
-   BREVE_OK; BREVE_ERROR_STALE: the value is a list or hash from before script ran. */
+   BREVE_OK; BREVE_ERROR_STALE: the value is a list or hash from before script ran; BREVE_ERROR_TYPE: its reference is to
+   something of another type than it says. */
 BREVE_API breve_status breve_value_text(breve_world* world, const breve_value* value, const char** text);
 
 /* A new empty list. */

@@ -249,6 +249,17 @@ TEST(PlanarMotion, AProfileMayHaveCornersNearerThanBox2DCanTell) {
   EXPECT_NE(refusal(huge).find("single precision"), std::string::npos);
 }
 
+TEST(PlanarMotion, ABodyWhoseCentreIsFarFromItsOriginIsRefused) {
+  // Box2D would see no inertia at all, and end the process.
+  std::vector<Vector3> corners;
+  for (const double x : {1000.0, 1000.1})
+    for (const double y : {0.0, 0.1})
+      for (const double z : {-0.1, 0.1}) corners.emplace_back(x, y, z);
+  Flat flat;
+  flat.rigid(Shape::hull(corners, 1), 0, 5);
+  EXPECT_NE(refusal(flat).find("its centre of mass is too far from its origin"), std::string::npos);
+}
+
 TEST(PlanarMotion, AShapeThatIsALineToDoublePrecisionIsRefusedAsSuch) {
   Flat flat;
   flat.box(1e14, 1, 0, 0);
