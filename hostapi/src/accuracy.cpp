@@ -200,11 +200,11 @@ breve_status breve_world_interventions(const breve_world* world, breve_intervent
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     copy_list(dynamics_of(*world).interventions(), interventions, capacity, count, "interventions",
-              [](const breve::Intervention& one) {
+              [&](const breve::Intervention& one) {
                 // Names are literals: they end with a zero byte.
                 return breve_intervention{one.iteration,
                                           one.time,
-                                          handle_of(one.body),
+                                          handle_of(*world, one.body),
                                           breve::words_for(one.reason).data(),
                                           breve::name_of(one.action).data(),
                                           one.value};
@@ -215,10 +215,10 @@ breve_status breve_world_interventions(const breve_world* world, breve_intervent
 breve_status breve_world_impacts(const breve_world* world, breve_impact* impacts, size_t capacity, size_t* count) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
-    copy_list(dynamics_of(*world).impacts(), impacts, capacity, count, "impacts", [](const breve::Impact& one) {
+    copy_list(dynamics_of(*world).impacts(), impacts, capacity, count, "impacts", [&](const breve::Impact& one) {
       breve_impact impact{};
-      impact.a = handle_of(one.a);
-      impact.b = handle_of(one.b);
+      impact.a = handle_of(*world, one.a);
+      impact.b = handle_of(*world, one.b);
       impact.time = one.time;
       copy_to(impact.point, one.point);
       copy_to(impact.normal, one.normal);

@@ -22,7 +22,7 @@ breve_status breve_world_effects(const breve_world* world, breve_effect* effects
                     kept[i].second.c_str(),
                     e.active,
                     e.since,
-                    handle_of(asked_by),
+                    handle_of(*world, asked_by),
                     e.items,
                     e.calls,
                     e.bytes,

@@ -12,8 +12,8 @@ breve_status breve_world_evaluate(breve_world* world, breve_object self, const c
   return guard(world->error, [&] {
     if (size != 0) need(text, "text");
     auto* controller = world->machine->controller();
-    if (!id_of(self) && !controller) fail(BREVE_ERROR_STALE, "the controller has been freed: name an object");
-    auto& instance = id_of(self) ? live_instance(*world, self) : *controller;
+    if (is_null(self) && !controller) fail(BREVE_ERROR_STALE, "the controller has been freed: name an object");
+    auto& instance = is_null(self) ? *controller : live_instance(*world, self);
     Value value;
     {
       const ScriptScope script(*world);

@@ -33,7 +33,7 @@ breve_status breve_world_key(breve_world* world, const char* key, bool down) {
 breve_status breve_world_click(breve_world* world, breve_object object) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
-    const ObjectId id = id_of(object) ? live_id(*world, object) : ObjectId{};
+    const ObjectId id = is_null(object) ? ObjectId{} : live_id(*world, object);
     world->world->queue_input({InputEvent::Kind::Click, {}, id});
   });
 }
@@ -49,8 +49,8 @@ breve_status breve_world_menu_items(breve_world* world, breve_menu_item* items, 
       const auto* item = breve::menu_item(std::as_const(*world->world), id);
       if (!item) continue;
       texts.emplace_back(item->name, item->method);
-      found.push_back(
-          {handle_of(id), handle_of(item->owner), nullptr, nullptr, item->separator(), item->enabled, item->checked});
+      found.push_back({handle_of(*world, id), handle_of(*world, item->owner), nullptr, nullptr, item->separator(),
+                       item->enabled, item->checked});
     }
     world->menu_texts.swap(texts);
     for (std::size_t i = 0; i < std::min(capacity, found.size()); ++i) {

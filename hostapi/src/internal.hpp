@@ -47,7 +47,17 @@ struct RuntimeState {
 
   const breve_runtime_config config;
   HostAllocator allocator;
+  std::uint32_t worlds = 0;  // that were made, or begun
 };
+
+/// Generations of the host's ids are numbers modulo this, plus 1.
+inline constexpr std::uint64_t kGenerations = 0xffffffffU;
+
+/// Places on the circle of generations that are far from each other, by the golden ratio: of n worlds no two are closer
+/// than a third of its n-th part (Knuth 1998, The Art of Computer Programming 3, section 6.4). The first is 0.
+inline std::uint32_t spread(std::uint32_t number) {
+  return static_cast<std::uint32_t>(number * 2654435769U % kGenerations);
+}
 
 struct DiagnosticText {
   breve_severity severity = BREVE_SEVERITY_ERROR;
@@ -143,6 +153,7 @@ struct breve_world : breve::InMemory {
   std::shared_ptr<breve::host::RuntimeState> runtime;
   std::shared_ptr<const breve::steve::Program> program;
   breve_world_config config{};
+  const std::uint32_t first_generation;  // of its ids, less 1: each world of a runtime begins elsewhere
   breve::MemoryMeter meter;
   std::optional<breve::steve::Profiler> profiler;  // kept when it has stopped, until the next one starts
   bool tracing = false;                            // a breve_trace_fn runs
@@ -161,6 +172,7 @@ struct breve_world : breve::InMemory {
 
   explicit breve_world(std::shared_ptr<breve::host::RuntimeState> r)
       : runtime(std::move(r)),
+        first_generation(breve::host::spread(runtime->worlds++)),
         meter(runtime->memory(), taken(sizeof(breve_world))),
         references(&meter),
         selectors(&meter),
@@ -208,8 +220,10 @@ void open_files(breve_world& world, steve::MachineHost& host);
 /// BREVE_ERROR_BUSY if script of `world` runs now.
 void need_idle(const breve_world& world, const char* what);
 
-inline ObjectId id_of(breve_object object) { return {object.index, object.generation}; }
-inline breve_object handle_of(ObjectId id) { return {id.index, id.generation}; }
+/// Between the world's ids and the host's, whose generation is the ticket, counted from where this world begins.
+breve_object handle_of(const breve_world& world, ObjectId id);
+ObjectId id_of(const breve_world& world, breve_object object);  // a live one, or null
+inline bool is_null(breve_object object) { return object.generation == 0; }
 
 /// A live object's id: BREVE_ERROR_ARGUMENT for null, BREVE_ERROR_STALE for one that is gone.
 ObjectId live_id(const breve_world& world, breve_object object);

@@ -19,7 +19,7 @@ const char* class_of_kind(breve_joint_kind kind) {
 }
 
 Instance* object_or_world(const breve_world& world, breve_object object) {
-  return id_of(object) ? &live_instance(world, object) : nullptr;
+  return is_null(object) ? nullptr : &live_instance(world, object);
 }
 
 /// Two objects that stay what they are while another one is made: that runs script, which may free them.
@@ -53,8 +53,7 @@ JointDescription description_of(const breve_joint_description& from) {
     to.other_axis = vector_of(from.other_axis, "other_axis");
   // Before an object is made: a refused call is to leave no trace.
   if (!(to.normal.stableNorm() > 0)) fail(BREVE_ERROR_ARGUMENT, "the normal of the joint has no direction");
-  if (from.child.generation != 0 && from.parent.index == from.child.index &&
-      from.parent.generation == from.child.generation)
+  if (!is_null(from.child) && from.parent.index == from.child.index && from.parent.generation == from.child.generation)
     fail(BREVE_ERROR_ARGUMENT, "parent and child of the joint are one");
   for (const bool reserved : from.reserved)
     if (reserved) fail(BREVE_ERROR_ARGUMENT, "a reserved field is not false");
@@ -176,7 +175,7 @@ breve_status breve_joint_read(breve_world* world, breve_object joint, breve_join
       const Mechanics& dynamics = world->world->dynamics();
       const auto& is = dynamics.joint(index);
       const auto owner = [&](breve::BodyIndex body) {
-        return body == breve::kNoBody ? breve_object{} : handle_of(world->world->bodies().owner(body));
+        return body == breve::kNoBody ? breve_object{} : handle_of(*world, world->world->bodies().owner(body));
       };
       found.ring = dynamics.closes_ring(index);
       found.parent = owner(is.parent);

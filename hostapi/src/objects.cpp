@@ -6,10 +6,22 @@
 
 namespace breve::host {
 
+breve_object handle_of(const breve_world& world, ObjectId id) {
+  if (!id) return {};
+  const std::uint64_t place = std::uint64_t{world.first_generation} + world.world->ticket(id) - 1;
+  return {id.index, static_cast<std::uint32_t>(place % kGenerations + 1)};
+}
+
+ObjectId id_of(const breve_world& world, breve_object object) {
+  if (is_null(object)) return {};
+  const std::uint64_t place = object.generation - 1 + kGenerations - world.first_generation;
+  return world.world->holder(object.index, static_cast<std::uint32_t>(place % kGenerations + 1));
+}
+
 ObjectId live_id(const breve_world& world, breve_object object) {
-  const ObjectId id = id_of(object);
-  if (!id) fail(BREVE_ERROR_ARGUMENT, "the null object was given where a live one is needed");
-  if (!world.world->alive(id)) fail(BREVE_ERROR_STALE, "the object is gone: it was freed");
+  if (is_null(object)) fail(BREVE_ERROR_ARGUMENT, "the null object was given where a live one is needed");
+  const ObjectId id = id_of(world, object);
+  if (!id) fail(BREVE_ERROR_STALE, "the object is gone: it was freed, or belongs to another world");
   return id;
 }
 
@@ -111,7 +123,7 @@ using breve::Vector3;
 breve_object breve_world_controller(const breve_world* world) {
   if (!world) return {};
   const breve::steve::Instance* controller = world->machine->controller();
-  return controller ? handle_of(world->machine->id_of(controller)) : breve_object{};
+  return controller ? handle_of(*world, world->machine->id_of(controller)) : breve_object{};
 }
 
 breve_status breve_world_objects(const breve_world* world, const char* class_name, breve_object* objects,
@@ -124,20 +136,18 @@ breve_status breve_world_objects(const breve_world* world, const char* class_nam
     std::size_t found = 0;
     for (const ObjectId id : world->world->objects()) {
       if (filter && !world->program->cls(world->world->class_of(id)).derives_from(*filter)) continue;
-      if (found < capacity) objects[found] = handle_of(id);
+      if (found < capacity) objects[found] = handle_of(*world, id);
       ++found;
     }
     *count = found;
   });
 }
 
-bool breve_object_alive(const breve_world* world, breve_object object) {
-  return world && id_of(object) && world->world->alive(id_of(object));
-}
+bool breve_object_alive(const breve_world* world, breve_object object) { return world && id_of(*world, object); }
 
 const char* breve_object_class(const breve_world* world, breve_object object) {
-  if (!breve_object_alive(world, object)) return nullptr;
-  return world->program->cls(world->world->class_of(id_of(object))).name.c_str();
+  const ObjectId id = world ? id_of(*world, object) : ObjectId{};
+  return id ? world->program->cls(world->world->class_of(id)).name.c_str() : nullptr;
 }
 
 breve_status breve_object_is_a(const breve_world* world, breve_object object, const char* class_name, bool* result) {
@@ -156,7 +166,7 @@ breve_status breve_object_create(breve_world* world, const char* class_name, bre
     need(object, "object");
     const auto& cls = class_named(*world, class_name);
     const ScriptScope script(*world);
-    *object = handle_of(world->machine->id_of(world->machine->create(cls)));
+    *object = handle_of(*world, world->machine->id_of(world->machine->create(cls)));
   });
 }
 

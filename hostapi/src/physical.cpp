@@ -212,7 +212,7 @@ breve_status breve_object_links(const breve_world* world, breve_object object, b
     const BodyIndex body = live_body(*world, object);
     const auto all = std::as_const(*world->world).dynamics().links_of(body);
     copy_list(all, links, capacity, count, "links",
-              [&](BodyIndex link) { return handle_of(world->world->bodies().owner(link)); });
+              [&](BodyIndex link) { return handle_of(*world, world->world->bodies().owner(link)); });
   });
 }
 
@@ -223,7 +223,7 @@ breve_status breve_object_joints(const breve_world* world, breve_object object, 
     const BodyIndex body = live_body(*world, object);
     const breve::Mechanics& dynamics = std::as_const(*world->world).dynamics();
     copy_list(dynamics.joints_of(body), joints, capacity, count, "joints",
-              [&](breve::JointIndex joint) { return handle_of(dynamics.joint_owner(joint)); });
+              [&](breve::JointIndex joint) { return handle_of(*world, dynamics.joint_owner(joint)); });
   });
 }
 

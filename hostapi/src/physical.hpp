@@ -38,7 +38,7 @@ breve_object make_with(breve_world& world, const char* library_class, Work work)
     world.machine->free_instance(object);
     throw;
   }
-  return handle_of(object.id);
+  return handle_of(world, object.id);
 }
 
 /// A copy of an array, as much as there is room for; the count of all.

@@ -55,7 +55,7 @@ breve_value to_host(breve_world& world, const Value& value) {
         out.as.string.size = value.data()->bytes.size();
       }
       break;
-    case Tag::Object: out.as.object = handle_of(world.machine->id_of(value.object())); break;
+    case Tag::Object: out.as.object = handle_of(world, world.machine->id_of(value.object())); break;
     case Tag::List:
     case Tag::Hash: out.as.ref = world.references.add(value.ref); break;
   }
@@ -82,7 +82,7 @@ Value from_host(breve_world& world, const breve_value& value) {
     case BREVE_STRING: return Value::of(Tag::String, heap.string(bytes_of(value)));
     case BREVE_DATA: return Value::of(Tag::Data, heap.data(bytes_of(value)));
     case BREVE_OBJECT:
-      if (!id_of(value.as.object)) return Value::of(Tag::Object, nullptr);
+      if (is_null(value.as.object)) return Value::of(Tag::Object, nullptr);
       return Value::of(Tag::Object, &live_instance(world, value.as.object));
     case BREVE_LIST: return Value::of(Tag::List, world.references.find(value.as.ref, Tag::List));
     case BREVE_HASH: return Value::of(Tag::Hash, world.references.find(value.as.ref, Tag::Hash));

@@ -24,7 +24,8 @@ ObjectTable::ObjectTable(std::pmr::memory_resource* memory)
       order_{std::pmr::vector<ObjectId>(memory)},
       iterating_{std::pmr::vector<ObjectId>(memory)},
       post_iterating_{std::pmr::vector<ObjectId>(memory)},
-      joining_(memory) {}
+      joining_(memory),
+      tickets_(memory) {}
 
 ObjectId ObjectTable::create(ClassId cls, std::uint64_t user, bool iterates, bool post_iterates) {
   // Everything that can run out of memory comes first: a failed creation leaves no trace.
@@ -34,6 +35,7 @@ ObjectId ObjectTable::create(ClassId cls, std::uint64_t user, bool iterates, boo
     if (free_.empty()) {
       // Room for all to be released, so that release() never allocates.
       if (free_.capacity() <= slots_.size()) free_.reserve(2 * slots_.size() + 16);
+      tickets_.make_room(slots_.size() + 1);
       slots_.emplace_back();
       free_.push_back(static_cast<std::uint32_t>(slots_.size() - 1));
     }
@@ -56,6 +58,7 @@ ObjectId ObjectTable::create(ClassId cls, std::uint64_t user, bool iterates, boo
   slot.post_iterates = post_iterates;
   ++live_;
   const ObjectId id{index, generation};
+  tickets_.issue(id);
   order_.ids.back() = id;
   joining_.back() = id;
   return id;
@@ -65,10 +68,24 @@ void ObjectTable::release(ObjectId id) {
   Slot& slot = at(id);
   slot.live = false;
   const std::unique_ptr<Resource> last_act = std::move(slot.resource);
-  // A slot whose generations are used up is never reused: a stale id must not come alive again.
-  if (slot.generation != std::numeric_limits<std::uint32_t>::max()) free_.push_back(id.index);
+  // A slot whose generations or tickets are used up is never reused: a stale id must not come alive again.
+  if (reusable(id.index)) free_.push_back(id.index);
   --live_;
   ++released_;
+}
+
+bool ObjectTable::reusable(std::uint32_t index) const {
+  return slots_[index].generation != std::numeric_limits<std::uint32_t>::max() && !tickets_.spent(index);
+}
+
+void ObjectTable::keep_tickets(const ObjectTable& abandoned) {
+  tickets_.keep(abandoned.tickets_);
+  std::erase_if(free_, [this](std::uint32_t index) { return !reusable(index); });
+}
+
+ObjectId ObjectTable::holder(std::uint32_t index, std::uint32_t ticket) const {
+  const ObjectId id{index, tickets_.generation(index, ticket)};
+  return id && alive(id) ? id : ObjectId{};
 }
 
 ObjectTable::Slot& ObjectTable::at(ObjectId id) {
@@ -79,7 +96,7 @@ ObjectTable::Slot& ObjectTable::at(ObjectId id) {
 const ObjectTable::Slot& ObjectTable::at(ObjectId id) const { return const_cast<ObjectTable*>(this)->at(id); }
 
 std::size_t ObjectTable::bytes() const {
-  return slots_.capacity() * sizeof(Slot) +
+  return slots_.capacity() * sizeof(Slot) + tickets_.bytes() +
          (order_.ids.capacity() + iterating_.ids.capacity() + post_iterating_.ids.capacity() + joining_.capacity()) *
              sizeof(ObjectId);
 }
@@ -160,6 +177,7 @@ void ObjectTable::save(ByteWriter& out) const {
   save_ids(out, joining_);
   out.put(serials_);
   out.put(joined_);
+  tickets_.save(out);
 }
 
 void ObjectTable::load_slot(ByteReader& in, Slot& slot, FindLoader find_loader, const void* context) {
@@ -195,11 +213,14 @@ void ObjectTable::load(ByteReader& in, FindLoader find_loader, const void* conte
   load_ids(in, joining_);
   serials_ = in.get<std::uint64_t>();
   joined_ = in.get<std::uint64_t>();
+  tickets_.load(in);
+  tickets_.make_room(slots_.size());  // a forged image may have too few
   check_loaded(in.memory());
   free_.reserve(slots_.size());  // release() never allocates
 }
 
-/// An image may have a right checksum and be forged: nobody is in a list twice, is left out, or is free and alive.
+/// An image may have a right checksum and be forged: nobody is in a list twice, is left out, has no ticket, or is
+/// free and alive.
 void ObjectTable::check_loaded(std::pmr::memory_resource* memory) const {
   enum : std::uint8_t { Ordered = 1, Iterating = 2, PostIterating = 4, Joining = 8, Free = 16 };
   std::pmr::vector<std::uint8_t> met(slots_.size(), memory);
@@ -227,8 +248,13 @@ void ObjectTable::check_loaded(std::pmr::memory_resource* memory) const {
     meet(id.index, PostIterating);
   }
   for (const std::uint32_t index : free_) {
-    if (slots_[index].generation == std::numeric_limits<std::uint32_t>::max()) ByteReader::fail();
+    if (!reusable(index)) ByteReader::fail();
     meet(index, Free);
+  }
+  // Hosts can name whoever lives, or lived last, in each slot.
+  for (std::uint32_t index = 0; index < slots_.size(); ++index) {
+    const std::uint32_t generation = slots_[index].generation;
+    if (tickets_.generation(index, tickets_.of({index, generation})) != generation) ByteReader::fail();
   }
 }
 

@@ -13,6 +13,7 @@
 #include "runtime/kinematics/bodies.hpp"
 #include "runtime/world/behaviour.hpp"
 #include "runtime/world/resource.hpp"
+#include "runtime/world/tickets.hpp"
 
 namespace breve {
 
@@ -59,6 +60,13 @@ class ObjectTable {
   Reclassed prepare_reclass(std::span<const ClassChange> classes) const;
   void reclass(std::span<const ClassChange> classes, Reclassed& lists) noexcept;
 
+  /// What hosts know an instance by, also one that is gone. See Tickets.
+  std::uint32_t ticket(ObjectId id) const { return tickets_.of(id); }
+  /// The live instance of a ticket, or null.
+  ObjectId holder(std::uint32_t index, std::uint32_t ticket) const;
+  /// This table takes the place of `abandoned` in the same world.
+  void keep_tickets(const ObjectTable& abandoned);
+
   std::uint64_t last_serial() const { return serials_; }  // of the object created last
 
   void save(ByteWriter& out) const;
@@ -75,6 +83,7 @@ class ObjectTable {
   };
   void tidy();
   bool close_gaps(SparseIds& list, std::size_t& most) const;
+  bool reusable(std::uint32_t index) const;
   bool joined(const Slot& slot) const { return slot.serial <= joined_; }
   void save_ids(ByteWriter& out, const std::pmr::vector<ObjectId>& ids) const;
   void load_slot(ByteReader& in, Slot& slot, FindLoader find_loader, const void* context);
@@ -84,6 +93,7 @@ class ObjectTable {
   std::pmr::vector<std::uint32_t> free_;  // last freed, first reused
   SparseIds order_, iterating_, post_iterating_;
   std::pmr::vector<ObjectId> joining_;
+  Tickets tickets_;
   std::uint64_t serials_ = 0, joined_ = 0;  // of the last created, of the last that has joined the lists
   std::size_t live_ = 0;
   std::size_t gaps_ = 0, released_ = 0;  // released since the last pass began, since the last join

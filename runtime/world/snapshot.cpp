@@ -11,7 +11,7 @@ namespace breve {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'b', 'r', 'e', 'v', 'e', 'i', 'm', 'g'};
-constexpr std::uint32_t kVersion = 9;  // grows with every change of what follows the header
+constexpr std::uint32_t kVersion = 10;  // grows with every change of what follows the header
 
 std::uint64_t checksum(const std::uint8_t* data, std::size_t size) {
   Hasher hasher;
@@ -183,6 +183,7 @@ void World::load(const std::uint8_t* data, std::size_t size, std::uint64_t progr
   const bool scripted = in.get_bool();
   if (scripted != (behaviour_ != nullptr)) refuse("the image is of a world with another kind of script side");
   if (!scripted && in.left() != 0) ByteReader::fail();
+  fresh.parts_->objects.keep_tickets(parts_->objects);
   // The script side may look at the objects while it reads its own part, and takes it only if all of it is good.
   swap_state(fresh);
   try {

@@ -61,6 +61,10 @@ void World::release(ObjectId id) {
 }
 
 bool World::alive(ObjectId id) const { return parts_->objects.alive(id); }
+std::uint32_t World::ticket(ObjectId id) const { return parts_->objects.ticket(id); }
+ObjectId World::holder(std::uint32_t index, std::uint32_t ticket) const {
+  return parts_->objects.holder(index, ticket);
+}
 std::uint64_t World::user(ObjectId id) const { return parts_->objects.at(id).user; }
 void World::set_user(ObjectId id, std::uint64_t user) {
   parts_->objects.at(id).user = user;

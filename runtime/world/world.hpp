@@ -44,7 +44,10 @@ class World : public InMemory {
   /// Forget everything about a live object: body, resource, schedule, observers. Its id is stale from now on.
   void release(ObjectId id);
   bool alive(ObjectId id) const;
-  std::uint64_t user(ObjectId id) const;  // Error{Stale} if not alive
+  /// What hosts know an instance by, together with its index, also if it is gone. No restore gives it to another one.
+  std::uint32_t ticket(ObjectId id) const;
+  ObjectId holder(std::uint32_t index, std::uint32_t ticket) const;  // the live instance; null if there is none
+  std::uint64_t user(ObjectId id) const;                             // Error{Stale} if not alive
   void set_user(ObjectId id, std::uint64_t user);
   ClassId class_of(ObjectId id) const;
   bool runs(ObjectId id, bool iterates, bool post_iterates) const;  // was it made so?

@@ -200,6 +200,94 @@ static void ids_of_the_snapshot_are_good_again_and_later_ones_are_stale(void) {
   scene_close(&s);
 }
 
+static bool same(breve_object a, breve_object b) { return a.index == b.index && a.generation == b.generation; }
+
+static breve_object new_ball(breve_world* world) {
+  breve_object ball = {0, 0};
+  CHECK_STATUS(BREVE_OK, breve_object_create(world, "Ball", &ball));
+  return ball;
+}
+
+/* Go back again and again, also to moments of branches that were abandoned: no id is given out twice. */
+static void new_objects_never_get_an_id_of_an_abandoned_branch(void) {
+  enum { ROUNDS = 12, EACH = 3 };
+  scene s, straight;
+  if (!scene_open(&s) || !scene_open(&straight)) return;
+  breve_object given[ROUNDS * EACH];
+  unsigned char* images[ROUNDS];
+  size_t sizes[ROUNDS];
+  const breve_object ball = ball_of(&s);
+  for (int round = 0; round < ROUNDS; ++round) {
+    images[round] = image_of(s.world, &sizes[round]);
+    for (int i = 0; i < EACH; ++i) given[round * EACH + i] = new_ball(s.world);
+    if (round % 2 == 1) CHECK_STATUS(BREVE_OK, breve_object_free(s.world, given[round * EACH]));
+    const int back = round / 3;
+    CHECK_STATUS(BREVE_OK, breve_world_restore(s.world, images[back], sizes[back]));
+    CHECK(breve_object_alive(s.world, ball));
+  }
+  for (int i = 0; i < ROUNDS * EACH; ++i)
+    for (int j = 0; j < i; ++j) CHECK(!same(given[i], given[j]));
+  /* What the ids are makes no difference to the world. */
+  CHECK_STATUS(BREVE_OK, breve_world_restore(s.world, images[0], sizes[0]));
+  CHECK_STATUS(BREVE_ERROR_STALE, breve_object_free(s.world, given[0]));
+  CHECK(!same(new_ball(s.world), new_ball(straight.world)));
+  CHECK(hash_of(s.world) == hash_of(straight.world));
+  step_times(s.world, 3);
+  step_times(straight.world, 3);
+  CHECK(hash_of(s.world) == hash_of(straight.world));
+  for (int round = 0; round < ROUNDS; ++round) free(images[round]);
+  scene_close(&straight);
+  scene_close(&s);
+}
+
+/* A later image knows the ids that its objects had, although other objects had their places in between. */
+static void objects_made_after_a_restore_keep_their_ids_in_images(void) {
+  scene s;
+  if (!scene_open(&s)) return;
+  size_t first_size = 0, second_size = 0;
+  unsigned char* first = image_of(s.world, &first_size);
+  const breve_object abandoned = new_ball(s.world);
+  CHECK_STATUS(BREVE_OK, breve_world_restore(s.world, first, first_size));
+  const breve_object kept = new_ball(s.world);
+  CHECK(kept.index == abandoned.index && kept.generation != abandoned.generation);
+  unsigned char* second = image_of(s.world, &second_size);
+  CHECK_STATUS(BREVE_OK, breve_world_restore(s.world, first, first_size));
+  CHECK(!breve_object_alive(s.world, kept));
+  CHECK_STATUS(BREVE_OK, breve_world_restore(s.world, second, second_size));
+  CHECK(breve_object_alive(s.world, kept));
+  CHECK(!breve_object_alive(s.world, abandoned));
+  CHECK_STATUS(BREVE_OK, breve_object_free(s.world, kept));
+  const breve_object next = new_ball(s.world);
+  CHECK(next.index == kept.index && !same(next, kept) && !same(next, abandoned));
+  CHECK(!breve_object_alive(s.world, kept));
+  free(first);
+  free(second);
+  scene_close(&s);
+}
+
+static void ids_of_another_world_are_stale(void) {
+  scene s;
+  if (!scene_open(&s)) return;
+  breve_world* other = NULL;
+  CHECK_STATUS(BREVE_OK, breve_world_create(s.runtime, s.program, NULL, &other));
+  const breve_object mine = ball_of(&s);
+  const breve_object its = breve_world_controller(other);
+  CHECK(!breve_object_alive(s.world, its) && breve_object_alive(other, its));
+  CHECK_STATUS(BREVE_ERROR_STALE, breve_object_free(other, mine));
+  CHECK_STATUS(BREVE_ERROR_STALE, breve_object_call(s.world, its, "touch", NULL, 0, NULL));
+  const breve_value foreign = breve_value_object(its);
+  CHECK_STATUS(BREVE_ERROR_STALE, breve_object_set(s.world, breve_world_controller(s.world), "ball", &foreign));
+  CHECK(breve_object_class(s.world, its) == NULL);
+  CHECK(hash_of(s.world) == hash_of(other));
+  size_t size = 0;
+  unsigned char* image = image_of(s.world, &size);
+  CHECK_STATUS(BREVE_OK, breve_world_restore(other, image, size)); /* whose objects they are not, all the same */
+  CHECK(!breve_object_alive(other, mine) && breve_object_alive(other, its));
+  free(image);
+  CHECK_STATUS(BREVE_OK, breve_world_destroy(other));
+  scene_close(&s);
+}
+
 static void a_room_that_is_too_small_is_not_written_to(void) {
   scene s;
   if (!scene_open(&s)) return;
@@ -259,6 +347,9 @@ void snapshot_suite(void) {
   RUN(so_it_does_for_grids_agents_and_reactions);
   RUN(a_snapshot_changes_nothing);
   RUN(ids_of_the_snapshot_are_good_again_and_later_ones_are_stale);
+  RUN(new_objects_never_get_an_id_of_an_abandoned_branch);
+  RUN(objects_made_after_a_restore_keep_their_ids_in_images);
+  RUN(ids_of_another_world_are_stale);
   RUN(a_room_that_is_too_small_is_not_written_to);
   RUN(damaged_images_are_refused_and_change_nothing);
   RUN(an_image_of_another_program_is_refused);

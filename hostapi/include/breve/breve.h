@@ -16,8 +16,8 @@
  *   library never aborts, never prints and never exits.
  * - A NULL handle, NULL text or NULL out-parameter gives BREVE_ERROR_ARGUMENT, or 0, false or NULL from a function that
  *   returns its result. Numbers that are NaN or infinite where a finite one is needed give BREVE_ERROR_ARGUMENT.
- * - An id of an object that is gone gives BREVE_ERROR_STALE; it never names another object. The null object, where a
- *   live one is needed, gives BREVE_ERROR_ARGUMENT.
+ * - An id of an object that is gone gives BREVE_ERROR_STALE; it never names another object, whatever is restored. So does
+ *   an id of another world of the same runtime. The null object, where a live one is needed, gives BREVE_ERROR_ARGUMENT.
  * - Any function may run out of memory and give BREVE_ERROR_MEMORY. Any that reads or changes joints, springs or the
  *   energy of bodies may give BREVE_ERROR_SCRIPT where their state cannot be computed with: numbers that overflow.
  * - Texts are UTF-8 or plain bytes, ended by a zero byte; a text given with a size may hold zero bytes.
@@ -106,7 +106,8 @@ typedef struct breve_runtime breve_runtime;
 typedef struct breve_program breve_program;
 typedef struct breve_world breve_world;
 
-/* One instance in a world. All zero is the null object. Compare both fields to compare objects. */
+/* One instance in a world. All zero is the null object. Compare both fields to compare objects. The generations of each
+   world of a runtime begin at another number, those of the first one at 1. Worlds of different runtimes share ids. */
 typedef struct breve_object {
   uint32_t index, generation;
 } breve_object;
@@ -1302,8 +1303,10 @@ BREVE_API breve_status breve_world_hash(const breve_world* world, uint64_t* hash
    time that breve_world_advance keeps is the host loop's, and is not part of the image. */
 BREVE_API breve_status breve_world_snapshot(const breve_world* world, void* image, size_t capacity, size_t* size);
 
-/* Put a world of the same program back to a snapshot's state. Ids of the snapshot's moment are good again, those made
-   since are stale; the time that breve_world_advance keeps is dropped. Runs no script.
+/* Put a world of the same program back to a snapshot's state. In the world that the snapshot is of, ids of its moment are
+   good again; those given out since are stale, and no new object gets one of them. A world of another runtime that was
+   made there as the same one (the first, the second ...) shares these ids; in any other world the host asks for its objects
+   anew. The time that breve_world_advance keeps is dropped. Runs no script.
    BREVE_OK; BREVE_ERROR_IMAGE: damaged, or of another program or version: the world is unchanged;
    BREVE_ERROR_BUSY while a script of it runs. */
 BREVE_API breve_status breve_world_restore(breve_world* world, const void* image, size_t size);
