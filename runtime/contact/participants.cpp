@@ -128,7 +128,7 @@ Eigen::AlignedBox3d CollisionStage::box_of_path(const Proxy& proxy) const {
 void CollisionStage::update_boxes(const CollisionClient& client) {
   put_.clear();
   bodies_->take_put(Follower::Collisions, put_);
-  const std::uint64_t scalings = Shape::scalings();
+  const std::uint64_t scalings = bodies_->shape_changes();
   if (look_at_all_ || scalings != seen_scalings_) {
     for (const ProxyIndex index : order_) update_box(client, index);
   } else {

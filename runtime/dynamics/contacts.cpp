@@ -103,7 +103,7 @@ void NearPairs::refresh(Bodies& bodies, const DynamicsClient& client, const Vect
   moved_.clear();
   bodies.take_put(Follower::Dynamics, put_);
   find_drivers(bodies);
-  const std::uint64_t scalings = Shape::scalings();
+  const std::uint64_t scalings = bodies.shape_changes();
   update_boxes(bodies, gathers || scalings != seen_scalings_, gravity, h);
   put_.clear();
   seen_scalings_ = scalings;

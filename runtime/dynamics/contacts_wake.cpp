@@ -60,7 +60,7 @@ void NearPairs::wake_disturbed(Bodies& bodies) {
   for (const ProxyIndex index : woken_) proxies_[index].woken = false;
   woken_.clear();
   bodies.take_put(Follower::Dynamics, put_);
-  const bool scaled = Shape::scalings() != seen_scalings_;
+  const bool scaled = bodies.shape_changes() != seen_scalings_;
   for (const Proxy& proxy : proxies_)
     if (scaled && proxy.body != kNoBody && bodies.used(proxy.body) && displaced(bodies, proxy)) wake_met(bodies, proxy);
   for (const BodyIndex body : put_)

@@ -117,6 +117,7 @@ struct Bodies::Arrays : InMemory {
   std::array<std::pmr::vector<BodyIndex>, kFollowers> put;  // room for all bodies: a body is in each at most once
   std::pmr::vector<std::uint8_t> in_put;                    // by body: bit i for put[i]
   std::pmr::vector<BodyIndex> touched;                      // may name bodies that are gone
+  const Shape::ChangeCount shape_changes;                   // never null
 
   BodyIndex grow();
   bool physics(BodyIndex body) const { return rigid_row[body] != kNoRow && rigid_rows[rigid_row[body]].physics; }

@@ -120,7 +120,8 @@ Bodies::Arrays::Arrays(std::pmr::memory_resource* memory)
       free(memory),
       put{std::pmr::vector<BodyIndex>(memory), std::pmr::vector<BodyIndex>(memory)},
       in_put(memory),
-      touched(memory) {}
+      touched(memory),
+      shape_changes(std::allocate_shared<std::uint64_t>(std::pmr::polymorphic_allocator<std::uint64_t>(memory), 0)) {}
 
 BodyIndex Bodies::Arrays::grow() {
   const std::size_t size = owner.size() + 1;
@@ -199,7 +200,10 @@ void Bodies::flatten() {
 
 BodyIndex Bodies::add(BodyKind kind, ObjectId owner) {
   Arrays& a = arrays();
-  if (!a.default_shape) a.default_shape = Shape::sphere(1, memory_);
+  if (!a.default_shape) {
+    a.default_shape = Shape::sphere(1, memory_);
+    a.default_shape->report_changes_to(a.shape_changes);
+  }
   BodyIndex body;
   if (a.free.empty()) {
     body = a.grow();
@@ -242,6 +246,7 @@ std::size_t Bodies::index_end() const { return arrays_ ? arrays_->owner.size() :
 bool Bodies::used(BodyIndex body) const { return body < index_end() && arrays_->owner[body]; }
 std::uint64_t Bodies::revision() const { return arrays_ ? arrays_->revision : 0; }
 std::uint64_t Bodies::physics_revision() const { return arrays_ ? arrays_->physics_revision : 0; }
+std::uint64_t Bodies::shape_changes() const { return arrays_ ? *arrays_->shape_changes : 0; }
 
 std::size_t Bodies::bytes() const {
   if (!arrays_) return 0;
@@ -403,6 +408,7 @@ const std::shared_ptr<Shape>& Bodies::display_shape(BodyIndex body) const { retu
 
 void Bodies::set_collision_shape(BodyIndex body, std::shared_ptr<Shape> shape) {
   if (!shape) throw Error(ErrorCode::Argument, "a body needs a shape: the one given is null");
+  shape->report_changes_to(arrays_->shape_changes);
   arrays_->collision_shape[body] = std::move(shape);
   arrays_->note_put(body);
   if (arrays_->rigid_row[body] != kNoRow) arrays_->copy_mass(body);

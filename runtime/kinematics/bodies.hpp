@@ -79,6 +79,7 @@ class Bodies : public InMemory {
   bool used(BodyIndex body) const;
   std::uint64_t revision() const;          // grows when a body is added, removed, or its physics switched
   std::uint64_t physics_revision() const;  // grows when the physics of a body is switched
+  std::uint64_t shape_changes() const;     // grows when a shape that a body collides with gets a scale or a height
   std::size_t bytes() const;
   void swap(Bodies& other);
   /// From now on z = 0 and rotation about z only, exactly. Error{Argument} if a body is not so. A setter then throws

@@ -138,6 +138,7 @@ void Bodies::load(ByteReader& in) {
   Arrays& a = arrays();
   a.default_shape = in.get_shared<Shape>();
   if (!a.default_shape) ByteReader::fail();
+  a.default_shape->report_changes_to(a.shape_changes);
   for (std::size_t i = 0; i < count; ++i) {
     const BodyIndex body = a.grow();
     a.owner[body] = in.get_object();
@@ -152,6 +153,7 @@ void Bodies::load(ByteReader& in) {
     a.collision_shape[body] = in.get_shared<Shape>();
     a.display_shape[body] = in.get_shared<Shape>();
     if (!a.collision_shape[body] || !a.display_shape[body] || a.kind[body] > BodyKind::Link) ByteReader::fail();
+    a.collision_shape[body]->report_changes_to(a.shape_changes);
     load_row(in, a.turn_rows, a.turn_row[body]);
     load_row(in, a.rigid_rows, a.rigid_row[body]);
     load_row(in, a.materials, a.material_row[body]);

@@ -371,7 +371,7 @@ void Planar::Core::push_velocity(FlatBody& flat, const Vector3& velocity, double
 void Planar::Core::push_shapes() {
   // Box2D's step has driven what is compared here out of the caches.
   constexpr std::size_t kAhead = 10;
-  const std::uint64_t scalings = Shape::scalings();
+  const std::uint64_t scalings = bodies->shape_changes();
   const bool scaled = std::exchange(seen_scalings, scalings) != scalings;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     if (i + kAhead < slots.size()) {

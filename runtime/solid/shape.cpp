@@ -5,7 +5,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -91,7 +90,7 @@ void Shape::Geometry::derive_mass() {
   }
 }
 
-Shape::Shape(std::unique_ptr<Geometry> geometry) : geometry_(std::move(geometry)) {
+Shape::Shape(std::unique_ptr<Geometry> geometry) : geometry_(std::move(geometry)), counts_(geometry_->memory()) {
   geometry_->derive_size();
   geometry_->derive_mass();
 }
@@ -231,12 +230,6 @@ void Shape::set_inertia(const Matrix3& inertia) {
   g.inertia = symmetric;
 }
 
-namespace {
-std::atomic<std::uint64_t> scalings_so_far{0};
-}
-
-std::uint64_t Shape::scalings() { return scalings_so_far.load(std::memory_order_relaxed); }
-
 void Shape::set_scale(const Vector3& factors) {
   static constexpr const char* kWhat[] = {"the scale of a shape along x", "the scale of a shape along y",
                                           "the scale of a shape along z"};
@@ -254,7 +247,14 @@ void Shape::set_scale(const Vector3& factors) {
 
 void Shape::note_change() {
   ++changes_;
-  scalings_so_far.fetch_add(1, std::memory_order_relaxed);
+  for (const ChangeCount& count : counts_) ++*count;
+}
+
+void Shape::report_changes_to(const ChangeCount& count) {
+  if (std::find(counts_.begin(), counts_.end(), count) != counts_.end()) return;
+  std::erase_if(counts_,
+                [](const ChangeCount& other) { return other.use_count() == 1; });  // that nobody reads any more
+  counts_.push_back(count);
 }
 
 }  // namespace breve

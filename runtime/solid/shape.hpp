@@ -95,10 +95,11 @@ class Shape : public InMemory {
   /// for its radius and the factor of its axis for its height. The density stays.
   void set_scale(const Vector3& factors);
   const Vector3& scale() const;
-  const Vector3& last_scale() const;  // the scale before the last change
-  /// How often any shape of the process was given a scale or a height. Who compares this need not look at each shape.
-  static std::uint64_t scalings();
-  std::uint64_t changes() const { return changes_; }  // how often this one was
+  const Vector3& last_scale() const;                  // the scale before the last change
+  std::uint64_t changes() const { return changes_; }  // how often it was given a scale or a height
+  /// Counts the same of many shapes: who compares it need not look at each.
+  using ChangeCount = std::shared_ptr<std::uint64_t>;
+  void report_changes_to(const ChangeCount& count);  // from now on, also; nothing if it does already
 
   /// Where a ray from the centre along `direction` leaves the surface; (0,0,0) for a zero direction.
   Vector3 point_on(const Vector3& direction) const;
@@ -123,6 +124,7 @@ class Shape : public InMemory {
   void note_change();
   std::unique_ptr<Geometry> geometry_;
   std::uint64_t changes_ = 0;
+  std::pmr::vector<ChangeCount> counts_;  // of each world that has bodies of this shape: hardly ever more than one
 };
 
 }  // namespace breve
