@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 std::string count(std::size_t n, std::string_view what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
 
-const char* severity_name(breve_severity severity) {
+const char* severity_name(std::uint32_t severity) {
   switch (severity) {
     case BREVE_SEVERITY_ERROR: return "error";
     case BREVE_SEVERITY_WARNING: return "warning";

@@ -11,7 +11,7 @@ using nlohmann::json;
 namespace {
 
 /// The protocol's CompletionItemKind.
-int item_kind(breve_name_kind kind) {
+int item_kind(std::uint32_t kind) {
   switch (kind) {
     case BREVE_NAME_MODULE: return 9;
     case BREVE_NAME_CLASS: return 7;
@@ -47,7 +47,7 @@ std::string keyword_snippet(const breve_analysis* analysis, std::size_t method) 
 // A blank asks everywhere; it is meant only where a name of one kind must follow.
 bool worth_showing_after_blank(const std::vector<breve_completion>& items) {
   if (items.empty()) return false;
-  const breve_name_kind kind = items.front().kind;
+  const std::uint32_t kind = items.front().kind;
   return items.size() == 1 || kind == BREVE_NAME_METHOD || kind == BREVE_NAME_KEYWORD || kind == BREVE_NAME_CLASS ||
          kind == BREVE_NAME_MODULE;
 }

@@ -19,7 +19,7 @@ std::uint32_t number(const json& position, const char* name) {
 json position(std::size_t line, std::size_t character) { return {{"line", line}, {"character", character}}; }
 
 /// The protocol's SymbolKind.
-int symbol_kind(breve_name_kind kind) {
+int symbol_kind(std::uint32_t kind) {
   switch (kind) {
     case BREVE_NAME_MODULE: return 1;
     case BREVE_NAME_CLASS: return 5;

@@ -152,7 +152,7 @@ class Repl {
   std::string text_of(const breve_value& value) { return shortened(whole_text_of(value)); }
 
   std::string whole_text_of(const breve_value& value) {
-    if (value.type == BREVE_STRING) return quoted({value.as.string.bytes, value.as.string.size});
+    if (value.type == BREVE_TYPE_STRING) return quoted({value.as.string.bytes, value.as.string.size});
     const char* text = nullptr;
     std::string out = breve_value_text(world_.get(), &value, &text) == BREVE_OK ? text : "?";
     out.erase(out.find_last_not_of(' ') + 1);  // of an object without a description
@@ -167,7 +167,7 @@ class Repl {
 
   void show(std::string_view entry) {
     breve_value value;
-    if (evaluate(entry, value) && value.type != BREVE_NULL) output_.print(text_of(value) + "\n");
+    if (evaluate(entry, value) && value.type != BREVE_TYPE_NULL) output_.print(text_of(value) + "\n");
   }
 
   // --- commands
@@ -260,7 +260,7 @@ class Repl {
     breve_value value;
     if (!evaluate(text.empty() ? "self" : text, value)) return;
     const auto object = value.as.object;
-    if (value.type != BREVE_OBJECT || !breve_object_alive(world_.get(), object))
+    if (value.type != BREVE_TYPE_OBJECT || !breve_object_alive(world_.get(), object))
       return output_.print(fmt::format("{}: {}\n", type_text(value.type), text_of(value)));
     output_.print(line_about(object) + "\n");
     for (const auto& cls : names_.line_of(breve_object_class(world_.get(), object))) {

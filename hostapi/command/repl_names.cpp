@@ -26,7 +26,7 @@ std::vector<std::string> ProgramNames::session_names() const {
       breve_list_size(world_, &keys, &size) != BREVE_OK)
     return found;
   for (std::size_t i = 0; i < size; ++i)
-    if (breve_list_get(world_, &keys, i, &key) == BREVE_OK && key.type == BREVE_STRING)
+    if (breve_list_get(world_, &keys, i, &key) == BREVE_OK && key.type == BREVE_TYPE_STRING)
       found.emplace_back(key.as.string.bytes, key.as.string.size);
   return found;
 }

@@ -21,7 +21,7 @@ std::string json_text(const std::string& text) {
   return quoted.substr(1, quoted.size() - 2);
 }
 
-const char* category(breve_profile_kind kind) {
+const char* category(std::uint32_t kind) {
   switch (kind) {
     case BREVE_PROFILE_WORLD:
     case BREVE_PROFILE_STAGE: return "stage";

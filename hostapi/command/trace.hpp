@@ -31,8 +31,8 @@ class TraceWriter {
 
  private:
   struct Open {
-    double begin = 0;  // s
-    breve_profile_kind kind{};
+    double begin = 0;        // s
+    std::uint32_t kind = 0;  // breve_profile_kind
     const std::string* class_name = nullptr;
     const std::string* name = nullptr;
     const std::string* file = nullptr;

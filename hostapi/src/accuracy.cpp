@@ -36,9 +36,8 @@ breve_accuracy accuracy_from(const Accuracy& from) {
   return to;
 }
 
-Rung rung_of(breve_rung rung) {
-  if (static_cast<unsigned>(rung) >= kRungs)
-    fail(BREVE_ERROR_ARGUMENT, "there is no rung " + std::to_string(static_cast<unsigned>(rung)));
+Rung rung_of(std::uint32_t rung) {
+  if (rung >= kRungs) fail(BREVE_ERROR_ARGUMENT, "there is no rung " + std::to_string(rung));
   return static_cast<Rung>(rung);
 }
 

@@ -11,7 +11,7 @@ using steve::Instance;
 
 constexpr const char* kClasses[] = {"RevoluteJoint", "PrismaticJoint", "FixedJoint", "UniversalJoint", "BallJoint"};
 
-const char* class_of_kind(breve_joint_kind kind) {
+const char* class_of_kind(std::uint32_t kind) {
   const auto number = static_cast<std::size_t>(kind);
   if (number >= std::size(kClasses))
     fail(BREVE_ERROR_ARGUMENT, "breve_joint_description.kind is no kind of joint: " + std::to_string(number));

@@ -33,8 +33,8 @@ void References::forget_all() {
 breve_value to_host(breve_world& world, const Value& value) {
   breve_value out = breve_value_null();
   out.type = static_cast<std::uint32_t>(value.tag);
-  static_assert(static_cast<int>(Tag::Data) == BREVE_DATA && static_cast<int>(Tag::Object) == BREVE_OBJECT &&
-                static_cast<int>(Tag::Vector) == BREVE_VECTOR && static_cast<int>(Tag::Hash) == BREVE_HASH);
+  static_assert(static_cast<int>(Tag::Data) == BREVE_TYPE_DATA && static_cast<int>(Tag::Object) == BREVE_TYPE_OBJECT &&
+                static_cast<int>(Tag::Vector) == BREVE_TYPE_VECTOR && static_cast<int>(Tag::Hash) == BREVE_TYPE_HASH);
   switch (value.tag) {
     case Tag::Null:
     case Tag::Pointer: break;
@@ -74,19 +74,19 @@ std::string_view bytes_of(const breve_value& value) {
 Value from_host(breve_world& world, const breve_value& value) {
   auto& heap = world.machine->heap();
   switch (value.type) {
-    case BREVE_NULL: return Value();
-    case BREVE_INT: return Value::of(value.as.integer);
-    case BREVE_DOUBLE: return Value::of(value.as.number);
-    case BREVE_VECTOR: return Value::of(Vector3(value.as.vector[0], value.as.vector[1], value.as.vector[2]));
-    case BREVE_MATRIX: return Value::of(Tag::Matrix, heap.matrix(Matrix3(value.as.matrix)));
-    case BREVE_STRING: return Value::of(Tag::String, heap.string(bytes_of(value)));
-    case BREVE_DATA: return Value::of(Tag::Data, heap.data(bytes_of(value)));
-    case BREVE_OBJECT:
+    case BREVE_TYPE_NULL: return Value();
+    case BREVE_TYPE_INT: return Value::of(value.as.integer);
+    case BREVE_TYPE_DOUBLE: return Value::of(value.as.number);
+    case BREVE_TYPE_VECTOR: return Value::of(Vector3(value.as.vector[0], value.as.vector[1], value.as.vector[2]));
+    case BREVE_TYPE_MATRIX: return Value::of(Tag::Matrix, heap.matrix(Matrix3(value.as.matrix)));
+    case BREVE_TYPE_STRING: return Value::of(Tag::String, heap.string(bytes_of(value)));
+    case BREVE_TYPE_DATA: return Value::of(Tag::Data, heap.data(bytes_of(value)));
+    case BREVE_TYPE_OBJECT:
       if (is_null(value.as.object)) return Value::of(Tag::Object, nullptr);
       return Value::of(Tag::Object, &live_instance(world, value.as.object));
-    case BREVE_LIST: return Value::of(Tag::List, world.references.find(value.as.ref, Tag::List));
-    case BREVE_HASH: return Value::of(Tag::Hash, world.references.find(value.as.ref, Tag::Hash));
-    case BREVE_POINTER: fail(BREVE_ERROR_UNSUPPORTED, "a pointer cannot be passed to a script by the host");
+    case BREVE_TYPE_LIST: return Value::of(Tag::List, world.references.find(value.as.ref, Tag::List));
+    case BREVE_TYPE_HASH: return Value::of(Tag::Hash, world.references.find(value.as.ref, Tag::Hash));
+    case BREVE_TYPE_POINTER: fail(BREVE_ERROR_UNSUPPORTED, "a pointer cannot be passed to a script by the host");
     default: fail(BREVE_ERROR_ARGUMENT, "value.type is " + std::to_string(value.type) + ", which is no type");
   }
 }
@@ -96,13 +96,13 @@ namespace {
 /// The list of a value; null for one that is not made yet.
 steve::ListCell* list_of(const breve_world& world, const breve_value* value) {
   need(value, "list");
-  if (value->type != BREVE_LIST) fail(BREVE_ERROR_TYPE, "the value is no list");
+  if (value->type != BREVE_TYPE_LIST) fail(BREVE_ERROR_TYPE, "the value is no list");
   return static_cast<steve::ListCell*>(world.references.find(value->as.ref, Tag::List));
 }
 
 steve::HashCell* hash_of(const breve_world& world, const breve_value* value) {
   need(value, "hash");
-  if (value->type != BREVE_HASH) fail(BREVE_ERROR_TYPE, "the value is no hash");
+  if (value->type != BREVE_TYPE_HASH) fail(BREVE_ERROR_TYPE, "the value is no hash");
   return static_cast<steve::HashCell*>(world.references.find(value->as.ref, Tag::Hash));
 }
 
@@ -121,21 +121,21 @@ breve_value breve_value_null(void) {
 
 breve_value breve_value_int(int32_t integer) {
   breve_value value = breve_value_null();
-  value.type = BREVE_INT;
+  value.type = BREVE_TYPE_INT;
   value.as.integer = integer;
   return value;
 }
 
 breve_value breve_value_double(double number) {
   breve_value value = breve_value_null();
-  value.type = BREVE_DOUBLE;
+  value.type = BREVE_TYPE_DOUBLE;
   value.as.number = number;
   return value;
 }
 
 breve_value breve_value_vector(double x, double y, double z) {
   breve_value value = breve_value_null();
-  value.type = BREVE_VECTOR;
+  value.type = BREVE_TYPE_VECTOR;
   value.as.vector[0] = x;
   value.as.vector[1] = y;
   value.as.vector[2] = z;
@@ -144,14 +144,14 @@ breve_value breve_value_vector(double x, double y, double z) {
 
 breve_value breve_value_matrix(const double rows[9]) {
   breve_value value = breve_value_null();
-  value.type = BREVE_MATRIX;
+  value.type = BREVE_TYPE_MATRIX;
   if (rows) std::memcpy(value.as.matrix, rows, sizeof value.as.matrix);
   return value;
 }
 
 breve_value breve_value_string(const char* text) {
   breve_value value = breve_value_null();
-  value.type = BREVE_STRING;
+  value.type = BREVE_TYPE_STRING;
   value.as.string.bytes = text ? text : "";
   value.as.string.size = text ? std::strlen(text) : 0;
   return value;
@@ -159,7 +159,7 @@ breve_value breve_value_string(const char* text) {
 
 breve_value breve_value_object(breve_object object) {
   breve_value value = breve_value_null();
-  value.type = BREVE_OBJECT;
+  value.type = BREVE_TYPE_OBJECT;
   value.as.object = object;
   return value;
 }

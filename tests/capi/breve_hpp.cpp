@@ -161,7 +161,7 @@ TEST(World, EvaluatesStatementsAndGoesOnWithAChangedProgram) {
   EXPECT_EQ(world.evaluate("x = (self get) + 1").or_throw().integer(), 2);
   ASSERT_TRUE(world.reload(runtime.compile("main.tz", changed).or_throw()));
   EXPECT_EQ(world.evaluate("x * 10 + (self get)", world.controller()).or_throw().integer(), 22);
-  EXPECT_EQ(world.session().or_throw().type, static_cast<std::uint32_t>(BREVE_HASH));
+  EXPECT_EQ(world.session().or_throw().type, static_cast<std::uint32_t>(BREVE_TYPE_HASH));
   EXPECT_EQ(world.evaluate("nowhere").status().code(), BREVE_ERROR_COMPILE);
   EXPECT_EQ(world.reload(breve::Program()).code(), BREVE_ERROR_ARGUMENT);
   EXPECT_TRUE(breve::statements_complete("x = 1") && !breve::statements_complete("x = {"));

@@ -8,12 +8,12 @@ static void keywords_are_found_in_any_order_and_defaults_fill_in(void) {
   breve_keyword both[] = {{"second", breve_value_int(2)}, {"first", breve_value_int(40)}};
   breve_value result;
   CHECK_STATUS(BREVE_OK, breve_object_call(s.world, stage, "add", both, 2, &result));
-  CHECK(result.type == BREVE_INT && result.as.integer == 42);
+  CHECK(result.type == BREVE_TYPE_INT && result.as.integer == 42);
   CHECK_STATUS(BREVE_OK, breve_object_call(s.world, stage, "add", &both[1], 1, &result));
   CHECK(result.as.integer == 50);
   breve_keyword apart[] = {{"from", breve_value_int(10)}, {"this", breve_value_double(2.5)}};
   CHECK_STATUS(BREVE_OK, breve_object_call(s.world, stage, "subtract", apart, 2, &result));
-  CHECK(result.type == BREVE_DOUBLE && result.as.number == 7.5);
+  CHECK(result.type == BREVE_TYPE_DOUBLE && result.as.number == 7.5);
   CHECK_STATUS(BREVE_OK, breve_object_call(s.world, stage, "touch", NULL, 0, NULL));
   CHECK(int_of(&s, "calls") == 1);
   scene_close(&s);
@@ -27,7 +27,7 @@ static void library_methods_are_called_the_same_way(void) {
   breve_value where;
   CHECK_STATUS(BREVE_OK, breve_object_call(s.world, ball, "move", &to, 1, NULL));
   CHECK_STATUS(BREVE_OK, breve_object_call(s.world, ball, "get-location", NULL, 0, &where));
-  CHECK(where.type == BREVE_VECTOR && where.as.vector[1] == 6);
+  CHECK(where.type == BREVE_TYPE_VECTOR && where.as.vector[1] == 6);
   scene_close(&s);
 }
 
@@ -39,7 +39,7 @@ static void values_of_all_types_go_through_a_call(void) {
   breve_value result;
   breve_keyword value = {"value", breve_value_matrix(rows)};
   CHECK_STATUS(BREVE_OK, breve_object_call(s.world, stage, "echo-matrix", &value, 1, &result));
-  CHECK(result.type == BREVE_MATRIX && memcmp(result.as.matrix, rows, sizeof rows) == 0);
+  CHECK(result.type == BREVE_TYPE_MATRIX && memcmp(result.as.matrix, rows, sizeof rows) == 0);
   value.value = breve_value_string("text");
   CHECK_STATUS(BREVE_OK, breve_object_call(s.world, stage, "echo-string", &value, 1, &result));
   CHECK_TEXT("text", result.as.string.bytes);
@@ -48,7 +48,7 @@ static void values_of_all_types_go_through_a_call(void) {
   CHECK(result.as.object.index == ball.index && result.as.object.generation == ball.generation);
   value.value = breve_value_object((breve_object){0, 0});
   CHECK_STATUS(BREVE_OK, breve_object_call(s.world, stage, "echo-object", &value, 1, &result));
-  CHECK(result.type == BREVE_OBJECT && result.as.object.generation == 0);
+  CHECK(result.type == BREVE_TYPE_OBJECT && result.as.object.generation == 0);
   value.value.type = 77;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_call(s.world, stage, "echo-object", &value, 1, &result));
   scene_close(&s);
@@ -64,7 +64,7 @@ static void wrong_calls_say_what_is_wrong(void) {
   CHECK(strstr(breve_world_last_error(s.world)->message, "'fly'") != NULL);
   CHECK_STATUS(BREVE_ERROR_SCRIPT, breve_object_call(s.world, stage, "add", &wrong, 1, &result));
   CHECK_STATUS(BREVE_ERROR_SCRIPT, breve_object_call(s.world, stage, "add", NULL, 0, &result));
-  CHECK(result.type == BREVE_INT && result.as.integer == 123); /* results are written only on success */
+  CHECK(result.type == BREVE_TYPE_INT && result.as.integer == 123); /* results are written only on success */
   wrong = (breve_keyword){"text", breve_value_object((breve_object){0, 0})};
   CHECK_STATUS(BREVE_OK, breve_object_call(s.world, stage, "say", &wrong, 1, NULL));
   wrong = (breve_keyword){"first", breve_value_vector(1, 2, 3)};

@@ -14,8 +14,8 @@ static breve_status run(breve_world* world, const char* text, breve_value* value
 static int int_from(breve_world* world, const char* text) {
   breve_value v = breve_value_null();
   CHECK_STATUS(BREVE_OK, run(world, text, &v));
-  check_that(v.type == BREVE_INT, text, __FILE__, __LINE__);
-  return v.type == BREVE_INT ? v.as.integer : -999;
+  check_that(v.type == BREVE_TYPE_INT, text, __FILE__, __LINE__);
+  return v.type == BREVE_TYPE_INT ? v.as.integer : -999;
 }
 
 static bool says(breve_world* world, const char* part) {
@@ -35,14 +35,14 @@ static void a_bare_expression_gives_its_value(void) {
   CHECK(int_from(s.world, "(self add first 2)") == 12 && int_from(s.world, "self add first 2 second 3.") == 5);
   CHECK(int_from(s.world, "return 4.") == 4);
   CHECK_STATUS(BREVE_OK, run(s.world, "name + \"!\"", &v));
-  CHECK(v.type == BREVE_STRING);
+  CHECK(v.type == BREVE_TYPE_STRING);
   CHECK_TEXT("stage!", v.as.string.bytes);
   CHECK_STATUS(BREVE_OK, run(s.world, "where * 2", &v));
-  CHECK(v.type == BREVE_VECTOR && v.as.vector[2] == 6);
+  CHECK(v.type == BREVE_TYPE_VECTOR && v.as.vector[2] == 6);
   static const char* const valueless[] = {"", " ", "# only words", "print 1.", "if count: count.", "while 0: count."};
   for (size_t i = 0; i < sizeof valueless / sizeof *valueless; ++i) {
     CHECK_STATUS(BREVE_OK, run(s.world, valueless[i], &v));
-    check_that(v.type == BREVE_NULL, valueless[i], __FILE__, __LINE__);
+    check_that(v.type == BREVE_TYPE_NULL, valueless[i], __FILE__, __LINE__);
   }
   CHECK_STATUS(BREVE_OK, breve_world_evaluate(s.world, (breve_object){0, 0}, NULL, 0, NULL));
   CHECK_TEXT("1\n", s.said.print);
@@ -58,7 +58,7 @@ static void statements_stand_in_a_method_of_the_object(void) {
   CHECK(int_of(&s, "count") == 12 && value_of(&s, "level").as.number == 13.0);
   CHECK(int_from(s.world, "things{0} + grid[1]") == 13);
   CHECK_STATUS(BREVE_OK, breve_world_evaluate(s.world, ball, "self", 4, &v));
-  CHECK(v.type == BREVE_OBJECT && v.as.object.index == ball.index);
+  CHECK(v.type == BREVE_TYPE_OBJECT && v.as.object.index == ball.index);
   CHECK_STATUS(BREVE_OK, breve_world_evaluate(s.world, ball, "self move to (1, 2, 3)", 22, NULL));
   breve_pose pose;
   CHECK_STATUS(BREVE_OK, breve_object_pose(s.world, ball, &pose));
@@ -85,7 +85,7 @@ static void assigned_names_live_in_the_session(void) {
   CHECK(int_from(s.world, "v = (1, 2, 3). v::y = 7. v{0} = 4. |v::y + v::x - 11.0| < 0.001") == 1);
   CHECK(int_from(s.world, "for i = 0, i < 10, i++: t = i. t") == 9);
   CHECK_STATUS(BREVE_OK, run(s.world, "n = (new Ball)", &v));
-  CHECK(v.type == BREVE_OBJECT);
+  CHECK(v.type == BREVE_TYPE_OBJECT);
   CHECK_STATUS(BREVE_OK, run(s.world, "n set-velocity to (1, 0, 0). n::hits = 3. free n.", NULL));
   CHECK_STATUS(BREVE_OK, breve_world_session(s.world, &v));
   size_t size = 0;
@@ -238,7 +238,7 @@ static void a_large_text_inside_a_running_one_moves_nothing_that_is_used(void) {
   breve_value v;
   CHECK_STATUS(BREVE_OK, run(s.world, "\"<$self|$self|${self}>\"", &v));
   s.said.on_print = NULL;
-  CHECK(v.type == BREVE_STRING && strncmp(v.as.string.bytes, "<Stage (0x", 10) == 0 &&
+  CHECK(v.type == BREVE_TYPE_STRING && strncmp(v.as.string.bytes, "<Stage (0x", 10) == 0 &&
         v.as.string.bytes[v.as.string.size - 1] == '>');
   scene_close(&s);
 }

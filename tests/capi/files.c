@@ -136,7 +136,7 @@ static void reads(clerk* c, const char* name, const char* line) {
 static bool does(clerk* c, const char* method, const char* what, const char* name) {
   breve_value result;
   CHECK_STATUS(BREVE_OK, ask(c, method, what, name, &result));
-  return result.type == BREVE_INT && result.as.integer == 1;
+  return result.type == BREVE_TYPE_INT && result.as.integer == 1;
 }
 
 static breve_runtime_config with_root(breve_files* files, const char* name, bool may_write, uint64_t most) {

@@ -399,8 +399,8 @@ static void look_around(place* p) {
   CHECK(breve_world_controller(p->world).generation == p->controller.generation);
   CHECK(breve_object_alive(p->world, p->ball));
   CHECK_TEXT("Ball", breve_object_class(p->world, p->ball));
-  CHECK(breve_value_null().type == BREVE_NULL && breve_value_vector(1, 2, 3).type == BREVE_VECTOR);
-  CHECK(breve_value_matrix(rows).type == BREVE_MATRIX);
+  CHECK(breve_value_null().type == BREVE_TYPE_NULL && breve_value_vector(1, 2, 3).type == BREVE_TYPE_VECTOR);
+  CHECK(breve_value_matrix(rows).type == BREVE_TYPE_MATRIX);
 }
 
 static void call_one(place* p, size_t number, int allowed) {

@@ -76,7 +76,7 @@ static uint64_t hash_of(const breve_world* world) {
 static int call_int(scene* s, breve_object object, const char* method) {
   breve_value v = breve_value_null();
   CHECK_STATUS(BREVE_OK, breve_object_call(s->world, object, method, NULL, 0, &v));
-  return v.type == BREVE_INT ? v.as.integer : -999;
+  return v.type == BREVE_TYPE_INT ? v.as.integer : -999;
 }
 
 static void the_same_program_changes_no_bit(void) {
@@ -176,11 +176,11 @@ static void instances_keep_their_values_by_name(void) {
   CHECK(breve_object_alive(s.world, stage) && breve_object_alive(s.world, bug));
   CHECK_TEXT("Bug", breve_object_class(s.world, bug));
   breve_value v;
-  CHECK(value_of(&s, "number").type == BREVE_INT && value_of(&s, "number").as.integer == 2);
+  CHECK(value_of(&s, "number").type == BREVE_TYPE_INT && value_of(&s, "number").as.integer == 2);
   CHECK(value_of(&s, "text").as.integer == 12);
   CHECK_STATUS(BREVE_OK, breve_object_get(s.world, stage, "count", &v));
   CHECK_TEXT("7", v.as.string.bytes);
-  CHECK(value_of(&s, "plain").type == BREVE_VECTOR && value_of(&s, "plain").as.vector[0] == 0);
+  CHECK(value_of(&s, "plain").type == BREVE_TYPE_VECTOR && value_of(&s, "plain").as.vector[0] == 0);
   CHECK(s.said.warnings == 1 && strstr(s.said.warning, "'plain'"));
   CHECK(value_of(&s, "fresh").as.number == 0.0); /* the new init has not run */
   const char* text = NULL;
@@ -190,7 +190,7 @@ static void instances_keep_their_values_by_name(void) {
   CHECK(value_of(&s, "bug").as.object.index == bug.index);
   CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_object_get(s.world, stage, "gone", &v));
   CHECK_STATUS(BREVE_OK, breve_object_call(s.world, stage, "grid-sum", NULL, 0, &v));
-  CHECK(v.type == BREVE_DOUBLE && v.as.number == 10.0);
+  CHECK(v.type == BREVE_TYPE_DOUBLE && v.as.number == 10.0);
   /* A variable that moved to a parent; a new one; who iterates. */
   CHECK_STATUS(BREVE_OK, breve_object_get(s.world, bug, "turns", &v));
   CHECK(v.as.integer == 8);

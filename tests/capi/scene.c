@@ -166,12 +166,12 @@ breve_value value_of(scene* s, const char* variable) {
 
 int int_of(scene* s, const char* variable) {
   const breve_value value = value_of(s, variable);
-  CHECK(value.type == BREVE_INT);
+  CHECK(value.type == BREVE_TYPE_INT);
   return value.as.integer;
 }
 
 breve_object ball_of(scene* s) {
   const breve_value value = value_of(s, "ball");
-  CHECK(value.type == BREVE_OBJECT);
+  CHECK(value.type == BREVE_TYPE_OBJECT);
   return value.as.object;
 }

@@ -358,12 +358,12 @@ static void accuracy_is_a_rung_or_single_settings(void) {
   CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_rung_named("sloppy", &rung));
   CHECK_STATUS(BREVE_OK, breve_accuracy_of_rung(rung, &accuracy));
   CHECK(accuracy.rung == rung && accuracy.tolerance > 0);
-  accuracy.integrator = BREVE_VELOCITY_VERLET;
+  accuracy.integrator = BREVE_INTEGRATOR_VELOCITY_VERLET;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_accuracy_of_rung((breve_rung)17, &accuracy));
   accuracy.step = 1e-3;
   CHECK_STATUS(BREVE_OK, breve_world_set_accuracy(s.world, &accuracy));
   CHECK_STATUS(BREVE_OK, breve_world_accuracy(s.world, &accuracy));
-  CHECK(accuracy.rung == BREVE_RUNG_PRECISE && accuracy.step == 1e-3 && accuracy.integrator == BREVE_VELOCITY_VERLET);
+  CHECK(accuracy.rung == BREVE_RUNG_PRECISE && accuracy.step == 1e-3 && accuracy.integrator == BREVE_INTEGRATOR_VELOCITY_VERLET);
   CHECK_STATUS(BREVE_OK, breve_world_describe_accuracy(s.world, &text));
   CHECK(strstr(text, "Verlet") != NULL);
   accuracy.tolerance = -1;

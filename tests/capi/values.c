@@ -5,21 +5,21 @@ static void every_type_is_read(void) {
   scene s;
   if (!scene_open(&s)) return;
   breve_value v = value_of(&s, "count");
-  CHECK(v.type == BREVE_INT && v.as.integer == 7);
+  CHECK(v.type == BREVE_TYPE_INT && v.as.integer == 7);
   v = value_of(&s, "level");
-  CHECK(v.type == BREVE_DOUBLE && v.as.number == 2.5);
+  CHECK(v.type == BREVE_TYPE_DOUBLE && v.as.number == 2.5);
   v = value_of(&s, "where");
-  CHECK(v.type == BREVE_VECTOR && v.as.vector[0] == 1 && v.as.vector[2] == 3);
+  CHECK(v.type == BREVE_TYPE_VECTOR && v.as.vector[0] == 1 && v.as.vector[2] == 3);
   v = value_of(&s, "frame");
-  CHECK(v.type == BREVE_MATRIX && v.as.matrix[0] == 1 && v.as.matrix[4] == 2 && v.as.matrix[8] == 3 &&
+  CHECK(v.type == BREVE_TYPE_MATRIX && v.as.matrix[0] == 1 && v.as.matrix[4] == 2 && v.as.matrix[8] == 3 &&
         v.as.matrix[1] == 0);
   v = value_of(&s, "name");
-  CHECK(v.type == BREVE_STRING && v.as.string.size == 5);
+  CHECK(v.type == BREVE_TYPE_STRING && v.as.string.size == 5);
   CHECK_TEXT("stage", v.as.string.bytes);
   v = value_of(&s, "blank");
-  CHECK(v.type == BREVE_OBJECT && v.as.object.generation == 0);
-  CHECK(value_of(&s, "things").type == BREVE_LIST);
-  CHECK(value_of(&s, "table").type == BREVE_HASH);
+  CHECK(v.type == BREVE_TYPE_OBJECT && v.as.object.generation == 0);
+  CHECK(value_of(&s, "things").type == BREVE_TYPE_LIST);
+  CHECK(value_of(&s, "table").type == BREVE_TYPE_HASH);
   CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_object_get(s.world, breve_world_controller(s.world), "nothing", &v));
   CHECK_STATUS(BREVE_ERROR_UNSUPPORTED, breve_object_get(s.world, breve_world_controller(s.world), "grid", &v));
   scene_close(&s);
@@ -53,7 +53,7 @@ static void writing_converts_as_an_assignment_does(void) {
   CHECK_STATUS(BREVE_ERROR_UNSUPPORTED, breve_object_set(s.world, stage, "grid", &v));
   v.type = 99;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set(s.world, stage, "count", &v));
-  v.type = BREVE_POINTER;
+  v.type = BREVE_TYPE_POINTER;
   CHECK_STATUS(BREVE_ERROR_UNSUPPORTED, breve_object_set(s.world, stage, "count", &v));
   CHECK(int_of(&s, "count") == 3);
   scene_close(&s);
@@ -86,12 +86,12 @@ static void lists_are_read_and_made(void) {
   CHECK_STATUS(BREVE_OK, breve_list_size(s.world, &list, &size));
   CHECK(size == 4);
   CHECK_STATUS(BREVE_OK, breve_list_get(s.world, &list, 1, &v));
-  CHECK(v.type == BREVE_DOUBLE && v.as.number == 2.5);
+  CHECK(v.type == BREVE_TYPE_DOUBLE && v.as.number == 2.5);
   CHECK_STATUS(BREVE_OK, breve_list_get(s.world, &list, 2, &v));
   CHECK_TEXT("three", v.as.string.bytes);
   CHECK_STATUS(BREVE_OK, breve_list_get(s.world, &list, 3, &inner));
   CHECK_STATUS(BREVE_OK, breve_list_get(s.world, &inner, 1, &v));
-  CHECK(v.type == BREVE_INT && v.as.integer == 5);
+  CHECK(v.type == BREVE_TYPE_INT && v.as.integer == 5);
   CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_list_get(s.world, &list, 4, &v));
 
   breve_value made, nested;
@@ -134,7 +134,7 @@ static void hashes_are_read_and_made(void) {
   const breve_keyword keyword = {"value", made};
   CHECK_STATUS(BREVE_OK, breve_object_call(s.world, breve_world_controller(s.world), "echo-hash", &keyword, 1, &v));
   CHECK_STATUS(BREVE_OK, breve_hash_get(s.world, &v, &key, &element));
-  CHECK(element.type == BREVE_DOUBLE && element.as.number == 0.5);
+  CHECK(element.type == BREVE_TYPE_DOUBLE && element.as.number == 0.5);
   scene_close(&s);
 }
 
@@ -147,7 +147,7 @@ static void wrong_and_old_references_are_refused(void) {
   CHECK_STATUS(BREVE_ERROR_TYPE, breve_list_size(s.world, &hash, &size));
   CHECK_STATUS(BREVE_ERROR_TYPE, breve_hash_size(s.world, &list, &size));
   v = hash;
-  v.type = BREVE_LIST; /* a lie */
+  v.type = BREVE_TYPE_LIST; /* a lie */
   CHECK_STATUS(BREVE_ERROR_TYPE, breve_list_size(s.world, &v, &size));
   CHECK_STATUS(BREVE_OK, breve_list_size(s.world, &unmade, &size));
   CHECK(size == 0);

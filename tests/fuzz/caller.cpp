@@ -102,11 +102,11 @@ breve_object Caller::object(const breve_world* world, const char* class_name) {
 void Caller::keep(breve_object object) { caller::keep_some(objects_, object, caller::kMostObjects, choices_); }
 
 void Caller::keep(const breve_value& value) {
-  if (value.type == BREVE_STRING || value.type == BREVE_DATA) {
+  if (value.type == BREVE_TYPE_STRING || value.type == BREVE_TYPE_DATA) {
     // The library's own bytes: they are read now, and not passed in again.
     require(value.as.string.size == 0 || value.as.string.bytes, "a value has no bytes");
     const std::string copy(value.as.string.bytes ? value.as.string.bytes : "", value.as.string.size);
-    if (value.type == BREVE_STRING) require(value.as.string.bytes[copy.size()] == 0, "a string has no end");
+    if (value.type == BREVE_TYPE_STRING) require(value.as.string.bytes[copy.size()] == 0, "a string has no end");
     return;
   }
   caller::keep_some(values_, value, caller::kMostValues, choices_);
@@ -168,7 +168,7 @@ breve_value Caller::value(const breve_world* world) {
       std::memset(&made, 0, sizeof made);
       made.type = static_cast<std::uint32_t>(choices_.below(14));
       made.reserved = chance(10) ? 1 : 0;
-      if (made.type == BREVE_STRING || made.type == BREVE_DATA) {
+      if (made.type == BREVE_TYPE_STRING || made.type == BREVE_TYPE_DATA) {
         made.as.string.bytes = chance(70) ? "abc\0def" : nullptr;
         made.as.string.size = choices_.below(made.as.string.bytes ? 8 : 2);
       } else {

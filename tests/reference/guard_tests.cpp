@@ -85,7 +85,7 @@ TEST(Guard, SeesAnEquationWithoutSolution) {
 
 /// A rod on a spring that is too stiff for explicit Euler at 1/60 s: k h^2 / I = 10.
 Chain hang_what_blows_up(World& world) {
-  world.set_integrator(BREVE_EXPLICIT_EULER);
+  world.set_integrator(BREVE_INTEGRATOR_EXPLICIT_EULER);
   const Chain chain = hang(world, {1}, {1});
   breve_joint_drive drive = world.drive(chain.joints[0]);
   drive.stiffness = 10 * (1.0 / 3) * 3600;
@@ -148,7 +148,7 @@ TEST(Guard, SeesADamperThatIsTooStrong) {
   for (const breve_guard guard : kModes) {
     for (const double strength : {0.9, 4.0}) {
       Watched world(guard);
-      world.set_integrator(BREVE_VELOCITY_VERLET);
+      world.set_integrator(BREVE_INTEGRATOR_VELOCITY_VERLET);
       const Chain chain = hang(world, {1}, {1});
       breve_joint_drive drive = world.drive(chain.joints[0]);
       drive.damping = strength * (1.0 / 3) * 60;  // c h / I for the rod about its end

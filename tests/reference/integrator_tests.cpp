@@ -11,14 +11,14 @@
 namespace breve::reference {
 namespace {
 
-const std::map<std::string, breve_integrator> kSchemes = {{"explicit_euler", BREVE_EXPLICIT_EULER},
-                                                          {"semi_implicit_euler", BREVE_SEMI_IMPLICIT_EULER},
-                                                          {"implicit_euler", BREVE_IMPLICIT_EULER},
-                                                          {"velocity_verlet", BREVE_VELOCITY_VERLET},
-                                                          {"implicit_midpoint", BREVE_IMPLICIT_MIDPOINT},
-                                                          {"rk4", BREVE_RUNGE_KUTTA_4},
-                                                          {"rkf45_4th", BREVE_FEHLBERG_4},
-                                                          {"rkf45_5th", BREVE_FEHLBERG_5}};
+const std::map<std::string, breve_integrator> kSchemes = {{"explicit_euler", BREVE_INTEGRATOR_EXPLICIT_EULER},
+                                                          {"semi_implicit_euler", BREVE_INTEGRATOR_SEMI_IMPLICIT_EULER},
+                                                          {"implicit_euler", BREVE_INTEGRATOR_IMPLICIT_EULER},
+                                                          {"velocity_verlet", BREVE_INTEGRATOR_VELOCITY_VERLET},
+                                                          {"implicit_midpoint", BREVE_INTEGRATOR_IMPLICIT_MIDPOINT},
+                                                          {"rk4", BREVE_INTEGRATOR_RUNGE_KUTTA_4},
+                                                          {"rkf45_4th", BREVE_INTEGRATOR_FEHLBERG_4},
+                                                          {"rkf45_5th", BREVE_INTEGRATOR_FEHLBERG_5}};
 const std::map<std::string, int> kOrders = {{"explicit_euler", 1},    {"semi_implicit_euler", 1},
                                             {"implicit_euler", 1},    {"velocity_verlet", 2},
                                             {"implicit_midpoint", 2}, {"rk4", 4},
@@ -113,7 +113,7 @@ double attitude_error(breve_integrator scheme, double h, bool arm, const Quatern
 }
 
 Quaternion exact_attitude(bool arm) {
-  Whirl whirl(BREVE_FEHLBERG_5, 1.0 / 8000);
+  Whirl whirl(BREVE_INTEGRATOR_FEHLBERG_5, 1.0 / 8000);
   if (arm) {
     whirl.add_arm();
     whirl.world.set_spin(whirl.body, Vector3(4, 1, -3));

@@ -38,7 +38,7 @@ TEST(ReferenceTrees, JointsAccelerateAsTheFileSays) {
   for (const std::string& name : names_in("mb_accel")) {
     if (!Tree::can_be_built(name)) continue;
     Tree tree(name, 1, BREVE_RUNG_BALANCED, true);
-    tree.world.set_integrator(BREVE_EXPLICIT_EULER);
+    tree.world.set_integrator(BREVE_INTEGRATOR_EXPLICIT_EULER);
     const std::vector<Row> states = rows_of("mb_state", name), expected = rows_of("mb_accel", name);
     tree.world.step();
     double size = 0, worst = 0;

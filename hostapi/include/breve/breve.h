@@ -26,6 +26,7 @@
  *   the runtime's callbacks are called by those threads.
  * - Functions marked "Runs script" may call the callbacks of the runtime. A callback may call any function of this
  *   header; one that cannot work inside a running script says so and gives BREVE_ERROR_BUSY there.
+ * - Fields that hold an enumerator are uint32_t; their comment names the enumeration.
  * - Structs that begin with struct_size grow: later headers append fields. Their initialisers, breve_X_default, are
  *   compiled into the host, so that struct_size says how much of the struct the host knows. A function reads and writes
  *   no more than that; fields that the host does not know have their defaults, and a setter leaves them as they are. A
@@ -66,7 +67,7 @@ static inline void breve_clear(void* bytes, size_t size) {
 /* ---- versions ---------------------------------------------------------------------------------------------------- */
 
 /* Number of the binary interface that this header describes. A library with another number is another interface. */
-#define BREVE_ABI 3
+#define BREVE_ABI 4
 
 /* "major.minor.patch" of the library. Never NULL. */
 BREVE_API const char* breve_version(void);
@@ -137,7 +138,7 @@ typedef struct breve_frame {
 
 /* The last error of a world or runtime. Everything in it is owned by that world or runtime until its next call. */
 typedef struct breve_error {
-  breve_status status;
+  uint32_t status;       /* breve_status */
   const char* message;   /* what is wrong, one line or more; never NULL */
   const char* help;      /* what to do, or "" if the message says it all; never NULL */
   const char* file;      /* the script file, or "" if the error has no place in one */
@@ -331,7 +332,7 @@ typedef enum breve_severity {
 
 /* One thing that the compiler has to say. Owned by the runtime until it compiles again. */
 typedef struct breve_diagnostic {
-  breve_severity severity;
+  uint32_t severity;     /* breve_severity */
   const char* code;      /* stable, for machines: "unknown-variable" */
   const char* message;   /* what is wrong */
   const char* help;      /* what to do, or "" */
@@ -352,7 +353,7 @@ BREVE_API breve_status breve_runtime_diagnostic(const breve_runtime* runtime, si
 /* A lint: something doubtful that is no error, and that can be turned off. Texts live as long as the process. */
 typedef struct breve_lint_info {
   const char* code;        /* breve_diagnostic.code: "lint-unused-variable" */
-  breve_severity severity; /* WARNING: most likely a mistake; NOTE: only worth a look */
+  uint32_t severity;       /* breve_severity. WARNING: most likely a mistake; NOTE: only worth a look */
   const char* summary;     /* one line: what it finds */
 } breve_lint_info;
 
@@ -397,7 +398,7 @@ typedef enum breve_profile_kind {
 /* Something begins or ends. Texts are never NULL and are good until the function returns. */
 typedef struct breve_trace_event {
   bool begins;          /* else it ends, perhaps by an error: what began last and has not ended */
-  breve_profile_kind kind;
+  uint32_t kind; /* breve_profile_kind */
   double seconds;       /* wall time since the profile started, less the time spent in the breve_trace_fn */
   const char* class_name; /* the class whose method it is, or that an act is about; "" if there is none */
   const char* name;     /* method, function, act or stage */
@@ -627,7 +628,7 @@ typedef enum breve_shape_kind {
 
 /* The shape that an object is drawn with, in its own frame about its centre. */
 typedef struct breve_shape {
-  breve_shape_kind kind;
+  uint32_t kind; /* breve_shape_kind */
   double radius;  /* of the sphere about the centre that holds the shape; a sphere's own radius */
   double size[3]; /* edges of the box about the centre, along the own axes, that holds the shape; a box's own edges */
   size_t vertex_count; /* 0 for a sphere */
@@ -669,7 +670,7 @@ BREVE_API breve_status breve_program_create_library(breve_runtime* runtime, cons
 /* What a shape is to be. Only the fields of its kind are read. */
 typedef struct breve_geometry {
   size_t struct_size;     /* as breve_geometry_default gives it */
-  breve_shape_kind kind;  /* Default BREVE_SHAPE_SPHERE */
+  uint32_t kind;          /* breve_shape_kind. Default BREVE_SHAPE_SPHERE */
   uint32_t reserved;      /* must be 0 */
   double radius;          /* of a sphere, cylinder or capsule, > 0. Default 1 */
   double size[3];         /* edges of a box, each > 0. Default 1, 1, 1 */
@@ -754,7 +755,7 @@ typedef enum breve_joint_kind {
 /* Between which bodies, and where. */
 typedef struct breve_joint_description {
   size_t struct_size; /* as breve_joint_description_default gives it */
-  breve_joint_kind kind;
+  uint32_t kind; /* breve_joint_kind */
   bool keep_rotation;     /* the child is moved, but not turned: the joint may start away from zero. Default false */
   bool reserved[3];       /* must be false */
   breve_object parent;    /* null: the world. Default null */
@@ -796,7 +797,7 @@ BREVE_API breve_status breve_joint_break(breve_world* world, breve_object joint)
 /* What is known of a joint. Positions and velocities have one number for each axis (1, 1, 0, 2, 3 by kind), the rest is
    0; they are positive when the parent turns or moves along the axis relative to the child. */
 typedef struct breve_joint_info {
-  breve_joint_kind kind;
+  uint32_t kind; /* breve_joint_kind */
   bool linked; /* if not, all of the following is zero */
   bool ring;   /* closes a ring: a constraint */
   breve_object parent, child;
@@ -872,7 +873,7 @@ typedef enum breve_spring_mode {
 
 typedef struct breve_spring {
   size_t struct_size; /* as breve_spring_default gives it */
-  breve_spring_mode mode; /* Default BREVE_SPRING_BOTH */
+  uint32_t mode;      /* breve_spring_mode. Default BREVE_SPRING_BOTH */
   uint32_t reserved;      /* must be 0 */
   breve_object from, to;  /* two bodies */
   double from_point[3], to_point[3]; /* in their own frames. Default 0 */
@@ -916,22 +917,22 @@ typedef enum breve_rung {
 } breve_rung;
 
 typedef enum breve_integrator {
-  BREVE_EXPLICIT_EULER = 0,
-  BREVE_SEMI_IMPLICIT_EULER = 1,
-  BREVE_IMPLICIT_EULER = 2,
-  BREVE_VELOCITY_VERLET = 3,
-  BREVE_IMPLICIT_MIDPOINT = 4,
-  BREVE_RUNGE_KUTTA_4 = 5,
-  BREVE_FEHLBERG_4 = 6,
-  BREVE_FEHLBERG_5 = 7,
-  BREVE_FEHLBERG_ADAPTIVE = 8
+  BREVE_INTEGRATOR_EXPLICIT_EULER = 0,
+  BREVE_INTEGRATOR_SEMI_IMPLICIT_EULER = 1,
+  BREVE_INTEGRATOR_IMPLICIT_EULER = 2,
+  BREVE_INTEGRATOR_VELOCITY_VERLET = 3,
+  BREVE_INTEGRATOR_IMPLICIT_MIDPOINT = 4,
+  BREVE_INTEGRATOR_RUNGE_KUTTA_4 = 5,
+  BREVE_INTEGRATOR_FEHLBERG_4 = 6,
+  BREVE_INTEGRATOR_FEHLBERG_5 = 7,
+  BREVE_INTEGRATOR_FEHLBERG_ADAPTIVE = 8
 } breve_integrator;
 
 /* How bodies with physics are computed. */
 typedef struct breve_accuracy {
   size_t struct_size; /* as breve_accuracy_default gives it */
-  breve_rung rung;    /* where the settings come from */
-  breve_integrator integrator; /* of smooth motion */
+  uint32_t rung;      /* breve_rung: where the settings come from */
+  uint32_t integrator; /* breve_integrator: of smooth motion */
   bool implicit_joints;        /* springs, dampers and motors of joints implicit (Euler's schemes) */
   bool implicit_spin;          /* a free body's spin by the implicit midpoint rule */
   bool direct;                 /* small islands of contacts are solved directly */
@@ -941,7 +942,7 @@ typedef struct breve_accuracy {
   bool reserved[2];            /* must be false */
   double step;                 /* s, the longest sub-step; 0: the integration step */
   double contact_step;         /* s, the longest sub-step of bodies in contact; 0: `step` */
-  double tolerance;            /* of BREVE_FEHLBERG_ADAPTIVE */
+  double tolerance;            /* of BREVE_INTEGRATOR_FEHLBERG_ADAPTIVE */
   int32_t iterations;          /* most of the contact solver, where it is iterative */
   int32_t impacts;             /* most that are located in one island and sub-step */
   double contact_stiffness;    /* of contact springs, N/m per kg of what they push apart; > 0 */
@@ -1142,24 +1143,24 @@ BREVE_API breve_status breve_world_physics_counters(const breve_world* world, br
 /* ---- values ------------------------------------------------------------------------------------------------------ */
 
 typedef enum breve_type {
-  BREVE_NULL = 0, /* no value */
-  BREVE_INT = 1,
-  BREVE_DOUBLE = 2,
-  BREVE_VECTOR = 3,
-  BREVE_MATRIX = 4,
-  BREVE_STRING = 5,
-  BREVE_OBJECT = 6,
-  BREVE_LIST = 7,
-  BREVE_HASH = 8,
-  BREVE_POINTER = 9, /* opaque: can be looked at by nobody, and not be passed in */
-  BREVE_DATA = 10    /* bytes */
+  BREVE_TYPE_NULL = 0, /* no value */
+  BREVE_TYPE_INT = 1,
+  BREVE_TYPE_DOUBLE = 2,
+  BREVE_TYPE_VECTOR = 3,
+  BREVE_TYPE_MATRIX = 4,
+  BREVE_TYPE_STRING = 5,
+  BREVE_TYPE_OBJECT = 6,
+  BREVE_TYPE_LIST = 7,
+  BREVE_TYPE_HASH = 8,
+  BREVE_TYPE_POINTER = 9, /* opaque: can be looked at by nobody, and not be passed in */
+  BREVE_TYPE_DATA = 10    /* bytes */
 } breve_type;
 
 /* A value of a script. Numbers, vectors, matrices and objects stand in place. Bytes that the library gives are its own,
    and a list or hash is a reference: both are good until script runs in that world again, that is until the next
    function marked "Runs script", or, in a callback, until it returns. An older reference gives BREVE_ERROR_STALE; copy
    bytes that are needed longer. Bytes that the host gives are copied by the call. A function that takes a value gives
-   BREVE_ERROR_UNSUPPORTED for a BREVE_POINTER, BREVE_ERROR_STALE for an object that is gone, and BREVE_ERROR_ARGUMENT
+   BREVE_ERROR_UNSUPPORTED for a BREVE_TYPE_POINTER, BREVE_ERROR_STALE for an object that is gone, and BREVE_ERROR_ARGUMENT
    for a type that is not a breve_type. */
 typedef struct breve_value {
   uint32_t type; /* breve_type */
@@ -1172,9 +1173,9 @@ typedef struct breve_value {
     struct {
       const char* bytes; /* a string that the library gives has a zero byte behind it */
       size_t size;
-    } string;            /* BREVE_STRING, BREVE_DATA */
+    } string;            /* BREVE_TYPE_STRING, BREVE_TYPE_DATA */
     breve_object object; /* null, or perhaps gone */
-    breve_ref ref;       /* BREVE_LIST, BREVE_HASH; all zero: one that the script has not made yet, empty */
+    breve_ref ref;       /* BREVE_TYPE_LIST, BREVE_TYPE_HASH; all zero: one that the script has not made yet, empty */
   } as;
 } breve_value;
 
@@ -1373,7 +1374,7 @@ BREVE_API breve_status breve_world_stats(const breve_world* world, breve_stats* 
 /* One node. Texts are never NULL and live until the world's next profile starts. */
 typedef struct breve_profile_node {
   size_t parent; /* its index; below the node's own, but 0 for the root, which is node 0 */
-  breve_profile_kind kind;
+  uint32_t kind; /* breve_profile_kind */
   const char* class_name; /* the class whose method it is, or that an act is about; "" if there is none */
   const char* name;       /* method, function, act or stage */
   const char* file;       /* where the method is declared; "" for what is no method */
@@ -1529,7 +1530,7 @@ typedef enum breve_name_kind {
 
 /* Something that a program, the class library or the language gives a name to. No text is NULL. */
 typedef struct breve_symbol {
-  breve_name_kind kind;      /* from BREVE_NAME_MODULE to BREVE_NAME_CONSTANT */
+  uint32_t kind;             /* breve_name_kind: from BREVE_NAME_MODULE to BREVE_NAME_CONSTANT */
   const char* name;
   const char* signature;     /* as a reader wants it: "set-velocity to v (vector)", "Mobile : Bird (aka Birds)" */
   const char* type;          /* of a variable, parameter, keyword: "float", "Bird object", "5 ints"; of a method or
@@ -1558,7 +1559,7 @@ BREVE_API breve_status breve_analysis_symbol(const breve_analysis* analysis, siz
 
 /* A name at a place. */
 typedef struct breve_reference {
-  breve_name_kind kind; /* what the name means there */
+  uint32_t kind;         /* breve_name_kind: what the name means there */
   const char* name;
   const char* type;      /* static type of the variable, or class of the receiver of the method or keyword, where they
                             are known: "Bird object"; else "" */
@@ -1601,7 +1602,7 @@ BREVE_API breve_status breve_analysis_call(breve_analysis* analysis, const char*
 
 /* A name that may stand at a place. Texts live until the next call of a completion function on the analysis. */
 typedef struct breve_completion {
-  breve_name_kind kind;
+  uint32_t kind;             /* breve_name_kind */
   const char* name;          /* to be put in the place of what is typed of it */
   const char* detail;        /* the signature of its symbol; of a word how it is used; or "" */
   const char* owner;         /* class that declares it, or "" */

@@ -44,7 +44,7 @@ class [[nodiscard]] Status {
  public:
   Status() = default;
   Status(breve_status code, const breve_error* error) : code_(code) {
-    if (code != BREVE_OK) text_ = error && error->status == code ? error->text : breve_status_name(code);
+    if (code != BREVE_OK) text_ = error && error->status == static_cast<std::uint32_t>(code) ? error->text : breve_status_name(code);
   }
   explicit operator bool() const { return code_ == BREVE_OK; }
   breve_status code() const { return code_; }
@@ -102,17 +102,17 @@ class Value : public breve_value {
   Value(Object v) : breve_value(breve_value_object(v)) {}
 
   // The value as a C++ one; the default where it is of another type. A string is copied.
-  int integer(int other = 0) const { return type == BREVE_INT ? as.integer : other; }
+  int integer(int other = 0) const { return type == BREVE_TYPE_INT ? as.integer : other; }
   double number(double other = 0) const {
-    return type == BREVE_DOUBLE ? as.number : type == BREVE_INT ? static_cast<double>(as.integer) : other;
+    return type == BREVE_TYPE_DOUBLE ? as.number : type == BREVE_TYPE_INT ? static_cast<double>(as.integer) : other;
   }
   Vector vector(Vector other = {}) const {
-    return type == BREVE_VECTOR ? Vector{as.vector[0], as.vector[1], as.vector[2]} : other;
+    return type == BREVE_TYPE_VECTOR ? Vector{as.vector[0], as.vector[1], as.vector[2]} : other;
   }
   std::string string() const {
-    return type == BREVE_STRING || type == BREVE_DATA ? std::string(as.string.bytes, as.string.size) : std::string();
+    return type == BREVE_TYPE_STRING || type == BREVE_TYPE_DATA ? std::string(as.string.bytes, as.string.size) : std::string();
   }
-  Object object() const { return type == BREVE_OBJECT ? as.object : Object{}; }
+  Object object() const { return type == BREVE_TYPE_OBJECT ? as.object : Object{}; }
 };
 
 struct Keyword {

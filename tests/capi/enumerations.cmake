@@ -1,0 +1,27 @@
+# Fails if a struct of HEADER has a field of an enumeration, whose size is the compiler's, or if an enumerator does not
+# begin with the name of its type: cmake -DHEADER=breve.h -P enumerations.cmake
+# "_kind" and "_mode" are left out of the names; a status is BREVE_OK or an error.
+file(READ ${HEADER} header)
+string(REPLACE ";" "@" header "${header}")  # which would part the lists below
+string(REGEX MATCHALL "typedef enum breve_[a-z_]+ {[^}]*}" enumerations "${header}")
+list(LENGTH enumerations count)
+if(count EQUAL 0)
+  message(FATAL_ERROR "found no enumerations in ${HEADER}: the pattern is out of date")
+endif()
+foreach(enumeration IN LISTS enumerations)
+  string(REGEX REPLACE "typedef enum breve_([a-z_]+) {.*" "\\1" type "${enumeration}")
+  string(REGEX REPLACE "_(kind|mode)$" "" prefix "${type}")
+  string(TOUPPER "BREVE_${prefix}_" prefix)
+  if(type STREQUAL "status")
+    set(prefix "BREVE_(OK|ERROR_)")
+  endif()
+  string(REGEX MATCHALL "\n  [A-Z0-9_]+ =" enumerators "${enumeration}")
+  foreach(enumerator IN LISTS enumerators)
+    if(NOT enumerator MATCHES "^\n  ${prefix}")
+      message(SEND_ERROR "${enumerator} of breve_${type} does not begin with ${prefix}")
+    endif()
+  endforeach()
+  if(header MATCHES "\n  breve_${type} [a-z_]+@")
+    message(SEND_ERROR "a field is of type breve_${type}: make it uint32_t")
+  endif()
+endforeach()
