@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "breve/analysis.h"
 #include "breve/breve.h"
 
 namespace breve::command {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "breve/analysis.h"
 #include "breve/breve.h"
 #include "repl_input.hpp"
 

@@ -1,10 +1,11 @@
 // What a program is made of, as the host reads it: symbols, names at places, completions; and the class library's
 // texts.
-#include "steve/analysis/analysis.hpp"
+#include "breve/analysis.h"
 
 #include <set>
 
 #include "modules.hpp"
+#include "steve/analysis/analysis.hpp"
 #include "steve/library/library.hpp"
 
 namespace breve::host {

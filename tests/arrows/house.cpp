@@ -187,6 +187,8 @@ class House {
         offend(file, number, std::string(from.folder) + " may not include <" + name + ">");
     if (file == "hostapi/include/breve/breve.h" && name != "stdint.h" && name != "stddef.h" && name != "stdbool.h")
       offend(file, number, "breve.h includes nothing but stdint.h, stddef.h and stdbool.h");
+    if (file == "hostapi/include/breve/analysis.h" && name != "breve/breve.h")
+      offend(file, number, "analysis.h includes nothing but breve.h");
   }
 
   void check_arrow(const Part& from, const std::string& file, std::size_t number, const std::string& name) {

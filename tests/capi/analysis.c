@@ -1,4 +1,6 @@
 /* What a program is made of: symbols, names at places, completions; and every argument that is no good. */
+#include "breve/analysis.h"
+
 #include "scene.h"
 
 static const char world_text[] =

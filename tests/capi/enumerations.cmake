@@ -1,12 +1,14 @@
-# Fails if a struct of HEADER has a field of an enumeration, whose size is the compiler's, or if an enumerator does not
-# begin with the name of its type: cmake -DHEADER=breve.h -P enumerations.cmake
+# Fails if a struct of the headers in HEADERS has a field of an enumeration, whose size is the compiler's, or if an enumerator does not
+# begin with the name of its type: cmake -DHEADERS=folder -P enumerations.cmake
 # "_kind" and "_mode" are left out of the names; a status is BREVE_OK or an error.
-file(READ ${HEADER} header)
+file(READ ${HEADERS}/breve.h header)
+file(READ ${HEADERS}/analysis.h analysis)
+string(APPEND header "${analysis}")
 string(REPLACE ";" "@" header "${header}")  # which would part the lists below
 string(REGEX MATCHALL "typedef enum breve_[a-z_]+ {[^}]*}" enumerations "${header}")
 list(LENGTH enumerations count)
 if(count EQUAL 0)
-  message(FATAL_ERROR "found no enumerations in ${HEADER}: the pattern is out of date")
+  message(FATAL_ERROR "found no enumerations in ${HEADERS}: the pattern is out of date")
 endif()
 foreach(enumeration IN LISTS enumerations)
   string(REGEX REPLACE "typedef enum breve_([a-z_]+) {.*" "\\1" type "${enumeration}")

@@ -2,6 +2,7 @@
    looks that each function of the header is named in this file. */
 #include <stdlib.h>
 
+#include "breve/analysis.h"
 #include "scene.h"
 
 /* Where a call is made from. */

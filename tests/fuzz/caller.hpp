@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "breve/analysis.h"
 #include "breve/breve.h"
 #include "choices.hpp"
 #include "class_library.hpp"

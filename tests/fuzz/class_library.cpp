@@ -1,6 +1,7 @@
 // The library's declarations, taken from an analysis of a program that uses none of them.
 #include "class_library.hpp"
 
+#include "breve/analysis.h"
 #include "support.hpp"
 
 namespace breve::fuzz {

@@ -1,7 +1,9 @@
 cmake_policy(VERSION 3.20)
-# Fails if fuzz_call does not call each function of HEADER with success, or if the seeds have a finding:
-#   cmake -DHEADER=breve.h -DREPLAY=fuzz_replay -DFIRST=1 -DCOUNT=100 -P functions.cmake
-file(READ ${HEADER} header)
+# Fails if fuzz_call does not call each function of the headers in HEADERS with success, or if the seeds have a finding:
+#   cmake -DHEADERS=folder -DREPLAY=fuzz_replay -DFIRST=1 -DCOUNT=100 -P functions.cmake
+file(READ ${HEADERS}/breve.h header)
+file(READ ${HEADERS}/analysis.h analysis)
+string(APPEND header "${analysis}")
 string(REGEX MATCHALL "BREVE_API [^;(]*breve_[a-z0-9_]+\\(" declarations "${header}")
 string(REGEX REPLACE "BREVE_API [^;(]*(breve_[a-z0-9_]+)\\(" "\\1" declared "${declarations}")
 execute_process(COMMAND ${REPLAY} --functions ${FIRST} ${COUNT} OUTPUT_VARIABLE output ERROR_VARIABLE errors
@@ -14,12 +16,12 @@ foreach(name IN LISTS declared)
 endforeach()
 foreach(name IN LISTS called)
   if(NOT name IN_LIST declared)
-    message(SEND_ERROR "fuzz_call has ${name}, which is not in ${HEADER}")
+    message(SEND_ERROR "fuzz_call has ${name}, which is not in ${HEADERS}")
   endif()
 endforeach()
 list(LENGTH declared count)
 if(count LESS 150)
-  message(FATAL_ERROR "found ${count} functions in ${HEADER}: the pattern is out of date")
+  message(FATAL_ERROR "found ${count} functions in ${HEADERS}: the pattern is out of date")
 endif()
 if(result)
   message(FATAL_ERROR "${output}${errors}${result}")

@@ -21,6 +21,7 @@
 #include <utility>
 #include <vector>
 
+#include "breve/analysis.h"
 #include "breve/breve.h"
 
 inline bool operator==(breve_object a, breve_object b) { return a.index == b.index && a.generation == b.generation; }
