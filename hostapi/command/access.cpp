@@ -31,7 +31,7 @@ void FileAccess::add(const fs::path& directory, bool may_write) {
   const fs::path asked = directory.empty() ? fs::path(".") : directory;
   std::error_code problem;
   Root root{fs::canonical(asked, problem), directory == "." ? fs::path() : directory, {}};
-  if (problem || breve_files_within(asked.c_str(), may_write, 0, &root.files) != BREVE_OK)
+  if (problem || breve_files_add_directory(asked.c_str(), may_write, 0, &root.files) != BREVE_OK)
     throw std::runtime_error(fmt::format("there is no directory '{}'", asked.string()));
   roots_.push_back(std::move(root));
 }

@@ -108,8 +108,8 @@ json LspFeatures::signature_help(const json& params) {
   std::vector<std::size_t> methods(kMost);
   std::size_t count = 0;
   const char* keyword = "";
-  if (breve_analysis_call(analysis, where.file.name.c_str(), where.line, where.column, methods.data(), kMost, &count,
-                          &keyword) != BREVE_OK ||
+  if (breve_analysis_callees(analysis, where.file.name.c_str(), where.line, where.column, methods.data(), kMost, &count,
+                             &keyword) != BREVE_OK ||
       count == 0)
     return nullptr;
   methods.resize(std::min(count, kMost));

@@ -96,7 +96,7 @@ json LspFeatures::hover(const json& params) {
   if (where.file.program == nullptr) return nullptr;
   const breve_analysis* analysis = where.file.program->analysis.get();
   breve_reference reference;
-  if (breve_analysis_at(analysis, where.file.name.c_str(), where.line, where.column, &reference) != BREVE_OK)
+  if (breve_analysis_name_at(analysis, where.file.name.c_str(), where.line, where.column, &reference) != BREVE_OK)
     return nullptr;
   constexpr std::size_t kMost = 5;  // of methods that a call may mean
   std::string text;

@@ -36,7 +36,7 @@ struct Tree {
 Tree read_tree(breve_world* world) {
   Tree tree;
   std::size_t count = 0;
-  if (breve_world_profile_count(world, &count) != BREVE_OK) throw std::runtime_error("the profile cannot be read");
+  if (breve_world_profile_node_count(world, &count) != BREVE_OK) throw std::runtime_error("the profile cannot be read");
   tree.nodes.resize(count);
   tree.children.resize(count);
   for (std::size_t i = 0; i < count; ++i) {

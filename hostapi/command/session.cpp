@@ -126,7 +126,7 @@ bool Session::show_diagnostics() {
   return fine;
 }
 
-bool Session::allow(const std::string& code) { return breve_runtime_allow(runtime_, code.c_str()) == BREVE_OK; }
+bool Session::allow(const std::string& code) { return breve_runtime_allow_lint(runtime_, code.c_str()) == BREVE_OK; }
 
 ExitStatus Session::load(const std::string& file, ProgramHandle& program) {
   std::error_code ignored;

@@ -83,11 +83,11 @@ using namespace breve::host;
 
 // --- accuracy -------------------------------------------------------------------------------------------------------
 
-breve_status breve_accuracy_of_rung(breve_rung rung, breve_accuracy* accuracy) {
+breve_status breve_rung_accuracy(breve_rung rung, breve_accuracy* accuracy) {
   return guard([&] { write_struct(accuracy, accuracy_from(breve::accuracy_of(rung_of(rung))), "breve_accuracy"); });
 }
 
-breve_status breve_rung_named(const char* name, breve_rung* rung) {
+breve_status breve_rung_find(const char* name, breve_rung* rung) {
   return guard([&] {
     need(name, "name");
     need(rung, "rung");
@@ -113,7 +113,7 @@ breve_status breve_world_set_accuracy(breve_world* world, const breve_accuracy* 
   });
 }
 
-breve_status breve_world_describe_accuracy(breve_world* world, const char** text) {
+breve_status breve_world_accuracy_text(const breve_world* world, const char** text) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     need(text, "text");

@@ -30,8 +30,9 @@ breve_name_kind kind_of(steve::NameKind kind) { return static_cast<breve_name_ki
 struct breve_analysis {
   std::unique_ptr<breve::steve::Analysis> analysis;
   std::vector<breve::host::DiagnosticText> diagnostics;
-  breve::host::CompletionTexts completions;
-  std::string keyword;                               // of breve_analysis_call
+  // What the functions that look at it have given last.
+  mutable breve::host::CompletionTexts completions;
+  mutable std::string keyword;                       // of breve_analysis_callees
   mutable std::set<std::string, std::less<>> texts;  // given with references
 
   const char* text(std::string_view view) const {
@@ -74,7 +75,7 @@ void need_room(const void* room, size_t capacity, const void* count, const char*
   need(count, "count");
 }
 
-void give(breve_analysis& a, steve::Completions found, uint32_t* typed, breve_completion* items, size_t capacity,
+void give(const breve_analysis& a, steve::Completions found, uint32_t* typed, breve_completion* items, size_t capacity,
           size_t* count) {
   CompletionTexts& kept = a.completions;
   kept.given = std::move(found);
@@ -182,8 +183,8 @@ breve_status breve_analysis_symbol(const breve_analysis* analysis, size_t index,
   });
 }
 
-breve_status breve_analysis_at(const breve_analysis* analysis, const char* file, uint32_t line, uint32_t column,
-                               breve_reference* reference) {
+breve_status breve_analysis_name_at(const breve_analysis* analysis, const char* file, uint32_t line, uint32_t column,
+                                    breve_reference* reference) {
   return guard([&] {
     need(analysis, "analysis");
     need(reference, "reference");
@@ -224,8 +225,8 @@ breve_status breve_analysis_references(const breve_analysis* analysis, size_t sy
   });
 }
 
-breve_status breve_analysis_call(breve_analysis* analysis, const char* file, uint32_t line, uint32_t column,
-                                 size_t* symbols, size_t capacity, size_t* count, const char** keyword) {
+breve_status breve_analysis_callees(const breve_analysis* analysis, const char* file, uint32_t line, uint32_t column,
+                                    size_t* symbols, size_t capacity, size_t* count, const char** keyword) {
   return guard([&] {
     need(analysis, "analysis");
     need_room(symbols, capacity, count, "symbols");
@@ -238,8 +239,9 @@ breve_status breve_analysis_call(breve_analysis* analysis, const char* file, uin
   });
 }
 
-breve_status breve_analysis_completions(breve_analysis* analysis, const char* file, uint32_t line, uint32_t column,
-                                        uint32_t* typed, breve_completion* items, size_t capacity, size_t* count) {
+breve_status breve_analysis_completions(const breve_analysis* analysis, const char* file, uint32_t line,
+                                        uint32_t column, uint32_t* typed, breve_completion* items, size_t capacity,
+                                        size_t* count) {
   return guard([&] {
     need(analysis, "analysis");
     need_room(items, capacity, count, "items");
@@ -248,9 +250,9 @@ breve_status breve_analysis_completions(breve_analysis* analysis, const char* fi
   });
 }
 
-breve_status breve_analysis_statement_completions(breve_analysis* analysis, const char* class_name, const char* text,
-                                                  size_t size, size_t offset, uint32_t* typed, breve_completion* items,
-                                                  size_t capacity, size_t* count) {
+breve_status breve_analysis_statement_completions(const breve_analysis* analysis, const char* class_name,
+                                                  const char* text, size_t size, size_t offset, uint32_t* typed,
+                                                  breve_completion* items, size_t capacity, size_t* count) {
   return guard([&] {
     need(analysis, "analysis");
     need_room(items, capacity, count, "items");

@@ -249,7 +249,7 @@ void release(void* user) {
 
 using namespace breve::host;
 
-breve_status breve_files_within(const char* directory, bool may_write, uint64_t most_bytes, breve_files* files) {
+breve_status breve_files_add_directory(const char* directory, bool may_write, uint64_t most_bytes, breve_files* files) {
   return guard([&] {
     need(directory, "directory");
     need(files, "files");

@@ -38,8 +38,8 @@ breve_status breve_grid_size(const breve_world* world, breve_object grid, uint32
   });
 }
 
-breve_status breve_grid_read(const breve_world* world, breve_object grid, breve_object chemical, double* values,
-                             size_t capacity, size_t* count) {
+breve_status breve_grid_concentrations(const breve_world* world, breve_object grid, breve_object chemical,
+                                       double* values, size_t capacity, size_t* count) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     if (capacity != 0) need(values, "values");
@@ -50,8 +50,8 @@ breve_status breve_grid_read(const breve_world* world, breve_object grid, breve_
   });
 }
 
-breve_status breve_grid_write(breve_world* world, breve_object grid, breve_object chemical, const double* values,
-                              size_t count) {
+breve_status breve_grid_set_concentrations(breve_world* world, breve_object grid, breve_object chemical,
+                                           const double* values, size_t count) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     need(values, "values");

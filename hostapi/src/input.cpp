@@ -19,7 +19,7 @@ bool is_key(const char* key) {
 
 }  // namespace
 
-breve_status breve_world_key(breve_world* world, const char* key, bool down) {
+breve_status breve_world_queue_key(breve_world* world, const char* key, bool down) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     need(key, "key");
@@ -30,7 +30,7 @@ breve_status breve_world_key(breve_world* world, const char* key, bool down) {
   });
 }
 
-breve_status breve_world_click(breve_world* world, breve_object object) {
+breve_status breve_world_queue_click(breve_world* world, breve_object object) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     const ObjectId id = is_null(object) ? ObjectId{} : live_id(*world, object);
@@ -38,13 +38,14 @@ breve_status breve_world_click(breve_world* world, breve_object object) {
   });
 }
 
-breve_status breve_world_menu_items(breve_world* world, breve_menu_item* items, size_t capacity, size_t* count) {
+breve_status breve_world_menu_items(const breve_world* world, breve_menu_item* items, size_t capacity, size_t* count) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     if (capacity != 0) need(items, "items");
     need(count, "count");
-    std::pmr::vector<breve_menu_item> found(&world->meter);
-    std::pmr::vector<std::pair<std::pmr::string, std::pmr::string>> texts(&world->meter);
+    std::pmr::memory_resource* const memory = world->menu_texts.get_allocator().resource();
+    std::pmr::vector<breve_menu_item> found(memory);
+    std::pmr::vector<std::pair<std::pmr::string, std::pmr::string>> texts(memory);
     for (const ObjectId id : world->world->objects()) {
       const auto* item = breve::menu_item(std::as_const(*world->world), id);
       if (!item) continue;
@@ -62,7 +63,7 @@ breve_status breve_world_menu_items(breve_world* world, breve_menu_item* items, 
   });
 }
 
-breve_status breve_world_choose(breve_world* world, breve_object item) {
+breve_status breve_world_queue_choice(breve_world* world, breve_object item) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     const ObjectId id = live_id(*world, item);

@@ -100,7 +100,7 @@ class Answer {
   bool full_ = false;
 };
 
-/// The reason by which breve_files_within says that it ran out of memory.
+/// The reason by which breve_files_add_directory says that it ran out of memory.
 inline constexpr std::string_view kNoMemory = "there is no memory for it";
 
 /// A method name with keywords, and what they mean for the class that was called last.
@@ -155,16 +155,16 @@ struct breve_world : breve::InMemory {
   breve_world_config config{};
   const std::uint32_t first_generation;  // of its ids, less 1: each world of a runtime begins elsewhere
   breve::MemoryMeter meter;
-  std::optional<breve::steve::Profiler> profiler;  // kept when it has stopped, until the next one starts
-  bool tracing = false;                            // a breve_trace_fn runs
+  mutable std::optional<breve::steve::Profiler> profiler;  // kept when it has stopped, until the next one starts
+  bool tracing = false;                                    // a breve_trace_fn runs
   std::unique_ptr<breve::World> world;
   std::unique_ptr<breve::steve::Machine> machine;  // goes before the world
   mutable breve::host::ErrorRecord error;
   breve::host::References references;
   std::pmr::deque<breve::host::Selector> selectors;  // a callback may add some while one is in use
   std::pmr::string text;                             // of breve_value_text
-  std::pmr::string accuracy_text;                    // of breve_world_describe_accuracy
-  std::pmr::vector<std::pair<std::pmr::string, std::pmr::string>> menu_texts;
+  mutable std::pmr::string accuracy_text;            // of breve_world_accuracy_text
+  mutable std::pmr::vector<std::pair<std::pmr::string, std::pmr::string>> menu_texts;
   mutable std::pmr::vector<std::pair<std::pmr::string, std::pmr::string>> effect_texts;
   double remainder = 0;  // s, kept by breve_world_advance; in [0, iteration step)
   int running = 0;       // calls of the host that run script, one inside the other

@@ -60,7 +60,7 @@ JointDescription description_of(const breve_joint_description& from) {
   return to;
 }
 
-JointDrive drive_of(const breve_joint_drive& from) {
+JointDrive drive_of(const breve_drive& from) {
   JointDrive to;
   to.motor_speed = vector_of(from.motor_speed, "motor_speed");
   to.strength_limit = from.strength_limit;
@@ -76,12 +76,12 @@ JointDrive drive_of(const breve_joint_drive& from) {
   to.limit_restitution = from.limit_restitution;
   const double alone[] = {from.strength_limit, from.double_strength, from.double_max,       from.double_min,
                           from.damping,        from.stiffness,       from.limit_restitution};
-  need_finite(alone, std::size(alone), "a number of breve_joint_drive");
+  need_finite(alone, std::size(alone), "a number of breve_drive");
   return to;
 }
 
-breve_joint_drive drive_from(const JointDrive& from) {
-  breve_joint_drive to{};
+breve_drive drive_from(const JointDrive& from) {
+  breve_drive to{};
   to.struct_size = sizeof to;
   copy_to(to.motor_speed, from.motor_speed);
   to.strength_limit = from.strength_limit;
@@ -162,7 +162,7 @@ breve_status breve_joint_break(breve_world* world, breve_object joint) {
                [&] { breve::steve::break_joint(*world->machine, object_of_kind(*world, joint, "Joint")); });
 }
 
-breve_status breve_joint_read(breve_world* world, breve_object joint, breve_joint_info* info) {
+breve_status breve_joint_state(const breve_world* world, breve_object joint, breve_joint_info* info) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     need(info, "info");
@@ -191,15 +191,15 @@ breve_status breve_joint_read(breve_world* world, breve_object joint, breve_join
   });
 }
 
-breve_status breve_joint_get_drive(const breve_world* world, breve_object joint, breve_joint_drive* drive) {
+breve_status breve_joint_drive(const breve_world* world, breve_object joint, breve_drive* drive) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     need(drive, "drive");
-    write_struct(drive, drive_from(world->world->dynamics().drive(linked(*world, joint))), "breve_joint_drive");
+    write_struct(drive, drive_from(world->world->dynamics().drive(linked(*world, joint))), "breve_drive");
   });
 }
 
-breve_status breve_joint_set_drive(breve_world* world, breve_object joint, const breve_joint_drive* drive) {
+breve_status breve_joint_set_drive(breve_world* world, breve_object joint, const breve_drive* drive) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     need(drive, "drive");
@@ -207,12 +207,12 @@ breve_status breve_joint_set_drive(breve_world* world, breve_object joint, const
     Mechanics& dynamics = world->world->dynamics();
     // What an older header does not have stays as it is.
     breve::steve::drive_joint(*world->machine, object_of_kind(*world, joint, "Joint"), index,
-                              drive_of(read_config(drive, drive_from(dynamics.drive(index)), "breve_joint_drive")));
+                              drive_of(read_config(drive, drive_from(dynamics.drive(index)), "breve_drive")));
   });
 }
 
-breve_status breve_joint_place(breve_world* world, breve_object joint, const double position[3],
-                               const double velocity[3]) {
+breve_status breve_joint_set_state(breve_world* world, breve_object joint, const double position[3],
+                                   const double velocity[3]) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     const JointIndex index = linked(*world, joint);
@@ -244,7 +244,7 @@ breve_status breve_spring_create(breve_world* world, const breve_spring* descrip
   });
 }
 
-breve_status breve_spring_set(breve_world* world, breve_object spring, const breve_spring* description) {
+breve_status breve_spring_set_description(breve_world* world, breve_object spring, const breve_spring* description) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     need(description, "description");
@@ -258,7 +258,7 @@ breve_status breve_spring_set(breve_world* world, breve_object spring, const bre
   });
 }
 
-breve_status breve_spring_read(const breve_world* world, breve_object spring, double* length, double* force) {
+breve_status breve_spring_state(const breve_world* world, breve_object spring, double* length, double* force) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     auto& object = object_of_kind(*world, spring, "Spring");

@@ -17,7 +17,7 @@ breve_status breve_lint(size_t index, breve_lint_info* lint) {
   });
 }
 
-breve_status breve_runtime_allow(breve_runtime* runtime, const char* code) {
+breve_status breve_runtime_allow_lint(breve_runtime* runtime, const char* code) {
   if (!runtime) return BREVE_ERROR_ARGUMENT;
   return guard(runtime->error, [&] {
     need(code, "code");

@@ -227,7 +227,7 @@ breve_status breve_object_joints(const breve_world* world, breve_object object, 
   });
 }
 
-breve_status breve_object_move_assembly(breve_world* world, breve_object object, const breve_pose* pose) {
+breve_status breve_object_set_assembly_pose(breve_world* world, breve_object object, const breve_pose* pose) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     need(pose, "pose");

@@ -38,7 +38,7 @@ steve::Profiler::Trace tracer(breve_world& world, breve_trace_fn trace, void* us
   };
 }
 
-steve::Profiler& profiler_of(breve_world& world) {
+steve::Profiler& profiler_of(const breve_world& world) {
   if (!world.profiler) fail(BREVE_ERROR_NOT_FOUND, "this world has no profile: breve_world_profile_start makes one");
   return *world.profiler;
 }
@@ -77,16 +77,16 @@ breve_status breve_world_profile_stop(breve_world* world) {
   });
 }
 
-breve_status breve_world_profile_count(breve_world* world, size_t* count) {
+breve_status breve_world_profile_node_count(const breve_world* world, size_t* count) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     need(count, "count");
-    need_idle(*world, "breve_world_profile_count");
+    need_idle(*world, "breve_world_profile_node_count");
     *count = profiler_of(*world).node_count();
   });
 }
 
-breve_status breve_world_profile_node(breve_world* world, size_t index, breve_profile_node* node) {
+breve_status breve_world_profile_node(const breve_world* world, size_t index, breve_profile_node* node) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     need(node, "node");
@@ -98,7 +98,7 @@ breve_status breve_world_profile_node(breve_world* world, size_t index, breve_pr
   });
 }
 
-breve_status breve_world_profile_cost(breve_world* world, double* seconds) {
+breve_status breve_world_profile_cost(const breve_world* world, double* seconds) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     need(seconds, "seconds");

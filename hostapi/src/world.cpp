@@ -271,7 +271,7 @@ breve_status breve_world_set_paused(breve_world* world, bool paused) {
 
 uint64_t breve_world_seed(const breve_world* world) { return world ? world->world->random().seed() : 0; }
 
-breve_status breve_world_random(breve_world* world, double* number) {
+breve_status breve_world_draw_random(breve_world* world, double* number) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     need(number, "number");

@@ -85,7 +85,7 @@ Measured measure(breve::Runtime& runtime, const breve::Program& program, breve_r
     config.seed = 1;
     auto world = runtime.world(program, config).or_throw();
     breve_accuracy accuracy = breve_accuracy_default();
-    check(world, breve_accuracy_of_rung(rung, &accuracy));
+    check(world, breve_rung_accuracy(rung, &accuracy));
     check(world, breve_world_set_accuracy(world.get(), &accuracy));
     check(world, breve_world_set_guard(world.get(), BREVE_GUARD_REPORT));
     run(world, measured);

@@ -46,7 +46,7 @@ struct Crowd : World {
     hinge.child_point = on_child;
     set_material(hinge.child, 1, 0);
     const breve_object joint = join(hinge);
-    breve_joint_drive now = drive(joint);
+    breve_drive now = drive(joint);
     now.motor_speed[0] = speed;
     now.strength_limit = 2;
     now.low[0] = -0.6;

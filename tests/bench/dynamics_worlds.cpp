@@ -45,7 +45,7 @@ struct Ours {
     config.iteration_step = config.integration_step = kStep;
     must(breve_world_create(runtime, program, &config, &world));
     breve_accuracy accuracy = breve_accuracy_default();
-    must(breve_accuracy_of_rung(rung, &accuracy));
+    must(breve_rung_accuracy(rung, &accuracy));
     must(breve_world_set_accuracy(world, &accuracy));
   }
   ~Ours() {

@@ -62,8 +62,8 @@ void Walkers::add(const Vector3& at, const Genes& genes) {
   }
 }
 
-/// Of a hinge about z: how far the parent is turned against the child. From poses: breve_joint_read would also work out
-/// what the joint holds.
+/// Of a hinge about z: how far the parent is turned against the child. From poses: breve_joint_state would also work
+/// out what the joint holds.
 double Walkers::angle(breve_object parent, breve_object child) const {
   const reference::Quaternion between = turn(child).conjugate() * turn(parent);
   return 2 * std::atan(between.z() / between.w());

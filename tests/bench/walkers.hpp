@@ -33,7 +33,7 @@ class Walkers : public reference::World {
   struct One {
     Genes genes;
     std::vector<breve_object> joints, parents, children;
-    std::vector<breve_joint_drive> drives;
+    std::vector<breve_drive> drives;
   };
   void add(const Vector3& at, const Genes& genes);
   double angle(breve_object parent, breve_object child) const;

@@ -96,7 +96,7 @@ static void names_at_places_lead_to_their_definitions_and_back(void) {
   breve_runtime* runtime = plain_runtime();
   breve_analysis* a = analyse(runtime, world_text);
   breve_reference reference;
-  CHECK_STATUS(BREVE_OK, breve_analysis_at(a, "made.tz", 13, 11, &reference));
+  CHECK_STATUS(BREVE_OK, breve_analysis_name_at(a, "made.tz", 13, 11, &reference));
   CHECK(reference.kind == BREVE_NAME_METHOD && !reference.declaration);
   CHECK_TEXT("fly", reference.name);
   CHECK_TEXT("Bird object", reference.type);
@@ -110,11 +110,11 @@ static void names_at_places_lead_to_their_definitions_and_back(void) {
   CHECK(count == 2 && spans[0].line == 5 && spans[1].line == 13);
   CHECK_STATUS(BREVE_OK, breve_analysis_references(a, symbols[0], NULL, 0, &count));
   CHECK(count == 2);
-  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_analysis_at(a, "made.tz", 13, 1, &reference));
-  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_analysis_at(a, "made.tz", 99, 1, &reference));
-  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_analysis_at(a, "made.tz", 13, 99, &reference));
-  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_analysis_at(a, "made.tz", 0, 0, &reference));
-  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_analysis_at(a, "other.tz", 1, 1, &reference));
+  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_analysis_name_at(a, "made.tz", 13, 1, &reference));
+  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_analysis_name_at(a, "made.tz", 99, 1, &reference));
+  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_analysis_name_at(a, "made.tz", 13, 99, &reference));
+  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_analysis_name_at(a, "made.tz", 0, 0, &reference));
+  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_analysis_name_at(a, "other.tz", 1, 1, &reference));
   CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_analysis_references(a, BREVE_NO_SYMBOL, NULL, 0, &count));
   breve_analysis_destroy(a);
   breve_runtime_destroy(runtime);
@@ -146,10 +146,10 @@ static void completions_fit_their_place(void) {
                breve_analysis_statement_completions(a, "Field", text, 3, 4, &typed, items, 8, &count));
   size_t methods[4];
   const char* keyword = NULL;
-  CHECK_STATUS(BREVE_OK, breve_analysis_call(a, "made.tz", 13, 18, methods, 4, &count, &keyword));
+  CHECK_STATUS(BREVE_OK, breve_analysis_callees(a, "made.tz", 13, 18, methods, 4, &count, &keyword));
   CHECK(count == 1);
   CHECK_TEXT("to", keyword);
-  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_analysis_call(a, "made.tz", 12, 5, methods, 4, &count, &keyword));
+  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_analysis_callees(a, "made.tz", 12, 5, methods, 4, &count, &keyword));
   breve_analysis_destroy(a);
   breve_runtime_destroy(runtime);
 }
@@ -223,9 +223,9 @@ static void null_arguments_give_an_argument_error_or_nothing(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_file(a, 0, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_symbol(NULL, 0, &symbol));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_symbol(a, 0, NULL));
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_at(NULL, "made.tz", 1, 1, &reference));
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_at(a, NULL, 1, 1, &reference));
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_at(a, "made.tz", 1, 1, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_name_at(NULL, "made.tz", 1, 1, &reference));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_name_at(a, NULL, 1, 1, &reference));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_name_at(a, "made.tz", 1, 1, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_definitions(NULL, "made.tz", 1, 1, NULL, 0, &count));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_definitions(a, NULL, 1, 1, NULL, 0, &count));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_definitions(a, "made.tz", 1, 1, NULL, 1, &count));
@@ -233,10 +233,10 @@ static void null_arguments_give_an_argument_error_or_nothing(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_references(NULL, 0, NULL, 0, &count));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_references(a, 0, NULL, 1, &count));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_references(a, 0, NULL, 0, NULL));
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_call(NULL, "made.tz", 1, 1, NULL, 0, &count, NULL));
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_call(a, NULL, 1, 1, NULL, 0, &count, NULL));
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_call(a, "made.tz", 1, 1, NULL, 1, &count, NULL));
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_call(a, "made.tz", 1, 1, NULL, 0, NULL, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_callees(NULL, "made.tz", 1, 1, NULL, 0, &count, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_callees(a, NULL, 1, 1, NULL, 0, &count, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_callees(a, "made.tz", 1, 1, NULL, 1, &count, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_callees(a, "made.tz", 1, 1, NULL, 0, NULL, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_completions(NULL, "made.tz", 1, 1, &typed, NULL, 0, &count));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_completions(a, NULL, 1, 1, &typed, NULL, 0, &count));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_analysis_completions(a, "made.tz", 1, 1, &typed, NULL, 1, &count));

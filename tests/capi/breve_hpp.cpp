@@ -214,7 +214,7 @@ TEST(Bodies, AreBuiltJoinedAndDrivenWithoutAScript) {
   hinge.child = arm;
   hinge.parent_point[1] = 5;
   const breve::Object joint = world.create_joint(hinge).or_throw();
-  breve_joint_drive drive = world.drive(joint).or_throw();
+  breve_drive drive = world.drive(joint).or_throw();
   drive.strength_limit = 5;
   drive.motor_speed[0] = 1;
   ASSERT_TRUE(world.set_drive(joint, drive));

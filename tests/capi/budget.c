@@ -122,7 +122,7 @@ static void an_iteration_is_cut_as_a_whole(void) {
   scene_close(&s);
 
   if (!scene_open_text(&s, endless_text, &config)) return;
-  CHECK_STATUS(BREVE_OK, breve_world_key(s.world, "k", true));
+  CHECK_STATUS(BREVE_OK, breve_world_queue_key(s.world, "k", true));
   CHECK_STATUS(BREVE_ERROR_BUDGET, breve_world_step(s.world));
   CHECK_STATUS(BREVE_OK, breve_world_step(s.world)); /* the key was delivered */
   scene_close(&s);
@@ -172,7 +172,7 @@ static void a_call_budget_cuts_one_object_and_leaves_the_others_their_turn(void)
   CHECK(breve_world_iteration(s.world) == 1 && breve_world_time(s.world) > 0);
   CHECK_STATUS(BREVE_OK, call(&s, "make-ghost"));
   CHECK_STATUS(BREVE_OK, call(&s, "collide"));
-  CHECK_STATUS(BREVE_OK, breve_world_key(s.world, "k", true));
+  CHECK_STATUS(BREVE_OK, breve_world_queue_key(s.world, "k", true));
   for (int i = 0; i < 100; ++i) CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
   CHECK(int_of(&s, "hits") > 0); /* the other side of each contact is told */
   CHECK(int_of(&s, "keys") == 1);

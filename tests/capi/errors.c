@@ -113,10 +113,10 @@ static void lints_are_listed_in_order_and_can_be_allowed(void) {
   CHECK_STATUS(BREVE_OK, breve_runtime_diagnostic(runtime, 0, &d));
   CHECK_TEXT("lint-precedence", d.code);
   CHECK(d.line == 5 && d.severity == BREVE_SEVERITY_WARNING);
-  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_runtime_allow(runtime, "lint-precedense"));
+  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_runtime_allow_lint(runtime, "lint-precedense"));
   CHECK(strstr(breve_runtime_last_error(runtime)->message, "'lint-precedence'") != NULL);
-  CHECK_STATUS(BREVE_OK, breve_runtime_allow(runtime, "lint-precedence"));
-  CHECK_STATUS(BREVE_OK, breve_runtime_allow(runtime, "lint-precedence"));
+  CHECK_STATUS(BREVE_OK, breve_runtime_allow_lint(runtime, "lint-precedence"));
+  CHECK_STATUS(BREVE_OK, breve_runtime_allow_lint(runtime, "lint-precedence"));
   CHECK_STATUS(BREVE_OK, breve_program_compile(runtime, "doubt.tz", text, strlen(text), &program));
   breve_program_destroy(program);
   CHECK(breve_runtime_diagnostic_count(runtime) == 0);

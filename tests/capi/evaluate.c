@@ -202,7 +202,7 @@ static void statements_have_their_place_in_a_profile(void) {
   CHECK_STATUS(BREVE_OK, breve_world_profile_stop(s.world));
   size_t count = 0;
   uint64_t evaluated = 0;
-  CHECK_STATUS(BREVE_OK, breve_world_profile_count(s.world, &count));
+  CHECK_STATUS(BREVE_OK, breve_world_profile_node_count(s.world, &count));
   for (size_t i = 0; i < count; ++i) {
     breve_profile_node node;
     CHECK_STATUS(BREVE_OK, breve_world_profile_node(s.world, i, &node));

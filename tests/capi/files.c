@@ -143,7 +143,7 @@ static breve_runtime_config with_root(breve_files* files, const char* name, bool
   char path[256];
   breve_runtime_config config = breve_runtime_config_default();
   path_in_box(path, sizeof path, name);
-  CHECK_STATUS(BREVE_OK, breve_files_within(path, may_write, most, files));
+  CHECK_STATUS(BREVE_OK, breve_files_add_directory(path, may_write, most, files));
   config.files = *files;
   return config;
 }
@@ -313,10 +313,10 @@ static void what_is_no_directory_is_refused(void) {
   breve_files files = {0};
   char path[256];
   path_in_box(path, sizeof path, "outside.txt");
-  CHECK_STATUS(BREVE_ERROR_FILE, breve_files_within(path, false, 0, &files));
-  CHECK_STATUS(BREVE_ERROR_FILE, breve_files_within("/no/such/directory", false, 0, &files));
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_files_within(NULL, false, 0, &files));
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_files_within(box, false, 0, NULL));
+  CHECK_STATUS(BREVE_ERROR_FILE, breve_files_add_directory(path, false, 0, &files));
+  CHECK_STATUS(BREVE_ERROR_FILE, breve_files_add_directory("/no/such/directory", false, 0, &files));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_files_add_directory(NULL, false, 0, &files));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_files_add_directory(box, false, 0, NULL));
   CHECK(files.user == NULL);
   CHECK_STATUS(BREVE_OK, breve_files_release(&files));
   CHECK_STATUS(BREVE_OK, breve_files_release(NULL));
@@ -389,7 +389,7 @@ static void a_host_may_open_files_itself(void) {
   close_clerk(&c);
   CHECK(memory.closed == 4);
   breve_files others = config.files;
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_files_within("/", false, 0, &others));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_files_add_directory("/", false, 0, &others));
 }
 
 void files_suite(void) {

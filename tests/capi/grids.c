@@ -45,17 +45,17 @@ static void a_chemical_is_read_and_written_as_a_whole(void) {
   CHECK(counts[0] == 3 && counts[1] == 2 && counts[2] == 2);
   double values[12];
   size_t count = 0;
-  CHECK_STATUS(BREVE_OK, breve_grid_read(s.world, grid, sugar, NULL, 0, &count));
+  CHECK_STATUS(BREVE_OK, breve_grid_concentrations(s.world, grid, sugar, NULL, 0, &count));
   CHECK(count == 12);
-  CHECK_STATUS(BREVE_OK, breve_grid_read(s.world, grid, sugar, values, 12, &count));
+  CHECK_STATUS(BREVE_OK, breve_grid_concentrations(s.world, grid, sugar, values, 12, &count));
   for (size_t i = 0; i < 12; ++i) CHECK(values[i] == (i == (2 * 2 + 1) * 2 ? 5 : 0));
   for (size_t i = 0; i < 12; ++i) values[i] = 0.5 * (double)i;
-  CHECK_STATUS(BREVE_OK, breve_grid_write(s.world, grid, sugar, values, 12));
+  CHECK_STATUS(BREVE_OK, breve_grid_set_concentrations(s.world, grid, sugar, values, 12));
   breve_value middle;
   CHECK_STATUS(BREVE_OK, breve_object_call(s.world, breve_world_controller(s.world), "get-middle", NULL, 0, &middle));
   CHECK_NEAR(0.5 * ((1 * 2 + 0) * 2 + 1), middle.as.number, 0);
   double few[3] = {-1, -1, -1};
-  CHECK_STATUS(BREVE_OK, breve_grid_read(s.world, grid, sugar, few, 2, &count));
+  CHECK_STATUS(BREVE_OK, breve_grid_concentrations(s.world, grid, sugar, few, 2, &count));
   CHECK(count == 12 && few[0] == 0 && few[1] == 0.5 && few[2] == -1);
   scene_close(&s);
 }
@@ -74,19 +74,19 @@ static void what_cannot_be_is_an_error_and_changes_nothing(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_grid_size(s.world, nobody, counts));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_grid_size(s.world, grid, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_grid_size(NULL, grid, counts));
-  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_grid_read(s.world, grid, salt, values, 12, &count));
+  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_grid_concentrations(s.world, grid, salt, values, 12, &count));
   CHECK(strstr(breve_world_last_error(s.world)->message, "track") != NULL);
-  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_grid_read(s.world, salt, sugar, values, 12, &count));
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_grid_read(s.world, grid, sugar, NULL, 1, &count));
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_grid_read(s.world, grid, sugar, values, 12, NULL));
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_grid_write(s.world, grid, sugar, values, 12));
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_grid_write(s.world, grid, sugar, values, 11));
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_grid_write(s.world, grid, sugar, NULL, 12));
-  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_grid_write(s.world, grid, salt, values, 12));
+  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_grid_concentrations(s.world, salt, sugar, values, 12, &count));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_grid_concentrations(s.world, grid, sugar, NULL, 1, &count));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_grid_concentrations(s.world, grid, sugar, values, 12, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_grid_set_concentrations(s.world, grid, sugar, values, 12));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_grid_set_concentrations(s.world, grid, sugar, values, 11));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_grid_set_concentrations(s.world, grid, sugar, NULL, 12));
+  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_grid_set_concentrations(s.world, grid, salt, values, 12));
   CHECK_STATUS(BREVE_OK, breve_world_hash(s.world, &after));
   CHECK(before == after);
   CHECK_STATUS(BREVE_OK, breve_object_free(s.world, grid));
-  CHECK_STATUS(BREVE_ERROR_STALE, breve_grid_read(s.world, grid, sugar, values, 12, &count));
+  CHECK_STATUS(BREVE_ERROR_STALE, breve_grid_concentrations(s.world, grid, sugar, values, 12, &count));
   scene_close(&s);
 }
 

@@ -80,8 +80,8 @@ static void a_freed_object_is_stale_everywhere(void) {
   CHECK_STATUS(BREVE_ERROR_STALE, breve_object_set(s.world, ball, "hits", &value));
   CHECK_STATUS(BREVE_ERROR_STALE, breve_object_call(s.world, ball, "touch", NULL, 0, NULL));
   CHECK_STATUS(BREVE_ERROR_STALE, breve_object_call_prepared(s.world, ball, selector, NULL, 0, NULL));
-  CHECK_STATUS(BREVE_ERROR_STALE, breve_world_click(s.world, ball));
-  CHECK_STATUS(BREVE_ERROR_STALE, breve_world_choose(s.world, ball));
+  CHECK_STATUS(BREVE_ERROR_STALE, breve_world_queue_click(s.world, ball));
+  CHECK_STATUS(BREVE_ERROR_STALE, breve_world_queue_choice(s.world, ball));
   CHECK_STATUS(BREVE_ERROR_STALE,
                breve_object_call(s.world, breve_world_controller(s.world), "echo-object", &keyword, 1, NULL));
   for (int i = 0; i < 20; ++i) { /* whoever takes its place has another id */

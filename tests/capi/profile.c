@@ -55,7 +55,7 @@ static bool open_profiled(scene* s, breve_trace_fn trace, void* user) {
 
 static size_t count_of(scene* s) {
   size_t count = 0;
-  CHECK_STATUS(BREVE_OK, breve_world_profile_count(s->world, &count));
+  CHECK_STATUS(BREVE_OK, breve_world_profile_node_count(s->world, &count));
   return count;
 }
 
@@ -260,7 +260,7 @@ static void profile_from_inside(breve_world* world, void* context) {
   (void)context;
   CHECK_STATUS(BREVE_ERROR_BUSY, breve_world_profile_start(world, NULL, NULL));
   CHECK_STATUS(BREVE_ERROR_BUSY, breve_world_profile_stop(world));
-  CHECK_STATUS(BREVE_ERROR_BUSY, breve_world_profile_count(world, &count));
+  CHECK_STATUS(BREVE_ERROR_BUSY, breve_world_profile_node_count(world, &count));
   CHECK_STATUS(BREVE_ERROR_BUSY, breve_world_profile_node(world, 0, &node));
   CHECK_STATUS(BREVE_ERROR_BUSY, breve_world_profile_cost(world, &cost));
 }
@@ -281,7 +281,7 @@ static void a_profile_is_kept_until_the_next(void) {
   double cost;
   if (!scene_open_text(&s, program_text, NULL)) return;
   CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_world_profile_stop(s.world));
-  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_world_profile_count(s.world, &count));
+  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_world_profile_node_count(s.world, &count));
   CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_world_profile_node(s.world, 0, &node));
   CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_world_profile_cost(s.world, &cost));
   CHECK_STATUS(BREVE_OK, breve_world_profile_start(s.world, NULL, NULL));

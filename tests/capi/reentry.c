@@ -67,7 +67,7 @@ static void do_what_may_be_done(breve_world* world, void* context) {
   CHECK_STATUS(BREVE_OK, breve_object_call(world, v->stage, "touch", NULL, 0, &value));
   CHECK_STATUS(BREVE_OK, breve_object_create(world, "Ball", &made));
   CHECK_STATUS(BREVE_OK, breve_object_free(world, made)); /* prints: this function again */
-  CHECK_STATUS(BREVE_OK, breve_world_key(world, "a", true));
+  CHECK_STATUS(BREVE_OK, breve_world_queue_key(world, "a", true));
   CHECK_STATUS(BREVE_ERROR_SCRIPT, breve_object_call(world, v->stage, "fail-now", NULL, 0, NULL));
 }
 

@@ -24,7 +24,7 @@ static const char* const small_text = "@use Control.\nController Small.\nControl
 static breve_status do_files_within(place* p) {
   (void)p;
   breve_files files = {0};
-  const breve_status status = breve_files_within(".", false, 0, &files);
+  const breve_status status = breve_files_add_directory(".", false, 0, &files);
   breve_files_release(&files);
   return status;
 }
@@ -34,7 +34,7 @@ static breve_status do_files_release(place* p) {
   return breve_files_release(&files);
 }
 static breve_status do_runtime_destroy(place* p) { return breve_runtime_destroy(p->runtime); }
-static breve_status do_runtime_allow(place* p) { return breve_runtime_allow(p->runtime, "lint-unused-variable"); }
+static breve_status do_runtime_allow(place* p) { return breve_runtime_allow_lint(p->runtime, "lint-unused-variable"); }
 static breve_status do_load(place* p) {
   breve_program* made = NULL;
   const breve_status status = breve_program_load(p->runtime, "there-is-none.tz", &made);
@@ -65,7 +65,7 @@ static breve_status do_advance(place* p) { return breve_world_advance(p->world, 
 static breve_status do_set_paused(place* p) { return breve_world_set_paused(p->world, false); }
 static breve_status do_random(place* p) {
   double number;
-  return breve_world_random(p->world, &number);
+  return breve_world_draw_random(p->world, &number);
 }
 static breve_status do_objects(place* p) {
   breve_object some[2];
@@ -154,13 +154,13 @@ static breve_status do_prepare(place* p) {
 static breve_status do_call_prepared(place* p) {
   return breve_object_call_prepared(p->world, p->controller, p->touch, NULL, 0, NULL);
 }
-static breve_status do_key(place* p) { return breve_world_key(p->world, "q", true); }
-static breve_status do_click(place* p) { return breve_world_click(p->world, nobody); }
+static breve_status do_key(place* p) { return breve_world_queue_key(p->world, "q", true); }
+static breve_status do_click(place* p) { return breve_world_queue_click(p->world, nobody); }
 static breve_status do_menu(place* p) {
   breve_menu_item items[1];
   size_t count = 0;
   const breve_status status = breve_world_menu_items(p->world, items, 1, &count);
-  return status != BREVE_OK || count == 0 ? status : breve_world_choose(p->world, items[0].item);
+  return status != BREVE_OK || count == 0 ? status : breve_world_queue_choice(p->world, items[0].item);
 }
 static breve_status do_hash(place* p) {
   uint64_t hash;
@@ -183,7 +183,7 @@ static breve_status do_profile_start(place* p) { return breve_world_profile_star
 static breve_status do_profile_stop(place* p) { return breve_world_profile_stop(p->world); }
 static breve_status do_profile_count(place* p) {
   size_t count;
-  return breve_world_profile_count(p->world, &count);
+  return breve_world_profile_node_count(p->world, &count);
 }
 static breve_status do_profile_node(place* p) {
   breve_profile_node node;
@@ -234,7 +234,7 @@ static breve_status do_bodies(place* p) {
   TRY(breve_object_links(w, body, links, 2, &count));
   TRY(breve_object_joints(w, body, links, 2, &count));
   TRY(breve_object_pose(w, body, &pose));
-  TRY(breve_object_move_assembly(w, body, &pose));
+  TRY(breve_object_set_assembly_pose(w, body, &pose));
   TRY(breve_object_set_self_collisions(w, body, false));
   TRY(breve_object_energy(w, body, &energy));
   TRY(breve_object_set_accuracy(w, body, NULL));
@@ -244,15 +244,15 @@ static breve_status do_joints(place* p) {
   breve_world* w = p->world;
   breve_joint_description description = breve_joint_description_default(BREVE_JOINT_REVOLUTE);
   breve_joint_info info;
-  breve_joint_drive drive = breve_joint_drive_default();
+  breve_drive drive = breve_drive_default();
   breve_object joint;
   const double still[3] = {0};
   TRY(breve_object_create(w, "Mobile", &description.child));
   TRY(breve_joint_create(w, &description, &joint));
-  TRY(breve_joint_read(w, joint, &info));
-  TRY(breve_joint_get_drive(w, joint, &drive));
+  TRY(breve_joint_state(w, joint, &info));
+  TRY(breve_joint_drive(w, joint, &drive));
   TRY(breve_joint_set_drive(w, joint, &drive));
-  TRY(breve_joint_place(w, joint, still, still));
+  TRY(breve_joint_set_state(w, joint, still, still));
   TRY(breve_joint_break(w, joint));
   TRY(breve_object_free(w, joint));
   return breve_object_free(w, description.child);
@@ -265,8 +265,8 @@ static breve_status do_springs(place* p) {
   TRY(breve_object_create(w, "Mobile", &description.from));
   TRY(breve_object_create(w, "Mobile", &description.to));
   TRY(breve_spring_create(w, &description, &spring));
-  TRY(breve_spring_set(w, spring, &description));
-  TRY(breve_spring_read(w, spring, &length, &force));
+  TRY(breve_spring_set_description(w, spring, &description));
+  TRY(breve_spring_state(w, spring, &length, &force));
   TRY(breve_object_free(w, spring));
   TRY(breve_object_free(w, description.from));
   return breve_object_free(w, description.to);
@@ -276,8 +276,8 @@ static breve_status do_grids(place* p) { /* the controller is no grid */
   double value = 0;
   size_t count;
   CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_grid_size(p->world, p->controller, counts));
-  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_grid_read(p->world, p->controller, p->ball, &value, 1, &count));
-  return breve_grid_write(p->world, p->controller, p->ball, &value, 1);
+  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_grid_concentrations(p->world, p->controller, p->ball, &value, 1, &count));
+  return breve_grid_set_concentrations(p->world, p->controller, p->ball, &value, 1);
 }
 static breve_status do_accuracy(place* p) {
   breve_world* w = p->world;
@@ -288,11 +288,11 @@ static breve_status do_accuracy(place* p) {
   const char* text;
   size_t count;
   double gravity[3];
-  TRY(breve_rung_named("balanced", &rung));
-  TRY(breve_accuracy_of_rung(rung, &accuracy));
+  TRY(breve_rung_find("balanced", &rung));
+  TRY(breve_rung_accuracy(rung, &accuracy));
   TRY(breve_world_accuracy(w, &accuracy));
   TRY(breve_world_set_accuracy(w, &accuracy));
-  TRY(breve_world_describe_accuracy(w, &text));
+  TRY(breve_world_accuracy_text(w, &text));
   TRY(breve_world_gravity(w, gravity));
   TRY(breve_world_set_gravity(w, gravity));
   TRY(breve_world_space(w, 0, NULL, NULL, NULL));
@@ -313,7 +313,7 @@ static const struct {
   breve_status (*call)(place* p);
   int in_script, in_compilation; /* callbacks of a world that runs; callbacks of a compilation, its worlds being idle */
 } functions[] = {
-    {"breve_runtime_allow", do_runtime_allow, WORKS, WORKS | BUSY},
+    {"breve_runtime_allow_lint", do_runtime_allow, WORKS, WORKS | BUSY},
     {"breve_program_load", do_load, NOTHING, BUSY},
     {"breve_program_compile", do_compile, WORKS, BUSY},
     {"breve_analysis_create", do_analyse, WORKS, BUSY},
@@ -321,7 +321,7 @@ static const struct {
     {"breve_world_step", do_step, BUSY, WORKS},
     {"breve_world_advance", do_advance, BUSY, WORKS},
     {"breve_world_set_paused", do_set_paused, WORKS, WORKS},
-    {"breve_world_random", do_random, WORKS, WORKS},
+    {"breve_world_draw_random", do_random, WORKS, WORKS},
     {"breve_world_objects", do_objects, WORKS, WORKS},
     {"breve_object_is_a", do_is_a, WORKS, WORKS},
     {"breve_object_create and _free", do_create_and_free, WORKS, WORKS},
@@ -344,8 +344,8 @@ static const struct {
     {"breve_object_call", do_call, WORKS, WORKS},
     {"breve_world_prepare", do_prepare, WORKS, WORKS},
     {"breve_object_call_prepared", do_call_prepared, WORKS, WORKS},
-    {"breve_world_key", do_key, WORKS, WORKS},
-    {"breve_world_click", do_click, WORKS, WORKS},
+    {"breve_world_queue_key", do_key, WORKS, WORKS},
+    {"breve_world_queue_click", do_click, WORKS, WORKS},
     {"breve_world_menu_items and _choose", do_menu, WORKS, WORKS},
     {"breve_world_hash", do_hash, BUSY, WORKS},
     {"breve_world_snapshot", do_snapshot, BUSY, WORKS},
@@ -353,7 +353,7 @@ static const struct {
     {"breve_world_effects", do_effects, WORKS, WORKS},
     {"breve_world_stats", do_stats, WORKS, WORKS},
     {"breve_world_profile_start", do_profile_start, BUSY, WORKS},
-    {"breve_world_profile_count", do_profile_count, WORKS | BUSY | NOTHING, WORKS | NOTHING},
+    {"breve_world_profile_node_count", do_profile_count, WORKS | BUSY | NOTHING, WORKS | NOTHING},
     {"breve_world_profile_node", do_profile_node, WORKS | BUSY | NOTHING, WORKS | NOTHING},
     {"breve_world_profile_cost", do_profile_cost, WORKS | BUSY | NOTHING, WORKS | NOTHING},
     {"breve_world_profile_stop", do_profile_stop, WORKS | BUSY | NOTHING, WORKS | NOTHING},
@@ -361,7 +361,7 @@ static const struct {
     {"breve_world_evaluate", do_evaluate, WORKS, WORKS},
     {"breve_world_session", do_session, WORKS, WORKS},
     {"breve_world_destroy", do_destroy, BUSY, BUSY /* not called there: it would work */},
-    {"breve_files_within", do_files_within, WORKS, WORKS},
+    {"breve_files_add_directory", do_files_within, WORKS, WORKS},
     {"breve_files_release", do_files_release, WORKS, WORKS},
     {"breve_runtime_destroy", do_runtime_destroy, BUSY /* only while the runtime itself works */, BUSY},
 };

@@ -256,7 +256,7 @@ static void handlers_observers_and_menus_are_kept_though_class_numbers_change(vo
   size_t count = 0;
   CHECK_STATUS(BREVE_OK, breve_world_menu_items(s.world, items, 20, &count));
   CHECK(count >= 1 && count <= 20);
-  CHECK_STATUS(BREVE_OK, breve_world_choose(s.world, items[count - 1].item));
+  CHECK_STATUS(BREVE_OK, breve_world_queue_choice(s.world, items[count - 1].item));
   CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
   CHECK(int_of(&s, "hits") == 1001);
   scene_close(&s);

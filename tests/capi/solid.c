@@ -54,7 +54,7 @@ static void a_creature_is_built_and_driven_without_a_script(void) {
   CHECK_NEAR(4.5, height_of(&s, upper), 1e-12);
   CHECK_NEAR(3.5, height_of(&s, lower), 1e-12);
   breve_joint_info info;
-  CHECK_STATUS(BREVE_OK, breve_joint_read(s.world, elbow, &info));
+  CHECK_STATUS(BREVE_OK, breve_joint_state(s.world, elbow, &info));
   CHECK(info.kind == BREVE_JOINT_REVOLUTE && info.linked && !info.ring);
   CHECK(same(info.parent, upper) && same(info.child, lower));
   CHECK_NEAR(5, info.hard_limit, 1e-12);
@@ -67,16 +67,16 @@ static void a_creature_is_built_and_driven_without_a_script(void) {
 
   const double weightless[3] = {0, 0, 0};
   CHECK_STATUS(BREVE_OK, breve_world_set_gravity(s.world, weightless));
-  breve_joint_drive drive = breve_joint_drive_default();
-  CHECK_STATUS(BREVE_OK, breve_joint_get_drive(s.world, elbow, &drive));
+  breve_drive drive = breve_drive_default();
+  CHECK_STATUS(BREVE_OK, breve_joint_drive(s.world, elbow, &drive));
   CHECK(drive.strength_limit == 0 && drive.high[0] == INFINITY && drive.low[0] == -INFINITY);
   drive.strength_limit = 1e6;
   drive.motor_speed[0] = 2;
   CHECK_STATUS(BREVE_OK, breve_joint_set_drive(s.world, elbow, &drive));
-  CHECK_STATUS(BREVE_OK, breve_joint_get_drive(s.world, elbow, &drive));
+  CHECK_STATUS(BREVE_OK, breve_joint_drive(s.world, elbow, &drive));
   CHECK_NEAR(5, drive.strength_limit, 1e-12); /* cut to the hard limit */
   for (int i = 0; i < 20; ++i) CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
-  CHECK_STATUS(BREVE_OK, breve_joint_read(s.world, elbow, &info));
+  CHECK_STATUS(BREVE_OK, breve_joint_state(s.world, elbow, &info));
   CHECK_NEAR(2, info.velocity[0], 1e-3);
   CHECK_NEAR(2, info.position[0], 0.05);
   breve_energy energy = breve_energy_default();
@@ -84,18 +84,18 @@ static void a_creature_is_built_and_driven_without_a_script(void) {
   CHECK(energy.kinetic > 0 && energy.motor_work > 0);
 
   const double straight[3] = {0}, still[3] = {0};
-  CHECK_STATUS(BREVE_OK, breve_joint_place(s.world, elbow, straight, still));
-  CHECK_STATUS(BREVE_OK, breve_joint_read(s.world, elbow, &info));
+  CHECK_STATUS(BREVE_OK, breve_joint_set_state(s.world, elbow, straight, still));
+  CHECK_STATUS(BREVE_OK, breve_joint_state(s.world, elbow, &info));
   CHECK_NEAR(0, info.position[0], 1e-12);
   const breve_pose pose = {{1, 2, 3}, {2, 0, 0, 0}};
-  CHECK_STATUS(BREVE_OK, breve_object_move_assembly(s.world, upper, &pose));
+  CHECK_STATUS(BREVE_OK, breve_object_set_assembly_pose(s.world, upper, &pose));
   CHECK_NEAR(2, height_of(&s, upper), 1e-12);
   CHECK_NEAR(1, height_of(&s, lower), 1e-9);
 
   CHECK_STATUS(BREVE_OK, breve_joint_break(s.world, elbow));
-  CHECK_STATUS(BREVE_OK, breve_joint_read(s.world, elbow, &info));
+  CHECK_STATUS(BREVE_OK, breve_joint_state(s.world, elbow, &info));
   CHECK(!info.linked && info.hard_limit == 0);
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_joint_get_drive(s.world, elbow, &drive));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_joint_drive(s.world, elbow, &drive));
   CHECK_STATUS(BREVE_OK, breve_object_links(s.world, upper, NULL, 0, &count));
   CHECK(count == 1);
   CHECK_STATUS(BREVE_OK, breve_object_free(s.world, shoulder)); /* breaks it */
@@ -116,10 +116,10 @@ static void every_kind_of_joint_has_its_axes(void) {
     breve_joint_info info;
     CHECK_STATUS(BREVE_OK, breve_joint_create(s.world, &d, &joint));
     CHECK_TEXT(classes[kind], breve_object_class(s.world, joint));
-    CHECK_STATUS(BREVE_OK, breve_joint_read(s.world, joint, &info));
+    CHECK_STATUS(BREVE_OK, breve_joint_state(s.world, joint, &info));
     CHECK(info.kind == (breve_joint_kind)kind && info.linked);
-    breve_joint_drive drive = breve_joint_drive_default();
-    CHECK_STATUS(BREVE_OK, breve_joint_get_drive(s.world, joint, &drive));
+    breve_drive drive = breve_drive_default();
+    CHECK_STATUS(BREVE_OK, breve_joint_drive(s.world, joint, &drive));
     if (kind == BREVE_JOINT_PRISMATIC) CHECK(drive.low[0] == -2 && drive.high[0] == 2);
     if (kind == BREVE_JOINT_BALL) CHECK_NEAR(1.2207963267948966, drive.high[1], 1e-12);
   }
@@ -158,14 +158,14 @@ static void what_cannot_be_joined_is_refused_and_nothing_changes(void) {
   CHECK_STATUS(BREVE_OK, breve_world_objects(s.world, NULL, all, 32, &again));
   CHECK(again == count);
   breve_joint_info info;
-  CHECK_STATUS(BREVE_ERROR_TYPE, breve_joint_read(s.world, link, &info));
+  CHECK_STATUS(BREVE_ERROR_TYPE, breve_joint_state(s.world, link, &info));
   CHECK_STATUS(BREVE_ERROR_TYPE, breve_joint_break(s.world, link));
-  CHECK_STATUS(BREVE_ERROR_TYPE, breve_spring_read(s.world, link, NULL, NULL));
+  CHECK_STATUS(BREVE_ERROR_TYPE, breve_spring_state(s.world, link, NULL, NULL));
 
   const breve_object elbow = hinge(&s, nobody, link);
   CHECK_STATUS(BREVE_OK, breve_world_hash(s.world, &before));
-  breve_joint_drive drive = breve_joint_drive_default();
-  CHECK_STATUS(BREVE_OK, breve_joint_get_drive(s.world, elbow, &drive));
+  breve_drive drive = breve_drive_default();
+  CHECK_STATUS(BREVE_OK, breve_joint_drive(s.world, elbow, &drive));
   drive.damping = -1;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_joint_set_drive(s.world, elbow, &drive));
   drive.damping = 0;
@@ -175,8 +175,8 @@ static void what_cannot_be_joined_is_refused_and_nothing_changes(void) {
   drive.low[0] = nan;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_joint_set_drive(s.world, elbow, &drive));
   const double wrong[3] = {nan, 0, 0};
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_joint_place(s.world, elbow, wrong, NULL));
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_joint_place(s.world, elbow, NULL, wrong));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_joint_set_state(s.world, elbow, wrong, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_joint_set_state(s.world, elbow, NULL, wrong));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_gravity(s.world, wrong));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_space(s.world, 0, BREVE_EDGE_WRAP, 1, 1));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_space(s.world, 0, BREVE_EDGE_WALL, nan, 1));
@@ -323,20 +323,20 @@ static void springs_pull(void) {
   d.length = 1;
   d.damping = 0;
   CHECK_STATUS(BREVE_OK, breve_spring_create(s.world, &d, &spring));
-  CHECK_STATUS(BREVE_OK, breve_spring_read(s.world, spring, &length, NULL));
+  CHECK_STATUS(BREVE_OK, breve_spring_state(s.world, spring, &length, NULL));
   CHECK_NEAR(5, length, 1e-12);
   CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
-  CHECK_STATUS(BREVE_OK, breve_spring_read(s.world, spring, &length, &force));
+  CHECK_STATUS(BREVE_OK, breve_spring_state(s.world, spring, &length, &force));
   CHECK(length < 5 && force > 100);
   CHECK_STATUS(BREVE_OK, breve_object_velocity(s.world, b, v));
   CHECK(v[1] < 0);
   d.mode = BREVE_SPRING_EXPAND_ONLY;
-  CHECK_STATUS(BREVE_OK, breve_spring_set(s.world, spring, &d));
+  CHECK_STATUS(BREVE_OK, breve_spring_set_description(s.world, spring, &d));
   CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
-  CHECK_STATUS(BREVE_OK, breve_spring_read(s.world, spring, NULL, &force));
+  CHECK_STATUS(BREVE_OK, breve_spring_state(s.world, spring, NULL, &force));
   CHECK_NEAR(0, force, 0);
   d.strength = -1;
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_spring_set(s.world, spring, &d));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_spring_set_description(s.world, spring, &d));
   d.strength = 1;
   d.to = a;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_spring_create(s.world, &d, &spring));
@@ -353,23 +353,24 @@ static void accuracy_is_a_rung_or_single_settings(void) {
   const char* text = NULL;
   CHECK_STATUS(BREVE_OK, breve_world_accuracy(s.world, &accuracy));
   CHECK(accuracy.rung == BREVE_RUNG_BALANCED);
-  CHECK_STATUS(BREVE_OK, breve_rung_named("precise", &rung));
+  CHECK_STATUS(BREVE_OK, breve_rung_find("precise", &rung));
   CHECK(rung == BREVE_RUNG_PRECISE);
-  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_rung_named("sloppy", &rung));
-  CHECK_STATUS(BREVE_OK, breve_accuracy_of_rung(rung, &accuracy));
+  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_rung_find("sloppy", &rung));
+  CHECK_STATUS(BREVE_OK, breve_rung_accuracy(rung, &accuracy));
   CHECK(accuracy.rung == rung && accuracy.tolerance > 0);
   accuracy.integrator = BREVE_INTEGRATOR_VELOCITY_VERLET;
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_accuracy_of_rung((breve_rung)17, &accuracy));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_rung_accuracy((breve_rung)17, &accuracy));
   accuracy.step = 1e-3;
   CHECK_STATUS(BREVE_OK, breve_world_set_accuracy(s.world, &accuracy));
   CHECK_STATUS(BREVE_OK, breve_world_accuracy(s.world, &accuracy));
-  CHECK(accuracy.rung == BREVE_RUNG_PRECISE && accuracy.step == 1e-3 && accuracy.integrator == BREVE_INTEGRATOR_VELOCITY_VERLET);
-  CHECK_STATUS(BREVE_OK, breve_world_describe_accuracy(s.world, &text));
+  CHECK(accuracy.rung == BREVE_RUNG_PRECISE && accuracy.step == 1e-3 &&
+        accuracy.integrator == BREVE_INTEGRATOR_VELOCITY_VERLET);
+  CHECK_STATUS(BREVE_OK, breve_world_accuracy_text(s.world, &text));
   CHECK(strstr(text, "Verlet") != NULL);
   accuracy.tolerance = -1;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_accuracy(s.world, &accuracy));
   const breve_object link = make(&s, "Link");
-  CHECK_STATUS(BREVE_OK, breve_accuracy_of_rung(BREVE_RUNG_FAST, &accuracy));
+  CHECK_STATUS(BREVE_OK, breve_rung_accuracy(BREVE_RUNG_FAST, &accuracy));
   CHECK_STATUS(BREVE_OK, breve_object_set_accuracy(s.world, link, &accuracy));
   CHECK_STATUS(BREVE_OK, breve_object_set_accuracy(s.world, link, NULL));
   CHECK_STATUS(BREVE_OK, breve_world_set_guard(s.world, BREVE_GUARD_REPORT));
@@ -393,7 +394,7 @@ static void a_universal_joint_turns_about_the_axis_that_is_given(void) {
   breve_object joint;
   CHECK_STATUS(BREVE_OK, breve_joint_create(s.world, &d, &joint));
   const double position[3] = {0, 0.5, 0};
-  CHECK_STATUS(BREVE_OK, breve_joint_place(s.world, joint, position, NULL));
+  CHECK_STATUS(BREVE_OK, breve_joint_set_state(s.world, joint, position, NULL));
   breve_pose pose;
   CHECK_STATUS(BREVE_OK, breve_object_pose(s.world, d.child, &pose));
   /* Positive: the child turns along -z. */
@@ -510,7 +511,7 @@ static void script_and_host_see_the_same_joints(void) {
   breve_value angle;
   breve_joint_info info;
   CHECK_STATUS(BREVE_OK, breve_object_call(s.world, lab, "get-angle", NULL, 0, &angle));
-  CHECK_STATUS(BREVE_OK, breve_joint_read(s.world, elbow, &info));
+  CHECK_STATUS(BREVE_OK, breve_joint_state(s.world, elbow, &info));
   CHECK_NEAR(1, angle.as.number, 0.05);
   CHECK(angle.as.number == info.position[0]);
   CHECK_STATUS(BREVE_OK, breve_world_restore(s.world, image, size));

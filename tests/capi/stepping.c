@@ -119,11 +119,11 @@ static void one_seed_gives_one_run(void) {
   CHECK(breve_world_seed(a.world) == 1234567890123ULL);
   double x = -1, y = -2, z = -3;
   for (int i = 0; i < 100; ++i) {
-    CHECK_STATUS(BREVE_OK, breve_world_random(a.world, &x));
-    CHECK_STATUS(BREVE_OK, breve_world_random(b.world, &y));
+    CHECK_STATUS(BREVE_OK, breve_world_draw_random(a.world, &x));
+    CHECK_STATUS(BREVE_OK, breve_world_draw_random(b.world, &y));
     CHECK(x == y && x >= 0 && x <= 1);
   }
-  CHECK_STATUS(BREVE_OK, breve_world_random(c.world, &z));
+  CHECK_STATUS(BREVE_OK, breve_world_draw_random(c.world, &z));
   CHECK(x != z);
   scene_close(&a);
   scene_close(&b);

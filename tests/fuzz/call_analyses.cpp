@@ -107,7 +107,7 @@ breve_status analysis_at(Caller& c) {
   const breve_analysis* analysis = c.analysis();
   const Place at(c, analysis);
   Out<breve_reference> found(c);
-  const breve_status status = found.after(breve_analysis_at(analysis, at.file, at.line, at.column, found.to()));
+  const breve_status status = found.after(breve_analysis_name_at(analysis, at.file, at.line, at.column, found.to()));
   if (found)
     for (const char* text : {found->name, found->type, found->signature, found->documentation, found->span.file})
       read_text(text);
@@ -141,8 +141,8 @@ breve_status analysis_call(Caller& c) {
   Room<std::size_t> symbols(c, c.capacity());
   Out<std::size_t> count(c);
   Out<const char*> keyword(c, true);
-  const breve_status status = count.after(breve_analysis_call(analysis, at.file, at.line, at.column, symbols.to(),
-                                                              symbols.capacity(), count.to(), keyword.to()));
+  const breve_status status = count.after(breve_analysis_callees(analysis, at.file, at.line, at.column, symbols.to(),
+                                                                 symbols.capacity(), count.to(), keyword.to()));
   keyword.after(status);
   if (keyword) read_text(*keyword);
   return symbols.after(status, count ? *count : 0);
@@ -197,10 +197,10 @@ constexpr Function kFunctions[] = {
     {"breve_analysis_symbol_count", count_of<breve_analysis_symbol_count>, kPlain},
     {"breve_analysis_symbol", item_of<breve_symbol, breve_analysis_symbol, breve_analysis_symbol_count, read_symbol>,
      kNotFound},
-    {"breve_analysis_at", analysis_at, kNotFound, 2},
+    {"breve_analysis_name_at", analysis_at, kNotFound, 2},
     {"breve_analysis_definitions", analysis_definitions, kNotFound},
     {"breve_analysis_references", analysis_references, kNotFound},
-    {"breve_analysis_call", analysis_call, kNotFound, 3},
+    {"breve_analysis_callees", analysis_call, kNotFound, 3},
     {"breve_analysis_completions", analysis_completions, kNotFound},
     {"breve_analysis_statement_completions", analysis_statement_completions, kNotFound},
 };

@@ -113,13 +113,13 @@ breve_status accuracy_of_rung(Caller& c) {
   if (rung > BREVE_RUNG_CONSERVING) c.expect_refusal();
   Out<breve_accuracy> accuracy(c);
   accuracy.set_size(c.struct_size(sizeof(breve_accuracy)));
-  return accuracy.after(breve_accuracy_of_rung(static_cast<breve_rung>(rung), accuracy.to()));
+  return accuracy.after(breve_rung_accuracy(static_cast<breve_rung>(rung), accuracy.to()));
 }
 breve_status rung_named(Caller& c) {
   static constexpr const char* kNames[] = {"fast", "balanced", "precise", "reference", "conserving", "slow", ""};
   const char* name = c.text_or_null(c.choose().one_of(kNames));
   Out<breve_rung> rung(c);
-  return rung.after(breve_rung_named(name, rung.to()));
+  return rung.after(breve_rung_find(name, rung.to()));
 }
 breve_status world_accuracy(Caller& c) {
   const breve_world* world = c.world();
@@ -133,7 +133,7 @@ breve_accuracy draw_accuracy(Caller& c) {
   constexpr double kSteps[] = {0, 0.01, -1, NAN, 1e300}, kTolerances[] = {1e-3, 0, -1, NAN};
   breve_accuracy accuracy = breve_accuracy_default();
   const breve_rung rung = c.chance(80) ? BREVE_RUNG_FAST : static_cast<breve_rung>(c.choose().below(5));
-  require(breve_accuracy_of_rung(rung, &accuracy) == BREVE_OK, "a rung has no settings");
+  require(breve_rung_accuracy(rung, &accuracy) == BREVE_OK, "a rung has no settings");
   switch (c.choose().below(14)) {
     case 0: accuracy.integrator = static_cast<breve_integrator>(c.choose().below(12)); break;
     case 1: accuracy.iterations = static_cast<std::int32_t>(c.choose().below(30)) - 2; break;
@@ -169,7 +169,7 @@ breve_status object_set_accuracy(Caller& c) {
 breve_status world_describe_accuracy(Caller& c) {
   breve_world* world = c.world();
   Out<const char*> text(c);
-  const breve_status status = text.after(breve_world_describe_accuracy(world, text.to()));
+  const breve_status status = text.after(breve_world_accuracy_text(world, text.to()));
   if (text) read_text(*text);
   return status;
 }
@@ -281,7 +281,7 @@ breve_status grid_read(Caller& c) {
   Room<double> values(c, c.capacity());
   Out<std::size_t> count(c);
   const breve_status status =
-      count.after(breve_grid_read(world, grid, chemical, values.to(), values.capacity(), count.to()));
+      count.after(breve_grid_concentrations(world, grid, chemical, values.to(), values.capacity(), count.to()));
   return values.after(status, count ? *count : 0);
 }
 breve_status grid_write(Caller& c) {
@@ -289,13 +289,13 @@ breve_status grid_write(Caller& c) {
   const breve_object grid = c.object(world, "PatchGrid");
   const breve_object chemical = c.object(world, "PatchChemical");
   std::size_t count = c.choose().below(40);
-  if (c.chance(70)) breve_grid_read(world, grid, chemical, nullptr, 0, &count);
+  if (c.chance(70)) breve_grid_concentrations(world, grid, chemical, nullptr, 0, &count);
   std::vector<double> values(std::min<std::size_t>(count, 4096));
   for (double& x : values) x = 0.5;
   if (c.chance(30) && !values.empty()) c.choose().one_of(values) = c.number();
   for (const double x : values)
     if (!std::isfinite(x)) c.expect_refusal();
-  return breve_grid_write(world, grid, chemical, values.data(), values.size());
+  return breve_grid_set_concentrations(world, grid, chemical, values.data(), values.size());
 }
 
 constexpr Statuses kGrid = kStale | kNotFound;
@@ -309,12 +309,12 @@ constexpr Function kFunctions[] = {
     {"breve_object_set_force", object_set_force, kBody},
     {"breve_object_set_material", object_set_material, kBody},
     {"breve_object_asleep", get<bool, breve_object_asleep>, kBody},
-    {"breve_accuracy_of_rung", accuracy_of_rung},
-    {"breve_rung_named", rung_named, kNotFound},
+    {"breve_rung_accuracy", accuracy_of_rung},
+    {"breve_rung_find", rung_named, kNotFound},
     {"breve_world_accuracy", world_accuracy},
     {"breve_world_set_accuracy", world_set_accuracy},
     {"breve_object_set_accuracy", object_set_accuracy, kBody | kScriptError},
-    {"breve_world_describe_accuracy", world_describe_accuracy},
+    {"breve_world_accuracy_text", world_describe_accuracy},
     {"breve_world_gravity", world_gravity},
     {"breve_world_set_gravity", world_set_gravity},
     {"breve_world_set_space", world_set_space},
@@ -329,8 +329,8 @@ constexpr Function kFunctions[] = {
     {"breve_object_energy", object_energy, kBody | kScriptError},
     {"breve_world_physics_counters", world_physics_counters},
     {"breve_grid_size", grid_size, kGrid},
-    {"breve_grid_read", grid_read, kGrid},
-    {"breve_grid_write", grid_write, kGrid},
+    {"breve_grid_concentrations", grid_read, kGrid},
+    {"breve_grid_set_concentrations", grid_write, kGrid},
 };
 
 }  // namespace call_bodies

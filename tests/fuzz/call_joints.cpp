@@ -38,21 +38,21 @@ breve_status joint_read(Caller& c) {
   breve_world* world = c.world();
   const breve_object joint = c.object(world, "Joint");
   Out<breve_joint_info> info(c);
-  return info.after(breve_joint_read(world, joint, info.to()));
+  return info.after(breve_joint_state(world, joint, info.to()));
 }
 breve_status joint_get_drive(Caller& c) {
   const breve_world* world = c.world();
   const breve_object joint = c.object(world, "Joint");
-  Out<breve_joint_drive> drive(c);
-  drive.set_size(c.struct_size(sizeof(breve_joint_drive)));
-  return drive.after(breve_joint_get_drive(world, joint, drive.to()));
+  Out<breve_drive> drive(c);
+  drive.set_size(c.struct_size(sizeof(breve_drive)));
+  return drive.after(breve_joint_drive(world, joint, drive.to()));
 }
 breve_status joint_set_drive(Caller& c) {
   breve_world* world = c.world();
   const breve_object joint = c.object(world, "Joint");
-  breve_joint_drive drive{};
+  breve_drive drive{};
   drive.struct_size = sizeof drive;
-  breve_joint_get_drive(world, joint, &drive);
+  breve_joint_drive(world, joint, &drive);
   double* const numbers[] = {drive.motor_speed,
                              &drive.strength_limit,
                              &drive.double_strength,
@@ -79,7 +79,7 @@ breve_status joint_place(Caller& c) {
   const breve_object joint = c.object(world, "Joint");
   double position[3], velocity[3];
   const double* where = c.numbers(position, true);
-  return breve_joint_place(world, joint, where, c.numbers(velocity, true));
+  return breve_joint_set_state(world, joint, where, c.numbers(velocity, true));
 }
 
 /// A function that gives the bodies or joints that hang together.
@@ -138,14 +138,14 @@ breve_status spring_set(Caller& c) {
   const breve_spring spring = draw_spring(c);
   const bool null = c.chance(3);
   if (null) c.expect_refusal();
-  return breve_spring_set(world, object, null ? nullptr : &spring);
+  return breve_spring_set_description(world, object, null ? nullptr : &spring);
 }
 breve_status spring_read(Caller& c) {
   const breve_world* world = c.world();
   const breve_object spring = c.object(world, "Spring");
   Out<double> length(c, true);
   Out<double> force(c, true);
-  const breve_status status = length.after(breve_spring_read(world, spring, length.to(), force.to()));
+  const breve_status status = length.after(breve_spring_state(world, spring, length.to(), force.to()));
   return force.after(status);
 }
 
@@ -154,16 +154,16 @@ constexpr Statuses kJoint = kScriptError | kStale | kType;
 constexpr Function kFunctions[] = {
     {"breve_joint_create", joint_create, kScript | kBody | kNotFound, 3},
     {"breve_joint_break", joint_break, kJoint | kScriptError},
-    {"breve_joint_read", joint_read, kJoint},
-    {"breve_joint_get_drive", joint_get_drive, kJoint},
+    {"breve_joint_state", joint_read, kJoint},
+    {"breve_joint_drive", joint_get_drive, kJoint},
     {"breve_joint_set_drive", joint_set_drive, kJoint | kScriptError, 2},
-    {"breve_joint_place", joint_place, kJoint | kScriptError},
+    {"breve_joint_set_state", joint_place, kJoint | kScriptError},
     {"breve_object_links", connected<breve_object_links>, kBody},
     {"breve_object_joints", connected<breve_object_joints>, kBody},
     {"breve_object_set_self_collisions", object_set_self_collisions, kBody},
     {"breve_spring_create", spring_create, kScript | kBody | kNotFound, 2},
-    {"breve_spring_set", spring_set, kJoint},
-    {"breve_spring_read", spring_read, kJoint},
+    {"breve_spring_set_description", spring_set, kJoint},
+    {"breve_spring_state", spring_read, kJoint},
 };
 
 }  // namespace call_joints

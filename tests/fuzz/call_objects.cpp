@@ -151,7 +151,7 @@ constexpr Function kFunctions[] = {
     {"breve_object_pose", object_pose, kBody},
     {"breve_object_set_pose", set_pose<breve_object_set_pose>, kBody, 2},
     {"breve_object_set_target", set_pose<breve_object_set_target>, kBody},
-    {"breve_object_move_assembly", set_pose<breve_object_move_assembly>, kBody | kScriptError},
+    {"breve_object_set_assembly_pose", set_pose<breve_object_set_assembly_pose>, kBody | kScriptError},
     {"breve_object_velocity", get_numbers<breve_object_velocity, 3>, kBody},
     {"breve_object_set_velocity", set_numbers<breve_object_set_velocity, 3>, kBody},
     {"breve_object_rotational_velocity", get_numbers<breve_object_rotational_velocity, 3>, kBody},

@@ -107,7 +107,7 @@ breve_status lint(Caller& c) {
 breve_status runtime_allow(Caller& c) {
   breve_runtime* runtime = c.runtime();
   const char* code = c.text_or_null(c.chance(60) ? "lint-unused-variable" : "lint-nothing");
-  return breve_runtime_allow(runtime, code);
+  return breve_runtime_allow_lint(runtime, code);
 }
 
 // --- programs --------------------------------------------------------------------------------------------------------
@@ -188,7 +188,7 @@ breve_status files_within(Caller& c) {
   const bool null = c.chance(3);
   if (null) c.expect_refusal();
   const std::uint64_t most = c.chance(50) ? 0 : c.word();
-  const breve_status status = breve_files_within(directory, false, most, null ? nullptr : &files);
+  const breve_status status = breve_files_add_directory(directory, false, most, null ? nullptr : &files);
   if (status != BREVE_OK) {
     require(std::memcmp(&files, &before, sizeof files) == 0, "files were changed in spite of an error");
     return status;
@@ -219,14 +219,14 @@ constexpr Function kFunctions[] = {
     {"breve_runtime_diagnostic", runtime_diagnostic, kNotFound},
     {"breve_lint_count", lint_count},
     {"breve_lint", lint, kNotFound},
-    {"breve_runtime_allow", runtime_allow, kNotFound | kBusy},
+    {"breve_runtime_allow_lint", runtime_allow, kNotFound | kBusy},
     {"breve_program_load", program_load, kCompilation},
     {"breve_program_compile", program_compile, kCompilation},
     {"breve_program_create_library", program_create_library, kCompilation},
     {"breve_program_destroy", program_destroy},
     {"breve_program_class_count", program_class_count, kPlain},
     {"breve_program_class", program_class, kNotFound},
-    {"breve_files_within", files_within, kFile},
+    {"breve_files_add_directory", files_within, kFile},
     {"breve_files_release", files_release},
 };
 

@@ -154,7 +154,7 @@ breve_status world_seed(Caller& c) {
 breve_status world_random(Caller& c) {
   breve_world* world = c.world();
   Out<double> number(c);
-  const breve_status status = number.after(breve_world_random(world, number.to()));
+  const breve_status status = number.after(breve_world_draw_random(world, number.to()));
   if (number) require(*number >= 0 && *number < 1, "a random number is not in [0, 1)");
   return status;
 }
@@ -169,11 +169,11 @@ breve_status world_key(Caller& c) {
   static constexpr const char* kKeys[] = {"a", "a", "up", "", "ab", "\xc3\xa4", "\x01"};
   breve_world* world = c.world();
   const char* key = c.text_or_null(c.choose().one_of(kKeys));
-  return breve_world_key(world, key, c.chance(60));
+  return breve_world_queue_key(world, key, c.chance(60));
 }
 breve_status world_click(Caller& c) {
   breve_world* world = c.world();
-  return breve_world_click(world, c.object_or_null(world));
+  return breve_world_queue_click(world, c.object_or_null(world));
 }
 breve_status world_menu_items(Caller& c) {
   breve_world* world = c.world();
@@ -189,7 +189,7 @@ breve_status world_menu_items(Caller& c) {
 }
 breve_status world_choose(Caller& c) {
   breve_world* world = c.world();
-  return breve_world_choose(world, c.object(world, "MenuItem"));
+  return breve_world_queue_choice(world, c.object(world, "MenuItem"));
 }
 
 // --- snapshots -------------------------------------------------------------------------------------------------------
@@ -251,12 +251,12 @@ breve_status world_profile_stop(Caller& c) { return breve_world_profile_stop(c.w
 breve_status world_profile_count(Caller& c) {
   breve_world* world = c.world();
   Out<std::size_t> count(c);
-  return count.after(breve_world_profile_count(world, count.to()));
+  return count.after(breve_world_profile_node_count(world, count.to()));
 }
 breve_status world_profile_node(Caller& c) {
   breve_world* world = c.world();
   std::size_t count = 0;
-  breve_world_profile_count(world, &count);
+  breve_world_profile_node_count(world, &count);
   const std::size_t index = c.chance(10) ? c.word() : c.choose().below(count + 1);
   if (index >= count) c.expect_refusal();
   Out<breve_profile_node> node(c);
@@ -294,12 +294,12 @@ constexpr Function kFunctions[] = {
     {"breve_world_paused", world_paused, kPlain},
     {"breve_world_set_paused", world_set_paused},
     {"breve_world_seed", world_seed, kPlain},
-    {"breve_world_random", world_random},
+    {"breve_world_draw_random", world_random},
     {"breve_world_interrupt", world_interrupt, kPlain},
-    {"breve_world_key", world_key, 0, 2},
-    {"breve_world_click", world_click, kStale},
+    {"breve_world_queue_key", world_key, 0, 2},
+    {"breve_world_queue_click", world_click, kStale},
     {"breve_world_menu_items", world_menu_items},
-    {"breve_world_choose", world_choose, kStale},
+    {"breve_world_queue_choice", world_choose, kStale},
     {"breve_world_hash", world_hash, kBusy},
     {"breve_world_snapshot", world_snapshot, kBusy, 3},
     {"breve_world_restore", world_restore, kBusy | kImage, 3},
@@ -307,7 +307,7 @@ constexpr Function kFunctions[] = {
     {"breve_world_stats", world_stats},
     {"breve_world_profile_start", world_profile_start, kBusy},
     {"breve_world_profile_stop", world_profile_stop, kProfile},
-    {"breve_world_profile_count", world_profile_count, kProfile},
+    {"breve_world_profile_node_count", world_profile_count, kProfile},
     {"breve_world_profile_node", world_profile_node, kProfile},
     {"breve_world_profile_cost", world_profile_cost, kProfile},
     {"breve_world_reload", world_reload, kBusy | kReload},

@@ -63,7 +63,7 @@ void call_back(breve_world* world, unsigned number) {
     }
     case 4: require(breve_world_step(world) == BREVE_ERROR_BUSY, "a step inside a step is not busy"); break;
     case 5: require(breve_world_hash(world, &hash) == BREVE_ERROR_BUSY, "a hash inside a step is not busy"); break;
-    case 6: breve_world_key(world, "a", true); break;
+    case 6: breve_world_queue_key(world, "a", true); break;
     default: breve_object_call(world, controller, "get-description", nullptr, 0, &value); break;
   }
 }
@@ -95,15 +95,15 @@ std::string iterate(breve_world* world, Run& run, std::size_t count, const Plan&
   std::string seen;
   for (std::size_t i = 0; i < count; ++i) {
     if (plan.input) {
-      breve_world_key(world, "a", i % 2 == 0);
+      breve_world_queue_key(world, "a", i % 2 == 0);
       breve_object first{};
       std::size_t objects = 0;
       if (breve_world_objects(world, "C0", &first, 1, &objects) == BREVE_OK && objects != 0)
-        breve_world_click(world, first);
+        breve_world_queue_click(world, first);
       breve_menu_item item{};
       std::size_t items = 0;
       if (breve_world_menu_items(world, &item, 1, &items) == BREVE_OK && items != 0)
-        breve_world_choose(world, item.item);
+        breve_world_queue_choice(world, item.item);
     }
     const breve_status status = breve_world_step(world);
     if (!documented(status)) finding(breve_world_last_error(world)->text, program);

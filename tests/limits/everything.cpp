@@ -75,13 +75,13 @@ bool use_calls(Run& run) {
   const breve_value arguments[] = {keyword.value, breve_value_int(3)};
   TRY(breve_object_call_prepared(world, note.as.object, selector, arguments, 2, &result));
   TRY(breve_object_call(world, controller, "work-with-text", nullptr, 0, nullptr));
-  TRY(breve_world_key(world, "a", true));
-  TRY(breve_world_key(world, "left", false));
-  TRY(breve_world_click(world, note.as.object));
+  TRY(breve_world_queue_key(world, "a", true));
+  TRY(breve_world_queue_key(world, "left", false));
+  TRY(breve_world_queue_click(world, note.as.object));
   breve_menu_item items[4];
   std::size_t count = 0;
   TRY(breve_world_menu_items(world, items, 4, &count));
-  TRY(breve_world_choose(world, items[0].item));
+  TRY(breve_world_queue_choice(world, items[0].item));
   return true;
 }
 
@@ -114,7 +114,7 @@ bool make_runtime(Run& run) {
   config.print = [](void*, breve_world*, breve_channel, const char*, std::size_t) {};
   config.add_path = [](void*, const char*) {};
   breve_files files{};
-  TRY(breve_files_within(".", true, 0, &files));
+  TRY(breve_files_add_directory(".", true, 0, &files));
   config.files = files;
   const breve_status made = breve_runtime_create(&config, &run.runtime);
   breve_files_release(&files);

@@ -126,7 +126,7 @@ class Extremes {
     folder_ = name;
     breve_runtime_config config = breve_runtime_config_default();
     constexpr std::uint64_t kMostBytes = 64 << 20;
-    fuzz::require(breve_files_within(name, true, kMostBytes, &config.files) == BREVE_OK, "no files");
+    fuzz::require(breve_files_add_directory(name, true, kMostBytes, &config.files) == BREVE_OK, "no files");
     config.rights = BREVE_RIGHT_SLEEP | BREVE_RIGHT_REAL_TIME | BREVE_RIGHT_ENTROPY;
     runtime_ = fuzz::make_runtime(config);
     breve_files_release(&config.files);

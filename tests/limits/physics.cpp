@@ -51,25 +51,25 @@ bool make_joints(Run& run, Scene& scene) {
   hinge.kind = BREVE_JOINT_BALL;
   hinge.parent = scene.leg, hinge.child = scene.foot;
   TRY(breve_joint_create(world, &hinge, &scene.knee));
-  breve_joint_drive drive = breve_joint_drive_default();
-  TRY(breve_joint_get_drive(world, scene.hip, &drive));
+  breve_drive drive = breve_drive_default();
+  TRY(breve_joint_drive(world, scene.hip, &drive));
   drive.motor_speed[0] = 1, drive.strength_limit = 5;
   drive.low[0] = -0.5, drive.high[0] = 0.1;
   TRY(breve_joint_set_drive(world, scene.hip, &drive));
   const double place[3] = {0.1, 0, 0};
-  TRY(breve_joint_place(world, scene.hip, place, place));
+  TRY(breve_joint_set_state(world, scene.hip, place, place));
   breve_spring spring = breve_spring_default();
   spring.from = scene.trunk, spring.to = scene.foot;
   TRY(breve_spring_create(world, &spring, &scene.spring));
   spring.strength = 50;
-  TRY(breve_spring_set(world, scene.spring, &spring));
+  TRY(breve_spring_set_description(world, scene.spring, &spring));
   return true;
 }
 
 bool set_what_can_be_set(Run& run, const Scene& scene) {
   breve_world* world = run.world;
   breve_accuracy accuracy = breve_accuracy_default();
-  TRY(breve_accuracy_of_rung(BREVE_RUNG_PRECISE, &accuracy));
+  TRY(breve_rung_accuracy(BREVE_RUNG_PRECISE, &accuracy));
   TRY(breve_object_set_accuracy(world, scene.foot, &accuracy));
   const double down[3] = {0, -9, 0}, push[3] = {0, 0, 0.1};
   TRY(breve_world_set_gravity(world, down));
@@ -91,15 +91,15 @@ bool look(Run& run, const Scene& scene) {
   const char* text = nullptr;
   TRY(breve_object_links(world, scene.leg, found, 8, &count));
   TRY(breve_object_joints(world, scene.leg, found, 8, &count));
-  TRY(breve_world_describe_accuracy(world, &text));
+  TRY(breve_world_accuracy_text(world, &text));
   std::array<breve_impact, 64> impacts;
   std::array<breve_intervention, 8> interventions;
   TRY(breve_world_impacts(world, impacts.data(), impacts.size(), &count));
   TRY(breve_world_interventions(world, interventions.data(), interventions.size(), &count));
   breve_joint_info info;
-  TRY(breve_joint_read(world, scene.knee, &info));
+  TRY(breve_joint_state(world, scene.knee, &info));
   double length = 0, force = 0;
-  TRY(breve_spring_read(world, scene.spring, &length, &force));
+  TRY(breve_spring_state(world, scene.spring, &length, &force));
   breve_energy energy = breve_energy_default();
   TRY(breve_world_energy(world, &energy));
   TRY(breve_object_energy(world, scene.foot, &energy));
@@ -123,7 +123,7 @@ bool take_apart(Run& run, const Scene& scene) {
   TRY(breve_world_restore(world, image.data(), size));
   TRY(breve_joint_break(world, scene.knee));
   const breve_pose aside = {{5, 3, 0}, {1, 0, 0, 0}};
-  TRY(breve_object_move_assembly(world, scene.trunk, &aside));
+  TRY(breve_object_set_assembly_pose(world, scene.trunk, &aside));
   TRY(breve_object_set_physics(world, scene.foot, false));
   TRY(breve_object_free(world, scene.leg));
   return true;

@@ -87,7 +87,7 @@ std::size_t compare_with_meter(bool profile) {
   if (profile) {
     // The nodes as they are read are a table of their own.
     std::size_t nodes = 0;
-    EXPECT_EQ(breve_world_profile_count(world, &nodes), BREVE_OK);
+    EXPECT_EQ(breve_world_profile_node_count(world, &nodes), BREVE_OK);
     EXPECT_GT(nodes, 20U);
     breve_profile_node node{};
     EXPECT_EQ(breve_world_profile_node(world, nodes - 1, &node), BREVE_OK);

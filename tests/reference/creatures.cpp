@@ -38,7 +38,7 @@ void creature(World& world, std::mt19937& random, const Vector3& at, const Habit
       hinge.rotation = Quaternion(Eigen::AngleAxisd(between(0, 2 * kPi), any()));
       const breve_object joint = world.join(hinge);
       if (habits.limits) {
-        breve_joint_drive drive = world.drive(joint);
+        breve_drive drive = world.drive(joint);
         drive.low[0] = -between(0, 0.6);
         drive.high[0] = between(0, 0.6);
         drive.limit_restitution = habits.rebound;
@@ -54,7 +54,7 @@ void creature(World& world, std::mt19937& random, const Vector3& at, const Habit
     world.set_material(one, breve_material{friction, friction, restitution, 0, habits.threshold});
   }
   const breve_pose pose{{at.x(), at.y(), at.z()}, {1, 0, 0, 0}};
-  world.must(breve_object_move_assembly(world.get(), body, &pose));
+  world.must(breve_object_set_assembly_pose(world.get(), body, &pose));
 }
 
 }  // namespace

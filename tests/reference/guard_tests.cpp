@@ -87,7 +87,7 @@ TEST(Guard, SeesAnEquationWithoutSolution) {
 Chain hang_what_blows_up(World& world) {
   world.set_integrator(BREVE_INTEGRATOR_EXPLICIT_EULER);
   const Chain chain = hang(world, {1}, {1});
-  breve_joint_drive drive = world.drive(chain.joints[0]);
+  breve_drive drive = world.drive(chain.joints[0]);
   drive.stiffness = 10 * (1.0 / 3) * 3600;
   world.set_drive(chain.joints[0], drive);
   start(world, chain, {0.1}, {0});
@@ -150,7 +150,7 @@ TEST(Guard, SeesADamperThatIsTooStrong) {
       Watched world(guard);
       world.set_integrator(BREVE_INTEGRATOR_VELOCITY_VERLET);
       const Chain chain = hang(world, {1}, {1});
-      breve_joint_drive drive = world.drive(chain.joints[0]);
+      breve_drive drive = world.drive(chain.joints[0]);
       drive.damping = strength * (1.0 / 3) * 60;  // c h / I for the rod about its end
       world.set_drive(chain.joints[0], drive);
       start(world, chain, {0}, {1});

@@ -41,7 +41,7 @@ breve_object oscillator(World& world, const std::string& problem) {
   hinge.kind = BREVE_JOINT_PRISMATIC;
   hinge.child = world.body(box(Vector3(0.1, 0.1, 0.1), 1), Vector3::Zero());
   const breve_object joint = world.join(hinge);
-  breve_joint_drive drive = world.drive(joint);
+  breve_drive drive = world.drive(joint);
   drive.stiffness = problem == "damped" ? 4 : 1;
   drive.damping = problem == "damped" ? 0.3 : 0;
   drive.low[0] = -INFINITY, drive.high[0] = INFINITY;

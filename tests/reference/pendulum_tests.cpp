@@ -76,7 +76,7 @@ TEST(ReferencePendulum, SpringsInJointsOscillateAsTheFileSays) {
     slide.child = world.body(box(Vector3(0.1, 0.1, 0.1), first.number("mass")), Vector3::Zero());
     slide.normal = -Vector3::UnitX();
     const breve_object joint = world.join(slide);
-    breve_joint_drive drive = world.drive(joint);
+    breve_drive drive = world.drive(joint);
     drive.stiffness = first.number("stiffness");
     drive.damping = first.number("damping");
     world.set_drive(joint, drive);

@@ -47,11 +47,11 @@ TEST(Refusals, VectorsThatAreNotFinite) {
       t.refuse("velocity of a link", [&] { return breve_object_set_velocity(world, t.chain.links[0], v); });
       t.refuse("spin", [&] { return breve_object_set_rotational_velocity(world, t.ball, v); });
       t.refuse("place", [&] { return breve_object_set_pose(world, t.ball, &pose); });
-      t.refuse("place of an assembly", [&] { return breve_object_move_assembly(world, t.chain.links[1], &pose); });
+      t.refuse("place of an assembly", [&] { return breve_object_set_assembly_pose(world, t.chain.links[1], &pose); });
       t.refuse("force", [&] { return breve_object_set_force(world, t.ball, v, nullptr); });
       t.refuse("torque", [&] { return breve_object_set_force(world, t.ball, nullptr, v); });
       t.refuse("gravity", [&] { return breve_world_set_gravity(world, v); });
-      t.refuse("joint", [&] { return breve_joint_place(world, t.chain.joints[0], axis == 0 ? v : nullptr, v); });
+      t.refuse("joint", [&] { return breve_joint_set_state(world, t.chain.joints[0], axis == 0 ? v : nullptr, v); });
     }
     breve_pose pose{{0, 0, 0}, {1, bad, 0, 0}};
     t.refuse("rotation", [&] { return breve_object_set_pose(world, t.ball, &pose); });
@@ -94,7 +94,7 @@ TEST(Refusals, SizesMassesAndAxes) {
     if (bad != 0) {
       const breve_material material{bad, 0.5, 0.5, 0, 0};
       t.refuse("friction", [&] { return breve_object_set_material(world, t.ball, &material); });
-      breve_joint_drive drive = t.world.drive(t.chain.joints[0]);
+      breve_drive drive = t.world.drive(t.chain.joints[0]);
       drive.damping = bad;
       t.refuse("damping", [&] { return breve_joint_set_drive(world, t.chain.joints[0], &drive); });
     }

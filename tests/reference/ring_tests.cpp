@@ -100,7 +100,7 @@ TEST(Rings, ReactionsKnowOfTheRing) {
     // The crank's torque holds all: work of weights along the one freedom, by differences of the geometry.
     const auto height = [](double angle) { return 9.81 * (1 * 0.1 + 1.5 * 0.1) * std::sin(angle); };
     const double torque = (height(0.5 + 1e-6) - height(0.5 - 1e-6)) / 2e-6;
-    breve_joint_drive drive = machine.drive(machine.crank);
+    breve_drive drive = machine.drive(machine.crank);
     drive.force[0] = torque;
     machine.set_drive(machine.crank, drive);
     const breve_joint_info held = machine.read(machine.crank), rail = machine.read(machine.rail);

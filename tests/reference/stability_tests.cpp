@@ -34,7 +34,7 @@ constexpr double kBounced = 0.1;  // m, at whose pace things fall at a step of 1
 /// A joint with its stop at zero and from `start` at rest, of something `length` large, stepped at its own pace.
 /// @param seconds  that it would take if it were kBounced large
 Bounces bounce(Hard& world, breve_object joint, double length, double start, bool stop, double seconds) {
-  breve_joint_drive drive = world.drive(joint);
+  breve_drive drive = world.drive(joint);
   if (stop) drive.low[0] = 0, drive.high[0] = INFINITY;
   drive.limit_restitution = 1;
   world.set_drive(joint, drive);
@@ -106,7 +106,7 @@ TEST(Stability, StiffSpringsInJointsAddNoEnergy) {
     Hard world(rung);
     world.set_gravity(Vector3::Zero());
     const Chain chain = hang(world, {1}, {1});
-    breve_joint_drive drive = world.drive(chain.joints[0]);
+    breve_drive drive = world.drive(chain.joints[0]);
     drive.stiffness = 100 * (1.0 / 3) / (kStep * kStep);  // k h^2 / I = 100 for the rod about its end
     world.set_drive(chain.joints[0], drive);
     start(world, chain, {0.1}, {0});
@@ -132,7 +132,7 @@ TEST(Stability, ABulletThatIsALinkDoesNotPassAThinWall) {
       slide.normal = -Vector3::UnitX();
       for (const breve_object one : {wall, slide.child}) world.set_material(one, 0, 0);
       const breve_object joint = world.join(slide);
-      breve_joint_drive drive = world.drive(joint);
+      breve_drive drive = world.drive(joint);
       drive.low[0] = -INFINITY, drive.high[0] = INFINITY;
       world.set_drive(joint, drive);
       world.set_joint(joint, 0, speed);

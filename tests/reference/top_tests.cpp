@@ -97,7 +97,7 @@ struct HeavyTop {
     point.child_point = Vector3(0, 0, -length);
     point.rotation = Quaternion(Eigen::AngleAxisd(theta, Vector3::UnitY()));
     const breve_object joint = world.join(point);
-    breve_joint_drive drive = world.drive(joint);
+    breve_drive drive = world.drive(joint);
     for (int k = 0; k < 3; ++k) drive.low[k] = -INFINITY, drive.high[k] = INFINITY;
     world.set_drive(joint, drive);
     const Vector3 own(-row.number("phidot0") * std::sin(theta), row.number("thetadot0"), row.number("omega3"));

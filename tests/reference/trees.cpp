@@ -54,7 +54,7 @@ void Tree::add(const Row& row, bool with_tau, const Row& state) {
   // The file's numbers turn the child along +axis, ours the parent.
   if (type != "X") hinge.normal = turn * -vector(row, "a").normalized();
   joints.back() = world.join(hinge);
-  breve_joint_drive drive = world.drive(joints.back());
+  breve_drive drive = world.drive(joints.back());
   drive.low[0] = -INFINITY, drive.high[0] = INFINITY;
   if (with_tau && !state.empty("tau0")) drive.force[0] = state.number("tau0");
   const auto spring = springs_.find(static_cast<int>(joints.size()) - 1);
@@ -76,7 +76,7 @@ void Tree::start(const Row& row, std::size_t i) {
   const Vector3 arm = turn * centres_[i];
   const Vector3 at = places_[i] + turns_[i] * Vector3(row.number("q0"), row.number("q1"), row.number("q2")) + arm;
   const breve_pose pose{{at.x(), at.y(), at.z()}, {turn.w(), turn.x(), turn.y(), turn.z()}};
-  world.must(breve_object_move_assembly(world.get(), bodies[i], &pose));
+  world.must(breve_object_set_assembly_pose(world.get(), bodies[i], &pose));
   world.set_spin(bodies[i], spin);
   world.set_velocity(bodies[i],
                      turns_[i] * Vector3(row.number("u0"), row.number("u1"), row.number("u2")) + spin.cross(arm));

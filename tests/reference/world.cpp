@@ -74,7 +74,7 @@ void World::set_gravity(const Vector3& gravity) { must(breve_world_set_gravity(w
 
 void World::set_rung(breve_rung rung) {
   breve_accuracy accuracy = breve_accuracy_default();
-  must(breve_accuracy_of_rung(rung, &accuracy));
+  must(breve_rung_accuracy(rung, &accuracy));
   set_accuracy(accuracy);
 }
 
@@ -208,23 +208,23 @@ breve_object World::join(const Hinge& hinge) {
 
 breve_joint_info World::read(breve_object joint) const {
   breve_joint_info info;
-  must(breve_joint_read(world_, joint, &info));
+  must(breve_joint_state(world_, joint, &info));
   return info;
 }
 
-breve_joint_drive World::drive(breve_object joint) const {
-  breve_joint_drive drive = breve_joint_drive_default();
-  must(breve_joint_get_drive(world_, joint, &drive));
+breve_drive World::drive(breve_object joint) const {
+  breve_drive drive = breve_drive_default();
+  must(breve_joint_drive(world_, joint, &drive));
   return drive;
 }
 
-void World::set_drive(breve_object joint, const breve_joint_drive& drive) {
+void World::set_drive(breve_object joint, const breve_drive& drive) {
   must(breve_joint_set_drive(world_, joint, &drive));
 }
 
 void World::set_joint(breve_object joint, double position, double velocity) {
   const double there[3] = {position, 0, 0}, so[3] = {velocity, 0, 0};
-  must(breve_joint_place(world_, joint, there, so));
+  must(breve_joint_set_state(world_, joint, there, so));
 }
 
 double World::open(const Hinge& hinge) const {

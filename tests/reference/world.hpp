@@ -90,8 +90,8 @@ class World {
   // --- joints
   breve_object join(const Hinge& hinge);
   breve_joint_info read(breve_object joint) const;
-  breve_joint_drive drive(breve_object joint) const;
-  void set_drive(breve_object joint, const breve_joint_drive& drive);
+  breve_drive drive(breve_object joint) const;
+  void set_drive(breve_object joint, const breve_drive& drive);
   void set_joint(breve_object joint, double position, double velocity);
   /// The distance of the two points that a joint holds together.
   double open(const Hinge& hinge) const;

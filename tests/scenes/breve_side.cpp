@@ -96,7 +96,7 @@ void BreveSide::add_joint(const Joint& joint) {
   Vector3::Map(description.other_axis) = Vector3::UnitZ();
   world_.must(breve_joint_create(world_.get(), &description, &joints_.emplace_back()));
   // breve counts what the parent turns against the child.
-  breve_joint_drive drive = world_.drive(joints_.back());
+  breve_drive drive = world_.drive(joints_.back());
   for (int i = 0; i < 3; ++i) drive.low[i] = -joint.high[i], drive.high[i] = -joint.low[i];
   drive.strength_limit = joint.strength;
   world_.set_drive(joints_.back(), drive);
@@ -113,7 +113,7 @@ void BreveSide::add_spring(const Spring& spring) {
   world_.must(breve_spring_create(world_.get(), &description, &made));
 }
 
-/// From poses: breve_joint_read would also work out what the joint holds.
+/// From poses: breve_joint_state would also work out what the joint holds.
 double BreveSide::angle(int joint) const {
   const Joint& one = scene_.joints[static_cast<std::size_t>(joint)];
   const Quaternion between = world_.turn(body(one.parent)).conjugate() * world_.turn(body(one.child));
@@ -130,7 +130,7 @@ void BreveSide::set_velocity(int body, const Vector3& velocity) {
 
 void BreveSide::set_motor(int joint, double speed) {
   const breve_object made = joints_[static_cast<std::size_t>(joint)];
-  breve_joint_drive drive = world_.drive(made);
+  breve_drive drive = world_.drive(made);
   drive.motor_speed[0] = -speed;
   world_.set_drive(made, drive);
 }

@@ -132,14 +132,14 @@ typedef struct breve_reference {
 
 /* Which name stands at a place: in it or just behind it.
    BREVE_OK; BREVE_ERROR_NOT_FOUND: no such file, no such place, or no name there. */
-BREVE_API breve_status breve_analysis_at(const breve_analysis* analysis, const char* file, uint32_t line,
-                                         uint32_t column, breve_reference* reference);
+BREVE_API breve_status breve_analysis_name_at(const breve_analysis* analysis, const char* file, uint32_t line,
+                                              uint32_t column, breve_reference* reference);
 
 /* The symbols that the name at a place may mean, best first. A method that is called on a receiver of known class is
    the one found there or in its ancestors; on another receiver, every method of that name that takes the keywords.
    @param symbols  room for `capacity` numbers; NULL only if capacity is 0
    @param count    how many there are, also where that is more than capacity: at most capacity are written
-   BREVE_OK, with count 0 if nothing of that name is known; BREVE_ERROR_NOT_FOUND as breve_analysis_at. */
+   BREVE_OK, with count 0 if nothing of that name is known; BREVE_ERROR_NOT_FOUND as breve_analysis_name_at. */
 BREVE_API breve_status breve_analysis_definitions(const breve_analysis* analysis, const char* file, uint32_t line,
                                                   uint32_t column, size_t* symbols, size_t capacity, size_t* count);
 
@@ -157,8 +157,9 @@ BREVE_API breve_status breve_analysis_references(const breve_analysis* analysis,
    @param keyword  may be NULL; "" before the first one; owned by the analysis until the next call of this function
    BREVE_OK; BREVE_ERROR_NOT_FOUND: the place is not behind the selector of a call, or there is
    no such file or place. */
-BREVE_API breve_status breve_analysis_call(breve_analysis* analysis, const char* file, uint32_t line, uint32_t column,
-                                           size_t* symbols, size_t capacity, size_t* count, const char** keyword);
+BREVE_API breve_status breve_analysis_callees(const breve_analysis* analysis, const char* file, uint32_t line,
+                                              uint32_t column, size_t* symbols, size_t capacity, size_t* count,
+                                              const char** keyword);
 
 /* A name that may stand at a place. Texts live until the next call of a completion function on the analysis. */
 typedef struct breve_completion {
@@ -178,7 +179,7 @@ typedef struct breve_completion {
    @param items  room for `capacity`; NULL only if capacity is 0
    @param count  how many there are, also where that is more than capacity: at most capacity are written
    BREVE_OK; BREVE_ERROR_NOT_FOUND: no such file or place. */
-BREVE_API breve_status breve_analysis_completions(breve_analysis* analysis, const char* file, uint32_t line,
+BREVE_API breve_status breve_analysis_completions(const breve_analysis* analysis, const char* file, uint32_t line,
                                                   uint32_t column, uint32_t* typed, breve_completion* items,
                                                   size_t capacity, size_t* count);
 
@@ -187,7 +188,7 @@ BREVE_API breve_status breve_analysis_completions(breve_analysis* analysis, cons
    @param text        the statement, `size` bytes; NULL only if size is 0
    @param offset      the place, in bytes; at most size
    BREVE_OK; BREVE_ERROR_NOT_FOUND: no such class; BREVE_ERROR_ARGUMENT: offset beyond size. */
-BREVE_API breve_status breve_analysis_statement_completions(breve_analysis* analysis, const char* class_name,
+BREVE_API breve_status breve_analysis_statement_completions(const breve_analysis* analysis, const char* class_name,
                                                             const char* text, size_t size, size_t offset,
                                                             uint32_t* typed, breve_completion* items, size_t capacity,
                                                             size_t* count);

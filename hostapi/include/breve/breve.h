@@ -33,6 +33,10 @@
  *   host runs with the library of its header or a later one: a struct_size that is larger than the library's is
  *   BREVE_ERROR_ARGUMENT. All other structs are frozen, as are enumerators: they never change while BREVE_ABI stays, which
  *   rises with whatever would break a host that is not compiled again. breve_runtime_create compares it.
+ * - Names: the thing, then what is done to it. breve_THING_PROPERTY reads and breve_THING_set_PROPERTY writes a property;
+ *   a plural is a list, and _count goes with functions that take an index. _get, _set and _size are for what is kept by
+ *   name, key or index: variables, lists, hashes. _create and _destroy are for handles; an object, too, is made by
+ *   _create, and freed by _free, as `free` does in scripts. _queue_ is for input, which waits for the next iteration.
  * - Units: lengths, masses and angles are the program's own (length units, kg, rad); times are simulated seconds.
  */
 #ifndef BREVE_BREVE_H
@@ -293,10 +297,11 @@ static inline breve_status breve_runtime_create(const breve_runtime_config* conf
    @param files      all zero, or filled by an earlier call: files are then looked for in this directory after those
    BREVE_OK; BREVE_ERROR_ARGUMENT: NULL, or `files` has callbacks of another origin; BREVE_ERROR_FILE: there is no such
    directory; BREVE_ERROR_MEMORY. After an error `files` is as it was. */
-BREVE_API breve_status breve_files_within(const char* directory, bool may_write, uint64_t most_bytes,
-                                          breve_files* files);
+BREVE_API breve_status breve_files_add_directory(const char* directory, bool may_write, uint64_t most_bytes,
+                                                 breve_files* files);
 
-/* The host has made its runtimes with `files`, or needs none. @param files  of breve_files_within; all zero afterwards.
+/* The host has made its runtimes with `files`, or needs none.
+   @param files  of breve_files_add_directory; all zero afterwards
    BREVE_OK, also for NULL. */
 BREVE_API breve_status breve_files_release(breve_files* files);
 
@@ -366,7 +371,7 @@ BREVE_API breve_status breve_lint(size_t index, breve_lint_info* lint);
 /* Compilations on this runtime do not report the lint of that code from now on. In a program a comment does the same:
    `# allow: lint-unused-variable` behind a statement or on the line before it, or, for a whole file, at its beginning.
    BREVE_OK, also if it was allowed before; BREVE_ERROR_NOT_FOUND: there is no such lint. */
-BREVE_API breve_status breve_runtime_allow(breve_runtime* runtime, const char* code);
+BREVE_API breve_status breve_runtime_allow_lint(breve_runtime* runtime, const char* code);
 
 /* A class of a program. Texts are owned by the program. */
 typedef struct breve_class_info {
@@ -451,7 +456,7 @@ typedef struct breve_world_config {
                                    and a PlanarControl is an error; 0: as the controller says. Default 0 */
   breve_trace_fn trace;         /* of `profile`; NULL: no events. Default NULL */
   void* trace_user;             /* Default NULL */
-  const char* accuracy;         /* rung of the ladder of accuracy, as breve_rung_named knows them, set after the
+  const char* accuracy;         /* rung of the ladder of accuracy, as breve_rung_find knows them, set after the
                                    controller's init; copied; NULL: the script's own. Default NULL */
   double length_unit;           /* m, what a flat world computes with as 1, set after the controller's init: sizes of 0.1
                                    to 10 of it are best; 0: the script's own. Default 0 */
@@ -544,7 +549,7 @@ BREVE_API breve_status breve_world_set_paused(breve_world* world, bool paused);
 BREVE_API uint64_t breve_world_seed(const breve_world* world);
 
 /* Draw a number from [0, 1] from the world's own generator, as a script would. This changes the run that follows. */
-BREVE_API breve_status breve_world_random(breve_world* world, double* number);
+BREVE_API breve_status breve_world_draw_random(breve_world* world, double* number);
 
 /* ---- objects ----------------------------------------------------------------------------------------------------- */
 
@@ -652,13 +657,14 @@ BREVE_API breve_status breve_object_shape_vertices(const breve_world* world, bre
 BREVE_API breve_status breve_object_shape_faces(const breve_world* world, breve_object object, uint32_t* sizes,
                                                 size_t face_capacity, uint32_t* indices, size_t index_capacity);
 
-/* ---- bodies with physics ------------------------------------------------------------------------------------------ */
+/* ---- bodies ------------------------------------------------------------------------------------------------------ */
 
 /* Rigid bodies, joints between them, springs, contacts. All of them are objects of the class library, whether a script
    or a host made them, so that both see the same ones: a script may drive a joint of the host, a host may read a joint
    of a script. Classes that hosts make objects of are to be part of the program: `@use MultiBody.` has links and joints,
-   `@use Spring.` springs; breve_program_create_library has all. Functions of this section that place, join or change
-   bodies are not for force methods (BREVE_ERROR_SCRIPT there). See docs/physics.md for models, frames and sources. */
+   `@use Spring.` springs; breve_program_create_library has all. Functions of the sections from here to "values" that
+   place, join or change bodies are not for force methods (BREVE_ERROR_SCRIPT there). See docs/physics.md for models,
+   frames and sources. */
 
 /* Make a program that has no text of its own: the whole class library.
    @param controller  class of the controller: "PhysicalControl" or "Control"; NULL: "PhysicalControl"
@@ -741,8 +747,13 @@ typedef struct breve_material {
 BREVE_API breve_status breve_object_set_material(breve_world* world, breve_object object,
                                                  const breve_material* material);
 
+/* Let bodies that rest sleep. Off at first. */
+BREVE_API breve_status breve_world_set_sleeping(breve_world* world, bool on);
+
 /* Does a body that rests sleep until something touches or changes it? BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_asleep(const breve_world* world, breve_object object, bool* asleep);
+
+/* ---- joints and springs ------------------------------------------------------------------------------------------ */
 
 typedef enum breve_joint_kind {
   BREVE_JOINT_REVOLUTE = 0,  /* turns about the normal */
@@ -809,11 +820,11 @@ typedef struct breve_joint_info {
 } breve_joint_info;
 
 /* BREVE_OK; BREVE_ERROR_TYPE: the object is no joint. */
-BREVE_API breve_status breve_joint_read(breve_world* world, breve_object joint, breve_joint_info* info);
+BREVE_API breve_status breve_joint_state(const breve_world* world, breve_object joint, breve_joint_info* info);
 
 /* What drives and bounds a joint. Forces are N*m or N, positions rad or m, speeds rad/s or m/s. */
-typedef struct breve_joint_drive {
-  size_t struct_size;      /* as breve_joint_drive_default gives it */
+typedef struct breve_drive {
+  size_t struct_size;      /* as breve_drive_default gives it */
   double motor_speed[3];   /* what the motor aims at, for each axis. Default 0 */
   double strength_limit;   /* most that it uses for that, cut to 0 .. hard_limit, told once; 0: no motor. Default 0 */
   double double_strength;  /* 1/s, added to the motor's speed outside of double_min .. double_max. Default 0 */
@@ -824,26 +835,26 @@ typedef struct breve_joint_drive {
   double force[3];               /* along the axes, until replaced. Default 0 */
   double low[3], high[3];        /* stops; -INFINITY and INFINITY: none. Default none, but see breve_joint_kind */
   double limit_restitution;      /* at the stops, 0 to 1. Default 0 */
-} breve_joint_drive;
+} breve_drive;
 
-/* All zero, to be filled in by breve_joint_get_drive. */
-static inline breve_joint_drive breve_joint_drive_default(void) {
-  breve_joint_drive drive;
+/* All zero, to be filled in by breve_joint_drive. */
+static inline breve_drive breve_drive_default(void) {
+  breve_drive drive;
   breve_clear(&drive, sizeof drive);
   drive.struct_size = sizeof drive;
   return drive;
 }
 
 /* BREVE_OK; BREVE_ERROR_TYPE: the object is no joint; BREVE_ERROR_ARGUMENT: it is not linked. */
-BREVE_API breve_status breve_joint_get_drive(const breve_world* world, breve_object joint, breve_joint_drive* drive);
+BREVE_API breve_status breve_joint_drive(const breve_world* world, breve_object joint, breve_drive* drive);
 
-/* As breve_joint_get_drive; BREVE_ERROR_ARGUMENT also for numbers out of these ranges; nothing is changed then. */
-BREVE_API breve_status breve_joint_set_drive(breve_world* world, breve_object joint, const breve_joint_drive* drive);
+/* As breve_joint_drive; BREVE_ERROR_ARGUMENT also for numbers out of these ranges; nothing is changed then. */
+BREVE_API breve_status breve_joint_set_drive(breve_world* world, breve_object joint, const breve_drive* drive);
 
 /* Put a joint somewhere, moving so; what hangs on the child moves along. NULL leaves one as it is.
    BREVE_OK; BREVE_ERROR_TYPE; BREVE_ERROR_ARGUMENT: not finite, not linked, or the joint closes a ring. */
-BREVE_API breve_status breve_joint_place(breve_world* world, breve_object joint, const double position[3],
-                                         const double velocity[3]);
+BREVE_API breve_status breve_joint_set_state(breve_world* world, breve_object joint, const double position[3],
+                                             const double velocity[3]);
 
 /* The bodies that joints connect with this one, itself among them, in order of creation.
    @param links  room for `capacity` ids; NULL only if capacity is 0
@@ -858,7 +869,7 @@ BREVE_API breve_status breve_object_joints(const breve_world* world, breve_objec
 
 /* Move all that joints connect with a body, rigidly, so that the body stands there. breve_object_set_pose does the same
    in the course of the next step. As breve_object_set_pose. */
-BREVE_API breve_status breve_object_move_assembly(breve_world* world, breve_object object, const breve_pose* pose);
+BREVE_API breve_status breve_object_set_assembly_pose(breve_world* world, breve_object object, const breve_pose* pose);
 
 /* Do bodies that joints connect push each other, where no joint connects them directly? Off at first.
    BREVE_OK; BREVE_ERROR_NO_BODY. */
@@ -900,12 +911,15 @@ BREVE_API breve_status breve_spring_create(breve_world* world, const breve_sprin
 
 /* Change the numbers of a spring; its bodies and points stay. BREVE_OK; BREVE_ERROR_TYPE: the object is no spring;
    BREVE_ERROR_ARGUMENT: out of these ranges; nothing is changed then. */
-BREVE_API breve_status breve_spring_set(breve_world* world, breve_object spring, const breve_spring* description);
+BREVE_API breve_status breve_spring_set_description(breve_world* world, breve_object spring,
+                                                    const breve_spring* description);
 
 /* The distance of a spring's points now and its force in the last sub-step, N; both 0 if it ties nothing.
    @param length, force  may be NULL
    BREVE_OK; BREVE_ERROR_TYPE: the object is no spring. */
-BREVE_API breve_status breve_spring_read(const breve_world* world, breve_object spring, double* length, double* force);
+BREVE_API breve_status breve_spring_state(const breve_world* world, breve_object spring, double* length, double* force);
+
+/* ---- accuracy ---------------------------------------------------------------------------------------------------- */
 
 /* Rungs of the ladder of accuracy: names for settings. */
 typedef enum breve_rung {
@@ -949,7 +963,7 @@ typedef struct breve_accuracy {
   double contact_damping;      /* their ratio of damping, 0..0.9; 0: that of the pair's restitution */
 } breve_accuracy;
 
-/* All zero, to be filled in by breve_accuracy_of_rung or breve_world_accuracy. */
+/* All zero, to be filled in by breve_rung_accuracy or breve_world_accuracy. */
 static inline breve_accuracy breve_accuracy_default(void) {
   breve_accuracy accuracy;
   breve_clear(&accuracy, sizeof accuracy);
@@ -958,11 +972,11 @@ static inline breve_accuracy breve_accuracy_default(void) {
 }
 
 /* The settings of a rung. BREVE_OK; BREVE_ERROR_ARGUMENT: there is no such rung, or a wrong struct_size. */
-BREVE_API breve_status breve_accuracy_of_rung(breve_rung rung, breve_accuracy* accuracy);
+BREVE_API breve_status breve_rung_accuracy(breve_rung rung, breve_accuracy* accuracy);
 
 /* The rung of that name: "fast", "balanced", "precise", "reference" or "conserving".
    BREVE_OK; BREVE_ERROR_NOT_FOUND. */
-BREVE_API breve_status breve_rung_named(const char* name, breve_rung* rung);
+BREVE_API breve_status breve_rung_find(const char* name, breve_rung* rung);
 
 BREVE_API breve_status breve_world_accuracy(const breve_world* world, breve_accuracy* accuracy);
 
@@ -972,12 +986,14 @@ BREVE_API breve_status breve_world_accuracy(const breve_world* world, breve_accu
 BREVE_API breve_status breve_world_set_accuracy(breve_world* world, const breve_accuracy* accuracy);
 
 /* What a world's settings mean, in words; owned by the world until the next call of this function on it. */
-BREVE_API breve_status breve_world_describe_accuracy(breve_world* world, const char** text);
+BREVE_API breve_status breve_world_accuracy_text(const breve_world* world, const char** text);
 
 /* Settings of a body and all that joints connect with it; NULL: the world's.
    BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT as breve_world_set_accuracy. */
 BREVE_API breve_status breve_object_set_accuracy(breve_world* world, breve_object object,
                                                  const breve_accuracy* accuracy);
+
+/* ---- space ------------------------------------------------------------------------------------------------------- */
 
 /* Acceleration of all bodies with physics, (0, -9.81, 0) unless a script set it. */
 BREVE_API breve_status breve_world_gravity(const breve_world* world, double gravity[3]);
@@ -1000,39 +1016,45 @@ typedef enum breve_edge {
    @param low, high  m, finite, low < high; not looked at for BREVE_EDGE_OPEN
    BREVE_OK; BREVE_ERROR_ARGUMENT. */
 BREVE_API breve_status breve_world_set_space(breve_world* world, int axis, breve_edge edge, double low, double high);
+
 /* How space goes on along one axis.
    @param edge, low, high  each may be NULL; low and high are 0 where it is open
    BREVE_OK; BREVE_ERROR_ARGUMENT. */
 BREVE_API breve_status breve_world_space(const breve_world* world, int axis, breve_edge* edge, double* low,
                                          double* high);
 
+/* ---- grids ------------------------------------------------------------------------------------------------------- */
+
 /* The cells of a grid along x, y and z.
    @param grid    an object of class PatchGrid or PatchToroid
    @param counts  three numbers from 1
    BREVE_OK; BREVE_ERROR_STALE; BREVE_ERROR_NOT_FOUND: the object is no grid, or init-with has made no cells yet. */
 BREVE_API breve_status breve_grid_size(const breve_world* world, breve_object grid, uint32_t counts[3]);
+
 /* Copy what there is of a chemical over all cells of a grid, as get-concentration gives it for one. Runs no script.
    @param chemical  an object that the grid tracks (track)
    @param values    amount per volume of space, one number for each cell; the cell with the indices x, y, z is at
                     (x * ny + y) * nz + z. Room for `capacity` numbers; NULL only if capacity is 0
    @param count     how many cells there are, also where that is more than capacity: at most capacity are written
    BREVE_OK; BREVE_ERROR_STALE; BREVE_ERROR_NOT_FOUND as breve_grid_size, and if the grid does not track the chemical. */
-BREVE_API breve_status breve_grid_read(const breve_world* world, breve_object grid, breve_object chemical,
-                                       double* values, size_t capacity, size_t* count);
+BREVE_API breve_status breve_grid_concentrations(const breve_world* world, breve_object grid, breve_object chemical,
+                                                 double* values, size_t capacity, size_t* count);
+
 /* Set what there is of a chemical over all cells, in the same order. Nothing is changed where it fails. Runs no script.
    @param count  the number of cells
-   As breve_grid_read; BREVE_ERROR_ARGUMENT: a number that is not finite, or another count. */
-BREVE_API breve_status breve_grid_write(breve_world* world, breve_object grid, breve_object chemical,
-                                        const double* values, size_t count);
+   As breve_grid_concentrations; BREVE_ERROR_ARGUMENT: a number that is not finite, or another count. */
+BREVE_API breve_status breve_grid_set_concentrations(breve_world* world, breve_object grid, breve_object chemical,
+                                                     const double* values, size_t count);
 
-/* Let bodies that rest sleep. Off at first. */
-BREVE_API breve_status breve_world_set_sleeping(breve_world* world, bool on);
+/* ---- threads ----------------------------------------------------------------------------------------------------- */
 
 /* Threads that may compute the physics of a world, the caller's among them, 1 to 256; 1 at first. What comes out does
    not depend on it. Islands (bodies that touch or are joined, and what they touch) are shared among them; those with a
    collision handler or a force method are left to the caller's thread. The threads are the process's: no more than it
    has cores. A flat world is computed by the caller's thread alone. BREVE_OK; BREVE_ERROR_ARGUMENT: out of this range. */
 BREVE_API breve_status breve_world_set_workers(breve_world* world, uint32_t workers);
+
+/* ---- what physics did -------------------------------------------------------------------------------------------- */
 
 /* What happens where physics goes wrong. */
 typedef enum breve_guard {
@@ -1267,10 +1289,10 @@ BREVE_API breve_status breve_object_call_prepared(breve_world* world, breve_obje
 
 /* Queue the press (down) or release of a key; the controller's handler runs at the start of the next iteration.
    @param key  one character, or "up", "down", "left", "right" for the arrows; else BREVE_ERROR_ARGUMENT */
-BREVE_API breve_status breve_world_key(breve_world* world, const char* key, bool down);
+BREVE_API breve_status breve_world_queue_key(breve_world* world, const char* key, bool down);
 
 /* Queue a click on an object; the null object is a click on nothing. */
-BREVE_API breve_status breve_world_click(breve_world* world, breve_object object);
+BREVE_API breve_status breve_world_queue_click(breve_world* world, breve_object object);
 
 /* An entry of a menu. Texts are owned by the world, good until script runs in it again. */
 typedef struct breve_menu_item {
@@ -1284,12 +1306,12 @@ typedef struct breve_menu_item {
 /* The entries of all menus, in order of creation.
    @param items  room for `capacity`; NULL only if capacity is 0
    @param count  how many there are, also where that is more than capacity: at most capacity are written */
-BREVE_API breve_status breve_world_menu_items(breve_world* world, breve_menu_item* items, size_t capacity,
+BREVE_API breve_status breve_world_menu_items(const breve_world* world, breve_menu_item* items, size_t capacity,
                                               size_t* count);
 
 /* Queue the choice of a menu item. A disabled one or a separator then does nothing.
    BREVE_OK; BREVE_ERROR_ARGUMENT: the object is no menu item. */
-BREVE_API breve_status breve_world_choose(breve_world* world, breve_object item);
+BREVE_API breve_status breve_world_queue_choice(breve_world* world, breve_object item);
 
 /* ---- snapshots --------------------------------------------------------------------------------------------------- */
 
@@ -1306,8 +1328,8 @@ BREVE_API breve_status breve_world_snapshot(const breve_world* world, void* imag
 
 /* Put a world of the same program back to a snapshot's state. In the world that the snapshot is of, ids of its moment are
    good again; those given out since are stale, and no new object gets one of them. A world of another runtime that was
-   made there as the same one (the first, the second ...) shares these ids; in any other world the host asks for its objects
-   anew. The time that breve_world_advance keeps is dropped. Runs no script.
+   made there as the same one (the first, the second ...) shares these ids; in any other world the host asks for its
+   objects anew. The time that breve_world_advance keeps is dropped. Runs no script.
    BREVE_OK; BREVE_ERROR_IMAGE: damaged, or of another program or version: the world is unchanged;
    BREVE_ERROR_BUSY while a script of it runs. */
 BREVE_API breve_status breve_world_restore(breve_world* world, const void* image, size_t size);
@@ -1398,14 +1420,14 @@ BREVE_API breve_status breve_world_profile_stop(breve_world* world);
 /* How many nodes the profile has, also while it goes on.
    BREVE_OK; BREVE_ERROR_NOT_FOUND: there has been no profile; BREVE_ERROR_BUSY while a script of this world runs;
    BREVE_ERROR_MEMORY. */
-BREVE_API breve_status breve_world_profile_count(breve_world* world, size_t* count);
+BREVE_API breve_status breve_world_profile_node_count(const breve_world* world, size_t* count);
 
 /* The node at `index`, in the order of a walk from the root: a node, then its first child with all that is below it.
-   As breve_world_profile_count; BREVE_ERROR_NOT_FOUND also if index is not below the count. */
-BREVE_API breve_status breve_world_profile_node(breve_world* world, size_t index, breve_profile_node* node);
+   As breve_world_profile_node_count; BREVE_ERROR_NOT_FOUND also if index is not below the count. */
+BREVE_API breve_status breve_world_profile_node(const breve_world* world, size_t index, breve_profile_node* node);
 
-/* What the profile itself cost and took out of the nodes, s: an estimate. As breve_world_profile_count. */
-BREVE_API breve_status breve_world_profile_cost(breve_world* world, double* seconds);
+/* What the profile itself cost and took out of the nodes, s: an estimate. As breve_world_profile_node_count. */
+BREVE_API breve_status breve_world_profile_cost(const breve_world* world, double* seconds);
 
 /* ---- changing what runs ------------------------------------------------------------------------------------------ */
 

@@ -164,7 +164,7 @@ class World {
   std::uint64_t seed() const { return breve_world_seed(get()); }
   Result<double> random() {
     double number = 0;
-    const breve_status s = breve_world_random(get(), &number);
+    const breve_status s = breve_world_draw_random(get(), &number);
     return {status(s), number};
   }
 
@@ -287,15 +287,15 @@ class World {
   Status break_joint(Object joint) { return status(breve_joint_break(get(), joint)); }
   Result<breve_joint_info> joint(Object joint) {
     breve_joint_info info{};
-    const breve_status s = breve_joint_read(get(), joint, &info);
+    const breve_status s = breve_joint_state(get(), joint, &info);
     return {status(s), info};
   }
-  Result<breve_joint_drive> drive(Object joint) const {
-    breve_joint_drive drive = breve_joint_drive_default();
-    const breve_status s = breve_joint_get_drive(get(), joint, &drive);
+  Result<breve_drive> drive(Object joint) const {
+    breve_drive drive = breve_drive_default();
+    const breve_status s = breve_joint_drive(get(), joint, &drive);
     return {status(s), drive};
   }
-  Status set_drive(Object joint, const breve_joint_drive& drive) {
+  Status set_drive(Object joint, const breve_drive& drive) {
     return status(breve_joint_set_drive(get(), joint, &drive));
   }
   Result<std::vector<Object>> links(Object object) const {
@@ -402,9 +402,9 @@ class World {
     return {status(s), std::string(s == BREVE_OK ? text : "")};
   }
 
-  Status key(const char* key, bool down = true) { return status(breve_world_key(get(), key, down)); }
-  Status click(Object object = {}) { return status(breve_world_click(get(), object)); }
-  Status choose(Object menu_item) { return status(breve_world_choose(get(), menu_item)); }
+  Status key(const char* key, bool down = true) { return status(breve_world_queue_key(get(), key, down)); }
+  Status click(Object object = {}) { return status(breve_world_queue_click(get(), object)); }
+  Status choose(Object menu_item) { return status(breve_world_queue_choice(get(), menu_item)); }
   Result<std::vector<breve_menu_item>> menu_items() {
     return list<breve_menu_item>([this](breve_menu_item* out, std::size_t capacity, std::size_t* count) {
       return breve_world_menu_items(get(), out, capacity, count);
@@ -448,7 +448,7 @@ class World {
   /// All nodes; the root is the first.
   Result<std::vector<breve_profile_node>> profile() {
     std::size_t count = 0;
-    breve_status s = breve_world_profile_count(get(), &count);
+    breve_status s = breve_world_profile_node_count(get(), &count);
     std::vector<breve_profile_node> nodes(count);
     for (std::size_t i = 0; i < count && s == BREVE_OK; ++i) s = breve_world_profile_node(get(), i, &nodes[i]);
     return {status(s), std::move(nodes)};
@@ -491,7 +491,7 @@ class Analysis {
   }
   Result<breve_reference> at(const char* file, std::uint32_t line, std::uint32_t column) const {
     breve_reference reference{};
-    return {{breve_analysis_at(get(), file, line, column, &reference), nullptr}, reference};
+    return {{breve_analysis_name_at(get(), file, line, column, &reference), nullptr}, reference};
   }
   /// Good until the next call.
   Result<std::vector<breve_completion>> completions(const char* file, std::uint32_t line, std::uint32_t column) {
@@ -528,9 +528,9 @@ class Files {
   }
   ~Files() { breve_files_release(&files_); }
 
-  /// As breve_files_within: after those of earlier calls.
+  /// As breve_files_add_directory: after those of earlier calls.
   Status add(const char* directory, bool may_write = false, std::uint64_t most_bytes = 0) {
-    return {breve_files_within(directory, may_write, most_bytes, &files_), nullptr};
+    return {breve_files_add_directory(directory, may_write, most_bytes, &files_), nullptr};
   }
   const breve_files& get() const { return files_; }
 
@@ -577,7 +577,7 @@ class Runtime {
     return {status(s), World(made)};
   }
   /// Do not report lints of that code: "lint-unused-variable".
-  Status allow(const char* code) { return status(breve_runtime_allow(get(), code)); }
+  Status allow(const char* code) { return status(breve_runtime_allow_lint(get(), code)); }
   /// What the last compilation had to say; good until the next one.
   std::vector<breve_diagnostic> diagnostics() const {
     std::vector<breve_diagnostic> all(breve_runtime_diagnostic_count(get()));

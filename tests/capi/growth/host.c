@@ -55,22 +55,22 @@ static void bodies(breve_world* world) {
   breve_object joint;
   EXPECT(EXPECTED, breve_joint_create(world, description, &joint));
 #ifndef BREVE_LATER_HEADER
-  MADE(breve_joint_drive, drive, breve_joint_drive_default());
-  EXPECT(BREVE_OK, breve_joint_get_drive(world, joint, drive));
+  MADE(breve_drive, drive, breve_drive_default());
+  EXPECT(BREVE_OK, breve_joint_drive(world, joint, drive));
   /* What this header does not have: the number behind the struct. */
   struct {
-    breve_joint_drive known;
+    breve_drive known;
     double limit_restitution;
   } whole;
   memset(&whole, 0, sizeof whole);
   whole.known.struct_size = sizeof whole;
-  EXPECT(BREVE_OK, breve_joint_get_drive(world, joint, &whole.known));
+  EXPECT(BREVE_OK, breve_joint_drive(world, joint, &whole.known));
   whole.limit_restitution = 0.25;
   EXPECT(BREVE_OK, breve_joint_set_drive(world, joint, &whole.known));
   drive->damping = 3;
   EXPECT(BREVE_OK, breve_joint_set_drive(world, joint, drive));
   whole.limit_restitution = 0;
-  EXPECT(BREVE_OK, breve_joint_get_drive(world, joint, &whole.known));
+  EXPECT(BREVE_OK, breve_joint_drive(world, joint, &whole.known));
   if (whole.known.damping != 3 || whole.limit_restitution != 0.25) {
     ++failures;
     fprintf(stderr, "a setter changed a field that the host does not have: %g\n", whole.limit_restitution);
@@ -84,13 +84,13 @@ static void bodies(breve_world* world) {
   spring->to = asked(world, "get-arm");
   breve_object made;
   EXPECT(EXPECTED, breve_spring_create(world, spring, &made));
-  if (EXPECTED == BREVE_OK) EXPECT(BREVE_OK, breve_spring_set(world, made, spring));
+  if (EXPECTED == BREVE_OK) EXPECT(BREVE_OK, breve_spring_set_description(world, made, spring));
   free(spring);
 }
 
 static void results(breve_world* world) {
   MADE(breve_accuracy, accuracy, breve_accuracy_default());
-  EXPECT(EXPECTED, breve_accuracy_of_rung(BREVE_RUNG_PRECISE, accuracy));
+  EXPECT(EXPECTED, breve_rung_accuracy(BREVE_RUNG_PRECISE, accuracy));
   EXPECT(EXPECTED, breve_world_set_accuracy(world, accuracy));
   EXPECT(EXPECTED, breve_world_accuracy(world, accuracy));
   free(accuracy);

@@ -50,7 +50,7 @@ Creature::Creature(const Case& is, breve_rung rung, double step) {
   config.iteration_step = config.integration_step = step;
   world_ = runtime_.world(program_, config).or_throw();
   breve_accuracy accuracy = breve_accuracy_default();
-  if (breve_accuracy_of_rung(rung, &accuracy) != BREVE_OK) throw breve::Failure(BREVE_ERROR_ARGUMENT, "no such rung");
+  if (breve_rung_accuracy(rung, &accuracy) != BREVE_OK) throw breve::Failure(BREVE_ERROR_ARGUMENT, "no such rung");
   accuracy.contact_springs = accuracy.link_springs = false;  // what they store cannot be measured from outside
   world_.set_accuracy(accuracy).or_throw();
   if (has_gravity(is.family)) gravity_ = Vector3(0, -9.81, 0);
@@ -138,7 +138,7 @@ void Creature::join(const LinkGenes& genes, const Case& is, int link) {
 void Creature::set_drive(const LinkGenes& genes, const Case& is, Joint& joint) {
   joint.drive = world_.drive(joint.object).or_throw();
   if (joint.axes == 0) return;
-  breve_joint_drive& drive = joint.drive;
+  breve_drive& drive = joint.drive;
   if (has_motors(is.family)) {
     drive.strength_limit = genes[kStrength] * genes[kMass];
     if (drive.strength_limit > 0) joint.speed = genes[kSpeed];
@@ -194,7 +194,7 @@ void Creature::place(const Case& is) {
   put(pose.rotation, exponential(vector(is, kTiltX)));
   const breve_object root = bodies_[0].object;
   const auto move = [&] {
-    const breve_status s = breve_object_move_assembly(world_.get(), root, &pose);
+    const breve_status s = breve_object_set_assembly_pose(world_.get(), root, &pose);
     if (s != BREVE_OK) throw breve::Failure(s, breve_world_last_error(world_.get())->text);
   };
   move();
@@ -267,7 +267,7 @@ void Creature::set_off(const Case& is) {
     double rate[3] = {genes[kRateX], genes[kRateY], genes[kRateZ]};
     for (int k = joint.axes; k < 3; ++k) rate[k] = 0;
     if (joint.axes == 0 || loop_a_ >= 0) continue;  // a closed loop is not free to move so
-    const breve_status s = breve_joint_place(world_.get(), joint.object, nullptr, rate);
+    const breve_status s = breve_joint_set_state(world_.get(), joint.object, nullptr, rate);
     if (s != BREVE_OK) throw breve::Failure(s, breve_world_last_error(world_.get())->text);
   }
   const breve_object first = bodies_[0].object;

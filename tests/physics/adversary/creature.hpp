@@ -29,7 +29,7 @@ struct Joint {
   Vector3 on_parent = Vector3::Zero(), on_child = Vector3::Zero();
   Vector3 axis = Vector3::UnitX(), other = Vector3::UnitY();  // in the parent's frame, at zero
   Quaternion zero = Quaternion::Identity();                   // of the child relative to the parent
-  breve_joint_drive drive{};
+  breve_drive drive{};
   int axes = 0;
   double speed = 0, torque = 0, frequency = 0, phase = 0;  // how it is driven
 
