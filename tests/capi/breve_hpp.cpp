@@ -55,7 +55,7 @@ TEST(BreveHpp, NothingThrowsUnlessAsked) {
   EXPECT_THROW(stage.runtime.compile("bad.tz", "Controller").or_throw(), breve::Failure);
   auto failed = stage.world.call(stage.controller, "fail");
   EXPECT_EQ(failed.status().code(), BREVE_ERROR_SCRIPT);
-  EXPECT_NE(failed.text().find("as asked"), std::string::npos);
+  EXPECT_NE(failed.text().find("as asked"), std::string_view::npos);
   try {
     stage.world.call(stage.controller, "fly").or_throw();
     FAIL();
@@ -81,6 +81,82 @@ TEST(BreveHpp, ValuesConvertBothWays) {
   EXPECT_EQ(w.text(breve::Vector{1, 2, 3}).or_throw(), "(1.00000, 2.00000, 3.00000)");
   const auto add = w.prepare("add", {"second", "first"}).or_throw();
   EXPECT_EQ(w.call(stage.controller, add, {1, 2}).or_throw().integer(), 3);
+}
+
+TEST(BreveHpp, ValuesAreMadeOfAnyNumberAndText) {
+  const auto same = [](const breve::Value& value, int number) {
+    return value.type == std::uint32_t{BREVE_TYPE_INT} && value.integer() == number;
+  };
+  EXPECT_TRUE(same(0, 0) && same(7L, 7) && same(7LL, 7) && same(7U, 7) && same(std::size_t{7}, 7));
+  EXPECT_TRUE(same(std::uint8_t{255}, 255) && same(std::int8_t{-128}, -128) && same(short{-3}, -3) && same(true, 1));
+  EXPECT_TRUE(same(INT32_MAX, INT32_MAX) && same(std::int64_t{INT32_MIN}, INT32_MIN));
+  EXPECT_EQ(breve::Value(std::int64_t{INT32_MAX} + 1).type, std::uint32_t{BREVE_TYPE_DOUBLE});
+  EXPECT_EQ(breve::Value(std::int64_t{INT32_MIN} - 1).number(), -2147483649.0);
+  EXPECT_EQ(breve::Value(UINT64_MAX).number(), 18446744073709551615.0);
+  EXPECT_EQ(breve::Value(0.5F).number(), 0.5);
+  const std::string text = "text";
+  EXPECT_EQ(breve::Value(text).string().data(), text.data());
+  EXPECT_EQ(breve::Value(std::string_view(text).substr(1)).string(), "ext");
+  EXPECT_EQ(breve::Value(breve::Object{}).type, std::uint32_t{BREVE_TYPE_OBJECT});
+  EXPECT_EQ(breve::Value::matrix({1, 0, 0, 0, 1, 0, 0, 0, 1}).type, std::uint32_t{BREVE_TYPE_MATRIX});
+}
+
+TEST(BreveHpp, ListsAndHashesAreMadeAndRead) {
+  Stage stage;
+  auto& w = stage.world;
+  const auto list = w.create_list().or_throw();
+  w.push(list, "a").or_throw();
+  w.push(list, 2).or_throw();
+  EXPECT_EQ(w.list_size(list).or_throw(), 2U);
+  EXPECT_EQ(w.element(list, 1).or_throw().integer(), 2);
+  EXPECT_EQ(w.element(list, 2).status().code(), BREVE_ERROR_NOT_FOUND);
+  const auto hash = w.create_hash().or_throw();
+  w.hash_set(hash, "key", 0.5).or_throw();
+  EXPECT_EQ(w.hash_size(hash).or_throw(), 1U);
+  EXPECT_EQ(w.hash_get(hash, "key").or_throw().number(), 0.5);
+  EXPECT_EQ(w.elements(w.hash_keys(hash).or_throw()).or_throw().at(0).string(), "key");
+}
+
+TEST(BreveHpp, ListsGoIntoTheRoomOfTheHost) {
+  Stage stage;
+  auto& w = stage.world;
+  breve::Object one[1];
+  EXPECT_GT(w.objects(nullptr, one).or_throw(), 1U);
+  EXPECT_EQ(one[0], w.objects().or_throw().front());
+  const auto block = w.create("Block").or_throw();
+  std::array<breve::Vector, 8> corners{};
+  std::array<std::uint32_t, 6> sizes{};
+  std::array<std::uint32_t, 24> indices{};
+  w.shape_vertices(block, corners).or_throw();
+  w.shape_faces(block, sizes, indices).or_throw();
+  EXPECT_EQ(w.shape_vertices(block).or_throw().back(), corners.back());
+  EXPECT_EQ(w.shape_faces(block).or_throw()[5][3], indices[23]);
+  std::vector<unsigned char> image(w.snapshot(breve::Room<unsigned char>(nullptr, 0)).or_throw());
+  EXPECT_EQ(w.snapshot(image).or_throw(), image.size());
+  w.restore(image.data(), image.size()).or_throw();
+  EXPECT_TRUE(w.alive(block));
+}
+
+TEST(BreveHpp, TheRestOfTheInterfaceIsWrapped) {
+  EXPECT_EQ(breve::abi(), std::uint32_t{BREVE_ABI});
+  EXPECT_STREQ(breve::version(), breve_version());
+  EXPECT_EQ(breve::find_rung("precise").or_throw(), BREVE_RUNG_PRECISE);
+  EXPECT_EQ(breve::accuracy_of(BREVE_RUNG_FAST).or_throw().rung, std::uint32_t{BREVE_RUNG_FAST});
+  EXPECT_FALSE(breve::lint(breve::lint_count()));
+  EXPECT_GT(breve::library_module(0).or_throw().size, 0U);
+  Stage stage;
+  auto& w = stage.world;
+  EXPECT_STREQ(stage.program.class_at(stage.program.class_count() - 1).or_throw().name, "Block");
+  EXPECT_NEAR(w.gravity().or_throw()[1], -9.81, 1e-12);
+  w.set_space(1, BREVE_EDGE_WALL, -2, 3).or_throw();
+  EXPECT_EQ(w.space(1).or_throw().edge, BREVE_EDGE_WALL);
+  EXPECT_EQ(w.space(1).or_throw().high, 3);
+  w.set_guard(BREVE_GUARD_REPORT).or_throw();
+  EXPECT_EQ(w.guard(), BREVE_GUARD_REPORT);
+  EXPECT_FALSE(w.accuracy_text().or_throw().empty());
+  EXPECT_EQ(w.grid_size(stage.controller).status().code(), BREVE_ERROR_NOT_FOUND);
+  EXPECT_EQ(w.spring(stage.controller).status().code(), BREVE_ERROR_TYPE);
+  EXPECT_EQ(w.physics_counters().or_throw().contacts, 0U);
 }
 
 TEST(BreveHpp, ObjectsAreReadAndWritten) {

@@ -1,5 +1,9 @@
-# Fails if a function of the headers in HEADERS is not named in TEST, unless its name matches EXCEPT:
-#   cmake -DHEADERS=folder -DTEST=file.c [-DEXCEPT=^breve_analysis_] -P named_in.cmake
+# Fails if a function of the headers in HEADERS is not named in TEST, unless its name matches EXCEPT.
+# A parenthesis follows a name that is called; AFTER is another expression for what follows:
+#   cmake -DHEADERS=folder -DTEST=file.c [-DEXCEPT=^breve_analysis_] [-DAFTER=[^a-z_]] -P named_in.cmake
+if(NOT AFTER)
+  set(AFTER "\\(")
+endif()
 file(READ ${HEADERS}/breve.h header)
 file(READ ${HEADERS}/analysis.h analysis)
 file(READ ${TEST} test)
@@ -9,9 +13,8 @@ if(count LESS 150)
   message(FATAL_ERROR "found ${count} functions in ${HEADERS}: the pattern is out of date")
 endif()
 foreach(declaration IN LISTS declarations)
-  string(REGEX MATCH "breve_[a-z_]+\\($" name "${declaration}")
-  string(FIND "${test}" "${name}" at)
-  if(at EQUAL -1 AND NOT (EXCEPT AND name MATCHES "${EXCEPT}"))
-    message(SEND_ERROR "${name}) is not in ${TEST}")
+  string(REGEX REPLACE ".*(breve_[a-z_]+)\\($" "\\1" name "${declaration}")
+  if(NOT test MATCHES "[^a-z_]${name}${AFTER}" AND NOT (EXCEPT AND name MATCHES "${EXCEPT}"))
+    message(SEND_ERROR "${name} is not in ${TEST}")
   endif()
 endforeach()

@@ -1,25 +1,37 @@
-// breve.hpp: breve.h for C++17. Handles that clean up after themselves, results that carry their status.
+// breve.hpp: breve.h and analysis.h for C++17. Handles that clean up after themselves, results that carry their status.
 //
 //     auto runtime = breve::Runtime::create().or_throw();
 //     auto program = runtime.compile("hello.tz", text).or_throw();
 //     auto world = runtime.world(program).or_throw();
 //     while (!world.ended() && world.step()) draw(world);
 //
-// Everything that breve.h says about units, threads, callbacks and the life of values holds here too. Nothing throws
-// unless it is asked to: or_throw() turns a failure into breve::Failure. A handle that was moved from, or not made yet,
-// gives BREVE_ERROR_ARGUMENT.
+// Everything that the C headers say about units, threads, callbacks and the life of values holds here too. A handle
+// that was moved from, or not made yet, gives BREVE_ERROR_ARGUMENT.
+// - Errors are values: a Status, or a Result with one. Nothing throws unless it is asked to: or_throw() turns a failure
+//   into breve::Failure. Without exceptions (-fno-exceptions) all but or_throw() and Failure is there.
+// - What borrows: texts (const char*, std::string_view) belong to the library. Those of a Status are good until the
+// next
+//   call on its world or runtime; those of a Value until script runs in its world again; those that World::text() gives
+//   until its next call; those that describe a program, a class or a profile as long as that. Copy what is needed
+//   longer. A Value that is made of a text refers to it: the text must live until the call is made.
+// - Nothing here allocates but the functions that return a std::vector, and or_throw() when it throws. Lists have
+//   another form that fills a Room of the host and returns how many there are, also where that is more.
 #ifndef BREVE_BREVE_HPP
 #define BREVE_BREVE_HPP
 
 #include <array>
-#include <cstring>
-#include <initializer_list>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <memory>
-#include <stdexcept>
-#include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
+
+#if defined(__cpp_exceptions)
+#include <stdexcept>
+#endif
 
 #include "breve/analysis.h"
 #include "breve/breve.h"
@@ -28,54 +40,62 @@ inline bool operator==(breve_object a, breve_object b) { return a.index == b.ind
 inline bool operator!=(breve_object a, breve_object b) { return !(a == b); }
 
 namespace breve {
-inline namespace abi1 {
+inline namespace abi4 {
 
+#if defined(__cpp_exceptions)
 /// What or_throw() throws. what() is the library's text: place, message, chain of calls.
 class Failure : public std::runtime_error {
  public:
-  Failure(breve_status status, const std::string& text) : std::runtime_error(text), status_(status) {}
+  Failure(breve_status status, const char* text) : std::runtime_error(text), status_(status) {}
   breve_status status() const { return status_; }
 
  private:
   breve_status status_;
 };
+#endif
 
 /// Success, or why not.
 class [[nodiscard]] Status {
  public:
   Status() = default;
   Status(breve_status code, const breve_error* error) : code_(code) {
-    if (code != BREVE_OK) text_ = error && error->status == static_cast<std::uint32_t>(code) ? error->text : breve_status_name(code);
+    if (code == BREVE_OK) return;
+    text_ = error && error->status == static_cast<std::uint32_t>(code) ? error->text : breve_status_name(code);
   }
   explicit operator bool() const { return code_ == BREVE_OK; }
   breve_status code() const { return code_; }
-  const std::string& text() const { return text_; }  // "" on success
+  const char* name() const { return breve_status_name(code_); }
+  std::string_view text() const { return text_; }  // "" on success; borrowed
+#if defined(__cpp_exceptions)
   void or_throw() const {
     if (code_ != BREVE_OK) throw Failure(code_, text_);
   }
+#endif
 
  private:
   breve_status code_ = BREVE_OK;
-  std::string text_;
+  const char* text_ = "";
 };
 
 /// A value, or why there is none.
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(Status status, T value) : status_(std::move(status)), value_(std::move(value)) {}
+  Result(Status status, T value) : status_(status), value_(std::move(value)) {}
   explicit operator bool() const { return static_cast<bool>(status_); }
   const Status& status() const { return status_; }
-  const std::string& text() const { return status_.text(); }
+  std::string_view text() const { return status_.text(); }  // borrowed
   /// Default-made after a failure.
   T& value() & { return value_; }
   const T& value() const& { return value_; }
   T&& value() && { return std::move(value_); }
+  T or_else(T other) && { return status_ ? std::move(value_) : std::move(other); }
+#if defined(__cpp_exceptions)
   T or_throw() && {
     status_.or_throw();
     return std::move(value_);
   }
-  T or_else(T other) && { return status_ ? std::move(value_) : std::move(other); }
+#endif
 
  private:
   Status status_;
@@ -85,13 +105,30 @@ class [[nodiscard]] Result {
 using Vector = std::array<double, 3>;
 using Object = breve_object;
 
-/// Arguments of calls: any of these converts to a script value. Strings are referred to, not copied.
+/// Where a list goes: the first elements are written, as many as fit.
+template <class T>
+struct Room {
+  Room(T* first, std::size_t size) : data(first), capacity(size) {}
+  template <std::size_t N>
+  Room(T (&array)[N]) : data(array), capacity(N) {}
+  template <std::size_t N>
+  Room(std::array<T, N>& array) : data(array.data()), capacity(N) {}
+  Room(std::vector<T>& list) : data(list.data()), capacity(list.size()) {}
+
+  T* data;
+  std::size_t capacity;
+};
+
+/// Arguments of calls: any of these converts to a script value. Texts are referred to, not copied.
 class Value : public breve_value {
  public:
   Value() : breve_value(breve_value_null()) {}
   Value(const breve_value& v) : breve_value(v) {}
-  Value(int v) : breve_value(breve_value_int(v)) {}
-  Value(double v) : breve_value(breve_value_double(v)) {}
+  /// Of any type of integer; bool gives 0 or 1. One that does not fit an int of a script becomes a double.
+  template <class T, std::enable_if_t<std::is_integral_v<T>, int> = 0>
+  Value(T v) : breve_value(fits(v) ? breve_value_int(static_cast<std::int32_t>(v)) : breve_value_double(double(v))) {}
+  template <class T, std::enable_if_t<std::is_floating_point_v<T>, int> = 0>
+  Value(T v) : breve_value(breve_value_double(static_cast<double>(v))) {}
   Value(const Vector& v) : breve_value(breve_value_vector(v[0], v[1], v[2])) {}
   Value(const char* v) : breve_value(breve_value_string(v)) {}
   Value(std::string_view v) : breve_value(breve_value_string("")) {
@@ -99,10 +136,14 @@ class Value : public breve_value {
     as.string.bytes = v.data();
     as.string.size = v.size();
   }
-  Value(const std::string& v) : Value(std::string_view(v)) {}
+  /// A std::string, and what else converts to a view of it.
+  template <class T, std::enable_if_t<std::is_class_v<T> && std::is_convertible_v<const T&, std::string_view>, int> = 0>
+  Value(const T& v) : Value(static_cast<std::string_view>(v)) {}
   Value(Object v) : breve_value(breve_value_object(v)) {}
+  /// Row by row.
+  static Value matrix(const std::array<double, 9>& rows) { return breve_value_matrix(rows.data()); }
 
-  // The value as a C++ one; the default where it is of another type. A string is copied.
+  // The value as a C++ one; the default where it is of another type.
   int integer(int other = 0) const { return type == BREVE_TYPE_INT ? as.integer : other; }
   double number(double other = 0) const {
     return type == BREVE_TYPE_DOUBLE ? as.number : type == BREVE_TYPE_INT ? static_cast<double>(as.integer) : other;
@@ -110,10 +151,20 @@ class Value : public breve_value {
   Vector vector(Vector other = {}) const {
     return type == BREVE_TYPE_VECTOR ? Vector{as.vector[0], as.vector[1], as.vector[2]} : other;
   }
-  std::string string() const {
-    return type == BREVE_TYPE_STRING || type == BREVE_TYPE_DATA ? std::string(as.string.bytes, as.string.size) : std::string();
+  std::string_view string() const {  // borrowed
+    const bool bytes = type == BREVE_TYPE_STRING || type == BREVE_TYPE_DATA;
+    return bytes ? std::string_view(as.string.bytes, as.string.size) : std::string_view();
   }
   Object object() const { return type == BREVE_TYPE_OBJECT ? as.object : Object{}; }
+
+ private:
+  template <class T>
+  static constexpr bool fits(T v) {
+    using Wide = std::conditional_t<std::is_signed_v<T>, std::int64_t, std::uint64_t>;
+    using Int = std::numeric_limits<std::int32_t>;
+    if constexpr (std::is_signed_v<T>) return Wide{v} >= Int::min() && Wide{v} <= Int::max();
+    return static_cast<std::uint64_t>(v) <= static_cast<std::uint64_t>(Int::max()) || std::is_signed_v<T>;
+  }
 };
 
 struct Keyword {
@@ -121,8 +172,37 @@ struct Keyword {
   Value value;
 };
 
+inline const char* version() { return breve_version(); }
+inline std::uint32_t abi() { return breve_abi(); }
+
 /// Can these statements be evaluated as they are, or must another line follow?
 inline bool statements_complete(std::string_view text) { return breve_statements_complete(text.data(), text.size()); }
+
+inline std::size_t lint_count() { return breve_lint_count(); }
+inline Result<breve_lint_info> lint(std::size_t index) {
+  breve_lint_info info{};
+  const breve_status s = breve_lint(index, &info);
+  return {{s, nullptr}, info};
+}
+
+inline std::size_t library_module_count() { return breve_library_module_count(); }
+inline Result<breve_source> library_module(std::size_t index) {
+  breve_source module{};
+  const breve_status s = breve_library_module(index, &module);
+  return {{s, nullptr}, module};
+}
+
+/// The settings of a rung, and the rung of a name.
+inline Result<breve_accuracy> accuracy_of(breve_rung rung) {
+  breve_accuracy accuracy = breve_accuracy_default();
+  const breve_status s = breve_rung_accuracy(rung, &accuracy);
+  return {{s, nullptr}, accuracy};
+}
+inline Result<breve_rung> find_rung(const char* name) {
+  breve_rung rung = BREVE_RUNG_FAST;
+  const breve_status s = breve_rung_find(name, &rung);
+  return {{s, nullptr}, rung};
+}
 
 struct Snapshot {
   std::vector<unsigned char> image;
@@ -133,6 +213,13 @@ class Program {
   Program() = default;
   explicit Program(breve_program* handle) : handle_(handle) {}  // takes it over
   breve_program* get() const { return handle_.get(); }
+
+  std::size_t class_count() const { return breve_program_class_count(get()); }
+  Result<breve_class_info> class_at(std::size_t index) const {
+    breve_class_info info{};
+    const breve_status s = breve_program_class(get(), index, &info);
+    return {{s, nullptr}, info};
+  }
 
  private:
   struct Destroy {
@@ -150,11 +237,7 @@ class World {
 
   Status step() { return status(breve_world_step(get())); }
   /// The fraction of the next iteration that is kept, for interpolation.
-  Result<double> advance(double seconds) {
-    double fraction = 0;
-    const breve_status s = breve_world_advance(get(), seconds, &fraction);
-    return {status(s), fraction};
-  }
+  Result<double> advance(double seconds) { return read<double>(breve_world_advance, seconds); }
   double time() const { return breve_world_time(get()); }
   std::uint64_t iteration() const { return breve_world_iteration(get()); }
   double iteration_step() const { return breve_world_iteration_step(get()); }
@@ -162,260 +245,274 @@ class World {
   bool paused() const { return breve_world_paused(get()); }
   Status set_paused(bool paused) { return status(breve_world_set_paused(get(), paused)); }
   std::uint64_t seed() const { return breve_world_seed(get()); }
-  Result<double> random() {
-    double number = 0;
-    const breve_status s = breve_world_draw_random(get(), &number);
-    return {status(s), number};
-  }
+  Result<double> random() { return read<double>(breve_world_draw_random); }
+  void* user() const { return breve_world_user(get()); }
+  const breve_error* last_error() const { return breve_world_last_error(get()); }
 
+  // --- objects -------------------------------------------------------------------------------------------------------
   Object controller() const { return breve_world_controller(get()); }
   Result<std::vector<Object>> objects(const char* class_name = nullptr) const {
-    std::vector<Object> all;
-    std::size_t count = 0;
-    breve_status s = breve_world_objects(get(), class_name, nullptr, 0, &count);
-    if (s == BREVE_OK) {
-      all.resize(count);
-      s = breve_world_objects(get(), class_name, all.data(), all.size(), &count);
-    }
-    return {status(s), std::move(all)};
+    return list<Object>(breve_world_objects, class_name);
+  }
+  Result<std::size_t> objects(const char* class_name, Room<Object> room) const {
+    return fill(room, breve_world_objects, class_name);
   }
   bool alive(Object object) const { return breve_object_alive(get(), object); }
-  std::string class_of(Object object) const {
+  /// "" for an object that is null or gone.
+  std::string_view class_of(Object object) const {
     const char* name = breve_object_class(get(), object);
     return name ? name : "";
   }
   bool is_a(Object object, const char* class_name) const {
-    bool result = false;
-    return breve_object_is_a(get(), object, class_name, &result) == BREVE_OK && result;
+    return read<bool>(breve_object_is_a, object, class_name).or_else(false);
   }
-  Result<Object> create(const char* class_name) {
-    Object made{};
-    const breve_status s = breve_object_create(get(), class_name, &made);
-    return {status(s), made};
-  }
+  Result<Object> create(const char* class_name) { return read<Object>(breve_object_create, class_name); }
   Status free(Object object) { return status(breve_object_free(get(), object)); }
 
-  Result<breve_pose> pose(Object object) const {
-    breve_pose pose{};
-    const breve_status s = breve_object_pose(get(), object, &pose);
-    return {status(s), pose};
-  }
+  Result<breve_pose> pose(Object object) const { return read<breve_pose>(breve_object_pose, object); }
   Status set_pose(Object object, const breve_pose& pose) { return status(breve_object_set_pose(get(), object, &pose)); }
   Status set_target(Object object, const breve_pose& pose) {
     return status(breve_object_set_target(get(), object, &pose));
   }
-  Result<Vector> velocity(Object object) const {
-    Vector v{};
-    const breve_status s = breve_object_velocity(get(), object, v.data());
-    return {status(s), v};
-  }
+  Result<Vector> velocity(Object object) const { return read_array<3>(breve_object_velocity, object); }
   Status set_velocity(Object object, const Vector& v) {
     return status(breve_object_set_velocity(get(), object, v.data()));
   }
   Result<Vector> rotational_velocity(Object object) const {
-    Vector v{};
-    const breve_status s = breve_object_rotational_velocity(get(), object, v.data());
-    return {status(s), v};
+    return read_array<3>(breve_object_rotational_velocity, object);
   }
   Status set_rotational_velocity(Object object, const Vector& v) {
     return status(breve_object_set_rotational_velocity(get(), object, v.data()));
   }
-  Result<std::array<double, 4>> color(Object object) const {
-    std::array<double, 4> rgba{};
-    const breve_status s = breve_object_color(get(), object, rgba.data());
-    return {status(s), rgba};
-  }
+  Result<std::array<double, 4>> color(Object object) const { return read_array<4>(breve_object_color, object); }
   Status set_color(Object object, const std::array<double, 4>& rgba) {
     return status(breve_object_set_color(get(), object, rgba.data()));
   }
-  Result<breve_shape> shape(Object object) const {
-    breve_shape shape{};
-    const breve_status s = breve_object_shape(get(), object, &shape);
-    return {status(s), shape};
-  }
+  Result<breve_shape> shape(Object object) const { return read<breve_shape>(breve_object_shape, object); }
   Result<std::vector<Vector>> shape_vertices(Object object) const {
-    breve_shape shape{};
-    std::vector<Vector> corners;
-    breve_status s = breve_object_shape(get(), object, &shape);
-    if (s == BREVE_OK && shape.vertex_count != 0) {
-      corners.resize(shape.vertex_count);
-      s = breve_object_shape_vertices(get(), object, corners.front().data(), corners.size());
-    }
+    const Result<breve_shape> shape = this->shape(object);
+    std::vector<Vector> corners(shape.value().vertex_count);
+    if (corners.empty()) return {shape.status(), {}};
+    const breve_status s = breve_object_shape_vertices(get(), object, corners.front().data(), corners.size());
     return {status(s), std::move(corners)};
   }
   /// Each face as the numbers of its corners, counter-clockwise from outside.
   Result<std::vector<std::vector<std::uint32_t>>> shape_faces(Object object) const {
-    breve_shape shape{};
+    const Result<breve_shape> shape = this->shape(object);
     std::vector<std::vector<std::uint32_t>> faces;
-    breve_status s = breve_object_shape(get(), object, &shape);
-    if (s == BREVE_OK && shape.face_count != 0) {
-      std::vector<std::uint32_t> sizes(shape.face_count), indices(shape.index_count);
-      s = breve_object_shape_faces(get(), object, sizes.data(), sizes.size(), indices.data(), indices.size());
-      auto next = indices.begin();
-      for (const std::uint32_t size : sizes) {
-        faces.emplace_back(next, next + size);
-        next += size;
-      }
+    std::vector<std::uint32_t> sizes(shape.value().face_count), indices(shape.value().index_count);
+    if (sizes.empty()) return {shape.status(), {}};
+    const Status given = shape_faces(object, sizes, indices);
+    auto next = indices.begin();
+    for (const std::uint32_t size : sizes) {
+      faces.emplace_back(next, next + size);
+      next += size;
     }
-    return {status(s), std::move(faces)};
+    return {given, std::move(faces)};
+  }
+  Status shape_vertices(Object object, Room<Vector> room) const {
+    return status(breve_object_shape_vertices(get(), object, &(*room.data)[0], room.capacity));
+  }
+  Status shape_faces(Object object, Room<std::uint32_t> sizes, Room<std::uint32_t> indices) const {
+    return status(breve_object_shape_faces(get(), object, sizes.data, sizes.capacity, indices.data, indices.capacity));
   }
 
-  // --- bodies with physics -------------------------------------------------------------------------------------------
-  Result<Object> create_shape(const breve_geometry& geometry) {
-    Object made{};
-    const breve_status s = breve_shape_create(get(), &geometry, &made);
-    return {status(s), made};
-  }
+  // --- bodies --------------------------------------------------------------------------------------------------------
+  Result<Object> create_shape(const breve_geometry& geometry) { return read<Object>(breve_shape_create, &geometry); }
   Status set_shape(Object object, Object shape) { return status(breve_object_set_shape(get(), object, shape)); }
+  Result<bool> physics(Object object) const { return read<bool>(breve_object_physics, object); }
   Status set_physics(Object object, bool on) { return status(breve_object_set_physics(get(), object, on)); }
-  Result<double> mass(Object object) const {
-    double mass = 0;
-    const breve_status s = breve_object_mass(get(), object, &mass);
-    return {status(s), mass};
-  }
+  Result<double> mass(Object object) const { return read<double>(breve_object_mass, object); }
   Status set_force(Object object, const Vector& force, const Vector& torque = {}) {
     return status(breve_object_set_force(get(), object, force.data(), torque.data()));
   }
   Status set_material(Object object, const breve_material& material) {
     return status(breve_object_set_material(get(), object, &material));
   }
+  Status set_sleeping(bool on) { return status(breve_world_set_sleeping(get(), on)); }
+  Result<bool> asleep(Object object) const { return read<bool>(breve_object_asleep, object); }
+
+  // --- joints and springs --------------------------------------------------------------------------------------------
   Result<Object> create_joint(const breve_joint_description& description) {
-    Object made{};
-    const breve_status s = breve_joint_create(get(), &description, &made);
-    return {status(s), made};
+    return read<Object>(breve_joint_create, &description);
   }
   Status break_joint(Object joint) { return status(breve_joint_break(get(), joint)); }
-  Result<breve_joint_info> joint(Object joint) {
-    breve_joint_info info{};
-    const breve_status s = breve_joint_state(get(), joint, &info);
-    return {status(s), info};
+  Result<breve_joint_info> joint(Object joint) const { return read<breve_joint_info>(breve_joint_state, joint); }
+  Status set_joint(Object joint, const Vector& position, const Vector& velocity) {
+    return status(breve_joint_set_state(get(), joint, position.data(), velocity.data()));
   }
-  Result<breve_drive> drive(Object joint) const {
-    breve_drive drive = breve_drive_default();
-    const breve_status s = breve_joint_drive(get(), joint, &drive);
-    return {status(s), drive};
-  }
+  Result<breve_drive> drive(Object joint) const { return read_struct(breve_drive_default(), breve_joint_drive, joint); }
   Status set_drive(Object joint, const breve_drive& drive) {
     return status(breve_joint_set_drive(get(), joint, &drive));
   }
-  Result<std::vector<Object>> links(Object object) const {
-    return list<Object>([&](Object* out, std::size_t capacity, std::size_t* count) {
-      return breve_object_links(get(), object, out, capacity, count);
-    });
+  Result<std::vector<Object>> links(Object object) const { return list<Object>(breve_object_links, object); }
+  Result<std::size_t> links(Object object, Room<Object> room) const { return fill(room, breve_object_links, object); }
+  Result<std::vector<Object>> joints(Object object) const { return list<Object>(breve_object_joints, object); }
+  Result<std::size_t> joints(Object object, Room<Object> room) const { return fill(room, breve_object_joints, object); }
+  Status set_assembly_pose(Object object, const breve_pose& pose) {
+    return status(breve_object_set_assembly_pose(get(), object, &pose));
   }
-  Result<std::vector<Object>> joints(Object object) const {
-    return list<Object>([&](Object* out, std::size_t capacity, std::size_t* count) {
-      return breve_object_joints(get(), object, out, capacity, count);
-    });
+  Status set_self_collisions(Object object, bool on) {
+    return status(breve_object_set_self_collisions(get(), object, on));
   }
   Result<Object> create_spring(const breve_spring& description) {
-    Object made{};
-    const breve_status s = breve_spring_create(get(), &description, &made);
-    return {status(s), made};
+    return read<Object>(breve_spring_create, &description);
   }
-  Result<breve_accuracy> accuracy() const {
-    breve_accuracy accuracy = breve_accuracy_default();
-    const breve_status s = breve_world_accuracy(get(), &accuracy);
-    return {status(s), accuracy};
+  Status set_spring(Object spring, const breve_spring& description) {
+    return status(breve_spring_set_description(get(), spring, &description));
   }
+  struct SpringState {
+    double length, force;
+  };
+  Result<SpringState> spring(Object spring) const {
+    SpringState state{};
+    const breve_status s = breve_spring_state(get(), spring, &state.length, &state.force);
+    return {status(s), state};
+  }
+
+  // --- accuracy, space, grids, threads -------------------------------------------------------------------------------
+  Result<breve_accuracy> accuracy() const { return read_struct(breve_accuracy_default(), breve_world_accuracy); }
   Status set_accuracy(const breve_accuracy& accuracy) { return status(breve_world_set_accuracy(get(), &accuracy)); }
+  /// Of a body and all that joints connect with it; null: the world's.
+  Status set_accuracy(Object object, const breve_accuracy* accuracy) {
+    return status(breve_object_set_accuracy(get(), object, accuracy));
+  }
+  Result<std::string_view> accuracy_text() const { return read_text(breve_world_accuracy_text); }
+  Result<Vector> gravity() const { return read_array<3>(breve_world_gravity); }
   Status set_gravity(const Vector& gravity) { return status(breve_world_set_gravity(get(), gravity.data())); }
+  struct Edge {
+    breve_edge edge;
+    double low, high;
+  };
   /// How space goes on along axis 0, 1 or 2; see breve_world_set_space.
+  Result<Edge> space(int axis) const {
+    Edge is{};
+    const breve_status s = breve_world_space(get(), axis, &is.edge, &is.low, &is.high);
+    return {status(s), is};
+  }
   Status set_space(int axis, breve_edge edge, double low, double high) {
     return status(breve_world_set_space(get(), axis, edge, low, high));
   }
-  Result<breve_energy> energy() const {
-    breve_energy energy = breve_energy_default();
-    const breve_status s = breve_world_energy(get(), &energy);
-    return {status(s), energy};
+  Result<std::array<std::uint32_t, 3>> grid_size(Object grid) const {
+    std::array<std::uint32_t, 3> counts{};
+    const breve_status s = breve_grid_size(get(), grid, counts.data());
+    return {status(s), counts};
   }
-  Result<std::vector<breve_impact>> impacts() const {
-    return list<breve_impact>([this](breve_impact* out, std::size_t capacity, std::size_t* count) {
-      return breve_world_impacts(get(), out, capacity, count);
-    });
+  Result<std::vector<double>> concentrations(Object grid, Object chemical) const {
+    return list<double>(breve_grid_concentrations, grid, chemical);
   }
+  Result<std::size_t> concentrations(Object grid, Object chemical, Room<double> room) const {
+    return fill(room, breve_grid_concentrations, grid, chemical);
+  }
+  Status set_concentrations(Object grid, Object chemical, const double* values, std::size_t count) {
+    return status(breve_grid_set_concentrations(get(), grid, chemical, values, count));
+  }
+  Status set_workers(std::uint32_t workers) { return status(breve_world_set_workers(get(), workers)); }
+
+  // --- what physics did ----------------------------------------------------------------------------------------------
+  breve_guard guard() const { return breve_world_guard(get()); }
+  Status set_guard(breve_guard mode) { return status(breve_world_set_guard(get(), mode)); }
   Result<std::vector<breve_intervention>> interventions() const {
-    return list<breve_intervention>([this](breve_intervention* out, std::size_t capacity, std::size_t* count) {
-      return breve_world_interventions(get(), out, capacity, count);
-    });
+    return list<breve_intervention>(breve_world_interventions);
+  }
+  Result<std::size_t> interventions(Room<breve_intervention> room) const {
+    return fill(room, breve_world_interventions);
+  }
+  Result<std::vector<breve_impact>> impacts() const { return list<breve_impact>(breve_world_impacts); }
+  Result<std::size_t> impacts(Room<breve_impact> room) const { return fill(room, breve_world_impacts); }
+  Result<breve_energy> energy() const { return read_struct(breve_energy_default(), breve_world_energy); }
+  Result<breve_energy> energy(Object object) const {
+    return read_struct(breve_energy_default(), breve_object_energy, object);
+  }
+  Result<breve_physics_counters> physics_counters() const {
+    return read_struct(breve_physics_counters_default(), breve_world_physics_counters);
   }
 
-  Result<Value> get(Object object, const char* variable) {
-    breve_value value = breve_value_null();
-    const breve_status s = breve_object_get(get(), object, variable, &value);
-    return {status(s), value};
+  // --- values --------------------------------------------------------------------------------------------------------
+  /// As `print` shows it.
+  Result<std::string_view> text(const Value& value) {
+    const char* text = "";
+    const breve_status s = breve_value_text(get(), &value, &text);
+    return {status(s), text};
   }
+  Result<Value> create_list() { return read_value(breve_list_create); }
+  Result<std::size_t> list_size(const Value& list) const { return read<std::size_t>(breve_list_size, &list); }
+  Result<Value> element(const Value& list, std::size_t index) { return read_value(breve_list_get, &list, index); }
+  Status push(const Value& list, const Value& element) { return status(breve_list_push(get(), &list, &element)); }
+  /// The elements of a list value.
+  Result<std::vector<Value>> elements(const Value& list) {
+    const Result<std::size_t> size = list_size(list);
+    std::vector<Value> all;
+    for (std::size_t i = 0; i < size.value(); ++i) {
+      const Result<Value> one = element(list, i);
+      if (!one) return {one.status(), std::move(all)};
+      all.push_back(one.value());
+    }
+    return {size.status(), std::move(all)};
+  }
+  Result<Value> create_hash() { return read_value(breve_hash_create); }
+  Result<std::size_t> hash_size(const Value& hash) const { return read<std::size_t>(breve_hash_size, &hash); }
+  Result<Value> hash_get(const Value& hash, const Value& key) {
+    const breve_value& name = key;
+    return read_value(breve_hash_get, &hash, &name);
+  }
+  Status hash_set(const Value& hash, const Value& key, const Value& element) {
+    return status(breve_hash_set(get(), &hash, &key, &element));
+  }
+  Result<Value> hash_keys(const Value& hash) { return read_value(breve_hash_keys, &hash); }
+
+  // --- variables and calls -------------------------------------------------------------------------------------------
+  Result<Value> get(Object object, const char* variable) { return read_value(breve_object_get, object, variable); }
   Status set(Object object, const char* variable, const Value& value) {
     return status(breve_object_set(get(), object, variable, &value));
   }
-  Result<Value> call(Object object, const char* method, std::initializer_list<Keyword> keywords = {}) {
-    std::vector<breve_keyword> list;
-    list.reserve(keywords.size());
-    for (const Keyword& k : keywords) list.push_back({k.name, k.value});
-    breve_value value = breve_value_null();
-    const breve_status s = breve_object_call(get(), object, method, list.data(), list.size(), &value);
-    return {status(s), value};
+  Result<Value> call(Object object, const char* method) {
+    return read_value(breve_object_call, object, method, nullptr, std::size_t{0});
   }
-  Result<breve_selector> prepare(const char* method, std::initializer_list<const char*> keywords = {}) {
-    breve_selector selector{};
-    const breve_status s = breve_world_prepare(get(), method, keywords.begin(), keywords.size(), &selector);
-    return {status(s), selector};
+  /// With its keywords, in any order: call(bird, "move", {{"to", target}, {"speed", 3}}).
+  template <std::size_t N>
+  Result<Value> call(Object object, const char* method, const Keyword (&keywords)[N]) {
+    breve_keyword given[N];
+    for (std::size_t i = 0; i < N; ++i) given[i] = {keywords[i].name, keywords[i].value};
+    return read_value(breve_object_call, object, method, given, N);
+  }
+  /// For many fast calls: the names are looked up once.
+  Result<breve_selector> prepare(const char* method) {
+    return read<breve_selector>(breve_world_prepare, method, nullptr, std::size_t{0});
+  }
+  template <std::size_t N>
+  Result<breve_selector> prepare(const char* method, const char* const (&keywords)[N]) {
+    return read<breve_selector>(breve_world_prepare, method, keywords, N);
+  }
+  Result<Value> call(Object object, breve_selector selector) {
+    return read_value(breve_object_call_prepared, object, selector, nullptr, std::size_t{0});
+  }
+  /// Arguments in the order of the prepared keywords.
+  template <std::size_t N>
+  Result<Value> call(Object object, breve_selector selector, const Value (&arguments)[N]) {
+    breve_value given[N];
+    for (std::size_t i = 0; i < N; ++i) given[i] = arguments[i];
+    return read_value(breve_object_call_prepared, object, selector, given, N);
   }
   /// Run statements as though they stood in a method of `self`; the null object: of the controller.
   Result<Value> evaluate(std::string_view text, Object self = {}) {
-    breve_value value = breve_value_null();
-    const breve_status s = breve_world_evaluate(get(), self, text.data(), text.size(), &value);
-    return {status(s), value};
+    return read_value(breve_world_evaluate, self, text.data(), text.size());
   }
   /// The variables that evaluated statements have made: a hash.
-  Result<Value> session() {
-    breve_value value = breve_value_null();
-    const breve_status s = breve_world_session(get(), &value);
-    return {status(s), value};
-  }
+  Result<Value> session() { return read_value(breve_world_session); }
   /// Go on with a changed program, all or nothing.
   Status reload(const Program& program) { return status(breve_world_reload(get(), program.get())); }
   /// Stop the script that runs; from any thread, or a signal handler.
   void interrupt() noexcept { breve_world_interrupt(get()); }
-  Result<Value> call(Object object, breve_selector selector, std::initializer_list<Value> arguments = {}) {
-    std::vector<breve_value> list(arguments.begin(), arguments.end());
-    breve_value value = breve_value_null();
-    const breve_status s = breve_object_call_prepared(get(), object, selector, list.data(), list.size(), &value);
-    return {status(s), value};
-  }
-  /// The elements of a list value.
-  Result<std::vector<Value>> elements(const Value& list) {
-    std::vector<Value> all;
-    std::size_t size = 0;
-    breve_status s = breve_list_size(get(), &list, &size);
-    for (std::size_t i = 0; s == BREVE_OK && i < size; ++i) {
-      Value element;
-      s = breve_list_get(get(), &list, i, &element);
-      all.push_back(element);
-    }
-    return {status(s), std::move(all)};
-  }
-  /// As `print` shows it.
-  Result<std::string> text(const Value& value) {
-    const char* text = "";
-    const breve_status s = breve_value_text(get(), &value, &text);
-    return {status(s), std::string(s == BREVE_OK ? text : "")};
-  }
 
+  // --- input, snapshots, costs ---------------------------------------------------------------------------------------
   Status key(const char* key, bool down = true) { return status(breve_world_queue_key(get(), key, down)); }
   Status click(Object object = {}) { return status(breve_world_queue_click(get(), object)); }
   Status choose(Object menu_item) { return status(breve_world_queue_choice(get(), menu_item)); }
-  Result<std::vector<breve_menu_item>> menu_items() {
-    return list<breve_menu_item>([this](breve_menu_item* out, std::size_t capacity, std::size_t* count) {
-      return breve_world_menu_items(get(), out, capacity, count);
-    });
-  }
+  Result<std::vector<breve_menu_item>> menu_items() const { return list<breve_menu_item>(breve_world_menu_items); }
+  Result<std::size_t> menu_items(Room<breve_menu_item> room) const { return fill(room, breve_world_menu_items); }
 
-  Result<std::uint64_t> hash() const {
-    std::uint64_t hash = 0;
-    const breve_status s = breve_world_hash(get(), &hash);
-    return {status(s), hash};
-  }
+  Result<std::uint64_t> hash() const { return read<std::uint64_t>(breve_world_hash); }
   Result<Snapshot> snapshot() const {
     Snapshot snapshot;
     std::size_t size = 0;
@@ -426,50 +523,83 @@ class World {
     }
     return {status(s), std::move(snapshot)};
   }
-  Status restore(const Snapshot& snapshot) {
-    return status(breve_world_restore(get(), snapshot.image.data(), snapshot.image.size()));
+  /// How large the image is; it is written if there is room for all of it.
+  Result<std::size_t> snapshot(Room<unsigned char> room) const {
+    return read<std::size_t>(breve_world_snapshot, room.data, room.capacity);
   }
+  Status restore(const Snapshot& snapshot) { return restore(snapshot.image.data(), snapshot.image.size()); }
+  Status restore(const void* image, std::size_t size) { return status(breve_world_restore(get(), image, size)); }
 
-  Result<std::vector<breve_effect>> effects() const {
-    return list<breve_effect>([this](breve_effect* out, std::size_t capacity, std::size_t* count) {
-      return breve_world_effects(get(), out, capacity, count);
-    });
-  }
-  Result<breve_stats> stats() const {
-    breve_stats stats = breve_stats_default();
-    const breve_status s = breve_world_stats(get(), &stats);
-    return {status(s), stats};
-  }
+  Result<std::vector<breve_effect>> effects() const { return list<breve_effect>(breve_world_effects); }
+  Result<std::size_t> effects(Room<breve_effect> room) const { return fill(room, breve_world_effects); }
+  Result<breve_stats> stats() const { return read_struct(breve_stats_default(), breve_world_stats); }
 
   Status start_profile(breve_trace_fn trace = nullptr, void* user = nullptr) {
     return status(breve_world_profile_start(get(), trace, user));
   }
   Status stop_profile() { return status(breve_world_profile_stop(get())); }
+  Result<std::size_t> profile_node_count() const { return read<std::size_t>(breve_world_profile_node_count); }
+  Result<breve_profile_node> profile_node(std::size_t index) const {
+    return read<breve_profile_node>(breve_world_profile_node, index);
+  }
+  Result<double> profile_cost() const { return read<double>(breve_world_profile_cost); }
   /// All nodes; the root is the first.
-  Result<std::vector<breve_profile_node>> profile() {
+  Result<std::vector<breve_profile_node>> profile() const {
     std::size_t count = 0;
     breve_status s = breve_world_profile_node_count(get(), &count);
     std::vector<breve_profile_node> nodes(count);
     for (std::size_t i = 0; i < count && s == BREVE_OK; ++i) s = breve_world_profile_node(get(), i, &nodes[i]);
     return {status(s), std::move(nodes)};
   }
-  const breve_error* last_error() const { return breve_world_last_error(get()); }
 
  private:
   struct Destroy {
     void operator()(breve_world* w) const { breve_world_destroy(w); }
   };
   Status status(breve_status s) const { return {s, s == BREVE_OK ? nullptr : breve_world_last_error(get())}; }
-  template <class T, class F>
-  Result<std::vector<T>> list(F fill) const {
+  /// What a function gives through its last parameter.
+  template <class T, class F, class... A>
+  Result<T> read(F function, A... arguments) const {
+    T value{};
+    const breve_status s = function(get(), arguments..., &value);
+    return {status(s), value};
+  }
+  template <class T, class F, class... A>
+  Result<T> read_struct(T value, F function, A... arguments) const {
+    const breve_status s = function(get(), arguments..., &value);
+    return {status(s), value};
+  }
+  template <std::size_t N, class F, class... A>
+  Result<std::array<double, N>> read_array(F function, A... arguments) const {
+    std::array<double, N> numbers{};
+    const breve_status s = function(get(), arguments..., numbers.data());
+    return {status(s), numbers};
+  }
+  template <class F, class... A>
+  Result<Value> read_value(F function, A... arguments) const {
+    breve_value value = breve_value_null();
+    const breve_status s = function(get(), arguments..., &value);
+    return {status(s), value};
+  }
+  template <class F>
+  Result<std::string_view> read_text(F function) const {
+    const char* text = "";
+    const breve_status s = function(get(), &text);
+    return {status(s), text};
+  }
+  template <class T, class F, class... A>
+  Result<std::size_t> fill(Room<T> room, F function, A... arguments) const {
+    return read<std::size_t>(function, arguments..., room.data, room.capacity);
+  }
+  template <class T, class F, class... A>
+  Result<std::vector<T>> list(F function, A... arguments) const {
     std::vector<T> all;
-    std::size_t count = 0;
-    breve_status s = fill(nullptr, 0, &count);
-    if (s == BREVE_OK) {
-      all.resize(count);
-      s = fill(all.data(), all.size(), &count);
+    Result<std::size_t> count = fill(Room<T>(nullptr, 0), function, arguments...);
+    if (count) {
+      all.resize(count.value());
+      count = fill(Room<T>(all), function, arguments...);
     }
-    return {status(s), std::move(all)};
+    return {count.status(), std::move(all)};
   }
 
   std::unique_ptr<breve_world, Destroy> handle_;
@@ -485,22 +615,50 @@ class Analysis {
   std::vector<breve_diagnostic> diagnostics() const {
     return all<breve_diagnostic>(breve_analysis_diagnostic_count(get()), breve_analysis_diagnostic);
   }
-  /// As numbered by breve_analysis_definitions.
+  std::vector<breve_source> files() const {
+    return all<breve_source>(breve_analysis_file_count(get()), breve_analysis_file);
+  }
+  /// As numbered by definitions().
   std::vector<breve_symbol> symbols() const {
     return all<breve_symbol>(breve_analysis_symbol_count(get()), breve_analysis_symbol);
   }
   Result<breve_reference> at(const char* file, std::uint32_t line, std::uint32_t column) const {
     breve_reference reference{};
-    return {{breve_analysis_name_at(get(), file, line, column, &reference), nullptr}, reference};
+    const breve_status s = breve_analysis_name_at(get(), file, line, column, &reference);
+    return {{s, nullptr}, reference};
   }
-  /// Good until the next call.
-  Result<std::vector<breve_completion>> completions(const char* file, std::uint32_t line, std::uint32_t column) {
-    std::size_t count = 0;
-    breve_status s = breve_analysis_completions(get(), file, line, column, nullptr, nullptr, 0, &count);
-    std::vector<breve_completion> items(s == BREVE_OK ? count : 0);
-    if (s == BREVE_OK)
-      s = breve_analysis_completions(get(), file, line, column, nullptr, items.data(), items.size(), &count);
-    return {{s, nullptr}, std::move(items)};
+  Result<std::vector<std::size_t>> definitions(const char* file, std::uint32_t line, std::uint32_t column) const {
+    return list<std::size_t>([&](std::size_t* out, std::size_t capacity, std::size_t* count) {
+      return breve_analysis_definitions(get(), file, line, column, out, capacity, count);
+    });
+  }
+  Result<std::vector<breve_span>> references(std::size_t symbol) const {
+    return list<breve_span>([&](breve_span* out, std::size_t capacity, std::size_t* count) {
+      return breve_analysis_references(get(), symbol, out, capacity, count);
+    });
+  }
+  /// @param keyword  may be null; good until the next call
+  Result<std::vector<std::size_t>> callees(const char* file, std::uint32_t line, std::uint32_t column,
+                                           const char** keyword = nullptr) const {
+    return list<std::size_t>([&](std::size_t* out, std::size_t capacity, std::size_t* count) {
+      return breve_analysis_callees(get(), file, line, column, out, capacity, count, keyword);
+    });
+  }
+  /// Good until the next call of this or the next function.
+  Result<std::vector<breve_completion>> completions(const char* file, std::uint32_t line, std::uint32_t column,
+                                                    std::uint32_t* typed = nullptr) const {
+    return list<breve_completion>([&](breve_completion* out, std::size_t capacity, std::size_t* count) {
+      return breve_analysis_completions(get(), file, line, column, typed, out, capacity, count);
+    });
+  }
+  /// Of a statement that is being typed, as though it stood in a method of a class; null: of none.
+  Result<std::vector<breve_completion>> statement_completions(const char* class_name, std::string_view text,
+                                                              std::size_t offset,
+                                                              std::uint32_t* typed = nullptr) const {
+    return list<breve_completion>([&](breve_completion* out, std::size_t capacity, std::size_t* count) {
+      return breve_analysis_statement_completions(get(), class_name, text.data(), text.size(), offset, typed, out,
+                                                  capacity, count);
+    });
   }
 
  private:
@@ -510,8 +668,19 @@ class Analysis {
   template <class T, class F>
   std::vector<T> all(std::size_t count, F get_one) const {
     std::vector<T> list(count);
-    for (std::size_t i = 0; i < count; ++i) get_one(get(), i, &list[i]);
+    for (std::size_t i = 0; i < count; ++i) (void)get_one(get(), i, &list[i]);
     return list;
+  }
+  template <class T, class F>
+  Result<std::vector<T>> list(F fill) const {
+    std::vector<T> all;
+    std::size_t count = 0;
+    breve_status s = fill(nullptr, 0, &count);
+    if (s == BREVE_OK) {
+      all.resize(count);
+      s = fill(all.data(), all.size(), &count);
+    }
+    return {{s, nullptr}, std::move(all)};
   }
 
   std::unique_ptr<breve_analysis, Destroy> handle_;
@@ -528,7 +697,7 @@ class Files {
   }
   ~Files() { breve_files_release(&files_); }
 
-  /// As breve_files_add_directory: after those of earlier calls.
+  /// After those of earlier calls.
   Status add(const char* directory, bool may_write = false, std::uint64_t most_bytes = 0) {
     return {breve_files_add_directory(directory, may_write, most_bytes, &files_), nullptr};
   }
@@ -543,7 +712,7 @@ class Runtime {
   Runtime() = default;
   static Result<Runtime> create(const breve_runtime_config& config = breve_runtime_config_default()) {
     breve_runtime* made = nullptr;
-    const breve_status s = breve_runtime_create(&config, &made);
+    const breve_status s = breve_runtime_create_for(BREVE_ABI, &config, &made);
     return {Status(s, nullptr), Runtime(made)};
   }
   breve_runtime* get() const { return handle_.get(); }
@@ -584,6 +753,7 @@ class Runtime {
     for (std::size_t i = 0; i < all.size(); ++i) (void)breve_runtime_diagnostic(get(), i, &all[i]);
     return all;
   }
+  const breve_error* last_error() const { return breve_runtime_last_error(get()); }
 
  private:
   struct Destroy {
@@ -595,7 +765,7 @@ class Runtime {
   std::unique_ptr<breve_runtime, Destroy> handle_;
 };
 
-}  // namespace abi1
+}  // namespace abi4
 }  // namespace breve
 
 #endif
