@@ -63,6 +63,25 @@ class Stage {
   CollisionStage stage_;
 };
 
+TEST(BroadPhase, ChangesOfShapesAreCountedWhereBodiesHaveThem) {
+  Bodies one(std::pmr::get_default_resource()), other(std::pmr::get_default_resource());
+  const auto shared = Shape::sphere(1), own = Shape::box(Vector3(1, 1, 1)), nobodys = Shape::sphere(1);
+  add(one, BodyKind::Stationary, Vector3::Zero(), own);
+  for (Bodies* bodies : {&one, &one, &other}) add(*bodies, BodyKind::Stationary, Vector3::Zero(), shared);
+  {
+    Bodies gone(std::pmr::get_default_resource());
+    add(gone, BodyKind::Stationary, Vector3::Zero(), shared);
+  }
+  nobodys->set_scale(Vector3(2, 2, 2));
+  EXPECT_EQ(one.shape_changes(), 0U);
+  own->set_scale(Vector3(2, 2, 2));
+  EXPECT_EQ(one.shape_changes(), 1U);
+  EXPECT_EQ(other.shape_changes(), 0U);
+  shared->set_scale(Vector3(3, 3, 3));
+  EXPECT_EQ(one.shape_changes(), 2U);
+  EXPECT_EQ(other.shape_changes(), 1U);
+}
+
 TEST(BroadPhase, OfTenThousandBodiesThatStandNoneIsLookedAt) {
   Bodies bodies(std::pmr::get_default_resource());
   const auto box = Shape::box(Vector3(1, 1, 1)), ball = Shape::sphere(0.3);
