@@ -138,8 +138,8 @@ struct Bodies::Arrays : InMemory {
   void note(BodyIndex body) {
     if (log) log->push_back(body);
     if (rigid_row[body] == kNoRow || rigid_rows[rigid_row[body]].touched) return;
-    rigid_rows[rigid_row[body]].touched = true;
     touched.push_back(body);
+    rigid_rows[rigid_row[body]].touched = true;
   }
   void note_driven(BodyIndex body, const Vector3& value) {
     if (driven[body] != 0 || kind[body] == BodyKind::Stationary || physics(body) || value == Vector3::Zero()) return;

@@ -141,7 +141,8 @@ BodyIndex Bodies::Arrays::grow() {
   in_put.resize(size);
   for (auto& list : put)
     if (list.capacity() < size) list.reserve(2 * size);
-  if (free.capacity() < size) free.reserve(2 * size);  // so that remove() never allocates
+  if (free.capacity() < size) free.reserve(2 * size);        // so that remove() never allocates
+  if (touched.capacity() < size) touched.reserve(2 * size);  // nor note(), but where bodies come and go within a step
   owner.resize(size);
   return static_cast<BodyIndex>(size - 1);
 }
@@ -359,6 +360,7 @@ void Bodies::set_physics(BodyIndex body, bool enabled) {
   Arrays& a = *arrays_;
   if (a.physics(body) == enabled) return;
   RigidRow& row = a.make_rigid(body);
+  a.note(body);  // before anything changes: it may take memory
   row.physics = enabled;
   if (enabled) {
     a.copy_mass(body);
@@ -376,7 +378,6 @@ void Bodies::set_physics(BodyIndex body, bool enabled) {
   ++a.revision;
   ++a.physics_revision;
   a.classify(body);
-  a.note(body);
 }
 
 const Vector3& Bodies::force(BodyIndex body) const {

@@ -326,14 +326,14 @@ void Planar::Core::fit(FlatBody& flat) {
   data.mass = static_cast<float>(flat.mass.mass);
   data.center = b2Vec2(static_cast<float>(c.x() / u), static_cast<float>(c.y() / u));
   data.I = static_cast<float>((flat.mass.inertia(2, 2) + flat.mass.mass * c.head<2>().squaredNorm()) / (u * u));
-  // Box2D takes the part of the centre's distance off again, in single precision, and wants something to be left.
+  // Box2D takes the centre's part off again in single precision, and ends the process if nothing is left.
   const float own = data.I - data.mass * b2Dot(data.center, data.center);
-  constexpr float kDigits = 1e-6F;
-  if (!(data.mass > 0) || !std::isfinite(data.mass) || !(own > kDigits * data.I) || !std::isfinite(data.I))
-    throw Error(ErrorCode::Argument,
-                fmt::format("a body's mass of {} or its inertia of {} about z is out of the range of single precision, "
-                            "or its centre of mass is too far from its origin",
-                            flat.mass.mass, flat.mass.inertia(2, 2)));
+  if (!(data.mass > 0) || !std::isfinite(data.mass) || !(own > 1e-6F * data.I) || !std::isfinite(data.I))
+    throw Error(
+        ErrorCode::Argument,
+        fmt::format("a body's mass of {}, its inertia of {} about z or its centre of mass is out of the range of "
+                    "single precision",
+                    flat.mass.mass, flat.mass.inertia(2, 2)));
   flat.b2->SetMassData(&data);
 }
 

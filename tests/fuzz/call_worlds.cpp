@@ -256,9 +256,9 @@ breve_status world_profile_count(Caller& c) {
 breve_status world_profile_node(Caller& c) {
   breve_world* world = c.world();
   std::size_t count = 0;
-  breve_world_profile_node_count(world, &count);
+  const bool counted = breve_world_profile_node_count(world, &count) == BREVE_OK;
   const std::size_t index = c.chance(10) ? c.word() : c.choose().below(count + 1);
-  if (index >= count) c.expect_refusal();
+  if (counted && index >= count) c.expect_refusal();
   Out<breve_profile_node> node(c);
   const breve_status status = node.after(breve_world_profile_node(world, index, node.to()));
   if (node)
