@@ -56,6 +56,15 @@ bool Dynamics::Core::note_change(BodyIndex body, std::pmr::vector<Change>& out) 
 void Dynamics::Core::sync_changes() {
   changed.clear();
   bodies->take_touched(changed);
+  try {
+    follow_changes();
+  } catch (...) {
+    bodies->touch(changed);  // memory has ended: what was not followed is told again
+    throw;
+  }
+}
+
+void Dynamics::Core::follow_changes() {
   // By index: the order in which a script set them must not matter to which trees are built first.
   std::sort(changed.begin(), changed.end());
   changes.clear();

@@ -273,6 +273,7 @@ struct Dynamics::Core : InMemory {
 
   // changes.cpp
   void sync_changes();  // trees that there are, with what was set in the arrays
+  void follow_changes();
   void take_changes() {
     sync_changes();
     if (graph_changed) build_trees();

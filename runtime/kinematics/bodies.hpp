@@ -162,7 +162,8 @@ class Bodies : public InMemory {
   /// Appends the physics-enabled bodies that setters changed since the last call (or that were switched), in the order
   /// of the first change; from now on they count as not touched.
   void take_touched(std::pmr::vector<BodyIndex>& out);
-  void touch_rigid();  // all physics-enabled bodies count as touched
+  void touch(std::span<const BodyIndex> some);  // so that the next one gives them again
+  void touch_rigid();                           // all physics-enabled bodies count as touched
   /// Appends the bodies that were added since this follower asked last, or put elsewhere or given another collision
   /// shape by a setter; each once, and maybe some that are gone. What the stages of a sub-step move is not among them.
   void take_put(Follower follower, std::pmr::vector<BodyIndex>& out);

@@ -122,6 +122,7 @@ void Bodies::set_motion(BodyIndex body, const Vector3& location, const Quaternio
 void Bodies::take_touched(std::pmr::vector<BodyIndex>& out) {
   if (!arrays_) return;
   Arrays& a = *arrays_;
+  out.reserve(out.size() + a.touched.size());  // all or none
   for (const BodyIndex body : a.touched) {
     if (!a.touched_now(body)) continue;
     out.push_back(body);
@@ -137,6 +138,11 @@ void Bodies::take_put(Follower follower, std::pmr::vector<BodyIndex>& out) {
   out.insert(out.end(), a.put[which].begin(), a.put[which].end());
   for (const BodyIndex body : a.put[which]) a.in_put[body] = static_cast<std::uint8_t>(a.in_put[body] & ~(1U << which));
   a.put[which].clear();
+}
+
+void Bodies::touch(std::span<const BodyIndex> some) {
+  for (const BodyIndex body : some)
+    if (used(body)) arrays_->note(body);
 }
 
 void Bodies::touch_rigid() {

@@ -1,5 +1,4 @@
-// Which bodies Box2D knows, and how its bodies and the arrays are brought together: what scripts changed goes in before
-// a step, poses and velocities come out after it.
+// Which bodies Box2D knows; what scripts changed goes in before a step, poses and velocities come out after it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -329,11 +328,9 @@ void Planar::Core::fit(FlatBody& flat) {
   // Box2D takes the centre's part off again in single precision, and ends the process if nothing is left.
   const float own = data.I - data.mass * b2Dot(data.center, data.center);
   if (!(data.mass > 0) || !std::isfinite(data.mass) || !(own > 1e-6F * data.I) || !std::isfinite(data.I))
-    throw Error(
-        ErrorCode::Argument,
-        fmt::format("a body's mass of {}, its inertia of {} about z or its centre of mass is out of the range of "
-                    "single precision",
-                    flat.mass.mass, flat.mass.inertia(2, 2)));
+    throw Error(ErrorCode::Argument, fmt::format("a body's mass of {}, inertia of {} or centre of mass is out of the "
+                                                 "range of single precision",
+                                                 flat.mass.mass, flat.mass.inertia(2, 2)));
   flat.b2->SetMassData(&data);
 }
 
