@@ -151,7 +151,8 @@ class CollisionStage {
   std::pmr::vector<Path> paths_;
   std::pmr::vector<ProxyIndex> moved_, settling_;  // had a path or an impact, in this sub-step and in the last one
   std::pmr::vector<BodyIndex> put_;
-  std::pmr::vector<Pair> pairs_;  // sorted by (serial of a, serial of b)
+  std::pmr::vector<BodyIndex> late_;  // put, but not known yet
+  std::pmr::vector<Pair> pairs_;      // sorted by (serial of a, serial of b)
   std::pmr::vector<Pair> new_pairs_;
   std::pmr::vector<Impact> impacts_;  // binary heap, earliest first
   std::pmr::vector<BodyIndex> log_;

@@ -18,6 +18,7 @@ CollisionStage::CollisionStage(std::pmr::memory_resource* memory, Bodies& bodies
       moved_(memory),
       settling_(memory),
       put_(memory),
+      late_(memory),
       pairs_(memory),
       new_pairs_(memory),
       impacts_(memory),
@@ -127,7 +128,13 @@ Eigen::AlignedBox3d CollisionStage::box_of_path(const Proxy& proxy) const {
 /// The boxes that may be others than in the last sub-step.
 void CollisionStage::update_boxes(const CollisionClient& client) {
   put_.clear();
+  put_.swap(late_);
   bodies_->take_put(Follower::Collisions, put_);
+  // Handlers that physics called since begin() may have made bodies, which enter at the next.
+  for (const BodyIndex body : put_) {
+    const bool known = body < proxy_of_.size() && proxy_of_[body] != kNoProxy;
+    if (!known && bodies_->used(body) && client.takes_part(body)) late_.push_back(body);
+  }
   const std::uint64_t scalings = bodies_->shape_changes();
   if (look_at_all_ || scalings != seen_scalings_) {
     for (const ProxyIndex index : order_) update_box(client, index);

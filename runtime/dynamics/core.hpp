@@ -265,6 +265,7 @@ struct Dynamics::Core : InMemory {
 
   // save.cpp
   void save(ByteWriter& out) const;
+  void put_unsettled(ByteWriter& out) const;
   void save_tree(ByteWriter& out, const Tree& tree) const;
   void load(ByteReader& in);
   void join_loaded();

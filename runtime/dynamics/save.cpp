@@ -143,6 +143,7 @@ void Dynamics::Core::save(ByteWriter& out) const {
     each(Writer{out}, *find(body));
   }
   for (const double energy : books) out.put(energy);
+  put_unsettled(out);
   std::pmr::vector<std::uint32_t> kept(memory);
   for (const std::uint32_t index : tree_order)
     if (stale[index] == 0) kept.push_back(index);
@@ -152,10 +153,22 @@ void Dynamics::Core::save(ByteWriter& out) const {
   near.save(out);
 }
 
+/// Bodies whose books the next step settles.
+void Dynamics::Core::put_unsettled(ByteWriter& out) const {
+  std::pmr::vector<BodyIndex> some(memory);
+  for (const BodyIndex body : unsettled)
+    if (bodies->used(body)) some.push_back(body);
+  std::sort(some.begin(), some.end());
+  some.erase(std::unique(some.begin(), some.end()), some.end());
+  out.put(static_cast<std::uint64_t>(some.size()));
+  for (const BodyIndex body : some) out.put(body);
+}
+
 void Dynamics::Core::save_tree(ByteWriter& out, const Tree& tree) const {
   out.put(tree.first_body());
   out.put(tree.step);
   out.put(tree.booked);
+  out.put(tree.changed);
   each(Writer{out}, tree.account);
   put_numbers(out, tree.state.q);
   put_numbers(out, tree.state.v);
@@ -194,6 +207,11 @@ void Dynamics::Core::load(ByteReader& in) {
   join_loaded();
   booked.resize(bodies->index_end(), kNoBook);
   for (double& energy : booked) energy = in.get<double>();
+  const std::size_t open = in.get_count(sizeof(BodyIndex));
+  for (std::size_t i = 0; i < open; ++i) {
+    unsettled.push_back(in.get<BodyIndex>());
+    if (!bodies->used(unsettled.back())) ByteReader::fail();
+  }
   const bool pending = in.get_bool();
   std::pmr::vector<std::uint8_t> rings(memory);
   for (const JointEntry& joint : joints) rings.push_back(joint.ring);
@@ -243,6 +261,7 @@ std::uint32_t Dynamics::Core::load_tree(ByteReader& in) {
   Tree& tree = *trees[known->tree];
   tree.step = in.get<double>();
   tree.booked = in.get<double>();
+  tree.changed = in.get_bool();
   each(Reader{in}, tree.account);
   for (double& x : tree.state.q) x = in.get<double>();
   for (double& x : tree.state.v) x = in.get<double>();

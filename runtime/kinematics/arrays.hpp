@@ -145,6 +145,7 @@ struct Bodies::Arrays : InMemory {
     if (driven[body] != 0 || kind[body] == BodyKind::Stationary || physics(body) || value == Vector3::Zero()) return;
     driven[body] = 1;
     ++revision;
+    if (!rigid.members().empty()) ++physics_revision;  // it pushes some of them from now on
   }
   void note_put(BodyIndex body) {
     for (std::size_t i = 0; i < kFollowers; ++i) {

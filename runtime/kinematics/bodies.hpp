@@ -78,7 +78,7 @@ class Bodies : public InMemory {
   std::size_t index_end() const;  // every index is below this
   bool used(BodyIndex body) const;
   std::uint64_t revision() const;          // grows when a body is added, removed, or its physics switched
-  std::uint64_t physics_revision() const;  // grows when the physics of a body is switched
+  std::uint64_t physics_revision() const;  // grows when others may push one another than did: physics was switched
   std::uint64_t shape_changes() const;     // grows when a shape that a body collides with gets a scale or a height
   std::size_t bytes() const;
   void swap(Bodies& other);
