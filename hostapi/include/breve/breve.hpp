@@ -10,9 +10,8 @@
 // - Errors are values: a Status, or a Result with one. Nothing throws unless it is asked to: or_throw() turns a failure
 //   into breve::Failure. Without exceptions (-fno-exceptions) all but or_throw() and Failure is there.
 // - What borrows: texts (const char*, std::string_view) belong to the library. Those of a Status are good until the
-// next
-//   call on its world or runtime; those of a Value until script runs in its world again; those that World::text() gives
-//   until its next call; those that describe a program, a class or a profile as long as that. Copy what is needed
+//   next call on its world or runtime, those of a Value until script runs in its world again, those that World::text()
+//   gives until its next call, those that describe a program, a class or a profile as long as that. Copy what is needed
 //   longer. A Value that is made of a text refers to it: the text must live until the call is made.
 // - Nothing here allocates but the functions that return a std::vector, and or_throw() when it throws. Lists have
 //   another form that fills a Room of the host and returns how many there are, also where that is more.
