@@ -254,7 +254,8 @@ void ObjectTable::check_loaded(std::pmr::memory_resource* memory) const {
   // Hosts can name whoever lives, or lived last, in each slot.
   for (std::uint32_t index = 0; index < slots_.size(); ++index) {
     const std::uint32_t generation = slots_[index].generation;
-    if (tickets_.generation(index, tickets_.of({index, generation})) != generation) ByteReader::fail();
+    const std::uint32_t ticket = tickets_.of({index, generation});
+    if (ticket == 0 || tickets_.generation(index, ticket) != generation) ByteReader::fail();
   }
 }
 
