@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "runtime/dynamics/cluster.hpp"
-#include "runtime/dynamics/contacts.hpp"
 #include "runtime/dynamics/dynamics.hpp"
 #include "runtime/dynamics/grouped.hpp"
+#include "runtime/dynamics/near_pairs.hpp"
 #include "runtime/dynamics/rings.hpp"
 #include "runtime/dynamics/tree.hpp"
 #include "runtime/dynamics/workers.hpp"
@@ -197,6 +197,8 @@ struct Dynamics::Core : InMemory {
   // trees.cpp
   bool needs_tree(BodyIndex body) const;
   void build_trees();
+  void build_tree_of(BodyIndex body);
+  void order_trees();
   void drop_tree(std::uint32_t tree);
   void build_tree(std::span<const BodyIndex> component);
   double unbook(const Tree& tree, std::span<double> books) const;
@@ -269,7 +271,8 @@ struct Dynamics::Core : InMemory {
   void save_tree(ByteWriter& out, const Tree& tree) const;
   void load(ByteReader& in);
   void join_loaded();
-  std::uint32_t load_tree(ByteReader& in);  // which
+  void load_trees(ByteReader& in);
+  void load_tree(ByteReader& in, Tree& tree);
   void hash(Hasher& hasher) const;
 
   // changes.cpp

@@ -122,7 +122,8 @@ void Dynamics::set_gravity(const Vector3& gravity) {
   c.settings.gravity = gravity;
   c.near.wake_all();
   // What it changes of the energy of height is the script's work.
-  c.unsettled.insert(c.unsettled.end(), c.near.movers().begin(), c.near.movers().end());
+  for (BodyIndex body = 0; body < c.booked.size(); ++body)
+    if (in_books(c.booked[body])) c.unsettled.push_back(body);
   for (const std::uint32_t index : c.tree_order) c.trees[index]->changed = true;
 }
 const Vector3& Dynamics::gravity() const { return core_ ? core_->settings.gravity : kSettings.gravity; }

@@ -7,8 +7,8 @@
 
 #include "runtime/contact/impacts.hpp"
 #include "runtime/contact/solver.hpp"
-#include "runtime/dynamics/contacts.hpp"
 #include "runtime/dynamics/motion.hpp"
+#include "runtime/dynamics/near_pairs.hpp"
 #include "runtime/dynamics/stage.hpp"
 
 namespace breve {

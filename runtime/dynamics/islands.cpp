@@ -73,8 +73,9 @@ void Dynamics::Core::find_islands() {
   }
   for (std::uint32_t i = 0; i < clusters.size(); ++i)
     island_clusters.add(island(trees[clusters[i]->trees.front()]->links.front().body), i);
+  const auto waits = [this](BodyIndex body) { return bodies->dynamic(body) && !moves_now(body); };
   near.each([&](const PairKey& key, const NearPair&) {
-    island_pairs.add(island(bodies->dynamic(key.a) ? key.a : key.b), key.at);
+    if (!waits(key.a) && !waits(key.b)) island_pairs.add(island(bodies->dynamic(key.a) ? key.a : key.b), key.at);
   });
   for (Grouped* some : {&island_free, &island_clusters, &island_pairs}) some->sort(island_count);
 }

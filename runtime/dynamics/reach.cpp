@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runtime/dynamics/contacts.hpp"
+#include "runtime/dynamics/near_pairs.hpp"
 
 namespace breve {
 

@@ -149,8 +149,9 @@ void Dynamics::Core::save(ByteWriter& out) const {
     if (stale[index] == 0) kept.push_back(index);
   out.put(graph_changed || kept.size() != tree_order.size());
   out.put(static_cast<std::uint64_t>(kept.size()));
+  for (const std::uint32_t index : kept) out.put(trees[index]->first_body());
   for (const std::uint32_t index : kept) save_tree(out, *trees[index]);
-  near.save(out);
+  near.save(out, *bodies);
 }
 
 /// Bodies whose books the next step settles.
@@ -165,7 +166,6 @@ void Dynamics::Core::put_unsettled(ByteWriter& out) const {
 }
 
 void Dynamics::Core::save_tree(ByteWriter& out, const Tree& tree) const {
-  out.put(tree.first_body());
   out.put(tree.step);
   out.put(tree.booked);
   out.put(tree.changed);
@@ -216,13 +216,7 @@ void Dynamics::Core::load(ByteReader& in) {
   std::pmr::vector<std::uint8_t> rings(memory);
   for (const JointEntry& joint : joints) rings.push_back(joint.ring);
   loading = true;  // the arrays are as they were saved, and stay so
-  build_trees();
-  const std::size_t stored = in.get_count(sizeof(BodyIndex));
-  std::pmr::vector<std::uint32_t> kept(memory);
-  for (std::size_t i = 0; i < stored; ++i) kept.push_back(load_tree(in));
-  std::sort(kept.begin(), kept.end());
-  for (std::uint32_t i = 0; i < trees.size(); ++i)
-    if (trees[i] && !std::binary_search(kept.begin(), kept.end(), i)) drop_tree(i);
+  load_trees(in);
   for (JointIndex i = 0; i < joints.size(); ++i)
     if (joints[i].tree == kNone) joints[i].ring = rings[i] != 0;  // what a tree that was not there made of it
   loading = false;
@@ -254,11 +248,20 @@ void Dynamics::Core::join_loaded() {
   }
 }
 
-std::uint32_t Dynamics::Core::load_tree(ByteReader& in) {
-  const auto body = in.get<BodyIndex>();
-  const BodyEntry* known = find(body);
-  if (!known || known->tree == kNone) ByteReader::fail();
-  Tree& tree = *trees[known->tree];
+/// Those that the image holds: others are built in the next step, or cannot be.
+void Dynamics::Core::load_trees(ByteReader& in) {
+  std::pmr::vector<BodyIndex> stored(in.get_count(sizeof(BodyIndex)), memory);
+  for (BodyIndex& body : stored) {
+    body = in.get<BodyIndex>();
+    if (!find(body) || find(body)->tree != kNone) ByteReader::fail();
+    build_tree_of(body);
+    if (find(body)->tree == kNone) ByteReader::fail();
+  }
+  order_trees();
+  for (const BodyIndex body : stored) load_tree(in, *trees[find(body)->tree]);
+}
+
+void Dynamics::Core::load_tree(ByteReader& in, Tree& tree) {
   tree.step = in.get<double>();
   tree.booked = in.get<double>();
   tree.changed = in.get_bool();
@@ -272,7 +275,6 @@ std::uint32_t Dynamics::Core::load_tree(ByteReader& in) {
     link.contact.force = in.get_vector();
     link.contact.couple = in.get_vector();
   }
-  return known->tree;
 }
 
 void Dynamics::Core::hash(Hasher& hasher) const {

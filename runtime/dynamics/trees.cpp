@@ -143,22 +143,29 @@ bool Dynamics::Core::needs_tree(BodyIndex body) const {
 
 void Dynamics::Core::build_trees() {
   graph_changed = false;
-  clusters_changed = true;
-  ++rules;
-  std::pmr::vector<BodyIndex> component(memory);
   try {
-    for (BodyIndex body = 0; body < entry_of.size(); ++body) {
-      if (!needs_tree(body) || find(body)->tree != kNone) continue;
-      collect(body, component);
-      build_tree(component);
-    }
-    tree_order.clear();
-    for (std::uint32_t i = 0; i < trees.size(); ++i)
-      if (trees[i]) tree_order.push_back(i);
+    for (BodyIndex body = 0; body < entry_of.size(); ++body) build_tree_of(body);
+    order_trees();
   } catch (...) {
     graph_changed = true;  // what memory cut short is made anew
     throw;
   }
+}
+
+/// The tree that the body belongs to, if it is one of those that are to be built.
+void Dynamics::Core::build_tree_of(BodyIndex body) {
+  if (!needs_tree(body) || find(body)->tree != kNone) return;
+  std::pmr::vector<BodyIndex> component(memory);
+  collect(body, component);
+  build_tree(component);
+}
+
+void Dynamics::Core::order_trees() {
+  clusters_changed = true;
+  ++rules;
+  tree_order.clear();
+  for (std::uint32_t i = 0; i < trees.size(); ++i)
+    if (trees[i]) tree_order.push_back(i);
   // By the lowest index of a body: the same whether trees were built now or long ago.
   std::sort(tree_order.begin(), tree_order.end(),
             [this](std::uint32_t x, std::uint32_t y) { return trees[x]->first_body() < trees[y]->first_body(); });

@@ -57,6 +57,7 @@ struct FlatBody {
   bool pulled = false;     // a spring or force method acts on it
   bool has_force = false;  // set by scripts
   bool drowsy = false;     // may sleep, touches and is slow
+  bool placed = true;      // stands elsewhere, or has other fixtures, than when Box2D last paired
   int touching = 0;        // contacts that touch
   b2Body* b2 = nullptr;
   b2Vec2 at{0, 0}, before{0, 0};             // the centre of mass and its velocity at the start of the sub-step
@@ -178,6 +179,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   std::unique_ptr<b2World> b2;
   b2Body* ground = nullptr;          // what joints to the world hang on
   Held held;                         // memory for what Box2D takes
+  std::size_t placed = 0;            // how often a body was since it last paired
   std::pmr::vector<FlatBody> slots;  // those in use have a body
   std::pmr::vector<std::uint32_t> free_slots;
   std::pmr::vector<std::uint32_t> slot_of;  // by body
@@ -251,7 +253,6 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void write_back_all();
   static bool is_finite(const FlatBody& flat);
   void refresh_rules();
-  void reserve_memory();
 
   // joints.cpp
   FlatJoint& at(JointIndex joint);
@@ -293,6 +294,11 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
 
   // waking.cpp
   void place_drivers(double h);
+
+  // crowds.cpp
+  std::size_t expected_bytes() const;
+  void note_placed(FlatBody& flat);
+  void expect_pairs(const WorkBound& most);
 
   // assemblies.cpp
   bool pushes(BodyIndex a, BodyIndex b, const DynamicsClient& asked) const;
@@ -389,6 +395,8 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   FlatBody* liveliest();
   void intervene(BodyIndex body, GuardReason reason, double value, double moment, GuardAction action);
   void rest(FlatBody& flat);
+  void hold_still(FlatBody& flat);
+  void forget_impulses(const FlatBody& flat);
 
   // save.cpp
   Frozen freeze();

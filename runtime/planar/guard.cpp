@@ -20,13 +20,34 @@ void Planar::Core::intervene(BodyIndex body, GuardReason reason, double value, d
   interventions.push_back(one);
 }
 
+/// Those of its contacts and joints in the last step may be no numbers, or are what threw it.
+void Planar::Core::forget_impulses(const FlatBody& flat) {
+  kept.reset();
+  for (b2ContactEdge* edge = flat.b2->GetContactList(); edge; edge = edge->next)
+    for (b2ManifoldPoint& point : edge->contact->GetManifold()->points) point.normalImpulse = point.tangentImpulse = 0;
+  for (FlatJoint& joint : joints)
+    if (joint.used && joint.b2 && (joint.b2->GetBodyA() == flat.b2 || joint.b2->GetBodyB() == flat.b2))
+      set_warm(joint, {});
+}
+
 void Planar::Core::rest(FlatBody& flat) {
   // Where it was when its numbers were numbers.
-  flat.b2->SetTransform(to_b2(flat.location), static_cast<float>(angle_of(flat.orientation)));
-  flat.b2->SetLinearVelocity(b2Vec2(0, 0));
-  flat.b2->SetAngularVelocity(0);
   bodies->set_motion(flat.body, flat.location, flat.orientation, Vector3::Zero(), Vector3::Zero());
   note_known(flat);
+  hold_still(flat);
+}
+
+/// In Box2D, where the arrays have it.
+void Planar::Core::hold_still(FlatBody& flat) {
+  flat.b2->SetTransform(place_of(flat.body), static_cast<float>(angle_of(flat.orientation)));
+  if (flat.b2->GetType() == b2_staticBody) {
+    // Its velocities cannot be set; a change of type makes them zero.
+    flat.b2->SetType(b2_kinematicBody);
+    flat.b2->SetType(b2_staticBody);
+  }
+  flat.b2->SetLinearVelocity(b2Vec2(0, 0));
+  flat.b2->SetAngularVelocity(0);
+  forget_impulses(flat);
 }
 
 namespace {
@@ -102,6 +123,10 @@ void Planar::Core::watch(double moment, bool wrong) {
     rest(flat);
     lost = flat.body;
   }
+  // What is no number spreads to all that such a body touches.
+  if (lost != kNoBody)
+    for (FlatBody& flat : slots)
+      if (flat.body != kNoBody && flat.fixed && !is_finite(flat)) hold_still(flat);
   if (lost != kNoBody && settings.guard == GuardMode::Off)
     throw Error(
         ErrorCode::Numeric,

@@ -14,10 +14,6 @@ namespace breve {
 
 namespace {
 
-// What Box2D takes, by its sources: a body 184 bytes, a fixture with its shape and proxy about 330, two nodes of its
-// trees 96, a contact 256, a joint up to 280; rounded up for its blocks and lists.
-constexpr std::size_t kPerWorld = 160'000, kPerBody = 768, kPerContact = 320, kPerJoint = 320;
-
 /// Box2D fills a table for the whole process when the first contact is made, unguarded: two worlds on two threads would
 /// both do so. It is made to do it once, here, where the language guards.
 bool contacts_are_ready() {
@@ -90,14 +86,6 @@ void Planar::Core::drop_world() {
   for (FlatJoint& joint : joints) joint.b2 = nullptr;
 }
 
-void Planar::Core::reserve_memory() {
-  const auto contacts = static_cast<std::size_t>(b2->GetContactCount());
-  const auto count = static_cast<std::size_t>(b2->GetBodyCount());
-  const auto joined = static_cast<std::size_t>(b2->GetJointCount());
-  // Contacts are made inside of a step: there is room for twice as many, and for some on each body.
-  held.hold(kPerWorld + count * (kPerBody + 4 * kPerContact) + 2 * contacts * kPerContact + joined * kPerJoint);
-}
-
 /// With the bodies and joints that there are now; contacts may still have to be made.
 void Planar::Core::ensure_world() {
   if (!b2) {
@@ -114,8 +102,10 @@ void Planar::Core::sync() {
   if (!b2) return;
   push_changes();
   refresh_rules();
-  reserve_memory();
-  if (frozen) thaw_contacts();
+  held.hold(expected_bytes());
+  if (!frozen) return;
+  expect_pairs({});
+  thaw_contacts();
 }
 
 void Planar::Core::update_members() {
@@ -195,6 +185,7 @@ void Planar::Core::add_member(BodyIndex body) {
     remove_member(slot);
     throw;
   }
+  note_placed(flat);
   push_velocity(flat);
   note_known(flat);
   flat.force = bodies->force(body).head<2>();
@@ -349,6 +340,7 @@ void Planar::Core::push_pose(FlatBody& flat) {
   const double angle = before + std::remainder(angle_of(bodies->orientation(flat.body)) - before, 2 * M_PI);
   flat.b2->SetTransform(place_of(flat.body), static_cast<float>(angle));
   flat.b2->SetAwake(true);
+  note_placed(flat);
 }
 
 void Planar::Core::push_velocity(FlatBody& flat) {
@@ -382,6 +374,7 @@ void Planar::Core::push_shapes() {
       const double before = flat.fixed ? 0 : kinetic_of(flat);
       wake_touching(flat);
       fit(flat);
+      note_placed(flat);
       flat.b2->SetAwake(true);
       wake_met(flat);
       if (!flat.fixed) account.script_work += kinetic_of(flat) - before;

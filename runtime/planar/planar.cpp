@@ -122,7 +122,7 @@ FlatSpring& at(Planar::Core& core, SpringIndex spring) {
     throw Error(ErrorCode::Argument, "there is no such spring: it is not connected");
   return core.springs[spring];
 }
-void need_in_plane(const SpringDescription& is) {
+void need_ends_in_plane(const SpringDescription& is) {
   if (is.point_a.z() != 0 || is.point_b.z() != 0)
     throw Error(ErrorCode::Argument,
                 "spring: a point of attachment is out of the plane, but this world is flat: z must be 0");
@@ -131,7 +131,7 @@ void need_in_plane(const SpringDescription& is) {
 
 SpringIndex Planar::tie(const SpringDescription& description, ObjectId owner) {
   check(description);
-  need_in_plane(description);
+  need_ends_in_plane(description);
   Core& c = *core_;
   for (const BodyIndex end : {description.a, description.b})
     if (!c.bodies->used(end)) throw Error(ErrorCode::Argument, "spring: an end is no body in the world");
@@ -160,7 +160,7 @@ const SpringDescription& Planar::spring(SpringIndex spring) const { return at(*c
 
 void Planar::set_spring(SpringIndex spring, const SpringDescription& description) {
   check(description);
-  need_in_plane(description);
+  need_ends_in_plane(description);
   FlatSpring& entry = at(*core_, spring);
   const BodyIndex a = entry.is.a, b = entry.is.b;
   entry.is = description;

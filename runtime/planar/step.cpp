@@ -103,6 +103,7 @@ void Planar::Core::advance(DynamicsClient& asked, double start, double h, double
   sync();
   if (!b2) return;
   place_drivers(h);
+  expect_pairs(bound);
   // Springs that scripts tied, changed or stretched meanwhile.
   account.script_work += springs_energy() - springs_known;
   int count = sub_steps() << refined;

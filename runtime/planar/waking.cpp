@@ -1,13 +1,26 @@
 // What moves without forces in a flat world, and what wakes those that sleep.
+#include <cmath>
+
 #include "runtime/planar/core.hpp"
 
 namespace breve {
+
+namespace {
+
+/// Whether Box2D's numbers can follow it: what it strikes would be nowhere else.
+bool can_follow(const Vector3& velocity, double spin) {
+  constexpr double kFastest = 1e9;  // units/s, rad/s: a square of it is a float still
+  return velocity.norm() < kFastest && std::abs(spin) < kFastest;
+}
+
+}  // namespace
 
 /// What moves as it was told goes the way of the coming h seconds from where it was to where the arrays have it.
 void Planar::Core::place_drivers(double h) {
   for (FlatBody& flat : slots) {
     if (flat.body == kNoBody || !flat.fixed || !flat.solid) continue;
-    const bool moving = bodies->moving(flat.body) && to_b2(bodies->velocity(flat.body)).IsValid();
+    const bool moving = bodies->moving(flat.body) &&
+                        can_follow(bodies->velocity(flat.body), bodies->rotational_velocity(flat.body).z());
     if (!moving && !flat.driven) continue;
     flat.driven = moving;
     const Vector3 velocity = moving ? bodies->velocity(flat.body) : Vector3(Vector3::Zero());
@@ -15,6 +28,7 @@ void Planar::Core::place_drivers(double h) {
     if (flat.b2->GetType() != b2_kinematicBody) flat.b2->SetType(b2_kinematicBody);
     const b2Vec2 back = to_b2(h * velocity);
     flat.b2->SetTransform(place_of(flat.body) - back, static_cast<float>(flat.b2->GetAngle() - h * spin));
+    note_placed(flat);
     flat.b2->SetLinearVelocity(to_b2(velocity));
     flat.b2->SetAngularVelocity(static_cast<float>(spin));
     flat.b2->SetAwake(true);

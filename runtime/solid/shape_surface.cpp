@@ -74,12 +74,20 @@ std::shared_ptr<Shape> Shape::height_field(int columns, int rows, double tile, s
       memory);
 }
 
+namespace {
+
+Moments block_under(const HeightGrid& grid) {
+  Eigen::AlignedBox3d box = grid.bounds();
+  box.min().y() = std::min(box.min().y(), box.max().y() - grid.tile());
+  return of_box(box);
+}
+
+}  // namespace
+
 std::shared_ptr<Shape> Shape::height_field(std::shared_ptr<HeightGrid> grid, Memory memory) {
   auto g = make_in<Geometry>(memory, memory);
   g->kind = ShapeKind::HeightField;
-  Eigen::AlignedBox3d box = grid->bounds();
-  box.min().y() = std::min(box.min().y(), box.max().y() - grid->tile());
-  g->original = of_box(box);
+  g->original = block_under(*grid);
   g->surface = std::move(grid);
   return shared(std::move(g));
 }
@@ -94,7 +102,19 @@ const TriangleMesh* Shape::triangles() const {
 
 void Shape::set_height(int column, int row, double height) {
   if (kind() != ShapeKind::HeightField) throw Error(ErrorCode::Argument, "only a height field has heights to set");
-  static_cast<HeightGrid&>(*geometry_->surface).set_height(column, row, height);
+  HeightGrid& grid = static_cast<HeightGrid&>(*geometry_->surface);
+  const auto set = [&](double value) {
+    grid.set_height(column, row, value);
+    geometry_->original = block_under(grid);
+    geometry_->derive_mass();
+  };
+  const double before = grid.height(column, row);
+  try {
+    set(height);
+  } catch (const Error&) {
+    set(before);
+    throw;
+  }
   geometry_->derive_size();
   note_change();
 }

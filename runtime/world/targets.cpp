@@ -36,8 +36,9 @@ void World::set_target(BodyIndex body, const Vector3* new_location, const Quater
 
 void World::leave(BodyIndex body) {
   if (bodies_->rigid() == 0 || !bodies_->driver(body) || bodies_->moving(body)) return;
-  parts_->left.try_emplace(body,
-                           Parts::Target{bodies_->owner(body), bodies_->location(body), bodies_->orientation(body)});
+  const Parts::Target from{bodies_->owner(body), bodies_->location(body), bodies_->orientation(body)};
+  const auto [at, first] = parts_->left.try_emplace(body, from);
+  if (!first && !(at->second.object == from.object)) at->second = from;  // what left there is gone, and its place taken
 }
 
 /// What was put nearby is on its way there; what is new, or was put far away, is there already.

@@ -66,7 +66,12 @@ Value Machine::invoke(Instance& receiver, const MethodInfo& method, std::span<co
     for (const auto& parameter : method.parameters)
       if (parameter.type == StaticType::String) pins_.push_back(Value::of(Tag::String, args[parameter.slot].ref));
     Value result;
-    method.native(*this, receiver, args, result);
+    try {
+      method.native(*this, receiver, args, result);
+    } catch (...) {
+      if (depth > 0) throw;  // a script called: it tells the place
+      rethrow(depth, nullptr);
+    }
     return result;
   }
   Slot* base = enter(method, receiver)->base();

@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "runtime/contact/collision_stage.hpp"
-#include "runtime/dynamics/contacts.hpp"
+#include "runtime/dynamics/near_pairs.hpp"
 #include "tests/runtime/solid_oracle.hpp"
 
 namespace breve::broad_phase_tests {

@@ -31,6 +31,11 @@ struct PairKey {
   std::uint32_t at = kNone;  // of its NearPair, if it has one
 };
 
+/// In the order of creation.
+inline bool earlier(const PairKey& x, const PairKey& y) {
+  return x.serial_a != y.serial_a ? x.serial_a < y.serial_a : x.serial_b < y.serial_b;
+}
+
 /// Two bodies that may touch in this step and push each other: what is known of their contact.
 struct NearPair {
   BodyIndex a = kNoBody, b = kNoBody;
@@ -44,6 +49,9 @@ struct NearPair {
   double stored = 0;       // J, in that
   int warm_count = 0;
   std::array<WarmPoint, 2 * kMostPoints> warm;
+
+  /// What of it an image keeps: which pairs are near without is another matter after a restore.
+  bool remembers() const { return touching || warm_count > 0 || cache.axis != Vector3::Zero(); }
 };
 
 class NearPairs {
@@ -111,7 +119,7 @@ class NearPairs {
   void wake_disturbed(Bodies& bodies);
   std::size_t bytes() const;
   std::uint64_t boxes() const { return boxes_; }  // of bodies, looked at so far
-  void save(ByteWriter& out) const;
+  void save(ByteWriter& out, const Bodies& bodies) const;
   void load(ByteReader& in, const Bodies& bodies);
   void hash(Hasher& hasher) const;
 
@@ -121,7 +129,7 @@ class NearPairs {
   void ask_again(PairKey& key, const Wanted& wanted) {
     const bool pushed = key.pushes || key.at != PairKey::kNone;
     wanted(key);
-    if (key.pushes == pushed) return;
+    if (key.pushes == pushed || (pushed && !remembers(key))) return;
     wake(key.a);
     wake(key.b);
   }
@@ -137,16 +145,20 @@ class NearPairs {
     Quaternion orientation{1, 0, 0, 0};
     const Shape* shape = nullptr;
     std::uint64_t shape_changes = 0;
-    double speed = 0;    // m/s, that it has or may be given
-    bool wide = false;   // by what may strike it
-    bool woken = false;  // from sleep, by what changed it: those that touch it are to wake
+    Vector3 room = Vector3::Zero();  // about its bounds, for this step
+    double speed = 0;                // m/s, that it has or may be given
+    bool placed = false;             // its box was found, there
+    bool wide = false;               // by what may strike it
+    bool woken = false;              // from sleep, by what changed it: those that touch it are to wake
   };
   /// Apart from the rest of a proxy, since each pair looks at two of them.
   struct Reach {
     Eigen::AlignedBox3d box;  // in this step
     bool moved = false;       // its roomy box, in this update
   };
-  bool displaced(const Bodies& bodies, const Proxy& proxy) const;
+  bool remembers(const PairKey& key) const { return key.at != PairKey::kNone && pairs_[key.at].remembers(); }
+  static bool reshaped(const Bodies& bodies, const Proxy& proxy);
+  static bool displaced(const Bodies& bodies, const Proxy& proxy);
   void wake_met(const Bodies& bodies, const Proxy& proxy);
   void gather(const Bodies& bodies, const DynamicsClient& client);
   void find_drivers(const Bodies& bodies);
@@ -154,6 +166,7 @@ class NearPairs {
   void enter(const Bodies& bodies, const DynamicsClient& client, BodyIndex body);
   void leave(ProxyIndex index);
   void update_boxes(const Bodies& bodies, bool all, const Vector3& gravity, double h);
+  static Vector3 room_of(const Bodies& bodies, const Proxy& proxy, double radius, const Vector3& gravity, double h);
   void update_box(const Bodies& bodies, Proxy& proxy, const Vector3& gravity, double h);
   void mark_moved(ProxyIndex index);
   void seek(ProxyIndex index);
@@ -166,6 +179,11 @@ class NearPairs {
   void drop_far();
   void reserve_near();
   void place_near();
+  void save_standing(ByteWriter& out, const Bodies& bodies) const;
+  Proxy& known(BodyIndex body, std::uint64_t serial, const Bodies& bodies);
+  void load_pairs(ByteReader& in, const Bodies& bodies);
+  void load_rests(ByteReader& in, const Bodies& bodies);
+  void load_standing(ByteReader& in, const Bodies& bodies);
 
   BoxTree tree_;
   std::pmr::vector<Proxy> proxies_;

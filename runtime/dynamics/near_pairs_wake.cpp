@@ -1,7 +1,7 @@
 // What wakes bodies that sleep: what they touch moved, has another shape or another surface.
 #include <utility>
 
-#include "runtime/dynamics/contacts.hpp"
+#include "runtime/dynamics/near_pairs.hpp"
 
 namespace breve {
 
@@ -26,12 +26,15 @@ void NearPairs::wake_all() {
   for (Proxy& proxy : proxies_) proxy.rest = {};
 }
 
-/// Whether something that does not move by itself stands elsewhere, or has another shape, than when its box was found.
-bool NearPairs::displaced(const Bodies& bodies, const Proxy& proxy) const {
-  if (proxy.moves || proxy.leaf == BoxTree::kNoLeaf) return false;
+bool NearPairs::reshaped(const Bodies& bodies, const Proxy& proxy) {
   const Shape* shape = bodies.collision_shape(proxy.body).get();
-  return proxy.shape != shape || proxy.shape_changes != shape->changes() ||
-         proxy.location != bodies.location(proxy.body) ||
+  return proxy.shape != shape || proxy.shape_changes != shape->changes();
+}
+
+/// Whether something that does not move by itself stands elsewhere, or has another shape, than when its box was found.
+bool NearPairs::displaced(const Bodies& bodies, const Proxy& proxy) {
+  if (proxy.moves || !proxy.placed) return false;
+  return reshaped(bodies, proxy) || proxy.location != bodies.location(proxy.body) ||
          proxy.orientation.coeffs() != bodies.orientation(proxy.body).coeffs();
 }
 
@@ -41,13 +44,14 @@ void NearPairs::wake_met(const Bodies& bodies, const Proxy& proxy) {
   if (!box.min().allFinite() || !box.max().allFinite()) return;
   found_.clear();
   tree_.query(box, found_);
+  // Boxes in the tree are roomier than bodies, as the past made them.
   for (const ProxyIndex other : found_)
-    if (proxies_[other].moves) wake(proxies_[other].body);
+    if (proxies_[other].moves && bodies.bounds(proxies_[other].body).intersects(box)) wake(proxies_[other].body);
 }
 
 void NearPairs::wake_disturbed(Bodies& bodies) {
   for (const PairKey& key : keys_) {
-    if (key.at == PairKey::kNone || !bodies.used(key.a) || !bodies.used(key.b)) continue;
+    if (!remembers(key) || !bodies.used(key.a) || !bodies.used(key.b)) continue;
     const NearPair& pair = pairs_[key.at];
     const Proxy &a = proxies_[proxy_of_[key.a]], &b = proxies_[proxy_of_[key.b]];
     const Bodies& all = bodies;

@@ -1,18 +1,10 @@
 // The broad phase: boxes a little too large, so that slow bodies are not looked at again.
-#include "runtime/dynamics/contacts.hpp"
+#include "runtime/dynamics/near_pairs.hpp"
 
 #include <algorithm>
 #include <utility>
 
 namespace breve {
-
-namespace {
-
-bool earlier(const PairKey& x, const PairKey& y) {
-  return x.serial_a != y.serial_a ? x.serial_a < y.serial_a : x.serial_b < y.serial_b;
-}
-
-}  // namespace
 
 NearPairs::NearPairs(std::pmr::memory_resource* memory)
     : tree_(memory),
@@ -59,7 +51,7 @@ void NearPairs::leave(ProxyIndex index) {
   const BodyIndex body = proxy.body;
   std::erase_if(keys_, [&](PairKey& key) {
     const bool of_body = key.a == body || key.b == body;
-    if (of_body && key.at != PairKey::kNone) wake(key.a == body ? key.b : key.a);
+    if (of_body && remembers(key)) wake(key.a == body ? key.b : key.a);
     if (of_body) release(key);
     return of_body;
   });
@@ -114,8 +106,10 @@ void NearPairs::refresh(Bodies& bodies, const DynamicsClient& client, const Vect
     if (proxies_[index].leaf != BoxTree::kNoLeaf) seek(index);
 }
 
-/// Bodies that move without forces, in the order of their indices: the stages' own order depends on the past.
+/// Bodies that move without forces, in the order of their indices: the stages' own order depends on the past. Those of
+/// the last step are looked at once more: what they may reach is less where they stopped.
 void NearPairs::find_drivers(const Bodies& bodies) {
+  put_.insert(put_.end(), drivers_.begin(), drivers_.end());
   drivers_.clear();
   for (const std::pmr::vector<BodyIndex>* some : {&bodies.translating_bodies(), &bodies.turning_bodies()})
     for (const BodyIndex body : *some)
@@ -146,16 +140,35 @@ void NearPairs::mark_moved(ProxyIndex index) {
   moved_.push_back(index);
 }
 
+/// How far a body may come out of its bounds in a step.
+Vector3 NearPairs::room_of(const Bodies& bodies, const Proxy& proxy, double radius, const Vector3& gravity, double h) {
+  Vector3 room = Vector3::Constant(1e-3 * radius);
+  const double turn = std::min(bodies.rotational_velocity(proxy.body).norm() * h * radius, radius);
+  const Vector3 speed = bodies.velocity(proxy.body).cwiseAbs();
+  if (proxy.moves) {
+    // Straight on, falling, turning; twice as far, since it may be pushed on the way.
+    room += (speed + h * gravity.cwiseAbs()) * (2 * h) + Vector3::Constant(2 * turn);
+  } else if (bodies.moving(proxy.body)) {
+    // It stands at the end of its way, which it turned on too.
+    room += h * speed + Vector3::Constant(turn);
+  }
+  return room;
+}
+
+/// A box is a function of the present state alone: a world that was restored has no other.
 void NearPairs::update_box(const Bodies& bodies, Proxy& proxy, const Vector3& gravity, double h) {
   ++boxes_;
   const Shape* shape = bodies.collision_shape(proxy.body).get();
   const Vector3& location = bodies.location(proxy.body);
   const Quaternion orientation = bodies.orientation(proxy.body);
+  const Vector3 room = room_of(bodies, proxy, shape->bounding_radius(), gravity, h);
   const bool still = proxy.leaf != BoxTree::kNoLeaf && proxy.shape == shape &&
                      proxy.shape_changes == shape->changes() && proxy.location == location &&
-                     proxy.orientation.coeffs() == orientation.coeffs();
-  if (still && !proxy.wide && (!proxy.moves || proxy.rest.asleep)) return;
+                     proxy.orientation.coeffs() == orientation.coeffs() && proxy.room == room;
+  if (still && !proxy.wide) return;
   proxy.wide = false;
+  proxy.room = room;
+  proxy.placed = true;
   proxy.speed = proxy.moves ? bodies.velocity(proxy.body).norm() : 0;
   proxy.shape = shape;
   proxy.shape_changes = shape->changes();
@@ -165,18 +178,6 @@ void NearPairs::update_box(const Bodies& bodies, Proxy& proxy, const Vector3& gr
   Reach& reach = reach_[index];
   reach.box = shape->bounds(orientation.toRotationMatrix());
   reach.box.translate(location);
-  Vector3 room = Vector3::Constant(1e-3 * shape->bounding_radius());
-  if (!proxy.moves && bodies.moving(proxy.body)) {
-    // It stands at the end of its way, which it turned on too.
-    const double turn = bodies.rotational_velocity(proxy.body).norm() * h * shape->bounding_radius();
-    room += h * bodies.velocity(proxy.body).cwiseAbs() + Vector3::Constant(std::min(turn, shape->bounding_radius()));
-  }
-  if (proxy.moves) {
-    // What it may reach: straight on, falling, turning; twice as far, since it may be pushed on the way.
-    const double turn = bodies.rotational_velocity(proxy.body).norm() * h * shape->bounding_radius();
-    const Vector3 way = (bodies.velocity(proxy.body).cwiseAbs() + h * gravity.cwiseAbs()) * (2 * h);
-    room += way + Vector3::Constant(2 * std::min(turn, shape->bounding_radius()));
-  }
   reach.box.min() -= room;
   reach.box.max() += room;
   if (!reach.box.min().allFinite() || !reach.box.max().allFinite()) {
@@ -316,133 +317,6 @@ std::size_t NearPairs::bytes() const {
          (free_.capacity() + proxy_of_.capacity() + movers_.capacity() + put_.capacity() + drivers_.capacity() +
           moved_.capacity()) *
              sizeof(BodyIndex);
-}
-
-// What a pair remembers is state; boxes and which pairs are near are found again. A pair that is kept because boxes are
-// roomy, but has nothing to remember, makes no difference.
-
-namespace {
-bool remembers(const NearPair& pair) {
-  return pair.touching || pair.warm_count > 0 || pair.cache.axis != Vector3::Zero();
-}
-}  // namespace
-
-void NearPairs::save(ByteWriter& out) const {
-  std::uint64_t count = 0;
-  each([&count](const PairKey&, const NearPair& pair) { count += remembers(pair); });
-  out.put(count);
-  each([&out](const PairKey& key, const NearPair& pair) {
-    if (!remembers(pair)) return;
-    out.put(key.a);
-    out.put(key.b);
-    out.put(key.serial_a);
-    out.put(key.serial_b);
-    out.put(pair.touching);
-    out.put(pair.cache.axis);
-    out.put(pair.cache.feature);
-    out.put(pair.cache.apart);
-    const contact::Spring& spring = pair.spring;
-    for (const double number :
-         {spring.stiffness, spring.in, spring.out, spring.tangential_stiffness, spring.tangential_damping, pair.stored})
-      out.put(number);
-    out.put(pair.warm_count);
-    for (int i = 0; i < pair.warm_count; ++i) {
-      const WarmPoint& point = pair.warm[static_cast<std::size_t>(i)];
-      out.put(point.feature);
-      out.put(point.slides);
-      out.put(point.force);
-      out.put(point.before);
-    }
-  });
-  count = 0;
-  for (const Proxy& proxy : proxies_) count += proxy.body != kNoBody && proxy.rest.still > 0;
-  out.put(count);
-  for (BodyIndex body = 0; body < proxy_of_.size(); ++body) {
-    const Rest* rest = find_rest(body);
-    if (!rest || !(rest->still > 0)) continue;
-    out.put(body);
-    out.put(serial(body));
-    out.put(rest->still);
-    out.put(rest->asleep);
-  }
-}
-
-void NearPairs::load(ByteReader& in, const Bodies& bodies) {
-  proxy_of_.resize(bodies.index_end(), kNoProxy);
-  const auto make = [&](BodyIndex body, std::uint64_t serial) {
-    if (!bodies.used(body)) ByteReader::fail();
-    if (proxy_of_[body] != kNoProxy) {
-      if (proxies_[proxy_of_[body]].serial != serial) ByteReader::fail();
-      return;
-    }
-    proxy_of_[body] = static_cast<ProxyIndex>(proxies_.size());
-    free_.reserve(proxies_.size() + 1);
-    woken_.reserve(proxies_.size() + 1);
-    reach_.resize(proxies_.size() + 1);
-    proxies_.emplace_back();
-    proxies_.back().body = body;
-    proxies_.back().serial = serial;
-    proxies_.back().moves = bodies.dynamic(body);
-  };
-  const std::size_t count = in.get_count(2 * sizeof(BodyIndex));
-  for (std::size_t i = 0; i < count; ++i) {
-    PairKey key;
-    NearPair pair;
-    pair.a = key.a = in.get<BodyIndex>();
-    pair.b = key.b = in.get<BodyIndex>();
-    key.serial_a = in.get<std::uint64_t>();
-    key.serial_b = in.get<std::uint64_t>();
-    pair.touching = in.get_bool();
-    pair.cache.axis = in.get_vector();
-    pair.cache.feature = in.get<std::uint32_t>();
-    pair.cache.apart = in.get<std::uint32_t>();
-    contact::Spring& spring = pair.spring;
-    for (double* number : {&spring.stiffness, &spring.in, &spring.out, &spring.tangential_stiffness,
-                           &spring.tangential_damping, &pair.stored})
-      *number = in.get<double>();
-    pair.warm_count = in.get<int>();
-    if (pair.warm_count < 0 || pair.warm_count > static_cast<int>(pair.warm.size())) ByteReader::fail();
-    for (int k = 0; k < pair.warm_count; ++k) {
-      WarmPoint& point = pair.warm[static_cast<std::size_t>(k)];
-      point.feature = in.get<std::uint32_t>();
-      point.slides = in.get_bool();
-      point.force = in.get_vector();
-      point.before = in.get<double>();
-    }
-    if (key.a == key.b || (!keys_.empty() && !earlier(keys_.back(), key))) ByteReader::fail();
-    make(key.a, key.serial_a);
-    make(key.b, key.serial_b);
-    key.at = static_cast<std::uint32_t>(pairs_.size());
-    pairs_.push_back(pair);
-    keys_.push_back(key);
-  }
-  free_pairs_.reserve(pairs_.size());
-  const std::size_t resting = in.get_count(sizeof(BodyIndex));
-  for (std::size_t i = 0; i < resting; ++i) {
-    const auto body = in.get<BodyIndex>();
-    make(body, in.get<std::uint64_t>());
-    rest(body).still = in.get<double>();
-    rest(body).asleep = in.get_bool();
-  }
-}
-
-void NearPairs::hash(Hasher& hasher) const {
-  each([&hasher](const PairKey& key, const NearPair& pair) {
-    if (!remembers(pair)) return;
-    hasher.add(key.serial_a);
-    hasher.add(key.serial_b);
-    hasher.add(static_cast<std::uint64_t>(pair.touching) | std::uint64_t{pair.cache.apart} << 1 |
-               std::uint64_t{pair.cache.feature} << 8);
-    hasher.add(pair.cache.axis);
-    hasher.add(pair.spring.stiffness);
-    hasher.add(pair.stored);
-    for (int i = 0; i < pair.warm_count; ++i) {
-      hasher.add(pair.warm[static_cast<std::size_t>(i)].force);
-      hasher.add(pair.warm[static_cast<std::size_t>(i)].before);
-    }
-  });
-  for (BodyIndex body = 0; body < proxy_of_.size(); ++body)
-    if (const Rest* rest = find_rest(body); rest && rest->still > 0) hasher.add(rest->still);
 }
 
 }  // namespace breve
