@@ -11,7 +11,9 @@
 namespace breve {
 
 bool is_stale(const Dynamics::Core& core, const TreeLink& link) {
-  return !core.bodies->dynamic(link.body) || !(core.bodies->mass_properties(link.body) == link.solid);
+  const Bodies& bodies = *core.bodies;
+  return !bodies.dynamic(link.body) || bodies.physics_switches(link.body) != link.switches ||
+         !(bodies.mass_properties(link.body) == link.solid);
 }
 
 bool has_moved_anchor(const Dynamics::Core& core, const Tree& tree) {

@@ -42,6 +42,7 @@ void NearPairs::enter(const Bodies& bodies, const DynamicsClient& client, BodyIn
   proxy.body = body;
   proxy.serial = client.serial(body);
   proxy.moves = bodies.dynamic(body);
+  proxy.switches = bodies.physics_switches(body);
   proxy_of_[body] = index;
 }
 
@@ -72,7 +73,7 @@ void NearPairs::gather(const Bodies& bodies, const DynamicsClient& client) {
   for (BodyIndex body = 0; body < proxy_of_.size(); ++body) {
     const bool dynamic = bodies.dynamic(body), solid = dynamic || bodies.driver(body);
     bool known = proxy_of_[body] != kNoProxy;
-    if (known && (!solid || proxies_[proxy_of_[body]].moves != dynamic)) {
+    if (known && (!solid || proxies_[proxy_of_[body]].moves != dynamic || !holds(bodies, proxies_[proxy_of_[body]]))) {
       leave(proxy_of_[body]);
       known = false;
     }

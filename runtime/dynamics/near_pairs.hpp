@@ -121,7 +121,7 @@ class NearPairs {
   std::uint64_t boxes() const { return boxes_; }  // of bodies, looked at so far
   void save(ByteWriter& out, const Bodies& bodies) const;
   void load(ByteReader& in, const Bodies& bodies);
-  void hash(Hasher& hasher) const;
+  void hash(Hasher& hasher, const Bodies& bodies) const;
 
  private:
   /// Bodies that push each other from now on, or no longer, are awake.
@@ -139,6 +139,7 @@ class NearPairs {
     BodyIndex body = kNoBody;
     std::uint64_t serial = 0;
     BoxTree::Leaf leaf = BoxTree::kNoLeaf;
+    std::uint32_t switches = 0;  // of its physics, when it was entered
     bool moves = false;
     Rest rest;
     Vector3 location = Vector3::Zero();  // of a body that does not move by itself, when its box was found
@@ -157,6 +158,16 @@ class NearPairs {
     bool moved = false;       // its roomy box, in this update
   };
   bool remembers(const PairKey& key) const { return key.at != PairKey::kNone && pairs_[key.at].remembers(); }
+  /// Whether it is still what it was as it was entered: else the next update enters it anew.
+  static bool holds(const Bodies& bodies, const Proxy& proxy) {
+    return bodies.used(proxy.body) && bodies.physics_switches(proxy.body) == proxy.switches;
+  }
+  static bool rests(const Bodies& bodies, const Proxy& proxy) {
+    return proxy.body != kNoBody && proxy.rest.still > 0 && holds(bodies, proxy);
+  }
+  bool keeps(const Bodies& bodies, const PairKey& key, const NearPair& pair) const {
+    return pair.remembers() && holds(bodies, proxies_[proxy_of_[key.a]]) && holds(bodies, proxies_[proxy_of_[key.b]]);
+  }
   static bool reshaped(const Bodies& bodies, const Proxy& proxy);
   static bool displaced(const Bodies& bodies, const Proxy& proxy);
   void wake_met(const Bodies& bodies, const Proxy& proxy);

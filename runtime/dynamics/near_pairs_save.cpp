@@ -8,10 +8,10 @@ namespace breve {
 
 void NearPairs::save(ByteWriter& out, const Bodies& bodies) const {
   std::uint64_t count = 0;
-  each([&count](const PairKey&, const NearPair& pair) { count += pair.remembers(); });
+  each([&](const PairKey& key, const NearPair& pair) { count += keeps(bodies, key, pair); });
   out.put(count);
-  each([&out](const PairKey& key, const NearPair& pair) {
-    if (!pair.remembers()) return;
+  each([&](const PairKey& key, const NearPair& pair) {
+    if (!keeps(bodies, key, pair)) return;
     out.put(key.a);
     out.put(key.b);
     out.put(key.serial_a);
@@ -34,11 +34,11 @@ void NearPairs::save(ByteWriter& out, const Bodies& bodies) const {
     }
   });
   count = 0;
-  for (const Proxy& proxy : proxies_) count += proxy.body != kNoBody && proxy.rest.still > 0;
+  for (const Proxy& proxy : proxies_) count += rests(bodies, proxy);
   out.put(count);
   for (BodyIndex body = 0; body < proxy_of_.size(); ++body) {
+    if (proxy_of_[body] == kNoProxy || !rests(bodies, proxies_[proxy_of_[body]])) continue;
     const Rest* rest = find_rest(body);
-    if (!rest || !(rest->still > 0)) continue;
     out.put(body);
     out.put(serial(body));
     out.put(rest->still);
@@ -50,7 +50,7 @@ void NearPairs::save(ByteWriter& out, const Bodies& bodies) const {
 /// Where what does not move by itself stood when its box was found: what stands elsewhere wakes what it touches.
 void NearPairs::save_standing(ByteWriter& out, const Bodies& bodies) const {
   const auto stands = [&](const Proxy& proxy) {
-    return proxy.body != kNoBody && !proxy.moves && proxy.placed && bodies.used(proxy.body);
+    return proxy.body != kNoBody && !proxy.moves && proxy.placed && holds(bodies, proxy);
   };
   out.put(static_cast<std::uint64_t>(std::count_if(proxies_.begin(), proxies_.end(), stands)));
   for (const ProxyIndex index : proxy_of_) {
@@ -82,6 +82,7 @@ NearPairs::Proxy& NearPairs::known(BodyIndex body, std::uint64_t serial, const B
   proxy.body = body;
   proxy.serial = serial;
   proxy.moves = bodies.dynamic(body);
+  proxy.switches = bodies.physics_switches(body);
   return proxy;
 }
 
@@ -162,9 +163,9 @@ void NearPairs::load_standing(ByteReader& in, const Bodies& bodies) {
   }
 }
 
-void NearPairs::hash(Hasher& hasher) const {
-  each([&hasher](const PairKey& key, const NearPair& pair) {
-    if (!pair.remembers()) return;
+void NearPairs::hash(Hasher& hasher, const Bodies& bodies) const {
+  each([&](const PairKey& key, const NearPair& pair) {
+    if (!keeps(bodies, key, pair)) return;
     hasher.add(key.serial_a);
     hasher.add(key.serial_b);
     hasher.add(static_cast<std::uint64_t>(pair.touching) | std::uint64_t{pair.cache.apart} << 1 |
@@ -178,7 +179,8 @@ void NearPairs::hash(Hasher& hasher) const {
     }
   });
   for (BodyIndex body = 0; body < proxy_of_.size(); ++body)
-    if (const Rest* rest = find_rest(body); rest && rest->still > 0) hasher.add(rest->still);
+    if (proxy_of_[body] != kNoProxy && rests(bodies, proxies_[proxy_of_[body]]))
+      hasher.add(proxies_[proxy_of_[body]].rest.still);
 }
 
 }  // namespace breve

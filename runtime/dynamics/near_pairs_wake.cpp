@@ -56,7 +56,7 @@ void NearPairs::wake_disturbed(Bodies& bodies) {
     const Proxy &a = proxies_[proxy_of_[key.a]], &b = proxies_[proxy_of_[key.b]];
     const Bodies& all = bodies;
     const bool changed =
-        a.woken || b.woken || displaced(all, a) || displaced(all, b) ||
+        !holds(all, a) || !holds(all, b) || a.woken || b.woken || displaced(all, a) || displaced(all, b) ||
         (pair.law_known && !same(pair.law, contact::combine(all.material(key.a), all.material(key.b))));
     if (!changed) continue;
     for (const BodyIndex body : {key.a, key.b}) proxies_[proxy_of_[body]].rest = {};

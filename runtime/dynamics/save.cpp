@@ -303,7 +303,7 @@ void Dynamics::Core::hash(Hasher& hasher) const {
     for (const double x : tree.state.v) add(x);
     for (const double x : tree.mean) add(x);
   }
-  near.hash(hasher);
+  near.hash(hasher, *bodies);
 }
 
 }  // namespace breve

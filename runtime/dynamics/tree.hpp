@@ -24,6 +24,7 @@ struct TreeLink {
   JointIndex joint = kNoJoint;                                // kNoJoint: the free joint of a root
   Vector3 origin = Vector3::Zero();                           // of the link's frame, in the body's frame
   MassProperties solid;                                       // that the model was made of
+  std::uint32_t switches = 0;                                 // of its body's physics, as the model was made
   Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // set by scripts, as the step began
   articulated::Wrench contact;                                // of contacts in the last sub-step, about its centre
   articulated::Wrench pressed;                                // likewise, of contact springs at this stage

@@ -228,6 +228,7 @@ void describe_links(const Dynamics::Core& core, std::span<const Planned> plan,
     link.body = planned.body;
     link.joint = planned.joint;
     link.solid = core.bodies->mass_properties(planned.body);
+    link.switches = core.bodies->physics_switches(planned.body);
     articulated::Link made;
     made.parent = planned.parent;
     made.mass = link.solid.mass;

@@ -86,7 +86,8 @@ struct RigidRow {
   Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // N, N*m; world frame
   Vector3 kinematic_velocity = Vector3::Zero();               // what applies again when physics is disabled
   Vector3 kinematic_rotational_velocity = Vector3::Zero();
-  MassProperties solid;  // copied from the shape
+  MassProperties solid;        // copied from the shape
+  std::uint32_t switches = 0;  // of `physics`, since the row was made
   bool physics = false;
   bool touched = false;  // in the list of those that setters changed
 };

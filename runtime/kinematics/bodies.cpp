@@ -356,12 +356,18 @@ Vector3 Bodies::spin(BodyIndex body) const {
   return physics(body) ? velocity : Vector3(orientation(body) * velocity);
 }
 
+std::uint32_t Bodies::physics_switches(BodyIndex body) const {
+  const RowIndex row = arrays_->rigid_row[body];
+  return row == kNoRow ? 0 : arrays_->rigid_rows[row].switches;
+}
+
 void Bodies::set_physics(BodyIndex body, bool enabled) {
   Arrays& a = *arrays_;
   if (a.physics(body) == enabled) return;
   RigidRow& row = a.make_rigid(body);
   a.note(body);  // before anything changes: it may take memory
   row.physics = enabled;
+  ++row.switches;
   if (enabled) {
     a.copy_mass(body);
     row.kinematic_velocity = a.velocity[body];

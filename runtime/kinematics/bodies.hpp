@@ -116,6 +116,8 @@ class Bodies : public InMemory {
   bool moving(BodyIndex body) const;   // by velocity or rotational velocity alone
   Vector3 spin(BodyIndex body) const;  // rotational velocity in world axes, with physics or without, rad/s
   void set_physics(BodyIndex body, bool enabled);
+  /// How often physics was enabled or disabled: what was made of the body before is to be made anew.
+  std::uint32_t physics_switches(BodyIndex body) const;
   const Vector3& force(BodyIndex body) const;
   const Vector3& torque(BodyIndex body) const;
   void set_force(BodyIndex body, const Vector3& newtons);
