@@ -65,8 +65,10 @@ void Machine::rethrow(std::size_t depth, const Instruction* pc) {
                                                                   : ErrorCode::Script;
     wrap(code, error);
   } catch (const Error& error) {
-    // What only a defect of ours makes happen is no mistake of the script, which could go on after one.
-    const bool kept = error.code() == ErrorCode::Memory || error.code() == ErrorCode::Internal;
+    // What the world has no more of, or only a defect of ours makes happen, is no mistake of the script, which could go
+    // on after one.
+    const bool kept =
+        error.code() == ErrorCode::Memory || error.code() == ErrorCode::Budget || error.code() == ErrorCode::Internal;
     wrap(kept ? error.code() : ErrorCode::Script, RunError(RunErrorKind::World, error.what()));
   } catch (const std::bad_alloc&) {
     throw_out_of_memory(depth, pc);

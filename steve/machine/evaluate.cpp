@@ -96,7 +96,6 @@ Value Machine::evaluate(Instance& self, std::string_view text) {
   scope.enter();
   const Value session[] = {Value::of(Tag::Hash, fragment->uses_session ? make_session() : nullptr)};
   const Value result = call(self, *fragment->method, session);
-  if (!fragment->gives_value) result_ = Value();
   return fragment->gives_value ? result : Value();
 }
 

@@ -53,6 +53,14 @@ Value Machine::invoke(Instance& receiver, const MethodInfo& method, std::span<co
     for (std::size_t i = 0; i < arguments.size(); ++i)
       write_parameter(to, method.parameters[i], arguments[i], program_->symbols().name(method.parameters[i].keyword));
   };
+  // A caller may not have looked at its own result yet: the library calls scripts also between two instructions.
+  struct Kept {
+    Machine& machine;
+    std::size_t at;
+    ~Kept() { machine.result_ = machine.pins_[at]; }
+  };
+  pins_.push_back(result_);
+  const Kept kept{*this, pins_.size() - 1};
   pins_.push_back(Value::of(Tag::Object, &receiver));
   if (profiler_) profiler_->use(program_);
   const ProfileScope profiled(profiler_, Callee::of(method), 0);

@@ -82,8 +82,36 @@ static void an_interrupt_ends_a_step(void) {
   scene_close(&s);
 }
 
+/* Discs in one place, of which Box2D would pair each with each: for minutes, in memory of its own. */
+static const char* const kCrowd =
+    "@use PlanarControl.\n@use Mobile.\nController A.\n"
+    "PlanarControl : A { + to init:\n    (5000 new Mobiles) enable-physics.\n}\n";
+
+static void a_flat_crowd_is_refused_before_it_is_paired(void) {
+  breve_world_config config = breve_world_config_default();
+  config.physics_budget = 1000000;
+  scene s;
+  if (!scene_open_text(&s, kCrowd, &config)) return;
+  for (int i = 0; i < 2; ++i) {
+    CHECK_STATUS(BREVE_ERROR_BUDGET, breve_world_step(s.world));
+    CHECK(strstr(breve_world_last_error(s.world)->text, "physics budget of 1000000") != NULL);
+  }
+  scene_close(&s);
+}
+
+static void a_flat_crowd_stays_within_the_worlds_memory(void) {
+  breve_world_config config = breve_world_config_default();
+  config.memory_limit = (size_t)256 << 20;
+  scene s;
+  if (!scene_open_text(&s, kCrowd, &config)) return;
+  for (int i = 0; i < 2; ++i) CHECK_STATUS(BREVE_ERROR_MEMORY, breve_world_step(s.world));
+  scene_close(&s);
+}
+
 void physics_budget_suite(void) {
   RUN(a_step_takes_what_it_may);
   RUN(who_bounds_the_script_bounds_its_physics);
   RUN(an_interrupt_ends_a_step);
+  RUN(a_flat_crowd_is_refused_before_it_is_paired);
+  RUN(a_flat_crowd_stays_within_the_worlds_memory);
 }

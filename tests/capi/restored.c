@@ -1,0 +1,74 @@
+/* restored PROGRAM.tz: a world, and one that is restored from its image before each iteration, are the same after each,
+ * on each rung. */
+#include <stdlib.h>
+
+#include "check.h"
+
+static char* text_of(const char* path, size_t* size) {
+  FILE* file = fopen(path, "rb");
+  if (!file) return NULL;
+  fseek(file, 0, SEEK_END);
+  *size = (size_t)ftell(file);
+  rewind(file);
+  char* text = malloc(*size + 1);
+  *size = fread(text, 1, *size, file);
+  fclose(file);
+  return text;
+}
+
+/* As one world is, so is the other. */
+static void copy(const breve_world* one, breve_world* other) {
+  size_t size = 0;
+  CHECK_STATUS(BREVE_OK, breve_world_snapshot(one, NULL, 0, &size));
+  unsigned char* image = malloc(size);
+  CHECK_STATUS(BREVE_OK, breve_world_snapshot(one, image, size, &size));
+  if (!CHECK_STATUS(BREVE_OK, breve_world_restore(other, image, size))) puts(breve_world_last_error(other)->text);
+  free(image);
+}
+
+static bool same(const breve_world* one, const breve_world* other) {
+  uint64_t hash = 0, again = 1;
+  CHECK_STATUS(BREVE_OK, breve_world_hash(one, &hash));
+  CHECK_STATUS(BREVE_OK, breve_world_hash(other, &again));
+  return hash == again;
+}
+
+static void goes_on_alike(breve_runtime* runtime, breve_program* program, const char* rung) {
+  enum { ITERATIONS = 24 };
+  breve_world_config config = breve_world_config_default();
+  config.seed = 14;
+  config.accuracy = rung;
+  breve_world *one = NULL, *other = NULL;
+  CHECK_STATUS(BREVE_OK, breve_world_create(runtime, program, &config, &one));
+  CHECK_STATUS(BREVE_OK, breve_world_create(runtime, program, &config, &other));
+  for (int i = 0; i < ITERATIONS && failures == 0; ++i) {
+    copy(one, other);
+    CHECK(same(one, other));
+    const breve_status status = breve_world_step(one);
+    CHECK(status == BREVE_OK || status == BREVE_ERROR_SCRIPT);
+    CHECK_STATUS(status, breve_world_step(other));
+    CHECK(same(one, other));
+    if (failures) printf("on %s, in iteration %d\n", rung, i + 1);
+  }
+  breve_world_destroy(one);
+  breve_world_destroy(other);
+}
+
+int main(int count, char** arguments) {
+  size_t size = 0;
+  char* text = count == 2 ? text_of(arguments[1], &size) : NULL;
+  if (!text) return 2;
+  breve_runtime* runtime = NULL;
+  breve_program* program = NULL;
+  CHECK_STATUS(BREVE_OK, breve_runtime_create(NULL, &runtime));
+  if (CHECK_STATUS(BREVE_OK, breve_program_compile(runtime, "program.tz", text, size, &program))) {
+    static const char* const rungs[] = {"fast", "balanced", "precise", "reference"};
+    for (size_t i = 0; i < sizeof rungs / sizeof *rungs; ++i) goes_on_alike(runtime, program, rungs[i]);
+  } else {
+    puts(breve_runtime_last_error(runtime)->text);
+  }
+  breve_program_destroy(program);
+  breve_runtime_destroy(runtime);
+  free(text);
+  return failures != 0;
+}
