@@ -31,6 +31,7 @@ class Meter {
   }
   void add(std::uint64_t units) { done_ += units; }
   std::uint64_t done() const { return done_; }
+  const std::atomic<bool>* end() const { return ended_; }  // may be null
   bool ended() const { return ended_ && ended_->load(std::memory_order_relaxed); }
   /// No more is to be begun than has to be.
   bool over() const { return done_ >= most_ || ended(); }

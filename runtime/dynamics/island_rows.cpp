@@ -38,6 +38,7 @@ Island::Touch Island::touch_at(std::size_t pair, const Pose& a, const Pose& b, c
 void Island::find_touches(double h, bool speculative) {
   touches_.clear();
   NarrowCounters narrow;
+  narrow.stop = meter_.end();
   const double fall = core_.settings.gravity.norm() * h;
   quiet_ = 1e-3 * fall + 1e-12;
   looked_h_ = h;
@@ -128,6 +129,7 @@ void Island::find_roles(double h, bool struck) {
 void Island::find_touches_now() {
   touches_.clear();
   NarrowCounters narrow;
+  narrow.stop = meter_.end();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     NearPair& pair = *pairs_[i];
     if (pair.spring.stiffness > 0) continue;  // it gives way to what is sudden

@@ -91,6 +91,7 @@ void Island::step_fast(double start, double h) {
 
 void Island::take_fast(double time, double h) {
   look(h, true);
+  if (meter_.ended()) return;  // what touches was not looked for to the end
   for (Bound& bound : bounds_) bound.rests = bound.gap + h * std::min(0.0, 2 * bound.rate) <= kLimitSkin;
   remember();
   open_books();
@@ -234,6 +235,7 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
     spent_ = impacts_ >= most_impacts || stalls > kMostStalls;
     bool struck = false;
     look(sub, spent_);
+    if (meter_.ended()) continue;  // what touches was not looked for to the end
     if (!spent_ && strikes(sub)) {
       ++impacts_;
       struck = true;

@@ -395,6 +395,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   FlatBody* liveliest();
   void intervene(BodyIndex body, GuardReason reason, double value, double moment, GuardAction action);
   void rest(FlatBody& flat);
+  bool tell_overlaps(double moment, GuardAction action);
   void hold_still(FlatBody& flat);
   void forget_impulses(const FlatBody& flat);
 

@@ -112,6 +112,26 @@ bool Planar::Core::watch_energy(const Balance& before, double moment) {
   return true;
 }
 
+/// Of each body the deepest that it has: there are as many overlaps in a crowd as pairs. Whether there are any.
+bool Planar::Core::tell_overlaps(double moment, GuardAction action) {
+  std::pmr::vector<double> deepest(memory);  // by body
+  for (b2Contact* contact = b2->GetContactList(); contact; contact = contact->GetNext()) {
+    if (!contact->IsTouching()) continue;
+    const FlatBody &a = of(contact->GetFixtureA()->GetBody()), &b = of(contact->GetFixtureB()->GetBody());
+    b2WorldManifold where;
+    contact->GetWorldManifold(&where);
+    const double depth = -std::min(
+        where.separations[0], contact->GetManifold()->pointCount > 1 ? where.separations[1] : where.separations[0]);
+    if (!(depth > 0.25 * std::min(a.thickness, b.thickness) + 4 * b2_linearSlop)) continue;
+    deepest.resize(slot_of.size());
+    double& most = deepest[b.fixed ? a.body : b.body];
+    most = std::max(most, depth);
+  }
+  for (BodyIndex body = 0; body < deepest.size(); ++body)
+    if (deepest[body] > 0) intervene(body, GuardReason::Penetration, deepest[body] * settings.unit, moment, action);
+  return !deepest.empty();
+}
+
 void Planar::Core::watch(double moment, bool wrong) {
   constexpr double kGap = 0.02;  // of the smaller body's width: further than this a joint has opened
   const GuardAction action = remedy();
@@ -143,19 +163,7 @@ void Planar::Core::watch(double moment, bool wrong) {
     intervene(joint.is.child, GuardReason::NoSolution, open, moment, action);
   }
   constexpr std::uint64_t kSeldom = 4;  // steps: looking at every contact costs as much as a part of solving it
-  if (iteration % kSeldom == 0)
-    for (b2Contact* contact = b2->GetContactList(); contact; contact = contact->GetNext()) {
-      if (!contact->IsTouching()) continue;
-      const FlatBody &a = of(contact->GetFixtureA()->GetBody()), &b = of(contact->GetFixtureB()->GetBody());
-      b2WorldManifold where;
-      contact->GetWorldManifold(&where);
-      const double depth = -std::min(
-          where.separations[0], contact->GetManifold()->pointCount > 1 ? where.separations[1] : where.separations[0]);
-      const double bound = 0.25 * std::min(a.thickness, b.thickness) + 4 * b2_linearSlop;
-      if (!(depth > bound)) continue;
-      wrong = true;
-      intervene(b.fixed ? a.body : b.body, GuardReason::Penetration, depth * settings.unit, moment, action);
-    }
+  if (iteration % kSeldom == 0 && tell_overlaps(moment, action)) wrong = true;
   constexpr int kCalm = 240;  // steps without anything wrong, after which the doublings are taken back one by one
   calm = wrong ? 0 : calm + 1;
   if (wrong && action == GuardAction::Refined) ++refined;

@@ -1,6 +1,7 @@
 // Where two solids are closest, how deep they overlap, and when two moving solids first touch.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 
 #include "runtime/base/math.hpp"
@@ -31,12 +32,14 @@ struct Contact {
 
 /// What the narrow phase did, for tests and reports.
 struct NarrowCounters {
-  std::uint64_t pairs = 0;     // asked for and not told apart by the spheres around them
-  std::uint64_t warm = 0;      // started from what the pair remembered
-  std::uint64_t separate = 0;  // decided by the remembered axis alone
-  std::uint64_t facets = 0;    // of surfaces, visited
-  std::uint64_t boxes = 0;     // about facets, looked at to find these
+  std::uint64_t pairs = 0;                  // asked for and not told apart by the spheres around them
+  std::uint64_t warm = 0;                   // started from what the pair remembered
+  std::uint64_t separate = 0;               // decided by the remembered axis alone
+  std::uint64_t facets = 0;                 // of surfaces, visited
+  std::uint64_t boxes = 0;                  // about facets, looked at to find these
+  const std::atomic<bool>* stop = nullptr;  // true: facets are searched no further, since nobody asks for them any more
 
+  bool stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }
   void add(const FacetCounters& search) {
     facets += search.facets;
     boxes += search.boxes;

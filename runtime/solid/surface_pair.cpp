@@ -108,14 +108,17 @@ Gap narrowest_gap(const SurfacePair& pair, double limit, NarrowCounters* counter
 /// Manifolds of all facets, those of one patch together.
 class Patches final : public FacetVisitor {
  public:
-  Patches(const SurfacePair& pair, double margin, const Slack& slack, std::pmr::vector<Manifold>& out)
-      : pair_(pair), clearance_(clearance_of(pair)), slack_(slack), out_(out), first_(out.size()) {
+  Patches(const SurfacePair& pair, double margin, const Slack& slack, std::pmr::vector<Manifold>& out,
+          const NarrowCounters* asked)
+      : pair_(pair), clearance_(clearance_of(pair)), slack_(slack), out_(out), asked_(asked), first_(out.size()) {
     convex_.a = pair.convex;
     convex_.margin = margin;
     convex_.slack = slack;
   }
   void search() { pair_.surface->under(grown(clearance_.bounds(), convex_.margin), *this); }
-  bool wants(const Eigen::AlignedBox3d& box) const override { return clearance_.of(box) < convex_.margin; }
+  bool wants(const Eigen::AlignedBox3d& box) const override {
+    return clearance_.of(box) < convex_.margin && (asked_ == nullptr || !asked_->stopped());
+  }
   bool reads_active() const override { return true; }
   void visit(const Facet& facet) override {
     if (clearance_.of_plane(facet) >= convex_.margin) return;
@@ -140,6 +143,7 @@ class Patches final : public FacetVisitor {
   const Clearance clearance_;
   const Slack& slack_;
   std::pmr::vector<Manifold>& out_;
+  const NarrowCounters* asked_;
   std::size_t first_;
   ConvexPair convex_;
   TriangleSolid triangle_;
@@ -223,9 +227,12 @@ void surface_manifolds(const Shape& a, const Placed& pa, const Shape& b, const P
   if (!may_reach(pair, margin)) {
     near = pair.surface->solid() && center_inside(pair);
   } else if (!ball_inside(pair)) {
-    Patches patches(pair, margin, slack, out);
+    Patches patches(pair, margin, slack, out, counters);
     patches.search();
-    if (counters != nullptr) counters->add(patches.counters);
+    if (counters != nullptr) {
+      counters->add(patches.counters);
+      if (counters->stopped()) return;
+    }
     near = patches.near || (pair.surface->solid() && center_inside(pair));
   }
   // Wholly inside, or in among facets smaller than the depth, which all left the contact to their neighbours.
