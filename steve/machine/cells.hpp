@@ -50,6 +50,8 @@ struct StringCell : Cell {
     return text;
   }
   std::string_view view() const { return {shared != 0 ? text()->bytes : bytes, size}; }
+  /// Bytes that it may become by appending in place; 0: not any. What appending costs is counted, so images keep it.
+  std::uint32_t room() const { return shared != 0 && text()->used == size ? text()->capacity : 0; }
 };
 inline std::string_view view(const StringCell* s) { return s ? s->view() : std::string_view{}; }
 

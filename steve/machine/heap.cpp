@@ -211,22 +211,32 @@ StringCell* Heap::append(StringCell* a, std::string_view b) {
   SharedText* text = a->shared != 0 ? a->text() : nullptr;
   const bool fits = text != nullptr && text->used == old && text->capacity - old >= b.size();
   if (!fits) text = make_text(a->view(), std::min(size * 2, kLongestString));
+  return share(text, b);
+}
+
+StringCell* Heap::roomy_string(std::string_view bytes, std::size_t capacity) {
+  reserve_tables(false);
+  return share(make_text(bytes, capacity), {});
+}
+
+/// The text with `more` behind it, for which there is room, as a string. Nobody else's text is gone if memory ends.
+StringCell* Heap::share(SharedText* text, std::string_view more) {
   void* memory = nullptr;
   try {
     memory = take(sizeof(StringCell));
   } catch (...) {
-    if (!fits) leave_text(text);
+    if (text->cells == 0) leave_text(text);
     throw;
   }
-  char* to = body(text) + old;
-  std::memcpy(to, b.data(), b.size());
-  to[b.size()] = 0;
-  text->used = static_cast<std::uint32_t>(size);
+  char* to = body(text) + text->used;
+  std::memcpy(to, more.data(), more.size());
+  to[more.size()] = 0;
+  text->used += static_cast<std::uint32_t>(more.size());
   ++text->cells;
-  auto* cell = new (memory) StringCell(static_cast<std::uint32_t>(size));
+  auto* cell = new (memory) StringCell(text->used);
   cell->shared = 1;
   std::memcpy(cell->bytes, &text, sizeof text);
-  note_fresh(size);  // as much as an unshared one: where reclaiming happens must not depend on what is shared
+  note_fresh(text->used);  // as much as an unshared one: where reclaiming happens must not depend on what is shared
   return enter(cell);
 }
 

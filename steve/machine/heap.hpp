@@ -48,6 +48,8 @@ class Heap : public InMemory {
   StringCell* concat(std::string_view a, std::string_view b);
   /// a + b, where `a` may be the same text that was added to before: amortised O(b).
   StringCell* append(StringCell* a, std::string_view b);
+  /// A string that up to `capacity` bytes are appended to in place: as `append` left the one that an image was made of.
+  StringCell* roomy_string(std::string_view bytes, std::size_t capacity);
   /// The bytes of a string with a zero byte behind them; null gives "".
   const char* terminated(StringCell* string);
   MatrixCell* matrix(const Matrix3& m);
@@ -247,6 +249,7 @@ class Heap : public InMemory {
   T* enter(T* cell);
   StringCell* raw_string(std::size_t size);
   SharedText* make_text(std::string_view begin, std::size_t capacity);
+  StringCell* share(SharedText* text, std::string_view more);
   void leave_text(SharedText* text);
   void note_fresh(std::size_t bytes) {
     fresh_bytes_ += bytes;

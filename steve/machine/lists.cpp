@@ -143,7 +143,8 @@ void Heap::insert(ListCell& list, std::uint32_t position, const Value& value) {
   if (position == 0) return prepend(list, value);
   fit(list, value.tag);
   settle(list);
-  if (list.first > 0 && position <= list.size / 2) {
+  if (position <= list.size / 2) {
+    if (list.first == 0) make_room_before(list);  // what is counted must not depend on the room that the past left
     --list.first;
     move_bytes(position * sizeof(Value));
     shift(list, list.first, list.first + 1, position);

@@ -195,9 +195,10 @@ class CellReader {
       if (number >= constants_.size() || !constants_[number]) ByteReader::fail();
       return constants_[number];
     }
-    auto* string = heap_.string(in_.get_text());
-    if (!string) ByteReader::fail();
-    return string;
+    const auto capacity = in_.get<std::uint32_t>();
+    const std::string_view text = in_.get_text();
+    if (text.empty() || (capacity != 0 && (capacity < text.size() || capacity / 2 > text.size()))) ByteReader::fail();
+    return capacity != 0 ? heap_.roomy_string(text, capacity) : heap_.string(text);
   }
 
   void fill(Cell& cell) {
@@ -262,10 +263,13 @@ void Machine::save(ByteWriter& out) const {
     const auto constant = constants.find(cell);
     if (cell->tag == Tag::String) {
       out.put(static_cast<std::uint8_t>(constant != constants.end()));
-      if (constant != constants.end())
+      if (constant != constants.end()) {
         out.put(constant->second);
-      else
-        out.put(static_cast<const StringCell*>(cell)->view());
+      } else {
+        const auto& string = *static_cast<const StringCell*>(cell);
+        out.put(string.room());
+        out.put(string.view());
+      }
     } else if (cell->tag == Tag::Matrix) {
       out.put(static_cast<const MatrixCell*>(cell)->m);
     } else if (cell->tag == Tag::Pointer) {
