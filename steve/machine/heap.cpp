@@ -229,7 +229,7 @@ StringCell* Heap::share(SharedText* text, std::string_view more) {
     throw;
   }
   char* to = body(text) + text->used;
-  std::memcpy(to, more.data(), more.size());
+  std::copy(more.begin(), more.end(), to);
   to[more.size()] = 0;
   text->used += static_cast<std::uint32_t>(more.size());
   ++text->cells;
