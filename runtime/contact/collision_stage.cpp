@@ -42,12 +42,12 @@ void CollisionStage::finish(CollisionClient& client, double start, double h, con
   }
   std::sort(loaded_touching_.begin(), loaded_touching_.end());  // for find_pairs; until here it is in the order saved
   update_boxes(client);
-  merge_new_pairs();
   drop_far_pairs();
   loaded_touching_.clear();
   impacts_.clear();
-  seek_first_impacts(at_impact, h);
   const Substep substep{client, start, h, gravity};
+  count_first_work(client);
+  seek_first_impacts(substep, at_impact);
   run_impacts(substep);
   report_lasting(substep);
 }
@@ -70,22 +70,30 @@ bool CollisionStage::later(const Impact& x, const Impact& y) const {
   return xa != ya ? xa > ya : proxies_[x.b].serial > proxies_[y.b].serial;
 }
 
-void CollisionStage::seek_first_impacts(bool at_impact, double h) {
+/// Before any pair is asked: where there is too much of it, the sub-step leaves the pairs as they were.
+void CollisionStage::count_first_work(CollisionClient& client) {
+  std::uint64_t meeting = 0;
+  for (Pair& pair : pairs_) {
+    pair.ask_at_end = boxes_meet(pair);
+    meeting += pair.ask_at_end ? 1 : 0;
+  }
+  client.work(kWorkOfPath * moved_.size() + kWorkOfPair * meeting);
+}
+
+void CollisionStage::seek_first_impacts(const Substep& substep, bool at_impact) {
   for (Pair& pair : pairs_) {
     ++counters_.pairs;
     pair.reported = false;
-    pair.ask_at_end = false;
-    if (!boxes_meet(pair)) {
+    if (!pair.ask_at_end) {
       pair.touching = false;
     } else if (!pair.touching && at_impact) {
-      seek_impact(pair, 0, h);
-    } else {
-      pair.ask_at_end = true;
+      seek_impact(substep, pair, 0);
     }
   }
 }
 
-void CollisionStage::seek_impact(Pair& pair, double from, double h) {
+void CollisionStage::seek_impact(const Substep& substep, Pair& pair, double from) {
+  const double h = substep.h;
   const Proxy& a = proxies_[pair.a];
   const Proxy& b = proxies_[pair.b];
   pair.ask_at_end = true;
@@ -100,6 +108,7 @@ void CollisionStage::seek_impact(Pair& pair, double from, double h) {
   const bool hit = time_of_impact(*bodies_->collision_shape(a.body), motion_from(a, from),
                                   *bodies_->collision_shape(b.body), of_b, h - from, after, impact.contact, &narrow);
   counters_.facets += narrow.facets;
+  substep.client.work(kWorkOfImpact + narrow.facets);
   if (!hit) return;
   pair.ask_at_end = false;
   impact.time = std::min(from + after, h);
@@ -203,22 +212,24 @@ void CollisionStage::restart(const Substep& substep, ProxyIndex index, double ti
   path.to = bodies_->state(proxy.body);
   finish_path(path);
   if (held) path.velocity = path.rotational_velocity = Vector3::Zero();
-  update_box(substep.client, index);
-  merge_new_pairs();
+  fresh_.clear();
+  update_box(index);
+  find_new_pairs(substep.client);
   find_near(proxies_[index].box);
   for (const ProxyIndex other : found_) {
     Pair* pair = other == index ? nullptr : find_pair(index, other);
     if (!pair || !boxes_meet(*pair)) continue;
+    substep.client.work(kWorkOfPair);
     if (pair->touching) {
       // It is another touch only if they have come apart in between.
       Contact contact;
-      if (touching(*pair, motion_from(proxies_[pair->a], time).start, motion_from(proxies_[pair->b], time).start,
-                   contact)) {
+      if (touching(substep, *pair, motion_from(proxies_[pair->a], time).start,
+                   motion_from(proxies_[pair->b], time).start, contact)) {
         continue;
       }
       pair->touching = false;
     }
-    seek_impact(*pair, time, substep.h);
+    seek_impact(substep, *pair, time);
   }
 }
 
@@ -233,7 +244,7 @@ void CollisionStage::report_lasting(const Substep& substep) {
     const Proxy& b = proxies_[pair.b];
     if (a.body == kNoBody || b.body == kNoBody) continue;
     Contact contact;
-    pair.touching = touching(pair, pose_now(a), pose_now(b), contact);
+    pair.touching = touching(substep, pair, pose_now(a), pose_now(b), contact);
     if (!pair.touching || pair.reported) continue;
     pair.reported = true;
     ++counters_.reports;

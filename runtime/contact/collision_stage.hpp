@@ -27,6 +27,11 @@ class CollisionClient {
   virtual std::uint64_t serial(BodyIndex body) const = 0;
   /// `a` and `b` touch; `a` was created earlier. May change, free and create bodies; may throw.
   virtual void touched(BodyIndex a, BodyIndex b, const Contact& contact, double moment) = 0;
+  /// So much work (units, see Meter) begins now. A function of the state of bodies alone, whatever was found before.
+  /// Throws if there may not be so much, or if the host wants the end.
+  virtual void work(std::uint64_t units) = 0;
+  /// At least so much work is still to begin: throws as `work` would, and counts nothing.
+  virtual void expect(std::uint64_t units) = 0;
 };
 
 class CollisionStage {
@@ -103,6 +108,10 @@ class CollisionStage {
   static constexpr std::uint32_t kNoPath = 0xffffffffU;
   static constexpr ProxyIndex kNoProxy = 0xffffffffU;
   static constexpr std::uint32_t kMostImpacts = 64;  // of one body in one sub-step; then it is held until the end
+  // Units of work, measured.
+  static constexpr std::uint64_t kWorkOfPath = 4;    // a body that moves: its box, and where that is in the tree
+  static constexpr std::uint64_t kWorkOfPair = 4;    // two whose boxes meet: found, kept, and asked once
+  static constexpr std::uint64_t kWorkOfImpact = 8;  // a search for a time of impact, its facets apart
 
   // participants.cpp: who takes part, where their boxes are, which pairs are near.
   void refresh(const CollisionClient& client, bool rules_changed);
@@ -112,17 +121,19 @@ class CollisionStage {
   void find_near(const Eigen::AlignedBox3d& box);
   bool boxes_meet(const Pair& pair) const;
   Eigen::AlignedBox3d box_of_path(const Proxy& proxy) const;
-  void update_boxes(const CollisionClient& client);
-  void update_box(const CollisionClient& client, ProxyIndex index);
-  void find_pairs(const CollisionClient& client, ProxyIndex index);
+  void update_boxes(CollisionClient& client);
+  void update_box(ProxyIndex index);
+  void find_new_pairs(CollisionClient& client);
+  std::uint64_t find_pairs(const CollisionClient& client, ProxyIndex index);
   void merge_new_pairs();
   void drop_far_pairs();
   Pair* find_pair(ProxyIndex x, ProxyIndex y);
 
   // collision_stage.cpp: the order of events.
   bool later(const Impact& x, const Impact& y) const;
-  void seek_first_impacts(bool at_impact, double h);
-  void seek_impact(Pair& pair, double from, double h);
+  void count_first_work(CollisionClient& client);
+  void seek_first_impacts(const Substep& substep, bool at_impact);
+  void seek_impact(const Substep& substep, Pair& pair, double from);
   void run_impacts(const Substep& substep);
   void deliver_impact(const Substep& substep, const Impact& impact);
   void go_on(const Substep& substep, ProxyIndex index, const BodyState& shown, double time);
@@ -139,7 +150,7 @@ class CollisionStage {
   Pose pose_now(const Proxy& proxy) const;
   Vector3 image_of_b(const Pair& pair) const;
   void place(BodyIndex body, const BodyState& state);
-  bool touching(const Pair& pair, const Pose& pose_a, const Pose& pose_b, Contact& contact);
+  bool touching(const Substep& substep, const Pair& pair, const Pose& pose_a, const Pose& pose_b, Contact& contact);
 
   Bodies* bodies_;
   BoxTree tree_;
@@ -150,6 +161,7 @@ class CollisionStage {
   std::pmr::vector<ProxyIndex> order_;     // live proxies in order of creation
   std::pmr::vector<Path> paths_;
   std::pmr::vector<ProxyIndex> moved_, settling_;  // had a path or an impact, in this sub-step and in the last one
+  std::pmr::vector<ProxyIndex> fresh_;             // have another box in the tree: their pairs are to be found
   std::pmr::vector<BodyIndex> put_;
   std::pmr::vector<BodyIndex> late_;  // put, but not known yet
   std::pmr::vector<Pair> pairs_;      // sorted by (serial of a, serial of b)

@@ -17,6 +17,7 @@ CollisionStage::CollisionStage(std::pmr::memory_resource* memory, Bodies& bodies
       paths_(memory),
       moved_(memory),
       settling_(memory),
+      fresh_(memory),
       put_(memory),
       late_(memory),
       pairs_(memory),
@@ -125,8 +126,8 @@ Eigen::AlignedBox3d CollisionStage::box_of_path(const Proxy& proxy) const {
   return swept;
 }
 
-/// The boxes that may be others than in the last sub-step.
-void CollisionStage::update_boxes(const CollisionClient& client) {
+/// The boxes that may be others than in the last sub-step, then the pairs of those that left theirs in the tree.
+void CollisionStage::update_boxes(CollisionClient& client) {
   put_.clear();
   put_.swap(late_);
   bodies_->take_put(Follower::Collisions, put_);
@@ -135,21 +136,23 @@ void CollisionStage::update_boxes(const CollisionClient& client) {
     const bool known = body < proxy_of_.size() && proxy_of_[body] != kNoProxy;
     if (!known && bodies_->used(body) && client.takes_part(body)) late_.push_back(body);
   }
+  fresh_.clear();
   const std::uint64_t scalings = bodies_->shape_changes();
   if (look_at_all_ || scalings != seen_scalings_) {
-    for (const ProxyIndex index : order_) update_box(client, index);
+    for (const ProxyIndex index : order_) update_box(index);
   } else {
     for (const auto* list : {&moved_, &settling_})
       for (const ProxyIndex index : *list)
-        if (proxies_[index].body != kNoBody) update_box(client, index);
+        if (proxies_[index].body != kNoBody) update_box(index);
     for (const BodyIndex body : put_)
-      if (body < proxy_of_.size() && proxy_of_[body] != kNoProxy) update_box(client, proxy_of_[body]);
+      if (body < proxy_of_.size() && proxy_of_[body] != kNoProxy) update_box(proxy_of_[body]);
   }
+  find_new_pairs(client);
   seen_scalings_ = scalings;
   look_at_all_ = false;
 }
 
-void CollisionStage::update_box(const CollisionClient& client, ProxyIndex index) {
+void CollisionStage::update_box(ProxyIndex index) {
   ++counters_.boxes;
   Proxy& proxy = proxies_[index];
   proxy.box = box_of_path(proxy);
@@ -162,7 +165,7 @@ void CollisionStage::update_box(const CollisionClient& client, ProxyIndex index)
     return;
   }
   if (proxy.leaf != BoxTree::kNoLeaf && tree_.box(proxy.leaf).contains(proxy.box)) {
-    if (look_at_all_) find_pairs(client, index);
+    if (look_at_all_) fresh_.push_back(index);
     return;
   }
   Eigen::AlignedBox3d roomy = proxy.box;
@@ -177,7 +180,7 @@ void CollisionStage::update_box(const CollisionClient& client, ProxyIndex index)
   } else {
     tree_.move(proxy.leaf, roomy);
   }
-  find_pairs(client, index);
+  fresh_.push_back(index);
 }
 
 /// Those whose boxes a box meets, itself or one of its images across edges that wrap: whoever it meets is inside space,
@@ -212,8 +215,25 @@ bool CollisionStage::boxes_meet(const Pair& pair) const {
   return space_.wraps() ? a.intersects(b.translated(image_of_b(pair))) : a.intersects(b);
 }
 
-void CollisionStage::find_pairs(const CollisionClient& client, ProxyIndex index) {
+/// Of the fresh boxes. Where there are more pairs than may be looked at, it ends before all of them are found.
+void CollisionStage::find_new_pairs(CollisionClient& client) {
+  constexpr std::size_t kLot = 4096;
+  std::uint64_t meeting = 0;
+  std::size_t looked = 0;
+  for (const ProxyIndex index : fresh_) {
+    meeting += find_pairs(client, index);
+    looked += found_.size();
+    if (looked < kLot) continue;
+    looked = 0;
+    client.expect(kWorkOfPair * (meeting / 2));  // each may be found from both its ends
+  }
+  merge_new_pairs();
+}
+
+/// Those of one body that are not known yet; how many of them have boxes that meet.
+std::uint64_t CollisionStage::find_pairs(const CollisionClient& client, ProxyIndex index) {
   find_near(tree_.box(proxies_[index].leaf));
+  std::uint64_t meeting = 0;
   const Proxy& self = proxies_[index];
   for (const ProxyIndex other_index : found_) {
     const Proxy& other = proxies_[other_index];
@@ -225,7 +245,9 @@ void CollisionStage::find_pairs(const CollisionClient& client, ProxyIndex index)
     pair.touching = std::binary_search(loaded_touching_.begin(), loaded_touching_.end(),
                                        std::pair{proxies_[pair.a].body, proxies_[pair.b].body});
     new_pairs_.push_back(pair);
+    meeting += boxes_meet(pair) ? 1 : 0;
   }
+  return meeting;
 }
 
 bool CollisionStage::earlier(const Pair& x, const Pair& y) const {

@@ -79,7 +79,8 @@ Vector3 CollisionStage::image_of_b(const Pair& pair) const {
   return space_.image(proxies_[pair.a].box.center(), proxies_[pair.b].box.center());
 }
 
-bool CollisionStage::touching(const Pair& pair, const Pose& pose_a, const Pose& place_b, Contact& contact) {
+bool CollisionStage::touching(const Substep& substep, const Pair& pair, const Pose& pose_a, const Pose& place_b,
+                              Contact& contact) {
   const Shape& a = *bodies_->collision_shape(proxies_[pair.a].body);
   const Shape& b = *bodies_->collision_shape(proxies_[pair.b].body);
   const Pose pose_b{place_b.location + image_of_b(pair), place_b.orientation};
@@ -90,6 +91,7 @@ bool CollisionStage::touching(const Pair& pair, const Pose& pose_a, const Pose& 
   NarrowCounters narrow;
   const bool touch = closest_within(a, pose_a, b, pose_b, tolerance, contact, &narrow);
   counters_.facets += narrow.facets;
+  if (narrow.facets != 0) substep.client.work(narrow.facets);
   return touch;
 }
 

@@ -35,6 +35,8 @@ class Budget {
     call_ -= used;
     return next_piece();
   }
+  /// Would `charge` say true?
+  bool affords(std::uint64_t turns) const { return turns < std::min(run_, call_) + piece_; }
   /// @param turns  that are allowed; 0: without limit
   void begin_run(std::uint64_t turns) {
     run_ = limit(turns);

@@ -100,6 +100,11 @@ void Machine::charge(std::uint64_t turns) {
   if (!budget_.charge(turns)) fail_budget();
 }
 
+void Machine::expect(std::uint64_t turns) {
+  poll();
+  if (!budget_.affords(turns)) charge(turns);
+}
+
 void Machine::fail_interrupted() {
   budget_.hold();
   throw RunError(RunErrorKind::Interrupted, "interrupted");

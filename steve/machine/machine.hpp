@@ -85,7 +85,8 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   /// The host calls, or an iteration begins: what runs from now on shares one budget, and old interrupts are forgotten.
   void begin_run();
   /// Count work of native code as so many turns. RunError{Budget} if the budget is used up, {Interrupted} by the host.
-  void charge(std::uint64_t turns);
+  void charge(std::uint64_t turns) override;
+  void expect(std::uint64_t turns) override;
   /// `poll` for the work of the runtime.
   const Poll& poller() const { return poller_; }
   /// Within long work that is charged already: RunError{Interrupted} if the host wants the end.

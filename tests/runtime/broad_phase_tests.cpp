@@ -20,6 +20,8 @@ class Client final : public CollisionClient, public DynamicsClient {
   bool reported(BodyIndex, BodyIndex) const override { return true; }
   std::uint64_t serial(BodyIndex body) const override { return body; }
   void touched(BodyIndex a, BodyIndex b, const Contact&, double) override { reports.emplace_back(a, b); }
+  void work(std::uint64_t units) override { worked += units; }
+  void expect(std::uint64_t) override {}
   bool handled(BodyIndex, BodyIndex) const override { return false; }
   bool ignored(BodyIndex, BodyIndex) const override { return false; }
   bool locates() const override { return false; }
@@ -28,6 +30,7 @@ class Client final : public CollisionClient, public DynamicsClient {
   void impact(BodyIndex, BodyIndex, const Contact&, double) override {}
   Vector3 stage_force(BodyIndex, double, std::uint64_t) override { return Vector3::Zero(); }
   Reports reports;
+  std::uint64_t worked = 0;
 };
 
 ObjectId owner_of(std::uint32_t number) { return {number, 1}; }

@@ -54,6 +54,8 @@ class FakeBehaviour : public Behaviour {
     note("input", event.object, event.key);
     if (on_input) on_input(event);
   }
+  void charge(std::uint64_t) override {}
+  void expect(std::uint64_t) override {}
   void end_of_iteration() override {
     if (recording) calls.emplace_back("end");
   }
