@@ -190,6 +190,8 @@ class NearPairs {
   void drop_far();
   void reserve_near();
   void place_near();
+  static void save_pair(ByteWriter& out, const NearPair& pair);
+  static NearPair load_pair(ByteReader& in);
   void save_standing(ByteWriter& out, const Bodies& bodies) const;
   Proxy& known(BodyIndex body, std::uint64_t serial, const Bodies& bodies);
   void load_pairs(ByteReader& in, const Bodies& bodies);

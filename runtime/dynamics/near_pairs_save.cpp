@@ -1,38 +1,54 @@
 // Near pairs in a snapshot and in the world hash. What a pair remembers is state; boxes and which pairs are near are
-// found again. A pair that is kept because boxes are roomy, but has nothing to remember, makes no difference.
+// found again. A pair that is kept because boxes are roomy, but has nothing to remember, makes no difference, unless it
+// is one of bodies at rest that may not push each other: a rule that lets them wakes them.
 #include <algorithm>
 
 #include "runtime/dynamics/near_pairs.hpp"
 
 namespace breve {
 
+void NearPairs::save_pair(ByteWriter& out, const NearPair& pair) {
+  out.put(pair.touching);
+  out.put(pair.cache.axis);
+  out.put(pair.cache.feature);
+  out.put(pair.cache.apart);
+  const contact::Spring& spring = pair.spring;
+  for (const double number :
+       {spring.stiffness, spring.in, spring.out, spring.tangential_stiffness, spring.tangential_damping, pair.stored})
+    out.put(number);
+  out.put(pair.warm_count);
+  for (int i = 0; i < pair.warm_count; ++i) {
+    const WarmPoint& point = pair.warm[static_cast<std::size_t>(i)];
+    out.put(point.feature);
+    out.put(point.slides);
+    out.put(point.force);
+    out.put(point.before);
+  }
+}
+
 void NearPairs::save(ByteWriter& out, const Bodies& bodies) const {
+  const auto remembered = [&](const PairKey& key) {
+    return key.at != PairKey::kNone && keeps(bodies, key, pairs_[key.at]);
+  };
+  // If a rule lets them push each other from now on, those that rest wake up.
+  const auto yielding = [&](const PairKey& key) {
+    if (key.at != PairKey::kNone || key.pushes || !bodies.used(key.a) || !bodies.used(key.b)) return false;
+    const Proxy &a = proxies_[proxy_of_[key.a]], &b = proxies_[proxy_of_[key.b]];
+    return holds(bodies, a) && holds(bodies, b) && (rests(bodies, a) || rests(bodies, b));
+  };
   std::uint64_t count = 0;
-  each([&](const PairKey& key, const NearPair& pair) { count += keeps(bodies, key, pair); });
+  for (const PairKey& key : keys_) count += remembered(key) || yielding(key);
   out.put(count);
-  each([&](const PairKey& key, const NearPair& pair) {
-    if (!keeps(bodies, key, pair)) return;
+  for (const PairKey& key : keys_) {
+    const bool has_pair = remembered(key);
+    if (!has_pair && !yielding(key)) continue;
     out.put(key.a);
     out.put(key.b);
     out.put(key.serial_a);
     out.put(key.serial_b);
-    out.put(pair.touching);
-    out.put(pair.cache.axis);
-    out.put(pair.cache.feature);
-    out.put(pair.cache.apart);
-    const contact::Spring& spring = pair.spring;
-    for (const double number :
-         {spring.stiffness, spring.in, spring.out, spring.tangential_stiffness, spring.tangential_damping, pair.stored})
-      out.put(number);
-    out.put(pair.warm_count);
-    for (int i = 0; i < pair.warm_count; ++i) {
-      const WarmPoint& point = pair.warm[static_cast<std::size_t>(i)];
-      out.put(point.feature);
-      out.put(point.slides);
-      out.put(point.force);
-      out.put(point.before);
-    }
-  });
+    out.put(has_pair);
+    if (has_pair) save_pair(out, pairs_[key.at]);
+  }
   count = 0;
   for (const Proxy& proxy : proxies_) count += rests(bodies, proxy);
   out.put(count);
@@ -94,39 +110,48 @@ void NearPairs::load(ByteReader& in, const Bodies& bodies) {
   incomplete_ = true;  // boxes are to be found again
 }
 
+NearPair NearPairs::load_pair(ByteReader& in) {
+  NearPair pair;
+  pair.touching = in.get_bool();
+  pair.cache.axis = in.get_vector();
+  pair.cache.feature = in.get<std::uint32_t>();
+  pair.cache.apart = in.get<std::uint32_t>();
+  contact::Spring& spring = pair.spring;
+  for (double* number : {&spring.stiffness, &spring.in, &spring.out, &spring.tangential_stiffness,
+                         &spring.tangential_damping, &pair.stored})
+    *number = in.get<double>();
+  pair.warm_count = in.get<int>();
+  if (pair.warm_count < 0 || pair.warm_count > static_cast<int>(pair.warm.size())) ByteReader::fail();
+  for (int k = 0; k < pair.warm_count; ++k) {
+    WarmPoint& point = pair.warm[static_cast<std::size_t>(k)];
+    point.feature = in.get<std::uint32_t>();
+    point.slides = in.get_bool();
+    point.force = in.get_vector();
+    point.before = in.get<double>();
+  }
+  return pair;
+}
+
 void NearPairs::load_pairs(ByteReader& in, const Bodies& bodies) {
   const std::size_t count = in.get_count(2 * sizeof(BodyIndex));
   for (std::size_t i = 0; i < count; ++i) {
     PairKey key;
-    NearPair pair;
-    pair.a = key.a = in.get<BodyIndex>();
-    pair.b = key.b = in.get<BodyIndex>();
+    key.a = in.get<BodyIndex>();
+    key.b = in.get<BodyIndex>();
     key.serial_a = in.get<std::uint64_t>();
     key.serial_b = in.get<std::uint64_t>();
-    pair.touching = in.get_bool();
-    pair.cache.axis = in.get_vector();
-    pair.cache.feature = in.get<std::uint32_t>();
-    pair.cache.apart = in.get<std::uint32_t>();
-    contact::Spring& spring = pair.spring;
-    for (double* number : {&spring.stiffness, &spring.in, &spring.out, &spring.tangential_stiffness,
-                           &spring.tangential_damping, &pair.stored})
-      *number = in.get<double>();
-    pair.warm_count = in.get<int>();
-    if (pair.warm_count < 0 || pair.warm_count > static_cast<int>(pair.warm.size())) ByteReader::fail();
-    for (int k = 0; k < pair.warm_count; ++k) {
-      WarmPoint& point = pair.warm[static_cast<std::size_t>(k)];
-      point.feature = in.get<std::uint32_t>();
-      point.slides = in.get_bool();
-      point.force = in.get_vector();
-      point.before = in.get<double>();
-    }
     if (key.a == key.b || (!keys_.empty() && !earlier(keys_.back(), key))) ByteReader::fail();
     known(key.a, key.serial_a, bodies);
     known(key.b, key.serial_b, bodies);
-    pair.law = contact::combine(bodies.material(key.a), bodies.material(key.b));
-    pair.law_known = true;  // who touches what was made of another material is awake in the image
-    key.at = static_cast<std::uint32_t>(pairs_.size());
-    pairs_.push_back(pair);
+    if (in.get_bool()) {
+      NearPair pair = load_pair(in);
+      pair.a = key.a;
+      pair.b = key.b;
+      pair.law = contact::combine(bodies.material(key.a), bodies.material(key.b));
+      pair.law_known = true;  // who touches what was made of another material is awake in the image
+      key.at = static_cast<std::uint32_t>(pairs_.size());
+      pairs_.push_back(pair);
+    }
     keys_.push_back(key);
   }
   free_pairs_.reserve(pairs_.size());
