@@ -157,12 +157,16 @@ Island::Trouble Island::measure_overlaps() {
   Trouble worst;
   if (overlaps_.empty()) return worst;
   place_links();
+  NarrowCounters narrow;
+  narrow.stop = meter_.end();
   double most = 0;
   for (const Overlap& one : overlaps_) {
     const NearPair& pair = *pairs_[one.pair];
-    const double depth = -closest(*core_.bodies->collision_shape(pair.a), pose_of(pair.a),
-                                  *core_.bodies->collision_shape(pair.b), pose_of(pair.b))
-                              .distance;
+    Contact deepest;
+    if (!closest_within(*core_.bodies->collision_shape(pair.a), pose_of(pair.a), *core_.bodies->collision_shape(pair.b),
+                        pose_of(pair.b), 0, deepest, &narrow))
+      continue;
+    const double depth = -deepest.distance;
     const double size = size_of_pair(pair);
     const Depths& limits = depths_for(accuracy_.rung);
     if (depth < limits.deep * size || depth - one.before < limits.grown * size) continue;
@@ -170,7 +174,8 @@ Island::Trouble Island::measure_overlaps() {
     most = depth;
     worst = {true, GuardReason::Penetration, depth, core_.bodies->dynamic(pair.a) ? pair.a : pair.b};
   }
-  return worst;
+  meter_.add(narrow.facets + narrow.boxes);
+  return narrow.stopped() ? Trouble() : worst;
 }
 
 }  // namespace breve

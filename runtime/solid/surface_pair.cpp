@@ -27,7 +27,8 @@ Clearance clearance_of(const SurfacePair& pair) { return {pair.convex, pair.fram
 class Narrowest final : public FacetVisitor {
  public:
   /// @param outer  out of an overlap to the outer side only
-  Narrowest(const SurfacePair& pair, bool outer) : pair_(pair), clearance_(clearance_of(pair)), outer_(outer) {
+  Narrowest(const SurfacePair& pair, bool outer, const NarrowCounters* asked)
+      : pair_(pair), clearance_(clearance_of(pair)), asked_(asked), outer_(outer) {
     gap.distance = kFar;
   }
   /// All facets whose gap is at most `reach`, and perhaps some that are farther.
@@ -35,7 +36,9 @@ class Narrowest final : public FacetVisitor {
     reach_ = reach;
     pair_.surface->under(grown(clearance_.bounds(), reach), *this);
   }
-  bool wants(const Eigen::AlignedBox3d& box) const override { return clearance_.of(box) <= farthest(); }
+  bool wants(const Eigen::AlignedBox3d& box) const override {
+    return clearance_.of(box) <= farthest() && (asked_ == nullptr || !asked_->stopped());
+  }
   void visit(const Facet& facet) override {
     if (clearance_.of_plane(facet) > farthest()) return;
     triangle_.set(facet);
@@ -55,6 +58,7 @@ class Narrowest final : public FacetVisitor {
 
   const SurfacePair& pair_;
   const Clearance clearance_;
+  const NarrowCounters* asked_;
   bool outer_;
   double reach_ = 0;
   TriangleSolid triangle_;
@@ -87,7 +91,7 @@ bool may_reach(const SurfacePair& pair, double distance) {
 /// The gap with the convex solid as a. What is farther apart than `limit` may have an infinite one.
 Gap narrowest_gap(const SurfacePair& pair, double limit, NarrowCounters* counters) {
   const bool sunk = ball_inside(pair);
-  Narrowest narrowest(pair, pair.surface->solid() && !sunk);
+  Narrowest narrowest(pair, pair.surface->solid() && !sunk, counters);
   // The search widens until something is found.
   const double least = 1e-3 * pair.convex.radius;
   double reach = std::min(least, std::max(limit, 0.0));
@@ -95,13 +99,14 @@ Gap narrowest_gap(const SurfacePair& pair, double limit, NarrowCounters* counter
   const bool inside = sunk || (narrowest.gap.distance > 0 && center_inside(pair));
   const double all = narrowest.clearance().bounds().merged(pair.surface->bounds()).diagonal().norm();
   const double farthest = inside ? all : std::min(all, limit);
-  while (narrowest.gap.distance > reach && reach < farthest) {
+  const auto stopped = [counters] { return counters != nullptr && counters->stopped(); };
+  while (narrowest.gap.distance > reach && reach < farthest && !stopped()) {
     reach = std::min(std::max(8 * reach, least), farthest);
     narrowest.search(reach);
   }
   if (counters != nullptr) counters->add(narrowest.counters);
   Gap gap = narrowest.gap;
-  if (inside) push_out(pair, narrowest.nearest, gap);
+  if (inside && !stopped()) push_out(pair, narrowest.nearest, gap);
   return gap;
 }
 
