@@ -26,6 +26,7 @@ void CollisionStage::begin(const CollisionClient& client, std::uint64_t rules, c
   if (rules_changed || bodies_->revision() != seen_bodies_) refresh(client, rules_changed);
   seen_bodies_ = bodies_->revision();
   seen_rules_ = rules;
+  enter_loaded(client);
   start_paths();
 }
 
@@ -40,10 +41,8 @@ void CollisionStage::finish(CollisionClient& client, double start, double h, con
     path.to = bodies_->state(proxy.body);
     finish_path(path);
   }
-  std::sort(loaded_touching_.begin(), loaded_touching_.end());  // for find_pairs; until here it is in the order saved
   update_boxes(client);
   drop_far_pairs();
-  loaded_touching_.clear();
   impacts_.clear();
   const Substep substep{client, start, h, gravity};
   count_first_work(client);

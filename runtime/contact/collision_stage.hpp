@@ -117,6 +117,7 @@ class CollisionStage {
   void refresh(const CollisionClient& client, bool rules_changed);
   void purge();
   void enter(const CollisionClient& client, BodyIndex body);
+  void enter_loaded(const CollisionClient& client);
   bool earlier(const Pair& x, const Pair& y) const;
   void find_near(const Eigen::AlignedBox3d& box);
   bool boxes_meet(const Pair& pair) const;
@@ -169,7 +170,7 @@ class CollisionStage {
   std::pmr::vector<Impact> impacts_;  // binary heap, earliest first
   std::pmr::vector<BodyIndex> log_;
   std::pmr::vector<ProxyIndex> found_;
-  std::pmr::vector<std::pair<BodyIndex, BodyIndex>> loaded_touching_;
+  std::pmr::vector<std::pair<BodyIndex, BodyIndex>> loaded_touching_;  // until the next begin()
   Extent space_;
   std::uint64_t seen_bodies_ = 0, seen_rules_ = 0, seen_scalings_ = 0;
   std::size_t live_ = 0;

@@ -83,6 +83,22 @@ void CollisionStage::enter(const CollisionClient& client, BodyIndex body) {
   ++live_;
 }
 
+/// The touching pairs of an image, now that their bodies are known.
+void CollisionStage::enter_loaded(const CollisionClient& client) {
+  for (const auto& [a, b] : loaded_touching_) {
+    if (a >= proxy_of_.size() || b >= proxy_of_.size()) continue;
+    const ProxyIndex x = proxy_of_[a], y = proxy_of_[b];
+    if (x == kNoProxy || y == kNoProxy || !client.reported(a, b)) continue;
+    Pair pair;
+    pair.a = proxies_[x].serial < proxies_[y].serial ? x : y;
+    pair.b = pair.a == x ? y : x;
+    pair.touching = true;
+    new_pairs_.push_back(pair);
+  }
+  merge_new_pairs();
+  loaded_touching_.clear();
+}
+
 void CollisionStage::forget(BodyIndex body) {
   std::erase_if(loaded_touching_, [body](const auto& pair) { return pair.first == body || pair.second == body; });
   if (body >= proxy_of_.size() || proxy_of_[body] == kNoProxy) return;
@@ -242,8 +258,6 @@ std::uint64_t CollisionStage::find_pairs(const CollisionClient& client, ProxyInd
     pair.a = self.serial < other.serial ? index : other_index;
     pair.b = self.serial < other.serial ? other_index : index;
     if (find_pair(pair.a, pair.b) || !client.reported(self.body, other.body)) continue;
-    pair.touching = std::binary_search(loaded_touching_.begin(), loaded_touching_.end(),
-                                       std::pair{proxies_[pair.a].body, proxies_[pair.b].body});
     new_pairs_.push_back(pair);
     meeting += boxes_meet(pair) ? 1 : 0;
   }
