@@ -200,7 +200,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   EnergyWatch watched;
   double pushed = 0;           // J, by which positions that were put right have lifted things in this step
   int refined = 0;             // the guard's doublings of the sub-steps
-  int awake = 0;               // bodies, when the sub-step was planned
+  int awake = 0;               // bodies, when the sub-step was planned or its rest began
   double step_length = 0;      // s, of the sub-step that is being taken, uncut
   std::exception_ptr failure;  // what went wrong in a callback of Box2D, which must come to its end all the same
   bool stepping = false;       // inside b2World::Step
@@ -326,6 +326,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   int sub_steps() const;
   double longest_step() const;
   int velocity_iterations() const;
+  int count_awake() const;
   int iterations_now() const;
   int position_iterations() const;
   void run(double dt);

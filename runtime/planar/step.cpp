@@ -78,10 +78,17 @@ void Planar::Core::count_work(int iterations) {
   counters.work += static_cast<std::uint64_t>(10 * (awake + rows) + rows * (iterations + position_iterations()));
 }
 
+int Planar::Core::count_awake() const {
+  return static_cast<int>(std::count_if(slots.begin(), slots.end(), [](const FlatBody& flat) {
+    return flat.body != kNoBody && !flat.fixed && flat.b2->IsAwake();
+  }));
+}
+
 /// What is left of a sub-step whose work is used up, by one step of Box2D without impacts at their moments; left out if
 /// somebody wants the end at once.
 void Planar::Core::finish(double left) {
   finishing = true;
+  awake = count_awake();
   const FlatBody* shows = liveliest();
   intervene(shows ? shows->body : kNoBody, GuardReason::Work, static_cast<double>(counters.work), now,
             GuardAction::Finished);
@@ -151,10 +158,9 @@ double Planar::Core::plan_parts(double dt) {
   // Ten times the speed at which Box2D lets a body sleep.
   constexpr float kDrowsy = 10 * b2_linearSleepTolerance, kDrowsyTurn = 10 * b2_angularSleepTolerance;
   double parts = 1;
-  awake = 0;
+  awake = count_awake();
   for (FlatBody& flat : slots) {
     if (flat.body == kNoBody || flat.fixed || !flat.b2->IsAwake()) continue;
-    ++awake;
     const double pull = flat.has_force ? flat.force.norm() / (flat.mass.mass * settings.unit) : 0;
     const double way = (flat.b2->GetLinearVelocity().Length() + (fall + pull) * dt) * dt;
     const double turn = std::abs(flat.b2->GetAngularVelocity()) * dt;
