@@ -16,6 +16,7 @@ NearPairs::NearPairs(std::pmr::memory_resource* memory)
       put_(memory),
       drivers_(memory),
       woken_(memory),
+      struck_(memory),
       moved_(memory),
       keys_(memory),
       new_keys_(memory),
@@ -163,6 +164,9 @@ void NearPairs::update_box(const Bodies& bodies, Proxy& proxy, const Vector3& gr
   const Vector3& location = bodies.location(proxy.body);
   const Quaternion orientation = bodies.orientation(proxy.body);
   const Vector3 room = room_of(bodies, proxy, shape->bounding_radius(), gravity, h);
+  const auto index = static_cast<ProxyIndex>(&proxy - proxies_.data());
+  Reach& reach = reach_[index];
+  proxy.speed = reach.speed = proxy.moves ? bodies.velocity(proxy.body).norm() : 0;
   const bool still = proxy.leaf != BoxTree::kNoLeaf && proxy.shape == shape &&
                      proxy.shape_changes == shape->changes() && proxy.location == location &&
                      proxy.orientation.coeffs() == orientation.coeffs() && proxy.room == room;
@@ -170,13 +174,10 @@ void NearPairs::update_box(const Bodies& bodies, Proxy& proxy, const Vector3& gr
   proxy.wide = false;
   proxy.room = room;
   proxy.placed = true;
-  proxy.speed = proxy.moves ? bodies.velocity(proxy.body).norm() : 0;
   proxy.shape = shape;
   proxy.shape_changes = shape->changes();
   proxy.location = location;
   proxy.orientation = orientation;
-  const auto index = static_cast<ProxyIndex>(&proxy - proxies_.data());
-  Reach& reach = reach_[index];
   reach.box = shape->bounds(orientation.toRotationMatrix());
   reach.box.translate(location);
   reach.box.min() -= room;
@@ -316,7 +317,7 @@ std::size_t NearPairs::bytes() const {
          pairs_.capacity() * sizeof(NearPair) + (keys_.capacity() + new_keys_.capacity()) * sizeof(PairKey) +
          free_pairs_.capacity() * sizeof(std::uint32_t) +
          (free_.capacity() + proxy_of_.capacity() + movers_.capacity() + put_.capacity() + drivers_.capacity() +
-          moved_.capacity()) *
+          struck_.capacity() + moved_.capacity()) *
              sizeof(BodyIndex);
 }
 

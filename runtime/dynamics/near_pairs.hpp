@@ -155,6 +155,7 @@ class NearPairs {
   /// Apart from the rest of a proxy, since each pair looks at two of them.
   struct Reach {
     Eigen::AlignedBox3d box;  // in this step
+    double speed = 0;         // m/s, that it is for
     bool moved = false;       // its roomy box, in this update
   };
   bool remembers(const PairKey& key) const { return key.at != PairKey::kNone && pairs_[key.at].remembers(); }
@@ -185,7 +186,7 @@ class NearPairs {
   bool near(const PairKey& key) const;
   void release(PairKey& key);
   bool pass_on(const Bodies& bodies, double h);
-  bool widen(Proxy& proxy, double speed, double h, double far, double more);
+  void widen(ProxyIndex index, double h);
   void merge();
   void drop_far();
   void reserve_near();
@@ -205,6 +206,7 @@ class NearPairs {
   std::pmr::vector<BodyIndex> movers_, put_;
   std::pmr::vector<BodyIndex> drivers_;  // that move without forces
   std::pmr::vector<ProxyIndex> woken_;
+  std::pmr::vector<ProxyIndex> struck_;
   std::pmr::vector<ProxyIndex> moved_;  // whose roomy boxes moved in the last update
   std::pmr::vector<PairKey> keys_, new_keys_;
   std::pmr::vector<NearPair> pairs_;  // in places that are used again
