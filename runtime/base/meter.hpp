@@ -35,6 +35,8 @@ class Meter {
   bool ended() const { return ended_ && ended_->load(std::memory_order_relaxed); }
   /// No more is to be begun than has to be.
   bool over() const { return done_ >= most_ || ended(); }
+  /// The same of what takes so much.
+  bool over(std::uint64_t units) const { return over() || units > most_ - done_; }
 
  private:
   std::uint64_t done_ = 0, most_ = kNoBound;

@@ -162,7 +162,10 @@ void Cluster::acceleration(double t, const Vector& q, const Vector& v, double st
   for (Tree* tree : trees_) {
     const int n = tree->model.velocities();
     a.segment(from, n) = articulated::forward_dynamics(tree->model, tree->data, tree->state, tree->loads, step, guess_);
-    if (forces_ && !(tree->rings.empty() && tree->held.empty())) forces_->constrain(*tree, a.data() + from);
+    if (forces_ && !(tree->rings.empty() && tree->held.empty())) {
+      const std::uint64_t units = forces_->constrain(*tree, a.data() + from);
+      if (meter_) meter_->add(units);
+    }
     torques_.segment(from, n).setZero();
     if (tree->driven) add_powers(*tree, step, v.data() + from, a.data() + from, torques_.data() + from, powers);
     if (tree->loads.reacts) {

@@ -28,8 +28,8 @@ class StageForces {
   /// adds() says so.
   virtual void add(double time) = 0;
   /// Adds what holds rings closed and joints within limits to the accelerations (nv) of a tree that has some, after its
-  /// forward dynamics.
-  virtual void constrain(Tree& tree, double* acceleration) = 0;
+  /// forward dynamics. Returns the units of work that it took.
+  virtual std::uint64_t constrain(Tree& tree, double* acceleration) = 0;
   /// Power of scripts' forces and of dampers among these, W; after add().
   virtual double script_power() const = 0;
   virtual double drag_power() const = 0;

@@ -248,7 +248,7 @@ struct Dynamics::Core : InMemory {
 
   // stage_constraints.cpp
   /// Adds to accelerations (nv), after forward dynamics, what rings force, and limits that are held.
-  void hold(Tree& tree, double* acceleration, bool rings, bool limits);
+  std::uint64_t hold(Tree& tree, double* acceleration, bool rings, bool limits);
   JointReaction push_by_rings(Tree& tree, JointIndex wanted);
 
   // ledger.cpp

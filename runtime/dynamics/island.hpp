@@ -287,6 +287,9 @@ class Island : public InMemory {
   void step_fast(double start, double h);
   void take_fast(double time, double h);
   void finish(double time, double left);
+  /// No further sub-step is to begin: the work is used up, or would be by what holds rings once.
+  bool unaffordable() const { return meter_.over(ring_units()); }
+  std::uint64_t ring_units() const;
   bool worn() const { return finished_ || meter_.over(); }  // nothing is to be tried again
   void note_start_poses();
   void step_located(DynamicsClient* client, double start, double h);

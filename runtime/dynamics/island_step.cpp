@@ -21,6 +21,13 @@ bool Island::holds_rings() const {
                      [](const Clustered& one) { return one.entry->system->can_be_finer(); });
 }
 
+std::uint64_t Island::ring_units() const {
+  std::uint64_t units = 0;
+  for (const Tree* tree : trees_)
+    if (!tree->rings.empty()) units += tree->hold_units();
+  return units;
+}
+
 /// Known before rows are made: whether there will be some beside those of rings, and of rings.
 bool Island::has_rows() const {
   const auto driven = [](const Tree* tree) {
@@ -54,7 +61,7 @@ void Island::step_quiet(double start, double h) {
   const auto parts = static_cast<int>(std::llround(h / part));
   for (int i = 0; i < parts; ++i) {
     gone_ = i * part;
-    if (meter_.over()) return finish(start + gone_, h - gone_);
+    if (unaffordable()) return finish(start + gone_, h - gone_);
     smooth(start + gone_, part);
     commit();
   }
@@ -84,7 +91,7 @@ void Island::step_fast(double start, double h) {
   const double part = h / parts;
   for (int i = 0; i < parts; ++i) {
     gone_ = i * part;
-    if (meter_.over()) return finish(start + gone_, h - gone_);
+    if (unaffordable()) return finish(start + gone_, h - gone_);
     take_fast(start + gone_, part);
   }
 }
@@ -128,9 +135,12 @@ bool Island::catch_bounds(double time, double h) {
 // --- impacts at their time ---
 
 void Island::advance_once(double time, double h) {
-  const bool alone = has_rings() && !has_rows(), in_stages = !alone || holds_rings();
+  // A step whose work is used up leaves rings that are dear to hold to the rows, which are swept.
+  constexpr std::uint64_t kDear = 20'000;
+  const bool dear = finished_ && ring_units() > kDear, alone = has_rings() && !has_rows() && !dear,
+             in_stages = (!alone || holds_rings()) && !dear;
   for (Clustered& one : clusters_) one.stage->holds_rings = in_stages;
-  if (!in_stages) {
+  if (!in_stages && !dear) {
     place();
     make_rows(Motors::Leave);
     if (hold_rings(time, h)) return;
@@ -230,7 +240,7 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
   const int most_impacts = located_impacts();
   while (now < h * (1 - kSliver)) {
     gone_ = now;
-    if (meter_.over()) return finish(start + now, h - now);
+    if (unaffordable()) return finish(start + now, h - now);
     const double sub = contact_part(h - now);
     spent_ = impacts_ >= most_impacts || stalls > kMostStalls;
     bool struck = false;

@@ -17,8 +17,9 @@ class Stage final : public StageForces {
   void aim() override;
   bool adds() const override { return pressed || pushed_ || asked_ || !cluster_.ties.empty(); }
   void add(double time) override;
-  void constrain(Tree& tree, double* acceleration) override {
-    if (holds_rings || pressed) core_.hold(tree, acceleration, holds_rings, pressed);
+  std::uint64_t constrain(Tree& tree, double* acceleration) override {
+    if (!holds_rings && !pressed) return 0;
+    return core_.hold(tree, acceleration, holds_rings, pressed);
   }
   bool holds_rings = false;  // else somebody else does
   bool pressed = false;      // contact springs act on its links

@@ -89,7 +89,8 @@ struct HeldRows {
 /// Finds the tree's row_forces. Limits push only, and where they do not, the acceleration is above what is wanted: a
 /// linear complementarity problem, by principal pivots of the first row that is wrong.
 /// Source: Murty 1974 (finite for rows that are independent; else it ends somewhere, and the next sub-step goes on).
-void solve_pushing(const HeldRows& rows, Tree& tree) {
+/// @return  how many equations were solved
+int solve_pushing(const HeldRows& rows, Tree& tree) {
   constexpr double kRoundOff = 1e-9;  // of the largest force, of the largest acceleration
   const int m = rows.count, first = rows.first_limit;
   double* force = tree.row_forces.data();
@@ -105,7 +106,8 @@ void solve_pushing(const HeldRows& rows, Tree& tree) {
     for (int k = 0; k < m; ++k) lack -= rows.responses[row * m + k] * force[k];
     return lack > most_lack;
   };
-  for (int left = 2 * (m - first) * (m - first) + 1; left > 0; --left) {
+  const int most = 2 * (m - first) * (m - first) + 1;
+  for (int solved = 1;; ++solved) {
     for (int i = 0; i < m; ++i) {
       force[i] = holds(i) ? rows.wanted[i] : 0;
       for (int k = 0; k < m; ++k) rows.part[i * m + k] = holds(i) && holds(k) ? rows.responses[i * m + k] : 0;
@@ -114,7 +116,7 @@ void solve_pushing(const HeldRows& rows, Tree& tree) {
     const double least_force = kRoundOff * largest(force), most_lack = kRoundOff * largest(rows.wanted);
     int row = first;
     while (row < m && !wrong(row, least_force, most_lack)) ++row;
-    if (row == m) return;
+    if (row == m || solved == most) return solved;
     bool& of_row = tree.held[static_cast<std::size_t>(row - first)].holds;
     of_row = !of_row;
   }
@@ -136,7 +138,23 @@ void Island::fill_ring(Tree& tree, const RingRows& ring, const RingRow& row, dou
   std::fill(j, j + n, 0.0);
 }
 
-void Dynamics::Core::hold(Tree& tree, double* acceleration, bool rings, bool limits) {
+namespace {
+
+/// Units of work of how m rows of n numbers answer each other, and of as many symmetric equations as were solved.
+std::uint64_t dense_units(std::size_t m, std::size_t n, std::size_t solved) {
+  constexpr std::size_t kOperations = 64;  // a unit
+  return m * m * (3 * n + 2 * solved * m) / (6 * kOperations);
+}
+
+}  // namespace
+
+std::uint64_t Tree::hold_units() const {
+  const std::size_t rows = static_cast<std::size_t>(kMostRingRows) * rings.size() + held.size();
+  return dense_units(rows, static_cast<std::size_t>(model.velocities()), 1);
+}
+
+/// @return  units of work that it took
+std::uint64_t Dynamics::Core::hold(Tree& tree, double* acceleration, bool rings, bool limits) {
   const int n = tree.model.velocities();
   const int most = kMostRingRows * static_cast<int>(tree.rings.size()) + static_cast<int>(tree.held.size());
   double *j = tree.row_numbers.data(), *r = j + most * n, *a = r + most * n, *part = a + most * most,
@@ -173,13 +191,14 @@ void Dynamics::Core::hold(Tree& tree, double* acceleration, bool rings, bool lim
   }
   for (int i = 0; i < m; ++i)
     for (int k = 0; k <= i; ++k) a[i * m + k] = a[k * m + i] = Numbers(j + i * n, n).dot(Numbers(r + k * n, n));
-  solve_pushing({m, first_limit, a, part, wanted, scale}, tree);
+  const int solved = solve_pushing({m, first_limit, a, part, wanted, scale}, tree);
   tree.held_force.setZero();
   for (int i = 0; i < m; ++i) {
     const double force = tree.row_forces[static_cast<std::size_t>(i)];
     Numbers(acceleration, n) += force * Numbers(r + i * n, n);
     if (i >= first_limit) tree.held_force += force * Numbers(j + i * n, n);
   }
+  return dense_units(static_cast<std::size_t>(m), static_cast<std::size_t>(n), static_cast<std::size_t>(solved));
 }
 
 /// Adds what rings push with, as hold() found it last, to the forces on links. Gives that of one joint on its

@@ -71,6 +71,9 @@ struct HeldLimit {
 struct Tree : InMemory {
   Tree(std::pmr::memory_resource* memory, const std::vector<articulated::Link>& description);
 
+  /// Units of work to hold rings and limits once, as Core::hold does.
+  std::uint64_t hold_units() const;
+
   Reservation reserved;
   articulated::Model model;
   articulated::Data data;

@@ -77,6 +77,14 @@ physics_stiff)
       one = other.
     }"
   ;;
+rings_held)
+  ends 0 "Link Joint" "self set-accuracy to \"precise\".
+    for i = 0, i < 300, i++: {
+      push (new Link) onto items. items{i} move to (i * 3, 0, 0).
+      if i > 0: (new BallJoint) link parent items{i - 1} to-child items{i} with-parent-point (1.5, 0, 0) with-child-point (-1.5, 0, 0).
+    }
+    for i = 0, i < 298, i++: (new BallJoint) link parent items{i} to-child items{i + 2} with-parent-point (3, 0, 0) with-child-point (-3, 0, 0)."
+  ;;
 bodies_asked)
   ends 3 "Mobile Shape" "one = (new Cube init-with size (1, 1, 1)).
     for i = 0, i < 3000, i++: { other = new Mobile. other set-shape to one. other enable-physics. }
