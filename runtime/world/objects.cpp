@@ -161,7 +161,6 @@ void ObjectTable::save(ByteWriter& out) const {
     out.put(slot.live);
     if (!slot.live) continue;
     out.put(slot.cls);
-    out.put(slot.user);
     out.put(slot.serial);
     out.put(slot.body);
     out.put(slot.iterates);
@@ -185,7 +184,6 @@ void ObjectTable::load_slot(ByteReader& in, Slot& slot, FindLoader find_loader, 
   slot.live = in.get_bool();
   if (!slot.live) return;
   slot.cls = in.get<ClassId>();
-  slot.user = in.get<std::uint64_t>();
   slot.serial = in.get<std::uint64_t>();
   slot.body = in.get<BodyIndex>();
   slot.iterates = in.get_bool();

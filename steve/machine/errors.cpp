@@ -121,12 +121,10 @@ void Machine::tell(Severity severity, Text&& text) {
 }
 
 void Machine::survive(const RunError& error) {
-  ++survived_errors_;
   tell(Severity::Error, [&] { return report(error, running()).text; });
 }
 
 void Machine::survive(const ScriptError& error) {
-  ++survived_errors_;
   tell(Severity::Error, [&] { return error.report().text; });
 }
 

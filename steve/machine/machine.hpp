@@ -461,7 +461,6 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   std::span<const Native> functions_;
   std::pmr::unordered_set<const Instruction*> warned_sites_;
   std::pmr::unordered_set<std::pmr::string> warned_;
-  std::uint64_t survived_errors_ = 0;
   std::uint64_t printed_ = 0;  // bytes, in this iteration or call by the host
   std::uint32_t told_ = 0;     // reports, likewise
   bool in_stage_ = false;      // a force method runs

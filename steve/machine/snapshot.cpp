@@ -292,7 +292,6 @@ void Machine::save(ByteWriter& out) const {
   out.put(session_ ? numbering.number(session_) : kNull);
   heap_->save_state(out, [&](const Cell* cell) { return numbering.number(cell); });
   out.put(controller_ ? numbering.number(controller_) : kNull);
-  out.put(survived_errors_);
 }
 
 void Machine::load(ByteReader& in) {
@@ -305,7 +304,6 @@ void Machine::load(ByteReader& in) {
   heap->retain(session);
   heap->load_state(in, [&reader](std::uint64_t number) { return reader.cell(number); });
   auto* controller = static_cast<Instance*>(reader.reference(Tag::Object));
-  const auto survived = in.get<std::uint64_t>();
   if (in.left() != 0) ByteReader::fail();
   check_loaded(session, controller);
   name_objects(reader.instances());
@@ -314,7 +312,6 @@ void Machine::load(ByteReader& in) {
   strings_ = std::move(constants);
   controller_ = controller;
   session_ = session;
-  survived_errors_ = survived;
 }
 
 void Machine::check_loaded(const HashCell* session, const Instance* controller) const {
@@ -327,7 +324,6 @@ void Machine::check_loaded(const HashCell* session, const Instance* controller) 
 
 /// Every object of the world is one of these, and each of these that was not freed is an object of the world.
 void Machine::name_objects(std::span<Instance* const> instances) {
-  for (const ObjectId id : world_.objects()) world_.set_user(id, 0);
   std::size_t live = 0;
   for (Instance* instance : instances) {
     if (!instance->live()) continue;
