@@ -89,6 +89,7 @@ int Planar::Core::count_awake() const {
 void Planar::Core::finish(double left) {
   finishing = true;
   awake = count_awake();
+  step_length = left;
   const FlatBody* shows = liveliest();
   intervene(shows ? shows->body : kNoBody, GuardReason::Work, static_cast<double>(counters.work), now,
             GuardAction::Finished);
@@ -109,6 +110,8 @@ void Planar::Core::advance(DynamicsClient& asked, double start, double h, double
   now = start;
   sync();
   if (!b2) return;
+  b2->SetAllowSleeping(settings.sleeping);
+  b2->SetGravity(to_b2(settings.gravity));
   place_drivers(h);
   expect_pairs(bound);
   // Springs that scripts tied, changed or stretched meanwhile.
@@ -151,10 +154,7 @@ void Planar::Core::advance(DynamicsClient& asked, double start, double h, double
 
 double Planar::Core::plan_parts(double dt) {
   constexpr double kTravel = 0.9 * b2_maxTranslation, kTurn = 0.9 * b2_maxRotation, kMost = 1024;
-  b2->SetAllowSleeping(settings.sleeping);
-  const b2Vec2 gravity = to_b2(settings.gravity);
-  b2->SetGravity(gravity);
-  const double fall = gravity.Length();
+  const double fall = b2->GetGravity().Length();
   // Ten times the speed at which Box2D lets a body sleep.
   constexpr float kDrowsy = 10 * b2_linearSleepTolerance, kDrowsyTurn = 10 * b2_angularSleepTolerance;
   double parts = 1;

@@ -22,7 +22,7 @@ class ObjectTable {
   struct Slot {
     std::uint32_t generation = 0;  // of the instance that lives here, or lived here last
     ClassId cls = kNoClass;
-    std::uint64_t user = 0;  // the script side's own, an address perhaps: in no image
+    std::uint64_t user = 0;    // the script side's own, an address perhaps: in no image
     std::uint64_t serial = 0;  // 1, 2, ... in order of creation
     BodyIndex body = kNoBody;
     std::uint32_t events = 0;  // scheduled calls that wait for it
