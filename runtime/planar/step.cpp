@@ -110,6 +110,7 @@ void Planar::Core::advance(DynamicsClient& asked, double start, double h, double
   now = start;
   sync();
   if (!b2) return;
+  for (auto& one : met) one.second = false;  // an error may have ended the step before
   b2->SetAllowSleeping(settings.sleeping);
   b2->SetGravity(to_b2(settings.gravity));
   place_drivers(h);
