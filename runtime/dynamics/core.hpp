@@ -241,6 +241,8 @@ struct Dynamics::Core : InMemory {
 
   // forget.cpp
   void forget(BodyIndex body);
+
+  // dynamics.cpp
   std::size_t bytes() const;
 
   // rings.cpp

@@ -223,6 +223,17 @@ Dynamics::Census Dynamics::census() const {
   return census;
 }
 
+std::size_t Dynamics::Core::bytes() const {
+  std::size_t sum = sizeof(Core) + joints.capacity() * sizeof(JointEntry) + springs.capacity() * sizeof(SpringEntry) +
+                    entries.capacity() * sizeof(BodyEntry) + entry_of.capacity() * sizeof(std::uint32_t) +
+                    booked.capacity() * sizeof(double) + near.bytes();
+  for (const auto& tree : trees)
+    if (tree)
+      sum += sizeof(Tree) + tree->reserved.bytes() + tree->links.capacity() * sizeof(TreeLink) +
+             tree->data.work.capacity() * sizeof(articulated::Work);
+  return sum;
+}
+
 std::size_t Dynamics::bytes() const { return core_ ? core_->bytes() : 0; }
 
 // --- the world's side -----------------------------------------------------------------------------------------------

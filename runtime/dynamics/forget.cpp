@@ -1,4 +1,4 @@
-// What becomes of a body's joints, springs and entries when it goes, and what all takes of memory.
+// What becomes of a body's joints, springs and entries when it goes.
 #include <algorithm>
 
 #include "runtime/dynamics/island.hpp"
@@ -34,17 +34,6 @@ void Dynamics::Core::forget(BodyIndex body) {
   entry_of[body] = kNone;
   entries[index] = BodyEntry(memory);
   free_entries.push_back(index);
-}
-
-std::size_t Dynamics::Core::bytes() const {
-  std::size_t sum = sizeof(Core) + joints.capacity() * sizeof(JointEntry) + springs.capacity() * sizeof(SpringEntry) +
-                    entries.capacity() * sizeof(BodyEntry) + entry_of.capacity() * sizeof(std::uint32_t) +
-                    booked.capacity() * sizeof(double) + near.bytes();
-  for (const auto& tree : trees)
-    if (tree)
-      sum += sizeof(Tree) + tree->reserved.bytes() + tree->links.capacity() * sizeof(TreeLink) +
-             tree->data.work.capacity() * sizeof(articulated::Work);
-  return sum;
 }
 
 }  // namespace breve

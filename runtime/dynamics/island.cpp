@@ -168,6 +168,27 @@ void Island::append_bodies(std::pmr::vector<BodyIndex>& out) const {
     for (const TreeLink& link : tree->links) out.push_back(link.body);
 }
 
+void Island::step(DynamicsClient* client, double start, double h) {
+  ++result.counters.islands;
+  finished_ = false;
+  const Accuracy asked = accuracy_;
+  const std::uint64_t structure = core_.structure();
+  for (std::size_t i = free_.size() - drivers_; i < free_.size(); ++i) put_driver(free_[i], h);
+  keep_start();
+  try {
+    step_guarded(client, start, h);
+  } catch (...) {
+    // What a failed step got to is no state that anyone could go on from.
+    if (core_.structure() == structure) {
+      use_accuracy(asked);
+      back_to_start();
+      place_links();
+      if (calls_out()) write();  // a handler has seen more of the step
+    }
+    throw;
+  }
+}
+
 void Island::step_once(DynamicsClient* client, double start, double h) {
   begin(client, h);
   bool bounded = false;

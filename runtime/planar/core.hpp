@@ -430,6 +430,7 @@ inline double angle_of(const Quaternion& q) { return 2 * std::atan2(q.z(), q.w()
 inline Quaternion turned(double angle) { return {std::cos(angle / 2), 0, 0, std::sin(angle / 2)}; }
 /// v turned left by a right angle.
 inline Vector2 left_of(const Vector2& v) { return {-v.y(), v.x()}; }
+inline Vector2 vector_of(const b2Vec2& v) { return {v.x, v.y}; }
 /// Which way a revolute joint counts: +1 if its normal is +z.
 inline double sense(const JointDescription& is) { return is.normal.z() < 0 ? -1 : 1; }
 /// Index of a fixture among those of its body; its shape decides the order.

@@ -13,8 +13,6 @@ namespace {
 
 using Vector = Response::Vector;
 
-Vector2 vector_of(const b2Vec2& v) { return {v.x, v.y}; }
-
 /// One point at which two bodies meet. The normal goes from a to b; impulses are those on b.
 struct Point {
   Vector2 where, arm_a, arm_b, before, impulse = Vector2::Zero();

@@ -6,11 +6,7 @@
 
 namespace breve {
 
-namespace {
-
-Vector2 vector_of(const b2Vec2& v) { return {v.x, v.y}; }
-
-}  // namespace
+namespace {}  // namespace
 
 Response::Response(const Planar::Core& core, FlatBody* a, FlatBody* b) : core_(core), bodies_(core.memory) {
   if (a) gather(*a);

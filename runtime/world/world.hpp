@@ -195,7 +195,7 @@ class World : public InMemory {
   void run_scheduled();
   void run_substeps(double h, std::uint64_t count);
   void count_bytes();
-  // snapshot.cpp
+  // image.cpp
   void write_image(ByteWriter& out) const;
   void read_image(ByteReader& in, World& fresh) const;
   void swap_state(World& other);

@@ -1,66 +1,28 @@
-// Names of what can be chosen or told: rungs, guard modes, reasons, kinds of joints; and rungs in words.
+// The rungs of accuracy: their settings, what settings must be, and what they mean in words.
+#include "runtime/mechanics/accuracy.hpp"
+
 #include <fmt/format.h>
 
 #include <array>
 #include <cmath>
 
 #include "runtime/base/error.hpp"
-#include "runtime/mechanics/account.hpp"
-#include "runtime/mechanics/accuracy.hpp"
-#include "runtime/mechanics/joint.hpp"
 
 namespace breve {
 
 namespace {
 
-using Words = std::string_view;
-
-// KEEP IN STEP: the enumerations.
-constexpr std::array<Words, 5> kKinds{"revolute", "prismatic", "fixed", "universal", "ball"};
-constexpr std::array<Words, 5> kRungs{"fast", "balanced", "precise", "reference", "conserving"};
-constexpr std::array<Words, 4> kModes{"off", "report", "refine", "rest"};
-constexpr std::array<Words, 4> kActions{"reported", "refined", "put to rest", "finished coarsely"};
-constexpr std::array<Words, 8> kReasons{"a number is not finite",
-                                        "energy appears that no account explains",
-                                        "an overlap grows",
-                                        "a body turns too far in one sub-step",
-                                        "a damper is too strong for the sub-step",
-                                        "more impacts in one sub-step than are located",
-                                        "an equation of the step has no solution that is found",
-                                        "the work that a step may take is used up"};
-constexpr std::array<Words, 9> kSchemes{
+// KEEP IN STEP: articulated::Scheme.
+constexpr std::array<std::string_view, 9> kSchemes{
     "explicit Euler",          "semi-implicit Euler",     "implicit Euler",
     "velocity Verlet",         "implicit midpoint",       "Runge-Kutta 4",
     "Fehlberg 4, fixed steps", "Fehlberg 5, fixed steps", "Fehlberg with step control"};
 
-template <class Enum, std::size_t N>
-Enum named(const std::array<Words, N>& names, Words name, Words what) {
-  std::string list;
-  for (std::size_t i = 0; i < N; ++i) {
-    if (names[i] == name) return static_cast<Enum>(i);
-    list += fmt::format("{}\"{}\"", i == 0 ? "" : i + 1 == N ? " or " : ", ", names[i]);
-  }
-  throw Error(ErrorCode::Argument, fmt::format("there is no {} \"{}\": it is {}", what, name, list));
-}
-
-template <class Enum, std::size_t N>
-Words word(const std::array<Words, N>& names, Enum value) {
-  return names[static_cast<std::size_t>(value)];
-}
-
-void need(bool holds, Words setting, double value, Words rule) {
+void need(bool holds, std::string_view setting, double value, std::string_view rule) {
   if (!holds) throw Error(ErrorCode::Argument, fmt::format("accuracy: {} is {} (must be {})", setting, value, rule));
 }
 
 }  // namespace
-
-Words name_of(JointKind kind) { return word(kKinds, kind); }
-Words name_of(Rung rung) { return word(kRungs, rung); }
-Words name_of(GuardMode mode) { return word(kModes, mode); }
-Words name_of(GuardAction action) { return word(kActions, action); }
-Words words_for(GuardReason reason) { return word(kReasons, reason); }
-Rung rung_named(Words name) { return named<Rung>(kRungs, name, "accuracy"); }
-GuardMode guard_named(Words name) { return named<GuardMode>(kModes, name, "guard mode"); }
 
 Accuracy accuracy_of(Rung rung) {
   using articulated::Scheme;
@@ -107,12 +69,12 @@ void check(const Accuracy& a) {
   need(a.contact_damping >= 0 && a.contact_damping <= 0.9, "contact damping", a.contact_damping, "0 to 0.9");
   need(static_cast<std::size_t>(a.scheme) < kSchemes.size(), "integrator", static_cast<double>(a.scheme),
        "one that there is");
-  need(static_cast<std::size_t>(a.rung) < kRungs.size(), "rung", static_cast<double>(a.rung), "one that there is");
+  need(a.rung <= Rung::Conserving, "rung", static_cast<double>(a.rung), "one that there is");
 }
 
 std::string describe(const Accuracy& a) {
   std::string text = fmt::format("{}{}: smooth motion by {}", name_of(a.rung), a.custom ? ", with own settings" : "",
-                                 word(kSchemes, a.scheme));
+                                 kSchemes[static_cast<std::size_t>(a.scheme)]);
   if (a.scheme == articulated::Scheme::RungeKutta4) text += ", hard steps by Fehlberg with step control";
   if (a.scheme == articulated::Scheme::FehlbergAdaptive || a.scheme == articulated::Scheme::RungeKutta4)
     text += fmt::format(" at tolerance {}", a.tolerance);
