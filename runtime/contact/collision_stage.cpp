@@ -41,11 +41,11 @@ void CollisionStage::finish(CollisionClient& client, double start, double h, con
     path.to = bodies_->state(proxy.body);
     finish_path(path);
   }
-  update_boxes(client);
-  drop_far_pairs();
   impacts_.clear();
   const Substep substep{client, start, h, gravity};
+  update_boxes(client);
   count_first_work(client);
+  drop_far_pairs();
   seek_first_impacts(substep, at_impact);
   run_impacts(substep);
   report_lasting(substep);
@@ -69,7 +69,7 @@ bool CollisionStage::later(const Impact& x, const Impact& y) const {
   return xa != ya ? xa > ya : proxies_[x.b].serial > proxies_[y.b].serial;
 }
 
-/// Before any pair is asked: where there is too much of it, the sub-step leaves the pairs as they were.
+/// Before any pair is asked or dropped: where there is too much of it, the sub-step leaves all touches as they were.
 void CollisionStage::count_first_work(CollisionClient& client) {
   std::uint64_t meeting = 0;
   for (Pair& pair : pairs_) {
