@@ -47,6 +47,7 @@ struct RuntimeState {
 
   const breve_runtime_config config;
   HostAllocator allocator;
+  breve::Workers workers;    // of its worlds
   std::uint32_t worlds = 0;  // that were made, or begun
 };
 

@@ -204,6 +204,7 @@ breve_status breve_world_create(breve_runtime* runtime, const breve_program* pro
     handle->config.arguments = nullptr;  // copied; the host's arrays may go
     handle->config.settings = nullptr;
     handle->world = breve::make_in<breve::World>(&handle->meter, &handle->meter, c.seed);
+    handle->world->share_workers(&handle->runtime->workers);
     handle->world->random().set_coarse(c.coarse_random);
     breve::steve::register_resource_kinds(*handle->world);
     handle->machine = breve::make_in<breve::steve::Machine>(&handle->meter, handle->program, *handle->world,

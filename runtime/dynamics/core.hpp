@@ -12,8 +12,8 @@
 #include "runtime/dynamics/grouped.hpp"
 #include "runtime/dynamics/near_pairs.hpp"
 #include "runtime/dynamics/rings.hpp"
+#include "runtime/dynamics/shared_memory.hpp"
 #include "runtime/dynamics/tree.hpp"
-#include "runtime/dynamics/workers.hpp"
 
 namespace breve {
 
@@ -135,9 +135,8 @@ struct Dynamics::Core : InMemory {
   std::uint64_t rules = 0;  // grows when the answer may change whether two bodies push each other
 
   NearPairs near;
-  std::pmr::vector<BodyPlace> place_of;  // by body, since islands were found
-  SharedMemory shared;                   // of islands, which workers step
-  Workers workers;
+  std::pmr::vector<BodyPlace> place_of;               // by body, since islands were found
+  SharedMemory shared;                                // of islands, which workers step
   std::pmr::vector<std::unique_ptr<Island>> islands;  // places to work on one
   std::pmr::vector<std::unique_ptr<Island>> calling;  // those of the step that need a client
   std::uint32_t island_count = 0;
@@ -230,7 +229,7 @@ struct Dynamics::Core : InMemory {
   bool locates() const;  // impacts, somewhere
   void find_islands();
   Island& fill(std::size_t place, std::size_t number);
-  void step_quiet(std::size_t count, double start, double h);
+  void step_quiet(Workers* workers, std::size_t count, double start, double h);
   void run(DynamicsClient& client, double start, double h, int depth);
   void run_only(DynamicsClient& client, double start, double h, int depth, std::span<const BodyIndex> bodies);
   void report_lasting(DynamicsClient& client, double moment);

@@ -164,10 +164,10 @@ void Dynamics::Core::run(DynamicsClient& client, double start, double h, int dep
       continue;
     }
     if (++lot < most) continue;
-    step_quiet(lot, start, h);
+    step_quiet(client.workers(), lot, start, h);
     lot = 0;
   }
-  step_quiet(lot, start, h);
+  step_quiet(client.workers(), lot, start, h);
   constexpr int kDeepest = 64;  // handlers that make or free bodies, in one step
   for (std::size_t i = 0; i < callers; ++i) {
     std::pmr::vector<BodyIndex> mine(memory), others(memory);
@@ -191,7 +191,7 @@ void Dynamics::Core::run(DynamicsClient& client, double start, double h, int dep
 
 /// The first `count` islands, which call nobody, by the workers. What all see is written when all are done, in their
 /// order: so that nothing depends on which came first, an error neither.
-void Dynamics::Core::step_quiet(std::size_t count, double start, double h) {
+void Dynamics::Core::step_quiet(Workers* workers, std::size_t count, double start, double h) {
   const auto step = [&](std::size_t i) {
     try {
       islands[i]->step(nullptr, start, h);
@@ -199,7 +199,11 @@ void Dynamics::Core::step_quiet(std::size_t count, double start, double h) {
       islands[i]->error = std::current_exception();
     }
   };
-  workers.run(settings.workers, count, std::ref(step));
+  if (workers && settings.workers > 1) {
+    workers->run(settings.workers, count, std::ref(step));
+  } else {
+    for (std::size_t i = 0; i < count; ++i) step(i);
+  }
   const std::span all = std::span(islands).first(count);
   std::exception_ptr first;
   for (const auto& island : all) {

@@ -16,6 +16,7 @@
 #include "runtime/base/hasher.hpp"
 #include "runtime/base/memory.hpp"
 #include "runtime/base/meter.hpp"
+#include "runtime/base/workers.hpp"
 #include "runtime/kinematics/bodies.hpp"
 #include "runtime/mechanics/account.hpp"
 #include "runtime/mechanics/accuracy.hpp"
@@ -47,6 +48,8 @@ class DynamicsClient {
   /// The force of a body that has a force method, N, world axes, at the stage that stands in the arrays now.
   /// @param draw  the number of the sub-step, from which numbers drawn at random are to follow
   virtual Vector3 stage_force(BodyIndex body, double time, std::uint64_t draw) = 0;
+  /// The threads that may share the work; null: the caller's own thread does it all.
+  virtual Workers* workers() const { return nullptr; }
 };
 
 class Mechanics : public InMemory {

@@ -72,6 +72,7 @@ struct World::Parts final : CollisionClient, DynamicsClient, InMemory {
     touched(a, b, contact, moment);
   }
   Vector3 stage_force(BodyIndex body, double time, std::uint64_t draw) override;
+  Workers* workers() const override { return world->workers_; }
 
   World* world;
   ObjectTable objects;

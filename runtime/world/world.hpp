@@ -37,6 +37,9 @@ class World : public InMemory {
   /// Tell `observer` of the stages of the step from now on; null: nobody. Not owned. Not from inside a step.
   void set_stage_observer(StageObserver* observer) { observer_ = observer; }
 
+  /// The threads that physics may use, up to as many as Mechanics::set_workers says. Not owned; outlives stepping.
+  void share_workers(Workers* workers) { workers_ = workers; }
+
   // --- objects ---------------------------------------------------------------------------------------------------
   /// A new live instance. It joins the iteration lists at the start of the next step, in order of creation.
   /// @param user  what the script side wants back from `user(id)`
@@ -209,6 +212,7 @@ class World : public InMemory {
   ViewState view_;
   Clock clock_;
   WorkBound physics_bound_;
+  Workers* workers_ = nullptr;
   bool stepping_ = false;
   bool advancing_ = false;
 };

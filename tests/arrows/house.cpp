@@ -75,7 +75,7 @@ const std::map<std::string_view, std::vector<std::string_view>> kLibraries = {
     {"BulletCollision/", {"runtime/solid", "runtime/space", "runtime/contact"}},
     {"LinearMath/", {"runtime/solid", "runtime/space", "runtime/contact"}},
     {"assimp/", {"runtime/store"}},
-    {"tbb/", {"runtime/dynamics"}},
+    {"tbb/", {"runtime/base"}},
     {"box2d/", {"runtime/planar"}},
     {"pugixml", {"steve/library"}},
     {"lua", {"hostapi/lua"}},

@@ -168,8 +168,45 @@ static void two_worlds_of_one_program_run_on_two_threads(void) {
   breve_runtime_destroy(runtime);
 }
 
+/* Many islands, and some that meet. */
+static const char* const heaps_text =
+    "@use PhysicalControl.\n@use Mobile.\n@use Stationary.\n@use Shape.\nController Heaps.\n"
+    "PhysicalControl : Heaps { + variables: block, piece (object). i (int).\n"
+    "  + to init:\n    new Floor.\n    block = (new Cube init-with size (1, 1, 1)).\n"
+    "    for i = 0, i < 60, i++: {\n      piece = new Mobile. piece set-shape to block. piece enable-physics.\n"
+    "      piece move to (3 * (i % 20), 1 + 1.2 * (i / 20), random[0.5]).\n    }\n"
+    "  + to fail:\n    die \"on purpose\".\n}\n";
+
+static breve_world* make_heaps(breve_runtime* runtime, const breve_program* program, uint32_t workers) {
+  breve_world* world = NULL;
+  if (!CHECK_STATUS(BREVE_OK, make_world(runtime, program, 3, &world))) return NULL;
+  CHECK_STATUS(BREVE_OK, breve_world_set_workers(world, workers));
+  return world;
+}
+
+/* The worlds of a runtime have their workers in common: different numbers of them, asked for at once. */
+static void worlds_share_the_workers_of_their_runtime(void) {
+  breve_runtime* runtime = NULL;
+  breve_program* program = NULL;
+  if (!CHECK_STATUS(BREVE_OK, breve_runtime_create(NULL, &runtime))) return;
+  CHECK_STATUS(BREVE_OK, breve_program_compile(runtime, "heaps.tz", heaps_text, strlen(heaps_text), &program));
+  task alone = {.runtime = runtime, .program = program, .world = make_heaps(runtime, program, 1)};
+  run_task(&alone);
+  CHECK_STATUS(BREVE_OK, alone.status);
+  task tasks[kThreads] = {{.runtime = runtime, .program = program}, {.runtime = runtime, .program = program}};
+  for (uint32_t i = 0; i < kThreads; ++i) tasks[i].world = make_heaps(runtime, program, 2 + i);
+  run_at_once(tasks);
+  for (int i = 0; i < kThreads; ++i) {
+    CHECK_STATUS(BREVE_OK, tasks[i].status);
+    CHECK(tasks[i].hash == alone.hash);
+  }
+  breve_program_destroy(program);
+  breve_runtime_destroy(runtime);
+}
+
 void threads_suite(void);
 void threads_suite(void) {
   RUN(two_runtimes_share_nothing);
   RUN(two_worlds_of_one_program_run_on_two_threads);
+  RUN(worlds_share_the_workers_of_their_runtime);
 }

@@ -73,11 +73,13 @@ class FakeBehaviour : public Behaviour {
 struct Scene {
   MemoryMeter memory;
   FakeBehaviour script;
+  Workers workers;
   World world;
   ObjectId controller;
 
   explicit Scene(std::uint64_t seed = 1) : world(&memory, seed) {
     world.set_behaviour(&script);
+    world.share_workers(&workers);
     controller = world.create(0, 0, true, false);
     script.on_iterate = [this](ObjectId id) {
       if (id == controller) world.advance_bodies();

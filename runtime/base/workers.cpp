@@ -1,5 +1,5 @@
 // Tasks on oneTBB's threads.
-#include "runtime/dynamics/workers.hpp"
+#include "runtime/base/workers.hpp"
 
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
@@ -7,16 +7,22 @@
 
 #include <algorithm>
 #include <atomic>
+#include <map>
+#include <mutex>
 
 namespace breve {
 
-struct Workers::Arena {
-  explicit Arena(int count) : threads(count), arena(count) {}
-  int threads;
-  tbb::task_arena arena;
+/// One arena for each number of threads that was asked for.
+struct Workers::Arenas {
+  tbb::task_arena& of(int threads) {
+    const std::lock_guard lock(mutex);
+    return all.try_emplace(threads, threads).first->second;
+  }
+  std::mutex mutex;
+  std::map<int, tbb::task_arena> all;
 };
 
-Workers::Workers() = default;
+Workers::Workers() : arenas_(std::make_unique<Arenas>()) {}
 Workers::~Workers() = default;
 
 void Workers::run(int threads, std::size_t count, const std::function<void(std::size_t)>& task) {
@@ -26,7 +32,6 @@ void Workers::run(int threads, std::size_t count, const std::function<void(std::
   if (threads <= 1 || count <= 1) return do_all();
   threads = std::min(threads, tbb::info::default_concurrency());  // it would warn on stderr, and have no more
   if (threads <= 1) return do_all();
-  if (!arena_ || arena_->threads != threads) arena_ = std::make_unique<Arena>(threads);
   // oneTBB orders what happens before and after a task by itself, but in a library that ThreadSanitizer does not see
   // into: these two say the same in code that it does.
   std::atomic<bool> begun{false};
@@ -37,7 +42,7 @@ void Workers::run(int threads, std::size_t count, const std::function<void(std::
     task(i);
     done.fetch_add(1, std::memory_order_release);
   };
-  arena_->arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, one); });
+  arenas_->of(threads).execute([&] { tbb::parallel_for(std::size_t{0}, count, one); });
   (void)done.load(std::memory_order_acquire);
 }
 
