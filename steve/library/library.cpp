@@ -26,24 +26,12 @@ constexpr std::string_view kLaterClasses[] = {"BraitenbergControl",
                                               "BraitenbergVehicles",
                                               "BraitenbergWheel",
                                               "BraitenbergWheels",
-                                              "FFNetwork",
-                                              "GADirectedGraph",
-                                              "GADirectedGraphConnection",
-                                              "GADirectedGraphConnections",
-                                              "GADirectedGraphNode",
-                                              "GADirectedGraphNodes",
-                                              "GADirectedGraphParameterObject",
-                                              "GADirectedGraphParameterObjects",
-                                              "GAIndividualTransporter",
-                                              "GeneticAlgorithm",
-                                              "GeneticAlgorithmIndividual",
                                               "Graph",
                                               "IRSensor",
                                               "IRSensors",
                                               "Movie",
                                               "NetworkServer",
                                               "NetworkServers",
-                                              "NeuralNetwork",
                                               "PushClusterGP",
                                               "PushDiversityPool",
                                               "PushGP",
@@ -62,7 +50,7 @@ constexpr std::string_view kLaterClasses[] = {"BraitenbergControl",
                                               "Tones",
                                               "URL"};
 
-constexpr std::string_view kLaterFiles[] = {"Braitenberg", "DirectedGraph", "Push", "QGAME", "SFFNetwork"};
+constexpr std::string_view kLaterFiles[] = {"Braitenberg", "Push", "QGAME"};
 
 struct ResourceKind {
   std::string_view name;
