@@ -105,9 +105,11 @@ StringCell* read_line(Machine& machine, Instance&, PointerCell* pointer) {
 
 StringCell* read_whole(Machine& machine, Instance&, PointerCell* pointer) {
   FilePointer& file = file_of(pointer);
+  constexpr std::size_t kBytesPerPoll = 65536;
   std::string text;
   for (int c = file.next(); c != -1; c = file.next()) {
     need_room(text.size());
+    if (text.size() % kBytesPerPoll == 0) machine.poll();
     text += static_cast<char>(c);
   }
   return machine.heap().string(text);
