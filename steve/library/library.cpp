@@ -9,6 +9,7 @@
 #include "runtime/world/menu.hpp"
 #include "steve/library/grids.hpp"
 #include "steve/library/joints.hpp"
+#include "steve/library/push_resources.hpp"
 #include "steve/library/resources.hpp"
 
 namespace breve::steve {
@@ -32,16 +33,6 @@ constexpr std::string_view kLaterClasses[] = {"BraitenbergControl",
                                               "Movie",
                                               "NetworkServer",
                                               "NetworkServers",
-                                              "PushClusterGP",
-                                              "PushDiversityPool",
-                                              "PushGP",
-                                              "PushGPIndividual",
-                                              "PushGPIndividuals",
-                                              "PushInterpreter",
-                                              "PushInterpreters",
-                                              "PushProgram",
-                                              "PushProgramTransporter",
-                                              "PushPrograms",
                                               "QProgram",
                                               "QSystem",
                                               "Sound",
@@ -50,19 +41,27 @@ constexpr std::string_view kLaterClasses[] = {"BraitenbergControl",
                                               "Tones",
                                               "URL"};
 
-constexpr std::string_view kLaterFiles[] = {"Braitenberg", "Push", "QGAME"};
+constexpr std::string_view kLaterFiles[] = {"Braitenberg", "QGAME"};
 
 struct ResourceKind {
   std::string_view name;
   ResourceLoader loader;
 };
 constexpr ResourceKind kResourceKinds[] = {
-    {CameraResource::kKind, &CameraResource::load},     {MenuItemResource::kKind, &MenuItemResource::load},
-    {DrawingResource::kKind, &DrawingResource::load},   {LineResource::kKind, &LineResource::load},
-    {ShapeResource::kKind, &ShapeResource::load},       {ImageResource::kKind, &ImageResource::load},
-    {FieldResource::kKind, &FieldResource::load},       {JointResource::kKind, &JointResource::load},
-    {SpringResource::kKind, &SpringResource::load},     {GridResource::kKind, &GridResource::load},
+    {CameraResource::kKind, &CameraResource::load},
+    {MenuItemResource::kKind, &MenuItemResource::load},
+    {DrawingResource::kKind, &DrawingResource::load},
+    {LineResource::kKind, &LineResource::load},
+    {ShapeResource::kKind, &ShapeResource::load},
+    {ImageResource::kKind, &ImageResource::load},
+    {FieldResource::kKind, &FieldResource::load},
+    {JointResource::kKind, &JointResource::load},
+    {SpringResource::kKind, &SpringResource::load},
+    {GridResource::kKind, &GridResource::load},
     {ReactionResource::kKind, &ReactionResource::load},
+    {PushInterpreterResource::kKind, &PushInterpreterResource::load},
+    {PushProgramResource::kKind, &PushProgramResource::load},
+    {PushPoolResource::kKind, &PushPoolResource::load},
 };
 
 /// Is `word` one of the space-separated words of `list`?

@@ -34,5 +34,7 @@ std::span<const Native> grid_natives();
 std::span<const Native> cell_natives();
 std::span<const Native> agent_natives();
 std::span<const Native> reaction_natives();
+std::span<const Native> push_natives();
+std::span<const Native> push_program_natives();
 
 }  // namespace breve::steve

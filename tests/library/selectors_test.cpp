@@ -141,7 +141,7 @@ TEST(Selectors, TheTableOfFilesNamesEveryClassInThem) {
 
 TEST(Selectors, NoClassIsBothHereAndPartOfALaterVersion) {
   for (std::string_view name : later_classes()) EXPECT_EQ(find_library_file(name), nullptr) << name;
-  EXPECT_TRUE(is_later_class("PushPrograms"));
+  EXPECT_TRUE(is_later_class("QProgram"));
   EXPECT_FALSE(is_later_class("Mobile"));
 }
 
