@@ -126,10 +126,9 @@ void program_make_random(Machine& machine, Instance& self, Instance* interpreter
 }
 
 void program_mutate(Machine& machine, Instance& self, Instance* interpreter, double leaf_bias, double size_scale,
-                    std::int32_t most) {
+                    std::int32_t) {
   push::Interpreter& from = interpreter_of(machine, interpreter, "mutate: the interpreter");
-  const push::Mutation how{finite(leaf_bias, "mutate: the leaf bias"), finite(size_scale, "mutate: the size scale"),
-                           static_cast<std::uint32_t>(std::max(most, 0))};
+  const push::Mutation how{finite(leaf_bias, "mutate: the leaf bias"), finite(size_scale, "mutate: the size scale")};
   push::Code& code = own_code(machine, self);
   code = push::mutated(code, how, from, random_of(machine));
 }

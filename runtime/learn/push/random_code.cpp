@@ -127,8 +127,7 @@ Code mutated(const Code& code, const Mutation& how, Interpreter& from, Random& r
   const std::uint32_t point = random_point(code, how.leaf_bias, random);
   const double old_size = code.nodes()[point].points;
   const double drawn = std::round(old_size * (1 + how.size_scale * random.gauss()));
-  auto size = static_cast<std::uint32_t>(std::clamp(drawn, 1.0, static_cast<double>(from.settings.list_limit)));
-  if (how.most > 0) size = std::min(size, how.most);
+  const auto size = static_cast<std::uint32_t>(std::clamp(drawn, 1.0, static_cast<double>(from.settings.list_limit)));
   const Code made = CodeSource(from, random).of_size(size);
   const std::uint64_t points = code.points() - std::uint64_t{code.nodes()[point].points} + size;
   return from.fits(points) ? replace(code, point, made, from.memory()) : code;

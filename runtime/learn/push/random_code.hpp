@@ -45,7 +45,6 @@ std::optional<std::uint32_t> random_inner_list(const Code& code, Random& random)
 struct Mutation {
   double leaf_bias = 0.9;   // see random_point
   double size_scale = 0.3;  // deviation of the new size, as a part of the old one
-  std::uint32_t most = 0;   // points of the new code; 0: no other bound than the list limit
 };
 /// With a random subtree replaced by random code of about its size; the code itself if that would exceed the limit.
 Code mutated(const Code& code, const Mutation& how, Interpreter& from, Random& random);
