@@ -1,5 +1,5 @@
-/* restored PROGRAM.tz: a world, and one that is restored from its image before each iteration, are the same after each,
- * on each rung. */
+/* restored PROGRAM.tz [BUDGET PHYSICS-BUDGET]: a world, and one that is restored from its image before each iteration,
+ * are the same after each, on each rung. */
 #include <stdlib.h>
 
 #include "check.h"
@@ -33,22 +33,19 @@ static bool same(const breve_world* one, const breve_world* other) {
   return hash == again;
 }
 
-static void goes_on_alike(breve_runtime* runtime, breve_program* program, const char* rung) {
-  enum { ITERATIONS = 24 };
-  breve_world_config config = breve_world_config_default();
-  config.seed = 14;
-  config.accuracy = rung;
+static void goes_on_alike(breve_runtime* runtime, breve_program* program, breve_world_config config) {
+  const int iterations = config.budget ? 50 : 24;
   breve_world *one = NULL, *other = NULL;
   CHECK_STATUS(BREVE_OK, breve_world_create(runtime, program, &config, &one));
   CHECK_STATUS(BREVE_OK, breve_world_create(runtime, program, &config, &other));
-  for (int i = 0; i < ITERATIONS && failures == 0; ++i) {
+  for (int i = 0; i < iterations && failures == 0; ++i) {
     copy(one, other);
     CHECK(same(one, other));
     const breve_status status = breve_world_step(one);
-    CHECK(status == BREVE_OK || status == BREVE_ERROR_SCRIPT);
+    CHECK(status == BREVE_OK || status == BREVE_ERROR_SCRIPT || (config.budget && status == BREVE_ERROR_BUDGET));
     CHECK_STATUS(status, breve_world_step(other));
     CHECK(same(one, other));
-    if (failures) printf("on %s, in iteration %d\n", rung, i + 1);
+    if (failures) printf("on %s, in iteration %d\n", config.accuracy, i + 1);
   }
   breve_world_destroy(one);
   breve_world_destroy(other);
@@ -56,14 +53,24 @@ static void goes_on_alike(breve_runtime* runtime, breve_program* program, const 
 
 int main(int count, char** arguments) {
   size_t size = 0;
-  char* text = count == 2 ? text_of(arguments[1], &size) : NULL;
+  char* text = count == 2 || count == 4 ? text_of(arguments[1], &size) : NULL;
   if (!text) return 2;
   breve_runtime* runtime = NULL;
   breve_program* program = NULL;
   CHECK_STATUS(BREVE_OK, breve_runtime_create(NULL, &runtime));
   if (CHECK_STATUS(BREVE_OK, breve_program_compile(runtime, "program.tz", text, size, &program))) {
     static const char* const rungs[] = {"fast", "balanced", "precise", "reference"};
-    for (size_t i = 0; i < sizeof rungs / sizeof *rungs; ++i) goes_on_alike(runtime, program, rungs[i]);
+    breve_world_config config = breve_world_config_default();
+    config.seed = 14;
+    if (count == 4) {
+      config.budget = strtoull(arguments[2], NULL, 10);
+      config.physics_budget = strtoull(arguments[3], NULL, 10);
+      config.depth_limit = 60;
+    }
+    for (size_t i = 0; i < sizeof rungs / sizeof *rungs; ++i) {
+      config.accuracy = rungs[i];
+      goes_on_alike(runtime, program, config);
+    }
   } else {
     puts(breve_runtime_last_error(runtime)->text);
   }
