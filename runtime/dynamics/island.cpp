@@ -71,6 +71,7 @@ void Island::clear() {
   if (sprung_) sprung_->points.clear();
   accuracy_set_ = false;
   placed_ = false;
+  dissolved_ = false;
   unfinished_ = 0;
   error = nullptr;
   result.counters = {};

@@ -36,7 +36,7 @@ class Island : public InMemory {
   bool empty() const { return free_.empty() && clusters_.empty(); }
   bool has_drivers() const { return drivers_ > 0; }
 
-  /// Moves it from `start` by h seconds; write() is to follow, but for a step that is unfinished. Touches nothing that
+  /// Moves it from `start` by h seconds; write() is to follow, but where it was dissolved. Touches nothing that
   /// is not the island's if there is no client: on any thread then.
   /// @param client  for handlers and force methods; then on the world's thread only
   void step(DynamicsClient* client, double start, double h);
@@ -45,7 +45,9 @@ class Island : public InMemory {
   void bound_work(std::uint64_t most, const std::atomic<bool>* ended) { meter_.begin(most, ended); }
   std::size_t items() const;  // bodies and pairs, by which work is shared out
   std::uint64_t work() const { return meter_.done(); }
-  /// Seconds of the step that are left because a handler made or freed bodies or joints; 0: none.
+  /// A handler made or freed bodies or joints: what the island refers to may be gone.
+  bool dissolved() const { return dissolved_; }
+  /// Seconds of the step that are left then.
   double unfinished() const { return unfinished_; }
   void append_bodies(std::pmr::vector<BodyIndex>& out) const;
   /// Slow enough to sleep, all of it.
@@ -407,8 +409,9 @@ class Island : public InMemory {
   Meter meter_;
   bool finished_ = false;  // coarsely: the accuracy is not what was asked for
   double gone_ = 0;        // s, of the step, that are over
-  double unfinished_ = 0;
-  struct ResultStart {  // what the result was when the step began, for one that is tried again
+  bool dissolved_ = false;
+  double unfinished_ = 0;  // s
+  struct ResultStart {     // what the result was when the step began, for one that is tried again
     DynamicsCounters counters;
     Energy account;
     std::size_t impacts = 0;

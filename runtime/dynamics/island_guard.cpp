@@ -74,7 +74,7 @@ void Island::step_guarded(DynamicsClient* client, double start, double h) {
 Island::Trouble Island::try_in_parts(DynamicsClient* client, double start, double h) {
   const Accuracy asked = accuracy_;
   Trouble trouble = try_step(client, start, h);
-  if (trees_.empty()) return trouble;
+  if (dissolved_ || trees_.empty()) return trouble;
   std::size_t links = 0;
   for (const Tree* tree : trees_) links += tree->links.size();
   const std::size_t bodies = links + free_.size();
@@ -144,7 +144,7 @@ Island::Trouble Island::try_step(DynamicsClient* client, double start, double h)
     if (error.code() != ErrorCode::Numeric || off) throw;
     return {true, GuardReason::NoSolution, 0, any_body()};
   }
-  if (unfinished_ > 0) return {};
+  if (dissolved_) return {};
   if (const BodyIndex body = not_finite(); body != kNoBody) return {!off, GuardReason::NotFinite, 0, body};
   balance(residual, turnover);
   unexplained_ = std::abs(residual) + gained_;

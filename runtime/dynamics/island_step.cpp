@@ -190,6 +190,7 @@ bool Island::call(DynamicsClient& client, int index, double moment, double left)
   core_.settle_books(true);
   if (core_.structure() != before) {
     end_unfinished(held);
+    dissolved_ = true;
     unfinished_ = left;
     return false;
   }
@@ -282,7 +283,7 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
     now += event.time;
     place();
     meet(client, event, start + now, h - now);
-    if (unfinished_ > 0) return;
+    if (dissolved_) return;
   }
   if (impacts_ >= accuracy_.impacts && core_.settings.guard != GuardMode::Off)
     intervene({true, GuardReason::Impacts, static_cast<double>(impacts_), any_body()}, GuardAction::Reported,

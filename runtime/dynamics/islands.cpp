@@ -174,15 +174,16 @@ void Dynamics::Core::run(DynamicsClient& client, double start, double h, int dep
     calling[i]->append_bodies(mine);
     for (std::size_t k = i + 1; k < callers; ++k) calling[k]->append_bodies(others);
     calling[i]->step(&client, start, h);
-    const double left = calling[i]->unfinished();
-    if (left == 0) {
+    if (!calling[i]->dissolved()) {
       calling[i]->write();
       note_rest(*calling[i], h);
     }
     take_result(*calling[i]);
-    if (left == 0) continue;
+    if (!calling[i]->dissolved()) continue;
+    // The other islands refer to what was, too.
+    const double left = calling[i]->unfinished();
     if (depth < kDeepest) {
-      run_only(client, start + (h - left), left, depth + 1, mine);
+      if (left > 0) run_only(client, start + (h - left), left, depth + 1, mine);
       run_only(client, start, h, depth + 1, others);
     }
     return;

@@ -121,7 +121,7 @@ bool operator==(const Code& a, const Code& b) {
 }
 
 void Builder::name(std::string_view text) {
-  const Node list;
+  const Node list{};
   add(&list, 1);
   nodes_.back() = Node::of_name(Symbol::make(text, nodes_.get_allocator().resource()));
 }
@@ -142,7 +142,7 @@ void Builder::add(const Node* nodes, std::size_t count) {
 }
 
 std::uint32_t Builder::begin_list() {
-  const Node list;
+  const Node list{};
   add(&list, 1);
   return size() - 1;
 }
