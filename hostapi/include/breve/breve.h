@@ -1266,9 +1266,10 @@ typedef struct breve_keyword {
 /* Call a method by its name and keywords, in any order; those that have defaults may be left out. Runs script.
    @param keywords  NULL only if count is 0
    @param result    may be NULL
-   BREVE_OK; BREVE_ERROR_NOT_FOUND: no such method; BREVE_ERROR_SCRIPT: a run-time error, also for a keyword that the
-   method does not know or that is missing; BREVE_ERROR_BUDGET, _MEMORY; BREVE_ERROR_DEPTH: also where calls of host and
-   script nest too deeply. The world is consistent after an error. */
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: no such method; BREVE_ERROR_TYPE: an argument says that it is a list, a hash or another
+   thing by reference, and its reference is to something else; BREVE_ERROR_SCRIPT: a run-time error, also for a keyword that
+   the method does not know or that is missing; BREVE_ERROR_BUDGET, _MEMORY; BREVE_ERROR_DEPTH: also where calls of host
+   and script nest too deeply. The world is consistent after an error. */
 BREVE_API breve_status breve_object_call(breve_world* world, breve_object object, const char* method,
                                          const breve_keyword* keywords, size_t count, breve_value* result);
 
