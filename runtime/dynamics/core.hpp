@@ -228,6 +228,8 @@ struct Dynamics::Core : InMemory {
   bool pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client);
   bool locates() const;  // impacts, somewhere
   void find_islands();
+  void keep_clusters_whole();
+  BodyIndex first_of(const ClusterEntry& cluster) const;
   Island& fill(std::size_t place, std::size_t number);
   void step_quiet(Workers* workers, std::size_t count, double start, double h);
   void run(DynamicsClient& client, double start, double h, int depth);

@@ -36,7 +36,24 @@ bool Dynamics::Core::pushes(BodyIndex a, BodyIndex b, const DynamicsClient& clie
   return own && own->self_collisions;
 }
 
+/// Bodies that joints or springs connect are set aside together or not at all. A handler may have connected some that
+/// are with some that are not: the first of them decides, so that they are stepped once.
+void Dynamics::Core::keep_clusters_whole() {
+  if (aside.empty()) return;
+  aside.resize(bodies->index_end(), 1);
+  for (const auto& cluster : clusters) {
+    const std::uint8_t first = aside[first_of(*cluster)];
+    for (const std::uint32_t index : cluster->trees)
+      for (const TreeLink& link : trees[index]->links) aside[link.body] = first;
+  }
+}
+
+BodyIndex Dynamics::Core::first_of(const ClusterEntry& cluster) const {
+  return trees[cluster.trees.front()]->links.front().body;
+}
+
 void Dynamics::Core::find_islands() {
+  keep_clusters_whole();
   // Sets of bodies by union-find. A tree's first link stands for the tree, a cluster's first tree for the cluster.
   set_of.resize(bodies->index_end());
   place_of.assign(bodies->index_end(), {});
@@ -48,8 +65,7 @@ void Dynamics::Core::find_islands() {
   const auto join = [&](BodyIndex a, BodyIndex b) { set_of[root(a)] = root(b); };
   for (const auto& cluster : clusters)
     for (const std::uint32_t index : cluster->trees)
-      for (const TreeLink& link : trees[index]->links)
-        join(link.body, trees[cluster->trees.front()]->links.front().body);
+      for (const TreeLink& link : trees[index]->links) join(link.body, first_of(*cluster));
   near.each([&](const PairKey& key, const NearPair&) {
     if (moves_now(key.a) && moves_now(key.b)) join(key.a, key.b);
   });
@@ -71,8 +87,10 @@ void Dynamics::Core::find_islands() {
     else
       island_free.add(island(body), body);
   }
-  for (std::uint32_t i = 0; i < clusters.size(); ++i)
-    island_clusters.add(island(trees[clusters[i]->trees.front()]->links.front().body), i);
+  for (std::uint32_t i = 0; i < clusters.size(); ++i) {
+    const BodyIndex first = first_of(*clusters[i]);
+    if (moves_now(first)) island_clusters.add(island(first), i);
+  }
   const auto waits = [this](BodyIndex body) { return bodies->dynamic(body) && !moves_now(body); };
   near.each([&](const PairKey& key, const NearPair&) {
     if (!waits(key.a) && !waits(key.b)) island_pairs.add(island(bodies->dynamic(key.a) ? key.a : key.b), key.at);
