@@ -12,8 +12,6 @@ using steve::ClassInfo;
 using steve::Instance;
 using steve::Value;
 
-namespace {
-
 const steve::VariableInfo& variable_named(const breve_world& world, const Instance& instance, const char* name) {
   need(name, "name");
   const steve::Symbol symbol = world.program->symbols().find(name);
@@ -24,6 +22,8 @@ const steve::VariableInfo& variable_named(const breve_world& world, const Instan
          "variable '" + std::string(name) + "' of class " + instance.cls->name + " is an array");
   return *variable;
 }
+
+namespace {
 
 void need_method(const breve_world& world, const Instance& instance, std::string_view method) {
   if (!world.machine->responds(*instance.cls, method))
@@ -55,6 +55,15 @@ Value call_by_keywords(breve_world& world, Instance& receiver, std::string_view 
   return world.machine->call_with_keywords(receiver, method, keywords);
 }
 
+std::uint32_t digest(const Selector& selector) {
+  Hasher hasher;
+  hasher.add(std::string_view(selector.method));
+  for (const auto& keyword : selector.keywords) hasher.add(std::string_view(keyword));
+  return static_cast<std::uint32_t>(hasher.value() >> 32) | 1U;  // the all-zero selector is none
+}
+
+}  // namespace
+
 Value call_prepared(breve_world& world, Instance& receiver, Selector& selector, const breve_value* arguments) {
   constexpr std::size_t kInPlace = 8;  // arguments that need no allocation
   const std::size_t count = selector.keywords.size();
@@ -70,14 +79,18 @@ Value call_prepared(breve_world& world, Instance& receiver, Selector& selector, 
   return world.machine->call(receiver, *selector.resolved, std::span<const Value>(values.data(), count));
 }
 
-std::uint32_t digest(const Selector& selector) {
-  Hasher hasher;
-  hasher.add(std::string_view(selector.method));
-  for (const auto& keyword : selector.keywords) hasher.add(std::string_view(keyword));
-  return static_cast<std::uint32_t>(hasher.value() >> 32) | 1U;  // the all-zero selector is none
+Selector& selector_of(breve_world& world, breve_selector handle, const breve_value* arguments, std::size_t count) {
+  if (handle.index >= world.selectors.size() || world.selectors[handle.index].check != handle.generation)
+    fail(BREVE_ERROR_STALE, "this world has not prepared that selector");
+  Selector& prepared = world.selectors[handle.index];
+  if (count != prepared.keywords.size())
+    fail(BREVE_ERROR_ARGUMENT, std::to_string(count) + " arguments for the " +
+                                   std::to_string(prepared.keywords.size()) + " keywords of '" +
+                                   std::string(prepared.method) + "'");
+  if (count != 0) need(arguments, "arguments");
+  return prepared;
 }
 
-}  // namespace
 }  // namespace breve::host
 
 using namespace breve::host;
@@ -148,14 +161,7 @@ breve_status breve_object_call_prepared(breve_world* world, breve_object object,
                                         const breve_value* arguments, size_t count, breve_value* result) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
-    if (selector.index >= world->selectors.size() || world->selectors[selector.index].check != selector.generation)
-      fail(BREVE_ERROR_STALE, "this world has not prepared that selector");
-    Selector& prepared = world->selectors[selector.index];
-    if (count != prepared.keywords.size())
-      fail(BREVE_ERROR_ARGUMENT, std::to_string(count) + " arguments for the " +
-                                     std::to_string(prepared.keywords.size()) + " keywords of '" +
-                                     std::string(prepared.method) + "'");
-    if (count != 0) need(arguments, "arguments");
+    Selector& prepared = selector_of(*world, selector, arguments, count);
     const Value value = call_prepared(*world, live_instance(*world, object), prepared, arguments);
     if (result) *result = to_host(*world, value);
   });

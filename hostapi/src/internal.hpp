@@ -167,8 +167,10 @@ struct breve_world : breve::InMemory {
   mutable std::pmr::string accuracy_text;            // of breve_world_accuracy_text
   mutable std::pmr::vector<std::pair<std::pmr::string, std::pmr::string>> menu_texts;
   mutable std::pmr::vector<std::pair<std::pmr::string, std::pmr::string>> effect_texts;
-  double remainder = 0;  // s, kept by breve_world_advance; in [0, iteration step)
-  int running = 0;       // calls of the host that run script, one inside the other
+  mutable std::pmr::vector<breve::BodyIndex> bulk_bodies;    // of the objects of a call for many; room that is kept
+  mutable std::pmr::vector<breve::steve::Slot*> bulk_slots;  // likewise
+  double remainder = 0;                                      // s, kept by breve_world_advance; in [0, iteration step)
+  int running = 0;                                           // calls of the host that run script, one inside the other
   std::uint64_t errors = 0, warnings = 0;
 
   explicit breve_world(std::shared_ptr<breve::host::RuntimeState> r)
@@ -180,7 +182,9 @@ struct breve_world : breve::InMemory {
         text(&meter),
         accuracy_text(&meter),
         menu_texts(&meter),
-        effect_texts(&meter) {}
+        effect_texts(&meter),
+        bulk_bodies(&meter),
+        bulk_slots(&meter) {}
 };
 
 namespace breve::host {
@@ -226,11 +230,28 @@ breve_object handle_of(const breve_world& world, ObjectId id);
 ObjectId id_of(const breve_world& world, breve_object object);  // a live one, or null
 inline bool is_null(breve_object object) { return object.generation == 0; }
 
+/// The ticket of an object's id, which is not null.
+inline std::uint32_t ticket_of(const breve_world& world, breve_object object) {
+  const std::uint64_t place = object.generation - 1 + kGenerations - world.first_generation;
+  return static_cast<std::uint32_t>(place % kGenerations + 1);
+}
+
 /// A live object's id: BREVE_ERROR_ARGUMENT for null, BREVE_ERROR_STALE for one that is gone.
 ObjectId live_id(const breve_world& world, breve_object object);
 steve::Instance& live_instance(const breve_world& world, breve_object object);
 BodyIndex live_body(const breve_world& world, breve_object object);               // also BREVE_ERROR_NO_BODY
 const steve::ClassInfo& class_named(const breve_world& world, const char* name);  // BREVE_ERROR_NOT_FOUND
+
+/// (w, x, y, z), of any length but 0: BREVE_ERROR_ARGUMENT, which names it as `what`.
+Quaternion unit_quaternion(const double numbers[4], const char* what);
+
+/// BREVE_ERROR_NOT_FOUND, or BREVE_ERROR_UNSUPPORTED for an array.
+const steve::VariableInfo& variable_named(const breve_world& world, const steve::Instance& instance, const char* name);
+
+/// The selector of a handle that is called with so many arguments: BREVE_ERROR_STALE, BREVE_ERROR_ARGUMENT.
+Selector& selector_of(breve_world& world, breve_selector handle, const breve_value* arguments, std::size_t count);
+steve::Value call_prepared(breve_world& world, steve::Instance& receiver, Selector& selector,
+                           const breve_value* arguments);
 
 /// Between breve_value and the machine's values. Strings are copied in; lists and hashes become references.
 breve_value to_host(breve_world& world, const steve::Value& value);

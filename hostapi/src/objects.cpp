@@ -14,8 +14,7 @@ breve_object handle_of(const breve_world& world, ObjectId id) {
 
 ObjectId id_of(const breve_world& world, breve_object object) {
   if (is_null(object)) return {};
-  const std::uint64_t place = object.generation - 1 + kGenerations - world.first_generation;
-  return world.world->holder(object.index, static_cast<std::uint32_t>(place % kGenerations + 1));
+  return world.world->holder(object.index, ticket_of(world, object));
 }
 
 ObjectId live_id(const breve_world& world, breve_object object) {
@@ -46,6 +45,14 @@ const steve::ClassInfo& class_named(const breve_world& world, const char* name) 
   return *cls;
 }
 
+breve::Quaternion unit_quaternion(const double numbers[4], const char* what) {
+  // Scaled by its largest part first, so that the length of no finite quaternion overflows or vanishes.
+  const Eigen::Vector4d q(numbers[1], numbers[2], numbers[3], numbers[0]);
+  const double largest = q.cwiseAbs().maxCoeff();
+  if (largest == 0) fail(BREVE_ERROR_ARGUMENT, std::string(what) + " has length 0: it is no rotation");
+  return breve::Quaternion(Eigen::Vector4d((q / largest).normalized()));
+}
+
 namespace {
 
 using Getter = const Vector3& (Bodies::*)(BodyIndex) const;
@@ -74,11 +81,7 @@ breve_status set_vector(breve_world* world, breve_object object, const double* i
 breve::Quaternion rotation_of(const breve_pose& pose) {
   need_finite(pose.location, 3, "pose.location");
   need_finite(pose.rotation, 4, "pose.rotation");
-  // Scaled by its largest part first, so that the length of no finite quaternion overflows or vanishes.
-  Eigen::Vector4d q(pose.rotation[1], pose.rotation[2], pose.rotation[3], pose.rotation[0]);
-  const double largest = q.cwiseAbs().maxCoeff();
-  if (largest == 0) fail(BREVE_ERROR_ARGUMENT, "pose.rotation has length 0: it is no rotation");
-  return breve::Quaternion(Eigen::Vector4d((q / largest).normalized()));
+  return unit_quaternion(pose.rotation, "pose.rotation");
 }
 
 const Shape& display_shape(const breve_world& world, breve_object object) {
@@ -198,15 +201,11 @@ breve_status breve_object_set_pose(breve_world* world, breve_object object, cons
     const BodyIndex body = live_body(*world, object);
     const breve::Quaternion rotation = rotation_of(*pose);
     Bodies& bodies = world->world->bodies();
-    const Vector3 place(pose->location[0], pose->location[1], pose->location[2]), before = bodies.location(body);
+    const Vector3 place(pose->location[0], pose->location[1], pose->location[2]);
+    bodies.allowed_orientation(rotation);  // all or nothing
     world->world->leave(body);
     bodies.set_location(body, world->world->space().inside(place));
-    try {
-      bodies.set_orientation(body, rotation);
-    } catch (...) {
-      bodies.set_location(body, before);  // all or nothing
-      throw;
-    }
+    bodies.set_orientation(body, rotation);
     world->world->dynamics().moved(body);
   });
 }

@@ -271,9 +271,31 @@ Quaternion Bodies::orientation(BodyIndex body) const {
   return row == kNoRow ? Quaternion::Identity() : arrays_->turn_rows[row].orientation;
 }
 
-void Bodies::set_location(BodyIndex body, const Vector3& location) {
+Vector3 Bodies::allowed_location(const Vector3& location) const {
   require_finite("location", location);
-  arrays_->location[body] = in_reach(in_plane("location", location, flat_), flat_);
+  return in_reach(in_plane("location", location, flat_), flat_);
+}
+
+Quaternion Bodies::allowed_orientation(const Quaternion& orientation) const {
+  const double norm = orientation.norm();
+  if (!std::isfinite(norm) || norm == 0) {
+    throw Error(ErrorCode::Argument, "orientation must be a finite quaternion of non-zero length");
+  }
+  return turned_about_z(orientation.normalized(), flat_);
+}
+
+Vector3 Bodies::allowed_velocity(const Vector3& value) const {
+  require_finite("velocity", value);
+  return in_plane("velocity", value, flat_);
+}
+
+Vector3 Bodies::allowed_spin(const Vector3& value) const {
+  require_finite("rotational velocity", value);
+  return about_z("rotational velocity", value, flat_);
+}
+
+void Bodies::set_location(BodyIndex body, const Vector3& location) {
+  arrays_->location[body] = allowed_location(location);
   arrays_->note_put(body);
   arrays_->note(body);
 }
@@ -281,12 +303,8 @@ void Bodies::set_location(BodyIndex body, const Vector3& location) {
 void Bodies::set_rotation(BodyIndex body, const Matrix3& rotation) { set_orientation(body, rotation_of(rotation)); }
 
 void Bodies::set_orientation(BodyIndex body, const Quaternion& orientation) {
-  const double norm = orientation.norm();
-  if (!std::isfinite(norm) || norm == 0) {
-    throw Error(ErrorCode::Argument, "orientation must be a finite quaternion of non-zero length");
-  }
+  const Quaternion turned = allowed_orientation(orientation);
   if (arrays_->turn_row[body] == kNoRow && orientation.vec() == kZero) return;
-  const Quaternion turned = turned_about_z(orientation.normalized(), flat_);
   arrays_->turn(body).orientation = turned;
   arrays_->note_put(body);
   arrays_->note(body);
@@ -306,8 +324,7 @@ const Vector3& Bodies::rotational_acceleration(BodyIndex body) const {
 }
 
 void Bodies::set_velocity(BodyIndex body, const Vector3& value) {
-  require_finite("velocity", value);
-  arrays_->velocity[body] = in_plane("velocity", value, flat_);
+  arrays_->velocity[body] = allowed_velocity(value);
   arrays_->note_driven(body, value);
   arrays_->classify(body);
   arrays_->note(body);
@@ -322,9 +339,8 @@ void Bodies::set_acceleration(BodyIndex body, const Vector3& value) {
 }
 
 void Bodies::set_rotational_velocity(BodyIndex body, const Vector3& value) {
-  require_finite("rotational velocity", value);
+  const Vector3 spin = allowed_spin(value);
   if (arrays_->turn_row[body] == kNoRow && value == kZero) return;
-  const Vector3 spin = about_z("rotational velocity", value, flat_);
   arrays_->turn(body).velocity = spin;
   arrays_->note_driven(body, spin);
   arrays_->classify(body);

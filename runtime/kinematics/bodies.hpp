@@ -97,6 +97,12 @@ class Bodies : public InMemory {
   void set_rotation(BodyIndex body, const Matrix3& rotation);  // made orthonormal; Error{Argument} if it is singular
   void set_orientation(BodyIndex body, const Quaternion& orientation);
 
+  // What the setters would store; the same errors, and nothing is changed.
+  Vector3 allowed_location(const Vector3& location) const;
+  Quaternion allowed_orientation(const Quaternion& orientation) const;
+  Vector3 allowed_velocity(const Vector3& value) const;
+  Vector3 allowed_spin(const Vector3& value) const;  // rotational velocity
+
   // Motion, world frame; the rotational velocity of a kinematic body is in its own frame (CLASSES 2.3).
   const Vector3& velocity(BodyIndex body) const;
   const Vector3& acceleration(BodyIndex body) const;

@@ -83,11 +83,6 @@ void ObjectTable::keep_tickets(const ObjectTable& abandoned) {
   std::erase_if(free_, [this](std::uint32_t index) { return !reusable(index); });
 }
 
-ObjectId ObjectTable::holder(std::uint32_t index, std::uint32_t ticket) const {
-  const ObjectId id{index, tickets_.generation(index, ticket)};
-  return id && alive(id) ? id : ObjectId{};
-}
-
 ObjectTable::Slot& ObjectTable::at(ObjectId id) {
   if (!alive(id)) throw Error(ErrorCode::Stale, id ? "the object has been freed" : "the object is null");
   return slots_[id.index];

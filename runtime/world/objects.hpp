@@ -63,7 +63,14 @@ class ObjectTable {
   /// What hosts know an instance by, also one that is gone. See Tickets.
   std::uint32_t ticket(ObjectId id) const { return tickets_.of(id); }
   /// The live instance of a ticket, or null.
-  ObjectId holder(std::uint32_t index, std::uint32_t ticket) const;
+  ObjectId holder(std::uint32_t index, std::uint32_t ticket) const {
+    return held(index, ticket) ? ObjectId{index, slots_[index].generation} : ObjectId{};
+  }
+  /// Its slot, or null.
+  const Slot* held(std::uint32_t index, std::uint32_t ticket) const {
+    const ObjectId id{index, tickets_.generation(index, ticket)};
+    return id && alive(id) ? &slots_[index] : nullptr;
+  }
   /// This table takes the place of `abandoned` in the same world.
   void keep_tickets(const ObjectTable& abandoned);
 

@@ -22,12 +22,6 @@ std::uint32_t Tickets::of(ObjectId id) const {
   return id.generation + slots_[id.index].offset;
 }
 
-std::uint32_t Tickets::generation(std::uint32_t index, std::uint32_t ticket) const {
-  if (index >= slots_.size() || ticket > slots_[index].last || ticket == kLost) return 0;
-  const std::uint32_t generation = ticket - slots_[index].offset;
-  return generation >= slots_[index].since ? generation : 0;
-}
-
 void Tickets::keep(const Tickets& abandoned) {
   make_room(abandoned.slots_.size());
   for (std::size_t i = 0; i < abandoned.slots_.size(); ++i)

@@ -24,7 +24,11 @@ class Tickets {
   void issue(ObjectId id);            // to a new instance
   std::uint32_t of(ObjectId id) const;
   /// The generation that the ticket was issued to, or 0 if that is not known.
-  std::uint32_t generation(std::uint32_t index, std::uint32_t ticket) const;
+  std::uint32_t generation(std::uint32_t index, std::uint32_t ticket) const {
+    if (index >= slots_.size() || ticket > slots_[index].last || ticket == kLost) return 0;
+    const std::uint32_t generation = ticket - slots_[index].offset;
+    return generation >= slots_[index].since ? generation : 0;
+  }
   /// No instance that is made in the slot would get one.
   bool spent(std::uint32_t index) const { return slots_[index].last >= kLost - 1; }
   /// This has been restored in the place of `abandoned`: what was issued there is not issued again.

@@ -65,6 +65,10 @@ std::uint32_t World::ticket(ObjectId id) const { return parts_->objects.ticket(i
 ObjectId World::holder(std::uint32_t index, std::uint32_t ticket) const {
   return parts_->objects.holder(index, ticket);
 }
+World::Holding World::holding(std::uint32_t index, std::uint32_t ticket) const {
+  const ObjectTable::Slot* const slot = parts_->objects.held(index, ticket);
+  return slot ? Holding{{index, slot->generation}, slot->user, slot->body} : Holding();
+}
 std::uint64_t World::user(ObjectId id) const { return parts_->objects.at(id).user; }
 void World::set_user(ObjectId id, std::uint64_t user) {
   parts_->objects.at(id).user = user;

@@ -50,7 +50,14 @@ class World : public InMemory {
   /// What hosts know an instance by, together with its index, also if it is gone. No restore gives it to another one.
   std::uint32_t ticket(ObjectId id) const;
   ObjectId holder(std::uint32_t index, std::uint32_t ticket) const;  // the live instance; null if there is none
-  std::uint64_t user(ObjectId id) const;                             // Error{Stale} if not alive
+  /// The same with what belongs to it, in one look: for those who ask of many.
+  struct Holding {
+    ObjectId id;
+    std::uint64_t user = 0;
+    BodyIndex body = kNoBody;  // if it has one
+  };
+  Holding holding(std::uint32_t index, std::uint32_t ticket) const;
+  std::uint64_t user(ObjectId id) const;  // Error{Stale} if not alive
   void set_user(ObjectId id, std::uint64_t user);
   ClassId class_of(ObjectId id) const;
   bool runs(ObjectId id, bool iterates, bool post_iterates) const;  // was it made so?

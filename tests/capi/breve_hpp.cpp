@@ -83,6 +83,24 @@ TEST(BreveHpp, ValuesConvertBothWays) {
   EXPECT_EQ(w.call(stage.controller, add, {1, 2}).or_throw().integer(), 3);
 }
 
+TEST(BreveHpp, ManyObjectsAreOneCall) {
+  Stage stage;
+  breve::World& w = stage.world;
+  const breve::Object two[] = {stage.controller, stage.controller};
+  const auto add = w.prepare("add", {"second", "first"}).or_throw();
+  breve_value sums[2];
+  w.call_all(two, 2, add, {1, 2}, sums).or_throw();
+  EXPECT_EQ(sums[1].as.integer, 3);
+  const auto balls = w.objects("Mobile").or_throw();
+  ASSERT_FALSE(balls.empty());
+  float place[3] = {1, 2, 3};
+  double pose[7];
+  w.set_all(balls.data(), 1, BREVE_PROPERTY_LOCATION, breve::Array(place, 3)).or_throw();
+  w.get_all(balls.data(), 1, BREVE_PROPERTY_POSE, breve::Array(pose, 7)).or_throw();
+  EXPECT_EQ(pose[2], 3);
+  EXPECT_FALSE(w.get_all(two, 2, "title", breve::Array(pose, 1)));
+}
+
 TEST(BreveHpp, ValuesAreMadeOfAnyNumberAndText) {
   const auto same = [](const breve::Value& value, int number) {
     return value.type == std::uint32_t{BREVE_TYPE_INT} && value.integer() == number;

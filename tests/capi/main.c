@@ -3,6 +3,7 @@
 
 void analysis_suite(void);
 void budget_suite(void);
+void bulk_suite(void);
 void calls_suite(void);
 void config_suite(void);
 void errors_suite(void);
@@ -34,6 +35,7 @@ static const struct {
     /* clang-format off */
     {"analysis", analysis_suite},
     {"budget", budget_suite},
+    {"bulk", bulk_suite},
     {"calls", calls_suite},
     {"config", config_suite},
     {"errors", errors_suite},

@@ -75,6 +75,11 @@ static void null_handles_give_an_argument_error_or_nothing(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_call(NULL, o, "x", NULL, 0, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_prepare(NULL, "x", NULL, 0, &selector));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_call_prepared(NULL, o, sel, NULL, 0, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_objects_property(NULL, &o, 1, BREVE_PROPERTY_POSE, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_objects_set_property(NULL, &o, 1, BREVE_PROPERTY_POSE, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_objects_get(NULL, &o, 1, "x", NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_objects_set(NULL, &o, 1, "x", NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_objects_call_prepared(NULL, &o, 1, sel, NULL, 0, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_queue_key(NULL, "a", true));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_queue_click(NULL, o));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_reload(NULL, NULL));
@@ -144,6 +149,10 @@ static void null_arguments_give_an_argument_error(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_rotational_velocity(w, ball, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_color(w, ball, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_color(w, ball, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_objects_property(w, &ball, 1, BREVE_PROPERTY_POSE, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_objects_set_property(w, &ball, 1, BREVE_PROPERTY_POSE, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_objects_get(w, &stage, 1, "count", NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_objects_set(w, &stage, 1, "count", NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_shape(w, ball, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_shape_vertices(w, ball, NULL, 1));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_shape_faces(w, ball, NULL, 1, NULL, 0));

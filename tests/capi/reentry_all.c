@@ -271,6 +271,15 @@ static breve_status do_springs(place* p) {
   TRY(breve_object_free(w, description.from));
   return breve_object_free(w, description.to);
 }
+static breve_status do_many(place* p) {
+  double place[3], count;
+  const breve_array places = {place, 0, BREVE_NUMBER_DOUBLE, 3}, counts = {&count, 0, BREVE_NUMBER_DOUBLE, 1};
+  TRY(breve_objects_property(p->world, &p->ball, 1, BREVE_PROPERTY_LOCATION, &places));
+  TRY(breve_objects_set_property(p->world, &p->ball, 1, BREVE_PROPERTY_LOCATION, &places));
+  TRY(breve_objects_get(p->world, &p->controller, 1, "count", &counts));
+  TRY(breve_objects_set(p->world, &p->controller, 1, "count", &counts));
+  return breve_objects_call_prepared(p->world, &p->controller, 1, p->touch, NULL, 0, NULL);
+}
 static breve_status do_grids(place* p) { /* the controller is no grid */
   uint32_t counts[3];
   double value = 0;
@@ -344,6 +353,7 @@ static const struct {
     {"breve_object_call", do_call, WORKS, WORKS},
     {"breve_world_prepare", do_prepare, WORKS, WORKS},
     {"breve_object_call_prepared", do_call_prepared, WORKS, WORKS},
+    {"breve_objects_property and so on", do_many, WORKS, WORKS},
     {"breve_world_queue_key", do_key, WORKS, WORKS},
     {"breve_world_queue_click", do_click, WORKS, WORKS},
     {"breve_world_menu_items and _choose", do_menu, WORKS, WORKS},

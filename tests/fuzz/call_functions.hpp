@@ -18,6 +18,10 @@ inline constexpr Statuses kBusy = status_bit(BREVE_ERROR_BUSY), kStale = status_
 inline constexpr Statuses kPlain = Statuses{1} << 31;
 /// An object's place in space.
 inline constexpr Statuses kBody = kStale | status_bit(BREVE_ERROR_NO_BODY);
+/// A variable by its name.
+inline constexpr Statuses kVariable = kStale | kNotFound | kUnsupported;
+/// A value that is passed in.
+inline constexpr Statuses kValue = kStale | kUnsupported;
 /// "Runs script"; busy from a breve_trace_fn.
 inline constexpr Statuses kScript = kScriptError | kBusy | status_bit(BREVE_ERROR_BUDGET) |
                                     status_bit(BREVE_ERROR_DEPTH) | status_bit(BREVE_ERROR_INTERRUPTED);
@@ -25,6 +29,7 @@ inline constexpr Statuses kScript = kScriptError | kBusy | status_bit(BREVE_ERRO
 std::span<const Function> runtime_functions();   // versions, runtimes, programs, lints, files
 std::span<const Function> world_functions();     // worlds, input, snapshots, costs, changes
 std::span<const Function> object_functions();    // objects and their places
+std::span<const Function> bulk_functions();      // many objects at once
 std::span<const Function> value_functions();     // values, lists, hashes, variables, calls, statements
 std::span<const Function> body_functions();      // shapes, bodies, settings of physics, grids
 std::span<const Function> joint_functions();     // joints, springs, what they connect

@@ -271,9 +271,7 @@ breve_status statements_complete(Caller& c) {
 }
 
 /// Of a value that is passed.
-constexpr Statuses kValue = kStale | kUnsupported;
 constexpr Statuses kContainer = kType | kStale;
-constexpr Statuses kVariable = kStale | kNotFound | kUnsupported;
 
 constexpr Function kFunctions[] = {
     {"breve_value_null", value_null},

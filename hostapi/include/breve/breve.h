@@ -1286,6 +1286,67 @@ BREVE_API breve_status breve_world_prepare(breve_world* world, const char* metho
 BREVE_API breve_status breve_object_call_prepared(breve_world* world, breve_object object, breve_selector selector,
                                                   const breve_value* arguments, size_t count, breve_value* result);
 
+/* ---- many objects at once ---------------------------------------------------------------------------------------- */
+
+/* One call for many objects, whose numbers lie in an array of the host: one row for each object, at any address and
+   distance, as they lie in a renderer's instances. Each of these functions does what the one for a single object does to
+   one after the other, in their order; all ids and numbers are checked first, and if one is refused nothing is changed or
+   written. The objects of a class are those that breve_world_objects gives. The functions allocate nothing once they
+   have seen as many objects. */
+
+typedef enum breve_number {
+  BREVE_NUMBER_FLOAT = 0, /* 4 bytes */
+  BREVE_NUMBER_DOUBLE = 1 /* 8 bytes */
+} breve_number;
+
+typedef struct breve_array {
+  void* numbers;   /* the first row; NULL only for no objects. A function that reads them does not write them */
+  size_t stride;   /* bytes from one row to the next; 0: they lie side by side */
+  uint32_t number; /* breve_number */
+  uint32_t width;  /* numbers of a row: as many as an object has of these, else BREVE_ERROR_ARGUMENT */
+} breve_array;
+
+typedef enum breve_property {
+  BREVE_PROPERTY_LOCATION = 0,            /* 3 */
+  BREVE_PROPERTY_ROTATION = 1,            /* 4: w, x, y, z */
+  BREVE_PROPERTY_POSE = 2,                /* 7: location, rotation */
+  BREVE_PROPERTY_VELOCITY = 3,            /* 3 */
+  BREVE_PROPERTY_ROTATIONAL_VELOCITY = 4, /* 3 */
+  BREVE_PROPERTY_COLOR = 5                /* 4: red, green, blue, alpha */
+} breve_property;
+
+/* @param objects   NULL only if count is 0
+   @param property  breve_property
+   BREVE_OK; BREVE_ERROR_NO_BODY: one of them has no place in space. */
+BREVE_API breve_status breve_objects_property(const breve_world* world, const breve_object* objects, size_t count,
+                                              uint32_t property, const breve_array* array);
+
+/* BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: a number is not finite, or what the function for one object
+   refuses. If memory ends in the middle, the first rows are written. */
+BREVE_API breve_status breve_objects_set_property(breve_world* world, const breve_object* objects, size_t count,
+                                                  uint32_t property, const breve_array* array);
+
+/* An instance variable of each: an int or a float is 1 number, a vector 3. Objects of several classes may be among them
+   if the variable has one type in all.
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: a class without this variable; BREVE_ERROR_TYPE: it is of another type;
+   BREVE_ERROR_UNSUPPORTED: it is an array. */
+BREVE_API breve_status breve_objects_get(const breve_world* world, const breve_object* objects, size_t count,
+                                         const char* name, const breve_array* array);
+
+/* As breve_objects_get; BREVE_ERROR_TYPE also for a number that an int cannot be. */
+BREVE_API breve_status breve_objects_set(breve_world* world, const breve_object* objects, size_t count,
+                                         const char* name, const breve_array* array);
+
+/* Call a prepared method of each, with the same arguments. One that was freed by an earlier call is passed over. The
+   first call that fails ends it: those before it are done, and their results are written. Runs script.
+   @param arguments  as of breve_object_call_prepared
+   @param results    one for each object, or NULL; BREVE_TYPE_NULL of one that was passed over, and for a text, a list
+                     or anything else that does not outlive the next call
+   As breve_object_call_prepared. */
+BREVE_API breve_status breve_objects_call_prepared(breve_world* world, const breve_object* objects, size_t count,
+                                                   breve_selector selector, const breve_value* arguments,
+                                                   size_t argument_count, breve_value* results);
+
 /* ---- input ------------------------------------------------------------------------------------------------------- */
 
 /* Queue the press (down) or release of a key; the controller's handler runs at the start of the next iteration.

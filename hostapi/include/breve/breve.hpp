@@ -118,6 +118,15 @@ struct Room {
   std::size_t capacity;
 };
 
+/// Rows of the host's memory, one for each of many objects: `width` numbers, `stride` bytes from one row to the next, 0
+/// if they lie side by side. The memory is the host's, as long as a call lasts.
+struct Array : breve_array {
+  Array(float* numbers, std::uint32_t width, std::size_t stride = 0)
+      : breve_array{numbers, stride, BREVE_NUMBER_FLOAT, width} {}
+  Array(double* numbers, std::uint32_t width, std::size_t stride = 0)
+      : breve_array{numbers, stride, BREVE_NUMBER_DOUBLE, width} {}
+};
+
 /// Arguments of calls: any of these converts to a script value. Texts are referred to, not copied.
 class Value : public breve_value {
  public:
@@ -493,6 +502,34 @@ class World {
     for (std::size_t i = 0; i < N; ++i) given[i] = arguments[i];
     return read_value(breve_object_call_prepared, object, selector, given, N);
   }
+
+  // --- many objects at once: rows of the host's memory; see breve_objects_property -----------------------------------
+  Status get_all(const Object* objects, std::size_t count, breve_property property, const Array& rows) const {
+    return status(breve_objects_property(get(), objects, count, property, &rows));
+  }
+  Status set_all(const Object* objects, std::size_t count, breve_property property, const Array& rows) {
+    return status(breve_objects_set_property(get(), objects, count, property, &rows));
+  }
+  /// An int, float or vector variable of each.
+  Status get_all(const Object* objects, std::size_t count, const char* variable, const Array& rows) const {
+    return status(breve_objects_get(get(), objects, count, variable, &rows));
+  }
+  Status set_all(const Object* objects, std::size_t count, const char* variable, const Array& rows) {
+    return status(breve_objects_set(get(), objects, count, variable, &rows));
+  }
+  /// The same call of each; `results` has room for one of each, or is null.
+  Status call_all(const Object* objects, std::size_t count, breve_selector selector, breve_value* results = nullptr) {
+    return status(breve_objects_call_prepared(get(), objects, count, selector, nullptr, 0, results));
+  }
+  template <std::size_t N>
+  Status call_all(const Object* objects, std::size_t count, breve_selector selector, const Value (&arguments)[N],
+                  breve_value* results = nullptr) {
+    breve_value given[N];
+    for (std::size_t i = 0; i < N; ++i) given[i] = arguments[i];
+    return status(breve_objects_call_prepared(get(), objects, count, selector, given, N, results));
+  }
+
+  // --- statements, other programs ------------------------------------------------------------------------------------
   /// Run statements as though they stood in a method of `self`; the null object: of the controller.
   Result<Value> evaluate(std::string_view text, Object self = {}) {
     return read_value(breve_world_evaluate, self, text.data(), text.size());
