@@ -141,6 +141,8 @@ struct breve_runtime {
   std::shared_ptr<breve::host::RuntimeState> state;
   std::vector<breve::host::DiagnosticText> diagnostics;
   breve::steve::AllowedLints allowed;
+  breve::steve::ForeignFunctions
+      functions;  // of breve_runtime_add_function; programs keep those they were compiled with
   mutable breve::host::ErrorRecord error;
   int busy = 0;  // compilations and world creations in progress
 };

@@ -1,6 +1,7 @@
 // Worlds: making, stepping, ending; the clock; what the machine is told about its host.
 #include <cmath>
 
+#include "functions.hpp"
 #include "internal.hpp"
 #include "steve/library/library.hpp"
 
@@ -52,6 +53,10 @@ steve::MachineHost machine_host(breve_world& world) {
   host.may_read_clock = (callbacks.rights & BREVE_RIGHT_REAL_TIME) != 0;
   host.may_draw_entropy = (callbacks.rights & BREVE_RIGHT_ENTROPY) != 0;
   if (callbacks.system) host.system = [&world](std::string_view command) { return run_command(world, command); };
+  host.call_foreign = [&world](const steve::ForeignFunction& function, steve::Instance& self,
+                               std::span<const steve::Value> arguments) {
+    return call_function(world, function, self, arguments);
+  };
   for (std::size_t i = 0; i < config.argument_count; ++i) {
     need(config.arguments, "breve_world_config.arguments");
     need(config.arguments[i], "one of breve_world_config.arguments");

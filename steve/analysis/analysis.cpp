@@ -11,8 +11,10 @@
 
 namespace breve::steve {
 
-Analysis::Analysis(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed)
-    : model_(std::make_unique<Model>(read_model(std::move(main), resolver, allowed))), uses_(find_uses(*model_)) {}
+Analysis::Analysis(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed,
+                   const ForeignFunctions& foreign)
+    : model_(std::make_unique<Model>(read_model(std::move(main), resolver, allowed, foreign))),
+      uses_(find_uses(*model_)) {}
 
 Analysis::~Analysis() = default;
 

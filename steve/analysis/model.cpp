@@ -19,9 +19,11 @@ void parse_file(Model& model, std::uint32_t number) {
 
 }  // namespace
 
-Model read_model(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed) {
+Model read_model(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed,
+                 const ForeignFunctions& foreign) {
   Model model;
-  CompileResult result = compile(std::move(main), resolver, allowed);
+  CompileResult result = compile(std::move(main), resolver, allowed, foreign);
+  model.foreign = foreign;
   model.sources = std::move(result.sources);
   model.diagnostics = result.diagnostics.all();
   const std::size_t loaded = model.sources.size();

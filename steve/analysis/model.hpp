@@ -55,6 +55,7 @@ struct Model {
   std::vector<Diagnostic> diagnostics;
   std::vector<FileModel> files;  // as numbered in `sources`
   Defines defines;
+  ForeignFunctions foreign;
   std::vector<SymbolInfo> symbols;
   std::vector<KnownType> types;  // of the symbols that are variables, parameters, keywords
   std::vector<ClassModel> classes;
@@ -82,7 +83,8 @@ struct Scope {
 };
 
 /// Compile the program for its diagnostics, then read all its files and the rest of the class library.
-Model read_model(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed);
+Model read_model(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed,
+                 const ForeignFunctions& foreign);
 
 /// Symbols of all files and functions, and the tables of names; the trees must have been read (symbols.cpp).
 void make_symbols(Model& model);

@@ -15,7 +15,11 @@ class SymbolMaker {
 
   void make() {
     for (std::uint32_t file = 0; file < model_.files.size(); ++file) module(file);
-    for (const Native& native : functions()) function(native);
+    for (const Native& native : functions()) {
+      const FunctionNote* note = function_note(native.name, native.signature.find(':'));
+      function(native.name, native.signature, note, note ? note->note : "");
+    }
+    for (const auto& foreign : model_.foreign) function(foreign->name(), foreign->signature(), nullptr, foreign->doc());
     for (ClassModel& cls : model_.classes) {
       const std::size_t parent = model_.class_named(cls.tree->parent);
       if (parent != kNoIndex && &model_.classes[parent] != &cls) cls.parent = parent;
@@ -154,15 +158,13 @@ class SymbolMaker {
     }
   }
 
-  void function(const Native& native) {
+  void function(std::string_view name, std::string_view letters, const FunctionNote* note, std::string_view doc) {
     library_ = loaded_ = true;
     owner_.clear();
-    const std::size_t colon = native.signature.find(':');
-    const FunctionNote* note = function_note(native.name, colon);
-    SymbolInfo& symbol = add(NameKind::Function, std::string(native.name), kNoIndex, {}, {});
-    symbol.signature = function_signature(native.name, native.signature, note);
-    symbol.type = type_of_letter(native.signature[colon + 1]);
-    if (note != nullptr) symbol.doc = note->note;
+    SymbolInfo& symbol = add(NameKind::Function, std::string(name), kNoIndex, {}, {});
+    symbol.signature = function_signature(name, letters, note);
+    symbol.type = type_of_letter(letters.back());
+    symbol.doc = doc;
     model_.functions.emplace(symbol.name, last());
   }
 

@@ -145,22 +145,26 @@ class TypeFinder {
 
   KnownType function(const ast::FunctionCall& f) const {
     if (f.name == "getController") return of(TypeKind::Object, model_.controller);
-    for (const Native& native : functions()) {
-      if (native.name != f.name) continue;
-      switch (native.signature.back()) {
-        case 'i': return of(TypeKind::Int);
-        case 'd': return of(TypeKind::Double);
-        case 'v': return of(TypeKind::Vector);
-        case 'm': return of(TypeKind::Matrix);
-        case 's': return of(TypeKind::String);
-        case 'o': return of(TypeKind::Object);
-        case 'l': return of(TypeKind::List);
-        case 'h': return of(TypeKind::Hash);
-        case 'p': return of(TypeKind::Pointer);
-        default: return {};
-      }
-    }
+    for (const Native& native : functions())
+      if (native.name == f.name) return of_letter(native.signature.back());
+    for (const auto& foreign : model_.foreign)
+      if (foreign->name() == f.name) return of_letter(foreign->signature().back());
     return {};
+  }
+
+  static KnownType of_letter(char letter) {
+    switch (letter) {
+      case 'i': return of(TypeKind::Int);
+      case 'd': return of(TypeKind::Double);
+      case 'v': return of(TypeKind::Vector);
+      case 'm': return of(TypeKind::Matrix);
+      case 's': return of(TypeKind::String);
+      case 'o': return of(TypeKind::Object);
+      case 'l': return of(TypeKind::List);
+      case 'h': return of(TypeKind::Hash);
+      case 'p': return of(TypeKind::Pointer);
+      default: return {};
+    }
   }
 
   KnownType chain(const ast::Chain& c) const {

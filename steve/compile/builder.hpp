@@ -16,7 +16,7 @@ namespace breve::steve {
 
 class ProgramBuilder final : public CompileScope {
  public:
-  ProgramBuilder(ModuleResolver& resolver);
+  ProgramBuilder(ModuleResolver& resolver, const ForeignFunctions& foreign);
   CompileResult build(ModuleSource main, const AllowedLints& allowed);
 
   /// One of the library's is loaded if the program has none of that name.

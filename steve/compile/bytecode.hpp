@@ -107,6 +107,7 @@ namespace breve::steve {
   X(Broadcast)    /* any a; object b; c: list slot, counter slot c+... ext words: counter slot, jump when empty */ \
   X(BroadcastNext)/* object b from list c; ext words: counter slot, jump back */ \
   X(Function)     /* native function imm, arguments from slot a */ \
+  X(Foreign)      /* foreign function imm, likewise */ \
   X(Interpolate)  /* string a from b.. (any), c values; ext.imm: literal texts */ \
   X(Print)        /* any a; b: 1 space after, 2 newline after */ \
   X(Free) X(Die) \

@@ -51,7 +51,7 @@ Operand FunctionCompiler::function_call(const ast::FunctionCall& f, const ast::E
   if (f.name == "atan2" && f.arguments.size() == 1)
     builder_.lint(e.span, "lint-one-argument-atan2", "atan2 with one argument is atan",
                   "for an angle in all four quadrants write atan2(y, x)");
-  const auto signature = entry->native->signature;
+  const auto signature = entry->signature;
   std::vector<StaticType> types;
   for (std::size_t i = 0; i < f.arguments.size(); ++i) types.push_back(type_of_letter(signature[i]));
   const auto registers = emit_.block(types);
@@ -63,7 +63,7 @@ Operand FunctionCompiler::function_call(const ast::FunctionCall& f, const ast::E
   }
   emit_.at(e.span);
   const auto type = signature.back() == 'n' ? StaticType::Null : type_of_letter(signature.back());
-  emit_.emit_imm(Op::Function, registers.empty() ? std::uint16_t{0} : registers[0].slot,
+  emit_.emit_imm(entry->foreign ? Op::Foreign : Op::Function, registers.empty() ? std::uint16_t{0} : registers[0].slot,
                  static_cast<std::int32_t>(entry->number));
   emit_.release_block(registers);
   return result_register(type, into);

@@ -84,6 +84,7 @@ Program::Program(const Program& base, std::size_t room)
       code_(std::make_unique<CodeTables>()),
       diagnostics_(base.diagnostics_),
       fingerprint_(base.fingerprint_),
+      foreign_(base.foreign_),
       fragment_methods_(base.fragment_methods_) {
   copy_with_room(base.code_->strings, code_->strings, room);
   copy_with_room(base.code_->texts, code_->texts, room);
@@ -93,7 +94,7 @@ Program::Program(const Program& base, std::size_t room)
 }
 
 Fragments::Fragments(const Program& base)
-    : program_(new Program(base, kRoom)), functions_(CompileScope::function_table()) {
+    : program_(new Program(base, kRoom)), functions_(CompileScope::function_table(base.foreign())) {
   program_->symbols_.intern(kMethodName);
   program_->symbols_.intern(kSessionVariable);
 }

@@ -30,8 +30,9 @@ bool mentions(const LibraryFile& file, std::string_view name) {
 }
 }  // namespace
 
-ProgramBuilder::ProgramBuilder(ModuleResolver& resolver)
-    : CompileScope(std::shared_ptr<Program>(new Program), function_table()), resolver_(resolver) {
+ProgramBuilder::ProgramBuilder(ModuleResolver& resolver, const ForeignFunctions& foreign)
+    : CompileScope(std::shared_ptr<Program>(new Program), function_table(foreign)), resolver_(resolver) {
+  program_->foreign_ = foreign;
   for (const auto& native : library_natives()) natives_.emplace(native.name, &native);
 }
 
@@ -270,8 +271,9 @@ void ProgramBuilder::choose_controller() {
   }
 }
 
-CompileResult compile(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed) {
-  return ProgramBuilder(resolver).build(std::move(main), allowed);
+CompileResult compile(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed,
+                      const ForeignFunctions& foreign) {
+  return ProgramBuilder(resolver, foreign).build(std::move(main), allowed);
 }
 
 }  // namespace breve::steve

@@ -13,6 +13,7 @@
 
 #include "runtime/base/ids.hpp"
 #include "steve/compile/lint_table.hpp"
+#include "steve/machine/foreign.hpp"
 #include "steve/machine/native.hpp"
 #include "steve/machine/value.hpp"
 #include "steve/syntax/diagnostic.hpp"
@@ -165,6 +166,7 @@ class Program {
   std::uint64_t fingerprint() const { return fingerprint_; }                   // of all sources, for snapshots
   const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }  // warnings
   const CodeTables& code() const { return *code_; }
+  const ForeignFunctions& foreign() const { return foreign_; }
 
  private:
   friend class CompileScope;
@@ -181,6 +183,7 @@ class Program {
   std::unique_ptr<CodeTables> code_;
   std::vector<Diagnostic> diagnostics_;
   std::uint64_t fingerprint_ = 0;
+  ForeignFunctions foreign_;
   std::vector<std::shared_ptr<MethodInfo>> fragment_methods_;  // outlive their code: profiles name them
 };
 
@@ -206,7 +209,9 @@ struct CompileResult {
 
 /// Compile a main file and all that it loads. The class library is always there for @use, without a search path.
 /// @param allowed  codes of lints that are not to be reported
-CompileResult compile(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed = {});
+/// @param foreign  functions besides those of the language, each with a name of its own
+CompileResult compile(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed = {},
+                      const ForeignFunctions& foreign = {});
 
 /// A file of the embedded class library: the one named "NAME.tz", or the one that defines class NAME. Null if none.
 struct LibraryFile {

@@ -3,10 +3,13 @@
 
 namespace breve::steve {
 
-std::shared_ptr<const CompileScope::FunctionTable> CompileScope::function_table() {
+std::shared_ptr<const CompileScope::FunctionTable> CompileScope::function_table(const ForeignFunctions& foreign) {
   auto table = std::make_shared<FunctionTable>();
   std::uint32_t number = 0;
-  for (const auto& native : functions()) table->emplace(native.name, FunctionEntry{number++, &native});
+  for (const auto& native : functions()) table->emplace(native.name, FunctionEntry{number++, native.signature});
+  number = 0;
+  for (const auto& function : foreign)
+    table->emplace(function->name(), FunctionEntry{number++, function->signature(), true});
   return table;
 }
 
@@ -32,7 +35,7 @@ std::optional<CompileScope::FunctionEntry> CompileScope::find_function(std::stri
                                                                        std::size_t arguments) const {
   const auto [first, last] = functions_->equal_range(name);
   for (auto at = first; at != last; ++at)
-    if (at->second.native->signature.find(':') == arguments) return at->second;
+    if (at->second.signature.find(':') == arguments) return at->second;
   return std::nullopt;
 }
 

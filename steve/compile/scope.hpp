@@ -18,10 +18,11 @@ class CompileScope {
  public:
   struct FunctionEntry {
     std::uint32_t number;
-    const Native* native;
+    std::string_view signature;  // as Native::signature
+    bool foreign = false;        // then `number` counts the program's ForeignFunctions
   };
   using FunctionTable = std::multimap<std::string_view, FunctionEntry>;
-  static std::shared_ptr<const FunctionTable> function_table();
+  static std::shared_ptr<const FunctionTable> function_table(const ForeignFunctions& foreign);
 
   CompileScope(std::shared_ptr<Program> program, std::shared_ptr<const FunctionTable> functions)
       : program_(std::move(program)), functions_(std::move(functions)) {}

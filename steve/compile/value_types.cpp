@@ -84,7 +84,7 @@ StaticType ValueTypes::of(const ast::Expr& e, const ast::Method& method, const C
                         },
                         [&](const ast::FunctionCall& f) {
                           const auto entry = scope_.find_function(f.name, f.arguments.size());
-                          return entry ? of_letter(entry->native->signature.back()) : StaticType::Any;
+                          return entry ? of_letter(entry->signature.back()) : StaticType::Any;
                         },
                         [&](const ast::Call& c) { return of_call(c, cls); },
                         [](const auto&) { return StaticType::Any; },

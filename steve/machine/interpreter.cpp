@@ -753,6 +753,13 @@ void Machine::execute(std::size_t depth) {
     LEAVE_IF_FREED();
     NEXT();
   }
+  op_Foreign:
+    SAVE();
+    poll();
+    call_foreign(static_cast<std::size_t>(in->imm()), *self, &R(in->a));
+    COUNT_CALL();
+    LEAVE_IF_FREED();
+    NEXT();
   op_Interpolate: {
     const Instruction& ext = *pc++;
     SAVE();

@@ -328,6 +328,7 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   void apply_steps(const Plan& plan, const Slot* caller, Slot* callee);
   void convert_argument(const PlanStep& step, const Slot* caller, Slot* callee);
   void call_native(const Plan& plan, Instance& receiver, const Slot* caller);
+  void call_foreign(std::size_t number, Instance& self, const Slot* args);  // foreign.cpp; leaves the result register
   void check_class(Instance* object, const ClassInfo& cls, std::string_view what);
 
   // call_errors.cpp

@@ -5,12 +5,15 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "steve/machine/files.hpp"
+#include "steve/machine/foreign.hpp"
+#include "steve/machine/value.hpp"
 
 namespace breve::steve {
 
@@ -23,6 +26,9 @@ struct MachineHost {
   std::function<std::unique_ptr<FileReader>(std::string_view name, std::string& why)> open_for_reading;
   std::function<std::unique_ptr<FileWriter>(std::string_view name, bool append, std::string& why)> open_for_writing;
   std::function<std::string(std::string_view command)> system;  // run a shell command; empty: not allowed
+  // One of the functions that the program was compiled with; not empty if there are any. `self` is the calling
+  // instance.
+  std::function<Value(const ForeignFunction& function, Instance& self, std::span<const Value> arguments)> call_foreign;
   bool may_sleep = false, may_read_clock = false, may_draw_entropy = false;
   std::vector<std::string> arguments;  // [0] is the program file
   std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();

@@ -35,7 +35,7 @@ enum class ProfileKind : std::uint8_t {
 struct Callee {
   ProfileKind kind = ProfileKind::World;
   const void* key = nullptr;
-  std::string_view name;               // of what is neither method nor native; a literal
+  std::string_view name;               // of what is neither method nor native; a literal, or the program keeps it
   const ClassInfo* cls = nullptr;      // whose method it is; of Act: the class that `new` or `free` is about, or null
   const MethodInfo* method = nullptr;  // Method, Native
 
@@ -43,6 +43,7 @@ struct Callee {
     return {m.native ? ProfileKind::Native : ProfileKind::Method, &m, {}, m.owner, &m};
   }
   static Callee of(const breve::steve::Native& f) { return {ProfileKind::Function, &f, f.name, nullptr, nullptr}; }
+  static Callee of(const ForeignFunction& f) { return {ProfileKind::Function, &f, f.name(), nullptr, nullptr}; }
   bool same_as(const Callee& other) const {
     return key == other.key && kind == other.kind && name.data() == other.name.data();
   }

@@ -262,6 +262,23 @@ TEST(World, EvaluatesStatementsAndGoesOnWithAChangedProgram) {
   world.interrupt();
 }
 
+TEST(Functions, OfTheHostAnswerScriptsAndAreCounted) {
+  auto runtime = breve::Runtime::create().or_throw();
+  breve_function f = breve_function_default();
+  f.name = "seven";
+  f.result = BREVE_TYPE_INT;
+  f.call = [](void*, const breve_call*, breve_value* result) {
+    *result = breve::Value(7);
+    return BREVE_OK;
+  };
+  ASSERT_TRUE(runtime.add_function(f));
+  EXPECT_EQ(runtime.add_function(f).code(), BREVE_ERROR_ARGUMENT);
+  const char* const text = "@use Control.\nController A.\nControl : A { + to get: return seven(). }\n";
+  auto world = runtime.world(runtime.compile("a.tz", text).or_throw()).or_throw();
+  EXPECT_EQ(world.call(world.controller(), "get").or_throw().integer(), 7);
+  EXPECT_TRUE(world.charge(1));
+}
+
 TEST(Lints, AreAllowedByTheirCode) {
   auto runtime = breve::Runtime::create().or_throw();
   const char* text = "@use Control.\nController A.\nControl : A {\n  + to init: print 2 * 3 ^ 2.\n}\n";

@@ -10,6 +10,7 @@ void errors_suite(void);
 void evaluate_suite(void);
 void physics_budget_suite(void);
 void files_suite(void);
+void functions_suite(void);
 void images_suite(void);
 void input_suite(void);
 void moments_suite(void);
@@ -42,6 +43,7 @@ static const struct {
     {"evaluate", evaluate_suite},
     {"physics_budget", physics_budget_suite},
     {"files", files_suite},
+    {"functions", functions_suite},
     {"images", images_suite},
     {"input", input_suite},
     {"moments", moments_suite},

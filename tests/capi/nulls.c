@@ -14,6 +14,7 @@ static void null_handles_give_an_argument_error_or_nothing(void) {
   breve_diagnostic diagnostic;
   breve_class_info info;
   breve_stats stats = breve_stats_default();
+  const breve_function function = breve_function_default();
   double d[4] = {0};
   uint64_t hash;
   size_t size;
@@ -31,6 +32,8 @@ static void null_handles_give_an_argument_error_or_nothing(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_runtime_diagnostic(NULL, 0, &diagnostic));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_lint(0, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_runtime_allow_lint(NULL, "lint-shadow"));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_runtime_add_function(NULL, &function));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_charge(NULL, 1));
   CHECK(breve_program_class_count(NULL) == 0);
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_program_class(NULL, 0, &info));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_create(NULL, NULL, NULL, &world));
@@ -124,6 +127,7 @@ static void null_arguments_give_an_argument_error(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_program_compile(s.runtime, "x", "", 0, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_runtime_diagnostic(s.runtime, 0, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_runtime_allow_lint(s.runtime, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_runtime_add_function(s.runtime, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_program_class(s.program, 0, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_create(s.runtime, NULL, NULL, &w));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_create(s.runtime, s.program, NULL, NULL));

@@ -35,6 +35,20 @@ static breve_status do_files_release(place* p) {
 }
 static breve_status do_runtime_destroy(place* p) { return breve_runtime_destroy(p->runtime); }
 static breve_status do_runtime_allow(place* p) { return breve_runtime_allow_lint(p->runtime, "lint-unused-variable"); }
+static breve_status never_called(void* user, const breve_call* call, breve_value* result) {
+  (void)user, (void)call, (void)result;
+  return BREVE_OK;
+}
+static breve_status do_add_function(place* p) {
+  static int number;
+  char name[32];
+  breve_function function = breve_function_default();
+  sprintf(name, "function%d", number++);
+  function.name = name;
+  function.call = never_called;
+  return breve_runtime_add_function(p->runtime, &function);
+}
+static breve_status do_charge(place* p) { return breve_world_charge(p->world, 1); }
 static breve_status do_load(place* p) {
   breve_program* made = NULL;
   const breve_status status = breve_program_load(p->runtime, "there-is-none.tz", &made);
@@ -323,6 +337,7 @@ static const struct {
   int in_script, in_compilation; /* callbacks of a world that runs; callbacks of a compilation, its worlds being idle */
 } functions[] = {
     {"breve_runtime_allow_lint", do_runtime_allow, WORKS, WORKS | BUSY},
+    {"breve_runtime_add_function", do_add_function, WORKS, BUSY},
     {"breve_program_load", do_load, NOTHING, BUSY},
     {"breve_program_compile", do_compile, WORKS, BUSY},
     {"breve_analysis_create", do_analyse, WORKS, BUSY},
@@ -331,6 +346,7 @@ static const struct {
     {"breve_world_advance", do_advance, BUSY, WORKS},
     {"breve_world_set_paused", do_set_paused, WORKS, WORKS},
     {"breve_world_draw_random", do_random, WORKS, WORKS},
+    {"breve_world_charge", do_charge, WORKS, WORKS},
     {"breve_world_objects", do_objects, WORKS, WORKS},
     {"breve_object_is_a", do_is_a, WORKS, WORKS},
     {"breve_object_create and _free", do_create_and_free, WORKS, WORKS},

@@ -110,6 +110,28 @@ breve_status runtime_allow(Caller& c) {
   return breve_runtime_allow_lint(runtime, code);
 }
 
+// --- functions of the host -------------------------------------------------------------------------------------------
+
+breve_status first_argument(void*, const breve_call* call, breve_value* result) {
+  if (call->count != 0) *result = call->arguments[0];
+  return BREVE_OK;
+}
+breve_status runtime_add_function(Caller& c) {
+  static constexpr const char* kNames[] = {"hostOne", "hostTwo", "hostThree", "sqrt", "1st", ""};
+  static constexpr std::uint32_t kTypes[] = {BREVE_TYPE_NULL,   BREVE_TYPE_INT,     BREVE_TYPE_MATRIX,
+                                             BREVE_TYPE_STRING, BREVE_TYPE_POINTER, 4711};
+  breve_runtime* runtime = c.runtime();
+  breve_function f = breve_function_default();
+  f.name = c.text_or_null(c.choose().one_of(kNames));
+  const std::uint32_t parameter = c.choose().one_of(kTypes);
+  f.parameters = &parameter;
+  f.parameter_count = c.chance(80) ? 1 : 0;
+  f.result = c.choose().one_of(kTypes);
+  f.call = c.chance(90) ? first_argument : nullptr;
+  if (!f.call || f.result >= BREVE_TYPE_POINTER) c.expect_refusal();
+  return breve_runtime_add_function(runtime, &f);
+}
+
 // --- programs --------------------------------------------------------------------------------------------------------
 
 constexpr std::size_t kMostPrograms = 4;
@@ -220,6 +242,7 @@ constexpr Function kFunctions[] = {
     {"breve_lint_count", lint_count},
     {"breve_lint", lint, kNotFound},
     {"breve_runtime_allow_lint", runtime_allow, kNotFound | kBusy},
+    {"breve_runtime_add_function", runtime_add_function, kBusy},
     {"breve_program_load", program_load, kCompilation},
     {"breve_program_compile", program_compile, kCompilation},
     {"breve_program_create_library", program_create_library, kCompilation},

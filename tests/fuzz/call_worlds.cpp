@@ -158,6 +158,10 @@ breve_status world_random(Caller& c) {
   if (number) require(*number >= 0 && *number < 1, "a random number is not in [0, 1)");
   return status;
 }
+breve_status world_charge(Caller& c) {
+  breve_world* world = c.world();
+  return breve_world_charge(world, c.choose().below(100));
+}
 breve_status world_interrupt(Caller& c) {
   if (c.chance(30)) breve_world_interrupt(c.world());
   return BREVE_OK;
@@ -295,6 +299,7 @@ constexpr Function kFunctions[] = {
     {"breve_world_set_paused", world_set_paused},
     {"breve_world_seed", world_seed, kPlain},
     {"breve_world_draw_random", world_random},
+    {"breve_world_charge", world_charge, kScript},
     {"breve_world_interrupt", world_interrupt, kPlain},
     {"breve_world_queue_key", world_key, 0, 2},
     {"breve_world_queue_click", world_click, kStale},

@@ -1347,6 +1347,68 @@ BREVE_API breve_status breve_objects_call_prepared(breve_world* world, const bre
                                                    breve_selector selector, const breve_value* arguments,
                                                    size_t argument_count, breve_value* results);
 
+/* ---- functions of the host --------------------------------------------------------------------------------------- */
+
+/* One call of a function of the host, for breve_function_fn; good until that returns. The library fills it in. */
+typedef struct breve_call {
+  size_t struct_size; /* of the library's breve_call: later libraries append fields */
+  breve_world* world;
+  breve_object self; /* the object whose method calls */
+  const breve_value* arguments; /* converted to the types that breve_function.parameters names */
+  size_t count;                 /* breve_function.parameter_count */
+  breve_write_fn reason;        /* to be called with `sink` and why the call fails, as a sentence without period */
+  void* sink;
+} breve_call;
+
+/* A script calls a function of the host. The callback may call any function of this header: call methods, create and free
+   objects, `self` too (the calling method ends then when the callback returns). Those that cannot work inside a running
+   script give BREVE_ERROR_BUSY.
+   @param user    breve_function.user
+   @param result  no value; to be filled in. It is converted to breve_function.result
+   Returns BREVE_OK. Any other status is a run-time error in the script, at the call: with the reason that was written, else
+   with the message of the world's last error if that has the same status, else with the status's name. BREVE_ERROR_BUDGET,
+   _DEPTH, _MEMORY and _INTERRUPTED stay what they are. The status of a call that failed in here can be handed on. */
+typedef breve_status (*breve_function_fn)(void* user, const breve_call* call, breve_value* result);
+
+/* A function that scripts call as they call those of the language: `worldHeight(x, y)`. */
+typedef struct breve_function {
+  size_t struct_size;         /* as breve_function_default gives it */
+  const char* name;           /* letters, digits and '_'; copied. Must be given */
+  const char* doc;            /* what it does, for editors; copied. NULL: nothing. Default NULL */
+  const uint32_t* parameters; /* `parameter_count` of breve_type, copied: arguments are converted as in an assignment;
+                                 BREVE_TYPE_NULL takes any value as it is. NULL only if there are none. Default NULL */
+  size_t parameter_count;     /* at most 8. Default 0 */
+  uint32_t result;            /* breve_type; BREVE_TYPE_NULL: any value, or none. Default BREVE_TYPE_NULL */
+  breve_function_fn call;     /* must be given */
+  void* user;                 /* handed to `call`. Default NULL */
+  void (*destroy)(void* user); /* called once, when neither the runtime nor a program or world of it can call the function
+                                  any more, by the thread that destroys the last of them; it must not use any of these.
+                                  NULL: nothing to do. Default NULL */
+} breve_function;
+
+/* The defaults named above. */
+static inline breve_function breve_function_default(void) {
+  breve_function function;
+  breve_clear(&function, sizeof function);
+  function.struct_size = sizeof function;
+  return function;
+}
+
+/* Give a function to all programs that are compiled and analysed on this runtime from now on. Programs that are there
+   already do not know it. The function is not part of snapshots: the host answers for it that a world goes on in the same
+   way after a restore. A force method, which may run several times for one moment, may not call it. Runs no script.
+   @param function  copied
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, no name or no `call`, a name that programs cannot call or that
+   belongs to the language or to another function of this runtime, too many parameters, or a type that there is none of or
+   that is BREVE_TYPE_POINTER: `destroy` is not called then. BREVE_ERROR_BUSY from a callback of a compilation. */
+BREVE_API breve_status breve_runtime_add_function(breve_runtime* runtime, const breve_function* function);
+
+/* Count the work of a function of the host against the budget of the running script, as so many turns of a loop. The call
+   of the function counts as one. Where nothing runs, or without a budget, it counts nothing.
+   BREVE_OK; BREVE_ERROR_BUDGET: the budget is used up; BREVE_ERROR_INTERRUPTED: breve_world_interrupt. Return these from
+   the callback; if it goes on, the script ends when it returns. */
+BREVE_API breve_status breve_world_charge(breve_world* world, uint64_t turns);
+
 /* ---- input ------------------------------------------------------------------------------------------------------- */
 
 /* Queue the press (down) or release of a key; the controller's handler runs at the start of the next iteration.

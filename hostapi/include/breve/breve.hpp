@@ -540,6 +540,8 @@ class World {
   Status reload(const Program& program) { return status(breve_world_reload(get(), program.get())); }
   /// Stop the script that runs; from any thread, or a signal handler.
   void interrupt() noexcept { breve_world_interrupt(get()); }
+  /// Count the work of a function of the host, as so many turns of a loop.
+  Status charge(std::uint64_t turns) { return status(breve_world_charge(get(), turns)); }
 
   // --- input, snapshots, costs ---------------------------------------------------------------------------------------
   Status key(const char* key, bool down = true) { return status(breve_world_queue_key(get(), key, down)); }
@@ -781,6 +783,8 @@ class Runtime {
     const breve_status s = breve_world_create(get(), program.get(), &config, &made);
     return {status(s), World(made)};
   }
+  /// A function for the programs that are compiled from now on; see breve_function_default().
+  Status add_function(const breve_function& function) { return status(breve_runtime_add_function(get(), &function)); }
   /// Do not report lints of that code: "lint-unused-variable".
   Status allow(const char* code) { return status(breve_runtime_allow_lint(get(), code)); }
   /// What the last compilation had to say; good until the next one.
