@@ -300,6 +300,9 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   const MethodInfo* choose(const CallSite& site, const ClassInfo& cls) const;
   static bool accepts(const MethodInfo& method, const CallSite& site);
 
+  // foreign.cpp
+  void call_foreign(std::size_t number, Instance& self, const Slot* args);  // leaves the result register
+
   // call_errors.cpp
   [[noreturn]] void fail_call(const CallSite& site, const ClassInfo& cls, const MethodInfo* best) const;
   [[noreturn]] void fail_unknown_method(const CallSite& site, const ClassInfo* start) const;
@@ -328,7 +331,6 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   void apply_steps(const Plan& plan, const Slot* caller, Slot* callee);
   void convert_argument(const PlanStep& step, const Slot* caller, Slot* callee);
   void call_native(const Plan& plan, Instance& receiver, const Slot* caller);
-  void call_foreign(std::size_t number, Instance& self, const Slot* args);  // foreign.cpp; leaves the result register
   void check_class(Instance* object, const ClassInfo& cls, std::string_view what);
 
   // call_errors.cpp
