@@ -16,18 +16,21 @@ bool is_stale(const Dynamics::Core& core, const TreeLink& link) {
          !(bodies.mass_properties(link.body) == link.solid);
 }
 
-bool has_moved_anchor(const Dynamics::Core& core, const Tree& tree) {
+bool has_changed_holder(const Dynamics::Core& core, const Tree& tree) {
   const Bodies& bodies = *core.bodies;
-  return std::any_of(tree.anchors.begin(), tree.anchors.end(), [&bodies](const TreeAnchor& anchor) {
+  const auto changed = [&bodies](const TreeAnchor& anchor) {
     return !bodies.used(anchor.body) || bodies.dynamic(anchor.body) ||
            bodies.location(anchor.body) != anchor.pose.location ||
            bodies.orientation(anchor.body).coeffs() != anchor.pose.orientation.coeffs();
-  });
+  };
+  const auto freed = [&bodies](BodyIndex body) { return bodies.dynamic(body); };
+  return std::any_of(tree.anchors.begin(), tree.anchors.end(), changed) ||
+         std::any_of(tree.ring_holders.begin(), tree.ring_holders.end(), freed);
 }
 
 bool is_stale(const Dynamics::Core& core, const Tree& tree) {
-  return has_moved_anchor(core, tree) || std::any_of(tree.links.begin(), tree.links.end(),
-                                                     [&core](const TreeLink& link) { return is_stale(core, link); });
+  return has_changed_holder(core, tree) || std::any_of(tree.links.begin(), tree.links.end(),
+                                                       [&core](const TreeLink& link) { return is_stale(core, link); });
 }
 
 void Dynamics::Core::note_written(BodyIndex body) {
@@ -105,7 +108,7 @@ void Dynamics::Core::drop_stale_trees() {
       stale.push_back(known->tree);
   }
   for (const std::uint32_t index : tree_order)
-    if (has_moved_anchor(*this, *trees[index])) stale.push_back(index);
+    if (has_changed_holder(*this, *trees[index])) stale.push_back(index);
   if (stale.empty()) return;
   std::sort(stale.begin(), stale.end());
   const std::pmr::vector<std::uint32_t> all(tree_order, memory);

@@ -90,7 +90,8 @@ struct Tree : InMemory {
   bool anchored = false;  // held by the world
   bool loose = false;     // it has a free root, and no joint connects it with what does not move by itself
   std::pmr::vector<TreeAnchor> anchors;
-  double step = 0;              // s, that step control would try next
+  std::pmr::vector<BodyIndex> ring_holders;  // bodies that do not move by themselves, at which rings end
+  double step = 0;                           // s, that step control would try next
   articulated::Vector mean;     // (nv) acceleration in the last smooth motion: there the next one's search begins
   int slot = -1;                // in its island
   bool driven = false;          // some joint has a motor, a damper or a force

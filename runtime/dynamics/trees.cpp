@@ -270,6 +270,9 @@ std::unique_ptr<Tree> make_tree(const Dynamics::Core& core, const Plan& plan) {
   tree->anchors = anchors;
   tree->anchored = plan.links().front().joint != kNoJoint;
   tree->rings.assign(plan.rings().begin(), plan.rings().end());
+  for (const JointIndex ring : tree->rings)
+    for (const BodyIndex end : {core.joints[ring].is.parent, core.joints[ring].is.child})
+      if (end != kNoBody && !core.bodies->dynamic(end)) tree->ring_holders.push_back(end);
   tree->reserve_rows();
   const auto within = [&links](BodyIndex body) {
     return std::any_of(links.begin(), links.end(), [body](const TreeLink& link) { return link.body == body; });

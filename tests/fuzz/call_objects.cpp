@@ -149,7 +149,7 @@ constexpr Function kFunctions[] = {
     {"breve_object_create", object_create, kScript | kNotFound, 4},
     {"breve_object_free", object_free, kScript | kStale, 2},
     {"breve_object_pose", object_pose, kBody},
-    {"breve_object_set_pose", set_pose<breve_object_set_pose>, kBody, 2},
+    {"breve_object_set_pose", set_pose<breve_object_set_pose>, kBody | kScriptError, 2},
     {"breve_object_set_target", set_pose<breve_object_set_target>, kBody},
     {"breve_object_set_assembly_pose", set_pose<breve_object_set_assembly_pose>, kBody | kScriptError},
     {"breve_object_velocity", get_numbers<breve_object_velocity, 3>, kBody},

@@ -591,8 +591,9 @@ typedef struct breve_pose {
 /* Where an object is. BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_pose(const breve_world* world, breve_object object, breve_pose* pose);
 
-/* Put an object somewhere at once. The quaternion may be of any length but 0.
-   BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: not finite, or a quaternion of length 0; nothing is changed. */
+/* Put an object somewhere at once; a link takes what joints connect it to along. The quaternion may be of any length but 0.
+   BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: not finite, or a quaternion of length 0; nothing is changed;
+   BREVE_ERROR_SCRIPT: the joints' state cannot be computed with. */
 BREVE_API breve_status breve_object_set_pose(breve_world* world, breve_object object, const breve_pose* pose);
 
 /* Let an object without physics be somewhere at the end of the next iteration: it goes straight and evenly, pushes and
@@ -1322,7 +1323,7 @@ BREVE_API breve_status breve_objects_property(const breve_world* world, const br
                                               uint32_t property, const breve_array* array);
 
 /* BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: a number is not finite, or what the function for one object
-   refuses. If memory ends in the middle, the first rows are written. */
+   refuses; BREVE_ERROR_SCRIPT: as breve_object_set_pose. If memory ends in the middle, the first rows are written. */
 BREVE_API breve_status breve_objects_set_property(breve_world* world, const breve_object* objects, size_t count,
                                                   uint32_t property, const breve_array* array);
 
