@@ -68,9 +68,9 @@ class Image {
  private:
   std::size_t at(int x, int y, Channel channel) const;
 
+  std::pmr::vector<std::uint8_t> pixels_;  // first: an assignment that finds no memory for them changes nothing
   int width_ = 0, height_ = 0;
   bool changed_ = false;
-  std::pmr::vector<std::uint8_t> pixels_;
 };
 
 /// The bytes of a 16-bit grayscale PNG, rows from the top: 0 is black, 1 white; values are clamped, NaN is black.

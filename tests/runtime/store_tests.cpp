@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <new>
 
 #include "runtime/base/error.hpp"
 #include "runtime/store/image.hpp"
@@ -69,6 +72,16 @@ TEST(Image, PlacesAndSizesAreChecked) {
   EXPECT_NE(message(ErrorCode::Argument, [] { Image(1, 1 << 30); }).find("1073741824"), std::string::npos);
   EXPECT_NE(message(ErrorCode::Argument, [&] { image.set_bytes(std::vector<std::uint8_t>(5)); }).find("must be 24"),
             std::string::npos);
+}
+
+TEST(Image, AnAssignmentThatFindsNoMemoryChangesNothing) {
+  std::array<std::byte, 256> room;
+  std::pmr::monotonic_buffer_resource memory(room.data(), room.size(), std::pmr::null_memory_resource());
+  Image image(2, 3, &memory);
+  EXPECT_THROW(image = Image(64, 64), std::bad_alloc);
+  EXPECT_EQ(image.width(), 2);
+  EXPECT_EQ(image.height(), 3);
+  EXPECT_EQ(image.get(1, 2, Channel::Alpha), 1);
 }
 
 TEST(ImageFile, PngRoundTripKeepsEveryByte) {
