@@ -6,37 +6,42 @@
  *     breve_world_create(runtime, program, NULL, &world);
  *     while (!breve_world_ended(world) && breve_world_step(world) == BREVE_OK) draw(world);
  *
- * A runtime is what the host gives: memory, callbacks, modules. A program is compiled classes; it never changes. A
- * world is one running simulation of a program. An object is one instance in a world. There is nothing to initialise
- * and no state outside these: two runtimes in one process share nothing.
+ * A runtime is what the host provides: memory, callbacks, modules. A program is a set of compiled classes; it never
+ * changes. A world is one running simulation of a program. An object is one instance in a world. There is no global
+ * initialisation and no state outside these: two runtimes in one process share nothing.
  *
  * Rules that hold for every function, unless its comment says otherwise:
- * - Errors are values. A function that can fail returns a breve_status; results go through out-parameters, which are
+ * - Errors are values. A function that can fail returns a breve_status. Results go through out-parameters, which are
  *   written only on BREVE_OK. The text of an error is in breve_world_last_error or breve_runtime_last_error. The
- *   library never aborts, never prints and never exits.
- * - A NULL handle, NULL text or NULL out-parameter gives BREVE_ERROR_ARGUMENT, or 0, false or NULL from a function that
- *   returns its result. Numbers that are NaN or infinite where a finite one is needed give BREVE_ERROR_ARGUMENT.
- * - An id of an object that is gone gives BREVE_ERROR_STALE; it never names another object, whatever is restored. So does
- *   an id of another world of the same runtime. The null object, where a live one is needed, gives BREVE_ERROR_ARGUMENT.
- * - Any function may run out of memory and give BREVE_ERROR_MEMORY. Any that reads or changes joints, springs or the
- *   energy of bodies may give BREVE_ERROR_SCRIPT where their state cannot be computed with: numbers that overflow.
- * - Texts are UTF-8 or plain bytes, ended by a zero byte; a text given with a size may hold zero bytes.
- * - Threads: a world, with all its objects, is used by one thread at a time; so is a runtime while it compiles or makes
- *   a world. A program may be used by any number of threads. Different worlds may be used by different threads; then
- *   the runtime's callbacks are called by those threads.
+ *   library never aborts, prints or exits.
+ * - A NULL handle, NULL text or NULL out-parameter gives BREVE_ERROR_ARGUMENT; a function that returns its result
+ *   directly returns 0, false or NULL. Numbers that are NaN or infinite where a finite one is needed give
+ *   BREVE_ERROR_ARGUMENT.
+ * - An id of an object that no longer exists gives BREVE_ERROR_STALE; it never names another object, whatever is
+ *   restored. An id of another world of the same runtime gives BREVE_ERROR_STALE too. The null object, where a live one
+ *   is needed, gives BREVE_ERROR_ARGUMENT.
+ * - Any function may run out of memory and return BREVE_ERROR_MEMORY. Any function that reads or changes joints,
+ *   springs or the energy of bodies may return BREVE_ERROR_SCRIPT if their state cannot be computed because numbers
+ *   overflow.
+ * - Texts are UTF-8 or plain bytes, terminated by a zero byte; a text that is given with a size may contain zero bytes.
+ * - Threads: a world, with all its objects, is used by one thread at a time; so is a runtime while it compiles or
+ *   creates a world. A program may be used by any number of threads. Different worlds may be used by different threads;
+ *   the runtime's callbacks are then called by those threads.
  * - Functions marked "Runs script" may call the callbacks of the runtime. A callback may call any function of this
- *   header; one that cannot work inside a running script says so and gives BREVE_ERROR_BUSY there.
+ *   header; a function that cannot work inside a running script says so and returns BREVE_ERROR_BUSY there.
  * - Fields that hold an enumerator are uint32_t; their comment names the enumeration.
- * - Structs that begin with struct_size grow: later headers append fields. Their initialisers, breve_X_default, are
- *   compiled into the host, so that struct_size says how much of the struct the host knows. A function reads and writes
- *   no more than that; fields that the host does not know have their defaults, and a setter leaves them as they are. A
- *   host runs with the library of its header or a later one: a struct_size that is larger than the library's is
- *   BREVE_ERROR_ARGUMENT. All other structs are frozen, as are enumerators: they never change while BREVE_ABI stays, which
- *   rises with whatever would break a host that is not compiled again. breve_runtime_create compares it.
- * - Names: the thing, then what is done to it. breve_THING_PROPERTY reads and breve_THING_set_PROPERTY writes a property;
- *   a plural is a list, and _count goes with functions that take an index. _get, _set and _size are for what is kept by
- *   name, key or index: variables, lists, hashes. _create and _destroy are for handles; an object, too, is made by
- *   _create, and freed by _free, as `free` does in scripts. _queue_ is for input, which waits for the next iteration.
+ * - Structs that begin with struct_size may grow: later headers append fields. Their initialisers, breve_X_default, are
+ *   compiled into the host, so that struct_size states how much of the struct the host knows. A function never reads or
+ *   writes beyond it; fields that the host does not know have their defaults, and a setter leaves them unchanged. A
+ *   host runs with the library of its header or a later one: a struct_size that is larger than the library's gives
+ *   BREVE_ERROR_ARGUMENT. All other structs and all enumerators are frozen: they do not change as long as BREVE_ABI
+ *   stays the same. BREVE_ABI rises with every change that would break a host that is not recompiled;
+ *   breve_runtime_create compares it.
+ * - Names: the thing comes first, then what is done to it. breve_THING_PROPERTY reads a property and
+ *   breve_THING_set_PROPERTY writes it; a plural denotes a list, and _count belongs to functions that take an index.
+ *   _get, _set and _size are for items that are accessed by name, key or index: variables, lists, hashes. _create and
+ *   _destroy are for handles; objects are also created by _create, but freed by _free, as `free` does in scripts.
+ *   _queue_ is for input, which waits for the next iteration.
  * - Units: lengths, masses and angles are the program's own (length units, kg, rad); times are simulated seconds.
  */
 #ifndef BREVE_BREVE_H
@@ -62,7 +67,7 @@
 extern "C" {
 #endif
 
-/* For the initialisers below: all bytes are 0, those between the fields too. */
+/* For the initialisers below: sets all bytes to 0, including the padding between fields. */
 static inline void breve_clear(void* bytes, size_t size) {
   size_t i;
   for (i = 0; i < size; ++i) ((unsigned char*)bytes)[i] = 0;
@@ -70,13 +75,13 @@ static inline void breve_clear(void* bytes, size_t size) {
 
 /* ---- versions ---------------------------------------------------------------------------------------------------- */
 
-/* Number of the binary interface that this header describes. A library with another number is another interface. */
+/* Number of the binary interface that this header describes. A library with a different number is incompatible. */
 #define BREVE_ABI 4
 
 /* "major.minor.patch" of the library. Never NULL. */
 BREVE_API const char* breve_version(void);
 
-/* BREVE_ABI of the library, to compare with that of the header. */
+/* BREVE_ABI of the library, to compare with the one of the header. */
 BREVE_API uint32_t breve_abi(void);
 
 /* ---- statuses ---------------------------------------------------------------------------------------------------- */
@@ -84,9 +89,9 @@ BREVE_API uint32_t breve_abi(void);
 typedef enum breve_status {
   BREVE_OK = 0,
   BREVE_ERROR_ARGUMENT = 1,     /* a value that the function cannot accept: NULL, NaN, a wrong struct_size */
-  BREVE_ERROR_STALE = 2,        /* an id or reference of something that is gone */
+  BREVE_ERROR_STALE = 2,        /* an id or reference of something that no longer exists */
   BREVE_ERROR_BUSY = 3,         /* may not be called while a script of that world runs */
-  BREVE_ERROR_MEMORY = 4,       /* the memory limit of the world, or the allocator's end */
+  BREVE_ERROR_MEMORY = 4,       /* the world's memory limit was reached, or the allocator returned NULL */
   BREVE_ERROR_SCRIPT = 5,       /* a run-time error in a script */
   BREVE_ERROR_COMPILE = 6,      /* a program that does not compile: see breve_runtime_diagnostic */
   BREVE_ERROR_BUDGET = 7,       /* a call or an iteration that used up its budget */
@@ -94,173 +99,179 @@ typedef enum breve_status {
   BREVE_ERROR_IMAGE = 9,        /* a snapshot that is damaged, or of another program or version */
   BREVE_ERROR_FILE = 10,        /* a module or file that cannot be found or read */
   BREVE_ERROR_UNSUPPORTED = 11, /* something that this build cannot do */
-  BREVE_ERROR_NOT_FOUND = 12,   /* no class, method, keyword, variable, element or key of that name */
-  BREVE_ERROR_TYPE = 13,        /* a value that does not convert to the type it is needed in */
-  BREVE_ERROR_NO_BODY = 14,     /* an object without a place in space, as the controller, asked for its pose */
+  BREVE_ERROR_NOT_FOUND = 12,   /* no class, method, keyword, variable, element or key with that name */
+  BREVE_ERROR_TYPE = 13,        /* a value that does not convert to the required type */
+  BREVE_ERROR_NO_BODY = 14,     /* an object without a position in space, such as the controller, was asked for its
+                                   pose */
   BREVE_ERROR_INTERNAL = 15,    /* a defect of the library itself; please report it */
   BREVE_ERROR_INTERRUPTED = 16, /* breve_world_interrupt stopped the call */
-  BREVE_ERROR_RELOAD = 17       /* a program that cannot take the place of the running one */
+  BREVE_ERROR_RELOAD = 17       /* a program that cannot replace the running one */
 } breve_status;
 
-/* "BREVE_ERROR_STALE" and so on; "BREVE_ERROR_INTERNAL" for a number that is no status. Never NULL. */
+/* "BREVE_ERROR_STALE" and so on; "BREVE_ERROR_INTERNAL" for a number that is not a status. Never NULL. */
 BREVE_API const char* breve_status_name(breve_status status);
 
-/* ---- names of things --------------------------------------------------------------------------------------------- */
+/* ---- handles and ids --------------------------------------------------------------------------------------------- */
 
 typedef struct breve_runtime breve_runtime;
 typedef struct breve_program breve_program;
 typedef struct breve_world breve_world;
 
-/* One instance in a world. All zero is the null object. Compare both fields to compare objects. The generations of each
-   world of a runtime begin at another number, those of the first one at 1. Worlds of different runtimes share ids. */
+/* One instance in a world. All zero is the null object. Compare both fields to compare objects. Each world of a runtime
+   starts its generations at a different number, the first one at 1. Worlds of different runtimes may use the same
+   ids. */
 typedef struct breve_object {
   uint32_t index, generation;
 } breve_object;
 
-/* A list or hash that a breve_value refers to; good until script runs in its world again (see breve_value). */
+/* A list or hash that a breve_value refers to; valid until script runs in its world again (see breve_value). */
 typedef struct breve_ref {
   uint32_t index, epoch;
 } breve_ref;
 
-/* A method name with its keywords, prepared by breve_world_prepare; good for the life of that world. */
+/* A method name with its keywords, prepared by breve_world_prepare; valid for the lifetime of that world. */
 typedef struct breve_selector {
   uint32_t index, generation;
 } breve_selector;
 
-/* ---- what went wrong --------------------------------------------------------------------------------------------- */
+/* ---- errors ------------------------------------------------------------------------------------------------------ */
 
-/* One active method when an error happened. No text is NULL. */
+/* One active method when an error occurred. Texts are never NULL. */
 typedef struct breve_frame {
   const char* class_name; /* class of the receiver */
   const char* method;
-  const char* file;      /* of what was running in it, or "" */
-  uint32_t line, column; /* of that, from 1; 0 if not known. The caller's place is in the next frame */
+  const char* file;      /* of the code that was running in it, or "" */
+  uint32_t line, column; /* of that code, from 1; 0 if not known. The position of the caller is in the next frame */
   const char* receiver;  /* the object, in a few words: "Bird 0xc", with the number that `print` shows */
   const char* arguments; /* each keyword with the value that its parameter had then: "target (3, 0, 1) weight 2"; long
-                            ones are cut. Both texts are "" in the middle of a deep recursion, and if memory ran out */
+                            values are truncated. Both texts are "" in the middle of a deep recursion, and if memory ran
+                            out */
 } breve_frame;
 
 /* The last error of a world or runtime. Everything in it is owned by that world or runtime until its next call. */
 typedef struct breve_error {
   uint32_t status;       /* breve_status */
   const char* message;   /* what is wrong, one line or more; never NULL */
-  const char* help;      /* what to do, or "" if the message says it all; never NULL */
-  const char* file;      /* the script file, or "" if the error has no place in one */
+  const char* help;      /* what to do, or "" if the message is sufficient; never NULL */
+  const char* file;      /* the script file, or "" if the error has no position in a file */
   uint32_t line, column; /* from 1; 0 if not known */
-  uint32_t length;       /* bytes from there on that are meant */
+  uint32_t length;       /* bytes from there on that the error is about */
   size_t frame_count;
-  const breve_frame* frames; /* the chain of calls, innermost first; NULL if frame_count is 0 */
-  const char* text;          /* all of the above, laid out for people to read; ends with a newline */
+  const breve_frame* frames; /* the call chain, innermost call first; NULL if frame_count is 0 */
+  const char* text;          /* all of the above, formatted for people to read; ends with a newline */
 } breve_error;
 
 /* ---- runtime ----------------------------------------------------------------------------------------------------- */
 
-/* Where a text for people comes from. */
+/* The kind of a text that a world prints. */
 typedef enum breve_channel {
-  BREVE_CHANNEL_PRINT = 0,   /* a script's own output, as it wrote it */
-  BREVE_CHANNEL_WARNING = 1, /* whole lines: something doubtful; the run goes on as usual */
-  BREVE_CHANNEL_ERROR = 2    /* whole lines: a run-time error in a callback of a script, which was abandoned;
-                                the run goes on */
+  BREVE_CHANNEL_PRINT = 0,   /* a script's own output, exactly as written */
+  BREVE_CHANNEL_WARNING = 1, /* whole lines: something doubtful; the run continues as usual */
+  BREVE_CHANNEL_ERROR = 2    /* whole lines: a run-time error in a script's callback, which was abandoned; the run
+                                continues */
 } breve_channel;
 
 /* @param user   breve_runtime_config.user
-   @param world  who speaks; the world is usable, also while breve_world_create has not returned it yet
-   @param text   `size` bytes, ended by a zero byte behind them; owned by the library until the function returns */
+   @param world  the world that prints; it is usable, even while breve_world_create has not returned it yet
+   @param text   `size` bytes, followed by a zero byte; owned by the library until the function returns */
 typedef void (*breve_print_fn)(void* user, breve_world* world, breve_channel channel, const char* text, size_t size);
 
-/* Memory of `size` bytes aligned to `alignment` (a power of two), or NULL: the call in progress fails with
-   BREVE_ERROR_MEMORY. All memory that a world keeps is asked for here, by the thread that uses the world; while that
-   computes physics with several workers (breve_world_set_workers), by any of these, one at a time. Programs and
-   runtimes, which belong to no world, and texts that live for one call take theirs from the C++ allocator; where that
-   has none left, the call gives BREVE_ERROR_MEMORY as well. See docs/limits.md. */
+/* Returns memory of `size` bytes aligned to `alignment` (a power of two), or NULL: the call in progress then fails with
+   BREVE_ERROR_MEMORY. All memory that a world keeps is allocated here, by the thread that uses the world; while that
+   thread computes physics with several workers (breve_world_set_workers), by any of these, one at a time. Programs and
+   runtimes, which do not belong to a world, and texts that live for one call use the C++ allocator; if that runs out of
+   memory, the call returns BREVE_ERROR_MEMORY as well. See docs/limits.md. */
 typedef void* (*breve_allocate_fn)(void* user, size_t size, size_t alignment);
 
-/* Give back what breve_allocate_fn gave, with the same size and alignment. */
+/* Releases memory of breve_allocate_fn, with the same size and alignment. */
 typedef void (*breve_release_fn)(void* user, void* memory, size_t size, size_t alignment);
 
-/* The text of a module, given by the host. */
+/* The text of a module, provided by the host. */
 typedef struct breve_module {
-  const char* name; /* as messages show it; each name is loaded once. NULL: the name that was asked for */
+  const char* name; /* as messages show it; each name is loaded once. NULL: the requested name */
   const char* text; /* not NULL unless size is 0 */
   size_t size;
   void* cookie; /* the host's own, for breve_release_module_fn */
 } breve_module;
 
-/* Find the module that a directive names: "Boids.tz" for `@use Boids.`, the spelled name for `@include`.
-   Classes of the class library are always there; a module that the host finds under their name wins.
-   @param from    name of the file that asks; "" for the file given to breve_program_load
-   @param module  zeroed; to be filled
-   Returns false if there is no such module; that is an error only where no library class answers to it. */
+/* Finds the module that a directive names: "Boids.tz" for `@use Boids.`, the name as written for `@include`. The
+   classes of the class library are always available; if the host finds a module with the same name, that module is used
+   instead.
+   @param from    name of the file that contains the directive; "" for the file given to breve_program_load
+   @param module  zeroed; to be filled in
+   Returns false if there is no such module; that is an error only if there is no library class of that name either. */
 typedef bool (*breve_resolve_module_fn)(void* user, const char* name, const char* from, breve_module* module);
 
-/* The library has copied the module and the host may free it. Called once for each module that was resolved. */
+/* The library has copied the module, and the host may free it. Called once for each module that was resolved. */
 typedef void (*breve_release_module_fn)(void* user, const breve_module* module);
 
-/* A program says `@path "directory".`, or the library was asked to search there. */
+/* A program contains `@path "directory".`, or the library was asked to search there. */
 typedef void (*breve_add_path_fn)(void* user, const char* directory);
 
-/* Given to callbacks that answer with bytes: call it with `sink` as often as needed; the pieces are put together. */
+/* For callbacks that return bytes: call it with `sink` as often as needed; the pieces are concatenated. */
 typedef void (*breve_write_fn)(void* sink, const char* bytes, size_t size);
 
-/* A file that a host has opened for a script. The functions get `handle`; no other call may be made in them. Frozen: it
+/* A file that a host has opened for a script. The functions get `handle`; they must not call the library. Frozen: it
    never grows. */
 typedef struct breve_file {
   void* handle;
-  /* Of a file for reading: read up to `size` bytes and say how many; 0 is the end. False: they cannot be read. */
+  /* For a file opened for reading: reads up to `size` bytes and stores the number read; 0 is the end of the file.
+     Returns false if reading fails. */
   bool (*read)(void* handle, void* bytes, size_t size, size_t* got);
-  /* Of a file for writing: write all the bytes. False: they cannot all be written. */
+  /* For a file opened for writing: writes all the bytes. Returns false if not all could be written. */
   bool (*write)(void* handle, const void* bytes, size_t size);
-  /* Called once, last. `keep` is false where writing failed: what was written is better dropped than kept. False: it was
-     not kept. NULL: nothing to do. */
+  /* Called once, as the last call. `keep` is false if writing failed: the written data should then be discarded.
+     Returns false if the data could not be kept. NULL: nothing to do. */
   bool (*close)(void* handle, bool keep);
-  const char* path; /* what `findFile` tells the script; copied at once. NULL: the name as it was spelled */
+  const char* path; /* the result of `findFile` in the script; copied at once. NULL: the name as written */
 } breve_file;
 
-/* Open the file that a script names (text, image, mesh, archive), just as the script spells it.
-   @param file    zeroed; to be filled
-   @param reason  to be called with `sink` and why a file that may be there is refused, as the end of a sentence
-   Returns false if it is not opened; without a reason: there is no such file. */
+/* Opens the file that a script names (text, image, mesh, archive), with the name exactly as the script writes it.
+   @param file    zeroed; to be filled in
+   @param reason  to refuse a file that may exist, call it with `sink` and the reason, worded as the end of a sentence
+   Returns false if the file is not opened; without a reason this means that the file does not exist. */
 typedef bool (*breve_open_for_reading_fn)(void* user, breve_world* world, const char* name, breve_file* file,
                                           breve_write_fn reason, void* sink);
 
-/* The same for a file to be written. @param append  what is in it stays; otherwise it is replaced when it is closed */
-typedef bool (*breve_open_for_writing_fn)(void* user, breve_world* world, const char* name, bool append, breve_file* file,
-                                          breve_write_fn reason, void* sink);
+/* The same for a file to be written. @param append  keep the contents; otherwise they are replaced when it is closed */
+typedef bool (*breve_open_for_writing_fn)(void* user, breve_world* world, const char* name, bool append,
+                                          breve_file* file, breve_write_fn reason, void* sink);
 
-/* Which files the scripts of a runtime may touch. All zero: none. Frozen: it never grows. */
+/* The files that the scripts of a runtime may access. All zero: none. Frozen: it never grows. */
 typedef struct breve_files {
-  void* user; /* handed to the callbacks */
+  void* user;                                 /* passed to the callbacks */
   breve_open_for_reading_fn open_for_reading; /* NULL: none is read */
   breve_open_for_writing_fn open_for_writing; /* NULL: none is written */
-  /* A runtime retains when it is created, and releases when neither it nor its programs and worlds can ask any more. NULL:
-     nothing to do. */
+  /* A runtime calls `retain` when it is created, and `release` when neither it nor its programs and worlds can use the
+     callbacks any more. NULL: nothing to do. */
   void (*retain)(void* user);
   void (*release)(void* user);
 } breve_files;
 
-/* What else of the outside scripts may touch, in breve_runtime_config.rights. See docs/sandbox.md. */
+/* Other resources outside the world that scripts may use, for breve_runtime_config.rights. See docs/sandbox.md. */
 typedef enum breve_right {
-  BREVE_RIGHT_SLEEP = 1,     /* `sleep` stops the thread */
-  BREVE_RIGHT_REAL_TIME = 2, /* the clock on the wall: `getRealTime`, `getRunningTime` */
+  BREVE_RIGHT_SLEEP = 1,     /* `sleep` blocks the thread */
+  BREVE_RIGHT_REAL_TIME = 2, /* the real-time clock: `getRealTime`, `getRunningTime` */
   BREVE_RIGHT_ENTROPY = 4    /* a seed from the operating system: `randomSeedFromDevRandom` */
 } breve_right;
 
-/* Run a shell command for a script (`system`), and write what it printed. False: it could not be run. */
+/* Runs a shell command for a script (`system`), and passes its output to `write`. Returns false if it could not be
+   run. */
 typedef bool (*breve_system_fn)(void* user, breve_world* world, const char* command, breve_write_fn write, void* sink);
 
 typedef struct breve_runtime_config {
-  size_t struct_size; /* as breve_runtime_config_default gives it */
-  void* user;         /* handed to every callback. Default NULL */
-  breve_allocate_fn allocate; /* memory of worlds; NULL with `release` NULL: the C++ allocator. Default NULL */
-  breve_release_fn release;   /* both or none. Default NULL */
-  breve_print_fn print;       /* output, warnings, errors that did not stop the run; NULL: dropped. Default NULL */
+  size_t struct_size;         /* set by breve_runtime_config_default */
+  void* user;                 /* passed to every callback. Default NULL */
+  breve_allocate_fn allocate; /* memory of worlds; NULL, with `release` NULL: the C++ allocator. Default NULL */
+  breve_release_fn release;   /* both or neither. Default NULL */
+  breve_print_fn print;       /* output, warnings, errors that did not stop the run; NULL: discarded. Default NULL */
   breve_resolve_module_fn resolve_module; /* NULL: only the class library. Default NULL */
   breve_release_module_fn release_module; /* NULL: modules need no release. Default NULL */
-  breve_add_path_fn add_path;             /* NULL: @path does nothing. Default NULL */
-  breve_files files;        /* which files scripts may touch. Default: none */
-  breve_system_fn system;   /* NULL: scripts may not run commands; it is an error in them. Default NULL */
-  uint32_t worker_threads;  /* reserved: must be 0. Default 0 */
-  uint32_t rights;          /* of breve_right, added. Default 0 */
+  breve_add_path_fn add_path;             /* NULL: @path has no effect. Default NULL */
+  breve_files files;                      /* the files that scripts may access. Default: none */
+  breve_system_fn system;                 /* NULL: running a command is an error in the script. Default NULL */
+  uint32_t worker_threads;                /* reserved: must be 0. Default 0 */
+  uint32_t rights;                        /* sum of breve_right. Default 0 */
 } breve_runtime_config;
 
 /* The defaults named above. */
@@ -271,62 +282,65 @@ static inline breve_runtime_config breve_runtime_config_default(void) {
   return config;
 }
 
-/* What breve_runtime_create calls, and gives.
+/* Implements breve_runtime_create, with the same results.
    @param abi  BREVE_ABI of the header that the host was compiled with
-   BREVE_OK; BREVE_ERROR_ARGUMENT; BREVE_ERROR_UNSUPPORTED: the library has another. */
+   BREVE_OK; BREVE_ERROR_ARGUMENT; BREVE_ERROR_UNSUPPORTED: the library has a different one. */
 BREVE_API breve_status breve_runtime_create_for(uint32_t abi, const breve_runtime_config* config,
                                                 breve_runtime** runtime);
 
-/* Make a runtime. Runs no script, calls no callback.
+/* Creates a runtime. Runs no script and calls no callback.
    @param config  copied; NULL: the defaults
-   @param runtime to be given back to breve_runtime_destroy
-   BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, allocate without release or release without
-   allocate, a right that there is none of, a reserved field that is not 0.
-   BREVE_ERROR_UNSUPPORTED: the library has another BREVE_ABI than this header. */
+   @param runtime to be released with breve_runtime_destroy
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, allocate without release or release without allocate, an unknown
+   right, a reserved field that is not 0. BREVE_ERROR_UNSUPPORTED: the library's BREVE_ABI differs from this
+   header's. */
 static inline breve_status breve_runtime_create(const breve_runtime_config* config, breve_runtime** runtime) {
   return breve_runtime_create_for(BREVE_ABI, config, runtime);
 }
 
-/* Let scripts read, and perhaps write, the files below a directory: for breve_runtime_config.files. A file is named by its
-   path from there, with '/'. Refused are absolute paths, '..', symbolic links, what is no plain file, and files beyond a
-   size; nothing else of the file system can be reached, whatever happens to it meanwhile. What is written gets its name
-   when it is closed, in the place of an older file; what is appended is written at once. Directories are not made.
-   @param directory  exists. It is opened now and stays open until the files are released
-   @param may_write  without it, nothing below it is written
-   @param most_bytes of one file, to be read or written; 0: 256 MiB
-   @param files      all zero, or filled by an earlier call: files are then looked for in this directory after those
-   BREVE_OK; BREVE_ERROR_ARGUMENT: NULL, or `files` has callbacks of another origin; BREVE_ERROR_FILE: there is no such
-   directory; BREVE_ERROR_MEMORY. After an error `files` is as it was. */
+/* Adds callbacks for breve_runtime_config.files that let scripts read, and optionally write, the files below a
+   directory. Scripts name a file by its path from there, with '/'. Absolute paths, '..', symbolic links, files that are
+   not regular and files beyond a size are refused; nothing else in the file system can be reached, even if directories
+   are moved in the meantime. A written file gets its name when it is closed and replaces an older file; appended data
+   is written at once. Directories are not created.
+   @param directory  must exist. It is opened now and stays open until the files are released
+   @param may_write  if false, nothing below it can be written
+   @param most_bytes limit for reading or writing one file; 0: 256 MiB
+   @param files      all zero, or filled by an earlier call: this directory is then searched after the earlier ones
+   BREVE_OK; BREVE_ERROR_ARGUMENT: NULL, or `files` has callbacks of another origin; BREVE_ERROR_FILE: the directory
+   does not exist; BREVE_ERROR_MEMORY. After an error `files` is unchanged. */
 BREVE_API breve_status breve_files_add_directory(const char* directory, bool may_write, uint64_t most_bytes,
                                                  breve_files* files);
 
-/* The host has made its runtimes with `files`, or needs none.
+/* Releases `files` after the host has created its runtimes with it, or if it is not needed.
    @param files  of breve_files_add_directory; all zero afterwards
    BREVE_OK, also for NULL. */
 BREVE_API breve_status breve_files_release(breve_files* files);
 
-/* Let go of a runtime. Programs and worlds made with it live on, with its callbacks, until they are destroyed.
-   BREVE_OK, also for NULL; BREVE_ERROR_BUSY from a callback of a compilation or of breve_world_create on it. */
+/* Releases the host's handle of a runtime. Programs and worlds made with it remain valid, with its callbacks, until
+   they are destroyed. BREVE_OK, also for NULL; BREVE_ERROR_BUSY from a callback of a compilation or of
+   breve_world_create on it. */
 BREVE_API breve_status breve_runtime_destroy(breve_runtime* runtime);
 
-/* The error of the last call on this runtime that failed (runtime, program and world creation); NULL if none did. */
+/* The error of the last failed call on this runtime (runtime, program and world creation); NULL if no call failed. */
 BREVE_API const breve_error* breve_runtime_last_error(const breve_runtime* runtime);
 
 /* ---- program ----------------------------------------------------------------------------------------------------- */
 
-/* Compile the module `name`, which is asked of the runtime's resolve_module, and all that it loads. Runs no script.
-   @param program to be given back to breve_program_destroy
-   BREVE_OK, perhaps with warnings: see breve_runtime_diagnostic; BREVE_ERROR_FILE: no such module;
-   BREVE_ERROR_COMPILE: all errors are diagnostics; BREVE_ERROR_BUSY from a callback of another compilation. */
+/* Compiles the module `name`, which the runtime's resolve_module provides, and everything that it loads. Runs no
+   script.
+   @param program to be released with breve_program_destroy
+   BREVE_OK, perhaps with warnings: see breve_runtime_diagnostic; BREVE_ERROR_FILE: no such module; BREVE_ERROR_COMPILE:
+   the diagnostics list all errors; BREVE_ERROR_BUSY from a callback of another compilation. */
 BREVE_API breve_status breve_program_load(breve_runtime* runtime, const char* name, breve_program** program);
 
-/* Compile a program given as text, and all that it loads. As breve_program_load.
+/* Compiles a program given as text, and everything that it loads. Otherwise like breve_program_load.
    @param name  as messages show it
    @param text  `size` bytes, copied; NULL only if size is 0 */
 BREVE_API breve_status breve_program_compile(breve_runtime* runtime, const char* name, const char* text, size_t size,
                                              breve_program** program);
 
-/* Let go of a program; NULL is nothing. Worlds of it live on. */
+/* Releases the host's handle of a program; does nothing for NULL. Its worlds remain valid. */
 BREVE_API void breve_program_destroy(breve_program* program);
 
 typedef enum breve_severity {
@@ -335,42 +349,42 @@ typedef enum breve_severity {
   BREVE_SEVERITY_NOTE = 2
 } breve_severity;
 
-/* One thing that the compiler has to say. Owned by the runtime until it compiles again. */
+/* One message of the compiler. Owned by the runtime until it compiles again. */
 typedef struct breve_diagnostic {
   uint32_t severity;     /* breve_severity */
   const char* code;      /* stable, for machines: "unknown-variable" */
   const char* message;   /* what is wrong */
   const char* help;      /* what to do, or "" */
-  const char* file;      /* "" if it has no place */
-  uint32_t line, column; /* from 1, column in bytes; 0 if it has no place */
-  uint32_t length;       /* bytes from there on that are meant */
+  const char* file;      /* "" if it has no position */
+  uint32_t line, column; /* from 1, column in bytes; 0 if it has no position */
+  uint32_t length;       /* bytes from there on that the message is about */
   const char* text;      /* all of the above with the source line and a caret, for people; ends with a newline */
 } breve_diagnostic;
 
-/* How many diagnostics the last compilation on this runtime left, whether it succeeded or not. */
+/* The number of diagnostics of the last compilation on this runtime, whether it succeeded or not. */
 BREVE_API size_t breve_runtime_diagnostic_count(const breve_runtime* runtime);
 
-/* The diagnostic at `index`, in order of files and places; the files are in order of loading.
+/* The diagnostic at `index`, in order of files and positions; the files are in order of loading.
    BREVE_OK; BREVE_ERROR_NOT_FOUND if index is not below the count. */
 BREVE_API breve_status breve_runtime_diagnostic(const breve_runtime* runtime, size_t index,
                                                 breve_diagnostic* diagnostic);
 
-/* A lint: something doubtful that is no error, and that can be turned off. Texts live as long as the process. */
+/* A lint: a check for code that is legal but doubtful. It can be turned off. Texts live as long as the process. */
 typedef struct breve_lint_info {
-  const char* code;        /* breve_diagnostic.code: "lint-unused-variable" */
-  uint32_t severity;       /* breve_severity. WARNING: most likely a mistake; NOTE: only worth a look */
-  const char* summary;     /* one line: what it finds */
+  const char* code;    /* breve_diagnostic.code: "lint-unused-variable" */
+  uint32_t severity;   /* breve_severity. WARNING: most likely a mistake; NOTE: may deserve a look */
+  const char* summary; /* one line: what it finds */
 } breve_lint_info;
 
-/* How many lints the compiler knows. */
+/* The number of lints that the compiler has. */
 BREVE_API size_t breve_lint_count(void);
 
 /* The lint at `index`, in order of their codes. BREVE_OK; BREVE_ERROR_NOT_FOUND if index is not below the count. */
 BREVE_API breve_status breve_lint(size_t index, breve_lint_info* lint);
 
-/* Compilations on this runtime do not report the lint of that code from now on. In a program a comment does the same:
-   `# allow: lint-unused-variable` behind a statement or on the line before it, or, for a whole file, at its beginning.
-   BREVE_OK, also if it was allowed before; BREVE_ERROR_NOT_FOUND: there is no such lint. */
+/* Turns a lint off for later compilations on this runtime. In a program a comment does the same: `# allow:
+   lint-unused-variable` after a statement or on the line before it, or, for a whole file, at its beginning.
+   BREVE_OK, also if it was off before; BREVE_ERROR_NOT_FOUND: there is no such lint. */
 BREVE_API breve_status breve_runtime_allow_lint(breve_runtime* runtime, const char* code);
 
 /* A class of a program. Texts are owned by the program. */
@@ -380,7 +394,7 @@ typedef struct breve_class_info {
   const char* parent; /* name, or "" for a root class */
 } breve_class_info;
 
-/* How many classes a program has, those of the class library that it uses included. */
+/* The number of classes of a program, including those of the class library that it uses. */
 BREVE_API size_t breve_program_class_count(const breve_program* program);
 
 /* The class at `index`; parents come before their descendants.
@@ -389,101 +403,107 @@ BREVE_API breve_status breve_program_class(const breve_program* program, size_t 
 
 /* ---- world ------------------------------------------------------------------------------------------------------- */
 
-/* What a node of a profile stands for, and what an event of a trace is about. See "where the time goes". */
+/* The kind of a node of a profile and of an event of a trace. See "profiles". */
 typedef enum breve_profile_kind {
-  BREVE_PROFILE_WORLD = 0,    /* the root: all that the world did */
-  BREVE_PROFILE_STAGE = 1,    /* the world itself: "iteration" and what it is made of, as "script", "motion", "rotation",
+  BREVE_PROFILE_WORLD = 0,    /* the root: everything that the world did */
+  BREVE_PROFILE_STAGE = 1,    /* the world itself: "iteration" and its parts, such as "script", "motion", "rotation",
                                  "collision", "neighbors", "schedule", "notifications", "input"; "garbage" */
   BREVE_PROFILE_METHOD = 2,   /* a method written in steve */
-  BREVE_PROFILE_NATIVE = 3,   /* a method of the class library that is part of breve */
-  BREVE_PROFILE_FUNCTION = 4, /* a function, as sqrt */
+  BREVE_PROFILE_NATIVE = 3,   /* a method of the class library that is implemented in C++ */
+  BREVE_PROFILE_FUNCTION = 4, /* a function, such as sqrt */
   BREVE_PROFILE_ACT = 5       /* "new" and "free", of a class; "sort"; "print" */
 } breve_profile_kind;
 
-/* Something begins or ends. Texts are never NULL and are good until the function returns. */
+/* Something begins or ends. Texts are never NULL and are valid until the function returns. */
 typedef struct breve_trace_event {
-  bool begins;          /* else it ends, perhaps by an error: what began last and has not ended */
-  uint32_t kind; /* breve_profile_kind */
-  double seconds;       /* wall time since the profile started, less the time spent in the breve_trace_fn */
-  const char* class_name; /* the class whose method it is, or that an act is about; "" if there is none */
-  const char* name;     /* method, function, act or stage */
-  const char* file;     /* where the method is declared; "" for what is no method */
-  uint32_t line;        /* of that; 0 */
-  uint32_t call_line;   /* of the call, in the calling method's file; 0 if no script called */
-  uint64_t iteration;   /* breve_world_iteration at that time */
+  bool begins;            /* false: it ends, perhaps by an error; it is the last one that began and has not ended */
+  uint32_t kind;          /* breve_profile_kind */
+  double seconds;         /* wall time since the profile started, minus the time spent in the breve_trace_fn */
+  const char* class_name; /* the class of the method or of the operation; "" if there is none */
+  const char* name;       /* method, function, operation or stage */
+  const char* file;       /* where the method is declared; "" for anything else */
+  uint32_t line;          /* of the declaration; 0 for anything else */
+  uint32_t call_line;     /* of the call, in the calling method's file; 0 if it was not called by a script */
+  uint64_t iteration;     /* breve_world_iteration at that time */
 } breve_trace_event;
 
-/* Called at each begin and end while a profile with a trace runs. It may call what does not run script; on this world
-   functions that do give BREVE_ERROR_BUSY. */
+/* Called at each begin and end while a profile with a trace runs. It may call functions that do not run script;
+   functions that do return BREVE_ERROR_BUSY for this world. */
 typedef void (*breve_trace_fn)(void* user, const breve_trace_event* event);
 
-/* A variable of the controller, and the text of the value that it has before the controller's `init` runs: an int, a
-   float, a vector as (x, y, z), or for a string any text. */
+/* A variable of the controller, and the text of the value that it gets before the controller's `init` runs: an int, a
+   float, a vector written as (x, y, z), or any text for a string. */
 typedef struct breve_setting {
   const char* name;
   const char* value;
 } breve_setting;
 
 typedef struct breve_world_config {
-  size_t struct_size; /* as breve_world_config_default gives it */
-  uint64_t seed;      /* of the world's generator of random numbers: any number. Default 1 */
+  size_t struct_size;           /* set by breve_world_config_default */
+  uint64_t seed;                /* of the world's random generator: any number. Default 1 */
   const char* const* arguments; /* what scripts read as arguments, copied; [0] is the program's name. Default NULL */
   size_t argument_count;        /* 0 if arguments is NULL. Default 0 */
-  size_t memory_limit;          /* bytes that the world may take from the runtime's allocator; 0: none. Beyond it:
+  size_t memory_limit;          /* bytes that the world may take from the runtime's allocator; 0: no limit. Beyond it:
                                    BREVE_ERROR_MEMORY, and the world stays usable. Default 0 */
-  uint64_t budget;              /* loop turns and calls (see "budgets" below) in one iteration, or in one call by the
-                                   host outside of an iteration; 0: none. Beyond it: BREVE_ERROR_BUDGET. Default 0 */
+  uint64_t budget;              /* loop iterations and calls (see "budgets" below) in one iteration, or in one call by
+                                   the host outside of an iteration; 0: no limit. Beyond it: BREVE_ERROR_BUDGET. Default
+                                   0 */
   uint32_t depth_limit;         /* nested calls; 0: the default of 5000. Beyond it: BREVE_ERROR_DEPTH */
-  uint32_t advance_limit;       /* iterations that one breve_world_advance may run; time that is left over is then
-                                   dropped; 0: none. Default 0 */
-  double iteration_step;        /* s, how long each iteration lasts, exactly; set after the controller's init; 0: the
-                                   script's own. Default 0 */
-  double integration_step;      /* s, the longest sub-step: an iteration is divided into equal sub-steps, as few as are
-                                   no longer. Set after the controller's init; 0: the script's own. Default 0 */
-  bool strict;                  /* doubtful things that are warnings become errors. Default false */
-  bool verbose;                 /* say more: once for each obsolete method that is used. Default false */
-  bool coarse_random;           /* random[] of floats and vectors draws from 32,768 values, as programs written for
-                                   the original expect. Default false */
-  bool profile;                 /* start a profile before anything runs, as breve_world_profile_start with `trace` and
-                                   `trace_user` below does later. Default false */
+  uint32_t advance_limit;       /* iterations that one breve_world_advance may run; the remaining time is then
+                                   discarded; 0: no limit. Default 0 */
+  double iteration_step;        /* s, the exact duration of each iteration; set after the controller's init; 0: as the
+                                   script sets it. Default 0 */
+  double integration_step;      /* s, the longest sub-step: an iteration is divided into the smallest number of equal
+                                   sub-steps that are not longer. Set after the controller's init; 0: as the script sets
+                                   it. Default 0 */
+  bool strict;                  /* doubtful operations that give warnings become errors. Default false */
+  bool verbose;                 /* more messages: one for each obsolete method that is used. Default false */
+  bool coarse_random;           /* random[] of floats and vectors draws from 32,768 values, as programs written for the
+                                   original breve expect. Default false */
+  bool profile;                 /* start a profile before anything runs, like breve_world_profile_start with `trace` and
+                                   `trace_user` below. Default false */
   bool reserved[4];             /* must be false */
   void* user;                   /* the host's own, for breve_world_user. Default NULL */
-  uint64_t call_budget;         /* the same for each call that the world makes within an iteration; 0: none. Beyond it
-                                   that call alone is abandoned. Default 0 */
-  uint32_t nesting_limit;       /* calls of the host in callbacks of calls of the host: at most 200; 0: the default of
-                                   64. Beyond it: BREVE_ERROR_DEPTH */
-  uint32_t dimension;           /* 2: the world is flat (z = 0, turns about z) before the controller's init; 3: it is not,
-                                   and a PlanarControl is an error; 0: as the controller says. Default 0 */
-  breve_trace_fn trace;         /* of `profile`; NULL: no events. Default NULL */
+  uint64_t call_budget;         /* the same for each call that the world makes within an iteration; 0: no limit. Beyond
+                                   it only that call is abandoned. Default 0 */
+  uint32_t nesting_limit;       /* nesting depth of host calls in callbacks of host calls: at most 200; 0: the default
+                                   of 64. Beyond it: BREVE_ERROR_DEPTH */
+  uint32_t dimension;           /* 2: the world is flat (z = 0, rotations about z) from before the controller's init; 3:
+                                   it is not, and a PlanarControl is an error; 0: the controller decides. Default 0 */
+  breve_trace_fn trace;         /* for `profile`; NULL: no events. Default NULL */
   void* trace_user;             /* Default NULL */
-  const char* accuracy;         /* rung of the ladder of accuracy, as breve_rung_find knows them, set after the
-                                   controller's init; copied; NULL: the script's own. Default NULL */
-  double length_unit;           /* m, what a flat world computes with as 1, set after the controller's init: sizes of 0.1
-                                   to 10 of it are best; 0: the script's own. Default 0 */
-  const breve_setting* settings; /* copied; NULL: none. A name that the controller has no variable of, or a text that is
-                                   no value of its type: BREVE_ERROR_ARGUMENT. Default NULL */
-  size_t setting_count;         /* 0 if settings is NULL. Default 0 */
-  double patience;              /* s of real time: what runs longer in one iteration, or in one call by the host, is told
-                                   once on BREVE_CHANNEL_WARNING, with the place where it is; 0: never. Default 0 */
-  uint64_t physics_budget;      /* work of the physics of one iteration, see "budgets" below; 0: 1,000,000 or `budget`,
-                                   whichever is more, and none if that is 0. Default 0 */
+  const char* accuracy;         /* rung of the accuracy ladder, a name for breve_rung_find, set after the controller's
+                                   init; copied; NULL: as the script sets it. Default NULL */
+  double length_unit;           /* m, the internal length unit of a flat world, set after the controller's init: sizes
+                                   of 0.1 to 10 units are best; 0: as the script sets it. Default 0 */
+  const breve_setting* settings; /* copied; NULL: none. BREVE_ERROR_ARGUMENT if the controller has no variable of that
+                                    name, or if the text is not a value of its type. Default NULL */
+  size_t setting_count;          /* 0 if settings is NULL. Default 0 */
+  double patience;               /* s of real time: if one iteration, or one call by the host, takes longer, this is
+                                    reported once on BREVE_CHANNEL_WARNING with the current position in the script; 0:
+                                    never. Default 0 */
+  uint64_t physics_budget;       /* work of the physics of one iteration, see "budgets" below; 0: 1,000,000 or `budget`,
+                                    whichever is more, and no limit if `budget` is 0. Default 0 */
 } breve_world_config;
 
-/* Budgets. Each turn of a loop, each call of a method or function and each new object counts 1, whoever makes the call:
-   sort, broadcasts, announcements, init and destroy, calls by name; an integration step of the world counts 1 too.
-   What works on much counts as so many turns as take about as long (docs/limits.md). Neither time nor instructions
-   count, so that a cut falls at the same place in every run, on every machine and in every build. A call on the
-   budget's last turn is still made; the one after it is the error.
-   - `budget` is for a whole iteration, and for each function of this header that runs script outside of one. Where it is
-     used up the call is abandoned as by a run-time error, the rest of the iteration is not run, and the function gives
-     BREVE_ERROR_BUDGET. Calls that a callback makes count to the call that it is a callback of.
-   - `call_budget` is for each `iterate`, `post-iterate`, scheduled call, input or collision handler, and `destroy` of
-     auto-free: one object that does not end leaves the others their turn. What is cut is told on BREVE_CHANNEL_ERROR and
-     counted in breve_stats.errors; the iteration goes on. A collision handler does not use up its controller's; a handler
-     of announcements uses the announcer's. Scheduled calls may schedule calls: only `budget` bounds an iteration.
-   - `physics_budget` is for what moves bodies, in units that take about as long as a turn; breve_physics_counters.work
-     says how many an iteration took. It is an error for nobody: bodies that used up their part of it are moved to the
-     end of the iteration in one coarse step of rung `fast`, and the guard tells ("finished coarsely"). */
+/* Budgets. Each loop iteration, each call of a method or function and each new object counts 1, no matter who makes the
+   call: sort, broadcasts, announcements, init and destroy, calls by name; an integration step of the world counts 1
+   too. An operation on much data counts as many loop iterations as take about the same time (docs/limits.md). Neither
+   time nor instructions are counted, so that a call is cut off at the same place in every run, on every machine and in
+   every build. The call that uses the last unit of the budget is still made; the next one is the error.
+   - `budget` applies to a whole iteration, and to each function of this header that runs script outside of one. When it
+     is used up, the call is abandoned as by a run-time error, the rest of the iteration is not run, and the function
+     returns BREVE_ERROR_BUDGET. Calls that a callback makes count against the budget of the call that invoked the
+     callback.
+   - `call_budget` applies to each `iterate`, `post-iterate`, scheduled call, input or collision handler, and `destroy`
+     of auto-free: an object that does not terminate does not prevent the others from running. An abandoned call is
+     reported on BREVE_CHANNEL_ERROR and counted in breve_stats.errors; the iteration continues. A collision handler
+     does not use up its controller's budget; a handler of announcements uses the announcer's. Scheduled calls may
+     schedule calls: only `budget` limits an iteration.
+   - `physics_budget` applies to the motion of bodies, in units that take about as long as a loop iteration;
+     breve_physics_counters.work is the number of units that an iteration used. Exceeding it is not an error: bodies
+     that used up their part of it are moved to the end of the iteration in one coarse step of rung `fast`, and the
+     guard reports it ("finished coarsely"). */
 
 /* The defaults named above. */
 static inline breve_world_config breve_world_config_default(void) {
@@ -494,61 +514,63 @@ static inline breve_world_config breve_world_config_default(void) {
   return config;
 }
 
-/* Make a world of `program`, its controller, and run the controller's `init`. Runs script.
+/* Creates a world of `program` and its controller, and runs the controller's `init`. Runs script.
    @param config  copied; NULL: the defaults
-   @param world   to be given back to breve_world_destroy
+   @param world   to be released with breve_world_destroy
    BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, a step that is negative or not finite, a reserved field;
-   BREVE_ERROR_SCRIPT, _BUDGET, _DEPTH, _MEMORY: `init` failed; no world is made; see breve_runtime_last_error. */
+   BREVE_ERROR_SCRIPT, _BUDGET, _DEPTH, _MEMORY: `init` failed, and no world is created; see
+   breve_runtime_last_error. */
 BREVE_API breve_status breve_world_create(breve_runtime* runtime, const breve_program* program,
                                           const breve_world_config* config, breve_world** world);
 
-/* End a world and free all that it holds. Runs no script: no object's `destroy` is called.
-   BREVE_OK, also for NULL; BREVE_ERROR_BUSY while a script of it runs: nothing is done then. */
+/* Destroys a world and frees everything that it holds. Runs no script: no object's `destroy` is called.
+   BREVE_OK, also for NULL; BREVE_ERROR_BUSY while a script of it runs: nothing is destroyed then. */
 BREVE_API breve_status breve_world_destroy(breve_world* world);
 
 /* breve_world_config.user. */
 BREVE_API void* breve_world_user(const breve_world* world);
 
-/* The error of the last call on this world that failed; NULL if none did. */
+/* The error of the last failed call on this world; NULL if no call failed. */
 BREVE_API const breve_error* breve_world_last_error(const breve_world* world);
 
-/* Run one iteration: input, `iterate`, motion and collisions, `post-iterate`, scheduled calls. Runs script.
-   A world that has ended or is paused is stepped all the same: that is for the host to decide.
+/* Runs one iteration: input, `iterate`, motion and collisions, `post-iterate`, scheduled calls. Runs script. Also steps
+   a world that has ended or is paused: that decision is the host's.
    BREVE_OK; BREVE_ERROR_BUSY while a script of it runs; BREVE_ERROR_SCRIPT, _BUDGET, _DEPTH, _MEMORY: the failing call
-   is abandoned, the rest of the iteration is not run; the world is consistent and may be stepped, snapshotted or
+   is abandoned and the rest of the iteration is not run; the world is consistent and may be stepped, snapshotted or
    destroyed (restore a snapshot to undo). */
 BREVE_API breve_status breve_world_step(breve_world* world);
 
-/* For a game loop: let `seconds` of simulated time pass. Runs as many whole iterations as fit, keeps the rest for the
-   next call, and stops when the program ends the simulation. While the world is paused nothing passes. Runs script.
+/* For a game loop: advances the world by `seconds` of simulated time. Runs as many whole iterations as fit, keeps the
+   remainder for the next call, and stops when the program ends the simulation. Does nothing while the world is paused.
+   Runs script.
    @param seconds   finite, >= 0
-   @param fraction  may be NULL. How far the kept rest reaches into the next iteration, in [0, 1): draw poses at
-                    pose before the last iteration * (1 - fraction) + pose now * fraction
-   As breve_world_step. After an error the time that was not run is dropped. */
+   @param fraction  may be NULL. How far the remainder reaches into the next iteration, in [0, 1): draw poses at pose
+                    before the last iteration * (1 - fraction) + current pose * fraction
+   Returns the same statuses as breve_world_step. After an error the time that was not run is discarded. */
 BREVE_API breve_status breve_world_advance(breve_world* world, double seconds, double* fraction);
 
 /* Simulated seconds since the start. */
 BREVE_API double breve_world_time(const breve_world* world);
 
-/* Iterations completed since the start; one that an error cut short does not count. */
+/* Iterations completed since the start; an iteration that an error ended early does not count. */
 BREVE_API uint64_t breve_world_iteration(const breve_world* world);
 
-/* Length of one iteration, s. */
+/* Duration of one iteration, s. */
 BREVE_API double breve_world_iteration_step(const breve_world* world);
 
-/* Has the program asked for the end of the simulation? */
+/* Has the program ended the simulation? */
 BREVE_API bool breve_world_ended(const breve_world* world);
 
 /* Has the program or the host paused the simulation? See breve_world_advance. */
 BREVE_API bool breve_world_paused(const breve_world* world);
 
-/* Pause or go on. */
+/* Pauses or continues. */
 BREVE_API breve_status breve_world_set_paused(breve_world* world, bool paused);
 
 /* The seed that the world's generator was last seeded with. */
 BREVE_API uint64_t breve_world_seed(const breve_world* world);
 
-/* Draw a number from [0, 1] from the world's own generator, as a script would. This changes the run that follows. */
+/* Draws a number from [0, 1] from the world's own generator, as a script would. This changes the rest of the run. */
 BREVE_API breve_status breve_world_draw_random(breve_world* world, double* number);
 
 /* ---- objects ----------------------------------------------------------------------------------------------------- */
@@ -559,7 +581,7 @@ BREVE_API breve_object breve_world_controller(const breve_world* world);
 /* The live objects of a class and its descendants, in order of creation.
    @param class_name  name or alias; NULL: every object
    @param objects     room for `capacity` ids; NULL only if capacity is 0
-   @param count       how many there are, also where that is more than capacity: at most capacity ids are written
+   @param count       the total number, even if it exceeds capacity; at most capacity ids are written
    BREVE_OK; BREVE_ERROR_NOT_FOUND: the program has no such class. */
 BREVE_API breve_status breve_world_objects(const breve_world* world, const char* class_name, breve_object* objects,
                                            size_t capacity, size_t* count);
@@ -567,7 +589,7 @@ BREVE_API breve_status breve_world_objects(const breve_world* world, const char*
 /* Does the id name a live object? False for the null object. */
 BREVE_API bool breve_object_alive(const breve_world* world, breve_object object);
 
-/* The name of the object's class, owned by the program; NULL if the object is null or gone. */
+/* The name of the object's class, owned by the program; NULL if the object is null or no longer exists. */
 BREVE_API const char* breve_object_class(const breve_world* world, breve_object object);
 
 /* Is the object an instance of `class_name` (name or alias) or of a descendant?
@@ -575,12 +597,12 @@ BREVE_API const char* breve_object_class(const breve_world* world, breve_object 
 BREVE_API breve_status breve_object_is_a(const breve_world* world, breve_object object, const char* class_name,
                                          bool* result);
 
-/* Make an object, as `new` does in a script. Runs script (`init`).
+/* Creates an object, as `new` does in a script. Runs script (`init`).
    BREVE_OK; BREVE_ERROR_NOT_FOUND: no such class; BREVE_ERROR_SCRIPT, _BUDGET, _DEPTH, _MEMORY: `init` failed. */
 BREVE_API breve_status breve_object_create(breve_world* world, const char* class_name, breve_object* object);
 
-/* Free an object, as `free` does in a script. Runs script (`destroy`, `delete`).
-   BREVE_OK; BREVE_ERROR_SCRIPT, _BUDGET, _DEPTH: a `destroy` or `delete` failed; the object is gone all the same. */
+/* Frees an object, as `free` does in a script. Runs script (`destroy`, `delete`).
+   BREVE_OK; BREVE_ERROR_SCRIPT, _BUDGET, _DEPTH: a `destroy` or `delete` failed; the object is freed nevertheless. */
 BREVE_API breve_status breve_object_free(breve_world* world, breve_object object);
 
 typedef struct breve_pose {
@@ -588,27 +610,28 @@ typedef struct breve_pose {
   double rotation[4]; /* unit quaternion (w, x, y, z): world = rotation * own frame */
 } breve_pose;
 
-/* Where an object is. BREVE_OK; BREVE_ERROR_NO_BODY. */
+/* The pose of an object. BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_pose(const breve_world* world, breve_object object, breve_pose* pose);
 
-/* Put an object somewhere at once; a link takes what joints connect it to along. The quaternion may be of any length but 0.
+/* Moves an object to a pose at once; a link takes its whole assembly along. The quaternion may have any length except
+   0.
    BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: not finite, or a quaternion of length 0; nothing is changed;
-   BREVE_ERROR_SCRIPT: the joints' state cannot be computed with. */
+   BREVE_ERROR_SCRIPT: the joints' state cannot be computed. */
 BREVE_API breve_status breve_object_set_pose(breve_world* world, breve_object object, const breve_pose* pose);
 
-/* Let an object without physics be somewhere at the end of the next iteration: it goes straight and evenly, pushes and
-   carries on the way the bodies with physics that it touches, and stands then.
-   BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: as breve_object_set_pose, or the object has physics. */
+/* Lets an object without physics reach a pose at the end of the next iteration: it moves there with constant velocity,
+   pushes and carries the bodies with physics that it touches on the way, and then stops.
+   BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: as for breve_object_set_pose, or the object has physics. */
 BREVE_API breve_status breve_object_set_target(breve_world* world, breve_object object, const breve_pose* pose);
 
-/* Velocity of the centre, length units a second, world frame. BREVE_OK; BREVE_ERROR_NO_BODY. */
+/* Velocity of the centre, length units per second, world frame. BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_velocity(const breve_world* world, breve_object object, double velocity[3]);
 
-/* An object without physics that was given a velocity, a Stationary too, pushes and carries bodies that have physics.
+/* An object without physics that has a velocity, including a Stationary, pushes and carries bodies with physics.
    BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: not finite. */
 BREVE_API breve_status breve_object_set_velocity(breve_world* world, breve_object object, const double velocity[3]);
 
-/* Rotational velocity, rad/s; a kinematic object's is in its own frame. BREVE_OK; BREVE_ERROR_NO_BODY. */
+/* Angular velocity, rad/s; for a kinematic object in its own frame. BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_rotational_velocity(const breve_world* world, breve_object object,
                                                         double velocity[3]);
 
@@ -626,17 +649,17 @@ typedef enum breve_shape_kind {
   BREVE_SHAPE_SPHERE = 0,
   BREVE_SHAPE_BOX = 1,
   BREVE_SHAPE_CONVEX = 2,
-  BREVE_SHAPE_MESH = 3,        /* triangles; they need not be convex, nor closed */
+  BREVE_SHAPE_MESH = 3,         /* triangles; they need be neither convex nor closed */
   BREVE_SHAPE_HEIGHT_FIELD = 4, /* ground: a grid of triangles, seen from above */
-  BREVE_SHAPE_CYLINDER = 5,     /* exact; the polygons show it with 32 sides */
-  BREVE_SHAPE_CAPSULE = 6       /* likewise: all points within a radius of a straight piece */
+  BREVE_SHAPE_CYLINDER = 5,     /* exact; its polygons, for display, have 32 sides */
+  BREVE_SHAPE_CAPSULE = 6       /* likewise: all points within a radius of a line segment */
 } breve_shape_kind;
 
-/* The shape that an object is drawn with, in its own frame about its centre. */
+/* The shape that an object is drawn with, in its own frame around its centre. */
 typedef struct breve_shape {
-  uint32_t kind; /* breve_shape_kind */
-  double radius;  /* of the sphere about the centre that holds the shape; a sphere's own radius */
-  double size[3]; /* edges of the box about the centre, along the own axes, that holds the shape; a box's own edges */
+  uint32_t kind;  /* breve_shape_kind */
+  double radius;  /* of the sphere around the centre that encloses the shape; a sphere's own radius */
+  double size[3]; /* edges of the box around the centre, along the shape's axes, that encloses it; a box's own edges */
   size_t vertex_count; /* 0 for a sphere */
   size_t face_count;   /* polygons; 0 for a sphere */
   size_t index_count;  /* sum of the faces' vertices */
@@ -645,57 +668,58 @@ typedef struct breve_shape {
 /* BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_shape(const breve_world* world, breve_object object, breve_shape* shape);
 
-/* The corners of the shape: x, y, z of each, own frame.
-   @param vertices  room for 3 * `capacity` numbers; NULL only if capacity is 0. At most capacity corners are written
+/* The vertices of the shape: x, y, z of each, in its own frame.
+   @param vertices  room for 3 * `capacity` numbers; NULL only if capacity is 0. At most capacity vertices are written
    BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_shape_vertices(const breve_world* world, breve_object object, double* vertices,
                                                    size_t capacity);
 
-/* The faces of the shape, each a convex polygon with its corners counter-clockwise as seen from outside.
-   @param sizes    number of corners of each face; room for `face_capacity`, NULL only if that is 0
-   @param indices  the corners of one face after the other; room for `index_capacity`, NULL only if that is 0
-   At most that many are written. BREVE_OK; BREVE_ERROR_NO_BODY. */
+/* The faces of the shape. Each is a convex polygon with its vertices counter-clockwise as seen from outside.
+   @param sizes    number of vertices of each face; room for `face_capacity`, NULL only if that is 0
+   @param indices  the vertices of one face after the other; room for `index_capacity`, NULL only if that is 0
+   At most these numbers are written. BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_shape_faces(const breve_world* world, breve_object object, uint32_t* sizes,
                                                 size_t face_capacity, uint32_t* indices, size_t index_capacity);
 
 /* ---- bodies ------------------------------------------------------------------------------------------------------ */
 
 /* Rigid bodies, joints between them, springs, contacts. All of them are objects of the class library, whether a script
-   or a host made them, so that both see the same ones: a script may drive a joint of the host, a host may read a joint
-   of a script. Classes that hosts make objects of are to be part of the program: `@use MultiBody.` has links and joints,
-   `@use Spring.` springs; breve_program_create_library has all. Functions of the sections from here to "values" that
-   place, join or change bodies are not for force methods (BREVE_ERROR_SCRIPT there). See docs/physics.md for models,
-   frames and sources. */
+   or a host created them, so that both see the same ones: a script may drive a joint of the host, a host may read a
+   joint of a script. If a host creates objects of a class, the class must be part of the program: `@use MultiBody.`
+   includes links and joints, `@use Spring.` includes springs; breve_program_create_library includes everything.
+   Functions of the sections from here to "values" that position, connect or change bodies cannot be used in force
+   methods (BREVE_ERROR_SCRIPT there). See docs/physics.md for models, frames and sources. */
 
-/* Make a program that has no text of its own: the whole class library.
+/* Creates a program that has no text of its own: the whole class library.
    @param controller  class of the controller: "PhysicalControl" or "Control"; NULL: "PhysicalControl"
-   @param program     to be given back to breve_program_destroy
-   BREVE_OK; BREVE_ERROR_COMPILE: there is no such class; BREVE_ERROR_BUSY as breve_program_compile. */
+   @param program     to be released with breve_program_destroy
+   BREVE_OK; BREVE_ERROR_COMPILE: there is no such class; BREVE_ERROR_BUSY as for breve_program_compile. */
 BREVE_API breve_status breve_program_create_library(breve_runtime* runtime, const char* controller,
                                                     breve_program** program);
 
-/* What a shape is to be. Only the fields of its kind are read. */
+/* A description of a shape. Only the fields of its kind are read. */
 typedef struct breve_geometry {
-  size_t struct_size;     /* as breve_geometry_default gives it */
-  uint32_t kind;          /* breve_shape_kind. Default BREVE_SHAPE_SPHERE */
-  uint32_t reserved;      /* must be 0 */
-  double radius;          /* of a sphere, cylinder or capsule, > 0. Default 1 */
-  double size[3];         /* edges of a box, each > 0. Default 1, 1, 1 */
-  const double* vertices; /* of a convex solid or a mesh: x, y, z of each corner. Default NULL */
-  size_t vertex_count;    /* Default 0 */
-  const uint32_t* face_sizes; /* corners of each face, 3 or more. Of a convex solid, which must be around the origin, in
-                                 order around the face, either way; of a mesh counter-clockwise from outside: if its
-                                 faces close a solid, that is the shape, else a surface of two sides. Default NULL */
+  size_t struct_size;         /* set by breve_geometry_default */
+  uint32_t kind;              /* breve_shape_kind. Default BREVE_SHAPE_SPHERE */
+  uint32_t reserved;          /* must be 0 */
+  double radius;              /* of a sphere, cylinder or capsule, > 0. Default 1 */
+  double size[3];             /* edges of a box, each > 0. Default 1, 1, 1 */
+  const double* vertices;     /* of a convex solid or a mesh: x, y, z of each vertex. Default NULL */
+  size_t vertex_count;        /* Default 0 */
+  const uint32_t* face_sizes; /* vertices of each face, 3 or more. A convex solid must contain the origin; its faces
+                                 list their vertices in order around the face, in either direction. Faces of a mesh are
+                                 counter-clockwise from outside: if they close a solid, that is the shape, otherwise the
+                                 shape is a surface with two sides. Default NULL */
   size_t face_count;          /* Default 0 */
-  const uint32_t* indices;    /* the corners of one face after the other, numbers of vertices. Default NULL */
+  const uint32_t* indices;    /* the vertices of one face after the other, as numbers of vertices. Default NULL */
   size_t index_count;         /* sum of face_sizes. Default 0 */
-  const double* heights;      /* of a height field: `columns` values along x for each of `rows` along z; what is below is
-                                 inside. The origin is the middle of the grid at height 0. Default NULL */
+  const double* heights;      /* of a height field: `columns` values along x for each of `rows` along z; the ground
+                                 below is solid. The origin is the middle of the grid at height 0. Default NULL */
   uint32_t columns, rows;     /* 2 to 4097. Default 0 */
   double tile;                /* edge of a cell, > 0. Default 1 */
   double density;             /* > 0; mass is density times volume. Default 1 */
-  double height; /* of a cylinder about y, whose caps are at +-height/2 (in a flat world it is about z, a disc); of a
-                    capsule along y, between the centres of its round ends; > 0. Default 1 */
+  double height; /* of a cylinder about y, whose caps are at +-height/2 (in a flat world it is a disc about z); of a
+                    capsule along y, the distance between the centres of its round ends; > 0. Default 1 */
 } breve_geometry;
 
 /* The defaults named above. */
@@ -712,16 +736,17 @@ static inline breve_geometry breve_geometry_default(void) {
   return geometry;
 }
 
-/* Make a Shape object. Many bodies may use one. Runs script (`init`).
-   BREVE_OK; BREVE_ERROR_ARGUMENT: a size or density that is not finite and > 0, faces that are no convex solid around
-   the origin or no mesh, an index that is not below vertex_count, a height that is not finite; nothing is made then. */
+/* Creates a Shape object. Many bodies may use the same one. Runs script (`init`).
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a size or density that is not finite and > 0, faces that do not form a convex solid
+   around the origin or a mesh, an index that is not below vertex_count, a height that is not finite; no object is
+   created then. */
 BREVE_API breve_status breve_shape_create(breve_world* world, const breve_geometry* geometry, breve_object* shape);
 
-/* Give a body its shape, for display and collisions, and the mass that goes with it. Runs script (`set-shape`).
-   BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_SCRIPT: the object is no shape. */
+/* Gives a body its shape, for display and collisions, and the corresponding mass. Runs script (`set-shape`).
+   BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_SCRIPT: the object is not a shape. */
 BREVE_API breve_status breve_object_set_shape(breve_world* world, breve_object object, breve_object shape);
 
-/* Is a body moved by gravity, forces and contacts? BREVE_OK; BREVE_ERROR_NO_BODY. */
+/* Do gravity, forces and contacts move a body? BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_physics(const breve_world* world, breve_object object, bool* enabled);
 
 /* BREVE_OK; BREVE_ERROR_NO_BODY. */
@@ -730,57 +755,58 @@ BREVE_API breve_status breve_object_set_physics(breve_world* world, breve_object
 /* Mass of a body: density times volume of its shape. BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_mass(const breve_world* world, breve_object object, double* mass);
 
-/* A force and a torque at the centre of mass, world frame, until they are replaced. NULL leaves one as it is.
-   BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: not finite; nothing is changed. */
+/* Sets a force and a torque at the centre of mass, world frame, until they are replaced. NULL leaves the respective one
+   unchanged. BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: not finite; nothing is changed. */
 BREVE_API breve_status breve_object_set_force(breve_world* world, breve_object object, const double force[3],
                                               const double torque[3]);
 
-/* Coefficients of a body's surface, as set-friction and set-restitution set them. Of two bodies so set: the geometric
-   mean of each friction, the maximum of the rest. */
+/* Coefficients of a body's surface, as set by set-friction and set-restitution. If both bodies of a pair have them, the
+   pair uses the geometric mean of each friction coefficient and the maximum of each other coefficient. */
 typedef struct breve_material {
   double static_friction, dynamic_friction; /* >= 0 */
   double restitution;                       /* along the normal, 0 to 1 */
   double tangential_restitution;            /* -1 to 1 */
-  double threshold;                         /* m/s; nothing bounces below this speed of approach. >= 0 */
+  double threshold;                         /* m/s; approaches below this speed do not bounce. >= 0 */
 } breve_material;
 
-/* BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: out of these ranges; nothing is changed. */
+/* BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: outside these ranges; nothing is changed. */
 BREVE_API breve_status breve_object_set_material(breve_world* world, breve_object object,
                                                  const breve_material* material);
 
-/* Let bodies that rest sleep. Off at first. */
+/* Lets resting bodies sleep. Initially off. */
 BREVE_API breve_status breve_world_set_sleeping(breve_world* world, bool on);
 
-/* Does a body that rests sleep until something touches or changes it? BREVE_OK; BREVE_ERROR_NO_BODY. */
+/* Is a resting body asleep until something touches or changes it? BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_asleep(const breve_world* world, breve_object object, bool* asleep);
 
 /* ---- joints and springs ------------------------------------------------------------------------------------------ */
 
 typedef enum breve_joint_kind {
-  BREVE_JOINT_REVOLUTE = 0,  /* turns about the normal */
-  BREVE_JOINT_PRISMATIC = 1, /* slides along the normal, from -2 to 2 at first */
+  BREVE_JOINT_REVOLUTE = 0,  /* rotates about the normal */
+  BREVE_JOINT_PRISMATIC = 1, /* slides along the normal, initially from -2 to 2 */
   BREVE_JOINT_FIXED = 2,
-  BREVE_JOINT_UNIVERSAL = 3, /* turns about the normal (fixed in the parent) and parent_point x normal (in the child) */
-  BREVE_JOINT_BALL = 4       /* turns every way; the middle angle stays within pi/2 - 0.35 */
+  BREVE_JOINT_UNIVERSAL = 3, /* rotates about the normal (fixed in the parent) and parent_point x normal (in the
+                                child) */
+  BREVE_JOINT_BALL = 4       /* rotates about any axis; the middle angle stays within pi/2 - 0.35 */
 } breve_joint_kind;
 
-/* Between which bodies, and where. */
+/* Which bodies a joint connects, and where. */
 typedef struct breve_joint_description {
-  size_t struct_size; /* as breve_joint_description_default gives it */
-  uint32_t kind; /* breve_joint_kind */
-  bool keep_rotation;     /* the child is moved, but not turned: the joint may start away from zero. Default false */
+  size_t struct_size;     /* set by breve_joint_description_default */
+  uint32_t kind;          /* breve_joint_kind */
+  bool keep_rotation;     /* the child is moved, but not rotated: the joint may start away from zero. Default false */
   bool reserved[3];       /* must be false */
   breve_object parent;    /* null: the world. Default null */
   breve_object child;     /* a body that can move */
   double parent_point[3]; /* in the parent's own frame, or the world's. Default 0 */
   double child_point[3];  /* in the child's own frame. Default 0 */
-  double rotation[4];     /* quaternion (w, x, y, z) of any length but 0: at zero the child stands at the parent's
-                             rotation times this. Default 1, 0, 0, 0 */
-  double normal[3];       /* in the parent's own frame, of any length but 0; not read for BREVE_JOINT_FIXED.
-                             Default 1, 0, 0 */
-  double other_axis[3];   /* of BREVE_JOINT_UNIVERSAL the second axis, of BREVE_JOINT_BALL the third, at zero, in the
-                             parent's own frame; what of it is along the normal is taken off. Default 0: from
-                             parent_point. Not read for others */
+  double rotation[4];     /* quaternion (w, x, y, z) of any length except 0: at joint position zero the child's rotation
+                             is the parent's times this. Default 1, 0, 0, 0 */
+  double normal[3];       /* in the parent's own frame, of any length except 0; ignored for BREVE_JOINT_FIXED. Default
+                             1, 0, 0 */
+  double other_axis[3];   /* the second axis of BREVE_JOINT_UNIVERSAL, the third of BREVE_JOINT_BALL, at zero, in the
+                             parent's own frame; its component along the normal is removed. Default 0: derived from
+                             parent_point. Ignored for other kinds */
 } breve_joint_description;
 
 /* The defaults named above. */
@@ -794,48 +820,50 @@ static inline breve_joint_description breve_joint_description_default(breve_join
   return description;
 }
 
-/* Make a joint: an object of class RevoluteJoint and so on. Both bodies get physics; the child, with all that hangs on
-   it, is placed so that the two points coincide. A joint between bodies that are connected already closes a ring, and
-   moves nothing. A joint never opens. Runs script (`init`).
-   BREVE_OK; BREVE_ERROR_NOT_FOUND: the program does not have the class; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: parent
-   and child are one, the child is a Stationary, or something is not finite or has length 0; nothing is made then. */
+/* Creates a joint: an object of class RevoluteJoint and so on. Both bodies get physics; the child, with everything
+   attached to it, is moved so that the two points coincide. A joint between bodies that are already connected closes a
+   loop and moves nothing. The two points of a joint never drift apart. Runs script (`init`).
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: the program does not have the class; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT:
+   parent and child are the same, the child is a Stationary, or something is not finite or has length 0; no joint is
+   created then. */
 BREVE_API breve_status breve_joint_create(breve_world* world, const breve_joint_description* description,
                                           breve_object* joint);
 
-/* Let go, and keep the object. Nothing if it is not linked.
-   BREVE_OK; BREVE_ERROR_TYPE: the object is no joint. */
+/* Disconnects the joint; the joint object stays alive. Does nothing if the joint is not connected.
+   BREVE_OK; BREVE_ERROR_TYPE: the object is not a joint. */
 BREVE_API breve_status breve_joint_break(breve_world* world, breve_object joint);
 
-/* What is known of a joint. Positions and velocities have one number for each axis (1, 1, 0, 2, 3 by kind), the rest is
-   0; they are positive when the parent turns or moves along the axis relative to the child. */
+/* The state of a joint. Positions and velocities have one number for each axis (1, 1, 0, 2, 3 by kind), the rest is 0;
+   they are positive when the parent rotates or moves along the axis relative to the child. */
 typedef struct breve_joint_info {
   uint32_t kind; /* breve_joint_kind */
-  bool linked; /* if not, all of the following is zero */
-  bool ring;   /* closes a ring: a constraint */
+  bool linked;   /* if false, all of the following is zero */
+  bool ring;     /* closes a loop: acts as a constraint */
   breve_object parent, child;
-  double position[3];  /* rad or m; a revolute joint counts whole turns */
-  double velocity[3];  /* rad/s or m/s */
-  double force[3];     /* on the child, in the last sub-step, world frame, N */
-  double torque[3];    /* on the child about the joint's point, world frame, N*m */
-  double hard_limit;   /* most that a motor may use: 500 times the child's mass */
+  double position[3]; /* rad or m; a revolute joint counts whole revolutions */
+  double velocity[3]; /* rad/s or m/s */
+  double force[3];    /* on the child, in the last sub-step, world frame, N */
+  double torque[3];   /* on the child about the joint's point, world frame, N*m */
+  double hard_limit;  /* the maximum for a motor: 500 times the child's mass */
 } breve_joint_info;
 
-/* BREVE_OK; BREVE_ERROR_TYPE: the object is no joint. */
+/* BREVE_OK; BREVE_ERROR_TYPE: the object is not a joint. */
 BREVE_API breve_status breve_joint_state(const breve_world* world, breve_object joint, breve_joint_info* info);
 
-/* What drives and bounds a joint. Forces are N*m or N, positions rad or m, speeds rad/s or m/s. */
+/* Motor, spring, damper and limits of a joint. Forces are N*m or N, positions rad or m, speeds rad/s or m/s. */
 typedef struct breve_drive {
-  size_t struct_size;      /* as breve_drive_default gives it */
-  double motor_speed[3];   /* what the motor aims at, for each axis. Default 0 */
-  double strength_limit;   /* most that it uses for that, cut to 0 .. hard_limit, told once; 0: no motor. Default 0 */
-  double double_strength;  /* 1/s, added to the motor's speed outside of double_min .. double_max. Default 0 */
+  size_t struct_size;     /* set by breve_drive_default */
+  double motor_speed[3];  /* the motor's target, for each axis. Default 0 */
+  double strength_limit;  /* the most that it uses to reach it, clamped to 0 .. hard_limit, reported once; 0: no motor.
+                             Default 0 */
+  double double_strength; /* 1/s, added to the motor's speed outside of double_min .. double_max. Default 0 */
   double double_min, double_max; /* Default 0 */
   double damping;                /* force per speed, >= 0. Default 0 */
   double stiffness;              /* of a spring in the joint, force per position, >= 0. Default 0 */
-  double rest[3];                /* where that spring is slack. Default 0 */
+  double rest[3];                /* where that spring is relaxed. Default 0 */
   double force[3];               /* along the axes, until replaced. Default 0 */
-  double low[3], high[3];        /* stops; -INFINITY and INFINITY: none. Default none, but see breve_joint_kind */
-  double limit_restitution;      /* at the stops, 0 to 1. Default 0 */
+  double low[3], high[3];        /* limits; -INFINITY and INFINITY: none. Default none, but see breve_joint_kind */
+  double limit_restitution;      /* at the limits, 0 to 1. Default 0 */
 } breve_drive;
 
 /* All zero, to be filled in by breve_joint_drive. */
@@ -846,53 +874,54 @@ static inline breve_drive breve_drive_default(void) {
   return drive;
 }
 
-/* BREVE_OK; BREVE_ERROR_TYPE: the object is no joint; BREVE_ERROR_ARGUMENT: it is not linked. */
+/* BREVE_OK; BREVE_ERROR_TYPE: the object is not a joint; BREVE_ERROR_ARGUMENT: it is not linked. */
 BREVE_API breve_status breve_joint_drive(const breve_world* world, breve_object joint, breve_drive* drive);
 
-/* As breve_joint_drive; BREVE_ERROR_ARGUMENT also for numbers out of these ranges; nothing is changed then. */
+/* As breve_joint_drive; BREVE_ERROR_ARGUMENT also for numbers outside these ranges; nothing is changed then. */
 BREVE_API breve_status breve_joint_set_drive(breve_world* world, breve_object joint, const breve_drive* drive);
 
-/* Put a joint somewhere, moving so; what hangs on the child moves along. NULL leaves one as it is.
-   BREVE_OK; BREVE_ERROR_TYPE; BREVE_ERROR_ARGUMENT: not finite, not linked, or the joint closes a ring. */
+/* Sets the position and velocity of a joint; everything attached to the child moves along. NULL leaves the respective
+   one unchanged. BREVE_OK; BREVE_ERROR_TYPE; BREVE_ERROR_ARGUMENT: not finite, not linked, or the joint closes a
+   loop. */
 BREVE_API breve_status breve_joint_set_state(breve_world* world, breve_object joint, const double position[3],
                                              const double velocity[3]);
 
-/* The bodies that joints connect with this one, itself among them, in order of creation.
+/* The bodies of the assembly that contains this body, including itself, in order of creation.
    @param links  room for `capacity` ids; NULL only if capacity is 0
-   @param count  how many there are, also where that is more than capacity: at most capacity are written
+   @param count  the total number, even if it exceeds capacity; at most capacity ids are written
    BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_links(const breve_world* world, breve_object object, breve_object* links,
                                           size_t capacity, size_t* count);
 
-/* The joints of these bodies, in order of creation. As breve_object_links. */
+/* The joints of this assembly, in order of creation. As breve_object_links. */
 BREVE_API breve_status breve_object_joints(const breve_world* world, breve_object object, breve_object* joints,
                                            size_t capacity, size_t* count);
 
-/* Move all that joints connect with a body, rigidly, so that the body stands there. breve_object_set_pose does the same
-   in the course of the next step. As breve_object_set_pose. */
+/* Moves the assembly of a body rigidly, so that the body gets this pose. breve_object_set_pose does the same in the
+   course of the next step. As breve_object_set_pose. */
 BREVE_API breve_status breve_object_set_assembly_pose(breve_world* world, breve_object object, const breve_pose* pose);
 
-/* Do bodies that joints connect push each other, where no joint connects them directly? Off at first.
+/* Do bodies of one assembly collide if no joint connects them directly? Initially off.
    BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_set_self_collisions(breve_world* world, breve_object object, bool on);
 
-/* An elastic tie between two bodies: strength (distance - length) + damping (rate of distance), positive pulling. */
+/* An elastic connection of two bodies: strength (distance - length) + damping (rate of distance), positive pulling. */
 typedef enum breve_spring_mode {
   BREVE_SPRING_BOTH = 0,
   BREVE_SPRING_EXPAND_ONLY = 1,  /* pushes, and is slack beyond its length */
-  BREVE_SPRING_CONTRACT_ONLY = 2 /* pulls, and is slack below it */
+  BREVE_SPRING_CONTRACT_ONLY = 2 /* pulls, and is slack below its length */
 } breve_spring_mode;
 
 typedef struct breve_spring {
-  size_t struct_size; /* as breve_spring_default gives it */
-  uint32_t mode;      /* breve_spring_mode. Default BREVE_SPRING_BOTH */
-  uint32_t reserved;      /* must be 0 */
-  breve_object from, to;  /* two bodies */
+  size_t struct_size;                /* set by breve_spring_default */
+  uint32_t mode;                     /* breve_spring_mode. Default BREVE_SPRING_BOTH */
+  uint32_t reserved;                 /* must be 0 */
+  breve_object from, to;             /* two bodies */
   double from_point[3], to_point[3]; /* in their own frames. Default 0 */
   double length;                     /* m, >= 0. Default 0 */
   double strength;                   /* N/m, >= 0. Default 100 */
   double damping;                    /* N*s/m, >= 0. Default 0.01 */
-  double maximum_force;              /* N, either way; 0: no bound. Default 0 */
+  double maximum_force;              /* N, in both directions; 0: no limit. Default 0 */
 } breve_spring;
 
 /* The defaults named above. */
@@ -905,24 +934,24 @@ static inline breve_spring breve_spring_default(void) {
   return spring;
 }
 
-/* Make a spring: an object of class Spring. Runs script (`init`).
+/* Creates a spring: an object of class Spring. Runs script (`init`).
    BREVE_OK; BREVE_ERROR_NOT_FOUND: the program does not have the class; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: both
-   ends are one body, or a number is out of these ranges; nothing is made then. */
+   ends are the same body, or a number is outside these ranges; no spring is created then. */
 BREVE_API breve_status breve_spring_create(breve_world* world, const breve_spring* description, breve_object* spring);
 
-/* Change the numbers of a spring; its bodies and points stay. BREVE_OK; BREVE_ERROR_TYPE: the object is no spring;
-   BREVE_ERROR_ARGUMENT: out of these ranges; nothing is changed then. */
+/* Changes the numbers of a spring; its bodies and points stay the same. BREVE_OK; BREVE_ERROR_TYPE: the object is not a
+   spring; BREVE_ERROR_ARGUMENT: outside these ranges; nothing is changed then. */
 BREVE_API breve_status breve_spring_set_description(breve_world* world, breve_object spring,
                                                     const breve_spring* description);
 
-/* The distance of a spring's points now and its force in the last sub-step, N; both 0 if it ties nothing.
+/* The current distance of a spring's points and its force in the last sub-step, N; both 0 if it is not connected.
    @param length, force  may be NULL
-   BREVE_OK; BREVE_ERROR_TYPE: the object is no spring. */
+   BREVE_OK; BREVE_ERROR_TYPE: the object is not a spring. */
 BREVE_API breve_status breve_spring_state(const breve_world* world, breve_object spring, double* length, double* force);
 
 /* ---- accuracy ---------------------------------------------------------------------------------------------------- */
 
-/* Rungs of the ladder of accuracy: names for settings. */
+/* Rungs of the accuracy ladder: named sets of settings. */
 typedef enum breve_rung {
   BREVE_RUNG_FAST = 0,
   BREVE_RUNG_BALANCED = 1,
@@ -945,23 +974,23 @@ typedef enum breve_integrator {
 
 /* How bodies with physics are computed. */
 typedef struct breve_accuracy {
-  size_t struct_size; /* as breve_accuracy_default gives it */
-  uint32_t rung;      /* breve_rung: where the settings come from */
-  uint32_t integrator; /* breve_integrator: of smooth motion */
-  bool implicit_joints;        /* springs, dampers and motors of joints implicit (Euler's schemes) */
-  bool implicit_spin;          /* a free body's spin by the implicit midpoint rule */
-  bool direct;                 /* small islands of contacts are solved directly */
-  bool locate_impacts;         /* impacts at their time of impact; else at the end of the sub-step */
-  bool contact_springs;        /* slow contacts with restitution are springs, where impacts are located */
-  bool link_springs;           /* so they are where articulated bodies take part, too */
-  bool reserved[2];            /* must be false */
-  double step;                 /* s, the longest sub-step; 0: the integration step */
-  double contact_step;         /* s, the longest sub-step of bodies in contact; 0: `step` */
-  double tolerance;            /* of BREVE_INTEGRATOR_FEHLBERG_ADAPTIVE */
-  int32_t iterations;          /* most of the contact solver, where it is iterative */
-  int32_t impacts;             /* most that are located in one island and sub-step */
-  double contact_stiffness;    /* of contact springs, N/m per kg of what they push apart; > 0 */
-  double contact_damping;      /* their ratio of damping, 0..0.9; 0: that of the pair's restitution */
+  size_t struct_size;       /* set by breve_accuracy_default */
+  uint32_t rung;            /* breve_rung: the origin of the settings */
+  uint32_t integrator;      /* breve_integrator: for smooth motion */
+  bool implicit_joints;     /* springs, dampers and motors of joints are implicit (Euler's schemes) */
+  bool implicit_spin;       /* the rotation of a free body uses the implicit midpoint rule */
+  bool direct;              /* small islands of contacts are solved directly */
+  bool locate_impacts;      /* impacts at their time of impact; otherwise at the end of the sub-step */
+  bool contact_springs;     /* slow contacts with restitution are springs, where impacts are located */
+  bool link_springs;        /* the same where articulated bodies take part */
+  bool reserved[2];         /* must be false */
+  double step;              /* s, the longest sub-step; 0: the integration step */
+  double contact_step;      /* s, the longest sub-step of bodies in contact; 0: `step` */
+  double tolerance;         /* of BREVE_INTEGRATOR_FEHLBERG_ADAPTIVE */
+  int32_t iterations;       /* maximum of the contact solver, where it is iterative */
+  int32_t impacts;          /* maximum number of impacts located in one island and sub-step */
+  double contact_stiffness; /* of contact springs, N/m per kg of the mass that they push apart; > 0 */
+  double contact_damping;   /* damping ratio of contact springs, 0..0.9; 0: derived from the pair's restitution */
 } breve_accuracy;
 
 /* All zero, to be filled in by breve_rung_accuracy or breve_world_accuracy. */
@@ -981,67 +1010,70 @@ BREVE_API breve_status breve_rung_find(const char* name, breve_rung* rung);
 
 BREVE_API breve_status breve_world_accuracy(const breve_world* world, breve_accuracy* accuracy);
 
-/* Of a flat world the rung, step, contact_step, iterations, impacts and locate_impacts act; the others are of integrators
-   and solvers that it has not, and are kept without effect.
-   BREVE_OK; BREVE_ERROR_ARGUMENT: a setting is not finite, negative, or 0 where there must be something. */
+/* In a flat world only the rung, step, contact_step, iterations, impacts and locate_impacts have an effect; the other
+   settings belong to integrators and solvers that it does not use, and are stored.
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a setting is not finite, negative, or 0 where a positive number is required. */
 BREVE_API breve_status breve_world_set_accuracy(breve_world* world, const breve_accuracy* accuracy);
 
-/* What a world's settings mean, in words; owned by the world until the next call of this function on it. */
+/* A description of a world's settings in words; owned by the world until the next call of this function on it. */
 BREVE_API breve_status breve_world_accuracy_text(const breve_world* world, const char** text);
 
-/* Settings of a body and all that joints connect with it; NULL: the world's.
+/* Sets the accuracy of a body and its whole assembly; NULL: the world's.
    BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT as breve_world_set_accuracy. */
 BREVE_API breve_status breve_object_set_accuracy(breve_world* world, breve_object object,
                                                  const breve_accuracy* accuracy);
 
 /* ---- space ------------------------------------------------------------------------------------------------------- */
 
-/* Acceleration of all bodies with physics, (0, -9.81, 0) unless a script set it. */
+/* Acceleration of all bodies with physics; (0, -9.81, 0) unless changed. */
 BREVE_API breve_status breve_world_gravity(const breve_world* world, double gravity[3]);
 
 /* BREVE_OK; BREVE_ERROR_ARGUMENT: not finite. */
 BREVE_API breve_status breve_world_set_gravity(breve_world* world, const double gravity[3]);
 
-/* How space goes on along an axis. */
+/* What happens at the ends of space along an axis. */
 typedef enum breve_edge {
-  BREVE_EDGE_OPEN = 0, /* for ever; so all axes begin */
-  BREVE_EDGE_WRAP = 1, /* what leaves at one end comes back at the other; distances and neighbours are across it */
-  BREVE_EDGE_WALL = 2  /* it ends at walls that reflect the centres of bodies */
+  BREVE_EDGE_OPEN = 0, /* there are none; the default for all axes */
+  BREVE_EDGE_WRAP = 1, /* a body that leaves at one end returns at the other; distances and neighbours work across it */
+  BREVE_EDGE_WALL = 2  /* walls that reflect the centres of bodies */
 } breve_edge;
 
-/* Set how space goes on along one axis. At the end of each sub-step kinematic bodies that move, and bodies with physics,
-   are brought inside; what joints connect as a whole, by its first body, unless it hangs on the world. Collision handlers
-   of bodies without physics are across edges that wrap; bodies with physics push each other on their own side only. Runs
-   no script.
+/* Sets the extent of space along one axis. At the end of each sub-step, moving kinematic bodies and bodies with physics
+   are brought back inside; an assembly moves as a whole, according to its first body, unless it is attached to the
+   world. Collision handlers of bodies without physics work across edges that wrap; contacts of bodies with physics act
+   only on their own side. Runs no script.
    @param axis       0, 1, 2 for x, y, z
-   @param low, high  m, finite, low < high; not looked at for BREVE_EDGE_OPEN
+   @param low, high  m, finite, low < high; ignored for BREVE_EDGE_OPEN
    BREVE_OK; BREVE_ERROR_ARGUMENT. */
 BREVE_API breve_status breve_world_set_space(breve_world* world, int axis, breve_edge edge, double low, double high);
 
-/* How space goes on along one axis.
-   @param edge, low, high  each may be NULL; low and high are 0 where it is open
+/* The extent of space along one axis.
+   @param edge, low, high  each may be NULL; low and high are 0 if the axis is open
    BREVE_OK; BREVE_ERROR_ARGUMENT. */
 BREVE_API breve_status breve_world_space(const breve_world* world, int axis, breve_edge* edge, double* low,
                                          double* high);
 
 /* ---- grids ------------------------------------------------------------------------------------------------------- */
 
-/* The cells of a grid along x, y and z.
+/* The number of cells of a grid along x, y and z.
    @param grid    an object of class PatchGrid or PatchToroid
-   @param counts  three numbers from 1
-   BREVE_OK; BREVE_ERROR_STALE; BREVE_ERROR_NOT_FOUND: the object is no grid, or init-with has made no cells yet. */
+   @param counts  three numbers, each at least 1
+   BREVE_OK; BREVE_ERROR_STALE; BREVE_ERROR_NOT_FOUND: the object is not a grid, or init-with has not created cells
+   yet. */
 BREVE_API breve_status breve_grid_size(const breve_world* world, breve_object grid, uint32_t counts[3]);
 
-/* Copy what there is of a chemical over all cells of a grid, as get-concentration gives it for one. Runs no script.
+/* Copies the concentrations of a chemical in all cells of a grid, as get-concentration returns them for one. Runs no
+   script.
    @param chemical  an object that the grid tracks (track)
-   @param values    amount per volume of space, one number for each cell; the cell with the indices x, y, z is at
-                    (x * ny + y) * nz + z. Room for `capacity` numbers; NULL only if capacity is 0
-   @param count     how many cells there are, also where that is more than capacity: at most capacity are written
-   BREVE_OK; BREVE_ERROR_STALE; BREVE_ERROR_NOT_FOUND as breve_grid_size, and if the grid does not track the chemical. */
+   @param values    amount per volume of space, one number for each cell; the cell with the indices x, y, z is at (x *
+                    ny + y) * nz + z. Room for `capacity` numbers; NULL only if capacity is 0
+   @param count     the number of cells, even if it exceeds capacity; at most capacity numbers are written
+   BREVE_OK; BREVE_ERROR_STALE; BREVE_ERROR_NOT_FOUND as breve_grid_size, and if the grid does not track the chemical.
+ */
 BREVE_API breve_status breve_grid_concentrations(const breve_world* world, breve_object grid, breve_object chemical,
                                                  double* values, size_t capacity, size_t* count);
 
-/* Set what there is of a chemical over all cells, in the same order. Nothing is changed where it fails. Runs no script.
+/* Sets the concentrations of a chemical in all cells, in the same order. Changes nothing if it fails. Runs no script.
    @param count  the number of cells
    As breve_grid_concentrations; BREVE_ERROR_ARGUMENT: a number that is not finite, or another count. */
 BREVE_API breve_status breve_grid_set_concentrations(breve_world* world, breve_object grid, breve_object chemical,
@@ -1049,20 +1081,21 @@ BREVE_API breve_status breve_grid_set_concentrations(breve_world* world, breve_o
 
 /* ---- threads ----------------------------------------------------------------------------------------------------- */
 
-/* Threads that may compute the physics of a world, the caller's among them, 1 to 256; 1 at first. What comes out does
-   not depend on it. Islands (bodies that touch or are joined, and what they touch) are shared among them; those with a
-   collision handler or a force method are left to the caller's thread. The threads are the process's: no more than it
-   has cores. A flat world is computed by the caller's thread alone. BREVE_OK; BREVE_ERROR_ARGUMENT: out of this range. */
+/* Sets the number of threads that may compute the physics of a world, including the caller's, 1 to 256; initially 1.
+   The result does not depend on it. Islands (bodies that touch or are connected, and what they touch) are distributed
+   among the threads; islands with a collision handler or a force method are left to the caller's thread. The threads
+   are shared by the process, which has no more of them than cores. Only the caller's thread computes a flat world.
+   BREVE_OK; BREVE_ERROR_ARGUMENT: out of this range. */
 BREVE_API breve_status breve_world_set_workers(breve_world* world, uint32_t workers);
 
-/* ---- what physics did -------------------------------------------------------------------------------------------- */
+/* ---- physics events and counters --------------------------------------------------------------------------------- */
 
-/* What happens where physics goes wrong. */
+/* The guard's reaction when physics goes wrong. */
 typedef enum breve_guard {
   BREVE_GUARD_OFF = 0, /* a step whose motion cannot be computed gives BREVE_ERROR_SCRIPT */
   BREVE_GUARD_REPORT = 1,
-  BREVE_GUARD_REFINE = 2, /* compute that part of the world more finely */
-  BREVE_GUARD_REST = 3    /* and stop it, if that does not help. The default */
+  BREVE_GUARD_REFINE = 2, /* compute that part of the world with smaller steps */
+  BREVE_GUARD_REST = 3    /* and stop its motion if that does not help. The default */
 } breve_guard;
 
 /* BREVE_OK; BREVE_ERROR_ARGUMENT: there is no such mode. */
@@ -1071,25 +1104,25 @@ BREVE_API breve_status breve_world_set_guard(breve_world* world, breve_guard mod
 /* The mode of the guard; BREVE_GUARD_OFF for NULL. */
 BREVE_API breve_guard breve_world_guard(const breve_world* world);
 
-/* What the guard did. */
+/* One action of the guard. */
 typedef struct breve_intervention {
   uint64_t iteration;
   double time;        /* s */
-  breve_object body;  /* the one that showed it; perhaps gone */
+  breve_object body;  /* the body where it was found; it may no longer exist */
   const char* reason; /* in words: "a number is not finite"; lives as long as the library */
   const char* action; /* "reported", "refined" or "put to rest"; lives as long as the library */
-  double value;       /* what was measured: J, m, or a ratio */
+  double value;       /* the measured value: J, m, or a ratio */
 } breve_intervention;
 
 /* The interventions of the last iteration, in order.
    @param interventions  room for `capacity`; NULL only if capacity is 0
-   @param count          how many there are, also where that is more than capacity: at most capacity are written */
+   @param count          the total number, even if it exceeds capacity; at most capacity are written */
 BREVE_API breve_status breve_world_interventions(const breve_world* world, breve_intervention* interventions,
                                                  size_t capacity, size_t* count);
 
 /* An impulse at a contact. */
 typedef struct breve_impact {
-  breve_object a, b; /* b may be null: something without an object. Both are perhaps gone */
+  breve_object a, b; /* b may be null: something without an object. Both may no longer exist */
   double time;       /* s */
   double point[3];   /* world frame */
   double normal[3];  /* unit, from b toward a */
@@ -1100,20 +1133,20 @@ typedef struct breve_impact {
 BREVE_API breve_status breve_world_impacts(const breve_world* world, breve_impact* impacts, size_t capacity,
                                            size_t* count);
 
-/* Where energy is and where it went, J. The first three are of now, the rest since the start:
-   kinetic + potential + springs - (their sum at the start) = works - losses + residual. */
+/* The energy ledger: where energy is and where it went, J. The first three are current values, the others are sums
+   since the start: kinetic + potential + springs - (their sum at the start) = works - losses + residual. */
 typedef struct breve_energy {
-  size_t struct_size; /* as breve_energy_default gives it */
+  size_t struct_size; /* set by breve_energy_default */
   double kinetic;
   double potential;     /* in the field of gravity, 0 at the world's origin */
   double springs;       /* of joints, of Springs and of contacts */
   double motor_work;    /* of the motors of joints */
-  double script_work;   /* of forces that scripts and hosts set, and of all else that they change (docs/physics.md) */
+  double script_work;   /* of forces that scripts and hosts set, and of all their other changes (docs/physics.md) */
   double contact_loss;  /* in contacts, along the normal */
   double friction_loss; /* in contacts, along the surface */
   double drag_loss;     /* of dampers */
-  double limit_loss;    /* at the stops of joints */
-  double residual;      /* what no account explains: the error of the method */
+  double limit_loss;    /* at the limits of joints */
+  double residual;      /* the unexplained rest: the error of the method */
 } breve_energy;
 
 /* All zero, to be filled in. */
@@ -1124,30 +1157,30 @@ static inline breve_energy breve_energy_default(void) {
   return energy;
 }
 
-/* Of all bodies with physics. BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
+/* The energy ledger of all bodies with physics. BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
 BREVE_API breve_status breve_world_energy(const breve_world* world, breve_energy* energy);
 
-/* Of a body and all that joints connect with it. As breve_world_energy; BREVE_ERROR_NO_BODY. */
+/* The energy ledger of a body's assembly. As breve_world_energy; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_energy(const breve_world* world, breve_object object, breve_energy* energy);
 
-/* What the physics of the last iteration took: counts only, so that runs can be compared. */
+/* The cost of the physics of the last iteration: only counts, so that runs can be compared. */
 typedef struct breve_physics_counters {
-  size_t struct_size;   /* as breve_physics_counters_default gives it */
+  size_t struct_size;   /* set by breve_physics_counters_default */
   uint64_t sub_steps;   /* of islands; rejected ones are not counted */
   uint64_t evaluations; /* of forces, by trees of bodies */
-  uint64_t rejected;    /* steps of step control that were tried again */
+  uint64_t rejected;    /* steps of step control that were repeated */
   uint64_t islands;
-  uint64_t pairs;    /* looked at by the narrow phase */
+  uint64_t pairs;    /* examined by the narrow phase */
   uint64_t contacts; /* points */
-  uint64_t warm;     /* of them, with an impulse from the last sub-step */
+  uint64_t warm;     /* points with an impulse from the last sub-step */
   uint64_t impacts;  /* at their time of impact */
   uint64_t searches; /* for a time of impact */
   uint64_t solver_iterations;
   uint64_t direct;   /* islands solved directly */
   uint64_t sleeping; /* bodies asleep now */
   uint64_t interventions;
-  /* Of the solver, m/s: the most by which a velocity misses what its contact, limit, motor or loop demands; where rows
-     were swept, by which the last sweep still changed one. 0 in a flat world, whose engine does not tell. */
+  /* Of the solver, m/s: the largest violation of the velocity that a contact, limit, motor or loop requires; if rows
+     were swept, the largest change in the last sweep. 0 in a flat world, whose engine does not report it. */
   double residual;
   uint64_t work; /* units, see `physics_budget` */
 } breve_physics_counters;
@@ -1175,16 +1208,16 @@ typedef enum breve_type {
   BREVE_TYPE_OBJECT = 6,
   BREVE_TYPE_LIST = 7,
   BREVE_TYPE_HASH = 8,
-  BREVE_TYPE_POINTER = 9, /* opaque: can be looked at by nobody, and not be passed in */
+  BREVE_TYPE_POINTER = 9, /* opaque: its contents are not accessible, and it cannot be passed in */
   BREVE_TYPE_DATA = 10    /* bytes */
 } breve_type;
 
-/* A value of a script. Numbers, vectors, matrices and objects stand in place. Bytes that the library gives are its own,
-   and a list or hash is a reference: both are good until script runs in that world again, that is until the next
-   function marked "Runs script", or, in a callback, until it returns. An older reference gives BREVE_ERROR_STALE; copy
-   bytes that are needed longer. Bytes that the host gives are copied by the call. A function that takes a value gives
-   BREVE_ERROR_UNSUPPORTED for a BREVE_TYPE_POINTER, BREVE_ERROR_STALE for an object that is gone, and BREVE_ERROR_ARGUMENT
-   for a type that is not a breve_type. */
+/* A value of a script. Numbers, vectors, matrices and objects are stored in place. Bytes that the library returns
+   belong to it, and a list or hash is a reference: both are valid until script runs in that world again, that is until
+   the next function marked "Runs script", or, in a callback, until it returns. An older reference gives
+   BREVE_ERROR_STALE; copy bytes that you need longer. Bytes that the host passes are copied by the call. A function
+   that takes a value returns BREVE_ERROR_UNSUPPORTED for a BREVE_TYPE_POINTER, BREVE_ERROR_STALE for an object that no
+   longer exists, and BREVE_ERROR_ARGUMENT for a type that is not a breve_type. */
 typedef struct breve_value {
   uint32_t type; /* breve_type */
   uint32_t reserved;
@@ -1194,15 +1227,15 @@ typedef struct breve_value {
     double vector[3];
     double matrix[9]; /* row by row */
     struct {
-      const char* bytes; /* a string that the library gives has a zero byte behind it */
+      const char* bytes; /* a string that the library returns is followed by a zero byte */
       size_t size;
     } string;            /* BREVE_TYPE_STRING, BREVE_TYPE_DATA */
-    breve_object object; /* null, or perhaps gone */
-    breve_ref ref;       /* BREVE_TYPE_LIST, BREVE_TYPE_HASH; all zero: one that the script has not made yet, empty */
+    breve_object object; /* null, or an object that may no longer exist */
+    breve_ref ref;       /* BREVE_TYPE_LIST, BREVE_TYPE_HASH; all zero: empty, not yet created by the script */
   } as;
 } breve_value;
 
-/* Values to pass in. breve_value_string refers to `text` until the call is made; NULL is the empty string. */
+/* Values to pass in. breve_value_string refers to `text` until the call is made; NULL gives the empty string. */
 BREVE_API breve_value breve_value_null(void);
 BREVE_API breve_value breve_value_int(int32_t integer);
 BREVE_API breve_value breve_value_double(double number);
@@ -1213,48 +1246,48 @@ BREVE_API breve_value breve_value_object(breve_object object);
 
 /* The text of a value as `print` shows it, owned by the world until the next call of this function on it. Runs script
    (objects describe themselves).
-   BREVE_OK; BREVE_ERROR_STALE: the value is a list or hash from before script ran; BREVE_ERROR_TYPE: its reference is to
-   something of another type than it says. */
+   BREVE_OK; BREVE_ERROR_STALE: the value is a list or hash from before script ran; BREVE_ERROR_TYPE: its reference
+   refers to a different type than the value states. */
 BREVE_API breve_status breve_value_text(breve_world* world, const breve_value* value, const char** text);
 
-/* A new empty list. */
+/* Creates an empty list. */
 BREVE_API breve_status breve_list_create(breve_world* world, breve_value* list);
 
-/* BREVE_OK; BREVE_ERROR_TYPE: `list` is no list; BREVE_ERROR_STALE. The same for the functions below. */
+/* BREVE_OK; BREVE_ERROR_TYPE: `list` is not a list; BREVE_ERROR_STALE. The same for the functions below. */
 BREVE_API breve_status breve_list_size(const breve_world* world, const breve_value* list, size_t* size);
 
 /* The element at `index`, from 0. BREVE_ERROR_NOT_FOUND if index is not below the size. */
 BREVE_API breve_status breve_list_get(breve_world* world, const breve_value* list, size_t index, breve_value* element);
 
-/* Append. BREVE_ERROR_ARGUMENT for a list that the script has not made yet (all-zero reference). */
+/* Appends an element. BREVE_ERROR_ARGUMENT for a list that the script has not created yet (all-zero reference). */
 BREVE_API breve_status breve_list_push(breve_world* world, const breve_value* list, const breve_value* element);
 
-/* A new empty hash. */
+/* Creates an empty hash. */
 BREVE_API breve_status breve_hash_create(breve_world* world, breve_value* hash);
 
-/* How many keys it has. BREVE_OK; BREVE_ERROR_TYPE: `hash` is no hash; BREVE_ERROR_STALE. The same below. */
+/* The number of keys. BREVE_OK; BREVE_ERROR_TYPE: `hash` is not a hash; BREVE_ERROR_STALE. The same below. */
 BREVE_API breve_status breve_hash_size(const breve_world* world, const breve_value* hash, size_t* size);
 
-/* The value of a key; keys compare with their type. BREVE_ERROR_NOT_FOUND if it has no such key. */
+/* The value of a key; keys of different types differ. BREVE_ERROR_NOT_FOUND if there is no such key. */
 BREVE_API breve_status breve_hash_get(breve_world* world, const breve_value* hash, const breve_value* key,
                                       breve_value* element);
 
-/* Set the value of a key. BREVE_ERROR_ARGUMENT for a hash that the script has not made yet (all-zero reference). */
+/* Sets the value of a key. BREVE_ERROR_ARGUMENT for a hash that the script has not created yet (all-zero reference). */
 BREVE_API breve_status breve_hash_set(breve_world* world, const breve_value* hash, const breve_value* key,
                                       const breve_value* element);
 
-/* A new list of the keys, in order of insertion. */
+/* Creates a list of the keys, in order of insertion. */
 BREVE_API breve_status breve_hash_keys(breve_world* world, const breve_value* hash, breve_value* keys);
 
 /* ---- variables and calls ----------------------------------------------------------------------------------------- */
 
-/* Read an instance variable, its own or inherited.
+/* Reads an instance variable, declared in the object's class or inherited.
    BREVE_OK; BREVE_ERROR_NOT_FOUND: no such variable; BREVE_ERROR_UNSUPPORTED: an array. */
 BREVE_API breve_status breve_object_get(breve_world* world, breve_object object, const char* name, breve_value* value);
 
-/* Write an instance variable. The value converts to the variable's type as an assignment in a script does.
-   BREVE_OK; BREVE_ERROR_NOT_FOUND; BREVE_ERROR_TYPE: it does not convert, or is an object of another class than the
-   variable's; BREVE_ERROR_UNSUPPORTED: an array, or a pointer. */
+/* Writes an instance variable. The value is converted to the variable's type as in an assignment in a script.
+   BREVE_OK; BREVE_ERROR_NOT_FOUND; BREVE_ERROR_TYPE: the value cannot be converted, or is an object of a class that the
+   variable does not accept; BREVE_ERROR_UNSUPPORTED: an array, or a pointer. */
 BREVE_API breve_status breve_object_set(breve_world* world, breve_object object, const char* name,
                                         const breve_value* value);
 
@@ -1264,22 +1297,23 @@ typedef struct breve_keyword {
   breve_value value;
 } breve_keyword;
 
-/* Call a method by its name and keywords, in any order; those that have defaults may be left out. Runs script.
+/* Calls a method by its name and keywords, in any order; keywords with defaults may be omitted. Runs script.
    @param keywords  NULL only if count is 0
    @param result    may be NULL
-   BREVE_OK; BREVE_ERROR_NOT_FOUND: no such method; BREVE_ERROR_TYPE: an argument says that it is a list, a hash or another
-   thing by reference, and its reference is to something else; BREVE_ERROR_SCRIPT: a run-time error, also for a keyword that
-   the method does not know or that is missing; BREVE_ERROR_BUDGET, _MEMORY; BREVE_ERROR_DEPTH: also where calls of host
-   and script nest too deeply. The world is consistent after an error. */
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: no such method; BREVE_ERROR_TYPE: an argument is marked as a list, a hash or another
+   reference, but refers to something else; BREVE_ERROR_SCRIPT: a run-time error, also for an unknown or missing
+   keyword; BREVE_ERROR_BUDGET, _MEMORY; BREVE_ERROR_DEPTH: also if calls of host and script nest too deeply. The world
+   is consistent after an error. */
 BREVE_API breve_status breve_object_call(breve_world* world, breve_object object, const char* method,
                                          const breve_keyword* keywords, size_t count, breve_value* result);
 
-/* Resolve a method name and its keywords once, for many fast calls. It is for any class; the world owns it.
-   @param keywords  names in the order in which the arguments will be given; NULL only if count is 0 */
+/* Resolves a method name and its keywords once, for many fast calls. The selector works for any class; the world owns
+   it.
+   @param keywords  names in the order in which the arguments will be passed; NULL only if count is 0 */
 BREVE_API breve_status breve_world_prepare(breve_world* world, const char* method, const char* const* keywords,
                                            size_t count, breve_selector* selector);
 
-/* Call a prepared method. Runs script.
+/* Calls a prepared method. Runs script.
    @param arguments  in the order of the prepared keywords; NULL only if count is 0
    @param count      must be the prepared count
    @param result     may be NULL
@@ -1289,11 +1323,11 @@ BREVE_API breve_status breve_object_call_prepared(breve_world* world, breve_obje
 
 /* ---- many objects at once ---------------------------------------------------------------------------------------- */
 
-/* One call for many objects, whose numbers lie in an array of the host: one row for each object, at any address and
-   distance, as they lie in a renderer's instances. Each of these functions does what the one for a single object does to
-   one after the other, in their order; all ids and numbers are checked first, and if one is refused nothing is changed or
-   written. The objects of a class are those that breve_world_objects gives. The functions allocate nothing once they
-   have seen as many objects. */
+/* One call for many objects, whose numbers are in an array of the host: one row for each object, at any address and
+   with any stride, for example in a renderer's instance buffer. Each of these functions does the same as the function
+   for a single object, in the order of the objects; all ids and numbers are checked first, and if one is refused
+   nothing is changed or written. breve_world_objects returns the objects of a class. The functions allocate no memory
+   once they have handled the same number of objects. */
 
 typedef enum breve_number {
   BREVE_NUMBER_FLOAT = 0, /* 4 bytes */
@@ -1301,10 +1335,11 @@ typedef enum breve_number {
 } breve_number;
 
 typedef struct breve_array {
-  void* numbers;   /* the first row; NULL only for no objects. A function that reads them does not write them */
-  size_t stride;   /* bytes from one row to the next; 0: they lie side by side */
+  void* numbers;   /* the first row; NULL only if there are no objects. A function that reads the array does not write
+                      it */
+  size_t stride;   /* bytes from one row to the next; 0: the rows are contiguous */
   uint32_t number; /* breve_number */
-  uint32_t width;  /* numbers of a row: as many as an object has of these, else BREVE_ERROR_ARGUMENT */
+  uint32_t width;  /* numbers per row; must be the width of the property, otherwise BREVE_ERROR_ARGUMENT */
 } breve_array;
 
 typedef enum breve_property {
@@ -1318,73 +1353,76 @@ typedef enum breve_property {
 
 /* @param objects   NULL only if count is 0
    @param property  breve_property
-   BREVE_OK; BREVE_ERROR_NO_BODY: one of them has no place in space. */
+   BREVE_OK; BREVE_ERROR_NO_BODY: one of the objects has no position in space. */
 BREVE_API breve_status breve_objects_property(const breve_world* world, const breve_object* objects, size_t count,
                                               uint32_t property, const breve_array* array);
 
-/* BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: a number is not finite, or what the function for one object
-   refuses; BREVE_ERROR_SCRIPT: as breve_object_set_pose. If memory ends in the middle, the first rows are written. */
+/* BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: a number is not finite, or is refused by the function for one
+   object; BREVE_ERROR_SCRIPT: as for breve_object_set_pose. If memory runs out during the call, the first rows are
+   written. */
 BREVE_API breve_status breve_objects_set_property(breve_world* world, const breve_object* objects, size_t count,
                                                   uint32_t property, const breve_array* array);
 
-/* An instance variable of each: an int or a float is 1 number, a vector 3. Objects of several classes may be among them
-   if the variable has one type in all.
-   BREVE_OK; BREVE_ERROR_NOT_FOUND: a class without this variable; BREVE_ERROR_TYPE: it is of another type;
+/* An instance variable of each object: an int or a float is 1 number, a vector 3. The objects may be of several classes
+   if the variable has the same type in all of them.
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: a class does not have this variable; BREVE_ERROR_TYPE: it has another type;
    BREVE_ERROR_UNSUPPORTED: it is an array. */
 BREVE_API breve_status breve_objects_get(const breve_world* world, const breve_object* objects, size_t count,
                                          const char* name, const breve_array* array);
 
-/* As breve_objects_get; BREVE_ERROR_TYPE also for a number that an int cannot be. */
+/* As breve_objects_get; BREVE_ERROR_TYPE also for a number that an int cannot represent. */
 BREVE_API breve_status breve_objects_set(breve_world* world, const breve_object* objects, size_t count,
                                          const char* name, const breve_array* array);
 
-/* Call a prepared method of each, with the same arguments. One that was freed by an earlier call is passed over. The
-   first call that fails ends it: those before it are done, and their results are written. Runs script.
-   @param arguments  as of breve_object_call_prepared
-   @param results    one for each object, or NULL; BREVE_TYPE_NULL of one that was passed over, and for a text, a list
-                     or anything else that does not outlive the next call
+/* Calls a prepared method of each object, with the same arguments. An object that an earlier call freed is skipped. The
+   first call that fails ends the function: the calls before it are done, and their results are written. Runs script.
+   @param arguments  as for breve_object_call_prepared
+   @param results    one for each object, or NULL; BREVE_TYPE_NULL for a skipped object, and for a text, a list or
+                     anything else that does not outlive the next call
    As breve_object_call_prepared. */
 BREVE_API breve_status breve_objects_call_prepared(breve_world* world, const breve_object* objects, size_t count,
                                                    breve_selector selector, const breve_value* arguments,
                                                    size_t argument_count, breve_value* results);
 
-/* ---- functions of the host --------------------------------------------------------------------------------------- */
+/* ---- host functions ---------------------------------------------------------------------------------------------- */
 
-/* One call of a function of the host, for breve_function_fn; good until that returns. The library fills it in. */
+/* One call of a host function, for breve_function_fn; valid until that returns. The library fills it in. */
 typedef struct breve_call {
   size_t struct_size; /* of the library's breve_call: later libraries append fields */
   breve_world* world;
-  breve_object self; /* the object whose method calls */
+  breve_object self;            /* the object whose method calls */
   const breve_value* arguments; /* converted to the types that breve_function.parameters names */
   size_t count;                 /* breve_function.parameter_count */
-  breve_write_fn reason;        /* to be called with `sink` and why the call fails, as a sentence without period */
+  breve_write_fn reason;        /* to say why the call fails, call it with `sink` and a sentence without period */
   void* sink;
 } breve_call;
 
-/* A script calls a function of the host. The callback may call any function of this header: call methods, create and free
-   objects, `self` too (the calling method ends then when the callback returns). Those that cannot work inside a running
-   script give BREVE_ERROR_BUSY.
+/* A script calls a host function. The callback may call any function of this header: call methods, create and free
+   objects, including `self` (the calling method then ends when the callback returns). Functions that cannot work inside
+   a running script return BREVE_ERROR_BUSY.
    @param user    breve_function.user
-   @param result  no value; to be filled in. It is converted to breve_function.result
-   Returns BREVE_OK. Any other status is a run-time error in the script, at the call: with the reason that was written, else
-   with the message of the world's last error if that has the same status, else with the status's name. BREVE_ERROR_BUDGET,
-   _DEPTH, _MEMORY and _INTERRUPTED stay what they are. The status of a call that failed in here can be handed on. */
+   @param result  initially no value; to be filled in. It is converted to breve_function.result
+   Returns BREVE_OK. Any other status is a run-time error in the script, at the call: with the reason that was written,
+   otherwise with the message of the world's last error if that has the same status, otherwise with the status's name.
+   BREVE_ERROR_BUDGET, _DEPTH, _MEMORY and _INTERRUPTED are kept. The status of a call that failed in the callback can
+   be returned unchanged. */
 typedef breve_status (*breve_function_fn)(void* user, const breve_call* call, breve_value* result);
 
-/* A function that scripts call as they call those of the language: `worldHeight(x, y)`. */
+/* A function that scripts call like a function of the language: `worldHeight(x, y)`. */
 typedef struct breve_function {
-  size_t struct_size;         /* as breve_function_default gives it */
-  const char* name;           /* letters, digits and '_'; copied. Must be given */
-  const char* doc;            /* what it does, for editors; copied. NULL: nothing. Default NULL */
-  const uint32_t* parameters; /* `parameter_count` of breve_type, copied: arguments are converted as in an assignment;
-                                 BREVE_TYPE_NULL takes any value as it is. NULL only if there are none. Default NULL */
-  size_t parameter_count;     /* at most 8. Default 0 */
-  uint32_t result;            /* breve_type; BREVE_TYPE_NULL: any value, or none. Default BREVE_TYPE_NULL */
-  breve_function_fn call;     /* must be given */
-  void* user;                 /* handed to `call`. Default NULL */
-  void (*destroy)(void* user); /* called once, when neither the runtime nor a program or world of it can call the function
-                                  any more, by the thread that destroys the last of them; it must not use any of these.
-                                  NULL: nothing to do. Default NULL */
+  size_t struct_size;          /* set by breve_function_default */
+  const char* name;            /* letters, digits and '_'; copied. Required */
+  const char* doc;             /* a description, for editors; copied. NULL: none. Default NULL */
+  const uint32_t* parameters;  /* `parameter_count` of breve_type, copied: arguments are converted as in an assignment;
+                                  BREVE_TYPE_NULL accepts any value unchanged. NULL only if there are none. Default
+                                  NULL */
+  size_t parameter_count;      /* at most 8. Default 0 */
+  uint32_t result;             /* breve_type; BREVE_TYPE_NULL: any value, or none. Default BREVE_TYPE_NULL */
+  breve_function_fn call;      /* required */
+  void* user;                  /* passed to `call`. Default NULL */
+  void (*destroy)(void* user); /* called once, when neither the runtime nor any of its programs and worlds can call the
+                                  function any more, by the thread that destroys the last of them; it must not use any
+                                  of these. NULL: nothing to do. Default NULL */
 } breve_function;
 
 /* The defaults named above. */
@@ -1395,100 +1433,102 @@ static inline breve_function breve_function_default(void) {
   return function;
 }
 
-/* Give a function to all programs that are compiled and analysed on this runtime from now on. Programs that are there
-   already do not know it. The function is not part of snapshots: the host answers for it that a world goes on in the same
-   way after a restore. A force method, which may run several times for one moment, may not call it. Runs no script.
+/* Adds a function for all programs that are compiled and analysed on this runtime from now on. Existing programs do not
+   know it. The function is not part of snapshots: the host is responsible for a restored world continuing in the same
+   way. A force method, which may run several times for the same time, may not call it. Runs no script.
    @param function  copied
    BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, no name or no `call`, a name that programs cannot call or that
-   belongs to the language or to another function of this runtime, too many parameters, or a type that there is none of or
-   that is BREVE_TYPE_POINTER: `destroy` is not called then. BREVE_ERROR_BUSY from a callback of a compilation. */
+   belongs to the language or to another function of this runtime, too many parameters, an unknown type or
+   BREVE_TYPE_POINTER: `destroy` is not called then. BREVE_ERROR_BUSY from a callback of a compilation. */
 BREVE_API breve_status breve_runtime_add_function(breve_runtime* runtime, const breve_function* function);
 
-/* Count the work of a function of the host against the budget of the running script, as so many turns of a loop. The call
-   of the function counts as one. Where nothing runs, or without a budget, it counts nothing.
-   BREVE_OK; BREVE_ERROR_BUDGET: the budget is used up; BREVE_ERROR_INTERRUPTED: breve_world_interrupt. Return these from
-   the callback; if it goes on, the script ends when it returns. */
+/* Charges the work of a host function to the budget of the running script, as a number of loop iterations. The call of
+   the function itself counts as one. Has no effect if no script runs, or without a budget.
+   BREVE_OK; BREVE_ERROR_BUDGET: the budget is used up; BREVE_ERROR_INTERRUPTED: breve_world_interrupt. Return these
+   from the callback; if it continues, the script ends when it returns. */
 BREVE_API breve_status breve_world_charge(breve_world* world, uint64_t turns);
 
 /* ---- input ------------------------------------------------------------------------------------------------------- */
 
-/* Queue the press (down) or release of a key; the controller's handler runs at the start of the next iteration.
-   @param key  one character, or "up", "down", "left", "right" for the arrows; else BREVE_ERROR_ARGUMENT */
+/* Queues the press (down) or release of a key; the controller's handler runs at the start of the next iteration.
+   @param key  one character, or "up", "down", "left", "right" for the arrow keys; otherwise BREVE_ERROR_ARGUMENT */
 BREVE_API breve_status breve_world_queue_key(breve_world* world, const char* key, bool down);
 
-/* Queue a click on an object; the null object is a click on nothing. */
+/* Queues a click on an object; the null object means a click on empty space. */
 BREVE_API breve_status breve_world_queue_click(breve_world* world, breve_object object);
 
-/* An entry of a menu. Texts are owned by the world, good until script runs in it again. */
+/* An entry of a menu. Texts are owned by the world and valid until script runs in it again. */
 typedef struct breve_menu_item {
   breve_object item;
-  breve_object owner; /* the controller: the main menu; else the context menu of that object */
+  breve_object owner; /* the controller for the main menu; otherwise the object whose context menu it is in */
   const char* title;  /* "" for a separator */
-  const char* method; /* what choosing it calls on the owner */
+  const char* method; /* the method of the owner that is called when the item is chosen */
   bool separator, enabled, checked;
 } breve_menu_item;
 
 /* The entries of all menus, in order of creation.
    @param items  room for `capacity`; NULL only if capacity is 0
-   @param count  how many there are, also where that is more than capacity: at most capacity are written */
+   @param count  the total number, even if it exceeds capacity; at most capacity are written */
 BREVE_API breve_status breve_world_menu_items(const breve_world* world, breve_menu_item* items, size_t capacity,
                                               size_t* count);
 
-/* Queue the choice of a menu item. A disabled one or a separator then does nothing.
-   BREVE_OK; BREVE_ERROR_ARGUMENT: the object is no menu item. */
+/* Queues the choice of a menu item. Has no effect if the item is then disabled, or is a separator.
+   BREVE_OK; BREVE_ERROR_ARGUMENT: the object is not a menu item. */
 BREVE_API breve_status breve_world_queue_choice(breve_world* world, breve_object item);
 
 /* ---- snapshots --------------------------------------------------------------------------------------------------- */
 
-/* A number that two worlds share if their whole state is the same, bit for bit: objects, bodies, scripts, schedule,
+/* A number that is equal for two worlds if their whole state is the same, bit for bit: objects, bodies, scripts,
+   schedule,
    generator. BREVE_OK; BREVE_ERROR_BUSY while a script of it runs. */
 BREVE_API breve_status breve_world_hash(const breve_world* world, uint64_t* hash);
 
-/* Write the whole state as an image: portable between runs of one library version on one kind of machine.
+/* Writes the whole state as an image: portable between runs of one library version on one kind of machine.
    @param image  room for `capacity` bytes; NULL only if capacity is 0
-   @param size   the image's size. Where it is more than capacity nothing is written to image: call again with room
-   BREVE_OK, also for that size query; BREVE_ERROR_BUSY while a script of it runs. Nothing in the world changes. The
-   time that breve_world_advance keeps is the host loop's, and is not part of the image. */
+   @param size   the image's size. If it exceeds capacity, nothing is written to image: call again with more room
+   BREVE_OK, also for that size query; BREVE_ERROR_BUSY while a script of it runs. Does not change the world. The time
+   that breve_world_advance keeps belongs to the host loop, and is not part of the image. */
 BREVE_API breve_status breve_world_snapshot(const breve_world* world, void* image, size_t capacity, size_t* size);
 
-/* Put a world of the same program back to a snapshot's state. In the world that the snapshot is of, ids of its moment are
-   good again; those given out since are stale, and no new object gets one of them. A world of another runtime that was
-   made there as the same one (the first, the second ...) shares these ids; in any other world the host asks for its
-   objects anew. The time that breve_world_advance keeps is dropped. Runs no script.
-   BREVE_OK; BREVE_ERROR_IMAGE: damaged, or of another program or version: the world is unchanged;
-   BREVE_ERROR_BUSY while a script of it runs. */
+/* Restores a snapshot's state in a world of the same program. In the world that the snapshot is from, the ids of that
+   time are valid again; ids that were created since are stale, and no new object gets one of them. A world of another
+   runtime that has the same number there (the first, the second ...) shares these ids; in any other world the host must
+   look its objects up again. The time that breve_world_advance keeps is discarded. Runs no script.
+   BREVE_OK; BREVE_ERROR_IMAGE: damaged, or of another program or version: the world is unchanged; BREVE_ERROR_BUSY
+   while a script of it runs. */
 BREVE_API breve_status breve_world_restore(breve_world* world, const void* image, size_t size);
 
-/* ---- what it costs ----------------------------------------------------------------------------------------------- */
+/* ---- effects and statistics -------------------------------------------------------------------------------------- */
 
-/* One effect of the simulation: active only if something in the scene calls for it. Texts are owned by
-   the world until the next call of breve_world_effects on it. */
+/* One effect of the simulation: it is active only if something in the scene requires it. Texts are owned by the world
+   until the next call of breve_world_effects on it. */
 typedef struct breve_effect {
   const char* name;
   const char* reason; /* why it is active, in words; "" if it is not */
   bool active;
   uint64_t since;        /* iteration at which it became active */
-  breve_object asked_by; /* the object that called for it first; null: the world itself, or gone by now */
+  breve_object asked_by; /* the first object that requested it; null: the world itself, or an object that no longer
+                            exists */
   uint64_t items, calls; /* handled in the last iteration */
   uint64_t bytes;        /* memory that it holds now */
-  double seconds;        /* processor time in the last iteration */
+  double seconds;        /* CPU time in the last iteration */
 } breve_effect;
 
 /* All effects, active or not, in the order of the step.
    @param effects  room for `capacity`; NULL only if capacity is 0
-   @param count    how many there are, also where that is more than capacity: at most capacity are written */
+   @param count    the total number, even if it exceeds capacity; at most capacity are written */
 BREVE_API breve_status breve_world_effects(const breve_world* world, breve_effect* effects, size_t capacity,
                                            size_t* count);
 
 typedef struct breve_stats {
-  size_t struct_size; /* as breve_stats_default gives it */
+  size_t struct_size; /* set by breve_stats_default */
   uint64_t iterations;
   double time;         /* simulated, s */
   uint64_t objects;    /* live */
-  uint64_t bodies;     /* those with a place in space */
+  uint64_t bodies;     /* objects with a position in space */
   uint64_t heap_cells; /* strings, lists, hashes, objects on the script heap */
   size_t memory_used;  /* bytes, of this world */
-  size_t memory_peak;  /* the most it was */
+  size_t memory_peak;  /* the maximum so far */
   size_t memory_limit; /* 0: none */
   uint64_t errors;     /* run-time errors that did not stop the run */
   uint64_t warnings;
@@ -1505,99 +1545,100 @@ static inline breve_stats breve_stats_default(void) {
 /* BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
 BREVE_API breve_status breve_world_stats(const breve_world* world, breve_stats* stats);
 
-/* ---- where the time goes ----------------------------------------------------------------------------------------- */
+/* ---- profiles ---------------------------------------------------------------------------------------------------- */
 
-/* A profile is a tree: each node is something that ran, below the node that called it, and apart for each line that it
-   was called from. Time is wall time while the world runs; what the host does between its calls is not part of it. The
-   world's own work stands in the tree too, so that the totals of a node's children and its own time add up to its
-   total, and everything to that of the root. A call of something that is active already (recursion) counts in the node
-   higher up. What the profile itself costs is measured at its start and taken out, see breve_world_profile_cost: times
-   of methods that only take a few nanoseconds are estimates.
-   A profile changes nothing in the world: hash, random numbers, budgets and order stay the same. A world that has none
-   pays nothing for it. Its memory counts against the world's limit: where there is no more the profile ends, keeps what
-   it has, and the run goes on; breve_world_profile_stop tells. A tree has at most 100,000 nodes; beyond them the time of
-   new ones is their caller's. Methods that breve_world_reload replaces go on in their nodes. */
+/* A profile is a tree: each node is something that ran, below the node that called it, with a separate node for each
+   calling line. Time is wall time while the world runs; the host's own time between its calls is not included. The tree
+   also contains the world's own work, so that the totals of a node's children and its own time add up to its total, and
+   everything adds up to the total of the root. A call of something that is already active (recursion) is counted in the
+   upper node. The cost of profiling is measured at the start and subtracted, see breve_world_profile_cost: times of
+   methods that take only a few nanoseconds are estimates.
+   A profile does not change the world: hash, random numbers, budgets and order stay the same. A world without a profile
+   has no overhead. Its memory counts against the world's limit: if that is reached, the profile ends and keeps what it
+   has, the run continues, and breve_world_profile_stop reports it. A tree has at most 100,000 nodes; beyond that, the
+   time of new ones counts as their caller's. Methods that breve_world_reload replaces keep their nodes. */
 
 /* One node. Texts are never NULL and live until the world's next profile starts. */
 typedef struct breve_profile_node {
-  size_t parent; /* its index; below the node's own, but 0 for the root, which is node 0 */
-  uint32_t kind; /* breve_profile_kind */
-  const char* class_name; /* the class whose method it is, or that an act is about; "" if there is none */
-  const char* name;       /* method, function, act or stage */
-  const char* file;       /* where the method is declared; "" for what is no method */
-  uint32_t line;          /* of that; 0 */
-  uint32_t call_line;     /* of the call, in the calling method's file; 0 if no script called */
+  size_t parent;          /* its index; lower than the node's own index, and 0 for the root, which is node 0 */
+  uint32_t kind;          /* breve_profile_kind */
+  const char* class_name; /* the class of the method or of the operation; "" if there is none */
+  const char* name;       /* method, function, operation or stage */
+  const char* file;       /* where the method is declared; "" for anything else */
+  uint32_t line;          /* of the declaration; 0 for anything else */
+  uint32_t call_line;     /* of the call, in the calling method's file; 0 if it was not called by a script */
   uint64_t calls;         /* 0 for the root */
-  double self_seconds;    /* in it, without what it called */
-  double total_seconds;   /* with what it called */
+  double self_seconds;    /* without the time of what it called */
+  double total_seconds;   /* with the time of what it called */
 } breve_profile_node;
 
-/* Start a profile of a world; the last one is dropped. To see `init` as well: breve_world_config.profile.
-   @param trace  is told of every begin and end as it happens; NULL: nobody is. Its own time does not count
+/* Starts a profile of a world; the previous one is dropped. To include `init`: breve_world_config.profile.
+   @param trace  called at every begin and end; NULL: none. Its own time does not count
    BREVE_OK; BREVE_ERROR_BUSY while a script of this world runs; BREVE_ERROR_MEMORY. */
 BREVE_API breve_status breve_world_profile_start(breve_world* world, breve_trace_fn trace, void* user);
 
-/* Stop it and keep what it found. Nothing if it has stopped.
-   BREVE_OK; BREVE_ERROR_MEMORY: it has ended before, for want of memory, and holds what was known then;
+/* Stops the profile and keeps its results. Does nothing if it has stopped.
+   BREVE_OK; BREVE_ERROR_MEMORY: it ended earlier because memory ran out, and holds the results up to then;
    BREVE_ERROR_NOT_FOUND: there has been no profile; BREVE_ERROR_BUSY while a script of this world runs. */
 BREVE_API breve_status breve_world_profile_stop(breve_world* world);
 
-/* How many nodes the profile has, also while it goes on.
+/* The number of nodes of the profile, also while it is running.
    BREVE_OK; BREVE_ERROR_NOT_FOUND: there has been no profile; BREVE_ERROR_BUSY while a script of this world runs;
    BREVE_ERROR_MEMORY. */
 BREVE_API breve_status breve_world_profile_node_count(const breve_world* world, size_t* count);
 
-/* The node at `index`, in the order of a walk from the root: a node, then its first child with all that is below it.
+/* The node at `index`, in depth-first order from the root: a node, then its first child with everything below it.
    As breve_world_profile_node_count; BREVE_ERROR_NOT_FOUND also if index is not below the count. */
 BREVE_API breve_status breve_world_profile_node(const breve_world* world, size_t index, breve_profile_node* node);
 
-/* What the profile itself cost and took out of the nodes, s: an estimate. As breve_world_profile_node_count. */
+/* The cost of profiling that was subtracted from the nodes, s: an estimate. As breve_world_profile_node_count. */
 BREVE_API breve_status breve_world_profile_cost(const breve_world* world, double* seconds);
 
-/* ---- changing what runs ------------------------------------------------------------------------------------------ */
+/* ---- reload and evaluate ----------------------------------------------------------------------------------------- */
 
-/* Put a changed program in the place of the one that a world runs. The program is compiled before, so that a text with
-   errors changes nothing. All or nothing: after an error the world runs the old program, unchanged. Runs no script: an
-   `init` that is new or changed runs for new objects only.
-   Methods are the new program's from the next call on. Objects stay what they are: ids, order of creation, places in
-   space, scheduled calls, observers, collision handlers and menus (these by method name) are kept, and so are the values
-   of variables that still have their name; new variables start at zero. A variable of another type gets its old value
-   converted as an assignment would; where that cannot be it starts at zero, with a warning. Classes are known by their
-   names, of which an alias is one. breve_selectors go on working. Snapshots belong to the program they were taken
-   with: older ones do not fit any more. The world lets go of the old program. For a moment the world's objects and
-   lists are there twice, which counts against its memory limit.
-   @param program  of any runtime; used on by the world, may be destroyed after
-   BREVE_OK; BREVE_ERROR_BUSY while a script of this world runs; BREVE_ERROR_RELOAD: a class of which there are objects
-   is gone or comes from another class of the class library (a Mobile cannot become a Stationary), or the controller's
-   class is another one; BREVE_ERROR_MEMORY. */
+/* Replaces the program that a world runs with a changed one. The program is compiled beforehand, so that a text with
+   errors changes nothing. All or nothing: after an error the world runs the old program, unchanged. Runs no script: a
+   new or changed `init` runs only for new objects.
+   Methods are the new program's from the next call on. Objects stay the same: ids, order of creation, poses, scheduled
+   calls, observers, collision handlers and menus (these by method name) are kept, and so are the values of variables
+   that still have their name; new variables start at zero. If a variable has another type, its old value is converted
+   as in an assignment; if that is impossible it starts at zero, with a warning. Classes are identified by their names,
+   including aliases. Values of type breve_selector stay valid. Snapshots belong to the program that they were taken
+   with: older ones are refused. The world releases the old program. During the reload the world's objects and lists
+   exist twice, which counts against its memory limit.
+   @param program  of any runtime; the world keeps it, and the host may destroy its handle afterwards
+   BREVE_OK; BREVE_ERROR_BUSY while a script of this world runs; BREVE_ERROR_RELOAD: the change is impossible because a
+   class with existing objects was removed or descends from a different class of the class library (a Mobile cannot
+   become a Stationary), or the controller's class is a different one; BREVE_ERROR_MEMORY. */
 BREVE_API breve_status breve_world_reload(breve_world* world, const breve_program* program);
 
-/* Run statements as though they stood in a method of an object's class: they may use its variables, `self` and `super`.
-   The final period may be missing. A name that is assigned and that is no variable of the object becomes a variable of
-   the world's session: it holds values of any type and is known to later statements, whoever `self` is, until the world
-   ends. Session variables are part of snapshots (a restored world has those of the image), and not of
+/* Runs statements as if they were in a method of an object's class: they may use its variables, `self` and `super`. The
+   final period may be omitted. Assigning to a name that is not a variable of the object creates a variable of the
+   world's session: it holds values of any type and is available to later statements, whatever `self` is, until the
+   world is destroyed. Session variables are part of snapshots (a restored world has those of the image), but not of
    breve_world_hash. Warnings about the statements go to the print callback. Runs script.
    @param self    null: the controller
    @param text    `size` bytes; NULL only if size is 0
-   @param result  may be NULL: the value of the last statement if it is an expression, or what `return` gives; else null
-   BREVE_OK; BREVE_ERROR_COMPILE: nothing was run; the text of the error holds all diagnostics, with places such as
-   "input:1:5"; else as breve_object_call. */
+   @param result  may be NULL: the value of the last statement if it is an expression, or the value of `return`;
+                  otherwise null
+   BREVE_OK; BREVE_ERROR_COMPILE: nothing was run; the text of the error holds all diagnostics, with positions such as
+   "input:1:5"; otherwise as breve_object_call. */
 BREVE_API breve_status breve_world_evaluate(breve_world* world, breve_object self, const char* text, size_t size,
                                             breve_value* result);
 
-/* The variables of the session as a hash from names to values; what is set in it is set there. Before there is one it
-   is a hash that the script has not made yet. */
+/* The session variables as a hash from names to values; setting a key of the hash sets the variable. Before the first
+   one is created, it is a hash that the script has not created yet. */
 BREVE_API breve_status breve_world_session(breve_world* world, breve_value* hash);
 
-/* Can these statements be run as they are? False while a bracket, string or comment is open or the last statement must
-   go on, so that who types them is to be asked for another line. True for text that is wrong in another way, and for
-   an empty one. */
+/* Can these statements be run as they are? False while a bracket, string or comment is open or the last statement is
+   incomplete, so that the user should be asked for another line. True for a text with other errors, and for an empty
+   one. */
 BREVE_API bool breve_statements_complete(const char* text, size_t size);
 
-/* Stop the script that runs in a world: the function of this header that runs it gives BREVE_ERROR_INTERRUPTED within
-   50 ms (callbacks of the host apart, and one sub-step of physics, which comes to its end), and the call is abandoned as
-   by a run-time error. Where it is cut is not determined: two runs that are interrupted are not equal. Nothing if no
-   script runs; NULL is nothing.
+/* Stops the script that runs in a world: the function of this header that runs it returns BREVE_ERROR_INTERRUPTED
+   within 50 ms (not counting callbacks of the host and one sub-step of physics, which is completed), and the call is
+   abandoned as by a run-time error. Where it stops is not deterministic: two interrupted runs may differ. Does nothing
+   if no script runs, or for NULL.
    May be called by any thread, and by a signal handler, as long as the world exists. */
 BREVE_API void breve_world_interrupt(breve_world* world);
 
