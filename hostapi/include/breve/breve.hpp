@@ -1,20 +1,24 @@
-// breve.hpp: breve.h and analysis.h for C++17. Handles that clean up after themselves, results that carry their status.
+// breve.hpp: breve.h and analysis.h for C++17, with handles that release themselves and results that carry their
+// status.
 //
 //     auto runtime = breve::Runtime::create().or_throw();
 //     auto program = runtime.compile("hello.tz", text).or_throw();
 //     auto world = runtime.world(program).or_throw();
 //     while (!world.ended() && world.step()) draw(world);
 //
-// Everything that the C headers say about units, threads, callbacks and the life of values holds here too. A handle
-// that was moved from, or not made yet, gives BREVE_ERROR_ARGUMENT.
-// - Errors are values: a Status, or a Result with one. Nothing throws unless it is asked to: or_throw() turns a failure
-//   into breve::Failure. Without exceptions (-fno-exceptions) all but or_throw() and Failure is there.
-// - What borrows: texts (const char*, std::string_view) belong to the library. Those of a Status are good until the
-//   next call on its world or runtime, those of a Value until script runs in its world again, those that World::text()
-//   gives until its next call, those that describe a program, a class or a profile as long as that. Copy what is needed
-//   longer. A Value that is made of a text refers to it: the text must live until the call is made.
-// - Nothing here allocates but the functions that return a std::vector, and or_throw() when it throws. Lists have
-//   another form that fills a Room of the host and returns how many there are, also where that is more.
+// Everything that the C headers say about units, threads, callbacks and lifetimes of values applies here too. A handle
+// that was moved from, or is empty, gives BREVE_ERROR_ARGUMENT.
+// - Errors are values: a Status, or a Result that contains one. Nothing throws unless you ask for it: or_throw() turns
+//   a failure into breve::Failure. Without exceptions (-fno-exceptions) everything except or_throw() and Failure is
+//   available.
+// - Borrowed data: texts (const char*, std::string_view) belong to the library. Texts of a Status are valid until the
+//   next call on its world or runtime, texts of a Value until script runs in its world again, texts returned by
+//   World::text() until its next call, and texts that describe a program, a class or a profile as long as that exists.
+//   Copy what you need longer. A Value that is made from a text refers to it: the text must live until the call is
+//   made.
+// - Memory: nothing here allocates except functions that return a std::vector, and or_throw() when it throws. List
+//   functions have a second form that fills a Room of the host and returns the total number of elements, even if it
+//   exceeds the room.
 #ifndef BREVE_BREVE_HPP
 #define BREVE_BREVE_HPP
 
@@ -42,7 +46,7 @@ namespace breve {
 inline namespace abi4 {
 
 #if defined(__cpp_exceptions)
-/// What or_throw() throws. what() is the library's text: place, message, chain of calls.
+/// The exception of or_throw(). what() is the library's text: position, message, call chain.
 class Failure : public std::runtime_error {
  public:
   Failure(breve_status status, const char* text) : std::runtime_error(text), status_(status) {}
@@ -53,7 +57,7 @@ class Failure : public std::runtime_error {
 };
 #endif
 
-/// Success, or why not.
+/// Success, or the reason for a failure.
 class [[nodiscard]] Status {
  public:
   Status() = default;
@@ -76,7 +80,7 @@ class [[nodiscard]] Status {
   const char* text_ = "";
 };
 
-/// A value, or why there is none.
+/// A value, or the reason why there is none.
 template <class T>
 class [[nodiscard]] Result {
  public:
@@ -84,7 +88,7 @@ class [[nodiscard]] Result {
   explicit operator bool() const { return static_cast<bool>(status_); }
   const Status& status() const { return status_; }
   std::string_view text() const { return status_.text(); }  // borrowed
-  /// Default-made after a failure.
+  /// Default-constructed after a failure.
   T& value() & { return value_; }
   const T& value() const& { return value_; }
   T&& value() && { return std::move(value_); }
@@ -104,7 +108,7 @@ class [[nodiscard]] Result {
 using Vector = std::array<double, 3>;
 using Object = breve_object;
 
-/// Where a list goes: the first elements are written, as many as fit.
+/// Memory for a list: the first elements are written, as many as fit.
 template <class T>
 struct Room {
   Room(T* first, std::size_t size) : data(first), capacity(size) {}
@@ -118,8 +122,8 @@ struct Room {
   std::size_t capacity;
 };
 
-/// Rows of the host's memory, one for each of many objects: `width` numbers, `stride` bytes from one row to the next, 0
-/// if they lie side by side. The memory is the host's, as long as a call lasts.
+/// Rows of numbers in the host's memory, one row for each of many objects: `width` numbers, `stride` bytes from one row
+/// to the next, 0 if they are contiguous. The memory must be valid during the call.
 struct Array : breve_array {
   Array(float* numbers, std::uint32_t width, std::size_t stride = 0)
       : breve_array{numbers, stride, BREVE_NUMBER_FLOAT, width} {}
@@ -127,12 +131,12 @@ struct Array : breve_array {
       : breve_array{numbers, stride, BREVE_NUMBER_DOUBLE, width} {}
 };
 
-/// Arguments of calls: any of these converts to a script value. Texts are referred to, not copied.
+/// An argument of a call: any of these types converts to a script value. Texts are referenced, not copied.
 class Value : public breve_value {
  public:
   Value() : breve_value(breve_value_null()) {}
   Value(const breve_value& v) : breve_value(v) {}
-  /// Of any type of integer; bool gives 0 or 1. One that does not fit an int of a script becomes a double.
+  /// From any integer type; bool gives 0 or 1. A number that does not fit into an int of a script becomes a double.
   template <class T, std::enable_if_t<std::is_integral_v<T>, int> = 0>
   Value(T v) : breve_value(fits(v) ? breve_value_int(static_cast<std::int32_t>(v)) : breve_value_double(double(v))) {}
   template <class T, std::enable_if_t<std::is_floating_point_v<T>, int> = 0>
@@ -144,14 +148,14 @@ class Value : public breve_value {
     as.string.bytes = v.data();
     as.string.size = v.size();
   }
-  /// A std::string, and what else converts to a view of it.
+  /// From a std::string or anything else that converts to a std::string_view.
   template <class T, std::enable_if_t<std::is_class_v<T> && std::is_convertible_v<const T&, std::string_view>, int> = 0>
   Value(const T& v) : Value(static_cast<std::string_view>(v)) {}
   Value(Object v) : breve_value(breve_value_object(v)) {}
   /// Row by row.
   static Value matrix(const std::array<double, 9>& rows) { return breve_value_matrix(rows.data()); }
 
-  // The value as a C++ one; the default where it is of another type.
+  // The value as a C++ value; the default if it has another type.
   int integer(int other = 0) const { return type == BREVE_TYPE_INT ? as.integer : other; }
   double number(double other = 0) const {
     return type == BREVE_TYPE_DOUBLE ? as.number : type == BREVE_TYPE_INT ? static_cast<double>(as.integer) : other;
@@ -183,7 +187,7 @@ struct Keyword {
 inline const char* version() { return breve_version(); }
 inline std::uint32_t abi() { return breve_abi(); }
 
-/// Can these statements be evaluated as they are, or must another line follow?
+/// Can these statements be evaluated as they are? Otherwise another line must follow.
 inline bool statements_complete(std::string_view text) { return breve_statements_complete(text.data(), text.size()); }
 
 inline std::size_t lint_count() { return breve_lint_count(); }
@@ -219,7 +223,7 @@ struct Snapshot {
 class Program {
  public:
   Program() = default;
-  explicit Program(breve_program* handle) : handle_(handle) {}  // takes it over
+  explicit Program(breve_program* handle) : handle_(handle) {}  // takes ownership
   breve_program* get() const { return handle_.get(); }
 
   std::size_t class_count() const { return breve_program_class_count(get()); }
@@ -236,15 +240,15 @@ class Program {
   std::unique_ptr<breve_program, Destroy> handle_;
 };
 
-/// One running simulation. Must not be destroyed from one of its own callbacks: it would then live on, lost.
+/// One running simulation. Must not be destroyed from one of its own callbacks: the world would not be freed.
 class World {
  public:
   World() = default;
-  explicit World(breve_world* handle) : handle_(handle) {}  // takes it over
+  explicit World(breve_world* handle) : handle_(handle) {}  // takes ownership
   breve_world* get() const { return handle_.get(); }
 
   Status step() { return status(breve_world_step(get())); }
-  /// The fraction of the next iteration that is kept, for interpolation.
+  /// Returns the remaining fraction of the next iteration, for interpolation.
   Result<double> advance(double seconds) { return read<double>(breve_world_advance, seconds); }
   double time() const { return breve_world_time(get()); }
   std::uint64_t iteration() const { return breve_world_iteration(get()); }
@@ -266,7 +270,7 @@ class World {
     return fill(room, breve_world_objects, class_name);
   }
   bool alive(Object object) const { return breve_object_alive(get(), object); }
-  /// "" for an object that is null or gone.
+  /// "" for an object that is null or no longer exists.
   std::string_view class_of(Object object) const {
     const char* name = breve_object_class(get(), object);
     return name ? name : "";
@@ -304,7 +308,7 @@ class World {
     const breve_status s = breve_object_shape_vertices(get(), object, corners.front().data(), corners.size());
     return {status(s), std::move(corners)};
   }
-  /// Each face as the numbers of its corners, counter-clockwise from outside.
+  /// Each face as the numbers of its vertices, counter-clockwise from outside.
   Result<std::vector<std::vector<std::uint32_t>>> shape_faces(Object object) const {
     const Result<breve_shape> shape = this->shape(object);
     std::vector<std::vector<std::uint32_t>> faces;
@@ -381,7 +385,7 @@ class World {
   // --- accuracy, space, grids, threads -------------------------------------------------------------------------------
   Result<breve_accuracy> accuracy() const { return read_struct(breve_accuracy_default(), breve_world_accuracy); }
   Status set_accuracy(const breve_accuracy& accuracy) { return status(breve_world_set_accuracy(get(), &accuracy)); }
-  /// Of a body and all that joints connect with it; null: the world's.
+  /// Of a body's assembly; null: the world's.
   Status set_accuracy(Object object, const breve_accuracy* accuracy) {
     return status(breve_object_set_accuracy(get(), object, accuracy));
   }
@@ -392,7 +396,7 @@ class World {
     breve_edge edge;
     double low, high;
   };
-  /// How space goes on along axis 0, 1 or 2; see breve_world_set_space.
+  /// The extent of space along axis 0, 1 or 2; see breve_world_set_space.
   Result<Edge> space(int axis) const {
     Edge is{};
     const breve_status s = breve_world_space(get(), axis, &is.edge, &is.low, &is.high);
@@ -417,7 +421,7 @@ class World {
   }
   Status set_workers(std::uint32_t workers) { return status(breve_world_set_workers(get(), workers)); }
 
-  // --- what physics did ----------------------------------------------------------------------------------------------
+  // --- physics events and counters -----------------------------------------------------------------------------------
   breve_guard guard() const { return breve_world_guard(get()); }
   Status set_guard(breve_guard mode) { return status(breve_world_set_guard(get(), mode)); }
   Result<std::vector<breve_intervention>> interventions() const {
@@ -477,14 +481,14 @@ class World {
   Result<Value> call(Object object, const char* method) {
     return read_value(breve_object_call, object, method, nullptr, std::size_t{0});
   }
-  /// With its keywords, in any order: call(bird, "move", {{"to", target}, {"speed", 3}}).
+  /// Calls a method by its keywords, in any order: call(bird, "move", {{"to", target}, {"speed", 3}}).
   template <std::size_t N>
   Result<Value> call(Object object, const char* method, const Keyword (&keywords)[N]) {
     breve_keyword given[N];
     for (std::size_t i = 0; i < N; ++i) given[i] = {keywords[i].name, keywords[i].value};
     return read_value(breve_object_call, object, method, given, N);
   }
-  /// For many fast calls: the names are looked up once.
+  /// For many fast calls: looks the names up once.
   Result<breve_selector> prepare(const char* method) {
     return read<breve_selector>(breve_world_prepare, method, nullptr, std::size_t{0});
   }
@@ -517,7 +521,7 @@ class World {
   Status set_all(const Object* objects, std::size_t count, const char* variable, const Array& rows) {
     return status(breve_objects_set(get(), objects, count, variable, &rows));
   }
-  /// The same call of each; `results` has room for one of each, or is null.
+  /// The same call for each object; `results` has room for one result each, or is null.
   Status call_all(const Object* objects, std::size_t count, breve_selector selector, breve_value* results = nullptr) {
     return status(breve_objects_call_prepared(get(), objects, count, selector, nullptr, 0, results));
   }
@@ -529,18 +533,18 @@ class World {
     return status(breve_objects_call_prepared(get(), objects, count, selector, given, N, results));
   }
 
-  // --- statements, other programs ------------------------------------------------------------------------------------
-  /// Run statements as though they stood in a method of `self`; the null object: of the controller.
+  // --- evaluate and reload -------------------------------------------------------------------------------------------
+  /// Runs statements as if they were in a method of `self`; the null object is the controller.
   Result<Value> evaluate(std::string_view text, Object self = {}) {
     return read_value(breve_world_evaluate, self, text.data(), text.size());
   }
-  /// The variables that evaluated statements have made: a hash.
+  /// The session variables, created by evaluated statements: a hash.
   Result<Value> session() { return read_value(breve_world_session); }
-  /// Go on with a changed program, all or nothing.
+  /// Replaces the program with a changed one, all or nothing.
   Status reload(const Program& program) { return status(breve_world_reload(get(), program.get())); }
-  /// Stop the script that runs; from any thread, or a signal handler.
+  /// Stops the running script; may be called from any thread, or a signal handler.
   void interrupt() noexcept { breve_world_interrupt(get()); }
-  /// Count the work of a function of the host, as so many turns of a loop.
+  /// Charges the work of a host function to the budget, as a number of loop iterations.
   Status charge(std::uint64_t turns) { return status(breve_world_charge(get(), turns)); }
 
   // --- input, snapshots, costs ---------------------------------------------------------------------------------------
@@ -561,7 +565,7 @@ class World {
     }
     return {status(s), std::move(snapshot)};
   }
-  /// How large the image is; it is written if there is room for all of it.
+  /// Returns the size of the image; it is written if there is room for all of it.
   Result<std::size_t> snapshot(Room<unsigned char> room) const {
     return read<std::size_t>(breve_world_snapshot, room.data, room.capacity);
   }
@@ -595,7 +599,7 @@ class World {
     void operator()(breve_world* w) const { breve_world_destroy(w); }
   };
   Status status(breve_status s) const { return {s, s == BREVE_OK ? nullptr : breve_world_last_error(get())}; }
-  /// What a function gives through its last parameter.
+  /// The value that a C function returns through its last parameter.
   template <class T, class F, class... A>
   Result<T> read(F function, A... arguments) const {
     T value{};
@@ -643,11 +647,11 @@ class World {
   std::unique_ptr<breve_world, Destroy> handle_;
 };
 
-/// What a program is made of. Texts that it gives live as long as it does.
+/// The structure of a program. Texts that it returns live as long as it does.
 class Analysis {
  public:
   Analysis() = default;
-  explicit Analysis(breve_analysis* handle) : handle_(handle) {}  // takes it over
+  explicit Analysis(breve_analysis* handle) : handle_(handle) {}  // takes ownership
   breve_analysis* get() const { return handle_.get(); }
 
   std::vector<breve_diagnostic> diagnostics() const {
@@ -656,7 +660,7 @@ class Analysis {
   std::vector<breve_source> files() const {
     return all<breve_source>(breve_analysis_file_count(get()), breve_analysis_file);
   }
-  /// As numbered by definitions().
+  /// The symbol with a number from definitions().
   std::vector<breve_symbol> symbols() const {
     return all<breve_symbol>(breve_analysis_symbol_count(get()), breve_analysis_symbol);
   }
@@ -675,21 +679,21 @@ class Analysis {
       return breve_analysis_references(get(), symbol, out, capacity, count);
     });
   }
-  /// @param keyword  may be null; good until the next call
+  /// @param keyword  may be null; valid until the next call
   Result<std::vector<std::size_t>> callees(const char* file, std::uint32_t line, std::uint32_t column,
                                            const char** keyword = nullptr) const {
     return list<std::size_t>([&](std::size_t* out, std::size_t capacity, std::size_t* count) {
       return breve_analysis_callees(get(), file, line, column, out, capacity, count, keyword);
     });
   }
-  /// Good until the next call of this or the next function.
+  /// Valid until the next call of this or the next function.
   Result<std::vector<breve_completion>> completions(const char* file, std::uint32_t line, std::uint32_t column,
                                                     std::uint32_t* typed = nullptr) const {
     return list<breve_completion>([&](breve_completion* out, std::size_t capacity, std::size_t* count) {
       return breve_analysis_completions(get(), file, line, column, typed, out, capacity, count);
     });
   }
-  /// Of a statement that is being typed, as though it stood in a method of a class; null: of none.
+  /// For a statement that is being typed, as if it were in a method of a class; null: of no class.
   Result<std::vector<breve_completion>> statement_completions(const char* class_name, std::string_view text,
                                                               std::size_t offset,
                                                               std::uint32_t* typed = nullptr) const {
@@ -724,7 +728,7 @@ class Analysis {
   std::unique_ptr<breve_analysis, Destroy> handle_;
 };
 
-/// The files below some directories, for breve_runtime_config.files. Runtimes that were made with them keep them.
+/// The files below some directories, for breve_runtime_config.files. Runtimes created with them keep them alive.
 class Files {
  public:
   Files() = default;
@@ -735,7 +739,7 @@ class Files {
   }
   ~Files() { breve_files_release(&files_); }
 
-  /// After those of earlier calls.
+  /// Searched after the directories of earlier calls.
   Status add(const char* directory, bool may_write = false, std::uint64_t most_bytes = 0) {
     return {breve_files_add_directory(directory, may_write, most_bytes, &files_), nullptr};
   }
@@ -765,16 +769,16 @@ class Runtime {
     const breve_status s = breve_program_load(get(), name, &made);
     return {status(s), Program(made)};
   }
-  /// A program without a text: the whole class library, and one of its controllers.
+  /// A program without a text of its own: the whole class library, with one of its controllers.
   Result<Program> library_program(const char* controller = nullptr) {
     breve_program* made = nullptr;
     const breve_status s = breve_program_create_library(get(), controller, &made);
     return {status(s), Program(made)};
   }
-  /// Look at a program without running it, also if it has errors.
+  /// Analyses a program without running it, even if it has errors.
   Result<Analysis> analyse(const char* name, std::string_view text) {
     breve_analysis* made = nullptr;
-    const char* given = text.data() ? text.data() : "";  // NULL would ask for the module
+    const char* given = text.data() ? text.data() : "";  // NULL would request the module
     const breve_status s = breve_analysis_create(get(), name, given, text.size(), &made);
     return {status(s), Analysis(made)};
   }
@@ -783,11 +787,11 @@ class Runtime {
     const breve_status s = breve_world_create(get(), program.get(), &config, &made);
     return {status(s), World(made)};
   }
-  /// A function for the programs that are compiled from now on; see breve_function_default().
+  /// Adds a function for programs that are compiled from now on; see breve_function_default().
   Status add_function(const breve_function& function) { return status(breve_runtime_add_function(get(), &function)); }
-  /// Do not report lints of that code: "lint-unused-variable".
+  /// Turns a lint off: "lint-unused-variable".
   Status allow(const char* code) { return status(breve_runtime_allow_lint(get(), code)); }
-  /// What the last compilation had to say; good until the next one.
+  /// The diagnostics of the last compilation; valid until the next one.
   std::vector<breve_diagnostic> diagnostics() const {
     std::vector<breve_diagnostic> all(breve_runtime_diagnostic_count(get()));
     for (std::size_t i = 0; i < all.size(); ++i) (void)breve_runtime_diagnostic(get(), i, &all[i]);
