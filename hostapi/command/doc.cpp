@@ -79,7 +79,7 @@ class Documenter {
       status_ = std::max<int>(status_, kFailed);
     }
     for (const std::string& cls : model_.add(made, text.size() > 0))
-      complain(fmt::format("class {} is defined in several files: the page tells of the first", cls), kFailed);
+      complain(fmt::format("class {} is defined in several files: the page describes the first", cls), kFailed);
   }
 
   void write(const PageFormat& format) {

@@ -12,7 +12,7 @@ namespace {
 
 std::string who(const breve_world* world, breve_object body) {
   const char* name = breve_object_class(world, body);
-  return name ? name : "something that is gone";
+  return name ? name : "a freed object";
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ using breve::command::ReplOptions;
 using breve::command::RunOptions;
 
 constexpr const char* kExitStatuses =
-    "Exit status: 0 ended well, 1 compile or run-time error, 2 wrong usage, 3 a limit was hit.";
+    "Exit status: 0 success, 1 compile or run-time error, 2 wrong usage, 3 a limit was exceeded.";
 
 /// A number, all of it; anything else is an error that says so.
 template <class Number>
@@ -40,7 +40,7 @@ std::function<std::string(const std::string&)> parser(std::optional<Number>& out
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error != std::errc() || end != text.data() + text.size() || !(number >= 0) ||
         number > std::numeric_limits<Number>::max())
-      return fmt::format("'{}' is no {}", text, what);
+      return fmt::format("'{}' is not a {}", text, what);
     out = number;
     return {};
   };
@@ -72,7 +72,7 @@ void describe_access(CLI::App& app, AccessOptions& o) {
           "Let the program write and read files below DIR, as it may below the current directory")
       ->check(CLI::ExistingDirectory)
       ->type_name("DIR");
-  app.add_flag("--no-files", o.no_files, "Let the program read and write no files")
+  app.add_flag("--no-files", o.no_files, "Do not let the program read or write files")
       ->excludes("--allow-read")
       ->excludes("--allow-write");
   app.add_flag("--allow-system", o.system, "Let the program run commands of the operating system");
@@ -82,41 +82,43 @@ void describe_run(CLI::App& app, RunOptions& o) {
   constexpr const char* kWhole = "whole number (0 or more)";
   app.add_option("FILE", o.file, "The program (.tz)")->required();
   app.add_option("ARGS", o.arguments,
-                 "What the program reads as its arguments, after its own name. After -- they may look like options");
-  auto* iterations = number(app, "--iterations", "N", o.iterations, kWhole, "End after N iterations");
-  number(app, "--seconds", "S", o.seconds, "number of seconds (0 or more)", "End when S simulated seconds have passed")
+                 "Arguments of the program, after its own name. After -- they may look like options");
+  auto* iterations = number(app, "--iterations", "N", o.iterations, kWhole, "Stop after N iterations");
+  number(app, "--seconds", "S", o.seconds, "number of seconds (0 or more)", "Stop after S simulated seconds")
       ->excludes(iterations);
-  number(app, "--seed", "K", o.seed, kWhole, "Seed of the random numbers. Without it one is drawn and shown");
-  several(app, "--set", "NAME=VALUE", o.settings, "Give a variable of the controller a value before its init");
-  number(app, "--budget", "N", o.budget, kWhole, "End with an error when an iteration takes N loop turns and calls");
+  number(app, "--seed", "K", o.seed, kWhole, "Seed of the random numbers. Without it, breve draws one and shows it");
+  several(app, "--set", "NAME=VALUE", o.settings, "Set a variable of the controller before its init");
+  number(app, "--budget", "N", o.budget, kWhole,
+         "Stop with an error if an iteration takes more than N loop iterations and calls");
   number(app, "--physics-budget", "N", o.physics_budget, kWhole,
-         "Move bodies coarsely where an iteration's physics takes N units of work");
-  number(app, "--memory", "MB", o.memory, kWhole, "End with an error when the world takes so much memory");
-  number(app, "--depth", "N", o.depth, kWhole, "End with an error when calls nest deeper than N (5000)");
+         "Move bodies coarsely if an iteration's physics exceeds N units of work");
+  number(app, "--memory", "MB", o.memory, kWhole, "Stop with an error if the world takes more memory");
+  number(app, "--depth", "N", o.depth, kWhole, "Stop with an error if calls nest deeper than N (5000)");
   several(app, "--path", "DIR", o.paths, "Also search DIR for modules and data files");
   describe_access(app, o.access);
   app.add_option("--accuracy", o.accuracy,
-                 "How bodies with physics are computed: fast, balanced, precise, reference or conserving")
+                 "Accuracy of bodies with physics: fast, balanced, precise, reference or conserving")
       ->type_name("RUNG")
       ->check(CLI::IsMember({"fast", "balanced", "precise", "reference", "conserving"}));
-  app.add_flag("--watch", o.watch, "When a file of the program changes, go on with the changed program");
-  app.add_flag("--coarse-random", o.coarse_random, "Draw random floats from 32,768 values, as the original did");
-  app.add_flag("--strict", o.strict, "Treat doubtful things as errors: warnings of the compiler, and in the run");
-  app.add_flag("--quiet", o.quiet, "No warnings, no progress");
-  app.add_flag("--verbose", o.verbose, "Say when an obsolete method is used, and each time the guard acts");
-  app.add_flag("--stats", o.stats,
-               "End with one line of JSON on standard error: iterations, sim_seconds, wall_seconds, cpu_seconds, "
-               "objects, seed, hash");
+  app.add_flag("--watch", o.watch, "When a file of the program changes, continue with the changed program");
+  app.add_flag("--coarse-random", o.coarse_random, "Draw random floats from 32,768 values, as in the original breve");
+  app.add_flag("--strict", o.strict, "Treat warnings as errors, both at compile time and during the run");
+  app.add_flag("--quiet", o.quiet, "Show no warnings and no progress");
+  app.add_flag("--verbose", o.verbose, "Report each use of an obsolete method and each action of the guard");
+  app.add_flag(
+      "--stats", o.stats,
+      "At the end, print one line of JSON to standard error: iterations, sim_seconds, wall_seconds, cpu_seconds, "
+      "objects, seed, hash");
   app.add_flag("--effects", o.effects,
-               "At the end, list the effects of the simulation: which were active, why, what they cost");
-  app.add_flag("--hash", o.hash, "As the last line of the output, the hash of the world's state");
-  app.add_option("--positions", o.positions, "At the end, write where every object is: class,x,y,z,qw,qx,qy,qz")
+               "At the end, list the effects of the simulation: which were active, why, and their cost");
+  app.add_flag("--hash", o.hash, "Print the hash of the world's state as the last line of the output");
+  app.add_option("--positions", o.positions, "At the end, write the pose of every object: class,x,y,z,qw,qx,qy,qz")
       ->type_name("OUT.csv");
   app.add_flag("--profile{-}", o.profile,
-               "At the end, where the time went, on standard error; with --profile=OUT.txt, in that file");
+               "At the end, print a time profile to standard error; with --profile=OUT.txt, write it to that file");
   auto* trace = app.add_option("--trace", o.trace, "Write every call to a file for ui.perfetto.dev or chrome://tracing")
                     ->type_name("OUT.json");
-  number(app, "--trace-limit", "MB", o.trace_limit, kWhole, "Leave out what comes when the trace has that size (200)")
+  number(app, "--trace-limit", "MB", o.trace_limit, kWhole, "Stop recording when the trace reaches this size (200)")
       ->needs(trace);
   app.footer("Without --iterations and --seconds the program runs until it ends the simulation or is interrupted.\n" +
              std::string(kExitStatuses));
@@ -125,9 +127,9 @@ void describe_run(CLI::App& app, RunOptions& o) {
 void describe_check(CLI::App& app, CheckOptions& o) {
   app.add_option("FILE", o.files, "Programs (.tz)")->required();
   several(app, "--path", "DIR", o.paths, "Also search DIR for modules");
-  several(app, "--allow", "CODE", o.allowed, "Do not report lints of that code");
+  several(app, "--allow", "CODE", o.allowed, "Do not report this lint");
   app.add_flag("--strict", o.strict, "Treat warnings as errors");
-  app.add_flag("--json", o.json, "Print an array of file, line, column, length, severity, code, message, help");
+  app.add_flag("--json", o.json, "Print JSON: an array of file, line, column, length, severity, code, message, help");
   app.footer(kExitStatuses);
 }
 
@@ -136,20 +138,20 @@ void describe_repl(CLI::App& app, ReplOptions& o) {
   number(app, "--seed", "K", o.seed, "whole number (0 or more)", "Seed of the random numbers (1)");
   several(app, "--path", "DIR", o.paths, "Also search DIR for modules and data files");
   describe_access(app, o.access);
-  app.add_flag("--strict", o.strict, "Treat doubtful things as errors");
+  app.add_flag("--strict", o.strict, "Treat warnings as errors");
   app.add_flag("--quiet", o.quiet, "No warnings");
-  app.footer("`:help` there tells what can be typed.\n" + std::string(kExitStatuses));
+  app.footer("`:help` in the session lists its commands.\n" + std::string(kExitStatuses));
 }
 
 void describe_doc(CLI::App& app, DocOptions& o) {
   app.add_option("FILE", o.files, "Programs (.tz), or parts of programs");
-  app.add_flag("--library", o.library, "The class library too");
-  app.add_option("--out", o.out, "Write the pages there (reference)")->type_name("DIR");
+  app.add_flag("--library", o.library, "Also document the class library");
+  app.add_option("--out", o.out, "Write the pages to DIR (reference)")->type_name("DIR");
   app.add_option("--format", o.format, "markdown, html or both (both)")
       ->type_name("FORMAT")
       ->check(CLI::IsMember({"markdown", "html", "both"}));
   several(app, "--path", "DIR", o.paths, "Also search DIR for modules");
-  app.footer("The text of a class or method is its comment of lines that begin with %.\n" + std::string(kExitStatuses));
+  app.footer("Lines that begin with % document the class or method that contains them.\n" + std::string(kExitStatuses));
 }
 
 void describe_lsp(CLI::App& app, LspOptions& o) {
@@ -221,10 +223,10 @@ int main_guarded(int argc, char** argv) {
   DocOptions doc_options;
   LspOptions lsp_options;
   auto* run = app.add_subcommand("run", "Run a program");
-  auto* repl = app.add_subcommand("repl", "Type statements against a running world");
-  auto* check = app.add_subcommand("check", "Compile programs and show what the compiler has to say");
-  auto* doc = app.add_subcommand("doc", "Make reference pages out of the comments of programs");
-  auto* lsp = app.add_subcommand("lsp", "Serve an editor: errors as you type, completion, definitions");
+  auto* repl = app.add_subcommand("repl", "Type statements that run in a world");
+  auto* check = app.add_subcommand("check", "Compile programs and show errors, warnings and notes");
+  auto* doc = app.add_subcommand("doc", "Generate reference pages from the comments of programs");
+  auto* lsp = app.add_subcommand("lsp", "Language server for editors: errors as you type, completion, definitions");
   std::string topic;
   auto* help = app.add_subcommand("help", "Show this text, or the options of a command");
   help->add_option("COMMAND", topic, "run, repl, check, doc or lsp");

@@ -30,7 +30,7 @@ void Profiling::configure(breve_world_config& config) {
 
 bool Profiling::finish(breve_world* world, Output& output) {
   const bool stopped = !world || breve_world_profile_stop(world) != BREVE_ERROR_MEMORY;
-  if (!stopped) output.complain("breve: the profile was cut: there was no memory for more of it\n");
+  if (!stopped) output.complain("breve: the profile is incomplete: memory ran out\n");
   const bool traced = finish_trace(output);
   return (!world || options_.profile.empty() || finish_profile(world, output)) && traced;
 }

@@ -11,7 +11,7 @@
 
 namespace breve::command {
 
-/// A profile for people: a tree from the whole down, the methods that took most, the lines whose calls took most.
+/// A profile for people: a tree of calls, the methods and the lines that took most time.
 /// @throws std::runtime_error if the profile cannot be read
 std::string profile_text(breve_world* world, const std::string& program);
 

@@ -164,7 +164,7 @@ std::string methods_table(const Tree& tree) {
     sum.total += n.total_seconds;  // of nodes one below the other there is only one: recursion counts in the upper
     sum.calls += n.calls;
   }
-  std::string out = "\nHottest, by their own time\n" + heading("self %", "", "declared");
+  std::string out = "\nHottest, by self time\n" + heading("self %", "", "declared");
   std::size_t rows = 0;
   for (const Sum& s : sorted(sums, &Sum::self)) {
     if (rows++ == kMethodRows || tree.share(s.self) < kFold) break;
@@ -195,7 +195,7 @@ std::string lines_table(const Tree& tree) {
                                duration(s.total), "", grouped(s.calls), each, s.place, s.what));
   }
   if (out.empty()) return out;
-  return "\nLines whose calls took most\n" + heading("%", "line", "calls") + out;
+  return "\nLines with the most expensive calls\n" + heading("%", "line", "calls") + out;
 }
 
 }  // namespace
@@ -204,9 +204,10 @@ std::string profile_text(breve_world* world, const std::string& program) {
   const Tree tree = read_tree(world);
   double cost = 0;
   breve_world_profile_cost(world, &cost);
-  std::string out = fmt::format("Profile of {}: {} iterations, {} in the world; {} more for profiling, taken out\n\n",
-                                program, grouped(breve_world_iteration(world)), duration(tree.whole), duration(cost));
-  out += heading("%", "from the whole down", "declared, called");
+  std::string out =
+      fmt::format("Profile of {}: {} iterations, {} in the world; {} of profiling overhead subtracted\n\n", program,
+                  grouped(breve_world_iteration(world)), duration(tree.whole), duration(cost));
+  out += heading("%", "call tree", "declared, called");
   add_tree(tree, 0, "", "", out);
   return out + methods_table(tree) + lines_table(tree);
 }

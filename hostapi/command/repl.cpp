@@ -17,17 +17,17 @@ namespace breve::command {
 namespace {
 
 constexpr const char* kHelp =
-    "Statements are run as in a method of the controller; the last period may be missing. The value of an expression\n"
-    "is shown. A name that is assigned and not known yet becomes a variable of this session.\n"
+    "Statements run as in a method of the controller; the last period may be omitted. The value of an expression\n"
+    "is shown. Assigning to an unknown name creates a variable of this session.\n"
     "  :step [N]         run N iterations, or one\n"
     "  :run SECONDS      run so many simulated seconds\n"
-    "  :time             what time it is in the world\n"
-    "  :objects [CLASS]  how many objects there are of each class, or those of one\n"
+    "  :time             the current time in the world\n"
+    "  :objects [CLASS]  count the objects of each class, or list those of one\n"
     "  :describe EXPR    an object with its variables, or any value with its type\n"
-    "  :effects          what the simulation does, why, and what it costs\n"
-    "  :reload           compile the program's files again and go on with the same objects\n"
+    "  :effects          what the simulation does, why, and the cost\n"
+    "  :reload           compile the program's files again and continue with the same objects\n"
     "  :quit             leave (Ctrl-D)\n"
-    "Tab completes names, Ctrl-C abandons the line or stops what runs.\n";
+    "Tab completes names, Ctrl-C discards the line or stops the running statement.\n";
 
 constexpr std::size_t kMostListed = 50;      // objects
 constexpr std::size_t kLongestValue = 1000;  // bytes of a value that are shown

@@ -31,7 +31,7 @@ std::vector<breve_object> objects_of(const breve_world* world) {
 std::string why(const breve_world* world, const breve_effect& effect) {
   if (!effect.active) return {};
   const char* asker = breve_object_class(world, effect.asked_by);
-  return asker ? fmt::format("{} (first asked for by a {})", effect.reason, asker) : std::string(effect.reason);
+  return asker ? fmt::format("{} (first requested by a {})", effect.reason, asker) : std::string(effect.reason);
 }
 
 struct CloseFile {

@@ -104,7 +104,7 @@ bool is_over(const breve_world* world, const RunOptions& options, const Output& 
 /// With --watch a program that failed waits for its files to be mended. False: interrupted.
 bool mended(breve_world* world, Reloader& reloader, Output& output) {
   if (const breve_error* error = breve_world_last_error(world)) output.complain(error->text);
-  output.complain("breve: waiting until the program is changed\n");
+  output.complain("breve: waiting for the program to change\n");
   while (interrupted == 0 && output.open()) {
     if (reloader.look(world)) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -197,7 +197,7 @@ int run(const RunOptions& options, Output& output) {
   ProgramHandle program;
   for (const auto& setting : options.settings)
     if (const std::size_t equal = setting.find('='); equal == 0 || equal == std::string::npos) {
-      output.complain(fmt::format("breve: --set: '{}' is no NAME=VALUE\n", setting));
+      output.complain(fmt::format("breve: --set: '{}' is not of the form NAME=VALUE\n", setting));
       return kWrongUsage;
     }
   if (const ExitStatus loaded = session.load(options.file, program); loaded != kEndedWell) return loaded;
@@ -225,7 +225,7 @@ int run(const RunOptions& options, Output& output) {
   if (const breve_error* error = breve_world_last_error(world.get()); status != BREVE_OK && error) {
     output.complain(error->text);
     if (!options.quiet)
-      output.complain(fmt::format("breve: stopped after {} iteration{}, {:.6g} s simulated; --seed {} shows it again\n",
+      output.complain(fmt::format("breve: stopped after {} iteration{}, {:.6g} s simulated; --seed {} reproduces it\n",
                                   breve_world_iteration(world.get()),
                                   breve_world_iteration(world.get()) == 1 ? "" : "s", breve_world_time(world.get()),
                                   seed));

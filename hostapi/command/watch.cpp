@@ -54,7 +54,7 @@ Reloader::Reloader(Session& session, Output& output, std::string file)
 bool Reloader::look(breve_world* world) { return watch_.changed() && reload(world); }
 
 bool Reloader::reload(breve_world* world) {
-  constexpr const char* kGoesOn = "the program as it was goes on running";
+  constexpr const char* kGoesOn = "the previous version keeps running";
   ProgramHandle program;
   auto before = session_.files();
   const ExitStatus status = session_.load_again(file_, program);

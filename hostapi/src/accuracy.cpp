@@ -47,7 +47,7 @@ Accuracy accuracy_of_struct(const breve_accuracy* given, const Accuracy& now) {
   const breve_accuracy from = read_config(given, accuracy_from(now), "breve_accuracy");
   const Rung rung = rung_of(from.rung);
   if (static_cast<unsigned>(from.integrator) >= kIntegrators)
-    fail(BREVE_ERROR_ARGUMENT, "breve_accuracy.integrator is no integrator");
+    fail(BREVE_ERROR_ARGUMENT, "breve_accuracy.integrator is not a breve_integrator");
   for (const bool reserved : from.reserved)
     if (reserved) fail(BREVE_ERROR_ARGUMENT, "a reserved field is not false");
   Accuracy to = accuracy_of(rung);
@@ -96,7 +96,7 @@ breve_status breve_rung_find(const char* name, breve_rung* rung) {
       *rung = static_cast<breve_rung>(i);
       return;
     }
-    fail(BREVE_ERROR_NOT_FOUND, "there is no such rung");
+    fail(BREVE_ERROR_NOT_FOUND, "unknown rung");
   });
 }
 
@@ -183,7 +183,7 @@ breve_status breve_world_set_workers(breve_world* world, uint32_t workers) {
 breve_status breve_world_set_guard(breve_world* world, breve_guard mode) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
-    if (static_cast<unsigned>(mode) >= kGuards) fail(BREVE_ERROR_ARGUMENT, "there is no such mode of the guard");
+    if (static_cast<unsigned>(mode) >= kGuards) fail(BREVE_ERROR_ARGUMENT, "unknown guard mode");
     world->world->dynamics().set_guard(static_cast<breve::GuardMode>(mode));
   });
 }

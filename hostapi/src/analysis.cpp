@@ -233,7 +233,7 @@ breve_status breve_analysis_callees(const breve_analysis* analysis, const char* 
     need_room(symbols, capacity, count, "symbols");
     const Place place = place_of(*analysis, file, line, column);
     auto found = analysis->analysis->call_at(place.file, place.offset);
-    if (!found) fail(BREVE_ERROR_NOT_FOUND, "the place is in no call");
+    if (!found) fail(BREVE_ERROR_NOT_FOUND, "the position is not in a call");
     analysis->keyword = std::move(found->keyword);
     if (keyword) *keyword = analysis->keyword.c_str();
     copy_out(found->methods, symbols, capacity, count, [](std::size_t symbol) { return symbol; });
@@ -258,7 +258,7 @@ breve_status breve_analysis_statement_completions(const breve_analysis* analysis
     need(analysis, "analysis");
     need_room(items, capacity, count, "items");
     if (size != 0) need(text, "text");
-    if (offset > size) fail(BREVE_ERROR_ARGUMENT, "the place is behind the end of the text");
+    if (offset > size) fail(BREVE_ERROR_ARGUMENT, "the position is beyond the end of the text");
     auto found = analysis->analysis->statement_completions(class_name ? class_name : "", {text ? text : "", size},
                                                            static_cast<std::uint32_t>(offset));
     if (!found) fail(BREVE_ERROR_NOT_FOUND, "there is no class '" + std::string(class_name) + "'");

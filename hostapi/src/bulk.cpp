@@ -20,7 +20,7 @@ class Rows {
   Rows(const breve_array* array, std::size_t count, std::size_t width) : width_(width) {
     need(array, "array");
     if (array->number != BREVE_NUMBER_FLOAT && array->number != BREVE_NUMBER_DOUBLE)
-      fail(BREVE_ERROR_ARGUMENT, "array.number is " + std::to_string(array->number) + ", which is no breve_number");
+      fail(BREVE_ERROR_ARGUMENT, "array.number is " + std::to_string(array->number) + ", which is not a breve_number");
     single_ = array->number == BREVE_NUMBER_FLOAT;
     if (array->width != width)
       fail(BREVE_ERROR_ARGUMENT, "array.width is " + std::to_string(array->width) + ", but an object has " +
@@ -32,7 +32,7 @@ class Rows {
                                      std::to_string(width) + " numbers take " + std::to_string(row));
     if (count != 0) need(array->numbers, "array.numbers");
     if (count > std::numeric_limits<std::size_t>::max() / stride_)
-      fail(BREVE_ERROR_ARGUMENT, "count is more than any memory has room for");
+      fail(BREVE_ERROR_ARGUMENT, "count is too large for any memory");
     bytes_ = static_cast<char*>(array->numbers);
   }
 
@@ -75,7 +75,7 @@ std::size_t width_of(std::uint32_t property) {
     case BREVE_PROPERTY_ROTATION:
     case BREVE_PROPERTY_COLOR: return 4;
     case BREVE_PROPERTY_POSE: return 7;
-    default: fail(BREVE_ERROR_ARGUMENT, "property is " + std::to_string(property) + ", which is no breve_property");
+    default: fail(BREVE_ERROR_ARGUMENT, "property is " + std::to_string(property) + ", which is not a breve_property");
   }
 }
 
@@ -191,9 +191,9 @@ class VariableSlots {
       const steve::VariableInfo& variable = variable_named(world_, instance, name_);
       const steve::StaticType type = variable.type;
       if (type != steve::StaticType::Int && type != steve::StaticType::Double && type != steve::StaticType::Vector)
-        fail(BREVE_ERROR_TYPE, text_of(instance) + " is no int, no float and no vector");
+        fail(BREVE_ERROR_TYPE, text_of(instance) + " is neither an int, a float nor a vector");
       if (cls_ && type != type_)
-        fail(BREVE_ERROR_TYPE, text_of(instance) + " is of another type than in the objects before");
+        fail(BREVE_ERROR_TYPE, text_of(instance) + " has another type than in the objects before it");
       cls_ = instance.cls;
       type_ = type;
       slot_ = variable.slot;
@@ -229,7 +229,7 @@ std::span<steve::Slot* const> slots_of(const breve_world& world, const breve_obj
 void need_whole(double number) {
   if (number != std::trunc(number) || number < std::numeric_limits<std::int32_t>::min() ||
       number > std::numeric_limits<std::int32_t>::max())
-    fail(BREVE_ERROR_TYPE, "an int cannot be " + std::to_string(number));
+    fail(BREVE_ERROR_TYPE, "an int cannot represent " + std::to_string(number));
 }
 
 // --- calls ----------------------------------------------------------------------------------------------------------

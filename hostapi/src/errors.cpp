@@ -103,7 +103,8 @@ breve_status ErrorRecord::keep_current() noexcept {
     } catch (const Error& e) {
       return keep(status_of(e.code()), e.what());
     } catch (const std::bad_alloc&) {
-      return keep(BREVE_ERROR_MEMORY, "out of memory: the world's memory limit or the allocator's end is reached");
+      return keep(BREVE_ERROR_MEMORY,
+                  "out of memory: the world's memory limit was reached, or the allocator returned NULL");
     } catch (const std::exception& e) {
       return keep(BREVE_ERROR_INTERNAL, e.what());
     } catch (...) {

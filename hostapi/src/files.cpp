@@ -8,7 +8,7 @@ namespace breve::host {
 namespace {
 
 [[noreturn]] void fail_at(const char* verb, const std::string& name) {
-  throw Error(ErrorCode::File, fmt::format("cannot {} file '{}': it was opened, but that failed", verb, name));
+  throw Error(ErrorCode::File, fmt::format("cannot {} file '{}': opening it succeeded, but this failed", verb, name));
 }
 
 /// Closes the file once.
@@ -86,7 +86,7 @@ std::unique_ptr<Wrapper> ask(breve_world& world, std::string_view name, std::str
   }
   OpenFile whole(file, std::move(asked));
   if (Wrapper::fits(file)) return std::make_unique<Wrapper>(std::move(whole));
-  why = "the host opened it without a function for that";
+  why = "the host opened it without the required function";
   return nullptr;
 }
 

@@ -98,7 +98,7 @@ std::uint64_t need_plain(const Descriptor& file, const Root& root) {
   struct stat info {};
   if (::fstat(file.get(), &info) != 0) refuse_by_errno();
   if (S_ISDIR(info.st_mode)) refuse("it is a directory");
-  if (!S_ISREG(info.st_mode)) refuse("it is no plain file");
+  if (!S_ISREG(info.st_mode)) refuse("it is not a regular file");
   const auto size = static_cast<std::uint64_t>(info.st_size);
   if (size > root.most_bytes) refuse(fmt::format("it is larger than {} bytes", root.most_bytes));
   return size;
@@ -179,7 +179,7 @@ std::unique_ptr<PlainFile> open_to_write(const Root& root, std::string_view path
   if (append) return open_to_append(root, std::move(place));
   struct stat info {};
   if (::fstatat(place.folder.get(), place.name.c_str(), &info, AT_SYMLINK_NOFOLLOW) == 0 && !S_ISREG(info.st_mode))
-    refuse(S_ISLNK(info.st_mode) ? "symbolic links are not followed" : "it is no plain file");
+    refuse(S_ISLNK(info.st_mode) ? "symbolic links are not followed" : "it is not a regular file");
   static std::atomic<std::uint64_t> count = 0;
   const std::string temporary = fmt::format(".{}.{}.{}.part", place.name.substr(0, 100), ::getpid(), ++count);
   constexpr int kHow = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;

@@ -48,7 +48,7 @@ char letter_of(std::uint32_t type, const std::string& what) {
     case BREVE_TYPE_DATA: return 'b';
     default:
       fail(BREVE_ERROR_ARGUMENT,
-           what + " is " + std::to_string(type) + ", which is not a type that functions of the host can have");
+           what + " is " + std::to_string(type) + ", which is not a type that host functions can have");
   }
 }
 

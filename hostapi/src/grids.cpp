@@ -12,7 +12,8 @@ namespace {
 const breve::Grid& grid_of(const breve_world& world, breve_object grid) {
   auto* resource = breve::steve::resource_of<breve::steve::GridResource>(*world.machine, &live_instance(world, grid));
   if (!resource || !resource->grid)
-    fail(BREVE_ERROR_NOT_FOUND, "the object has no cells: it is no PatchGrid, or its init-with was not called yet");
+    fail(BREVE_ERROR_NOT_FOUND,
+         "the object has no cells: it is not a PatchGrid, or its init-with has not been called yet");
   return *resource->grid;
 }
 
@@ -22,7 +23,7 @@ breve::Field& field_of(const breve_world& world, breve_object grid, breve_object
   breve::Field* field =
       breve::steve::chemical_field(*world.machine, live_instance(world, grid), live_instance(world, chemical));
   if (!field || field->size() != cells)
-    fail(BREVE_ERROR_NOT_FOUND, "the grid does not track this chemical; its method track makes it do so");
+    fail(BREVE_ERROR_NOT_FOUND, "the grid does not track this chemical; call its method track first");
   return *field;
 }
 

@@ -25,7 +25,7 @@ breve_status breve_world_queue_key(breve_world* world, const char* key, bool dow
     need(key, "key");
     if (!is_key(key))
       fail(BREVE_ERROR_ARGUMENT,
-           "'" + std::string(key) + "' is no key: it must be one character, or up, down, left, right");
+           "'" + std::string(key) + "' is not a key: it must be one character, or up, down, left, right");
     world->world->queue_input({down ? InputEvent::Kind::KeyDown : InputEvent::Kind::KeyUp, key, {}});
   });
 }
@@ -67,7 +67,8 @@ breve_status breve_world_queue_choice(breve_world* world, breve_object item) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     const ObjectId id = live_id(*world, item);
-    if (!breve::menu_item(std::as_const(*world->world), id)) fail(BREVE_ERROR_ARGUMENT, "the object is no menu item");
+    if (!breve::menu_item(std::as_const(*world->world), id))
+      fail(BREVE_ERROR_ARGUMENT, "the object is not a menu item");
     world->world->queue_input({InputEvent::Kind::Menu, {}, id});
   });
 }

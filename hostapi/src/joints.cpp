@@ -14,7 +14,7 @@ constexpr const char* kClasses[] = {"RevoluteJoint", "PrismaticJoint", "FixedJoi
 const char* class_of_kind(std::uint32_t kind) {
   const auto number = static_cast<std::size_t>(kind);
   if (number >= std::size(kClasses))
-    fail(BREVE_ERROR_ARGUMENT, "breve_joint_description.kind is no kind of joint: " + std::to_string(number));
+    fail(BREVE_ERROR_ARGUMENT, "breve_joint_description.kind is not a breve_joint_kind: " + std::to_string(number));
   return kClasses[number];
 }
 
@@ -54,7 +54,7 @@ JointDescription description_of(const breve_joint_description& from) {
   // Before an object is made: a refused call is to leave no trace.
   if (!(to.normal.stableNorm() > 0)) fail(BREVE_ERROR_ARGUMENT, "the normal of the joint has no direction");
   if (!is_null(from.child) && from.parent.index == from.child.index && from.parent.generation == from.child.generation)
-    fail(BREVE_ERROR_ARGUMENT, "parent and child of the joint are one");
+    fail(BREVE_ERROR_ARGUMENT, "parent and child of the joint are the same body");
   for (const bool reserved : from.reserved)
     if (reserved) fail(BREVE_ERROR_ARGUMENT, "a reserved field is not false");
   return to;
@@ -113,7 +113,7 @@ breve_spring spring_from(const SpringDescription& from) {
 SpringDescription spring_of(const breve_spring& from) {
   constexpr unsigned kModes = 3;
   if (static_cast<unsigned>(from.mode) >= kModes)
-    fail(BREVE_ERROR_ARGUMENT, "breve_spring.mode is no mode of a spring");
+    fail(BREVE_ERROR_ARGUMENT, "breve_spring.mode is not a breve_spring_mode");
   if (from.reserved != 0) fail(BREVE_ERROR_ARGUMENT, "a reserved field is not 0");
   SpringDescription to;
   to.point_a = vector_of(from.from_point, "from_point");
@@ -234,7 +234,7 @@ breve_status breve_spring_create(breve_world* world, const breve_spring* descrip
     const auto given = read_config(description, breve_spring_default(), "breve_spring");
     const auto is = spring_of(given);
     if (live_body(*world, given.from) == live_body(*world, given.to))
-      fail(BREVE_ERROR_ARGUMENT, "both ends of the spring are one body");
+      fail(BREVE_ERROR_ARGUMENT, "both ends of the spring are the same body");
     auto& from = live_instance(*world, given.from);
     auto& to = live_instance(*world, given.to);
     const Kept kept(*world, &from, &to);

@@ -20,13 +20,13 @@ ObjectId id_of(const breve_world& world, breve_object object) {
 ObjectId live_id(const breve_world& world, breve_object object) {
   if (is_null(object)) fail(BREVE_ERROR_ARGUMENT, "the null object was given where a live one is needed");
   const ObjectId id = id_of(world, object);
-  if (!id) fail(BREVE_ERROR_STALE, "the object is gone: it was freed, or belongs to another world");
+  if (!id) fail(BREVE_ERROR_STALE, "the object no longer exists: it was freed, or it belongs to another world");
   return id;
 }
 
 steve::Instance& live_instance(const breve_world& world, breve_object object) {
   steve::Instance* instance = world.machine->instance(live_id(world, object));
-  if (!instance) fail(BREVE_ERROR_STALE, "the object is gone: it was freed");
+  if (!instance) fail(BREVE_ERROR_STALE, "the object no longer exists: it was freed");
   return *instance;
 }
 
@@ -34,7 +34,7 @@ BodyIndex live_body(const breve_world& world, breve_object object) {
   const ObjectId id = live_id(world, object);
   if (!world.world->has_body(id))
     fail(BREVE_ERROR_NO_BODY,
-         "the object has no place in space: class " + world.program->cls(world.world->class_of(id)).name);
+         "the object has no position in space: class " + world.program->cls(world.world->class_of(id)).name);
   return world.world->body(id);
 }
 
@@ -49,7 +49,7 @@ breve::Quaternion unit_quaternion(const double numbers[4], const char* what) {
   // Scaled by its largest part first, so that the length of no finite quaternion overflows or vanishes.
   const Eigen::Vector4d q(numbers[1], numbers[2], numbers[3], numbers[0]);
   const double largest = q.cwiseAbs().maxCoeff();
-  if (largest == 0) fail(BREVE_ERROR_ARGUMENT, std::string(what) + " has length 0: it is no rotation");
+  if (largest == 0) fail(BREVE_ERROR_ARGUMENT, std::string(what) + " has length 0: it is not a rotation");
   return breve::Quaternion(Eigen::Vector4d((q / largest).normalized()));
 }
 

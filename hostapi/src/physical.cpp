@@ -13,7 +13,7 @@ Quaternion rotation_of(const double* numbers, const char* what) {
   // Scaled by its largest part first, so that the length of no finite quaternion overflows or vanishes.
   Eigen::Vector4d q(numbers[1], numbers[2], numbers[3], numbers[0]);
   const double largest = q.cwiseAbs().maxCoeff();
-  if (largest == 0) fail(BREVE_ERROR_ARGUMENT, std::string(what) + " has length 0: it is no rotation");
+  if (largest == 0) fail(BREVE_ERROR_ARGUMENT, std::string(what) + " has length 0: it is not a rotation");
   return Quaternion(Eigen::Vector4d((q / largest).normalized()));
 }
 
@@ -95,7 +95,7 @@ std::shared_ptr<Shape> shape_of(const breve_geometry& geometry, bool flat, std::
     case BREVE_SHAPE_MESH: shape = mesh_of(geometry, memory); break;
     case BREVE_SHAPE_HEIGHT_FIELD: shape = heights_of(geometry, memory); break;
     case BREVE_SHAPE_CONVEX: return Shape::convex(faces_of(geometry), geometry.density, memory);
-    default: fail(BREVE_ERROR_ARGUMENT, "breve_geometry.kind is no kind of shape that can be made");
+    default: fail(BREVE_ERROR_ARGUMENT, "breve_geometry.kind is not a kind of shape that can be created");
   }
   shape->set_density(geometry.density);
   return shape;

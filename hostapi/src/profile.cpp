@@ -39,7 +39,7 @@ steve::Profiler::Trace tracer(breve_world& world, breve_trace_fn trace, void* us
 }
 
 steve::Profiler& profiler_of(const breve_world& world) {
-  if (!world.profiler) fail(BREVE_ERROR_NOT_FOUND, "this world has no profile: breve_world_profile_start makes one");
+  if (!world.profiler) fail(BREVE_ERROR_NOT_FOUND, "this world has no profile: breve_world_profile_start starts one");
   return *world.profiler;
 }
 
@@ -73,7 +73,7 @@ breve_status breve_world_profile_stop(breve_world* world) {
     profiler.stop();
     if (profiler.out_of_memory())
       fail(BREVE_ERROR_MEMORY,
-           "the profile ended before the run: the world had no memory for it. Raise the world's limit");
+           "the profile ended before the run: the world ran out of memory for it. Raise the world's limit");
   });
 }
 

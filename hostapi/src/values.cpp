@@ -87,7 +87,7 @@ Value from_host(breve_world& world, const breve_value& value) {
     case BREVE_TYPE_LIST: return Value::of(Tag::List, world.references.find(value.as.ref, Tag::List));
     case BREVE_TYPE_HASH: return Value::of(Tag::Hash, world.references.find(value.as.ref, Tag::Hash));
     case BREVE_TYPE_POINTER: fail(BREVE_ERROR_UNSUPPORTED, "a pointer cannot be passed to a script by the host");
-    default: fail(BREVE_ERROR_ARGUMENT, "value.type is " + std::to_string(value.type) + ", which is no type");
+    default: fail(BREVE_ERROR_ARGUMENT, "value.type is " + std::to_string(value.type) + ", which is not a breve_type");
   }
 }
 
@@ -96,13 +96,13 @@ namespace {
 /// The list of a value; null for one that is not made yet.
 steve::ListCell* list_of(const breve_world& world, const breve_value* value) {
   need(value, "list");
-  if (value->type != BREVE_TYPE_LIST) fail(BREVE_ERROR_TYPE, "the value is no list");
+  if (value->type != BREVE_TYPE_LIST) fail(BREVE_ERROR_TYPE, "the value is not a list");
   return static_cast<steve::ListCell*>(world.references.find(value->as.ref, Tag::List));
 }
 
 steve::HashCell* hash_of(const breve_world& world, const breve_value* value) {
   need(value, "hash");
-  if (value->type != BREVE_TYPE_HASH) fail(BREVE_ERROR_TYPE, "the value is no hash");
+  if (value->type != BREVE_TYPE_HASH) fail(BREVE_ERROR_TYPE, "the value is not a hash");
   return static_cast<steve::HashCell*>(world.references.find(value->as.ref, Tag::Hash));
 }
 

@@ -120,7 +120,7 @@ void Model::add(const Link& link) {
   body.moment = link.mass * link.com;
   body.inertia = about_origin(link);
   body.inertia_com = Symmetric3::upper(link.inertia);
-  check.need(std::isfinite(body.inertia.trace()), "mass times the square of the way to its centre would overflow");
+  check.need(std::isfinite(body.inertia.trace()), "mass times the square of the distance to its centre would overflow");
 
   nq_ += position_count(link.type);
   nv_ += velocity_count(link.type);

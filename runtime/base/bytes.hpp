@@ -20,7 +20,7 @@
 
 namespace breve {
 
-static_assert(std::endian::native == std::endian::little, "images are written in the machine's own order");
+static_assert(std::endian::native == std::endian::little, "images are written in the machine's byte order");
 
 class ByteWriter {
  public:
@@ -137,7 +137,7 @@ class ByteReader {
     skip(size);
   }
   std::size_t left() const { return left_; }
-  [[noreturn]] static void fail() { throw Error(ErrorCode::Image, "the image is damaged or cut off"); }
+  [[noreturn]] static void fail() { throw Error(ErrorCode::Image, "the image is damaged or truncated"); }
 
  private:
   void need(std::uint64_t size) const {

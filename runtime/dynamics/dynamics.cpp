@@ -58,8 +58,8 @@ void need_finite(const JointVector& value, std::string_view what) {
 void need_in_tree(const JointEntry& joint) {
   if (joint.link < 0)
     throw Error(ErrorCode::Argument,
-                fmt::format("a {} joint that closes a ring cannot be put somewhere: the other joints "
-                            "of the ring decide where it is",
+                fmt::format("the position of a {} joint that closes a loop cannot be set: the other "
+                            "joints of the loop determine it",
                             name_of(joint.is.kind)));
 }
 }  // namespace
@@ -92,12 +92,14 @@ void Dynamics::set_velocity(JointIndex joint, const JointVector& velocity) {
 void Dynamics::set_ball(JointIndex joint, const Quaternion& turn, const Vector3& spin) {
   const double norm = turn.norm();
   if (!std::isfinite(norm) || !(norm > 0) || !spin.allFinite())
-    throw Error(ErrorCode::Argument, "the turn and spin of a ball joint must be finite, the turn not zero");
+    throw Error(
+        ErrorCode::Argument,
+        "the orientation and angular velocity of a ball joint must be finite, and the orientation must not be zero");
   this->joint(joint);
   Core& c = *core_;
   c.take_changes();
   const JointEntry& entry = c.at(joint);
-  if (entry.is.kind != JointKind::Ball) throw Error(ErrorCode::Argument, "only a ball joint has a turn as a whole");
+  if (entry.is.kind != JointKind::Ball) throw Error(ErrorCode::Argument, "only a ball joint has an orientation");
   need_in_tree(entry);
   Tree& tree = *c.trees[entry.tree];
   const articulated::Body& body = tree.model.body(entry.link);

@@ -44,7 +44,7 @@ void attach(Dynamics::Core& core, JointIndex joint) {
 }  // namespace
 
 JointEntry& Dynamics::Core::at(JointIndex joint) {
-  if (joint >= joints.size() || !joints[joint].used) refuse("there is no such joint: it is not linked");
+  if (joint >= joints.size() || !joints[joint].used) refuse("the joint is not linked");
   return joints[joint];
 }
 
@@ -220,7 +220,7 @@ bool Dynamics::linked(JointIndex joint) const {
 std::size_t Dynamics::joint_count() const { return core_ ? core_->joints.size() - core_->free_joints.size() : 0; }
 
 namespace {
-[[noreturn]] void no_joint() { refuse("there is no such joint: it is not linked"); }
+[[noreturn]] void no_joint() { refuse("the joint is not linked"); }
 }  // namespace
 
 const JointDescription& Dynamics::joint(JointIndex joint) const {

@@ -11,7 +11,7 @@ namespace breve {
 
 namespace {
 
-[[noreturn]] void no_spring() { throw Error(ErrorCode::Argument, "there is no such spring: it is not connected"); }
+[[noreturn]] void no_spring() { throw Error(ErrorCode::Argument, "the spring is not connected"); }
 
 }  // namespace
 
@@ -23,7 +23,7 @@ SpringEntry& Dynamics::Core::tie_at(SpringIndex spring) {
 SpringIndex Dynamics::tie(const SpringDescription& description, ObjectId owner) {
   check(description);
   for (const BodyIndex end : {description.a, description.b})
-    if (!bodies_->used(end)) throw Error(ErrorCode::Argument, "spring: an end is no body in the world");
+    if (!bodies_->used(end)) throw Error(ErrorCode::Argument, "spring: an end is not a body in the world");
   if (description.a == description.b) return kNoSpring;
   Core& c = core();
   c.sync_changes();

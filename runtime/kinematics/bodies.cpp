@@ -51,7 +51,7 @@ Vector3 about_z(std::string_view property, const Vector3& value, bool flat) {
   if (!flat || (value.x() == 0 && value.y() == 0)) return value;
   if (value.head<2>().norm() > kInPlane * std::max(1.0, value.norm()))
     throw Error(ErrorCode::Argument,
-                fmt::format("{} is ({}, {}, {}), but this world is flat: bodies turn about z only, x and y must be 0",
+                fmt::format("{} is ({}, {}, {}), but this world is flat: bodies rotate about z only, x and y must be 0",
                             property, value.x(), value.y(), value.z()));
   return {0, 0, value.z()};
 }
@@ -61,7 +61,7 @@ Quaternion turned_about_z(const Quaternion& unit, bool flat) {
   if (!flat || (unit.x() == 0 && unit.y() == 0)) return unit;
   if (std::hypot(unit.x(), unit.y()) > kInPlane)
     throw Error(ErrorCode::Argument,
-                fmt::format("orientation is turned out of the plane (quaternion {}, {}, {}, {}), but this world is "
+                fmt::format("orientation is rotated out of the plane (quaternion {}, {}, {}, {}), but this world is "
                             "flat: bodies turn about z only",
                             unit.w(), unit.x(), unit.y(), unit.z()));
   return Quaternion(unit.w(), 0, 0, unit.z()).normalized();
@@ -226,7 +226,7 @@ BodyIndex Bodies::add(BodyKind kind, ObjectId owner) {
 
 void Bodies::remove(BodyIndex body) {
   Arrays& a = *arrays_;
-  if (!used(body)) throw std::logic_error("a body is removed that there is not");
+  if (!used(body)) throw std::logic_error("a body to be removed does not exist");
   a.translating.set(body, false);
   a.turning.set(body, false);
   a.rigid.set(body, false);

@@ -68,19 +68,20 @@ void check(const Accuracy& a) {
        "finite and > 0");
   need(a.contact_damping >= 0 && a.contact_damping <= 0.9, "contact damping", a.contact_damping, "0 to 0.9");
   need(static_cast<std::size_t>(a.scheme) < kSchemes.size(), "integrator", static_cast<double>(a.scheme),
-       "one that there is");
-  need(a.rung <= Rung::Conserving, "rung", static_cast<double>(a.rung), "one that there is");
+       "an existing one");
+  need(a.rung <= Rung::Conserving, "rung", static_cast<double>(a.rung), "an existing one");
 }
 
 std::string describe(const Accuracy& a) {
-  std::string text = fmt::format("{}{}: smooth motion by {}", name_of(a.rung), a.custom ? ", with own settings" : "",
+  std::string text = fmt::format("{}{}: smooth motion by {}", name_of(a.rung), a.custom ? ", with custom settings" : "",
                                  kSchemes[static_cast<std::size_t>(a.scheme)]);
   if (a.scheme == articulated::Scheme::RungeKutta4) text += ", hard steps by Fehlberg with step control";
   if (a.scheme == articulated::Scheme::FehlbergAdaptive || a.scheme == articulated::Scheme::RungeKutta4)
     text += fmt::format(" at tolerance {}", a.tolerance);
   if (a.step > 0) text += fmt::format(", steps of at most {} s", a.step);
   if (a.implicit_joints) text += ", springs, dampers and motors of joints implicit";
-  text += a.implicit_spin ? "; a free body's spin by the implicit midpoint rule" : "; a free body's spin likewise";
+  text += a.implicit_spin ? "; the rotation of a free body by the implicit midpoint rule"
+                          : "; the rotation of a free body likewise";
   text += a.locate_impacts ? fmt::format("; up to {} impacts of an island at their time of impact", a.impacts)
                            : "; impacts at the end of the sub-step";
   text += a.direct ? "; small islands of contacts solved directly, large ones" : "; contacts solved";

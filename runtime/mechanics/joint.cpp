@@ -60,13 +60,13 @@ void explain(const JointDrive& drive, JointKind kind) {
 }  // namespace
 
 void check(const JointDescription& is, const Bodies& bodies) {
-  if (static_cast<int>(is.kind) > static_cast<int>(JointKind::Ball)) refuse("there is no such kind of joint");
+  if (static_cast<int>(is.kind) > static_cast<int>(JointKind::Ball)) refuse("unknown kind of joint");
   const std::string_view kind = name_of(is.kind);
-  if (!bodies.used(is.child)) refuse(fmt::format("{} joint: the child is no body in the world", kind));
+  if (!bodies.used(is.child)) refuse(fmt::format("{} joint: the child is not a body in the world", kind));
   if (bodies.kind(is.child) == BodyKind::Stationary)
     refuse(fmt::format("{} joint: the child is Stationary; make it the parent", kind));
   if (is.parent != kNoBody && !bodies.used(is.parent))
-    refuse(fmt::format("{} joint: the parent is no body in the world", kind));
+    refuse(fmt::format("{} joint: the parent is not a body in the world", kind));
   if (is.parent == is.child) refuse(fmt::format("{} joint: parent and child are the same body", kind));
   need_finite(is.parent_point, fmt::format("{} joint: the parent's point", kind));
   need_finite(is.child_point, fmt::format("{} joint: the child's point", kind));

@@ -20,13 +20,13 @@ constexpr std::array<Words, 5> kRungs{"fast", "balanced", "precise", "reference"
 constexpr std::array<Words, 4> kModes{"off", "report", "refine", "rest"};
 constexpr std::array<Words, 4> kActions{"reported", "refined", "put to rest", "finished coarsely"};
 constexpr std::array<Words, 8> kReasons{"a number is not finite",
-                                        "energy appears that no account explains",
+                                        "unexplained energy gain",
                                         "an overlap grows",
-                                        "a body turns too far in one sub-step",
+                                        "a body rotates too far in one sub-step",
                                         "a damper is too strong for the sub-step",
-                                        "more impacts in one sub-step than are located",
-                                        "an equation of the step has no solution that is found",
-                                        "the work that a step may take is used up"};
+                                        "more impacts in one sub-step than can be located",
+                                        "no solution was found for an equation of the step",
+                                        "the work budget of the step is used up"};
 
 template <class Enum, std::size_t N>
 Enum named(const std::array<Words, N>& names, Words name, Words what) {
@@ -35,7 +35,7 @@ Enum named(const std::array<Words, N>& names, Words name, Words what) {
     if (names[i] == name) return static_cast<Enum>(i);
     list += fmt::format("{}\"{}\"", i == 0 ? "" : i + 1 == N ? " or " : ", ", names[i]);
   }
-  throw Error(ErrorCode::Argument, fmt::format("there is no {} \"{}\": it is {}", what, name, list));
+  throw Error(ErrorCode::Argument, fmt::format("unknown {} \"{}\": must be {}", what, name, list));
 }
 
 template <class Enum, std::size_t N>

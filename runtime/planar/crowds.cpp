@@ -67,8 +67,8 @@ void Planar::Core::expect_pairs(const WorkBound& most) {
     contacts += one.contacts;
     looks += static_cast<double>(one.contacts) * static_cast<double>(one.contacts) / 2;
     if (pairs >= Overlaps::kMostPairs)
-      throw Error(ErrorCode::Memory, fmt::format("more than {} pairs of flat shapes overlap where they were put; put "
-                                                 "bodies apart",
+      throw Error(ErrorCode::Memory, fmt::format("more than {} pairs of flat shapes overlap at their positions; move "
+                                                 "the bodies apart",
                                                  Overlaps::kMostPairs));
     held.hold(expected_bytes() + pairs * kPerPair + contacts * kPerContact);
   }
@@ -76,11 +76,12 @@ void Planar::Core::expect_pairs(const WorkBound& most) {
   const double work = static_cast<double>(pairs) / kPairsAUnit + looks / kLooksAUnit;
   const double left = most.most > counters.work ? static_cast<double>(most.most - counters.work) : 0;
   if (most.most > 0 && work > left)
-    throw Error(ErrorCode::Budget,
-                fmt::format("{} pairs of flat shapes overlap where they were put: to pair them takes more than is left "
-                            "of the physics budget of {} (breve_world_config.physics_budget, --physics-budget); put "
-                            "bodies apart",
-                            pairs, most.most));
+    throw Error(
+        ErrorCode::Budget,
+        fmt::format("{} pairs of flat shapes overlap at their positions: processing them exceeds the rest of the "
+                    "physics budget of {} (breve_world_config.physics_budget, --physics-budget); move "
+                    "the bodies apart",
+                    pairs, most.most));
   counters.work += static_cast<std::uint64_t>(work);
   placed = 0;
   for (FlatBody& flat : slots) flat.placed = false;

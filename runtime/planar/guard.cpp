@@ -150,8 +150,8 @@ void Planar::Core::watch(double moment, bool wrong) {
   if (lost != kNoBody && settings.guard == GuardMode::Off)
     throw Error(
         ErrorCode::Numeric,
-        "a place or speed in a flat world is not finite any more; it was put back to where it was, at rest. The "
-        "guard would have told (set-guard, breve_world_set_guard)");
+        "a position or velocity in a flat world is no longer finite; the body was put back to where it was, at rest. "
+        "The guard would have reported it (set-guard, breve_world_set_guard)");
   for (const FlatJoint& joint : joints) {
     if (!joint.used || !joint.b2 || joint.ring) continue;
     double width = find(joint.is.child)->thickness;

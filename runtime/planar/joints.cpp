@@ -28,14 +28,14 @@ void need_in_plane(const Vector3& v, const char* what, JointKind kind) {
 }  // namespace
 
 FlatJoint& Planar::Core::at(JointIndex joint) {
-  if (joint >= joints.size() || !joints[joint].used) refuse("there is no such joint: it is not linked");
+  if (joint >= joints.size() || !joints[joint].used) refuse("the joint is not linked");
   return joints[joint];
 }
 
 void Planar::Core::check_flat(const JointDescription& is) const {
   check(is, *bodies);
   if (is.kind == JointKind::Universal || is.kind == JointKind::Ball)
-    refuse(fmt::format("a {} joint turns about axes out of the plane, but this world is flat: take a RevoluteJoint",
+    refuse(fmt::format("a {} joint rotates about axes outside the plane, but this world is flat: use a RevoluteJoint",
                        name_of(is.kind)));
   need_in_plane(is.parent_point, "the parent's point", is.kind);
   need_in_plane(is.child_point, "the child's point", is.kind);
@@ -44,7 +44,7 @@ void Planar::Core::check_flat(const JointDescription& is) const {
     refuse(fmt::format("{} joint: the relative rotation is not about z, but this world is flat", name_of(is.kind)));
   if (is.kind == JointKind::Revolute && is.normal.head<2>().norm() > kInPlane * is.normal.norm())
     refuse(
-        fmt::format("revolute joint: the normal is ({}, {}, {}), but this world is flat: bodies turn about z only, "
+        fmt::format("revolute joint: the normal is ({}, {}, {}), but this world is flat: bodies rotate about z only, "
                     "the normal must be (0, 0, 1) or (0, 0, -1)",
                     is.normal.x(), is.normal.y(), is.normal.z()));
   if (is.kind == JointKind::Prismatic) need_in_plane(is.normal, "the normal", is.kind);

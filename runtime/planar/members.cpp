@@ -61,8 +61,7 @@ FlatBody* Planar::Core::find(BodyIndex body) {
 
 void Planar::Core::make_world() {
   held.hold(kPerWorld);
-  if (!contacts_are_ready())
-    throw Error(ErrorCode::Unsupported, "the Box2D library that is installed makes no contacts");
+  if (!contacts_are_ready()) throw Error(ErrorCode::Unsupported, "the installed Box2D library creates no contacts");
   b2 = std::make_unique<b2World>(b2Vec2(0, 0));
   b2->SetContactListener(this);
   b2->SetContactFilter(this);
@@ -262,10 +261,11 @@ void add_profile(FlatBody& flat, const std::pmr::vector<Vector2>& points, double
   }
   const std::size_t n = corners.size();
   if (n < 2 || b2Distance(corners[0], corners[1]) < kNearest)
-    throw Error(ErrorCode::Argument,
-                fmt::format("a profile is shorter than a length unit of {} can tell; set the world's length unit to "
-                            "about the size of its bodies (set-length-unit, breve_world_config.length_unit)",
-                            unit));
+    throw Error(
+        ErrorCode::Argument,
+        fmt::format("a profile is shorter than the resolution at a length unit of {}; set the world's length unit to "
+                    "about the size of its bodies (set-length-unit, breve_world_config.length_unit)",
+                    unit));
   b2ChainShape chain;
   chain.CreateChain(corners.data(), static_cast<int32>(n), 2 * corners[0] - corners[1],
                     2 * corners[n - 1] - corners[n - 2]);

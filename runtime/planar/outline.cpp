@@ -198,7 +198,7 @@ std::pmr::vector<Points> convex_pieces(const Points& ring, std::pmr::memory_reso
 
 [[noreturn]] void no_outline() {
   throw Error(ErrorCode::Argument,
-              "the shape does not reach the plane z = 0 of its own frame, so that it is nothing in a flat world");
+              "the shape does not reach the plane z = 0 of its own frame, so it has no cross-section in a flat world");
 }
 
 void add_polygon(Outline& outline, Points points, std::pmr::memory_resource* memory) {

@@ -53,8 +53,8 @@ void Planar::set_position(JointIndex joint, const JointVector& position) {
   Core& c = *core_;
   FlatJoint& entry = c.at(joint);
   if (entry.ring)
-    throw Error(ErrorCode::Argument, fmt::format("a {} joint that closes a ring cannot be put somewhere: the other "
-                                                 "joints of the ring decide where it is",
+    throw Error(ErrorCode::Argument, fmt::format("the position of a {} joint that closes a loop cannot be set: the "
+                                                 "other joints of the loop determine it",
                                                  name_of(entry.is.kind)));
   if (entry.is.kind == JointKind::Fixed) return;
   take_changes();
@@ -102,7 +102,7 @@ void Planar::set_velocity(JointIndex joint, const JointVector& velocity) {
 
 void Planar::set_ball(JointIndex joint, const Quaternion&, const Vector3&) {
   core_->at(joint);
-  throw Error(ErrorCode::Argument, "only a ball joint has a turn as a whole, and a flat world has none");
+  throw Error(ErrorCode::Argument, "only a ball joint has an orientation, and a flat world has no ball joints");
 }
 
 JointReaction Planar::reaction(JointIndex joint) const {
@@ -119,13 +119,13 @@ JointReaction Planar::reaction(JointIndex joint) const {
 namespace {
 FlatSpring& at(Planar::Core& core, SpringIndex spring) {
   if (spring >= core.springs.size() || !core.springs[spring].used)
-    throw Error(ErrorCode::Argument, "there is no such spring: it is not connected");
+    throw Error(ErrorCode::Argument, "the spring is not connected");
   return core.springs[spring];
 }
 void need_ends_in_plane(const SpringDescription& is) {
   if (is.point_a.z() != 0 || is.point_b.z() != 0)
     throw Error(ErrorCode::Argument,
-                "spring: a point of attachment is out of the plane, but this world is flat: z must be 0");
+                "spring: a point of attachment is outside the plane, but this world is flat: z must be 0");
 }
 }  // namespace
 
@@ -134,7 +134,7 @@ SpringIndex Planar::tie(const SpringDescription& description, ObjectId owner) {
   need_ends_in_plane(description);
   Core& c = *core_;
   for (const BodyIndex end : {description.a, description.b})
-    if (!c.bodies->used(end)) throw Error(ErrorCode::Argument, "spring: an end is no body in the world");
+    if (!c.bodies->used(end)) throw Error(ErrorCode::Argument, "spring: an end is not a body in the world");
   if (description.a == description.b) return kNoSpring;
   if (c.free_springs.capacity() <= c.springs.size()) c.free_springs.reserve(2 * c.springs.size() + 16);
   SpringIndex index = static_cast<SpringIndex>(c.springs.size());
@@ -216,12 +216,12 @@ std::string Planar::describe_accuracy() const {
   const Accuracy& a = accuracy();
   return fmt::format(
       "{}{}, flat: {} sub-steps of Box2D in an integration step{}, with {} iterations for velocities and {} for "
-      "positions; {}; single precision at a length unit of {}. Without meaning here: integrator, tolerance, implicit "
-      "joints and spin, direct solver, contact springs, erp and cfm, workers.",
-      name_of(a.rung), a.custom ? ", with own settings" : "", core_->sub_steps(),
+      "positions; {}; single precision at a length unit of {}. Without effect here: integrator, tolerance, implicit "
+      "joints and rotation, direct solver, contact springs, erp and cfm, workers.",
+      name_of(a.rung), a.custom ? ", with custom settings" : "", core_->sub_steps(),
       core_->longest_step() > 0 ? fmt::format(", of at most {} s each", core_->longest_step()) : "",
       core_->velocity_iterations(), core_->position_iterations(),
-      a.locate_impacts ? "impacts with handlers, and what few bodies there are, at their time of impact"
+      a.locate_impacts ? "impacts with handlers, and rebounds of few bodies, at their time of impact"
                        : "impacts with handlers at their time of impact",
       length_unit());
 }

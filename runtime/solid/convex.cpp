@@ -60,7 +60,7 @@ void weld(Polyhedron& solid, const std::vector<std::vector<Vector3>>& faces, dou
     std::pmr::vector<int> sorted = face;
     std::sort(sorted.begin(), sorted.end());
     if (face.size() < 3 || std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
-      refuse(fmt::format("has a face {} that meets itself or has fewer than 3 different vertices", f));
+      refuse(fmt::format("has a face {} that intersects itself or has fewer than 3 different vertices", f));
     }
     solid.faces.push_back(std::move(face));
   }
@@ -93,7 +93,7 @@ void orient(Polyhedron& solid, std::size_t f, const Vector3& inside, double tole
       refuse(fmt::format("is not convex: ({}, {}, {}) lies outside face {}", p.x(), p.y(), p.z(), f));
     }
   }
-  if (plane.offset <= tolerance) refuse(fmt::format("does not hold the origin inside: face {} leaves it out", f));
+  if (plane.offset <= tolerance) refuse(fmt::format("does not contain the origin: it lies outside face {}", f));
 }
 
 }  // namespace

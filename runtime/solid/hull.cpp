@@ -275,7 +275,7 @@ void Quickhull::check(const Polyhedron& solid) const {
     for (const Vector3& p : solid.vertices) wrong = wrong || outside(plane, p);
     for (const int p : dropped_) wrong = wrong || outside(plane, point(p));
     if (wrong)
-      refuse_hull("of points that no closed solid fits in double precision: remove points that nearly coincide");
+      refuse_hull("of points for which no closed solid exists in double precision: remove points that nearly coincide");
   }
 }
 
@@ -286,7 +286,7 @@ Polyhedron Quickhull::run() {
   }
   const auto loops = merged();
   if (loops.size() > kMostFaces) {
-    refuse_hull(fmt::format("has {} faces (at most {}): take a coarser mesh, or keep it as triangles", loops.size(),
+    refuse_hull(fmt::format("has {} faces (at most {}): use a coarser mesh, or keep it as triangles", loops.size(),
                             kMostFaces));
   }
   Polyhedron solid;

@@ -44,14 +44,14 @@ void check_chunks(std::span<const std::uint8_t> bytes, const std::string& name) 
   const auto walk = [&](std::size_t begin, std::size_t end, auto&& inside) -> void {
     for (std::size_t at = begin; at < end;) {
       if (end - at < kHead || length(at) < kHead || length(at) > end - at) {
-        refuse_mesh(name, fmt::format("it is damaged or cut off: the chunk at byte {} does not end in the file", at));
+        refuse_mesh(name, fmt::format("it is damaged or truncated: the chunk at byte {} does not end in the file", at));
       }
       inside(at, at + length(at));
       at += length(at);
     }
   };
   if (bytes.size() < kHead || length(0) < kHead || length(0) > bytes.size()) {
-    refuse_mesh(name, "it is cut off: a 3DS file must be as long as its first chunk says");
+    refuse_mesh(name, "it is truncated: a 3DS file must be as long as its first chunk states");
   }
   walk(kHead, length(0), [&](std::size_t at, std::size_t end) {
     std::uint16_t id;
@@ -136,7 +136,7 @@ class ObjFilter {
       const auto [end, wrong] = std::from_chars(first.data(), first.data() + first.size(), index);
       if (index < 0) index += vertices_ + 1;  // counted back from the last one
       if (wrong != std::errc() || end != first.data() + first.size() || index < 1 || index > vertices_) {
-        refuse(fmt::format("a face names vertex '{}' (there are {} so far)", first.substr(0, 40), vertices_));
+        refuse(fmt::format("a face refers to vertex '{}' (there are {} so far)", first.substr(0, 40), vertices_));
       }
       if (++corners > kMostCorners) refuse(fmt::format("a face has more than {} corners", kMostCorners));
       text += fmt::format(" {}", index);
@@ -189,7 +189,7 @@ void collect(const aiScene& scene, MeshData& out, const std::string& name) {
         std::array<std::int32_t, 3> triangle;
         for (unsigned k = 0; k < 3; ++k) {
           if (face.mIndices[k] >= mesh.mNumVertices)
-            refuse_mesh(name, "it is damaged: a face names a vertex that is not there");
+            refuse_mesh(name, "it is damaged: a face refers to a vertex that does not exist");
           triangle[k] = static_cast<std::int32_t>(first + face.mIndices[k]);
         }
         out.triangles.push_back(triangle);

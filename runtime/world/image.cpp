@@ -32,7 +32,7 @@ ByteReader open_image(const std::uint8_t* data, std::size_t size, std::uint64_t 
   if (in.get<std::uint64_t>() != fingerprint) refuse("the image is of another program");
   const auto length = in.get<std::uint64_t>();
   const auto sum = in.get<std::uint64_t>();
-  if (length != in.left()) refuse("the image is damaged or cut off");
+  if (length != in.left()) refuse("the image is damaged or truncated");
   if (checksum(data + (size - in.left()), in.left()) != sum) refuse("the image is damaged");
   return in;
 }
@@ -181,7 +181,7 @@ void World::load(const std::uint8_t* data, std::size_t size, std::uint64_t progr
     refuse("the image is damaged: " + std::string(error.what()));
   }
   const bool scripted = in.get_bool();
-  if (scripted != (behaviour_ != nullptr)) refuse("the image is of a world with another kind of script side");
+  if (scripted != (behaviour_ != nullptr)) refuse("the image is of a world with a different script engine");
   if (!scripted && in.left() != 0) ByteReader::fail();
   fresh.parts_->objects.keep_tickets(parts_->objects);
   // The script side may look at the objects while it reads its own part, and takes it only if all of it is good.

@@ -24,7 +24,7 @@ ObjectTable::Reclassed ObjectTable::prepare_reclass(std::span<const ClassChange>
     if (!alive(id)) continue;
     const Slot& slot = slots_[id.index];
     if (slot.cls >= classes.size() || classes[slot.cls].to == kNoClass)
-      throw Error(ErrorCode::Argument, "a live object's class is gone");
+      throw Error(ErrorCode::Argument, "the class of a live object was removed");
     const ClassChange& change = classes[slot.cls];
     lists.changed = lists.changed || change.iterates != slot.iterates || change.post_iterates != slot.post_iterates;
     if (!joined(slot)) continue;

@@ -11,7 +11,8 @@ namespace breve {
 
 void World::set_target(BodyIndex body, const Vector3* new_location, const Quaternion* new_orientation) {
   if (bodies_->dynamic(body))
-    throw Error(ErrorCode::Argument, "forces move a body with physics: only one without can be given a target");
+    throw Error(ErrorCode::Argument,
+                "a body with physics is moved by forces: only a body without physics can have a target");
   const ObjectId object = bodies_->owner(body);
   parts_->targets.reserve(parts_->targets.size() + 1);  // before anything is changed
   const auto pending = std::find_if(parts_->targets.begin(), parts_->targets.end(),

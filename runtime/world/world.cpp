@@ -107,7 +107,7 @@ void World::add_resource_kind(std::string_view kind, ResourceLoader loader) {
 
 void World::embody(ObjectId id, BodyKind kind) {
   ObjectTable::Slot& slot = parts_->objects.at(id);
-  if (slot.body != kNoBody) throw Error(ErrorCode::Argument, "the object has a body already");
+  if (slot.body != kNoBody) throw Error(ErrorCode::Argument, "the object already has a body");
   slot.body = bodies_->add(kind, id);
 }
 
@@ -180,7 +180,8 @@ std::span<const std::uint64_t> World::neighbor_users(ObjectId id) {
 void World::set_space(int axis, Ending edge, double low, double high, ObjectId asked_by) {
   // Wherever else z were brought to, it would not be 0 any more.
   if (dimension() == 2 && axis == 2 && edge != Ending::Open && !(low <= 0 && 0 < high))
-    throw Error(ErrorCode::Argument, "the bounds of space along z leave out 0, but this world is flat: z must be 0");
+    throw Error(ErrorCode::Argument,
+                "the bounds of space along z do not include 0, but this world is flat: z must be 0");
   parts_->space.set(axis, edge, low, high);
   if (parts_->space.open())
     parts_->effects.turn_off(EffectId::Bounds);

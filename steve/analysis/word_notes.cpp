@@ -8,22 +8,22 @@ namespace breve::steve {
 namespace {
 
 constexpr WordNote kTopLevel[] = {
-    {"Controller", "Controller Name.", "Which class runs the simulation."},
+    {"Controller", "Controller Name.", "The class that runs the simulation."},
 };
 
 constexpr NameKind kDirective = NameKind::Directive;
 constexpr WordNote kDirectives[] = {
     {"use", "@use Name.", "Load the file Name.tz, or a class of the class library.", kDirective},
     {"include", "@include \"file.tz\"", "Load a file by its name.", kDirective},
-    {"path", "@path \"directory\"", "Search a directory for files too.", kDirective},
+    {"path", "@path \"directory\"", "Also search a directory for files.", kDirective},
     {"define", "@define NAME literal.", "Give a name to a number, string, vector or matrix.", kDirective},
     {"plugin", "@plugin \"file\"(entry).", "Native plugins are not available.", kDirective},
     {"nib_file", "@nib_file \"file\".", "Ignored: an interface file of another system.", kDirective},
 };
 
 constexpr WordNote kStatements[] = {
-    {"if", "if condition: statement", "With `else statement` behind it for the other case."},
-    {"else", "else statement", "Behind the statement of an `if`."},
+    {"if", "if condition: statement", "Followed by `else statement` for the other case."},
+    {"else", "else statement", "After the statement of an `if`."},
     {"while", "while condition: statement", "Repeat as long as the condition holds."},
     {"for", "for start, condition, step: statement", "Repeat, counting."},
     {"foreach", "foreach item in list: statement", "For each element of a list."},
@@ -33,21 +33,21 @@ constexpr WordNote kStatements[] = {
     {"free", "free object.", "Free an object, or all objects of a list."},
     {"die", "die \"message\".", "End the call with an error."},
     {"sort", "sort list with method.",
-     "Sort by a method of this object that compares two elements: below, at, above 0."},
+     "Sort by a method of this object that compares two elements: negative, 0 or positive."},
 };
 
 constexpr WordNote kOperands[] = {
     {"self", "self", "The object whose method runs."},
-    {"super", "super", "The same object, but its parent class's methods."},
+    {"super", "super", "The same object, but with its parent class's methods."},
     {"new", "new Name", "A new object; `5 new Names` is a list of five."},
     {"all", "all Names", "A list of the objects of a class and its descendants."},
     {"random", "random[bound]", "A random number from 0 to the bound, of its type."},
     {"push", "push value onto list", "Append an element."},
-    {"pop", "pop list", "Take the last element away; yields it."},
+    {"pop", "pop list", "Remove the last element; yields it."},
     {"prepend", "prepend value onto list", "Put an element before the first."},
-    {"unprepend", "unprepend list", "Take the first element away; yields it."},
+    {"unprepend", "unprepend list", "Remove the first element; yields it."},
     {"insert", "insert value at list{index}", "Put an element before another."},
-    {"remove", "remove list{index}", "Take an element out of a list or hash; yields it."},
+    {"remove", "remove list{index}", "Remove an element from a list or hash; yields it."},
     {"copylist", "copylist list", "A copy of a list, with the same elements."},
 };
 
@@ -62,7 +62,7 @@ constexpr WordNote kTypes[] = {
     {"list", "(list)", "Values of any type in order; starts empty.", kType},
     {"hash", "(hash)", "Values by keys; starts empty.", kType},
     {"object", "(object)", "Any object, or null.", kType},
-    {"pointer", "(pointer)", "Something that only functions can look into, as an open file.", kType},
+    {"pointer", "(pointer)", "A value that only functions can use, such as an open file.", kType},
     {"data", "(data)", "Bytes.", kType},
 };
 
@@ -81,11 +81,11 @@ constexpr WordNote kArrayTypes[] = {
 
 constexpr NameKind kMethod = NameKind::Method;
 constexpr WordNote kSpecialMethods[] = {
-    {"init", "+ to init:", "Runs when an object is made, the root class's first.", kMethod},
+    {"init", "+ to init:", "Runs when an object is created, the root class's first.", kMethod},
     {"iterate", "+ to iterate:", "Runs in each iteration; a controller's calls `super iterate`.", kMethod},
     {"post-iterate", "+ to post-iterate:", "Runs at the end of each iteration.", kMethod},
     {"destroy", "+ to destroy:", "Runs when the object is freed.", kMethod},
-    {"delete", "+ to delete:", "Runs when the object is freed, of every class in its line.", kMethod},
+    {"delete", "+ to delete:", "Runs when the object is freed, for its class and every ancestor.", kMethod},
     {"get-description", "+ to get-description:", "Yields the text that print shows for the object.", kMethod},
 };
 

@@ -254,8 +254,7 @@ Operand FunctionCompiler::store(Place& p, const Operand& value) {
     case Place::Kind::ArrayItem: return store_array(p, value);
     case Place::Kind::Value:
       emit_.emit_imm(Op::Fail, static_cast<std::uint16_t>(RunErrorKind::Type),
-                     text("this is a value without a place of its own, so an element of it cannot be assigned; put it "
-                          "in a variable first"));
+                     text("an element of a temporary value cannot be assigned; store the value in a variable first"));
       return value;
     default: break;
   }

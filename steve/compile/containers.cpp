@@ -37,7 +37,7 @@ Operand FunctionCompiler::function_call(const ast::FunctionCall& f, const ast::E
                                    "function '" + f.name + "' takes " + counts +
                                        (counts == "1" ? " argument, not " : " arguments, not ") +
                                        std::to_string(f.arguments.size()),
-                                   "the arguments stand in the parentheses, with commas between them");
+                                   "the arguments are written in parentheses, with commas between them");
     } else {
       builder_.diagnostics().error(e.span, "unknown-function", "unknown function '" + f.name + "'",
                                    unknown_function_help(f, e.span));
@@ -145,7 +145,7 @@ Operand FunctionCompiler::list_operand(const ast::Expr& e, std::string_view what
 }
 
 Operand FunctionCompiler::push(const ast::Push& p) {
-  const auto list = stable(list_operand(*p.list, p.front ? "what is prepended to" : "what is pushed onto"), *p.value);
+  const auto list = stable(list_operand(*p.list, p.front ? "the list of 'prepend'" : "the list of 'push'"), *p.value);
   auto value = expr(*p.value);
   const bool reference = value.type >= StaticType::String && value.type <= StaticType::Data;
   if (!p.front && value.type == StaticType::Int) {
@@ -163,7 +163,7 @@ Operand FunctionCompiler::push(const ast::Push& p) {
 }
 
 Operand FunctionCompiler::pop(const ast::Pop& p) {
-  const auto list = list_operand(*p.list, p.front ? "what is unprepended" : "what is popped");
+  const auto list = list_operand(*p.list, p.front ? "the operand of 'unprepend'" : "the operand of 'pop'");
   const auto target = emit_.temporary(StaticType::Any);
   emit_.emit(p.front ? Op::Unprepend : Op::Pop, target.slot, list.slot);
   emit_.release(list);
@@ -171,7 +171,7 @@ Operand FunctionCompiler::pop(const ast::Pop& p) {
 }
 
 Operand FunctionCompiler::insert(const ast::Insert& i) {
-  auto list = stable(list_operand(*i.list, "what is inserted into"), *i.value);
+  auto list = stable(list_operand(*i.list, "the list of 'insert'"), *i.value);
   list = stable(list, *i.index);
   const auto value = any(*i.value);
   const auto position = any(*i.index);
@@ -192,7 +192,7 @@ Operand FunctionCompiler::remove(const ast::Remove& r) {
 }
 
 Operand FunctionCompiler::copy_list(const ast::CopyList& c) {
-  const auto list = list_operand(*c.list, "what is copied");
+  const auto list = list_operand(*c.list, "the operand of 'copylist'");
   const auto target = emit_.temporary(StaticType::List);
   emit_.emit(Op::CopyList, target.slot, list.slot);
   emit_.release(list);
@@ -200,7 +200,7 @@ Operand FunctionCompiler::copy_list(const ast::CopyList& c) {
 }
 
 void FunctionCompiler::sort(const ast::Sort& s) {
-  const auto list = list_operand(*s.list, "what is sorted");
+  const auto list = list_operand(*s.list, "the operand of 'sort'");
   emit_.emit_imm(Op::Sort, list.slot, static_cast<std::int32_t>(builder_.symbol(s.selector)));
   emit_.release(list);
 }
@@ -237,7 +237,7 @@ void FunctionCompiler::call(const ast::Call& c, const ast::Expr& e) {
   }
   if (receiver.type != StaticType::List && receiver.type != StaticType::Any && receiver.type != StaticType::Null)
     builder_.lint(c.receiver->span, "lint-call-on-value",
-                  "a method is called on a value that has none: only objects and lists of objects have methods",
+                  "a method is called on a value without methods: only objects and lists of objects have methods",
                   "declare a variable for objects as (object)");
   // A dynamic receiver may be a list: the call then runs once for each element, arguments evaluated afresh.
   const auto box = boxed(receiver);

@@ -34,7 +34,7 @@ const ClassInfo* ProgramBuilder::parent_of(ast::Class& tree) {
   // The one that is known is the parent.
   const ClassInfo* known = class_named(tree.name);
   if (known && !is_later_class(tree.parent)) {
-    diagnostics_.error(tree.parent_span, "class-header", "the parent stands before the ':', the new class behind it",
+    diagnostics_.error(tree.parent_span, "class-header", "the parent comes before the ':', the new class after it",
                        "write: " + tree.name + " : " + tree.parent + " {");
     std::swap(tree.name, tree.parent);
     return known;
@@ -74,7 +74,7 @@ void ProgramBuilder::declare(ast::Class tree) {
   if (info.depth > kDeepestClass) {
     diagnostics_.error(tree.name_span, "too-deep",
                        "class " + tree.name + " has more than " + std::to_string(kDeepestClass) + " ancestors",
-                       "derive it from a class that is nearer to Object");
+                       "derive it from a class that is closer to Object");
     info.parent = class_named("Object");
     info.depth = 1;
   }
@@ -138,7 +138,7 @@ void ProgramBuilder::declare_methods(const ast::Class& tree, ClassInfo& info) {
                          "class " + tree.name + " defines method '" + m.name + "' with " +
                              std::to_string(m.parameters.size()) +
                              (m.parameters.size() == 1 ? " parameter twice" : " parameters twice"),
-                         "give one of them another name or number of parameters");
+                         "give one of them another name or a different number of parameters");
     for (const auto& p : m.parameters) checked_.push_back(p.type);
     if (m.native)
       bind_native(m, *method);

@@ -65,7 +65,7 @@ void ProgramBuilder::gather_foreign_library() {
     kept.error(foreign.place, "foreign-library",
                "this file has the class " + name + " of another version of the class library: it calls " +
                    joined(named) + ", which breve does not have",
-               find_library_file(name) ? "take the file away: breve has a class " + name + " of its own"
+               find_library_file(name) ? "remove the file: breve has a class " + name + " of its own"
                                        : "class " + name + " is part of a later version of the class library");
   }
   diagnostics_ = std::move(kept);

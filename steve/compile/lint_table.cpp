@@ -14,33 +14,34 @@ using enum Severity;
 
 // KEEP IN STEP: docs/messages.md.
 constexpr std::array kLints{
-    Lint{"lint-allow", Warning, "a comment '# allow:' names no lint"},
+    Lint{"lint-allow", Warning, "a comment '# allow:' names an unknown lint"},
     Lint{"lint-assignment-condition", Warning, "a condition is an assignment, where '==' may be meant"},
-    Lint{"lint-bypassed-override", Warning, "a method is never reached by the calls that its parent's answers"},
-    Lint{"lint-call-on-value", Warning, "a method is called on a number, text or another value that has none"},
-    Lint{"lint-dot", Warning, "'a.b' without blanks: a statement that ends, and one that does nothing"},
+    Lint{"lint-bypassed-override", Warning, "calls that match the parent's method never reach this override"},
+    Lint{"lint-call-on-value", Warning, "a method is called on a number, text or another value without methods"},
+    Lint{"lint-dot", Warning, "'a.b' without spaces: two statements, the second without effect"},
     Lint{"lint-escaped-dollar", Warning, "'\\$' in a string, which keeps its backslash"},
     Lint{"lint-implicit-return", Note, "the value of a method without 'return' is used"},
     Lint{"lint-include-comment", Warning, "'#include' is a comment"},
-    Lint{"lint-interpolation", Warning, "a '$' reference in a string that ends sooner than it looks"},
+    Lint{"lint-interpolation", Warning, "a '$' reference in a string that ends earlier than it seems to"},
     Lint{"lint-keywords", Warning, "a call whose keywords no method of that name takes"},
     Lint{"lint-leading-percent", Warning, "a line that begins with '%' in the middle of an expression"},
     Lint{"lint-list-sum", Warning, "two lists are added, which adds their lengths"},
     Lint{"lint-lone-dollar", Warning, "a '$' in a string that refers to nothing"},
     Lint{"lint-minus-spacing", Warning, "'a -1', which is a subtraction"},
-    Lint{"lint-new-count", Warning, "'n new Class' with a count that is no literal: one gives no list"},
+    Lint{"lint-new-count", Warning, "'n new Class' with a count that is not a literal: a count of 1 gives no list"},
     Lint{"lint-nib-file", Warning, "an interface file, which is ignored"},
     Lint{"lint-no-super-iterate", Warning, "the controller's iterate does not call 'super iterate'"},
     Lint{"lint-object-string", Warning, "an object is compared with a string, which is never equal"},
     Lint{"lint-one-argument-atan2", Warning, "atan2 with one argument, which is atan"},
-    Lint{"lint-precedence", Warning, "'^' beside other operators, which takes everything to its left"},
+    Lint{"lint-precedence", Warning, "'^' next to other operators: it takes everything to its left"},
     Lint{"lint-scalar-by-vector", Warning, "a number divided by a vector"},
     Lint{"lint-shadow", Warning, "a local variable hides an instance variable"},
-    Lint{"lint-special-parameters", Warning, "init, iterate and the like with parameters, which are never called"},
+    Lint{"lint-special-parameters", Warning,
+         "init, iterate or a similar method with parameters, which is never called"},
     Lint{"lint-string-sum", Warning, "a text and a number are added, which gives a number"},
-    Lint{"lint-super-init", Warning, "'super init', which runs a second time what ran already"},
+    Lint{"lint-super-init", Warning, "'super init', which runs the parent's init a second time"},
     Lint{"lint-unknown-class", Warning, "an object of a class that does not exist"},
-    Lint{"lint-unknown-method", Warning, "a method that no class has, or not the class that is called"},
+    Lint{"lint-unknown-method", Warning, "a method that no class has, or that the receiver's class does not have"},
     Lint{"lint-unused-comparison", Warning, "a comparison whose result is not used, where '=' may be meant"},
     Lint{"lint-unused-local", Warning, "a local variable is never read"},
     Lint{"lint-unused-parameter", Note, "a parameter is never used"},
@@ -88,10 +89,10 @@ class FileAllowances {
         for (const Lint& lint : kLints) codes.push_back(lint.code);
         const std::string near = nearest(code, codes);
         const auto offset = static_cast<std::uint32_t>(content.data() + at - sources.file(file).text.data());
-        complaints.warning(
-            sources.span_at(file, offset, static_cast<std::uint32_t>(end - at)), "lint-allow",
-            "there is no lint '" + std::string(code) + "'",
-            near.empty() ? "the code of a lint stands in brackets behind its message" : "did you mean '" + near + "'?");
+        complaints.warning(sources.span_at(file, offset, static_cast<std::uint32_t>(end - at)), "lint-allow",
+                           "there is no lint '" + std::string(code) + "'",
+                           near.empty() ? "the code of a lint is shown in brackets after its message"
+                                        : "did you mean '" + near + "'?");
       } else if (head) {
         everywhere_.insert(std::string(code));
       } else {

@@ -81,7 +81,7 @@ void ProgramBuilder::check_call(const ast::Call& call, const ast::Expr& e, const
   const bool super = std::holds_alternative<ast::Super>(call.receiver->node);
   if (super && call.selector == "init")
     lint(call.selector_span, "lint-super-init", "'super init' runs the parent's init a second time",
-         "init methods are called by themselves, the root's first: remove this call");
+         "init methods are called automatically, the root's first: remove this call");
   if (call.selector == "iterate" && call.keywords.empty()) return;
   if (super && !cls.parent) return;
   const Receiver receiver{super ? cls.parent : class_of(*call.receiver, method, cls, *program_), super};
@@ -154,7 +154,7 @@ void ProgramBuilder::check_method_named(const ast::Call& call, const ClassInfo* 
                           " needs"
                     : "no class has a method '" + name + "' " + count + ", which " + naming.what + " needs",
            !likely.empty() ? "did you mean '" + likely + "'?"
-           : named         ? "take the keywords away, or name another method"
+           : named         ? "remove the keywords, or name another method"
                            : "define it with: + to " + name + ":");
     }
   }
@@ -209,8 +209,8 @@ void ProgramBuilder::check_special_methods() {
       if (method->parameters.empty() ||
           (name != "init" && name != "iterate" && name != "post-iterate" && name != "destroy"))
         continue;
-      lint(method->span, "lint-special-parameters", "'" + name + "' with parameters is never called by itself",
-           "take the parameters away, or give the method another name");
+      lint(method->span, "lint-special-parameters", "'" + name + "' with parameters is never called automatically",
+           "remove the parameters, or give the method another name");
     }
 }
 

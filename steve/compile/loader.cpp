@@ -90,7 +90,7 @@ void ProgramBuilder::load(ModuleSource module, bool embedded) {
   tokens_ += embedded ? 0 : tokens.size();
   if (tokens_ > kMaxTokens + 1) {
     diagnostics_.error({file, 0, 1, 1, 1}, "program-too-large",
-                       fmt::format("the files of the program have more than {} words and signs together", kMaxTokens),
+                       fmt::format("the files of the program have more than {} tokens together", kMaxTokens),
                        std::string(kTooLarge));
     --depth_;
     return;
@@ -168,7 +168,7 @@ void ProgramBuilder::late_directive(const ast::Directive& directive) {
     case Plugin:
       diagnostics_.error(directive.span, "plugins-disabled",
                          "plugins are not available: cannot load '" + directive.text + "'",
-                         "remove the line; a host can give a program what a plugin gave");
+                         "remove the line; a host can provide functions in place of a plugin");
       break;
     case Use:
       if (!directive.version_op.empty()) versions_.push_back(directive);

@@ -16,18 +16,18 @@ struct Habit {
 constexpr Habit kHabits[] = {
     {"this", "the object itself is called 'self'"},
     {"me", "the object itself is called 'self'"},
-    {"true", "there is no word for it: write 1"},
-    {"True", "there is no word for it: write 1"},
-    {"TRUE", "there is no word for it: write 1"},
-    {"false", "there is no word for it: write 0"},
-    {"False", "there is no word for it: write 0"},
-    {"FALSE", "there is no word for it: write 0"},
-    {"NULL", "no object is written 0; to ask whether there is one: if object: ..."},
-    {"null", "no object is written 0; to ask whether there is one: if object: ..."},
-    {"nil", "no object is written 0; to ask whether there is one: if object: ..."},
-    {"None", "no object is written 0; to ask whether there is one: if object: ..."},
-    {"break", "there is none: end a loop by its condition, or leave the method with 'return'"},
-    {"continue", "there is none: put the rest of the loop's body under an 'if'"},
+    {"true", "there is no keyword for it: write 1"},
+    {"True", "there is no keyword for it: write 1"},
+    {"TRUE", "there is no keyword for it: write 1"},
+    {"false", "there is no keyword for it: write 0"},
+    {"False", "there is no keyword for it: write 0"},
+    {"FALSE", "there is no keyword for it: write 0"},
+    {"NULL", "no object is written 0; to test for an object: if object: ..."},
+    {"null", "no object is written 0; to test for an object: if object: ..."},
+    {"nil", "no object is written 0; to test for an object: if object: ..."},
+    {"None", "no object is written 0; to test for an object: if object: ..."},
+    {"break", "there is no such statement: end a loop by its condition, or leave the method with 'return'"},
+    {"continue", "there is no such statement: put the rest of the loop's body into an 'if'"},
     {"not", "logical not is written !"},
     {"pi", "write 3.14159265, or @define a constant"},
     {"PI", "write 3.14159265, or @define a constant"},
@@ -75,12 +75,12 @@ std::string FunctionCompiler::unknown_name_help(std::string_view name) {
   };
   if (name.size() < kLongestApart)
     if (const std::string apart = spaced(name, known); !apart.empty())
-      return "a dash can be part of a name: for a subtraction write blanks around it, " + apart;
+      return "a dash can be part of a name: for a subtraction write spaces around it, " + apart;
   for (const Habit& habit : kHabits)
     if (habit.word == name) return std::string(habit.help);
   const std::string small = reserved_in_small(name);
   if (!small.empty() && builder_.class_named(name) == nullptr)
-    return "the words of the language are written in small letters: " + small;
+    return "the keywords of the language are written in lower case: " + small;
   if (const auto near = nearest(name, candidates); !near.empty()) return "did you mean '" + near + "'?";
   const std::string text(name);
   if (class_.responds(builder_.symbol(name))) return "'" + text + "' is a method: write (self " + text + ")";
@@ -101,7 +101,7 @@ std::string FunctionCompiler::unknown_function_help(const ast::FunctionCall& f, 
     std::size_t begin = span.offset - 1;
     const auto part = [&](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-'; };
     while (begin > 0 && part(source[begin - 1])) --begin;
-    return "a method is called with a blank, not with a dot: (" + source.substr(begin, span.offset - 1 - begin) + " " +
+    return "a method is called with a space, not with a dot: (" + source.substr(begin, span.offset - 1 - begin) + " " +
            f.name + (f.arguments.empty() ? ")" : " keyword value)");
   }
   if (class_.responds(symbol))
@@ -110,7 +110,7 @@ std::string FunctionCompiler::unknown_function_help(const ast::FunctionCall& f, 
   if (names_a_size(f.name) && f.arguments.size() == 1)
     return "the size of a list, a text or a vector is written with bars: |" + argument + "|";
   if (const std::string small = reserved_in_small(f.name); !small.empty() || names_a_print(f.name))
-    return "write, in small letters and without parentheses: " + (small.empty() ? "print" : small) + " " + argument;
+    return "write, in lower case and without parentheses: " + (small.empty() ? "print" : small) + " " + argument;
   if (!near.empty()) return "did you mean '" + near + "'?";
   return "a method is called on an object: (object " + f.name + (f.arguments.empty() ? ")" : " keyword value)");
 }

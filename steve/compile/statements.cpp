@@ -277,7 +277,7 @@ void FunctionCompiler::foreach_statement(const ast::Foreach& s, const Span& span
     return;
   }
   if (variable->local) variable->local->used = true;
-  auto list = list_operand(*s.list, "what foreach goes through");
+  auto list = list_operand(*s.list, "the operand of 'foreach'");
   if (!list.temporary) list = copy(list);
   const auto counter = emit_.temporary(StaticType::Int);
   zero(counter);

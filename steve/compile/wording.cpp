@@ -128,7 +128,7 @@ CallFault call_fault(const CallSite& site, const MethodInfo& method, const Symbo
     if (!given.insert(argument.keyword).second)
       return {CallFault::Kind::RepeatedKeyword,
               "keyword '" + symbols.name(argument.keyword) + "' is given twice to method " + who,
-              "each keyword is written once: leave one of the two out", argument.span};
+              "each keyword is written once: remove one of the two", argument.span};
   }
   std::vector<std::string> missing;
   for (const auto& p : method.parameters)

@@ -78,7 +78,7 @@ void set_setting(Machine& machine, Instance&, Text name, double value) {
   if (std::find(kFlatSettings.begin(), kFlatSettings.end(), one.name) == kFlatSettings.end())
     warn_if_flat(machine, one.name,
                  "the accuracy setting '" + std::string(one.name) +
-                     "' means nothing in a flat world: set-accuracy chooses its sub-steps, and the settings step, "
+                     "' has no effect in a flat world: set-accuracy chooses its sub-steps, and the settings step, "
                      "contact-step, iterations, impacts and locate-impacts can be set alone");
   Accuracy accuracy = dynamics_of(machine).accuracy();
   one.set(accuracy, value);
@@ -101,7 +101,7 @@ void set_integrator(Machine& machine, Instance&, Text name) {
     names += (names.empty() ? "" : ", ") + std::string(kIntegrators[i]);
     if (kIntegrators[i] != view(name)) continue;
     warn_if_flat(machine, "integrator",
-                 "set-integrator means nothing in a flat world: set-accuracy chooses how many sub-steps it takes, and "
+                 "set-integrator has no effect in a flat world: set-accuracy chooses how many sub-steps it takes, and "
                  "set-accuracy-setting named \"step\" the longest one");
     Accuracy accuracy = dynamics_of(machine).accuracy();
     accuracy.scheme = static_cast<articulated::Scheme>(i);
@@ -132,7 +132,7 @@ void set_workers(Machine& machine, Instance&, std::int32_t workers) {
     throw Error(ErrorCode::Argument, "set-workers: " + std::to_string(workers) + " is not between 1 and 256");
   if (workers > 1)
     warn_if_flat(machine, "workers",
-                 "set-workers means nothing in a flat world: it is computed by one thread; run several worlds side by "
+                 "set-workers has no effect in a flat world: it is computed by one thread; run several worlds side by "
                  "side instead");
   dynamics_of(machine).set_workers(workers);
 }
@@ -167,9 +167,10 @@ void set_sleeping(Machine& machine, Instance&) {
 
 /// Where contacts are solved exactly nothing reads the softness.
 void say_if_ignored(Machine& machine) {
-  warn_if_flat(machine, "softness",
-               "set-erp and set-cfm mean nothing in a flat world: contacts are rigid and rest with an overlap of 0.005 "
-               "length units (set-length-unit); a Spring is soft");
+  warn_if_flat(
+      machine, "softness",
+      "set-erp and set-cfm have no effect in a flat world: contacts are rigid and rest with an overlap of 0.005 "
+      "length units (set-length-unit); a Spring is soft");
   if (dynamics_of(machine).dimension() == 2) return;
   if (dynamics_of(machine).accuracy().direct)
     machine.warn_once("control.softness",

@@ -29,7 +29,7 @@ Standing must_stand(Machine& machine, const Instance& self, const char* selector
   const Standing standing = standing_of(machine, self);
   if (!standing.resource)
     Machine::fail(RunErrorKind::NullObject,
-                  std::string(selector) + ": " + name_of(self) + " is on no grid; enter-grid puts it on one");
+                  std::string(selector) + ": " + name_of(self) + " is not on a grid; call enter-grid first");
   return standing;
 }
 

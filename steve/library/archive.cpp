@@ -194,7 +194,7 @@ class Writer {
 pugi::xml_node parse(pugi::xml_document& document, std::string_view xml) {
   const auto result = document.load_buffer(xml.data(), xml.size(), pugi::parse_default | pugi::parse_ws_pcdata);
   const pugi::xml_node archive = document.child("breve-archive");
-  if (!result || !archive) refuse("this is no archive");
+  if (!result || !archive) refuse("this is not an archive");
   if (archive.attribute("version").as_int() != kVersion) refuse("this archive is of another version");
   return archive;
 }

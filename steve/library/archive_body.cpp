@@ -69,7 +69,7 @@ void read_body(Machine& machine, Instance& object, pugi::xml_node element) {
   const std::string_view kind = element.attribute("kind").value();
   std::size_t number = 0;
   while (number < std::size(kKinds) && kKinds[number] != kind) ++number;
-  if (number == std::size(kKinds)) throw Error(ErrorCode::File, "the archive is damaged: no kind of body");
+  if (number == std::size(kKinds)) throw Error(ErrorCode::File, "the archive is damaged: unknown kind of body");
   const std::string bytes = from_hex(element.text().get());
   ByteReader in(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
 

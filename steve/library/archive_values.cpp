@@ -29,7 +29,7 @@ std::vector<double> numbers_of(std::string_view text, std::size_t count) {
     if (at == end) break;
     double number = 0;
     const auto [next, error] = std::from_chars(at, end, number);
-    if (error != std::errc{}) damaged("'" + std::string(text) + "' is no number");
+    if (error != std::errc{}) damaged("'" + std::string(text) + "' is not a number");
     numbers.push_back(number);
     at = next;
   }

@@ -206,7 +206,7 @@ void multibody_self_collisions(Machine& machine, Instance& self) {
 
 void multibody_self_collision_parameters(Machine& machine, Instance& self, double erp, double cfm) {
   warn_if_flat(machine, "self-softness",
-               "set-self-collision-parameters means nothing in a flat world: contacts are rigid; a Spring is soft");
+               "set-self-collision-parameters has no effect in a flat world: contacts are rigid; a Spring is soft");
   dynamics_of(machine).set_self_collision_parameters(root_body(machine, self), erp, cfm);
 }
 

@@ -181,7 +181,8 @@ class Update {
   GridResource& resource() {
     GridResource* resource = resource_of<GridResource>(machine_, &self_);
     if (!resource || !resource->updating)
-      Machine::fail(RunErrorKind::World, std::string(selector_) + ": the grid was freed or made anew meanwhile");
+      Machine::fail(RunErrorKind::World,
+                    std::string(selector_) + ": the grid was freed or initialised again meanwhile");
     return *resource;
   }
 
@@ -198,7 +199,7 @@ class Update {
 /// The rule's answer as a state. @throws RunError{Type}
 std::uint8_t state_from(const Value& answer) {
   if (answer.tag == Tag::Int && answer.i >= 0 && answer.i <= 255) return static_cast<std::uint8_t>(answer.i);
-  Machine::fail(RunErrorKind::Type, "update-states: the rule must yield a state, an int from 0 to 255");
+  Machine::fail(RunErrorKind::Type, "update-states: the rule must return a state, an int from 0 to 255");
 }
 
 void grid_update_states(Machine& machine, Instance& self, StringCell* name) {

@@ -132,7 +132,7 @@ void grid_color_from(Machine& machine, Instance& self, Instance* red, Instance* 
     if (!objects[i]) continue;
     fields[i] = &field_of(machine, objects[i], "the matrix of a chemical");
     if (fields[i]->size() != resource.grid->cells())
-      throw Error(ErrorCode::Argument, "the matrix of a chemical has not as many elements as the grid has cells");
+      throw Error(ErrorCode::Argument, "the matrix of a chemical must have as many elements as the grid has cells");
   }
   constexpr double kOpacity = 0.33;
   for (std::size_t cell = 0; cell < resource.grid->cells(); ++cell) {

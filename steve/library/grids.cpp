@@ -72,7 +72,7 @@ GridResource& grid_of(Machine& machine, Instance* object, std::string_view what)
   GridResource* resource = resource_of<GridResource>(machine, &live);
   if (!resource || !resource->grid)
     Machine::fail(RunErrorKind::NullObject,
-                  std::string(what) + ": " + name_of(live) + " has no cells yet; init-with makes them");
+                  std::string(what) + ": " + name_of(live) + " has no cells yet; init-with creates them");
   return *resource;
 }
 
@@ -103,7 +103,8 @@ PatchPlace attached(Machine& machine, const Instance& patch) {
   const PatchPlace place = place_of(machine, patch);
   if (!place.resource)
     Machine::fail(RunErrorKind::NullObject,
-                  name_of(patch) + " belongs to no grid; a patch has one from init-patch on, until the grid is freed");
+                  name_of(patch) +
+                      " does not belong to a grid; a patch belongs to one from init-patch on, until the grid is freed");
   return place;
 }
 
@@ -153,7 +154,7 @@ bool has_code(Machine& machine, std::string_view patch_class) {
 
 Instance* patch_of(Machine& machine, Instance& grid, CellIndex cell) {
   const auto made_anew = [&] {
-    Machine::fail(RunErrorKind::World, name_of(grid) + " was made anew by an init of its patches");
+    Machine::fail(RunErrorKind::World, name_of(grid) + " was initialised again by an init of its patches");
   };
   GridResource& resource = own_grid(machine, grid);
   if (cell >= resource.grid->cells()) made_anew();

@@ -16,8 +16,8 @@ template <class Change>
 void change_drive(Machine& machine, Instance& self, std::string_view selector, Change change) {
   const JointIndex joint = joint_of(machine, self);
   if (joint == kNoJoint) {
-    machine.warn_once("joint:" + std::string(selector),
-                      std::string(selector) + ": " + name_of(self) + " is not linked; nothing is done (link it first)");
+    machine.warn_once("joint:" + std::string(selector), std::string(selector) + ": " + name_of(self) +
+                                                            " is not linked; the call has no effect (link it first)");
     return;
   }
   JointDrive drive = dynamics_of(machine).drive(joint);
@@ -97,7 +97,7 @@ void change_description(Machine& machine, Instance& self, Change change) {
 
 void set_relative_rotation_matrix(Machine& machine, Instance& self, Matrix3 rotation) {
   if (!rotation.allFinite() || std::abs(rotation.determinant()) < 1e-6)
-    throw Error(ErrorCode::Argument, "set-relative-rotation-matrix: this matrix is no rotation");
+    throw Error(ErrorCode::Argument, "set-relative-rotation-matrix: this matrix is not a rotation");
   const Eigen::JacobiSVD<Matrix3> svd(rotation, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Matrix3 nearest = svd.matrixU() * svd.matrixV().transpose();
   if (nearest.determinant() < 0)
@@ -149,7 +149,8 @@ void rescale_child_link_point(Machine& machine, Instance& self) {
 
 void softness_is_ignored(Machine& machine, Instance&, double value) {
   finite(value, "the softness of a joint");
-  machine.warn_once("joint:softness", "set-erp and set-cfm of a joint are ignored: joints are exact and never open");
+  machine.warn_once("joint:softness",
+                    "set-erp and set-cfm of a joint are ignored: joints are exact and their sides never drift apart");
 }
 
 // --- motors, springs, limits ----------------------------------------------------------------------------------------

@@ -26,7 +26,7 @@ const Kind& row_of(const Instance& joint) {
   for (const Kind& row : kKinds)
     if (is_library_kind(joint, row.cls)) return row;
   throw Error(ErrorCode::Argument, name_of(joint) +
-                                       " cannot be linked: it is no RevoluteJoint, PrismaticJoint, FixedJoint, "
+                                       " cannot be linked: it is not a RevoluteJoint, PrismaticJoint, FixedJoint, "
                                        "UniversalJoint or BallJoint");
 }
 
@@ -76,7 +76,7 @@ void link_joint(Machine& machine, Instance& joint, JointDescription description,
   const Kind& row = row_of(joint);
   if (joint_of(machine, joint) != kNoJoint) {
     if (!row.may_be_linked_again)
-      throw Error(ErrorCode::Argument, "link: " + name_of(joint) + " is linked already (break-joint it first)");
+      throw Error(ErrorCode::Argument, "link: " + name_of(joint) + " is already linked (call break-joint first)");
     break_joint(machine, joint);
   }
   must_live(child, "link: the child");
@@ -149,7 +149,7 @@ void drive_joint(Machine& machine, Instance& joint, JointIndex index, const Join
   if (drive.strength_limit <= most) return;
   machine.warn_once(
       "joint:strength-cut",
-      fmt::format("the strength limit {:g} of {} is cut to {:g}, 500 times the mass of its child, {:g} kg "
+      fmt::format("the strength limit {:g} of {} is clamped to {:g}, 500 times the mass of its child, {:g} kg "
                   "(a body weighs 1 kg per cubic length unit unless its shape has another mass)",
                   drive.strength_limit, name_of(joint), most, most / 500));
 }
@@ -170,8 +170,8 @@ void check_motors(Machine& machine) {
       const Slot* had = library_slot(machine, *joint, "Joint", "hadStrength");
       if (had && had->i == 0)
         machine.warn_once("joint:no-strength", "the motor of " + name_of(*joint) +
-                                                   " is to turn, but has no strength: nothing moves it "
-                                                   "(give it some with set-strength-limit)");
+                                                   " has a target speed, but no strength: it does not move "
+                                                   "(set one with set-strength-limit)");
       continue;
     }
     for (const BodyIndex body : {dynamics.joint(i).child, dynamics.joint(i).parent}) {

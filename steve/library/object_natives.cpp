@@ -45,7 +45,7 @@ void check_scheduled(Machine& machine, const Instance& self, Text method) {
   if (!machine.find_method(*self.cls, view(method), 0))
     machine.report_unknown_method(
         Severity::Warning, self, view(method),
-        "a scheduled call needs one without parameters, and the run ends when its time comes");
+        "a scheduled call needs one without parameters, and the run will end with an error at its time");
 }
 
 void object_schedule(Machine& machine, Instance& self, Text method, double when) {

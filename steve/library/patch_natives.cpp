@@ -41,7 +41,7 @@ PatchPlace hinted(Machine& machine, Instance& self, const char* selector) {
   if (!place.resource)
     machine.warn_once("patch." + std::string(selector) + ":" + self.cls->name,
                       std::string(selector) + ": " + name_of(self) +
-                          " belongs to no grid yet; nothing is set (use init-patch, not init)");
+                          " does not belong to a grid yet; the call has no effect (use init-patch instead of init)");
   return place;
 }
 

@@ -65,8 +65,9 @@ class Running {
       : machine_(machine), self_(self), pin_(machine, Value::of(Tag::Object, &self)) {
     PushInterpreterResource& resource = resource_made<PushInterpreterResource>(machine, self);
     if (resource.running)
-      Machine::fail(RunErrorKind::World,
-                    name_of(self) + " runs already: a method that its program calls cannot run it; use another one");
+      Machine::fail(
+          RunErrorKind::World,
+          name_of(self) + " is already running: a method that its program calls cannot run it; use another one");
     resource.running = true;
   }
   ~Running() {

@@ -19,7 +19,7 @@ Reaction& own(Machine& machine, Instance& self) { return *reaction_of(machine, s
 
 std::size_t field_number(const Reaction& reaction, std::int32_t number) {
   if (number < 0 || static_cast<std::size_t>(number) >= reaction.fields())
-    throw Error(ErrorCode::Argument, "this matrix is none of the reaction's; init-with names them");
+    throw Error(ErrorCode::Argument, "this matrix does not belong to the reaction; init-with names its matrices");
   return static_cast<std::size_t>(number);
 }
 

@@ -217,7 +217,7 @@ ListCell* real_get_neighbors(Machine& machine, Instance& self) {
   body_of(machine, self);
   if (!machine.world().effects()[EffectId::Neighbors].active) [[unlikely]]
     machine.warn_once("get-neighbors",
-                      "get-neighbors finds nobody before 'update-neighbors' of the controller is called");
+                      "get-neighbors finds no neighbors before 'update-neighbors' of the controller is called");
   const std::span<const std::uint64_t> neighbors = machine.world().neighbor_users(self.id);
   machine.charge_for(neighbors.size());
   ListCell* list = machine.heap().list(static_cast<std::uint32_t>(neighbors.size()));
@@ -241,7 +241,7 @@ const ClassInfo* class_named(Machine& machine, Text name, std::string_view selec
 void real_handle_collisions(Machine& machine, Instance& self, Text type, Text method) {
   const ClassInfo* other = class_named(machine, type, "handle-collisions");
   if (!machine.responds(*self.cls, view(method))) {
-    machine.report_unknown_method(Severity::Error, self, view(method), "the handler of collisions is not registered");
+    machine.report_unknown_method(Severity::Error, self, view(method), "the collision handler is not registered");
     return;
   }
   if (other) machine.world().handle_collisions(self.cls->id, other->id, view(method), self.id);

@@ -128,7 +128,7 @@ void terrain_generate(Machine& machine, Instance& self, double ruggedness, doubl
   const int side = 2 * (grid.columns() - 1) + 1;
   if (side > HeightGrid::kMostSide)
     throw Error(ErrorCode::Argument, "generate: the grid has " + std::to_string(grid.columns()) +
-                                         " points a side and cannot be doubled again");
+                                         " points per side and cannot be doubled again");
   charge_for_points(machine, static_cast<std::uint64_t>(side));
   Heights heights(side);
   heights.tile = grid.tile();
@@ -182,10 +182,9 @@ void terrain_set_scale(Machine& machine, Instance& self, double tile) {
 }
 
 void terrain_load_geo_tiff(Machine&, Instance&, Text file) {
-  throw Error(ErrorCode::Unsupported,
-              "load-geo-tiff: '" + std::string(view(file)) +
-                  "' is not read: this version has no reader of GeoTIFF files (set heights with "
-                  "set-height)");
+  throw Error(ErrorCode::Unsupported, "load-geo-tiff: '" + std::string(view(file)) +
+                                          "' is not read: this version cannot read GeoTIFF files (set heights with "
+                                          "set-height)");
 }
 
 constexpr Native kTerrainNatives[] = {

@@ -119,13 +119,13 @@ void Machine::fail_null_receiver(const CallSite& site) const {
   if (site.super_of)
     throw RunError(RunErrorKind::NullObject,
                    fmt::format("cannot call '{}' of 'super': class {} has no parent", name, site.super_of->name),
-                   "leave the call out, or give the class a parent");
+                   "remove the call, or give the class a parent");
   const Receiver who = receiver_of_site(site.span);
   const auto error = [&](const std::string& subject, const std::string& help) {
     return RunError(RunErrorKind::NullObject, fmt::format("cannot call '{}': {}", name, subject), help, who.span);
   };
   if (who.kind == Receiver::Kind::Parameter)
-    throw error(fmt::format("the parameter '{}' is null: the caller gave it no object", who.text),
+    throw error(fmt::format("the parameter '{}' is null: the caller passed no object", who.text),
                 fmt::format("look at the call below; or test it first, as in   if {0}: {0} {1}", who.text, name));
   if (who.kind == Receiver::Kind::Expression)
     throw error((who.text.empty() ? std::string("its receiver") : who.text) + " is null: there is no object to call",
@@ -139,7 +139,7 @@ void Machine::fail_null_receiver(const CallSite& site) const {
   const std::string& places = *found;
   if (places.empty())
     throw error(null, fmt::format("nothing assigns it yet: do so in 'init', as in   {} = new {}.", who.text, cls));
-  throw error(null, fmt::format("it is assigned in {}: has that been called for this object?", places));
+  throw error(null, fmt::format("it is assigned in {}: has that method been called for this object?", places));
 }
 
 // The call that a Broadcast instruction is made for: the next one on the register that it fills.
@@ -161,17 +161,18 @@ void Machine::fail_call_on(const Value& value) const {
   const std::string call =
       site ? fmt::format("cannot call '{}'", program_->symbols().name(site->selector)) : "cannot call a method";
   if (value.tag == Tag::Null)
-    throw RunError(RunErrorKind::NullObject,
-                   fmt::format("{}: {} gave no value (NULL)", call, who.text.empty() ? "its receiver" : who.text),
-                   "a method gives a value with 'return'; a missing key of a hash and 'pop' of an empty list give none",
-                   who.span);
+    throw RunError(
+        RunErrorKind::NullObject,
+        fmt::format("{}: {} returned no value (NULL)", call, who.text.empty() ? "its receiver" : who.text),
+        "a method returns a value with 'return'; a missing key of a hash and 'pop' of an empty list give no value",
+        who.span);
   const std::string is = who.kind == Receiver::Kind::Variable    ? fmt::format("the variable '{}' is ", who.text)
                          : who.kind == Receiver::Kind::Parameter ? fmt::format("the parameter '{}' is ", who.text)
                          : is_name(who.text)                     ? fmt::format("'{}' is ", who.text)
                          : who.text.empty()                      ? "this is "
                                                                  : fmt::format("{} is ", who.text);
   const bool zero = value.tag == Tag::Int && value.i == 0;
-  const std::string what = zero ? "0, which stands for no object" : typed_brief(value);
+  const std::string what = zero ? "0, which means no object" : typed_brief(value);
   throw RunError(RunErrorKind::Type, fmt::format("{}: {}{}", call, is, what),
                  "only objects, and lists of objects, have methods", who.span);
 }
@@ -181,8 +182,8 @@ Instance* Machine::broadcast_member(const Value& element) const {
   const auto kind = element.tag != Tag::Object ? RunErrorKind::Type
                     : element.object()         ? RunErrorKind::FreedObject
                                                : RunErrorKind::NullObject;
-  throw RunError(kind, "a method is called on all of a list, and an element of it is " + typed_brief(element),
-                 "every element must be a live object: take others out of the list first, or call in a foreach loop");
+  throw RunError(kind, "a method is called on every element of a list, and one element is " + typed_brief(element),
+                 "every element must be a live object: remove other elements first, or call in a foreach loop");
 }
 
 // A variable of an object that is null or freed.

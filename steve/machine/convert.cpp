@@ -13,15 +13,16 @@ namespace breve::steve {
 namespace {
 
 std::string help_for(const Value& v, std::string_view to) {
-  if (v.tag == Tag::Null) return "a method gives a value with 'return'; a missing key of a hash gives none";
+  if (v.tag == Tag::Null) return "a method returns a value with 'return'; a missing key of a hash gives no value";
   if (v.tag == Tag::Vector && (to == "an int" || to == "a double"))
-    return "take its length, |v|, or one of its components: v::x, v::y, v::z";
+    return "use its length, |v|, or one of its components: v::x, v::y, v::z";
   if (to == "a vector") return "a vector is written (x, y, z)";
-  if (to == "a list" && v.tag == Tag::Hash) return "a list of the keys of a hash is keys(hash)";
-  if (to == "a list") return "a list is written { a, b, c }; a loop that counts: for n = 0, n < 10, n++: ...";
-  if (to == "an object" && v.tag == Tag::Int) return "of all numbers only 0 stands for no object";
+  if (to == "a list" && v.tag == Tag::Hash) return "for a list of the keys of a hash write keys(hash)";
+  if (to == "a list") return "a list is written { a, b, c }; a counting loop: for n = 0, n < 10, n++: ...";
+  if (to == "an object" && v.tag == Tag::Int) return "the only number allowed here is 0, which means no object";
   if (to == "an object")
-    return "a call gives what its method returns: one that gives its own object ends with 'return self.'";
+    return "the value of a call is what its method returns: to return the object itself, end the method with 'return "
+           "self.'";
   return {};
 }
 

@@ -114,7 +114,7 @@ void Machine::tell(Severity severity, Text&& text) {
   if (told_ <= kMost) return to(text());
   if (told_ == kMost + 1) {
     host_.warn(fmt::format(
-        "{} warnings and errors in one iteration or call by the host: what follows is counted, not shown", kMost));
+        "{} warnings and errors in one iteration or call by the host: further ones are counted, but not shown", kMost));
     ++told_;
   }
   to({});

@@ -27,7 +27,7 @@ constexpr std::uint64_t kOfOpening = 4000;  // turns: what operating systems tak
 
 std::unique_ptr<FileReader> open_for_reading(Machine& machine, std::string_view name) {
   check_name("read", name);
-  if (!machine.host().open_for_reading) refuse("read", name, "the host gives scripts no files to read");
+  if (!machine.host().open_for_reading) refuse("read", name, "the host does not let scripts read files");
   machine.charge(kOfOpening);
   std::string why;
   auto file = machine.host().open_for_reading(name, why);
@@ -38,7 +38,7 @@ std::unique_ptr<FileReader> open_for_reading(Machine& machine, std::string_view 
 
 std::unique_ptr<FileWriter> open_for_writing(Machine& machine, std::string_view name, bool append) {
   check_name("write", name);
-  if (!machine.host().open_for_writing) refuse("write", name, "the host lets scripts write no files");
+  if (!machine.host().open_for_writing) refuse("write", name, "the host does not let scripts write files");
   machine.charge(kOfOpening);
   std::string why;
   auto file = machine.host().open_for_writing(name, append, why);

@@ -34,7 +34,7 @@ void Machine::fail_depth(const MethodInfo& method) const {
   throw RunError(RunErrorKind::Depth,
                  "methods call one another more than " + std::to_string(host_.depth_limit) + " deep: does '" +
                      program_->symbols().name(method.name) + "' call itself without end?",
-                 "a recursion needs a case that ends it: the chain of calls below shows how it goes on");
+                 "a recursion needs a case that ends it: the call chain below shows how it continues");
 }
 
 void Machine::unwind(std::size_t depth) {

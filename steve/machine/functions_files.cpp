@@ -53,7 +53,7 @@ class FilePointer final : public NativePointer {
 FilePointer& file_of(PointerCell* pointer) {
   if (pointer == nullptr)
     throw RunError(RunErrorKind::Type, "this file was not opened: the pointer is null",
-                   "opening gives null if the file does not exist or may not be read: test the pointer with 'if'");
+                   "opening returns null if the file does not exist or may not be read: test the pointer with 'if'");
   auto* file = dynamic_cast<FilePointer*>(pointer->native.get());
   if (file == nullptr) Machine::fail(RunErrorKind::Type, "this pointer is not an open file");
   return *file;
@@ -152,7 +152,7 @@ void write_string(Machine& machine, Instance&, PointerCell* pointer, StringCell*
   try {
     file.write(view(text));
   } catch (const Error& error) {
-    machine.warn(std::string("writeString: the text could not be written, or not whole: ") + error.what());
+    machine.warn(std::string("writeString: the text could not be written completely: ") + error.what());
   }
 }
 

@@ -110,7 +110,7 @@ void add_collision_handler(Machine& machine, Instance&, Instance* object, String
     machine.world().handle_collisions(owner.cls->id, other.id, view(method), owner.id);
     return;
   }
-  machine.report_unknown_method(Severity::Warning, owner, view(method), "the handler of collisions is not registered");
+  machine.report_unknown_method(Severity::Warning, owner, view(method), "the collision handler is not registered");
 }
 
 // --- lifetimes -------------------------------------------------------------------------------------------------------

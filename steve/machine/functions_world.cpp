@@ -21,7 +21,7 @@ namespace {
 double get_time(Machine& machine, Instance&) { return machine.world().time(); }
 
 void need_clock(Machine& machine, const char* function) {
-  if (!machine.host().may_read_clock) refuse_right(function, "read the clock on the wall", "BREVE_RIGHT_REAL_TIME");
+  if (!machine.host().may_read_clock) refuse_right(function, "read the real-time clock", "BREVE_RIGHT_REAL_TIME");
 }
 
 double get_real_time(Machine& machine, Instance&) {
@@ -45,7 +45,7 @@ void add_event(Machine& machine, Instance& self, StringCell* method, double time
   if (!machine.find_method(*self.cls, view(method), 0))
     machine.report_unknown_method(
         Severity::Warning, self, view(method),
-        "a scheduled call needs one without parameters, and the run ends when its time comes");
+        "a scheduled call needs one without parameters, and the run will end with an error at its time");
   if (interval > 0 && time <= world.time()) time = world.time() + interval;
   if (world.schedule(id, view(method), time, interval)) return;
   machine.warn(fmt::format("'{}' is not scheduled: the time {:f} is not in the future, the clock reads {:f}",

@@ -92,7 +92,7 @@ void Machine::look_at_the_clock() {
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - run_began_;
   if (taken.count() < host_.patience) return;
   host_.patience = 0;
-  warn(fmt::format("this has been running for {:.0f} s without an end: a loop here may never end", taken.count()));
+  warn(fmt::format("this has been running for {:.0f} s: a loop here may not terminate", taken.count()));
 }
 
 void Machine::charge(std::uint64_t turns) {
@@ -113,10 +113,10 @@ void Machine::fail_interrupted() {
 void Machine::fail_budget() const {
   throw RunError(
       RunErrorKind::Budget,
-      "the call used up its budget of loop turns and calls: " +
+      "the call used up its budget of loop iterations and calls: " +
           (budget_.run_is_used_up() ? std::to_string(host_.budget) + " for an iteration or a call by the host"
                                     : std::to_string(host_.call_budget) + " for one call within an iteration"),
-      "a loop here may have no end; or the budget that the host gives is too small for this program");
+      "a loop here may not terminate, or the budget set by the host is too small for this program");
 }
 
 template <class Body>

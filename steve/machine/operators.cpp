@@ -43,11 +43,11 @@ Value boolean(BinaryOp op, bool same) { return boolean(same == (op == BinaryOp::
   const bool lone_vector =
       (a.tag == Tag::Vector) != (b.tag == Tag::Vector) && (op == BinaryOp::Add || op == BinaryOp::Sub);
   if (hint.empty() && object)
-    hint = "of an object use a variable, object::name, or what a method gives, (object method)";
+    hint = "use a variable of the object, object::name, or the result of a method, (object method)";
   if (hint.empty() && lone_vector && !number_missing)
-    hint = "a vector goes with a vector, (x, y, z); its length is |v|";
+    hint = "the other operand must be a vector too, (x, y, z); the length of a vector is |v|";
   const std::string help = number_missing && hint.empty()
-                               ? "a method gives a value with 'return'; a missing key of a hash gives none"
+                               ? "a method returns a value with 'return'; a missing key of a hash gives no value"
                                : std::string(hint);
   throw RunError(number_missing ? RunErrorKind::Conversion : RunErrorKind::Type, message, help);
 }
@@ -262,7 +262,7 @@ Value binary(Heap& heap, BinaryOp op, const Value& a, const Value& b) {
 }
 
 void fail_division_by_zero() {
-  throw RunError(RunErrorKind::Math, "division by zero", "test what you divide by with 'if' before");
+  throw RunError(RunErrorKind::Math, "division by zero", "test the divisor with 'if' first");
 }
 
 std::int32_t divide(std::int32_t a, std::int32_t b) {

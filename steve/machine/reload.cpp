@@ -71,11 +71,13 @@ void Reload::check_object_class(const ClassInfo& from, std::size_t objects) cons
                                        ", and the new program has no such class: keep the class, or free them first");
   const auto* had = library_base(machine_.program(), from);
   const auto* has = library_base(*program_, *to);
-  const auto name = [](const ClassInfo* cls) { return cls ? cls->name : std::string("no class of the library"); };
+  const auto name = [](const ClassInfo* cls) {
+    return cls ? cls->name : std::string("a class outside of the library");
+  };
   if (name(had) != name(has))
     throw Error(ErrorCode::Reload, objects_of(from, objects) + ", made as " + name(had) +
                                        ", and in the new program the class comes from " + name(has) +
-                                       ": what they are besides their variables cannot change; free them first, or "
+                                       ": objects cannot change from one to the other; free them first, or "
                                        "start the simulation again");
 }
 

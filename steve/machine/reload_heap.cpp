@@ -199,8 +199,8 @@ void Reload::convert(const Move& move, const Instance& from, Instance& to) {
   const auto what = "variable '" + program_->symbols().name(move.to->name) + "'";
   if ((move.from->array_size < 0) != (move.to->array_size < 0)) {
     warn(*to.cls, *move.to,
-         move.to->array_size < 0 ? "was an array and is none now: it starts afresh"
-                                 : "is an array now and was none: it starts afresh");
+         move.to->array_size < 0 ? "was an array and is not one now: it starts at zero"
+                                 : "is an array now and was not one before: it starts at zero");
     return;
   }
   const auto count = std::min(element_count(*move.from), element_count(*move.to));
@@ -220,7 +220,7 @@ void Reload::convert(const Move& move, const Instance& from, Instance& to) {
       write(to.slots + move.to->slot + i * static_cast<std::uint32_t>(slot_count(move.to->type)), move.to->type, value,
             what);
     } catch (const RunError& error) {
-      warn(*to.cls, *move.to, std::string("has another type now and starts afresh: ") + error.what());
+      warn(*to.cls, *move.to, std::string("has another type now and starts at zero: ") + error.what());
     }
   }
 }

@@ -15,7 +15,7 @@ Value Machine::null_default(StaticType type, std::uint32_t what, const Instructi
   const auto& name = program_->code().texts.empty() ? std::string("value") : program_->code().texts[what];
   if (host_.strict)
     throw RunError(RunErrorKind::Conversion, "no value (NULL) for " + name,
-                   "a method gives a value with 'return'; a missing key of a hash gives none");
+                   "a method returns a value with 'return'; a missing key of a hash gives no value");
   if (warned_sites_.insert(pc).second)
     warn("no value (NULL) is assigned to " + name +
          "; it becomes its type's zero value (a missing key of a hash and a method without 'return' give none)");
@@ -243,7 +243,7 @@ void Machine::free_value(const Value& value) {
   }
   if (value.tag != Tag::Object) return;
   if (!value.object()) {
-    warn("free is given a null object");
+    warn("free of a null object");
     return;
   }
   free_instance(*value.object());

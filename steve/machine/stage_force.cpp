@@ -50,8 +50,8 @@ StringCell* force_method_of(const Instance& object, const SymbolTable& symbols) 
 
 void Machine::fail_in_stage(std::string_view what) {
   fail(RunErrorKind::World,
-       fmt::format("a force method cannot {}: it is asked again and again within one step, and only "
-                   "yields a force",
+       fmt::format("a force method cannot {}: it is called repeatedly within one step and may only "
+                   "return a force",
                    what));
 }
 
@@ -70,9 +70,9 @@ Vector3 Machine::stage_force(ObjectId agent, double, std::uint64_t draw) {
   }
   if (force.tag != Tag::Vector)
     fail(RunErrorKind::Type,
-         fmt::format("the force method '{}' of {} must yield a vector", view(name), object->cls->name));
+         fmt::format("the force method '{}' of {} must return a vector", view(name), object->cls->name));
   if (!force.vector().allFinite())
-    throw Error(ErrorCode::Argument, fmt::format("the force method '{}' of {} yields a force that is not finite",
+    throw Error(ErrorCode::Argument, fmt::format("the force method '{}' of {} returns a force that is not finite",
                                                  view(name), object->cls->name));
   return force.vector();
 }

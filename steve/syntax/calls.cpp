@@ -83,7 +83,7 @@ ast::ExprPtr Parser::call(std::size_t start, ast::ExprPtr receiver) {
 void Parser::fail_keyword(const ast::Call& call, std::size_t start, std::size_t keyword) {
   const Token& name = *items_[keyword].token;
   if (at(":"))
-    fail(token().span, "call-arguments", fmt::format("no ':' follows the keyword '{}'", name.text),
+    fail(token().span, "call-arguments", fmt::format("the keyword '{}' is not followed by ':'", name.text),
          fmt::format("write its value directly: {} {} value", call.selector, name.text));
   if (call.keywords.empty() && lacks_self()) throw SyntaxError{without_self()};
   const auto* last = call.keywords.empty() ? nullptr : call.keywords.back().value.get();
@@ -97,7 +97,7 @@ void Parser::fail_keyword(const ast::Call& call, std::size_t start, std::size_t 
   }
   if (call.keywords.empty() && at(")") && items_[start].token != &before)
     fail(name.span, "call-arguments", fmt::format("keyword '{}' of '{}' has no value", name.text, call.selector),
-         fmt::format("write the value behind it; or, to call '{0}' on the result, parentheses: (({1} {2}) {0})",
+         fmt::format("write the value after it; or, to call '{0}' on the result, use parentheses: (({1} {2}) {0})",
                      name.text, items_[start].token->text, call.selector));
   fail(name.span, "call-arguments", fmt::format("keyword '{}' of '{}' has no value", name.text, call.selector),
        fmt::format("write the value behind it: {} {} value", call.selector, name.text));

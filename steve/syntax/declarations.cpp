@@ -62,7 +62,7 @@ ast::Method Parser::interactive() {
   ast::Method result;
   try {
     for (read_statements(result.body); at("}"); read_statements(result.body)) {
-      error(token().span, "stray-brace", "this '}' closes nothing", "remove it, or look for a missing '{'");
+      error(token().span, "stray-brace", "unmatched '}'", "remove it, or look for a missing '{'");
       advance();
     }
     if (!at_end()) error(token().span, "syntax", fmt::format("expected a statement, got {}", describe()));
@@ -78,14 +78,14 @@ void Parser::top_level(ast::File& file) {
   if (at_word(Word::Controller)) return controller(file);
   if (at_kind(TokenKind::Name) && at(":", 1)) return class_declaration(file);
   if (at_member_header() || at_variables_header()) {
-    error(token().span, "syntax", "a method stands outside of a class", "look for a '}' too many above");
+    error(token().span, "syntax", "a method is outside of a class", "look for a surplus '}' above");
     ast::Class stray;
     members(file.classes.empty() ? stray : file.classes.back());
     accept("}");
     return;
   }
   if (at("}")) {
-    error(token().span, "stray-brace", "this '}' closes nothing", "remove it, or look for a missing '{' above");
+    error(token().span, "stray-brace", "unmatched '}'", "remove it, or look for a missing '{' above");
     advance();
     if (!at_member_header()) return;
     ast::Class stray;
@@ -243,11 +243,11 @@ void Parser::class_clauses(ast::Class& result) {
   for (;;) {
     const Span place = token().span;
     if (accept("(")) {
-      if (!at_word(Word::Aka)) fail_expected("'aka' and another name of the class");
+      if (!at_word(Word::Aka)) fail_expected("'aka' and an alias of the class");
       advance();
       result.alias = expect_name("a class", result.alias_span);
-      expect(")", "after the class's other name");
-      if (version) error(place, "syntax", "the other name of a class stands before its version");
+      expect(")", "after the class's alias");
+      if (version) error(place, "syntax", "the alias of a class comes before its version");
     } else if (accept("[")) {
       if (!at_word(Word::Version)) fail_expected("'version'");
       advance();
@@ -284,11 +284,11 @@ void Parser::members(ast::Class& result) {
     if (at_end() || (token().starts_line && at_class_header())) break;
     if (at("}") && pos_ == class_close_ && !more_braces_close()) {
       error(token().span, "stray-brace", fmt::format("this '}}' ends class '{}', and a method follows", result.name),
-            "remove it, and write '}' behind the last method");
+            "remove it, and write '}' after the last method");
       open_brace_reported_ = true;
       advance();
     } else if (at("}")) {
-      error(token().span, "stray-brace", "this '}' closes nothing", "remove it, or look for a missing '{' above");
+      error(token().span, "stray-brace", "unmatched '}'", "remove it, or look for a missing '{' above");
       advance();
     } else if (at_text("variables") && at(":", 1)) {
       error(token().span, "method-header", "the '+' is missing in front of 'variables'", "write: + variables:");
@@ -298,7 +298,7 @@ void Parser::members(ast::Class& result) {
       pending_docs = pos_ - 1;
     } else if (at_variables_header()) {
       if (any_method) {
-        error(token().span, "syntax", "the variables of a class stand before its methods",
+        error(token().span, "syntax", "the variables of a class come before its methods",
               "move this section to the beginning of the class");
       }
       variables(result);
@@ -368,7 +368,7 @@ bool Parser::foreign_class(ast::File& file) {
   const std::string own(token(name).text);
   const std::string base(parent != 0 ? token(parent).text : "Object");
   error(token().span, "class-header",
-        word ? fmt::format("'{}' begins no class: the parent stands first", token().text)
+        word ? fmt::format("'{}' does not begin a class: the parent comes first", token().text)
              : fmt::format("the class '{}' names no parent", own),
         fmt::format("write: {} : {} {{", base, own));
   ast::Class& result = file.classes.emplace_back();
@@ -386,10 +386,10 @@ bool Parser::foreign_class(ast::File& file) {
 // Something between the methods that is neither: skip it.
 void Parser::stray_member() {
   if (at("@")) {
-    error(token().span, "syntax", "directives stand outside of classes");
+    error(token().span, "syntax", "directives must be outside of classes");
   } else {
     error(token().span, "syntax", fmt::format("expected a method or '}}', got {}", describe()),
-          "statements stand inside methods, and a method begins with: + to name:");
+          "statements must be inside methods, and a method begins with: + to name:");
   }
   advance();
   while (!at_end() && !at("}") && !at_member_header() && !at_variables_header() && !at_class_header() &&

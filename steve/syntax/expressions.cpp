@@ -111,12 +111,12 @@ void Parser::check_target(const ast::Expr& target) {
   }
   if (at("++") || at("--")) {
     fail(token().span, "bad-target",
-         fmt::format("'{}' must stand directly behind a variable, an element or a member", token().text));
+         fmt::format("'{}' must come directly after a variable, an element or a member", token().text));
   }
   std::string help = "to compare, write '=='";
   if (std::holds_alternative<ast::Chain>(target.node))
     help += "; to assign inside an expression, put the assignment in parentheses";
-  fail(token().span, "bad-target", fmt::format("what stands before '{}' cannot be assigned to", token().text), help);
+  fail(token().span, "bad-target", fmt::format("the expression before '{}' cannot be assigned to", token().text), help);
 }
 
 // One level of binary operators, as one node however long it is.
@@ -134,13 +134,13 @@ ast::ExprPtr Parser::chain(int level) {
     advance();
     if (const auto meant = foreign_operator(*op)) op = meant;
     if (*op == BinaryOp::Or && at_closing()) {
-      fail(sign_token.span, "syntax", "'||' means logical or and closes no bars",
-           "write a blank between nested bars: | |a| - |b| |");
+      fail(sign_token.span, "syntax", "'||' means logical or and does not close bars",
+           "write a space between nested bars: | |a| - |b| |");
     }
     const bool number = at_kind(TokenKind::Int) || at_kind(TokenKind::Double);
     if (*op == BinaryOp::Sub && sign_token.space_before && !sign_token.space_after && number) {
       lint(sign_token.span, "lint-minus-spacing", fmt::format("'-{}' is read as a subtraction here", token().text),
-           "write a blank on both sides of the minus, or a comma before it if two values are meant");
+           "write a space on both sides of the minus, or a comma before it if two values are meant");
     }
     ast::ExprPtr operand = chain(level + 1);
     result.rest.emplace_back(*op, std::move(operand));
@@ -182,7 +182,7 @@ ast::ExprPtr Parser::prefix() {
          previous_is("=") && adjacent(0) ? "to add to a variable write +=" : "leave it out");
   if (at("--") || at("++")) {
     const std::string variable(at_name(1) ? token(1).text : "n");
-    fail(token().span, "syntax", fmt::format("'{}' stands behind a variable, never before it", token().text),
+    fail(token().span, "syntax", fmt::format("'{}' comes after a variable, never before it", token().text),
          fmt::format("write: {}{}", variable, token().text) + (at("--") ? "; for two signs write '- -'" : ""));
   }
   switch (item().word) {

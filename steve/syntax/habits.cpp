@@ -59,7 +59,7 @@ void Parser::report_broken_header() {
   } else if (at_text("to")) {
     error(token().span, "method-header", "the '+' is missing in front of this method header", help);
   } else {
-    error(token().span, "method-header", fmt::format("'{}' begins no method", token().text), help);
+    error(token().span, "method-header", fmt::format("'{}' does not begin a method", token().text), help);
   }
 }
 
@@ -72,7 +72,7 @@ void Parser::header_parentheses(std::string_view name, bool reported) {
                                              "a parameter is a keyword, a variable and a type: + to {} keyword "
                                              "variable (type):",
                                              name);
-  if (!reported) error(token().span, "method-header", "no parentheses follow the name of a method", help);
+  if (!reported) error(token().span, "method-header", "the name of a method is not followed by parentheses", help);
   if (behind == 0) return;
   pos_ += behind;
   if (!at("{")) return;
@@ -90,10 +90,10 @@ bool Parser::foreign_declaration() {
   Span place = token().span;
   place.length = token(1).span.offset + token(1).span.length - place.offset;
   const std::string name(token(1).text);
-  error(
-      place, "foreign-declaration",
-      typed ? "a variable is declared with its type behind it" : fmt::format("'{}' declares no variable", token().text),
-      fmt::format("write at the beginning of the method: {} ({}).", name, type));
+  error(place, "foreign-declaration",
+        typed ? "a variable is declared with its type after it"
+              : fmt::format("'{}' does not declare a variable", token().text),
+        fmt::format("write at the beginning of the method: {} ({}).", name, type));
   advance();
   const std::size_t start = pos_;
   do {
@@ -112,8 +112,8 @@ bool Parser::foreign_declaration() {
 // At the beginning of a statement: something that is none, and is skipped once it is reported.
 bool Parser::foreign_statement() {
   if (at("%")) {
-    error(token().span, "comment", "a comment behind a statement begins with '#'",
-          "'%' begins one only where it is the first sign of its line");
+    error(token().span, "comment", "a comment after a statement begins with '#'",
+          "'%' begins a comment only as the first character of its line");
     const std::uint32_t line = token().span.line;
     while (!at_end() && token().span.line == line) advance();
     return true;
@@ -154,9 +154,9 @@ Diagnostic Parser::after_statement(std::size_t start) {
   const bool behind_call = call_end_ == pos_ && pos_ > 0;
   const std::string_view method = behind_call ? std::string_view(call_name_) : std::string_view();
   if (at(",") && items_[start].word == Word::Return)
-    return made("syntax", "'return' gives one value", "put several in a list: return { 1, 2 }.");
+    return made("syntax", "'return' returns one value", "put several in a list: return { 1, 2 }.");
   if (at(",") && behind_call)
-    return made("syntax", "no ',' stands between keyword arguments",
+    return made("syntax", "keyword arguments are not separated by ','",
                 fmt::format("write: {} keyword value keyword value", method));
   if (at("(") && behind_call)
     return made("call-arguments", fmt::format("the arguments of '{}' need keywords, not parentheses", method),
@@ -166,21 +166,21 @@ Diagnostic Parser::after_statement(std::size_t start) {
     return made("call-arguments", fmt::format("this argument of '{}' has no keyword in front", method),
                 fmt::format("write: {} keyword {}", method, at_kind(TokenKind::String) ? "\"...\"" : token().text));
   if (at("(") && pos_ >= 2 && items_[pos_ - 2].word == Word::New)
-    return made("syntax", fmt::format("no parentheses follow 'new {}'", previous().text),
-                "what the object needs is given by a call of one of its methods");
-  if (at("=")) return made("syntax", "unexpected '='", "a '.' may be missing before this, or '==' be meant");
+    return made("syntax", fmt::format("'new {}' is not followed by parentheses", previous().text),
+                "pass arguments by calling a method of the new object");
+  if (at("=")) return made("syntax", "unexpected '='", "a '.' may be missing before this, or '==' may be meant");
   if (at(":"))
     return made("syntax", "unexpected ':' in a statement", "only if, while, for, foreach and else take a ':'");
   if (at("["))
     return made("syntax", "unexpected '['", "only a variable of an array type takes [index]; lists take {index}");
   if (at("{") && adjacent(0) && previous().kind == TokenKind::Name)
     return made("missing-brace", "the index that begins here has no '}'", "write: list{index}");
-  if (at(")")) return made("syntax", "this ')' closes nothing", "remove it, or look for a missing '(' before it");
+  if (at(")")) return made("syntax", "unmatched ')'", "remove it, or look for a missing '(' before it");
   if (at("&&") || at("||") || at("?")) return made("syntax", fmt::format("unexpected {}", describe()), "");
   const bool swallowed = at_kind(TokenKind::Double) && token().text.front() == '.';
   return made("syntax", fmt::format("expected '.' or an operator, got {}", describe()),
-              swallowed ? "write a blank behind the '.' that ends a statement"
-                        : "a statement ends with a period; between two values stands an operator");
+              swallowed ? "write a space after the '.' that ends a statement"
+                        : "a statement ends with a period; two values need an operator between them");
 }
 
 // `<>`, `===`, `**`, `->`: what was meant, reported, its extra sign skipped.
@@ -194,7 +194,7 @@ std::optional<ast::BinaryOp> Parser::foreign_operator(ast::BinaryOp op) {
   };
   if (!adjacent(0)) return std::nullopt;
   if (op == ast::BinaryOp::Lt && at(">")) {
-    wrong("<>", "'<>' is no operator", "not equal is written !=");
+    wrong("<>", "'<>' is not an operator", "not equal is written !=");
     return ast::BinaryOp::Ne;
   }
   if ((op == ast::BinaryOp::Eq || op == ast::BinaryOp::Ne) && at("=")) {
@@ -202,11 +202,11 @@ std::optional<ast::BinaryOp> Parser::foreign_operator(ast::BinaryOp op) {
     return op;
   }
   if (op == ast::BinaryOp::Mul && at("*")) {
-    wrong("**", "'**' is no operator", "a power is written ^; mind that it has the precedence of *");
+    wrong("**", "'**' is not an operator", "a power is written ^; note that it has the precedence of *");
     return ast::BinaryOp::Pow;
   }
   if (op == ast::BinaryOp::Sub && at(">"))
-    fail(previous().span, "foreign-operator", "'->' is no operator",
+    fail(previous().span, "foreign-operator", "'->' is not an operator",
          "a method is called as (object method), a variable of an object read as object::variable");
   return std::nullopt;
 }

@@ -41,7 +41,7 @@ std::string help_for_byte(std::string_view rest) {
   if (rest.starts_with("\xE2\x80\x9C") || rest.starts_with("\xE2\x80\x9D")) return "write straight quotes: \"";
   if (rest.starts_with("\xE2\x80\x98") || rest.starts_with("\xE2\x80\x99")) return "write straight quotes: '";
   if (static_cast<unsigned char>(rest.front()) >= 0x80) {
-    return "only ASCII letters, digits, '_' and '-' can stand outside strings and comments";
+    return "only ASCII letters, digits, '_' and '-' are allowed outside strings and comments";
   }
   return {};
 }
@@ -77,7 +77,7 @@ std::vector<Token> Scanner::run() {
     if (skip_space_or_comment()) continue;
     if (blank_line_so_far_ && !in_string_ && doc_or_section()) continue;
     if (tokens_.size() >= kMaxTokens) {
-      error(span(pos_, 1), "file-too-large", fmt::format("the file has more than {} words and signs", kMaxTokens),
+      error(span(pos_, 1), "file-too-large", fmt::format("the file has more than {} tokens", kMaxTokens),
             "split it into several files, or read the data from a file at run time");
       pos_ = end_;
       break;
@@ -166,7 +166,7 @@ void Scanner::number() {
   } else {
     error(token.span, "integer-too-large",
           fmt::format("{} does not fit in an int of 32 bits (at most {})", digits.substr(0, 40), kMost),
-          "write a float, for example with '.0' behind it");
+          "write a float, for example with '.0' after it");
   }
 }
 

@@ -94,7 +94,7 @@ Diagnostic Parser::without_self() {
   const bool method = names_of_file().methods.contains(name.text);
   return {Severity::Error, "call-without-object",
           method ? fmt::format("'{}' is a method: a call begins with the object that is called", name.text)
-                 : fmt::format("a call begins with an object, and '{}' is no variable here", name.text),
+                 : fmt::format("a call begins with an object, and '{}' is not a variable here", name.text),
           fmt::format("to call a method of the object itself write: self {}", call), name.span};
 }
 
@@ -106,7 +106,7 @@ std::optional<Diagnostic> Parser::meant_by_first_word(std::size_t start) {
     return Diagnostic{Severity::Error, "foreign-statement", std::move(message), std::move(help), first.span};
   };
   if (const std::string small = reserved_in_small(first.text); !small.empty())
-    return made(fmt::format("the word '{}' is written in small letters", small), fmt::format("write: {} ...", small));
+    return made(fmt::format("the keyword '{}' is written in lower case", small), fmt::format("write: {} ...", small));
   if (names_a_print(first.text) && pos_ == start + 1)
     return made(fmt::format("there is no '{}'", first.text),
                 fmt::format("write: print {}", source_of(pos_, std::max(statement_end(), pos_ + 1))));
@@ -150,7 +150,7 @@ std::optional<Diagnostic> Parser::meant_by_assignment() {
                       fmt::format("write: {} {}", name.text, rest), place};
   if (lacks_self() && receiver.token->text.front() >= 'A' && receiver.token->text.front() <= 'Z')
     return Diagnostic{
-        Severity::Error, "foreign-declaration", "a variable is declared with its type behind it",
+        Severity::Error, "foreign-declaration", "a variable is declared with its type after it",
         fmt::format("write at the beginning of the method: {} ({} object).", name.text, receiver.token->text), place};
   const std::string object = source_of(call_start_, call_method_);
   return Diagnostic{Severity::Error, "foreign-member", "a variable of another object is written with '::'",
@@ -200,7 +200,7 @@ std::optional<Diagnostic> Parser::meant_by_list_word(std::size_t start) {
     case Word::Sort: help = fmt::format("write: sort {} with method-name", list); break;
     default: return std::nullopt;
   }
-  return Diagnostic{Severity::Error, "list-word", fmt::format("'{}' stands in front of the list", token().text), help,
+  return Diagnostic{Severity::Error, "list-word", fmt::format("'{}' comes before the list", token().text), help,
                     token().span};
 }
 

@@ -91,7 +91,7 @@ void Parser::method_header(ast::Method& result) {
       parameter(result);
     }
     if (at("{") && item().block_like) {
-      error(token().span, "method-header", "no '{' follows the header of a method",
+      error(token().span, "method-header", "the header of a method is not followed by '{'",
             "write ':'; a method ends where the next one begins");
       method_brace_ = true;
       advance();
@@ -116,7 +116,7 @@ void Parser::parameter(ast::Method& result) {
   const Span place = token().span;
   parameter.keyword = expect_name("a keyword", parameter.keyword_span);
   if (at("(") || at("=")) {
-    error(place, "syntax", fmt::format("the parameter '{}' needs a variable behind its keyword", parameter.keyword),
+    error(place, "syntax", fmt::format("the parameter '{}' needs a variable after its keyword", parameter.keyword),
           fmt::format("callers write the keyword, the body uses the variable; they may be the same: {0} {0} (type)",
                       parameter.keyword));
     parameter.variable = parameter.keyword;
@@ -126,7 +126,7 @@ void Parser::parameter(ast::Method& result) {
   }
   if (accept("=")) parameter.default_value = constant();
   if (at(":") && at_type(1)) {
-    error(token().span, "method-header", "the ':' of a method header stands behind the types of its parameters",
+    error(token().span, "method-header", "the ':' of a method header comes after the types of its parameters",
           fmt::format("write: {} {} (type):", parameter.keyword, parameter.variable));
     advance();
     header_colon_ = true;
@@ -157,7 +157,7 @@ void Parser::body(ast::Method& result) {
   read_statements(result.body);
   if (method_brace_) accept("}");
   while (stray_brace() && (pos_ != class_close_ || more_braces_close())) {
-    error(token().span, "stray-brace", "this '}' closes nothing", "remove it, or look for a missing '{' above");
+    error(token().span, "stray-brace", "unmatched '}'", "remove it, or look for a missing '{' above");
     advance();
     read_statements(result.body);
   }
@@ -166,7 +166,7 @@ void Parser::body(ast::Method& result) {
 
 // @native "name" (type).  @native "name" (?).  @native "name".
 void Parser::native_body(ast::Method& result) {
-  if (!embedded_) error(token().span, "syntax", "'@native' is possible in the class library only");
+  if (!embedded_) error(token().span, "syntax", "'@native' is possible only in the class library");
   advance();
   advance();
   if (!at_kind(TokenKind::String)) fail_expected("the quoted name of a native function");

@@ -20,7 +20,7 @@ bool Scanner::foreign_comment() {
   if (in_string_ || !(starts_with("//") || starts_with("/*"))) return false;
   const bool line = starts_with("//");
   if (!foreign_comment_reported_)
-    error(span(pos_, 2), "foreign-comment", fmt::format("'{}' begins no comment", line ? "//" : "/*"),
+    error(span(pos_, 2), "foreign-comment", fmt::format("'{}' does not begin a comment", line ? "//" : "/*"),
           line ? "a comment begins with #" : "a comment of several lines is written #! ... !#");
   foreign_comment_reported_ = true;
   const std::size_t close = line ? line_end(pos_) : text_.find("*/", pos_ + 2);
@@ -51,7 +51,7 @@ bool Scanner::pasted() {
         if (text_.substr(close).starts_with(quote)) width = quote.size();
     if (width == 0) return false;
     --close;
-    error(span(begin, kOpenQuotes[i].size()), "curly-quotes", "typographic quotes begin no string",
+    error(span(begin, kOpenQuotes[i].size()), "curly-quotes", "typographic quotes do not begin a string",
           "write straight quotes: \"...\"");
     skip_to(close + width);
     push(TokenKind::String, begin, text_.substr(inner, close - inner));
@@ -59,21 +59,21 @@ bool Scanner::pasted() {
   }
   for (const std::string_view dash : kDashes) {
     if (!starts_with(dash)) continue;
-    error(span(begin, dash.size()), "unexpected-byte", "this dash is no minus sign", "write the ordinary one: -");
+    error(span(begin, dash.size()), "unexpected-byte", "this dash is not a minus sign", "write the ordinary one: -");
     skip_to(begin + dash.size());
     push(TokenKind::Punctuation, begin, "-");
     return true;
   }
   for (const std::string_view blank : kBlanks) {
     if (!starts_with(blank)) continue;
-    error(span(begin, blank.size()), "unexpected-byte", "this blank is no ordinary one",
+    error(span(begin, blank.size()), "unexpected-byte", "this is not an ordinary space",
           "it was pasted from elsewhere, perhaps a web page: type it again");
     skip_to(begin + blank.size());
     space_before_ = true;
     return true;
   }
   if (!starts_with("&")) return false;
-  error(span(begin, 1), "unexpected-byte", "a single '&' is no operator", "logical and is written &&");
+  error(span(begin, 1), "unexpected-byte", "a single '&' is not an operator", "logical and is written &&");
   ++pos_;
   push(TokenKind::Punctuation, begin, "&&");
   return true;

@@ -53,7 +53,7 @@ ast::ExprPtr Parser::member(std::size_t start, ast::ExprPtr base) {
   const bool blank = token().space_after;
   advance();
   if (!at_kind(TokenKind::Name)) fail_expected("the name of a member after '::'");
-  if (blank) error(previous().span, "syntax", "no blank is allowed after '::'", "write the name directly behind it");
+  if (blank) error(previous().span, "syntax", "no space is allowed after '::'", "write the name directly after it");
   const std::string_view name = token().text;
   char letter = 0;
   std::string key(name);
@@ -88,7 +88,7 @@ ast::ExprPtr Parser::primary() {
       const std::int32_t value = token().int_value;
       if (value < 0 && sign_at_ != pos_) {
         error(token().span, "integer-too-large", "2147483648 does not fit in an int of 32 bits (at most 2147483647)",
-              "write a float, for example with '.0' behind it");
+              "write a float, for example with '.0' after it");
       }
       advance();
       if (at_fraction_point()) {
@@ -119,15 +119,15 @@ ast::ExprPtr Parser::primary() {
       return parenthesised(pos_);
     case sign("||"):
       fail(token().span, "syntax", "'||' means logical or, here an expression is expected",
-           "write a blank between nested bars: | |a| - b |");
+           "write a space between nested bars: | |a| - b |");
     case sign("@"):
-      fail(token().span, "syntax", fmt::format("'@{}' is a directive, and stands outside of classes", token(1).text));
+      fail(token().span, "syntax", fmt::format("'@{}' is a directive, and must be outside of classes", token(1).text));
     default: break;
   }
   const bool behind_sign =
       pos_ > 0 && previous().kind == TokenKind::Punctuation && !previous_is(".") && !previous_is("}");
   fail_expected("an expression", behind_sign
-                                     ? fmt::format("a value is missing behind '{}'", previous().text)
+                                     ? fmt::format("a value is missing after '{}'", previous().text)
                                      : "a statement begins with a name or with a word such as if, print, return");
 }
 
@@ -260,8 +260,8 @@ ast::ExprPtr Parser::magnitude(std::size_t start) {
   advance();
   ast::ExprPtr operand = value();
   if (at("||")) {
-    fail(token().span, "syntax", "'||' means logical or and closes no bars",
-         "write a blank between nested bars: | |a| - |b| |");
+    fail(token().span, "syntax", "'||' means logical or and does not close bars",
+         "write a space between nested bars: | |a| - |b| |");
   }
   expect("|", "to close the bars");
   return make(start, ast::Magnitude{std::move(operand)});

@@ -53,7 +53,7 @@ ast::StmtPtr Parser::statement_proper() {
     }
     case Word::Else:
       fail(token().span, "stray-else", "'else' without an 'if' before it",
-           "one statement stands between 'if' and 'else': write { } around several");
+           "only one statement is allowed between 'if' and 'else': write { } around several");
     default: return simple_statement(start);
   }
 }
@@ -89,7 +89,7 @@ ast::StmtPtr Parser::block(std::size_t start) {
   }
   advance();
   if (at(".")) {
-    error(token().span, "stray-period", "no '.' follows the '}' of a block", "remove it");
+    error(token().span, "stray-period", "the '}' of a block is not followed by '.'", "remove it");
     advance();
   }
   return make_statement(start, std::move(node));
@@ -140,7 +140,7 @@ ast::StmtPtr Parser::if_statement(std::size_t start) {
     if (at_elif()) {
       if (!elif_reported_)
         error(token().span, "foreign-statement", fmt::format("there is no '{}'", token().text),
-              "write, here and wherever it stands: else if");
+              "write, here and wherever it occurs: else if");
       elif_reported_ = true;
       advance();
       continue;
@@ -171,7 +171,7 @@ ast::StmtPtr Parser::for_statement(std::size_t start) {
   ast::For node;
   const std::string variable(at_name() ? token().text : "n");
   if (at_name() && at_text("in", 1))
-    fail(items_[start].token->span, "loop", "'for' counts; through a list goes 'foreach'",
+    fail(items_[start].token->span, "loop", "'for' is a counting loop; use 'foreach' to iterate over a list",
          fmt::format("write: foreach {} in list: ...", variable));
   node.start = expression();
   if (at_name() && !at(","))
@@ -189,7 +189,7 @@ ast::StmtPtr Parser::for_statement(std::size_t start) {
 }
 
 ast::StmtPtr Parser::c_for_statement(std::size_t start) {
-  error(token().span, "loop", "the parts of 'for' stand without parentheses, with commas between them",
+  error(token().span, "loop", "the parts of 'for' are written without parentheses, with commas between them",
         loop_pattern(at_name(1) ? token(1).text : "n"));
   pos_ += behind_parentheses(0);
   accept(":");
@@ -205,7 +205,8 @@ ast::StmtPtr Parser::foreach_statement(std::size_t start) {
   advance();
   if (items_[start].word == Word::For) advance();
   ast::Foreach node;
-  if (at("(")) fail(token().span, "loop", "no parentheses follow 'foreach'", "write: foreach item in list: ...");
+  if (at("("))
+    fail(token().span, "loop", "'foreach' is not followed by parentheses", "write: foreach item in list: ...");
   node.variable = expect_name("the loop's variable", node.variable_span);
   if (!at_text("in")) fail_expected("'in' and a list", "write: foreach item in list: statement");
   advance();
@@ -283,7 +284,7 @@ void Parser::expect_colon(std::string_view what) {
     advance();
     return;
   }
-  if (at("|")) fail(token().span, "foreign-operator", "a single '|' is no operator", "logical or is written ||");
+  if (at("|")) fail(token().span, "foreign-operator", "a single '|' is not an operator", "logical or is written ||");
   if (!(token().starts_line || at("{") || starts_statement(0))) fail_expected(fmt::format("':' after {}", what));
   missing(":", what);
 }
@@ -304,7 +305,7 @@ void Parser::expect_period(std::size_t start) {
 void Parser::lint_dot() {
   const bool glued = previous().kind == TokenKind::Name && !token().space_before && !token().space_after;
   if (glued && at_name(1) && at(".", 2) && token(1).span.line == token().span.line && !token(2).space_before) {
-    lint(token().span, "lint-dot", "this '.' ends the statement; what stands behind it does nothing",
+    lint(token().span, "lint-dot", "this '.' ends the statement; the rest of the line has no effect",
          names_a_size(token(1).text) && is_sized(previous().text)
              ? fmt::format("the size of a list or of a text is |{}|", previous().text)
              : fmt::format("a variable of an object is read as {}::{}", previous().text, token(1).text));

@@ -87,7 +87,7 @@ class Interpolation {
       case '\\': text += c; break;
       case '$':
         parser_.lint(place(i_, 2), "lint-escaped-dollar", "'\\$' keeps its backslash in the text",
-                     "a '$' before a blank or a sign other than '{' is printed without a backslash");
+                     "a '$' before a space or a character other than '{' is printed without a backslash");
         [[fallthrough]];
       default:
         text += '\\';
@@ -101,7 +101,7 @@ class Interpolation {
     const std::size_t start = i_++;
     if (i_ == raw_.size()) {
       parser_.lint(place(start, 1), "lint-lone-dollar", "a '$' at the end of a string is dropped",
-                   "write the name of a variable behind it, or a blank to print it");
+                   "write the name of a variable after it, or a space to print it");
       return;
     }
     const bool braces = raw_[i_] == '{' && i_ + 1 < raw_.size();
@@ -111,8 +111,8 @@ class Interpolation {
     while (i_ < raw_.size() && is_reference_char(raw_[i_])) ++i_;
     if (i_ == name) {
       parser_.lint(
-          place(start, 1), "lint-lone-dollar", "this '$' has no name behind it and is printed as it is",
-          "write the name of a variable directly behind it, or say that it is meant: # allow: lint-lone-dollar");
+          place(start, 1), "lint-lone-dollar", "this '$' has no name after it and is printed unchanged",
+          "write the name of a variable directly after it, or state that it is intended: # allow: lint-lone-dollar");
       node_.texts.back() += '$';
       i_ = start + 1;
       return;
@@ -125,8 +125,8 @@ class Interpolation {
       ++i_;
     } else if (braces) {
       parser_.lint(place(start, i_ - start), "lint-interpolation",
-                   fmt::format("this is read as '${{{}}}'; what follows is text", part.name),
-                   "close the braces directly behind the name, or write a whole expression in them");
+                   fmt::format("this is read as '${{{}}}'; the rest is text", part.name),
+                   "close the braces directly after the name, or write a whole expression in them");
     }
     part.span = place(start, i_ - start);
     add(std::move(part));
@@ -138,7 +138,7 @@ class Interpolation {
     const std::size_t end = literal_index(raw_, i_, value);
     if (end == std::string_view::npos) {
       parser_.lint(place(i_, 1), "lint-interpolation",
-                   fmt::format("'{}' behind '${}' holds no literal number and is text", raw_[i_], part.name),
+                   fmt::format("'{}' after '${}' does not contain a literal number and is text", raw_[i_], part.name),
                    fmt::format("for an element write an expression in braces: ${{{}{{i}}}}", part.name));
       return;
     }

@@ -84,7 +84,7 @@ Word word_of(std::string_view text) {
 
 std::string_view foreign_type(std::string_view word) {
   static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kTypes{{
-      {" bool boolean Bool Boolean ", "there is none for truth: write int, where 0 is false and 1 is true"},
+      {" bool boolean Bool Boolean ", "there is no boolean type: write int, where 0 is false and 1 is true"},
       {" integer Integer Int long short unsigned char uint ", "whole numbers are int"},
       {" number real Float Double decimal ", "numbers with a fraction are float, whole numbers int"},
       {" str String text ", "texts are string"},

@@ -168,7 +168,7 @@ static void what_is_refused_changes_nothing(const char* text, bool flat) {
   all[4 * 7] = 1;
   all[4 * 7 + 3] = all[4 * 7 + 6] = 0;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_objects_set_property(w, a.birds, kBirds, BREVE_PROPERTY_POSE, &poses));
-  CHECK_TEXT("a rotation has length 0: it is no rotation", breve_world_last_error(w)->message);
+  CHECK_TEXT("a rotation has length 0: it is not a rotation", breve_world_last_error(w)->message);
   all[4 * 7 + 3] = 1;
   if (flat) {
     all[4 * 7 + 2] = 0.5; /* out of the plane */

@@ -154,7 +154,7 @@ static void by_default_nothing_is_touched(void) {
   clerk c;
   if (!open_clerk(&c, breve_runtime_config_default())) return;
   reads(&c, "/etc/passwd", "none");
-  CHECK(strstr(c.said.error, "the host gives scripts no files") != NULL || strstr(c.said.warning, "no files") != NULL);
+  CHECK(strstr(c.said.error, "the host does not let scripts read files") != NULL || strstr(c.said.warning, "let scripts") != NULL);
   char path[256];
   path_in_box(path, sizeof path, "root/made.txt");
   CHECK(!does(&c, "write", "x", path) && !does(&c, "append", "x", path) && !does(&c, "draw", NULL, path));

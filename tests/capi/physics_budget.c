@@ -25,7 +25,7 @@ static size_t finished(const breve_world* world) {
   CHECK_STATUS(BREVE_OK, breve_world_interventions(world, all, 64, &count));
   for (size_t i = 0; i < count && i < 64; ++i) {
     if (strcmp(all[i].action, "finished coarsely") != 0) continue;
-    CHECK_TEXT("the work that a step may take is used up", all[i].reason);
+    CHECK_TEXT("the work budget of the step is used up", all[i].reason);
     ++told;
   }
   return told;

@@ -128,7 +128,7 @@ reports_bounded)
   "$breve" run a.tz --iterations 2 --seed 1 --stats >out 2>err
   same "$?" 0
   same "$(grep -c 'warning: class Main has no method .fly. with 0 parameters' err)" 2000
-  same "$(grep -c 'what follows is counted, not shown' err)" 2
+  same "$(grep -c 'further ones are counted, but not shown' err)" 2
   ;;
 program_bounded)
   printf '@use Control.\n' >a.tz
@@ -146,7 +146,7 @@ program_bounded)
   printf 'Controller Main.\nControl : Main {\n  + to init:\n    print 1.\n}\n' >>a.tz
   "$breve" check a.tz >out 2>err
   same "$?" 1
-  has err "part3.tz:1:1: error: the files of the program have more than 2000000 words and signs together"
+  has err "part3.tz:1:1: error: the files of the program have more than 2000000 tokens together"
   {
     printf '@use Control.\nController Main.\nControl : Main {\n  + to init:\n'
     printf '    y%d = 1.\n' {1..5000}

@@ -192,7 +192,7 @@ TEST_F(TraceTest, AProfileShowsTheTreeTheMethodsAndTheLines) {
   const std::string err = text("err");
   EXPECT_EQ(err.rfind("Profile of p.tz: 8 iterations", 0), 0U) << err;
   for (const char* part : {"100.0", "[iteration]", "Main.think-hard", "p.tz:12, from p.tz:9", "Hottest",
-                           "Lines whose calls took most", "p.tz:13", "Helper.count"})
+                           "Lines with the most expensive calls", "p.tz:13", "Helper.count"})
     EXPECT_NE(err.find(part), std::string::npos) << part << "\n" << err;
   EXPECT_EQ(text("out").find("Hottest"), std::string::npos);
 }

@@ -384,7 +384,7 @@ std::string complaint(std::string_view program) {
 
 TEST(PushText, BadTextsAreErrorsThatNameTheCharacter) {
   EXPECT_EQ(complaint("(1 2"), "Push code, character 1: this '(' is not closed");
-  EXPECT_EQ(complaint("1 2)"), "Push code, character 4: this ')' closes nothing");
+  EXPECT_EQ(complaint("1 2)"), "Push code, character 4: unmatched ')'");
   EXPECT_EQ(complaint("99999999999"), "Push code, character 1: the number '99999999999' is out of range");
   EXPECT_EQ(complaint("1 1e999"), "Push code, character 3: the number '1e999' is out of range");
   EXPECT_EQ(complaint("1x"), "Push code, character 1: '1x' is not a number, and a name does not begin like one");
@@ -392,7 +392,7 @@ TEST(PushText, BadTextsAreErrorsThatNameTheCharacter) {
   EXPECT_NE(complaint(std::string(300, 'n')), "");
   std::string large;
   for (std::uint32_t i = 0; i <= kMaxPoints; ++i) large += "1 ";
-  EXPECT_EQ(complaint(large), "a piece of Push code of more than 1000000 points");
+  EXPECT_EQ(complaint(large), "Push code of more than 1000000 points");
 }
 
 TEST(PushText, WhatIsPrintedIsReadBack) {

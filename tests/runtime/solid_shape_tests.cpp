@@ -349,7 +349,7 @@ TEST(Shape, FacesOfAConvexShapeAreChecked) {
   for (auto& face : moved) {
     for (Vector3& p : face) p.x() += 3;
   }
-  EXPECT_REFUSED(Shape::convex(moved, 1), "does not hold the origin inside");
+  EXPECT_REFUSED(Shape::convex(moved, 1), "does not contain the origin");
   // A cube with one face pushed in to a point: closed, not convex.
   Faces dent;
   for (const auto& face : cube_of_triangles(1)) {

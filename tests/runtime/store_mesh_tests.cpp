@@ -125,7 +125,7 @@ TEST(MeshFile, ErrorsNameFileAndReason) {
   EXPECT_NE(refusal(parse("v 1 2\n")).find("line 1: a vertex has coordinate ''"), std::string::npos);
   EXPECT_NE(refusal(parse("v 1 2 nan\n")).find("coordinate 'nan'"), std::string::npos);
   EXPECT_NE(refusal(parse("v 1 2 1e300\n")).find("coordinate '1e300'"), std::string::npos);
-  EXPECT_NE(refusal(parse("v 0 0 0\nf 1 1 2\n")).find("line 2: a face names vertex '2' (there are 1 so far)"),
+  EXPECT_NE(refusal(parse("v 0 0 0\nf 1 1 2\n")).find("line 2: a face refers to vertex '2' (there are 1 so far)"),
             std::string::npos);
   EXPECT_NE(refusal(parse("v 0 0 0\nf 1 1\n")).find("has 2 corners"), std::string::npos);
   EXPECT_NE(refusal([] {
@@ -135,7 +135,7 @@ TEST(MeshFile, ErrorsNameFileAndReason) {
             std::string::npos);
   Bytes cut = box_3ds();
   cut.resize(cut.size() / 2);
-  EXPECT_NE(refusal([&] { parse_mesh(cut, "cut.3ds"); }).find("cut off"), std::string::npos);
+  EXPECT_NE(refusal([&] { parse_mesh(cut, "cut.3ds"); }).find("truncated"), std::string::npos);
   EXPECT_NE(
       refusal([&] { make_mesh(parse_mesh(box_3ds(NAN), "nan.3ds"), "nan.3ds", MeshUse::Hull, 1); }).find("'nan.3ds'"),
       std::string::npos);

@@ -1001,7 +1001,7 @@ static inline breve_accuracy breve_accuracy_default(void) {
   return accuracy;
 }
 
-/* The settings of a rung. BREVE_OK; BREVE_ERROR_ARGUMENT: there is no such rung, or a wrong struct_size. */
+/* The settings of a rung. BREVE_OK; BREVE_ERROR_ARGUMENT: unknown rung, or a wrong struct_size. */
 BREVE_API breve_status breve_rung_accuracy(breve_rung rung, breve_accuracy* accuracy);
 
 /* The rung of that name: "fast", "balanced", "precise", "reference" or "conserving".

@@ -135,7 +135,7 @@ void Builder::items(const Code& code) {
 
 void Builder::add(const Node* nodes, std::size_t count) {
   if (nodes_.size() + count > kMaxPoints)
-    throw Error(ErrorCode::Argument, "a piece of Push code of more than " + std::to_string(kMaxPoints) + " points");
+    throw Error(ErrorCode::Argument, "Push code of more than " + std::to_string(kMaxPoints) + " points");
   nodes_.insert(nodes_.end(), nodes, nodes + count);
   for (std::size_t i = 0; i < count; ++i)
     if (nodes[i].kind == Kind::Name) nodes[i].name->hold();

@@ -116,13 +116,13 @@ void parse_into(std::string_view text, Builder& builder, const Poll& poll) {
     if (word == "(") {
       open.push_back({builder.begin_list(), at});
     } else if (word == ")") {
-      if (open.empty()) fail_at(at, "this ')' closes nothing");
+      if (open.empty()) fail_at(at, "unmatched ')'");
       builder.end_list(open.back().list);
       open.pop_back();
     } else if (word == "[") {
       builder.atom(Node::of_vector(read_vector(words, at)));
     } else if (word == "]") {
-      fail_at(at, "this ']' closes nothing");
+      fail_at(at, "unmatched ']'");
     } else {
       read_atom(word, at, builder);
     }

@@ -295,7 +295,7 @@ TEST(PlanarState, StepsThatAreSetAloneActAndItsWordsSayWhatHasNoMeaning) {
   EXPECT_EQ(sub_steps([](Accuracy& a) { a.tolerance = 1e-9; }), 4U);
   Flat flat;
   const std::string words = flat.physics().describe_accuracy();
-  for (const char* what : {"4 sub-steps", "Without meaning here", "integrator", "erp and cfm", "workers"})
+  for (const char* what : {"4 sub-steps", "Without effect here", "integrator", "erp and cfm", "workers"})
     EXPECT_NE(words.find(what), std::string::npos) << words;
 }
 
