@@ -1,4 +1,4 @@
-// Where the command looks for modules (language, section 2.3).
+// Where the command looks for modules.
 #pragma once
 
 #include <filesystem>

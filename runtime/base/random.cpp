@@ -18,7 +18,7 @@ std::uint64_t splitmix64(std::uint64_t& x) {
 }
 
 constexpr std::uint64_t kFineRange = std::uint64_t{1} << 53;  // what a double holds exactly
-constexpr std::uint64_t kCoarseTop = 32767;                   // the 15 bits of the original's floats (F37)
+constexpr std::uint64_t kCoarseTop = 32767;                   // the 15 bits of the original's floats
 constexpr std::int32_t kGammaByProduct = 12;                  // up to here a sum of exponentials is the fastest way
 
 }  // namespace

@@ -15,7 +15,7 @@ class Random {
   explicit Random(std::uint64_t seed = 1) { seed_with(seed); }
 
   void seed_with(std::uint64_t seed);
-  /// uniform() in steps of 1/32767, as the original drew its floats (language, F37). Off by default.
+  /// uniform() in steps of 1/32767, as the original drew its floats. Off by default.
   void set_coarse(bool coarse) { coarse_ = coarse; }
   bool coarse() const { return coarse_; }
   std::uint64_t seed() const { return seed_; }

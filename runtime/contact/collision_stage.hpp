@@ -1,5 +1,5 @@
 // The stage of a sub-step that finds touching bodies and calls the handlers: first touches at their time of impact, in
-// order of time, then once per sub-step while an overlap lasts (DESIGN 4, CLASSES 2.5). No physical response.
+// order of time, then once per sub-step while an overlap lasts. No physical response.
 #pragma once
 
 #include <cstdint>

@@ -271,7 +271,7 @@ JointReaction Dynamics::Core::react(const JointEntry& joint) {
 }
 
 double Dynamics::strength_hard_limit(JointIndex joint) const {
-  constexpr double kPerMass = 500;  // N*m a kg (CLASSES 5)
+  constexpr double kPerMass = 500;  // N*m a kg
   if (!core_) no_joint();
   return kPerMass * core_->bodies->mass(core_->at(joint).is.child);
 }

@@ -21,7 +21,7 @@ inline constexpr BodyIndex kNoBody = 0xffffffffU;
 
 enum class BodyKind : std::uint8_t { Mobile, Stationary, Link };
 
-/// Coulomb friction and restitution as scripts set them. Defaults: an object that nobody configured (CLASSES 2.5).
+/// Coulomb friction and restitution as scripts set them. Defaults: an object that nobody configured.
 struct Material {
   double restitution = 0.4;
   double friction = 0.15;
@@ -52,7 +52,7 @@ struct BodyState {
   bool physics = false;
 };
 
-/// Of a physics-enabled body, copied from its shape when that was set or physics was switched on (CLASSES 2.4).
+/// Of a physics-enabled body, copied from its shape when that was set or physics was switched on.
 struct MassProperties {
   double mass = 1;                           // kg
   Matrix3 inertia = Matrix3::Identity();     // about the centre of mass, own frame, kg*m^2
@@ -103,7 +103,7 @@ class Bodies : public InMemory {
   Vector3 allowed_velocity(const Vector3& value) const;
   Vector3 allowed_spin(const Vector3& value) const;  // rotational velocity
 
-  // Motion, world frame; the rotational velocity of a kinematic body is in its own frame (CLASSES 2.3).
+  // Motion, world frame; the rotational velocity of a kinematic body is in its own frame.
   const Vector3& velocity(BodyIndex body) const;
   const Vector3& acceleration(BodyIndex body) const;
   const Vector3& rotational_velocity(BodyIndex body) const;
@@ -145,7 +145,7 @@ class Bodies : public InMemory {
   Appearance& appearance(BodyIndex body);  // made on first use
   const Appearance& appearance(BodyIndex body) const;
 
-  // --- the stages of a sub-step of h seconds, each over its own active bodies only (CLASSES 2.3, 2.4) ----------------
+  // --- the stages of a sub-step of h seconds, each over its own active bodies only ----------------
   std::size_t translating() const;  // kinematic bodies with a velocity or an acceleration
   std::size_t turning() const;      // kinematic bodies with a rotational velocity or acceleration
   std::size_t rigid() const;        // physics-enabled bodies that are not Stationary

@@ -9,7 +9,7 @@ namespace breve {
 
 void Bodies::Arrays::turn_one(BodyIndex body, double h) {
   TurnRow& row = turn_rows[turn_row[body]];
-  // q' = q (0, w) / 2 with w in the body's own frame; all from the values at the start (CLASSES 2.3).
+  // q' = q (0, w) / 2 with w in the body's own frame; all from the values at the start.
   const Vector3& w = row.velocity;
   const Quaternion rate = row.orientation * Quaternion(0, w.x(), w.y(), w.z());
   row.orientation.coeffs() += 0.5 * h * rate.coeffs();

@@ -1,4 +1,4 @@
-// The ladder of accuracy: a rung is a name for plain settings, each of which can be set alone (DESIGN 6).
+// The ladder of accuracy: a rung is a name for plain settings, each of which can be set alone.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What a joint between two bodies is, as scripts and hosts describe it (CLASSES 5, Joint): kind, points, normal, and
+// What a joint between two bodies is, as scripts and hosts describe it: kind, points, normal, and
 // the numbers that drive, spring and bound it. How a tree of bodies uses it is in trees.
 #pragma once
 

@@ -206,7 +206,7 @@ bool Planar::closes_ring(JointIndex joint) const { return core_->at(joint).ring;
 const JointDrive& Planar::drive(JointIndex joint) const { return core_->at(joint).drive; }
 
 double Planar::strength_hard_limit(JointIndex joint) const {
-  constexpr double kPerMass = 500;  // N*m a kg (CLASSES 5)
+  constexpr double kPerMass = 500;  // N*m a kg
   return kPerMass * core_->bodies->mass(core_->at(joint).is.child);
 }
 

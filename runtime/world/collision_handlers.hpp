@@ -1,4 +1,4 @@
-// Which classes want to know when they touch which: by exact class on both sides (language, 12.4 and F34).
+// Which classes want to know when they touch which: by exact class on both sides.
 #pragma once
 
 #include <cstdint>

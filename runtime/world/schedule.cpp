@@ -1,4 +1,4 @@
-// The heap of scheduled calls. Time is the key; ties go by the order of scheduling (language, 12.2 and F33).
+// The heap of scheduled calls. Time is the key; ties go by the order of scheduling.
 #include "runtime/world/schedule.hpp"
 
 #include <algorithm>

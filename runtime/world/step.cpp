@@ -1,4 +1,4 @@
-// One iteration of a world, and the stages of a sub-step within it (DESIGN 4, CLASSES 2.1 and 2.2).
+// One iteration of a world, and the stages of a sub-step within it.
 #include <fmt/format.h>
 
 #include <algorithm>

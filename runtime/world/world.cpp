@@ -149,7 +149,7 @@ void World::update_neighbors() {
     const ObjectTable::Slot& slot = parts.objects.at(id);
     const BodyIndex body = slot.body;
     if (body == kNoBody || !bodies_->location(body).allFinite()) continue;
-    constexpr double kUnset = 0.00001;  // what a radius nobody set counts as (CLASSES 2.6)
+    constexpr double kUnset = 0.00001;  // what a radius nobody set counts as
     const double radius = bodies_->neighborhood_size(body);
     parts.near.add(id, slot.user, parts.space.inside(bodies_->location(body)), radius == 0 ? kUnset : radius);
   }

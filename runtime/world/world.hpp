@@ -152,7 +152,7 @@ class World : public InMemory {
   bool schedule(ObjectId target, std::string_view method, double when, double interval = 0);
   /// Remove queued calls: those of `method` ("" = any) at time `when` (0 = any). Returns how many.
   std::size_t unschedule(ObjectId target, std::string_view method, double when);
-  /// Among calls due at the same time the last scheduled goes first (default), or the first (F33).
+  /// Among calls due at the same time the last scheduled goes first (default), or the first.
   void set_stable_schedule(bool stable);
   /// Calls run up to one iteration step early (default, as programs observed), or only once their time has come.
   void set_exact_schedule(bool exact);

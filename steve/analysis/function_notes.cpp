@@ -1,4 +1,4 @@
-// One line about each function of the language (language, section 13). A test checks that none is left out.
+// One line about each function of the language. A test checks that none is left out.
 #include <algorithm>
 #include <iterator>
 

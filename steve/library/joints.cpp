@@ -14,7 +14,7 @@ namespace {
 struct Kind {
   std::string_view cls;
   JointKind kind;
-  bool may_be_linked_again;  // without breaking it first (CLASSES 5, Joint)
+  bool may_be_linked_again;  // without breaking it first
 };
 constexpr std::array<Kind, 5> kKinds{{{"RevoluteJoint", JointKind::Revolute, false},
                                       {"PrismaticJoint", JointKind::Prismatic, true},

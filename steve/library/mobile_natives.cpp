@@ -114,7 +114,7 @@ Vector3 mobile_get_bound_minimum(Machine& machine, Instance& self) {
   return bodies_of(machine).bounds(body_of(machine, self)).min();
 }
 
-/// Are two links of one assembly tested against each other at all? (CLASSES 2.5)
+/// Are two links of one assembly tested against each other at all?
 bool tested(const Mechanics& dynamics, BodyIndex a, BodyIndex b) {
   return dynamics.self_collisions(a) && !dynamics.jointed(a, b);
 }

@@ -24,7 +24,8 @@ bool Machine::accepts(const MethodInfo& method, const CallSite& site) {
 }
 
 const MethodInfo* Machine::choose(const CallSite& site, const ClassInfo& cls) const {
-  // Fewest parameters first, among equals the most derived: language 4.3, and F15 when the keywords do not fit.
+  // The method with the fewest parameters comes first, among equals the most derived. If the keywords do not fit, the
+  // next one is tried.
   std::vector<const MethodInfo*> candidates;
   const ClassInfo* start = site.super_of ? site.super_of->parent : &cls;
   for (const ClassInfo* c = start; c; c = c->parent)

@@ -115,7 +115,7 @@ struct ListCell : Container {
   Iterator end() const { return {*this, size}; }
 };
 
-/// Open addressing over entries kept in order of insertion. Keys compare with type (language, section 8.2).
+/// Open addressing over entries kept in order of insertion. Keys compare with type.
 struct HashCell : Container {
   struct Entry {
     Value key;  // Tag::Null with hash kRemoved: a removed entry

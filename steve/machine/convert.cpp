@@ -1,4 +1,4 @@
-// Conversion on assignment (5.2), truth (5.3), and reading numbers from strings.
+// Conversion on assignment, truth, and reading numbers from strings.
 #include <cctype>
 #include <charconv>
 #include <cstdlib>

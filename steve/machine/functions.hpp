@@ -1,4 +1,4 @@
-// The tables of the functions that scripts may call (language, section 13), by topic; `functions()` joins them.
+// The tables of the functions that scripts may call, by topic; `functions()` joins them.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// Files as scripts see them: lines and whole texts through a pointer (language, section 13).
+// Files as scripts see them: lines and whole texts through a pointer.
 #include <array>
 #include <memory>
 

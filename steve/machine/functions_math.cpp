@@ -1,4 +1,4 @@
-// Functions on numbers, vectors, matrices, colours, and the random ones (language, section 13).
+// Functions on numbers, vectors, matrices, colours, and the random ones.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,7 +15,7 @@ namespace breve::steve {
 
 namespace {
 
-/// A result that is no number is a warning, once per function (language, 11.2).
+/// A result that is no number is a warning, once per function.
 double checked(Machine& machine, std::string_view name, double argument, double result) {
   if (!std::isfinite(result)) [[unlikely]]
     machine.warn_once(name, fmt::format("{}({:f}) is {:f}", name, argument, result));

@@ -1,4 +1,4 @@
-// Functions on types, objects, classes, hashes, notifications and lifetimes (language, section 13).
+// Functions on types, objects, classes, hashes, notifications and lifetimes.
 #include <array>
 #include <vector>
 
@@ -48,7 +48,7 @@ Instance* new_instance(Machine& machine, Instance&, StringCell* name) {
 }
 
 /// By position, to the method with exactly that many parameters. An error inside does not stop the caller, which gets
-/// NULL, unless the run is strict (F27).
+/// NULL, unless the run is strict.
 Value call_method_named(Machine& machine, Instance&, Instance* object, StringCell* name, ListCell* list) {
   Instance& receiver = needed(object, "callMethodNamed");
   std::vector<Value> arguments;
@@ -127,7 +127,7 @@ void set_auto_free(Machine& machine, Instance& self, std::int32_t on) {
 
 std::int32_t retain_count(Machine&, Instance& self) { return static_cast<std::int32_t>(self.count); }
 
-/// Dependencies belong to archives and keep nothing alive (10.2); an archive written by this function's caller holds
+/// Dependencies belong to archives and keep nothing alive; an archive written by this function's caller holds
 /// what the `add-dependency` method of the library recorded.
 void change_dependency(Machine&, Instance&, Instance*) {}
 

@@ -1,4 +1,4 @@
-// Functions on the clock, the schedule, the run, the host and its user (language, section 13).
+// Functions on the clock, the schedule, the run, the host and its user.
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -37,7 +37,7 @@ double get_running_time(Machine& machine, Instance&) {
 }
 
 /// Once at `time`, or again and again from then on. A repeated call whose first time has passed starts one interval
-/// from now (F33).
+/// from now.
 void add_event(Machine& machine, Instance& self, StringCell* method, double time, double interval) {
   World& world = machine.world();
   const ObjectId id = machine.id_of(&self);

@@ -53,7 +53,7 @@ namespace breve::steve {
       else heap_->reclaim();                                                             \
     }                                                                                    \
   } while (0)
-// A method of an object that was freed meanwhile is left at once (F30).
+// A method of an object that was freed meanwhile is left at once.
 #define LEAVE_IF_FREED() do { if (!self->live()) [[unlikely]] { RESULT(Null, 0); goto do_return; } } while (0)
 
 namespace {
@@ -713,7 +713,7 @@ void Machine::execute(std::size_t depth) {
       R(in->b).ref = value.ref;
       R(in->c).ref = nullptr;
     } else if (value.tag == Tag::List) {
-      auto* elements = heap_->list();  // the call goes to those who are in the list now (F41)
+      auto* elements = heap_->list();  // the call goes to those who are in the list now
       if (value.ref)
         for (const auto& element : *value.list()) heap_->push(*elements, element);
       R(in->c).ref = elements;

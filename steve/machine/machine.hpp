@@ -103,7 +103,7 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   // --- objects ------------------------------------------------------------------------------------------------------
   /// A new instance with its `init` chain run. RunError if `init` fails or frees it.
   Instance* create(const ClassInfo& cls);
-  /// What `free` does (language, 10.1). A null, freed or being-freed instance: nothing.
+  /// What `free` does. A null, freed or being-freed instance: nothing.
   void free_instance(Instance& instance);
   Instance* instance(ObjectId id) const;  // null if the id is null or stale
   ObjectId id_of(const Instance* instance) const { return instance && instance->live() ? instance->id : ObjectId{}; }
@@ -116,7 +116,7 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   Value call(Instance& receiver, const MethodInfo& method, std::span<const Value> arguments = {});
   /// As above; RunError{UnknownMethod} if there is none with that many parameters.
   Value call(Instance& receiver, std::string_view method, std::span<const Value> arguments = {});
-  /// Call, report an error as one that does not stop the run, and go on (F27). False if there was an error.
+  /// Call, report an error as one that does not stop the run, and go on. False if there was an error.
   bool call_guarded(Instance& receiver, const MethodInfo& method, std::span<const Value> arguments, Value& result);
   /// Call with keywords, as a script would.
   Value call_with_keywords(Instance& receiver, std::string_view method,

@@ -21,7 +21,7 @@ namespace breve::steve {
 struct MachineHost {
   std::function<void(std::string_view text)> print;  // what scripts print, as written
   std::function<void(std::string_view text)> warn;   // one warning, one or more whole lines
-  std::function<void(std::string_view text)> error;  // a run-time error that did not stop the run (F27)
+  std::function<void(std::string_view text)> error;  // a run-time error that did not stop the run
   // Open a file; null with a reason, or without one if there is none.
   std::function<std::unique_ptr<FileReader>(std::string_view name, std::string& why)> open_for_reading;
   std::function<std::unique_ptr<FileWriter>(std::string_view name, bool append, std::string& why)> open_for_writing;

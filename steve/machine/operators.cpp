@@ -119,7 +119,7 @@ Value vector_binary(BinaryOp op, const Value& a, const Value& b) {
   if (!is_scalar(other.tag)) fail_operands(op, a, b);
   if (op == BinaryOp::Mul) return Value::of(Vector3(v.vector() * to_double(other)));
   if (op != BinaryOp::Div) fail_operands(op, a, b);
-  const double s = to_double(other);  // s / v means v / s (F17)
+  const double s = to_double(other);  // s / v means v / s
   if (s == 0) fail_division_by_zero();
   return Value::of(Vector3(v.vector() / s));
 }
@@ -159,7 +159,7 @@ Value matrix_binary(Heap& heap, BinaryOp op, const Value& a, const Value& b) {
 
 // --- everything else -------------------------------------------------------------------------------------------------
 
-/// Rule 8 as F18 mends it: identity of references, comparison with zero or NULL, and NULL as the int 0.
+/// Equality of objects and NULL: identity of references, comparison with zero or NULL, and NULL as the int 0.
 Value reference_binary(BinaryOp op, const Value& a, const Value& b) {
   const auto is_zero = [](const Value& v) {
     return v.tag == Tag::Null || (v.tag == Tag::Int && v.i == 0) || (v.tag == Tag::Double && v.d == 0);
@@ -176,7 +176,7 @@ Value number_binary(BinaryOp op, const Value& x, const Value& y) {
   const bool a_string = x.tag == Tag::String, b_string = y.tag == Tag::String;
   const bool reference = (x.tag >= Tag::Object && x.tag != Tag::List) || (y.tag >= Tag::Object && y.tag != Tag::List);
   if (reference) {
-    // An object is never equal to a string (F18).
+    // An object is never equal to a string.
     if ((a_string || b_string) && is_equality(op)) return boolean(op, false);
     if (a_string || b_string) fail_operands(op, x, y);
     const Value a = as_number(x), b = as_number(y);

@@ -1,5 +1,5 @@
-// The meaning of values where types are not known before: conversion, truth, operators, indexing, text.
-// Language document, sections 5, 6.4, 6.6, 8.4 and 9, with the fixes of section 14. Every function throws RunError.
+// Operations on values whose types are known only at run time: conversion, truth, operators, indexing, text.
+// Every function throws RunError.
 #pragma once
 
 #include <bit>
@@ -12,8 +12,8 @@
 
 namespace breve::steve {
 
-// Conversion on assignment (5.2). `what` names the place for the error: "variable 'n'", "keyword 'to'".
-// The NULL value converts to nothing: F14's zero value and its warning are the caller's.
+// Conversion on assignment. `what` names the place for the error: "variable 'n'", "keyword 'to'".
+// The NULL value is not converted: the caller stores the type's zero value and warns.
 std::int32_t to_int(const Value& v, std::string_view what = {});
 double to_double(const Value& v, std::string_view what = {});
 Vector3 to_vector(const Value& v, std::string_view what = {});
@@ -34,7 +34,7 @@ inline std::int32_t truncate_to_int(double d) {
 std::int32_t leading_int(std::string_view text);  // 0 if there is none; the nearest int if it is out of range
 double leading_double(std::string_view text);     // C rules without locale; 0.0 if there is none
 
-// Integer arithmetic that wraps (F20).
+// Integer arithmetic that wraps.
 inline std::int32_t wrap_add(std::int32_t a, std::int32_t b) {
   return std::bit_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
 }
@@ -60,12 +60,12 @@ inline double length(const Vector3& v) { return std::sqrt(v[0] * v[0] + v[1] * v
 
 bool truth(const Value& v);  // 5.3
 
-/// Binary operators but && and || (5.4 to 5.6). Never changes its operands.
+/// Binary operators but && and ||. Never changes its operands.
 Value binary(Heap& heap, ast::BinaryOp op, const Value& a, const Value& b);
 bool equal(const Value& a, const Value& b);  // `==` as lists compare their elements: what cannot be compared differs
 Value negate(const Value& v);
 Value magnitude(const Value& v);  // |e|
-/// Same type and value, as hash keys compare (8.2).
+/// Same type and value, as hash keys compare.
 bool same_key(const Value& a, const Value& b);
 std::uint32_t key_hash(const Value& v);  // never 0xffffffff; needs no address
 
@@ -77,14 +77,14 @@ void set_index(Heap& heap, const Value& base, const Value& key, const Value& val
 /// A vector, matrix or string with one element replaced (6.6, 8.4): the caller stores the result where it came from.
 Value with_index(Heap& heap, const Value& base, const Value& key, const Value& value);
 
-/// base::name for hashes and, with the names x, y, z, vectors (F43; objects are the interpreter's business).
+/// base::name for hashes and, with the names x, y, z, vectors (the interpreter handles objects).
 Value member(Heap& heap, const Value& base, StringCell* name);
 /// hash::name = v.
 void set_member(Heap& heap, const Value& base, StringCell* name, const Value& value);
 /// A vector with component x, y or z replaced.
 Value with_member(const Value& base, StringCell* name, const Value& value);
 
-// The list operations of 8.1 with their conversions and errors (F14, F21). A null list is an empty one.
+// The list operations of 8.1 with their conversions and errors. A null list is an empty one.
 /// @return  false if the index is beyond the end: nothing is inserted, the caller warns
 bool insert_at(Heap& heap, ListCell& list, const Value& index, const Value& value);
 /// remove list{i}, remove hash{k}: the element, or NULL with `found` false (for a list: the caller warns).

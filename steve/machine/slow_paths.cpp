@@ -11,7 +11,7 @@
 namespace breve::steve {
 
 Value Machine::null_default(StaticType type, std::uint32_t what, const Instruction* pc) {
-  // F14: NULL assigned to a typed variable stores the type's zero value, with one warning for each place.
+  // NULL assigned to a typed variable stores the type's zero value, with one warning for each place.
   const auto& name = program_->code().texts.empty() ? std::string("value") : program_->code().texts[what];
   if (host_.strict)
     throw RunError(RunErrorKind::Conversion, "no value (NULL) for " + name,
@@ -261,7 +261,7 @@ void Machine::sort(ListCell& list, Symbol symbol, Instance& self) {
   merge_sort(*heap_, list, [&](const Value& a, const Value& b) { return comes_before(self, *method, a, b); });
 }
 
-/// One comparison of a sort: a method called by position many times over. An error in it does not stop the run (F27).
+/// One comparison of a sort: a method called by position many times over. An error in it does not stop the run.
 bool Machine::comes_before(Instance& self, const MethodInfo& method, const Value& a, const Value& b) {
   const auto& parameters = method.parameters;
   Value order;

@@ -13,7 +13,7 @@ namespace breve::steve {
 namespace {
 
 constexpr std::size_t kDeepest = 1000;
-constexpr double kFixedLimit = 1e10;         // a vector with a larger component is written with exponents (F32)
+constexpr double kFixedLimit = 1e10;         // a vector with a larger component is written with exponents
 constexpr std::size_t kLongestDouble = 330;  // 309 digits, sign, point, six decimals
 
 void append_number(std::string& out, double d, std::chars_format format, int decimals) {

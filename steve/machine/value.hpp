@@ -115,7 +115,7 @@ struct Value {
 };
 static_assert(sizeof(Value) == 32);
 
-/// The kinds of run-time errors (language, section 11.2).
+/// The kinds of run-time errors.
 enum class RunErrorKind : std::uint8_t {
   User,
   Internal,

@@ -1,5 +1,4 @@
-// Text to tokens. Numbers are unsigned (the parser decides on signs); names may hold dashes; every fix of the
-// language's section 14 that concerns the scanner lives here.
+// Text to tokens. Numbers are unsigned (the parser decides on signs); names may contain dashes.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The table of conversions (5.2), cell by cell, and truth (5.3).
+// The table of conversions, cell by cell, and truth.
 #include <gtest/gtest.h>
 
 #include <array>

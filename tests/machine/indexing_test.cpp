@@ -1,4 +1,4 @@
-// Elements: reading, replacing, members, inserting and removing (6.6, 8.1, 8.4 with F21, F22, F43).
+// Elements: reading, replacing, members, inserting and removing.
 #include <gtest/gtest.h>
 
 #include "steve/machine/operators.hpp"
@@ -81,7 +81,7 @@ TEST_F(Indexing, StoringAtTheLengthAppendsAndBeyondIsAnError) {
   EXPECT_EQ(kind_of([&] { set_index(w.heap, list, number(5), number(0)); }), RunErrorKind::Bounds);
   EXPECT_EQ(kind_of([&] { set_index(w.heap, list, number(-1), number(0)); }), RunErrorKind::Bounds);
   set_index(w.heap, list, number(1), Value());
-  EXPECT_EQ(text(list), "{ 5, (NULL expression), 20, 30 }") << "NULL is a legal element (F24)";
+  EXPECT_EQ(text(list), "{ 5, (NULL expression), 20, 30 }") << "NULL is a legal element";
 }
 
 TEST_F(Indexing, VectorWithOneComponentReplaced) {

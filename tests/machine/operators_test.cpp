@@ -114,7 +114,7 @@ TEST_F(Operators, ListsCountAsTheirLength) {
 TEST_F(Operators, ListsAreEqualIfTheirElementsAre) {
   const Value left = list({w.string("5"), list({number(1)})});
   EXPECT_EQ(shown(BinaryOp::Eq, left, list({number(5.0), list({number(1.0)})})), "1");
-  EXPECT_EQ((*left.list())[0].tag, Tag::String) << "comparing changes nothing (F17)";
+  EXPECT_EQ((*left.list())[0].tag, Tag::String) << "comparing changes nothing";
   EXPECT_EQ(shown(BinaryOp::Ne, left, list({number(5.0), list({number(2)})})), "1");
   EXPECT_EQ(shown(BinaryOp::Eq, left, list({w.string("5")})), "0");
   EXPECT_EQ(shown(BinaryOp::Eq, w.list(), w.list()), "1");
@@ -147,7 +147,7 @@ TEST_F(Operators, Vectors) {
   EXPECT_EQ(shown(BinaryOp::Mul, w.string("2"), v), "(2.00000, 4.00000, 6.00000)");
   EXPECT_EQ(shown(BinaryOp::Mul, v, list({number(9), number(9)})), "(2.00000, 4.00000, 6.00000)");
   EXPECT_EQ(shown(BinaryOp::Div, v, number(2)), "(0.50000, 1.00000, 1.50000)");
-  EXPECT_EQ(shown(BinaryOp::Div, number(2), v), "(0.50000, 1.00000, 1.50000)") << "s / v is v / s (F17)";
+  EXPECT_EQ(shown(BinaryOp::Div, number(2), v), "(0.50000, 1.00000, 1.50000)") << "s / v is v / s";
 }
 
 TEST_F(Operators, WrongVectorOperandsAreTypeErrorsThatSayWhat) {
@@ -174,7 +174,7 @@ TEST_F(Operators, Matrices) {
   EXPECT_TRUE(result(of(BinaryOp::Mul, m, n)).isApprox(a * b, 1e-15));
   EXPECT_TRUE(result(of(BinaryOp::Div, m, n)).isApprox(a * b.inverse(), 1e-14));
   EXPECT_EQ(text(of(BinaryOp::Mul, m, v)), "(5.00000, 11.00000, 19.00000)");
-  EXPECT_EQ(text(of(BinaryOp::Mul, v, m)), "(11.00000, 13.00000, 17.00000)") << "transpose(M) * v (F17)";
+  EXPECT_EQ(text(of(BinaryOp::Mul, v, m)), "(11.00000, 13.00000, 17.00000)") << "transpose(M) * v";
   EXPECT_EQ(result(of(BinaryOp::Mul, m, number(2))), a * 2);
   EXPECT_EQ(result(of(BinaryOp::Mul, w.string("2"), m)), a * 2);
   EXPECT_EQ(result(of(BinaryOp::Div, m, number(2))), a / 2);

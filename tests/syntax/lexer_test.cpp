@@ -1,4 +1,4 @@
-// The scanner, table by table of the language's section on lexical structure.
+// The scanner: every kind of token, and its errors.
 #include "steve/syntax/lexer.hpp"
 
 #include <fmt/format.h>
