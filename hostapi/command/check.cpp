@@ -25,7 +25,7 @@ const char* severity_name(std::uint32_t severity) {
   return "error";
 }
 
-// Texts of programs may hold any bytes; those that are no UTF-8 are replaced.
+// Texts of programs may hold any bytes; bytes that are not UTF-8 are replaced.
 Json json_of(const breve_diagnostic& d) {
   return {{"file", d.file},
           {"line", d.line},

@@ -1,4 +1,4 @@
-// What reference pages tell of classes, gathered from analyses.
+// The contents of reference pages about classes, gathered from analyses.
 #pragma once
 
 #include <map>

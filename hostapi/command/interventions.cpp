@@ -1,4 +1,4 @@
-// The tally of interventions of the guard, from what breve.h tells of each iteration.
+// The tally of interventions of the guard, from the events that breve.h returns for each iteration.
 #include "interventions.hpp"
 
 #include <fmt/format.h>

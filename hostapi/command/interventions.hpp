@@ -14,7 +14,7 @@ namespace breve::command {
 class Interventions {
  public:
   /// Takes in those of the iteration that just ended.
-  /// @param output  where each is told; null: nowhere
+  /// @param output  where each is printed; null: nowhere
   void take(const breve_world* world, Output* output);
   std::uint64_t count() const { return count_; }
   /// How many ended in that action: "reported", "refined" or "put to rest".

@@ -205,7 +205,7 @@ json LspFeatures::diagnostic(const ProgramView& program, const breve_diagnostic&
           {"message", d.message + help}};
 }
 
-// A file that names no controller is a part of a program that is not open: what it lacks alone is no error.
+// A file that names no controller is a part of a program that is not open: what it lacks on its own is not an error.
 std::map<std::string, json> LspFeatures::diagnostics() {
   std::map<std::string, json> result;
   std::set<const ProgramView*> seen;

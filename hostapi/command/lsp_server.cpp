@@ -171,7 +171,7 @@ void LspServer::did_change(const json& params) {
   changed_ = true;
 }
 
-// Only what changed since the last time; a file with nothing to say any more is told so once.
+// Only what changed since the last time; for a file without any diagnostics left, an empty list is sent once.
 void LspServer::publish() {
   changed_ = false;
   std::map<std::string, json> now = features_.diagnostics();

@@ -11,7 +11,7 @@ struct Character {
   std::size_t bytes, units;
 };
 
-/// The character that begins at byte `i`. What is not UTF-8 is one byte and one unit.
+/// The character that begins at byte `i`. A byte that is not UTF-8 counts as one unit.
 Character character_at(std::string_view text, std::size_t i) {
   const auto lead = static_cast<unsigned char>(text[i]);
   const std::size_t bytes = lead < 0xC0 ? 1 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : lead < 0xF8 ? 4 : 1;

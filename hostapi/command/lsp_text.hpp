@@ -24,7 +24,7 @@ std::size_t byte_column(std::string_view line, std::size_t units);
 /// The byte of a place that an editor names; places behind the end of a line or text are that end.
 std::size_t offset_of(std::string_view text, std::size_t line, std::size_t units);
 
-/// "file:///a%20b.tz" as "/a b.tz"; nothing if it is no URI of a file.
+/// "file:///a%20b.tz" as "/a b.tz"; nothing if it is not the URI of a file.
 std::optional<std::string> path_of_uri(std::string_view uri);
 std::string uri_of_path(const std::string& path);
 

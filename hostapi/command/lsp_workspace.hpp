@@ -57,7 +57,7 @@ class LspWorkspace {
 
  private:
   struct Document {
-    std::string path;  // canonical; "" if the URI is no file's
+    std::string path;  // canonical; "" if the URI does not name a file
     std::string text;
     std::unique_ptr<ProgramView> program;
   };

@@ -22,7 +22,7 @@ class Output {
   /// False once the reader of standard output has gone away: there is no point in going on.
   bool open() const { return open_; }
 
-  /// A line on the terminal that replaces the one before; nothing if standard error is no terminal.
+  /// A line on the terminal that replaces the one before; does nothing if standard error is not a terminal.
   void progress(std::string_view line);
   bool shows_progress() const { return error_terminal_; }
 

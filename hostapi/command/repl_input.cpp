@@ -140,7 +140,7 @@ class Terminal final : public LineReader {
     if (last && entry == last->line) return;
     add_history(entry.c_str());
     if (file_.empty()) return;
-    // What is typed may be private.
+    // The input may be private.
     const mode_t mask = ::umask(077);
     if (append_history(1, file_.c_str()) != 0) write_history(file_.c_str());
     ::umask(mask);

@@ -7,7 +7,7 @@
 
 namespace breve::command {
 
-/// What may stand where the cursor is: names that begin with `typed`.
+/// Completions at the cursor: names that begin with `typed`.
 class NameSource {
  public:
   virtual ~NameSource() = default;

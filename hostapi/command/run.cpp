@@ -96,7 +96,7 @@ class Progress {
 bool is_over(const breve_world* world, const RunOptions& options, const Output& output) {
   if (breve_world_ended(world) || interrupted != 0 || !output.open()) return true;
   if (options.iterations && breve_world_iteration(world) >= *options.iterations) return true;
-  // Sums of a decimal step fall short by rounding: that is no reason for one iteration more.
+  // Sums of a decimal step fall short by rounding: that must not cause an additional iteration.
   constexpr double kRounding = 1e-6;  // of a step
   return options.seconds && breve_world_time(world) >= *options.seconds - kRounding * breve_world_iteration_step(world);
 }
@@ -133,7 +133,7 @@ breve_status iterate(breve_world* world, const RunOptions& options, Reloader* re
 // A seed that a script can read as an int.
 std::uint64_t draw_seed() { return std::random_device()() & 0x7fffffffU; }
 
-constexpr double kLongIteration = 10;  // s that an iteration may take before it is told where it is
+constexpr double kLongIteration = 10;  // s that an iteration may take before its position is reported
 
 /// What --set gives, taken apart at the first '='.
 class Settings {

@@ -29,7 +29,8 @@ using WorldHandle = std::unique_ptr<breve_world, WorldDeleter>;
 class Session {
  public:
   /// @param strict  warnings of the compiler are errors
-  /// @param access  what programs may touch; null: they are not run. Throws std::runtime_error for what is no directory
+  /// @param access  what programs may touch; null: they are not run. Throws std::runtime_error if a path is not a
+  /// directory
   Session(Output& output, const std::vector<std::string>& paths, bool quiet, bool strict,
           const AccessOptions* access = nullptr);
   ~Session();

@@ -39,7 +39,7 @@ class Reloader {
   Reloader(Session& session, Output& output, std::string file);
   /// If the files have changed: reload. True if the world runs another program now.
   bool look(breve_world* world);
-  /// Now, changed or not. What was done, or why not, goes to standard error.
+  /// Now, changed or not. The outcome is reported on standard error.
   bool reload(breve_world* world);
 
  private:

@@ -93,7 +93,7 @@ Spot find_place(const Root& root, std::string_view path) {
   }
 }
 
-/// What is open must be a plain file of a size that is allowed.
+/// The opened file must be a regular file of an allowed size.
 std::uint64_t need_plain(const Descriptor& file, const Root& root) {
   struct stat info {};
   if (::fstat(file.get(), &info) != 0) refuse_by_errno();
@@ -140,7 +140,7 @@ class PlainFile {
     return true;
   }
 
-  /// What was written gets its name.
+  /// The written file gets its name.
   bool close(bool keep) {
     if (!file_.close()) return false;
     if (temporary_.empty()) return true;

@@ -116,7 +116,7 @@ struct Selector {
 };
 
 /// A copy of a versioned struct that an older header may have made smaller: fields that it lacks take the defaults.
-/// @throws  StatusError if its struct_size is none that this header or an older one gave
+/// @throws  StatusError if its struct_size is not one that this header or an older one gave
 template <class Config>
 Config read_config(const Config* given, const Config& defaults, const char* name) {
   if (!given) return defaults;

@@ -55,7 +55,7 @@ void copy_list(const In& all, Out* out, std::size_t capacity, std::size_t* count
 }
 
 /// Fill a struct of an older or this header's size.
-/// @throws StatusError if its struct_size is none that any header gave
+/// @throws StatusError if its struct_size is not one that any header gave
 template <class Struct>
 void write_struct(Struct* out, Struct filled, const char* name) {
   need(out, name);

@@ -1,4 +1,4 @@
-// Worlds: making, stepping, ending; the clock; what the machine is told about its host.
+// Worlds: making, stepping, ending; the clock; what the machine knows about its host.
 #include <cmath>
 
 #include "functions.hpp"

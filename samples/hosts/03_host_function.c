@@ -64,7 +64,7 @@ int main(void) {
   breve_program* program = NULL;
   breve_world* world = NULL;
   int failed = 1;
-  config.print = say; /* errors in `iterate` are told here, and the run goes on */
+  config.print = say; /* errors in `iterate` are printed here, and the run goes on */
   height.name = "worldHeight";
   height.doc = "Height of the ground at (x, y).";
   height.parameters = doubles;

@@ -74,7 +74,7 @@ std::optional<Reference> Analysis::at(std::uint32_t file, std::uint32_t offset) 
   return result;
 }
 
-// Of a name that the trees do not have, because its statement is broken.
+// For a name that the trees do not have, because its statement is broken.
 const Token* Analysis::name_at(std::uint32_t file, std::uint32_t offset) const {
   const std::vector<Token>& tokens = model_->files[file].tokens;
   const auto after = std::partition_point(tokens.begin(), tokens.end(),

@@ -103,7 +103,8 @@ class Analysis {
   std::vector<Span> references(std::size_t symbol) const;
   std::optional<CallContext> call_at(std::uint32_t file, std::uint32_t offset) const;
   Completions completions(std::uint32_t file, std::uint32_t offset) const;
-  /// The same for a statement outside of any file. Nothing if there is no class of that name; "" is no class.
+  /// The same for a statement outside of any file. Returns nothing if there is no class of that name; "" means no
+  /// class.
   std::optional<Completions> statement_completions(std::string_view class_name, std::string_view text,
                                                    std::uint32_t offset) const;
 

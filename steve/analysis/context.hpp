@@ -11,7 +11,7 @@
 
 namespace breve::steve {
 
-/// What may stand at a place.
+/// The kinds of names that are possible at a position.
 enum class Expected : std::uint8_t {
   Nothing,
   TopLevel,        // a class, a directive, `Controller`

@@ -1,5 +1,5 @@
-// What was read of a program: texts, tokens, trees, classes and symbols. Trees are those of a parser that goes on after
-// errors, so that a program that is being written has them too. Private to this folder.
+// The parts of an analysed program: texts, tokens, trees, classes and symbols. Trees are those of a parser that goes on
+// after errors, so that a program that is being written has them too. Private to this folder.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@
 
 namespace breve::steve {
 
-/// A static type, as far as it is known. Of a list: `cls` is the class of its elements.
+/// A static type, as far as it is known. For a list, `cls` is the class of its elements.
 struct KnownType {
   std::optional<ast::TypeKind> kind;
   std::size_t cls = kNoIndex;  // number of the class, not of its symbol
@@ -40,7 +40,7 @@ struct ClassModel {
 };
 
 struct FileModel {
-  std::vector<Token> tokens;  // documentation too, End last
+  std::vector<Token> tokens;  // including documentation, End last
   ast::File tree;
   std::size_t symbol = 0;
   bool loaded = false;

@@ -1,4 +1,4 @@
-// What is said of reserved words where they are offered or pointed at.
+// Notes on reserved words, for completion and hover texts.
 #include "steve/analysis/word_notes.hpp"
 
 #include <algorithm>

@@ -21,7 +21,7 @@ std::span<const WordNote> type_words();
 std::span<const WordNote> array_type_words();
 std::span<const WordNote> special_methods();  // that are called by themselves
 
-/// What is to be said of a reserved word or directive; null if nothing is.
+/// The note on a reserved word or directive; null if there is none.
 const WordNote* word_note(std::string_view word);
 
 }  // namespace breve::steve

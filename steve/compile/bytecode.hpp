@@ -141,7 +141,7 @@ struct Instruction {
 };
 static_assert(sizeof(Instruction) == 8);
 
-constexpr std::int32_t kAbsentIsZero = 1;  // of Binary: that b has no value is no mistake
+constexpr std::int32_t kAbsentIsZero = 1;  // of Binary: a missing value of b is not a mistake
 
 /// One body of code.
 struct Function {

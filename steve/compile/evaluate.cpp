@@ -42,7 +42,7 @@ class FragmentScope final : public CompileScope {
   }
 };
 
-/// What can be done about a name that is not known is another thing here than in a file.
+/// The help for an unknown name differs here from that in a file.
 Diagnostics with_remedies(const Diagnostics& given, const std::vector<std::string_view>& known,
                           const SymbolTable& symbols, const ClassInfo& self, const Sources& sources) {
   Diagnostics out;
@@ -154,7 +154,7 @@ std::unique_ptr<Fragment> Fragments::compile(std::string_view text, const ClassI
     tree.parameters.push_back(std::move(hash));
     fragment->method = method_of(self);
     fragment->method->function = std::make_unique<Function>();
-    // What cannot be read is not compiled either: it would be reported twice.
+    // Statements with syntax errors are not compiled: the errors would be reported twice.
     if (scope.diagnostics().error_count() == 0)
       FunctionCompiler(scope, self, tree, *fragment->method, session.loop_variables).compile();
     fragment->diagnostics = with_remedies(scope.diagnostics(), known, program_->symbols_, self, program_->sources_);

@@ -1,9 +1,9 @@
 // Statements that are typed in while a program runs, compiled as though they stood in a method of one of its classes.
 //
-// A program never changes, and its code refers to strings, call sites and the like by number. So a world that evaluates
-// has a copy of the program's tables with room behind them (the classes and their code are shared); a fragment's
-// entries stand at the end while it is needed and are cut off again. Fragments end in the reverse order of their
-// beginning.
+// A program never changes, and its code refers to strings, call sites and other tables by number. So a world that
+// evaluates has a copy of the program's tables with room behind them (the classes and their code are shared); a
+// fragment's entries stand at the end while it is needed and are cut off again. Fragments end in the reverse order of
+// their beginning.
 #pragma once
 
 #include <memory>
@@ -38,7 +38,7 @@ class Fragments {
   /// room; the earlier one then lives on until `all_ended`, because running code may refer into it.
   const std::shared_ptr<Program>& program() const { return program_; }
   /// @param self   the class in whose method the statements stand
-  /// @param known  variables of the session; a name that is assigned and is no variable of `self` becomes one
+  /// @param known  variables of the session; a name that is assigned and is not a variable of `self` becomes one
   std::unique_ptr<Fragment> compile(std::string_view text, const ClassInfo& self,
                                     const std::vector<std::string_view>& known);
   /// Cut its entries off. It must be the last one that was made.
@@ -65,7 +65,7 @@ struct SessionUse {
   std::vector<std::string> loop_variables;  // hidden dynamic locals that stand for them in `foreach`
 };
 /// Turn the names of session variables into elements of the hash `%session`: those that are `known` or assigned, and
-/// are no variables of `self`.
+/// are not variables of `self`.
 SessionUse use_session(ast::Method& method, const ClassInfo& self, const SymbolTable& symbols,
                        const std::vector<std::string_view>& known);
 inline constexpr const char* kSessionVariable = "%session";  // a name that nobody can write

@@ -114,7 +114,7 @@ void ProgramBuilder::check_call(const ast::Call& call, const ast::Expr& e, const
        help);
 }
 
-// Calls that name a method in a string, which the world calls later: a wrong name is best told of before.
+// Calls that name a method in a string, which the world calls later: a wrong name is best reported before.
 void ProgramBuilder::check_method_named(const ast::Call& call, const ClassInfo* receiver) {
   struct Naming {
     std::string_view selector, keyword;
@@ -160,7 +160,7 @@ void ProgramBuilder::check_method_named(const ast::Call& call, const ClassInfo* 
   }
 }
 
-// A method that no class has: a variable, or the word of another language for what is none. "" if neither.
+// A method that no class has: a variable, or a word of another language. "" if neither.
 std::string ProgramBuilder::meant_by_method(const std::string& name) const {
   if (names_a_size(name)) return "the size of a list or of a text is written with bars: |list|";
   if (names_a_push(name)) return "to put a value into a list write: push value onto list";
@@ -235,7 +235,7 @@ void ProgramBuilder::check_overrides() {
         lint(method->span, "lint-bypassed-override",
              "calls without the optional keywords reach '" + symbol_name(method->name) + "' of class " +
                  winner->owner->name + ", not this one",
-             "define it here with the parent's parameters too, and call this one from there");
+             "also define it here with the parent's parameters, and call this one from there");
     }
   }
 }

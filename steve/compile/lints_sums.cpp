@@ -18,7 +18,7 @@ Sum sum_of(StaticType left, StaticType right) {
   return is_list(left) && is_list(right) ? Sum::OfLists : Sum::Fine;
 }
 
-/// Of the sum in an expression itself, not in its parts.
+/// Only for the sum in an expression itself, not in its parts.
 Sum sum_in(const ast::Expr& e, ValueTypes& types, const ast::Method& method, const ClassInfo& cls) {
   if (const auto* assign = std::get_if<ast::Assign>(&e.node); assign && assign->op == ast::BinaryOp::Add)
     return sum_of(types.of(*assign->target, method, cls), types.of(*assign->value, method, cls));

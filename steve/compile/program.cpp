@@ -1,4 +1,4 @@
-// What is known of a compiled program: symbols, classes, variables, methods.
+// Queries on a compiled program: symbols, classes, variables, methods.
 #include "steve/compile/program.hpp"
 
 #include <algorithm>

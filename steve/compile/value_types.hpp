@@ -17,7 +17,7 @@ class ValueTypes {
   /// Every method of the program is to be made known before the first question.
   void add(const ClassInfo& cls, const ast::Method& method, const MethodInfo& info);
 
-  /// `Any` if it is not known. Of a number of either kind: Double.
+  /// `Any` if it is not known, Double for a number of either kind.
   StaticType of(const ast::Expr& e, const ast::Method& method, const ClassInfo& cls);
   /// left op right
   static StaticType combined(ast::BinaryOp op, StaticType left, StaticType right);

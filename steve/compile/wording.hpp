@@ -17,7 +17,7 @@ std::string type_words(const ParameterInfo& parameter, const SymbolTable& symbol
 std::string keyword_words(const MethodInfo& method, const SymbolTable& symbols);
 /// "at" and "at and with-power" and "at, over and with-power".
 std::string joined(const std::vector<std::string>& words);
-/// What is wrong with a call that a method of that name does not take.
+/// The error in a call that a method of that name does not accept.
 struct CallFault {
   enum class Kind { UnknownKeyword, RepeatedKeyword, MissingKeyword } kind;
   std::string message, help;

@@ -27,7 +27,7 @@ std::string to_archive(Machine& machine, Instance& root);
 
 /// New objects out of an archive, made without `init`: variables, native data and bodies are set, then each object gets
 /// `post-dearchive-set-controller` and `dearchive`, dependencies first. Yields the root.
-/// @throws Error{File} for text that is no archive, a class or variable that the program does not have, or a
+/// @throws Error{File} for text that is not an archive, a class or variable that the program does not have, or a
 /// `dearchive`
 ///         that yields 0; no object of the archive is left then
 Instance* from_archive(Machine& machine, std::string_view xml);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kKinds[] = {"mobile", "stationary", "link"};
 
-/// Every number and flag of a body's material and look that is no reference.
+/// Every number and flag of a body's material and look that is not a reference.
 template <class Material, class Look, class Visit>
 void for_each_setting(Material& material, Look& look, Visit visit) {
   visit(material.restitution);

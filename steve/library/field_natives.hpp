@@ -7,7 +7,7 @@
 namespace breve::steve {
 
 /// The field of an object that must have been given a size.
-/// @throws RunError{NullObject} if it has none, or if it is no object with a field
+/// @throws RunError{NullObject} if it has none, or if it is not an object with a field
 inline Field& field_of(Machine& machine, Instance* object, std::string_view what) {
   Instance& live = must_live(object, what);
   FieldResource* resource = resource_of<FieldResource>(machine, &live);
@@ -82,7 +82,7 @@ inline void diffuse_periodically(Machine& machine, Instance& self, double factor
   field.spread_periodic(factor, machine.poller());
 }
 
-/// Takes the other's size as well.
+/// Also takes the other's size.
 inline void copy(Machine& machine, Instance& self, Instance* other) {
   const Field& source = field_of(machine, other, "copy");
   machine.charge_for(source.size());

@@ -1,4 +1,4 @@
-// What stands behind PatchGrid objects: the cells as arrays, and the Patch objects of those that a script asked for.
+// The data of PatchGrid objects: the cells as arrays, and the Patch objects of those that a script asked for.
 #pragma once
 
 #include <memory_resource>
@@ -58,7 +58,7 @@ Instance* patch_of(Machine& machine, Instance& grid, CellIndex cell);
 Field* chemical_field(Machine& machine, Instance& grid, Instance& chemical);
 
 /// Does a class of patches have variables or methods of its own, so that its objects cannot be made later?
-/// @throws RunError{UnknownClass}, Error{Argument} if there is no such class or it is no Patch
+/// @throws RunError{UnknownClass}, Error{Argument} if there is no such class or it is not a Patch
 bool has_code(Machine& machine, std::string_view patch_class);
 
 // KEEP IN STEP: the variables of Object and Patch come in this order (Object.tz, Patch.tz).

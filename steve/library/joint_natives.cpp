@@ -25,7 +25,7 @@ void change_drive(Machine& machine, Instance& self, std::string_view selector, C
   drive_joint(machine, self, joint, drive);
 }
 
-/// Of a linked joint, or else zero.
+/// The value of a linked joint, otherwise zero.
 template <class Read>
 auto read(Machine& machine, Instance& self, Read get) -> decltype(get(dynamics_of(machine), JointIndex{})) {
   const JointIndex joint = joint_of(machine, self);

@@ -52,7 +52,7 @@ inline constexpr double kBallMiddle = std::numbers::pi / 2 - 0.35;  // rad, alwa
 
 /// Is the class of this object the library's class of that name, or derived from it?
 bool is_library_kind(const Instance& object, std::string_view library_class);
-/// Error{Argument} if the object is no RevoluteJoint, PrismaticJoint, FixedJoint, UniversalJoint or BallJoint.
+/// Error{Argument} if the object is not a RevoluteJoint, PrismaticJoint, FixedJoint, UniversalJoint or BallJoint.
 JointKind joint_kind(const Instance& joint);
 /// What dynamics has for a Joint object; kNoJoint if it is not linked.
 JointIndex joint_of(Machine& machine, const Instance& joint);

@@ -1,4 +1,4 @@
-// What drives joints, and what programs are told about motors that do not fit.
+// Motors of joints, and the reports to programs about motors that do not fit.
 #pragma once
 
 #include "steve/library/joints.hpp"

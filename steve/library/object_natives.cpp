@@ -40,7 +40,7 @@ std::int32_t object_can_respond(Machine& machine, Instance& self, Text method) {
 
 // --- schedule --------------------------------------------------------------------------------------------------------
 
-// The method may come with a reload, so that it is no error yet.
+// The method may come with a reload, so it is not an error yet.
 void check_scheduled(Machine& machine, const Instance& self, Text method) {
   if (!machine.find_method(*self.cls, view(method), 0))
     machine.report_unknown_method(
@@ -134,7 +134,7 @@ Instance* data_send(Machine&, Instance&, Text, std::int32_t) { no_network("send"
 
 // --- obsolete --------------------------------------------------------------------------------------------------------
 
-/// What a program gets that asks for a dialog where there is none: 1.
+/// The answer to a program that asks for a dialog without a user: 1.
 template <Selector S>
 std::int32_t obsolete_dialog(Machine& machine, Instance& self) {
   obsolete<S>(machine, self);

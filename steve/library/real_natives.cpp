@@ -36,7 +36,7 @@ void real_set_target_rotation(Machine& machine, Instance& self, Matrix3 rotation
 
 void real_move(Machine& machine, Instance& self, Vector3 location) {
   const BodyIndex body = body_of(machine, self);
-  // What is not finite is refused as it is.
+  // A matrix that is not finite is refused unchanged.
   machine.world().leave(body);
   bodies_of(machine).set_location(body, location.allFinite() ? machine.world().space().inside(location) : location);
   moved(machine, body);

@@ -80,7 +80,7 @@ Slot* library_slot(Machine& machine, Instance& self, std::string_view owner, std
 /// An object variable of a library class as library_slot finds it; null if there is none or its object is not live.
 Instance* library_object(Machine& machine, Instance& self, std::string_view owner, std::string_view name);
 
-/// Store an object in a variable of a library class, with counting. Nothing if there is no such variable.
+/// Store an object in a variable of a library class, with counting. Does nothing if there is no such variable.
 void set_library_object(Machine& machine, Instance& self, std::string_view owner, std::string_view name,
                         Instance* object);
 

@@ -1,4 +1,4 @@
-// What is said when a call cannot be made: about its receiver, its method, its keywords.
+// The messages for a call that cannot be made: about its receiver, its method, its keywords.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -132,7 +132,7 @@ struct HashCell : Container {
   explicit HashCell(std::uint64_t s) : Container(Tag::Hash), serial(s) {}
 };
 
-/// What a pointer value refers to: an open file and the like. Closed by its destructor.
+/// What a pointer value refers to: for example an open file. Closed by its destructor.
 class NativePointer {
  public:
   virtual ~NativePointer() = default;

@@ -1,5 +1,5 @@
 // The collector of the whole heap, for cycles that suspects.cpp leaves: it marks from what is alive when it begins and
-// takes apart what it did not reach, in slices of counted work. What is in no cycle never needs it. Its state is the
+// takes apart what it did not reach, in slices of counted work. Cells outside of cycles never need it. Its state is the
 // table of containers with a mark for each place and a queue of places, so that a snapshot can keep it exactly.
 //
 // Instances without auto-free are alive by themselves and have their turn in the order of the table, which is nearly
@@ -188,7 +188,8 @@ void Heap::doom_condemned() {
   share_ = (dying_.size() + iterations - 1) / iterations;
 }
 
-// Of what dies in cycles a share in each iteration, so that a collection that ends does not end in a long pause.
+// A share of the garbage in cycles is freed in each iteration, so that a collection that ends does not end in a long
+// pause.
 void Heap::free_dying() {
   for (std::uint64_t left = share_; left > 0 && !dying_.empty(); --left) {
     Instance* dying = dying_.back().instance;

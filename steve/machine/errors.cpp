@@ -65,8 +65,8 @@ void Machine::rethrow(std::size_t depth, const Instruction* pc) {
                                                                   : ErrorCode::Script;
     wrap(code, error);
   } catch (const Error& error) {
-    // What the world has no more of, or only a defect of ours makes happen, is no mistake of the script, which could go
-    // on after one.
+    // What the world has no more of, or only a defect of ours makes happen, is not a mistake of the script, which
+    // could go on after one.
     const bool kept =
         error.code() == ErrorCode::Memory || error.code() == ErrorCode::Budget || error.code() == ErrorCode::Internal;
     wrap(kept ? error.code() : ErrorCode::Script, RunError(RunErrorKind::World, error.what()));
@@ -76,7 +76,7 @@ void Machine::rethrow(std::size_t depth, const Instruction* pc) {
   throw Error(ErrorCode::Script, "unreachable");
 }
 
-// The place is told if there is memory left to tell it.
+// The position is included if there is memory left for it.
 void Machine::throw_out_of_memory(std::size_t depth, const Instruction* pc) {
   ErrorReport r;
   try {
@@ -104,7 +104,7 @@ void Machine::print(std::string_view text) {
   host_.print(text);
 }
 
-/// Counts each, and makes the text of those alone that are told.
+/// Counts each, and makes the text only of those that are reported.
 template <class Text>
 void Machine::tell(Severity severity, Text&& text) {
   const auto& to = severity == Severity::Error ? host_.error : host_.warn;

@@ -18,7 +18,7 @@ class FileReader {
   virtual ~FileReader() = default;
   /// Up to `size` bytes; 0 at the end. Throws Error{File} if they cannot be read.
   virtual std::size_t read(char* bytes, std::size_t size) = 0;
-  virtual const std::string& path() const = 0;  // as scripts are told it; it opens the same file
+  virtual const std::string& path() const = 0;  // as scripts see it; it opens the same file
 };
 
 /// A file that is open for writing. Its destructor closes it, and nobody hears if that fails.
@@ -47,7 +47,7 @@ std::unique_ptr<FileWriter> open_for_writing(Machine& machine, std::string_view 
 /// All of it. Throws Error{File} as above, or if it is larger than kMostFileBytes.
 std::string read_file(Machine& machine, std::string_view name);
 void write_file(Machine& machine, std::string_view name, std::string_view bytes);
-/// The path of a file that can be opened for reading, as scripts are told it; "" if it cannot.
+/// The path of a file that can be opened for reading, as scripts see it; "" if it cannot.
 std::string find_file(Machine& machine, std::string_view name);
 
 }  // namespace breve::steve

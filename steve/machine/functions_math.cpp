@@ -15,7 +15,7 @@ namespace breve::steve {
 
 namespace {
 
-/// A result that is no number is a warning, once per function.
+/// A result that is not a number gives a warning, once per function.
 double checked(Machine& machine, std::string_view name, double argument, double result) {
   if (!std::isfinite(result)) [[unlikely]]
     machine.warn_once(name, fmt::format("{}({:f}) is {:f}", name, argument, result));

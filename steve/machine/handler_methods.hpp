@@ -14,7 +14,7 @@ namespace breve::steve {
 
 class HandlerMethods {
  public:
-  /// Of a name, by count of parameters; null where the class has none.
+  /// The methods of a name, by number of parameters; null if the class has none.
   using ByCount = std::array<const MethodInfo*, 6>;
 
   explicit HandlerMethods(std::pmr::memory_resource* memory) : by_class_(memory) {}

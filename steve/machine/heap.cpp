@@ -389,7 +389,7 @@ bool Heap::reclaim_round() {
       ++visited;
     });
     // Last in, first out: freeing a cell puts its children at the end, so the table never outgrows the heap, and a
-    // structure however deep goes without recursion. What must stay gathers at the front.
+    // structure however deep goes without recursion. Cells that must stay are gathered at the front.
     std::size_t kept = 0;
     do {
       while (zero_.size() > kept) {

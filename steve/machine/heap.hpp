@@ -176,7 +176,7 @@ class Heap : public InMemory {
   // --- snapshots -----------------------------------------------------------------------------------------------------
 
   // A snapshot writes the cells in the order of containers() (garbage not yet collected included), then those of
-  // waiting() that are no containers, then save_state. Restoring makes the containers in the same order in an empty
+  // waiting() that are not containers, then save_state. Restoring makes the containers in the same order in an empty
   // heap, gives them their serials and contents (retaining), and calls load_state last: the restored heap then collects
   // at the same iterations and safe points as the saved one.
 

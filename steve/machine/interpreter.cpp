@@ -4,7 +4,7 @@
 // The loop is compiled twice: execute<true> tells the profiler what it calls, execute<false> does not know of it and
 // costs nothing. KEEP IN STEP: profile. Whatever enters a script's frame says profile_call before, whatever leaves one
 // that the loop itself entered says profile_leave; natives, functions and reclaiming go through the ..._profiled
-// helpers (profiled.cpp) if kProfiled. What is left by an exception needs nothing: the catch block below leaves it.
+// helpers (profiled.cpp) if kProfiled. Frames left by an exception need no cleanup: the catch block below leaves them.
 #include <bit>
 #include <cmath>
 #include <cstring>

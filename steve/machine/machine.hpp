@@ -130,12 +130,12 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   /// RunError{Bounds} where an iteration or a call by the host has printed too much.
   void print(std::string_view text);
   /// A warning with the place of the running statement in front. Of warnings and errors that do not stop the run the
-  /// first thousand of an iteration, or of a call by the host, are told.
+  /// first thousand of an iteration, or of a call by the host, are reported.
   void warn(std::string_view text);
   /// The same, at most once per world for each `key`.
   void warn_once(std::string_view key, std::string_view text);
-  /// Say, at the place of the running statement, that `self` has no such method and which may be meant. An error is
-  /// told each time, and a warning once for each class.
+  /// Say, at the place of the running statement, that `self` has no such method and which may be meant. An error
+  /// is reported each time, a warning once for each class.
   /// @param consequence  "nothing is registered"
   void report_unknown_method(Severity severity, const Instance& self, std::string_view method,
                              std::string_view consequence);
@@ -306,7 +306,7 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   // call_errors.cpp
   [[noreturn]] void fail_call(const CallSite& site, const ClassInfo& cls, const MethodInfo* best) const;
   [[noreturn]] void fail_unknown_method(const CallSite& site, const ClassInfo* start) const;
-  /// What stands before a selector, as it is written, and where it comes from if it is a variable.
+  /// The expression before a selector, as it is written, and where it comes from if it is a variable.
   struct Receiver {
     std::string text;
     Span span;

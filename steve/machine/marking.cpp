@@ -164,8 +164,8 @@ void Heap::Marker::scan(Container& cell, std::int64_t& work) {
   scan_part(work);
 }
 
-// Positions count from the start of the store, so that adding and removing at either end does not shift them. What is
-// removed unseen is shaded by `release`.
+// Positions count from the start of the store, so that adding and removing at either end does not shift them. Elements
+// that are removed unseen are shaded by `release`.
 void Heap::Marker::scan_part(std::int64_t& work) {
   constexpr std::int64_t kPiece = 1024;  // elements, so that what they refer to is counted in time
   const auto most = static_cast<std::uint32_t>(std::clamp<std::int64_t>(work, 1, kPiece));

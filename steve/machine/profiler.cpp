@@ -1,5 +1,5 @@
-// The tree of calls while it grows. What is entered again from the same line is found by the child entered last or the
-// one behind it, so that loops cost no search.
+// The tree of calls while it grows. A node that is entered again from the same line is found by the child entered last
+// or the one behind it, so that loops cost no search.
 #include "steve/machine/profiler.hpp"
 
 #include <algorithm>

@@ -137,7 +137,7 @@ void Reload::fill(const Instance& from, Instance& to) {
     if (is_reference(variable->type)) drop(from.slots + variable->slot, element_count(*variable));
 }
 
-/// The counts of the old heap are the new one's until the collector's state is carried over; then they are let go.
+/// The counts of the old heap are the new one's until the collector's state is carried over; then they are released.
 void Reload::drop(const Slot* slots, std::uint32_t count) {
   for (std::uint32_t i = 0; i < count; ++i) {
     if (!slots[i].ref) continue;

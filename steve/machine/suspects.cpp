@@ -26,7 +26,7 @@ constexpr std::int64_t kSuspect = 2;        // to begin with one
 constexpr std::uint8_t kHeld = 1;    // by a frame: neither part of a region nor looked into
 constexpr std::uint8_t kInside = 2;  // part of the region
 constexpr std::uint8_t kAlive = 3;   // part of it, and reached from outside
-constexpr std::uint8_t kJudged = 4;  // a suspect that a region has told of
+constexpr std::uint8_t kJudged = 4;  // a suspect that a region has reported
 constexpr std::uint8_t kFar = 5;     // a suspect that leads farther than kRegion
 
 // Other instances are alive until they are freed, whoever refers to them.

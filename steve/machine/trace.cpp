@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kLongestArgument = 60;     // bytes
 constexpr std::size_t kLongestArguments = 160;   // bytes
-constexpr std::size_t kDescribedAtEachEnd = 64;  // calls whose values are told: the ends of a deep recursion
+constexpr std::size_t kDescribedAtEachEnd = 64;  // calls whose values are shown: the ends of a deep recursion
 constexpr std::size_t kLongestCycle = 4;         // methods that call one another without end
 constexpr std::size_t kShownOfRun = 3;           // rounds of a recursion that are shown before the fold
 constexpr std::size_t kShownLines = 24;

@@ -139,7 +139,7 @@ enum class RunErrorKind : std::uint8_t {
 /// Thrown by everything under the interpreter; the interpreter adds the place and the chain of calls.
 class RunError : public Error {
  public:
-  /// @param help   what to do, for who wrote the program; "" if the message says it all
+  /// @param help   what to do, for the author of the program; "" if the message is sufficient
   /// @param place  what is meant, where that is less than the running expression
   RunError(RunErrorKind kind, const std::string& message, std::string help = {}, const Span& place = {})
       : Error(ErrorCode::Script, message), kind_(kind), help_(std::move(help)), place_(place) {}

@@ -9,7 +9,7 @@ namespace breve::steve {
 // Is what began at `start` a primary and nothing more, with the name of a method behind it?
 bool Parser::at_call(std::size_t start) const { return primary_start_ == start && primary_end_ == pos_ && at_name(); }
 
-// A name on a new line is no selector, but begins a statement, if what follows it cannot follow a selector.
+// A name on a new line is not a selector, but begins a statement, if what follows it cannot follow a selector.
 bool Parser::run_on_call() const {
   if (!token().starts_line) return false;
   const Token& receiver = previous();
@@ -103,7 +103,7 @@ void Parser::fail_keyword(const ast::Call& call, std::size_t start, std::size_t 
        fmt::format("write the value behind it: {} {} value", call.selector, name.text));
 }
 
-// What is wrong with a primary that has a selector behind it, where only a value can stand.
+// The error in a primary that is followed by a selector, where only a value can stand.
 Diagnostic Parser::call_mistake() {
   const Token& last = previous();
   const Token& selector = token();

@@ -1,4 +1,4 @@
-// What stands at the top of a file: directives, constants, classes; and the body of a class down to its methods.
+// The top level of a file: directives, constants, classes; and the body of a class down to its methods.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -180,7 +180,7 @@ double Parser::version_number() {
   return version;
 }
 
-// @define NAME literal. The same definition twice is no error.
+// @define NAME literal. Repeating the same definition is not an error.
 void Parser::define() {
   const Span place = items_[pos_ - 1].token->span;
   advance();

@@ -41,7 +41,7 @@ class Diagnostics {
 /// At most `bytes` of a text, cut between characters and ended by `…`.
 std::string cut(std::string_view text, std::size_t bytes);
 
-/// How much of a message is told.
+/// How much of a message is shown.
 inline constexpr std::size_t kLongestMessage = 4000;  // bytes
 
 /// "file:line:col: error: message", the source line with a caret under the span, and "help: ..." on a line of its own.

@@ -80,7 +80,7 @@ void Parser::header_parentheses(std::string_view name, bool reported) {
   advance();
 }
 
-// `int x;` and the like at the beginning of a statement: read as the declarations that were meant.
+// `int x;` and similar text at the beginning of a statement: read as the declarations that were meant.
 bool Parser::foreign_declaration() {
   const bool typed = is_type_word(item().word) && at_name(1);
   const bool untyped = one_of(token().text, {"var", "let", "const", "local", "auto"}) && at_name() && at_name(1) &&
@@ -109,7 +109,7 @@ bool Parser::foreign_declaration() {
   return true;
 }
 
-// At the beginning of a statement: something that is none, and is skipped once it is reported.
+// At the beginning of a statement: something that is not a statement, and is skipped once it is reported.
 bool Parser::foreign_statement() {
   if (at("%")) {
     error(token().span, "comment", "a comment after a statement begins with '#'",
@@ -143,7 +143,7 @@ bool Parser::at_elif() const {
   return at_name() && one_of(token().text, {"elif", "elseif", "elsif"}) && !at_assignment(1) && !at(".", 1);
 }
 
-// What is wrong with the sign or word that stands where a statement should end.
+// The error for a sign or word at the place where a statement should end.
 Diagnostic Parser::after_statement(std::size_t start) {
   const auto made = [&](std::string code, std::string message, std::string help) {
     return Diagnostic{Severity::Error, std::move(code), std::move(message), std::move(help), token().span};

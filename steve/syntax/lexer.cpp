@@ -29,7 +29,7 @@ bool is_expected(char c) {
          std::string_view(" \t\r\n\"'#").find(c) != std::string_view::npos;
 }
 
-// Of a number out of range: is it too small, rather than too large?
+// Is a number that is out of range too small, rather than too large?
 bool is_tiny(std::string_view digits) {
   const std::size_t exponent = digits.find_first_of("eE");
   if (exponent != std::string_view::npos) return digits[exponent + 1] == '-';

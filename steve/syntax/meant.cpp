@@ -41,8 +41,8 @@ const Parser::FileNames& Parser::names_of_file() {
   return names;
 }
 
-// Any name may be one of a session. Classes of the library give their children one variable. What other languages call
-// the object itself is told of where names are looked up.
+// Any name may be one of a session. Classes of the library give their children one variable. Other languages' names
+// for the object itself are reported where names are looked up.
 bool Parser::is_variable(const Token& name) {
   return interactive_ || name.text == "controller" || name.text == "this" || name.text == "me" ||
          names_of_file().variables.contains(name.text) || constant_named(name.text) != nullptr;

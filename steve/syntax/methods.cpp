@@ -279,7 +279,7 @@ ast::TypeRef Parser::array_type() {
   return result;
 }
 
-// What stands in the parentheses of a type and is none: reported, and read as far as the ')'.
+// Something in the parentheses of a type that is not a type: reported, and read as far as the ')'.
 void Parser::broken_type(ast::TypeRef& result) {
   result.broken = true;
   const Span place = token().span;

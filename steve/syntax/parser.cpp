@@ -202,7 +202,7 @@ bool Parser::at_class_header(std::size_t ahead) const {
          (at("[", ahead + 3) && at_word(Word::Version, ahead + 4));
 }
 
-// Constants of the program's files are no business of the class library's files.
+// Constants of the program's files are invisible in the class library's files.
 const ast::Constant* Parser::constant_named(std::string_view name) const {
   const auto found = defines_.find(name);
   if (found == defines_.end()) return nullptr;

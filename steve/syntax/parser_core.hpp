@@ -68,7 +68,7 @@ class Parser {
   bool at(std::string_view text, std::size_t ahead = 0) const { return item(ahead).sign == sign(text); }
   bool at_word(Word word, std::size_t ahead = 0) const { return item(ahead).word == word; }
   bool at_text(std::string_view name, std::size_t ahead = 0) const;
-  bool at_name(std::size_t ahead = 0) const;  // a name that is no reserved word
+  bool at_name(std::size_t ahead = 0) const;  // a name that is not a reserved word
   bool at_closing() const;
   bool at_end() const { return token().kind == TokenKind::End; }
   bool at_kind(TokenKind kind, std::size_t ahead = 0) const { return token(ahead).kind == kind; }
@@ -280,8 +280,8 @@ class Parser {
   bool elif_reported_ = false;
   bool method_brace_ = false;               // a '{' stood in place of the ':' of the method header
   bool header_colon_ = false;               // the ':' of the method header was read, too early
-  bool open_brace_reported_ = false;        // a '{' has no '}': that those around it lack theirs is no news
-  bool cut_off_ = false;                    // the scanner gave up: what the parser misses is no news
+  bool open_brace_reported_ = false;        // a '{' has no '}': missing braces around it are not reported
+  bool cut_off_ = false;                    // the scanner gave up: errors of the parser are not reported
   std::set<std::uint32_t> garbled_lines_;   // lines with errors of the scanner: what the parser says there is no news
   std::vector<ast::Variable> late_locals_;  // declared after a statement: reported, and yet declared
   std::set<Word> misused_;                  // reserved words that were reported as names

@@ -61,7 +61,7 @@ class Scanner {
   bool in_string_;
   Diagnostics& diagnostics_;
   std::vector<Token> tokens_;
-  std::size_t last_ = 0;  // index of the last token that is no documentation
+  std::size_t last_ = 0;  // index of the last token that is not documentation
   bool has_last_ = false;
   std::uint32_t line_ = 1;
   std::size_t line_start_ = 0;

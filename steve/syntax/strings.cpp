@@ -1,8 +1,8 @@
 // String expressions: escapes, and the references after '$'.
 //
 // A reference is `$name`, `$name{3}`, `$name[3]`, the same in braces (`${name}`), or an expression in braces. Old
-// programs know no expressions: where the braces hold a name and something that is no expression, the name alone is the
-// reference and the rest is text, as ever.
+// programs know no expressions: where the braces hold a name and something that is not an expression, the name alone is
+// the reference and the rest is text, as ever.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ std::size_t literal_index(std::string_view raw, std::size_t i, std::int32_t& val
   return last < raw.size() && raw[last] == close ? last + 1 : std::string_view::npos;
 }
 
-// Of each '{' of the text the position of its '}', or 0.
+// For each '{' of the text the position of its '}', or 0.
 std::vector<std::uint32_t> match_braces(std::string_view raw) {
   std::vector<std::uint32_t> match(raw.size(), 0);
   std::vector<std::uint32_t> open;

@@ -69,11 +69,11 @@ Word word_of(std::string_view text);
 
 /// What to write in place of a type of other languages, such as `integer`; "" if it is not known as one.
 std::string_view foreign_type(std::string_view word);
-/// `length`, `size` and the like: what other languages call the size of a list.
+/// `length`, `size` and similar words: what other languages call the size of a list.
 bool names_a_size(std::string_view word);
-/// `add`, `append` and the like: what other languages call putting something into a list.
+/// `add`, `append` and similar words: what other languages call adding to a list.
 bool names_a_push(std::string_view word);
-/// `println`, `echo` and the like.
+/// `println`, `echo` and similar words.
 bool names_a_print(std::string_view word);
 /// A word that is reserved in small letters, such as `Print`: that spelling; else "".
 std::string reserved_in_small(std::string_view word);

@@ -6,7 +6,7 @@
  *     breve_analysis_create(runtime, "hello.tz", text, size, &analysis);
  *     for (i = 0; i < breve_analysis_symbol_count(analysis); ++i) breve_analysis_symbol(analysis, i, &symbol);
  *
- * The rules of breve.h apply here as well.
+ * The rules of breve.h also apply here.
  */
 #ifndef BREVE_ANALYSIS_H
 #define BREVE_ANALYSIS_H

@@ -180,7 +180,7 @@ typedef void (*breve_print_fn)(void* user, breve_world* world, breve_channel cha
    BREVE_ERROR_MEMORY. All memory that a world keeps is allocated here, by the thread that uses the world; while that
    thread computes physics with several workers (breve_world_set_workers), by any of these, one at a time. Programs and
    runtimes, which do not belong to a world, and texts that live for one call use the C++ allocator; if that runs out of
-   memory, the call returns BREVE_ERROR_MEMORY as well. See docs/limits.md. */
+   memory, the call also returns BREVE_ERROR_MEMORY. See docs/limits.md. */
 typedef void* (*breve_allocate_fn)(void* user, size_t size, size_t alignment);
 
 /* Releases memory of breve_allocate_fn, with the same size and alignment. */
@@ -1033,7 +1033,7 @@ BREVE_API breve_status breve_world_set_gravity(breve_world* world, const double 
 
 /* What happens at the ends of space along an axis. */
 typedef enum breve_edge {
-  BREVE_EDGE_OPEN = 0, /* there are none; the default for all axes */
+  BREVE_EDGE_OPEN = 0, /* space is unbounded; the default for all axes */
   BREVE_EDGE_WRAP = 1, /* a body that leaves at one end returns at the other; distances and neighbours work across it */
   BREVE_EDGE_WALL = 2  /* walls that reflect the centres of bodies */
 } breve_edge;
@@ -1179,7 +1179,7 @@ typedef struct breve_physics_counters {
   uint64_t direct;   /* islands solved directly */
   uint64_t sleeping; /* bodies asleep now */
   uint64_t interventions;
-  /* Of the solver, m/s: the largest violation of the velocity that a contact, limit, motor or loop requires; if rows
+  /* In m/s: the largest violation in the solver of the velocity that a contact, limit, motor or loop requires; if rows
      were swept, the largest change in the last sweep. 0 in a flat world, whose engine does not report it. */
   double residual;
   uint64_t work; /* units, see `physics_budget` */
