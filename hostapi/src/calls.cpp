@@ -59,7 +59,7 @@ std::uint32_t digest(const Selector& selector) {
   Hasher hasher;
   hasher.add(std::string_view(selector.method));
   for (const auto& keyword : selector.keywords) hasher.add(std::string_view(keyword));
-  return static_cast<std::uint32_t>(hasher.value() >> 32) | 1U;  // the all-zero selector is none
+  return static_cast<std::uint32_t>(hasher.value() >> 32) | 1U;  // the all-zero selector is invalid
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ class Adaptive final : public Integrator::Method {
     double t = at.t;
     q_ = at.q;
     v_ = at.v;
-    // What is remembered may be from a step that an event cut to a sliver.
+    // The stored step size may come from a step that an event cut to a sliver.
     double next = at.step > 0 ? std::max(at.step, settings_.tolerance.smallest_step) : h;
     bool rejected = false;
     for (int attempts = 0; t < end; ++attempts) {

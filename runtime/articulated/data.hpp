@@ -9,7 +9,7 @@
 
 namespace breve::articulated {
 
-/// One link, world axes, moments about its own origin. What is written by which pass is said by the algorithms.
+/// One link, world axes, moments about its own origin. The algorithms state which pass writes which field.
 struct Work {
   Matrix3 rotation = Matrix3::Identity();  // world = rotation * body
   Vector3 offset = Vector3::Zero();        // from the parent's origin to this one

@@ -26,7 +26,7 @@ void impulse_response(const Model& model, Data& data, std::span<const Impulse> i
 void apply_inverse_mass(const Model& model, Data& data, const Vector& f, Vector& out);
 
 /// W with dv = W P: the change of the velocity of b's point relative to a's, by an impulse P on b and -P on a.
-/// Symmetric and positive semidefinite in floating point too, being a sum of squares: W = sum over joints of u^T D^-1
+/// Symmetric and positive semidefinite, also in floating point, being a sum of squares: W = sum over joints of u^T D^-1
 /// u, where u is what of the impulse the joint does not take up. Links of one model; -1 is the world. For two models
 /// add each one's W against the world. 1/kg. Source: the square factors of the inverse mass matrix, Rodriguez, Jain,
 /// Kreutz-Delgado 1991.

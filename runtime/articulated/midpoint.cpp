@@ -77,8 +77,8 @@ bool Midpoint::find_mean(const Instant& at, double h) {
   return false;
 }
 
-/// Of the velocity, by kind and size. Infinite where a number is not finite. Accounts, which change nothing, are taken
-/// as right.
+/// The error of the velocity, by kind and size. Infinite where a number is not finite. Accounts, which change nothing,
+/// are taken as right.
 double Midpoint::largest_change() {
   double largest = 0;
   for (int i = 0; i < static_cast<int>(u_.size()); ++i) {

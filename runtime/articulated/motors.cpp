@@ -18,7 +18,7 @@ void limit_force(double limit, V force) {
   if (size > limit) force *= limit / size;
 }
 
-/// Of a universal joint each motor has the limit for itself, of a ball joint all three share it: first velocity and
+/// Each motor of a universal joint has the limit for itself, the three of a ball joint share it: first velocity and
 /// count of each.
 template <class F>
 void for_each_motor(const Body& body, F f) {

@@ -52,7 +52,7 @@ struct BodyState {
   bool physics = false;
 };
 
-/// Of a physics-enabled body, copied from its shape when that was set or physics was switched on.
+/// The mass of a physics-enabled body, copied from its shape when that was set or physics was switched on.
 struct MassProperties {
   double mass = 1;                           // kg
   Matrix3 inertia = Matrix3::Identity();     // about the centre of mass, own frame, kg*m^2
@@ -61,7 +61,7 @@ struct MassProperties {
   friend bool operator==(const MassProperties&, const MassProperties&) = default;
 };
 
-/// Who follows where bodies are put, each at a pace of its own.
+/// The observers of bodies that are moved by setters, each at a pace of its own.
 enum class Follower : std::uint8_t { Collisions, Dynamics };
 inline constexpr std::size_t kFollowers = 2;
 

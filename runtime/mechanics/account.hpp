@@ -21,7 +21,7 @@ struct Energy {
   double friction_loss = 0;  // in them, along the surface
   double drag_loss = 0;      // of dampers: of joints and Springs
   double limit_loss = 0;     // at the limits of joints
-  double residual = 0;       // what no account explains: the error of the method
+  double residual = 0;       // unexplained energy: the error of the method
 
   double total() const { return kinetic + potential + springs; }
 };

@@ -70,7 +70,7 @@ void check(const JointDescription& is, const Bodies& bodies) {
   if (is.parent == is.child) refuse(fmt::format("{} joint: parent and child are the same body", kind));
   need_finite(is.parent_point, fmt::format("{} joint: the parent's point", kind));
   need_finite(is.child_point, fmt::format("{} joint: the child's point", kind));
-  // Moments of inertia about a joint have products of such lengths: farther away they are no numbers any more.
+  // Moments of inertia about a joint have products of such lengths: farther away they are no longer finite.
   constexpr double kFarthest = 1e15;  // m
   for (const auto& [point, owner] : {std::pair{&is.parent_point, "parent"}, {&is.child_point, "child"}})
     if (!(point->cwiseAbs().maxCoeff() <= kFarthest))

@@ -29,9 +29,9 @@ std::string_view name_of(JointKind kind);
 
 /// Which two bodies, and where. Position and velocity of a joint are positive when the *parent* turns or moves along
 /// +axis relative to the child, so the child along -axis. Axes of a universal joint: `normal`, fixed in the parent, and
-/// parent_point x normal, fixed in the child (some perpendicular of the normal, if that is zero). Of a ball joint:
-/// Euler's angles about the normal (parent), a derived axis, and the direction of parent_point without its part along
-/// the normal (child).
+/// parent_point x normal, fixed in the child (some perpendicular of the normal, if that is zero). For a ball
+/// joint: Euler's angles about the normal (parent), a derived axis, and the direction of parent_point without its part
+/// along the normal (child).
 struct JointDescription {
   JointKind kind = JointKind::Revolute;
   BodyIndex parent = kNoBody;                // kNoBody: the world
@@ -68,8 +68,8 @@ struct JointDrive {
   double limit_restitution = 0;  // at the limits, 0 to 1
 };
 
-/// Error{Argument} naming the property: a child that is no body or is Stationary, parent and child the same, a point,
-/// rotation or normal that is not finite or has no direction.
+/// Error{Argument} naming the property: a child that is not a body or is Stationary, parent and child the same, a
+/// point, rotation or normal that is not finite or has no direction.
 void check(const JointDescription& is, const Bodies& bodies);
 /// Error{Argument} naming the number that is not finite, negative where it must not be, or a low limit above a high
 /// one.

@@ -1,5 +1,6 @@
-// What moves the bodies that have forces: joints, contacts, accuracy, energy, guard. This is all that the world, native
-// methods and the C API see of it; behind it stands runtime/dynamics in space, runtime/planar in a flat world.
+// The interface to the motion of bodies with forces: joints, contacts, accuracy, energy, guard. This is all that the
+// world, native methods and the C API see of it; behind it stands runtime/dynamics in space, runtime/planar in a flat
+// world.
 //
 // The arrays of runtime/kinematics stay what everybody reads: poses and velocities are written there. Between two calls
 // of advance() a script may set anything there; what it set is found at the next advance() (or at once by
@@ -63,7 +64,8 @@ class Mechanics : public InMemory {
   /// coincide; if it is connected with the parent already, the joint closes a ring: nothing is moved, and the joint
   /// becomes a constraint. A child that is held by the world already closes a ring too.
   /// @param owner  the object behind it, for messages and for who_asked; may be null
-  /// @throws Error{Argument} naming the property: a child that is no body or is Stationary, parent and child the same,
+  /// @throws Error{Argument} naming the property: a child that is not a body or is Stationary, parent and child the
+  /// same,
   ///         a point, rotation or normal that is not finite or has no direction. Nothing is changed then
   virtual JointIndex link(const JointDescription& description, ObjectId owner) = 0;
   virtual void unlink(JointIndex joint) = 0;
@@ -90,7 +92,7 @@ class Mechanics : public InMemory {
   virtual void set_position(JointIndex joint, const JointVector& position) = 0;
   virtual void set_velocity(JointIndex joint, const JointVector& velocity) = 0;
   /// The same for a ball joint, without angles: at zero turned by `turn`, child relative to parent, in the parent's
-  /// axes, and spinning so. Errors as above, and if it is no ball joint.
+  /// axes, and spinning so. Errors as above, and if it is not a ball joint.
   virtual void set_ball(JointIndex joint, const Quaternion& turn, const Vector3& spin) = 0;
   /// At this moment, from the forces that act now (those of joints that close rings too) and those that contacts and
   /// limits had in the last sub-step.
@@ -99,8 +101,8 @@ class Mechanics : public InMemory {
   // --- assemblies: bodies that joints connect ---------------------------------------------------------------------
   virtual bool jointed(BodyIndex a, BodyIndex b) const = 0;        // directly
   virtual bool same_assembly(BodyIndex a, BodyIndex b) const = 0;  // through joints
-  /// All bodies that joints connect with this one, itself too, and the joints; in the order of creation of the bodies'
-  /// indices and joints. A body without joints is alone.
+  /// All bodies that joints connect with this one, including itself, and the joints; in the order of creation of the
+  /// bodies' indices and joints. A body without joints is alone.
   virtual std::pmr::vector<BodyIndex> links_of(BodyIndex body) const = 0;
   virtual std::pmr::vector<JointIndex> joints_of(BodyIndex body) const = 0;
   /// Moves the whole assembly rigidly so that this body stands there. Anchors of joints to the world move along.

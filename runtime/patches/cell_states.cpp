@@ -22,7 +22,7 @@ bool is_moore(Neighborhood kind) { return kind == Neighborhood::Moore || kind ==
 
 /// to += the neighbours of `from` along an axis of `count` cells that lie `slab` elements apart.
 void add_along(std::span<Byte> to, std::span<const Byte> from, std::size_t count, std::size_t slab, bool wraps) {
-  if (count < 2) return;  // its own neighbour is no neighbour
+  if (count < 2) return;  // a cell that is its own neighbour is not counted
   const std::size_t block = count * slab, inner = block - slab;
   for (std::size_t start = 0; start < from.size(); start += block) {
     add(to.data() + start, from.data() + start + slab, inner);

@@ -29,7 +29,7 @@ class Occupants {
 
   bool made() const { return !first_.empty(); }
   void make(const Grid& grid);  // tables for its cells; nothing if they are there
-  /// How many agents a cell holds at most; 0: any number. What is too many already stays.
+  /// How many agents a cell holds at most; 0: any number. Surplus agents stay.
   void set_capacity(std::uint32_t capacity) { capacity_ = capacity; }
   std::uint32_t capacity() const { return capacity_; }
   std::uint32_t count(CellIndex cell) const { return counts_[cell]; }

@@ -46,7 +46,7 @@ void BoxTree::remove(Leaf leaf) {
 }
 
 void BoxTree::move(Leaf leaf, const Eigen::AlignedBox3d& box) {
-  // What goes a little way keeps its place, which rotations make better if need be.
+  // A leaf that moves a little keeps its position in the tree; rotations improve it if needed.
   if (nodes_[leaf].box.intersects(box)) {
     nodes_[leaf].box = box;
     refit_up(nodes_[leaf].parent);

@@ -21,7 +21,7 @@ class Extent {
   };
 
   /// @param axis  0, 1, 2 for x, y, z
-  /// @throws Error{Argument} for an axis that is none, bounds that are not finite or not low < high
+  /// @throws Error{Argument} for an invalid axis, bounds that are not finite or not low < high
   void set(int axis, Ending edge, double low, double high);
   const Axis& axis(int axis) const { return axes_[static_cast<std::size_t>(axis)]; }
   bool open() const { return !closed_; }  // along all axes
@@ -36,7 +36,7 @@ class Extent {
   /// The shortest way from one place to another, across edges that wrap; of two equally short ones any, but the way
   /// back is its opposite.
   Vector3 offset(const Vector3& from, const Vector3& to) const;
-  /// What is to be added to `to` for that: whole lengths of space along axes that wrap.
+  /// The offset to be added to `to` for that: whole lengths of space along axes that wrap.
   Vector3 image(const Vector3& from, const Vector3& to) const;
   friend bool operator==(const Extent&, const Extent&) = default;
 

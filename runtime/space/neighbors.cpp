@@ -61,7 +61,7 @@ void Neighbors::close(const Extent& space) {
   }
 }
 
-/// What was found since `start`: images become their points, ascending, none twice, not the one who asks.
+/// The points found since `start`: images become their points, ascending, none twice, not the one who asks.
 void Neighbors::put_in_order(std::uint32_t self, std::size_t start, std::pmr::vector<std::uint32_t>& out) {
   const auto begin = out.begin() + static_cast<std::ptrdiff_t>(start);
   if (!real_of_.empty()) {
@@ -181,7 +181,7 @@ void Neighbors::answer_all(std::uint32_t first) {
 }
 
 /// Answers lie in the order of space, questions mostly come in that of creation: begin to fetch what the next two will
-/// want. A label is often the address of what will be counted or written; where it is none, a prefetch does nothing.
+/// want. A label is often the address of what will be counted or written; if it is not valid, a prefetch does nothing.
 void Neighbors::fetch_ahead(std::uint32_t self) const {
   if (self + std::size_t{2} >= size()) return;
   const Answer& second = answers_[self + 2];

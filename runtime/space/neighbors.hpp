@@ -1,4 +1,4 @@
-// Who is near whom, by centres, at one recorded moment. Recording is cheap; search structures are built when asked for.
+// Neighbour search among centres, at one recorded time. Recording is cheap; search structures are built when asked for.
 #pragma once
 
 #include <cstdint>

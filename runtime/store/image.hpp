@@ -52,7 +52,7 @@ class Image {
   static constexpr std::size_t kMostFileBytes = std::size_t{256} << 20;
   /// The picture in the bytes of a PNG, JPEG or TGA file. Error{File} names the file, which is only a name here, and
   /// says why there is none.
-  /// @param before  is told the size before the pixels are decoded, and may throw
+  /// @param before  gets the size before the pixels are decoded, and may throw
   static Image parse(std::string_view bytes, const std::string& name,
                      std::pmr::memory_resource* memory = std::pmr::get_default_resource(),
                      const std::function<void(int width, int height)>& before = {});

@@ -9,8 +9,8 @@
 #include "runtime/base/error.hpp"
 #include "runtime/store/image.hpp"
 
-// stb is compiled here and nowhere else, private to this file; it does not keep our warnings. Of its state, the reason
-// of the last failure is kept by thread and read at once; the settings are never changed.
+// stb is compiled here and nowhere else, private to this file; it does not keep our warnings. It keeps the reason of
+// the last failure by thread and read at once; the settings are never changed.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wsign-conversion"

@@ -60,7 +60,7 @@ class Effects {
   Effect& operator[](EffectId id) { return effects_[static_cast<std::size_t>(id)]; }
   const Effect& operator[](EffectId id) const { return effects_[static_cast<std::size_t>(id)]; }
 
-  /// From now on the scene calls for it; the first to ask is remembered. Nothing if it is on already.
+  /// From now on the scene calls for it; the first to ask is remembered. Does nothing if it is already on.
   void turn_on(EffectId id, std::uint64_t iteration, ObjectId asked_by);
   void turn_off(EffectId id);
   void begin_step();  // the counters of the last step start again

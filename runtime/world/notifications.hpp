@@ -1,4 +1,5 @@
-// Who wants to hear what from whom. Registrations hang on their announcer, in order of registration.
+// Observers and the announcements that they registered for. Registrations hang on their announcer, in order of
+// registration.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +40,8 @@ class Notifications {
   void hash(Hasher& hasher, const NameTable& names, const ObjectTable& objects) const;
 
  private:
-  /// In order. What was removed stays as an entry without an observer until there are many: the places stay the same.
+  /// In order. A removed registration stays as an entry without an observer until there are many: the places stay the
+  /// same.
   struct List {
     explicit List(std::pmr::memory_resource* memory) : entries(memory), places(memory) {}
     void remove_entries(auto&& which);

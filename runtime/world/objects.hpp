@@ -45,7 +45,7 @@ class ObjectTable {
   std::size_t slot_count() const { return slots_.size(); }
   std::size_t bytes() const;
 
-  /// What was created since the last call joins the lists; what was released leaves them a slice at a time.
+  /// Objects created since the last call join the lists; what was released leaves them a slice at a time.
   void join();
   // In order of creation; may name what was released meanwhile. Iterating lists change in join() only.
   const std::pmr::vector<ObjectId>& order() const { return order_.ids; }

@@ -22,7 +22,7 @@ class Resource : public InMemory {
 
 /// A resource that shares a Shape (or the like) with bodies writes it with out.put_shared(shape) and reads it with
 /// in.get_shared<Shape>(), so that it is the same shape again after loading.
-/// What is loaded takes its bytes from in.memory(): make_in<R>(in.memory()).
+/// A loaded resource takes its bytes from in.memory(): make_in<R>(in.memory()).
 /// Registered once per kind with World::add_resource_kind.
 using ResourceLoader = std::unique_ptr<Resource> (*)(ByteReader& in);
 

@@ -1,4 +1,4 @@
-// Who wants to know when the world begins and ends a stage of its step. The world times its stages for the ledger of
+// Observers of the begin and end of each stage of the world's step. The world times its stages for the ledger of
 // effects anyway; an observer gets the same two readings of the clock, so that what it tells agrees with the ledger.
 #pragma once
 

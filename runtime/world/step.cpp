@@ -258,8 +258,8 @@ void World::Parts::bring_inside() {
 }
 
 /// Bodies that joints connect come back as one when the first of them, in the order of indices, has left: all are moved
-/// by the same way. A wall turns the velocity of their centre of mass, and leaves how they move about it. What hangs on
-/// the world, or on something that does not move, stays where it is.
+/// by the same way. A wall turns the velocity of their centre of mass, and leaves how they move about it. An assembly
+/// that is attached to the world, or to something that does not move, stays where it is.
 bool World::Parts::bring_assembly(BodyIndex body) {
   Bodies& bodies = *world->bodies_;
   const std::pmr::vector<BodyIndex> links = dynamics->links_of(body);
@@ -407,7 +407,7 @@ void World::Parts::touched(BodyIndex a, BodyIndex b, const Contact& found, doubl
   }
   if (!objects.alive(first) || !objects.alive(second)) return;
   const NameId of_second = handlers.method(second_class, first_class);
-  // Between two of one class both sides have the same method, and each is told about the other.
+  // Between two of one class both sides have the same method, and each is called with the other.
   if (of_second != kNoName) {
     world->behaviour_->collided(second, first, names.text(of_second), contact.point, -contact.normal);
   }

@@ -42,7 +42,7 @@ void World::leave(BodyIndex body) {
   if (!first && !(at->second.object == from.object)) at->second = from;  // what left there is gone, and its place taken
 }
 
-/// What was put nearby is on its way there; what is new, or was put far away, is there already.
+/// A body that was put nearby is on its way there; what is new, or was put far away, is there already.
 void World::Parts::aim_at_places() {
   constexpr double kMostTurn = 0.5;  // rad
   Bodies& bodies = *world->bodies_;

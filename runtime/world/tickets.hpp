@@ -15,7 +15,7 @@ namespace breve {
 /// uses of each slot over all that the world has been through. They take no part in hashes.
 class Tickets {
  public:
-  /// Of a slot that is used up, and of an instance so old that its number is forgotten. Names nobody.
+  /// The ticket of a slot that is used up, and of an instance so old that its number is forgotten. Names nobody.
   static constexpr std::uint32_t kLost = 0xffffffffU;
 
   explicit Tickets(std::pmr::memory_resource* memory) : slots_(memory) {}

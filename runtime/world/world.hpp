@@ -87,7 +87,7 @@ class World : public InMemory {
   const Mechanics& dynamics() const;
   /// From now on the world is flat: every body has z = 0 and turns about z alone. What dynamics() gave before is gone;
   /// its settings are kept. Error{Argument} if there are bodies with physics, joints or springs, or a body that is not
-  /// in the plane. Nothing if it is flat already.
+  /// in the plane. Does nothing if it is already flat.
   void flatten();
   int dimension() const { return bodies_->flat() ? 2 : 3; }
   /// Objects whose shapes intersect this one's now and that are solvable (physics-enabled, Stationary), creation order.
@@ -118,7 +118,7 @@ class World : public InMemory {
   /// Equal sub-steps of an iteration: as few as are no longer than the integration step. Error{Argument} if they are
   /// more than 1e9.
   std::uint64_t substeps() const;
-  /// Of the physics of each iteration, see Mechanics::advance.
+  /// The budget of the physics of each iteration, see Mechanics::advance.
   void bound_physics(const WorkBound& bound) { physics_bound_ = bound; }
   std::uint64_t iteration() const { return clock_.iteration; }
   /// One iteration: input, iterate, post-iterate, scheduled calls, the script side's own end. Errors of scripts pass
@@ -130,7 +130,7 @@ class World : public InMemory {
   /// Error{Busy} from inside itself; Error{Argument} if an iteration step has too many sub-steps.
   void advance_bodies();
   /// The body, which has no physics, goes straight and evenly and is there at the end of the next iteration; then it
-  /// stands. It pushes and carries what it touches. What is not given stays as it was set for that iteration, or is.
+  /// stands. It pushes and carries what it touches. Omitted values stay as they were set for that iteration, or are.
   /// Error{Argument}: it has physics, or the target is not finite.
   void set_target(BodyIndex body, const Vector3* location, const Quaternion* orientation);
   /// A script or host is about to put the body elsewhere. One that bodies with physics meet goes there in the next

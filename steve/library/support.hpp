@@ -90,7 +90,7 @@ void embody(Machine& machine, Instance& self, BodyKind kind);
 /// `class (0xaddress)`, as messages name an object.
 std::string name_of(const Instance& object);
 
-/// The texture number of an image is the index of its object: 0 is none. Null if no live object has it.
+/// The texture number of an image is the index of its object: 0 means no object. Null if no live object has it.
 ObjectId object_with_index(Machine& machine, std::int32_t index);
 
 }  // namespace breve::steve

@@ -45,7 +45,7 @@ Value boolean(BinaryOp op, bool same) { return boolean(same == (op == BinaryOp::
   if (hint.empty() && object)
     hint = "use a variable of the object, object::name, or the result of a method, (object method)";
   if (hint.empty() && lone_vector && !number_missing)
-    hint = "the other operand must be a vector too, (x, y, z); the length of a vector is |v|";
+    hint = "the other operand must also be a vector, (x, y, z); the length of a vector is |v|";
   const std::string help = number_missing && hint.empty()
                                ? "a method returns a value with 'return'; a missing key of a hash gives no value"
                                : std::string(hint);

@@ -1,4 +1,4 @@
-// What is offered at a place, while the text is being written.
+// The completions at a position, while the text is being written.
 #include <gtest/gtest.h>
 
 #include "looking.hpp"

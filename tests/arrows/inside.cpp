@@ -111,7 +111,7 @@ void Inside::find_dead(std::vector<Offence>& out) const {
   }
 }
 
-// What stands below a heading: declarations up to the next heading, access specifier or end of the class.
+// The text below a heading: declarations up to the next heading, access specifier or end of the class.
 void Inside::find_false_headings(const std::string& file, const Source& source, std::vector<Offence>& out) const {
   const std::string folder = fs::path(file).parent_path().generic_string() + "/";
   std::vector<std::pair<std::size_t, std::vector<std::string>>> headings;

@@ -1,4 +1,4 @@
-// What the house asks of the inside of its files: short functions, none that nobody calls, headings that are true.
+// What the house asks of the inside of its files: short functions, no uncalled functions, headings that are true.
 #pragma once
 
 #include <filesystem>

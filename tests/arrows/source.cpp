@@ -15,7 +15,7 @@ namespace {
 
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
-/// Text to tokens. Lines of the preprocessor are none, but what they say is used: a macro's body may call.
+/// Text to tokens. Lines of the preprocessor give no tokens, but their names are used: a macro's body may call.
 class Lexer {
  public:
   Lexer(std::string text, Source& out) : text_(std::move(text)), out_(out), comments_(out.comments) {}
@@ -122,7 +122,7 @@ class Lexer {
   bool fresh_ = true;  // nothing but blanks so far in this line
 };
 
-/// The walk. What stands between one ';' or brace and the next is a head: it says what the brace behind it opens.
+/// The walk. The tokens between one ';' or brace and the next form a head: it says what the brace behind it opens.
 class Walk {
  public:
   Walk(const std::vector<Token>& tokens, Source& out) : tokens_(tokens), out_(out) {}

@@ -1,4 +1,4 @@
-// What stands in a source file of C or C++: functions, names that are used, comments. A reader of tokens and braces,
+// The contents of a source file of C or C++: functions, names that are used, comments. A reader of tokens and braces,
 // not a compiler: it knows the forms that this repository is written in, and needs no build.
 #pragma once
 
@@ -21,7 +21,7 @@ struct Comment {
   bool alone;        // nothing stands before it on its line
 };
 
-/// What has a name in a namespace or a class: a function, or something else that could meet another of that name.
+/// An entity with a name in a namespace or a class: a function, or something else that could meet another of that name.
 struct Name {
   std::string name;
   std::string owner;  // of a method: its class, as it is spelled there ("Core", "Dynamics::Core"); else empty

@@ -4,7 +4,7 @@
 //
 //   cost      CPU seconds for a simulated second, least of some runs
 //   forces    how often forces were evaluated in a simulated second, by trees of bodies
-//   energy    what no account of the ledger explains, over the largest kinetic energy
+//   energy    the unexplained part of the energy, over the largest kinetic energy
 //   place     how far the body that is farthest off stands from where `reference` has it after a second, m: points of
 //             it that are 1 m from its centre
 //   told      interventions of the guard

@@ -165,7 +165,7 @@ class Meadow {
     }
   }
   void step() {
-    // Who is born in this step waits for the next.
+    // An animal born in this step waits for the next.
     const std::size_t count = animals_.size();
     for (std::size_t i = 0; i < count; ++i)
       if (animals_[i].alive) live(i);

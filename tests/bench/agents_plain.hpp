@@ -3,7 +3,7 @@
 
 namespace plain {
 
-/// What a run gives: a number that a steve program of the same model gives too, and the time of its steps.
+/// What a run gives: a number that a steve program of the same model also gives, and the time of its steps.
 struct Outcome {
   double result = 0;
   double seconds = 0;  // processor time of the steps

@@ -62,7 +62,7 @@ void Walkers::add(const Vector3& at, const Genes& genes) {
   }
 }
 
-/// Of a hinge about z: how far the parent is turned against the child. From poses: breve_joint_state would also work
+/// For a hinge about z: the angle of the parent relative to the child. From poses: breve_joint_state would also work
 /// out what the joint holds.
 double Walkers::angle(breve_object parent, breve_object child) const {
   const reference::Quaternion between = turn(child).conjugate() * turn(parent);

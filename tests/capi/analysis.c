@@ -1,4 +1,4 @@
-/* What a program is made of: symbols, names at places, completions; and every argument that is no good. */
+/* What a program is made of: symbols, names at places, completions; and every invalid argument. */
 #include "breve/analysis.h"
 
 #include "scene.h"

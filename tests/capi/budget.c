@@ -174,7 +174,7 @@ static void a_call_budget_cuts_one_object_and_leaves_the_others_their_turn(void)
   CHECK_STATUS(BREVE_OK, call(&s, "collide"));
   CHECK_STATUS(BREVE_OK, breve_world_queue_key(s.world, "k", true));
   for (int i = 0; i < 100; ++i) CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
-  CHECK(int_of(&s, "hits") > 0); /* the other side of each contact is told */
+  CHECK(int_of(&s, "hits") > 0); /* the other side of each contact is called */
   CHECK(int_of(&s, "keys") == 1);
   CHECK(int_of(&s, "turns") == 606);
   size_t ghosts;

@@ -82,7 +82,7 @@ static void properties_are_those_of_each(const char* text) {
       if (property == BREVE_PROPERTY_COLOR) CHECK_STATUS(BREVE_OK, breve_object_color(w, a.birds[i], one));
       if (property >= BREVE_PROPERTY_VELOCITY) CHECK(memcmp(row, one, widths[property] * sizeof(double)) == 0);
     }
-    /* What was read is written back, and nothing has changed; rotations are made unit quaternions anew. */
+    /* The values are written back unchanged, and nothing has changed; rotations are made unit quaternions anew. */
     CHECK_STATUS(BREVE_OK, breve_objects_set_property(w, a.birds, kBirds, property, &array));
     if (property != BREVE_PROPERTY_ROTATION && property != BREVE_PROPERTY_POSE) CHECK(hash_of(&a) == before);
   }
@@ -182,7 +182,7 @@ static void what_is_refused_changes_nothing(const char* text, bool flat) {
   CHECK_STATUS(BREVE_OK, breve_objects_set_property(w, a.birds, kBirds, BREVE_PROPERTY_POSE, &poses));
   CHECK(hash_of(&a) != before);
   const uint64_t after = hash_of(&a);
-  /* Ids, arrays and names that are none. */
+  /* Invalid ids, arrays and names. */
   const breve_object gone = a.birds[4], nobody = {0, 0};
   const breve_object controller = breve_world_controller(w);
   a.birds[4] = controller;

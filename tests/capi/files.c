@@ -21,7 +21,7 @@ static void put(const char* name, const char* text) {
   fclose(file);
 }
 
-/* What is in a file there; "-" if there is none. */
+/* The contents of a file there; "-" if there is none. */
 static const char* content(const char* name) {
   static char text[256];
   char path[256];
@@ -154,7 +154,8 @@ static void by_default_nothing_is_touched(void) {
   clerk c;
   if (!open_clerk(&c, breve_runtime_config_default())) return;
   reads(&c, "/etc/passwd", "none");
-  CHECK(strstr(c.said.error, "the host does not let scripts read files") != NULL || strstr(c.said.warning, "let scripts") != NULL);
+  CHECK(strstr(c.said.error, "the host does not let scripts read files") != NULL ||
+        strstr(c.said.warning, "let scripts") != NULL);
   char path[256];
   path_in_box(path, sizeof path, "root/made.txt");
   CHECK(!does(&c, "write", "x", path) && !does(&c, "append", "x", path) && !does(&c, "draw", NULL, path));

@@ -56,7 +56,7 @@ static const char* const lists =
     "  + to iterate:\n    super iterate.\n    push \"x\" onto k.\n"
     "}\n";
 
-/* The image is refused, and the world, a reference to a list of it too, is as it was. */
+/* The image is refused, and the world, including a reference to a list of it, is unchanged. */
 static void check_refused(scene* s, const unsigned char* image, size_t size) {
   breve_value list;
   size_t before = 0, after = 0;

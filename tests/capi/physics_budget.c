@@ -1,4 +1,4 @@
-/* The budget of physics: what a host sets, reads and is told; interrupts within a step. */
+/* The budget of physics: the functions and reports for a host; interrupts within a step. */
 #define _POSIX_C_SOURCE 200809L
 #include <pthread.h>
 #include <time.h>

@@ -294,7 +294,7 @@ static breve_status do_many(place* p) {
   TRY(breve_objects_set(p->world, &p->controller, 1, "count", &counts));
   return breve_objects_call_prepared(p->world, &p->controller, 1, p->touch, NULL, 0, NULL);
 }
-static breve_status do_grids(place* p) { /* the controller is no grid */
+static breve_status do_grids(place* p) { /* the controller is not a grid */
   uint32_t counts[3];
   double value = 0;
   size_t count;

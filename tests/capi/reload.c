@@ -275,7 +275,7 @@ static void handlers_observers_and_menus_are_kept_though_class_numbers_change(vo
        "  + to hit other o (object): controller meet. }\n"                                                  \
        "Mobile : Right { + to init: self move to (0.5, 0, 0). }\n"
 
-/* What was found for a handler that has run already is forgotten with the old program. */
+/* The method found for a handler that has already run is forgotten with the old program. */
 static void handlers_that_have_run_are_replaced(void) {
   scene s;
   if (!scene_open_text(&s, TOUCHING("1", "1"), NULL)) return;

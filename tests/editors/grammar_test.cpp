@@ -46,7 +46,7 @@ std::string decoded(std::string text) {
   return text;
 }
 
-/// What must hold of a word.
+/// The expected properties of a word.
 std::string wanted_of(Word word) {
   if (word >= Word::Int && word <= Word::Hashes) return "storage.type";
   switch (word) {
@@ -112,7 +112,7 @@ class Comparison {
       if (has(i, scope)) return offend(i, what + " must not have " + std::string(scope));
   }
 
-  // What stands between two tokens and is not blank is a comment.
+  // Text between two tokens that is not blank is a comment.
   void compare_gap(std::size_t begin, std::size_t end) {
     const std::string& text = sources_.file(file_).text;
     for (std::size_t i = begin; i < end; ++i) {

@@ -1,4 +1,4 @@
-// Calls for many objects at once: rows of any width, stride and kind, at addresses that are no multiple of anything.
+// Calls for many objects at once: rows of any width, stride and kind, at unaligned addresses.
 #include "call_functions.hpp"
 
 namespace breve::fuzz {

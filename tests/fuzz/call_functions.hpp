@@ -38,7 +38,7 @@ std::span<const Function> analysis_functions();  // analyses
 /// All of them.
 std::span<const Function> all_functions();
 
-/// What was called since the process began, one number for each of all_functions().
+/// The calls since the process began, one number for each of all_functions().
 struct Tally {
   std::size_t calls = 0, succeeded = 0, called_back = 0;
 };

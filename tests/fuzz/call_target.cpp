@@ -16,7 +16,7 @@ std::vector<std::size_t> weighted() {
   return numbers;
 }
 
-/// Of what the memory of a process gives in one input: worlds, programs and analyses take time to make.
+/// The share of a process's memory that one input may use: worlds, programs and analyses take time to make.
 constexpr std::size_t kDeepest = 4, kFirstWorlds = 2;
 
 }  // namespace call_target

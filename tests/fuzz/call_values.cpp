@@ -20,7 +20,7 @@ breve_status value_matrix(Caller& c) {
 }
 breve_status value_string(Caller& c) {
   const breve_value made = breve_value_string(c.chance(20) ? nullptr : "text");
-  require(made.type == BREVE_TYPE_STRING && made.as.string.bytes, "a string is none");
+  require(made.type == BREVE_TYPE_STRING && made.as.string.bytes, "a string is invalid");
   return BREVE_OK;
 }
 breve_status value_object(Caller& c) { return c.keep(breve_value_object(c.any_object(nullptr))), BREVE_OK; }

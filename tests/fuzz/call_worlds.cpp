@@ -142,7 +142,7 @@ breve_status world_set_paused(Caller& c) {
   breve_world* world = c.world();
   const bool paused = c.chance(30);
   const breve_status status = breve_world_set_paused(world, paused);
-  if (status == BREVE_OK) require(breve_world_paused(world) == paused, "a world is not paused as it was told");
+  if (status == BREVE_OK) require(breve_world_paused(world) == paused, "a world is not paused as requested");
   return status;
 }
 breve_status world_seed(Caller& c) {

@@ -31,7 +31,7 @@ struct Function {
   unsigned weight = 1;  // how often it is called, compared with others
 };
 
-/// What is known of the arguments of the call that is being made, and so of its status.
+/// Facts about the arguments of the call that is being made, and so of its status.
 struct Demand {
   bool null_handle = false;            // the status is BREVE_ERROR_ARGUMENT
   bool refusal = false;                // the status is an error

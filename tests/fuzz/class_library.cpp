@@ -17,7 +17,7 @@ std::string module_name(std::string_view name) {
   return std::string(name);
 }
 
-/// Of a keyword's signature "to place (vector)": "place".
+/// The name in a keyword's signature: "place" in "to place (vector)".
 std::string parameter_of(std::string_view signature, std::string_view keyword) {
   if (signature.size() <= keyword.size() + 1) return "";
   signature.remove_prefix(keyword.size() + 1);

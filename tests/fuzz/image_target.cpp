@@ -46,7 +46,7 @@ void seal(std::string& image) {
 
 // --- forging ---------------------------------------------------------------------------------------------------------
 
-/// Numbers that are wrong in most places: counts, indices, bounds of types, what is no number.
+/// Numbers that are wrong in most places: counts, indices, bounds of types, what is not a number.
 constexpr std::uint64_t kWords[] = {0,
                                     1,
                                     2,

@@ -8,7 +8,7 @@ namespace breve::fuzz {
 
 enum class Type { Int, Double, Vector, Matrix, String, Object, List, Hash };
 
-/// What stands in a list or under the keys of a hash, so that reading it back gives what is wanted most of the time.
+/// The contents of a list or of a hash, so that reading it back gives what is wanted most of the time.
 struct Kind {
   Type type = Type::Int;
   int cls = -1;              // Object: number of the class, -1: any

@@ -1,4 +1,4 @@
-// What the fuzzers share: handles of breve.h that let go of themselves, images of worlds, and the word with which a
+// What the fuzzers share: handles of breve.h that release themselves, images of worlds, and the word with which a
 // finding ends.
 #pragma once
 

@@ -5,7 +5,7 @@
 
 namespace limits {
 
-/// What is alive, and where the first call that failed stood.
+/// The live handles, and the position of the first call that failed.
 struct Run {
   breve_runtime* runtime = nullptr;
   breve_program* loaded = nullptr;         // by this run
@@ -31,7 +31,8 @@ bool use_world(Run& run);
 bool make_two_worlds(Run& run);
 /// Snapshot, hash, restore into the world and into the second one, effects.
 bool use_images(Run& run);
-/// Shapes, bodies with physics, joints, springs, contacts, and all that tells of them, in a world of the class library.
+/// Shapes, bodies with physics, joints, springs, contacts, and all that reports on them, in a world of the class
+/// library.
 bool load_library(Run& run);
 bool make_library_world(Run& run);
 bool use_physics(Run& run);

@@ -1,5 +1,5 @@
-// What is promised of garbage: what is in no cycle goes at the end of the iteration, cycles in a bounded number of
-// them.
+// The promises about garbage: anything that is not part of a cycle is freed at the end of the iteration, cycles in a
+// bounded number of them.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -63,7 +63,7 @@ TEST(CollectorsPromise, CellsWithSixReferencesEachDelayNothing) {
   EXPECT_LE(iterations_until(w, live, most), most);
 }
 
-// What was skipped as a root must not be lost when it ceases to be one before its turn.
+// A cell skipped as a root must not be lost when it ceases to be one before its turn.
 TEST(CollectorsPromise, AnObjectThatBecomesAutoFreeWhileACollectionRunsStays) {
   World w;
   const ClassInfo cls = reference_class(1);

@@ -372,7 +372,8 @@ TEST(Collector, OneLargeRingIsTakenApartInSlices) {
   EXPECT_LE(most, 60'000u);
 }
 
-// When there is no memory to note what is to be destroyed, something is destroyed all the same, and the host is told.
+// When there is no memory to note what is to be destroyed, something is destroyed all the same, and the host gets a
+// report.
 TEST(Collector, WithoutMemoryToNoteThemObjectsAreDestroyedLittleByLittle) {
   World w;
   const ClassInfo cls = reference_class(1);

@@ -1,6 +1,6 @@
 // Small cycles: judged at the end of the iteration in which they are left behind. One iteration has to do here, while
-// the collector of the whole heap, which is held back by nothing in these small heaps, is told apart by its roots being
-// asked for.
+// the collector of the whole heap, which is held back by nothing in these small heaps, is recognised by the request
+// for its roots.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -269,7 +269,7 @@ TEST_F(Suspects, MoreRingsThanTheTableHoldsGoAllTheSame) {
   EXPECT_GE(roots_.collections, 1);
 }
 
-// Judging is bounded by counted work. What is left over must not wait for its turn: the collector takes it.
+// Judging is bounded by counted work. The rest must not wait for its turn: the collector takes it.
 TEST_F(Suspects, ARingBehindManyLivingSuspectsGoesWithinThePromisedIterations) {
   Instance* owner = object();
   ListCell* kept = list();

@@ -69,7 +69,7 @@ class TraceTest : public ::testing::Test {
     return all.str();
   }
   json trace() const { return json::parse(text("t.json")); }
-  /// The trace of a run that was killed in the middle of a write, perhaps: then its last line is no event.
+  /// The trace of a run that was killed in the middle of a write, perhaps: then its last line is not an event.
   json killed_trace() const {
     const std::string all = text("t.json");
     return json::parse(json::accept(all) ? all : all.substr(0, all.rfind(",\n")) + "]}");

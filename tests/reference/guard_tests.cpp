@@ -1,4 +1,4 @@
-// The guard through breve.h: each thing that it watches for, in each of its modes. What is found is an event with
+// The guard through breve.h: each thing that it watches for, in each of its modes. A finding is an event with
 // reason, action and body, is counted, and the world goes on.
 #include <gtest/gtest.h>
 
@@ -248,7 +248,7 @@ TEST(Guard, RestEndsEnergyFromNowhereThatRefiningLeaves) {
     // Told is what the step gained; the ledger also has that the speeds are gone.
     EXPECT_NEAR(world.energy().residual, lifted - world.before, 1e-9);
     EXPECT_GE(world.all.back().value, world.energy().residual);
-    // From there it goes on, and nothing more comes from nowhere.
+    // From there it goes on, and no more unexplained energy is gained.
     const std::size_t told = world.all.size();
     double most = lifted;
     for (int i = 0; i < 120; ++i) {

@@ -120,8 +120,8 @@ TEST(Linkages, AParallelogramThatSwingsKeepsItsEnergyForTenSeconds) {
   }
 }
 
-/// Where it lies in one line the impulse that would keep it closed has no bound. It may lose energy there, but nothing
-/// may come from nowhere.
+/// Where it lies in one line the impulse that would keep it closed has no bound. It may lose energy there, but it may
+/// not gain any.
 TEST(Linkages, AParallelogramGainsNothingWhereItMayFoldEitherWay) {
   for (const Promise& promise : kPromises) {
     for (const double lean : {0.05, 0.1, 0.2}) {

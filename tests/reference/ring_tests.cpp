@@ -104,7 +104,7 @@ TEST(Rings, ReactionsKnowOfTheRing) {
     drive.force[0] = torque;
     machine.set_drive(machine.crank, drive);
     const breve_joint_info held = machine.read(machine.crank), rail = machine.read(machine.rail);
-    // What holds the weights upward is the pivot and the rail; along x nothing acts but the two.
+    // The pivot and the rail hold the weights upward; along x nothing acts but the two.
     EXPECT_NEAR(held.force[1] + rail.force[1], 9.81 * 4.5, 1e-6);
     EXPECT_NEAR(held.force[0], 0, 9.81 * 4.5);
     EXPECT_NEAR(rail.force[0], 0, 1e-9);

@@ -161,7 +161,7 @@ TEST(Midpoint, KeepsEnergyAndAngularMomentumOfAFastLopsidedBodyToRoundOff) {
               kinetic_energy(model, data) / energy - 1, (after - momentum).norm() / momentum.norm(),
               static_cast<double>(evaluations) / kSteps);
   EXPECT_NEAR(kinetic_energy(model, data), energy, 1e-11 * energy);
-  EXPECT_LE((after - momentum).norm(), 1e-11 * momentum.norm());  // direction too, thanks to Cayley's rotations
+  EXPECT_LE((after - momentum).norm(), 1e-11 * momentum.norm());  // also the direction, thanks to Cayley's rotations
 }
 
 TEST(Midpoint, EnergyOfAHeavyTopDoesNotDrift) {

@@ -98,7 +98,7 @@ TEST(Trajectories, SchemesErrAsMuchAsTheTextbooks) {
     Integrator integrator(run.system, scheme);
     const double h = row.number("h"), end = row.number("t");
     const bool unstable = row.text("max_error_q_and_u") == "unstable";
-    // An unstable run grows until the forces are no numbers any more, which is an error with a message.
+    // An unstable run grows until the forces are no longer finite, which is an error with a message.
     try {
       while (run.at.t < end - 0.5 * h) integrator.step(run.at, h);
     } catch (const std::exception&) {

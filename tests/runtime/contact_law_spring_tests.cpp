@@ -87,7 +87,7 @@ TEST(ContactSprings, EnergyAfterIsNeverAboveEnergyBefore) {
         highest = std::max(highest, at.v[0]);
         ASSERT_LE(sphere.energy(at), before * (1 + 1e-9)) << speed << ' ' << k;
       }
-      // What comes out changes with what goes in, and does not jump.
+      // The result changes continuously with the input.
       if (i > 0) {
         EXPECT_NEAR(highest, last, 0.1 * last) << speed;
       }

@@ -12,7 +12,7 @@ namespace {
 using articulated::between;
 using articulated::random_vector;
 
-/// What is left of the energy of a stack that sways after so many sweeps.
+/// The remaining energy of a stack that sways after so many sweeps.
 double left_in_motion(bool plain, bool momentum, int sweeps) {
   Scene scene;
   scene.stack(std::vector<double>(10, 1.0), 0.5);

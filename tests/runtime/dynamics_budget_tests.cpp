@@ -71,7 +71,7 @@ TEST(DynamicsBudget, WhereItIsUsedUpTheStepIsFinishedCoarselyAndTheGuardTells) {
     for (int i = 0; i < 50; ++i) {
       heap.world.step();
       finished += heap.finished();
-      // What was begun comes to its end; then one look and one solution of few sweeps, however small the budget.
+      // Work that was begun is finished; then one look and one solution of few sweeps, however small the budget.
       constexpr std::uint64_t kLeast = 60'000;
       EXPECT_LE(heap.dynamics().counters().work, bound + bound / 10 + kLeast) << name_of(rung) << ", iteration " << i;
       heap.check_finite();

@@ -68,7 +68,7 @@ TEST_P(Sleep, EndsWhenAMotorGetsAnotherSpeed) {
   drive.strength_limit = 100;
   physics().set_drive(joint, drive);
   s.fall_asleep(arm);
-  physics().set_drive(joint, drive);  // the same again is no change
+  physics().set_drive(joint, drive);  // setting the same value changes nothing
   EXPECT_TRUE(physics().asleep(s.index(arm)));
   drive.motor_speed[0] = 1;
   physics().set_drive(joint, drive);

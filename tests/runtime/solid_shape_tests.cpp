@@ -110,7 +110,7 @@ TEST(Shape, APrismOfManySidesTendsToACylinder) {
   for (const int n : {10, 100, 1000}) {
     const auto prism = Shape::prism(n, h, r);
     const double m = pi * r * r * h,
-                 relative = 7.0 * 4 / (n * static_cast<double>(n));  // (2 pi / n)^2 / 6 and the like
+                 relative = 7.0 * 4 / (n * static_cast<double>(n));  // (2 pi / n)^2 / 6 and similar terms
     EXPECT_NEAR(prism->mass() / m, 1, relative);
     expect_inertia(*prism, diagonal(m * (3 * r * r + h * h) / 12, m * r * r / 2, m * (3 * r * r + h * h) / 12),
                    relative);

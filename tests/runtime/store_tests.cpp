@@ -130,7 +130,7 @@ TEST(ImageFile, SixteenBitGrayKeepsSixteenBits) {
             Z_OK);
   raw.resize(size);
   EXPECT_EQ(raw, (std::vector<std::uint8_t>{0, 0, 0, 255, 255, 128, 0, 0, 0, 0, 255, 255, 0, 0}));
-  // Another reader takes it too, checksums and all.
+  // Another reader also accepts it, including its checksums.
   EXPECT_EQ(Image::parse(png, "gray.png").byte(1, 0, Channel::Red), 255);
   EXPECT_NE(message(ErrorCode::Argument, [&] { (void)gray16_png(2, 2, values); }).find("6 values"), std::string::npos);
 }

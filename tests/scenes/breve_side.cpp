@@ -8,7 +8,7 @@
 namespace breve::scenes {
 namespace {
 
-/// The library alone has no flat controller, and no class of agents that are told what they touch.
+/// The library alone has no flat controller, and no class of agents with collision handlers.
 std::string program(bool flat) {
   const std::string controller = flat ? "PlanarControl" : "PhysicalControl";
   return "@use " + controller + ".\n@use MultiBody.\n@use Stationary.\n@use Shape.\n@use Spring.\n" +

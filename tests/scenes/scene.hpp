@@ -56,7 +56,7 @@ enum class Motion {
   Fixed,
   Free,
   Agent
-};  // an agent moves at its velocity and feels nothing, but is told what it touches
+};  // an agent moves at its velocity and feels nothing, but has a collision handler
 
 struct Body {
   std::size_t shape = 0;
@@ -70,7 +70,8 @@ struct Body {
 
 enum class Link { Hinge, Ball };
 
-/// Of two bodies as they stand at the start, where its position is zero. Positive: the child turns about the axis.
+/// It connects two bodies as they are at the start, where its position is zero. Positive: the child turns about the
+/// axis.
 struct Joint {
   Link kind = Link::Hinge;
   int parent = 0, child = 0;

@@ -297,7 +297,7 @@ std::string compare_diagnostics(const Expectations& expectations, const std::str
   return out.str();
 }
 
-/// What is wrong with a run, or "".
+/// The first failed expectation of a run, or "".
 std::string judge(const Program& program, const Expectations& expectations, const Run& run) {
   std::ostringstream out;
   if (run.timed_out) out << "  ran longer than " << kTimeLimit.count() << " s\n";

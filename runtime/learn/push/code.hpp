@@ -155,7 +155,7 @@ class Builder {
   std::uint32_t size() const { return static_cast<std::uint32_t>(nodes_.size()); }
   std::pmr::memory_resource* memory() const { return nodes_.get_allocator().resource(); }
   std::span<Node> nodes() { return nodes_; }
-  /// What was made, one expression. The builder is empty afterwards.
+  /// The result, one expression. The builder is empty afterwards.
   Code finish();
 
  private:
@@ -182,7 +182,7 @@ class CodeWriter {
   std::pmr::map<const Block*, std::uint32_t> known_;  // looked up, never walked: addresses do not reach the image
 };
 
-/// Reads what CodeWriter wrote. Error{Image} for anything that is no tree.
+/// Reads what CodeWriter wrote. Error{Image} for anything that is not a tree.
 class CodeReader {
  public:
   explicit CodeReader(ByteReader& in) : in_(in), known_(in.memory()) {}

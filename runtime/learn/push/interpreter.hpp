@@ -88,7 +88,7 @@ class Interpreter {
   /// May an instruction make code of so many points?
   bool fits(std::uint64_t points) const { return points <= static_cast<std::uint64_t>(settings.list_limit); }
   void quote_next_name() { quotes_name_ = true; }
-  /// Let `name` stand for `value`. Nothing if it stands for an instruction.
+  /// Let `name` stand for `value`. Does nothing if it stands for an instruction.
   void define(const Code& name, Code value);
   const Word* find_word(std::string_view name) const;
   /// One of the names that were defined; none: nothing.

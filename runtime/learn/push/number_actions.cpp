@@ -53,7 +53,7 @@ Int add_integers(std::int32_t a, std::int32_t b) { return wrapped(std::int64_t{a
 Int subtract_integers(std::int32_t a, std::int32_t b) { return wrapped(std::int64_t{a} - b); }
 Int multiply_integers(std::int32_t a, std::int32_t b) { return wrapped(std::int64_t{a} * b); }
 Int divide_integers(std::int32_t a, std::int32_t b) { return b == 0 ? std::nullopt : wrapped(std::int64_t{a} / b); }
-/// Of the quotient rounded down: the sign is that of b.
+/// The remainder of the quotient rounded down: the sign is that of b.
 Int modulo_integers(std::int32_t a, std::int32_t b) {
   if (b == 0) return {};
   const std::int64_t rest = std::int64_t{a} % b;

@@ -1,4 +1,4 @@
-// Reading, printing and saving what a Push interpreter is told from outside.
+// Reading, printing and saving the settings of a Push interpreter.
 #include "runtime/learn/push/settings.hpp"
 
 #include <fmt/format.h>

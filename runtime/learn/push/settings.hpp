@@ -1,4 +1,4 @@
-// What a Push interpreter is told from outside: limits, ranges of random constants, which instructions random code has.
+// The settings of a Push interpreter: limits, ranges of random constants, which instructions random code has.
 #pragma once
 
 #include <cstdint>

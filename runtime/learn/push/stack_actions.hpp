@@ -83,7 +83,7 @@ void depth(Interpreter& m) {
 }
 
 /// An index from the INTEGER stack into S, which is not empty without it: how deep, 0 is the top. Beyond either end it
-/// is that end. Counts the items above, which move. Nothing if there is no such index.
+/// is that end. Counts the items above, which move. Does nothing if there is no such index.
 template <class S>
 std::optional<std::ptrdiff_t> take_index(Interpreter& m) {
   constexpr bool kOwn = std::is_same_v<S, Integers>;

@@ -134,7 +134,7 @@ class Books {
 };
 
 /// A creature that takes thousands of times what others take is not run to its end. Its work is counted; what the
-/// library tries and throws away it does not count, hence a limit of time as well.
+/// library tries and throws away it does not count, hence also a limit of time.
 constexpr double kMostWork = 3e7, kMostTime = 30;  // s of CPU
 
 /// Of the last iteration.

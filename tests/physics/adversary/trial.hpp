@@ -8,7 +8,7 @@
 
 namespace adversary {
 
-/// What is held against a run; each is relative to the scale of its kind and 0 where all is right.
+/// The errors of a run; each is relative to the scale of its kind and 0 where all is right.
 enum Measure {
   kEnergy,    // rise of energy less the works of motors and forces above its lowest value so far
   kMomentum,  // drift of momentum, without gravity

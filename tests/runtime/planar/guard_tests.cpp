@@ -1,4 +1,4 @@
-// The guard of a flat world: energy from nowhere, numbers that are not finite, and that quiet scenes give no events.
+// The guard of a flat world: unexplained energy, numbers that are not finite, and that quiet scenes give no events.
 #include "scene.hpp"
 
 namespace breve::testing {

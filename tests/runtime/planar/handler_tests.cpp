@@ -91,8 +91,8 @@ TEST(PlanarHandlers, ImpactsOfOneStepAreToldInTheOrderOfTimeAndEachGoesOnFromThe
 }
 
 TEST(PlanarHandlers, AnAgentMeetsABodyWithPhysicsOnItsPath) {
-  // What pushes nobody is told by the same stage: a ball that falls, and an agent that stands. The ball's path within
-  // an integration step counts as straight, which is g h^2 / 8 from its parabola at most.
+  // Pairs that do not push are reported by the same stage: a ball that falls, and an agent that stands. The ball's path
+  // within an integration step counts as straight, which is g h^2 / 8 from its parabola at most.
   const double h = 1.0 / 240;
   Crowd flat(h);
   const ObjectId ball = flat.ball(0.5, 0, 4);
