@@ -77,7 +77,7 @@ breve_status set_vector(breve_world* world, breve_object object, const double* i
   });
 }
 
-/// Of a pose whose numbers are checked here.
+/// The rotation of a pose, whose numbers are checked here.
 breve::Quaternion rotation_of(const breve_pose& pose) {
   need_finite(pose.location, 3, "pose.location");
   need_finite(pose.rotation, 4, "pose.rotation");

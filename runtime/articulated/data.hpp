@@ -72,7 +72,7 @@ class Data {
   const Work& of(int link) const { return work[static_cast<std::size_t>(link + 1)]; }
   Motion& motion_of(int link) { return motion[static_cast<std::size_t>(link + 1)]; }
   const Motion& motion_of(int link) const { return motion[static_cast<std::size_t>(link + 1)]; }
-  /// Of a joint with more than one degree of freedom; for others some entry that nobody reads.
+  /// The data of a joint with more than one degree of freedom; for others some entry that nobody reads.
   WideWork& wide_of(const Body& body) { return wide[static_cast<std::size_t>(body.wide + 1)]; }
   const WideWork& wide_of(const Body& body) const { return wide[static_cast<std::size_t>(body.wide + 1)]; }
 };

@@ -20,7 +20,7 @@ enum class Scheme {
   FehlbergAdaptive,   // order 5, with the difference of the two as error estimate and steps to keep it small
 };
 
-/// Of the schemes with step control.
+/// The tolerances of the schemes with step control.
 /// How far a run of FehlbergAdaptive over some seconds may be wrong (a single step may by a thousandth of it, and not
 /// less than round-off). Positions by the kind of coordinate, velocities by kind and size.
 struct Tolerance {

@@ -7,7 +7,7 @@ namespace breve::articulated {
 
 namespace {
 
-/// Of a mass at `arm`.
+/// The inertia of a mass at `arm`.
 Symmetric3 of_point(double mass, const Vector3& arm) {
   Symmetric3 inertia = Symmetric3::identity(mass * arm.squaredNorm());
   inertia.subtract_outer(mass * arm, arm);

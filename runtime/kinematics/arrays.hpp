@@ -74,14 +74,14 @@ class ActiveSet {
   std::pmr::vector<BodyIndex> place_;  // by body; kNoBody: not a member
 };
 
-/// Of a body that was ever rotated or set turning.
+/// Data of a body that was ever rotated or given an angular velocity.
 struct TurnRow {
   Quaternion orientation = Quaternion::Identity();
   Vector3 velocity = Vector3::Zero();  // rad/s: own frame if kinematic, world frame if physical
   Vector3 acceleration = Vector3::Zero();
 };
 
-/// Of a body that was ever physics-enabled or pushed.
+/// Data of a body that was ever physics-enabled or pushed.
 struct RigidRow {
   Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // N, N*m; world frame
   Vector3 kinematic_velocity = Vector3::Zero();               // what applies again when physics is disabled

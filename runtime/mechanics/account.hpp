@@ -87,7 +87,7 @@ struct DynamicsCounters {
   std::uint64_t sleeping = 0;  // bodies asleep now
   std::uint64_t interventions = 0;
   std::uint64_t work = 0;  // units of it, see Meter
-  // Of the solutions of all rows, the worst, m/s: by how much some row's velocity misses its law; where rows were
+  // The worst error of the solutions of all rows, m/s: how far some row's velocity misses its law; where rows were
   // swept, by how much the last sweep still changed one. A flat world's engine does not tell.
   double residual = 0;
 };

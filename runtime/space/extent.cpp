@@ -67,7 +67,7 @@ void bounce(double wall, double out, double& x, double& v, double acceleration) 
   const double far = out * (x - wall), speed = out * v, pull = out * acceleration;
   const double met = std::sqrt(std::max(0.0, speed * speed - 2 * pull * far));  // speed at the wall, by its energy
   double since = std::max(0.0, (speed - met) / pull);                           // s, since it was there
-  // What is pulled outward comes back to the wall again and again.
+  // A body that is pulled outward comes back to the wall again and again.
   if (pull > 0) since = met > 0 ? std::fmod(since, 2 * met / pull) : 0;
   x = wall + out * since * (0.5 * pull * since - met);
   v = out * (pull * since - met);

@@ -38,7 +38,7 @@ class Neighbors {
     std::span<const std::uint64_t> labels;  // of the same points
   };
   /// The points strictly nearer to point `self` than its radius, without it. Valid until the next call. Expected cost
-  /// proportional to the answer and the like-dense surroundings; no allocation after warm-up.
+  /// proportional to the answer, in surroundings of similar density; no allocation after warm-up.
   Found query(std::uint32_t self);
   bool answered() const { return answered_; }  // all answers are kept: a query is a look-up
   std::size_t bytes() const;

@@ -92,7 +92,7 @@ void Reload::check_controller() const {
                                        ": start the simulation again to change it");
 }
 
-// Of a freed object only its class's name is ever shown; if the class is gone, its nearest ancestor's.
+// Only the class name of a freed object is ever shown; if the class is gone, that of its nearest ancestor.
 const ClassInfo& Reload::class_of(const Instance& instance) const {
   for (const ClassInfo* c = instance.cls; c; c = c->parent)
     if (classes_[c->id]) return *classes_[c->id];

@@ -67,7 +67,7 @@ TEST(Defects, AFailedInvariantInAScriptIsAStatusWithItsPlace) {
   EXPECT_EQ(host.call("say"), BREVE_OK);
 }
 
-// Errors of a script inside such a call do not stop the caller; a defect is none of the script's.
+// Errors of a script inside such a call do not stop the caller; a defect is not an error of the script.
 TEST(Defects, ADefectStopsWhatErrorsOfScriptsDoNot) {
   Host host;
   forget_references(host);

@@ -237,7 +237,7 @@ TEST(LanguageServer, MistakesInMessagesHaveDefinedAnswers) {
   EXPECT_EQ(code_of(editor.ask("textDocument/hover", json::array({1}))), -32602);
   EXPECT_EQ(code_of(editor.ask("textDocument/hover", {{"textDocument", 5}, {"position", "x"}})), -32602);
   EXPECT_EQ(code_of(editor.ask("initialize", json::object())), -32600);
-  editor.send_text("this is no JSON");
+  editor.send_text("this is not JSON");
   EXPECT_EQ(code_of(editor.answer(nullptr)), -32700);
   editor.send_text("[1, 2]");
   EXPECT_EQ(code_of(editor.answer(nullptr)), -32600);

@@ -121,7 +121,7 @@ breve_status hash_keys(Caller& c) {
 
 // --- variables and calls ---------------------------------------------------------------------------------------------
 
-/// Of the classes in call_programs.
+/// A variable of the classes in call_programs.
 struct Variable {
   const char *name, *type;
 };
@@ -270,7 +270,7 @@ breve_status statements_complete(Caller& c) {
   return BREVE_OK;
 }
 
-/// Of a value that is passed.
+/// The statuses for a value that is passed.
 constexpr Statuses kContainer = kType | kStale;
 
 constexpr Function kFunctions[] = {

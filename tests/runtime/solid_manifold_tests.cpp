@@ -210,7 +210,7 @@ void check_random_pairs(std::uint64_t seed, double scale, const Vector3& origin,
     ASSERT_LE((mirrored[0].normal + m.normal).norm(), 1e-9) << "case " << i;
     ASSERT_EQ(mirrored[0].count, m.count) << "case " << i;
     if (m.count == 1 && c.distance < 0) continue;  // the deepest points of an overlap need not be the only ones
-    // Of two edges side by side the points across are not unique, by the angle between the edges.
+    // If two edges are side by side, the points across are not unique, by the angle between the edges.
     const double slip = m.count == 2 ? kSideBySide * kSideBySide * 4 * scale : 1e3 * exact;
     for (int k = 0; k < m.count; ++k) {
       bool same = false;

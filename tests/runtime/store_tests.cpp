@@ -110,7 +110,7 @@ TEST(ImageFile, FailuresNameTheFile) {
   const auto refusal = [](const std::string& bytes) {
     return message(ErrorCode::File, [&] { Image::parse(bytes, "a.png"); });
   };
-  EXPECT_EQ(refusal("this is no picture").find("cannot read image file 'a.png': "), 0U);
+  EXPECT_EQ(refusal("this is not a picture").find("cannot read image file 'a.png': "), 0U);
   EXPECT_EQ(refusal(sample().png().substr(0, 40)).find("cannot read image file 'a.png': "), 0U);
   EXPECT_NE(refusal(""), "");
   EXPECT_EQ(message(ErrorCode::Argument, [] { (void)Image().png(); }), "the image is empty");

@@ -385,7 +385,7 @@ class World {
   // --- accuracy, space, grids, threads -------------------------------------------------------------------------------
   Result<breve_accuracy> accuracy() const { return read_struct(breve_accuracy_default(), breve_world_accuracy); }
   Status set_accuracy(const breve_accuracy& accuracy) { return status(breve_world_set_accuracy(get(), &accuracy)); }
-  /// Of a body's assembly; null: the world's.
+  /// The accuracy of a body's assembly; null: the world's.
   Status set_accuracy(Object object, const breve_accuracy* accuracy) {
     return status(breve_object_set_accuracy(get(), object, accuracy));
   }

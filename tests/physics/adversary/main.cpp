@@ -1,4 +1,4 @@
-// Looks for creatures that get energy or momentum from nowhere. `adversary --help` says how.
+// Looks for creatures that gain unexplained energy or momentum. `adversary --help` says how.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -161,7 +161,7 @@ int search_all(const Options& options) {
 
 int main(int count, char** arguments) {
   Options options;
-  CLI::App app("Looks for creatures that get energy or momentum from nowhere.");
+  CLI::App app("Looks for creatures that gain unexplained energy or momentum.");
   app.add_option("--rung", options.rung, "fast, balanced, precise, reference, conserving or all");
   app.add_option("--family", options.family, "drift, swim, fall, hang, drop, walk, overlap or all");
   app.add_option("--seed", options.seed, "of the search");

@@ -137,7 +137,7 @@ class Books {
 /// library tries and throws away it does not count, hence also a limit of time.
 constexpr double kMostWork = 3e7, kMostTime = 30;  // s of CPU
 
-/// Of the last iteration.
+/// The work of the last iteration.
 double work_of(const breve::World& world) {
   breve_physics_counters counted = breve_physics_counters_default();
   if (breve_world_physics_counters(world.get(), &counted) != BREVE_OK) return 0;

@@ -3,7 +3,7 @@
 
 namespace {
 
-// Of the same name as one in the other file.
+// It has the same name as one in the other file.
 int helper(int x) { return x + 1; }
 
 }  // namespace
