@@ -17,7 +17,7 @@ struct RunOptions {
   std::optional<std::uint64_t> iterations;      // until the program ends if neither is given
   std::optional<double> seconds;                // simulated
   std::optional<std::uint64_t> seed;            // drawn if not given
-  std::optional<std::uint64_t> budget;          // loop turns and calls of an iteration
+  std::optional<std::uint64_t> budget;          // loop iterations and calls in one step
   std::optional<std::uint64_t> physics_budget;  // units of work of an iteration's physics
   std::optional<std::uint64_t> memory;          // MB
   std::optional<std::uint32_t> depth;           // nested calls

@@ -31,7 +31,7 @@ constexpr double kBeyond = 0.6;
 constexpr double kCoarse = 1e-3;
 
 // In one step. Hard scenes need some 1,000, ten seconds of an oscillator to 1e-13 some 30,000; what needs far more,
-// such as a body that turns a billion times a second, is trouble for the guard, not hours of work.
+// such as a body that rotates a billion times a second, is trouble for the guard, not hours of work.
 constexpr int kMostAttempts = 100'000;
 
 class Adaptive final : public Integrator::Method {

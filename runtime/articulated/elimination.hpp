@@ -1,6 +1,6 @@
-// How the articulated-body algorithm takes a joint out of the equations: its own inertia is inverted, and what lies
-// beyond it is felt on the parent's side only in the directions in which the joint is stiff. Source: Featherstone 2008,
-// section 7.2 (equations 7.36 to 7.44), written for world axes and each type of joint.
+// How the articulated-body algorithm takes a joint out of the equations: its own inertia is inverted, and the
+// links beyond it act on the parent's side only in the directions in which the joint is stiff. Source: Featherstone
+// 2008, section 7.2 (equations 7.36 to 7.44), written for world axes and each type of joint.
 #pragma once
 
 #include "runtime/articulated/joints.hpp"
@@ -10,7 +10,7 @@ namespace breve::articulated {
 /// A pivot this small against the largest possible one has no correct digit left: two units of round-off.
 constexpr double kSingular = 4e-16;
 
-/// Lets `felt` turn freely about an axis. `added` is added to its inertia there. Returns false if that is singular.
+/// Lets `felt` rotate freely about an axis. `added` is added to its inertia there. Returns false if that is singular.
 inline bool release(const Vector3& axis, double added, double least, ArticulatedInertia& felt, Vector3& pull_couple,
                     Vector3& pull_force, double& inverse) {
   pull_couple = felt.a * axis;
@@ -22,7 +22,7 @@ inline bool release(const Vector3& axis, double added, double least, Articulated
   return true;
 }
 
-/// Turns the articulated inertia `felt` of a link into the one that is felt across its joint, and keeps what `carry`
+/// Transforms the articulated inertia `felt` of a link into the effective one across its joint, and keeps what `carry`
 /// and `respond` need. `diagonal` (nv) is added to the joint's own inertia. Returns false if that inertia is singular.
 inline bool reduce(const Body& body, const double* diagonal, Work& w, WideWork& wide, ArticulatedInertia& felt) {
   diagonal += body.v;
@@ -75,8 +75,8 @@ inline bool reduce(const Body& body, const double* diagonal, Work& w, WideWork& 
   return false;
 }
 
-/// Takes the joint's forces `tau` (nv; null: none) into account: keeps what is left of them for acceleration, and turns
-/// couple and force that the link needs into those that come through the joint.
+/// Takes the joint's forces `tau` (nv; null: none) into account: keeps what is left of them for acceleration, and
+/// transforms torque and force that the link needs into those that come through the joint.
 inline void carry(const Body& body, const double* tau, Work& w, WideWork& wide, Vector3& couple, Vector3& force) {
   const auto given = [&](int k) { return tau ? tau[body.v + k] : 0.0; };
   switch (body.type) {

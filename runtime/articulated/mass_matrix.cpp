@@ -1,4 +1,4 @@
-// The composite-rigid-body algorithm: each joint's unit motion, the force that takes, felt at all joints inward of it.
+// The composite-rigid-body algorithm: each joint's unit motion, the force that this takes, at all joints inward of it.
 #include "runtime/articulated/mass_matrix.hpp"
 
 #include "runtime/articulated/joints.hpp"

@@ -14,7 +14,7 @@ class Midpoint {
   Midpoint(System& system, const Tolerance& tolerance);
 
   /// One step of h seconds. False, and `at` as it was, if repeating does not bring u to within a part of the tolerance
-  /// soon, if something turns too far in the step, or if the system has no acceleration somewhere.
+  /// soon, if something rotates too far in the step, or if the system has no acceleration somewhere.
   bool step(Instant& at, double h);
   int evaluations() const { return evaluations_; }  // in the last step()
 

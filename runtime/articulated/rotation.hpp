@@ -18,8 +18,8 @@ inline Vector3 logarithm(const Quaternion& q) {
   return sign * factor * q.vec();
 }
 
-/// The rate of `d` in R(t) = R0 exp(d(t)) when the body turns with `spin` (own axes): the inverse of the right Jacobian
-/// of exp. Source: Iserles et al. 2000, section 2.6; Hairer, Lubich, Wanner 2006, III.4 (sums in closed form).
+/// The rate of `d` in R(t) = R0 exp(d(t)) when the body rotates with `spin` (own axes): the inverse of the right
+/// Jacobian of exp. Source: Iserles et al. 2000, section 2.6; Hairer, Lubich, Wanner 2006, III.4 (sums in closed form).
 inline Vector3 rate_of_rotation_vector(const Vector3& d, const Vector3& spin) {
   const double square = d.squaredNorm();
   double c = 1.0 / 12 + square / 720 + square * square / 30240;

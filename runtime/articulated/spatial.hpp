@@ -102,7 +102,7 @@ struct ArticulatedInertia {
     c.subtract_outer(l, force);
   }
 
-  /// Adds `child`, felt at a point that lies at `r` in the child's stead: X^T child X with X = [1 0; -[r]x 1].
+  /// Adds `child`, as seen at a point that lies at `r` in the child's stead: X^T child X with X = [1 0; -[r]x 1].
   void add_shifted(const ArticulatedInertia& child, const Vector3& r) {
     c += child.c;
     // b' = b + [r]x c;  a' = a - b [r]x + [r]x b'^T, of which only the upper triangle is needed.

@@ -13,7 +13,7 @@ struct WorkBound {
   const std::atomic<bool>* ended = nullptr;  // true: nothing more is to be done at all. Outlives the work
 };
 
-/// One unit takes about as long as a turn of a script's loop, some 30 ns: a row swept once, a facet looked at, a
+/// One unit takes about as long as an iteration of a script's loop, some 30 ns: a row swept once, a facet looked at, a
 /// sixteenth of a link's part in forward dynamics.
 class Meter {
  public:

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runtime/base/math.hpp"
-#include "runtime/base/rotation_vector.hpp"  // for the turn by h * middle
+#include "runtime/base/rotation_vector.hpp"  // for the rotation by h * middle
 
 namespace breve {
 
@@ -12,7 +12,7 @@ namespace breve {
 /// @param inertia  about the centre of mass, own frame, positive definite, kg*m^2
 /// @param spin     rotational velocity, own frame, rad/s
 /// @param torque   own frame, N*m
-/// @return         spin after h; `middle` is the mean of both, with which the orientation turns
+/// @return         spin after h; `middle` is the mean of both, with which the body rotates
 /// Source: Hairer, Lubich, Wanner 2006, IV.2 (quadratic invariants of the implicit midpoint rule).
 Vector3 advance_spin(const Matrix3& inertia, const Vector3& spin, const Vector3& torque, double h, Vector3& middle);
 

@@ -26,7 +26,7 @@ void Bodies::Arrays::move_rigid_one(BodyIndex body, double h, const Vector3& gra
     return;
   }
   TurnRow& turn = turn_rows[turn_row[body]];
-  // The centre of mass moves like a point; the body turns about it.
+  // The centre of mass moves like a point; the body rotates about it.
   const Vector3 arm = turn.orientation * rigid.solid.center_of_mass;
   const Vector3 center_velocity = velocity[body] + turn.velocity.cross(arm) + h * pull;
   const Vector3 center = location[body] + arm + h * center_velocity;

@@ -27,7 +27,7 @@ constexpr int axis_count(JointKind kind) {
 /// "revolute", "prismatic", "fixed", "universal", "ball": for messages.
 std::string_view name_of(JointKind kind);
 
-/// Which two bodies, and where. Position and velocity of a joint are positive when the *parent* turns or moves along
+/// Which two bodies, and where. Position and velocity of a joint are positive when the *parent* rotates or moves along
 /// +axis relative to the child, so the child along -axis. Axes of a universal joint: `normal`, fixed in the parent, and
 /// parent_point x normal, fixed in the child (some perpendicular of the normal, if that is zero). For a ball
 /// joint: Euler's angles about the normal (parent), a derived axis, and the direction of parent_point without its part
@@ -44,7 +44,7 @@ struct JointDescription {
   // universal joint, the third of a ball's angles. Zero: from parent_point. What of it is along the normal is taken
   // off.
   Vector3 other_axis = Vector3::Zero();
-  bool keep_rotation = false;  // use-current-relative-rotation: the child is moved, but not turned
+  bool keep_rotation = false;  // use-current-relative-rotation: the child is moved, but not rotated
 };
 
 /// One number for each axis of a joint; those that the joint has not are 0.

@@ -60,9 +60,9 @@ class Mechanics : public InMemory {
 
   // --- joints -----------------------------------------------------------------------------------------------------
   /// Joins two bodies, or a body to the world. Both become physics-enabled (a Stationary parent is like the world). The
-  /// child, with all that hangs on it, is turned to its place (unless keep_rotation) and moved so that the two points
-  /// coincide; if it is connected with the parent already, the joint closes a ring: nothing is moved, and the joint
-  /// becomes a constraint. A child that is held by the world already closes a ring too.
+  /// child, with everything attached to it, is rotated to its pose (unless keep_rotation) and moved so that the two
+  /// points coincide; if it is connected with the parent already, the joint closes a loop: nothing is moved, and the
+  /// joint becomes a constraint. A child that the world already holds also closes a loop.
   /// @param owner  the object behind it, for messages and for who_asked; may be null
   /// @throws Error{Argument} naming the property: a child that is not a body or is Stationary, parent and child the
   /// same,
@@ -83,19 +83,19 @@ class Mechanics : public InMemory {
   virtual void set_drive(JointIndex joint, const JointDrive& drive) = 0;
   virtual double strength_hard_limit(JointIndex joint) const = 0;  // 500 x mass of the child, N*m or N
 
-  /// rad or m, sign as in JointDescription; a revolute joint counts its whole turns. Universal and ball: angles about
+  /// rad or m, sign as in JointDescription; a revolute joint counts whole revolutions. Universal and ball: angles about
   /// their axes.
   virtual JointVector position(JointIndex joint) const = 0;
   virtual JointVector velocity(JointIndex joint) const = 0;  // rad/s or m/s
-  /// Put the joint there, moving so: what hangs on the child's side moves along. Error{Argument} if not finite, or if
-  /// the joint closes a ring.
+  /// Put the joint there, moving so: what hangs on the child's side moves along. Error{Argument} if not finite, or
+  /// if the joint closes a loop.
   virtual void set_position(JointIndex joint, const JointVector& position) = 0;
   virtual void set_velocity(JointIndex joint, const JointVector& velocity) = 0;
   /// The same for a ball joint, without angles: at zero turned by `turn`, child relative to parent, in the parent's
   /// axes, and spinning so. Errors as above, and if it is not a ball joint.
   virtual void set_ball(JointIndex joint, const Quaternion& turn, const Vector3& spin) = 0;
-  /// At this moment, from the forces that act now (those of joints that close rings too) and those that contacts and
-  /// limits had in the last sub-step.
+  /// At this moment, from the forces that act now (including those of joints that close loops) and those that contacts
+  /// and limits had in the last sub-step.
   virtual JointReaction reaction(JointIndex joint) const = 0;
 
   // --- assemblies: bodies that joints connect ---------------------------------------------------------------------
@@ -107,7 +107,7 @@ class Mechanics : public InMemory {
   virtual std::pmr::vector<JointIndex> joints_of(BodyIndex body) const = 0;
   /// Moves the whole assembly rigidly so that this body stands there. Anchors of joints to the world move along.
   virtual void move_assembly(BodyIndex body, const Vector3& location, const Quaternion& orientation) = 0;
-  /// The whole assembly moves as one solid, so that this body has this velocity and spin (world axes): no joint turns.
+  /// The whole assembly moves as one solid, so that this body has this velocity and spin (world axes): no joint moves.
   /// Joints to the world allow what they allow. Error{Argument} if not finite.
   virtual void set_assembly_velocity(BodyIndex body, const Vector3& velocity, const Vector3& spin) = 0;
   /// Settings of the assembly that this body belongs to, kept with the body; the first body in the order of indices

@@ -1,4 +1,4 @@
-// Elastic ties between points of two bodies: massless, passing through everything.
+// Springs between points of two bodies: massless, passing through everything.
 #pragma once
 
 #include <cstdint>

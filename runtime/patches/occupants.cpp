@@ -1,4 +1,4 @@
-// Rings of agents by cell, and the array of free cells in which a cell is found by its own index.
+// Circular lists of agents by cell, and the array of free cells in which a cell is found by its own index.
 #include "runtime/patches/occupants.hpp"
 
 namespace breve {
@@ -116,7 +116,7 @@ void Occupants::load(ByteReader& in, const Grid& grid) {
     if (agent.cell >= cells || agent.before >= agents_.size() || agent.after >= agents_.size()) ByteReader::fail();
     ++counts_[agent.cell];
   }
-  // Rings that close, and nobody in two: what follows a link comes back by the other one, in the same cell.
+  // Circular lists that close, and no agent in two: what follows a link comes back by the other one, in the same cell.
   for (std::size_t i = 0; i < agents_.size(); ++i) {
     const Agent& agent = agents_[i];
     if (!agent.id) continue;

@@ -11,8 +11,8 @@
 
 namespace breve {
 
-/// The agents of one cell form a ring, in order of arrival. Free cells stand in an array, so that a random one is drawn
-/// without trying.
+/// The agents of one cell form a circular list, in order of arrival. Free cells stand in an array, so that a random one
+/// is drawn without trying.
 class Occupants {
  public:
   using Place = std::uint32_t;  // of an agent in the tables
@@ -21,7 +21,7 @@ class Occupants {
   struct Agent {
     ObjectId id;  // null: the place is not in use
     CellIndex cell = kNoCell;
-    Place before = kNoPlace, after = kNoPlace;  // in the ring of its cell
+    Place before = kNoPlace, after = kNoPlace;  // in the circular list of its cell
   };
 
   explicit Occupants(std::pmr::memory_resource* memory)

@@ -62,7 +62,8 @@ void fold(const Extent::Axis& a, double& x, double& v) {
   x = std::clamp(a.low + rest, a.low, a.high);
 }
 
-/// Turned once, at the wall that lies between. Outward are the distance from the wall, the speed and the acceleration.
+/// Reflected once, at the wall that lies between. Outward are the distance from the wall, the speed and the
+/// acceleration.
 void bounce(double wall, double out, double& x, double& v, double acceleration) {
   const double far = out * (x - wall), speed = out * v, pull = out * acceleration;
   const double met = std::sqrt(std::max(0.0, speed * speed - 2 * pull * far));  // speed at the wall, by its energy

@@ -31,7 +31,7 @@ class Extent {
   bool holds(const Vector3& location) const;
   /// The place where a finite one comes to lie: wrapped, or thrown back by walls as often as needed.
   Vector3 inside(const Vector3& location) const;
-  /// The same for something that moves: an odd number of walls along an axis turns its velocity.
+  /// The same for something that moves: an odd number of walls along an axis reverses its velocity.
   void bring_inside(Vector3& location, Vector3& velocity) const;
   /// The shortest way from one place to another, across edges that wrap; of two equally short ones any, but the way
   /// back is its opposite.

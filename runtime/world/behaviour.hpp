@@ -49,7 +49,7 @@ class Behaviour {
     static_cast<void>(draw);
     return Vector3::Zero();
   }
-  /// The world begins so much work of its own for the agents (units of about a turn of a loop, see Meter): it counts as
+  /// The world begins so much work of its own for the agents (units of about a loop iteration, see Meter): it counts as
   /// theirs. Throws if they may not use so much, or if the host wants the end.
   virtual void charge(std::uint64_t units) = 0;
   /// The same, and nothing is counted.

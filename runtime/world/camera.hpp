@@ -1,5 +1,5 @@
-// Where a camera stands and looks. Position is held twice, as an offset from the target and as the angles that scripts
-// turn it by, so that a camera straight above its target still knows which way is up.
+// Where a camera stands and looks. Position is held twice, as an offset from the target and as the angles that
+// scripts rotate it by, so that a camera straight above its target still knows which way is up.
 #pragma once
 
 #include <memory>
@@ -28,7 +28,7 @@ struct CameraState {
   /// Stand at `target + o` and look at the target. Zero: at the target, angles kept.
   /// @throws Error{Argument} if `o` is not finite
   void set_offset(const Vector3& o);
-  /// Turn about the target: the distance is kept.
+  /// Rotate about the target: the distance is kept.
   /// @throws Error{Argument} if an angle is not finite
   void set_angles(double new_pitch, double new_yaw);
   /// @throws Error{Argument} if `metres` is not finite or negative

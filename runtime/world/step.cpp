@@ -257,9 +257,9 @@ void World::Parts::bring_inside() {
     if (!space.holds(bodies.location(body))) brought += bring_assembly(body) ? 1U : 0U;
 }
 
-/// Bodies that joints connect come back as one when the first of them, in the order of indices, has left: all are moved
-/// by the same way. A wall turns the velocity of their centre of mass, and leaves how they move about it. An assembly
-/// that is attached to the world, or to something that does not move, stays where it is.
+/// Bodies that joints connect come back as one when the first of them, in the order of indices, has left: all are
+/// moved by the same offset. A wall reflects the velocity of their centre of mass, and leaves how they move about it.
+/// An assembly that is attached to the world, or to something that does not move, stays where it is.
 bool World::Parts::bring_assembly(BodyIndex body) {
   Bodies& bodies = *world->bodies_;
   const std::pmr::vector<BodyIndex> links = dynamics->links_of(body);

@@ -85,7 +85,7 @@ class World : public InMemory {
   /// Joints, springs, accuracy, energy: whatever has to do with forces. Valid until the world is loaded or destroyed.
   Mechanics& dynamics();
   const Mechanics& dynamics() const;
-  /// From now on the world is flat: every body has z = 0 and turns about z alone. What dynamics() gave before is gone;
+  /// From now on the world is flat: every body has z = 0 and rotates only about z. What dynamics() gave before is gone;
   /// its settings are kept. Error{Argument} if there are bodies with physics, joints or springs, or a body that is not
   /// in the plane. Does nothing if it is already flat.
   void flatten();

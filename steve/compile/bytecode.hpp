@@ -71,7 +71,7 @@ namespace breve::steve {
   X(JumpIfAny) X(JumpIfNotAny) \
   X(JumpUnlessLtInt) X(JumpUnlessLeInt) X(JumpUnlessEqInt) X(JumpUnlessNeInt)  /* a, b; c: signed distance */ \
   X(JumpUnlessLtDouble) X(JumpUnlessLeDouble) X(JumpUnlessEqDouble) X(JumpUnlessNeDouble) \
-  /* a jump back counts as a turn of a loop */ \
+  /* a jump back counts as a loop iteration */ \
   X(JumpIfLtInt) X(JumpIfLeInt) X(JumpIfEqInt) X(JumpIfNeInt) \
   X(JumpIfLtDouble) X(JumpIfLeDouble) X(JumpIfEqDouble) X(JumpIfNeDouble) \
   X(JumpIfLtSmall) X(JumpIfLeSmall) X(JumpIfGtSmall) X(JumpIfGeSmall) X(JumpIfEqSmall) X(JumpIfNeSmall) /* int a, number b */ \

@@ -27,7 +27,7 @@ std::string number_text(double d) {
 }  // namespace
 
 /// The class that a new one is derived from; null for Object itself. `Bird : Mobile` where `Mobile : Bird` is meant is
-/// reported, and turned round.
+/// reported, and reversed.
 const ClassInfo* ProgramBuilder::parent_of(ast::Class& tree) {
   if (tree.parent == "NULL") return nullptr;
   if (const ClassInfo* parent = class_named(tree.parent)) return parent;

@@ -59,7 +59,7 @@ class SessionNames {
     return make(span, ast::IndexExpr{make(span, ast::Name{kSessionVariable}), make(span, std::move(key))});
   }
 
-  /// The loop's variable must be a variable: a hidden one, which each turn hands on.
+  /// The loop's variable must be a variable: a hidden one, which each iteration hands on.
   void foreach_loop(ast::Foreach& f, const Span& span) {
     expr(f.list);
     statement(f.body);

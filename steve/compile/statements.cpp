@@ -229,7 +229,7 @@ void FunctionCompiler::for_statement(const ast::For& s, bool keep) {
   emit_.jump(Op::Jump, 0, test);
   emit_.place(body);
   statement(*s.body, keep);
-  // The first test stands apart if step and test are one: either way each turn is one jump back.
+  // The first test stands apart if step and test are one: either way each iteration is one jump back.
   if (counting_for(s, body))
     emit_.jump(Op::Jump, 0, end);
   else

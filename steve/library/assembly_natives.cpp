@@ -91,7 +91,7 @@ Vector3 multibody_get_location(Machine& machine, Instance& self) {
   return bodies_of(machine).location(root_body(machine, self));
 }
 
-/// Let the root's own method turn or move the root, then take the whole assembly there.
+/// Let the root's own method rotate or move the root, then take the whole assembly there.
 void move_by_root(Machine& machine, Instance& self, std::string_view selector, std::span<const Value> arguments) {
   Instance& root = need_root(machine, self);
   const BodyIndex body = body_of(machine, root);

@@ -128,7 +128,7 @@ void grid_apply_rule(Machine& machine, Instance& self, std::int32_t born, std::i
   refuse_updating(resource, "apply-rule");
   resource.states.make(*resource.grid);
   const TotalisticRule rule{static_cast<std::uint32_t>(born), static_cast<std::uint32_t>(survive)};
-  constexpr std::size_t kCellsPerTurn = 32;  // what takes about as long as a turn of a script's loop
+  constexpr std::size_t kCellsPerTurn = 32;  // what takes about as long as an iteration of a script's loop
   for (std::int32_t i = 0; i < times; ++i) {
     machine.charge(1 + resource.grid->cells() / kCellsPerTurn);
     const StageScope timed = machine.world().work(EffectId::Patches, self.id, resource.grid->cells());

@@ -84,7 +84,7 @@ void link_joint(Machine& machine, Instance& joint, JointDescription description,
   description.child = end_of(machine, child, "link: the child");
   description.parent = end_of(machine, parent, "link: the parent");
   if (row.kind == JointKind::Fixed && description.keep_rotation) {
-    // It has no position to start from: what the child is turned by now is its zero.
+    // It has no position to start from: the child's current relative rotation is its zero.
     const Bodies& bodies = machine.world().bodies();
     const Quaternion from =
         description.parent == kNoBody ? Quaternion(1, 0, 0, 0) : bodies.orientation(description.parent);
@@ -135,7 +135,7 @@ void relink_joint(Machine& machine, Instance& joint) {
   const JointIndex index = joint_of(machine, joint);
   dynamics.set_drive(index, saved.drive);
   if (dynamics.closes_ring(index)) return;
-  // Bodies do not know how many turns a joint has made.
+  // Bodies do not know how many revolutions a joint has made.
   dynamics.set_position(index, saved.position);
   dynamics.set_velocity(index, saved.velocity);
 }

@@ -84,7 +84,7 @@ void set_bitmap_heading(Machine& machine, Instance& self, double radians) {
 void set_bitmap_heading_point(Machine& machine, Instance& self, Vector3 direction) {
   finite(direction, "a bitmap's heading");
   const CameraState& camera = machine.world().view().camera;
-  // Camera axes in the world: it stands at +z of its target, pitched about x, then turned about y.
+  // Camera axes in the world: it stands at +z of its target, pitched about x, then rotated about y.
   const Eigen::Quaterniond turn =
       Eigen::AngleAxisd(camera.yaw, Vector3::UnitY()) * Eigen::AngleAxisd(camera.pitch, Vector3::UnitX());
   const Vector3 seen = turn.conjugate() * direction;

@@ -35,7 +35,7 @@ void set(Machine& machine, Instance& self, Vector3 value) {
   (bodies_of(machine).*Set)(body_of(machine, self), value);
 }
 
-/// The turn about an axis of any length; the identity for a zero axis.
+/// The rotation about an axis of any length; the identity for a zero axis.
 Quaternion turn_about(const Vector3& axis, double radians) {
   finite(axis, "a rotation's axis");
   finite(radians, "a rotation's angle");

@@ -89,7 +89,7 @@ class Running {
   Pin pin_;
 };
 
-constexpr std::uint64_t kUnitsPerTurn = 2;  // a step of Push takes half as long as a turn of a script's loop
+constexpr std::uint64_t kUnitsPerTurn = 2;  // a step of Push takes half as long as an iteration of a script's loop
 
 /// Do at most `steps`. 1 if that was not all there was to do.
 std::int32_t advance(Machine& machine, Instance& self, Running& running, std::uint64_t steps) {

@@ -82,7 +82,7 @@ Instance* build_cube(Machine& machine, Instance& self, Vector3 size) {
   return build(machine, self, Shape::box(size, machine.heap().memory()));
 }
 
-/// In a flat world a disk lies in the plane: turned so that its axis is z.
+/// In a flat world a disk lies in the plane: rotated so that its axis is z.
 std::shared_ptr<Shape> lying(const Shape& prism, std::pmr::memory_resource* memory) {
   std::vector<std::vector<Vector3>> faces;
   for (const auto& face : prism.faces()) {

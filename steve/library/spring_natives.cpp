@@ -1,4 +1,4 @@
-// Natives of Spring: an elastic tie between points of two bodies.
+// Natives of Spring: an elastic connection between points of two bodies.
 #include "steve/library/joints.hpp"
 #include "steve/library/tables.hpp"
 

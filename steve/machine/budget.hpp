@@ -1,5 +1,5 @@
-// How much script may still run. Loop turns, calls and new objects are counted and nothing else, so that a cut falls at
-// the same turn on every machine, in every build, and whatever instructions are merged.
+// How much script may still run. Loop iterations, calls and new objects are counted and nothing else, so that a cut
+// falls at the same iteration on every machine, in every build, and whatever instructions are merged.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +11,9 @@ namespace breve::steve {
 /// They are counted down in pieces, so that the interpreter looks at one number.
 class Budget {
  public:
-  /// One more turn. True: the piece is at its end, and next_piece is to be asked.
+  /// One more loop iteration. True: the piece is at its end, and next_piece is to be asked.
   bool turn() { return --piece_ == 0; }
-  /// False: there is nothing left, now and at every turn that follows.
+  /// False: there is nothing left, now and at every later iteration.
   bool next_piece() {
     piece_ = std::min({kPiece, run_, call_});
     run_ -= piece_;
@@ -22,12 +22,12 @@ class Budget {
     piece_ = 1;
     return false;
   }
-  /// Look in again at the very next turn.
+  /// Look in again at the very next iteration.
   void hold() {
     give_back();
     piece_ = 1;
   }
-  /// Many turns at once, of work that native code does. False as next_piece.
+  /// Many loop iterations at once, for the work of native code. False as next_piece.
   bool charge(std::uint64_t turns) {
     give_back();
     const std::uint64_t used = std::min({turns, run_, call_});
@@ -69,7 +69,7 @@ class Budget {
  private:
   static constexpr std::uint64_t kPiece = 1 << 16;  // turns: less than a millisecond, to see an interrupt
   static constexpr std::uint64_t kUnlimited = std::uint64_t{1} << 62;
-  // The turn after the last one that is allowed is the one that fails.
+  // The iteration after the last one that is allowed is the one that fails.
   static std::uint64_t limit(std::uint64_t turns) { return turns == 0 || turns >= kUnlimited ? kUnlimited : turns + 1; }
   void give_back() {
     run_ += piece_;

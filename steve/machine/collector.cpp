@@ -227,7 +227,7 @@ void Heap::sweep(std::int64_t& work) {
   white_ ^= kColour;
 }
 
-// Freeing a cell of the garbage frees what it alone refers to, and so on: a ring would go at once.
+// Freeing a cell of the garbage frees what it alone refers to, and so on: a cycle would be freed at once.
 bool Heap::is_swept_later(const Cell& cell) const {
   if (phase_ != Phase::Sweep || !is_container(cell.tag)) return false;
   const auto& container = static_cast<const Container&>(cell);

@@ -154,8 +154,8 @@ class Heap : public InMemory {
   /// @throws std::bad_alloc if not, RunError{Bounds} if no string can be so long
   void check_room(std::size_t bytes) const;
 
-  /// Bytes of strings and lists that were written or moved since this was asked last. When they are many, the budget
-  /// looks in at the next turn.
+  /// Bytes of strings and lists that were written or moved since this was asked last. When they are many, the
+  /// budget looks in at the next loop iteration.
   std::uint64_t take_moved() { return std::exchange(moved_, 0); }
   /// @param settle  charges what take_moved() gives; it throws where the budget is used up
   void set_budget(Budget* budget, std::function<void()> settle) {

@@ -80,11 +80,12 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   /// Let another program take the place of this one, all or nothing; only while nothing runs (reload.hpp).
   /// @return  warnings about values that could not be kept
   std::vector<std::string> reload(std::shared_ptr<const Program> program);
-  /// Stop what runs, at the next call or turn of a loop that is looked at. For signal handlers and other threads.
+  /// Stop what runs, at the next call or loop iteration that is checked. For signal handlers and other threads.
   void interrupt() noexcept { interrupted_.store(true, std::memory_order_relaxed); }
   /// The host calls, or an iteration begins: what runs from now on shares one budget, and old interrupts are forgotten.
   void begin_run();
-  /// Count work of native code as so many turns. RunError{Budget} if the budget is used up, {Interrupted} by the host.
+  /// Count the work of native code as this many loop iterations. RunError{Budget} if the budget is used up,
+  /// {Interrupted} by the host.
   void charge(std::uint64_t turns) override;
   void expect(std::uint64_t turns) override;
   /// `poll` for the work of the runtime.
@@ -93,8 +94,8 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   void poll() {
     if (interrupted_.load(std::memory_order_relaxed)) fail_interrupted();
   }
-  /// The same, of work that looks at so many elements (numbers, pixels, cells, values of a list): some sixteen take as
-  /// long as a turn. Before the work, where it is known, so that what exceeds the budget does not begin.
+  /// The same, of work that looks at so many elements (numbers, pixels, cells, values of a list): about sixteen take
+  /// as long as a loop iteration. Before the work, where it is known, so that what exceeds the budget does not begin.
   void charge_for(std::uint64_t elements) {
     constexpr std::uint64_t kElementsPerTurn = 16;
     if (elements >= kElementsPerTurn) charge(elements / kElementsPerTurn);

@@ -36,7 +36,7 @@ struct MachineHost {
   bool verbose = false;    // say once when an obsolete selector is used
   bool strict = false;
   std::uint32_t depth_limit = 5000;  // nested calls
-  std::uint64_t budget = 0;          // loop turns and calls in an iteration or a call from the host; 0 = none
+  std::uint64_t budget = 0;          // loop iterations and calls in a step or a call from the host; 0 = none
   std::uint64_t call_budget = 0;     // in one call by the world, within an iteration; 0 = none
   std::uint64_t physics_budget = 0;  // units of work of an iteration's physics; 0 = none
   // s of real time that an iteration or a call from the host may take before it is warned of; 0 = any

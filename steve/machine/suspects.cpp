@@ -263,7 +263,7 @@ void Heap::judge_region(Region& region) {
   break_up(region);
 }
 
-// A ring of some thousands is worth more work than looking through the whole heap for it. A large structure that lives
+// A cycle of some thousands is worth more work than looking through the whole heap for it. A large structure that lives
 // may come to be suspected in each iteration, and is not.
 void Heap::judge_far_suspects(Region& region) {
   std::int64_t work = far_rest_ == 0 ? kLarge : 0;

@@ -31,7 +31,7 @@ Code loop(Interpreter& m, std::int32_t next, std::int32_t last, const Code& body
   return builder.finish();
 }
 
-/// Is the body the last that is left of the code of the same loop, one turn before? Then nobody sees it change.
+/// Is the body the last that is left of the code of the same loop, one iteration before? Then nobody sees it change.
 template <class S>
 bool is_rest_of_loop(const Code& body, std::int32_t last) {
   constexpr bool kQuotes = std::is_same_v<S, Codes>;
