@@ -5,9 +5,9 @@
 //   cost      CPU seconds for a simulated second, least of some runs
 //   forces    how often forces were evaluated in a simulated second, by trees of bodies
 //   energy    the unexplained part of the energy, over the largest kinetic energy
-//   place     how far the body that is farthest off stands from where `reference` has it after a second, m: points of
-//             it that are 1 m from its centre
-//   told      interventions of the guard
+//   position  the largest error of a body's position after a second, compared with `reference`, m: of points of it that
+//             are 1 m from its centre
+//   guard     interventions of the guard
 #include <algorithm>
 #include <array>
 #include <breve/breve.hpp>
@@ -119,7 +119,7 @@ int main() {
   bool finite = true;
   try {
     auto runtime = breve::Runtime::create().or_throw();
-    std::printf("%-10s %-11s %10s %10s %10s %10s %6s\n", "scene", "rung", "cost", "forces", "energy", "place", "told");
+    std::printf("%-10s %-11s %10s %10s %10s %10s %6s\n", "scene", "rung", "cost", "forces", "energy", "position", "guard");
     for (const char* scene : kScenes) {
       const auto program = runtime.compile(scene, text_of(scene)).or_throw();
       std::vector<Measured> all;
