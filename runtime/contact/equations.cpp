@@ -125,7 +125,7 @@ bool Equations::solve(const double* q, double* du) {
   push_impulses(q, 1);
   get_velocities(step_);
   const auto n = static_cast<std::size_t>(size_);
-  // What is infinite or none leaves no trace, neither here nor in the world, which takes part in every push.
+  // An infinite or invalid value leaves no trace, neither here nor in the world, which takes part in every push.
   std::fill_n(work_.movers.front().v, 6, 0.0);
   if (!std::all_of(step_, step_ + size_, [](double v) { return std::isfinite(v); })) return false;
   if (!eliminate(matrix_, {step_, n}, {work_.indices.data() + offsets_, n})) return false;

@@ -32,7 +32,7 @@ Slip slip_if_loose(const Point& c, const double u[3], double dynamic) {
 Grip settled(const Row& row, const double u[3], double tolerance, const Point& c) {
   const double held = std::sqrt(c.impulse[1] * c.impulse[1] + c.impulse[2] * c.impulse[2]);
   if (held <= row.dynamic_friction * c.impulse[0]) return Grip::Unsettled;
-  // Sliding is told from the noise of a solve by what friction does in this step.
+  // Sliding is distinguished from the noise of a solve by what friction does in this step.
   const double noise = 1e-5 * held * (c.response.s11 + c.response.s22) + 10 * tolerance;
   if (held >= (1 - 1e-9) * c.friction * c.impulse[0] && Slip{u[1], u[2]}.length() > noise) return Grip::Slides;
   if (goes_on({row.slip[0], row.slip[1]}, slip_if_loose(c, u, row.dynamic_friction))) return Grip::GoesOn;

@@ -12,7 +12,7 @@ using Vector2 = Eigen::Vector2d;
 using Matrix2 = Eigen::Matrix2d;
 
 /// x with S x = b for a positive semidefinite S; where S cannot reach b, the shortest x that comes nearest.
-/// @param noise  eigenvalues up to this are none
+/// @param noise  eigenvalues up to this count as zero
 Vector2 solve_semidefinite(const Matrix2& S, const Vector2& b, double noise) {
   const double half_trace = 0.5 * (S(0, 0) + S(1, 1)), half_difference = 0.5 * (S(0, 0) - S(1, 1));
   const double spread = std::hypot(half_difference, S(0, 1));
@@ -41,7 +41,7 @@ Vector3 impact_impulse(const Matrix3& W, const Vector3& v, const Vector3& n, con
   const double approach = -n.dot(v);
   const Vector3 Wn = W * n;
   const double give = n.dot(Wn);
-  // A response to a push along n that is nothing but round-off is none.
+  // A response to a push along n that is only round-off counts as zero.
   if (!(approach > 0) || !(give > 1e-15 * W.trace())) return Vector3::Zero();
 
   const bool bounces = approach >= law.restitution_threshold;

@@ -10,7 +10,7 @@ namespace breve::contact {
 
 struct ImpactSettings {
   int most = 64;                       // impacts pair by pair before what is left over is stopped without rebound
-  double tolerance = 1e-10;            // m/s; slower approaches are none
+  double tolerance = 1e-10;            // m/s; slower approaches do not count
   SolveSettings rest{50, true, 1e-9};  // how that is solved
 };
 

@@ -15,7 +15,7 @@ constexpr int kMostSteps = 30;
 constexpr int kPatience = 8;            // steps without a better iterate
 constexpr double kNearest = 0.93;       // of the way to the edge of a cone
 constexpr double kFollowed = 0.9;       // of how mu |u_t| changes in a step: all of it goes round in circles at times
-constexpr double kSlippery = 1e-9;      // a smaller coefficient of friction is none here
+constexpr double kSlippery = 1e-9;      // a smaller coefficient of friction counts as 0 here
 constexpr double kSoftEquation = 1e-9;  // of a row's own response: how much an unbounded row gives in one step
 
 enum class Kind { Idle, Slippery, Cone };
@@ -32,7 +32,7 @@ double determinant(const double x[3]) {
   return (x[0] - across) * (x[0] + across);
 }
 
-/// Of what is inside the cone but for round-off.
+/// The determinant of a point that is inside the cone except for round-off.
 double inner_determinant(const double x[3]) {
   constexpr double kRoundOff = 1e-15;
   return std::max(determinant(x), kRoundOff * x[0] * x[0]);

@@ -9,7 +9,7 @@ namespace breve::contact {
 /// Each row has a pair of numbers or vectors whose product is to be zero: x, what it pushes with, and y, the velocity
 /// left to it, both in the interior of their cones. All products are made smaller together. Coulomb's law is that of a
 /// pair of second-order cones once mu |u_t| is added to the normal velocity (de Saxce and Feng 1998); this part is
-/// followed by tangents. What is redundant or about to change from one state to another does no harm.
+/// followed by tangents. Rows that are redundant or about to change their state do no harm.
 /// Source: Nesterov and Todd 1997 (the scaling); Acary, Armand, Nguyen and Shpakovych 2023 (friction).
 class Interior {
  public:
@@ -44,8 +44,8 @@ class Interior {
   double speed_ = 0;
   double last_ = 0.9;  // length of the last step; the first takes off a tenth
   int steps_ = 0;
-  // Of the rows: x; y (of a scalar row that of its lower bound); z (of a scalar row's upper bound); steps of these; the
-  // impulses, and their steps as far as they are known before the velocities; velocities at the rows.
+  // For the rows: x; y (of a scalar row that of its lower bound); z (of a scalar row's upper bound); steps of these;
+  // the impulses, and their steps as far as they are known before the velocities; velocities at the rows.
   double *x_, *y_, *z_, *dx_, *dy_, *dz_, *q_, *r_, *u_;
 };
 

@@ -35,7 +35,7 @@ class Newton {
   Equations& equations_;
   std::size_t rows_;
   double stiffness_ = 1;
-  // Of the rows: the centre; p(J v); impulses kept; q with v = v* + R q; its step; J v, and that of the step.
+  // For the rows: the centre; p(J v); impulses kept; q with v = v* + R q; its step; J v, and that of the step.
   double *centre_, *p_, *kept_, *q_, *dq_, *u_, *du_;
 };
 

@@ -30,7 +30,7 @@ Packed packed(const Mover& mover) {
   return out;
 }
 
-/// Of a free body, with its impulse at an arm.
+/// The response of a free body, with its impulse at an arm.
 void add_response(const Packed& m, const double arm[3], const Point& c, LocalMatrix& W) {
   if (m.inverse_mass == 0) return;
   const double* axes[3] = {c.normal, c.tangent1, c.tangent2};
@@ -57,7 +57,7 @@ void add_response(const Packed& m, const double arm[3], const Point& c, LocalMat
   W.s22 += m.inverse_mass + dot(2, 2);
 }
 
-/// Of a side given by its matrices. J R is symmetric; both halves are read, so that round-off is shared.
+/// The response of a side given by its matrices. J R is symmetric; both halves are read, so that round-off is shared.
 void add_response(const double* j, const double* r, int n, LocalMatrix& W) {
   const auto at = [&](int i, int k) { return dot(j + i * n, r + k * n, n); };
   W.nn += at(0, 0);

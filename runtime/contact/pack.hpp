@@ -11,8 +11,8 @@ namespace breve::contact {
 void pack(std::span<const Mover> movers, std::span<const Row> rows, std::span<const ScalarRow> scalars,
           Workspace& work);
 
-/// What is packed as it were at rest, without friction and impulses, and with other biases. Velocities of trees are
-/// zero.
+/// The packed problem as if it were at rest, without friction and impulses, and with other biases. Velocities of trees
+/// are zero.
 void start_over(std::span<const Push> rows, std::span<const double> scalar_biases, Workspace& work);
 
 /// Velocities of free bodies go back where they came from.

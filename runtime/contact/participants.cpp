@@ -231,7 +231,8 @@ bool CollisionStage::boxes_meet(const Pair& pair) const {
   return space_.wraps() ? a.intersects(b.translated(image_of_b(pair))) : a.intersects(b);
 }
 
-/// Of the fresh boxes. Where there are more pairs than may be looked at, it ends before all of them are found.
+/// The pairs of the fresh boxes. Where there are more pairs than may be looked at, it ends before all of them are
+/// found.
 void CollisionStage::find_new_pairs(CollisionClient& client) {
   constexpr std::size_t kLot = 4096;
   std::uint64_t meeting = 0;

@@ -73,7 +73,7 @@ void CollisionStage::place(BodyIndex body, const BodyState& state) {
   bodies_->place(body, state.location, state.orientation, state.velocity, state.rotational_velocity);
 }
 
-/// What is to be added to b's place so that it is near a, across edges of space that wrap.
+/// The offset to be added to b's position so that it is near a, across edges of space that wrap.
 Vector3 CollisionStage::image_of_b(const Pair& pair) const {
   if (!space_.wraps()) return Vector3::Zero();
   return space_.image(proxies_[pair.a].box.center(), proxies_[pair.b].box.center());

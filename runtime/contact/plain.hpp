@@ -38,7 +38,7 @@ Moved sweep_plain(Workspace& work, bool backward);
 /// Impulses go on the way they went, by that share of it.
 void go_on_plain(Workspace& work, double share);
 
-/// Of an island whose points' sides are all free bodies or the world: impulses, frictions and biases are read from the
+/// For an island whose points' sides are all free bodies or the world: impulses, frictions and biases are read from the
 /// points before the sweeps, and impulses given back after them. The rest is made when it is first asked for.
 void enter_plain(Workspace& work);
 void leave_plain(Workspace& work);

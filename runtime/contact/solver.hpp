@@ -10,7 +10,7 @@
 
 namespace breve::contact {
 
-/// What moves: a free body or a tree. Its velocity is read and written in place.
+/// Something that moves: a free body or a tree. Its velocity is read and written in place.
 struct Mover {
   double* v = nullptr;
   int size = 6;  // numbers in v

@@ -102,7 +102,7 @@ Sweeps::~Sweeps() {
   if (plain_) leave_plain(work_);
 }
 
-/// Of the way, for the sweep that follows.
+/// The share of the last change, for the sweep that follows.
 double Sweeps::share() const {
   // Where friction is strong against what turns away from it, and in clumps, momentum may throw impulses ever farther.
   constexpr double kMore = 1.2, kThrown = 4;

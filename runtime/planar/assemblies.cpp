@@ -18,7 +18,7 @@ void Planar::Core::collect(BodyIndex body, std::pmr::vector<BodyIndex>& out) con
     for (const JointIndex index : found->second) {
       const JointDescription& is = joints[index].is;
       const BodyIndex other = is.parent == out[i] ? is.child : is.parent;
-      // What does not move by itself holds nothing together.
+      // A body that does not move by itself connects nothing.
       if (other == kNoBody || !bodies->dynamic(other)) continue;
       const auto place = std::lower_bound(known.begin(), known.end(), other);
       if (place != known.end() && *place == other) continue;
@@ -28,7 +28,7 @@ void Planar::Core::collect(BodyIndex body, std::pmr::vector<BodyIndex>& out) con
   }
 }
 
-/// What hangs on the child's side of a joint: the assembly without it.
+/// The bodies on the child's side of a joint: the assembly without the joint.
 void Planar::Core::collect_beyond(JointIndex joint, std::pmr::vector<BodyIndex>& out) {
   FlatJoint& entry = joints[joint];
   const BodyIndex held = entry.is.parent;
@@ -108,7 +108,7 @@ void Planar::Core::follow(BodyIndex leader, const Pose& from) {
   }
 }
 
-/// Numbers for who belongs to which assembly, for the filter of contacts. A body without joints has none.
+/// Numbers of the assemblies that bodies belong to, for the filter of contacts. A body without joints has none.
 void Planar::Core::number_assemblies() {
   for (FlatBody& flat : slots) {
     flat.assembly = kNoSlot;

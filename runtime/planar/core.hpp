@@ -50,7 +50,7 @@ struct FlatBody {
   // What every sub-step looks at comes first: it is read body after body.
   BodyIndex body = kNoBody;
   bool fixed = false;      // does not move by itself
-  bool driven = false;     // fixed, but moves as it was told in this step
+  bool driven = false;     // fixed, but is moved by a script in this step
   bool solid = true;       // others touch it
   bool jointed = false;    // some joint holds it
   bool kicked = false;     // half of this sub-step's acceleration was taken off
@@ -71,7 +71,7 @@ struct FlatBody {
   Vector2 asked = Vector2::Zero();  // of its force method, in this sub-step
   double torque = 0;                // set by scripts, N*m
   MassProperties mass;
-  // What is compared once a step.
+  // Values that are compared once a step.
   std::shared_ptr<Shape> shape;
   Material material;
   Vector3 scale = Vector3::Ones();
@@ -102,14 +102,14 @@ struct FlatSettings {
 /// What the guard knows of the energy of the last steps, J.
 struct EnergyWatch {
   int steps = 0;        // of this window
-  double gain = 0;      // in it, that no account explains
+  double gain = 0;      // in it, unexplained
   double kinetic = 0;   // the most in it
   double turnover = 0;  // works and losses in it
   double slack = 0;     // the most in it
 };
 
-/// Which two shapes meet: indices of bodies, of their fixtures, and of a profile's edge. What is first has the lower
-/// numbers.
+/// Which two shapes meet: indices of bodies, of their fixtures, and of a profile's edge. The first one has the
+/// lower numbers.
 struct ContactKey {
   BodyIndex a = kNoBody, b = kNoBody;
   std::uint32_t fixture_a = 0, fixture_b = 0, child_a = 0, child_b = 0;
@@ -186,14 +186,14 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   std::optional<Frozen> frozen;             // what b2 is to be made of
   float last_step = 0;                      // s
   std::optional<Warm> kept;                 // while steps are cut: impulses of the last one that was not
-  bool muted = false;                       // contacts are being made again: nobody is told
+  bool muted = false;                       // contacts are being made again: no handler is called
 
   std::uint64_t seen_revision = 0, seen_rules = 0, seen_scalings = 0;
   bool rules_seen = false, members_changed = true, materials_changed = true;
   std::uint64_t rules = 0;           // grows when the answer may change whether two bodies push each other
   DynamicsClient* client = nullptr;  // during advance()
 
-  std::pmr::map<BodyPair, bool> met;  // pairs with a handler whose first touch was told; true: told in this step
+  std::pmr::map<BodyPair, bool> met;  // pairs with a handler whose first touch was reported; true: in this step
   std::uint64_t iteration = 0, sub_step = 0;
   double now = 0;  // s, at the start of the current sub-step
   int calm = 0;    // steps since something was wrong
@@ -205,7 +205,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   std::exception_ptr failure;  // what went wrong in a callback of Box2D, which must come to its end all the same
   bool stepping = false;       // inside b2World::Step
   double friction = 0;         // J, lost in sliding contacts in this sub-step
-  double driven_work = 0;      // J, of what moves as it was told on what it touches in this sub-step
+  double driven_work = 0;      // J, of bodies moved by scripts on what they touch in this sub-step
   int located = 0;             // impacts of pairs without handler in this sub-step
   WorkBound bound;             // of the iteration
   std::uint64_t work_most = Meter::kNoBound;  // of the sub-step: what counters.work may become

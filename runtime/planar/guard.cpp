@@ -76,7 +76,7 @@ FlatBody* Planar::Core::liveliest() {
   return found;
 }
 
-/// Energy that no account explains. Where things turn round hardly anything moves, and a first-order rule errs by as
+/// Unexplained energy. Where motion reverses hardly anything moves, and a first-order rule errs by as
 /// much: so it is compared with the most that moved in the last steps. Whether something is wrong.
 bool Planar::Core::watch_energy(const Balance& before, double moment) {
   constexpr double kResidual = 0.1,
@@ -112,7 +112,7 @@ bool Planar::Core::watch_energy(const Balance& before, double moment) {
   return true;
 }
 
-/// Of each body the deepest that it has: there are as many overlaps in a crowd as pairs. Whether there are any.
+/// The deepest overlap of each body: there are as many overlaps in a crowd as pairs. Whether there are any.
 bool Planar::Core::tell_overlaps(double moment, GuardAction action) {
   std::pmr::vector<double> deepest(memory);  // by body
   for (b2Contact* contact = b2->GetContactList(); contact; contact = contact->GetNext()) {
@@ -143,7 +143,7 @@ void Planar::Core::watch(double moment, bool wrong) {
     rest(flat);
     lost = flat.body;
   }
-  // What is no number spreads to all that such a body touches.
+  // A number that is not finite spreads to all that such a body touches.
   if (lost != kNoBody)
     for (FlatBody& flat : slots)
       if (flat.body != kNoBody && flat.fixed && !is_finite(flat)) hold_still(flat);

@@ -149,7 +149,7 @@ JointIndex Planar::link(const JointDescription& description, ObjectId owner) {
     if (end != kNoBody) c.joints_at.at(end).push_back(index);
   c.members_changed = true;
   ++c.rules;
-  c.ensure_world();  // so that who is moved from now on takes the others along
+  c.ensure_world();  // so that a body moved from now on takes the others along
   return index;
 }
 

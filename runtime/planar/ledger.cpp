@@ -14,7 +14,7 @@ double square(double x) { return x * x; }
 
 }  // namespace
 
-/// Of a body as Box2D has it, J: motion.
+/// The kinetic energy of a body as Box2D has it, J.
 double Planar::Core::motion_of(const FlatBody& flat) const {
   const b2Vec2 v = flat.b2->GetLinearVelocity();
   const double u = settings.unit;
@@ -22,7 +22,7 @@ double Planar::Core::motion_of(const FlatBody& flat) const {
          0.5 * flat.mass.inertia(2, 2) * square(flat.b2->GetAngularVelocity());
 }
 
-/// Of a body as Box2D has it, J: motion and height.
+/// The energy of a body as Box2D has it, J: motion and height.
 double Planar::Core::kinetic_of(const FlatBody& flat) const {
   const b2Vec2 at = flat.b2->GetWorldCenter();
   return motion_of(flat) -
@@ -45,7 +45,7 @@ Planar::Core::Balance Planar::Core::balance() const {
   return now_is;
 }
 
-/// Of a body as the arrays have it, J: motion and height.
+/// The energy of a body as the arrays have it, J: motion and height.
 double Planar::Core::energy_of(BodyIndex body) const {
   if (!bodies->dynamic(body)) return 0;
   const MassProperties& mass = bodies->mass_properties(body);
@@ -99,7 +99,7 @@ Energy Planar::Core::energy() const {
   return sum;
 }
 
-/// Of the motor's own axis in Box2D, rad/s or length units per second.
+/// The rate of the motor's own axis in Box2D, rad/s or length units per second.
 double Planar::Core::joint_rate(const FlatJoint& joint) const {
   if (!joint.b2) return 0;
   if (joint.is.kind == JointKind::Revolute) return static_cast<const b2RevoluteJoint*>(joint.b2)->GetJointSpeed();
@@ -144,7 +144,7 @@ void Planar::Core::end_account(double dt) {
   }
   account.motor_work += motors;
   account.script_work += driven_work;
-  // What is left is lost where bodies touch; if it came in, nothing explains it, and it shows in the residual.
+  // The rest is lost where bodies touch; if it came in, nothing explains it, and it shows in the residual.
   const double lost = std::max(0.0, motors + driven_work - held_back);
   const double rubbed = std::min(friction, lost);
   account.friction_loss += rubbed;

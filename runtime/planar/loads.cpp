@@ -15,7 +15,7 @@ Vector2 rotated(const b2Body& body, const Vector3& own, double unit) {
   return Vector2(v.x, v.y) * unit;
 }
 
-/// Of a body that does not move by itself: nothing.
+/// The mobility of a body; zero if it does not move by itself.
 struct Mobility {
   double mass = 0, inertia = 0;  // inverse
 };

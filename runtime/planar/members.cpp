@@ -138,7 +138,7 @@ b2Vec2 nearest_valid(const b2Vec2& place) {
 
 }  // namespace
 
-/// Box2D aborts the process on a body whose place or angle is none in single precision.
+/// Box2D aborts the process on a body whose position or angle is not finite in single precision.
 b2Vec2 Planar::Core::place_of(BodyIndex body) const {
   if (!bodies->orientation(body).coeffs().allFinite())
     throw Error(ErrorCode::Argument, "the orientation of a body is no longer finite");
@@ -347,7 +347,7 @@ void Planar::Core::push_velocity(FlatBody& flat) {
   push_velocity(flat, bodies->velocity(flat.body), bodies->rotational_velocity(flat.body).z());
 }
 
-/// Of its origin, m/s and rad/s.
+/// The velocity of its origin, m/s and rad/s.
 void Planar::Core::push_velocity(FlatBody& flat, const Vector3& velocity, double spin) {
   if (flat.fixed) return;
   const Vector3 arm = bodies->orientation(flat.body) * flat.mass.center_of_mass;
@@ -356,7 +356,7 @@ void Planar::Core::push_velocity(FlatBody& flat, const Vector3& velocity, double
   flat.b2->SetAngularVelocity(static_cast<float>(spin));
 }
 
-/// What may change of any body: its shape, its material, and where it is if it is fixed.
+/// The properties of any body that may change: its shape, its material, and where it is if it is fixed.
 void Planar::Core::push_shapes() {
   // Box2D's step has driven what is compared here out of the caches.
   constexpr std::size_t kAhead = 10;
@@ -402,7 +402,7 @@ void Planar::Core::push_changes() {
   scratch.clear();
   bodies->take_touched(scratch);
   std::pmr::vector<Strike> struck(memory);
-  // What was set is found before anything is moved: who is moved takes others along.
+  // Changes are found before anything is moved: a moved body takes others along.
   for (const BodyIndex body : scratch) {
     const FlatBody* flat = find(body);
     if (!flat || flat->fixed || !flat->jointed) continue;

@@ -1,4 +1,4 @@
-// The face: settings, springs, questions, and the world's side. What does the work is in the files that README.md
+// The face: settings, springs, questions, and the world's side. The work is done in the files that README.md
 // lists.
 #include "runtime/planar/planar.hpp"
 
@@ -85,7 +85,7 @@ void Planar::set_velocity(JointIndex joint, const JointVector& velocity) {
   const JointDescription& is = entry.is;
   const double more = velocity[0] - c.read_velocity(entry);
   const Pose parent = is.parent == kNoBody ? Pose{} : c.pose(is.parent), child = c.pose(is.child);
-  // What hangs on the child's side moves as one with it; where the joint closes a ring, the child alone is struck.
+  // The bodies on the child's side move as one with it; where the joint closes a loop, only the child is struck.
   std::pmr::vector<BodyIndex> all({is.child}, memory_);
   if (!entry.ring) c.collect_beyond(joint, all);
   const bool turns = is.kind == JointKind::Revolute;

@@ -15,7 +15,7 @@ class Response {
   using Matrix = Eigen::MatrixXd;
   using Vector = Eigen::VectorXd;
 
-  /// Of two bodies, and all that joints connect with them. Null, or what does not move by itself, answers nothing.
+  /// The response of two bodies and their assemblies. Null, or what does not move by itself, answers nothing.
   Response(const Planar::Core& core, FlatBody* a, FlatBody* b);
 
   Eigen::Index size() const { return 3 * static_cast<Eigen::Index>(bodies_.size()); }
@@ -30,9 +30,9 @@ class Response {
   Vector answer(const Vector2& arm_a, const Vector2& arm_b, const Vector2& impulse) const;
   /// The same of a torque on b, and its opposite on a.
   Vector answer_turn() const;
-  /// Of the velocity of a point of a body.
+  /// The change of the velocity of a point of a body.
   Vector2 at_point(const FlatBody& flat, const Vector2& arm, const Vector& change) const;
-  /// Of its spin.
+  /// The change of its angular velocity.
   double turn(const FlatBody& flat, const Vector& change) const;
   /// The least change, by kinetic energy, to these velocities after which the joints allow them.
   Vector allowed(const Vector& velocities) const;

@@ -91,7 +91,7 @@ bool all_finite(std::initializer_list<float> numbers) {
   return std::all_of(numbers.begin(), numbers.end(), [](float number) { return std::isfinite(number); });
 }
 
-/// Box2D aborts the process where a number is none.
+/// Box2D aborts the process where a number is not finite.
 void check_frozen(const Frozen& frozen, const Bodies& bodies, std::size_t joints) {
   BodyIndex next = 0;
   for (const FrozenBody& one : frozen.bodies) {

@@ -72,7 +72,7 @@ int Planar::Core::iterations_now() const {
   return static_cast<int>(std::clamp<std::uint64_t>(left, kFew, static_cast<std::uint64_t>(std::max(wanted, kFew))));
 }
 
-/// Of a step of Box2D.
+/// The work of a step of Box2D.
 void Planar::Core::count_work(int iterations) {
   const int rows = b2->GetContactCount() + b2->GetJointCount();
   counters.work += static_cast<std::uint64_t>(10 * (awake + rows) + rows * (iterations + position_iterations()));
@@ -84,8 +84,8 @@ int Planar::Core::count_awake() const {
   }));
 }
 
-/// What is left of a sub-step whose work is used up, by one step of Box2D without impacts at their moments; left out if
-/// somebody wants the end at once.
+/// The rest of a sub-step whose work budget is used up, by one step of Box2D without impacts at their moments; left out
+/// if somebody wants the end at once.
 void Planar::Core::finish(double left) {
   finishing = true;
   awake = count_awake();
@@ -171,7 +171,7 @@ double Planar::Core::plan_parts(double dt) {
     if (settings.sleeping)
       flat.drowsy = flat.touching > 0 && !flat.jointed && flat.b2->GetLinearVelocity().Length() < kDrowsy &&
                     std::abs(flat.b2->GetAngularVelocity()) < kDrowsyTurn;
-    // What moves more than half its width is to meet what moves, too.
+    // A body that moves more than half its width must also meet moving bodies.
     flat.b2->SetBullet(way > flat.thickness);
   }
   if (!(parts <= kMost)) {

@@ -11,7 +11,7 @@ namespace breve {
 
 namespace {
 
-// What is known of a contact is kept where Box2D keeps its restitution, which it never uses here: -1 nothing; else the
+// The data of a contact are kept where Box2D keeps its restitution, which it never uses here: -1 nothing; else the
 // restitution, from 0 to 1, plus 2 if a handler waits for it, plus 4 if its friction at rest is another than in motion.
 constexpr float kHandled = 2, kTwoFrictions = 4;
 
@@ -98,7 +98,7 @@ void Planar::Core::before_solving(b2Contact* contact) {
   contact->SetFriction(static_cast<float>(rests ? law.static_friction : law.dynamic_friction));
 }
 
-/// What moves as it was told works on what it touches: the impulses along its velocity.
+/// Bodies moved by scripts do work on what they touch: the impulses along its velocity.
 void Planar::Core::note_driven_work(b2Contact* contact, const b2ContactImpulse& impulse) {
   b2Body *a = contact->GetFixtureA()->GetBody(), *b = contact->GetFixtureB()->GetBody();
   if (!of(a).driven && !of(b).driven) return;

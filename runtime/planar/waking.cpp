@@ -1,4 +1,4 @@
-// What moves without forces in a flat world, and what wakes those that sleep.
+// Bodies that move without forces in a flat world, and the waking of sleeping bodies.
 #include <cmath>
 
 #include "runtime/planar/core.hpp"
@@ -15,7 +15,7 @@ bool can_follow(const Vector3& velocity, double spin) {
 
 }  // namespace
 
-/// What moves as it was told goes the way of the coming h seconds from where it was to where the arrays have it.
+/// Bodies moved by scripts move in the coming h seconds from where they were to where the arrays have them.
 void Planar::Core::place_drivers(double h) {
   for (FlatBody& flat : slots) {
     if (flat.body == kNoBody || !flat.fixed || !flat.solid) continue;
@@ -48,7 +48,7 @@ void Planar::Core::wake_touching(FlatBody& flat) {
   for (b2ContactEdge* edge = flat.b2->GetContactList(); edge; edge = edge->next) edge->other->SetAwake(true);
 }
 
-/// What may touch the body where it stands now.
+/// Wakes the bodies that may touch this one at its current position.
 void Planar::Core::wake_met(const FlatBody& flat) {
   struct Waker : b2QueryCallback {
     bool ReportFixture(b2Fixture* fixture) override {

@@ -63,7 +63,7 @@ bool cut(const CutPolygon& in, double ax, double ay, double nx, double ny, doubl
   return true;
 }
 
-/// Of a convex polygon the corners that span much: the farthest along a slanting line, the farthest from it, and the
+/// The corners of a convex polygon that span much: the farthest along a slanting line, the farthest from it, and the
 /// farthest from their diagonal on either side. The line is slanting so that no two corners of a regular polygon tie.
 int select(const CutPolygon& polygon, std::array<int, kMostPoints>& chosen) {
   if (polygon.count <= kMostPoints) {

@@ -28,7 +28,7 @@ struct Slack {
 };
 Slack slack_of(double radius_a, double radius_b);
 
-/// Who has the reference face.
+/// The owner of the reference face.
 enum class Owner : std::uint8_t { A, B };
 
 /// Points of `incident` within the prism over `reference` and lower over it than `margin`. False if there is none:

@@ -37,7 +37,7 @@ Gap flipped(const Gap& gap) {
   return other;
 }
 
-// Of the two solids moved apart along the normal, then brought back.
+// The witnesses of the two solids moved apart along the normal, then brought back.
 void place_witnesses(const Placed& a, const Placed& b, Gap& gap) {
   const double lift = 0.25 * std::min(a.radius, b.radius) - gap.distance;
   Placed lowered = b;
@@ -94,8 +94,8 @@ Contact closest(const Shape& a, const Pose& pa, const Shape& b, const Pose& pb) 
 
 bool closest_within(const Shape& a, const Pose& pa, const Shape& b, const Pose& pb, double limit, Contact& contact,
                     NarrowCounters* counters) {
-  // Spheres around both that are apart settle it, a hair farther than round-off; also refuses what is not finite. What
-  // is deep in the ground may be outside the sphere around the surface.
+  // Spheres around both that are apart settle it, a hair farther than round-off; also refuses numbers that are not
+  // finite. A solid deep in the ground may be outside the sphere around the surface.
   const bool ground = a.kind() == ShapeKind::HeightField || b.kind() == ShapeKind::HeightField;
   const double reach = (a.bounding_radius() + b.bounding_radius()) * (1 + 1e-12) + std::max(limit, 0.0);
   if (!ground && !((pa.location - pb.location).squaredNorm() <= reach * reach)) return false;

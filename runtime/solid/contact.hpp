@@ -51,7 +51,7 @@ struct NarrowCounters {
 Contact closest(const Shape& a, const Pose& pa, const Shape& b, const Pose& pb);
 
 /// Are two solids at most `limit` apart (m; not positive: do they overlap by at least so much)? `contact` is then what
-/// `closest` gives, and not written otherwise. What is far costs next to nothing, whatever surface it is far from.
+/// `closest` gives, and not written otherwise. Distant solids cost almost nothing, for every kind of surface.
 /// @param counters  may be null
 bool closest_within(const Shape& a, const Pose& pa, const Shape& b, const Pose& pb, double limit, Contact& contact,
                     NarrowCounters* counters = nullptr);

@@ -105,9 +105,9 @@ bool holds_origin(const Simplex<Corner>& s) {
          sign * -a.dot(b.cross(c)) >= 0;
 }
 
-/// Of a simplex whose last corner is new. Without that one the nearest point is known: the simplex before was reduced
-/// to the corners that span it. So only what the new corner spans is looked at, and a new point is nearer or there is
-/// none.
+/// Reduces a simplex whose last corner is new. Without that one the nearest point is known: the simplex before was
+/// reduced to the corners that span it. So only what the new corner spans is looked at, and a new point is nearer or
+/// there is none.
 template <class Corner>
 Nearest nearest_to_origin(const Simplex<Corner>& s) {
   Nearest best;

@@ -29,7 +29,7 @@ class HeightGrid final : public Surface {
   void set_height(int column, int row, double height);
   /// A point of the grid, in range; own frame, after scaling.
   Vector3 corner(int column, int row) const;
-  /// Of the triangles at (x, z), own frame, after scaling; false beyond the rim.
+  /// The height of the triangles at (x, z), own frame, after scaling; false beyond the rim.
   bool height_at(double x, double z, double& height) const;
 
   std::shared_ptr<Surface> scaled(const Vector3& factors) const override;

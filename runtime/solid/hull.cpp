@@ -209,7 +209,7 @@ void Quickhull::raise(int face) {
   }
 }
 
-/// The rim of a group of triangles as one loop; false if it is none.
+/// The rim of a group of triangles as one loop; false if it does not form one.
 bool Quickhull::outline(const std::vector<int>& group, const std::vector<int>& group_of,
                         std::vector<int>& corners) const {
   std::vector<std::pair<int, int>> steps;  // along the rim

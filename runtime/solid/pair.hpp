@@ -32,10 +32,11 @@ constexpr std::uint32_t kNearestPoint = 1;  // the feature of a single point tha
 bool polyhedra_manifold(const ConvexPair& pair, Manifold& out);
 bool boxes_manifold(const ConvexPair& pair, const Vector3& half_a, const Vector3& half_b, Manifold& out);
 
-/// Of a cylinder or capsule and anything convex but a ball.
+/// The manifold of a cylinder or capsule and anything convex except a ball.
 bool round_manifold(const ConvexPair& pair, Manifold& out);
 
-/// What remains when no face does: the one point of the exact gap, or two where parallel edges run beside one another.
+/// The remaining case, without a face: the one point of the exact gap, or two where parallel edges run beside one
+/// another.
 bool nearest_manifold(const ConvexPair& pair, Manifold& out);
 
 /// Clip the face of `owner` that is its number `index` against the facing one of the other.

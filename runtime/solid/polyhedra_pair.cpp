@@ -136,7 +136,7 @@ bool edge_manifold(const Vector3& start_a, const Vector3& edge_a, const Vector3&
   const double aa = edge_a.squaredNorm(), bb = edge_b.squaredNorm(), ab = edge_a.dot(edge_b);
   const double square = aa * bb - ab * ab;
   if (square < kSideBySide * kSideBySide * aa * bb) {
-    // Apart, their product is no axis to trust: the nearest points tell.
+    // Apart, their product is not a reliable axis: the nearest points decide.
     return distance <= 0 && side_by_side({start_a, edge_a}, {start_b, edge_b}, distance + preference, feature, out);
   }
   const Vector3 r = start_b - start_a;

@@ -1,4 +1,4 @@
-// Solids of revolution: cylinders and capsules, exact. What is known of one in its own frame, behind shape.hpp.
+// Solids of revolution: cylinders and capsules, exact. Their properties in the own frame, behind shape.hpp.
 #pragma once
 
 #include <cmath>

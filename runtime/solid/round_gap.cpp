@@ -13,7 +13,7 @@ namespace breve {
 namespace {
 
 constexpr double kLift = 1e-2;         // of the smaller radius: how far apart the solids are held while climbing
-constexpr double kShrink = 0.2;        // of a core: what is no deeper shows its normal when the core is made smaller
+constexpr double kShrink = 0.2;        // of a core: a shallower overlap shows its normal when the core is made smaller
 constexpr double kLineSlope = 1e-2;    // sine below which a side faces the other solid as a line
 constexpr double kSameNormal = 1e-14;  // change below which a normal has settled
 constexpr double kTold = 1e-10;        // of the sizes: nearest points that are closer do not tell a direction
@@ -175,7 +175,7 @@ void leave_cores(const Placed& a, const Placed& b, Gap& gap) {
   gap.distance -= a.round.margin() + b.round.margin();
 }
 
-/// Of two solids that are neither balls nor decided by a face.
+/// The gap of two solids that are neither balls nor decided by a face.
 Gap general_gap(const Placed& a, const Placed& b, double enough) {
   Gap gap;
   const double margin = a.round.margin() + b.round.margin();

@@ -55,7 +55,7 @@ Eigen::AlignedBox3d grown(const Vector3& p, const Vector3& q, double by) {
 
 namespace {
 
-/// Of a cylinder that has only caps, and b of any kind but a ball.
+/// The best cap of a cylinder, with b of any kind except a ball.
 FaceAxis best_cap(const Placed& a, const Placed& b) {
   const auto over = [&](int cap) {
     const Vector3 normal = cap_normal(a, cap);

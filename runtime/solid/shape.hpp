@@ -75,7 +75,7 @@ class Shape : public InMemory {
   const Surface* surface() const;         // Mesh, HeightField: its triangles after scaling; null for others
   const TriangleMesh* triangles() const;  // Mesh
   const HeightGrid* heights() const;      // HeightField
-  /// HeightField: Error{Argument} if it is none, or as HeightGrid::set_height. Bounds follow, the mass does not.
+  /// HeightField: Error{Argument} for other shapes, or as HeightGrid::set_height. Bounds follow, the mass does not.
   void set_height(int column, int row, double height);
   double bounding_radius() const;                             // of the sphere about the origin that holds it
   Eigen::AlignedBox3d bounds(const Matrix3& rotation) const;  // about the origin

@@ -88,7 +88,7 @@ bool may_reach(const SurfacePair& pair, double distance) {
   return pair.surface->meets(grown({center, center}, pair.convex.radius * (1 + 1e-12) + distance));
 }
 
-/// The gap with the convex solid as a. What is farther apart than `limit` may have an infinite one.
+/// The gap with the convex solid as a. Solids farther apart than `limit` may have an infinite one.
 Gap narrowest_gap(const SurfacePair& pair, double limit, NarrowCounters* counters) {
   const bool sunk = ball_inside(pair);
   Narrowest narrowest(pair, pair.surface->solid() && !sunk, counters);

@@ -7,8 +7,8 @@
 
 namespace breve {
 
-/// One surface, and a convex solid against it. Of two meshes the smaller takes part as its hull, of two of one size the
-/// second; a mesh does so against a height field. Two height fields are ground both, and never touch.
+/// One surface, and a convex solid against it. The smaller of two meshes takes part as its hull, or the second if both
+/// have one size; so does a mesh against a height field. Two height fields are ground both, and never touch.
 struct SurfacePair {
   const Surface* surface = nullptr;  // null: never touch
   bool convex_is_a = true;

@@ -23,7 +23,7 @@ constexpr int kMaxStops = 4000;          // a touch is reported if even these do
 constexpr int kMaxPairs = 64;
 constexpr int kNewtonSteps = 8;
 
-/// Two bodies at one moment, seen from the origin of a. What is round about an axis has no points that turn about it,
+/// Two bodies at one moment, seen from the origin of a. A solid of revolution has no points that rotate about its axis,
 /// so that only the rest of its spin moves it; that rest turns itself, by at most `drift` (rad/s^2).
 struct Scene {
   Placed a, b;       // a.location is zero
@@ -141,7 +141,7 @@ double balls_meet(const Vector3& x, const Vector3& v, double reach) {
   return c / (approach + std::sqrt(discriminant));
 }
 
-/// What moves: a solid as seen from its own place, and how it goes. Only the solid itself is read of `body`.
+/// A moving solid, as seen from its own position, and its motion. Only the solid itself is read of `body`.
 struct Mover {
   Placed body;
   const Motion& motion;
@@ -214,7 +214,7 @@ bool Advancement::run(double& t) {
     t = now;
     return true;
   }
-  // What touches at the end must not count as touching from the start in the next interval: it is a hit at h.
+  // A touch at the end must not count as touching from the start in the next interval: it is a hit at h.
   const bool decided = both_balls() || now > h_;
   now = decided ? h_ : now * (1 - 1e-12);
   for (int stop = 0; stop < kMaxStops; ++stop) {
@@ -265,7 +265,7 @@ class FacetAdvancement final : public FacetVisitor {
   }
 
  private:
-  /// What is farther at the start is not met in time; a hair more than round-off.
+  /// Solids farther apart at the start do not meet in time; a hair more than round-off.
   double farthest() const { return (speed_ * first + tolerance_) * (1 + 1e-12); }
 
   const Mover &convex_, &frame_;

@@ -110,7 +110,7 @@ void TriangleMesh::weld(std::span<const Vector3> corners, std::span<const Triang
   if (triangles_.empty()) refuse_mesh("has no triangle with an area");
 }
 
-/// Who is whose neighbour. Closed: each edge is run by two triangles, once in each sense.
+/// The neighbours of each triangle. Closed: each edge is run by two triangles, once in each sense.
 void TriangleMesh::join() {
   std::pmr::vector<HalfEdge> halves(triangles_.get_allocator());
   halves.reserve(3 * triangles_.size());

@@ -25,7 +25,7 @@ class TriangleMesh final : public Surface {
   /// After scaling.
   const std::pmr::vector<Vector3>& corners() const { return corners_; }
   const std::pmr::vector<Triangle>& triangles() const { return triangles_; }
-  /// Of the closed mesh, by the divergence theorem; meaningless for an open one.
+  /// The moments of the closed mesh, by the divergence theorem; meaningless for an open one.
   Moments moments() const;
 
   std::shared_ptr<Surface> scaled(const Vector3& factors) const override;
