@@ -39,7 +39,7 @@ Model read_model(ModuleSource main, ModuleResolver& resolver, const AllowedLints
     parse_file(model, i);
   }
   // A file may use the constants of one that stands behind it in this list: again, now that all are known.
-  if (!model.defines.empty()) {
+  if (!model.defines.seen().empty()) {
     for (std::uint32_t i = 0; i < loaded; ++i)
       if (!model.sources.file(i).embedded) parse_file(model, i);
   }

@@ -55,7 +55,7 @@ class SymbolMaker {
     symbol.doc = file.tree.doc;
     file.symbol = last();
     std::vector<std::pair<std::string_view, const ast::Constant*>> constants;
-    for (const auto& [name, constant] : model_.defines)
+    for (const auto& [name, constant] : model_.defines.seen())
       if (constant.span.file == number) constants.emplace_back(name, &constant);
     std::sort(constants.begin(), constants.end(),
               [](const auto& a, const auto& b) { return a.second->span.offset < b.second->span.offset; });

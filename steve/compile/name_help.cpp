@@ -29,8 +29,7 @@ constexpr Habit kHabits[] = {
     {"break", "there is no such statement: end a loop by its condition, or leave the method with 'return'"},
     {"continue", "there is no such statement: put the rest of the loop's body into an 'if'"},
     {"not", "logical not is written !"},
-    {"pi", "write 3.14159265, or @define a constant"},
-    {"PI", "write 3.14159265, or @define a constant"},
+    {"pi", "the constant is written PI"},
     {"endl", "'print' ends the line by itself; inside a string write \\n"},
 };
 
@@ -69,9 +68,9 @@ std::string FunctionCompiler::unknown_name_help(std::string_view name) {
   std::sort(candidates.begin(), candidates.end());
   for (const ClassInfo* c = &class_; c; c = c->parent)
     for (const auto& v : c->variables) candidates.push_back(builder_.symbol_name(v.name));
-  for (const auto& [constant, value] : builder_.defines()) candidates.push_back(constant);
+  for (const auto& [constant, value] : builder_.defines().seen()) candidates.push_back(constant);
   const auto known = [&](std::string_view part) {
-    return is_number_text(part) || find(part).has_value() || builder_.defines().contains(part);
+    return is_number_text(part) || find(part).has_value() || builder_.defines().find(part, false) != nullptr;
   };
   if (name.size() < kLongestApart)
     if (const std::string apart = spaced(name, known); !apart.empty())

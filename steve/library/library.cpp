@@ -16,18 +16,7 @@ namespace breve::steve {
 
 namespace {
 
-constexpr std::string_view kLaterClasses[] = {"BraitenbergControl",
-                                              "BraitenbergHeavyVehicle",
-                                              "BraitenbergHeavyVehicles",
-                                              "BraitenbergLight",
-                                              "BraitenbergLights",
-                                              "BraitenbergSensor",
-                                              "BraitenbergSensors",
-                                              "BraitenbergVehicle",
-                                              "BraitenbergVehicles",
-                                              "BraitenbergWheel",
-                                              "BraitenbergWheels",
-                                              "Graph",
+constexpr std::string_view kLaterClasses[] = {"Graph",
                                               "IRSensor",
                                               "IRSensors",
                                               "Movie",
@@ -41,7 +30,7 @@ constexpr std::string_view kLaterClasses[] = {"BraitenbergControl",
                                               "Tones",
                                               "URL"};
 
-constexpr std::string_view kLaterFiles[] = {"Braitenberg", "QGAME"};
+constexpr std::string_view kLaterFiles[] = {"QGAME"};
 
 struct ResourceKind {
   std::string_view name;

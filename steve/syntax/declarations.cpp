@@ -180,7 +180,8 @@ double Parser::version_number() {
   return version;
 }
 
-// @define NAME literal. Repeating the same definition is not an error.
+// @define NAME literal. Repeating the same definition is not an error, and a definition of the program hides one of the
+// library.
 void Parser::define() {
   const Span place = items_[pos_ - 1].token->span;
   advance();
@@ -195,15 +196,15 @@ void Parser::define() {
   ast::Constant value = constant();
   value.span = span;
   directive_period();
-  if (before != nullptr) {
-    if (before->value == value.value) return;
+  if (before != nullptr && before->value == value.value) return;
+  if (before != nullptr && (embedded_ || !sources_.file(before->span.file).embedded)) {
     error(span, "redefinition", fmt::format("the constant '{}' is defined already, with another value", name),
           fmt::format("the other definition is in {}, line {}", sources_.file(before->span.file).name,
                       before->span.line));
   } else if (new_defines_ == nullptr) {
     error(place, "syntax", "'@define' is not possible here");
   } else {
-    new_defines_->insert_or_assign(name, std::move(value));
+    new_defines_->add(name, value, embedded_);
   }
 }
 

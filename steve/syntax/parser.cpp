@@ -203,13 +203,7 @@ bool Parser::at_class_header(std::size_t ahead) const {
 }
 
 // Constants of the program's files are invisible in the class library's files.
-const ast::Constant* Parser::constant_named(std::string_view name) const {
-  const auto found = defines_.find(name);
-  if (found == defines_.end()) return nullptr;
-  const std::uint32_t origin = found->second.span.file;
-  if (embedded_ && origin < sources_.size() && !sources_.file(origin).embedded) return nullptr;
-  return &found->second;
-}
+const ast::Constant* Parser::constant_named(std::string_view name) const { return defines_.find(name, embedded_); }
 
 std::string Parser::describe(std::size_t ahead) const {
   const Token& what = token(ahead);

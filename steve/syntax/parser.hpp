@@ -11,8 +11,34 @@
 
 namespace breve::steve {
 
-/// Names introduced by @define, shared by all files of a program in load order.
-using Defines = std::map<std::string, ast::Constant, std::less<>>;
+/// Constants from @define, shared by all files of a program in load order. Those of the class library are visible to
+/// every file, but a program may define such a name for itself: the library then keeps its own value.
+class Defines {
+ public:
+  using Table = std::map<std::string, ast::Constant, std::less<>>;
+
+  /// What a name stands for in a file of the program, or in one of the library; null: it is not a constant there.
+  const ast::Constant* find(std::string_view name, bool in_library) const {
+    const Table& table = in_library ? library_ : seen_;
+    const auto found = table.find(name);
+    return found == table.end() ? nullptr : &found->second;
+  }
+
+  void add(const std::string& name, const ast::Constant& value, bool in_library) {
+    if (in_library) {
+      library_.insert_or_assign(name, value);
+      seen_.try_emplace(name, value);
+    } else {
+      seen_.insert_or_assign(name, value);
+    }
+  }
+
+  /// Those that files of the program see, sorted by name.
+  const Table& seen() const { return seen_; }
+
+ private:
+  Table seen_, library_;
+};
 
 /// The @include, @use and @path directives of a file, wherever they stand at top level, without parsing the rest.
 std::vector<ast::Directive> scan_directives(const std::vector<Token>& tokens);

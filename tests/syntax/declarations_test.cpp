@@ -87,6 +87,23 @@ TEST(Constants, AreUsableOnlyAsOperands) {
   EXPECT_EQ(Reading(before + "@define M N.").errors(), "2:11 syntax");
 }
 
+TEST(Constants, OfTheLibraryAreHiddenByThoseOfTheProgram) {
+  Sources sources;
+  Diagnostics diagnostics;
+  Defines defines;
+  const auto read = [&](const char* name, const char* text, bool embedded) {
+    return parse(lex(sources, sources.add(name, text, embedded), diagnostics), defines, diagnostics, sources, embedded);
+  };
+  const auto printed = [](const ast::File& file) { return show(*file.classes.at(0).methods.at(0).body.at(0)); };
+  read("first.tz", "@define K 3.", true);
+  EXPECT_EQ(printed(read("user.tz", "NULL : T { + to f: print K. }", false)), "(print 3)");
+  EXPECT_EQ(printed(read("user.tz", "@define K 4.\nNULL : T { + to f: print K. }", false)), "(print 4)");
+  EXPECT_EQ(printed(read("second.tz", "@define K 3.\nNULL : T { + to f: print K. }", true)), "(print 3)");
+  EXPECT_EQ(diagnostics.error_count(), 0U);
+  read("other.tz", "@define K 5.", false);
+  EXPECT_EQ(diagnostics.error_count(), 1U);
+}
+
 TEST(Constants, OfTheProgramAreNotSeenByTheLibrary) {
   Sources sources;
   Diagnostics diagnostics;
