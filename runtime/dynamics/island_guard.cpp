@@ -65,7 +65,7 @@ void Island::step_guarded(DynamicsClient* client, double start, double h) {
     refine_from();
     trouble = try_step(client, start, h);
   }
-  if (refines) take_back_rest();
+  if (refines && !dissolved_) take_back_rest();
   if (attempt > 0 || finished_) use_accuracy(asked);
   if (trouble.found) give_in(trouble, start, h);
   if (refines) take_back_debts(h);
