@@ -53,7 +53,7 @@ class Island : public InMemory {
   /// Slow enough to sleep, all of it.
   bool still() const;
   enum class Momenta : bool { Take, Keep };  // the last of what nothing outside touches
-  void stop(Momenta momenta);                // all velocities zero but these
+  void stop(Momenta momenta, double h);      // all velocities zero but these, h seconds after the step began
   void write();                              // to the arrays
 
   /// Adds to `j` (nv) how the velocity of a link's point along `axis` (or its spin about it) depends on v; the tree's
@@ -207,6 +207,9 @@ class Island : public InMemory {
   void note_smooth();
   void close_books();
   void take_back_rest();
+  double add_debts(double h);
+  void take_back_debts(double h);
+  double debt_limit() const;
   double stored_now();
 
   // island_momentum.cpp
@@ -215,9 +218,9 @@ class Island : public InMemory {
   static bool take_back(Clustered& one, double gain);
   static void take_back_most(Clustered& one, double gain);
   double moving() const;
-  void take_from_all(double part);
+  void take_from_all(double part, double Energy::*account = &Energy::contact_loss);
   bool touched_from_outside() const;
-  double stop_links(Clustered& one, Momenta momenta);
+  double stop_links(Clustered& one, Momenta momenta, double h);
   void coast(double h);
   void note_wholes(articulated::Vector Tree::*velocity, bool now);
   enum class Given : std::uint8_t { All, Places, Pushes };

@@ -20,6 +20,18 @@ double missing(double change, const Energy& start, const Energy& now) {
   return change - works_of(now) + works_of(start) + rows_took(now) + now.drag_loss - rows_took(start) - start.drag_loss;
 }
 
+/// Contacts and limits give nothing. Where motors press against them the mean of velocities may say that they did and
+/// that the motors took it, to and fro within the sub-step: then neither did. Likewise what they gave, and smooth
+/// motion lost by its error, are one.
+/// @param lost  J, by the error of smooth motion
+void settle_rows(const Energy& start, double lost, Energy& now) {
+  const double gave = rows_took(start) - rows_took(now);
+  if (!(gave > 0)) return;
+  const double by_motors = std::clamp(start.motor_work - now.motor_work, 0.0, gave);
+  now.motor_work += by_motors;
+  now.contact_loss += by_motors + std::clamp(lost, 0.0, gave - by_motors);
+}
+
 }  // namespace
 
 /// Kinetic, potential and in springs, J.
@@ -68,6 +80,7 @@ void Island::close_books() {
       account.motor_work += more;
     else
       account.contact_loss -= more;
+    settle_rows(books.account, -books.unexplained, account);
   };
   double kinetic = 0;
   for (Clustered& one : clusters_) {
@@ -93,6 +106,52 @@ void Island::take_back_rest() {
   const double all = moving();
   if (gained_ > 0 && all > 0) take_from_all(std::min(1.0, gained_ / all));
   gained_ = 0;
+}
+
+/// What no account explains of a step that is over, added to what past steps left on each tree, by what moves.
+/// Losses pay for gains; more is not lent, so that an error that takes energy does not allow for one that gives it.
+/// @return  J, of all trees
+double Island::add_debts(double h) {
+  const double residual = result.account.residual - at_start_.account.residual;
+  double moving = 0, sum = 0;
+  for (const Tree* tree : trees_) moving += tree->ended_kinetic;
+  for (Tree* tree : trees_) {
+    constexpr double kMemory = 2;  // s
+    tree->lately = std::max(tree->ended_kinetic, tree->lately * kMemory / (kMemory + h));
+    const double share = moving > 0 ? tree->ended_kinetic / moving : 1 / static_cast<double>(trees_.size());
+    tree->debt = std::max(0.0, tree->debt + share * residual);
+    sum += tree->debt;
+  }
+  return sum;
+}
+
+/// Errors of single steps are small and may add up in one direction. What came in over many steps and is more than a
+/// small part of what moved lately is taken from the motion of links among one another; a gain of one step that is more
+/// than a step may leave, at once. The residual has it.
+void Island::take_back_debts(double h) {
+  if (trees_.empty() || dissolved_) return;
+  const double gain = result.account.residual - at_start_.account.residual;
+  const double debt = add_debts(h), most = debt_limit();
+  double moved = 0;
+  for (const Tree* tree : trees_) moved += tree->lately;
+  if (!(debt > most * moved + kTiny * std::abs(stored_start_))) return;
+  const double all = moving();
+  const double taken = std::min({debt, all, std::max(gain - allowed_, kFew * all)});
+  if (!(taken > 0)) return;
+  take_from_all(taken / all, &Energy::residual);
+  for (Tree* tree : trees_) tree->debt *= 1 - taken / debt;
+}
+
+/// Of the kinetic energy of the last seconds: what errors of past steps may have brought in. Those of `conserving`
+/// swing to and fro, and would be made a drift.
+double Island::debt_limit() const {
+  constexpr double kCoarsely = 2e-3, kFinely = 2e-5;
+  switch (accuracy_.rung) {
+    case Rung::Conserving: return JointDrive::kNoLimit;
+    case Rung::Precise:
+    case Rung::Reference: return kFinely;
+    default: return kCoarsely;
+  }
 }
 
 }  // namespace breve

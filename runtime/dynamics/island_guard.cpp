@@ -65,8 +65,10 @@ void Island::step_guarded(DynamicsClient* client, double start, double h) {
     refine_from();
     trouble = try_step(client, start, h);
   }
+  if (refines && !dissolved_) take_back_rest();
   if (attempt > 0 || finished_) use_accuracy(asked);
   if (trouble.found) give_in(trouble, start, h);
+  if (refines) take_back_debts(h);
 }
 
 /// A step of articulated bodies whose energy does not add up is taken again in 2, 4, 8, ... parts: what turns far in a
@@ -92,7 +94,6 @@ Island::Trouble Island::try_in_parts(DynamicsClient* client, double start, doubl
     trouble = try_step(client, start, h);
   }
   accuracy_ = asked;
-  take_back_rest();
   return trouble;
 }
 
@@ -124,8 +125,15 @@ void Island::give_in(const Trouble& trouble, double start, double h) {
   if (back) back_to_start();
   // What is slow enough to sleep and cannot be moved lies: it does not move by its velocities.
   const bool lies = trouble.reason == GuardReason::NoSolution && still();
-  if (rest || lies) stop(Momenta::Keep);
+  if (rest || lies) stop(Momenta::Keep, back ? 0 : h);
   if (rest && back) coast(h);
+  // Positions that were put right may hold more than there was, with the same momenta.
+  const double gained = result.account.residual - at_start_.account.residual;
+  if (rest && !back && gained > allowed_ && !calls_out()) {
+    back_to_start();
+    stop(Momenta::Keep, 0);
+    coast(h);
+  }
   intervene(trouble, rest ? GuardAction::Rested : GuardAction::Reported, start);
 }
 
@@ -218,17 +226,25 @@ void Island::back_to_start() {
   for (Free& one : free_) one.next = 0;
 }
 
-/// Takes velocities, and writes down that their energy is gone.
-void Island::stop(Momenta momenta) {
+/// Takes velocities, and writes down that their energy is gone: first as what contacts and limits gave in the step.
+void Island::stop(Momenta momenta, double h) {
   placed_ = booked_ = false;
+  const auto take = [](Energy& account, const Energy& start, double lost) {
+    const double rows = losses(start, account) + account.drag_loss - start.drag_loss;
+    const double repaid = std::clamp(rows, 0.0, std::max(lost, 0.0));
+    account.contact_loss += repaid;
+    account.residual -= lost - repaid;
+  };
   for (Free& one : loose_bodies()) {
     result.account.residual -= one.now.kinetic();
     one.now.velocity = one.now.spin = Vector3::Zero();
   }
   for (Clustered& one : clusters_) {
-    const double lost = stop_links(one, momenta);
-    result.account.residual -= lost;
-    if (one.alone()) core_.trees[one.entry->trees.front()]->account.residual -= lost;
+    const double lost = stop_links(one, momenta, h);
+    take(result.account, at_start_.account, lost);
+    if (!one.alone()) continue;
+    Tree& tree = *core_.trees[one.entry->trees.front()];
+    take(tree.account, tree.step_account, lost);
   }
 }
 
@@ -244,7 +260,7 @@ double Island::stored(double& kinetic, bool start) {
     moving += energy.kinetic;
     sum += energy.potential + energy.springs;
     tree->step_stored = start ? energy.total() : energy.total() - tree->step_stored;
-    if (start) tree->step_kinetic = energy.kinetic;
+    (start ? tree->step_kinetic : tree->ended_kinetic) = energy.kinetic;
     if (!start) tree->booked = energy.total();
   }
   for (const Clustered& one : clusters_)

@@ -63,6 +63,52 @@ Common common_of(std::span<Tree* const> trees, bool held = false) {
   return common;
 }
 
+/// The same with the momenta that the trees had when the step began, and what gravity gave them since.
+/// @param fall  m/s, by gravity
+Common started_with(std::span<Tree* const> trees, const Vector3& fall) {
+  for (Tree* tree : trees) std::swap(tree->state, tree->step_state);
+  const Whole then = measure(trees);
+  for (Tree* tree : trees) std::swap(tree->state, tree->step_state);
+  Common common = common_of(trees, true);
+  const Whole now = measure(trees);
+  articulated::Symmetric3 inverse;
+  if (articulated::invert(now.inertia, inverse)) common.spin = inverse * then.spin;
+  common.center = now.center;
+  common.velocity = then.momentum / now.mass + fall;
+  common.energy = 0.5 * (now.mass * common.velocity.squaredNorm() + then.spin.dot(common.spin));
+  common.inner -= common.energy;
+  return common;
+}
+
+/// Turns trees that stand still among one another as one rigid body for h seconds, with the momenta that they have, by
+/// the midpoint rule: with the spin that the same angular momentum gives half-way.
+void turn_freely(std::span<Tree* const> trees, const Whole& kept, double h) {
+  constexpr double kTurn = 0.01, kMostParts = 100;  // rad in a part
+  const double turn = h * common_of(trees).spin.norm();
+  const double parts = std::clamp(std::ceil(turn / kTurn), 1.0, kMostParts), part = h / parts;
+  const auto move = [trees](double time) {
+    for (Tree* tree : trees) {
+      tree->way = time * tree->state.v;
+      articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
+    }
+  };
+  // A place in the middle of which only the velocities are kept.
+  const auto settle = [trees, &kept] {
+    const Whole now = measure(trees);
+    Whole wanted = kept;
+    wanted.center = now.center;
+    impose(trees, now, wanted);
+  };
+  for (int i = 0; i < static_cast<int>(parts); ++i) {
+    for (Tree* tree : trees) tree->part_state.q = tree->state.q;
+    move(0.5 * part);
+    settle();
+    for (Tree* tree : trees) tree->state.q = tree->part_state.q;
+    move(part);
+    settle();
+  }
+}
+
 /// Velocities of the links among one another times `scale`; trees stand where their data say.
 void shorten_inner(std::span<Tree* const> trees, const Common& common, double scale) {
   for (Tree* tree : trees) {
@@ -135,12 +181,15 @@ void Island::take_back_most(Clustered& one, double gain) {
   if (common.inner > 0) shorten_inner(trees, common, std::sqrt(std::max(0.0, 1 - gain / common.inner)));
 }
 
-/// Something that is not the tree itself touches a tree of the island, or did in this step.
+/// Something that nothing moves touches what is in the island, or did in this step: momenta are not kept then.
 bool Island::touched_from_outside() const {
-  return touched_ || std::any_of(rows_.begin(), rows_.end(), [this](const contact::Row& row) {
+  const auto holds = [this](BodyIndex body) {
+    const int mover = place_of(body).mover;
+    return mover < 0 || is_driver(mover);
+  };
+  return touched_ || std::any_of(rows_.begin(), rows_.end(), [&](const contact::Row& row) {
            const NearPair& pair = *pairs_[static_cast<std::size_t>(row.pair)];
-           const Tree* tree = core_.place_of[pair.a].tree;
-           return !tree || tree != core_.place_of[pair.b].tree;
+           return holds(pair.a) || holds(pair.b);
          });
 }
 
@@ -153,31 +202,30 @@ double Island::moving() const {
   return sum;
 }
 
-/// Takes a part of moving(), which contacts and limits gave: it is booked as taken by them. What is at rest stays so.
-void Island::take_from_all(double part) {
+/// Takes a part of moving(). What is at rest stays so.
+/// @param account  that has it: what contacts and limits gave, they are booked to have taken
+void Island::take_from_all(double part, double Energy::*account) {
   if (!(part > 0)) return;
+  const double sign = account == &Energy::residual ? -1 : 1;
   const bool held = touched_from_outside();
   for (Clustered& one : clusters_) {
     const std::span trees = one.entry->system->trees();
     const Common common = common_of(trees, held);
     shorten_inner(trees, common, std::sqrt(1 - part));
-    result.account.contact_loss += part * common.inner;
-    if (one.alone()) trees.front()->account.contact_loss += part * common.inner;
+    result.account.*account += sign * part * common.inner;
+    if (one.alone()) trees.front()->account.*account += sign * part * common.inner;
   }
   placed_ = booked_ = false;
 }
 
 /// Ends the motion of a cluster's links among one another, and all of it if something may hold the cluster from
 /// outside or its momenta are not kept.
-/// @return  J, that this took
-double Island::stop_links(Clustered& one, Momenta momenta) {
+/// @param h  s, since the step began
+/// @return   J, that this took
+double Island::stop_links(Clustered& one, Momenta momenta, double h) {
   const std::span trees = one.entry->system->trees();
-  Common common = common_of(trees, momenta == Momenta::Take || !one.loose || touched_from_outside());
-  double start = 0;
-  for (const Tree* tree : trees) start += tree->step_kinetic;
-  // More than all that moved as the step began is round-off of what went wrong.
-  constexpr double kMost = 2;
-  if (common.energy > kMost * start) common = common_of(trees, true);
+  const bool taken = momenta == Momenta::Take || !one.loose || touched_from_outside();
+  const Common common = taken ? common_of(trees, true) : started_with(trees, h * core_.settings.gravity);
   shorten_inner(trees, common, 0);
   return common.inner;
 }
@@ -193,12 +241,9 @@ void Island::coast(double h) {
     double kinetic = 0;
     const double before = stored_in(one, kinetic);
     Whole wanted = measure(trees);
+    turn_freely(trees, wanted, h);
     wanted.center += h * (wanted.momentum / wanted.mass + 0.5 * fall);
     wanted.momentum += wanted.mass * fall;
-    for (Tree* tree : trees) {
-      tree->way = h * tree->state.v;
-      articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
-    }
     impose(trees, measure(trees), wanted);
     const double more = stored_in(one, kinetic) - before;
     result.account.residual += more;

@@ -292,7 +292,7 @@ void Dynamics::Core::note_rest(Island& island, double h) {
   }
   if (!all) return;
   for (const BodyIndex body : scratch) near.rest(body).asleep = true;
-  island.stop(Island::Momenta::Take);
+  island.stop(Island::Momenta::Take, h);
   island.write();
 }
 
