@@ -482,8 +482,9 @@ typedef struct breve_world_config {
      counted in breve_stats.errors; the iteration goes on. A collision handler does not use up its controller's; a handler
      of announcements uses the announcer's. Scheduled calls may schedule calls: only `budget` bounds an iteration.
    - `physics_budget` is for what moves bodies, in units that take about as long as a turn; breve_physics_counters.work
-     says how many an iteration took. It is an error for nobody: bodies that used up their part of it are moved to the
-     end of the iteration in one coarse step of rung `fast`, and the guard tells ("finished coarsely"). */
+     says how many an iteration took. Bodies that used up their part of it are moved to the end of the iteration in one
+     coarse step of rung `fast`, and the guard tells ("finished coarsely"). A crowd of which even that would take too
+     long is BREVE_ERROR_BUDGET: more than 8,000 pairs that may touch, and more than one for each 125 units. */
 
 /* The defaults named above. */
 static inline breve_world_config breve_world_config_default(void) {
@@ -1447,8 +1448,9 @@ BREVE_API breve_status breve_world_hash(const breve_world* world, uint64_t* hash
 /* Write the whole state as an image: portable between runs of one library version on one kind of machine.
    @param image  room for `capacity` bytes; NULL only if capacity is 0
    @param size   the image's size. Where it is more than capacity nothing is written to image: call again with room
-   BREVE_OK, also for that size query; BREVE_ERROR_BUSY while a script of it runs. Nothing in the world changes. The
-   time that breve_world_advance keeps is the host loop's, and is not part of the image. */
+   BREVE_OK, also for that size query; BREVE_ERROR_BUSY while a script of it runs. Nothing in the world changes,
+   but that a flat world with physics goes on from its image as a restored one does, which may differ in the last bits from
+   going on without. The time that breve_world_advance keeps is the host loop's, and is not part of the image. */
 BREVE_API breve_status breve_world_snapshot(const breve_world* world, void* image, size_t capacity, size_t* size);
 
 /* Put a world of the same program back to a snapshot's state. In the world that the snapshot is of, ids of its moment are
