@@ -224,6 +224,7 @@ struct Dynamics::Core : InMemory {
   void advance(DynamicsClient& client, double start, double h, double share);
   bool over() const;
   std::uint64_t work_left() const;
+  std::size_t most_pairs() const;
   std::uint64_t part_of(std::uint64_t work, const Island& island) const;
   bool pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client);
   bool locates() const;  // impacts, somewhere

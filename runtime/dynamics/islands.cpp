@@ -129,6 +129,14 @@ std::uint64_t Dynamics::Core::part_of(std::uint64_t work, const Island& island) 
   return static_cast<std::uint64_t>(part * static_cast<double>(work));
 }
 
+/// The coarsest step still looks at each pair, and solves its contacts: how many it may be. A budget that is less than
+/// usual makes steps coarse and does not refuse them.
+std::size_t Dynamics::Core::most_pairs() const {
+  constexpr std::uint64_t kUnits = 125, kUsual = 1'000'000;
+  if (bound.most == 0) return NearPairs::kNoMost;
+  return static_cast<std::size_t>(std::max(bound.most, kUsual) / kUnits);
+}
+
 void Dynamics::Core::advance(DynamicsClient& client, double start, double h, double share) {
   const double left = bound.most > counters.work ? static_cast<double>(bound.most - counters.work) : 0;
   work_most = counters.work + static_cast<std::uint64_t>(share * left);
@@ -154,7 +162,7 @@ void Dynamics::Core::run(DynamicsClient& client, double start, double h, int dep
   settle_books(true);
   if (clusters_changed || integrators_changed) build_clusters();
   if (settings.sleeping) near.wake_disturbed(*bodies);
-  near.update(*bodies, client, settings.gravity, h, rules + client.rules(), locates(), [&](PairKey& key) {
+  near.update(*bodies, client, settings.gravity, h, rules + client.rules(), locates(), most_pairs(), [&](PairKey& key) {
     key.pushes = pushes(key.a, key.b, client);
     key.handled = client.handled(key.a, key.b);
   });

@@ -1,8 +1,12 @@
 // The broad phase: boxes a little too large, so that slow bodies are not looked at again.
 #include "runtime/dynamics/near_pairs.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
+
+#include "runtime/base/error.hpp"
 
 namespace breve {
 
@@ -84,7 +88,8 @@ void NearPairs::gather(const Bodies& bodies, const DynamicsClient& client) {
   std::sort(movers_.begin(), movers_.end(), [this](BodyIndex x, BodyIndex y) { return serial(x) < serial(y); });
 }
 
-void NearPairs::refresh(Bodies& bodies, const DynamicsClient& client, const Vector3& gravity, double h) {
+void NearPairs::refresh(Bodies& bodies, const DynamicsClient& client, const Vector3& gravity, double h,
+                        Asking& asking) {
   const bool again = std::exchange(incomplete_, true);
   const bool gathers = again || bodies.revision() != seen_bodies_;
   if (gathers) {
@@ -98,14 +103,14 @@ void NearPairs::refresh(Bodies& bodies, const DynamicsClient& client, const Vect
   bodies.take_put(Follower::Dynamics, put_);
   find_drivers(bodies);
   const std::uint64_t scalings = bodies.shape_changes();
-  update_boxes(bodies, gathers || scalings != seen_scalings_, gravity, h);
+  update_boxes(bodies, gathers || scalings != seen_scalings_, gravity, h, asking);
   put_.clear();
   seen_scalings_ = scalings;
   if (!again) return;
   // After an update that was not ended nobody knows which boxes moved.
   for (ProxyIndex index = 0; index < reach_.size(); ++index) mark_moved(index);
   for (ProxyIndex index = 0; index < proxies_.size(); ++index)
-    if (proxies_[index].leaf != BoxTree::kNoLeaf) seek(index);
+    if (proxies_[index].leaf != BoxTree::kNoLeaf) seek(index);  // they all moved: each pair is found twice
 }
 
 /// Bodies that move without forces, in the order of their indices: the stages' own order depends on the past. Those of
@@ -121,17 +126,17 @@ void NearPairs::find_drivers(const Bodies& bodies) {
 }
 
 /// What stands where it was is not gone through: a world may have many more bodies that stand than bodies that move.
-void NearPairs::update_boxes(const Bodies& bodies, bool all, const Vector3& gravity, double h) {
+void NearPairs::update_boxes(const Bodies& bodies, bool all, const Vector3& gravity, double h, Asking& asking) {
   if (all) {
     for (Proxy& proxy : proxies_)
-      if (proxy.body != kNoBody) update_box(bodies, proxy, gravity, h);
+      if (proxy.body != kNoBody) update_box(bodies, proxy, gravity, h, asking);
     return;
   }
-  for (const BodyIndex body : movers_) update_box(bodies, proxies_[proxy_of_[body]], gravity, h);
+  for (const BodyIndex body : movers_) update_box(bodies, proxies_[proxy_of_[body]], gravity, h, asking);
   const auto update_driver = [&](BodyIndex body) {
     if (body >= proxy_of_.size() || proxy_of_[body] == kNoProxy) return;
     Proxy& proxy = proxies_[proxy_of_[body]];
-    if (!proxy.moves) update_box(bodies, proxy, gravity, h);
+    if (!proxy.moves) update_box(bodies, proxy, gravity, h, asking);
   };
   for (const std::pmr::vector<BodyIndex>* some : {&put_, &drivers_})
     std::for_each(some->begin(), some->end(), update_driver);
@@ -158,7 +163,7 @@ Vector3 NearPairs::room_of(const Bodies& bodies, const Proxy& proxy, double radi
 }
 
 /// A box is a function of the present state alone: a world that was restored has no other.
-void NearPairs::update_box(const Bodies& bodies, Proxy& proxy, const Vector3& gravity, double h) {
+void NearPairs::update_box(const Bodies& bodies, Proxy& proxy, const Vector3& gravity, double h, Asking& asking) {
   ++boxes_;
   const Shape* shape = bodies.collision_shape(proxy.body).get();
   const Vector3& location = bodies.location(proxy.body);
@@ -202,10 +207,10 @@ void NearPairs::update_box(const Bodies& bodies, Proxy& proxy, const Vector3& gr
     proxy.leaf = tree_.insert(roomy, index);
   else
     tree_.move(proxy.leaf, roomy);
-  seek(index);
+  seek(index, asking);
 }
 
-void NearPairs::seek(ProxyIndex index) {
+void NearPairs::seek(ProxyIndex index, Asking& asking) {
   found_.clear();
   tree_.query(tree_.box(proxies_[index].leaf), found_);
   const Proxy& self = proxies_[index];
@@ -218,7 +223,9 @@ void NearPairs::seek(ProxyIndex index) {
     key.b = first ? other.body : self.body;
     key.serial_a = first ? self.serial : other.serial;
     key.serial_b = first ? other.serial : self.serial;
-    if (!find_key(key.serial_a, key.serial_b)) new_keys_.push_back(key);
+    if (find_key(key.serial_a, key.serial_b)) continue;
+    if (asking.most != kNoMost) meet(key, other_index, asking);
+    new_keys_.push_back(key);
   }
 }
 
@@ -274,9 +281,36 @@ void NearPairs::drop_far() {
   });
 }
 
+namespace {
+
+[[noreturn]] void fail_by_pairs(std::size_t most) {
+  throw Error(
+      ErrorCode::Budget,
+      fmt::format("more than {} pairs of bodies may touch in this step: to solve their contacts takes more than "
+                  "the physics budget (breve_world_config.physics_budget, --physics-budget); put bodies apart",
+                  most));
+}
+
+}  // namespace
+
+/// A crowd with too many pairs is not searched to its end. Of two bodies that both moved in this update, the one that
+/// was looked at later counts them, with boxes that are those of this step.
+void NearPairs::meet(PairKey& key, ProxyIndex other, Asking& asking) const {
+  if (!reach_[other].moved || !near(key)) return;
+  asking.ask(asking.wanted, key);
+  if (key.pushes && ++asking.met > asking.most) fail_by_pairs(asking.most);
+}
+
+/// Before anything is forgotten: the worlds that a step like this leaves behind are the same, whatever they found
+/// before.
+void NearPairs::bound_near(std::size_t most) const {
+  if (keys_.size() <= most) return;
+  const auto meets = [this](const PairKey& key) { return key.pushes && near(key); };
+  if (static_cast<std::size_t>(std::count_if(keys_.begin(), keys_.end(), meets)) > most) fail_by_pairs(most);
+}
+
 /// Where many pairs are new, what they will need at once: what there is no memory for does not begin.
 void NearPairs::reserve_near() {
-  constexpr std::size_t kMany = 10'000;
   if (new_keys_.size() < kMany) return;
   const auto is_new = [this](const PairKey& key) { return key.at == PairKey::kNone && key.pushes && near(key); };
   pairs_.reserve(pairs_.size() + static_cast<std::size_t>(std::count_if(keys_.begin(), keys_.end(), is_new)));

@@ -56,15 +56,21 @@ struct NearPair {
 
 class NearPairs {
  public:
+  static constexpr std::size_t kNoMost = static_cast<std::size_t>(-1);  // pairs
+
   explicit NearPairs(std::pmr::memory_resource* memory);
 
   /// Brings boxes and pairs up to date for a step of h seconds.
   /// @param rules    grows when an answer of `wanted` may have changed
   /// @param strikes  what is struck within the step is to meet what it reaches then
+  /// @param most     pairs that push each other and whose boxes meet; kNoMost: no bound
+  /// @throws         Error{Budget} if there are more
   template <class Wanted>
   void update(Bodies& bodies, const DynamicsClient& client, const Vector3& gravity, double h, std::uint64_t rules,
-              bool strikes, const Wanted& wanted) {
-    refresh(bodies, client, gravity, h);
+              bool strikes, std::size_t most, const Wanted& wanted) {
+    Asking asking{most, 0, &wanted, [](const void* asked, PairKey& key) { (*static_cast<const Wanted*>(asked))(key); }};
+    refresh(bodies, client, gravity, h, asking);
+    expect(wanted);
     if (rules != seen_rules_ || unasked_)
       for (PairKey& key : keys_) ask_again(key, wanted);
     seen_rules_ = rules;
@@ -76,6 +82,7 @@ class NearPairs {
       merge();
       for (const std::size_t index : fresh_) wanted(keys_[index]);
     }
+    bound_near(most);
     drop_far();
     place_near();
     unasked_ = incomplete_ = false;
@@ -135,6 +142,28 @@ class NearPairs {
   }
   using ProxyIndex = std::uint32_t;
   static constexpr ProxyIndex kNoProxy = 0xffffffffU;
+  /// How many pairs there may be that push each other, and `wanted`, which says whether two do.
+  struct Asking {
+    std::size_t most, met;  // met: by boxes that moved in this update
+    const void* wanted;
+    void (*ask)(const void*, PairKey&);
+  };
+  /// Where many pairs are new, the memory that they will need, before they are sorted: a crowd for which there is none
+  /// is not gone through to its end. Two that both moved have found each other, so half of them count.
+  template <class Wanted>
+  void expect(const Wanted& wanted) {
+    if (new_keys_.size() < kMany) return;
+    std::size_t pushing = 0, room = kMany;
+    for (PairKey& key : new_keys_) {
+      wanted(key);
+      if (!key.pushes || !near(key) || ++pushing / 2 < room) continue;
+      pairs_.reserve(pairs_.size() + room);
+      room *= 2;
+    }
+  }
+  void bound_near(std::size_t most) const;
+  void meet(PairKey& key, ProxyIndex other, Asking& asking) const;
+  static constexpr std::size_t kMany = 10'000;
   struct Proxy {
     BodyIndex body = kNoBody;
     std::uint64_t serial = 0;
@@ -174,14 +203,18 @@ class NearPairs {
   void wake_met(const Bodies& bodies, const Proxy& proxy);
   void gather(const Bodies& bodies, const DynamicsClient& client);
   void find_drivers(const Bodies& bodies);
-  void refresh(Bodies& bodies, const DynamicsClient& client, const Vector3& gravity, double h);
+  void refresh(Bodies& bodies, const DynamicsClient& client, const Vector3& gravity, double h, Asking& asking);
   void enter(const Bodies& bodies, const DynamicsClient& client, BodyIndex body);
   void leave(ProxyIndex index);
-  void update_boxes(const Bodies& bodies, bool all, const Vector3& gravity, double h);
+  void update_boxes(const Bodies& bodies, bool all, const Vector3& gravity, double h, Asking& asking);
   static Vector3 room_of(const Bodies& bodies, const Proxy& proxy, double radius, const Vector3& gravity, double h);
-  void update_box(const Bodies& bodies, Proxy& proxy, const Vector3& gravity, double h);
+  void update_box(const Bodies& bodies, Proxy& proxy, const Vector3& gravity, double h, Asking& asking);
   void mark_moved(ProxyIndex index);
-  void seek(ProxyIndex index);
+  void seek(ProxyIndex index, Asking& asking);
+  void seek(ProxyIndex index) {
+    Asking none{kNoMost, 0, nullptr, nullptr};
+    seek(index, none);
+  }
   PairKey* find_key(std::uint64_t serial_a, std::uint64_t serial_b);
   bool near(const PairKey& key) const;
   void release(PairKey& key);

@@ -330,7 +330,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   int iterations_now() const;
   int position_iterations() const;
   void run(double dt);
-  double plan_parts(double dt);
+  double plan_parts(double dt, int count);
   void step(double dt, bool bounce = true);
   void start_warm(double dt);
   void kick(double dt);

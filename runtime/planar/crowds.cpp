@@ -72,16 +72,18 @@ void Planar::Core::expect_pairs(const WorkBound& most) {
                                                  Overlaps::kMostPairs));
     held.hold(expected_bytes() + pairs * kPerPair + contacts * kPerContact);
   }
-  constexpr double kPairsAUnit = 8, kLooksAUnit = 100;
-  const double work = static_cast<double>(pairs) / kPairsAUnit + looks / kLooksAUnit;
-  const double left = most.most > counters.work ? static_cast<double>(most.most - counters.work) : 0;
+  constexpr double kUnitsAPair = 20, kLooksAUnit = 100;
+  constexpr std::uint64_t kUsual = 1'000'000;  // a budget that is less makes steps coarse and does not refuse them
+  const std::uint64_t may = std::max(most.most, kUsual);
+  const double work = static_cast<double>(pairs) * kUnitsAPair + looks / kLooksAUnit;
+  const double left = may > counters.work ? static_cast<double>(may - counters.work) : 0;
   if (most.most > 0 && work > left)
     throw Error(
         ErrorCode::Budget,
         fmt::format("{} pairs of flat shapes overlap at their positions: processing them exceeds the rest of the "
                     "physics budget of {} (breve_world_config.physics_budget, --physics-budget); move "
                     "the bodies apart",
-                    pairs, most.most));
+                    pairs, may));
   counters.work += static_cast<std::uint64_t>(work);
   placed = 0;
   for (FlatBody& flat : slots) flat.placed = false;

@@ -131,7 +131,7 @@ void Planar::Core::advance(DynamicsClient& asked, double start, double h, double
       finish((count - i) * dt);
       break;
     }
-    const auto parts = static_cast<int>(plan_parts(dt));
+    const auto parts = static_cast<int>(plan_parts(dt, count));
     for (int k = 0; k < parts && b2; ++k) {
       now = start + (i + static_cast<double>(k) / parts) * dt;
       if (worn()) {
@@ -153,8 +153,11 @@ void Planar::Core::advance(DynamicsClient& asked, double start, double h, double
   counters.interventions = interventions.size();
 }
 
-double Planar::Core::plan_parts(double dt) {
-  constexpr double kTravel = 0.9 * b2_maxTranslation, kTurn = 0.9 * b2_maxRotation, kMost = 1024;
+/// @param count  of such sub-steps in the step: what is beyond all numbers is not to be cut into as many on the dearest
+///               rung as there may be
+double Planar::Core::plan_parts(double dt, int count) {
+  constexpr double kTravel = 0.9 * b2_maxTranslation, kTurn = 0.9 * b2_maxRotation;
+  const double most = std::clamp(std::floor(4096.0 / count), 64.0, 1024.0);
   const double fall = b2->GetGravity().Length();
   // Ten times the speed at which Box2D lets a body sleep.
   constexpr float kDrowsy = 10 * b2_linearSleepTolerance, kDrowsyTurn = 10 * b2_angularSleepTolerance;
@@ -174,12 +177,12 @@ double Planar::Core::plan_parts(double dt) {
     // A body that moves more than half its width must also meet moving bodies.
     flat.b2->SetBullet(way > flat.thickness);
   }
-  if (!(parts <= kMost)) {
+  if (!(parts <= most)) {
     for (const FlatBody& flat : slots)
-      if (flat.body != kNoBody && !flat.fixed && !(flat.b2->GetLinearVelocity().Length() * dt <= kMost * kTravel))
+      if (flat.body != kNoBody && !flat.fixed && !(flat.b2->GetLinearVelocity().Length() * dt <= most * kTravel))
         intervene(flat.body, GuardReason::FastTurn, flat.b2->GetLinearVelocity().Length() * settings.unit, now,
                   GuardAction::Reported);
-    return kMost;
+    return most;
   }
   return parts;
 }

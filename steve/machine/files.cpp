@@ -46,9 +46,9 @@ std::unique_ptr<FileWriter> open_for_writing(Machine& machine, std::string_view 
   return file;
 }
 
-std::string read_file(Machine& machine, std::string_view name) {
+std::pmr::string read_file(Machine& machine, std::string_view name) {
   const auto file = open_for_reading(machine, name);
-  std::string bytes;
+  std::pmr::string bytes(machine.heap().memory());
   std::array<char, 65536> block;
   while (const std::size_t got = file->read(block.data(), block.size())) {
     if (bytes.size() + got > kMostFileBytes)

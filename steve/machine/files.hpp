@@ -44,8 +44,8 @@ std::unique_ptr<FileReader> open_for_reading(Machine& machine, std::string_view 
 /// @param append  what is in the file stays; otherwise it is lost as soon as the file is closed
 std::unique_ptr<FileWriter> open_for_writing(Machine& machine, std::string_view name, bool append);
 
-/// All of it. Throws Error{File} as above, or if it is larger than kMostFileBytes.
-std::string read_file(Machine& machine, std::string_view name);
+/// All of it, in the world's memory. Throws Error{File} as above, or if it is larger than kMostFileBytes.
+std::pmr::string read_file(Machine& machine, std::string_view name);
 void write_file(Machine& machine, std::string_view name, std::string_view bytes);
 /// The path of a file that can be opened for reading, as scripts see it; "" if it cannot.
 std::string find_file(Machine& machine, std::string_view name);

@@ -1,6 +1,7 @@
 // Files as scripts see them: lines and whole texts through a pointer.
 #include <array>
 #include <memory>
+#include <string>
 
 #include "steve/machine/files.hpp"
 #include "steve/machine/functions.hpp"
@@ -10,10 +11,11 @@ namespace breve::steve {
 
 namespace {
 
-/// A file that is open for reading or for writing, or closed.
+/// A file that is open for reading or for writing, or closed. Closed, it holds nothing that takes room.
 class FilePointer final : public NativePointer {
  public:
-  explicit FilePointer(std::unique_ptr<FileReader> reader) : reader_(std::move(reader)) {}
+  explicit FilePointer(std::unique_ptr<FileReader> reader)
+      : reader_(std::move(reader)), block_(std::make_unique<Block>()) {}
   explicit FilePointer(std::unique_ptr<FileWriter> writer) : writer_(std::move(writer)) {}
 
   FileReader& reader() const {
@@ -26,26 +28,32 @@ class FilePointer final : public NativePointer {
   }
   void close() {
     reader_.reset();
+    block_.reset();
+    at_ = size_ = 0;
     if (const auto writer = std::move(writer_)) writer->close();
   }
 
-  /// The next byte, -1 at the end.
-  int next() {
+  /// What was read and not taken; more of the file where all was taken, and its end: nothing. Reading counts as work.
+  std::string_view ahead(Machine& machine) {
     if (at_ == size_) {
-      at_ = 0;
-      size_ = reader().read(block_.data(), block_.size());
+      FileReader& file = reader();
+      at_ = size_ = 0;
+      size_ = file.read(block_->data(), block_->size());
       end_ = size_ == 0;
+      machine.charge_for(size_);
     }
-    return end_ ? -1 : static_cast<unsigned char>(block_[at_++]);
+    return {block_->data() + at_, size_ - at_};
   }
+  void take(std::size_t bytes) { at_ += bytes; }
   bool end() const { return end_; }
 
  private:
   static constexpr const char* kClosed = "this file is closed";
+  using Block = std::array<char, 4096>;
 
   std::unique_ptr<FileReader> reader_;
   std::unique_ptr<FileWriter> writer_;
-  std::array<char, 4096> block_;
+  std::unique_ptr<Block> block_;
   std::size_t at_ = 0, size_ = 0;
   bool end_ = false;
 };
@@ -83,34 +91,35 @@ PointerCell* open_to_append(Machine& machine, Instance&, StringCell* name) {
   return open_file(machine, view(name), [&] { return open_for_writing(machine, view(name), true); });
 }
 
-void need_room(std::size_t size) {
-  if (size >= kMostFileBytes)
+void append(std::pmr::string& text, std::string_view part) {
+  if (part.size() >= kMostFileBytes - text.size())
     Machine::fail(RunErrorKind::Bounds, "the text that is read from this file is longer than 256 MiB");
+  text.append(part);
 }
 
 /// One line without its end, which may be "\n" or "\r\n".
-std::string line_of(FilePointer& file) {
-  std::string line;
-  for (int c = file.next(); c != -1 && c != '\n'; c = file.next()) {
-    need_room(line.size());
-    line += static_cast<char>(c);
+std::pmr::string line_of(Machine& machine, FilePointer& file) {
+  std::pmr::string line(machine.heap().memory());
+  for (std::string_view ahead = file.ahead(machine); !ahead.empty(); ahead = file.ahead(machine)) {
+    const std::size_t end = ahead.find('\n');
+    append(line, ahead.substr(0, end));
+    file.take(end == std::string_view::npos ? ahead.size() : end + 1);
+    if (end != std::string_view::npos) break;
   }
   if (!line.empty() && line.back() == '\r') line.pop_back();
   return line;
 }
 
 StringCell* read_line(Machine& machine, Instance&, PointerCell* pointer) {
-  return machine.heap().string(line_of(file_of(pointer)));
+  return machine.heap().string(line_of(machine, file_of(pointer)));
 }
 
 StringCell* read_whole(Machine& machine, Instance&, PointerCell* pointer) {
   FilePointer& file = file_of(pointer);
-  constexpr std::size_t kBytesPerPoll = 65536;
-  std::string text;
-  for (int c = file.next(); c != -1; c = file.next()) {
-    need_room(text.size());
-    if (text.size() % kBytesPerPoll == 0) machine.poll();
-    text += static_cast<char>(c);
+  std::pmr::string text(machine.heap().memory());
+  for (std::string_view ahead = file.ahead(machine); !ahead.empty(); ahead = file.ahead(machine)) {
+    append(text, ahead);
+    file.take(ahead.size());
   }
   return machine.heap().string(text);
 }
@@ -121,7 +130,7 @@ void push_text(Heap& heap, ListCell& list, std::string_view text) {
 
 /// Split at every delimiter, which may be several bytes long; none: the line is the only element. "" gives {}.
 ListCell* read_delimited(Machine& machine, Instance&, PointerCell* pointer, StringCell* delimiter) {
-  const std::string line = line_of(file_of(pointer));
+  const std::pmr::string line = line_of(machine, file_of(pointer));
   const std::string_view cut = view(delimiter);
   ListCell* list = machine.heap().list();
   if (line.empty()) return list;
@@ -137,7 +146,7 @@ ListCell* read_delimited(Machine& machine, Instance&, PointerCell* pointer, Stri
 
 ListCell* read_words(Machine& machine, Instance&, PointerCell* pointer) {
   constexpr std::string_view kBlanks = " \t\r\v\f";
-  const std::string line = line_of(file_of(pointer));
+  const std::pmr::string line = line_of(machine, file_of(pointer));
   ListCell* list = machine.heap().list();
   for (auto start = line.find_first_not_of(kBlanks); start != std::string::npos;) {
     const auto end = line.find_first_of(kBlanks, start);

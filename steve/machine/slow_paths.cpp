@@ -325,6 +325,10 @@ std::string Machine::describe(Instance& instance) {
 StringCell* Machine::interpolate(const std::vector<std::string>& texts, const Value* values, std::size_t count) {
   // A text that begins with another one adds to it.
   StringCell* begin = texts[0].empty() && values[0].tag == Tag::String ? values[0].string() : nullptr;
+  std::size_t least = 0;  // what there is no room for is not begun
+  for (std::size_t i = 0; i < count; ++i)
+    if (values[i].tag == Tag::String) least += view(values[i].string()).size();
+  heap_->check_room(least);
   std::string out = begin ? texts[1] : texts[0];
   for (std::size_t i = begin ? 1 : 0; i < count; ++i) {
     if (values[i].tag == Tag::String) {

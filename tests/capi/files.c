@@ -85,6 +85,8 @@ static const char* const text =
     "  + to look-at-run: return getRunningTime().\n"
     "  + to draw-seed: return randomSeedFromDevRandom().\n"
     "  + to run-command: return system(\"id\").\n"
+    "  + to read-whole of s (string):\n    f = openFileForReading(s).\n    return |readFileAsString(f)|.\n"
+    "  + to read-a-line of s (string):\n    f = openFileForReading(s).\n    return |readLine(f)|.\n"
     "}\n";
 
 typedef struct {
@@ -281,6 +283,36 @@ static void files_are_bounded(void) {
   breve_files_release(&files);
 }
 
+static void a_long_file_counts_as_work_and_as_memory(void) {
+  static const char* const methods[] = {"read-whole", "read-a-line"};
+  char path[256];
+  breve_files files = {0};
+  breve_runtime_config config = with_root(&files, "root", false, 0);
+  path_in_box(path, sizeof path, "root/zeros");
+  put("root/zeros", "");
+  CHECK(truncate(path, 64 << 20) == 0);
+  for (int bounded = 0; bounded < 2; ++bounded) {
+    clerk c;
+    if (!open_clerk(&c, config)) return;
+    breve_world* plain = c.world;
+    breve_world_config limits = breve_world_config_default();
+    if (bounded)
+      limits.budget = 1000000;
+    else
+      limits.memory_limit = (size_t)32 << 20;
+    if (CHECK_STATUS(BREVE_OK, breve_world_create(c.runtime, c.program, &limits, &c.world))) {
+      const breve_keyword file = {"of", breve_value_string("zeros")};
+      for (int i = 0; i < 2; ++i)
+        CHECK_STATUS(bounded ? BREVE_ERROR_BUDGET : BREVE_ERROR_MEMORY,
+                     breve_object_call(c.world, breve_world_controller(c.world), methods[i], &file, 1, NULL));
+      breve_world_destroy(c.world);
+    }
+    c.world = plain;
+    close_clerk(&c);
+  }
+  breve_files_release(&files);
+}
+
 static void directories_are_searched_in_their_order(void) {
   clerk c;
   breve_files files = {0};
@@ -401,6 +433,7 @@ void files_suite(void) {
   RUN(nothing_leads_out_of_a_directory);
   RUN(what_is_written_gets_its_name_when_it_is_closed);
   RUN(files_are_bounded);
+  RUN(a_long_file_counts_as_work_and_as_memory);
   RUN(directories_are_searched_in_their_order);
   RUN(two_runtimes_share_files_and_keep_them);
   RUN(what_is_no_directory_is_refused);

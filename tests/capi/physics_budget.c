@@ -109,6 +109,44 @@ static void a_flat_crowd_stays_within_the_worlds_memory(void) {
   scene_close(&s);
 }
 
+/* The same in space: to solve what each pair does to the others would take seconds. Put apart, they go on. */
+static void a_crowd_in_space_is_refused_until_it_is_put_apart(void) {
+  breve_world_config config = breve_world_config_default();
+  config.budget = 1000000;
+  scene s;
+  if (!scene_open_text(&s,
+                       "@use PhysicalControl.\n@use Mobile.\nController A.\n"
+                       "PhysicalControl : A {\n  + to init:\n    (500 new Mobiles) enable-physics.\n"
+                       "  + to spread:\n    i (int).\n"
+                       "    for i = 0, i < 500, i++: (all Mobiles){i} move to (3 * i, 0, 0).\n}\n",
+                       &config))
+    return;
+  for (int i = 0; i < 2; ++i) {
+    CHECK_STATUS(BREVE_ERROR_BUDGET, breve_world_step(s.world));
+    CHECK(strstr(breve_world_last_error(s.world)->text, "8000 pairs") != NULL);
+  }
+  CHECK_STATUS(BREVE_OK, breve_object_call(s.world, breve_world_controller(s.world), "spread", NULL, 0, NULL));
+  for (int i = 0; i < 2; ++i) CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+  scene_close(&s);
+}
+
+/* A budget that is less than usual makes steps coarse: it refuses none that are done soon. */
+static void a_small_budget_refuses_no_small_crowd(void) {
+  static const char* const kinds[] = {"PhysicalControl", "PlanarControl"};
+  for (int kind = 0; kind < 2; ++kind) {
+    char text[300];
+    snprintf(text, sizeof text,
+             "@use %s.\n@use Mobile.\nController A.\n%s : A { + to init:\n    (100 new Mobiles) enable-physics.\n}\n",
+             kinds[kind], kinds[kind]);
+    breve_world_config config = breve_world_config_default();
+    config.physics_budget = 1000;
+    scene s;
+    if (!scene_open_text(&s, text, &config)) continue;
+    for (int i = 0; i < 2; ++i) CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+    scene_close(&s);
+  }
+}
+
 /* Bodies in one place that physics does not move: each meets each, and a handler is called for both. */
 static const char* const kHandled =
     "@use Control.\n@use Mobile.\nController A.\n"
@@ -140,5 +178,7 @@ void physics_budget_suite(void) {
   RUN(an_interrupt_ends_a_step);
   RUN(a_flat_crowd_is_refused_before_it_is_paired);
   RUN(a_flat_crowd_stays_within_the_worlds_memory);
+  RUN(a_crowd_in_space_is_refused_until_it_is_put_apart);
+  RUN(a_small_budget_refuses_no_small_crowd);
   RUN(a_crowd_that_handlers_meet_ends_with_the_budget);
 }

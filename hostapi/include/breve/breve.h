@@ -503,7 +503,8 @@ typedef struct breve_world_config {
    - `physics_budget` applies to the motion of bodies, in units that take about as long as a loop iteration;
      breve_physics_counters.work is the number of units that an iteration used. Exceeding it is not an error: bodies
      that used up their part of it are moved to the end of the iteration in one coarse step of rung `fast`, and the
-     guard reports it ("finished coarsely"). */
+     guard reports it ("finished coarsely"). A crowd for which even that would take too long gives BREVE_ERROR_BUDGET:
+     more than 8,000 pairs that may touch, and more than one for each 125 units of the budget. */
 
 /* The defaults named above. */
 static inline breve_world_config breve_world_config_default(void) {
@@ -1486,8 +1487,10 @@ BREVE_API breve_status breve_world_hash(const breve_world* world, uint64_t* hash
 /* Writes the whole state as an image: portable between runs of one library version on one kind of machine.
    @param image  room for `capacity` bytes; NULL only if capacity is 0
    @param size   the image's size. If it exceeds capacity, nothing is written to image: call again with more room
-   BREVE_OK, also for that size query; BREVE_ERROR_BUSY while a script of it runs. Does not change the world. The time
-   that breve_world_advance keeps belongs to the host loop, and is not part of the image. */
+   BREVE_OK, also for that size query; BREVE_ERROR_BUSY while a script of it runs. Does not change the world,
+   except that a flat world with physics continues from its image like a restored one, which may differ in the last bits
+   from continuing without a snapshot. The time that breve_world_advance keeps belongs to the host loop, and is not part of
+   the image. */
 BREVE_API breve_status breve_world_snapshot(const breve_world* world, void* image, size_t capacity, size_t* size);
 
 /* Restores a snapshot's state in a world of the same program. In the world that the snapshot is from, the ids of that
