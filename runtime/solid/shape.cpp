@@ -74,6 +74,7 @@ void Shape::Geometry::derive_size() {
   }
   update_planes(solid);
   if (!surface) return;
+  pieces = original_pieces ? original_pieces->scaled(scale) : nullptr;
   const Eigen::AlignedBox3d& box = surface->bounds();
   bounding_radius = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).stableNorm();
 }

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "runtime/solid/pieces.hpp"
 #include "runtime/solid/shape.hpp"
 #include "runtime/solid/triangle_mesh.hpp"
 
@@ -18,11 +19,12 @@ struct Shape::Geometry : InMemory {
   Memory memory() const { return original_vertices.get_allocator().resource(); }
 
   ShapeKind kind{};
-  double original_radius = 0;                   // Sphere
-  Round original_round;                         // Cylinder, Capsule
-  std::pmr::vector<Vector3> original_vertices;  // Box, Convex; Mesh: of its hull
-  std::shared_ptr<Surface> surface;             // Mesh, HeightField; at the scale, and of this geometry alone
-  Moments original{};                           // at scale 1 and density 1; set_inertia changes `second`
+  double original_radius = 0;                           // Sphere
+  Round original_round;                                 // Cylinder, Capsule
+  std::pmr::vector<Vector3> original_vertices;          // Box, Convex; Mesh: of its hull
+  std::shared_ptr<Surface> surface;                     // Mesh, HeightField; at the scale, and of this geometry alone
+  std::shared_ptr<const ConvexPieces> original_pieces;  // Mesh that was split; of the original size
+  Moments original{};                                   // at scale 1 and density 1; set_inertia changes `second`
   Vector3 scale = Vector3::Ones();
   Vector3 last_scale = Vector3::Ones();
   double density = 1;
@@ -31,6 +33,7 @@ struct Shape::Geometry : InMemory {
   double radius = 0;
   Round round;
   Polyhedron solid;
+  std::shared_ptr<const ConvexPieces> pieces;  // original_pieces at the scale
   double bounding_radius = 0;
   double volume = 0;
   Matrix3 inertia = Matrix3::Zero();

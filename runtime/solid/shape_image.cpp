@@ -3,40 +3,21 @@
 
 #include "runtime/base/error.hpp"
 #include "runtime/solid/height_grid.hpp"
+#include "runtime/solid/polyhedron_image.hpp"
 #include "runtime/solid/shape_geometry.hpp"
 
 namespace breve {
 
-void Shape::save(ByteWriter& out) const {
-  const Geometry& g = *geometry_;
-  out.put(g.kind);
-  out.put(g.original_radius);
-  if (g.original_round.is_round()) {
-    out.put(static_cast<std::int32_t>(g.original_round.axis));
-    out.put(g.original_round.radius);
-    out.put(g.original_round.half);
+void save_polyhedron(const Polyhedron& solid, ByteWriter& out) {
+  out.put(static_cast<std::uint64_t>(solid.vertices.size()));
+  for (const Vector3& v : solid.vertices) out.put(v);
+  out.put(static_cast<std::uint64_t>(solid.faces.size()));
+  for (const auto& face : solid.faces) {
+    out.put(static_cast<std::uint64_t>(face.size()));
+    for (const int v : face) out.put(static_cast<std::int32_t>(v));
   }
-  // The polygons that show a round solid are made again.
-  const bool polygons = !g.original_round.is_round();
-  out.put(static_cast<std::uint64_t>(g.original_vertices.size()));
-  for (const Vector3& v : g.original_vertices) out.put(v);
-  out.put(static_cast<std::uint64_t>(polygons ? g.solid.faces.size() : 0));
-  for (std::size_t f = 0; polygons && f < g.solid.faces.size(); ++f) {
-    out.put(static_cast<std::uint64_t>(g.solid.faces[f].size()));
-    for (const int v : g.solid.faces[f]) out.put(static_cast<std::int32_t>(v));
-  }
-  if (g.kind == ShapeKind::Mesh) static_cast<const TriangleMesh&>(*g.surface).save(out);
-  if (g.kind == ShapeKind::HeightField) static_cast<const HeightGrid&>(*g.surface).save(out);
-  out.put(g.original.second);
-  out.put(g.inertia);  // a given one does not come back from `second` to the last bit
-  out.put(g.scale);
-  out.put(g.last_scale);
-  out.put(g.density);
 }
 
-namespace {
-
-/// A polyhedron whose indices are in range and whose vertices are finite.
 Polyhedron load_polyhedron(ByteReader& in) {
   Polyhedron solid;
   solid.vertices.resize(in.get_count(3 * sizeof(double)));
@@ -56,6 +37,39 @@ Polyhedron load_polyhedron(ByteReader& in) {
   connect(solid);
   return solid;
 }
+
+void Shape::save(ByteWriter& out) const {
+  const Geometry& g = *geometry_;
+  out.put(g.kind);
+  out.put(g.original_radius);
+  if (g.original_round.is_round()) {
+    out.put(static_cast<std::int32_t>(g.original_round.axis));
+    out.put(g.original_round.radius);
+    out.put(g.original_round.half);
+  }
+  // The polygons that show a round solid are made again.
+  const bool polygons = !g.original_round.is_round();
+  out.put(static_cast<std::uint64_t>(g.original_vertices.size()));
+  for (const Vector3& v : g.original_vertices) out.put(v);
+  out.put(static_cast<std::uint64_t>(polygons ? g.solid.faces.size() : 0));
+  for (std::size_t f = 0; polygons && f < g.solid.faces.size(); ++f) {
+    out.put(static_cast<std::uint64_t>(g.solid.faces[f].size()));
+    for (const int v : g.solid.faces[f]) out.put(static_cast<std::int32_t>(v));
+  }
+  if (g.kind == ShapeKind::Mesh) {
+    static_cast<const TriangleMesh&>(*g.surface).save(out);
+    out.put(g.original_pieces != nullptr);
+    if (g.original_pieces) g.original_pieces->save(out);
+  }
+  if (g.kind == ShapeKind::HeightField) static_cast<const HeightGrid&>(*g.surface).save(out);
+  out.put(g.original.second);
+  out.put(g.inertia);  // a given one does not come back from `second` to the last bit
+  out.put(g.scale);
+  out.put(g.last_scale);
+  out.put(g.density);
+}
+
+namespace {
 
 bool positive(double value) { return std::isfinite(value) && value > 0; }
 
@@ -94,7 +108,10 @@ std::shared_ptr<Shape> Shape::load(ByteReader& in) {
       case ShapeKind::Sphere: shape = sphere(radius, in.memory()); break;
       case ShapeKind::Box:
       case ShapeKind::Convex: shape = of(kind, solid, 1, in.memory()); break;
-      case ShapeKind::Mesh: shape = mesh(TriangleMesh::load(in), &solid, in.memory()); break;
+      case ShapeKind::Mesh:
+        shape = mesh(TriangleMesh::load(in), &solid, in.memory());
+        if (in.get_bool()) shape->geometry_->original_pieces = ConvexPieces::load(in, shape->surface()->bounds());
+        break;
       case ShapeKind::HeightField: shape = height_field(HeightGrid::load(in), in.memory()); break;
       case ShapeKind::Cylinder:
       case ShapeKind::Capsule: shape = of(round, in.memory()); break;
@@ -127,6 +144,7 @@ void Shape::hash(Hasher& hasher) const {
     for (const int v : face) hasher.add(static_cast<std::uint64_t>(v));
   }
   if (g.surface) g.surface->hash(hasher);
+  if (g.pieces) g.pieces->hash(hasher);
   hasher.add(g.inertia);
   hasher.add(g.scale);
   hasher.add(g.last_scale);

@@ -100,6 +100,19 @@ const TriangleMesh* Shape::triangles() const {
   return kind() == ShapeKind::Mesh ? static_cast<const TriangleMesh*>(geometry_->surface.get()) : nullptr;
 }
 
+const ConvexPieces* Shape::pieces() const { return geometry_->pieces.get(); }
+
+void Shape::split(const PieceSettings& settings, const std::function<void(std::uint64_t)>& charge) {
+  if (kind() != ShapeKind::Mesh) throw Error(ErrorCode::Argument, "only a mesh can be split into convex pieces");
+  // Of the original size, so that an image holds what it was split into before it was scaled.
+  const std::shared_ptr<Surface> original = geometry_->surface->scaled(Vector3::Ones());
+  auto pieces = split_into_convex(static_cast<const TriangleMesh&>(*original), settings, geometry_->memory(), charge);
+  auto scaled = pieces->scaled(geometry_->scale);
+  geometry_->original_pieces = std::move(pieces);
+  geometry_->pieces = std::move(scaled);
+  note_change();
+}
+
 void Shape::set_height(int column, int row, double height) {
   if (kind() != ShapeKind::HeightField) throw Error(ErrorCode::Argument, "only a height field has heights to set");
   HeightGrid& grid = static_cast<HeightGrid&>(*geometry_->surface);

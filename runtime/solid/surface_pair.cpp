@@ -113,9 +113,9 @@ Gap narrowest_gap(const SurfacePair& pair, double limit, NarrowCounters* counter
 /// Manifolds of all facets, those of one patch together.
 class Patches final : public FacetVisitor {
  public:
-  Patches(const SurfacePair& pair, double margin, const Slack& slack, std::pmr::vector<Manifold>& out,
-          const NarrowCounters* asked)
-      : pair_(pair), clearance_(clearance_of(pair)), slack_(slack), out_(out), asked_(asked), first_(out.size()) {
+  Patches(const SurfacePair& pair, double margin, const Slack& slack, std::size_t first,
+          std::pmr::vector<Manifold>& out, const NarrowCounters* asked)
+      : pair_(pair), clearance_(clearance_of(pair)), slack_(slack), out_(out), asked_(asked), first_(first) {
     convex_.a = pair.convex;
     convex_.margin = margin;
     convex_.slack = slack;
@@ -129,19 +129,21 @@ class Patches final : public FacetVisitor {
     if (clearance_.of_plane(facet) >= convex_.margin) return;
     triangle_.set(facet);
     convex_.b = triangle_.placed(pair_.frame, pair_.surface->solid());
-    Manifold found;
-    if (!facet_manifold(convex_, facet, near, found)) return;
+    Manifold here;
+    if (!facet_manifold(convex_, facet, near, here)) return;
+    found = true;
     for (std::size_t i = first_; i < out_.size(); ++i) {
-      if (out_[i].normal.dot(found.normal) < kOnePatch) continue;
+      if (out_[i].normal.dot(here.normal) < kOnePatch) continue;
       // The normal of the deeper one holds for both.
-      if (found.points[0].distance < out_[i].points[0].distance - slack_.rim) std::swap(found, out_[i]);
-      merge_manifold(found, slack_.rim, out_[i]);
+      if (here.points[0].distance < out_[i].points[0].distance - slack_.rim) std::swap(here, out_[i]);
+      merge_manifold(here, slack_.rim, out_[i]);
       return;
     }
-    out_.push_back(found);
+    out_.push_back(here);
   }
 
-  bool near = false;  // some facet is within the margin
+  bool near = false;   // some facet is within the margin
+  bool found = false;  // and some has a manifold
 
  private:
   const SurfacePair& pair_;
@@ -172,6 +174,30 @@ SurfacePair::SurfacePair(const Shape& a, const Placed& pa, const Shape& b, const
   convex_is_a = !a_is_surface;
   convex = a_is_surface ? pb : pa;
   frame = a_is_surface ? pa : pb;
+  pieces = (a_is_surface ? b : a).pieces();
+}
+
+std::size_t SurfacePair::count() const { return pieces != nullptr ? pieces->all().size() : 1; }
+
+SurfacePair SurfacePair::of(std::size_t number) const {
+  SurfacePair one = *this;
+  one.pieces = nullptr;
+  if (pieces == nullptr) return one;
+  const ConvexPieces::Piece& piece = pieces->all()[number];
+  one.convex.last = 0;
+  one.convex.solid = &piece.about;
+  one.convex.radius = piece.radius;
+  one.convex.location += one.convex.rotation * piece.center;
+  return one;
+}
+
+Placed SurfacePair::moving(std::size_t number) const {
+  Placed placed = convex;
+  if (pieces == nullptr) return placed;
+  placed.last = 0;
+  placed.solid = &pieces->all()[number].solid;
+  placed.radius = pieces->all()[number].reach;
+  return placed;
 }
 
 Eigen::AlignedBox3d bounds_in(const Placed& frame, const Placed& solid) {
@@ -215,40 +241,59 @@ Gap never(const Placed& a, const Placed& b) {
 
 Gap surface_gap(const Shape& a, const Placed& pa, const Shape& b, const Placed& pb, double limit,
                 NarrowCounters* counters) {
-  const SurfacePair pair(a, pa, b, pb);
-  if (pair.surface == nullptr) return never(pa, pb);
-  const bool near =
-      std::isinf(limit) || may_reach(pair, std::max(limit, 0.0)) || (pair.surface->solid() && center_inside(pair));
-  const Gap gap = near ? narrowest_gap(pair, limit, counters) : never(pa, pb);
-  return pair.convex_is_a ? gap : flipped(gap);
+  const SurfacePair whole(a, pa, b, pb);
+  Gap gap = never(pa, pb);
+  for (std::size_t i = 0; whole.surface != nullptr && i < whole.count(); ++i) {
+    const SurfacePair pair = whole.of(i);
+    const bool near =
+        std::isinf(limit) || may_reach(pair, std::max(limit, 0.0)) || (pair.surface->solid() && center_inside(pair));
+    if (!near) continue;
+    // What an earlier piece found is to be beaten.
+    const Gap here = narrowest_gap(pair, std::min(limit, gap.distance), counters);
+    if (i == 0 || here.distance < gap.distance) gap = here;
+  }
+  return whole.convex_is_a ? gap : flipped(gap);
 }
+
+namespace {
+
+/// Of one convex solid; its manifolds join those that are there from `first` on. False if there are none of it although
+/// it is near.
+bool find_patches(const SurfacePair& pair, double margin, const Slack& slack, std::size_t first,
+                  std::pmr::vector<Manifold>& out, NarrowCounters* counters) {
+  if (!may_reach(pair, margin)) return !(pair.surface->solid() && center_inside(pair));
+  if (ball_inside(pair)) return false;
+  Patches patches(pair, margin, slack, first, out, counters);
+  patches.search();
+  if (counters != nullptr) {
+    counters->add(patches.counters);
+    if (counters->stopped()) return true;
+  }
+  return patches.found || !(patches.near || (pair.surface->solid() && center_inside(pair)));
+}
+
+}  // namespace
 
 void surface_manifolds(const Shape& a, const Placed& pa, const Shape& b, const Placed& pb, double margin,
                        const Slack& slack, std::pmr::vector<Manifold>& out, NarrowCounters* counters) {
-  const SurfacePair pair(a, pa, b, pb);
-  if (pair.surface == nullptr) return;
+  const SurfacePair whole(a, pa, b, pb);
+  if (whole.surface == nullptr) return;
   const std::size_t first = out.size();
-  bool near = true;
-  if (!may_reach(pair, margin)) {
-    near = pair.surface->solid() && center_inside(pair);
-  } else if (!ball_inside(pair)) {
-    Patches patches(pair, margin, slack, out, counters);
-    patches.search();
-    if (counters != nullptr) {
-      counters->add(patches.counters);
-      if (counters->stopped()) return;
-    }
-    near = patches.near || (pair.surface->solid() && center_inside(pair));
+  bool lost = false;
+  for (std::size_t i = 0; i < whole.count(); ++i) {
+    if (!find_patches(whole.of(i), margin, slack, first, out, counters)) lost = true;
+    if (counters != nullptr && counters->stopped()) return;
   }
   // Wholly inside, or in among facets smaller than the depth, which all left the contact to their neighbours.
-  if (out.size() == first && near) {
-    const Gap gap = narrowest_gap(pair, std::numeric_limits<double>::infinity(), counters);
+  if (out.size() == first && lost) {
+    const Gap gap = surface_gap(a, pa, b, pb, std::numeric_limits<double>::infinity(), counters);
     Manifold& manifold = out.emplace_back();
     manifold.normal = gap.normal;
     manifold.count = 1;
     manifold.points[0] = {gap.on_a, gap.on_b, gap.distance, kNearestPoint};
+    return;
   }
-  if (pair.convex_is_a) return;
+  if (whole.convex_is_a) return;
   for (std::size_t i = first; i < out.size(); ++i) flip(out[i]);
 }
 

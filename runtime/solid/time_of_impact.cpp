@@ -306,15 +306,22 @@ bool surface_impact(const Shape& a, const Motion& ma, const Shape& b, const Moti
                     double& t, NarrowCounters* counters) {
   const SurfacePair pair(a, place(a, ma.start), b, place(b, mb.start));
   if (pair.surface == nullptr) return false;
-  const Mover convex{pair.convex, pair.convex_is_a ? ma : mb}, frame{pair.frame, pair.convex_is_a ? mb : ma};
-  const Eigen::AlignedBox3d way = swept(convex, frame, h, tolerance);
+  const Mover whole{pair.convex, pair.convex_is_a ? ma : mb}, frame{pair.frame, pair.convex_is_a ? mb : ma};
+  const Eigen::AlignedBox3d way = swept(whole, frame, h, tolerance);
   Contact before;
   if (!pair.surface->meets(way) || closest_within(a, ma.start, b, mb.start, tolerance, before, counters)) return false;
-  FacetAdvancement search(convex, frame, *pair.surface, tolerance, h);
-  pair.surface->under(way, search);
-  if (counters != nullptr) counters->add(search.counters);
-  if (search.found) t = search.first;
-  return search.found;
+  bool found = false;
+  double first = h;
+  for (std::size_t i = 0; i < pair.count(); ++i) {
+    const Mover convex{pair.moving(i), whole.motion};
+    FacetAdvancement search(convex, frame, *pair.surface, tolerance, first);
+    pair.surface->under(pair.pieces != nullptr ? swept(convex, frame, first, tolerance) : way, search);
+    if (counters != nullptr) counters->add(search.counters);
+    found = found || search.found;
+    first = search.first;
+  }
+  if (found) t = first;
+  return found;
 }
 
 double tolerance_of(const Shape& a, const Motion& ma, const Shape& b, const Motion& mb, double h) {

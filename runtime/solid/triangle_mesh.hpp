@@ -25,6 +25,9 @@ class TriangleMesh final : public Surface {
   /// After scaling.
   const std::pmr::vector<Vector3>& corners() const { return corners_; }
   const std::pmr::vector<Triangle>& triangles() const { return triangles_; }
+  /// Across each edge of each triangle; -1: none, or more than one.
+  const std::pmr::vector<Triangle>& neighbours() const { return neighbours_; }
+  const std::pmr::vector<Vector3>& normals() const { return normals_; }
   /// The moments of the closed mesh, by the divergence theorem; meaningless for an open one.
   Moments moments() const;
 

@@ -7,7 +7,9 @@
 
 #include "runtime/base/error.hpp"
 #include "runtime/dynamics/dynamics.hpp"
+#ifndef BREVE_WITHOUT_PLANAR
 #include "runtime/planar/planar.hpp"
+#endif
 #include "runtime/world/parts.hpp"
 
 namespace breve {
@@ -273,10 +275,14 @@ void World::flatten() {
     throw Error(ErrorCode::Argument,
                 "the world cannot become flat: it has bodies with physics, joints or springs already; make it flat "
                 "first (its controller a PlanarControl, or breve_world_config.dimension = 2)");
+#ifdef BREVE_WITHOUT_PLANAR
+  throw Error(ErrorCode::Argument, "flat worlds are not a part of this breve: it was built with BREVE_WITH_PLANAR=OFF");
+#else
   auto flat = make_in<Planar>(memory_, memory_, *bodies_);
   flat->take_settings(before);
   bodies_->flatten();
   parts_->dynamics = std::move(flat);
+#endif
 }
 
 void World::queue_input(InputEvent event) {

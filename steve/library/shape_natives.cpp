@@ -1,4 +1,5 @@
 // Natives of Shape and its solids.
+#include "runtime/solid/pieces.hpp"
 #include "steve/library/resources.hpp"
 #include "steve/library/support.hpp"
 #include "steve/library/tables.hpp"
@@ -176,6 +177,22 @@ Vector3 shape_get_point(Machine& machine, Instance& self, Vector3 direction) {
   return own.shape->point_on(direction);
 }
 
+std::int32_t shape_split(Machine& machine, Instance& self, std::int32_t most, double excess) {
+  Shape& shape = built(machine, self, "split-into-pieces");
+  shape.split({most, excess}, [&](std::uint64_t units) { machine.charge(units); });
+  return static_cast<std::int32_t>(shape.pieces()->all().size());
+}
+
+std::int32_t shape_get_piece_count(Machine& machine, Instance& self) {
+  const ShapeResource& own = resource(machine, self);
+  return own.shape && own.shape->pieces() ? static_cast<std::int32_t>(own.shape->pieces()->all().size()) : 0;
+}
+
+double shape_get_piece_excess(Machine& machine, Instance& self) {
+  const ShapeResource& own = resource(machine, self);
+  return own.shape && own.shape->pieces() ? own.shape->pieces()->excess() : 0;
+}
+
 constexpr Native kShapeNatives[] = {
     native<shape_init>("shape.init"),
     native<shape_get_mass>("shape.get-mass"),
@@ -191,6 +208,9 @@ constexpr Native kShapeNatives[] = {
     native<build_or_leave<build_disk>>("shape.init-with-polygon-disk"),
     native<build_or_leave<build_cone>>("shape.init-with-polygon-cone"),
     native<shape_get_point>("shape.get-point-on-shape"),
+    native<shape_split>("shape.split-into-pieces"),
+    native<shape_get_piece_count>("shape.get-piece-count"),
+    native<shape_get_piece_excess>("shape.get-piece-excess"),
     native<build_sphere>("sphere.init-with"),
     native<build_cube>("cube.init-with"),
     native<build_disk>("polygon-disk.init-with"),

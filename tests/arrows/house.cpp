@@ -70,10 +70,10 @@ const std::map<std::string_view, std::string_view> kVocabulary = {
 
 /// Which of the libraries we stand on may be seen where. A library that is not listed is not restricted.
 const std::map<std::string_view, std::vector<std::string_view>> kLibraries = {
-    {"bullet/", {"runtime/solid", "runtime/space", "runtime/contact"}},
-    {"btBullet", {"runtime/solid", "runtime/space", "runtime/contact"}},
-    {"BulletCollision/", {"runtime/solid", "runtime/space", "runtime/contact"}},
-    {"LinearMath/", {"runtime/solid", "runtime/space", "runtime/contact"}},
+    {"bullet/", {}},  // a peer of benchmarks, and nothing that the library links
+    {"btBullet", {}},
+    {"BulletCollision/", {}},
+    {"LinearMath/", {}},
     {"assimp/", {"runtime/store"}},
     {"tbb/", {"runtime/base"}},
     {"box2d/", {"runtime/planar"}},

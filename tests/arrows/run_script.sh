@@ -38,12 +38,12 @@ lacks() {
   [[ ! -e $scratch/build ]] || fail "./run $word: built all the same"
 }
 
-lacks build g++ libbullet-dev libcli11-dev -- libgtest-dev clang lua5.4 clang-format
-lacks demo g++ libbullet-dev -- libgtest-dev clang lua5.4 clang-format
-lacks bench g++ libgtest-dev lua5.4 libode-dev -- clang libonig-dev clang-format
+lacks build g++ libstb-dev libcli11-dev -- libbullet-dev libgtest-dev clang lua5.4 clang-format
+lacks demo g++ libstb-dev -- libgtest-dev clang lua5.4 clang-format
+lacks bench g++ libgtest-dev lua5.4 libode-dev libbullet-dev -- clang libonig-dev clang-format
 lacks format clang-format -- g++ libgtest-dev
 lacks lint g++ clang-tidy -- libgtest-dev lua5.4
-lacks tests g++ libbullet-dev libgtest-dev clang clang-tidy clang-format
+lacks tests g++ libstb-dev libgtest-dev clang clang-tidy clang-format
 
 run no-such-word
 (($? == 2)) || fail "exit status of wrong usage is not 2"

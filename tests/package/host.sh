@@ -69,7 +69,7 @@ case $case in
     commands -v ' -O2 '
     ;;
   command_if_asked_for)
-    configures subproject -DBREVE_BUILD_COMMAND=ON
+    configures subproject -DBREVE_WITH_COMMAND=ON
     has_target breve_command || fail "does not build the command"
     ;;
   only_c)
@@ -89,7 +89,14 @@ case $case in
     ;;
   same_packages)
     configures same_packages
-    grep -q 'libBulletCollision-float64' "$scratch/build/build.ninja" || fail "does not link Bullet with doubles"
+    ! grep -q 'libBulletCollision-float64' "$scratch/build/build.ninja" || fail "links Bullet with doubles"
+    grep -q 'libBulletCollision\.so' "$scratch/build/build.ninja" || fail "does not link the host's Bullet"
+    ;;
+  without_parts)
+    configures subproject -DBREVE_WITH_PLANAR=OFF -DBREVE_WITH_MESHES=OFF -DCMAKE_DISABLE_FIND_PACKAGE_box2d=ON
+    commands -v 'B2_SHARED'
+    commands 'BREVE_WITHOUT_PLANAR'
+    ! grep -qE 'libbox2d|libassimp' "$scratch/build/build.ninja" || fail "links what was left out"
     ;;
   minimum_is_what_presets_need)
     # The first release of CMake that reads each version of CMakePresets.json.

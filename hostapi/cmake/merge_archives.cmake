@@ -1,0 +1,12 @@
+# cmake -DAR=… -DOUT=libbreve.a "-DARCHIVES=a;b" -P merge_archives.cmake: one archive with the members of all.
+file(REMOVE "${OUT}")
+set(script "CREATE ${OUT}\n")
+foreach(archive ${ARCHIVES})
+  string(APPEND script "ADDLIB ${archive}\n")
+endforeach()
+string(APPEND script "SAVE\nEND\n")
+file(WRITE "${OUT}.mri" "${script}")
+execute_process(COMMAND "${AR}" -M INPUT_FILE "${OUT}.mri" RESULT_VARIABLE failed ERROR_VARIABLE said)
+if(failed OR said)
+  message(FATAL_ERROR "breve: cannot merge ${ARCHIVES}: ${said}")
+endif()
