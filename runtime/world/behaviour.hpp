@@ -49,6 +49,12 @@ class Behaviour {
     static_cast<void>(draw);
     return Vector3::Zero();
   }
+  /// `agent`, which asked to be asked, has `other` near: may the two collide? Asked once while they are near.
+  virtual bool may_collide(ObjectId agent, ObjectId other) {
+    static_cast<void>(agent);
+    static_cast<void>(other);
+    return true;
+  }
   /// The world begins so much work of its own for the agents (units of about a turn of a loop, see Meter): it counts as
   /// theirs. Throws if they may not use so much, or if the host wants the end.
   virtual void charge(std::uint64_t units) = 0;
