@@ -250,3 +250,15 @@ breve_status breve_world_physics_counters(const breve_world* world, breve_physic
     write_struct(counters, filled, "breve_physics_counters");
   });
 }
+
+uint32_t breve_world_workers(const breve_world* world) {
+  return world ? static_cast<uint32_t>(dynamics_of(*world).workers()) : 0;
+}
+
+breve_status breve_object_accuracy(const breve_world* world, breve_object object, breve_accuracy* accuracy) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    const breve::BodyIndex body = live_body(*world, object);
+    write_struct(accuracy, accuracy_from(dynamics_of(*world).accuracy(body)), "breve_accuracy");
+  });
+}

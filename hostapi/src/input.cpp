@@ -72,3 +72,11 @@ breve_status breve_world_queue_choice(breve_world* world, breve_object item) {
     world->world->queue_input({InputEvent::Kind::Menu, {}, id});
   });
 }
+
+breve_status breve_world_queue_click_ray(breve_world* world, const double start[3], const double way[3]) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  bool found = false;
+  breve_hit hit{};
+  const breve_status status = breve_world_ray_first(world, start, way, nullptr, &found, &hit);
+  return status == BREVE_OK ? breve_world_queue_click(world, found ? hit.object : breve_object{}) : status;
+}

@@ -6,11 +6,14 @@
 #include <memory>
 #include <memory_resource>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "guard.hpp"
+#include "previous.hpp"
 #include "runtime/base/memory.hpp"
+#include "runtime/world/pair_rules.hpp"
 #include "runtime/world/world.hpp"
 #include "steve/compile/program.hpp"
 #include "steve/machine/machine.hpp"
@@ -115,6 +118,19 @@ struct Selector {
   std::pmr::vector<std::uint32_t> order;        // parameter -> argument
 };
 
+/// The host's answer to which pairs collide.
+class MayCollide final : public PairJudge {
+ public:
+  MayCollide(breve_world& world, breve_may_collide_fn function, void* user)
+      : world_(world), function_(function), user_(user) {}
+  bool accepts(ObjectId a, ObjectId b) override;
+
+ private:
+  breve_world& world_;
+  const breve_may_collide_fn function_;
+  void* const user_;
+};
+
 /// A copy of a versioned struct that an older header may have made smaller: fields that it lacks take the defaults.
 /// @throws  StatusError if its struct_size is not one that this header or an older one gave
 template <class Config>
@@ -162,6 +178,7 @@ struct breve_world : breve::InMemory {
   bool tracing = false;                                    // a breve_trace_fn runs
   std::unique_ptr<breve::World> world;
   std::unique_ptr<breve::steve::Machine> machine;  // goes before the world
+  std::optional<breve::host::MayCollide> may_collide;  // of breve_world_set_may_collide
   mutable breve::host::ErrorRecord error;
   breve::host::References references;
   std::pmr::deque<breve::host::Selector> selectors;  // a callback may add some while one is in use
@@ -171,13 +188,16 @@ struct breve_world : breve::InMemory {
   mutable std::pmr::vector<std::pair<std::pmr::string, std::pmr::string>> effect_texts;
   mutable std::pmr::vector<breve::BodyIndex> bulk_bodies;    // of the objects of a call for many; room that is kept
   mutable std::pmr::vector<breve::steve::Slot*> bulk_slots;  // likewise
+  breve::host::PreviousPoses previous;
+  double time_scale = 1;                                     // of breve_world_advance
   double remainder = 0;                                      // s, kept by breve_world_advance; in [0, iteration step)
   int running = 0;                                           // calls of the host that run script, one inside the other
   std::uint64_t errors = 0, warnings = 0;
 
-  explicit breve_world(std::shared_ptr<breve::host::RuntimeState> r)
+  /// @param number  of the world among those of its runtime
+  breve_world(std::shared_ptr<breve::host::RuntimeState> r, std::uint32_t number)
       : runtime(std::move(r)),
-        first_generation(breve::host::spread(runtime->worlds++)),
+        first_generation(breve::host::spread(number)),
         meter(runtime->memory(), taken(sizeof(breve_world))),
         references(&meter),
         selectors(&meter),
@@ -186,10 +206,33 @@ struct breve_world : breve::InMemory {
         menu_texts(&meter),
         effect_texts(&meter),
         bulk_bodies(&meter),
-        bulk_slots(&meter) {}
+        bulk_slots(&meter),
+        previous(&meter) {}
 };
 
 namespace breve::host {
+
+/// While it stands the runtime is not to be destroyed.
+class CreationScope {
+ public:
+  explicit CreationScope(breve_runtime& runtime) : runtime_(runtime) { ++runtime_.busy; }
+  ~CreationScope() { --runtime_.busy; }
+  CreationScope(const CreationScope&) = delete;
+  CreationScope& operator=(const CreationScope&) = delete;
+
+ private:
+  breve_runtime& runtime_;
+};
+
+/// BREVE_ERROR_ARGUMENT for a configuration of a world that cannot be.
+void check_world_config(const breve_world_config& config);
+
+/// A world whose controller's `init` has run. Touches of the runtime what any thread may.
+/// @param number  of the world among those of the runtime
+/// @param error   why there is none
+breve_status make_world(const std::shared_ptr<RuntimeState>& state, std::uint32_t number,
+                        std::shared_ptr<const steve::Program> program, const breve_world_config* config,
+                        ErrorRecord& error, breve_world** world) noexcept;
 
 /// Script runs while this stands. References that hosts hold die at both ends.
 class ScriptScope {
@@ -243,6 +286,9 @@ ObjectId live_id(const breve_world& world, breve_object object);
 steve::Instance& live_instance(const breve_world& world, breve_object object);
 BodyIndex live_body(const breve_world& world, breve_object object);               // also BREVE_ERROR_NO_BODY
 const steve::ClassInfo& class_named(const breve_world& world, const char* name);  // BREVE_ERROR_NOT_FOUND
+
+/// The bodies of many objects, in room that the world keeps: all of them, or an error.
+std::span<const BodyIndex> bodies_of(const breve_world& world, const breve_object* objects, std::size_t count);
 
 /// (w, x, y, z), of any length but 0: BREVE_ERROR_ARGUMENT, which names it as `what`.
 Quaternion unit_quaternion(const double numbers[4], const char* what);

@@ -268,3 +268,20 @@ breve_status breve_spring_state(const breve_world* world, breve_object spring, d
     if (force) *force = index == breve::kNoSpring ? 0 : dynamics.spring_force(index);
   });
 }
+
+breve_status breve_spring_description(const breve_world* world, breve_object spring, breve_spring* description) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    auto& object = object_of_kind(*world, spring, "Spring");
+    const auto* found = breve::steve::resource_of<breve::steve::SpringResource>(*world->machine, &object);
+    breve_spring to = found ? spring_from(found->is) : breve_spring_default();
+    const breve::SpringIndex index = found ? breve::steve::spring_of(*world->machine, object) : breve::kNoSpring;
+    if (index != breve::kNoSpring) {
+      const breve::World& w = *world->world;
+      const breve::SpringDescription& tied = w.dynamics().spring(index);
+      to.from = handle_of(*world, w.bodies().owner(tied.a));
+      to.to = handle_of(*world, w.bodies().owner(tied.b));
+    }
+    write_struct(description, to, "breve_spring");
+  });
+}

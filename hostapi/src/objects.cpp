@@ -203,6 +203,7 @@ breve_status breve_object_set_pose(breve_world* world, breve_object object, cons
     Bodies& bodies = world->world->bodies();
     const Vector3 place(pose->location[0], pose->location[1], pose->location[2]);
     bodies.allowed_orientation(rotation);  // all or nothing
+    world->previous.forget(body);
     world->world->leave(body);
     bodies.set_location(body, world->world->space().inside(place));
     bodies.set_orientation(body, rotation);

@@ -82,7 +82,15 @@ std::shared_ptr<Shape> heights_of(const breve_geometry& geometry, std::pmr::memo
                              heights, memory);
 }
 
-std::shared_ptr<Shape> shape_of(const breve_geometry& geometry, bool flat, std::pmr::memory_resource* memory) {
+double within(double value, double low, double high, const char* what) {
+  if (value >= low && value <= high) return value;
+  fail(BREVE_ERROR_ARGUMENT, std::string(what) + " is " + std::to_string(value) + ", not between " +
+                                 std::to_string(low) + " and " + std::to_string(high));
+}
+
+}  // namespace
+
+std::shared_ptr<Shape> geometry_shape(const breve_geometry& geometry, bool flat, std::pmr::memory_resource* memory) {
   if (!(std::isfinite(geometry.density) && geometry.density > 0))
     fail(BREVE_ERROR_ARGUMENT, "breve_geometry.density must be finite and > 0");
   if (geometry.reserved != 0) fail(BREVE_ERROR_ARGUMENT, "a reserved field is not 0");
@@ -101,13 +109,6 @@ std::shared_ptr<Shape> shape_of(const breve_geometry& geometry, bool flat, std::
   return shape;
 }
 
-double within(double value, double low, double high, const char* what) {
-  if (value >= low && value <= high) return value;
-  fail(BREVE_ERROR_ARGUMENT, std::string(what) + " is " + std::to_string(value) + ", not between " +
-                                 std::to_string(low) + " and " + std::to_string(high));
-}
-
-}  // namespace
 }  // namespace breve::host
 
 using namespace breve::host;
@@ -119,7 +120,7 @@ breve_status breve_shape_create(breve_world* world, const breve_geometry* geomet
     need(geometry, "geometry");
     need(shape, "shape");
     const auto wanted = read_config(geometry, breve_geometry_default(), "breve_geometry");
-    auto made = shape_of(wanted, world->world->dimension() == 2, &world->meter);
+    auto made = geometry_shape(wanted, world->world->dimension() == 2, &world->meter);
     *shape = make_with(*world, "Shape", [&](breve::steve::Instance& object) {
       auto& resource = breve::steve::resource_made<breve::steve::ShapeResource>(*world->machine, object);
       resource.shape = std::move(made);
@@ -235,6 +236,7 @@ breve_status breve_object_set_assembly_pose(breve_world* world, breve_object obj
     const auto location = vector_of(pose->location, "pose.location");
     const auto rotation = rotation_of(pose->rotation, "pose.rotation");
     world->machine->refuse_in_stage("move a body");
+    for (const BodyIndex link : world->world->dynamics().links_of(body)) world->previous.forget(link);
     world->world->dynamics().move_assembly(body, location, rotation);
   });
 }
@@ -242,4 +244,38 @@ breve_status breve_object_set_assembly_pose(breve_world* world, breve_object obj
 breve_status breve_object_set_self_collisions(breve_world* world, breve_object object, bool on) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] { world->world->dynamics().set_self_collisions(live_body(*world, object), on); });
+}
+
+// --- what was set ---------------------------------------------------------------------------------------------------
+
+breve_status breve_object_material(const breve_world* world, breve_object object, breve_material* material) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need(material, "material");
+    const breve::Material& m = std::as_const(*world->world).bodies().material(live_body(*world, object));
+    *material = {m.static_friction, m.dynamic_friction, m.normal_restitution, m.tangential_restitution,
+                 m.restitution_threshold};
+  });
+}
+
+breve_status breve_object_force(const breve_world* world, breve_object object, double force[3], double torque[3]) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    const BodyIndex body = live_body(*world, object);
+    const breve::Bodies& bodies = std::as_const(*world->world).bodies();
+    if (force) copy_to(force, bodies.force(body));
+    if (torque) copy_to(torque, bodies.torque(body));
+  });
+}
+
+breve_status breve_object_self_collisions(const breve_world* world, breve_object object, bool* on) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need(on, "on");
+    *on = std::as_const(*world->world).dynamics().self_collisions(live_body(*world, object));
+  });
+}
+
+bool breve_world_sleeping(const breve_world* world) {
+  return world && std::as_const(*world->world).dynamics().sleeping();
 }

@@ -24,6 +24,9 @@ Quaternion rotation_of(const double* numbers, const char* what);
 /// The live object, which must be of the library's class of that name or derived from it: else BREVE_ERROR_TYPE.
 steve::Instance& object_of_kind(const breve_world& world, breve_object object, std::string_view library_class);
 
+/// The shape that a description means. BREVE_ERROR_ARGUMENT, Error{Argument}.
+std::shared_ptr<Shape> geometry_shape(const breve_geometry& geometry, bool flat, std::pmr::memory_resource* memory);
+
 /// A new object of a class of the library that the program has: else BREVE_ERROR_NOT_FOUND.
 steve::Instance& make_object(breve_world& world, const char* library_class);
 

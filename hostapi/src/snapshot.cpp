@@ -34,5 +34,6 @@ breve_status breve_world_restore(breve_world* world, const void* image, size_t s
     world->world->load(static_cast<const std::uint8_t*>(image), size, world->program->fingerprint());
     world->references.forget_all();  // an image that is refused changes nothing, these neither
     world->remainder = 0;
+    world->previous.forget();
   });
 }

@@ -79,7 +79,46 @@ steve::MachineHost machine_host(breve_world& world) {
   return host;
 }
 
-void check(const breve_world_config& config) {
+void start(breve_world& world) {
+  const ScriptScope script(world);
+  if (world.config.dimension == 2) world.world->flatten();
+  world.machine->start();
+  if (world.config.dimension == 3 && world.world->dimension() != 3)
+    fail(BREVE_ERROR_ARGUMENT, "dimension is 3, but the program's controller makes the world flat");
+  if (world.config.length_unit > 0) world.world->dynamics().set_length_unit(world.config.length_unit);
+  if (world.config.integration_step > 0) world.world->set_integration_step(world.config.integration_step);
+  if (world.config.iteration_step > 0) world.world->set_iteration_step(world.config.iteration_step);
+  if (world.config.accuracy) world.world->dynamics().set_accuracy(rung_named(world.config.accuracy));
+  world.config.accuracy = nullptr;  // the host's text may go
+}
+
+void step(breve_world& world) {
+  const ScriptScope script(world);
+  world.previous.record(world.world->bodies());
+  world.world->step();
+}
+
+/// Whole iterations that fit, and the rest kept. Decimal steps that do not add up in binary must not lose an iteration.
+void advance(breve_world& world, double seconds) {
+  constexpr double kRounding = 1e-9;  // of a step
+  World& w = *world.world;
+  double left = world.remainder + seconds * world.time_scale;
+  world.remainder = 0;  // unless everything goes well
+  std::uint32_t done = 0;
+  while (left >= w.iteration_step() * (1 - kRounding) && !w.end_requested() && !w.paused()) {
+    if (world.config.advance_limit != 0 && done++ == world.config.advance_limit) {
+      left = std::fmod(left, w.iteration_step());
+      break;
+    }
+    step(world);
+    left = std::max(0.0, left - w.iteration_step());
+  }
+  world.remainder = left < w.iteration_step() ? left : 0;
+}
+
+}  // namespace
+
+void check_world_config(const breve_world_config& config) {
   if (config.nesting_limit > kMostNesting)
     fail(BREVE_ERROR_ARGUMENT, "nesting_limit must be at most " + std::to_string(kMostNesting));
   for (const double step : {config.iteration_step, config.integration_step})
@@ -98,55 +137,39 @@ void check(const breve_world_config& config) {
   if (config.accuracy) rung_named(config.accuracy);  // an error that names the rungs
 }
 
-/// While it stands the runtime is not to be destroyed.
-class CreationScope {
- public:
-  explicit CreationScope(breve_runtime& runtime) : runtime_(runtime) { ++runtime_.busy; }
-  ~CreationScope() { --runtime_.busy; }
-  CreationScope(const CreationScope&) = delete;
-  CreationScope& operator=(const CreationScope&) = delete;
-
- private:
-  breve_runtime& runtime_;
-};
-
-void start(breve_world& world) {
-  const ScriptScope script(world);
-  if (world.config.dimension == 2) world.world->flatten();
-  world.machine->start();
-  if (world.config.dimension == 3 && world.world->dimension() != 3)
-    fail(BREVE_ERROR_ARGUMENT, "dimension is 3, but the program's controller makes the world flat");
-  if (world.config.length_unit > 0) world.world->dynamics().set_length_unit(world.config.length_unit);
-  if (world.config.integration_step > 0) world.world->set_integration_step(world.config.integration_step);
-  if (world.config.iteration_step > 0) world.world->set_iteration_step(world.config.iteration_step);
-  if (world.config.accuracy) world.world->dynamics().set_accuracy(rung_named(world.config.accuracy));
-  world.config.accuracy = nullptr;  // the host's text may go
-}
-
-void step(breve_world& world) {
-  const ScriptScope script(world);
-  world.world->step();
-}
-
-/// Whole iterations that fit, and the rest kept. Decimal steps that do not add up in binary must not lose an iteration.
-void advance(breve_world& world, double seconds) {
-  constexpr double kRounding = 1e-9;  // of a step
-  World& w = *world.world;
-  double left = world.remainder + seconds;
-  world.remainder = 0;  // unless everything goes well
-  std::uint32_t done = 0;
-  while (left >= w.iteration_step() * (1 - kRounding) && !w.end_requested() && !w.paused()) {
-    if (world.config.advance_limit != 0 && done++ == world.config.advance_limit) {
-      left = std::fmod(left, w.iteration_step());
-      break;
-    }
-    step(world);
-    left = std::max(0.0, left - w.iteration_step());
+breve_status make_world(const std::shared_ptr<RuntimeState>& state, std::uint32_t number,
+                        std::shared_ptr<const steve::Program> program, const breve_world_config* config,
+                        ErrorRecord& error, breve_world** world) noexcept {
+  std::unique_ptr<breve_world> handle;
+  const breve_status status = guard(error, [&] {
+    const auto c = read_config(config, breve_world_config_default(), "breve_world_config");
+    check_world_config(c);
+    handle = make_in<breve_world>(state->memory(), state, number);
+    handle->config = c;
+    handle->program = std::move(program);
+    handle->meter.set_limit(c.memory_limit);
+    auto host = machine_host(*handle);
+    handle->config.arguments = nullptr;  // copied; the host's arrays may go
+    handle->config.settings = nullptr;
+    handle->world = make_in<World>(&handle->meter, &handle->meter, c.seed);
+    handle->world->share_workers(&handle->runtime->workers);
+    handle->world->random().set_coarse(c.coarse_random);
+    steve::register_resource_kinds(*handle->world);
+    handle->machine = make_in<steve::Machine>(&handle->meter, handle->program, *handle->world, &handle->meter,
+                                              std::move(host));
+  });
+  if (status != BREVE_OK) return status;
+  const breve_status started = guard(handle->error, [&] {
+    if (handle->config.profile) start_profile(*handle, handle->config.trace, handle->config.trace_user);
+    start(*handle);
+  });
+  if (started != BREVE_OK) {
+    error.take(std::move(handle->error));
+    return started;
   }
-  world.remainder = left < w.iteration_step() ? left : 0;
+  *world = handle.release();
+  return BREVE_OK;
 }
-
-}  // namespace
 
 ScriptScope::ScriptScope(breve_world& world) : world_(world) {
   if (world_.tracing) fail(BREVE_ERROR_BUSY, "a breve_trace_fn may not run script");
@@ -195,38 +218,14 @@ using namespace breve::host;
 breve_status breve_world_create(breve_runtime* runtime, const breve_program* program, const breve_world_config* config,
                                 breve_world** world) {
   if (!runtime) return BREVE_ERROR_ARGUMENT;
-  std::unique_ptr<breve_world> handle;
   const breve_status status = guard(runtime->error, [&] {
     need(program, "program");
     need(world, "world");
-    const auto c = read_config(config, breve_world_config_default(), "breve_world_config");
-    check(c);
-    handle = breve::make_in<breve_world>(runtime->state->memory(), runtime->state);
-    handle->config = c;
-    handle->program = program->program;
-    handle->meter.set_limit(c.memory_limit);
-    auto host = machine_host(*handle);
-    handle->config.arguments = nullptr;  // copied; the host's arrays may go
-    handle->config.settings = nullptr;
-    handle->world = breve::make_in<breve::World>(&handle->meter, &handle->meter, c.seed);
-    handle->world->share_workers(&handle->runtime->workers);
-    handle->world->random().set_coarse(c.coarse_random);
-    breve::steve::register_resource_kinds(*handle->world);
-    handle->machine = breve::make_in<breve::steve::Machine>(&handle->meter, handle->program, *handle->world,
-                                                            &handle->meter, std::move(host));
+    check_world_config(read_config(config, breve_world_config_default(), "breve_world_config"));
   });
   if (status != BREVE_OK) return status;
   const CreationScope busy(*runtime);
-  const breve_status started = guard(handle->error, [&] {
-    if (handle->config.profile) start_profile(*handle, handle->config.trace, handle->config.trace_user);
-    start(*handle);
-  });
-  if (started != BREVE_OK) {
-    runtime->error.take(std::move(handle->error));
-    return started;
-  }
-  *world = handle.release();
-  return BREVE_OK;
+  return make_world(runtime->state, runtime->state->worlds++, program->program, config, runtime->error, world);
 }
 
 breve_status breve_world_destroy(breve_world* world) {

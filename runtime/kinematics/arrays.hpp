@@ -99,7 +99,7 @@ struct Bodies::Arrays : InMemory {
   std::pmr::vector<ObjectId> owner;  // null: the index is free
   std::pmr::vector<BodyKind> kind;
   std::pmr::vector<Vector3> location, velocity, acceleration;
-  std::pmr::vector<RowIndex> turn_row, rigid_row, material_row, appearance_row;
+  std::pmr::vector<RowIndex> turn_row, rigid_row, material_row, appearance_row, filter_row;
   std::pmr::vector<std::shared_ptr<Shape>> collision_shape, display_shape;
   std::pmr::vector<double> neighborhood;
   std::pmr::vector<std::uint8_t> driven;  // was given a velocity while it had no physics
@@ -108,6 +108,8 @@ struct Bodies::Arrays : InMemory {
   Rows<RigidRow> rigid_rows;
   Rows<Material> materials;
   Rows<Appearance> appearances;
+  Rows<CollisionFilter> filters;
+  std::pmr::vector<BodyIndex> picky;  // sorted
 
   ActiveSet translating, turning, rigid;
   std::pmr::vector<BodyIndex> free;  // last removed, first reused
@@ -117,6 +119,7 @@ struct Bodies::Arrays : InMemory {
   std::pmr::vector<BodyIndex>* log = nullptr;
   std::array<std::pmr::vector<BodyIndex>, kFollowers> put;  // room for all bodies: a body is in each at most once
   std::pmr::vector<std::uint8_t> in_put;                    // by body: bit i for put[i]
+  bool queried = false;                                     // Queries follows
   std::pmr::vector<BodyIndex> touched;                      // may name bodies that are gone
   const Shape::ChangeCount shape_changes;                   // never null
 
@@ -150,6 +153,7 @@ struct Bodies::Arrays : InMemory {
   }
   void note_put(BodyIndex body) {
     for (std::size_t i = 0; i < kFollowers; ++i) {
+      if (i == static_cast<std::size_t>(Follower::Queries) && !queried) continue;
       if ((in_put[body] >> i & 1U) != 0) continue;
       in_put[body] = static_cast<std::uint8_t>(in_put[body] | 1U << i);
       put[i].push_back(body);  // never allocates: see grow()

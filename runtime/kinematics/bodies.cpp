@@ -17,6 +17,8 @@ namespace {
 
 const Vector3 kZero = Vector3::Zero();
 const Appearance kPlainAppearance{};
+const CollisionFilter kPlainFilter{};
+const std::pmr::vector<BodyIndex> kNobody;
 const Material kPlainMaterial{};
 
 void require_finite(std::string_view property, const Vector3& value) {
@@ -106,6 +108,7 @@ Bodies::Arrays::Arrays(std::pmr::memory_resource* memory)
       rigid_row(memory),
       material_row(memory),
       appearance_row(memory),
+      filter_row(memory),
       collision_shape(memory),
       display_shape(memory),
       neighborhood(memory),
@@ -114,11 +117,13 @@ Bodies::Arrays::Arrays(std::pmr::memory_resource* memory)
       rigid_rows(memory),
       materials(memory),
       appearances(memory),
+      filters(memory),
+      picky(memory),
       translating(memory),
       turning(memory),
       rigid(memory),
       free(memory),
-      put{std::pmr::vector<BodyIndex>(memory), std::pmr::vector<BodyIndex>(memory)},
+      put{std::pmr::vector<BodyIndex>(memory), std::pmr::vector<BodyIndex>(memory), std::pmr::vector<BodyIndex>(memory)},
       in_put(memory),
       touched(memory),
       shape_changes(std::allocate_shared<std::uint64_t>(std::pmr::polymorphic_allocator<std::uint64_t>(memory), 0)) {}
@@ -134,13 +139,16 @@ BodyIndex Bodies::Arrays::grow() {
   rigid_row.resize(size, kNoRow);
   material_row.resize(size, kNoRow);
   appearance_row.resize(size, kNoRow);
+  filter_row.resize(size, kNoRow);
   collision_shape.resize(size);
   display_shape.resize(size);
   neighborhood.resize(size);
   driven.resize(size);
   in_put.resize(size);
-  for (auto& list : put)
-    if (list.capacity() < size) list.reserve(2 * size);
+  for (std::size_t i = 0; i < kFollowers; ++i) {
+    if (i == static_cast<std::size_t>(Follower::Queries) && !queried) continue;
+    if (put[i].capacity() < size) put[i].reserve(2 * size);
+  }
   if (free.capacity() < size) free.reserve(2 * size);        // so that remove() never allocates
   if (touched.capacity() < size) touched.reserve(2 * size);  // nor note(), but where bodies come and go within a step
   owner.resize(size);
@@ -234,6 +242,8 @@ void Bodies::remove(BodyIndex body) {
   a.rigid_rows.drop(a.rigid_row[body]);
   a.materials.drop(a.material_row[body]);
   a.appearances.drop(a.appearance_row[body]);
+  a.filters.drop(a.filter_row[body]);
+  std::erase(a.picky, body);
   a.collision_shape[body].reset();
   a.display_shape[body].reset();
   a.owner[body] = {};
@@ -251,12 +261,12 @@ std::uint64_t Bodies::shape_changes() const { return arrays_ ? *arrays_->shape_c
 
 std::size_t Bodies::bytes() const {
   if (!arrays_) return 0;
-  constexpr std::size_t kColumns = sizeof(ObjectId) + sizeof(BodyKind) + 3 * sizeof(Vector3) + 4 * sizeof(RowIndex) +
+  constexpr std::size_t kColumns = sizeof(ObjectId) + sizeof(BodyKind) + 3 * sizeof(Vector3) + 5 * sizeof(RowIndex) +
                                    2 * sizeof(std::shared_ptr<Shape>) + sizeof(double) + 2 * sizeof(std::uint8_t) +
                                    kFollowers * sizeof(BodyIndex);
   const Arrays& a = *arrays_;
   return sizeof(Arrays) + a.owner.capacity() * kColumns + a.turn_rows.bytes() + a.rigid_rows.bytes() +
-         a.materials.bytes() + a.appearances.bytes() + a.translating.bytes() + a.turning.bytes() + a.rigid.bytes();
+         a.materials.bytes() + a.filters.bytes() + a.appearances.bytes() + a.translating.bytes() + a.turning.bytes() + a.rigid.bytes();
 }
 
 BodyKind Bodies::kind(BodyIndex body) const { return arrays_->kind[body]; }
@@ -474,6 +484,34 @@ const Material& Bodies::material(BodyIndex body) const {
   const RowIndex row = arrays_->material_row[body];
   return row == kNoRow ? kPlainMaterial : std::as_const(arrays_->materials)[row];
 }
+
+const CollisionFilter& Bodies::filter(BodyIndex body) const {
+  const RowIndex row = arrays_->filter_row[body];
+  return row == kNoRow ? kPlainFilter : std::as_const(arrays_->filters)[row];
+}
+
+void Bodies::set_filter(BodyIndex body, const CollisionFilter& filter) {
+  Arrays& a = *arrays_;
+  require_finite("the open side", filter.one_way);
+  CollisionFilter allowed = filter;
+  allowed.one_way = in_plane("the open side", filter.one_way, flat_);
+  if (allowed == this->filter(body)) return;
+  a.note(body);  // before anything changes: it may take memory
+  const bool picks = allowed.asks || allowed.one_way != kZero;
+  const auto at = std::lower_bound(a.picky.begin(), a.picky.end(), body);
+  const bool picked = at != a.picky.end() && *at == body;
+  RowIndex& row = a.filter_row[body];
+  if (row == kNoRow) row = a.filters.make();
+  if (picks && !picked) a.picky.insert(at, body);
+  if (!picks && picked) a.picky.erase(at);
+  a.filters[row] = allowed;
+  ++a.revision;
+  ++a.physics_revision;
+}
+
+bool Bodies::filtered() const { return arrays_ && arrays_->filters.bytes() != 0; }
+
+const std::pmr::vector<BodyIndex>& Bodies::picky() const { return arrays_ ? arrays_->picky : kNobody; }
 
 Appearance& Bodies::appearance(BodyIndex body) {
   RowIndex& row = arrays_->appearance_row[body];

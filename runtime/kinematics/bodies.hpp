@@ -32,6 +32,19 @@ struct Material {
   double restitution_threshold = 0;
 };
 
+/// Which bodies meet: category and mask as bits, and what a meeting does. Defaults: everything meets everything.
+struct CollisionFilter {
+  std::uint32_t category = 1;
+  std::uint32_t mask = 0xffffffffU;   // of the categories of those that it meets
+  bool sensor = false;                // handlers and events, and nobody is pushed
+  bool asks = false;                  // its object is asked about each body that comes near
+  Vector3 one_way = Vector3::Zero();  // own frame; not zero: what comes from other sides passes
+  bool meets(const CollisionFilter& other) const {
+    return (category & other.mask) != 0 && (other.category & mask) != 0;
+  }
+  friend bool operator==(const CollisionFilter&, const CollisionFilter&) = default;
+};
+
 /// How a body is drawn; kept and readable whether or not anything draws.
 struct Appearance {
   Vector3 color{1, 1, 1};
@@ -62,8 +75,8 @@ struct MassProperties {
 };
 
 /// The observers of bodies that are moved by setters, each at a pace of its own.
-enum class Follower : std::uint8_t { Collisions, Dynamics };
-inline constexpr std::size_t kFollowers = 2;
+enum class Follower : std::uint8_t { Collisions, Dynamics, Queries };
+inline constexpr std::size_t kFollowers = 3;
 
 class Bodies : public InMemory {
  public:
@@ -142,6 +155,11 @@ class Bodies : public InMemory {
   void set_neighborhood_size(BodyIndex body, double radius);
   Material& material(BodyIndex body);  // made on first use
   const Material& material(BodyIndex body) const;
+  const CollisionFilter& filter(BodyIndex body) const;
+  /// Error{Argument} if `one_way` is not finite, or out of the plane of a flat world.
+  void set_filter(BodyIndex body, const CollisionFilter& filter);
+  bool filtered() const;                                        // some body has, or had, a filter of its own
+  const std::pmr::vector<BodyIndex>& picky() const;             // bodies that ask or let pass from some sides, sorted
   Appearance& appearance(BodyIndex body);  // made on first use
   const Appearance& appearance(BodyIndex body) const;
 
@@ -174,6 +192,7 @@ class Bodies : public InMemory {
   void touch_rigid();                           // all physics-enabled bodies count as touched
   /// Appends the bodies that were added since this follower asked last, or put elsewhere or given another collision
   /// shape by a setter; each once, and maybe some that are gone. What the stages of a sub-step move is not among them.
+  /// To Queries nothing is kept for before it asks for the first time: it then gets nobody.
   void take_put(Follower follower, std::pmr::vector<BodyIndex>& out);
   /// While a log is set, each setter that changes how a body moves notes the body there. Null: no log.
   void set_log(std::pmr::vector<BodyIndex>* log);

@@ -135,6 +135,10 @@ void Bodies::take_put(Follower follower, std::pmr::vector<BodyIndex>& out) {
   if (!arrays_) return;
   Arrays& a = *arrays_;
   const auto which = static_cast<std::size_t>(follower);
+  if (follower == Follower::Queries && !a.queried) {
+    a.put[which].reserve(2 * a.owner.size());
+    a.queried = true;
+  }
   out.insert(out.end(), a.put[which].begin(), a.put[which].end());
   for (const BodyIndex body : a.put[which]) a.in_put[body] = static_cast<std::uint8_t>(a.in_put[body] & ~(1U << which));
   a.put[which].clear();

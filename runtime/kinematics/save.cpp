@@ -48,6 +48,23 @@ void load(ByteReader& in, Appearance& a) {
   }
 }
 
+void save(ByteWriter& out, const CollisionFilter& filter) {
+  out.put(filter.category);
+  out.put(filter.mask);
+  out.put(filter.sensor);
+  out.put(filter.asks);
+  out.put(filter.one_way);
+}
+
+void load(ByteReader& in, CollisionFilter& filter) {
+  filter.category = in.get<std::uint32_t>();
+  filter.mask = in.get<std::uint32_t>();
+  filter.sensor = in.get_bool();
+  filter.asks = in.get_bool();
+  filter.one_way = in.get_vector();
+  if (!filter.one_way.allFinite()) ByteReader::fail();
+}
+
 void save(ByteWriter& out, const TurnRow& row) {
   out.put(row.orientation);
   out.put(row.velocity);
@@ -117,6 +134,7 @@ void Bodies::save(ByteWriter& out) const {
     save_row(out, a.rigid_rows, a.rigid_row[body]);
     save_row(out, a.materials, a.material_row[body]);
     save_row(out, a.appearances, a.appearance_row[body]);
+    save_row(out, a.filters, a.filter_row[body]);
   }
   out.put(static_cast<std::uint64_t>(a.free.size()));
   for (const BodyIndex body : a.free) out.put(body);
@@ -158,6 +176,8 @@ void Bodies::load(ByteReader& in) {
     load_row(in, a.rigid_rows, a.rigid_row[body]);
     load_row(in, a.materials, a.material_row[body]);
     load_row(in, a.appearances, a.appearance_row[body]);
+    load_row(in, a.filters, a.filter_row[body]);
+    if (filter(body).asks || !filter(body).one_way.isZero(0)) a.picky.push_back(body);
     a.classify(body);
   }
   const std::size_t free_count = in.get_count(sizeof(BodyIndex));
@@ -198,6 +218,12 @@ void Bodies::hash(Hasher& hasher, BodyIndex body) const {
   hasher.add(a.neighborhood[body]);
   a.collision_shape[body]->hash(hasher);
   if (a.display_shape[body] != a.collision_shape[body]) a.display_shape[body]->hash(hasher);
+  if (a.filter_row[body] != kNoRow) {
+    const CollisionFilter& f = filter(body);
+    hasher.add(std::uint64_t{f.category} << 32 | f.mask);
+    hasher.add(f.one_way);
+    hasher.add(std::uint64_t{f.sensor} << 1 | std::uint64_t{f.asks});
+  }
   if (a.material_row[body] == kNoRow && a.appearance_row[body] == kNoRow) return;
   // What a body looks like, and how it rubs, is part of the world: as the bytes that a snapshot holds.
   ByteWriter look;

@@ -49,6 +49,12 @@ class Behaviour {
     static_cast<void>(draw);
     return Vector3::Zero();
   }
+  /// May `agent`, which asked for this question, collide with `other`? Asked once while the two are near each other.
+  virtual bool may_collide(ObjectId agent, ObjectId other) {
+    static_cast<void>(agent);
+    static_cast<void>(other);
+    return true;
+  }
   /// The world begins so much work of its own for the agents (units of about a loop iteration, see Meter): it counts as
   /// theirs. Throws if they may not use so much, or if the host wants the end.
   virtual void charge(std::uint64_t units) = 0;

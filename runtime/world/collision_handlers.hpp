@@ -32,6 +32,7 @@ class CollisionHandlers {
   /// True if some handler names this class on either side.
   bool takes_part(ClassId cls) const { return cls < taking_part_.size() && taking_part_[cls] != 0; }
   bool any_handler() const { return handlers_ != 0; }
+  void note_change() { ++revision_; }  // who asks for answers asks for more than these handlers
   /// Grows with every change that can matter to a pair that was looked at before.
   std::uint64_t revision() const { return revision_; }
 

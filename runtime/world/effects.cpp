@@ -34,6 +34,9 @@ constexpr std::array<Words, static_cast<std::size_t>(EffectId::kCount)> kWords{{
     {"energy ledger", "a body is physics-enabled: its energy is recorded"},
     {"patches", "a grid of cells was created"},
     {"diffusion", "quantities on a grid diffuse or react"},
+    {"queries", "a host or a script asked where bodies are"},
+    {"collision filters", "a body asks about each body near it, or lets bodies pass from some sides"},
+    {"events", "contacts of some objects, or births, deaths and the like, are listed"},
 }};
 
 }  // namespace
@@ -71,8 +74,16 @@ void Effects::begin_step() {
   }
 }
 
+namespace {
+
+/// Who only looks at a world leaves no trace in its image.
+bool only_looks(EffectId id) { return id == EffectId::Queries || id == EffectId::Events; }
+
+}  // namespace
+
 void Effects::save(ByteWriter& out) const {
   for (const Effect& effect : effects_) {
+    if (only_looks(effect.id)) continue;
     out.put(effect.active);
     out.put(effect.since);
     out.put(effect.asked_by);
@@ -81,6 +92,7 @@ void Effects::save(ByteWriter& out) const {
 
 void Effects::load(ByteReader& in) {
   for (Effect& effect : effects_) {
+    if (only_looks(effect.id)) continue;
     const bool active = in.get_bool();
     const auto since = in.get<std::uint64_t>();
     const ObjectId asked_by = in.get_object();

@@ -36,6 +36,9 @@ enum class EffectId : std::uint8_t {
   EnergyLedger,
   Patches,
   Diffusion,
+  Queries,
+  Filters,
+  Events,
   kCount
 };
 

@@ -95,6 +95,7 @@ void World::write_image(ByteWriter& out) const {
   parts.schedule.save(out, parts.objects);
   parts.notifications.save(out, parts.objects);
   parts.handlers.save(out);
+  parts.pairs.save(out);
   parts.collisions.save(out);
   parts.effects.save(out);
   parts.dynamics->save(out);
@@ -102,6 +103,7 @@ void World::write_image(ByteWriter& out) const {
   out.put(parts.at_impact);
   out.put(parts.first_handler);
   parts.save_targets(out);
+  parts.save_pushes(out);
   parts.space.save(out);
   parts.near.save(out);
   save_input(out, parts.input);
@@ -146,6 +148,7 @@ void World::read_image(ByteReader& in, World& fresh) const {
   parts.schedule.load(in, parts.objects, parts.names.size());
   parts.notifications.load(in, parts.objects, parts.names.size());
   parts.handlers.load(in, parts.names.size());
+  parts.pairs.load(in);
   parts.collisions.load(in);
   parts.effects.load(in);
   parts.dynamics->load(in);
@@ -153,6 +156,7 @@ void World::read_image(ByteReader& in, World& fresh) const {
   parts.at_impact = in.get_bool();
   parts.first_handler = in.get_object();
   parts.load_targets(in);
+  parts.load_pushes(in);
   parts.space.load(in);
   parts.near.load(in, parts.objects);
   parts.near.close(parts.space);
@@ -163,6 +167,7 @@ void World::swap_state(World& other) {
   bodies_->swap(*other.bodies_);
   std::swap(parts_, other.parts_);
   std::swap(parts_->loaders, other.parts_->loaders);
+  std::swap(parts_->judge, other.parts_->judge);
   parts_->rebind(*this);
   other.parts_->rebind(other);
   std::swap(random_, other.random_);
@@ -192,6 +197,7 @@ void World::load(const std::uint8_t* data, std::size_t size, std::uint64_t progr
     swap_state(fresh);
     throw;
   }
+  look_again();
 }
 
 std::uint64_t World::hash() const {
@@ -214,9 +220,11 @@ std::uint64_t World::hash() const {
   parts.schedule.hash(hasher, parts.names, parts.objects);
   parts.notifications.hash(hasher, parts.names, parts.objects);
   parts.handlers.hash(hasher, parts.names);
+  parts.pairs.hash(hasher);
   parts.collisions.hash(hasher);
   parts.dynamics->hash(hasher);
   parts.hash_targets(hasher);
+  parts.hash_pushes(hasher);
   hasher.add(static_cast<std::uint64_t>(parts.exact_schedule) | static_cast<std::uint64_t>(parts.at_impact) << 1);
   parts.space.hash(hasher);
   parts.near.hash(hasher);

@@ -13,6 +13,7 @@
 #include "runtime/world/neighbor_record.hpp"
 #include "runtime/world/notifications.hpp"
 #include "runtime/world/objects.hpp"
+#include "runtime/world/pair_rules.hpp"
 #include "runtime/world/schedule.hpp"
 #include "runtime/world/world.hpp"
 
@@ -46,9 +47,27 @@ struct World::Parts final : CollisionClient, DynamicsClient, InMemory {
   void save_targets(ByteWriter& out) const;
   void load_targets(ByteReader& in);
   void hash_targets(Hasher& hasher) const;
+  // pushes.cpp
+  class PushScope;
+  void save_pushes(ByteWriter& out) const;
+  void load_pushes(ByteReader& in);
+  void hash_pushes(Hasher& hasher) const;
 
   // step.cpp
   bool bring_assembly(BodyIndex body);
+  // judge.cpp
+  bool denied(ObjectId a, ObjectId b) const;
+  bool meets(BodyIndex a, BodyIndex b) const;
+  bool passes(BodyIndex a, BodyIndex b) const;
+  void ask(ObjectId one, ObjectId other);
+  void let_pass(BodyIndex gate, BodyIndex other);
+  void judge_pairs(double h);
+  // events.cpp
+  bool touches_now(BodyIndex a, BodyIndex b, bool before, Contact& contact) const;
+  void find_contacts(BodyIndex body, std::pmr::map<Events::Pair, ContactEvent>& now);
+  void add_impulses(std::pmr::map<Events::Pair, ContactEvent>& now);
+  void gather_contacts();
+  void gather_sleep();
 
   // --- CollisionClient ----------------------------------------------------------------------------------------------
   bool takes_part(BodyIndex body) const override;
@@ -80,6 +99,8 @@ struct World::Parts final : CollisionClient, DynamicsClient, InMemory {
   Schedule schedule;
   Notifications notifications;
   CollisionHandlers handlers;
+  PairRules pairs;
+  PairJudge* judge = nullptr;  // not state: the host's
   CollisionStage collisions;
   std::unique_ptr<Mechanics> dynamics;  // Dynamics, or Planar in a flat world; never null
   std::pmr::vector<Stage> stages;
@@ -97,10 +118,17 @@ struct World::Parts final : CollisionClient, DynamicsClient, InMemory {
     Quaternion orientation = Quaternion::Identity();
   };
   std::pmr::vector<Target> targets;       // of bodies that go there in the next iteration
+  struct Push {
+    ObjectId object;
+    Vector3 force = Vector3::Zero(), torque = Vector3::Zero();
+  };
+  std::pmr::vector<Push> pushes;          // beside the forces that are set, in the next iteration
   std::pmr::map<BodyIndex, Target> left;  // where bodies were that scripts have put elsewhere since the last one
   std::uint64_t advanced = 0;             // the last serial of an object that was there in it
 
   Extent space;
+  Queries queries;
+  std::uint64_t moved = 0;  // grows whenever a stage of the step may have moved bodies
   NeighborRecord near;  // the last update of neighbours
   std::pmr::deque<InputEvent> input;
   std::pmr::map<std::pmr::string, ResourceLoader, std::less<>> loaders;  // not state: the program's own

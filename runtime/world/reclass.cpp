@@ -77,8 +77,13 @@ void World::reclass(std::span<const ClassChange> classes) {
     return;
   }
   auto handlers = parts_->handlers.reclassed(classes);
+  std::pmr::set<ClassId> watched(memory_);
+  if (events_) watched = events_->reclassed(classes);
   parts_->objects.reclass(classes, lists);
   parts_->handlers.swap(handlers);
+  if (!events_) return;
+  events_->take_classes(watched);
+  events_->begin();  // what is listed names classes by their old numbers
 }
 
 }  // namespace breve

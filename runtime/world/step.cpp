@@ -7,6 +7,7 @@
 #include "runtime/base/error.hpp"
 #include "runtime/space/walls.hpp"
 #include "runtime/world/parts.hpp"
+#include "runtime/world/push_scope.hpp"
 
 namespace breve {
 
@@ -69,6 +70,7 @@ void World::step() {
   const StageScope iteration("iteration", observer_);
   Parts& parts = *parts_;
   parts.effects.begin_step();
+  if (events_) events_->begin();
   parts.dynamics->begin_iteration(clock_.iteration, physics_bound_);
   deliver_input();
   parts.objects.join();
@@ -92,6 +94,7 @@ void World::step() {
   }
   run_scheduled();
   if (behaviour_) behaviour_->end_of_iteration();
+  gather_events();
   ++clock_.iteration;
   count_bytes();
 }
@@ -135,6 +138,7 @@ void World::count_bytes() {
   effects[EffectId::Schedule].bytes = parts_->schedule.bytes();
   effects[EffectId::Notifications].bytes = parts_->notifications.bytes();
   effects[EffectId::Script].bytes = parts_->objects.bytes();
+  if (effects[EffectId::Queries].active) effects[EffectId::Queries].bytes = parts_->queries.bytes();
 }
 
 // --- bodies ---------------------------------------------------------------------------------------------------------
@@ -146,7 +150,10 @@ void World::advance_bodies() {
   const double iteration = clock_.iteration_step;
   const std::uint64_t count = substeps();
   parts_->aim_at_places();
-  run_substeps(iteration / static_cast<double>(count), count);
+  {
+    const Parts::PushScope pushes(*parts_);
+    run_substeps(iteration / static_cast<double>(count), count);
+  }
   parts_->reach_targets();
   parts_->count_dynamics();
   clock_.advance(iteration);
@@ -173,6 +180,7 @@ void World::run_substeps(double h, std::uint64_t count) {
       const double length = static_cast<double>(taken) * h;
       parts.share = static_cast<double>(taken) / static_cast<double>(count - i);
       parts.substep_start = clock_.time + static_cast<double>(i) * h;
+      parts.judge_pairs(length);
       const std::uint32_t signature = parts.signature();
       if (signature != parts.stage_signature) parts.rebuild_stages(signature);
       for (const Parts::Stage& stage : parts.stages) {
@@ -180,7 +188,9 @@ void World::run_substeps(double h, std::uint64_t count) {
         const StageScope scope(effect, observer_);
         ++effect.calls;
         effect.items += stage.items(parts);
+        ++parts.moved;  // handlers that ask see the middle of a stage
         stage.run(parts, length);
+        ++parts.moved;
       }
     }
   } catch (...) {
@@ -372,15 +382,18 @@ bool World::Parts::reported(BodyIndex a, BodyIndex b) const {
 }
 
 bool World::Parts::handled(BodyIndex a, BodyIndex b) const {
-  return handlers.handled(objects.at(world->bodies_->owner(a)).cls, objects.at(world->bodies_->owner(b)).cls);
+  return handlers.handled(objects.at(world->bodies_->owner(a)).cls, objects.at(world->bodies_->owner(b)).cls) &&
+         meets(a, b);
 }
 
 bool World::Parts::ignored(BodyIndex a, BodyIndex b) const {
-  return handlers.ignored(objects.at(world->bodies_->owner(a)).cls, objects.at(world->bodies_->owner(b)).cls);
+  return handlers.ignored(objects.at(world->bodies_->owner(a)).cls, objects.at(world->bodies_->owner(b)).cls) ||
+         !meets(a, b) || passes(a, b);
 }
 
 Vector3 World::Parts::stage_force(BodyIndex body, double time, std::uint64_t draw) {
   if (!world->behaviour_) return Vector3::Zero();
+  ++moved;
   const MomentOf clock(world->clock_.time, time);
   return world->behaviour_->stage_force(world->bodies_->owner(body), time, draw);
 }
@@ -389,6 +402,7 @@ std::uint64_t World::Parts::serial(BodyIndex body) const { return objects.at(wor
 
 void World::Parts::touched(BodyIndex a, BodyIndex b, const Contact& found, double moment) {
   if (!world->behaviour_) return;
+  ++moved;
   Contact contact = found;
   if (world->dimension() == 2) {
     // Solids that meet along edges across the plane have a point anywhere on them.

@@ -21,11 +21,14 @@ World::Parts::Parts(World& owner, std::pmr::memory_resource* memory)
       schedule(memory),
       notifications(memory),
       handlers(memory),
+      pairs(memory),
       collisions(memory, *owner.bodies_),
       dynamics(make_in<Dynamics>(memory, memory, *owner.bodies_)),
       stages(memory),
       targets(memory),
+      pushes(memory),
       left(memory),
+      queries(memory),
       near(memory),
       input(memory),
       loaders(memory) {}
@@ -44,7 +47,9 @@ void World::set_behaviour(Behaviour* behaviour) { behaviour_ = behaviour; }
 // --- objects --------------------------------------------------------------------------------------------------------
 
 ObjectId World::create(ClassId cls, std::uint64_t user, bool iterates, bool post_iterates) {
-  return parts_->objects.create(cls, user, iterates, post_iterates);
+  const ObjectId id = parts_->objects.create(cls, user, iterates, post_iterates);
+  if (events_ && events_->wants(Events::kLives)) events_->lives.push_back({id, ticket(id), cls, true});
+  return id;
 }
 
 void World::release(ObjectId id) {
@@ -58,6 +63,9 @@ void World::release(ObjectId id) {
   }
   if (slot.events != 0) parts.schedule.forget(parts.objects, id);
   parts.notifications.forget(id);
+  parts.pairs.forget(id);
+  if (events_) events_->forget(id);
+  if (events_ && events_->wants(Events::kLives)) events_->lives.push_back({id, ticket(id), slot.cls, false});
   parts.near.forget(id);
   parts.objects.release(id);
 }
@@ -238,6 +246,8 @@ std::size_t World::unobserve(ObjectId observer, ObjectId announcer, std::string_
 
 void World::announce(ObjectId announcer, std::string_view message) {
   parts_->objects.at(announcer);
+  if (events_ && events_->wants(Events::kAnnouncements))
+    events_->announcements.push_back({announcer, ticket(announcer), clock_.time, std::pmr::string(message, memory_)});
   const NameId text = parts_->names.find(message);
   if (text == kNoName || !behaviour_) return;
   // A copy: handlers may observe, unobserve, free anyone, and announce again.
@@ -298,6 +308,14 @@ StageScope World::work(EffectId id, ObjectId asked_by, std::uint64_t items) {
   ++effect.calls;
   effect.items += items;
   return {effect, observer_};
+}
+
+StageScope World::asked_by_host(EffectId id) {
+  Effect& effect = parts_->effects[id];
+  parts_->effects.turn_on(id, clock_.iteration, {});
+  ++effect.calls;
+  ++effect.items;
+  return {effect, nullptr};
 }
 
 }  // namespace breve

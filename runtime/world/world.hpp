@@ -19,11 +19,15 @@
 #include "runtime/space/extent.hpp"
 #include "runtime/world/behaviour.hpp"
 #include "runtime/world/effects.hpp"
+#include "runtime/world/events.hpp"
+#include "runtime/world/queries.hpp"
 #include "runtime/world/resource.hpp"
 #include "runtime/world/stage_observer.hpp"
 #include "runtime/world/view.hpp"
 
 namespace breve {
+
+class PairJudge;
 
 class World : public InMemory {
  public:
@@ -102,6 +106,11 @@ class World : public InMemory {
   /// What user() gives for each of these neighbours, in the same order and as long valid: cheaper than asking for each.
   std::span<const std::uint64_t> neighbor_users(ObjectId id);
 
+  // --- questions about space ---------------------------------------------------------------------------------------
+  /// To be asked about scene(). Count what they cost with work(EffectId::Queries, …).
+  Queries& queries();
+  Queries::Scene scene();
+
   // --- how far space goes ------------------------------------------------------------------------------------------
   /// Along this axis space is open, wraps, or has walls. At the end of each sub-step kinematic bodies that move, and
   /// bodies with physics that have no joints, are brought inside; walls reflect their centres. Neighbours and offsets
@@ -133,6 +142,14 @@ class World : public InMemory {
   /// stands. It pushes and carries what it touches. Omitted values stay as they were set for that iteration, or are.
   /// Error{Argument}: it has physics, or the target is not finite.
   void set_target(BodyIndex body, const Vector3* location, const Quaternion* orientation);
+  /// A force and a torque, world axes, that act beside those that are set, in the next iteration only. At `point`, world
+  /// frame; null: at the centre of mass. Error{Argument}: not finite, out of the plane of a flat world, or no body with
+  /// physics.
+  void add_force(BodyIndex body, const Vector3& force, const Vector3& torque, const Vector3* point);
+  /// An impulse, N*s: at once; on a body that joints hold as a force of the next iteration. Likewise.
+  void add_impulse(BodyIndex body, const Vector3& impulse, const Vector3* point);
+  /// If it sleeps.
+  void wake(BodyIndex body);
   /// A script or host is about to put the body elsewhere. One that bodies with physics meet goes there in the next
   /// iteration, as to a target, if that is no farther than its bounding radius and half a radian; else it jumps.
   void leave(BodyIndex body);
@@ -169,6 +186,19 @@ class World : public InMemory {
   /// "impact" (first touch at its time of impact, the default) or "step" (calls at the end of the sub-step).
   void set_impact_timing(bool at_impact);
 
+  // --- who collides with whom ----------------------------------------------------------------------------------------
+  void set_filter(BodyIndex body, const CollisionFilter& filter);  // as Bodies::set_filter; who lies on it wakes
+  /// Two objects that are told not to collide neither push one another nor call handlers. Returns whether that is a
+  /// change. Error{Stale}, Error{Argument} for one object.
+  bool set_collides(ObjectId a, ObjectId b, bool on);
+  bool collides(ObjectId a, ObjectId b) const;
+  /// Asked about what comes near to bodies that ask, before their objects are. Not owned; null: nobody.
+  void set_pair_judge(PairJudge* judge);
+
+  // --- events --------------------------------------------------------------------------------------------------------
+  Events& events();                                     // made on first use
+  const Events* gathered() const { return events_.get(); }  // null: nobody asked for any
+
   // --- input, random numbers, view -----------------------------------------------------------------------------------
   void queue_input(InputEvent event);
   Random& random() { return random_; }
@@ -180,6 +210,8 @@ class World : public InMemory {
   /// What scripts call for by themselves, patches and diffusion: `items` are added, and the time until the end of the
   /// scope that keeps the result.
   StageScope work(EffectId id, ObjectId asked_by, std::uint64_t items);
+  /// The same of what a host asks for, maybe between iterations: observers do not hear of it.
+  StageScope asked_by_host(EffectId id);
   std::uint64_t hash() const;
   /// The whole world with its script side, as a checked, versioned image. Error{Busy} inside a step.
   std::pmr::vector<std::uint8_t> save(std::uint64_t program_fingerprint) const;
@@ -205,6 +237,10 @@ class World : public InMemory {
   void run_scheduled();
   void run_substeps(double h, std::uint64_t count);
   void count_bytes();
+  // judge.cpp, events.cpp
+  void wake_around(BodyIndex body);
+  void gather_events();
+  void look_again();
   // image.cpp
   void write_image(ByteWriter& out) const;
   void read_image(ByteReader& in, World& fresh) const;
@@ -215,6 +251,7 @@ class World : public InMemory {
   StageObserver* observer_ = nullptr;
   std::unique_ptr<Bodies> bodies_;
   std::unique_ptr<Parts> parts_;
+  std::unique_ptr<Events> events_;  // not state
   Random random_;
   ViewState view_;
   Clock clock_;

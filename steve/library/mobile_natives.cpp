@@ -75,6 +75,30 @@ void set_physics(Machine& machine, Instance& self) {
   bodies_of(machine).set_physics(body_of(machine, self), On);
 }
 
+// A force method, which runs at stages that may be tried again, pushes by what it yields alone.
+
+void mobile_add_force(Machine& machine, Instance& self, Vector3 force) {
+  machine.refuse_in_stage("push a body");
+  machine.world().add_force(body_of(machine, self), force, Vector3::Zero(), nullptr);
+}
+void mobile_add_force_at_point(Machine& machine, Instance& self, Vector3 force, Vector3 point) {
+  machine.refuse_in_stage("push a body");
+  machine.world().add_force(body_of(machine, self), force, Vector3::Zero(), &point);
+}
+void mobile_add_torque(Machine& machine, Instance& self, Vector3 torque) {
+  machine.refuse_in_stage("push a body");
+  machine.world().add_force(body_of(machine, self), Vector3::Zero(), torque, nullptr);
+}
+void mobile_add_impulse(Machine& machine, Instance& self, Vector3 impulse) {
+  machine.refuse_in_stage("push a body");
+  machine.world().add_impulse(body_of(machine, self), impulse, nullptr);
+}
+void mobile_add_impulse_at_point(Machine& machine, Instance& self, Vector3 impulse, Vector3 point) {
+  machine.refuse_in_stage("push a body");
+  machine.world().add_impulse(body_of(machine, self), impulse, &point);
+}
+void mobile_wake(Machine& machine, Instance& self) { machine.world().wake(body_of(machine, self)); }
+
 /// Hooks around dragging: physics does not move a body that the user holds.
 void mobile_suspend_physics(Machine& machine, Instance& self) {
   const BodyIndex body = body_of(machine, self);
@@ -151,6 +175,12 @@ void mobile_set_force_method(Machine& machine, Instance& self, std::int32_t on) 
 }
 
 constexpr Native kMobileNatives[] = {
+    native<mobile_add_force>("mobile.add-force"),
+    native<mobile_add_force_at_point>("mobile.add-force-at-point"),
+    native<mobile_add_torque>("mobile.add-torque"),
+    native<mobile_add_impulse>("mobile.add-impulse"),
+    native<mobile_add_impulse_at_point>("mobile.add-impulse-at-point"),
+    native<mobile_wake>("mobile.wake"),
     native<mobile_init>("mobile.init"),
     native<mobile_register>("mobile.register"),
     native<set_physics<true>>("mobile.enable-physics"),

@@ -228,16 +228,6 @@ ListCell* real_get_neighbors(Machine& machine, Instance& self) {
 
 // --- collisions ------------------------------------------------------------------------------------------------------
 
-/// The class of that name. Null if the program does not use it but this library, or a later one, has it: then nothing
-/// of that class is there to collide with.
-/// @throws RunError{UnknownClass} for any other name
-const ClassInfo* class_named(Machine& machine, Text name, std::string_view selector) {
-  if (const ClassInfo* cls = machine.program().find_class(view(name))) return cls;
-  if (find_library_file(view(name)) || is_later_class(view(name))) return nullptr;
-  Machine::fail(RunErrorKind::UnknownClass,
-                std::string(selector) + ": there is no class '" + std::string(view(name)) + "'");
-}
-
 void real_handle_collisions(Machine& machine, Instance& self, Text type, Text method) {
   const ClassInfo* other = class_named(machine, type, "handle-collisions");
   if (!machine.responds(*self.cls, view(method))) {

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "steve/library/library.hpp"
+
 namespace breve::steve {
 
 Slot* library_slot(Machine& machine, Instance& self, std::string_view owner, std::string_view name) {
@@ -26,6 +28,13 @@ Instance* library_object(Machine& machine, Instance& self, std::string_view owne
 void set_library_object(Machine& machine, Instance& self, std::string_view owner, std::string_view name,
                         Instance* object) {
   if (Slot* slot = library_slot(machine, self, owner, name)) machine.heap().store(*slot, object);
+}
+
+const ClassInfo* class_named(Machine& machine, const StringCell* name, std::string_view selector) {
+  if (const ClassInfo* cls = machine.program().find_class(view(name))) return cls;
+  if (find_library_file(view(name)) || is_later_class(view(name))) return nullptr;
+  Machine::fail(RunErrorKind::UnknownClass,
+                std::string(selector) + ": there is no class '" + std::string(view(name)) + "'");
 }
 
 std::string name_of(const Instance& object) { return fmt::format("{} (0x{:x})", object.cls->name, object.serial); }

@@ -87,6 +87,11 @@ void set_library_object(Machine& machine, Instance& self, std::string_view owner
 /// Give an object a body at the origin with the controller's generic shape, a sphere of radius 1 (a box for a link).
 void embody(Machine& machine, Instance& self, BodyKind kind);
 
+/// The class of that name. Null if the program does not use it but this library, or a later one, has it: then there are
+/// no objects of that class.
+/// @throws RunError{UnknownClass} for any other name
+const ClassInfo* class_named(Machine& machine, const StringCell* name, std::string_view selector);
+
 /// `class (0xaddress)`, as messages name an object.
 std::string name_of(const Instance& object);
 

@@ -15,6 +15,8 @@ std::span<const Native> view_natives();
 std::span<const Native> camera_natives();
 std::span<const Native> real_natives();
 std::span<const Native> look_natives();
+std::span<const Native> query_natives();
+std::span<const Native> filter_natives();
 std::span<const Native> mobile_natives();
 std::span<const Native> shape_natives();
 std::span<const Native> image_natives();

@@ -338,6 +338,19 @@ bool Machine::collided(ObjectId agent, ObjectId other, std::string_view name, co
   return false;
 }
 
+bool Machine::may_collide(ObjectId agent, ObjectId other) {
+  auto* object = instance(agent);
+  auto* near = instance(other);
+  if (!object || !near) return true;
+  const auto* method = handler_methods_.find(*object->cls, "may-collide", program_->symbols())[1];
+  if (!method) return true;
+  const Value argument = Value::of(Tag::Object, near);
+  Value result;
+  called_by_world([&] { call_guarded(*object, *method, std::span(&argument, 1), result); });
+  // A method that failed, or that says nothing, refuses nothing.
+  return result.tag == Tag::Null || truth(result);
+}
+
 void Machine::notified(ObjectId observer, std::string_view name, ObjectId announcer, std::string_view message) {
   auto* object = instance(observer);
   auto* source = instance(announcer);

@@ -158,6 +158,7 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   void scheduled(ObjectId agent, std::string_view method) override;
   bool collided(ObjectId agent, ObjectId other, std::string_view method, const Vector3& point,
                 const Vector3& normal) override;
+  bool may_collide(ObjectId agent, ObjectId other) override;
   void notified(ObjectId observer, std::string_view method, ObjectId announcer, std::string_view message) override;
   Vector3 stage_force(ObjectId agent, double time, std::uint64_t draw) override;
   void input(const InputEvent& event) override;

@@ -1,9 +1,12 @@
 # Fails if a struct of the headers in HEADERS has a field of an enumeration, whose size is the compiler's, or if an enumerator does not
 # begin with the name of its type: cmake -DHEADERS=folder -P enumerations.cmake
 # "_kind" and "_mode" are left out of the names; a status is BREVE_OK or an error.
-file(READ ${HEADERS}/breve.h header)
-file(READ ${HEADERS}/analysis.h analysis)
-string(APPEND header "${analysis}")
+file(GLOB files ${HEADERS}/*.h)
+set(header)
+foreach(file IN LISTS files)
+  file(READ ${file} text)
+  string(APPEND header "${text}")
+endforeach()
 string(REPLACE ";" "@" header "${header}")  # which would part the lists below
 string(REGEX MATCHALL "typedef enum breve_[a-z_]+ {[^}]*}" enumerations "${header}")
 list(LENGTH enumerations count)

@@ -2,22 +2,28 @@
 #include "check.h"
 
 void analysis_suite(void);
+void batch_suite(void);
 void budget_suite(void);
 void bulk_suite(void);
 void calls_suite(void);
 void config_suite(void);
 void errors_suite(void);
 void evaluate_suite(void);
+void events_suite(void);
+void filters_suite(void);
+void forces_suite(void);
 void physics_budget_suite(void);
 void files_suite(void);
 void functions_suite(void);
 void images_suite(void);
 void input_suite(void);
+void interpolation_suite(void);
 void moments_suite(void);
 void nulls_suite(void);
 void objects_suite(void);
 void profile_suite(void);
 void program_suite(void);
+void queries_suite(void);
 void reentry_suite(void);
 void reentry_all_suite(void);
 void reload_suite(void);
@@ -28,6 +34,7 @@ void solid_suite(void);
 void stepping_suite(void);
 void threads_suite(void);
 void values_suite(void);
+void view_suite(void);
 
 static const struct {
   const char* name;
@@ -35,22 +42,28 @@ static const struct {
 } suites[] = {
     /* clang-format off */
     {"analysis", analysis_suite},
+    {"batch", batch_suite},
     {"budget", budget_suite},
     {"bulk", bulk_suite},
     {"calls", calls_suite},
     {"config", config_suite},
     {"errors", errors_suite},
     {"evaluate", evaluate_suite},
+    {"events", events_suite},
+    {"filters", filters_suite},
+    {"forces", forces_suite},
     {"physics_budget", physics_budget_suite},
     {"files", files_suite},
     {"functions", functions_suite},
     {"images", images_suite},
     {"input", input_suite},
+    {"interpolation", interpolation_suite},
     {"moments", moments_suite},
     {"nulls", nulls_suite},
     {"objects", objects_suite},
     {"profile", profile_suite},
     {"program", program_suite},
+    {"queries", queries_suite},
     {"reentry", reentry_suite},
     {"reentry_all", reentry_all_suite},
     {"reload", reload_suite},
@@ -61,6 +74,7 @@ static const struct {
     {"stepping", stepping_suite},
     {"threads", threads_suite},
     {"values", values_suite},
+    {"view", view_suite},
     /* clang-format on */
 };
 

@@ -329,6 +329,102 @@ static breve_status do_accuracy(place* p) {
   return breve_world_physics_counters(w, &counters);
 }
 
+static breve_status do_queries(place* p) {
+  const breve_world* w = p->world;
+  const double start[3] = {-50, 0, 0}, way[3] = {100, 0, 0};
+  const breve_geometry ball = breve_geometry_default();
+  const breve_pose pose = {{0, 0, 0}, {1, 0, 0, 0}};
+  breve_hit hit;
+  size_t count;
+  bool found;
+  TRY(breve_world_ray_first(w, start, way, NULL, &found, &hit));
+  TRY(breve_world_ray_all(w, start, way, NULL, &hit, 1, &count));
+  TRY(breve_world_overlap(w, &ball, &pose, NULL, &hit, 1, &count));
+  TRY(breve_world_cast(w, &ball, &pose, way, NULL, &found, &hit));
+  TRY(breve_world_closest(w, start, 1000, NULL, &found, &hit));
+  return breve_world_near(w, start, 1000, NULL, &hit, 1, &count);
+}
+static breve_status do_filters(place* p) {
+  breve_collision_filter filter = breve_collision_filter_default();
+  bool collides;
+  TRY(breve_object_collision_filter(p->world, p->ball, &filter));
+  TRY(breve_object_set_collision_filter(p->world, p->ball, &filter));
+  TRY(breve_object_collides(p->world, p->ball, p->controller, &collides));
+  return breve_object_set_collides(p->world, p->ball, p->controller, true);
+}
+static breve_status do_may_collide(place* p) { return breve_world_set_may_collide(p->world, NULL, NULL); }
+static breve_status do_forces(place* p) {
+  const double push[3] = {0, 0, 0};
+  TRY(breve_object_set_physics(p->world, p->ball, true));
+  TRY(breve_object_add_force(p->world, p->ball, push, NULL, NULL));
+  TRY(breve_object_add_impulse(p->world, p->ball, push, NULL));
+  TRY(breve_object_wake(p->world, p->ball));
+  return breve_object_set_physics(p->world, p->ball, false);
+}
+static breve_status do_view(place* p) {
+  const breve_world* w = p->world;
+  breve_look look = breve_look_default();
+  breve_camera camera = breve_camera_default();
+  breve_view view = breve_view_default();
+  breve_light light;
+  breve_text text;
+  breve_draw command;
+  breve_line line;
+  size_t count;
+  uint32_t width, height;
+  TRY(breve_object_look(w, p->ball, &look));
+  TRY(breve_camera_state(w, nobody, &camera));
+  TRY(breve_world_view(w, &view));
+  TRY(breve_world_light(w, 0, &light));
+  TRY(breve_world_text(w, 7, &text));
+  CHECK_STATUS(BREVE_ERROR_TYPE, breve_drawing_commands(w, p->ball, &command, 1, &count));
+  CHECK_STATUS(BREVE_ERROR_TYPE, breve_line_state(w, p->ball, &line));
+  CHECK_STATUS(BREVE_ERROR_TYPE, breve_image_pixels(w, p->ball, NULL, 0, &width, &height));
+  const double start[3] = {0, 0, 50}, way[3] = {0, 0, -100};
+  return breve_world_queue_click_ray(p->world, start, way);
+}
+static breve_status do_getters(place* p) {
+  const breve_world* w = p->world;
+  breve_material material;
+  breve_accuracy accuracy = breve_accuracy_default();
+  breve_spring spring = breve_spring_default();
+  double force[3];
+  bool on;
+  CHECK(!breve_world_sleeping(w) && breve_world_workers(w) == 1);
+  TRY(breve_object_material(w, p->ball, &material));
+  TRY(breve_object_force(w, p->ball, force, NULL));
+  TRY(breve_object_accuracy(w, p->ball, &accuracy));
+  CHECK_STATUS(BREVE_ERROR_TYPE, breve_spring_description(w, p->ball, &spring));
+  return breve_object_self_collisions(w, p->ball, &on);
+}
+static breve_status do_batch(place* p) {
+  breve_batch batch = breve_batch_default();
+  batch.count = 2;
+  batch.iterations = 1;
+  batch.workers = 1;
+  return breve_batch_run(p->runtime, p->program, &batch, NULL);
+}
+static breve_status do_stepping(place* p) {
+  double numbers[3];
+  const breve_array places = {numbers, 0, BREVE_NUMBER_DOUBLE, 3};
+  TRY(breve_world_set_iteration_step(p->world, breve_world_iteration_step(p->world)));
+  TRY(breve_world_set_time_scale(p->world, breve_world_time_scale(p->world)));
+  TRY(breve_world_set_interpolated(p->world, true));
+  CHECK(breve_world_interpolated(p->world));
+  TRY(breve_objects_interpolated(p->world, &p->ball, 1, 0.5, BREVE_PROPERTY_LOCATION, &places));
+  return breve_world_set_interpolated(p->world, false);
+}
+static breve_status do_events(place* p) {
+  size_t count;
+  TRY(breve_world_set_events(p->world, breve_world_events(p->world) | BREVE_EVENT_CONTACT));
+  TRY(breve_world_watch_contacts(p->world, "Ball", true));
+  TRY(breve_object_watch_contacts(p->world, p->ball, false));
+  TRY(breve_world_contacts(p->world, NULL, 0, &count));
+  TRY(breve_world_lives(p->world, NULL, 0, &count));
+  TRY(breve_world_announcements(p->world, NULL, 0, &count));
+  return breve_world_naps(p->world, NULL, 0, &count);
+}
+
 /* Works, is busy, or finds nothing: what each function may do in each kind of callback. */
 enum { WORKS = 1, BUSY = 2, NOTHING = 4 };
 static const struct {
@@ -362,6 +458,15 @@ static const struct {
     {"breve_spring_create and so on", do_springs, WORKS, WORKS},
     {"breve_grid_size and so on", do_grids, NOTHING, NOTHING},
     {"breve_world_accuracy and so on", do_accuracy, WORKS, WORKS},
+    {"breve_world_ray_first and so on", do_queries, WORKS, WORKS},
+    {"breve_object_collision_filter and so on", do_filters, WORKS, WORKS},
+    {"breve_world_set_may_collide", do_may_collide, BUSY, WORKS},
+    {"breve_object_add_force and so on", do_forces, WORKS, WORKS},
+    {"breve_world_events and so on", do_events, WORKS, WORKS},
+    {"breve_object_look and so on", do_view, WORKS, WORKS},
+    {"breve_object_material and so on", do_getters, WORKS, WORKS},
+    {"breve_batch_run", do_batch, WORKS, WORKS},
+    {"breve_world_set_iteration_step and so on", do_stepping, WORKS, WORKS},
     {"breve_value_text", do_text, WORKS, WORKS},
     {"breve_list_create and so on", do_list, WORKS, WORKS},
     {"breve_hash_create and so on", do_hash_value, WORKS, WORKS},

@@ -32,6 +32,10 @@ std::span<const Function> object_functions();    // objects and their places
 std::span<const Function> bulk_functions();      // many objects at once
 std::span<const Function> value_functions();     // values, lists, hashes, variables, calls, statements
 std::span<const Function> body_functions();      // shapes, bodies, settings of physics, grids
+std::span<const Function> space_functions();     // queries, collision filters
+std::span<const Function> event_functions();     // events
+std::span<const Function> view_functions();      // what is to be seen, getters
+std::span<const Function> step_functions();      // game loops, batches
 std::span<const Function> joint_functions();     // joints, springs, what they connect
 std::span<const Function> analysis_functions();  // analyses
 

@@ -1,9 +1,12 @@
 cmake_policy(VERSION 3.20)
 # Fails if fuzz_call does not call each function of the headers in HEADERS with success, or if the seeds have a finding:
 #   cmake -DHEADERS=folder -DREPLAY=fuzz_replay -DFIRST=1 -DCOUNT=100 -P functions.cmake
-file(READ ${HEADERS}/breve.h header)
-file(READ ${HEADERS}/analysis.h analysis)
-string(APPEND header "${analysis}")
+file(GLOB files ${HEADERS}/*.h)
+set(header)
+foreach(file IN LISTS files)
+  file(READ ${file} text)
+  string(APPEND header "${text}")
+endforeach()
 string(REGEX MATCHALL "BREVE_API [^;(]*breve_[a-z0-9_]+\\(" declarations "${header}")
 string(REGEX REPLACE "BREVE_API [^;(]*(breve_[a-z0-9_]+)\\(" "\\1" declared "${declarations}")
 execute_process(COMMAND ${REPLAY} --functions ${FIRST} ${COUNT} OUTPUT_VARIABLE output ERROR_VARIABLE errors

@@ -1649,4 +1649,12 @@ BREVE_API void breve_world_interrupt(breve_world* world);
 }
 #endif
 
+/* The rest of the interface, in parts: space.h (queries, who collides with whom, forces), events.h,
+   step.h (game loops), batch.h (many worlds), view.h (what is to be seen, getters). */
+#include "breve/batch.h"
+#include "breve/events.h"
+#include "breve/space.h"
+#include "breve/step.h"
+#include "breve/view.h"
+
 #endif

@@ -252,6 +252,11 @@ class World {
   Result<double> advance(double seconds) { return read<double>(breve_world_advance, seconds); }
   double time() const { return breve_world_time(get()); }
   std::uint64_t iteration() const { return breve_world_iteration(get()); }
+  Status set_iteration_step(double seconds) { return status(breve_world_set_iteration_step(get(), seconds)); }
+  double time_scale() const { return breve_world_time_scale(get()); }
+  Status set_time_scale(double scale) { return status(breve_world_set_time_scale(get(), scale)); }
+  bool interpolated() const { return breve_world_interpolated(get()); }
+  Status set_interpolated(bool on) { return status(breve_world_set_interpolated(get(), on)); }
   double iteration_step() const { return breve_world_iteration_step(get()); }
   bool ended() const { return breve_world_ended(get()); }
   bool paused() const { return breve_world_paused(get()); }
@@ -343,6 +348,144 @@ class World {
   }
   Status set_sleeping(bool on) { return status(breve_world_set_sleeping(get(), on)); }
   Result<bool> asleep(Object object) const { return read<bool>(breve_object_asleep, object); }
+
+  Result<breve_collision_filter> collision_filter(Object object) const {
+    return read_struct(breve_collision_filter_default(), breve_object_collision_filter, object);
+  }
+  Status set_collision_filter(Object object, const breve_collision_filter& filter) {
+    return status(breve_object_set_collision_filter(get(), object, &filter));
+  }
+  Result<bool> collides(Object object, Object other) const { return read<bool>(breve_object_collides, object, other); }
+  Status set_collides(Object object, Object other, bool on) {
+    return status(breve_object_set_collides(get(), object, other, on));
+  }
+  /// Who is asked about bodies that ask; null: their objects alone.
+  Status set_may_collide(breve_may_collide_fn function, void* user = nullptr) {
+    return status(breve_world_set_may_collide(get(), function, user));
+  }
+  /// In the next iteration only, at a point of the world or, without one, at the centre of mass.
+  Status add_force(Object object, const Vector& force, const Vector* point = nullptr, const Vector& torque = {}) {
+    return status(breve_object_add_force(get(), object, force.data(), torque.data(), point ? point->data() : nullptr));
+  }
+  Status add_impulse(Object object, const Vector& impulse, const Vector* point = nullptr) {
+    return status(breve_object_add_impulse(get(), object, impulse.data(), point ? point->data() : nullptr));
+  }
+  Status wake(Object object) { return status(breve_object_wake(get(), object)); }
+
+  // --- queries: what was found first, if anything was, or all that was -----------------------------------------------
+  struct Found {
+    bool found = false;
+    breve_hit hit{};
+    explicit operator bool() const { return found; }
+    const breve_hit* operator->() const { return &hit; }
+  };
+  Result<Found> ray_first(const Vector& start, const Vector& way, const breve_query* query = nullptr) const {
+    Found first;
+    const breve_status s =
+        breve_world_ray_first(get(), start.data(), way.data(), query, &first.found, &first.hit);
+    return {status(s), first};
+  }
+  Result<std::vector<breve_hit>> ray_all(const Vector& start, const Vector& way,
+                                         const breve_query* query = nullptr) const {
+    return list<breve_hit>(breve_world_ray_all, start.data(), way.data(), query);
+  }
+  Result<std::size_t> ray_all(const Vector& start, const Vector& way, const breve_query* query,
+                              Room<breve_hit> room) const {
+    return fill(room, breve_world_ray_all, start.data(), way.data(), query);
+  }
+  Result<std::vector<breve_hit>> overlap(const breve_geometry& geometry, const breve_pose& pose,
+                                         const breve_query* query = nullptr) const {
+    return list<breve_hit>(breve_world_overlap, &geometry, &pose, query);
+  }
+  Result<std::size_t> overlap(const breve_geometry& geometry, const breve_pose& pose, const breve_query* query,
+                              Room<breve_hit> room) const {
+    return fill(room, breve_world_overlap, &geometry, &pose, query);
+  }
+  Result<Found> cast(const breve_geometry& geometry, const breve_pose& pose, const Vector& way,
+                     const breve_query* query = nullptr) const {
+    Found first;
+    const breve_status s =
+        breve_world_cast(get(), &geometry, &pose, way.data(), query, &first.found, &first.hit);
+    return {status(s), first};
+  }
+  Result<Found> closest(const Vector& point, double limit = std::numeric_limits<double>::infinity(),
+                        const breve_query* query = nullptr) const {
+    Found first;
+    const breve_status s = breve_world_closest(get(), point.data(), limit, query, &first.found, &first.hit);
+    return {status(s), first};
+  }
+  Result<std::vector<breve_hit>> near(const Vector& point, double radius, const breve_query* query = nullptr) const {
+    return list<breve_hit>(breve_world_near, point.data(), radius, query);
+  }
+  Result<std::size_t> near(const Vector& point, double radius, const breve_query* query, Room<breve_hit> room) const {
+    return fill(room, breve_world_near, point.data(), radius, query);
+  }
+
+  // --- events of the last iteration ----------------------------------------------------------------------------------
+  std::uint32_t events() const { return breve_world_events(get()); }
+  Status set_events(std::uint32_t kinds) { return status(breve_world_set_events(get(), kinds)); }
+  Status watch_contacts(const char* class_name, bool on = true) {
+    return status(breve_world_watch_contacts(get(), class_name, on));
+  }
+  Status watch_contacts(Object object, bool on = true) {
+    return status(breve_object_watch_contacts(get(), object, on));
+  }
+  Result<std::vector<breve_contact>> contacts() const { return list<breve_contact>(breve_world_contacts); }
+  Result<std::size_t> contacts(Room<breve_contact> room) const { return fill(room, breve_world_contacts); }
+  Result<std::vector<breve_life>> lives() const { return list<breve_life>(breve_world_lives); }
+  Result<std::size_t> lives(Room<breve_life> room) const { return fill(room, breve_world_lives); }
+  Result<std::vector<breve_announcement>> announcements() const {
+    return list<breve_announcement>(breve_world_announcements);
+  }
+  Result<std::size_t> announcements(Room<breve_announcement> room) const {
+    return fill(room, breve_world_announcements);
+  }
+  Result<std::vector<breve_nap>> naps() const { return list<breve_nap>(breve_world_naps); }
+  Result<std::size_t> naps(Room<breve_nap> room) const { return fill(room, breve_world_naps); }
+
+  // --- what was set, and what is to be seen --------------------------------------------------------------------------
+  Result<breve_material> material(Object object) const { return read<breve_material>(breve_object_material, object); }
+  struct Force {
+    Vector force, torque;
+  };
+  Result<Force> force(Object object) const {
+    Force is{};
+    const breve_status s = breve_object_force(get(), object, is.force.data(), is.torque.data());
+    return {status(s), is};
+  }
+  bool sleeping() const { return breve_world_sleeping(get()); }
+  std::uint32_t workers() const { return breve_world_workers(get()); }
+  Result<breve_accuracy> accuracy(Object object) const {
+    return read_struct(breve_accuracy_default(), breve_object_accuracy, object);
+  }
+  Result<bool> self_collisions(Object object) const { return read<bool>(breve_object_self_collisions, object); }
+  Result<breve_spring> spring_description(Object spring) const {
+    return read_struct(breve_spring_default(), breve_spring_description, spring);
+  }
+  Result<breve_look> look(Object object) const { return read_struct(breve_look_default(), breve_object_look, object); }
+  /// The null object: the main camera.
+  Result<breve_camera> camera(Object camera = {}) const {
+    return read_struct(breve_camera_default(), breve_camera_state, camera);
+  }
+  Result<breve_view> view() const { return read_struct(breve_view_default(), breve_world_view); }
+  Result<breve_light> light(std::size_t index) const { return read<breve_light>(breve_world_light, index); }
+  Result<breve_text> overlay_text(std::size_t index) const { return read<breve_text>(breve_world_text, index); }
+  Result<std::vector<breve_draw>> drawing(Object drawing) const {
+    return list<breve_draw>(breve_drawing_commands, drawing);
+  }
+  Result<std::size_t> drawing(Object drawing, Room<breve_draw> room) const {
+    return fill(room, breve_drawing_commands, drawing);
+  }
+  Result<breve_line> line(Object line) const { return read<breve_line>(breve_line_state, line); }
+  struct ImageSize {
+    std::uint32_t width, height;
+  };
+  /// Four bytes for each pixel; written if there is room for all.
+  Result<ImageSize> pixels(Object image, Room<unsigned char> room) const {
+    ImageSize size{};
+    const breve_status s = breve_image_pixels(get(), image, room.data, room.capacity, &size.width, &size.height);
+    return {status(s), size};
+  }
 
   // --- joints and springs --------------------------------------------------------------------------------------------
   Result<Object> create_joint(const breve_joint_description& description) {
@@ -514,6 +657,11 @@ class World {
   Status set_all(const Object* objects, std::size_t count, breve_property property, const Array& rows) {
     return status(breve_objects_set_property(get(), objects, count, property, &rows));
   }
+  /// Locations, rotations or poses between the last two iterations.
+  Status interpolate_all(const Object* objects, std::size_t count, double fraction, breve_property property,
+                         const Array& rows) const {
+    return status(breve_objects_interpolated(get(), objects, count, fraction, property, &rows));
+  }
   /// An int, float or vector variable of each.
   Status get_all(const Object* objects, std::size_t count, const char* variable, const Array& rows) const {
     return status(breve_objects_get(get(), objects, count, variable, &rows));
@@ -549,6 +697,9 @@ class World {
 
   // --- input, snapshots, costs ---------------------------------------------------------------------------------------
   Status key(const char* key, bool down = true) { return status(breve_world_queue_key(get(), key, down)); }
+  Status click_ray(const Vector& start, const Vector& way) {
+    return status(breve_world_queue_click_ray(get(), start.data(), way.data()));
+  }
   Status click(Object object = {}) { return status(breve_world_queue_click(get(), object)); }
   Status choose(Object menu_item) { return status(breve_world_queue_choice(get(), menu_item)); }
   Result<std::vector<breve_menu_item>> menu_items() const { return list<breve_menu_item>(breve_world_menu_items); }
@@ -786,6 +937,16 @@ class Runtime {
     breve_world* made = nullptr;
     const breve_status s = breve_world_create(get(), program.get(), &config, &made);
     return {status(s), World(made)};
+  }
+  /// Runs many worlds of a program; see breve_batch_default(). The outcome of each, by index.
+  Result<std::vector<breve_outcome>> run(const Program& program, const breve_batch& batch) {
+    std::vector<breve_outcome> outcomes(batch.count);
+    const breve_status s = breve_batch_run(get(), program.get(), &batch, outcomes.data());
+    return {status(s), std::move(outcomes)};
+  }
+  /// The same without a list.
+  Status run_quietly(const Program& program, const breve_batch& batch) {
+    return status(breve_batch_run(get(), program.get(), &batch, nullptr));
   }
   /// Adds a function for programs that are compiled from now on; see breve_function_default().
   Status add_function(const breve_function& function) { return status(breve_runtime_add_function(get(), &function)); }

@@ -1,0 +1,106 @@
+/* events.h: what happened in an iteration, as lists: contacts, births and deaths, announcements, who sleeps. A part of breve.h,
+ * whose rules hold here.
+ */
+#ifndef BREVE_EVENTS_H
+#define BREVE_EVENTS_H
+
+#include "breve/breve.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- events ------------------------------------------------------------------------------------------------------ */
+
+/* A host says which events it wants; the lists of an iteration are there from its end until the next one begins, or one is
+   restored. Nothing is gathered that was not asked for: the effect "events" says whether there is anything, and what it
+   costs. What is gathered is no part of the world: neither the hash nor images know of it. What the guard did is in
+   breve_world_interventions, impulses alone in breve_world_impacts. Objects in these lists are perhaps gone: their ids
+   then are stale. */
+
+/* Kinds of events, to be added. */
+typedef enum breve_event {
+  BREVE_EVENT_CONTACT = 1,      /* see breve_world_watch_contacts */
+  BREVE_EVENT_LIFE = 2,         /* births and deaths */
+  BREVE_EVENT_ANNOUNCEMENT = 4, /* `announce`, whether somebody observes it or not */
+  BREVE_EVENT_SLEEP = 8         /* bodies that fall asleep or wake; there are none before breve_world_set_sleeping */
+} breve_event;
+
+/* Gather events of these kinds, of breve_event added, from now on; 0: none. BREVE_OK; BREVE_ERROR_ARGUMENT: a bit that is none.
+ */
+BREVE_API breve_status breve_world_set_events(breve_world* world, uint32_t kinds);
+
+/* The kinds that are gathered; 0 for NULL. */
+BREVE_API uint32_t breve_world_events(const breve_world* world);
+
+/* Tell of the contacts of all objects of a class and its descendants, with anything, or end that. Classes that a later
+   program (breve_world_reload) gives descendants are to be named again.
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: the program has no such class. */
+BREVE_API breve_status breve_world_watch_contacts(breve_world* world, const char* class_name, bool on);
+
+/* Tell of the contacts of one object, or end that. BREVE_OK; BREVE_ERROR_NO_BODY. */
+BREVE_API breve_status breve_object_watch_contacts(breve_world* world, breve_object object, bool on);
+
+typedef enum breve_phase {
+  BREVE_PHASE_BEGIN = 0,   /* they did not touch at the end of the last iteration */
+  BREVE_PHASE_PERSIST = 1, /* they still touch */
+  BREVE_PHASE_END = 2      /* they do not touch any more */
+} breve_phase;
+
+/* Two bodies that touch at the end of the iteration, or between which an impact was in it. To touch, a gap of 1e-4 of the
+   smaller one's radius is enough; a contact ends at 1e-3, so that what rests does not tremble between the two. Bodies
+   without physics that meet and part again within one iteration are not seen. Frozen. */
+typedef struct breve_contact {
+  uint32_t phase; /* breve_phase */
+  uint32_t reserved;
+  breve_object a, b; /* a was created earlier */
+  double point[3];   /* midway between their nearest, or deepest, points; world frame. Of an end as it was last */
+  double normal[3];  /* unit, from b toward a; likewise */
+  double distance;   /* < 0: the depth of the overlap; likewise */
+  double impulse[3]; /* on a, N*s: the sum of the impacts of this iteration (breve_world_impacts). What supports a body that
+                        rests is no impact */
+} breve_contact;
+
+/* The contacts of the last iteration, in the order of creation of a, then of b.
+   @param contacts  room for `capacity`; NULL only if capacity is 0
+   @param count     how many there are, also where that is more than capacity: at most capacity are written
+   BREVE_OK. */
+BREVE_API breve_status breve_world_contacts(const breve_world* world, breve_contact* contacts, size_t capacity,
+                                            size_t* count);
+
+/* An object that was made or freed. Frozen. */
+typedef struct breve_life {
+  breve_object object;
+  const char* class_name; /* owned by the program */
+  bool born;              /* else it is gone */
+} breve_life;
+
+/* In the order in which it happened. As breve_world_contacts. What happens between iterations is in the list as well, from
+   when it happens until the next one begins. */
+BREVE_API breve_status breve_world_lives(const breve_world* world, breve_life* lives, size_t capacity, size_t* count);
+
+/* What an object announced. Frozen. */
+typedef struct breve_announcement {
+  breve_object announcer;
+  double time;         /* s */
+  const char* message; /* owned by the world until the next iteration begins */
+} breve_announcement;
+
+/* In the order in which they were made. As breve_world_lives. */
+BREVE_API breve_status breve_world_announcements(const breve_world* world, breve_announcement* announcements,
+                                                 size_t capacity, size_t* count);
+
+/* A body that fell asleep or woke in the iteration. Frozen. */
+typedef struct breve_nap {
+  breve_object object;
+  bool asleep;
+} breve_nap;
+
+/* Those that woke, then those that fell asleep, each in the order of creation. As breve_world_contacts. */
+BREVE_API breve_status breve_world_naps(const breve_world* world, breve_nap* naps, size_t capacity, size_t* count);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,93 @@
+// What happened in an iteration, as lists for the host: contacts of objects that are watched, births and deaths,
+// announcements, who fell asleep or woke. Only what was asked for is gathered. It is no part of images: who only looks at a
+// world leaves no trace in it.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory_resource>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runtime/base/ids.hpp"
+#include "runtime/base/math.hpp"
+#include "runtime/base/memory.hpp"
+#include "runtime/world/behaviour.hpp"
+
+namespace breve {
+
+/// Two bodies touch at the end of the iteration, or an impact was between them in it.
+struct ContactEvent {
+  enum class Phase : std::uint8_t { Begin, Persist, End } phase = Phase::Begin;
+  ObjectId a, b;  // a was created earlier; of an end perhaps gone
+  std::uint32_t ticket_a = 0, ticket_b = 0;
+  Vector3 point = Vector3::Zero();
+  Vector3 normal = Vector3::Zero();   // unit, from b toward a; so the next: as they were last
+  double distance = 0;                // m; < 0: they overlap
+  Vector3 impulse = Vector3::Zero();  // on a, of the impacts of this iteration, N*s
+};
+
+struct LifeEvent {
+  ObjectId object;
+  std::uint32_t ticket = 0;
+  ClassId cls = kNoClass;
+  bool born = false;
+};
+
+struct SleepEvent {
+  ObjectId object;
+  bool asleep = false;
+};
+
+struct AnnouncementEvent {
+  ObjectId announcer;
+  std::uint32_t ticket = 0;
+  double time = 0;  // s
+  std::pmr::string message;
+};
+
+class Events : public InMemory {
+ public:
+  explicit Events(std::pmr::memory_resource* memory);
+
+  enum Kind : std::uint32_t { kContacts = 1, kLives = 2, kAnnouncements = 4, kSleep = 8, kAll = 15 };
+  void want(std::uint32_t kinds);
+  bool wants(Kind kind) const { return (wanted_ & kind) != 0; }
+  std::uint32_t wanted() const { return wanted_; }
+  /// Of these objects, and of objects of just this class, contacts are told.
+  void watch(ObjectId object, bool on);
+  void watch(ClassId cls, bool on);
+  bool watched(ObjectId object, ClassId cls) const;
+  bool any_watched() const { return !objects_.empty() || !classes_.empty(); }
+  bool any_class_watched() const { return !classes_.empty(); }
+  const std::pmr::set<std::pair<std::uint32_t, std::uint32_t>>& watched_objects() const { return objects_; }
+  /// The watched classes under other numbers; to be given to take_classes().
+  std::pmr::set<ClassId> reclassed(std::span<const ClassChange> classes) const;
+  void take_classes(std::pmr::set<ClassId>& classes) noexcept { classes_.swap(classes); }
+
+  void begin();  // a new iteration: all lists are empty
+  void forget(ObjectId object) { objects_.erase({object.index, object.generation}); }
+
+  // What has happened, in order: contacts by the creation of both, the others as they came.
+  std::pmr::vector<ContactEvent> contacts;
+  std::pmr::vector<LifeEvent> lives;
+  std::pmr::vector<SleepEvent> sleeps;
+  std::pmr::vector<AnnouncementEvent> announcements;
+
+  /// Who touched at the end of the last iteration, by the places of both in the order of creation.
+  using Pair = std::pair<std::uint64_t, std::uint64_t>;
+  std::pmr::map<Pair, ContactEvent> touching;
+  std::pmr::map<std::uint64_t, ObjectId> asleep;  // by place in the order of creation
+
+  std::size_t bytes() const;
+
+ private:
+  std::uint32_t wanted_ = 0;
+  std::pmr::set<std::pair<std::uint32_t, std::uint32_t>> objects_;  // index and generation
+  std::pmr::set<ClassId> classes_;
+};
+
+}  // namespace breve

@@ -1,0 +1,165 @@
+// Natives of Control that ask where bodies are: rays, shapes, nearest ones.
+#include "steve/library/resources.hpp"
+#include "steve/library/support.hpp"
+#include "steve/library/tables.hpp"
+
+namespace breve::steve {
+
+namespace {
+
+using Text = StringCell*;
+using Hits = std::pmr::vector<QueryHit>;
+
+/// Which objects a question is about, as its keywords say.
+class Asked {
+ public:
+  Asked(Machine& machine, std::string_view selector, Text type, std::int32_t bits) {
+    filter_.mask = static_cast<std::uint32_t>(bits);
+    if (view(type).empty()) return;
+    context_ = {&machine, class_named(machine, type, selector)};
+    filter_.wants = [](const void* context, ObjectId object) {
+      const auto& asked = *static_cast<const Context*>(context);
+      if (!asked.cls) return false;  // a class of the library that the program does not use
+      const World& world = asked.machine->world();
+      return asked.machine->program().cls(world.class_of(object)).derives_from(*asked.cls);
+    };
+    filter_.context = &context_;
+  }
+  Asked(const Asked&) = delete;
+  Asked& operator=(const Asked&) = delete;
+  const QueryFilter& filter() const { return filter_; }
+
+ private:
+  struct Context {
+    Machine* machine = nullptr;
+    const ClassInfo* cls = nullptr;
+  } context_;
+  QueryFilter filter_;
+};
+
+/// Put a question, count it as an effect, and its work as the script's.
+template <class Ask>
+auto put(Machine& machine, const Instance& self, Ask&& ask) {
+  World& world = machine.world();
+  const StageScope stage = world.work(EffectId::Queries, self.id, 1);
+  auto&& answer = ask(world.queries(), world.scene());
+  machine.charge_for(world.queries().looked_at());
+  return std::forward<decltype(answer)>(answer);
+}
+
+Value object_value(Machine& machine, ObjectId id) { return Value::of(Tag::Object, machine.instance(id)); }
+
+ListCell* objects_of(Machine& machine, const Hits& hits) {
+  ListCell* list = machine.heap().list(static_cast<std::uint32_t>(hits.size()));
+  const Pin pin(machine, Value::of(Tag::List, list));
+  for (const QueryHit& hit : hits) machine.heap().push(*list, object_value(machine, hit.object));
+  return list;
+}
+
+/// { object, point, normal, distance }, or an empty list.
+ListCell* answer_of(Machine& machine, bool found, const QueryHit& hit) {
+  ListCell* list = machine.heap().list(found ? 4 : 0);
+  if (!found) return list;
+  const Pin pin(machine, Value::of(Tag::List, list));
+  for (const Value& value : {object_value(machine, hit.object), Value::of(hit.point), Value::of(hit.normal),
+                             Value::of(hit.distance)})
+    machine.heap().push(*list, value);
+  return list;
+}
+
+const Shape& shape_of(Machine& machine, Instance* shape, const char* selector) {
+  const Instance& live = must_live(shape, std::string(selector) + ": the shape");
+  const ShapeResource* resource = resource_of<ShapeResource>(machine, &live);
+  if (!resource || !resource->shape)
+    Machine::fail(RunErrorKind::NullObject, std::string(selector) + ": " + name_of(live) +
+                                                " has no geometry (give it some with init-with first)");
+  return *resource->shape;
+}
+
+ListCell* control_cast_ray(Machine& machine, Instance& self, Vector3 start, Vector3 way, Text type,
+                           std::int32_t bits) {
+  const Asked asked(machine, "cast-ray", type, bits);
+  QueryHit hit;
+  const bool found = put(machine, self, [&](Queries& queries, const Queries::Scene& scene) {
+    return queries.ray_first(scene, start, way, asked.filter(), hit);
+  });
+  return answer_of(machine, found, hit);
+}
+
+ListCell* control_find_on_ray(Machine& machine, Instance& self, Vector3 start, Vector3 way, Text type,
+                              std::int32_t bits) {
+  const Asked asked(machine, "find-on-ray", type, bits);
+  return objects_of(machine, put(machine, self, [&](Queries& queries, const Queries::Scene& scene) -> const Hits& {
+                      return queries.ray_all(scene, start, way, asked.filter());
+                    }));
+}
+
+ListCell* control_cast_shape(Machine& machine, Instance& self, Instance* shape, Vector3 start, Vector3 way, Text type,
+                             std::int32_t bits) {
+  const Asked asked(machine, "cast-shape", type, bits);
+  const Shape& geometry = shape_of(machine, shape, "cast-shape");
+  QueryHit hit;
+  const bool found = put(machine, self, [&](Queries& queries, const Queries::Scene& scene) {
+    return queries.cast_first(scene, geometry, {start, Quaternion::Identity()}, way, asked.filter(), hit);
+  });
+  return answer_of(machine, found, hit);
+}
+
+ListCell* find_in(Machine& machine, const Instance& self, const Shape& shape, const Vector3& place, const Asked& asked) {
+  return objects_of(machine, put(machine, self, [&](Queries& queries, const Queries::Scene& scene) -> const Hits& {
+                      return queries.overlap(scene, shape, {place, Quaternion::Identity()}, asked.filter());
+                    }));
+}
+
+ListCell* control_find_in_shape(Machine& machine, Instance& self, Instance* shape, Vector3 place, Text type,
+                                std::int32_t bits) {
+  const Asked asked(machine, "find-in-shape", type, bits);
+  return find_in(machine, self, shape_of(machine, shape, "find-in-shape"), place, asked);
+}
+
+ListCell* control_find_in_sphere(Machine& machine, Instance& self, Vector3 place, double radius, Text type,
+                                 std::int32_t bits) {
+  const Asked asked(machine, "find-in-sphere", type, bits);
+  return find_in(machine, self, *Shape::sphere(radius, machine.heap().memory()), place, asked);
+}
+
+ListCell* control_find_in_box(Machine& machine, Instance& self, Vector3 place, Vector3 size, Text type,
+                              std::int32_t bits) {
+  const Asked asked(machine, "find-in-box", type, bits);
+  return find_in(machine, self, *Shape::box(size, machine.heap().memory()), place, asked);
+}
+
+ListCell* control_find_closest(Machine& machine, Instance& self, Vector3 place, double limit, Text type,
+                               std::int32_t bits) {
+  const Asked asked(machine, "find-closest", type, bits);
+  QueryHit hit;
+  const bool found = put(machine, self, [&](Queries& queries, const Queries::Scene& scene) {
+    return queries.nearest(scene, place, finite(limit, "find-closest: the limit"), asked.filter(), hit);
+  });
+  return answer_of(machine, found, hit);
+}
+
+ListCell* control_find_near(Machine& machine, Instance& self, Vector3 place, double radius, Text type,
+                            std::int32_t bits) {
+  const Asked asked(machine, "find-near", type, bits);
+  return objects_of(machine, put(machine, self, [&](Queries& queries, const Queries::Scene& scene) -> const Hits& {
+                      return queries.near(scene, place, finite(radius, "find-near: the radius"), asked.filter());
+                    }));
+}
+
+constexpr Native kQueryNatives[] = {
+    native<control_cast_ray>("control.cast-ray"),
+    native<control_find_on_ray>("control.find-on-ray"),
+    native<control_cast_shape>("control.cast-shape"),
+    native<control_find_in_shape>("control.find-in-shape"),
+    native<control_find_in_sphere>("control.find-in-sphere"),
+    native<control_find_in_box>("control.find-in-box"),
+    native<control_find_closest>("control.find-closest"),
+    native<control_find_near>("control.find-near"),
+};
+
+}  // namespace
+
+std::span<const Native> query_natives() { return kQueryNatives; }
+
+}  // namespace breve::steve
