@@ -18,7 +18,7 @@ class Rows {
   Rows(const breve_array* array, std::size_t count, std::size_t width) : width_(width) {
     need(array, "array");
     if (array->number != BREVE_NUMBER_FLOAT && array->number != BREVE_NUMBER_DOUBLE)
-      fail(BREVE_ERROR_ARGUMENT, "array.number is " + std::to_string(array->number) + ", which is no breve_number");
+      fail(BREVE_ERROR_ARGUMENT, "array.number is " + std::to_string(array->number) + ", which is not a breve_number");
     single_ = array->number == BREVE_NUMBER_FLOAT;
     if (array->width != width)
       fail(BREVE_ERROR_ARGUMENT, "array.width is " + std::to_string(array->width) + ", but an object has " +
@@ -30,7 +30,7 @@ class Rows {
                                      std::to_string(width) + " numbers take " + std::to_string(row));
     if (count != 0) need(array->numbers, "array.numbers");
     if (count > std::numeric_limits<std::size_t>::max() / stride_)
-      fail(BREVE_ERROR_ARGUMENT, "count is more than any memory has room for");
+      fail(BREVE_ERROR_ARGUMENT, "count is too large for any memory");
     bytes_ = static_cast<char*>(array->numbers);
   }
 
