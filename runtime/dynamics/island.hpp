@@ -199,6 +199,7 @@ class Island : public InMemory {
   void smooth_fast(Clustered& one, double time, double h);
   bool stiff(const Clustered& one) const;
   double gain_of(Clustered& one, double time, double h, int parts);
+  double tie_energy_in(const Clustered& one) const;
   double stored_in(const Clustered& one, double& kinetic);
   bool coarse() const;
 

@@ -7,6 +7,7 @@
 #include "runtime/base/rotation_vector.hpp"
 #include "runtime/dynamics/island.hpp"
 #include "runtime/dynamics/joint_frames.hpp"
+#include "runtime/dynamics/tied_bodies.hpp"
 
 namespace breve {
 
@@ -195,6 +196,8 @@ bool Island::call(DynamicsClient& client, int index, double moment, double left)
     return false;
   }
   handled_ += held_energy() - held;
+  for (const Clustered& one : clusters_)
+    if (one.entry->tied) one.entry->tied->begin(core_);
   for (Free& one : loose_bodies()) one.now = read_free(*core_.bodies, one.body);
   place_links();
   return true;
