@@ -300,13 +300,14 @@ class Island : public InMemory {
   bool catch_bounds(double time, double h);
   void look(double h, bool spent);
   int located_impacts() const;
-  double contact_part(double left) const;
+  double contact_part(double left, bool lies) const;
+  bool lies(double h) const;
   bool call(DynamicsClient& client, int pair, double moment, double left);
   bool holds_rings() const;
   bool has_rows() const;
   bool has_rings() const;
   void place_links();
-  double longest(double left) const;
+  double longest(double left, bool lies) const;
 
   // island_impacts.cpp
   Event seek(double h);
