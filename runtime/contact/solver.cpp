@@ -44,7 +44,8 @@ void solve_directly(Workspace& work, const SolveSettings& settings, double most,
   report.residual = solve_direct(work, settings.tolerance, solves, report.direct);
   if (!report.direct) {
     // What is left of the operations may go into more sweeps than there would be without a direct solution.
-    const double left = most + kAlways - solves.made * each;
+    constexpr double kPatience = 3.3e5;  // operations, times the share, that there are in any case
+    const double left = std::max(most + kAlways - solves.made * each, kPatience * settings.direct_share);
     const int sweeps = std::max(settings.iterations,
                                 static_cast<int>(std::min<double>(left / sweep_operations(work), kPatientSweeps)));
     run_sweeps(work, sweeps, settings.tolerance * 0.1, settings.meter, report);
