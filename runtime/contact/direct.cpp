@@ -146,8 +146,9 @@ double solve_direct(Workspace& work, double tolerance, LinearSolves& solves, boo
   Newton newton(work, equations, room);
   if (largest_change(work) > 0)
     solved = approach(newton, work, kFirstStiffness, kFirstCentres, 0, tolerance, solves, best);
-  constexpr int kInterior = 12;  // it begins from far: fewer lead nowhere
-  if (solved || solves.left() < kInterior) return best;
+  // It begins from far: fewer lead nowhere, and large islands take more.
+  constexpr int kInterior = 12, kPoints = 8;
+  if (solved || solves.left() < kInterior + static_cast<int>(work.points.size()) / kPoints) return best;
   equations.get_impulses(start);
   Interior interior(work, equations, room + Newton::numbers(rows));
   for (const double part : kNear) {

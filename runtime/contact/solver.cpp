@@ -43,7 +43,11 @@ void solve_directly(Workspace& work, const SolveSettings& settings, double most,
   LinearSolves solves{0, static_cast<int>(std::min((most + kAlways) / each, kUnbounded)), units, settings.meter};
   report.residual = solve_direct(work, settings.tolerance, solves, report.direct);
   if (!report.direct) {
-    const int sweeps = solves.spent() ? settings.iterations : kPatientSweeps;
+    // What is left of the operations may go into more sweeps than there would be without a direct solution.
+    constexpr double kPatience = 3.3e5;  // operations, times the share, that there are in any case
+    const double left = std::max(most + kAlways - solves.made * each, kPatience * settings.direct_share);
+    const int sweeps = std::max(settings.iterations,
+                                static_cast<int>(std::min<double>(left / sweep_operations(work), kPatientSweeps)));
     run_sweeps(work, sweeps, settings.tolerance * 0.1, settings.meter, report);
     report.residual = solve_direct(work, settings.tolerance, solves, report.direct);  // from nearer
   }

@@ -150,30 +150,15 @@ void Cluster::scatter(const Vector& q, const Vector& v) {
 
 void Cluster::acceleration(double t, const Vector& q, const Vector& v, double step, Vector& a) {
   if (meter_) meter_->add(units_);
-  scatter(q, v);
-  if (forces_) {
-    forces_->aim();
-    if (forces_->adds())
-      for (Tree* tree : trees_) articulated::forward_kinematics(tree->model, tree->data, tree->state);
-    forces_->add(t);
-  }
-  int from = 0;
   Powers powers;
-  for (Tree* tree : trees_) {
-    const int n = tree->model.velocities();
-    a.segment(from, n) = articulated::forward_dynamics(tree->model, tree->data, tree->state, tree->loads, step, guess_);
-    if (forces_ && !(tree->rings.empty() && tree->held.empty())) {
-      const std::uint64_t units = forces_->constrain(*tree, a.data() + from);
-      if (meter_) meter_->add(units);
+  if (forces_ && forces_->accelerate(q, v, a)) {
+    int from = 0;
+    for (const Tree* tree : trees_) {
+      add_reaction(*tree, v.data() + from, a.data() + from, powers);
+      from += tree->model.velocities();
     }
-    torques_.segment(from, n).setZero();
-    if (tree->driven) add_powers(*tree, step, v.data() + from, a.data() + from, torques_.data() + from, powers);
-    if (tree->loads.reacts) {
-      const Vector& reaction = tree->loads.reaction;
-      const double half = semi_implicit() ? 0.5 * current_step_ : 0;
-      for (int k = 0; k < n; ++k) powers.reaction += reaction[k] * (v[from + k] + half * a[from + k]);
-    }
-    from += n;
+  } else {
+    accelerate_trees(t, q, v, step, a, powers);
   }
   guess_ = articulated::MotorGuess::Last;
   a.tail(velocities() - nv_).setZero();
@@ -185,6 +170,36 @@ void Cluster::acceleration(double t, const Vector& q, const Vector& v, double st
   a.segment<kWorks>(nv_) << powers.motor / mass_, powers.script / mass_, powers.drag / mass_, powers.reaction / mass_;
   for (std::size_t i = 0; i < motors_.size(); ++i)
     a[nv_ + kWorks + static_cast<Eigen::Index>(i)] = torques_[motors_[i].place] / mass_;
+}
+
+void Cluster::accelerate_trees(double t, const Vector& q, const Vector& v, double step, Vector& a, Powers& powers) {
+  scatter(q, v);
+  if (forces_) {
+    forces_->aim();
+    if (forces_->adds())
+      for (Tree* tree : trees_) articulated::forward_kinematics(tree->model, tree->data, tree->state);
+    forces_->add(t);
+  }
+  int from = 0;
+  for (Tree* tree : trees_) {
+    const int n = tree->model.velocities();
+    a.segment(from, n) = articulated::forward_dynamics(tree->model, tree->data, tree->state, tree->loads, step, guess_);
+    if (forces_ && !(tree->rings.empty() && tree->held.empty())) {
+      const std::uint64_t units = forces_->constrain(*tree, a.data() + from);
+      if (meter_) meter_->add(units);
+    }
+    torques_.segment(from, n).setZero();
+    if (tree->driven) add_powers(*tree, step, v.data() + from, a.data() + from, torques_.data() + from, powers);
+    add_reaction(*tree, v.data() + from, a.data() + from, powers);
+    from += n;
+  }
+}
+
+void Cluster::add_reaction(const Tree& tree, const double* v, const double* a, Powers& powers) const {
+  if (!tree.loads.reacts) return;
+  const Vector& reaction = tree.loads.reaction;
+  const double half = semi_implicit() ? 0.5 * current_step_ : 0;
+  for (int k = 0; k < tree.model.velocities(); ++k) powers.reaction += reaction[k] * (v[k] + half * a[k]);
 }
 
 void Cluster::add_powers(const Tree& tree, double step, const double* v, const double* a, double* torques,

@@ -30,7 +30,11 @@ class StageForces {
   /// Adds what holds rings closed and joints within limits to the accelerations (nv) of a tree that has some, after its
   /// forward dynamics. Returns the units of work that it took.
   virtual std::uint64_t constrain(Tree& tree, double* acceleration) = 0;
-  /// Power of scripts' forces and of dampers among these, W; after add().
+  /// Where nothing acts that needs links to be placed, and all trees are single bodies: their accelerations (nv), at q
+  /// and v of the cluster. Else nothing.
+  /// @return  whether it did
+  virtual bool accelerate(const articulated::Vector& q, const articulated::Vector& v, articulated::Vector& a) = 0;
+  /// Power of scripts' forces and of dampers among these, W; after add() or accelerate().
   virtual double script_power() const = 0;
   virtual double drag_power() const = 0;
 };
@@ -93,6 +97,9 @@ class Cluster final : public articulated::System, public InMemory {
   };
   void add_powers(const Tree& tree, double step, const double* v, const double* a, double* torques,
                   Powers& powers) const;
+  void add_reaction(const Tree& tree, const double* v, const double* a, Powers& powers) const;
+  void accelerate_trees(double t, const articulated::Vector& q, const articulated::Vector& v, double step,
+                        articulated::Vector& a, Powers& powers);
   void make_integrators();
   bool semi_implicit() const { return accuracy_.scheme == articulated::Scheme::SemiImplicitEuler && !finer_now_; }
   void read_mean();

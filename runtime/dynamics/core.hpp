@@ -90,12 +90,16 @@ struct Change {
   bool moved = false, pushed = false, spun = false;  // which of these it set
 };
 
+class TiedBodies;
+
 /// Trees that springs tie together: what one integrator moves.
 struct ClusterEntry : InMemory {
-  explicit ClusterEntry(std::pmr::memory_resource* memory) : trees(memory), ties(memory) {}
+  explicit ClusterEntry(std::pmr::memory_resource* memory);
+  ~ClusterEntry();
   std::pmr::vector<std::uint32_t> trees;  // in their order
   std::pmr::vector<SpringIndex> ties;     // in the order of their indices
   std::unique_ptr<Cluster> system;
+  std::unique_ptr<TiedBodies> tied;  // if they are bodies without joints, and more than one or tied to something
 };
 
 class Island;

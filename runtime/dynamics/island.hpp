@@ -199,6 +199,7 @@ class Island : public InMemory {
   void smooth_fast(Clustered& one, double time, double h);
   bool stiff(const Clustered& one) const;
   double gain_of(Clustered& one, double time, double h, int parts);
+  double tie_energy_in(const Clustered& one) const;
   double stored_in(const Clustered& one, double& kinetic);
   bool coarse() const;
 
@@ -302,13 +303,14 @@ class Island : public InMemory {
   bool catch_bounds(double time, double h);
   void look(double h, bool spent);
   int located_impacts() const;
-  double contact_part(double left) const;
+  double contact_part(double left, bool lies) const;
+  bool lies(double h) const;
   bool call(DynamicsClient& client, int pair, double moment, double left);
   bool holds_rings() const;
   bool has_rows() const;
   bool has_rings() const;
   void place_links();
-  double longest(double left) const;
+  double longest(double left, bool lies) const;
 
   // island_impacts.cpp
   Event seek(double h);

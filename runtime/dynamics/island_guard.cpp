@@ -263,8 +263,7 @@ double Island::stored(double& kinetic, bool start) {
     (start ? tree->step_kinetic : tree->ended_kinetic) = energy.kinetic;
     if (!start) tree->booked = energy.total();
   }
-  for (const Clustered& one : clusters_)
-    for (const SpringIndex tie : one.entry->ties) sum += core_.tie_energy_in(core_.springs[tie].is);
+  for (const Clustered& one : clusters_) sum += tie_energy_in(one);
   for (const NearPair* pair : pairs_) sum += pair->stored;
   kinetic = moving;
   placed_ = true;

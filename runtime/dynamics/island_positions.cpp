@@ -214,7 +214,7 @@ void Island::book_moves(double sign) {
       if (one.alone()) tree.account.contact_loss -= sign * stored;
       sum += stored;
     }
-    for (const SpringIndex tie : one.entry->ties) sum += core_.tie_energy_in(core_.springs[tie].is);
+    sum += tie_energy_in(one);
   }
   result.account.contact_loss -= sign * sum;
 }

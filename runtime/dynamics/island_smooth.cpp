@@ -7,6 +7,7 @@
 #include "runtime/base/error.hpp"
 #include "runtime/base/rotation_vector.hpp"
 #include "runtime/dynamics/island.hpp"
+#include "runtime/dynamics/tied_bodies.hpp"
 
 namespace breve {
 
@@ -62,12 +63,21 @@ void Island::smooth_once(Clustered& one, double time, double h) {
   system.set_slack(coarse() ? kContactSlack : 1);
   system.step(time, h);
   for (Tree* tree : system.trees()) tree->motor_impulse += tree->part_impulse;
+  if (one.entry->tied) one.entry->tied->note_forces(core_);
   result.counters.evaluations += static_cast<std::uint64_t>(system.count().evaluations);
   result.counters.rejected += static_cast<std::uint64_t>(system.count().rejected);
   one.pending.motor_work += system.motor_work();
   one.pending.script_work += system.script_work();
   one.pending.drag_loss += system.drag_loss();
   one.held_work += system.reaction_work();
+}
+
+/// Of the springs between its trees, whose links are placed, J.
+double Island::tie_energy_in(const Clustered& one) const {
+  if (one.entry->tied) return one.entry->tied->spring_energy(core_);
+  double sum = 0;
+  for (const SpringIndex tie : one.entry->ties) sum += core_.tie_energy_in(core_.springs[tie].is);
+  return sum;
 }
 
 /// Energy of a cluster, all of it; `kinetic` what is in motion.
@@ -79,8 +89,7 @@ double Island::stored_in(const Clustered& one, double& kinetic) {
     kinetic += energy.kinetic;
     sum += energy.kinetic + energy.potential + energy.springs;
   }
-  for (const SpringIndex tie : one.entry->ties) sum += core_.tie_energy_in(core_.springs[tie].is);
-  return sum;
+  return sum + tie_energy_in(one);
 }
 
 /// Runge-Kutta 4, or semi-implicit Euler where springs are too fast for it, in as many parts as leave little for

@@ -7,6 +7,7 @@
 #include "runtime/base/rotation_vector.hpp"
 #include "runtime/dynamics/island.hpp"
 #include "runtime/dynamics/joint_frames.hpp"
+#include "runtime/dynamics/tied_bodies.hpp"
 
 namespace breve {
 
@@ -49,15 +50,16 @@ double parts_of(double left, double step) {
 }
 }  // namespace
 
-double Island::longest(double left) const {
+/// @param lies  nothing moves that contacts would have to be followed for
+double Island::longest(double left, bool lies) const {
   double step = accuracy_.step > 0 ? accuracy_.step : left;
-  const bool touching = has_rows() || has_rings();
+  const bool touching = !lies && (has_rows() || has_rings());
   if (touching && accuracy_.contact_step > 0) step = std::min(step, accuracy_.contact_step);
   return left / parts_of(left, step);
 }
 
 void Island::step_quiet(double start, double h) {
-  const double part = longest(h);
+  const double part = longest(h, false);
   const auto parts = static_cast<int>(std::llround(h / part));
   for (int i = 0; i < parts; ++i) {
     gone_ = i * part;
@@ -194,15 +196,29 @@ bool Island::call(DynamicsClient& client, int index, double moment, double left)
     unfinished_ = left;
     return false;
   }
+  for (const Clustered& one : clusters_)
+    if (one.entry->tied) one.entry->tied->begin(core_);
   handled_ += held_energy() - held;
   for (Free& one : loose_bodies()) one.now = read_free(*core_.bodies, one.body);
   place_links();
   return true;
 }
 
-double Island::contact_part(double left) const {
+double Island::contact_part(double left, bool lies) const {
   const double step = accuracy_.step > 0 ? std::min(accuracy_.step, left) : left;
-  return accuracy_.contact_step > 0 ? std::min(step, accuracy_.contact_step) : step;
+  return accuracy_.contact_step > 0 && !lies ? std::min(step, accuracy_.contact_step) : step;
+}
+
+/// Free bodies that are at rest, as far as that can be seen in a step of h seconds: slower than a small part of what
+/// gravity would make of it. The forces that hold them do not depend on how long a sub-step is.
+bool Island::lies(double h) const {
+  constexpr double kRest = 1e-3;
+  if (accuracy_.rung != Rung::Balanced || !trees_.empty() || drivers_ > 0 || has_contact_springs()) return false;
+  const double most = kRest * core_.settings.gravity.norm() * h;
+  return std::all_of(free_.begin(), free_.end(), [&](const Free& one) {
+    const double radius = core_.bodies->collision_shape(one.body)->bounding_radius();
+    return one.now.velocity.squaredNorm() <= most * most && radius * radius * one.now.spin.squaredNorm() <= most * most;
+  });
 }
 
 /// @param spent  no impact is located any more: rows are to stop whatever comes within h seconds
@@ -239,10 +255,12 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
   constexpr double kSliver = 1e-12;  // of the step
   constexpr int kMostStalls = 8;     // impacts without progress in time
   const int most_impacts = located_impacts();
+  // What lies takes its step as one, and as any other if it moves by that.
+  bool whole = lies(h);
   while (now < h * (1 - kSliver)) {
     gone_ = now;
     if (unaffordable()) return finish(start + now, h - now);
-    const double sub = contact_part(h - now);
+    const double sub = contact_part(h - now, whole);
     spent_ = impacts_ >= most_impacts || stalls > kMostStalls;
     bool struck = false;
     look(sub, spent_);
@@ -254,7 +272,8 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
       look(sub, spent_);
     }
     if (!spent_) find_roles(sub, struck);
-    const double part = longest(h - now);
+    const double part = longest(h - now, whole);
+    const Energy account = result.account;
     remember();
     note_start_poses();
     open_books();
@@ -262,6 +281,12 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
     advance_once(start + now, part);
     Event event;
     if (!spent_) event = seek(part);
+    if (whole && (event.found() || !lies(part))) {
+      restore();
+      result.account = account;
+      whole = false;
+      continue;
+    }
     if (event.found()) {
       ++impacts_;
       locate(start + now, event, part);

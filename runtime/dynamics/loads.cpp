@@ -6,6 +6,7 @@
 #include "runtime/dynamics/core.hpp"
 #include "runtime/dynamics/joint_frames.hpp"
 #include "runtime/dynamics/stage.hpp"
+#include "runtime/dynamics/tied_bodies.hpp"
 
 namespace breve {
 
@@ -154,12 +155,21 @@ Stage::Stage(Dynamics::Core& core, const ClusterEntry& cluster, DynamicsClient* 
   }
   asked_ = asked_ && client != nullptr;
   needed_ = aims_ || pushed_ || asked_ || rings_ || !cluster.ties.empty();
+  if (cluster.tied) cluster.tied->begin(core);
 }
 
 void Stage::aim() {
   if (!aims_) return;
   for (const std::uint32_t index : cluster_.trees)
     if (core_.trees[index]->aimed) core_.aim(*core_.trees[index]);
+}
+
+bool Stage::accelerate(const articulated::Vector& q, const articulated::Vector& v, articulated::Vector& a) {
+  if (!cluster_.tied || asked_ || pressed) return false;
+  const TiedBodies::Powers powers = cluster_.tied->accelerate(core_, q, v, a);
+  script_ = powers.script;
+  drag_ = powers.drag;
+  return true;
 }
 
 void Stage::add(double time) {
@@ -180,6 +190,7 @@ void Stage::add(double time) {
       wrench.couple += link.pressed.couple;
     }
   }
+  if (asked_ && cluster_.tied) cluster_.tied->begin(core_);
   for (const SpringIndex tie : cluster_.ties) pull(core_.springs[tie]);
 }
 

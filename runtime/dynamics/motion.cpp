@@ -10,11 +10,15 @@
 #include "runtime/base/error.hpp"
 #include "runtime/base/rotation_vector.hpp"
 #include "runtime/dynamics/stage.hpp"
+#include "runtime/dynamics/tied_bodies.hpp"
 #include "runtime/kinematics/free_motion.hpp"
 
 namespace breve {
 
 // --- clusters -------------------------------------------------------------------------------------------------------
+
+ClusterEntry::ClusterEntry(std::pmr::memory_resource* memory) : trees(memory), ties(memory) {}
+ClusterEntry::~ClusterEntry() = default;
 
 void Dynamics::Core::build_clusters() {
   clusters.clear();
@@ -61,6 +65,16 @@ void Dynamics::Core::build_clusters() {
       if (!finest || finer(one.rung, finest->rung)) finest = &one;
     }
     entry->system = make_in<Cluster>(memory, memory, members, *finest);
+    if (!entry->ties.empty() && TiedBodies::are(members)) {
+      entry->tied = make_in<TiedBodies>(memory, memory, std::span<Tree* const>(members));
+      for (std::size_t i = 0; i < members.size(); ++i) members[i]->slot = static_cast<int>(i);
+      const auto number_of = [&](BodyIndex body) {
+        const std::uint32_t tree = tree_of(body);
+        return tree == kNone ? -1 : trees[tree]->slot;
+      };
+      for (const SpringIndex tie : entry->ties)
+        entry->tied->add(tie, number_of(springs[tie].is.a), number_of(springs[tie].is.b));
+    }
   }
   // Not before: what memory cut short is made anew.
   clusters_changed = integrators_changed = false;

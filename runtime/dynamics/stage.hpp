@@ -17,6 +17,7 @@ class Stage final : public StageForces {
   void aim() override;
   bool adds() const override { return pressed || pushed_ || asked_ || !cluster_.ties.empty(); }
   void add(double time) override;
+  bool accelerate(const articulated::Vector& q, const articulated::Vector& v, articulated::Vector& a) override;
   std::uint64_t constrain(Tree& tree, double* acceleration) override {
     if (!holds_rings && !pressed) return 0;
     return core_.hold(tree, acceleration, holds_rings, pressed);

@@ -33,6 +33,28 @@ TEST(DynamicsContact, ABoxComesToRestOnTheFloor) {
   }
 }
 
+TEST(DynamicsContact, WhatLiesTakesItsStepAsOneAndWhatIsPushedDoesNot) {
+  Ground s(Rung::Balanced);
+  const ObjectId low = s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3(0, 0.5, 0)),
+                 high = s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3(0.1, 1.5, 0));
+  s.run(2);
+  EXPECT_EQ(s.dynamics().counters().sub_steps, 1U);
+  const Vector3 before = s.at(high);
+  s.run(10);
+  EXPECT_EQ(s.dynamics().counters().sub_steps, 1U);
+  EXPECT_LT((s.at(high) - before).norm(), 1e-7);
+  EXPECT_LT(s.velocity(low).norm() + s.velocity(high).norm(), 1e-7);
+  // Nothing moves as yet, and will.
+  s.world.bodies().set_force(s.index(high), Vector3(20'000, 0, 0));
+  s.world.step();
+  EXPECT_GE(s.dynamics().counters().sub_steps, 4U);
+  EXPECT_GT(s.velocity(high).x(), 0.01);
+  s.world.bodies().set_force(s.index(high), Vector3::Zero());
+  s.world.bodies().set_velocity(s.index(high), Vector3(0.5, 0, 0));
+  s.world.step();
+  EXPECT_GE(s.dynamics().counters().sub_steps, 4U);
+}
+
 TEST(DynamicsContact, AnElasticBallKeepsItsHeight) {
   for (const Rung rung : {Rung::Balanced, Rung::Precise}) {
     Ground s(rung);
