@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The binary interface that breve.h and analysis.h declare is the one that is described in breve.abi: functions, the sizes
+# The binary interface that breve.h, analysis.h and view.h declare is the one that is described in breve.abi: functions, the sizes
 # and fields of structs, the numbers of enumerators. The description is of a library of empty functions, made from the
 # headers alone; that the real one has all of them is seen by whoever links it.
 # Usage: check.sh [--renew]     --renew writes breve.abi anew
@@ -16,7 +16,8 @@ trap 'rm -rf "$work"' EXIT
 
 {
   echo '#include "breve/analysis.h"'
-  cat "$include"/breve/{breve,analysis}.h |
+  echo '#include "breve/view.h"'
+  cat "$include"/breve/{breve,analysis,view}.h |
     awk '/^BREVE_API / { on = 1 } on { print } /;/ { on = 0 }' | sed -e 's@/\*.*\*/@@' -e 's/^BREVE_API //' -e 's/;.*/ { __builtin_trap(); }/'
 } >"$work/functions.c"
 (cd "$work" && gcc -std=c11 -g -O0 -fPIC -shared -w -I "$include" functions.c -o libbreve.so)

@@ -3,7 +3,8 @@
 # "_kind" and "_mode" are left out of the names; a status is BREVE_OK or an error.
 file(READ ${HEADERS}/breve.h header)
 file(READ ${HEADERS}/analysis.h analysis)
-string(APPEND header "${analysis}")
+file(READ ${HEADERS}/view.h view)
+string(APPEND header "${analysis}${view}")
 string(REPLACE ";" "@" header "${header}")  # which would part the lists below
 string(REGEX MATCHALL "typedef enum breve_[a-z_]+ {[^}]*}" enumerations "${header}")
 list(LENGTH enumerations count)

@@ -28,6 +28,7 @@ void solid_suite(void);
 void stepping_suite(void);
 void threads_suite(void);
 void values_suite(void);
+void view_suite(void);
 
 static const struct {
   const char* name;
@@ -61,6 +62,7 @@ static const struct {
     {"stepping", stepping_suite},
     {"threads", threads_suite},
     {"values", values_suite},
+    {"view", view_suite},
     /* clang-format on */
 };
 

@@ -34,6 +34,7 @@ std::span<const Function> value_functions();     // values, lists, hashes, varia
 std::span<const Function> body_functions();      // shapes, bodies, settings of physics, grids
 std::span<const Function> joint_functions();     // joints, springs, what they connect
 std::span<const Function> analysis_functions();  // analyses
+std::span<const Function> view_functions();      // scenes, views
 
 /// All of them.
 std::span<const Function> all_functions();

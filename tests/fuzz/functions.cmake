@@ -3,7 +3,8 @@ cmake_policy(VERSION 3.20)
 #   cmake -DHEADERS=folder -DREPLAY=fuzz_replay -DFIRST=1 -DCOUNT=100 -P functions.cmake
 file(READ ${HEADERS}/breve.h header)
 file(READ ${HEADERS}/analysis.h analysis)
-string(APPEND header "${analysis}")
+file(READ ${HEADERS}/view.h view)
+string(APPEND header "${analysis}${view}")
 string(REGEX MATCHALL "BREVE_API [^;(]*breve_[a-z0-9_]+\\(" declarations "${header}")
 string(REGEX REPLACE "BREVE_API [^;(]*(breve_[a-z0-9_]+)\\(" "\\1" declared "${declarations}")
 execute_process(COMMAND ${REPLAY} --functions ${FIRST} ${COUNT} OUTPUT_VARIABLE output ERROR_VARIABLE errors

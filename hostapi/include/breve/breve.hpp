@@ -34,6 +34,7 @@
 
 #include "breve/analysis.h"
 #include "breve/breve.h"
+#include "breve/view.h"
 
 inline bool operator==(breve_object a, breve_object b) { return a.index == b.index && a.generation == b.generation; }
 inline bool operator!=(breve_object a, breve_object b) { return !(a == b); }
@@ -724,6 +725,112 @@ class Analysis {
   std::unique_ptr<breve_analysis, Destroy> handle_;
 };
 
+/// Rows of a scene; see breve_rows. Good until the scene is read again.
+template <class Row>
+class Rows {
+ public:
+  explicit Rows(const breve_rows& rows) : rows_(rows) {}
+  std::size_t size() const { return rows_.count; }
+  const Row& operator[](std::size_t i) const {
+    return *reinterpret_cast<const Row*>(static_cast<const char*>(rows_.data) + i * rows_.stride);
+  }
+
+ private:
+  breve_rows rows_;
+};
+
+/// What there is to see in a world; see breve/view.h.
+class Scene {
+ public:
+  Scene() = default;
+  explicit Scene(breve_scene* handle) : handle_(handle) {}  // takes it over
+  static Result<Scene> create() {
+    breve_scene* made = nullptr;
+    const breve_status s = breve_scene_create(&made);
+    return {{s, nullptr}, Scene(made)};
+  }
+  breve_scene* get() const { return handle_.get(); }
+  Status read(World& world) {
+    const breve_status s = breve_scene_read(get(), world.get());
+    return {s, s == BREVE_OK ? nullptr : breve_world_last_error(world.get())};
+  }
+  /// Of a kind whose rows are of that type: rows<breve_instance>(BREVE_SCENE_INSTANCES).
+  template <class Row>
+  Rows<Row> rows(breve_scene_kind kind) const {
+    breve_rows found{};
+    (void)breve_scene_rows(get(), static_cast<std::uint32_t>(kind), &found);
+    return Rows<Row>(found);
+  }
+  breve_backdrop backdrop() const {
+    breve_backdrop filled = breve_backdrop_default();
+    (void)breve_scene_backdrop(get(), &filled);
+    return filled;
+  }
+  Result<breve_camera> camera(std::uint32_t width, std::uint32_t height) {
+    breve_camera found{};
+    const breve_status s = breve_scene_camera(get(), width, height, &found);
+    return {{s, nullptr}, found};
+  }
+
+ private:
+  struct Destroy {
+    void operator()(breve_scene* s) const { breve_scene_destroy(s); }
+  };
+  std::unique_ptr<breve_scene, Destroy> handle_;
+};
+
+/// Where a camera sees a point: pixels from the left and the top, and the distance.
+inline Result<Vector> project(const breve_camera& camera, std::uint32_t width, std::uint32_t height, Vector point) {
+  Vector seen{};
+  const breve_status s = breve_camera_project(&camera, width, height, point.data(), seen.data());
+  return {{s, nullptr}, seen};
+}
+
+/// A picture as a PNG file; rows side by side.
+inline Result<std::vector<std::uint8_t>> png(std::uint32_t width, std::uint32_t height, const std::uint8_t* rgba) {
+  std::vector<std::uint8_t> bytes;
+  std::size_t size = 0;
+  breve_status s = breve_png(width, height, rgba, 0, nullptr, 0, &size);
+  if (s == BREVE_OK) {
+    bytes.resize(size);
+    s = breve_png(width, height, rgba, 0, bytes.data(), bytes.size(), &size);
+  }
+  return {{s, nullptr}, std::move(bytes)};
+}
+
+/// Draws worlds; see breve/view.h. Made by Runtime::view.
+class View {
+ public:
+  View() = default;
+  explicit View(breve_view* handle) : handle_(handle) {}  // takes it over
+  breve_view* get() const { return handle_.get(); }
+  /// @param rgba  rows from the top; see breve_view_render
+  Status render(World& world, std::uint8_t* rgba, std::size_t stride = 0) {
+    const breve_status s = breve_view_render(get(), world.get(), rgba, stride);
+    return {s, s == BREVE_OK ? nullptr : breve_world_last_error(world.get())};
+  }
+  Status depth(float* to, std::size_t stride = 0) const { return {breve_view_depth(get(), to, stride), nullptr}; }
+  Status set_camera(const breve_camera& camera) { return {breve_view_set_camera(get(), &camera), nullptr}; }
+  /// Look through the program's camera again.
+  Status reset_camera() { return {breve_view_set_camera(get(), nullptr), nullptr}; }
+  Result<breve_camera> camera() const {
+    breve_camera found{};
+    const breve_status s = breve_view_camera(get(), &found);
+    return {{s, nullptr}, found};
+  }
+  breve_view_counters counters() const {
+    breve_view_counters filled = breve_view_counters_default();
+    (void)breve_view_counts(get(), &filled);
+    return filled;
+  }
+
+ private:
+  struct Destroy {
+    void operator()(breve_view* v) const { breve_view_destroy(v); }
+  };
+  std::unique_ptr<breve_view, Destroy> handle_;
+};
+
 /// The files below some directories, for breve_runtime_config.files. Runtimes that were made with them keep them.
 class Files {
  public:
@@ -782,6 +889,12 @@ class Runtime {
     breve_world* made = nullptr;
     const breve_status s = breve_world_create(get(), program.get(), &config, &made);
     return {status(s), World(made)};
+  }
+  /// Draws worlds without a screen; see breve_view_config_default().
+  Result<View> view(const breve_view_config& config = breve_view_config_default()) {
+    breve_view* made = nullptr;
+    const breve_status s = breve_view_create(get(), &config, &made);
+    return {status(s), View(made)};
   }
   /// A function for the programs that are compiled from now on; see breve_function_default().
   Status add_function(const breve_function& function) { return status(breve_runtime_add_function(get(), &function)); }

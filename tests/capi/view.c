@@ -1,0 +1,355 @@
+/* What there is to see: scenes without a renderer, and pictures whose shapes, depths and colours have closed forms. */
+#include "breve/view.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "scene.h"
+
+enum { kWidth = 640, kHeight = 480, kPixels = kWidth * kHeight };
+static const double kPercent = 0.01;
+
+static const char* const start =
+    "@use Control.\n@use Mobile.\n@use Stationary.\n@use Shape.\n@use Image.\n"
+    "Mobile : Thing {\n"
+    "\t+ to become from shape (object) at place (vector) in color (vector):\n"
+    "\t\tself set-shape to shape. self move to place. self set-color to color. return self.\n"
+    "}\n"
+    "Controller Show.\nControl : Show {\n"
+    "\t+ variables: ball, box, thing, picture, eye (object). count (int).\n"
+    "\t+ to init:\n"
+    "\t\tball = ((new Sphere) init-with radius 2). box = ((new Cube) init-with size (10, 10, 1)).\n"
+    "\t\tself set-background-color to (0, 0, 0).\n";
+
+/* A world whose controller does `body` at the end of its init. */
+static bool open_show(scene* s, const char* body) {
+  char text[4096];
+  snprintf(text, sizeof text, "%s%s}\n", start, body);
+  return scene_open_text(s, text, NULL);
+}
+
+typedef struct shot {
+  breve_view* view;
+  uint8_t* rgba;
+  float* depth;
+} shot;
+
+static bool take(scene* s, shot* p) {
+  breve_view_config config = breve_view_config_default();
+  config.look = BREVE_LOOK_PLAIN;
+  memset(p, 0, sizeof *p);
+  p->rgba = malloc(4 * kPixels);
+  p->depth = malloc(sizeof(float) * kPixels);
+  return CHECK_STATUS(BREVE_OK, breve_view_create(s->runtime, &config, &p->view)) &&
+         CHECK_STATUS(BREVE_OK, breve_view_render(p->view, s->world, p->rgba, 0)) &&
+         CHECK_STATUS(BREVE_OK, breve_view_depth(p->view, p->depth, 0));
+}
+
+static void drop(shot* p) {
+  breve_view_destroy(p->view);
+  free(p->rgba);
+  free(p->depth);
+}
+
+static const uint8_t* pixel(const shot* p, int x, int y) { return p->rgba + 4 * (y * kWidth + x); }
+
+static double slope(void) { return tan(20 * acos(-1) / 180); }
+
+static double encoded(double c) { return 255 * (c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1 / 2.4) - 0.055); }
+
+/* --- scenes --------------------------------------------------------------------------------------------------------- */
+
+static breve_rows rows_of(breve_scene* scene, uint32_t kind) {
+  breve_rows rows = {NULL, 0, 0};
+  CHECK_STATUS(BREVE_OK, breve_scene_rows(scene, kind, &rows));
+  return rows;
+}
+
+static const void* row(const breve_rows* rows, size_t i) { return (const char*)rows->data + i * rows->stride; }
+
+static void bodies_that_look_alike_share_a_mesh(void) {
+  scene s;
+  if (!open_show(&s,
+                 "\t\t(new Thing) become from ball at (1, 2, 3) in (1, 0, 0).\n"
+                 "\t\t(new Thing) become from (new Sphere init-with radius 5) at (0, 0, 0) in (0, 1, 0).\n"
+                 "\t\t(new Thing) become from box at (0, 0, 0) in (0, 0, 1).\n"
+                 "\t\t(new Thing) become from (new PolygonCone init-with sides 5 height 2 radius 1) at (0, 0, 0) in "
+                 "(1, 1, 1).\n"
+                 "\t\t(new Thing) become from (new PolygonCone init-with sides 5 height 2 radius 1) at (4, 0, 0) in "
+                 "(1, 1, 1).\n"))
+    return;
+  breve_scene* scene = NULL;
+  CHECK_STATUS(BREVE_OK, breve_scene_create(&scene));
+  CHECK_STATUS(BREVE_OK, breve_scene_read(scene, s.world));
+  const breve_rows all = rows_of(scene, BREVE_SCENE_INSTANCES), meshes = rows_of(scene, BREVE_SCENE_MESHES);
+  CHECK(all.count == 5);
+  const breve_instance* first = row(&all, 0);
+  const breve_instance* second = row(&all, 1);
+  CHECK(first->mesh == second->mesh);
+  CHECK(((const breve_instance*)row(&all, 3))->mesh == ((const breve_instance*)row(&all, 4))->mesh);
+  CHECK(((const breve_instance*)row(&all, 2))->mesh != first->mesh);
+  CHECK(first->transform[0] == 2 && first->transform[3] == 1 && first->transform[7] == 2 && first->transform[11] == 3);
+  CHECK(second->transform[5] == 5 && second->color[1] == 1 && second->color[3] == 1);
+  const breve_mesh* sphere = row(&meshes, first->mesh);
+  CHECK(sphere->vertex_count > 100 && sphere->index_count % 3 == 0);
+  for (size_t i = 0; i < sphere->index_count; ++i) CHECK(sphere->indices[i] < sphere->vertex_count);
+  /* Six times the volume, by the divergence theorem: of a unit ball 8 pi, of its mesh a little less. */
+  double six = 0;
+  for (size_t i = 0; i < sphere->index_count; i += 3) {
+    const float* a = sphere->positions + 3 * sphere->indices[i];
+    const float* b = sphere->positions + 3 * sphere->indices[i + 1];
+    const float* c = sphere->positions + 3 * sphere->indices[i + 2];
+    six += a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+  }
+  CHECK_NEAR(8 * acos(-1), six, kPercent * 8 * acos(-1));
+  breve_scene_destroy(scene);
+  scene_close(&s);
+}
+
+static void lines_texts_and_lights_are_rows(void) {
+  scene s;
+  if (!open_show(&s,
+                 "\t\tthing = ((new Thing) become from ball at (1, 2, 3) in (1, 0, 0)).\n"
+                 "\t\tthing set-label to \"the ball\". thing show-axis. thing show-bounding-box.\n"
+                 "\t\tself set-display-text to \"hello\" at-x 0.5 at-y -0.5 number 3 with-color (1, 0, 1).\n"
+                 "\t\tself move-light to (1, 2, 3) for-light 4.\n"
+                 "\t\tself set-background-color to (.25, .5, .75).\n"))
+    return;
+  breve_scene* scene = NULL;
+  CHECK_STATUS(BREVE_OK, breve_scene_create(&scene));
+  CHECK_STATUS(BREVE_OK, breve_scene_read(scene, s.world));
+  CHECK(rows_of(scene, BREVE_SCENE_LINES).count == 3 + 12);
+  const breve_rows labels = rows_of(scene, BREVE_SCENE_LABELS), texts = rows_of(scene, BREVE_SCENE_TEXTS);
+  const breve_rows lights = rows_of(scene, BREVE_SCENE_LIGHTS);
+  CHECK(labels.count == 1 && texts.count == 1 && lights.count == 2);
+  CHECK_TEXT("the ball", ((const breve_label*)row(&labels, 0))->text);
+  CHECK_NEAR(4, ((const breve_label*)row(&labels, 0))->place[1], 1e-6);
+  CHECK_TEXT("hello", ((const breve_overlay_text*)row(&texts, 0))->text);
+  CHECK(((const breve_light*)row(&lights, 1))->position[2] == 3);
+  breve_backdrop backdrop = breve_backdrop_default();
+  CHECK_STATUS(BREVE_OK, breve_scene_backdrop(scene, &backdrop));
+  CHECK(backdrop.color[2] == 0.75F && backdrop.dimension == 3 && backdrop.texture == BREVE_NO_TEXTURE);
+  breve_rows rows;
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_scene_rows(scene, 11, &rows));
+  breve_scene_destroy(scene);
+  scene_close(&s);
+}
+
+static void a_point_is_seen_where_the_camera_says(void) {
+  breve_camera camera;
+  breve_clear(&camera, sizeof camera);
+  camera.offset[2] = 30;
+  camera.field_of_view = 2 * atan(slope());
+  camera.far_plane = 500;
+  const double point[3] = {1, 2, -3}, behind[3] = {0, 0, 31};
+  double seen[3];
+  CHECK_STATUS(BREVE_OK, breve_camera_project(&camera, kWidth, kHeight, point, seen));
+  CHECK_NEAR(320 + 240 * (1 / 33.0) / slope(), seen[0], 1e-3);
+  CHECK_NEAR(240 - 240 * (2 / 33.0) / slope(), seen[1], 1e-3);
+  CHECK_NEAR(33, seen[2], 1e-5);
+  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_camera_project(&camera, kWidth, kHeight, behind, seen));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_camera_project(&camera, 0, kHeight, point, seen));
+  camera.pitch = NAN;
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_camera_project(&camera, kWidth, kHeight, point, seen));
+}
+
+static void a_camera_that_the_program_places_is_not_automatic(void) {
+  scene s;
+  if (!open_show(&s, "\t\t(new Thing) become from ball at (100, 0, 0) in (1, 0, 0).\n")) return;
+  breve_scene* scene = NULL;
+  breve_camera camera;
+  CHECK_STATUS(BREVE_OK, breve_scene_create(&scene));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_scene_camera(scene, kWidth, kHeight, &camera));
+  CHECK_STATUS(BREVE_OK, breve_scene_read(scene, s.world));
+  CHECK_STATUS(BREVE_OK, breve_scene_camera(scene, kWidth, kHeight, &camera));
+  CHECK(camera.automatic == 1);
+  CHECK_NEAR(100, camera.target[0], 1e-6);
+  const breve_keyword keywords[] = {{"at", breve_value_vector(1, 2, 3)}, {"from", breve_value_vector(0, 3, 4)}};
+  CHECK_STATUS(BREVE_OK,
+               breve_object_call(s.world, breve_world_controller(s.world), "point-camera", keywords, 2, NULL));
+  CHECK_STATUS(BREVE_OK, breve_scene_read(scene, s.world));
+  CHECK_STATUS(BREVE_OK, breve_scene_camera(scene, kWidth, kHeight, &camera));
+  CHECK(camera.automatic == 0 && camera.target[2] == 3 && camera.offset[2] == 4);
+  CHECK_NEAR(-asin(0.6), camera.pitch, 1e-12);
+  breve_scene_destroy(scene);
+  scene_close(&s);
+}
+
+/* --- pictures ------------------------------------------------------------------------------------------------------- */
+
+static void the_silhouette_of_a_sphere_has_its_area_and_middle(void) {
+  scene s;
+  shot p;
+  if (!open_show(&s,
+                 "\t\tself point-camera at (0, 0, 0) from (0, 0, 20).\n"
+                 "\t\t(new Thing) become from ball at (3, 0, 0) in (1, 1, 1).\n"))
+    return;
+  if (take(&s, &p)) {
+    double area = 0, middle = 0;
+    for (int i = 0; i < kPixels; ++i) {
+      area += p.rgba[4 * i] / 255.0;
+      middle += p.rgba[4 * i] / 255.0 * (i % kWidth + 0.5);
+    }
+    /* An ellipse: along x from tan(a - b) to tan(a + b), where a is the angle of the centre and b that of the radius.
+     */
+    const double distance = sqrt(409), a = atan(3 / 20.0), b = asin(2 / distance), unit = 240 / slope();
+    const double low = unit * tan(a - b), high = unit * tan(a + b);
+    const double along = (high - low) / 2, across = unit * sin(b) / sqrt(cos(b) * cos(b) - sin(a) * sin(a));
+    CHECK_NEAR(acos(-1) * along * across, area, kPercent * area);
+    CHECK_NEAR(320 + (low + high) / 2, middle / area, kPercent * 2 * along);
+  }
+  drop(&p);
+  scene_close(&s);
+}
+
+static void a_plane_has_its_depth(void) {
+  scene s;
+  shot p;
+  if (!open_show(&s,
+                 "\t\tself point-camera at (0, 0, 0) from (0, 0, 20).\n"
+                 "\t\t(new Thing) become from box at (0, 0, -5) in (1, 1, 1).\n"))
+    return;
+  if (take(&s, &p)) {
+    for (int y = 200; y < 280; y += 20)
+      for (int x = 260; x < 380; x += 20) CHECK_NEAR(24.5, p.depth[y * kWidth + x], kPercent * 24.5 / 10);
+    CHECK(isinf(p.depth[0]));
+  }
+  drop(&p);
+  scene_close(&s);
+}
+
+static void a_lit_face_has_its_colour(void) {
+  scene s;
+  shot p;
+  if (!open_show(&s,
+                 "\t\tself point-camera at (0, 0, 0) from (0, 0, 20). self enable-lighting.\n"
+                 "\t\tself move-light to (0, 0, 100000). self set-light-diffuse-color to (.5, .4, .3).\n"
+                 "\t\t(new Thing) become from box at (0, 0, 0) in (1, 1, .5).\n"))
+    return;
+  if (take(&s, &p)) {
+    const double half = pow((0.5 + 0.055) / 1.055, 2.4);
+    const double wanted[3] = {encoded(0.6), encoded(0.5), encoded(half * 0.4)};
+    for (int c = 0; c < 3; ++c) CHECK_NEAR(wanted[c], pixel(&p, 320, 240)[c], 2.55);
+    CHECK(pixel(&p, 2, 2)[0] == 0);
+  }
+  drop(&p);
+  scene_close(&s);
+}
+
+static void a_shadow_lies_where_the_light_throws_it(void) {
+  scene s;
+  shot p;
+  if (!open_show(&s,
+                 "\t\tthing = new Stationary.\n"
+                 "\t\tthing register with-shape ((new Cube) init-with size (60, 2, 60)) at-location (0, -1, 0) "
+                 "with-rotation [(1, 0, 0), (0, 1, 0), (0, 0, 1)].\n"
+                 "\t\tthing set-texture-image to 0. thing catch-shadows.\n"
+                 "\t\tself enable-lighting. self enable-shadows. self move-light to (10, 20, 0).\n"
+                 "\t\tself point-camera at (0, 0, 0) from (0, 40, 0.001).\n"
+                 "\t\t(new Thing) become from ((new Sphere) init-with radius 1) at (6, 12, 0) in (1, 1, 1).\n"))
+    return;
+  if (take(&s, &p)) {
+    /* The cone about the sphere meets the floor at x = 10 - 20 tan(a +- b). */
+    const double a = atan(0.5), b = asin(1 / sqrt(80)), unit = 240 / slope() / 40;
+    const double low = 320 + unit * (10 - 20 * tan(a + b)), high = 320 + unit * (10 - 20 * tan(a - b));
+    double dark = 0, middle = 0;
+    const double lit = pixel(&p, 320, 60)[0], shade = pixel(&p, (int)((low + high) / 2), 240)[0];
+    CHECK(lit > 2 * shade);
+    for (int x = (int)low - 12; x < (int)high + 12; ++x) {
+      const double part = fmin(1, fmax(0, (lit - pixel(&p, x, 240)[0]) / (lit - shade)));
+      dark += part;
+      middle += part * (x + 0.5);
+    }
+    CHECK_NEAR((low + high) / 2, middle / dark, 2 * kPercent * (high - low));
+    CHECK_NEAR(high - low, dark, 4 * kPercent * (high - low));
+  }
+  drop(&p);
+  scene_close(&s);
+}
+
+static uint64_t draw_calls(int bodies) {
+  scene s;
+  shot p;
+  char body[256];
+  breve_view_counters counters = breve_view_counters_default();
+  snprintf(
+      body, sizeof body,
+      "\t\tfor count = 0, count < %d, count++: (new Thing) become from ball at random[(40, 40, 40)] in (1, 1, 1).\n",
+      bodies);
+  if (!open_show(&s, body)) return 0;
+  if (take(&s, &p)) CHECK_STATUS(BREVE_OK, breve_view_counts(p.view, &counters));
+  CHECK(counters.instances == (uint64_t)bodies);
+  drop(&p);
+  scene_close(&s);
+  return counters.draw_calls;
+}
+
+static void draw_calls_do_not_grow_with_bodies(void) {
+  const uint64_t few = draw_calls(50), many = draw_calls(2000);
+  CHECK(few > 0 && many <= few + 2); /* spheres of three sizes in the picture are three meshes */
+}
+
+static void a_picture_changes_nothing(void) {
+  scene s;
+  shot p, again;
+  uint64_t before = 0, after = 1;
+  if (!open_show(&s, "\t\t(new Thing) become from ball at (0, 0, 0) in (1, .5, 0).\n")) return;
+  CHECK_STATUS(BREVE_OK, breve_world_hash(s.world, &before));
+  if (take(&s, &p) && take(&s, &again)) CHECK(memcmp(p.rgba, again.rgba, 4 * kPixels) == 0);
+  CHECK_STATUS(BREVE_OK, breve_world_hash(s.world, &after));
+  CHECK(before == after);
+  drop(&p);
+  drop(&again);
+  scene_close(&s);
+}
+
+static void what_cannot_be_drawn_is_refused(void) {
+  scene s;
+  breve_view* view = NULL;
+  if (!open_show(&s, "")) return;
+  const uint32_t sizes[][2] = {{0, 10}, {10, 0}, {1000000, 10}, {10, 1000000}, {16385, 16385}};
+  for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; ++i) {
+    breve_view_config config = breve_view_config_default();
+    config.width = sizes[i][0];
+    config.height = sizes[i][1];
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_view_create(s.runtime, &config, &view));
+  }
+  breve_view_config config = breve_view_config_default();
+  config.samples = 3;
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_view_create(s.runtime, &config, &view));
+  config = breve_view_config_default();
+  config.look = 2;
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_view_create(s.runtime, &config, &view));
+  config = breve_view_config_default();
+  config.font = "/dev/null";
+  CHECK_STATUS(BREVE_ERROR_FILE, breve_view_create(s.runtime, &config, &view));
+  config = breve_view_config_default();
+  config.width = config.height = 8;
+  uint8_t rgba[8 * 8 * 4];
+  float depth[64];
+  CHECK_STATUS(BREVE_OK, breve_view_create(s.runtime, &config, &view));
+  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_view_depth(view, depth, 0));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_view_render(view, s.world, rgba, 31));
+  CHECK_STATUS(BREVE_OK, breve_view_render(view, s.world, rgba, 32));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_view_depth(view, depth, 33));
+  breve_view_destroy(view);
+  size_t size = 0;
+  CHECK_STATUS(BREVE_OK, breve_png(8, 8, rgba, 0, NULL, 0, &size));
+  CHECK(size > 60);
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_png(0, 8, rgba, 0, NULL, 0, &size));
+  scene_close(&s);
+}
+
+void view_suite(void) {
+  RUN(bodies_that_look_alike_share_a_mesh);
+  RUN(lines_texts_and_lights_are_rows);
+  RUN(a_point_is_seen_where_the_camera_says);
+  RUN(a_camera_that_the_program_places_is_not_automatic);
+  RUN(the_silhouette_of_a_sphere_has_its_area_and_middle);
+  RUN(a_plane_has_its_depth);
+  RUN(a_lit_face_has_its_colour);
+  RUN(a_shadow_lies_where_the_light_throws_it);
+  RUN(draw_calls_do_not_grow_with_bodies);
+  RUN(a_picture_changes_nothing);
+  RUN(what_cannot_be_drawn_is_refused);
+}
