@@ -78,6 +78,28 @@ void describe_access(CLI::App& app, AccessOptions& o) {
   app.add_flag("--allow-system", o.system, "Let the program run commands of the operating system");
 }
 
+void describe_pictures(CLI::App& app, RunOptions& o) {
+  app.add_option("--snapshot", o.record.snapshot, "At the end, draw the world into a picture")->type_name("OUT.png");
+  app.add_option("--contact-sheet", o.record.contact_sheet, "At the end, twelve moments of the run in one picture")
+      ->type_name("OUT.png");
+  app.add_option("--movie", o.record.movie,
+                 "A movie of the run, at the pace of simulated time: OUT.gif, or numbered pictures in OUT/")
+      ->type_name("OUT.gif|OUT/");
+  app.add_option("--size", o.record.size,
+                 "Of a picture, in pixels (960x600). Those of a contact sheet are a third of it")
+      ->type_name("WxH");
+  app.add_option("--fps", o.record.fps, "Frames of the movie in a simulated second (25)")
+      ->type_name("N")
+      ->check(CLI::Range(0.001, 1000.0));
+  app.add_flag("--plain", o.record.plain, "Draw nothing but the colours and lights that the program sets");
+  auto* plot = several(app, "--plot", "METHOD", o.plot.names,
+                       "What a method or variable of the controller says after each iteration: a number or a vector");
+  app.add_option("--plot-to", o.plot.plot, "Draw that over time; the numbers go beside it, into OUT.csv")
+      ->type_name("OUT.svg")
+      ->needs(plot);
+  app.add_option("--log", o.plot.log, "Write these numbers as a table")->type_name("OUT.csv")->needs(plot);
+}
+
 void describe_run(CLI::App& app, RunOptions& o) {
   constexpr const char* kWhole = "whole number (0 or more)";
   app.add_option("FILE", o.file, "The program (.tz)")->required();
@@ -120,6 +142,7 @@ void describe_run(CLI::App& app, RunOptions& o) {
                     ->type_name("OUT.json");
   number(app, "--trace-limit", "MB", o.trace_limit, kWhole, "Stop recording when the trace reaches this size (200)")
       ->needs(trace);
+  describe_pictures(app, o);
   app.footer("Without --iterations and --seconds the program runs until it ends the simulation or is interrupted.\n" +
              std::string(kExitStatuses));
 }

@@ -112,10 +112,30 @@ bool mended(breve_world* world, Reloader& reloader, Output& output) {
   return false;
 }
 
+/// Who looks at the world at its beginning and after each iteration.
+struct Lookers {
+  std::optional<Recorder> recorder;
+  std::optional<Plotter> plotter;
+
+  Lookers(breve_runtime* runtime, const RunOptions& options, Output& output) {
+    if (options.record.any()) recorder.emplace(runtime, options.record, output);
+    if (!options.plot.names.empty()) plotter.emplace(options.plot);
+  }
+  void look(breve_world* world) {
+    if (plotter) plotter->look(world);
+    if (recorder) recorder->look(world);
+  }
+  void finish(breve_world* world) {
+    if (plotter) plotter->finish();
+    if (recorder) recorder->finish(world);
+  }
+};
+
 /// @param reloader  may be null: nothing is watched
 breve_status iterate(breve_world* world, const RunOptions& options, Reloader* reloader, Interventions& interventions,
-                     Output& output) {
+                     Lookers& lookers, Output& output) {
   Progress progress(options, output);
+  lookers.look(world);
   while (!is_over(world, options, output)) {
     if (reloader) reloader->look(world);
     const breve_status status = breve_world_step(world);
@@ -124,6 +144,7 @@ breve_status iterate(breve_world* world, const RunOptions& options, Reloader* re
       if (!reloader || status == BREVE_ERROR_MEMORY) return status;
       if (!mended(world, *reloader, output)) return BREVE_OK;
     }
+    lookers.look(world);
     output.flush_sometimes();
     progress.show(world);
   }
@@ -181,6 +202,16 @@ WorldHandle make_world(const Session& session, const breve_program* program, con
   return WorldHandle(world);
 }
 
+void say_where_it_stopped(const breve_world* world, const RunOptions& options, std::uint64_t seed, Output& output) {
+  const breve_error* error = breve_world_last_error(world);
+  if (!error) return;
+  output.complain(error->text);
+  if (options.quiet) return;
+  const std::uint64_t iterations = breve_world_iteration(world);
+  output.complain(fmt::format("breve: stopped after {} iteration{}, {:.6g} s simulated; --seed {} reproduces it\n",
+                              iterations, iterations == 1 ? "" : "s", breve_world_time(world), seed));
+}
+
 void say_what_went_on(const breve_world* world, const RunOptions& options, const Interventions& interventions,
                       Output& output) {
   if (!options.quiet) output.complain(interventions.summary());
@@ -220,25 +251,27 @@ int run(const RunOptions& options, Output& output) {
   std::optional<Reloader> reloader;
   if (options.watch) reloader.emplace(session, output, options.file);
   Interventions interventions;
-  status = iterate(world.get(), options, reloader ? &*reloader : nullptr, interventions, output);
-  const RunTimes times{std::chrono::duration<double>(Clock::now() - wall_start).count(), cpu_seconds() - cpu_start};
-  if (const breve_error* error = breve_world_last_error(world.get()); status != BREVE_OK && error) {
-    output.complain(error->text);
-    if (!options.quiet)
-      output.complain(fmt::format("breve: stopped after {} iteration{}, {:.6g} s simulated; --seed {} reproduces it\n",
-                                  breve_world_iteration(world.get()),
-                                  breve_world_iteration(world.get()) == 1 ? "" : "s", breve_world_time(world.get()),
-                                  seed));
+  int result = kEndedWell;
+  const auto complain = [&](const std::exception& e) {
+    output.complain(fmt::format("breve: {}\n", e.what()));
+    result = kFailed;
+  };
+  try {
+    Lookers lookers(session.runtime(), options, output);
+    status = iterate(world.get(), options, reloader ? &*reloader : nullptr, interventions, lookers, output);
+    lookers.finish(world.get());
+  } catch (const std::exception& e) {
+    complain(e);
   }
-
-  int result = exit_status(status);
+  const RunTimes times{std::chrono::duration<double>(Clock::now() - wall_start).count(), cpu_seconds() - cpu_start};
+  if (status != BREVE_OK) say_where_it_stopped(world.get(), options, seed, output);
+  if (status != BREVE_OK) result = exit_status(status);
   say_what_went_on(world.get(), options, interventions, output);
   if (!options.positions.empty()) {
     try {
       write_positions(world.get(), options.positions);
     } catch (const std::exception& e) {
-      output.complain(fmt::format("breve: {}\n", e.what()));
-      if (result == kEndedWell) result = kFailed;
+      complain(e);
     }
   }
   if (options.effects) output.print(effects_table(world.get()));

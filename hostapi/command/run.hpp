@@ -8,6 +8,8 @@
 
 #include "access.hpp"
 #include "output.hpp"
+#include "plot.hpp"
+#include "record.hpp"
 
 namespace breve::command {
 
@@ -26,7 +28,9 @@ struct RunOptions {
   bool coarse_random = false;
   AccessOptions access;
   bool strict = false, quiet = false, verbose = false, stats = false, effects = false, hash = false;
-  std::string accuracy;                      // rung, "" for the program's own
+  std::string accuracy;  // rung, "" for the program's own
+  RecordOptions record;
+  PlotOptions plot;
   std::string positions;                     // CSV file, "" for none
   std::string profile;                       // file, "-" for standard error, "" for none
   std::string trace;                         // JSON file, "" for none

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The binary interface that breve.h, with its parts, and analysis.h declare is the one that is described in breve.abi: functions, the sizes
+# The binary interface that breve.h, with its parts, analysis.h and view.h declare is the one that is described in breve.abi: functions, the sizes
 # and fields of structs, the numbers of enumerators. The description is of a library of empty functions, made from the
 # headers alone; that the real one has all of them is seen by whoever links it.
 # Usage: check.sh [--renew]     --renew writes breve.abi anew
@@ -16,6 +16,7 @@ trap 'rm -rf "$work"' EXIT
 
 {
   echo '#include "breve/analysis.h"'
+  echo '#include "breve/view.h"'
   cat "$include"/breve/*.h |
     awk '/^BREVE_API / { on = 1 } on { print } /;/ { on = 0 }' | sed -e 's@/\*.*\*/@@' -e 's/^BREVE_API //' -e 's/;.*/ { __builtin_trap(); }/'
 } >"$work/functions.c"

@@ -34,6 +34,7 @@ void solid_suite(void);
 void stepping_suite(void);
 void threads_suite(void);
 void values_suite(void);
+void settings_suite(void);
 void view_suite(void);
 
 static const struct {
@@ -74,6 +75,7 @@ static const struct {
     {"stepping", stepping_suite},
     {"threads", threads_suite},
     {"values", values_suite},
+    {"settings", settings_suite},
     {"view", view_suite},
     /* clang-format on */
 };

@@ -1,183 +1,355 @@
-/* What a script wants to be seen, and what was set: hosts read all of it. */
+/* What there is to see: scenes without a renderer, and pictures whose shapes, depths and colours have closed forms. */
+#include "breve/view.h"
+
 #include <math.h>
 #include <stdlib.h>
 
-#include "bodies.h"
+#include "scene.h"
 
-static const char* const painter_text =
-    "@use Control.\n@use Mobile.\n@use Drawing.\n@use Image.\n@use Camera.\n"
-    "Controller Main.\n"
-    "Control : Main {\n"
-    "  + variables:\n    ball, other, drawing, picture, extra, rope (object).\n"
-    "  + to init:\n"
-    "    ball = new Mobile. other = new Mobile. other move to (5, 0, 0).\n"
-    "    picture = (new Image) init-with width 3 height 2.\n"
-    "    picture set-red-pixel to 1.0 at-x 1 at-y 0.\n"
-    "    ball set-color to (1, .5, .25). ball set-transparency to .75. ball set-label to \"a ball\".\n"
-    "    ball set-texture-image to picture. ball set-texture-scale to 4. ball disable-shadows. ball show-axis.\n"
-    "    rope = (ball add-line to other with-color (0, 1, 0) with-style \"-- -\").\n"
-    "    drawing = new Drawing. drawing set-color to (1, 0, 0). drawing draw-line from (0, 0, 0) to (1, 2, 3).\n"
-    "    extra = new Camera. extra set-size with-height 100 with-width 200. extra set-position with-x 20 with-y 10.\n"
-    "    self offset-camera by (0, 3, 4). self aim-camera at (1, 0, 0).\n"
-    "    self set-background-color to (.1, .2, .3). self enable-fog. self set-fog-color to (.4, .5, .6).\n"
-    "    self set-fog-limits with-start 5 with-end 50. self enable-lighting.\n"
-    "    self set-display-text to \"score\" at-x .5 at-y -.5 number 2 with-color (1, 1, 0).\n"
-    "    self move-light to (1, 2, 3).\n"
-    "}\n";
+enum { kWidth = 640, kHeight = 480, kPixels = kWidth * kHeight };
+static const double kPercent = 0.01;
 
-static breve_object object_of(scene* s, const char* variable) { return value_of(s, variable).as.object; }
+static const char* const start =
+    "@use Control.\n@use Mobile.\n@use Stationary.\n@use Shape.\n@use Image.\n"
+    "Mobile : Thing {\n"
+    "\t+ to become from shape (object) at place (vector) in color (vector):\n"
+    "\t\tself set-shape to shape. self move to place. self set-color to color. return self.\n"
+    "}\n"
+    "Controller Show.\nControl : Show {\n"
+    "\t+ variables: ball, box, thing, picture, eye (object). count (int).\n"
+    "\t+ to init:\n"
+    "\t\tball = ((new Sphere) init-with radius 2). box = ((new Cube) init-with size (10, 10, 1)).\n"
+    "\t\tself set-background-color to (0, 0, 0).\n";
 
-static void a_host_sees_what_a_script_draws(void) {
+/* A world whose controller does `body` at the end of its init. */
+static bool open_show(scene* s, const char* body) {
+  char text[4096];
+  snprintf(text, sizeof text, "%s%s}\n", start, body);
+  return scene_open_text(s, text, NULL);
+}
+
+typedef struct shot {
+  breve_view* view;
+  uint8_t* rgba;
+  float* depth;
+} shot;
+
+static bool take(scene* s, shot* p) {
+  breve_view_config config = breve_view_config_default();
+  config.look = BREVE_LOOK_PLAIN;
+  memset(p, 0, sizeof *p);
+  p->rgba = malloc(4 * kPixels);
+  p->depth = malloc(sizeof(float) * kPixels);
+  return CHECK_STATUS(BREVE_OK, breve_view_create(s->runtime, &config, &p->view)) &&
+         CHECK_STATUS(BREVE_OK, breve_view_render(p->view, s->world, p->rgba, 0)) &&
+         CHECK_STATUS(BREVE_OK, breve_view_depth(p->view, p->depth, 0));
+}
+
+static void drop(shot* p) {
+  breve_view_destroy(p->view);
+  free(p->rgba);
+  free(p->depth);
+}
+
+static const uint8_t* pixel(const shot* p, int x, int y) { return p->rgba + 4 * (y * kWidth + x); }
+
+static double slope(void) { return tan(20 * acos(-1) / 180); }
+
+static double encoded(double c) { return 255 * (c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1 / 2.4) - 0.055); }
+
+/* --- scenes --------------------------------------------------------------------------------------------------------- */
+
+static breve_rows rows_of(breve_scene* scene, uint32_t kind) {
+  breve_rows rows = {NULL, 0, 0};
+  CHECK_STATUS(BREVE_OK, breve_scene_rows(scene, kind, &rows));
+  return rows;
+}
+
+static const void* row(const breve_rows* rows, size_t i) { return (const char*)rows->data + i * rows->stride; }
+
+static void bodies_that_look_alike_share_a_mesh(void) {
   scene s;
-  if (!scene_open_text(&s, painter_text, NULL)) return;
-  breve_world* const w = s.world;
-  const breve_object ball = object_of(&s, "ball"), picture = object_of(&s, "picture");
-  breve_look look = breve_look_default();
-  CHECK_STATUS(BREVE_OK, breve_object_look(w, ball, &look));
-  CHECK(look.color[0] == 1 && look.color[2] == 0.25 && look.alpha == 0.75);
-  CHECK_TEXT("a ball", look.label);
-  CHECK(same_object(look.texture, picture) && look.bitmap.generation == 0);
-  CHECK(look.texture_scale[0] == 4 && look.texture_scale[1] == 4);
-  CHECK(look.visible && !look.shadows && look.axes && !look.bounding_box && !look.as_point);
-  breve_line line;
-  CHECK_STATUS(BREVE_OK, breve_line_state(w, object_of(&s, "rope"), &line));
-  CHECK(same_object(line.from, ball) && line.color[1] == 1 && (line.style & 0xf) == 0xb);
-  breve_draw commands[4];
-  size_t count = 0;
-  CHECK_STATUS(BREVE_OK, breve_drawing_commands(w, object_of(&s, "drawing"), commands, 4, &count));
-  if (CHECK(count == 2)) {
-    CHECK(commands[0].kind == BREVE_DRAW_COLOR && commands[0].to[0] == 1);
-    CHECK(commands[1].kind == BREVE_DRAW_LINE && commands[1].to[2] == 3 && commands[1].from[2] == 0);
+  if (!open_show(&s,
+                 "\t\t(new Thing) become from ball at (1, 2, 3) in (1, 0, 0).\n"
+                 "\t\t(new Thing) become from (new Sphere init-with radius 5) at (0, 0, 0) in (0, 1, 0).\n"
+                 "\t\t(new Thing) become from box at (0, 0, 0) in (0, 0, 1).\n"
+                 "\t\t(new Thing) become from (new PolygonCone init-with sides 5 height 2 radius 1) at (0, 0, 0) in "
+                 "(1, 1, 1).\n"
+                 "\t\t(new Thing) become from (new PolygonCone init-with sides 5 height 2 radius 1) at (4, 0, 0) in "
+                 "(1, 1, 1).\n"))
+    return;
+  breve_scene* scene = NULL;
+  CHECK_STATUS(BREVE_OK, breve_scene_create(&scene));
+  CHECK_STATUS(BREVE_OK, breve_scene_read(scene, s.world));
+  const breve_rows all = rows_of(scene, BREVE_SCENE_INSTANCES), meshes = rows_of(scene, BREVE_SCENE_MESHES);
+  CHECK(all.count == 5);
+  const breve_instance* first = row(&all, 0);
+  const breve_instance* second = row(&all, 1);
+  CHECK(first->mesh == second->mesh);
+  CHECK(((const breve_instance*)row(&all, 3))->mesh == ((const breve_instance*)row(&all, 4))->mesh);
+  CHECK(((const breve_instance*)row(&all, 2))->mesh != first->mesh);
+  CHECK(first->transform[0] == 2 && first->transform[3] == 1 && first->transform[7] == 2 && first->transform[11] == 3);
+  CHECK(second->transform[5] == 5 && second->color[1] == 1 && second->color[3] == 1);
+  const breve_mesh* sphere = row(&meshes, first->mesh);
+  CHECK(sphere->vertex_count > 100 && sphere->index_count % 3 == 0);
+  for (size_t i = 0; i < sphere->index_count; ++i) CHECK(sphere->indices[i] < sphere->vertex_count);
+  /* Six times the volume, by the divergence theorem: of a unit ball 8 pi, of its mesh a little less. */
+  double six = 0;
+  for (size_t i = 0; i < sphere->index_count; i += 3) {
+    const float* a = sphere->positions + 3 * sphere->indices[i];
+    const float* b = sphere->positions + 3 * sphere->indices[i + 1];
+    const float* c = sphere->positions + 3 * sphere->indices[i + 2];
+    six += a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
   }
-  uint32_t width = 0, height = 0;
-  unsigned char pixels[24] = {0};
-  CHECK_STATUS(BREVE_OK, breve_image_pixels(w, picture, NULL, 0, &width, &height));
-  CHECK(width == 3 && height == 2);
-  CHECK_STATUS(BREVE_OK, breve_image_pixels(w, picture, pixels, sizeof pixels - 1, &width, &height));
-  CHECK(pixels[3] == 0);
-  CHECK_STATUS(BREVE_OK, breve_image_pixels(w, picture, pixels, sizeof pixels, &width, &height));
-  CHECK(pixels[4] == 255 && pixels[5] == 0 && pixels[3] == 255);
+  CHECK_NEAR(8 * acos(-1), six, kPercent * 8 * acos(-1));
+  breve_scene_destroy(scene);
   scene_close(&s);
 }
 
-static void a_host_sees_where_cameras_stand_and_what_is_around(void) {
+static void lines_texts_and_lights_are_rows(void) {
   scene s;
-  if (!scene_open_text(&s, painter_text, NULL)) return;
-  breve_world* const w = s.world;
-  const breve_object nobody = {0, 0};
-  breve_camera camera = breve_camera_default();
-  CHECK_STATUS(BREVE_OK, breve_camera_state(w, nobody, &camera));
-  CHECK_NEAR(1, camera.location[0], 1e-12);
-  CHECK_NEAR(3, camera.location[1], 1e-12);
-  CHECK_NEAR(4, camera.location[2], 1e-12);
-  CHECK(camera.target[0] == 1 && camera.enabled && camera.size[0] == 0);
-  /* Upright to the view: (0, 3, 4) / 5 is the way to the camera. */
-  CHECK_NEAR(0, camera.up[0], 1e-12);
-  CHECK_NEAR(0.8, camera.up[1], 1e-12);
-  CHECK_NEAR(-0.6, camera.up[2], 1e-12);
-  CHECK_STATUS(BREVE_OK, breve_camera_state(w, object_of(&s, "extra"), &camera));
-  CHECK(camera.size[0] == 200 && camera.size[1] == 100 && camera.corner[0] == 20 && camera.corner[1] == 10);
-  breve_view view = breve_view_default();
-  CHECK_STATUS(BREVE_OK, breve_world_view(w, &view));
-  CHECK(view.background[1] == 0.2 && view.fog && view.fog_start == 5 && view.fog_end == 50 && view.fog_color[2] == 0.6);
-  CHECK(view.lighting && !view.shadows && view.selection.generation == 0 && view.blur == 0);
-  breve_light light;
-  CHECK_STATUS(BREVE_OK, breve_world_light(w, 0, &light));
-  CHECK(light.location[2] == 3);
-  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_world_light(w, 8, &light));
-  breve_text text;
-  CHECK_STATUS(BREVE_OK, breve_world_text(w, 2, &text));
-  CHECK_TEXT("score", text.text);
-  CHECK(text.location[0] == 0.5 && text.color[1] == 1);
-  CHECK_STATUS(BREVE_OK, breve_world_text(w, 3, &text));
-  CHECK_TEXT("", text.text);
-  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_world_text(w, 8, &text));
-  /* Objects of other kinds, and structs of no size. */
-  breve_draw command;
-  breve_line line;
-  size_t count;
-  uint32_t width, height;
-  const breve_object ball = object_of(&s, "ball");
-  CHECK_STATUS(BREVE_ERROR_TYPE, breve_camera_state(w, ball, &camera));
-  CHECK_STATUS(BREVE_ERROR_TYPE, breve_drawing_commands(w, ball, &command, 1, &count));
-  CHECK_STATUS(BREVE_ERROR_TYPE, breve_line_state(w, ball, &line));
-  CHECK_STATUS(BREVE_ERROR_TYPE, breve_image_pixels(w, ball, NULL, 0, &width, &height));
-  camera.struct_size = 1;
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_camera_state(w, nobody, &camera));
-  breve_look look = breve_look_default();
-  CHECK_STATUS(BREVE_ERROR_NO_BODY, breve_object_look(w, breve_world_controller(w), &look));
+  if (!open_show(&s,
+                 "\t\tthing = ((new Thing) become from ball at (1, 2, 3) in (1, 0, 0)).\n"
+                 "\t\tthing set-label to \"the ball\". thing show-axis. thing show-bounding-box.\n"
+                 "\t\tself set-display-text to \"hello\" at-x 0.5 at-y -0.5 number 3 with-color (1, 0, 1).\n"
+                 "\t\tself move-light to (1, 2, 3) for-light 4.\n"
+                 "\t\tself set-background-color to (.25, .5, .75).\n"))
+    return;
+  breve_scene* scene = NULL;
+  CHECK_STATUS(BREVE_OK, breve_scene_create(&scene));
+  CHECK_STATUS(BREVE_OK, breve_scene_read(scene, s.world));
+  CHECK(rows_of(scene, BREVE_SCENE_LINES).count == 3 + 12);
+  const breve_rows labels = rows_of(scene, BREVE_SCENE_LABELS), texts = rows_of(scene, BREVE_SCENE_TEXTS);
+  const breve_rows lights = rows_of(scene, BREVE_SCENE_LIGHTS);
+  CHECK(labels.count == 1 && texts.count == 1 && lights.count == 2);
+  CHECK_TEXT("the ball", ((const breve_label*)row(&labels, 0))->text);
+  CHECK_NEAR(4, ((const breve_label*)row(&labels, 0))->place[1], 1e-6);
+  CHECK_TEXT("hello", ((const breve_overlay_text*)row(&texts, 0))->text);
+  CHECK(((const breve_light*)row(&lights, 1))->position[2] == 3);
+  breve_backdrop backdrop = breve_backdrop_default();
+  CHECK_STATUS(BREVE_OK, breve_scene_backdrop(scene, &backdrop));
+  CHECK(backdrop.color[2] == 0.75F && backdrop.dimension == 3 && backdrop.texture == BREVE_NO_TEXTURE);
+  breve_rows rows;
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_scene_rows(scene, 11, &rows));
+  breve_scene_destroy(scene);
   scene_close(&s);
 }
 
-static void what_is_set_is_read_back(void) {
+static void a_point_is_seen_where_the_camera_says(void) {
+  breve_camera camera;
+  breve_clear(&camera, sizeof camera);
+  camera.offset[2] = 30;
+  camera.field_of_view = 2 * atan(slope());
+  camera.far_plane = 500;
+  const double point[3] = {1, 2, -3}, behind[3] = {0, 0, 31};
+  double seen[3];
+  CHECK_STATUS(BREVE_OK, breve_camera_project(&camera, kWidth, kHeight, point, seen));
+  CHECK_NEAR(320 + 240 * (1 / 33.0) / slope(), seen[0], 1e-3);
+  CHECK_NEAR(240 - 240 * (2 / 33.0) / slope(), seen[1], 1e-3);
+  CHECK_NEAR(33, seen[2], 1e-5);
+  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_camera_project(&camera, kWidth, kHeight, behind, seen));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_camera_project(&camera, 0, kHeight, point, seen));
+  camera.pitch = NAN;
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_camera_project(&camera, kWidth, kHeight, point, seen));
+}
+
+static void a_camera_that_the_program_places_is_not_automatic(void) {
   scene s;
-  if (!open_bodies(&s, false)) return;
-  breve_world* const w = s.world;
-  const breve_geometry ball = ball_of_radius(1);
-  const breve_object body = add_body(&s, "Mobile", &ball, 0, 0, 0), other = add_body(&s, "Mobile", &ball, 5, 0, 0);
-  CHECK_STATUS(BREVE_OK, breve_object_set_physics(w, body, true));
-  breve_material material = {0.5, 0.25, 0.75, -0.5, 0.125}, read = {9, 9, 9, 9, 9};
-  CHECK_STATUS(BREVE_OK, breve_object_material(w, body, &read));
-  CHECK(read.static_friction == -1 && read.dynamic_friction == -1 && read.restitution == -1);
-  CHECK_STATUS(BREVE_OK, breve_object_set_material(w, body, &material));
-  CHECK_STATUS(BREVE_OK, breve_object_material(w, body, &read));
-  CHECK(memcmp(&read, &material, sizeof read) == 0);
-  const double force[3] = {1, 2, 3}, torque[3] = {4, 5, 6};
-  double f[3], t[3];
-  CHECK_STATUS(BREVE_OK, breve_object_set_force(w, body, force, torque));
-  CHECK_STATUS(BREVE_OK, breve_object_force(w, body, f, t));
-  CHECK(memcmp(f, force, sizeof f) == 0 && memcmp(t, torque, sizeof t) == 0);
-  CHECK(!breve_world_sleeping(w) && breve_world_workers(w) == 1);
-  CHECK_STATUS(BREVE_OK, breve_world_set_sleeping(w, true));
-  CHECK_STATUS(BREVE_OK, breve_world_set_workers(w, 3));
-  CHECK(breve_world_sleeping(w) && breve_world_workers(w) == 3);
-  breve_accuracy accuracy = breve_accuracy_default(), own = breve_accuracy_default();
-  CHECK_STATUS(BREVE_OK, breve_rung_accuracy(BREVE_RUNG_PRECISE, &accuracy));
-  CHECK_STATUS(BREVE_OK, breve_object_set_accuracy(w, body, &accuracy));
-  CHECK_STATUS(BREVE_OK, breve_object_accuracy(w, body, &own));
-  CHECK(own.rung == BREVE_RUNG_PRECISE);
-  CHECK_STATUS(BREVE_OK, breve_object_accuracy(w, other, &own));
-  CHECK(own.rung == BREVE_RUNG_BALANCED);
-  bool on = true;
-  CHECK_STATUS(BREVE_OK, breve_object_self_collisions(w, body, &on));
-  CHECK(!on);
-  CHECK_STATUS(BREVE_OK, breve_object_set_self_collisions(w, body, true));
-  CHECK_STATUS(BREVE_OK, breve_object_self_collisions(w, body, &on));
-  CHECK(on);
-  breve_spring spring = breve_spring_default(), is = breve_spring_default();
-  breve_object made;
-  spring.from = body;
-  spring.to = other;
-  spring.from_point[1] = 0.5;
-  spring.length = 4;
-  spring.mode = BREVE_SPRING_CONTRACT_ONLY;
-  CHECK_STATUS(BREVE_OK, breve_spring_create(w, &spring, &made));
-  CHECK_STATUS(BREVE_OK, breve_spring_description(w, made, &is));
-  CHECK(memcmp(&is, &spring, sizeof is) == 0);
-  CHECK_STATUS(BREVE_OK, breve_object_free(w, other));
-  CHECK_STATUS(BREVE_OK, breve_spring_description(w, made, &is));
-  CHECK(is.to.generation == 0 && is.length == 4);
-  CHECK_STATUS(BREVE_ERROR_TYPE, breve_spring_description(w, body, &is));
+  if (!open_show(&s, "\t\t(new Thing) become from ball at (100, 0, 0) in (1, 0, 0).\n")) return;
+  breve_scene* scene = NULL;
+  breve_camera camera;
+  CHECK_STATUS(BREVE_OK, breve_scene_create(&scene));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_scene_camera(scene, kWidth, kHeight, &camera));
+  CHECK_STATUS(BREVE_OK, breve_scene_read(scene, s.world));
+  CHECK_STATUS(BREVE_OK, breve_scene_camera(scene, kWidth, kHeight, &camera));
+  CHECK(camera.automatic == 1);
+  CHECK_NEAR(100, camera.target[0], 1e-6);
+  const breve_keyword keywords[] = {{"at", breve_value_vector(1, 2, 3)}, {"from", breve_value_vector(0, 3, 4)}};
+  CHECK_STATUS(BREVE_OK,
+               breve_object_call(s.world, breve_world_controller(s.world), "point-camera", keywords, 2, NULL));
+  CHECK_STATUS(BREVE_OK, breve_scene_read(scene, s.world));
+  CHECK_STATUS(BREVE_OK, breve_scene_camera(scene, kWidth, kHeight, &camera));
+  CHECK(camera.automatic == 0 && camera.target[2] == 3 && camera.offset[2] == 4);
+  CHECK_NEAR(-asin(0.6), camera.pitch, 1e-12);
+  breve_scene_destroy(scene);
   scene_close(&s);
 }
 
-static void a_click_goes_to_what_a_ray_meets(void) {
+/* --- pictures ------------------------------------------------------------------------------------------------------- */
+
+static void the_silhouette_of_a_sphere_has_its_area_and_middle(void) {
   scene s;
-  if (!scene_open(&s)) return;
-  const double start[3] = {0, 0, 50}, way[3] = {0, 0, -100}, aside[3] = {0, 100, 0}, wrong[3] = {NAN, 0, 0};
-  CHECK_STATUS(BREVE_OK, breve_world_queue_click_ray(s.world, start, way));
-  CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
-  CHECK(int_of(&s, "clicks") == 1 && same_object(value_of(&s, "clicked").as.object, ball_of(&s)));
-  CHECK_STATUS(BREVE_OK, breve_world_queue_click_ray(s.world, start, aside));
-  CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
-  CHECK(int_of(&s, "clicks") == 2 && value_of(&s, "clicked").as.object.generation == 0);
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_queue_click_ray(s.world, wrong, way));
+  shot p;
+  if (!open_show(&s,
+                 "\t\tself point-camera at (0, 0, 0) from (0, 0, 20).\n"
+                 "\t\t(new Thing) become from ball at (3, 0, 0) in (1, 1, 1).\n"))
+    return;
+  if (take(&s, &p)) {
+    double area = 0, middle = 0;
+    for (int i = 0; i < kPixels; ++i) {
+      area += p.rgba[4 * i] / 255.0;
+      middle += p.rgba[4 * i] / 255.0 * (i % kWidth + 0.5);
+    }
+    /* An ellipse: along x from tan(a - b) to tan(a + b), where a is the angle of the centre and b that of the radius.
+     */
+    const double distance = sqrt(409), a = atan(3 / 20.0), b = asin(2 / distance), unit = 240 / slope();
+    const double low = unit * tan(a - b), high = unit * tan(a + b);
+    const double along = (high - low) / 2, across = unit * sin(b) / sqrt(cos(b) * cos(b) - sin(a) * sin(a));
+    CHECK_NEAR(acos(-1) * along * across, area, kPercent * area);
+    CHECK_NEAR(320 + (low + high) / 2, middle / area, kPercent * 2 * along);
+  }
+  drop(&p);
+  scene_close(&s);
+}
+
+static void a_plane_has_its_depth(void) {
+  scene s;
+  shot p;
+  if (!open_show(&s,
+                 "\t\tself point-camera at (0, 0, 0) from (0, 0, 20).\n"
+                 "\t\t(new Thing) become from box at (0, 0, -5) in (1, 1, 1).\n"))
+    return;
+  if (take(&s, &p)) {
+    for (int y = 200; y < 280; y += 20)
+      for (int x = 260; x < 380; x += 20) CHECK_NEAR(24.5, p.depth[y * kWidth + x], kPercent * 24.5 / 10);
+    CHECK(isinf(p.depth[0]));
+  }
+  drop(&p);
+  scene_close(&s);
+}
+
+static void a_lit_face_has_its_colour(void) {
+  scene s;
+  shot p;
+  if (!open_show(&s,
+                 "\t\tself point-camera at (0, 0, 0) from (0, 0, 20). self enable-lighting.\n"
+                 "\t\tself move-light to (0, 0, 100000). self set-light-diffuse-color to (.5, .4, .3).\n"
+                 "\t\t(new Thing) become from box at (0, 0, 0) in (1, 1, .5).\n"))
+    return;
+  if (take(&s, &p)) {
+    const double half = pow((0.5 + 0.055) / 1.055, 2.4);
+    const double wanted[3] = {encoded(0.6), encoded(0.5), encoded(half * 0.4)};
+    for (int c = 0; c < 3; ++c) CHECK_NEAR(wanted[c], pixel(&p, 320, 240)[c], 2.55);
+    CHECK(pixel(&p, 2, 2)[0] == 0);
+  }
+  drop(&p);
+  scene_close(&s);
+}
+
+static void a_shadow_lies_where_the_light_throws_it(void) {
+  scene s;
+  shot p;
+  if (!open_show(&s,
+                 "\t\tthing = new Stationary.\n"
+                 "\t\tthing register with-shape ((new Cube) init-with size (60, 2, 60)) at-location (0, -1, 0) "
+                 "with-rotation [(1, 0, 0), (0, 1, 0), (0, 0, 1)].\n"
+                 "\t\tthing set-texture-image to 0. thing catch-shadows.\n"
+                 "\t\tself enable-lighting. self enable-shadows. self move-light to (10, 20, 0).\n"
+                 "\t\tself point-camera at (0, 0, 0) from (0, 40, 0.001).\n"
+                 "\t\t(new Thing) become from ((new Sphere) init-with radius 1) at (6, 12, 0) in (1, 1, 1).\n"))
+    return;
+  if (take(&s, &p)) {
+    /* The cone about the sphere meets the floor at x = 10 - 20 tan(a +- b). */
+    const double a = atan(0.5), b = asin(1 / sqrt(80)), unit = 240 / slope() / 40;
+    const double low = 320 + unit * (10 - 20 * tan(a + b)), high = 320 + unit * (10 - 20 * tan(a - b));
+    double dark = 0, middle = 0;
+    const double lit = pixel(&p, 320, 60)[0], shade = pixel(&p, (int)((low + high) / 2), 240)[0];
+    CHECK(lit > 2 * shade);
+    for (int x = (int)low - 12; x < (int)high + 12; ++x) {
+      const double part = fmin(1, fmax(0, (lit - pixel(&p, x, 240)[0]) / (lit - shade)));
+      dark += part;
+      middle += part * (x + 0.5);
+    }
+    CHECK_NEAR((low + high) / 2, middle / dark, 2 * kPercent * (high - low));
+    CHECK_NEAR(high - low, dark, 4 * kPercent * (high - low));
+  }
+  drop(&p);
+  scene_close(&s);
+}
+
+static uint64_t draw_calls(int bodies) {
+  scene s;
+  shot p;
+  char body[256];
+  breve_view_counters counters = breve_view_counters_default();
+  snprintf(
+      body, sizeof body,
+      "\t\tfor count = 0, count < %d, count++: (new Thing) become from ball at random[(40, 40, 40)] in (1, 1, 1).\n",
+      bodies);
+  if (!open_show(&s, body)) return 0;
+  if (take(&s, &p)) CHECK_STATUS(BREVE_OK, breve_view_counts(p.view, &counters));
+  CHECK(counters.instances == (uint64_t)bodies);
+  drop(&p);
+  scene_close(&s);
+  return counters.draw_calls;
+}
+
+static void draw_calls_do_not_grow_with_bodies(void) {
+  const uint64_t few = draw_calls(50), many = draw_calls(2000);
+  CHECK(few > 0 && many <= few + 2); /* spheres of three sizes in the picture are three meshes */
+}
+
+static void a_picture_changes_nothing(void) {
+  scene s;
+  shot p, again;
+  uint64_t before = 0, after = 1;
+  if (!open_show(&s, "\t\t(new Thing) become from ball at (0, 0, 0) in (1, .5, 0).\n")) return;
+  CHECK_STATUS(BREVE_OK, breve_world_hash(s.world, &before));
+  if (take(&s, &p) && take(&s, &again)) CHECK(memcmp(p.rgba, again.rgba, 4 * kPixels) == 0);
+  CHECK_STATUS(BREVE_OK, breve_world_hash(s.world, &after));
+  CHECK(before == after);
+  drop(&p);
+  drop(&again);
+  scene_close(&s);
+}
+
+static void what_cannot_be_drawn_is_refused(void) {
+  scene s;
+  breve_view* view = NULL;
+  if (!open_show(&s, "")) return;
+  const uint32_t sizes[][2] = {{0, 10}, {10, 0}, {1000000, 10}, {10, 1000000}, {16385, 16385}};
+  for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; ++i) {
+    breve_view_config config = breve_view_config_default();
+    config.width = sizes[i][0];
+    config.height = sizes[i][1];
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_view_create(s.runtime, &config, &view));
+  }
+  breve_view_config config = breve_view_config_default();
+  config.samples = 3;
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_view_create(s.runtime, &config, &view));
+  config = breve_view_config_default();
+  config.look = 2;
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_view_create(s.runtime, &config, &view));
+  config = breve_view_config_default();
+  config.font = "/dev/null";
+  CHECK_STATUS(BREVE_ERROR_FILE, breve_view_create(s.runtime, &config, &view));
+  config = breve_view_config_default();
+  config.width = config.height = 8;
+  uint8_t rgba[8 * 8 * 4];
+  float depth[64];
+  CHECK_STATUS(BREVE_OK, breve_view_create(s.runtime, &config, &view));
+  CHECK_STATUS(BREVE_ERROR_NOT_FOUND, breve_view_depth(view, depth, 0));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_view_render(view, s.world, rgba, 31));
+  CHECK_STATUS(BREVE_OK, breve_view_render(view, s.world, rgba, 32));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_view_depth(view, depth, 33));
+  breve_view_destroy(view);
+  size_t size = 0;
+  CHECK_STATUS(BREVE_OK, breve_png(8, 8, rgba, 0, NULL, 0, &size));
+  CHECK(size > 60);
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_png(0, 8, rgba, 0, NULL, 0, &size));
   scene_close(&s);
 }
 
 void view_suite(void) {
-  RUN(a_host_sees_what_a_script_draws);
-  RUN(a_host_sees_where_cameras_stand_and_what_is_around);
-  RUN(what_is_set_is_read_back);
-  RUN(a_click_goes_to_what_a_ray_meets);
+  RUN(bodies_that_look_alike_share_a_mesh);
+  RUN(lines_texts_and_lights_are_rows);
+  RUN(a_point_is_seen_where_the_camera_says);
+  RUN(a_camera_that_the_program_places_is_not_automatic);
+  RUN(the_silhouette_of_a_sphere_has_its_area_and_middle);
+  RUN(a_plane_has_its_depth);
+  RUN(a_lit_face_has_its_colour);
+  RUN(a_shadow_lies_where_the_light_throws_it);
+  RUN(draw_calls_do_not_grow_with_bodies);
+  RUN(a_picture_changes_nothing);
+  RUN(what_cannot_be_drawn_is_refused);
 }

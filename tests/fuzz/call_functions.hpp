@@ -34,10 +34,12 @@ std::span<const Function> value_functions();     // values, lists, hashes, varia
 std::span<const Function> body_functions();      // shapes, bodies, settings of physics, grids
 std::span<const Function> space_functions();     // queries, collision filters
 std::span<const Function> event_functions();     // events
+std::span<const Function> setting_functions();   // what reads back what was set
 std::span<const Function> view_functions();      // what is to be seen, getters
 std::span<const Function> step_functions();      // game loops, batches
 std::span<const Function> joint_functions();     // joints, springs, what they connect
 std::span<const Function> analysis_functions();  // analyses
+std::span<const Function> view_functions();      // scenes, views
 
 /// All of them.
 std::span<const Function> all_functions();

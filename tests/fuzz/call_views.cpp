@@ -1,143 +1,192 @@
-// Calls of what says how a world is to be seen, and what was set.
-#include <cmath>
+// Calls of scenes and views. Making a view takes long, so that most calls have none, which is refused.
+#include <algorithm>
 
+#include "breve/view.h"
 #include "call_functions.hpp"
 
 namespace breve::fuzz {
 
 namespace call_views {
 
-/// A function that fills in a struct with struct_size about one object.
-template <class Struct, auto kGet>
-breve_status get_struct(Caller& c, breve_object object, const breve_world* world) {
-  Out<Struct> result(c);
-  result.set_size(c.struct_size(sizeof(Struct)));
-  return result.after(kGet(world, object, result.to()));
-}
-template <class T, auto kGet>
-breve_status get_frozen(Caller& c, breve_object object, const breve_world* world) {
-  Out<T> result(c);
-  return result.after(kGet(world, object, result.to()));
+constexpr std::uint32_t kSide = 8;
+
+struct SceneHolder {
+  breve_scene* scene = nullptr;
+  explicit SceneHolder(Caller& c, breve_world* world = nullptr) {
+    if (c.chance(5)) {
+      c.expect_refusal();
+      return;
+    }
+    require(breve_scene_create(&scene) == BREVE_OK, "no scene");
+    if (world) (void)breve_scene_read(scene, world);
+  }
+  ~SceneHolder() { breve_scene_destroy(scene); }
+  SceneHolder(const SceneHolder&) = delete;
+  SceneHolder& operator=(const SceneHolder&) = delete;
+};
+
+struct ViewHolder {
+  breve_view* view = nullptr;
+  std::uint8_t rgba[4 * kSide * kSide] = {};
+  ViewHolder(Caller& c, breve_world* world = nullptr) {
+    breve_runtime* runtime = c.runtimes()[0];
+    breve_view_config config = breve_view_config_default();
+    config.width = config.height = kSide;
+    config.samples = 1;
+    if (!runtime || !c.chance(8) || breve_view_create(runtime, &config, &view) != BREVE_OK) {
+      c.expect_refusal();
+      return;
+    }
+    if (world) (void)breve_view_render(view, world, rgba, 0);
+  }
+  ~ViewHolder() { breve_view_destroy(view); }
+  ViewHolder(const ViewHolder&) = delete;
+  ViewHolder& operator=(const ViewHolder&) = delete;
+};
+
+/// Of which nothing is demanded, as any of its numbers may be.
+breve_camera draw_camera(Caller& c) {
+  breve_camera camera{};
+  for (double* number : {&camera.target[0], &camera.target[2], &camera.offset[1], &camera.offset[2], &camera.pitch,
+                         &camera.yaw, &camera.field_of_view, &camera.far_plane})
+    *number = c.chance(90) ? c.finite() : c.number();
+  camera.orthographic = c.word() % 2;
+  return camera;
 }
 
-breve_status look(Caller& c) {
-  const breve_world* world = c.world();
-  const breve_object object = c.object(world, "Real");
-  Out<breve_look> result(c);
-  const std::size_t size = c.struct_size(sizeof(breve_look));
-  result.set_size(size);
-  const breve_status status = result.after(breve_object_look(world, object, result.to()));
-  if (result && size == sizeof(breve_look)) read_text(result->label);
-  return status;
-}
-breve_status camera(Caller& c) {
-  const breve_world* world = c.world();
-  return get_struct<breve_camera, breve_camera_state>(c, c.object_or_null(world, "Camera"), world);
-}
-breve_status view(Caller& c) {
-  const breve_world* world = c.world();
-  Out<breve_view> result(c);
-  result.set_size(c.struct_size(sizeof(breve_view)));
-  return result.after(breve_world_view(world, result.to()));
-}
-breve_status light(Caller& c) {
-  const breve_world* world = c.world();
-  Out<breve_light> result(c);
-  return result.after(breve_world_light(world, c.word() % 10, result.to()));
-}
-breve_status text(Caller& c) {
-  const breve_world* world = c.world();
-  Out<breve_text> result(c);
-  const breve_status status = result.after(breve_world_text(world, c.word() % 10, result.to()));
-  if (result) read_text(result->text);
-  return status;
-}
-breve_status drawing(Caller& c) {
-  const breve_world* world = c.world();
-  const breve_object object = c.object(world, "Drawing");
-  Room<breve_draw> commands(c, c.capacity());
-  Out<std::size_t> count(c);
-  const breve_status status =
-      count.after(breve_drawing_commands(world, object, commands.to(), commands.capacity(), count.to()));
-  return commands.after(status, count ? *count : 0);
-}
-breve_status line(Caller& c) {
-  const breve_world* world = c.world();
-  return get_frozen<breve_line, breve_line_state>(c, c.object(world, "Line"), world);
-}
-breve_status pixels(Caller& c) {
-  const breve_world* world = c.world();
-  const breve_object image = c.object(world, "Image");
-  Room<unsigned char> room(c, c.chance(50) ? c.capacity() : 4096);
-  Out<std::uint32_t> width(c), height(c);
-  const breve_status status = width.after(
-      height.after(breve_image_pixels(world, image, room.to(), room.capacity(), width.to(), height.to())));
-  const std::size_t size = width && height ? std::size_t{4} * *width * *height : 0;
-  return room.after(status, size <= room.capacity() ? size : 0);
-}
+// --- scenes ----------------------------------------------------------------------------------------------------------
 
-breve_status material(Caller& c) {
-  const breve_world* world = c.world();
-  return get_frozen<breve_material, breve_object_material>(c, c.object(world, "Real"), world);
-}
-breve_status force(Caller& c) {
-  const breve_world* world = c.world();
-  const breve_object object = c.object(world, "Real");
-  Out<double[3]> newtons(c, true), about(c, true);
-  const breve_status status = breve_object_force(world, object, newtons.to() ? *newtons.to() : nullptr,
-                                                 about.to() ? *about.to() : nullptr);
-  newtons.after(status), about.after(status);
+breve_status scene_create(Caller& c) {
+  Out<breve_scene*> made(c);
+  const breve_status status = made.after(breve_scene_create(made.to()));
+  if (made) breve_scene_destroy(*made);
   return status;
 }
-breve_status sleeping(Caller& c) {
-  const breve_world* world = c.world();
-  require(world || !breve_world_sleeping(nullptr), "no world lets bodies sleep");
-  (void)breve_world_sleeping(world);
-  c.accept_null();
-  return BREVE_OK;
-}
-breve_status workers(Caller& c) {
-  const breve_world* world = c.world();
-  require((breve_world_workers(world) != 0) == (world != nullptr), "a world has no workers");
-  c.accept_null();
-  return BREVE_OK;
-}
-breve_status accuracy(Caller& c) {
-  const breve_world* world = c.world();
-  return get_struct<breve_accuracy, breve_object_accuracy>(c, c.object(world, "Real"), world);
-}
-breve_status self_collisions(Caller& c) {
-  const breve_world* world = c.world();
-  return get_frozen<bool, breve_object_self_collisions>(c, c.object(world, "Real"), world);
-}
-breve_status spring(Caller& c) {
-  const breve_world* world = c.world();
-  return get_struct<breve_spring, breve_spring_description>(c, c.object(world, "Spring"), world);
-}
-breve_status click_ray(Caller& c) {
+breve_status scene_destroy(Caller&) { return breve_scene_destroy(nullptr), BREVE_OK; }
+
+breve_status scene_read(Caller& c) {
   breve_world* world = c.world();
-  double start[3], way[3];
-  const double *from = c.numbers(start), *along = c.numbers(way);
-  return breve_world_queue_click_ray(world, from, along);
+  const SceneHolder holder(c);
+  return breve_scene_read(holder.scene, world);
+}
+
+/// Reads all bytes of all rows, and what texts and meshes point at.
+void read_rows(const breve_rows& rows, std::uint32_t kind) {
+  unsigned sum = 0;
+  const auto* bytes = static_cast<const unsigned char*>(rows.data);
+  for (std::size_t i = 0; i < rows.count * rows.stride; ++i) sum += bytes[i];
+  for (std::size_t i = 0; i < rows.count; ++i) {
+    const unsigned char* row = bytes + i * rows.stride;
+    if (kind == BREVE_SCENE_LABELS) read_text(reinterpret_cast<const breve_label*>(row)->text);
+    if (kind == BREVE_SCENE_TEXTS) read_text(reinterpret_cast<const breve_overlay_text*>(row)->text);
+    if (kind != BREVE_SCENE_MESHES) continue;
+    const auto* mesh = reinterpret_cast<const breve_mesh*>(row);
+    for (std::size_t k = 0; k < mesh->index_count; ++k)
+      require(mesh->indices[k] < mesh->vertex_count, "a triangle has no corner");
+  }
+  require(sum != 1, "a sum that no rows have");
+}
+
+breve_status scene_rows(Caller& c) {
+  const SceneHolder holder(c, c.worlds().empty() ? nullptr : c.worlds().front());
+  const std::uint32_t kind = c.word() % 12;
+  if (kind > BREVE_SCENE_LIGHTS) c.expect_refusal();
+  Out<breve_rows> rows(c);
+  const breve_status status = rows.after(breve_scene_rows(holder.scene, kind, rows.to()));
+  if (rows) read_rows(*rows, kind);
+  return status;
+}
+
+breve_status scene_backdrop(Caller& c) {
+  const SceneHolder holder(c);
+  Out<breve_backdrop> backdrop(c);
+  backdrop.set_size(c.struct_size(sizeof(breve_backdrop)));
+  return backdrop.after(breve_scene_backdrop(holder.scene, backdrop.to()));
+}
+
+breve_status scene_camera(Caller& c) {
+  const SceneHolder holder(c, c.worlds().empty() ? nullptr : c.worlds().front());
+  Out<breve_camera> camera(c);
+  return camera.after(breve_scene_camera(holder.scene, c.word() % 100, c.word() % 100, camera.to()));
+}
+
+breve_status camera_project(Caller& c) {
+  const breve_camera camera = draw_camera(c);
+  double point[3], seen[3];
+  const double* at = c.numbers(point);
+  return breve_camera_project(&camera, c.word() % 100, c.word() % 100, at, seen);
+}
+
+// --- views -----------------------------------------------------------------------------------------------------------
+
+breve_status view_create(Caller& c) {
+  breve_runtime* runtime = c.runtime();
+  breve_view_config config = breve_view_config_default();
+  config.width = c.chance(95) ? kSide : c.word();
+  config.height = kSide;
+  if (c.chance(90)) config.samples = 3, c.expect_refusal();  // so that few are made
+  breve_view* view = nullptr;
+  const breve_status status = breve_view_create(runtime, &config, &view);
+  breve_view_destroy(view);
+  return status;
+}
+breve_status view_destroy(Caller&) { return breve_view_destroy(nullptr), BREVE_OK; }
+
+breve_status view_render(Caller& c) {
+  breve_world* world = c.world();
+  ViewHolder holder(c);
+  return breve_view_render(holder.view, world, holder.rgba, 0);
+}
+
+breve_status view_depth(Caller& c) {
+  const ViewHolder holder(c, c.worlds().empty() ? nullptr : c.worlds().front());
+  float depth[kSide * kSide];
+  return breve_view_depth(holder.view, depth, 0);
+}
+
+breve_status view_set_camera(Caller& c) {
+  const ViewHolder holder(c);
+  const breve_camera camera = draw_camera(c);
+  return breve_view_set_camera(holder.view, c.chance(20) ? nullptr : &camera);
+}
+
+breve_status view_camera(Caller& c) {
+  const ViewHolder holder(c, c.worlds().empty() ? nullptr : c.worlds().front());
+  Out<breve_camera> camera(c);
+  return camera.after(breve_view_camera(holder.view, camera.to()));
+}
+
+breve_status view_counts(Caller& c) {
+  const ViewHolder holder(c);
+  Out<breve_view_counters> counters(c);
+  counters.set_size(c.struct_size(sizeof(breve_view_counters)));
+  return counters.after(breve_view_counts(holder.view, counters.to()));
+}
+
+breve_status png(Caller& c) {
+  const std::uint8_t rgba[4 * kSide * kSide] = {};
+  const std::uint32_t width = c.word() % (kSide + 1);
+  if (width == 0) c.expect_refusal();
+  std::size_t size = 0;
+  return breve_png(width, kSide, rgba, c.chance(50) ? 0 : 4 * kSide, nullptr, 0, &size);
 }
 
 constexpr Function kFunctions[] = {
-    {"breve_object_look", look, kBody},
-    {"breve_camera_state", camera, kStale | kType},
-    {"breve_world_view", view},
-    {"breve_world_light", light, kNotFound},
-    {"breve_world_text", text, kNotFound},
-    {"breve_drawing_commands", drawing, kStale | kType, 2},
-    {"breve_line_state", line, kStale | kType, 2},
-    {"breve_image_pixels", pixels, kStale | kType, 2},
-    {"breve_object_material", material, kBody},
-    {"breve_object_force", force, kBody},
-    {"breve_world_sleeping", sleeping, kPlain},
-    {"breve_world_workers", workers, kPlain},
-    {"breve_object_accuracy", accuracy, kBody},
-    {"breve_object_self_collisions", self_collisions, kBody},
-    {"breve_spring_description", spring, kStale | kType, 2},
-    {"breve_world_queue_click_ray", click_ray},
+    {"breve_scene_create", scene_create},
+    {"breve_scene_destroy", scene_destroy},
+    {"breve_scene_read", scene_read, kScriptError},
+    {"breve_scene_rows", scene_rows},
+    {"breve_scene_backdrop", scene_backdrop},
+    {"breve_scene_camera", scene_camera},
+    {"breve_camera_project", camera_project, kNotFound},
+    {"breve_view_create", view_create, kUnsupported | kFile},
+    {"breve_view_destroy", view_destroy},
+    {"breve_view_render", view_render, kScriptError},
+    {"breve_view_depth", view_depth, kNotFound},
+    {"breve_view_set_camera", view_set_camera},
+    {"breve_view_camera", view_camera, kNotFound},
+    {"breve_view_counts", view_counts},
+    {"breve_png", png},
 };
 
 }  // namespace call_views

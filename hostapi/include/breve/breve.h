@@ -761,6 +761,10 @@ BREVE_API breve_status breve_object_mass(const breve_world* world, breve_object 
 BREVE_API breve_status breve_object_set_force(breve_world* world, breve_object object, const double force[3],
                                               const double torque[3]);
 
+/* The force and torque that were set. @param force, torque  each may be NULL. BREVE_OK; BREVE_ERROR_NO_BODY. */
+BREVE_API breve_status breve_object_force(const breve_world* world, breve_object object, double force[3],
+                                          double torque[3]);
+
 /* Coefficients of a body's surface, as set by set-friction and set-restitution. If both bodies of a pair have them, the
    pair uses the geometric mean of each friction coefficient and the maximum of each other coefficient. */
 typedef struct breve_material {
@@ -774,8 +778,16 @@ typedef struct breve_material {
 BREVE_API breve_status breve_object_set_material(breve_world* world, breve_object object,
                                                  const breve_material* material);
 
+/* The surface of a body as breve_object_set_material, set-friction and set-restitution have set it. static_friction,
+   dynamic_friction and restitution are -1 if they were not set; then set-mu and set-e decide.
+   BREVE_OK; BREVE_ERROR_NO_BODY. */
+BREVE_API breve_status breve_object_material(const breve_world* world, breve_object object, breve_material* material);
+
 /* Lets resting bodies sleep. Initially off. */
 BREVE_API breve_status breve_world_set_sleeping(breve_world* world, bool on);
+
+/* The value set by breve_world_set_sleeping. False for NULL. */
+BREVE_API bool breve_world_sleeping(const breve_world* world);
 
 /* Is a resting body asleep until something touches or changes it? BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_asleep(const breve_world* world, breve_object object, bool* asleep);
@@ -906,6 +918,9 @@ BREVE_API breve_status breve_object_set_assembly_pose(breve_world* world, breve_
    BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_set_self_collisions(breve_world* world, breve_object object, bool on);
 
+/* The value set by breve_object_set_self_collisions. BREVE_OK; BREVE_ERROR_NO_BODY. */
+BREVE_API breve_status breve_object_self_collisions(const breve_world* world, breve_object object, bool* on);
+
 /* An elastic connection of two bodies: strength (distance - length) + damping (rate of distance), positive pulling. */
 typedef enum breve_spring_mode {
   BREVE_SPRING_BOTH = 0,
@@ -944,6 +959,11 @@ BREVE_API breve_status breve_spring_create(breve_world* world, const breve_sprin
    spring; BREVE_ERROR_ARGUMENT: outside these ranges; nothing is changed then. */
 BREVE_API breve_status breve_spring_set_description(breve_world* world, breve_object spring,
                                                     const breve_spring* description);
+
+/* The description of a spring. Its bodies are null if they no longer exist.
+   BREVE_OK; BREVE_ERROR_TYPE: the object is not a spring; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
+BREVE_API breve_status breve_spring_description(const breve_world* world, breve_object spring,
+                                                breve_spring* description);
 
 /* The current distance of a spring's points and its force in the last sub-step, N; both 0 if it is not connected.
    @param length, force  may be NULL
@@ -1024,6 +1044,10 @@ BREVE_API breve_status breve_world_accuracy_text(const breve_world* world, const
 BREVE_API breve_status breve_object_set_accuracy(breve_world* world, breve_object object,
                                                  const breve_accuracy* accuracy);
 
+/* The settings that apply to a body: those of its assembly, or the world's.
+   BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
+BREVE_API breve_status breve_object_accuracy(const breve_world* world, breve_object object, breve_accuracy* accuracy);
+
 /* ---- space ------------------------------------------------------------------------------------------------------- */
 
 /* Acceleration of all bodies with physics; (0, -9.81, 0) unless changed. */
@@ -1088,6 +1112,9 @@ BREVE_API breve_status breve_grid_set_concentrations(breve_world* world, breve_o
    are shared by the process, which has no more of them than cores. Only the caller's thread computes a flat world.
    BREVE_OK; BREVE_ERROR_ARGUMENT: out of this range. */
 BREVE_API breve_status breve_world_set_workers(breve_world* world, uint32_t workers);
+
+/* The value set by breve_world_set_workers. 0 for NULL. */
+BREVE_API uint32_t breve_world_workers(const breve_world* world);
 
 /* ---- physics events and counters --------------------------------------------------------------------------------- */
 
@@ -1655,6 +1682,5 @@ BREVE_API void breve_world_interrupt(breve_world* world);
 #include "breve/events.h"
 #include "breve/space.h"
 #include "breve/step.h"
-#include "breve/view.h"
 
 #endif

@@ -38,6 +38,7 @@
 
 #include "breve/analysis.h"
 #include "breve/breve.h"
+#include "breve/view.h"
 
 inline bool operator==(breve_object a, breve_object b) { return a.index == b.index && a.generation == b.generation; }
 inline bool operator!=(breve_object a, breve_object b) { return !(a == b); }
@@ -462,30 +463,6 @@ class World {
   Result<breve_spring> spring_description(Object spring) const {
     return read_struct(breve_spring_default(), breve_spring_description, spring);
   }
-  Result<breve_look> look(Object object) const { return read_struct(breve_look_default(), breve_object_look, object); }
-  /// The null object: the main camera.
-  Result<breve_camera> camera(Object camera = {}) const {
-    return read_struct(breve_camera_default(), breve_camera_state, camera);
-  }
-  Result<breve_view> view() const { return read_struct(breve_view_default(), breve_world_view); }
-  Result<breve_light> light(std::size_t index) const { return read<breve_light>(breve_world_light, index); }
-  Result<breve_text> overlay_text(std::size_t index) const { return read<breve_text>(breve_world_text, index); }
-  Result<std::vector<breve_draw>> drawing(Object drawing) const {
-    return list<breve_draw>(breve_drawing_commands, drawing);
-  }
-  Result<std::size_t> drawing(Object drawing, Room<breve_draw> room) const {
-    return fill(room, breve_drawing_commands, drawing);
-  }
-  Result<breve_line> line(Object line) const { return read<breve_line>(breve_line_state, line); }
-  struct ImageSize {
-    std::uint32_t width, height;
-  };
-  /// Four bytes for each pixel; written if there is room for all.
-  Result<ImageSize> pixels(Object image, Room<unsigned char> room) const {
-    ImageSize size{};
-    const breve_status s = breve_image_pixels(get(), image, room.data, room.capacity, &size.width, &size.height);
-    return {status(s), size};
-  }
 
   // --- joints and springs --------------------------------------------------------------------------------------------
   Result<Object> create_joint(const breve_joint_description& description) {
@@ -879,6 +856,112 @@ class Analysis {
   std::unique_ptr<breve_analysis, Destroy> handle_;
 };
 
+/// Rows of a scene; see breve_rows. Good until the scene is read again.
+template <class Row>
+class Rows {
+ public:
+  explicit Rows(const breve_rows& rows) : rows_(rows) {}
+  std::size_t size() const { return rows_.count; }
+  const Row& operator[](std::size_t i) const {
+    return *reinterpret_cast<const Row*>(static_cast<const char*>(rows_.data) + i * rows_.stride);
+  }
+
+ private:
+  breve_rows rows_;
+};
+
+/// What there is to see in a world; see breve/view.h.
+class Scene {
+ public:
+  Scene() = default;
+  explicit Scene(breve_scene* handle) : handle_(handle) {}  // takes it over
+  static Result<Scene> create() {
+    breve_scene* made = nullptr;
+    const breve_status s = breve_scene_create(&made);
+    return {{s, nullptr}, Scene(made)};
+  }
+  breve_scene* get() const { return handle_.get(); }
+  Status read(World& world) {
+    const breve_status s = breve_scene_read(get(), world.get());
+    return {s, s == BREVE_OK ? nullptr : breve_world_last_error(world.get())};
+  }
+  /// Of a kind whose rows are of that type: rows<breve_instance>(BREVE_SCENE_INSTANCES).
+  template <class Row>
+  Rows<Row> rows(breve_scene_kind kind) const {
+    breve_rows found{};
+    (void)breve_scene_rows(get(), static_cast<std::uint32_t>(kind), &found);
+    return Rows<Row>(found);
+  }
+  breve_backdrop backdrop() const {
+    breve_backdrop filled = breve_backdrop_default();
+    (void)breve_scene_backdrop(get(), &filled);
+    return filled;
+  }
+  Result<breve_camera> camera(std::uint32_t width, std::uint32_t height) {
+    breve_camera found{};
+    const breve_status s = breve_scene_camera(get(), width, height, &found);
+    return {{s, nullptr}, found};
+  }
+
+ private:
+  struct Destroy {
+    void operator()(breve_scene* s) const { breve_scene_destroy(s); }
+  };
+  std::unique_ptr<breve_scene, Destroy> handle_;
+};
+
+/// Where a camera sees a point: pixels from the left and the top, and the distance.
+inline Result<Vector> project(const breve_camera& camera, std::uint32_t width, std::uint32_t height, Vector point) {
+  Vector seen{};
+  const breve_status s = breve_camera_project(&camera, width, height, point.data(), seen.data());
+  return {{s, nullptr}, seen};
+}
+
+/// A picture as a PNG file; rows side by side.
+inline Result<std::vector<std::uint8_t>> png(std::uint32_t width, std::uint32_t height, const std::uint8_t* rgba) {
+  std::vector<std::uint8_t> bytes;
+  std::size_t size = 0;
+  breve_status s = breve_png(width, height, rgba, 0, nullptr, 0, &size);
+  if (s == BREVE_OK) {
+    bytes.resize(size);
+    s = breve_png(width, height, rgba, 0, bytes.data(), bytes.size(), &size);
+  }
+  return {{s, nullptr}, std::move(bytes)};
+}
+
+/// Draws worlds; see breve/view.h. Made by Runtime::view.
+class View {
+ public:
+  View() = default;
+  explicit View(breve_view* handle) : handle_(handle) {}  // takes it over
+  breve_view* get() const { return handle_.get(); }
+  /// @param rgba  rows from the top; see breve_view_render
+  Status render(World& world, std::uint8_t* rgba, std::size_t stride = 0) {
+    const breve_status s = breve_view_render(get(), world.get(), rgba, stride);
+    return {s, s == BREVE_OK ? nullptr : breve_world_last_error(world.get())};
+  }
+  Status depth(float* to, std::size_t stride = 0) const { return {breve_view_depth(get(), to, stride), nullptr}; }
+  Status set_camera(const breve_camera& camera) { return {breve_view_set_camera(get(), &camera), nullptr}; }
+  /// Look through the program's camera again.
+  Status reset_camera() { return {breve_view_set_camera(get(), nullptr), nullptr}; }
+  Result<breve_camera> camera() const {
+    breve_camera found{};
+    const breve_status s = breve_view_camera(get(), &found);
+    return {{s, nullptr}, found};
+  }
+  breve_view_counters counters() const {
+    breve_view_counters filled = breve_view_counters_default();
+    (void)breve_view_counts(get(), &filled);
+    return filled;
+  }
+
+ private:
+  struct Destroy {
+    void operator()(breve_view* v) const { breve_view_destroy(v); }
+  };
+  std::unique_ptr<breve_view, Destroy> handle_;
+};
+
 /// The files below some directories, for breve_runtime_config.files. Runtimes created with them keep them alive.
 class Files {
  public:
@@ -937,6 +1020,12 @@ class Runtime {
     breve_world* made = nullptr;
     const breve_status s = breve_world_create(get(), program.get(), &config, &made);
     return {status(s), World(made)};
+  }
+  /// Creates a view, which draws worlds without a screen; see breve_view_config_default().
+  Result<View> view(const breve_view_config& config = breve_view_config_default()) {
+    breve_view* made = nullptr;
+    const breve_status s = breve_view_create(get(), &config, &made);
+    return {status(s), View(made)};
   }
   /// Runs many worlds of a program; see breve_batch_default(). The outcome of each, by index.
   Result<std::vector<breve_outcome>> run(const Program& program, const breve_batch& batch) {

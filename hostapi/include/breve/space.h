@@ -154,6 +154,11 @@ typedef bool (*breve_may_collide_fn)(void* user, breve_world* world, breve_objec
    BREVE_OK. */
 BREVE_API breve_status breve_world_set_may_collide(breve_world* world, breve_may_collide_fn function, void* user);
 
+/* Queues a click on the first body that a ray meets, or on nothing: breve_world_ray_first, then breve_world_queue_click.
+   @param start, way  as in breve_world_ray_first: from the camera's location through the pixel
+   Returns the same statuses as breve_world_ray_first. */
+BREVE_API breve_status breve_world_queue_click_ray(breve_world* world, const double start[3], const double way[3]);
+
 /* ---- forces ------------------------------------------------------------------------------------------------------ */
 
 /* Push bodies with physics. breve_object_set_force sets a force that stays; these come on top of it. What is set here and

@@ -1,5 +1,18 @@
-/* view.h: what scripts want to be seen: looks, cameras, lights, fog, texts, drawings, pictures, for hosts that draw a world
- * themselves. A part of breve.h, whose rules hold here.
+/* breve/view.h: what there is to see in a world. A host with a renderer of its own reads the scene: instances of shared
+ * meshes, lines, text, cameras, lights. Any other host has the library draw it into an array of pixels, without a screen.
+ *
+ *     breve_scene* scene;                                   breve_view* view;
+ *     breve_scene_create(&scene);                           breve_view_create(runtime, NULL, &view);
+ *     breve_scene_read(scene, world);                       breve_view_render(view, world, pixels, 0);
+ *     breve_scene_rows(scene, BREVE_SCENE_INSTANCES, &rows);
+ *
+ * The rules of breve.h hold here as well. Neither a scene nor a view belongs to a world: each reads the world that it is
+ * given, at that moment, changes nothing in it, and keeps only copies. A scene or a view is used by one thread at a time;
+ * different ones may be used by different threads. Their memory comes from the C++ allocator. While none is made nothing
+ * of this costs anything: no mesh is built, no picture is decoded, no graphics library is loaded.
+ *
+ * Numbers here are float, as renderers take them; what is too large for one is cut off at 1e18. Colours are red, green,
+ * blue and alpha from 0 to 1, encoded as sRGB, as scripts give them.
  */
 #ifndef BREVE_VIEW_H
 #define BREVE_VIEW_H
@@ -10,192 +23,267 @@
 extern "C" {
 #endif
 
-/* ---- what is to be seen ------------------------------------------------------------------------------------------ */
+/* ---- the scene --------------------------------------------------------------------------------------------------- */
 
-/* Scripts say how their world is to look, and nothing here draws. Poses are in breve_objects_property, shapes in
-   breve_object_shape, colours there as well, menus in breve_world_menu_items. Colours are red, green, blue from 0 to 1.
-   Texts are owned by the world until script runs in it again. None of these functions runs script. */
+typedef struct breve_scene breve_scene;
 
-/* How one body is drawn. */
-typedef struct breve_look {
-  size_t struct_size;    /* as breve_look_default gives it */
-  double color[3];       /* 1, 1, 1 unless a script set it */
-  double alpha;          /* 1 is opaque */
-  const char* label;     /* to be written beside it; "" for none */
-  breve_object texture;  /* an Image on its surface; null: none */
-  breve_object bitmap;   /* an Image that faces the camera in place of the shape; null: none */
-  breve_object lightmap; /* an Image that faces the camera as a glow; null: none */
-  double texture_scale[2]; /* size of one tile of the texture, length units */
-  double bitmap_heading;   /* rad, in the plane of the screen */
-  bool visible;
-  bool shadows;      /* it casts some */
-  bool as_point;     /* a point in place of the shape */
-  bool bounding_box; /* with its bounds */
-  bool axes;         /* with its own axes */
-  bool neighbors;    /* with lines to its neighbours */
-  bool reserved[2];
-} breve_look;
+/* Rows that lie in an array of the library: the first one, how many there are, and the bytes from one to the next. These
+   rows grow as structs with struct_size do: a later library may have longer ones, so a host steps by `stride`. They are
+   good until the next call of breve_scene_read on that scene. */
+typedef struct breve_rows {
+  const void* data; /* NULL if there are none */
+  size_t count;
+  size_t stride;
+} breve_rows;
 
-/* All zero, to be filled in. */
-static inline breve_look breve_look_default(void) {
-  breve_look look;
-  breve_clear(&look, sizeof look);
-  look.struct_size = sizeof look;
-  return look;
-}
+/* What a scene has rows of. */
+typedef enum breve_scene_kind {
+  BREVE_SCENE_INSTANCES = 0, /* breve_instance, in order of creation */
+  BREVE_SCENE_MESHES = 1,    /* breve_mesh */
+  BREVE_SCENE_TEXTURES = 2,  /* breve_texture */
+  BREVE_SCENE_LINES = 3,     /* breve_line: drawings, traces, springs, lines to neighbours, bounding boxes, axes */
+  BREVE_SCENE_TRIANGLES = 4, /* breve_vertex, three for each triangle: polygons that scripts draw */
+  BREVE_SCENE_SPRITES = 5,   /* breve_sprite: pictures that face the camera, and points */
+  BREVE_SCENE_SHEETS = 6,    /* breve_sheet: flat grids of cells. Cells of other grids are instances of the box */
+  BREVE_SCENE_LABELS = 7,    /* breve_label */
+  BREVE_SCENE_TEXTS = 8,     /* breve_overlay_text */
+  BREVE_SCENE_CAMERAS = 9,   /* breve_camera, the main one first */
+  BREVE_SCENE_LIGHTS = 10    /* breve_light, the main one first */
+} breve_scene_kind;
 
-/* BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
-BREVE_API breve_status breve_object_look(const breve_world* world, breve_object object, breve_look* look);
+#define BREVE_NO_TEXTURE UINT32_MAX
 
-/* Where a camera stands and looks. */
-typedef struct breve_camera {
-  size_t struct_size; /* as breve_camera_default gives it */
-  double location[3];
-  double target[3];     /* the place that it looks at */
-  double up[3];         /* unit, upright to its view */
-  double field_of_view; /* rad, from top to bottom */
-  double far_plane;     /* length units: what is beyond is not drawn */
-  double corner[2];     /* of its part of the window, pixels; the main camera has the whole window, and 0, 0 here */
-  double size[2];       /* of that part; 0, 0 for the main camera */
-  bool enabled;
-  bool text; /* with the texts of breve_world_text */
-  bool reserved[6];
-} breve_camera;
+/* A mesh drawn at a place. */
+typedef struct breve_instance {
+  breve_object object;    /* the body or grid that it shows */
+  float transform[12];    /* three rows of four: world = transform * (x, y, z, 1) */
+  float color[4];
+  float texture_scale[2]; /* length units that one tile of the texture takes, across and along */
+  uint32_t mesh;          /* row of BREVE_SCENE_MESHES */
+  uint32_t texture;       /* row of BREVE_SCENE_TEXTURES, or BREVE_NO_TEXTURE */
+  uint32_t casts_shadow;  /* 0 or 1 */
+  uint32_t fixed;         /* 1: a Stationary or Terrain */
+} breve_instance;
 
-/* All zero, to be filled in. */
-static inline breve_camera breve_camera_default(void) {
-  breve_camera camera;
-  breve_clear(&camera, sizeof camera);
-  camera.struct_size = sizeof camera;
-  return camera;
-}
+/* Triangles that instances share. Bodies with shapes that look alike have the same mesh: there is one for all spheres. */
+typedef struct breve_mesh {
+  const float* positions; /* 3 for each vertex; NULL in a row that is not in use */
+  const float* normals;   /* 3 for each vertex, of unit length */
+  const float* uvs;       /* 2 for each vertex: 0 to 1 over a terrain, else 0 */
+  const float* colors;    /* 3 for each vertex, in place of the instance's; NULL: none */
+  const uint32_t* indices; /* 3 for each triangle, counter-clockwise seen from outside */
+  size_t vertex_count, index_count;
+  uint64_t revision;      /* another number when this row holds another mesh, or a changed one */
+} breve_mesh;
 
-/* @param camera  an object of class Camera (breve_world_objects lists them); null: the main one
-   BREVE_OK; BREVE_ERROR_TYPE: the object is not a camera; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
-BREVE_API breve_status breve_camera_state(const breve_world* world, breve_object camera, breve_camera* state);
+typedef struct breve_texture {
+  breve_object image;  /* the Image object */
+  const uint8_t* rgba; /* 4 for each pixel, rows from the top; NULL in a row that is not in use */
+  uint32_t width, height;
+  uint64_t revision;   /* another number when the pixels are others */
+} breve_texture;
 
-/* What is around all bodies. */
-typedef struct breve_view {
-  size_t struct_size;       /* as breve_view_default gives it */
-  double background[3];     /* its colour */
-  breve_object backdrop;    /* an Image behind everything; null: none */
-  double backdrop_scroll[2]; /* widths of it in each drawn frame */
-  double fog_color[3];
-  double fog_start, fog_end; /* length units from the camera */
-  double fog_intensity;
-  double blur; /* how much of the last frame stays, 0 to 1; 0 unless `blurs` */
-  double text_scale;
-  uint64_t clears;        /* how often a script has asked for an empty screen */
-  breve_object selection; /* what was clicked last; null: nothing */
-  bool fog, lighting, shadows, shadow_volumes, reflections, blurs, outlines, texts; /* what is switched on */
-} breve_view;
-
-/* All zero, to be filled in. */
-static inline breve_view breve_view_default(void) {
-  breve_view view;
-  breve_clear(&view, sizeof view);
-  view.struct_size = sizeof view;
-  return view;
-}
-
-/* BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
-BREVE_API breve_status breve_world_view(const breve_world* world, breve_view* view);
-
-/* One of the eight lights. Frozen. */
-typedef struct breve_light {
-  double location[3];
-  double ambient[3], diffuse[3], specular[3]; /* colours */
-} breve_light;
-
-/* The light at `index`, from 0. BREVE_OK; BREVE_ERROR_NOT_FOUND if index is not below 8. */
-BREVE_API breve_status breve_world_light(const breve_world* world, size_t index, breve_light* light);
-
-/* One of the eight lines of text over the view. Frozen. */
-typedef struct breve_text {
-  const char* text;   /* "" where there is none */
-  double location[2]; /* -1 to 1 across the window, from the lower left */
-  double color[3];
-} breve_text;
-
-/* The line at `index`, from 0. BREVE_OK; BREVE_ERROR_NOT_FOUND if index is not below 8. */
-BREVE_API breve_status breve_world_text(const breve_world* world, size_t index, breve_text* text);
-
-typedef enum breve_draw_kind {
-  BREVE_DRAW_COLOR = 0,       /* from now on: `to` is red, green, blue, `value` alpha */
-  BREVE_DRAW_LINE_WIDTH = 1,  /* from now on: `value` pixels */
-  BREVE_DRAW_LINE_STYLE = 2,  /* from now on: the bits of `style` */
-  BREVE_DRAW_LINE = 3,        /* from `from` to `to` */
-  BREVE_DRAW_CORNER = 4,      /* the next corner of a polygon: `to` */
-  BREVE_DRAW_END_POLYGON = 5  /* its corners since the last one of these make the polygon */
-} breve_draw_kind;
-
-/* One command of a drawing. Frozen. */
-typedef struct breve_draw {
-  uint32_t kind;  /* breve_draw_kind */
-  uint32_t style; /* 16 bits: bit i is set where the pattern draws */
-  double from[3], to[3];
-  double value;
-} breve_draw;
-
-/* What an object of class Drawing draws, in order; a new drawing is white, 1 pixel wide, and draws whole lines.
-   @param commands  room for `capacity`; NULL only if capacity is 0
-   @param count     how many there are, also where that is more than capacity: at most capacity are written
-   BREVE_OK; BREVE_ERROR_TYPE: the object is not a drawing. */
-BREVE_API breve_status breve_drawing_commands(const breve_world* world, breve_object drawing, breve_draw* commands,
-                                              size_t capacity, size_t* count);
-
-/* A line between the centres of two bodies. Frozen. */
 typedef struct breve_line {
-  breve_object from, to; /* null if it is not connected, or the body is gone */
-  double color[3], alpha;
-  uint32_t style; /* as of breve_draw */
-  uint32_t reserved;
+  float from[3], to[3];
+  float color[4];
+  float width;      /* pixels */
+  uint32_t pattern; /* bit i of 16: the i-th two pixels are drawn, over and over */
 } breve_line;
 
-/* An object of class Line. BREVE_OK; BREVE_ERROR_TYPE: the object is not a line. */
-BREVE_API breve_status breve_line_state(const breve_world* world, breve_object line, breve_line* state);
+typedef struct breve_vertex {
+  float position[3];
+  float color[4];
+} breve_vertex;
 
-/* The pixels of an object of class Image: red, green, blue and alpha, a byte each, rows from the top.
-   @param pixels         room for `capacity` bytes; NULL only if capacity is 0. Where the picture needs more nothing is
-                         written to it: call again with room
-   @param width, height  of the picture; 0, 0: it has none yet
-   BREVE_OK; BREVE_ERROR_TYPE: the object is not an image. */
-BREVE_API breve_status breve_image_pixels(const breve_world* world, breve_object image, void* pixels, size_t capacity,
-                                          uint32_t* width, uint32_t* height);
+typedef struct breve_sprite {
+  breve_object object;
+  float center[3];
+  float size;       /* its side in length units; of a point: its diameter in pixels */
+  float heading;    /* rad, counter-clockwise on the screen */
+  float color[4];
+  uint32_t texture; /* row of BREVE_SCENE_TEXTURES */
+  uint32_t glow;    /* 1: it is added to what is behind it */
+  uint32_t point;   /* 1: a disc without a texture */
+} breve_sprite;
 
-/* ---- what was set ------------------------------------------------------------------------------------------------ */
+typedef struct breve_sheet {
+  breve_object object;
+  float corner[3], across[3], along[3]; /* its low corner and its sides */
+  uint32_t columns, rows;
+  const uint8_t* rgba; /* a pixel for each cell, those along `across` first */
+  uint64_t revision;
+} breve_sheet;
 
-/* The surface of a body as breve_object_set_material, set-friction and set-restitution have set it; static_friction,
-   dynamic_friction and restitution are -1 where they have not, and set-mu and set-e decide. BREVE_OK; BREVE_ERROR_NO_BODY. */
-BREVE_API breve_status breve_object_material(const breve_world* world, breve_object object, breve_material* material);
+typedef struct breve_label {
+  breve_object object;
+  float place[3]; /* the text stands above it */
+  const char* text;
+} breve_label;
 
-/* The force and torque that were set. @param force, torque  each may be NULL. BREVE_OK; BREVE_ERROR_NO_BODY. */
-BREVE_API breve_status breve_object_force(const breve_world* world, breve_object object, double force[3],
-                                          double torque[3]);
+typedef struct breve_overlay_text {
+  const char* text;
+  float x, y; /* of the picture, -1 to 1: where its baseline begins */
+  float color[3];
+} breve_overlay_text;
 
-/* breve_world_set_sleeping. False for NULL. */
-BREVE_API bool breve_world_sleeping(const breve_world* world);
+/* A camera stands at target + offset. Without rotation it looks along -z; it is pitched about x, then turned about y. */
+typedef struct breve_camera {
+  breve_object object; /* null: the controller's */
+  double target[3], offset[3];
+  double pitch, yaw;      /* rad */
+  double field_of_view;   /* rad, vertical */
+  double far_plane;       /* length units */
+  double window[4];       /* x, y, width, height in pixels from the lower left; all 0: the whole picture */
+  uint32_t automatic;     /* 1: the program has placed none, and whoever draws shows the whole scene */
+  uint32_t orthographic;  /* 1: half the height of the picture is distance * tan(field_of_view / 2) */
+} breve_camera;
 
-/* breve_world_set_workers. 0 for NULL. */
-BREVE_API uint32_t breve_world_workers(const breve_world* world);
+typedef struct breve_light {
+  double position[3];
+  float ambient[3], diffuse[3], specular[3]; /* factors, not encoded */
+} breve_light;
 
-/* The settings that are in force for a body: those of its assembly, or the world's.
-   BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
-BREVE_API breve_status breve_object_accuracy(const breve_world* world, breve_object object, breve_accuracy* accuracy);
+/* What there is one of. */
+typedef struct breve_backdrop {
+  size_t struct_size; /* as breve_backdrop_default gives it */
+  float color[3];
+  uint32_t texture;   /* row of BREVE_SCENE_TEXTURES, or BREVE_NO_TEXTURE */
+  float scroll[2];    /* texture widths and heights by which it has slid */
+  uint32_t mountains; /* 1: the built-in sky box */
+  uint32_t fog;       /* 1: on */
+  float fog_start, fog_end, fog_intensity; /* length units from the camera */
+  float fog_color[3];
+  uint32_t dimension; /* 2 or 3 */
+  uint32_t lighting, shadows, reflections, outline, text; /* 0 or 1: what the program has switched on */
+  double time;        /* simulated, s */
+  uint64_t iteration;
+} breve_backdrop;
 
-/* breve_object_set_self_collisions. BREVE_OK; BREVE_ERROR_NO_BODY. */
-BREVE_API breve_status breve_object_self_collisions(const breve_world* world, breve_object object, bool* on);
+/* All zero, to be filled in. */
+static inline breve_backdrop breve_backdrop_default(void) {
+  breve_backdrop backdrop;
+  breve_clear(&backdrop, sizeof backdrop);
+  backdrop.struct_size = sizeof backdrop;
+  return backdrop;
+}
 
-/* What a spring was given. Its bodies are null where they are gone.
-   BREVE_OK; BREVE_ERROR_TYPE: the object is not a spring; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
-BREVE_API breve_status breve_spring_description(const breve_world* world, breve_object spring,
-                                                breve_spring* description);
+/* An empty scene.
+   @param scene  to be given back to breve_scene_destroy
+   BREVE_OK; BREVE_ERROR_MEMORY. */
+BREVE_API breve_status breve_scene_create(breve_scene** scene);
 
-/* Queue a click on the first body that a ray meets, or on nothing: what breve_world_ray_first finds, then
-   breve_world_queue_click.
-   @param start, way  as of breve_world_ray_first: from the camera's location through the pixel
-   As breve_world_ray_first. */
-BREVE_API breve_status breve_world_queue_click_ray(breve_world* world, const double start[3], const double way[3]);
+/* NULL is nothing. */
+BREVE_API void breve_scene_destroy(breve_scene* scene);
+
+/* Read what there is to see in the world now. Meshes and textures keep their rows from one reading to the next. Runs no
+   script, changes nothing that breve_world_hash covers. May be called from a callback while script runs.
+   BREVE_OK; BREVE_ERROR_MEMORY: then the scene is empty. */
+BREVE_API breve_status breve_scene_read(breve_scene* scene, breve_world* world);
+
+/* The rows of one part of what was read last.
+   @param part  breve_scene_kind
+   BREVE_OK; BREVE_ERROR_ARGUMENT. */
+BREVE_API breve_status breve_scene_rows(const breve_scene* scene, uint32_t part, breve_rows* rows);
+
+/* BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
+BREVE_API breve_status breve_scene_backdrop(const breve_scene* scene, breve_backdrop* backdrop);
+
+/* The main camera for a picture of that size: the program's, or one that shows all that moves. Shape of the picture alone
+   counts. An automatic camera glides from one call to the next, so that it does not jump.
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a side is 0. */
+BREVE_API breve_status breve_scene_camera(breve_scene* scene, uint32_t width, uint32_t height, breve_camera* camera);
+
+/* Where a camera sees a point.
+   @param seen  pixels from the left and from the top of the picture; and the distance along the line of sight
+   BREVE_OK; BREVE_ERROR_ARGUMENT; BREVE_ERROR_NOT_FOUND: it is behind the camera. */
+BREVE_API breve_status breve_camera_project(const breve_camera* camera, uint32_t width, uint32_t height,
+                                            const double point[3], double seen[3]);
+
+/* ---- pictures ---------------------------------------------------------------------------------------------------- */
+
+/* Draws scenes in main memory (OpenGL on OSMesa). */
+typedef struct breve_view breve_view;
+
+typedef enum breve_look {
+  BREVE_LOOK_FULL = 0, /* what a program leaves open is made good-looking: soft light, sky, haze */
+  BREVE_LOOK_PLAIN = 1 /* nothing but the colours and lights that the program sets */
+} breve_look;
+
+typedef struct breve_view_config {
+  size_t struct_size; /* as breve_view_config_default gives it */
+  uint32_t width, height; /* pixels, 1 to 16384. Default 640 x 480 */
+  uint32_t samples;   /* of each pixel, against jagged edges: 1, 2 or 4. Default 4 */
+  uint32_t look;      /* breve_look. Default BREVE_LOOK_FULL */
+  const char* font;   /* a file of TrueType or OpenType, read now; NULL: DejaVu Sans. Without it no text is drawn. Default
+                         NULL */
+} breve_view_config;
+
+/* The defaults named above. */
+static inline breve_view_config breve_view_config_default(void) {
+  breve_view_config config;
+  breve_clear(&config, sizeof config);
+  config.struct_size = sizeof config;
+  config.width = 640;
+  config.height = 480;
+  config.samples = 4;
+  return config;
+}
+
+/* What the last picture took. */
+typedef struct breve_view_counters {
+  size_t struct_size; /* as breve_view_counters_default gives it */
+  uint64_t draw_calls; /* does not grow with the number of bodies of one shape */
+  uint64_t instances, triangles;
+  uint64_t uploads; /* meshes and textures that were new */
+} breve_view_counters;
+
+/* All zero, to be filled in. */
+static inline breve_view_counters breve_view_counters_default(void) {
+  breve_view_counters counters;
+  breve_clear(&counters, sizeof counters);
+  counters.struct_size = sizeof counters;
+  return counters;
+}
+
+/* Make a view: this is when the graphics library is loaded.
+   @param config  copied; NULL: the defaults
+   @param view    to be given back to breve_view_destroy
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a size, a number of samples or a look that there is none of; BREVE_ERROR_FILE: no font;
+   BREVE_ERROR_UNSUPPORTED: OSMesa is not installed, or the library was built without BREVE_WITH_RENDER. The text is in
+   breve_runtime_last_error. */
+BREVE_API breve_status breve_view_create(breve_runtime* runtime, const breve_view_config* config, breve_view** view);
+
+/* NULL is nothing. */
+BREVE_API void breve_view_destroy(breve_view* view);
+
+/* Draw the world as it is now. As breve_scene_read.
+   @param rgba    rows from the top, 4 bytes a pixel; alpha is 255
+   @param stride  bytes from one row to the next; 0: they lie side by side
+   BREVE_OK; BREVE_ERROR_ARGUMENT: `stride` is too small; BREVE_ERROR_MEMORY. */
+BREVE_API breve_status breve_view_render(breve_view* view, breve_world* world, uint8_t* rgba, size_t stride);
+
+/* How far each pixel of the last picture is away, in length units along the line of sight; infinite where nothing is.
+   Inside a sub-window the numbers mean nothing.
+   BREVE_OK; BREVE_ERROR_ARGUMENT: `stride` is too small or no multiple of 4; BREVE_ERROR_NOT_FOUND: no picture yet. */
+BREVE_API breve_status breve_view_depth(const breve_view* view, float* depth, size_t stride);
+
+/* Look through this camera from now on; NULL: through the program's.
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a number is not finite. */
+BREVE_API breve_status breve_view_set_camera(breve_view* view, const breve_camera* camera);
+
+/* The camera of the last picture, as it was placed.
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: no picture yet. */
+BREVE_API breve_status breve_view_camera(const breve_view* view, breve_camera* camera);
+
+/* BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
+BREVE_API breve_status breve_view_counts(const breve_view* view, breve_view_counters* counters);
+
+/* The bytes of a PNG file.
+   @param bytes  room for `capacity`; NULL only if capacity is 0
+   @param size   how many there are, also where that is more than capacity: then nothing is written
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a side is not from 1 to 32768, or `stride` is too small. */
+BREVE_API breve_status breve_png(uint32_t width, uint32_t height, const uint8_t* rgba, size_t stride, uint8_t* bytes,
+                                 size_t capacity, size_t* size);
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,136 @@
+// Lines in SVG. Colours are those of Okabe and Ito (2008), which people of all kinds of vision tell apart.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "plot.hpp"
+
+namespace breve::command {
+
+namespace {
+
+constexpr double kWidth = 900, kHeight = 520, kLeft = 92, kRight = 24, kTop = 64, kBottom = 74;
+constexpr std::array<std::string_view, 7> kInks{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                                "#e69f00", "#56b4e9", "#333333"};
+constexpr std::size_t kMostPoints = 2000;  // of a line: more are not seen
+
+struct Range {
+  double low = 0, high = 1;
+  bool any = false;
+  void take(double number) {
+    if (!std::isfinite(number)) return;
+    low = any ? std::min(low, number) : number;
+    high = any ? std::max(high, number) : number;
+    any = true;
+  }
+  void widen() {
+    if (high > low) return;
+    const double half = std::max(std::abs(low) * 0.05, 1e-9);
+    low -= half;
+    high += half;
+  }
+  double part(double number) const { return (number - low) / (high - low); }
+};
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '<')
+      out += "&lt;";
+    else if (c == '&')
+      out += "&amp;";
+    else if (c == '>')
+      out += "&gt;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+double x_at(const Range& x, double number) { return kLeft + x.part(number) * (kWidth - kLeft - kRight); }
+double y_at(const Range& y, double number) { return kHeight - kBottom - y.part(number) * (kHeight - kTop - kBottom); }
+
+std::string mark_text(double mark, double step) {
+  return std::abs(mark) < step * 1e-6 ? "0" : fmt::format("{:.6g}", mark);
+}
+
+std::string axes(const Range& x, const Range& y, const std::string& x_axis) {
+  std::string svg;
+  const auto across = axis_marks(x.low, x.high, 8), along = axis_marks(y.low, y.high, 6);
+  for (const double mark : along) {
+    const double at = y_at(y, mark);
+    svg += fmt::format("<line x1='{}' x2='{}' y1='{:.1f}' y2='{:.1f}' stroke='#e3e6ea'/>\n", kLeft, kWidth - kRight, at,
+                       at);
+    svg += fmt::format("<text x='{}' y='{:.1f}' text-anchor='end' class='m'>{}</text>\n", kLeft - 10, at + 6,
+                       mark_text(mark, along.size() > 1 ? along[1] - along[0] : 1));
+  }
+  for (const double mark : across) {
+    const double at = x_at(x, mark);
+    svg += fmt::format("<line x1='{0:.1f}' x2='{0:.1f}' y1='{1}' y2='{2}' stroke='#9aa3ad'/>\n", at, kHeight - kBottom,
+                       kHeight - kBottom + 6);
+    svg += fmt::format("<text x='{:.1f}' y='{}' text-anchor='middle' class='m'>{}</text>\n", at, kHeight - kBottom + 26,
+                       mark_text(mark, across.size() > 1 ? across[1] - across[0] : 1));
+  }
+  svg += fmt::format("<line x1='{0}' x2='{1}' y1='{2}' y2='{2}' stroke='#9aa3ad'/>\n", kLeft, kWidth - kRight,
+                     kHeight - kBottom);
+  svg += fmt::format("<text x='{:.1f}' y='{}' text-anchor='middle'>{}</text>\n", (kLeft + kWidth - kRight) / 2,
+                     kHeight - 18, escaped(x_axis));
+  return svg;
+}
+
+/// A line that breaks where there is no number.
+std::string line(const Series& series, std::size_t column, const Range& x, const Range& y) {
+  std::string path;
+  bool drawing = false;
+  const std::size_t rows = series.times.size(), step = rows / kMostPoints + 1;
+  for (std::size_t row = 0; row < rows; row += step) {
+    const double number = series.columns[column][row];
+    if (std::isfinite(number))
+      path += fmt::format("{}{:.1f},{:.1f} ", drawing ? "L" : "M", x_at(x, series.times[row]), y_at(y, number));
+    drawing = std::isfinite(number);
+  }
+  return fmt::format("<path d='{}' fill='none' stroke='{}' stroke-width='2.6' stroke-linejoin='round'/>\n", path,
+                     kInks[column % kInks.size()]);
+}
+
+}  // namespace
+
+std::vector<double> axis_marks(double low, double high, int count) {
+  if (!(high > low) || count < 1) return {low};
+  const double rough = (high - low) / count, power = std::pow(10, std::floor(std::log10(rough)));
+  const double of = rough / power;
+  const double step = power * (of < 1.5 ? 1 : of < 3.5 ? 2 : of < 7.5 ? 5 : 10);
+  std::vector<double> marks;
+  for (double i = std::ceil(low / step - 1e-9); i * step <= high + step * 1e-9; ++i) marks.push_back(i * step);
+  return marks;
+}
+
+std::string series_svg(const Series& series, const std::string& x_axis, const std::string& title) {
+  Range x, y;
+  for (const double time : series.times) x.take(time);
+  for (const auto& column : series.columns)
+    for (const double number : column) y.take(number);
+  x.widen();
+  y.widen();
+  std::string svg = fmt::format(
+      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {0} {1}' width='{0}' height='{1}' "
+      "font-family='DejaVu Sans, Helvetica, Arial, sans-serif' font-size='19' fill='#2b3138'>\n"
+      "<style>.m{{font-size:17px;fill:#5b6570}}</style>\n<title>{2}</title>\n"
+      "<rect width='{0}' height='{1}' fill='#ffffff'/>\n",
+      kWidth, kHeight, escaped(title));
+  svg += axes(x, y, x_axis);
+  double place = kLeft;
+  for (std::size_t i = 0; i < series.columns.size(); ++i) {
+    svg += line(series, i, x, y);
+    svg +=
+        fmt::format("<rect x='{0}' y='26' width='26' height='5' rx='2.5' fill='{1}'/><text x='{2}' y='35'>{3}</text>\n",
+                    place, kInks[i % kInks.size()], place + 34, escaped(series.names[i]));
+    place += 64 + 11.5 * static_cast<double>(series.names[i].size());
+  }
+  return svg + "</svg>\n";
+}
+
+}  // namespace breve::command

@@ -1,0 +1,76 @@
+// Sorting of instances.
+#include "runtime/render/batches.hpp"
+
+#include <algorithm>
+
+namespace breve::render {
+
+namespace {
+
+constexpr float kOpaque = 0.999F;
+
+struct Item {
+  std::uint32_t mesh, texture;
+  std::uint32_t number;  // of the instance
+  float away;
+};
+
+std::uint32_t mesh_for(const SceneInstance& instance, const SceneMesh& mesh, const BatchView& view) {
+  if (mesh.form != SceneMesh::Form::Sphere || !view.lens) return instance.mesh;
+  const Vector3f center = instance.place.col(3);
+  const float pixels = radius_of(instance, mesh) * view.lens->scale_at(center, view.height);
+  constexpr float kSmall = 14;
+  if (view.discs && pixels < kSmall && instance.texture == kNoTexture && instance.color.w() >= kOpaque)
+    return kDiscMesh;
+  const std::uint32_t level = pixels < 7 ? 0 : pixels < 28 ? 1 : pixels < 110 ? 2 : 3;
+  return kSphereMesh + level;
+}
+
+GpuInstance packed(const SceneInstance& instance, std::size_t layer) {
+  const Place& p = instance.place;
+  return {p.row(0),
+          p.row(1),
+          p.row(2),
+          instance.color,
+          {instance.texture_scale.x(), instance.texture_scale.y(), instance.lit ? (instance.fixed ? 2.0F : 1.0F) : 0.0F,
+           static_cast<float>(layer)}};
+}
+
+void collect(const Scene& scene, const std::vector<Item>& items, std::vector<GpuInstance>& instances,
+             std::vector<Batch>& batches) {
+  for (const Item& item : items) {
+    if (batches.empty() || batches.back().mesh != item.mesh || batches.back().texture != item.texture)
+      batches.push_back({item.mesh, item.texture, instances.size(), 0});
+    ++batches.back().count;
+    instances.push_back(packed(scene.instances[item.number], item.number));
+  }
+}
+
+}  // namespace
+
+Batches batch(const Scene& scene, const BatchView& view, Wanted wanted, const SceneInstance* without) {
+  std::vector<Item> opaque, transparent;
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const SceneInstance& instance = scene.instances[i];
+    if (instance.color.w() <= 0 || &instance == without || (wanted && !wanted(instance))) continue;
+    const SceneMesh& mesh = scene.meshes[instance.mesh];
+    if (mesh.indices.empty()) continue;
+    const Vector3f center = instance.place.col(3);
+    const float away = view.lens ? (view.lens->eye - center).dot(view.lens->back) : 0;
+    const Item item{mesh_for(instance, mesh, view), instance.texture, i, away};
+    (instance.color.w() < kOpaque ? transparent : opaque).push_back(item);
+  }
+  std::stable_sort(opaque.begin(), opaque.end(), [](const Item& a, const Item& b) {
+    return a.mesh != b.mesh ? a.mesh < b.mesh : a.texture < b.texture;
+  });
+  if (view.by_distance)
+    std::stable_sort(transparent.begin(), transparent.end(),
+                     [](const Item& a, const Item& b) { return a.away > b.away; });
+  Batches batches;
+  batches.instances.reserve(opaque.size() + transparent.size());
+  collect(scene, opaque, batches.instances, batches.opaque);
+  collect(scene, transparent, batches.instances, batches.transparent);
+  return batches;
+}
+
+}  // namespace breve::render

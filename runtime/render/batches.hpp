@@ -1,0 +1,41 @@
+// Which instances are drawn in one call: those of one mesh with one texture. What is transparent is drawn from back to
+// front, and in one call as far as neighbours in that order agree.
+#pragma once
+
+#include <vector>
+
+#include "runtime/render/buffers.hpp"
+#include "runtime/scene/camera_math.hpp"
+
+namespace breve::render {
+
+/// Spheres are drawn by a mesh that is as fine as their size in the picture asks for.
+inline constexpr std::uint32_t kSphereLevels = 4;
+inline constexpr std::uint32_t kSphereMesh = 0xfffffff0U;  // of level i: kSphereMesh + i
+/// Small spheres without a texture are a square that the shader shades as one.
+inline constexpr std::uint32_t kDiscMesh = 0xffffffefU;
+
+struct Batch {
+  std::uint32_t mesh = 0, texture = kNoTexture;
+  std::size_t first = 0, count = 0;
+};
+
+struct Batches {
+  std::vector<GpuInstance> instances;  // as they are uploaded
+  std::vector<Batch> opaque, transparent;
+};
+
+struct BatchView {
+  const Lens* lens = nullptr;
+  float height = 0;         // of the picture, pixels
+  bool discs = true;        // small spheres may be squares: not in a shadow map
+  bool by_distance = true;  // transparent ones from back to front; of a flat world in order of creation
+};
+
+/// @param wanted  which instances; null: all
+/// @param without  one that is left out; null: none
+using Wanted = bool (*)(const SceneInstance& instance);
+Batches batch(const Scene& scene, const BatchView& view, Wanted wanted = nullptr,
+              const SceneInstance* without = nullptr);
+
+}  // namespace breve::render

@@ -1,0 +1,92 @@
+// Uploads.
+#include "runtime/render/buffers.hpp"
+
+#include <cstddef>
+
+namespace breve::render {
+
+namespace {
+
+struct GpuVertex {
+  Vector3f position, normal;
+  Eigen::Vector2f uv;
+  Vector3f tint;
+};
+
+const void* bytes_from(std::size_t offset) { return reinterpret_cast<const void*>(offset); }
+
+}  // namespace
+
+void Buffer::fill(unsigned target, const void* bytes, std::size_t size, unsigned usage) const {
+  gl_.BindBuffer(target, name_);
+  gl_.BufferData(target, static_cast<GLsizeiptr>(size), bytes, usage);
+}
+
+void point_at_instances(const Gl& gl, std::size_t offset, int count, std::size_t stride) {
+  constexpr unsigned kFirst = 4;
+  for (unsigned i = 0; i < static_cast<unsigned>(count); ++i) {
+    gl.EnableVertexAttribArray(kFirst + i);
+    gl.VertexAttribPointer(kFirst + i, 4, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride),
+                           bytes_from(offset + i * sizeof(Vector4f)));
+    gl.VertexAttribDivisor(kFirst + i, 1);
+  }
+}
+
+MeshBuffer::MeshBuffer(const Gl& gl, const SceneMesh& mesh)
+    : gl_(gl),
+      array_(gl),
+      vertices_(gl),
+      order_(gl),
+      indices_(static_cast<int>(mesh.indices.size())),
+      revision_(mesh.revision),
+      tinted_(!mesh.colors.empty()),
+      two_sided_(mesh.two_sided) {
+  std::vector<GpuVertex> vertices(mesh.positions.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    vertices[i] = {mesh.positions[i], mesh.normals[i], mesh.uvs[i], tinted_ ? mesh.colors[i] : Vector3f(1, 1, 1)};
+  array_.bind();
+  vertices_.fill(GL_ARRAY_BUFFER, vertices.data(), vertices.size() * sizeof(GpuVertex), GL_STATIC_DRAW);
+  const std::size_t offsets[] = {offsetof(GpuVertex, position), offsetof(GpuVertex, normal), offsetof(GpuVertex, uv),
+                                 offsetof(GpuVertex, tint)};
+  for (unsigned i = 0; i < 4; ++i) {
+    gl.EnableVertexAttribArray(i);
+    gl.VertexAttribPointer(i, i == 2 ? 2 : 3, GL_FLOAT, GL_FALSE, sizeof(GpuVertex), bytes_from(offsets[i]));
+  }
+  order_.fill(GL_ELEMENT_ARRAY_BUFFER, mesh.indices.data(), mesh.indices.size() * sizeof(std::uint32_t),
+              GL_STATIC_DRAW);
+}
+
+void MeshBuffer::draw(const Buffer& instances, std::size_t first, std::size_t count) const {
+  constexpr int kRows = 5;
+  array_.bind();
+  gl_.BindBuffer(GL_ARRAY_BUFFER, instances.name());
+  point_at_instances(gl_, first * sizeof(GpuInstance), kRows, sizeof(GpuInstance));
+  gl_.DrawElementsInstanced(GL_TRIANGLES, indices_, GL_UNSIGNED_INT, nullptr, static_cast<GLsizei>(count));
+}
+
+TextureBuffer::TextureBuffer(const Gl& gl, Kind kind, int width, int height, const std::uint8_t* pixels,
+                             std::uint64_t revision)
+    : gl_(gl), revision_(revision) {
+  gl.ActiveTexture(GL_TEXTURE0 + kScratchUnit);
+  gl.GenTextures(1, &name_);
+  gl.BindTexture(GL_TEXTURE_2D, name_);
+  gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  if (kind == Kind::Letters)
+    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, width, height, 0, GL_RED, GL_UNSIGNED_BYTE, pixels);
+  else
+    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
+  const bool mipmaps = kind != Kind::Letters;
+  if (mipmaps) gl.GenerateMipmap(GL_TEXTURE_2D);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, kind == Kind::Tiles ? GL_LINEAR : GL_NEAREST);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, mipmaps ? GL_LINEAR_MIPMAP_LINEAR : GL_NEAREST);
+  const int wrap = kind == Kind::Tiles ? GL_REPEAT : GL_CLAMP_TO_EDGE;
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap);
+}
+
+void TextureBuffer::bind(unsigned unit) const {
+  gl_.ActiveTexture(GL_TEXTURE0 + unit);
+  gl_.BindTexture(GL_TEXTURE_2D, name_);
+}
+
+}  // namespace breve::render

@@ -1,0 +1,68 @@
+// What is drawn beside bodies: lines, sprites, cells, polygons, text. Each kind is one instanced call.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "runtime/render/buffers.hpp"
+#include "runtime/render/shaders.hpp"
+#include "runtime/render/text.hpp"
+
+namespace breve::render {
+
+/// The room that a camera draws in, and what is counted.
+struct Canvas {
+  const Lens* lens = nullptr;
+  int width = 0, height = 0;  // pixels
+  std::uint64_t* draw_calls = nullptr;
+};
+
+class Marks {
+ public:
+  Marks(const Gl& gl, const std::string& font);
+
+  void draw_lines(const Shaders& shaders, const std::vector<SceneLine>& lines, const Canvas& canvas);
+  void draw_polygons(const Shaders& shaders, const std::vector<SceneVertex>& triangles, const Canvas& canvas);
+  /// From back to front. @param bind_texture  binds the scene's texture of that number to unit 0
+  template <class Bind>
+  void draw_sprites(const Shaders& shaders, const std::vector<SceneSprite>& sprites, const Canvas& canvas,
+                    Bind bind_texture);
+  void draw_labels(const Shaders& shaders, const Scene& scene, const Canvas& canvas);
+  void draw_texts(const Shaders& shaders, const Scene& scene, const Canvas& canvas);
+
+ private:
+  struct Row {
+    Vector4f first, second, color;
+  };
+  void draw(const std::vector<Row>& rows, std::size_t first, std::size_t count, const Canvas& canvas);
+  void draw_rows(const Shaders& shaders, const std::vector<Row>& rows, const Canvas& canvas);
+  static std::vector<const SceneSprite*> sorted(const std::vector<SceneSprite>& sprites, const Lens& lens);
+  static Row row_of(const SceneSprite& sprite);
+  void begin_sprites(const Shaders& shaders, const Canvas& canvas);
+
+  const Gl& gl_;
+  VertexArray array_, polygon_array_;
+  Buffer buffer_;
+  Font font_;
+  std::unique_ptr<TextureBuffer> letters_;
+};
+
+template <class Bind>
+void Marks::draw_sprites(const Shaders& shaders, const std::vector<SceneSprite>& sprites, const Canvas& canvas,
+                         Bind bind_texture) {
+  if (sprites.empty()) return;
+  begin_sprites(shaders, canvas);
+  const auto order = sorted(sprites, *canvas.lens);
+  std::vector<Row> rows;
+  for (const SceneSprite* sprite : order) rows.push_back(row_of(*sprite));
+  for (std::size_t first = 0, next = 0; first < order.size(); first = next) {
+    const SceneSprite& one = *order[first];
+    while (next < order.size() && order[next]->texture == one.texture && order[next]->glow == one.glow) ++next;
+    gl_.BlendFunc(GL_SRC_ALPHA, one.glow ? GL_ONE : GL_ONE_MINUS_SRC_ALPHA);
+    bind_texture(one.texture);
+    draw(rows, first, next - first, canvas);
+  }
+  gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+}
+
+}  // namespace breve::render

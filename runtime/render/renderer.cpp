@@ -1,0 +1,163 @@
+// A picture, from top to bottom: shadows, reflection, backdrop, bodies, marks, text; then it is read back.
+#include "runtime/render/renderer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "runtime/base/error.hpp"
+#include "runtime/render/work.hpp"
+
+namespace breve::render {
+
+namespace {
+
+Mirror mirror_of(const Scene& scene) {
+  const SceneInstance* ground = scene.flags.reflections && scene.dimension == 3 ? ground_of(scene) : nullptr;
+  if (!ground || scene.meshes[ground->mesh].form != SceneMesh::Form::Box) return {};
+  return {true, ground->place(1, 3) + ground->place.row(1).head<3>().cwiseAbs().sum() / 2};
+}
+
+bool moves(const SceneInstance& instance) { return !instance.fixed; }
+
+Lens mirrored(Lens lens, float height) {
+  Matrix4f turn = Matrix4f::Identity();
+  turn(1, 1) = -1;
+  turn(1, 3) = 2 * height;
+  lens.view = lens.view * turn;
+  return lens;
+}
+
+}  // namespace
+
+Renderer::Work::Work(const Settings& given)
+    : settings(given),
+      use(std::in_place, context),
+      shaders(context.gl()),
+      marks(context.gl(), settings.font),
+      instances(context.gl()),
+      nothing(context.gl()) {
+  const Gl& gl = context.gl();
+  gl.Enable(GL_FRAMEBUFFER_SRGB);
+  gl.Enable(GL_MULTISAMPLE);
+  gl.Enable(GL_BLEND);
+  gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  gl.DepthFunc(GL_LEQUAL);
+  use.reset();
+}
+
+Renderer::Work::~Work() { use.emplace(context); }
+
+void Renderer::Work::paint_reflection(Pass pass) {
+  const Gl& gl = context.gl();
+  if (!reflection || reflection->width() != pass.width || reflection->height() != pass.height)
+    reflection = std::make_unique<Target>(gl, pass.width, pass.height, 1);
+  reflection->bind();
+  gl.Viewport(0, 0, pass.width, pass.height);
+  gl.Disable(GL_SCISSOR_TEST);
+  gl.Enable(GL_DEPTH_TEST);
+  gl.ClearColor(0, 0, 0, 0);
+  gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  const Lens lens = mirrored(*pass.lens, pass.mirror.height);
+  pass.lens = &lens;
+  pass.reflected = true;
+  gl.FrontFace(GL_CW);
+  gl.Enable(GL_CLIP_DISTANCE0);
+  gl.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  draw_bodies(pass, moves);
+  gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  gl.Disable(GL_CLIP_DISTANCE0);
+  gl.FrontFace(GL_CCW);
+  reflection->resolve();
+}
+
+void Renderer::Work::paint_camera(const Scene& scene, const SceneCamera& camera, int width, int height) {
+  const Gl& gl = context.gl();
+  const bool window = camera.width > 0 && camera.height > 0;
+  const int left = window ? static_cast<int>(camera.x) : 0, bottom = window ? static_cast<int>(camera.y) : 0;
+  if (window) {
+    width = static_cast<int>(camera.width);
+    height = static_cast<int>(camera.height);
+  }
+  const Lens lens = lens_of(camera, static_cast<double>(width) / height);
+  Pass pass{&scene, &camera, &lens, width, height, ground_of(scene) != nullptr, draw_shadows(scene), mirror_of(scene)};
+  if (window || left != 0 || bottom != 0) pass.mirror.on = false;  // its image is as large as the whole picture
+  if (pass.mirror.on) paint_reflection(pass);
+  target->bind();
+  gl.Viewport(left, bottom, width, height);
+  gl.Enable(GL_SCISSOR_TEST);
+  gl.Scissor(left, bottom, width, height);
+  gl.ClearColor(0, 0, 0, 1);
+  gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  const Canvas canvas{&lens, width, height, &counters.draw_calls};
+  draw_backdrop(pass);
+  if (scene.dimension == 2) gl.Disable(GL_DEPTH_TEST);
+  draw_sheets(pass);
+  gl.Enable(GL_DEPTH_TEST);
+  draw_bodies(pass);
+  if (scene.dimension == 2) gl.Disable(GL_DEPTH_TEST);
+  marks.draw_polygons(shaders, scene.triangles, canvas);
+  gl.DepthMask(GL_FALSE);
+  marks.draw_lines(shaders, scene.lines, canvas);
+  marks.draw_sprites(shaders, scene.sprites, canvas, [&](std::uint32_t number) { bind_texture(scene, number, 0); });
+  gl.Disable(GL_DEPTH_TEST);
+  marks.draw_labels(shaders, scene, canvas);
+  if (scene.flags.text && camera.text) marks.draw_texts(shaders, scene, canvas);
+  gl.DepthMask(GL_TRUE);
+  gl.Enable(GL_DEPTH_TEST);
+}
+
+void Renderer::Work::read(const Lens& lens, Picture& picture) {
+  target->resolve();
+  target->read(picture.rgba);
+  target->read_depth(picture.depth);
+  for (float& depth : picture.depth) depth = depth >= 1 ? std::numeric_limits<float>::infinity() : lens.distance(depth);
+}
+
+void Renderer::Work::blur(const Scene& scene, Picture& picture) {
+  if (!scene.flags.blur || last_clears != scene.flags.clears || last_picture.size() != picture.rgba.size()) {
+    last_picture.clear();
+    if (scene.flags.blur) last_picture = picture.rgba;
+    last_clears = scene.flags.clears;
+    return;
+  }
+  const float part = std::clamp(scene.flags.blur_factor, 0.0F, 1.0F);
+  for (std::size_t i = 0; i < last_picture.size(); ++i) {
+    const auto old = static_cast<float>(last_picture[i]), now = static_cast<float>(picture.rgba[i]);
+    last_picture[i] = static_cast<std::uint8_t>(std::lround(old + part * (now - old)));
+  }
+  picture.rgba = last_picture;
+}
+
+void Renderer::Work::paint(const Scene& scene, int width, int height, Picture& picture) {
+  const Context::Use current(context);
+  counters = {};
+  if (!target || target->width() != width || target->height() != height) {
+    target.reset();
+    target = std::make_unique<Target>(context.gl(), width, height, settings.samples);
+  }
+  const double aspect = static_cast<double>(width) / height;
+  if (scene.cameras.empty()) throw Error(ErrorCode::Argument, "the scene has no camera");
+  last_camera = own_camera ? *own_camera : framed(scene, scene.cameras[0], aspect, framing);
+  paint_camera(scene, last_camera, width, height);
+  for (std::size_t i = 1; i < scene.cameras.size(); ++i)
+    if (scene.cameras[i].width >= 1 && scene.cameras[i].height >= 1)
+      paint_camera(scene, scene.cameras[i], width, height);
+  picture.width = width;
+  picture.height = height;
+  read(lens_of(last_camera, aspect), picture);
+  blur(scene, picture);
+}
+
+Renderer::Renderer(const Settings& settings) : work_(std::make_unique<Work>(settings)) {}
+Renderer::~Renderer() = default;
+
+void Renderer::paint(const Scene& scene, int width, int height, Picture& picture) {
+  work_->paint(scene, width, height, picture);
+}
+
+void Renderer::set_camera(const std::optional<SceneCamera>& camera) { work_->own_camera = camera; }
+const SceneCamera& Renderer::camera() const { return work_->last_camera; }
+const Counters& Renderer::counters() const { return work_->counters; }
+
+}  // namespace breve::render

@@ -1,0 +1,53 @@
+// Draws scenes into main memory. A renderer is used by one thread at a time; several may draw at once.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/scene/camera_math.hpp"
+#include "runtime/scene/picture.hpp"
+
+namespace breve::render {
+
+enum class Look : std::uint8_t {
+  Full,  // what a program leaves open is made good-looking: soft light, sky, haze
+  Plain  // nothing but what the program says: its colours and its lights
+};
+
+struct Settings {
+  int samples = 4;  // of a pixel: 1, 2 or 4
+  Look look = Look::Full;
+  std::string font;  // a file; empty: DejaVu Sans
+};
+
+/// Of one picture.
+struct Counters {
+  std::uint64_t draw_calls = 0, instances = 0, triangles = 0, uploads = 0;  // uploads: meshes and textures
+};
+
+class Renderer {
+ public:
+  /// @throws Error{Unsupported} where OSMesa is missing, Error{File} for a font that is none
+  explicit Renderer(const Settings& settings = {});
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// The scene as its cameras see it.
+  /// @throws Error{Argument} for a size that cannot be drawn, Error{Memory} where there is no room for it
+  void paint(const Scene& scene, int width, int height, Picture& picture);
+  /// The main camera in place of the scene's from now on; none: the scene's.
+  void set_camera(const std::optional<SceneCamera>& camera);
+  /// The main camera of the last picture, as it was framed.
+  const SceneCamera& camera() const;
+  const Counters& counters() const;
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
+
+}  // namespace breve::render

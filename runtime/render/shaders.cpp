@@ -1,0 +1,68 @@
+// The shaders. All light is computed in linear space; what is written becomes sRGB in the frame buffer.
+#include "runtime/render/shaders.hpp"
+
+#include "runtime/base/error.hpp"
+#include "runtime/render/shader_texts.hpp"
+
+namespace breve::render {
+
+namespace {
+
+// KEEP IN STEP: the numbers of attributes in buffers.cpp and marks.cpp.
+constexpr const char* kAttributes[] = {"position", "normal", "uv", "tint", "row0", "row1", "row2", "color", "extra"};
+
+unsigned compile(const Gl& gl, unsigned kind, const char* text) {
+  const unsigned shader = gl.CreateShader(kind);
+  const char* texts[] = {"#version 330 core\n", text};
+  gl.ShaderSource(shader, 2, texts, nullptr);
+  gl.CompileShader(shader);
+  int good = 0;
+  gl.GetShaderiv(shader, GL_COMPILE_STATUS, &good);
+  if (good) return shader;
+  char words[2000] = "";
+  gl.GetShaderInfoLog(shader, sizeof words, nullptr, words);
+  gl.DeleteShader(shader);
+  throw Error(ErrorCode::Internal, std::string("a shader does not compile: ") + words);
+}
+
+}  // namespace
+
+Program::Program(const Gl& gl, const char* vertex, const char* fragment) : gl_(gl) {
+  const unsigned first = compile(gl, GL_VERTEX_SHADER, vertex);
+  const unsigned second = compile(gl, GL_FRAGMENT_SHADER, fragment);
+  program_ = gl.CreateProgram();
+  gl.AttachShader(program_, first);
+  gl.AttachShader(program_, second);
+  for (unsigned i = 0; i < std::size(kAttributes); ++i) gl.BindAttribLocation(program_, i, kAttributes[i]);
+  gl.LinkProgram(program_);
+  gl.DeleteShader(first);
+  gl.DeleteShader(second);
+  int good = 0;
+  gl.GetProgramiv(program_, GL_LINK_STATUS, &good);
+  if (good) return;
+  char words[2000] = "";
+  gl.GetProgramInfoLog(program_, sizeof words, nullptr, words);
+  throw Error(ErrorCode::Internal, std::string("shaders do not fit together: ") + words);
+}
+
+Program::~Program() {
+  if (program_ != 0) gl_.DeleteProgram(program_);
+}
+
+int Program::at(const char* name) const {
+  const auto known = places_.find(std::string_view(name));
+  if (known != places_.end()) return known->second;
+  return places_[name] = gl_.GetUniformLocation(program_, name);
+}
+
+Shaders::Shaders(const Gl& gl)
+    : body(gl, kBodyVertex, kBodyFragment),
+      depth(gl, kDepthVertex, kDepthFragment),
+      backdrop(gl, kBackdropVertex, kBackdropFragment),
+      line(gl, kLineVertex, kLineFragment),
+      sprite(gl, kSpriteVertex, kSpriteFragment),
+      plain(gl, kPlainVertex, kPlainFragment),
+      sheet(gl, kSheetVertex, kSheetFragment),
+      text(gl, kTextVertex, kTextFragment) {}
+
+}  // namespace breve::render

@@ -1,0 +1,90 @@
+// The shadow map: what light 0 sees, as depth. Its frustum holds all that casts shadows, so that each texel counts.
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/render/work.hpp"
+
+namespace breve::render {
+
+namespace {
+
+constexpr int kSide = 2048;
+
+/// Large fixed things receive shadows; what they would cast falls outside.
+bool casts(const SceneInstance& instance) { return instance.shadow && instance.color.w() > 0.3F; }
+
+Matrix4f looking(const Vector3f& eye, const Vector3f& at) {
+  const Vector3f back = (eye - at).normalized();
+  const Vector3f helper = std::abs(back.y()) > 0.9F ? Vector3f::UnitZ() : Vector3f::UnitY();
+  const Vector3f right = helper.cross(back).normalized(), up = back.cross(right);
+  Matrix4f view = Matrix4f::Identity();
+  view.block<1, 3>(0, 0) = right.transpose();
+  view.block<1, 3>(1, 0) = up.transpose();
+  view.block<1, 3>(2, 0) = back.transpose();
+  view.block<3, 1>(0, 3) = -view.block<3, 3>(0, 0) * eye;
+  return view;
+}
+
+Matrix4f perspective(float slope, float near, float far) {
+  Matrix4f p = Matrix4f::Zero();
+  p(0, 0) = p(1, 1) = 1 / slope;
+  p(2, 2) = -(far + near) / (far - near);
+  p(2, 3) = -2 * far * near / (far - near);
+  p(3, 2) = -1;
+  return p;
+}
+
+/// A lens at the light that holds the box.
+ShadowLens lens_at(const Vector3f& eye, const Eigen::AlignedBox3f& box) {
+  const float radius = std::max(box.sizes().norm() / 2, 1e-3F);
+  const float away = (eye - box.center()).norm();
+  // A light among the bodies sees those on one side of it.
+  constexpr float kWidest = 2.5F;
+  const float sine = std::min(radius / std::max(away, 1e-6F), 0.93F);
+  const float slope = away > radius ? sine / std::sqrt(1 - sine * sine) : kWidest;
+  const float near = std::max(away - radius, 0.02F * radius), far = away + 8 * radius;
+  const Vector3f at = away > 1e-6F ? Vector3f(box.center()) : Vector3f(eye - Vector3f::UnitY());
+  return {true, perspective(std::min(slope, kWidest), near, far) * looking(eye, at)};
+}
+
+}  // namespace
+
+ShadowLens Renderer::Work::draw_shadows(const Scene& scene) {
+  if (!scene.flags.shadows || !scene.flags.lighting || scene.lights.empty() || scene.dimension == 2) return {};
+  const SceneInstance* ground = ground_of(scene);
+  Eigen::AlignedBox3f box;
+  for (const SceneInstance& one : scene.instances) {
+    if (!casts(one) || &one == ground) continue;
+    const float radius = radius_of(one, scene.meshes[one.mesh]);
+    const Vector3f center = one.place.col(3);
+    box.extend(center - Vector3f::Constant(radius));
+    box.extend(center + Vector3f::Constant(radius));
+  }
+  if (box.isEmpty()) return {};
+  const ShadowLens lens = lens_at(scene.lights[0].position.cast<float>(), box);
+  const Gl& gl = context.gl();
+  if (!shadow) shadow = std::make_unique<ShadowTarget>(gl, kSide);
+  shadow->bind();
+  gl.Viewport(0, 0, kSide, kSide);
+  gl.Disable(GL_SCISSOR_TEST);
+  gl.Enable(GL_DEPTH_TEST);
+  gl.Clear(GL_DEPTH_BUFFER_BIT);
+  gl.Disable(GL_CULL_FACE);
+  gl.Enable(GL_POLYGON_OFFSET_FILL);
+  gl.PolygonOffset(1.6F, 5.0F);
+  Batches all = batch(scene, {nullptr, 0, false, false}, casts, ground);
+  instances.fill(GL_ARRAY_BUFFER, all.instances.data(), all.instances.size() * sizeof(GpuInstance), GL_STREAM_DRAW);
+  shaders.depth.use();
+  shaders.depth.set("shadow_matrix", lens.matrix);
+  for (const auto* batches : {&all.opaque, &all.transparent})
+    for (const Batch& one : *batches) {
+      const bool sphere = scene.meshes[one.mesh].form == SceneMesh::Form::Sphere;
+      const MeshBuffer& buffer = mesh(scene, sphere ? kSphereMesh + 1 : one.mesh);
+      buffer.draw(instances, one.first, one.count);
+      ++counters.draw_calls;
+    }
+  gl.Disable(GL_POLYGON_OFFSET_FILL);
+  return lens;
+}
+
+}  // namespace breve::render

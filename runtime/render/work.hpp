@@ -1,0 +1,90 @@
+// What a renderer works with: its context, what is uploaded, and the passes of a picture. Behind renderer.hpp.
+#pragma once
+
+#include "runtime/render/batches.hpp"
+#include "runtime/render/context.hpp"
+#include "runtime/render/marks.hpp"
+#include "runtime/render/renderer.hpp"
+#include "runtime/render/target.hpp"
+
+namespace breve::render {
+
+/// Light 0 as the camera of the shadow map.
+struct ShadowLens {
+  bool on = false;
+  Matrix4f matrix = Matrix4f::Identity();
+};
+
+/// The flat top that reflects: that of the largest fixed box.
+struct Mirror {
+  bool on = false;
+  float height = 0;
+};
+
+/// All that one pass over the bodies needs to know.
+struct Pass {
+  const Scene* scene = nullptr;
+  const SceneCamera* camera = nullptr;
+  const Lens* lens = nullptr;
+  int width = 0, height = 0;
+  bool has_ground = false;
+  ShadowLens shadow;
+  Mirror mirror;           // what it shows is in the reflection's target
+  bool reflected = false;  // this pass draws the reflection
+};
+
+/// Colours of sky and haze, linear.
+struct Air {
+  Vector3f color, horizon, zenith;
+};
+
+struct Renderer::Work {
+  explicit Work(const Settings& given);
+  ~Work();
+  Work(const Work&) = delete;
+  Work& operator=(const Work&) = delete;
+
+  // renderer.cpp
+  void paint(const Scene& scene, int width, int height, Picture& picture);
+  void paint_camera(const Scene& scene, const SceneCamera& camera, int width, int height);
+  void paint_reflection(Pass pass);
+  void read(const Lens& lens, Picture& picture);
+  void blur(const Scene& scene, Picture& picture);
+  // bodies.cpp
+  void draw_backdrop(const Pass& pass);
+  void draw_bodies(const Pass& pass, bool (*wanted)(const SceneInstance&) = nullptr);
+  void draw_batches(const Pass& pass, const std::vector<Batch>& batches);
+  void draw_sheets(const Pass& pass);
+  void set_body_uniforms(const Pass& pass);
+  void set_lights(const Pass& pass);
+  Air air_of(const Scene& scene) const;
+  // uploads.cpp
+  const MeshBuffer& mesh(const Scene& scene, std::uint32_t number);
+  void bind_texture(const Scene& scene, std::uint32_t number, unsigned unit);
+  // shadow.cpp
+  ShadowLens draw_shadows(const Scene& scene);
+
+  Settings settings;
+  Context context;
+  std::optional<Context::Use> use;  // while it is made and destroyed
+  Shaders shaders;
+  Marks marks;
+  Buffer instances;
+  VertexArray nothing;  // for shaders that make their vertices themselves
+  std::map<std::uint32_t, std::unique_ptr<MeshBuffer>> meshes;
+  std::map<std::uint32_t, std::unique_ptr<TextureBuffer>> textures;
+  std::map<std::size_t, std::unique_ptr<TextureBuffer>> sheets;
+  std::unique_ptr<Target> target, reflection;
+  std::unique_ptr<ShadowTarget> shadow;
+  std::optional<SceneCamera> own_camera;
+  SceneCamera last_camera;
+  Framing framing;
+  Counters counters;
+  std::vector<std::uint8_t> last_picture;  // that motion blur mixes with
+  std::uint64_t last_clears = 0;
+};
+
+/// The largest fixed instance, if it is larger than all that moves; null: none.
+const SceneInstance* ground_of(const Scene& scene);
+
+}  // namespace breve::render

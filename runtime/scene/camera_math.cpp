@@ -1,0 +1,192 @@
+// Cameras as matrices, and the framing of scenes whose program has no camera of its own.
+#include "runtime/scene/camera_math.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace breve {
+
+namespace {
+
+// An automatic camera stands to the right of the scene and above it, as one would hold a model to look at it.
+constexpr double kYaw = 0.55, kPitch = -0.30;  // rad
+constexpr double kMargin = 1.06;
+
+Eigen::Matrix3d turn_of(double pitch, double yaw) {
+  return (Eigen::AngleAxisd(yaw, Vector3::UnitY()) * Eigen::AngleAxisd(pitch, Vector3::UnitX())).toRotationMatrix();
+}
+
+Matrix4f view_matrix(const Lens& lens) {
+  Matrix4f view = Matrix4f::Identity();
+  view.block<1, 3>(0, 0) = lens.right.transpose();
+  view.block<1, 3>(1, 0) = lens.up.transpose();
+  view.block<1, 3>(2, 0) = lens.back.transpose();
+  view.block<3, 1>(0, 3) = -view.block<3, 3>(0, 0) * lens.eye;
+  return view;
+}
+
+void set_projection(Lens& lens, float aspect) {
+  Matrix4f p = Matrix4f::Zero();
+  p(0, 0) = 1 / (lens.slope * aspect);
+  p(1, 1) = 1 / lens.slope;
+  if (lens.orthographic) {
+    p(2, 2) = -2 / (lens.far - lens.near);
+    p(2, 3) = -(lens.far + lens.near) / (lens.far - lens.near);
+    p(3, 3) = 1;
+  } else {
+    p(2, 2) = -(lens.far + lens.near) / (lens.far - lens.near);
+    p(2, 3) = -2 * lens.far * lens.near / (lens.far - lens.near);
+    p(3, 2) = -1;
+  }
+  lens.projection = p;
+}
+
+struct Ball {
+  Vector3 center;
+  double radius;
+};
+
+std::vector<Ball> balls_of(const Scene& scene, bool fixed) {
+  std::vector<Ball> balls;
+  for (const SceneInstance& one : scene.instances)
+    if (one.fixed == fixed)
+      balls.push_back({one.place.col(3).cast<double>(), double{radius_of(one, scene.meshes[one.mesh])}});
+  if (fixed) return balls;
+  for (const SceneSprite& one : scene.sprites)
+    balls.push_back({one.center.cast<double>(), one.point ? 0.0 : double{one.size} / 2});
+  for (const SceneSheet& one : scene.sheets)
+    for (const float across : {0.0F, 1.0F})
+      for (const float along : {0.0F, 1.0F})
+        balls.push_back({(one.corner + across * one.across + along * one.along).cast<double>(), 0});
+  for (const SceneLine& one : scene.lines)
+    for (const Vector3f& end : {one.from, one.to}) balls.push_back({end.cast<double>(), 0});
+  for (const SceneVertex& one : scene.triangles) balls.push_back({one.position.cast<double>(), 0});
+  return balls;
+}
+
+double median(std::vector<double>& numbers) {
+  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
+  std::nth_element(numbers.begin(), middle, numbers.end());
+  return *middle;
+}
+
+/// All balls but those far outside, which are at most a thirtieth of them.
+std::vector<Ball> without_outliers(std::vector<Ball> balls) {
+  Vector3 center;
+  std::vector<double> numbers(balls.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    std::transform(balls.begin(), balls.end(), numbers.begin(), [&](const Ball& b) { return b.center[axis]; });
+    center[axis] = median(numbers);
+  }
+  const auto reach = [&](const Ball& b) { return (b.center - center).norm() + b.radius; };
+  std::sort(balls.begin(), balls.end(), [&](const Ball& a, const Ball& b) { return reach(a) < reach(b); });
+  const std::size_t most = balls.size() - balls.size() / 30;
+  const double usual = reach(balls[most - 1]);
+  while (balls.size() > most && reach(balls.back()) > 3 * usual) balls.pop_back();
+  return balls;
+}
+
+}  // namespace
+
+float Lens::distance(float depth) const {
+  const float z = 2 * depth - 1;
+  if (orthographic) return (z * (far - near) + far + near) / 2;
+  return 2 * far * near / (far + near - z * (far - near));
+}
+
+float Lens::scale_at(const Vector3f& place, float picture_height) const {
+  if (orthographic) return picture_height / (2 * slope);
+  const float away = std::max(near, (eye - place).dot(back));
+  return picture_height / (2 * slope * away);
+}
+
+Lens lens_of(const SceneCamera& camera, double aspect) {
+  Lens lens;
+  const Eigen::Matrix3d turn = turn_of(camera.pitch, camera.yaw);
+  lens.right = turn.col(0).cast<float>();
+  lens.up = turn.col(1).cast<float>();
+  lens.back = turn.col(2).cast<float>();
+  lens.eye = (camera.target + camera.offset).cast<float>();
+  const double distance = std::max(1e-6, camera.offset.norm());
+  lens.orthographic = camera.orthographic;
+  lens.far = static_cast<float>(std::min(camera.far_plane, 1e12));
+  lens.near = static_cast<float>(std::clamp(distance * 0.01, camera.far_plane * 1e-5, camera.far_plane * 0.1));
+  lens.slope = static_cast<float>(std::tan(std::clamp(camera.field_of_view, 1e-3, 3.1) / 2));
+  if (lens.orthographic) lens.slope *= static_cast<float>(distance);
+  lens.view = view_matrix(lens);
+  set_projection(lens, static_cast<float>(aspect));
+  return lens;
+}
+
+bool project(const Lens& lens, const Vector3& point, int width, int height, double seen[3]) {
+  const Eigen::Vector4d p(point.x(), point.y(), point.z(), 1);
+  const Eigen::Vector4d clip = lens.projection.cast<double>() * (lens.view.cast<double>() * p);
+  if (!(clip.w() > 0)) return false;
+  seen[0] = (clip.x() / clip.w() + 1) / 2 * width;
+  seen[1] = (1 - clip.y() / clip.w()) / 2 * height;
+  seen[2] = (lens.eye.cast<double>() - point).dot(lens.back.cast<double>());
+  return true;
+}
+
+float radius_of(const SceneInstance& instance, const SceneMesh& mesh) {
+  const auto turn = instance.place.leftCols<3>();
+  if (mesh.form == SceneMesh::Form::Sphere) return turn.col(0).norm();
+  if (mesh.form == SceneMesh::Form::Box) return Vector3f(turn.colwise().norm().transpose()).norm() / 2;
+  return Vector3f(turn.colwise().norm().transpose()).cwiseProduct(mesh.reach).norm();
+}
+
+Framing frame_of(const Scene& scene, double slope, double aspect, bool orthographic) {
+  std::vector<Ball> balls = balls_of(scene, false);
+  if (balls.empty()) balls = balls_of(scene, true);
+  if (balls.empty()) return {};
+  balls = without_outliers(std::move(balls));
+  Eigen::AlignedBox3d box;
+  for (const Ball& b : balls) {
+    box.extend(b.center - Vector3::Constant(b.radius));
+    box.extend(b.center + Vector3::Constant(b.radius));
+  }
+  Framing frame;
+  frame.center = box.center();
+  const double half_height = std::max({box.sizes().y() / 2, box.sizes().x() / 2 / aspect, 1e-6});
+  if (orthographic) {
+    frame.distance = kMargin * half_height / slope;
+    return frame;
+  }
+  // From there each ball is between the planes through the eye that bound the picture.
+  const Eigen::Matrix3d turn = turn_of(kPitch, kYaw);
+  for (const Ball& b : balls) {
+    const Vector3 seen = turn.transpose() * (b.center - frame.center);
+    for (const auto& [way, half] : {std::pair{std::abs(seen.x()), slope * aspect}, {std::abs(seen.y()), slope}}) {
+      const double needed = seen.z() + way / half + b.radius * std::hypot(1.0, half) / half;
+      frame.distance = std::max(frame.distance, kMargin * needed);
+    }
+  }
+  return frame;
+}
+
+SceneCamera framed(const Scene& scene, SceneCamera camera, double aspect, Framing& kept) {
+  if (!camera.automatic) return camera;
+  // A scene that is all in planes of z is seen from straight ahead.
+  const bool flat = scene.instances.empty() && !scene.sheets.empty();
+  const double pitch = flat || camera.orthographic ? 0 : kPitch, yaw = flat || camera.orthographic ? 0 : kYaw;
+  const double slope = std::tan(camera.field_of_view / 2);
+  const Framing now = frame_of(scene, slope, aspect, flat || camera.orthographic);
+  if (now.distance <= 0) return camera;
+  constexpr double kTooFar = 1.5, kGlide = 0.08;
+  const bool outside =
+      (now.center - kept.center).norm() > 0.1 * slope * kept.distance || now.distance > 1.02 * kept.distance;
+  if (kept.distance <= 0) {
+    kept = now;
+  } else if (outside || kTooFar * now.distance < kept.distance) {
+    kept.center += kGlide * (now.center - kept.center);
+    kept.distance += kGlide * (now.distance - kept.distance);
+  }
+  camera.target = kept.center;
+  camera.pitch = pitch;
+  camera.yaw = yaw;
+  camera.offset = kept.distance * turn_of(camera.pitch, camera.yaw).col(2);
+  camera.far_plane = std::max(camera.far_plane, 6 * kept.distance);
+  return camera;
+}
+
+}  // namespace breve

@@ -1,0 +1,146 @@
+// Grids of cells, springs and terrains as parts of a scene.
+#include "steve/library/show.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "runtime/scene/mesh.hpp"
+#include "runtime/world/show.hpp"
+#include "steve/library/grids.hpp"
+#include "steve/library/joints.hpp"
+#include "steve/library/support.hpp"
+
+namespace breve::steve {
+
+namespace {
+
+std::uint8_t byte_of(float part) { return static_cast<std::uint8_t>(std::lround(part * 255)); }
+
+Vector4f cell_color(const GridResource& grid, CellIndex cell) {
+  return color_of(grid.colors.empty() ? Vector3(1, 1, 1) : grid.colors[cell],
+                  grid.alphas.empty() ? GridResource::kAlpha : grid.alphas[cell]);
+}
+
+/// Inks that differ in hue and brightness (Okabe and Ito 2008), on paper.
+Vector4f ink(std::size_t number) {
+  static constexpr std::array<std::array<float, 3>, 7> kInks{{{0.13F, 0.22F, 0.34F},
+                                                              {0.84F, 0.37F, 0.00F},
+                                                              {0.00F, 0.45F, 0.70F},
+                                                              {0.00F, 0.62F, 0.45F},
+                                                              {0.90F, 0.62F, 0.00F},
+                                                              {0.80F, 0.47F, 0.65F},
+                                                              {0.34F, 0.71F, 0.91F}}};
+  const auto& c = kInks[number % kInks.size()];
+  return {c[0], c[1], c[2], 1};
+}
+
+/// Of a grid whose colours nobody set: a cell with agents has the ink of the first one's class, else that of its state;
+/// 0 is paper.
+Vector4f drawn_color(const World& world, const GridResource& resource, CellIndex cell) {
+  const Occupants& agents = resource.occupants;
+  if (agents.made() && agents.count(cell) > 0) return ink(1 + world.class_of(agents.agent(agents.first(cell)).id));
+  const std::uint8_t state = resource.states.made() ? resource.states.get(cell) : std::uint8_t{0};
+  return state != 0 ? ink(state - std::size_t{1}) : Vector4f(0.96F, 0.955F, 0.94F, 1);
+}
+
+/// A grid that is one cell deep is a picture in its plane. Cells whose transparency nobody set are opaque there.
+void show_sheet(const World& world, ObjectId id, const GridResource& resource, bool colored, SceneBuilder& to) {
+  const Grid& grid = *resource.grid;
+  SceneSheet sheet;
+  sheet.object = id;
+  sheet.columns = grid.nx();
+  sheet.rows = grid.ny();
+  const Vector3 corner = grid.corner(0);
+  const Vector3& size = grid.cell_size();
+  sheet.corner = drawable(Vector3(corner + Vector3(0, 0, size.z() / 2)));
+  sheet.across = Vector3f(drawable(size.x() * grid.nx()), 0, 0);
+  sheet.along = Vector3f(0, drawable(size.y() * grid.ny()), 0);
+  sheet.rgba.resize(4 * grid.cells());
+  for (CellIndex cell = 0; cell < grid.cells(); ++cell) {
+    const Cell3 at = grid.cell(cell);
+    Vector4f color = colored ? cell_color(resource, cell) : drawn_color(world, resource, cell);
+    if (resource.alphas.empty()) color.w() = 1;
+    const auto pixel =
+        static_cast<std::size_t>(at.y) * static_cast<std::size_t>(grid.nx()) + static_cast<std::size_t>(at.x);
+    for (int part = 0; part < 4; ++part) sheet.rgba[4 * pixel + static_cast<std::size_t>(part)] = byte_of(color[part]);
+  }
+  sheet.revision = to.revision_of(sheet.rgba);
+  to.scene().sheets.push_back(std::move(sheet));
+}
+
+void show_volume(ObjectId id, const GridResource& resource, SceneBuilder& to) {
+  const Grid& grid = *resource.grid;
+  constexpr float kLeast = 1.0F / 255;  // below that nothing is to be seen
+  for (CellIndex cell = 0; cell < grid.cells(); ++cell) {
+    const Vector4f color = cell_color(resource, cell);
+    if (color.w() < kLeast) continue;
+    SceneInstance box{id, Place::Zero(), color};
+    box.place.leftCols<3>() = drawable(grid.cell_size()).asDiagonal();
+    box.place.col(3) = drawable(grid.middle(cell));
+    box.mesh = MeshCache::kBox;
+    box.texture_scale = {1, 1};
+    box.shadow = color.w() >= 1;
+    to.scene().instances.push_back(box);
+  }
+}
+
+/// Of a grid with neither colours nor states nor agents there is nothing to see.
+void show_grid(const World& world, ObjectId id, const GridResource& resource, SceneBuilder& to) {
+  if (!resource.grid) return;
+  const bool colored = !resource.colors.empty() || !resource.alphas.empty();
+  const bool drawn = resource.states.made() || resource.occupants.made();
+  if (resource.grid->flat() && (colored || drawn))
+    show_sheet(world, id, resource, colored, to);
+  else if (colored)
+    show_volume(id, resource, to);
+}
+
+void show_spring(Machine& machine, const SpringResource& resource, SceneBuilder& to) {
+  const Mechanics& dynamics = dynamics_of(machine);
+  if (resource.index == kNoSpring || !dynamics.tied(resource.index)) return;
+  const SpringDescription& spring = dynamics.spring(resource.index);
+  const Bodies& bodies = machine.world().bodies();
+  const auto end = [&](BodyIndex body, const Vector3& point) {
+    return drawable(Vector3(bodies.location(body) + bodies.rotation(body) * point));
+  };
+  to.scene().lines.push_back(
+      {end(spring.a, spring.point_a), end(spring.b, spring.point_b), {0.15F, 0.15F, 0.18F, 1}, 2, 0x3333});
+}
+
+Vector3f color_variable(Machine& machine, Instance& self, std::string_view name) {
+  const Slot* slot = library_slot(machine, self, "Terrain", name);
+  return slot ? color_of(Vector3(slot[0].d, slot[1].d, slot[2].d), 1).head<3>() : Vector3f(1, 1, 1);
+}
+
+/// The instance of a terrain gets a mesh that is coloured by height.
+void show_terrains(Machine& machine, SceneBuilder& to) {
+  for (SceneInstance& instance : to.scene().instances) {
+    SceneMesh& mesh = to.mesh_data(instance.mesh);
+    if (mesh.form != SceneMesh::Form::Ground) continue;
+    Instance* self = machine.instance(instance.object);
+    if (!self || !is_library_kind(*self, "Terrain")) continue;
+    const Vector3f valley = color_variable(machine, *self, "valleyColor");
+    const Vector3f peak = color_variable(machine, *self, "peakColor");
+    const std::vector<Vector3f> old = mesh.colors;
+    color_by_height(mesh, valley, peak);
+    if (old != mesh.colors) mesh.revision += std::uint64_t{1} << 32;
+  }
+}
+
+}  // namespace
+
+void show(Machine& machine, SceneBuilder& scene) {
+  scene.begin();
+  World& world = machine.world();
+  breve::show(world, scene);
+  for (const ObjectId id : world.objects()) {
+    const Instance* instance = machine.instance(id);
+    if (const auto* grid = resource_of<GridResource>(machine, instance)) show_grid(world, id, *grid, scene);
+    if (const auto* spring = resource_of<SpringResource>(machine, instance)) show_spring(machine, *spring, scene);
+  }
+  show_terrains(machine, scene);
+  scene.end();
+}
+
+}  // namespace breve::steve
