@@ -298,6 +298,8 @@ class Island : public InMemory {
   std::uint64_t ring_units() const;
   bool worn() const { return finished_ || meter_.over(); }  // nothing is to be tried again
   void note_start_poses();
+  void book_part(double part, double took);
+  void tell_impacts(double time);
   void step_located(DynamicsClient* client, double start, double h);
   void advance_once(double time, double h);
   bool catch_bounds(double time, double h);

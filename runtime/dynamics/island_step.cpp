@@ -246,6 +246,21 @@ void Island::note_start_poses() {
   }
 }
 
+/// After a part that was to be `part` seconds long, and lasted `took`.
+void Island::book_part(double part, double took) {
+  commit();
+  account_rows();
+  close_books();
+  keep_springs();
+  note_overlaps(part);
+  note_forces(took);
+}
+
+void Island::tell_impacts(double time) {
+  if (impacts_ >= accuracy_.impacts && core_.settings.guard != GuardMode::Off)
+    intervene({true, GuardReason::Impacts, static_cast<double>(impacts_), any_body()}, GuardAction::Reported, time);
+}
+
 void Island::step_located(DynamicsClient* client, double start, double h) {
   double now = 0;
   impacts_ = 0;
@@ -279,8 +294,7 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
     open_books();
     predict(part);
     advance_once(start + now, part);
-    Event event;
-    if (!spent_) event = seek(part);
+    Event event = spent_ ? Event() : seek(part);
     if (whole && (event.found() || !lies(part))) {
       restore();
       result.account = account;
@@ -292,12 +306,7 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
       locate(start + now, event, part);
       stalls = event.time > kSliver * h ? 0 : stalls + 1;
     }
-    commit();
-    account_rows();
-    close_books();
-    keep_springs();
-    note_overlaps(part);
-    note_forces(event.found() ? std::max(event.time, kSliver * h) : part);
+    book_part(part, event.found() ? std::max(event.time, kSliver * h) : part);
     if (!event.found()) {
       keep_warm(part);
       push_apart(part);
@@ -310,9 +319,7 @@ void Island::step_located(DynamicsClient* client, double start, double h) {
     meet(client, event, start + now, h - now);
     if (dissolved_) return;
   }
-  if (impacts_ >= accuracy_.impacts && core_.settings.guard != GuardMode::Off)
-    intervene({true, GuardReason::Impacts, static_cast<double>(impacts_), any_body()}, GuardAction::Reported,
-              start + h);
+  tell_impacts(start + h);
 }
 
 /// How many impacts of this step are located in time. Each costs a look at all pairs, and some solutions of all rows:
