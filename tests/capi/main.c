@@ -5,6 +5,7 @@ void analysis_suite(void);
 void budget_suite(void);
 void bulk_suite(void);
 void calls_suite(void);
+void classes_suite(void);
 void config_suite(void);
 void errors_suite(void);
 void evaluate_suite(void);
@@ -27,6 +28,7 @@ void grids_suite(void);
 void solid_suite(void);
 void stepping_suite(void);
 void threads_suite(void);
+void user_data_suite(void);
 void values_suite(void);
 
 static const struct {
@@ -38,6 +40,7 @@ static const struct {
     {"budget", budget_suite},
     {"bulk", bulk_suite},
     {"calls", calls_suite},
+    {"classes", classes_suite},
     {"config", config_suite},
     {"errors", errors_suite},
     {"evaluate", evaluate_suite},
@@ -60,6 +63,7 @@ static const struct {
     {"solid", solid_suite},
     {"stepping", stepping_suite},
     {"threads", threads_suite},
+    {"user_data", user_data_suite},
     {"values", values_suite},
     /* clang-format on */
 };
