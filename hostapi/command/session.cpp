@@ -10,6 +10,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "lua_file.hpp"
+
 namespace breve::command {
 
 namespace {
@@ -35,7 +37,7 @@ std::string programs_beside(const std::string& file) {
   const auto folder = std::filesystem::path(file).parent_path();
   for (std::filesystem::directory_iterator it(folder.empty() ? "." : folder, problem), end; !problem && it != end;
        it.increment(problem))
-    if (it->path().extension() == ".tz") names.push_back(it->path().filename().string());
+    if (it->path().extension() == ".tz" || it->path().extension() == ".lua") names.push_back(it->path().filename().string());
   if (names.empty()) return {};
   std::sort(names.begin(), names.end());
   const bool more = names.size() > kMost;
@@ -142,7 +144,9 @@ ExitStatus Session::load(const std::string& file, ProgramHandle& program) {
   if (!no_files_) access_.add_if_there(std::filesystem::path(file).parent_path());
   breve_program* compiled = nullptr;
   const breve_status status =
-      breve_program_compile(runtime_, main->name.c_str(), main->text.data(), main->text.size(), &compiled);
+      file.ends_with(".lua")
+          ? compile_lua(runtime_, loader_, *main, output_, compiled)
+          : breve_program_compile(runtime_, main->name.c_str(), main->text.data(), main->text.size(), &compiled);
   files_ = loader_.files();
   return finish(status, compiled, program);
 }

@@ -115,8 +115,8 @@ breve_status breve_analysis_create(breve_runtime* runtime, const char* name, con
     breve::steve::ModuleSource main =
         text ? breve::steve::ModuleSource{name, std::string(text, size)} : main_module(*runtime, modules, name);
     auto made = std::make_unique<breve_analysis>();
-    made->analysis =
-        std::make_unique<breve::steve::Analysis>(std::move(main), modules, runtime->allowed, runtime->functions);
+    made->analysis = std::make_unique<breve::steve::Analysis>(std::move(main), modules, runtime->allowed,
+                                                              runtime->functions, runtime->classes);
     for (const auto& d : made->analysis->diagnostics())
       made->diagnostics.push_back(text_of(d, made->analysis->sources()));
     *analysis = made.release();

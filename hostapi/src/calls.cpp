@@ -25,16 +25,25 @@ const steve::VariableInfo& variable_named(const breve_world& world, const Instan
 
 namespace {
 
-void need_method(const breve_world& world, const Instance& instance, std::string_view method) {
-  if (!world.machine->responds(*instance.cls, method))
-    fail(BREVE_ERROR_NOT_FOUND, "class " + instance.cls->name + " has no method '" + std::string(method) + "'");
+void need_method(const breve_world& world, const ClassInfo& cls, std::string_view method) {
+  if (!world.machine->responds(cls, method))
+    fail(BREVE_ERROR_NOT_FOUND, "class " + cls.name + " has no method '" + std::string(method) + "'");
 }
 
 /// Find what `selector` means for `cls`: a method with exactly its keywords can be called by position.
 void resolve(const breve_world& world, Selector& selector, const ClassInfo& cls) {
   selector.order.reserve(selector.keywords.size());  // nothing may fail half-way
+  const ClassInfo* start = &cls;
+  if (!selector.super_of.empty()) {
+    const ClassInfo& from = class_named(world, selector.super_of.c_str());
+    if (!cls.derives_from(from))
+      fail(BREVE_ERROR_TYPE, "the object is of class " + cls.name + ", not of " + from.name + " or a descendant");
+    selector.super_class = &from;
+    start = from.parent;
+    if (!start) fail(BREVE_ERROR_NOT_FOUND, "class " + from.name + " has no parent");
+  }
   selector.cls = &cls;
-  selector.resolved = world.machine->find_method(cls, selector.method, selector.keywords.size());
+  selector.resolved = world.machine->find_method(*start, selector.method, selector.keywords.size());
   selector.order.clear();
   if (!selector.resolved) return;
   for (const auto& parameter : selector.resolved->parameters) {
@@ -49,16 +58,18 @@ void resolve(const breve_world& world, Selector& selector, const ClassInfo& cls)
 }
 
 Value call_by_keywords(breve_world& world, Instance& receiver, std::string_view method,
-                       std::span<const std::pair<std::string_view, Value>> keywords) {
-  need_method(world, receiver, method);
+                       std::span<const std::pair<std::string_view, Value>> keywords,
+                       const ClassInfo* super_of = nullptr) {
+  need_method(world, super_of ? *super_of->parent : *receiver.cls, method);
   const ScriptScope script(world);
-  return world.machine->call_with_keywords(receiver, method, keywords);
+  return world.machine->call_with_keywords(receiver, method, keywords, super_of);
 }
 
 std::uint32_t digest(const Selector& selector) {
   Hasher hasher;
   hasher.add(std::string_view(selector.method));
   for (const auto& keyword : selector.keywords) hasher.add(std::string_view(keyword));
+  if (!selector.super_of.empty()) hasher.add(std::string_view(selector.super_of));
   return static_cast<std::uint32_t>(hasher.value() >> 32) | 1U;  // the all-zero selector is invalid
 }
 
@@ -71,7 +82,8 @@ Value call_prepared(breve_world& world, Instance& receiver, Selector& selector, 
   if (!selector.resolved || count > kInPlace) {
     std::pmr::vector<std::pair<std::string_view, Value>> keywords(&world.meter);
     for (std::size_t i = 0; i < count; ++i) keywords.emplace_back(selector.keywords[i], from_host(world, arguments[i]));
-    return call_by_keywords(world, receiver, selector.method, keywords);
+    return call_by_keywords(world, receiver, selector.method, keywords,
+                            selector.super_of.empty() ? nullptr : selector.super_class);
   }
   std::array<Value, kInPlace> values;
   for (std::size_t i = 0; i < count; ++i) values[i] = from_host(world, arguments[selector.order[i]]);
@@ -137,23 +149,45 @@ breve_status breve_object_call(breve_world* world, breve_object object, const ch
   });
 }
 
+namespace {
+
+/// @param super_of  null: a usual call
+breve_selector prepare(breve_world& world, const breve::steve::ClassInfo* super_of, const char* method,
+                       const char* const* keywords, size_t count) {
+  need(method, "method");
+  if (count != 0) need(keywords, "keywords");
+  Selector made(&world.meter);
+  made.method = method;
+  if (super_of) made.super_of = super_of->name;
+  for (std::size_t i = 0; i < count; ++i) {
+    need(keywords[i], "the name of a keyword");
+    made.keywords.emplace_back(keywords[i]);
+  }
+  made.check = digest(made);
+  const breve_selector handle{static_cast<std::uint32_t>(world.selectors.size()), made.check};
+  world.selectors.push_back(std::move(made));
+  return handle;
+}
+
+}  // namespace
+
 breve_status breve_world_prepare(breve_world* world, const char* method, const char* const* keywords, size_t count,
                                  breve_selector* selector) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
-    need(method, "method");
     need(selector, "selector");
-    if (count != 0) need(keywords, "keywords");
-    Selector made(&world->meter);
-    made.method = method;
-    for (std::size_t i = 0; i < count; ++i) {
-      need(keywords[i], "the name of a keyword");
-      made.keywords.emplace_back(keywords[i]);
-    }
-    made.check = digest(made);
-    const breve_selector handle{static_cast<std::uint32_t>(world->selectors.size()), made.check};
-    world->selectors.push_back(std::move(made));
-    *selector = handle;
+    *selector = prepare(*world, nullptr, method, keywords, count);
+  });
+}
+
+breve_status breve_world_prepare_super(breve_world* world, const char* class_name, const char* method,
+                                       const char* const* keywords, size_t count, breve_selector* selector) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need(selector, "selector");
+    const auto& cls = class_named(*world, class_name);
+    if (!cls.parent) fail(BREVE_ERROR_ARGUMENT, "class " + cls.name + " has no parent");
+    *selector = prepare(*world, &cls, method, keywords, count);
   });
 }
 

@@ -87,6 +87,7 @@ void ErrorRecord::point() {
 }
 
 breve_status ErrorRecord::keep_current() noexcept {
+  ++count_;
   try {
     try {
       throw;

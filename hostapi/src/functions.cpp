@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "classes.hpp"
 #include "steve/machine/native.hpp"
 #include "steve/syntax/words.hpp"
 
@@ -33,7 +34,8 @@ class HostFunction final : public ForeignFunction {
   void (*destroy_)(void* user) = nullptr;
 };
 
-/// In signatures of the machine. BREVE_TYPE_NULL stands for any value.
+}  // namespace
+
 char letter_of(std::uint32_t type, const std::string& what) {
   switch (type) {
     case BREVE_TYPE_NULL: return 'a';
@@ -51,6 +53,8 @@ char letter_of(std::uint32_t type, const std::string& what) {
            what + " is " + std::to_string(type) + ", which is not a type that host functions can have");
   }
 }
+
+namespace {
 
 std::string signature_of(const breve_function& f) {
   const std::string name = "function '" + std::string(f.name) + "'";
@@ -107,14 +111,42 @@ std::string message_of(const breve_world& world, breve_status status, const std:
   return error->message + place;
 }
 
-[[noreturn]] void fail_call(const breve_world& world, const std::string& name, breve_status status,
-                            const std::string& reason) {
+/// The error of a call that the host made in its method, as it was: it knows the whole chain of calls.
+[[noreturn]] void throw_again(const breve_error& error) {
+  steve::ErrorReport report;
+  report.kind = RunErrorKind::World;
+  report.message = error.message;
+  report.help = error.help;
+  report.file = error.file;
+  report.line = error.line;
+  report.column = error.column;
+  report.length = error.length;
+  report.text = error.text;
+  for (std::size_t i = error.frame_count; i-- > 0;) {
+    const breve_frame& f = error.frames[i];
+    report.trace.push_back({f.class_name, f.method, f.file, f.receiver, f.arguments, f.line, f.column, false});
+  }
+  const auto code = error.status == BREVE_ERROR_BUDGET        ? ErrorCode::Budget
+                    : error.status == BREVE_ERROR_DEPTH       ? ErrorCode::Depth
+                    : error.status == BREVE_ERROR_INTERRUPTED ? ErrorCode::Interrupted
+                                                              : ErrorCode::Script;
+  throw steve::ScriptError(code, std::move(report));
+}
+
+/// @param errors  how many the world had known when the call began
+[[noreturn]] void fail_call(const breve_world& world, const ForeignFunction& function, breve_status status,
+                            const std::string& reason, std::uint64_t errors) {
   if (status == BREVE_ERROR_MEMORY) throw std::bad_alloc();
   const auto kind = status == BREVE_ERROR_BUDGET        ? RunErrorKind::Budget
                     : status == BREVE_ERROR_DEPTH       ? RunErrorKind::Depth
                     : status == BREVE_ERROR_INTERRUPTED ? RunErrorKind::Interrupted
                                                         : RunErrorKind::World;
-  throw RunError(kind, name + ": " + message_of(world, status, reason));
+  if (!function.is_method()) throw RunError(kind, function.name() + ": " + message_of(world, status, reason));
+  const breve_error* inner = world.error.view();
+  const bool same =
+      reason.empty() && world.error.count() != errors && inner && inner->status == static_cast<std::uint32_t>(status);
+  if (same && inner->frame_count != 0) throw_again(*inner);
+  throw RunError(kind, message_of(world, status, reason), same ? inner->help : "");
 }
 
 }  // namespace
@@ -124,18 +156,32 @@ Value call_function(breve_world& world, const ForeignFunction& function, steve::
   std::array<breve_value, ForeignFunction::kMostParameters> values;
   Answer reason;
   const CallbackScope busy(world);
+  const std::uint64_t errors = world.error.count();
   try {
     for (std::size_t i = 0; i < arguments.size(); ++i) pass(world, arguments[i], values[i]);
-    const breve_call call{
-        sizeof(breve_call), &world, handle_of(world, world.machine->id_of(&self)), values.data(), arguments.size(),
-        &Answer::add,       &reason};
+    breve_call call{sizeof(breve_call),
+                    &world,
+                    handle_of(world, world.machine->id_of(&self)),
+                    values.data(),
+                    arguments.size(),
+                    &Answer::add,
+                    &reason,
+                    nullptr};
     breve_value result;
     result.type = BREVE_TYPE_NULL;
     result.reserved = 0;
-    const breve_status status = static_cast<const HostFunction&>(function).call(call, result);
+    breve_status status = BREVE_OK;
+    if (function.is_method()) {
+      const auto& method = static_cast<const HostMethod&>(function);
+      const ActiveScope active(world, method, call);
+      status = method.call(call, result);
+      if (status != BREVE_OK) active.failed();
+    } else {
+      status = static_cast<const HostFunction&>(function).call(call, result);
+    }
     if (status == BREVE_OK)
       return result.type == BREVE_TYPE_DOUBLE ? Value::of(result.as.number) : from_host(world, result);
-    fail_call(world, function.name(), status, without_zeros(reason.text()));
+    fail_call(world, function, status, without_zeros(reason.text()), errors);
   } catch (const StatusError& e) {  // of the result
     throw RunError(RunErrorKind::Type, function.result_name() + ": " + e.what());
   }
@@ -165,4 +211,8 @@ breve_status breve_world_charge(breve_world* world, uint64_t turns) {
   return guard(world->error, [&] {
     if (world->running != 0) world->machine->charge(turns);
   });
+}
+
+bool breve_world_has_budget(const breve_world* world) {
+  return world && (world->config.budget != 0 || world->config.call_budget != 0);
 }

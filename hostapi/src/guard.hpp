@@ -51,6 +51,8 @@ class ErrorRecord {
   /// Keep the error that is being handled; call inside a catch block. Never throws.
   breve_status keep_current() noexcept;
   const breve_error* view() const noexcept { return view_.status == BREVE_OK ? nullptr : &view_; }
+  /// How many errors were kept so far.
+  std::uint64_t count() const noexcept { return count_; }
   /// Take over another record: the error of a world that is being given up becomes its runtime's.
   void take(ErrorRecord&& other) noexcept;
 
@@ -63,6 +65,7 @@ class ErrorRecord {
   std::vector<FrameText> frames_;
   std::vector<breve_frame> frame_views_;
   breve_error view_{};
+  std::uint64_t count_ = 0;
 };
 
 /// Run the body of a C function. BREVE_OK, or the status of what it threw, kept in `record`.

@@ -107,15 +107,82 @@ class Answer {
 /// The reason by which breve_files_add_directory says that it ran out of memory.
 inline constexpr std::string_view kNoMemory = "there is no memory for it";
 
+/// What the host keeps with a world or an object, and how it goes.
+class UserData {
+ public:
+  UserData() = default;
+  UserData(void* data, void (*destroy)(void*)) : data_(data), destroy_(destroy) {}
+  UserData(UserData&& other) noexcept
+      : data_(std::exchange(other.data_, nullptr)), destroy_(std::exchange(other.destroy_, nullptr)) {}
+  UserData& operator=(UserData&& other) noexcept {
+    if (this == &other) return *this;
+    end();
+    data_ = std::exchange(other.data_, nullptr);
+    destroy_ = std::exchange(other.destroy_, nullptr);
+    return *this;
+  }
+  ~UserData() { end(); }
+  UserData(const UserData&) = delete;
+  UserData& operator=(const UserData&) = delete;
+  void* get() const { return data_; }
+
+ private:
+  void end() noexcept {
+    void* const data = std::exchange(data_, nullptr);
+    if (const auto destroy = std::exchange(destroy_, nullptr)) destroy(data);
+  }
+
+  void* data_ = nullptr;
+  void (*destroy_)(void*) = nullptr;
+};
+
+/// The data of the object that holds a place in the world's table; `ticket` tells it from those before it.
+struct ObjectData {
+  std::uint32_t ticket = 0;
+  UserData user;
+};
+
+/// State of the host that is part of a world.
+struct NamedState {
+  std::string name;
+  breve_state state;
+  UserData user;
+};
+
+class HostClass;
+
+/// What breve_class.bind gave for one world.
+struct Binding {
+  explicit Binding(std::shared_ptr<const HostClass> c) : cls(std::move(c)) {}
+  ~Binding();
+  Binding(const Binding&) = delete;
+  Binding& operator=(const Binding&) = delete;
+
+  const std::shared_ptr<const HostClass> cls;
+  void* data = nullptr;
+  bool bound = false;
+};
+
+/// A method of a class of the host that runs; they stand on the C++ stack.
+struct ActiveCall {
+  const ActiveCall* outer;
+  const HostClass* cls;
+  const breve_call* call;
+  std::size_t depth;  // of the machine
+};
+
 /// A method name with keywords, and what they mean for the class that was called last.
 struct Selector {
-  explicit Selector(std::pmr::memory_resource* memory) : method(memory), keywords(memory), order(memory) {}
+  explicit Selector(std::pmr::memory_resource* memory)
+      : method(memory), keywords(memory), order(memory), super_of(memory) {}
   std::pmr::string method;
   std::pmr::vector<std::pmr::string> keywords;
-  std::uint32_t check = 0;                      // breve_selector.generation: a digest of the names
-  const steve::ClassInfo* cls = nullptr;        // the cache below is for this class
-  const steve::MethodInfo* resolved = nullptr;  // takes exactly these keywords; null: ask by keywords
-  std::pmr::vector<std::uint32_t> order;        // parameter -> argument
+  std::uint32_t check = 0;                        // breve_selector.generation: a digest of the names
+  const steve::ClassInfo* cls = nullptr;          // the cache below is for this class
+  const steve::MethodInfo* resolved = nullptr;    // takes exactly these keywords; null: ask by keywords
+  std::pmr::vector<std::uint32_t> order;          // parameter -> argument
+  std::pmr::string super_of;                      // "": a usual call; else one as `super` makes it in that class
+  const steve::ClassInfo* super_class = nullptr;  // of that name, while `cls` is set
 };
 
 /// The host's answer to which pairs collide.
@@ -158,7 +225,8 @@ struct breve_runtime {
   std::vector<breve::host::DiagnosticText> diagnostics;
   breve::steve::AllowedLints allowed;
   breve::steve::ForeignFunctions
-      functions;  // of breve_runtime_add_function; programs keep those they were compiled with
+      functions;                         // of breve_runtime_add_function; programs keep those they were compiled with
+  breve::steve::ForeignClasses classes;  // of breve_runtime_add_class, likewise
   mutable breve::host::ErrorRecord error;
   int busy = 0;  // compilations and world creations in progress
 };
@@ -190,8 +258,18 @@ struct breve_world : breve::InMemory {
   mutable std::pmr::vector<breve::steve::Slot*> bulk_slots;  // likewise
   breve::host::PreviousPoses previous;
   double time_scale = 1;                                     // of breve_world_advance
-  double remainder = 0;                                      // s, kept by breve_world_advance; in [0, iteration step)
-  int running = 0;                                           // calls of the host that run script, one inside the other
+  breve::host::UserData user;
+  std::vector<std::unique_ptr<breve::host::Binding>> bindings;  // of the program's classes of the host
+  std::pmr::vector<breve::host::ObjectData> object_data;        // by index of the object
+  std::vector<breve::host::NamedState> states;                  // of the host
+  std::pmr::vector<const char*> method_keywords;                // of breve_world_methods, and the two below
+  std::pmr::vector<std::uint32_t> method_types;
+  std::unique_ptr<bool[]> method_defaults;
+  const breve::host::ActiveCall* active = nullptr;  // the innermost
+  std::size_t failed_depth = 0;                     // of the method of the host that failed last
+  std::vector<breve::steve::ForeignPlace> failed_places;
+  double remainder = 0;  // s, kept by breve_world_advance; in [0, iteration step)
+  int running = 0;       // calls of the host that run script, one inside the other
   std::uint64_t errors = 0, warnings = 0;
 
   /// @param number  of the world among those of its runtime
@@ -207,7 +285,10 @@ struct breve_world : breve::InMemory {
         effect_texts(&meter),
         bulk_bodies(&meter),
         bulk_slots(&meter),
-        previous(&meter) {}
+        previous(&meter),
+        object_data(&meter),
+        method_keywords(&meter),
+        method_types(&meter) {}
 };
 
 namespace breve::host {
@@ -260,6 +341,14 @@ class CallbackScope {
   breve_world& world_;
   bool holds_;  // no script runs: it is this callback that makes the world busy
 };
+
+/// Bind what of the program's classes of the host the world has not bound yet, before anything of them runs.
+/// StatusError with the host's reason: none of them is bound then.
+void bind_classes(breve_world& world, const steve::Program& program);
+/// Those that the world's program does not have are unbound.
+void unbind_others(breve_world& world);
+/// Of objects that are no more.
+void forget_data(breve_world& world);
 
 /// Begin a profile; an earlier one is gone. Only while nothing runs.
 void start_profile(breve_world& world, breve_trace_fn trace, void* user);

@@ -205,6 +205,21 @@ breve_status breve_list_get(breve_world* world, const breve_value* list, size_t 
   });
 }
 
+breve_status breve_list_read(breve_world* world, const breve_value* list, size_t first, breve_value* elements,
+                             size_t count) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    if (count != 0) need(elements, "elements");
+    const auto* cell = list_of(*world, list);
+    const std::size_t size = cell ? cell->size : 0;
+    if (first > size || count > size - first)
+      fail(BREVE_ERROR_NOT_FOUND, std::to_string(count) + " elements from " + std::to_string(first) +
+                                      " on of a list of " + std::to_string(size));
+    for (std::size_t i = 0; i < count; ++i)
+      elements[i] = to_host(*world, (*cell)[static_cast<std::uint32_t>(first + i)]);
+  });
+}
+
 breve_status breve_list_push(breve_world* world, const breve_value* list, const breve_value* element) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {

@@ -57,6 +57,8 @@ steve::MachineHost machine_host(breve_world& world) {
                                std::span<const steve::Value> arguments) {
     return call_function(world, function, self, arguments);
   };
+  host.places = [&world](std::size_t depth) { return places_of(world, depth); };
+  host.gone = [&world](ObjectId id) { end_data(world, id); };
   for (std::size_t i = 0; i < config.argument_count; ++i) {
     need(config.arguments, "breve_world_config.arguments");
     need(config.arguments[i], "one of breve_world_config.arguments");
@@ -155,11 +157,13 @@ breve_status make_world(const std::shared_ptr<RuntimeState>& state, std::uint32_
     handle->world->share_workers(&handle->runtime->workers);
     handle->world->random().set_coarse(c.coarse_random);
     steve::register_resource_kinds(*handle->world);
+    handle->user = UserData(c.user, nullptr);
     handle->machine = make_in<steve::Machine>(&handle->meter, handle->program, *handle->world, &handle->meter,
                                               std::move(host));
   });
   if (status != BREVE_OK) return status;
   const breve_status started = guard(handle->error, [&] {
+    bind_classes(*handle, *handle->program);
     if (handle->config.profile) start_profile(*handle, handle->config.trace, handle->config.trace_user);
     start(*handle);
   });
@@ -237,7 +241,7 @@ breve_status breve_world_destroy(breve_world* world) {
   return status;
 }
 
-void* breve_world_user(const breve_world* world) { return world ? world->config.user : nullptr; }
+void* breve_world_user(const breve_world* world) { return world ? world->user.get() : nullptr; }
 
 const breve_error* breve_world_last_error(const breve_world* world) { return world ? world->error.view() : nullptr; }
 
@@ -281,5 +285,24 @@ breve_status breve_world_draw_random(breve_world* world, double* number) {
   return guard(world->error, [&] {
     need(number, "number");
     *number = world->world->random().uniform();
+  });
+}
+
+breve_status breve_world_random(breve_world* world, const breve_value* bound, breve_value* result) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need(bound, "bound");
+    need(result, "result");
+    if (bound->type != BREVE_TYPE_INT && bound->type != BREVE_TYPE_DOUBLE && bound->type != BREVE_TYPE_VECTOR)
+      fail(BREVE_ERROR_TYPE, "a bound of random numbers is an int, a double or a vector");
+    *result = to_host(*world, world->machine->random(from_host(*world, *bound)));
+  });
+}
+
+breve_status breve_world_print(breve_world* world, const char* text, size_t size) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    if (size != 0) need(text, "text");
+    world->machine->print({text ? text : "", size});
   });
 }

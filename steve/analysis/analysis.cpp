@@ -12,8 +12,8 @@
 namespace breve::steve {
 
 Analysis::Analysis(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed,
-                   const ForeignFunctions& foreign)
-    : model_(std::make_unique<Model>(read_model(std::move(main), resolver, allowed, foreign))),
+                   const ForeignFunctions& foreign, const ForeignClasses& classes)
+    : model_(std::make_unique<Model>(read_model(std::move(main), resolver, allowed, foreign, classes))),
       uses_(find_uses(*model_)) {}
 
 Analysis::~Analysis() = default;

@@ -80,7 +80,7 @@ class Analysis {
   /// Reads the main module and all that it loads, as `compile` does. Errors of the program are its diagnostics.
   /// @param allowed  codes of lints that are not to be reported
   Analysis(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed = {},
-           const ForeignFunctions& foreign = {});
+           const ForeignFunctions& foreign = {}, const ForeignClasses& classes = {});
   ~Analysis();
   Analysis(const Analysis&) = delete;
   Analysis& operator=(const Analysis&) = delete;

@@ -84,7 +84,7 @@ struct Scope {
 
 /// Compile the program for its diagnostics, then read all its files and the rest of the class library.
 Model read_model(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed,
-                 const ForeignFunctions& foreign);
+                 const ForeignFunctions& foreign, const ForeignClasses& classes);
 
 /// Symbols of all files and functions, and the tables of names; the trees must have been read (symbols.cpp).
 void make_symbols(Model& model);

@@ -16,7 +16,7 @@ namespace breve::steve {
 
 class ProgramBuilder final : public CompileScope {
  public:
-  ProgramBuilder(ModuleResolver& resolver, const ForeignFunctions& foreign);
+  ProgramBuilder(ModuleResolver& resolver, const ForeignFunctions& foreign, const ForeignClasses& classes);
   CompileResult build(ModuleSource main, const AllowedLints& allowed);
 
   /// One of the library's is loaded if the program has none of that name.
@@ -43,6 +43,7 @@ class ProgramBuilder final : public CompileScope {
   void declare_variables(const ast::Class& tree, ClassInfo& info);
   void declare_methods(const ast::Class& tree, ClassInfo& info);
   void declare_parameter(const ast::Parameter& tree, MethodInfo& method, std::set<std::string>& variables);
+  static StaticType result_of_native(const ast::Method& tree);
   void bind_native(const ast::Method& tree, MethodInfo& method);
   void compile_methods();
   void finish_class(ClassInfo& info);
@@ -54,6 +55,12 @@ class ProgramBuilder final : public CompileScope {
 
   // declare.cpp
   Symbol checked_class(const ast::TypeRef& type);
+
+  // foreign_classes.cpp
+  const ForeignClass* foreign_class(std::string_view name) const;  // name or alias; null if there is none
+  bool load_foreign_class(std::string_view name, const ast::Directive* directive, const std::string& from);
+  void bind_foreign(const ast::Method& tree, MethodInfo& method, std::size_t first);
+  void adopt_keywords(MethodInfo& method, const ClassInfo& cls);
 
   // foreign_library.cpp
   void gather_foreign_library();  // foreign_library.cpp
@@ -86,6 +93,9 @@ class ProgramBuilder final : public CompileScope {
   std::string controller_name_;
   Span controller_span_;
   std::unordered_map<std::string_view, const Native*> natives_;
+  const ForeignClasses& foreign_given_;
+  std::map<std::string, std::size_t, std::less<>>
+      foreign_bases_;  // by class: number of its first method in the program
   int depth_ = 0;
   std::size_t bytes_ = 0, tokens_ = 0;  // of the files that are not the library's
   std::size_t unknown_methods_ = 0;

@@ -133,6 +133,11 @@ void ProgramBuilder::declare_methods(const ast::Class& tree, ClassInfo& info) {
     method->span = m.name_span;
     std::set<std::string> variables;
     for (const auto& p : m.parameters) declare_parameter(p, *method, variables);
+    const auto foreign = foreign_bases_.find(tree.name);
+    if (m.native && foreign != foreign_bases_.end()) {
+      bind_foreign(m, *method, foreign->second);
+      adopt_keywords(*method, info);
+    }
     if (info.own_method(method->name, method->parameters.size()))
       diagnostics_.error(m.name_span, "redefinition",
                          "class " + tree.name + " defines method '" + m.name + "' with " +
@@ -140,9 +145,9 @@ void ProgramBuilder::declare_methods(const ast::Class& tree, ClassInfo& info) {
                              (m.parameters.size() == 1 ? " parameter twice" : " parameters twice"),
                          "give one of them another name or a different number of parameters");
     for (const auto& p : m.parameters) checked_.push_back(p.type);
-    if (m.native)
+    if (m.native && !method->foreign)
       bind_native(m, *method);
-    else
+    else if (!m.native)
       method->function = std::make_unique<Function>();
     info.add_method(std::move(method));
   }
@@ -156,7 +161,7 @@ void ProgramBuilder::declare_parameter(const ast::Parameter& tree, MethodInfo& m
   ParameterInfo p;
   p.keyword = symbol(tree.keyword);
   p.variable = symbol(tree.variable);
-  p.type = static_type(tree.type.kind);
+  p.type = tree.type.dynamic ? StaticType::Any : static_type(tree.type.kind);
   if (!tree.type.class_name.empty()) p.class_name = symbol(tree.type.class_name);
   if (tree.type.array_size >= 0)
     diagnostics_.error(tree.type.span, "array-parameter",
@@ -204,6 +209,11 @@ void ProgramBuilder::declare_parameter(const ast::Parameter& tree, MethodInfo& m
   method.parameters.push_back(p);
 }
 
+StaticType ProgramBuilder::result_of_native(const ast::Method& tree) {
+  if (tree.native_dynamic) return StaticType::Any;
+  return tree.native_result ? static_type(tree.native_result->kind) : StaticType::Null;
+}
+
 void ProgramBuilder::bind_native(const ast::Method& tree, MethodInfo& method) {
   const auto at = natives_.find(*tree.native);
   std::string wanted;
@@ -226,10 +236,7 @@ void ProgramBuilder::bind_native(const ast::Method& tree, MethodInfo& method) {
     return;
   }
   method.native = at->second->function;
-  if (tree.native_dynamic)
-    method.native_result = StaticType::Any;
-  else if (tree.native_result)
-    method.native_result = static_type(tree.native_result->kind);
+  method.native_result = result_of_native(tree);
 }
 
 void ProgramBuilder::compile_methods() {
@@ -245,7 +252,7 @@ void ProgramBuilder::compile_methods() {
          ++m, ++n) {
       auto& info = *declared_[index].info;
       auto& method = *info.methods[n];
-      if (!method.function) continue;
+      if (!method.function || method.foreign) continue;
       FunctionCompiler(*this, info, declared_[index].tree.methods[m], method).compile();
     }
     for (const auto& v : declared_[index].tree.variables) checked_class(v.type);

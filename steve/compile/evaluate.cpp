@@ -85,6 +85,7 @@ Program::Program(const Program& base, std::size_t room)
       diagnostics_(base.diagnostics_),
       fingerprint_(base.fingerprint_),
       foreign_(base.foreign_),
+      foreign_classes_(base.foreign_classes_),
       fragment_methods_(base.fragment_methods_) {
   copy_with_room(base.code_->strings, code_->strings, room);
   copy_with_room(base.code_->texts, code_->texts, room);

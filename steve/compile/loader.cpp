@@ -30,8 +30,10 @@ bool mentions(const LibraryFile& file, std::string_view name) {
 }
 }  // namespace
 
-ProgramBuilder::ProgramBuilder(ModuleResolver& resolver, const ForeignFunctions& foreign)
-    : CompileScope(std::shared_ptr<Program>(new Program), function_table(foreign)), resolver_(resolver) {
+ProgramBuilder::ProgramBuilder(ModuleResolver& resolver, const ForeignFunctions& foreign, const ForeignClasses& classes)
+    : CompileScope(std::shared_ptr<Program>(new Program), function_table(foreign)),
+      resolver_(resolver),
+      foreign_given_(classes) {
   program_->foreign_ = foreign;
   for (const auto& native : library_natives()) natives_.emplace(native.name, &native);
 }
@@ -114,14 +116,15 @@ void ProgramBuilder::load_directive(const ast::Directive& directive, const std::
 
 void ProgramBuilder::load_named(const std::string& name, const ast::Directive& directive, const std::string& from,
                                 bool embedded) {
+  const auto wanted = stem(name);
+  if (directive.kind == ast::Directive::Kind::Use && load_foreign_class(wanted, &directive, from)) return;
   if (!embedded) {
     if (auto module = resolver_.resolve(name, from)) {
       if (loaded_.insert(module->name).second) load(std::move(*module), false);
       return;
     }
   }
-  if (load_library(stem(name))) return;
-  const auto wanted = stem(name);
+  if (load_library(wanted)) return;
   if (is_later_class(wanted)) {
     diagnostics_.error(directive.span, "later-class",
                        "class " + wanted + " is part of a later version of the class library");
@@ -183,6 +186,7 @@ void ProgramBuilder::late_directive(const ast::Directive& directive) {
 
 const ClassInfo* ProgramBuilder::class_named(std::string_view name) {
   if (const auto* cls = program_->find_class(name)) return cls;
+  if (load_foreign_class(name, nullptr, {})) return program_->find_class(name);
   const auto* file = find_library_file(name);
   if (!file || !mentions(*file, name)) return nullptr;
   load_library(name);
@@ -211,6 +215,7 @@ std::string ProgramBuilder::near_class(std::string_view name) const {
     names.push_back(cls->name);
     if (!cls->alias.empty()) names.push_back(cls->alias);
   }
+  for (const auto& cls : foreign_given_) names.push_back(cls->name());
   for (const auto& file : library_files())
     for (auto rest = file.classes; !rest.empty();) {
       const auto end = std::min(rest.find(' '), rest.size());
@@ -272,8 +277,8 @@ void ProgramBuilder::choose_controller() {
 }
 
 CompileResult compile(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed,
-                      const ForeignFunctions& foreign) {
-  return ProgramBuilder(resolver, foreign).build(std::move(main), allowed);
+                      const ForeignFunctions& foreign, const ForeignClasses& classes) {
+  return ProgramBuilder(resolver, foreign, classes).build(std::move(main), allowed);
 }
 
 }  // namespace breve::steve

@@ -109,7 +109,8 @@ struct MethodInfo {
   std::vector<ParameterInfo> parameters;
   std::unique_ptr<Function> function;  // null for a native method
   NativeFunction native = nullptr;
-  StaticType native_result = StaticType::Null;
+  const ForeignMethod* foreign = nullptr;  // what its function calls, for one of a ForeignClass
+  StaticType native_result = StaticType::Null;  // of a native or foreign method
   std::string doc;
   Span span;  // of the header
   MethodInfo();
@@ -167,6 +168,7 @@ class Program {
   const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }  // warnings
   const CodeTables& code() const { return *code_; }
   const ForeignFunctions& foreign() const { return foreign_; }
+  const ForeignClasses& foreign_classes() const { return foreign_classes_; }  // those that it took in, parents first
 
  private:
   friend class CompileScope;
@@ -183,7 +185,8 @@ class Program {
   std::unique_ptr<CodeTables> code_;
   std::vector<Diagnostic> diagnostics_;
   std::uint64_t fingerprint_ = 0;
-  ForeignFunctions foreign_;
+  ForeignFunctions foreign_;  // the methods of foreign_classes_ too
+  ForeignClasses foreign_classes_;
   std::vector<std::shared_ptr<MethodInfo>> fragment_methods_;  // outlive their code: profiles name them
 };
 
@@ -210,8 +213,12 @@ struct CompileResult {
 /// Compile a main file and all that it loads. The class library is always there for @use, without a search path.
 /// @param allowed  codes of lints that are not to be reported
 /// @param foreign  functions besides those of the language, each with a name of its own
+/// @param classes  classes besides those of the class library; one that a file of the program defines wins
 CompileResult compile(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed = {},
-                      const ForeignFunctions& foreign = {});
+                      const ForeignFunctions& foreign = {}, const ForeignClasses& classes = {});
+
+/// What is wrong with the text of a ForeignClass by itself; "" if nothing is.
+std::string fault_of_foreign_class(const std::string& text);
 
 /// A file of the embedded class library: the one named "NAME.tz", or the one that defines class NAME. Null if none.
 struct LibraryFile {

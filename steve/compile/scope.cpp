@@ -8,8 +8,10 @@ std::shared_ptr<const CompileScope::FunctionTable> CompileScope::function_table(
   std::uint32_t number = 0;
   for (const auto& native : functions()) table->emplace(native.name, FunctionEntry{number++, native.signature});
   number = 0;
-  for (const auto& function : foreign)
-    table->emplace(function->name(), FunctionEntry{number++, function->signature(), true});
+  for (const auto& function : foreign) {
+    if (!function->is_method()) table->emplace(function->name(), FunctionEntry{number, function->signature(), true});
+    ++number;
+  }
   return table;
 }
 

@@ -69,7 +69,9 @@ const Machine::Plan& Machine::make_plan(std::uint32_t number, const ClassInfo& c
       }
       plan->order.push_back(static_cast<std::uint16_t>(at - site.arguments.begin()));
       auto kind = PlanStep::Kind::Convert;
-      if (at->type == p.type) {
+      if (p.type == StaticType::Any) {
+        // The tag comes from the type of the argument.
+      } else if (at->type == p.type) {
         const int n = slot_count(p.type);
         kind = n == 1 ? PlanStep::Kind::Copy1 : n == 3 ? PlanStep::Kind::Copy3 : PlanStep::Kind::Copy9;
       } else if (at->type == StaticType::Int && p.type == StaticType::Double) {
@@ -145,7 +147,7 @@ void Machine::convert_argument(const PlanStep& step, const Slot* from, Slot* to)
         return;
       }
       break;
-    case StaticType::Any:
+    case StaticType::Any: std::memcpy(static_cast<void*>(to), &value, sizeof value); return;
     case StaticType::Null:
     case StaticType::Matrix: break;
     default:

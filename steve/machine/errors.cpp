@@ -1,6 +1,8 @@
 // Run-time errors: where they happened, through which calls, and what the reader can do about it.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "steve/compile/wording.hpp"
 #include "steve/machine/machine.hpp"
 #include "steve/machine/trace.hpp"
@@ -14,6 +16,28 @@ Span Machine::span_of(const Frame& frame, const Instruction* pc) const {
   if (at < 0 || at >= static_cast<std::ptrdiff_t>(function.spans.size())) return frame.method->span;
   return function.spans[static_cast<std::size_t>(at)];
 }
+
+namespace {
+
+bool of_library(const TraceLine& line, const Sources& sources) {
+  for (std::uint32_t i = 0; i < sources.size(); ++i)
+    if (sources.file(i).name == line.file) return sources.file(i).embedded;
+  return false;
+}
+
+/// Where the innermost call of the user's own stands in a source of the host's, the error is told of that place.
+void tell_foreign_place(ErrorReport& r, const Sources& sources) {
+  const auto own = std::find_if(r.trace.rbegin(), r.trace.rend(),
+                                [&](const TraceLine& line) { return line.foreign || !of_library(line, sources); });
+  if (own == r.trace.rend() || !own->foreign) return;
+  r.file = own->file;
+  r.line = own->line;
+  r.column = r.length = 0;
+  r.text = fmt::format("{}:{}: error: {}\n", r.file, r.line, r.message) +
+           (r.help.empty() ? "" : "help: " + r.help + '\n') + trace_text(r.trace);
+}
+
+}  // namespace
 
 ErrorReport Machine::report(const RunError& error, const Instruction* pc) const {
   ErrorReport r;
@@ -38,6 +62,7 @@ ErrorReport Machine::report(const RunError& error, const Instruction* pc) const 
     r.length = place.length;
   }
   r.text = format({Severity::Error, "run-time", r.message, r.help, place}, sources) + trace_text(r.trace);
+  tell_foreign_place(r, sources);
   return r;
 }
 

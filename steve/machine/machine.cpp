@@ -200,6 +200,7 @@ void Machine::end_native(Instance& instance) noexcept {
 }
 
 void Machine::forget(Instance& instance) {
+  if (host_.gone) host_.gone(instance.id);
   instance.state = Instance::State::Freed;
   if (world_.alive(instance.id)) world_.release(instance.id);
   if (controller_ == &instance) {
@@ -270,8 +271,10 @@ bool Machine::call_guarded(Instance& receiver, const MethodInfo& method, std::sp
 }
 
 Value Machine::call_with_keywords(Instance& receiver, std::string_view name,
-                                  std::span<const std::pair<std::string_view, Value>> keywords) {
+                                  std::span<const std::pair<std::string_view, Value>> keywords,
+                                  const ClassInfo* super_of) {
   CallSite site;
+  site.super_of = super_of;
   site.selector = program_->symbols().find(name);
   if (site.selector == kNoSymbol)
     throw RunError(RunErrorKind::UnknownMethod,

@@ -30,6 +30,7 @@ struct TraceLine {
   std::string receiver;                  // "Bird 0xc"; "" if it could not be described
   std::string arguments;                 // "target (3, 0, 1) weight 2"
   std::uint32_t line = 0, column = 0;    // of what was running
+  bool foreign = false;                  // the place is one in a source of the host's own
 };
 
 /// A run-time error with everything that is known about it.
@@ -120,8 +121,14 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   /// Call, report an error as one that does not stop the run, and go on. False if there was an error.
   bool call_guarded(Instance& receiver, const MethodInfo& method, std::span<const Value> arguments, Value& result);
   /// Call with keywords, as a script would.
+  /// @param super_of  not null: as `super` does in a method of that class, which is the receiver's or an ancestor
   Value call_with_keywords(Instance& receiver, std::string_view method,
-                           std::span<const std::pair<std::string_view, Value>> keywords);
+                           std::span<const std::pair<std::string_view, Value>> keywords,
+                           const ClassInfo* super_of = nullptr);
+  std::size_t depth() const { return depth_; }  // active methods
+
+  /// What `random[bound]` gives (slow_paths.cpp).
+  Value random(const Value& bound);
 
   // --- variables of instances ----------------------------------------------------------------------------------------
   Value get_variable(const Instance& instance, const VariableInfo& variable) const;
@@ -361,7 +368,6 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   void write_argument(Slot* base, const ParameterInfo& parameter, const Value& value);
   StringCell* interpolate(const std::vector<std::string>& texts, const Value* values, std::size_t count);
   void print_value(const Value& value, int ending);
-  Value random(const Value& bound);
   const VariableInfo* member_variable(const Instance& instance, Symbol name) const;
   Instance& need_live(const Value& base, std::string_view name) const;
 
@@ -371,6 +377,7 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   // trace.cpp
   std::vector<TraceLine> trace(const std::vector<const Frame*>& frames, const Instruction* pc) const;
   void describe_call(TraceLine& line, const Frame& frame) const;
+  static void add_places(std::vector<TraceLine>& lines, const std::vector<ForeignPlace>& places);
   bool half_made(const Frame& frame, const Instruction* pc) const;
 
   // errors.cpp

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/base/ids.hpp"
 #include "steve/machine/files.hpp"
 #include "steve/machine/foreign.hpp"
 #include "steve/machine/value.hpp"
@@ -29,6 +30,9 @@ struct MachineHost {
   // One of the functions that the program was compiled with; not empty if there are any. `self` is the calling
   // instance.
   std::function<Value(const ForeignFunction& function, Instance& self, std::span<const Value> arguments)> call_foreign;
+  // Where the foreign method stands that is active at this depth of calls, innermost first; empty if that is not known.
+  std::function<std::vector<ForeignPlace>(std::size_t depth)> places;
+  std::function<void(ObjectId object)> gone;  // an object is being forgotten; runs nothing
   bool may_sleep = false, may_read_clock = false, may_draw_entropy = false;
   std::vector<std::string> arguments;  // [0] is the program file
   std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();

@@ -35,11 +35,17 @@ std::size_t rounds(const std::vector<const TraceLine*>& calls, std::size_t at, s
   return (end - at) / period;
 }
 
+std::string place_text(const TraceLine& line) {
+  const std::string place = fmt::format("{}:{}", line.file, line.line);
+  return line.column == 0 ? place : fmt::format("{}:{}", place, line.column);
+}
+
 std::string line_of(const TraceLine& call, const TraceLine* caller) {
-  std::string text = fmt::format("  in {}.{}", call.class_name, call.method);
+  std::string text =
+      call.class_name.empty() ? "  in " + call.method : fmt::format("  in {}.{}", call.class_name, call.method);
   if (!call.arguments.empty()) text += ' ' + call.arguments;
   if (!call.receiver.empty()) text += fmt::format(" [self: {}]", call.receiver);
-  if (caller != nullptr) text += fmt::format(", called at {}:{}:{}", caller->file, caller->line, caller->column);
+  if (caller != nullptr) text += ", called at " + place_text(*caller);
   return text + '\n';
 }
 
@@ -105,10 +111,26 @@ std::vector<TraceLine> Machine::trace(const std::vector<const Frame*>& frames, c
     line.file = sources.file(span.file).name;
     line.line = span.line;
     line.column = span.column;
-    if (i >= kDescribedAtEachEnd && i + kDescribedAtEachEnd < frames.size()) continue;
-    describe_call(line, frame);
+    if (i < kDescribedAtEachEnd || i + kDescribedAtEachEnd >= frames.size()) describe_call(line, frame);
+    if (frame.method->foreign && host_.places) add_places(lines, host_.places(i + 1));
   }
   return lines;
+}
+
+// The last line is that of a foreign method: its place in its own source, and what it has called there itself.
+void Machine::add_places(std::vector<TraceLine>& lines, const std::vector<ForeignPlace>& places) {
+  if (places.empty()) return;
+  lines.back().file = places.back().file;
+  lines.back().line = places.back().line;
+  lines.back().column = 0;
+  lines.back().foreign = true;
+  for (std::size_t i = places.size() - 1; i-- > 0;) {
+    TraceLine& line = lines.emplace_back();
+    line.method = places[i].function;
+    line.file = places[i].file;
+    line.line = places[i].line;
+    line.foreign = true;
+  }
 }
 
 // Values as they are now: a method may have assigned to its parameters.

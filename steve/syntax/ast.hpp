@@ -24,6 +24,7 @@ struct TypeRef {
   std::string class_name;        // Object only: "" = any class
   std::int32_t array_size = -1;  // >= 0: an array of that many
   bool broken = false;           // not what was written, which is reported: nothing more is said about it
+  bool dynamic = false;          // `(?)`: any value; parameters of classes that the host gives only
   Span span;
 };
 
@@ -267,8 +268,8 @@ struct Method {
   std::string doc;        // the % lines inside or before it, without the %
   bool is_public = true;  // written with +
   bool broken = false;    // a statement of it could not be read
-  /// Embedded library only: `@native "name" (type).` in place of a body. The type is that of the result; none: no
-  /// value.
+  /// Embedded library and classes of the host only: `@native "name" (type).` in place of a body. The type is that of the
+  /// result; none: no value.
   std::optional<std::string> native;
   std::optional<TypeRef> native_result;
   bool native_dynamic = false;  // `(?)`: the result's type varies

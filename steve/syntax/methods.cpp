@@ -242,7 +242,9 @@ ast::TypeRef Parser::type() {
   if (!at("(")) fail_expected("a type in parentheses", "for example (int), (vector) or (Name object)");
   advance();
   ast::TypeRef result;
-  if (at_kind(TokenKind::Int)) {
+  if (embedded_ && accept("?")) {
+    result.dynamic = true;
+  } else if (at_kind(TokenKind::Int)) {
     result = array_type();
   } else if (const std::optional<TypeKind> simple = type_of(item().word)) {
     result.kind = *simple;

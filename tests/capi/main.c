@@ -6,6 +6,7 @@ void batch_suite(void);
 void budget_suite(void);
 void bulk_suite(void);
 void calls_suite(void);
+void classes_suite(void);
 void config_suite(void);
 void errors_suite(void);
 void evaluate_suite(void);
@@ -33,6 +34,7 @@ void grids_suite(void);
 void solid_suite(void);
 void stepping_suite(void);
 void threads_suite(void);
+void user_data_suite(void);
 void values_suite(void);
 void settings_suite(void);
 void view_suite(void);
@@ -47,6 +49,7 @@ static const struct {
     {"budget", budget_suite},
     {"bulk", bulk_suite},
     {"calls", calls_suite},
+    {"classes", classes_suite},
     {"config", config_suite},
     {"errors", errors_suite},
     {"evaluate", evaluate_suite},
@@ -74,6 +77,7 @@ static const struct {
     {"solid", solid_suite},
     {"stepping", stepping_suite},
     {"threads", threads_suite},
+    {"user_data", user_data_suite},
     {"values", values_suite},
     {"settings", settings_suite},
     {"view", view_suite},

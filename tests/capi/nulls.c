@@ -34,6 +34,18 @@ static void null_handles_give_an_argument_error_or_nothing(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_runtime_allow_lint(NULL, "lint-shadow"));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_runtime_add_function(NULL, &function));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_charge(NULL, 1));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_runtime_add_class(NULL, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_prepare_super(NULL, "Ball", "iterate", NULL, 0, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_methods(NULL, "Ball", NULL, 0, &size));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_print(NULL, "", 0));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_random(NULL, NULL, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_user(NULL, NULL, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_user(NULL, o, NULL, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_user(NULL, o, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_state(NULL, "x", NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_list_read(NULL, NULL, 0, NULL, 0));
+  CHECK(breve_world_state(NULL, "x") == NULL && breve_world_allocate(NULL, 8) == NULL && !breve_world_has_budget(NULL));
+  breve_world_release(NULL, NULL, 0);
   CHECK(breve_program_class_count(NULL) == 0);
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_program_class(NULL, 0, &info));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_create(NULL, NULL, NULL, &world));

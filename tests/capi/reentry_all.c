@@ -48,6 +48,49 @@ static breve_status do_add_function(place* p) {
   function.call = never_called;
   return breve_runtime_add_function(p->runtime, &function);
 }
+static breve_status do_add_class(place* p) {
+  static int number;
+  char name[32];
+  breve_class description = breve_class_default();
+  sprintf(name, "Class%d", number++);
+  description.name = name;
+  return breve_runtime_add_class(p->runtime, &description);
+}
+static breve_status do_prepare_super(place* p) {
+  breve_selector selector;
+  return breve_world_prepare_super(p->world, "Ball", "iterate", NULL, 0, &selector);
+}
+static breve_status do_methods(place* p) {
+  size_t count;
+  return breve_world_methods(p->world, "Ball", NULL, 0, &count);
+}
+static breve_status do_draw(place* p) {
+  const breve_value bound = breve_value_int(3);
+  breve_value drawn;
+  return breve_world_random(p->world, &bound, &drawn);
+}
+static breve_status do_print(place* p) { return breve_world_print(p->world, "", 0); }
+static breve_status do_user(place* p) {
+  void* user = NULL;
+  TRY(breve_world_set_user(p->world, breve_world_user(p->world), NULL));
+  TRY(breve_object_user(p->world, p->controller, &user));
+  return breve_object_set_user(p->world, p->controller, user, NULL);
+}
+static breve_status do_state(place* p) {
+  CHECK(breve_world_state(p->world, "none") == NULL);
+  CHECK(!breve_world_has_budget(p->world));
+  return breve_world_set_state(p->world, "none", NULL);
+}
+static breve_status do_allocate(place* p) {
+  void* memory = breve_world_allocate(p->world, 100);
+  breve_world_release(p->world, memory, 100);
+  return memory ? BREVE_OK : BREVE_ERROR_MEMORY;
+}
+static breve_status do_list_read(place* p) {
+  breve_value list;
+  TRY(breve_list_create(p->world, &list));
+  return breve_list_read(p->world, &list, 0, NULL, 0);
+}
 static breve_status do_charge(place* p) { return breve_world_charge(p->world, 1); }
 static breve_status do_load(place* p) {
   breve_program* made = NULL;
@@ -425,6 +468,15 @@ static const struct {
     {"breve_world_set_paused", do_set_paused, WORKS, WORKS},
     {"breve_world_draw_random", do_random, WORKS, WORKS},
     {"breve_world_charge", do_charge, WORKS, WORKS},
+    {"breve_runtime_add_class", do_add_class, WORKS, BUSY},
+    {"breve_world_prepare_super", do_prepare_super, WORKS, WORKS},
+    {"breve_world_methods", do_methods, WORKS, WORKS},
+    {"breve_world_random", do_draw, WORKS, WORKS},
+    {"breve_world_print", do_print, WORKS, WORKS},
+    {"breve_world_set_user and those of objects", do_user, WORKS, WORKS},
+    {"breve_world_set_state", do_state, WORKS, WORKS},
+    {"breve_world_allocate and _release", do_allocate, WORKS, WORKS},
+    {"breve_list_read", do_list_read, WORKS, WORKS},
     {"breve_world_objects", do_objects, WORKS, WORKS},
     {"breve_object_is_a", do_is_a, WORKS, WORKS},
     {"breve_object_create and _free", do_create_and_free, WORKS, WORKS},

@@ -132,6 +132,29 @@ breve_status runtime_add_function(Caller& c) {
   return breve_runtime_add_function(runtime, &f);
 }
 
+breve_status runtime_add_class(Caller& c) {
+  static constexpr const char* kNames[] = {"HostOne", "HostTwo", "Chatter", "1st", "two words", ""};
+  static constexpr const char* kParents[] = {"Object", "Mobile", "HostOne", "Nobody", "-"};
+  static constexpr std::uint32_t kTypes[] = {BREVE_TYPE_NULL, BREVE_TYPE_VECTOR, BREVE_TYPE_POINTER, 4711};
+  breve_runtime* runtime = c.runtime();
+  const breve_parameter parameter{c.text_or_null("to"), c.choose().one_of(kTypes), 0};
+  const breve_variable variable{"kept", c.choose().one_of(kTypes), 0};
+  breve_method method{};
+  method.name = c.text_or_null("host-method");
+  method.parameters = &parameter;
+  method.parameter_count = c.chance(80) ? 1 : 0;
+  method.call = c.chance(90) ? first_argument : nullptr;
+  breve_class description = breve_class_default();
+  if (c.chance(10)) description.struct_size = c.struct_size(sizeof description);
+  description.name = c.text_or_null(c.choose().one_of(kNames));
+  description.parent = c.text_or_null(c.choose().one_of(kParents));
+  description.methods = &method;
+  description.method_count = c.chance(80) ? 1 : 0;
+  description.variables = &variable;
+  description.variable_count = c.chance(50) ? 1 : 0;
+  return breve_runtime_add_class(runtime, &description);
+}
+
 // --- programs --------------------------------------------------------------------------------------------------------
 
 constexpr std::size_t kMostPrograms = 4;
@@ -243,6 +266,7 @@ constexpr Function kFunctions[] = {
     {"breve_lint", lint, kNotFound},
     {"breve_runtime_allow_lint", runtime_allow, kNotFound | kBusy},
     {"breve_runtime_add_function", runtime_add_function, kBusy},
+    {"breve_runtime_add_class", runtime_add_class, kBusy},
     {"breve_program_load", program_load, kCompilation},
     {"breve_program_compile", program_compile, kCompilation},
     {"breve_program_create_library", program_create_library, kCompilation},

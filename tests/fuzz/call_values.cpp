@@ -1,4 +1,7 @@
 // Calls of values, lists and hashes, of variables and methods, and of statements.
+#include <array>
+#include <cstdint>
+
 #include "call_functions.hpp"
 
 namespace breve::fuzz {
@@ -83,6 +86,30 @@ breve_status list_get(Caller& c) {
   const Passed list(c, container<breve_list_create>(c, world));
   const std::size_t index = c.chance(70) ? c.choose().below(3) : SIZE_MAX;
   return get_value(c, [&](breve_value* to) { return breve_list_get(world, list.to(), index, to); });
+}
+breve_status random_value(Caller& c) {
+  breve_world* world = c.world();
+  const Passed bound(c, c.value(world));
+  Out<breve_value> drawn(c);
+  return drawn.after(breve_world_random(world, bound.to(), drawn.to()));
+}
+breve_status prepare_super(Caller& c) {
+  static constexpr const char* kNames[] = {"Mobile", "Control", "Object", "Nobody"};
+  static constexpr const char* kKeywords[] = {"to"};
+  breve_world* world = c.world();
+  const char* cls = c.text_or_null(c.choose().one_of(kNames));
+  const char* method = c.text_or_null(c.chance(50) ? "iterate" : "move");
+  Out<breve_selector> selector(c);
+  const breve_status status =
+      selector.after(breve_world_prepare_super(world, cls, method, kKeywords, c.choose().below(2), selector.to()));
+  return status;
+}
+breve_status list_read(Caller& c) {
+  breve_world* world = c.world();
+  const Passed list(c, container<breve_list_create>(c, world));
+  std::array<breve_value, 3> elements{};
+  const std::size_t first = c.chance(90) ? c.choose().below(3) : SIZE_MAX;
+  return breve_list_read(world, list.to(), first, c.chance(90) ? elements.data() : nullptr, c.choose().below(4));
 }
 breve_status list_push(Caller& c) {
   breve_world* world = c.world();
@@ -285,6 +312,9 @@ constexpr Function kFunctions[] = {
     {"breve_list_create", list_create},
     {"breve_list_size", list_size, kContainer},
     {"breve_list_get", list_get, kContainer | kNotFound},
+    {"breve_world_random", random_value, kValue | kType},
+    {"breve_world_prepare_super", prepare_super, kNotFound},
+    {"breve_list_read", list_read, kContainer | kNotFound},
     {"breve_list_push", list_push, kContainer | kValue, 2},
     {"breve_hash_create", hash_create},
     {"breve_hash_size", hash_size, kContainer},

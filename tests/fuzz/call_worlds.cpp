@@ -162,6 +162,64 @@ breve_status world_charge(Caller& c) {
   breve_world* world = c.world();
   return breve_world_charge(world, c.choose().below(100));
 }
+breve_status world_has_budget(Caller& c) {
+  breve_world_has_budget(c.world());
+  return BREVE_OK;
+}
+breve_status world_print(Caller& c) {
+  breve_world* world = c.world();
+  const char* text = c.text_or_null("fuzz");
+  return breve_world_print(world, text, text ? c.choose().below(5) : 0);
+}
+breve_status world_methods(Caller& c) {
+  static constexpr const char* kNames[] = {"Control", "Mobile", "Chatter", "Nobody"};
+  breve_world* world = c.world();
+  Room<breve_method_info> methods(c, c.capacity());
+  Out<std::size_t> count(c);
+  const char* name = c.text_or_null(c.choose().one_of(kNames));
+  const breve_status status =
+      count.after(breve_world_methods(world, name, methods.to(), methods.capacity(), count.to()));
+  methods.after(status, count ? *count : 0);
+  for (const breve_method_info& method : methods.written()) {
+    read_text(method.class_name), read_text(method.name);
+    for (std::size_t i = 0; i < method.keyword_count; ++i) read_text(method.keywords[i]);
+  }
+  return status;
+}
+/// What is kept with worlds and objects.
+const int mark = 0;
+void* const kept = const_cast<int*>(&mark);
+
+breve_status world_set_user(Caller& c) { return breve_world_set_user(c.world(), kept, nullptr); }
+breve_status object_set_user(Caller& c) {
+  breve_world* world = c.world();
+  return breve_object_set_user(world, c.object(world), kept, nullptr);
+}
+breve_status object_user(Caller& c) {
+  breve_world* world = c.world();
+  const breve_object object = c.object(world);
+  Out<void*> user(c);
+  const breve_status status = user.after(breve_object_user(world, object, user.to()));
+  if (user) require(*user == nullptr || *user == kept, "data of an object that nobody gave");
+  return status;
+}
+breve_status world_set_state(Caller& c) {
+  breve_world* world = c.world();
+  breve_state state = breve_state_default();
+  if (c.chance(20)) state.struct_size = c.struct_size(sizeof state);
+  return breve_world_set_state(world, c.text_or_null("fuzz"), c.chance(50) ? &state : nullptr);
+}
+breve_status world_state(Caller& c) {
+  breve_world* world = c.world();
+  require(breve_world_state(world, c.text_or_null("fuzz")) == nullptr, "state of the host that has no data");
+  return BREVE_OK;
+}
+breve_status world_memory(Caller& c) {
+  breve_world* world = c.world();
+  const std::size_t size = c.choose().below(1000);
+  breve_world_release(world, breve_world_allocate(world, size), size);
+  return BREVE_OK;
+}
 breve_status world_interrupt(Caller& c) {
   if (c.chance(30)) breve_world_interrupt(c.world());
   return BREVE_OK;
@@ -289,6 +347,16 @@ constexpr Function kFunctions[] = {
     {"breve_world_destroy", world_destroy, kBusy},
     {"breve_world_user", world_user, kPlain},
     {"breve_world_last_error", world_last_error, kPlain},
+    {"breve_world_has_budget", world_has_budget, kPlain},
+    {"breve_world_print", world_print, kScript},
+    {"breve_world_methods", world_methods, kNotFound},
+    {"breve_world_set_user", world_set_user},
+    {"breve_object_set_user", object_set_user, kStale},
+    {"breve_object_user", object_user, kStale},
+    {"breve_world_set_state", world_set_state},
+    {"breve_world_state", world_state, kPlain},
+    {"breve_world_allocate", world_memory, kPlain},
+    {"breve_world_release", world_memory, kPlain},
     {"breve_world_step", world_step, kScript, 12},
     {"breve_world_advance", world_advance, kScript, 2},
     {"breve_world_time", world_time, kPlain},

@@ -1287,6 +1287,11 @@ BREVE_API breve_status breve_list_size(const breve_world* world, const breve_val
 /* The element at `index`, from 0. BREVE_ERROR_NOT_FOUND if index is not below the size. */
 BREVE_API breve_status breve_list_get(breve_world* world, const breve_value* list, size_t index, breve_value* element);
 
+/* Reads `count` elements from `first` on, in one call. BREVE_ERROR_NOT_FOUND if the list has fewer.
+   @param elements  NULL only if count is 0 */
+BREVE_API breve_status breve_list_read(breve_world* world, const breve_value* list, size_t first, breve_value* elements,
+                                       size_t count);
+
 /* Appends an element. BREVE_ERROR_ARGUMENT for a list that the script has not created yet (all-zero reference). */
 BREVE_API breve_status breve_list_push(breve_world* world, const breve_value* list, const breve_value* element);
 
@@ -1423,6 +1428,7 @@ typedef struct breve_call {
   size_t count;                 /* breve_function.parameter_count */
   breve_write_fn reason;        /* to say why the call fails, call it with `sink` and a sentence without period */
   void* sink;
+  void* binding; /* of a method of a class of the host: what breve_class.bind gave for this world; else NULL */
 } breve_call;
 
 /* A script calls a host function. The callback may call any function of this header: call methods, create and free
@@ -1475,6 +1481,199 @@ BREVE_API breve_status breve_runtime_add_function(breve_runtime* runtime, const 
    BREVE_OK; BREVE_ERROR_BUDGET: the budget is used up; BREVE_ERROR_INTERRUPTED: breve_world_interrupt. Return these
    from the callback; if it continues, the script ends when it returns. */
 BREVE_API breve_status breve_world_charge(breve_world* world, uint64_t turns);
+
+/* Has the world a budget, of an iteration or of a call? Where it has none, nothing is counted. */
+BREVE_API bool breve_world_has_budget(const breve_world* world);
+
+/* ---- classes of the host ------------------------------------------------------------------------------------------ */
+
+/* A class that the host writes in its own language. Programs name it like one of the class library: they derive classes
+   from it, make objects of it and call its methods, and it may itself derive from any class of theirs. Methods of the
+   world's own names do what they do in steve: `init` runs for each new object, from the root class down, `iterate` and
+   `post-iterate` in each iteration, `destroy` when an object is freed. See docs/host_classes.md. */
+
+/* One keyword of a method with the type of its argument. */
+typedef struct breve_parameter {
+  const char* keyword;
+  uint32_t type;     /* breve_type: arguments are converted as in an assignment; BREVE_TYPE_NULL takes any value as it is */
+  uint32_t reserved; /* must be 0 */
+} breve_parameter;
+
+/* A method. It is called as a function of the host is; breve_call.self is the receiver. Frozen: it never grows. */
+typedef struct breve_method {
+  const char* name;                  /* a selector: "set-goal" */
+  const char* doc;                   /* what it does, for editors; NULL: nothing */
+  const breve_parameter* parameters; /* NULL only if there are none */
+  size_t parameter_count;            /* at most 8 */
+  uint32_t result;                   /* breve_type; BREVE_TYPE_NULL: any value, or none */
+  bool adopts_keywords; /* if it overrides a method with as many keywords that has others: its keywords are those, in
+                           their order. Callers then need not know which of the two they call */
+  bool reserved[3];     /* must be false */
+  breve_function_fn call;
+  void* user; /* handed to `call` */
+} breve_method;
+
+/* An instance variable, read and written by breve_object_get and _set, and by the methods of derived classes. */
+typedef struct breve_variable {
+  const char* name;
+  uint32_t type;     /* breve_type, but not BREVE_TYPE_NULL or BREVE_TYPE_POINTER */
+  uint32_t reserved; /* must be 0 */
+} breve_variable;
+
+/* Where code of the host stands, for the chain of calls of an error. */
+typedef struct breve_place {
+  const char* function; /* as its source calls it; copied */
+  const char* file;     /* copied */
+  uint32_t line;        /* from 1; 0 if not known */
+} breve_place;
+
+/* A world is made of a program with the class, before anything runs in it. Its objects may not be made yet.
+   @param user     breve_class.user
+   @param binding  NULL; to be filled with what breve_call.binding is to be in this world
+   Any status but BREVE_OK ends the creation of the world with the reason that was written. */
+typedef breve_status (*breve_bind_fn)(void* user, breve_world* world, void** binding, breve_write_fn reason, void* sink);
+
+/* An error comes out of a method, or passes through it, and its chain of calls is made.
+   @param call    the call of the method, as breve_function_fn has it
+   @param places  room for `capacity`: the running functions of the host in this call, innermost first; the last one is the
+                  method itself. Texts are good until the next call of this function
+   Returns how many there are, at most capacity are written. It may not call functions of this header. */
+typedef size_t (*breve_places_fn)(void* user, const breve_call* call, breve_place* places, size_t capacity);
+
+typedef struct breve_class {
+  size_t struct_size;              /* as breve_class_default gives it */
+  const char* name;                /* must be given */
+  const char* alias;               /* another name, as in `(aka Birds)`. NULL: none. Default NULL */
+  const char* parent;              /* a class of the library, the host or a program. Default "Object" */
+  const char* const* modules;      /* `module_count` modules that programs load before, as by @include, such as the one
+                                      with the parent. NULL only if there are none. Default NULL */
+  size_t module_count;             /* Default 0 */
+  const char* doc;                 /* NULL: nothing. Default NULL */
+  const breve_variable* variables; /* NULL only if there are none. Default NULL */
+  size_t variable_count;           /* Default 0 */
+  const breve_method* methods;     /* NULL only if there are none. Default NULL */
+  size_t method_count;             /* Default 0 */
+  breve_bind_fn bind;              /* NULL: breve_call.binding is NULL. Default NULL */
+  void (*unbind)(void* binding);   /* the world is destroyed or has got a program without the class; it must not use this
+                                      header. NULL: nothing to do. Default NULL */
+  breve_places_fn places;          /* NULL: the chain of calls has the method's name only. Default NULL */
+  void* user;                      /* handed to `bind` and `places`. Default NULL */
+  void (*destroy)(void* user);     /* as breve_function.destroy. Default NULL */
+} breve_class;
+
+/* The defaults named above. */
+static inline breve_class breve_class_default(void) {
+  breve_class class_;
+  breve_clear(&class_, sizeof class_);
+  class_.struct_size = sizeof class_;
+  class_.parent = "Object";
+  return class_;
+}
+
+/* Give a class to all programs that are compiled and analysed on this runtime from now on. A program takes it in when it
+   names it; a class that a file of the program defines wins over it, and it wins over one of the class library. A class of
+   the host that has the name already is replaced; programs that are compiled keep the one they have. Runs no script.
+   @param description  copied, with all that it points to
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, a name that is no name of a program, a method without `call`, more
+   than 8 parameters, two methods or variables of one name, a type that there is none of; `destroy` is not called then.
+   BREVE_ERROR_BUSY from a callback of a compilation. */
+BREVE_API breve_status breve_runtime_add_class(breve_runtime* runtime, const breve_class* description);
+
+/* As breve_world_prepare, for calls as `super` makes them: breve_object_call_prepared calls the method that the parent of
+   `class_name` has, whatever the object's own class has. It is for objects of `class_name` and its descendants:
+   BREVE_ERROR_TYPE for others.
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: the program has no such class; BREVE_ERROR_ARGUMENT: it has no parent. */
+BREVE_API breve_status breve_world_prepare_super(breve_world* world, const char* class_name, const char* method,
+                                                 const char* const* keywords, size_t count, breve_selector* selector);
+
+/* A method that the objects of a class answer to. Texts are owned by the program. */
+typedef struct breve_method_info {
+  const char* class_name; /* that defines it */
+  const char* name;
+  size_t keyword_count;
+  const char* const* keywords;  /* in the order of the declaration; owned by the world until the next call of
+                                   breve_world_methods on it */
+  const uint32_t* types;        /* breve_type of each, likewise; BREVE_TYPE_NULL: any value */
+  const bool* defaults;         /* may it be left out? likewise */
+} breve_method_info;
+
+/* The methods of a class, its own and those that it inherits, without those that are overridden: in the order of their
+   declaration, those of the class first.
+   @param methods  room for `capacity`; NULL only if capacity is 0
+   @param count    how many there are, also where that is more than capacity: at most capacity are written
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: the program has no such class. */
+BREVE_API breve_status breve_world_methods(breve_world* world, const char* class_name, breve_method_info* methods,
+                                           size_t capacity, size_t* count);
+
+/* What `print` in a script does: `size` bytes go to the print callback on BREVE_CHANNEL_PRINT. It counts to the running
+   script's budget. BREVE_OK; BREVE_ERROR_SCRIPT: too much was printed, or a force method runs. */
+BREVE_API breve_status breve_world_print(breve_world* world, const char* text, size_t size);
+
+/* What `random[bound]` in a script gives, from the world's generator: an int from 0 to bound, a number below bound, or a
+   vector of such numbers. BREVE_OK; BREVE_ERROR_TYPE: the bound is none of these. */
+BREVE_API breve_status breve_world_random(breve_world* world, const breve_value* bound, breve_value* result);
+
+/* ---- what the host keeps of worlds and objects -------------------------------------------------------------------- */
+
+/* Keep data of the host with a world; breve_world_user reads it.
+   @param destroy  called once, when the world is destroyed or other data takes the place; NULL: nothing to do. It must
+                   not use this header */
+BREVE_API breve_status breve_world_set_user(breve_world* world, void* user, void (*destroy)(void* user));
+
+/* Keep data of the host with an object.
+   @param destroy  called once: when the object is freed (after its `destroy` methods), when the world is destroyed, when
+                   breve_world_restore leaves the object out, or when other data takes the place. NULL: nothing to do. It
+                   must not use this header
+   Data is not part of snapshots: an object that a restore makes anew has none. */
+BREVE_API breve_status breve_object_set_user(breve_world* world, breve_object object, void* user,
+                                             void (*destroy)(void* user));
+
+/* The data of an object, NULL if it has none. BREVE_OK; BREVE_ERROR_STALE; BREVE_ERROR_ARGUMENT: the null object. */
+BREVE_API breve_status breve_object_user(const breve_world* world, breve_object object, void** user);
+
+/* What the host keeps and a world's run depends on: part of its snapshots, and of its hash. A world may have several, each
+   under a name of its own. */
+typedef struct breve_state {
+  size_t struct_size; /* as breve_state_default gives it */
+  void* user;         /* handed to the callbacks. Default NULL */
+  /* Write the state: bytes that depend on nothing but the run. It may read the world. False: it cannot be saved, and the
+     snapshot or hash gives BREVE_ERROR_UNSUPPORTED with the reason that was written. NULL: nothing is saved, and `load` is
+     not called. Default NULL */
+  bool (*save)(void* user, breve_world* world, breve_write_fn write, void* sink, breve_write_fn reason, void* reason_sink);
+  /* Take bytes that `save` wrote. It is called twice: first with commit false, while the world still is as it was; bytes
+     that are no state give false, and the restore BREVE_ERROR_IMAGE. Then with commit true, when the world is restored;
+     false then means that there was no memory for it. Must be given if `save` is */
+  bool (*load)(void* user, breve_world* world, const char* bytes, size_t size, bool commit);
+  /* An object is gone, by whatever way; its id is that of no object any more. It may not use this header. NULL: nobody is
+     told. Default NULL */
+  void (*gone)(void* user, breve_object object);
+  void (*destroy)(void* user); /* as for breve_world_set_user. Default NULL */
+} breve_state;
+
+/* The defaults named above. */
+static inline breve_state breve_state_default(void) {
+  breve_state state;
+  breve_clear(&state, sizeof state);
+  state.struct_size = sizeof state;
+  return state;
+}
+
+/* Make state of the host a part of the world. Images that were taken with it fit only worlds that have state of that name,
+   and the other way round: BREVE_ERROR_IMAGE. Not from a callback of state.
+   @param name   copied
+   @param state  copied; NULL: none of that name any more
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, or `save` without `load`. */
+BREVE_API breve_status breve_world_set_state(breve_world* world, const char* name, const breve_state* state);
+
+/* breve_state.user of the state of that name; NULL if there is none. */
+BREVE_API void* breve_world_state(const breve_world* world, const char* name);
+
+/* Memory that counts against the world's limit, from the runtime's allocator, aligned for any type. NULL if there is none
+   left, or size is 0. It is given back before the world is destroyed, as in breve_class.unbind. */
+BREVE_API void* breve_world_allocate(breve_world* world, size_t size);
+
+/* Give back what breve_world_allocate gave, with the same size. NULL is nothing. */
+BREVE_API void breve_world_release(breve_world* world, void* memory, size_t size);
 
 /* ---- input ------------------------------------------------------------------------------------------------------- */
 

@@ -265,6 +265,14 @@ class World {
   std::uint64_t seed() const { return breve_world_seed(get()); }
   Result<double> random() { return read<double>(breve_world_draw_random); }
   void* user() const { return breve_world_user(get()); }
+  Status set_user(void* user, void (*destroy)(void* user) = nullptr) {
+    return status(breve_world_set_user(get(), user, destroy));
+  }
+  /// Print as a script does.
+  Status print(std::string_view text) { return status(breve_world_print(get(), text.data(), text.size())); }
+  /// What random[bound] gives in a script.
+  Result<Value> random(const Value& bound) { return read_value(breve_world_random, &bound); }
+  bool has_budget() const { return breve_world_has_budget(get()); }
   const breve_error* last_error() const { return breve_world_last_error(get()); }
 
   // --- objects -------------------------------------------------------------------------------------------------------
@@ -570,6 +578,10 @@ class World {
   Result<Value> create_list() { return read_value(breve_list_create); }
   Result<std::size_t> list_size(const Value& list) const { return read<std::size_t>(breve_list_size, &list); }
   Result<Value> element(const Value& list, std::size_t index) { return read_value(breve_list_get, &list, index); }
+  /// As many elements as fit, from `first` on.
+  Status read_elements(const Value& list, std::size_t first, Room<breve_value> room) {
+    return status(breve_list_read(get(), &list, first, room.data, room.capacity));
+  }
   Status push(const Value& list, const Value& element) { return status(breve_list_push(get(), &list, &element)); }
   /// The elements of a list value.
   Result<std::vector<Value>> elements(const Value& list) {
@@ -615,6 +627,19 @@ class World {
   template <std::size_t N>
   Result<breve_selector> prepare(const char* method, const char* const (&keywords)[N]) {
     return read<breve_selector>(breve_world_prepare, method, keywords, N);
+  }
+  /// The same for calls as `super` makes them in a class; `keywords` may be null if there are none.
+  Result<breve_selector> prepare_super(const char* class_name, const char* method,
+                                       const char* const* keywords = nullptr, std::size_t count = 0) {
+    return read<breve_selector>(breve_world_prepare_super, class_name, method, keywords, count);
+  }
+  /// What the objects of a class answer to. The keywords are good until the next call.
+  Result<std::vector<breve_method_info>> methods(const char* class_name) {
+    std::size_t count = 0;
+    breve_status s = breve_world_methods(get(), class_name, nullptr, 0, &count);
+    std::vector<breve_method_info> all(s == BREVE_OK ? count : 0);
+    if (s == BREVE_OK) s = breve_world_methods(get(), class_name, all.data(), all.size(), &count);
+    return {status(s), std::move(all)};
   }
   Result<Value> call(Object object, breve_selector selector) {
     return read_value(breve_object_call_prepared, object, selector, nullptr, std::size_t{0});
@@ -671,6 +696,20 @@ class World {
   void interrupt() noexcept { breve_world_interrupt(get()); }
   /// Charges the work of a host function to the budget, as a number of loop iterations.
   Status charge(std::uint64_t turns) { return status(breve_world_charge(get(), turns)); }
+
+  // --- what the host keeps -------------------------------------------------------------------------------------------
+  Result<void*> user(Object object) const { return read<void*>(breve_object_user, object); }
+  Status set_user(Object object, void* user, void (*destroy)(void* user) = nullptr) {
+    return status(breve_object_set_user(get(), object, user, destroy));
+  }
+  /// State of the host that is part of snapshots and of the hash; null: none of that name any more.
+  Status set_state(const char* name, const breve_state* state) {
+    return status(breve_world_set_state(get(), name, state));
+  }
+  void* state(const char* name) const { return breve_world_state(get(), name); }
+  /// Memory that counts against the world's limit; null if there is none left.
+  void* allocate(std::size_t size) { return breve_world_allocate(get(), size); }
+  void release(void* memory, std::size_t size) { breve_world_release(get(), memory, size); }
 
   // --- input, snapshots, costs ---------------------------------------------------------------------------------------
   Status key(const char* key, bool down = true) { return status(breve_world_queue_key(get(), key, down)); }
@@ -1039,6 +1078,8 @@ class Runtime {
   }
   /// Adds a function for programs that are compiled from now on; see breve_function_default().
   Status add_function(const breve_function& function) { return status(breve_runtime_add_function(get(), &function)); }
+  /// Adds a class for programs that are compiled from now on; see breve_class_default().
+  Status add_class(const breve_class& description) { return status(breve_runtime_add_class(get(), &description)); }
   /// Turns a lint off: "lint-unused-variable".
   Status allow(const char* code) { return status(breve_runtime_allow_lint(get(), code)); }
   /// The diagnostics of the last compilation; valid until the next one.

@@ -1,0 +1,324 @@
+/* The Lua side of a world: its state, whose memory is the world's and whose loops count in its budget, and the file of
+   its program, run in it. */
+#include <string.h>
+
+#include "binding.h"
+
+/* ---- memory: small blocks of a few sizes, kept for the next one of that size --------------------------------------- */
+
+enum { STEP = 16, LARGEST = 512, CLASSES = LARGEST / STEP, CHUNK = 32768 };
+
+typedef union chunk {
+  union chunk* next;
+  double alignment[2];
+} chunk;
+
+struct bl_pool {
+  breve_world* world;
+  chunk* chunks;
+  char* room; /* not given out yet, in the last chunk */
+  size_t left;
+  void* kept[CLASSES];
+};
+
+bl_pool* bl_pool_new(breve_world* world) {
+  bl_pool* pool = (bl_pool*)breve_world_allocate(world, sizeof *pool);
+  if (!pool) return NULL;
+  memset(pool, 0, sizeof *pool);
+  pool->world = world;
+  return pool;
+}
+
+void bl_pool_destroy(bl_pool* pool) {
+  for (chunk* c = pool->chunks; c;) {
+    chunk* next = c->next;
+    breve_world_release(pool->world, c, CHUNK);
+    c = next;
+  }
+  breve_world_release(pool->world, pool, sizeof *pool);
+}
+
+static void* take(bl_pool* pool, size_t size) {
+  if (size > LARGEST) return breve_world_allocate(pool->world, size);
+  const size_t number = (size - 1) / STEP, rounded = (number + 1) * STEP;
+  void* block = pool->kept[number];
+  if (block) {
+    memcpy(&pool->kept[number], block, sizeof(void*));
+    return block;
+  }
+  if (pool->left < rounded) {
+    chunk* c = (chunk*)breve_world_allocate(pool->world, CHUNK);
+    if (!c) return NULL;
+    c->next = pool->chunks;
+    pool->chunks = c;
+    pool->room = (char*)(c + 1);
+    pool->left = CHUNK - sizeof *c;
+  }
+  block = pool->room;
+  pool->room += rounded;
+  pool->left -= rounded;
+  return block;
+}
+
+static void give_back(bl_pool* pool, void* block, size_t size) {
+  if (size > LARGEST) {
+    breve_world_release(pool->world, block, size);
+    return;
+  }
+  void** kept = &pool->kept[(size - 1) / STEP];
+  memcpy(block, kept, sizeof(void*));
+  *kept = block;
+}
+
+void* bl_allocate(void* user, void* block, size_t old_size, size_t new_size) {
+  bl_pool* pool = (bl_pool*)user;
+  if (!block) return new_size == 0 ? NULL : take(pool, new_size);
+  if (new_size == 0) {
+    give_back(pool, block, old_size);
+    return NULL;
+  }
+  if (old_size <= LARGEST && new_size <= LARGEST && (old_size - 1) / STEP == (new_size - 1) / STEP) return block;
+  void* moved = take(pool, new_size);
+  if (!moved) return NULL;
+  memcpy(moved, block, old_size < new_size ? old_size : new_size);
+  give_back(pool, block, old_size);
+  return moved;
+}
+
+/* ---- the budget ---------------------------------------------------------------------------------------------------- */
+
+enum {
+  INSTRUCTIONS = 1000,
+  TURNS = 250
+}; /* so many instructions take about as long as so many turns of a loop in steve */
+
+static void count_instructions(lua_State* L, lua_Debug* call);
+
+/* Once the budget is used up every instruction is an error, so that no pcall in a loop can go on. */
+static void fail_at_once(lua_State* L, bl_world* w, breve_status status) {
+  w->exhausted = true;
+  lua_sethook(L, count_instructions, LUA_MASKCOUNT, 1);
+  lua_sethook(w->L, count_instructions, LUA_MASKCOUNT, 1);
+  bl_fail(L, w, status);
+}
+
+static void count_instructions(lua_State* L, lua_Debug* call) {
+  bl_world* w = *(bl_world**)lua_getextraspace(L);
+  const breve_status status = breve_world_charge(w->world, w->exhausted ? 1 : TURNS);
+  (void)call;
+  if (status != BREVE_OK) fail_at_once(L, w, status);
+}
+
+void bl_count_anew(bl_world* w) {
+  w->exhausted = false;
+  lua_sethook(w->L, count_instructions, LUA_MASKCOUNT, INSTRUCTIONS);
+}
+
+/* ---- the library in a state ------------------------------------------------------------------------------------------ */
+
+bl_lib* bl_lib_of(lua_State* L) {
+  lua_getfield(L, LUA_REGISTRYINDEX, "breve.lib");
+  bl_lib* lib = (bl_lib*)lua_touserdata(L, -1);
+  lua_pop(L, 1);
+  return lib;
+}
+
+bl_lib* bl_open(lua_State* L) {
+  bl_lib* lib = bl_lib_of(L);
+  if (lib) {
+    lua_getfield(L, LUA_REGISTRYINDEX, "breve.library");
+    return lib;
+  }
+  lib = (bl_lib*)lua_newuserdatauv(L, sizeof *lib, 0);
+  memset(lib, 0, sizeof *lib);
+  lua_rawgeti(L, LUA_REGISTRYINDEX, LUA_RIDX_MAINTHREAD);
+  lib->main = lua_tothread(L, -1);
+  lua_pop(L, 1);
+  lib->save_hook = lib->load_hook = LUA_NOREF;
+  lua_setfield(L, LUA_REGISTRYINDEX, "breve.lib");
+  lua_pushcfunction(L, bl_sorted_keys);
+  lib->sorted_keys = luaL_ref(L, LUA_REGISTRYINDEX);
+  lua_newtable(L);
+  bl_open_vectors(L, lib);
+  bl_open_classes(L, lib);
+  bl_open_functions(L, lib);
+  lua_pushvalue(L, -1);
+  lua_setfield(L, LUA_REGISTRYINDEX, "breve.library");
+  return lib;
+}
+
+/* ---- a world's side -------------------------------------------------------------------------------------------------- */
+
+typedef struct request {
+  bl_world* w;
+  bl_program* program;
+} request;
+
+/* A function of Lua: tables for a world. */
+static int open_world(lua_State* L) {
+  bl_world* w = ((request*)lua_touserdata(L, 1))->w;
+  const uint32_t allow = ((request*)lua_touserdata(L, 1))->program->config.allow;
+  if (w->pool) {
+    w->lib = bl_open(L);
+    w->lib->current = w;
+    bl_open_safe_libraries(L, w->lib, allow);
+    lua_getfield(L, LUA_REGISTRYINDEX, "breve.library");
+    lua_setglobal(L, "breve");
+  } else {
+    w->lib = bl_lib_of(L);
+  }
+  int* const tables[] = {&w->objects, &w->metas, &w->functions};
+  for (size_t i = 0; i < sizeof tables / sizeof *tables; ++i) {
+    lua_newtable(L);
+    *tables[i] = luaL_ref(L, LUA_REGISTRYINDEX);
+  }
+  lua_pushboolean(L, 1); /* any value but nil, which would have no place of its own */
+  w->raised = luaL_ref(L, LUA_REGISTRYINDEX);
+  lua_pushlightuserdata(L, w);
+  lua_pushcclosure(L, bl_handle_error, 1);
+  w->handler = luaL_ref(L, LUA_REGISTRYINDEX);
+  return 0;
+}
+
+static void fill_functions(lua_State* L, bl_lib* lib, const bl_program* program) {
+  for (size_t i = 0; i < program->class_count; ++i) {
+    const bl_class* owner = program->classes[i];
+    for (size_t k = 0; k < owner->method_count; ++k) {
+      bl_push_own(L, lib, owner->name, owner->methods[k]->name);
+      if (!lua_isfunction(L, -1))
+        luaL_error(L, "class %s has no method '%s' when the file is run again", owner->name, owner->methods[k]->name);
+      lua_rawseti(L, -2, owner->methods[k]->index);
+    }
+  }
+}
+
+/* A function of Lua: run the file for the world; its classes are staged. */
+static int stage(lua_State* L) {
+  const request* r = (const request*)lua_touserdata(L, 1);
+  bl_world* w = r->w;
+  bl_lib* lib = w->lib;
+  const int classes = lib->classes;
+  if (w->pool) {
+    lua_newtable(L);
+    lib->classes = luaL_ref(L, LUA_REGISTRYINDEX);
+    bl_run_program(L, lib, r->program);
+  }
+  lua_newtable(L);
+  fill_functions(L, lib, r->program);
+  w->staged_functions = luaL_ref(L, LUA_REGISTRYINDEX);
+  w->staged_classes = lib->classes;
+  lib->classes = classes;
+  return 0;
+}
+
+void bl_switch_program(lua_State* L, bl_world* w) {
+  bl_program* old = w->program;
+  if (w->pool && w->lib->classes != w->staged_classes) luaL_unref(L, LUA_REGISTRYINDEX, w->lib->classes);
+  luaL_unref(L, LUA_REGISTRYINDEX, w->functions);
+  w->lib->classes = w->staged_classes;
+  w->functions = w->staged_functions;
+  w->program = w->staged;
+  w->staged = NULL;
+  bl_program_drop(old);
+  bl_forget_classes(L, w);
+}
+
+static void destroy_world(void* user) {
+  bl_world* w = (bl_world*)user;
+  breve_world* world = w->world;
+  if (w->pool) {
+    lua_close(w->L);
+    bl_pool_destroy(w->pool);
+  } else {
+    const int references[] = {w->objects, w->metas, w->functions, w->raised, w->handler};
+    for (size_t i = 0; i < sizeof references / sizeof *references; ++i)
+      luaL_unref(w->L, LUA_REGISTRYINDEX, references[i]);
+    if (w->lib && w->lib->current == w) w->lib->current = NULL;
+  }
+  bl_program_drop(w->program);
+  bl_program_drop(w->staged);
+  breve_world_release(world, w, sizeof *w);
+}
+
+static breve_status fail_lua(lua_State* L, int code, breve_write_fn reason, void* sink) {
+  const char* message = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "an error that is not a text";
+  if (code != LUA_ERRMEM) reason(sink, message, strlen(message));
+  lua_pop(L, 1);
+  return code == LUA_ERRMEM ? BREVE_ERROR_MEMORY : BREVE_ERROR_SCRIPT;
+}
+
+static int call_protected(lua_State* L, lua_CFunction function, request* r) {
+  lua_pushcfunction(L, function);
+  lua_pushlightuserdata(L, r);
+  return lua_pcall(L, 1, 0, 0);
+}
+
+static breve_status make_world(breve_world* world, bl_program* program, breve_write_fn reason, void* sink,
+                               bl_world** made) {
+  bl_world* w = (bl_world*)breve_world_allocate(world, sizeof *w);
+  if (!w) return BREVE_ERROR_MEMORY;
+  memset(w, 0, sizeof *w);
+  w->world = world;
+  if (program->config.state) {
+    w->L = program->config.state;
+  } else {
+    w->pool = bl_pool_new(world);
+    w->L = w->pool ? lua_newstate(bl_allocate, w->pool) : NULL;
+    if (!w->L) {
+      if (w->pool) bl_pool_destroy(w->pool);
+      breve_world_release(world, w, sizeof *w);
+      return BREVE_ERROR_MEMORY;
+    }
+    *(bl_world**)lua_getextraspace(w->L) = w;
+    if (breve_world_has_budget(world)) bl_count_anew(w);
+  }
+  w->running = w->L;
+  request r = {w, program};
+  const int code = call_protected(w->L, open_world, &r);
+  breve_status status = code == LUA_OK ? BREVE_OK : fail_lua(w->L, code, reason, sink);
+  if (status == BREVE_OK) {
+    breve_state state = breve_state_default();
+    state.user = w;
+    state.save = bl_save;
+    state.load = bl_load;
+    state.gone = bl_object_gone;
+    state.destroy = destroy_world;
+    status = breve_world_set_state(world, BL_STATE, &state);
+  }
+  if (status != BREVE_OK)
+    destroy_world(w);
+  else
+    *made = w;
+  return status;
+}
+
+breve_status bl_bind(void* user, breve_world* world, void** binding, breve_write_fn reason, void* sink) {
+  bl_program* program = (bl_program*)user;
+  bl_world* w = (bl_world*)breve_world_state(world, BL_STATE);
+  breve_status status = w ? BREVE_OK : make_world(world, program, reason, sink, &w);
+  if (status != BREVE_OK) return status;
+  *binding = w;
+  if (w->program == program || w->staged == program) return BREVE_OK;
+  if (w->pool == NULL && w->L != program->config.state) {
+    const char* why = "a world runs its agents in one state of Lua, and this program has another one";
+    reason(sink, why, strlen(why));
+    return BREVE_ERROR_UNSUPPORTED;
+  }
+  bl_program* const before = w->staged;
+  bl_world* const current = w->lib->current;
+  request r = {w, program};
+  w->staged = program;
+  w->lib->current = w;
+  w->lib->running_file = true;
+  const int code = call_protected(w->L, stage, &r);
+  w->lib->running_file = false;
+  w->lib->current = current ? current : w;
+  if (code != LUA_OK) {
+    w->staged = NULL;
+    bl_program_drop(before);
+    return fail_lua(w->L, code, reason, sink);
+  }
+  bl_program_drop(before);
+  bl_program_hold(program);
+  return BREVE_OK;
+}

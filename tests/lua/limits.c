@@ -1,0 +1,232 @@
+/* What bounds agents in Lua: budget, memory, the sandbox; what a snapshot holds; a changed file. */
+#include <stdlib.h>
+
+#include "scene.h"
+
+#define MAIN "local Main = breve.class('Main', 'Control')\nbreve.main(Main)\n"
+
+static void loops_count_in_the_budget(void) {
+  stage s;
+  breve_world_config config = breve_world_config_default();
+  stage_begin(&s);
+  config.budget = 100000;
+  if (!stage_open(&s,
+                  MAIN "function Main:endless() while true do end end\n"
+                       "function Main:caught() while true do pcall(function() while true do end end) end end\n"
+                       "function Main:threads() local f = coroutine.wrap(function() while true do end end) f() end\n"
+                       "function Main:short() for i = 1, 1000 do end return 1 end\n",
+                  &config))
+    return;
+  CHECK_STATUS(BREVE_ERROR_BUDGET, stage_call(&s, "endless", NULL));
+  CHECK_STATUS(BREVE_ERROR_BUDGET, stage_call(&s, "caught", NULL));
+  const breve_status inside = stage_call(&s, "threads", NULL);
+  CHECK(inside == BREVE_ERROR_BUDGET || inside == BREVE_ERROR_SCRIPT);
+  CHECK_NEAR(1, stage_number(&s, "short"), 0);
+  stage_end(&s);
+}
+
+static void memory_counts_against_the_limit(void) {
+  stage s;
+  breve_world_config config = breve_world_config_default();
+  breve_stats stats = breve_stats_default();
+  stage_begin(&s);
+  config.memory_limit = 8 << 20;
+  if (!stage_open(&s,
+                  MAIN "function Main:fill() local t = {} for i = 1, 1e7 do t[i] = {i} end end\n"
+                       "function Main:text() return #string.rep('x', 1e9) end\n"
+                       "function Main:small() return #string.rep('x', 1000) end\n",
+                  &config))
+    return;
+  for (int i = 0; i < 3; ++i) {
+    CHECK_STATUS(BREVE_ERROR_MEMORY, stage_call(&s, "fill", NULL));
+    CHECK_STATUS(BREVE_ERROR_MEMORY, stage_call(&s, "text", NULL));
+    CHECK_NEAR(1000, stage_number(&s, "small"), 0);
+  }
+  CHECK_STATUS(BREVE_OK, breve_world_stats(s.world, &stats));
+  CHECK(stats.memory_used <= config.memory_limit && stats.memory_peak <= config.memory_limit);
+  stage_end(&s);
+}
+
+/* A world that has too little for Lua itself is refused, wherever the memory ends. */
+static void every_limit_is_survived(void) {
+  for (size_t limit = 100000; limit < 1500000; limit += 25000) {
+    stage s;
+    breve_world_config config = breve_world_config_default();
+    stage_begin(&s);
+    config.memory_limit = limit;
+    if (!CHECK_STATUS(BREVE_OK, stage_compile(&s, MAIN "local B = breve.class('B', 'Mobile')\n"
+                                                       "function B:init() self.t = {1, 2, breve.vector(1, 2, 3)} end\n"
+                                                       "function Main:init() breve.new(B, 100) end\n")))
+      return;
+    const breve_status status = breve_world_create(s.runtime, s.program, &config, &s.world);
+    CHECK(status == BREVE_OK || status == BREVE_ERROR_MEMORY);
+    stage_end(&s);
+  }
+}
+
+static void nothing_reaches_the_machine(void) {
+  stage s;
+  stage_begin(&s);
+  if (!stage_open(
+          &s,
+          MAIN
+          "function Main:closed() return io == nil and os == nil and package == nil and debug == nil and dofile == nil "
+          "  and loadfile == nil and collectgarbage == nil and string.dump == nil end\n"
+          "function Main:bytecode() return load('\\27Lua') == nil and load(string.char(27) .. 'LuaT', 'x', 'b') == nil "
+          "end\n"
+          "function Main:loads() x = 5 return load('return x')() == 5 and load('return x', 'n', 't', {x = 6})() == 6 "
+          "end\n"
+          "function Main:metatables() return not pcall(setmetatable, {}, {__gc = print}) and not pcall(setmetatable, "
+          "{}, {__mode = 'k'}) "
+          "  and getmetatable(self) == 'Main' and not pcall(setmetatable, self, {}) end\n"
+          "function Main:addresses() return tostring({}) == 'table' and tostring(print) == 'function' and not "
+          "pcall(string.format, '%p', {}) "
+          "  and ('%s'):format({}) == 'table' and tostring(coroutine.create(print)) == 'thread' end\n"
+          "function Main:seeds() return not pcall(math.randomseed, 1) end\n"
+          "function Main:order() local t, s = {}, '' for i = 1, 50 do t['k' .. i] = i end t[2.5] = 1 t[true] = 1 t[-1] "
+          "= 1 "
+          "  local last for k in pairs(t) do if type(k) == 'string' then if last and k < last then return false end "
+          "last = k else s = s .. tostring(k) end end "
+          "  return s == 'true-12.5' and next({}) == nil and next({5}) == 1 and not pcall(pairs, {[{}] = 1}) end\n",
+          NULL))
+    return;
+  static const char* const all[] = {"closed", "bytecode", "loads", "metatables", "addresses", "seeds", "order"};
+  for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
+    if (!CHECK_NEAR(1, stage_number(&s, all[i]), 0)) printf("  %s\n", all[i]);
+  stage_end(&s);
+}
+
+static const char* const keeper = MAIN
+    "local B = breve.class('B', 'Mobile')\n"
+    "local count = 0\n"
+    "breve.on_save(function() return {count = count} end)\n"
+    "breve.on_load(function(v) count = v.count end)\n"
+    "function Main:init() self.b = B{n = 1, s = 'x\\0y', v = breve.vector(1, 2, 3), t = {1, {2}, k = true}} "
+    "self.b.loop = {self.b} "
+    "  self.b.twice = self.b.t end\n"
+    "function Main:change() count = 7 self.b.n = 99 self.b.t[2][1] = 0 self.b.new = 1 self.extra = B() end\n"
+    "function Main:intact() local b = self.b return b.n == 1 and b.s == 'x\\0y' and b.v == breve.vector(1, 2, 3) and "
+    "b.t[2][1] == 2 and b.t.k == true "
+    "  and b.loop[1] == b and b.twice == b.t and b.new == nil and self.extra == nil and count == 0 end\n"
+    "function Main:spoil() self.f = print end\n"
+    "function Main:draws() return math.random() + math.random(10) end\n";
+
+static void snapshots_hold_what_objects_hold(void) {
+  static char image[1000000];
+  stage s;
+  size_t size = 0;
+  uint64_t before = 0, changed = 0, after = 0;
+  stage_begin(&s);
+  if (!stage_open(&s, keeper, NULL)) return;
+  CHECK_STATUS(BREVE_OK, breve_world_hash(s.world, &before));
+  CHECK_STATUS(BREVE_OK, breve_world_snapshot(s.world, image, sizeof image, &size));
+  const double drawn = stage_number(&s, "draws");
+  CHECK_STATUS(BREVE_OK, stage_call(&s, "change", NULL));
+  CHECK_STATUS(BREVE_OK, breve_world_hash(s.world, &changed));
+  CHECK_STATUS(BREVE_OK, breve_world_restore(s.world, image, size));
+  CHECK_STATUS(BREVE_OK, breve_world_hash(s.world, &after));
+  CHECK(before != changed && before == after);
+  CHECK_NEAR(1, stage_number(&s, "intact"), 0);
+  CHECK_NEAR(drawn, stage_number(&s, "draws"), 0);
+  for (size_t cut = 1; cut < 300; cut += 7)
+    CHECK_STATUS(BREVE_ERROR_IMAGE, breve_world_restore(s.world, image, size - cut));
+  for (size_t at = 17; at < 300; ++at) { /* whatever byte is wrong: refused, or loaded; never a crash */
+    char* spoiled = malloc(size);
+    if (!spoiled) return;
+    memcpy(spoiled, image, size);
+    spoiled[size - at] = (char)(spoiled[size - at] ^ 0x5a);
+    const breve_status status = breve_world_restore(s.world, spoiled, size);
+    CHECK(status == BREVE_OK || status == BREVE_ERROR_IMAGE || status == BREVE_ERROR_MEMORY);
+    free(spoiled);
+  }
+  CHECK_STATUS(BREVE_OK, breve_world_restore(s.world, image, size));
+  CHECK_NEAR(1, stage_number(&s, "intact"), 0);
+  CHECK_STATUS(BREVE_OK, stage_call(&s, "spoil", NULL));
+  CHECK_STATUS(BREVE_ERROR_UNSUPPORTED, breve_world_snapshot(s.world, image, sizeof image, &size));
+  CHECK(strstr(breve_world_last_error(s.world)->message, "function cannot be saved") != NULL);
+  stage_end(&s);
+}
+
+/* An image goes into another world of the same program, whose objects have other ids. */
+static void snapshots_fit_other_worlds(void) {
+  static char image[1000000];
+  stage s;
+  size_t size = 0;
+  uint64_t first = 0, second = 0;
+  stage_begin(&s);
+  if (!stage_open(&s, keeper, NULL)) return;
+  CHECK_STATUS(BREVE_OK, breve_world_snapshot(s.world, image, sizeof image, &size));
+  CHECK_STATUS(BREVE_OK, breve_world_hash(s.world, &first));
+  breve_world* other = NULL;
+  CHECK_STATUS(BREVE_OK, breve_world_create(s.runtime, s.program, NULL, &other));
+  CHECK_STATUS(BREVE_OK, breve_world_destroy(s.world));
+  s.world = other;
+  CHECK_STATUS(BREVE_OK, stage_call(&s, "change", NULL));
+  CHECK_STATUS(BREVE_OK, breve_world_restore(s.world, image, size));
+  CHECK_STATUS(BREVE_OK, breve_world_hash(s.world, &second));
+  CHECK(first == second);
+  CHECK_NEAR(1, stage_number(&s, "intact"), 0);
+  stage_end(&s);
+}
+
+static void changed_files_take_over_with_the_fields_of_objects(void) {
+  stage s;
+  breve_program* old;
+  stage_begin(&s);
+  if (!stage_open(&s, MAIN "function Main:init() self.kept = 5 end\nfunction Main:answer() return self.kept end\n",
+                  NULL))
+    return;
+  old = s.program;
+  s.program = NULL;
+  CHECK_NEAR(5, stage_number(&s, "answer"), 0);
+  CHECK_STATUS(BREVE_OK, stage_compile(&s, MAIN "function Main:answer() return self.kept + self:more() end\n"
+                                                "function Main:more() return 100 end\n"));
+  CHECK_STATUS(BREVE_OK, breve_world_reload(s.world, s.program));
+  breve_program_destroy(old);
+  CHECK_NEAR(105, stage_number(&s, "answer"), 0);
+  CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+  old = s.program;
+  s.program = NULL;
+  /* One whose controller is another class is refused, and the old one goes on. */
+  CHECK_STATUS(BREVE_OK, stage_compile(&s, "local Other = breve.class('Other', 'Control') breve.main(Other)\n"));
+  CHECK_STATUS(BREVE_ERROR_RELOAD, breve_world_reload(s.world, s.program));
+  breve_program_destroy(old);
+  CHECK_NEAR(105, stage_number(&s, "answer"), 0);
+  stage_end(&s);
+}
+
+/* Same seed, same run, in two worlds at once. */
+static void two_worlds_of_one_seed_are_equal(void) {
+  uint64_t hashes[2] = {0, 1};
+  for (int i = 0; i < 2; ++i) {
+    stage s;
+    stage_begin(&s);
+    if (!stage_open(&s,
+                    MAIN "local B = breve.class('B', 'Mobile')\n"
+                         "function B:init() self.t = {} self:move(breve.random(breve.vector(9, 9, 9))) end\n"
+                         "function B:iterate() for i = 1, 5 do self.t['k' .. math.random(100)] = i end local s = 0 "
+                         "  for k, v in pairs(self.t) do s = s * 31 % 1000 + v end self.s = s "
+                         "self:set_velocity(breve.vector(s, 0, 0)) end\n"
+                         "function Main:init() breve.new(B, 20) end\n",
+                    NULL))
+      return;
+    for (int k = 0; k < 20; ++k) CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+    CHECK_STATUS(BREVE_OK, breve_world_hash(s.world, &hashes[i]));
+    CHECK_TEXT("", s.told);
+    stage_end(&s);
+  }
+  CHECK(hashes[0] == hashes[1]);
+}
+
+int main(void) {
+  RUN(loops_count_in_the_budget);
+  RUN(memory_counts_against_the_limit);
+  RUN(every_limit_is_survived);
+  RUN(nothing_reaches_the_machine);
+  RUN(snapshots_hold_what_objects_hold);
+  RUN(snapshots_fit_other_worlds);
+  RUN(changed_files_take_over_with_the_fields_of_objects);
+  RUN(two_worlds_of_one_seed_are_equal);
+  if (failures != 0) printf("%d checks failed\n", failures);
+  return failures != 0;
+}
