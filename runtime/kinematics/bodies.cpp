@@ -16,10 +16,6 @@ namespace breve {
 namespace {
 
 const Vector3 kZero = Vector3::Zero();
-const Appearance kPlainAppearance{};
-const CollisionFilter kPlainFilter{};
-const std::pmr::vector<BodyIndex> kNobody;
-const Material kPlainMaterial{};
 
 void require_finite(std::string_view property, const Vector3& value) {
   if (value.allFinite()) return;
@@ -474,22 +470,6 @@ void Bodies::set_neighborhood_size(BodyIndex body, double radius) {
   arrays_->neighborhood[body] = radius;
 }
 
-Material& Bodies::material(BodyIndex body) {
-  RowIndex& row = arrays_->material_row[body];
-  if (row == kNoRow) row = arrays_->materials.make();
-  return arrays_->materials[row];
-}
-
-const Material& Bodies::material(BodyIndex body) const {
-  const RowIndex row = arrays_->material_row[body];
-  return row == kNoRow ? kPlainMaterial : std::as_const(arrays_->materials)[row];
-}
-
-const CollisionFilter& Bodies::filter(BodyIndex body) const {
-  const RowIndex row = arrays_->filter_row[body];
-  return row == kNoRow ? kPlainFilter : std::as_const(arrays_->filters)[row];
-}
-
 void Bodies::set_filter(BodyIndex body, const CollisionFilter& filter) {
   Arrays& a = *arrays_;
   require_finite("the open side", filter.one_way);
@@ -507,21 +487,6 @@ void Bodies::set_filter(BodyIndex body, const CollisionFilter& filter) {
   a.filters[row] = allowed;
   ++a.revision;
   ++a.physics_revision;
-}
-
-bool Bodies::filtered() const { return arrays_ && arrays_->filters.bytes() != 0; }
-
-const std::pmr::vector<BodyIndex>& Bodies::picky() const { return arrays_ ? arrays_->picky : kNobody; }
-
-Appearance& Bodies::appearance(BodyIndex body) {
-  RowIndex& row = arrays_->appearance_row[body];
-  if (row == kNoRow) row = arrays_->appearances.make();
-  return arrays_->appearances[row];
-}
-
-const Appearance& Bodies::appearance(BodyIndex body) const {
-  const RowIndex row = arrays_->appearance_row[body];
-  return row == kNoRow ? kPlainAppearance : std::as_const(arrays_->appearances)[row];
 }
 
 }  // namespace breve

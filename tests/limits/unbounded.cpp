@@ -3,6 +3,7 @@
 //   limits_unbounded budget FOLDER     `ready`, `go` and two steps are over within 0.2 s of processor time each under a
 //                                      budget of 1,000,000 and 256 MB, with the statuses that the program names
 //   limits_unbounded interrupt FOLDER  without a budget, all but `ready` end within 50 ms after breve_world_interrupt
+//   limits_unbounded statuses FOLDER   as `budget`, but only the statuses count: for machines that are busy
 // A third argument runs the program of that name alone.
 #include <sys/stat.h>
 #include <unistd.h>
@@ -43,8 +44,8 @@ std::string folder_with_files() {
 
 class Unbounded {
  public:
-  explicit Unbounded(bool interrupts)
-      : interrupts_(interrupts), watch_(interrupts), folder_(folder_with_files()), runtime_(make_runtime()) {}
+  explicit Unbounded(std::string_view mode)
+      : interrupts_(mode == "interrupt"), timed_(mode != "statuses"), watch_(interrupts_), folder_(folder_with_files()), runtime_(make_runtime()) {}
   ~Unbounded() { std::filesystem::remove_all(folder_); }
 
   void run(const std::filesystem::path& path) {
@@ -72,7 +73,10 @@ class Unbounded {
   }
 
  private:
-  double bound() const { return interrupts_ ? kLongestAfter : kLongest; }
+  double bound() const {
+    if (!timed_) return kHangs;
+    return interrupts_ ? kLongestAfter : kLongest;
+  }
 
   fuzz::Runtime make_runtime() const {
     breve_runtime_config config = breve_runtime_config_default();
@@ -127,7 +131,7 @@ class Unbounded {
     return longest;
   }
 
-  const bool interrupts_;
+  const bool interrupts_, timed_;
   Watch watch_;
   std::string folder_;
   fuzz::Runtime runtime_;
@@ -142,15 +146,15 @@ class Unbounded {
 
 int main(int count, char** arguments) {
   const std::string_view mode = count > 2 ? arguments[1] : "";
-  if (mode != "budget" && mode != "interrupt") {
-    std::fprintf(stderr, "limits_unbounded budget|interrupt FOLDER [NAME]\n");
+  if (mode != "budget" && mode != "interrupt" && mode != "statuses") {
+    std::fprintf(stderr, "limits_unbounded budget|interrupt|statuses FOLDER [NAME]\n");
     return 2;
   }
   std::vector<std::filesystem::path> programs;
   for (const auto& entry : std::filesystem::directory_iterator(arguments[2]))
     if (count < 4 || entry.path().stem() == arguments[3]) programs.push_back(entry.path());
   std::sort(programs.begin(), programs.end());
-  breve::limits::Unbounded unbounded(mode == "interrupt");
+  breve::limits::Unbounded unbounded(mode);
   for (const std::filesystem::path& program : programs) unbounded.run(program);
   return unbounded.end();
 }

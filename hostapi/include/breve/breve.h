@@ -1875,8 +1875,8 @@ BREVE_API void breve_world_interrupt(breve_world* world);
 }
 #endif
 
-/* The rest of the interface, in parts: space.h (queries, who collides with whom, forces), events.h,
-   step.h (game loops), batch.h (many worlds), view.h (what is to be seen, getters). */
+/* The rest of the interface, in parts: space.h (queries, collision filters, forces), events.h (what happened in an
+   iteration), step.h (game loops), batch.h (many worlds). */
 #include "breve/batch.h"
 #include "breve/events.h"
 #include "breve/space.h"
