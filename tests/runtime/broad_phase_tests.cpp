@@ -108,7 +108,8 @@ TEST(BroadPhase, OfBodiesThatStandDynamicsLooksAtNoneEither) {
   NearPairs near(std::pmr::get_default_resource());
   const Client client;
   const auto update = [&] {
-    near.update(bodies, client, Vector3(0, -10, 0), 0.1, 1, false, [](PairKey& key) { key.pushes = true; });
+    near.update(bodies, client, Vector3(0, -10, 0), 0.1, 1, false, NearPairs::kNoMost,
+                [](PairKey& key) { key.pushes = true; });
   };
   const auto pairs = [&] {
     std::size_t count = 0;
@@ -148,7 +149,8 @@ TEST(BroadPhase, AGroundWhoseHeightsChangeIsSeen) {
   NearPairs near(std::pmr::get_default_resource());
   const Client client;
   const auto update = [&] {
-    near.update(bodies, client, Vector3(0, -10, 0), 0.1, 1, false, [](PairKey& key) { key.pushes = true; });
+    near.update(bodies, client, Vector3(0, -10, 0), 0.1, 1, false, NearPairs::kNoMost,
+                [](PairKey& key) { key.pushes = true; });
   };
   update();
   EXPECT_EQ(near.find(low, ball), nullptr);
