@@ -21,6 +21,11 @@ static const char* const small_text = "@use Control.\nController Small.\nControl
 
 /* --- one function a function of breve.h that can do anything; those that only look are in look_around ------------- */
 
+#define TRY(call)                        \
+  do {                                   \
+    const breve_status tried = (call);   \
+    if (tried != BREVE_OK) return tried; \
+  } while (0)
 static breve_status do_files_within(place* p) {
   (void)p;
   breve_files files = {0};
@@ -264,11 +269,6 @@ static breve_status do_library_program(place* p) {
   return status;
 }
 /* The first that does not work, or BREVE_OK. */
-#define TRY(call)                        \
-  do {                                   \
-    const breve_status tried = (call);   \
-    if (tried != BREVE_OK) return tried; \
-  } while (0)
 static breve_status do_bodies(place* p) {
   breve_world* w = p->world;
   breve_geometry geometry = breve_geometry_default();

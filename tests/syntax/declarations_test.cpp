@@ -73,7 +73,7 @@ TEST(Constants, EveryKindWithSigns) {
 @define G [ (1, 2, 3), (4, -5, 6), (7, 8, 9) ]. @define H 'a'. @define I -2147483648. @define J 1e3.)");
   EXPECT_EQ(reading.errors(), "");
   std::string text;
-  for (const auto& [name, constant] : reading.defines) text += name + "=" + show(constant) + " ";
+  for (const auto& [name, constant] : reading.defines.seen()) text += name + "=" + show(constant) + " ";
   EXPECT_EQ(text, "A=5 B=-5 C=2.5 D=-0.5 E=\"t\\n\" F=(1 -2 3.5) G=(1 2 3 4 -5 6 7 8 9) H=97 I=-2147483648 J=1000.0 ");
 }
 

@@ -93,7 +93,7 @@ TEST(Statements, InteractiveStatementsNeedNoPeriod) {
     Sources sources;
     Diagnostics diagnostics;
     Defines defines;
-    defines["LIMIT"] = ast::Constant{7, {}};
+    defines.add("LIMIT", ast::Constant{7, {}}, false);
     const std::vector<Token> tokens = lex(sources, sources.add("typed", text), diagnostics);
     const ast::Method method = parse_statement(tokens, defines, diagnostics, sources);
     if (tree == "error") {
