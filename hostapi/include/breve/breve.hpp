@@ -390,8 +390,7 @@ class World {
   };
   Result<Found> ray_first(const Vector& start, const Vector& way, const breve_query* query = nullptr) const {
     Found first;
-    const breve_status s =
-        breve_world_ray_first(get(), start.data(), way.data(), query, &first.found, &first.hit);
+    const breve_status s = breve_world_ray_first(get(), start.data(), way.data(), query, &first.found, &first.hit);
     return {status(s), first};
   }
   Result<std::vector<breve_hit>> ray_all(const Vector& start, const Vector& way,
@@ -413,8 +412,7 @@ class World {
   Result<Found> cast(const breve_geometry& geometry, const breve_pose& pose, const Vector& way,
                      const breve_query* query = nullptr) const {
     Found first;
-    const breve_status s =
-        breve_world_cast(get(), &geometry, &pose, way.data(), query, &first.found, &first.hit);
+    const breve_status s = breve_world_cast(get(), &geometry, &pose, way.data(), query, &first.found, &first.hit);
     return {status(s), first};
   }
   Result<Found> closest(const Vector& point, double limit = std::numeric_limits<double>::infinity(),
