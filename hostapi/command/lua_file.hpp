@@ -7,7 +7,7 @@
 
 namespace breve::command {
 
-/// As breve_program_compile. What is wrong with the file is told, unless the runtime has a diagnostic of it.
+/// As breve_program_compile. Prints why the file cannot be compiled, unless the runtime has a diagnostic of it.
 /// @param loader  finds what the file names by `require` and `breve.use`
 breve_status compile_lua(breve_runtime* runtime, ModuleLoader& loader, const LoadedFile& file, Output& output,
                          breve_program*& program);

@@ -86,7 +86,7 @@ void describe_pictures(CLI::App& app, RunOptions& o) {
                  "A movie of the run, at the pace of simulated time: OUT.gif, or numbered pictures in OUT/")
       ->type_name("OUT.gif|OUT/");
   app.add_option("--size", o.record.size,
-                 "Of a picture, in pixels (960x600). Those of a contact sheet are a third of it")
+                 "Size of a picture, in pixels (960x600). Those of a contact sheet are a third of it")
       ->type_name("WxH");
   app.add_option("--fps", o.record.fps, "Frames of the movie in a simulated second (25)")
       ->type_name("N")

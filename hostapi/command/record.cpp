@@ -24,7 +24,7 @@ void read_size(const std::string& text, std::uint32_t& width, std::uint32_t& hei
   const bool good = first.ec == std::errc() && first.ptr != end && *first.ptr == 'x';
   const auto second = good ? std::from_chars(first.ptr + 1, end, height) : first;
   if (!good || second.ec != std::errc() || second.ptr != end)
-    throw std::runtime_error(fmt::format("--size: '{}' is no WIDTHxHEIGHT, as 800x600", text));
+    throw std::runtime_error(fmt::format("--size: '{}' is not a WIDTHxHEIGHT such as 800x600", text));
 }
 
 [[noreturn]] void fail(const breve_error* error) {

@@ -112,7 +112,7 @@ bool mended(breve_world* world, Reloader& reloader, Output& output) {
   return false;
 }
 
-/// Who looks at the world at its beginning and after each iteration.
+/// The observers that read the world at its beginning and after each iteration.
 struct Lookers {
   std::optional<Recorder> recorder;
   std::optional<Plotter> plotter;

@@ -155,7 +155,7 @@ void bl_push_value(lua_State* L, bl_world* w, const breve_value* value);
 
 /* ---- objects (objects.c) ---- */
 
-/* The object that a value of Lua is; the null object if it is none. */
+/* The object that a value of Lua is; the null object if it is not an object. */
 breve_object bl_to_object(lua_State* L, int index);
 bool bl_is_object(lua_State* L, int index);
 void bl_push_object(lua_State* L, bl_world* w, breve_object object);

@@ -1,6 +1,5 @@
-/* Calls into Lua: breve calls a method that a class has in Lua. What may raise an error runs in a protected call, so
-   that no error of Lua ever passes through breve. And where such a method stands, for the chain of calls of an error.
- */
+/* Calls into Lua: breve calls a method that a class has in Lua. Code that may raise an error runs in a protected call,
+   so that no error of Lua ever passes through breve. Also finds where such a method stands, for error traces. */
 #include <stdio.h>
 #include <string.h>
 

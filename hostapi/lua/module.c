@@ -205,8 +205,8 @@ static int restore(lua_State* L) {
   return 0;
 }
 
-/* world:use(): what breve.new, breve.time and the like mean from now on, outside of methods. The rest of the functions
-   of `breve` follow from it. */
+/* world:use(): from now on breve.new, breve.time and the other functions of `breve` mean this world, outside of
+   methods. */
 static int use(lua_State* L) {
   bl_world* w = (bl_world*)breve_world_state(need_world(L), BL_STATE);
   if (!w) return luaL_error(L, "the world has no class that is written in Lua");

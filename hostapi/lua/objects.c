@@ -24,7 +24,7 @@ bool bl_is_object(lua_State* L, int index) {
   return is;
 }
 
-/* Of a table that is no object, what stands under 0 is an id that breve refuses, or one of an object all the same. */
+/* If a table is not an object, its value under 0 is an id that breve refuses, or that of an object all the same. */
 breve_object bl_to_object(lua_State* L, int index) {
   const breve_object none = {0, 0};
   if (!lua_istable(L, index)) return none;

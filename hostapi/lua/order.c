@@ -59,7 +59,7 @@ static void describe(lua_State* L, key* k) {
   }
 }
 
-/* A function of Lua: table -> table of its keys. Of an object, 0 is not a key: its id stands there. */
+/* A function of Lua: table -> table of its keys. In an object, 0 is not a key: its id stands there. */
 int bl_sorted_keys(lua_State* L) {
   luaL_checktype(L, 1, LUA_TTABLE);
   const bool object = bl_is_object(L, 1);
@@ -96,7 +96,7 @@ static int next_in_sequence(lua_State* L) {
   return 0;
 }
 
-/* Upvalues: the table, its keys, the place of the last one. What was removed meanwhile is passed over. */
+/* Upvalues: the table, its keys, the place of the last one. Skips keys that were removed meanwhile. */
 static int next_of_keys(lua_State* L) {
   lua_Integer i = lua_tointeger(L, lua_upvalueindex(3));
   for (;;) {

@@ -14,7 +14,7 @@ char* bl_copy(const char* text, char from, char to) {
 
 /* Room for one more element in an array of `count`; its size doubles. False: there is no memory. */
 static bool grow(void** array, size_t count, size_t element) {
-  if ((count & (count - 1)) != 0) return true; /* not at a power of two, where there is none left */
+  if ((count & (count - 1)) != 0) return true; /* it is full only at a power of two */
   const size_t room = count == 0 ? 1 : 2 * count;
   void* larger = realloc(*array, room * element);
   if (larger) *array = larger;

@@ -1,4 +1,4 @@
-// Who collides with whom, as hosts set it, and the host's own answer for pairs.
+// Collision filters, as hosts set them, and the host's own answer for pairs.
 #include "physical.hpp"
 
 using namespace breve::host;
@@ -54,8 +54,7 @@ breve_status breve_object_set_collision_filter(breve_world* world, breve_object 
   });
 }
 
-breve_status breve_object_collides(const breve_world* world, breve_object object, breve_object other,
-                                   bool* collides) {
+breve_status breve_object_collides(const breve_world* world, breve_object object, breve_object other, bool* collides) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     need(collides, "collides");

@@ -5,7 +5,7 @@ using namespace breve::host;
 
 namespace {
 
-/// What was bound for a program that the world does not get is unbound, too.
+/// Also unbinds the functions that were bound for a program that the world does not get.
 struct UnbindOthers {
   breve_world& world;
   ~UnbindOthers() { unbind_others(world); }

@@ -254,7 +254,7 @@ breve_status breve_scene_rows(const breve_scene* scene, uint32_t part, breve_row
       case BREVE_SCENE_TEXTS: *rows = rows_of(scene->texts); break;
       case BREVE_SCENE_CAMERAS: *rows = rows_of(scene->cameras); break;
       case BREVE_SCENE_LIGHTS: *rows = rows_of(scene->lights); break;
-      default: fail(BREVE_ERROR_ARGUMENT, "part is " + std::to_string(part) + ", which is no breve_scene_kind");
+      default: fail(BREVE_ERROR_ARGUMENT, "part is " + std::to_string(part) + ", which is not a breve_scene_kind");
     }
   });
 }

@@ -25,7 +25,7 @@ bool has_state(const breve_world& world) {
   return std::any_of(world.states.begin(), world.states.end(), [](const auto& s) { return s.state.save != nullptr; });
 }
 
-/// Of each state its name and its bytes, each behind its size.
+/// The name and the bytes of each state, each behind its size.
 std::string states_of(const breve_world& world) {
   auto& running = const_cast<breve_world&>(world);  // the callbacks get the world as all do, and change nothing
   std::string all;

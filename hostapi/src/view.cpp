@@ -36,7 +36,7 @@ breve::render::Settings settings_of(const breve_view_config& config) {
   if (config.samples != 1 && config.samples != 2 && config.samples != 4)
     fail(BREVE_ERROR_ARGUMENT, "samples is " + std::to_string(config.samples) + " (must be 1, 2 or 4)");
   if (config.look > BREVE_LOOK_PLAIN)
-    fail(BREVE_ERROR_ARGUMENT, "look is " + std::to_string(config.look) + ", which is no breve_look");
+    fail(BREVE_ERROR_ARGUMENT, "look is " + std::to_string(config.look) + ", which is not a breve_look");
   breve::render::Settings settings;
   settings.samples = static_cast<int>(config.samples);
   settings.look = config.look == BREVE_LOOK_PLAIN ? breve::render::Look::Plain : breve::render::Look::Full;
@@ -92,7 +92,7 @@ breve_status breve_view_depth(const breve_view* view, float* depth, size_t strid
     need(depth, "depth");
     const std::size_t row = view->config.width;
     const std::size_t step = stride_of(stride, row * sizeof(float));
-    if (step % sizeof(float) != 0) fail(BREVE_ERROR_ARGUMENT, "stride is no multiple of 4");
+    if (step % sizeof(float) != 0) fail(BREVE_ERROR_ARGUMENT, "stride is not a multiple of 4");
     need_picture(*view);
     for (std::size_t y = 0; y < view->config.height; ++y)
       std::copy_n(view->picture.depth.data() + y * row, row, depth + y * (step / sizeof(float)));

@@ -43,7 +43,7 @@ void solve_directly(Workspace& work, const SolveSettings& settings, double most,
   LinearSolves solves{0, static_cast<int>(std::min((most + kAlways) / each, kUnbounded)), units, settings.meter};
   report.residual = solve_direct(work, settings.tolerance, solves, report.direct);
   if (!report.direct) {
-    // What is left of the operations may go into more sweeps than there would be without a direct solution.
+    // The operations that are left may go into more sweeps than there would be without a direct solution.
     constexpr double kPatience = 3.3e5;  // operations, times the share, that there are in any case
     const double left = std::max(most + kAlways - solves.made * each, kPatience * settings.direct_share);
     const int sweeps = std::max(settings.iterations,

@@ -1,5 +1,5 @@
-// Which instances are drawn in one call: those of one mesh with one texture. What is transparent is drawn from back to
-// front, and in one call as far as neighbours in that order agree.
+// Which instances are drawn in one call: those of one mesh with one texture. Transparent instances are drawn from back
+// to front; neighbours in that order share a call if they have the same mesh and texture.
 #pragma once
 
 #include <vector>

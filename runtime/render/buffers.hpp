@@ -1,4 +1,4 @@
-// What is kept in the graphics processor's memory: meshes and textures, uploaded when they are new or have changed.
+// The meshes and textures in the graphics processor's memory. They are uploaded when they are new or have changed.
 #pragma once
 
 #include <map>

@@ -84,7 +84,7 @@ namespace breve::render {
   X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)                       \
   X(PFNGLVIEWPORTPROC, Viewport)
 
-/// Textures are made while this unit is active, so that none that is in use is replaced.
+/// Textures are made while this unit is active, so that no texture in use is replaced.
 inline constexpr unsigned kScratchUnit = 15;
 
 struct Gl {

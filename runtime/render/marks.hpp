@@ -1,4 +1,4 @@
-// What is drawn beside bodies: lines, sprites, cells, polygons, text. Each kind is one instanced call.
+// Draws everything except bodies: lines, sprites, cells, polygons, text. Each kind takes one instanced call.
 #pragma once
 
 #include <memory>

@@ -30,14 +30,14 @@ struct Counters {
 
 class Renderer {
  public:
-  /// @throws Error{Unsupported} where OSMesa is missing, Error{File} for a font that is none
+  /// @throws Error{Unsupported} if OSMesa is missing, Error{File} if the font file is not a font
   explicit Renderer(const Settings& settings = {});
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
   /// The scene as its cameras see it.
-  /// @throws Error{Argument} for a size that cannot be drawn, Error{Memory} where there is no room for it
+  /// @throws Error{Argument} for a size that cannot be drawn, Error{Memory} if there is no room for it
   void paint(const Scene& scene, int width, int height, Picture& picture);
   /// The main camera in place of the scene's from now on; none: the scene's.
   void set_camera(const std::optional<SceneCamera>& camera);

@@ -103,7 +103,7 @@ void main() {
   if (disc < 0.5 && dot(n, to_eye) < 0.0 && !gl_FrontFacing) n = -n;
   vec4 c = vec4(linear(surface.rgb), surface.a);
   if (textured > 0.5) {
-    // Of what is fixed, the ground above all, pattern and colour are kept back: what moves is to be seen.
+    // Fixed things, the ground above all, get a faint pattern and colour, so that moving bodies stand out.
     vec4 pattern = tiles();
     bool quiet = lit > 1.5 && fill > 0.5;
     c *= quiet ? mix(vec4(1), pattern, vec4(vec3(0.38), 1)) : pattern;

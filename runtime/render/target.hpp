@@ -1,5 +1,5 @@
-// What is drawn into: a frame buffer with several samples a pixel, one that they are joined in, and the way back into
-// main memory.
+// The target of drawing: a frame buffer with several samples a pixel, one with the resolved pixels, and the way back
+// into main memory.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class Target {
   int width() const { return width_; }
   int height() const { return height_; }
   void bind() const;
-  /// What was drawn becomes one color and one depth for each pixel. Of depth one sample is kept.
+  /// Reduces the samples of each pixel to one color and one depth. The depth is that of one sample.
   void resolve() const;
   void bind_color(unsigned unit) const;  // as a texture, once it is resolved
   /// Rows from the top.

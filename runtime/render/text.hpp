@@ -19,7 +19,7 @@ struct Letter {
 class Font {
  public:
   /// @param file  of TrueType or OpenType; empty: DejaVu Sans, where Debian has it
-  /// @throws Error{File} if the file is no font; without DejaVu no text is drawn
+  /// @throws Error{File} if the file is not a font; without DejaVu no text is drawn
   explicit Font(const std::string& file);
   ~Font();
   Font(const Font&) = delete;
@@ -50,7 +50,7 @@ class Font {
   std::uint64_t revision_ = 0;
 };
 
-/// The next code point of a text; a byte that is no UTF-8 stands for itself.
+/// The next code point of a text; a byte that is not valid UTF-8 stands for itself.
 std::uint32_t next_code(std::string_view& utf8);
 
 }  // namespace breve::render

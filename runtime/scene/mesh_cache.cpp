@@ -13,7 +13,7 @@ namespace breve {
 namespace {
 
 constexpr int kSphereLevel = 4;
-// Of a large surface a digest looks at some corners; its shape counts its changes, too.
+// The digest of a large surface reads only some of its corners; its shape also counts its changes.
 constexpr std::size_t kSample = 256;
 
 void measure(SceneMesh& mesh, std::uint64_t revision) {

@@ -104,7 +104,7 @@ const ConvexPieces* Shape::pieces() const { return geometry_->pieces.get(); }
 
 void Shape::split(const PieceSettings& settings, const std::function<void(std::uint64_t)>& charge) {
   if (kind() != ShapeKind::Mesh) throw Error(ErrorCode::Argument, "only a mesh can be split into convex pieces");
-  // Of the original size, so that an image holds what it was split into before it was scaled.
+  // The mesh is split at its original size, so that an image holds the pieces as they were before scaling.
   const std::shared_ptr<Surface> original = geometry_->surface->scaled(Vector3::Ones());
   auto pieces = split_into_convex(static_cast<const TriangleMesh&>(*original), settings, geometry_->memory(), charge);
   auto scaled = pieces->scaled(geometry_->scale);

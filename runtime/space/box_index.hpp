@@ -1,5 +1,5 @@
 // A static tree of boxes for questions about space: what a box meets, what a ray meets first, what is nearest. It is
-// built at once and follows its boxes when they move. What is found never depends on the shape of the tree.
+// built at once and follows its boxes when they move. The results never depend on the shape of the tree.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,15 @@ class BoxIndex {
  public:
   using Box = Eigen::AlignedBox3d;
 
-  explicit BoxIndex(std::pmr::memory_resource* memory) : boxes_(memory), nodes_(memory), order_(memory), leaf_(memory) {}
+  explicit BoxIndex(std::pmr::memory_resource* memory)
+      : boxes_(memory), nodes_(memory), order_(memory), leaf_(memory) {}
 
   /// The box of item i is boxes[i]; an empty one is nowhere. Cost O(n log n).
   void build(std::span<const Box> boxes);
   /// The items have other boxes; that must not be empty where they were not, and empty where they were. Cost O(n).
   void refit(std::span<const Box> boxes);
-  /// One item has another box; it may become empty. Cost O(log n). Error in logic for an item that was empty at build().
+  /// One item has another box; it may become empty. Cost O(log n). Error in logic for an item that was empty at
+  /// build().
   void set(std::uint32_t item, const Box& box);
   std::size_t size() const { return boxes_.size(); }
   bool has(std::uint32_t item) const { return item < leaf_.size() && leaf_[item] != kNone; }
@@ -34,8 +36,8 @@ class BoxIndex {
   /// Calls visit(item) for each whose box meets `box`; touching counts.
   template <class Visit>
   void meeting(const Box& box, Visit&& visit) const;
-  /// Calls visit(item) for each whose box, grown by `grow` on all sides, meets start + t way for a t in [0, most], those
-  /// that are entered first being asked first, roughly. `most` is read anew each time: the visitor may lower it.
+  /// Calls visit(item) for each whose box, grown by `grow` on all sides, meets start + t way for a t in [0, most],
+  /// those that are entered first being asked first, roughly. `most` is read anew each time: the visitor may lower it.
   template <class Visit>
   void along(const Vector3& start, const Vector3& way, const Vector3& grow, const double& most, Visit&& visit) const;
   /// Calls visit(item) for each whose box is not farther from `point` than `most`, which the visitor may lower.

@@ -36,7 +36,7 @@ constexpr std::array<Words, static_cast<std::size_t>(EffectId::kCount)> kWords{{
     {"diffusion", "quantities on a grid diffuse or react"},
     {"queries", "a host or a script asked where bodies are"},
     {"collision filters", "a body asks about each body near it, or lets bodies pass from some sides"},
-    {"events", "contacts of some objects, or births, deaths and the like, are listed"},
+    {"events", "contacts of some objects, or events such as births and deaths, are listed"},
 }};
 
 }  // namespace

@@ -1,6 +1,6 @@
-// What happened in an iteration, as lists for the host: contacts of objects that are watched, births and deaths,
-// announcements, who fell asleep or woke. Only what was asked for is gathered. It is no part of images: who only looks at a
-// world leaves no trace in it.
+// The events of an iteration, as lists for the host: contacts of objects that are watched, births and deaths,
+// announcements, bodies that fell asleep or woke. Only the events that a host asked for are gathered. They are not part
+// of images: a host that only observes a world leaves no trace in it.
 #pragma once
 
 #include <cstdint>
@@ -57,7 +57,7 @@ class Events : public InMemory {
   void want(std::uint32_t kinds);
   bool wants(Kind kind) const { return (wanted_ & kind) != 0; }
   std::uint32_t wanted() const { return wanted_; }
-  /// Of these objects, and of objects of just this class, contacts are told.
+  /// Reports the contacts of this object, or of the objects of exactly this class, or stops that.
   void watch(ObjectId object, bool on);
   void watch(ClassId cls, bool on);
   bool watched(ObjectId object, ClassId cls) const;
@@ -71,7 +71,7 @@ class Events : public InMemory {
   void begin();  // a new iteration: all lists are empty
   void forget(ObjectId object) { objects_.erase({object.index, object.generation}); }
 
-  // What has happened, in order: contacts by the creation of both, the others as they came.
+  // The events so far, in order: contacts by the creation of both objects, the others as they happened.
   std::pmr::vector<ContactEvent> contacts;
   std::pmr::vector<LifeEvent> lives;
   std::pmr::vector<SleepEvent> sleeps;

@@ -1,5 +1,5 @@
-// Who collides with whom, pair by pair: bits, pairs that were told not to, sides that are open, and what the objects and
-// the host say when they are asked.
+// Decides for each pair whether it collides: by bits, excluded pairs, open sides, and the answers of the objects and
+// the host when they are asked.
 #include <algorithm>
 #include <cmath>
 
@@ -94,7 +94,7 @@ double fastest_of(const Bodies& bodies) {
 
 }  // namespace
 
-/// Asked once while they are near, in the order of creation. Who is asked may do anything.
+/// Each object is asked once while they are near, in the order of creation. The answering code may do anything.
 void World::Parts::ask(ObjectId one, ObjectId other) {
   const bool first = PairRules::is_first(one, other);
   {
@@ -112,7 +112,7 @@ void World::Parts::ask(ObjectId one, ObjectId other) {
   handlers.note_change();
 }
 
-/// What comes through the open side passes until it is clear of the other one, on the side where that is closed.
+/// A body that comes through the open side passes until it is clear of the gate, on the gate's closed side.
 void World::Parts::let_pass(BodyIndex gate, BodyIndex other) {
   constexpr double kClosed = 0.7071;  // within 45 degrees of the closed side's normal
   const Bodies& bodies = *world->bodies_;
@@ -145,7 +145,7 @@ void World::Parts::judge_pairs(double h) {
   pairs.begin();
   const Vector3 gravity = dynamics->gravity();
   const Vector3 others = Vector3::Constant((fastest_of(bodies) + h * gravity.norm()) * 2 * h);
-  // Who is asked may free bodies and make some: both lists are copies.
+  // The answering code may free and create bodies, so both lists are copies.
   std::pmr::vector<BodyIndex> picky(bodies.picky(), stages.get_allocator());
   std::sort(picky.begin(), picky.end(), [this](BodyIndex x, BodyIndex y) { return serial(x) < serial(y); });
   std::pmr::vector<ObjectId> owners(stages.get_allocator());

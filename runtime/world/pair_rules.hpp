@@ -1,5 +1,5 @@
-// Which single pairs of objects do not collide: those that were told so, those that a question was answered so about, and
-// those of which one passes through the open side of the other.
+// Which single pairs of objects do not collide: those that were excluded, those for which the answer to a question was
+// no, and those of which one passes through the open side of the other.
 #pragma once
 
 #include <cstdint>
@@ -22,12 +22,12 @@ class PairRules {
   bool exclude(ObjectId a, ObjectId b, bool excluded);
   bool excluded(ObjectId a, ObjectId b) const { return !excluded_.empty() && excluded_.contains(key_of(a, b)); }
 
-  /// What was decided about a pair, while it is near: at least one of the two is particular about whom it meets.
+  /// The decision about a pair, kept while it is near: at least one of the two chooses which bodies it collides with.
   struct Decision {
     bool asked_first = false, asked_second = false;  // the one with the smaller index, the other
-    bool denied = false;   // neither pushed nor reported
-    bool passing = false;  // not pushed
-    bool seen = false;     // in this sub-step
+    bool denied = false;                             // neither pushed nor reported
+    bool passing = false;                            // not pushed
+    bool seen = false;                               // in this sub-step
   };
   Decision& decision(ObjectId a, ObjectId b) { return near_[key_of(a, b)]; }
   static bool is_first(ObjectId one, ObjectId other) { return key_of(one, other).first == one; }
@@ -36,8 +36,8 @@ class PairRules {
     const auto at = near_.find(key_of(a, b));
     return at == near_.end() ? nullptr : &at->second;
   }
-  /// Before the pairs of a sub-step are looked at, and after: those that were not seen are forgotten. True if one of them
-  /// had an effect.
+  /// Before the pairs of a sub-step are looked at, and after: those that were not seen are forgotten. True if one of
+  /// them had an effect.
   void begin();
   bool finish();
   void forget(ObjectId object);

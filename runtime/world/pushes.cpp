@@ -15,7 +15,8 @@ void need_finite_push(const Vector3& value, const char* what) {
 
 void need_flat_push(const Vector3& force, const Vector3& torque) {
   if (force.z() != 0 || torque.x() != 0 || torque.y() != 0)
-    throw Error(ErrorCode::Argument, "this world is flat: what pushes a body must lie in the plane, and turn it about z");
+    throw Error(ErrorCode::Argument,
+                "this world is flat: what pushes a body must lie in the plane, and turn it about z");
 }
 
 Vector3 push_center(const Bodies& bodies, BodyIndex body) {
@@ -26,7 +27,7 @@ Vector3 push_center(const Bodies& bodies, BodyIndex body) {
 
 void World::add_force(BodyIndex body, const Vector3& force, const Vector3& torque, const Vector3* point) {
   if (!bodies_->dynamic(body))
-    throw Error(ErrorCode::Argument, "only a body with physics that is no Stationary can be pushed");
+    throw Error(ErrorCode::Argument, "only a body with physics that is not a Stationary can be pushed");
   need_finite_push(force, "a force");
   need_finite_push(torque, "a torque");
   Vector3 about = torque;
@@ -52,7 +53,7 @@ void World::add_force(BodyIndex body, const Vector3& force, const Vector3& torqu
 
 void World::add_impulse(BodyIndex body, const Vector3& impulse, const Vector3* point) {
   if (!bodies_->dynamic(body))
-    throw Error(ErrorCode::Argument, "only a body with physics that is no Stationary can be pushed");
+    throw Error(ErrorCode::Argument, "only a body with physics that is not a Stationary can be pushed");
   need_finite_push(impulse, "an impulse");
   if (!parts_->dynamics->joints_of(body).empty()) {
     add_force(body, impulse / clock_.iteration_step, Vector3::Zero(), point);

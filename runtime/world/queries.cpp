@@ -39,7 +39,7 @@ Queries::Queries(std::pmr::memory_resource* memory)
 
 // --- where everything is --------------------------------------------------------------------------------------------
 
-/// With the centre, which need not be inside the shape. Empty for a place that is none.
+/// Includes the centre, which need not be inside the shape. Empty if the position is not finite.
 Eigen::AlignedBox3d Queries::box_of(const Bodies& bodies, BodyIndex body) const {
   Eigen::AlignedBox3d box;
   if (!bodies.used(body)) return box;
@@ -121,8 +121,8 @@ bool Queries::wanted(const Scene& scene, BodyIndex body, const QueryFilter& filt
 }
 
 void Queries::keep(const Scene& scene, BodyIndex body, const Contact& found) {
-  hits_.push_back({scene.bodies.owner(body), found.point, found.normal, found.distance,
-                   scene.serial(scene.world, body)});
+  hits_.push_back(
+      {scene.bodies.owner(body), found.point, found.normal, found.distance, scene.serial(scene.world, body)});
 }
 
 void Queries::put_in_order() { std::sort(hits_.begin(), hits_.end(), nearer); }
@@ -328,9 +328,8 @@ const std::pmr::vector<BodyIndex>& Queries::boxes(const Scene& scene, const Eige
   for (const BodyIndex body : loose_)
     if (boxes_[body].intersects(box)) found_.push_back(body);
   std::erase_if(found_, [&](BodyIndex body) { return !scene.bodies.used(body); });
-  std::sort(found_.begin(), found_.end(), [&](BodyIndex x, BodyIndex y) {
-    return scene.serial(scene.world, x) < scene.serial(scene.world, y);
-  });
+  std::sort(found_.begin(), found_.end(),
+            [&](BodyIndex x, BodyIndex y) { return scene.serial(scene.world, x) < scene.serial(scene.world, y); });
   return found_;
 }
 

@@ -142,9 +142,9 @@ class World : public InMemory {
   /// stands. It pushes and carries what it touches. Omitted values stay as they were set for that iteration, or are.
   /// Error{Argument}: it has physics, or the target is not finite.
   void set_target(BodyIndex body, const Vector3* location, const Quaternion* orientation);
-  /// A force and a torque, world axes, that act beside those that are set, in the next iteration only. At `point`, world
-  /// frame; null: at the centre of mass. Error{Argument}: not finite, out of the plane of a flat world, or no body with
-  /// physics.
+  /// A force and a torque, world axes, that act beside those that are set, in the next iteration only. At `point`,
+  /// world frame; null: at the centre of mass. Error{Argument}: not finite, out of the plane of a flat world, or no
+  /// body with physics.
   void add_force(BodyIndex body, const Vector3& force, const Vector3& torque, const Vector3* point);
   /// An impulse, N*s: at once; on a body that joints hold as a force of the next iteration. Likewise.
   void add_impulse(BodyIndex body, const Vector3& impulse, const Vector3* point);
@@ -188,15 +188,15 @@ class World : public InMemory {
 
   // --- who collides with whom ----------------------------------------------------------------------------------------
   void set_filter(BodyIndex body, const CollisionFilter& filter);  // as Bodies::set_filter; who lies on it wakes
-  /// Two objects that are told not to collide neither push one another nor call handlers. Returns whether that is a
-  /// change. Error{Stale}, Error{Argument} for one object.
+  /// Two objects whose collisions are off neither push one another nor call handlers. Returns whether this changes
+  /// anything. Error{Stale}, Error{Argument} if both are the same object.
   bool set_collides(ObjectId a, ObjectId b, bool on);
   bool collides(ObjectId a, ObjectId b) const;
   /// Asked about what comes near to bodies that ask, before their objects are. Not owned; null: nobody.
   void set_pair_judge(PairJudge* judge);
 
   // --- events --------------------------------------------------------------------------------------------------------
-  Events& events();                                     // made on first use
+  Events& events();                                         // made on first use
   const Events* gathered() const { return events_.get(); }  // null: nobody asked for any
 
   // --- input, random numbers, view -----------------------------------------------------------------------------------

@@ -39,7 +39,7 @@ static breve_status play(breve_world* world) {
   filter.one_way[1] = 1;
   if (status == BREVE_OK) status = breve_object_set_collision_filter(world, platform, &filter);
 
-  /* Contacts of this one body are to be told. */
+  /* Report the contacts of this one body. */
   if (status == BREVE_OK) status = breve_world_set_events(world, BREVE_EVENT_CONTACT);
   if (status == BREVE_OK) status = breve_object_watch_contacts(world, body, true);
 

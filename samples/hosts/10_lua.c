@@ -21,7 +21,7 @@ static void say(void* user, breve_world* world, breve_channel channel, const cha
   fwrite(line, 1, size, stdout);
 }
 
-/* What is wrong with the file. */
+/* Prints why the file was refused. */
 static void complain(void* sink, const char* why, size_t size) {
   (void)sink;
   printf("%.*s\n", (int)size, why);

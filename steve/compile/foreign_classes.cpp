@@ -54,7 +54,7 @@ void ProgramBuilder::bind_foreign(const ast::Method& tree, MethodInfo& method, s
   method.function = std::move(function);
 }
 
-/// Callers know the keywords of the method that this one overrides. Those that it has too, in another order, stay.
+/// Callers know the keywords of the method that this one overrides. Those that both have, in another order, stay.
 void ProgramBuilder::adopt_keywords(MethodInfo& method, const ClassInfo& cls) {
   if (!method.foreign->adopts_keywords() || !cls.parent) return;
   const MethodInfo* overridden = cls.parent->find_method(method.name, method.parameters.size());

@@ -109,7 +109,7 @@ struct MethodInfo {
   std::vector<ParameterInfo> parameters;
   std::unique_ptr<Function> function;  // null for a native method
   NativeFunction native = nullptr;
-  const ForeignMethod* foreign = nullptr;  // what its function calls, for one of a ForeignClass
+  const ForeignMethod* foreign = nullptr;       // what its function calls, for one of a ForeignClass
   StaticType native_result = StaticType::Null;  // of a native or foreign method
   std::string doc;
   Span span;  // of the header
@@ -217,7 +217,7 @@ struct CompileResult {
 CompileResult compile(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed = {},
                       const ForeignFunctions& foreign = {}, const ForeignClasses& classes = {});
 
-/// What is wrong with the text of a ForeignClass by itself; "" if nothing is.
+/// The fault in the text of a ForeignClass by itself; "" if there is none.
 std::string fault_of_foreign_class(const std::string& text);
 
 /// A file of the embedded class library: the one named "NAME.tz", or the one that defines class NAME. Null if none.

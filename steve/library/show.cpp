@@ -35,8 +35,8 @@ Vector4f ink(std::size_t number) {
   return {c[0], c[1], c[2], 1};
 }
 
-/// Of a grid whose colours nobody set: a cell with agents has the ink of the first one's class, else that of its state;
-/// 0 is paper.
+/// The colour of a cell if nobody set colours of the grid: with agents the ink of the first one's class, else that of
+/// its state; 0 is paper.
 Vector4f drawn_color(const World& world, const GridResource& resource, CellIndex cell) {
   const Occupants& agents = resource.occupants;
   if (agents.made() && agents.count(cell) > 0) return ink(1 + world.class_of(agents.agent(agents.first(cell)).id));
@@ -85,7 +85,7 @@ void show_volume(ObjectId id, const GridResource& resource, SceneBuilder& to) {
   }
 }
 
-/// Of a grid with neither colours nor states nor agents there is nothing to see.
+/// Shows nothing of a grid that has neither colours nor states nor agents.
 void show_grid(const World& world, ObjectId id, const GridResource& resource, SceneBuilder& to) {
   if (!resource.grid) return;
   const bool colored = !resource.colors.empty() || !resource.alphas.empty();

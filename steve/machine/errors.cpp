@@ -25,7 +25,7 @@ bool of_library(const TraceLine& line, const Sources& sources) {
   return false;
 }
 
-/// Where the innermost call of the user's own stands in a source of the host's, the error is told of that place.
+/// If the innermost call of the user's own stands in a source of the host's, the error names that line.
 void tell_foreign_place(ErrorReport& r, const Sources& sources) {
   const auto own = std::find_if(r.trace.rbegin(), r.trace.rend(),
                                 [&](const TraceLine& line) { return line.foreign || !of_library(line, sources); });

@@ -33,7 +33,7 @@ class FilePointer final : public NativePointer {
     if (const auto writer = std::move(writer_)) writer->close();
   }
 
-  /// What was read and not taken; more of the file where all was taken, and its end: nothing. Reading counts as work.
+  /// The bytes read and not taken. Reads more if all were taken; empty at the end of the file. Reading counts as work.
   std::string_view ahead(Machine& machine) {
     if (at_ == size_) {
       FileReader& file = reader();

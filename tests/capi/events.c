@@ -92,7 +92,7 @@ static void classes_are_watched_and_ends_name_the_gone(void) {
     CHECK(!breve_object_alive(s.world, list[0].b));
     CHECK(list[1].phase == BREVE_PHASE_PERSIST);
   }
-  /* A sensor is told of, bodies that do not meet are not. */
+  /* Contacts of a sensor are reported, those of bodies that do not meet are not. */
   breve_collision_filter f = breve_collision_filter_default();
   f.sensor = true;
   CHECK_STATUS(BREVE_OK, breve_object_set_collision_filter(s.world, link[1], &f));
@@ -147,7 +147,7 @@ static void births_deaths_and_announcements_are_told_in_order(void) {
   CHECK(!breve_object_alive(s.world, first));
   CHECK_STATUS(BREVE_OK, breve_world_announcements(s.world, said, 8, &spoken));
   CHECK(spoken == 2);
-  /* What the host makes between iterations is told as well. */
+  /* Objects that the host makes between iterations are also reported. */
   breve_object made;
   CHECK_STATUS(BREVE_OK, breve_object_create(s.world, "Crier", &made));
   CHECK_STATUS(BREVE_OK, breve_world_lives(s.world, lives, 8, &count));

@@ -1,4 +1,4 @@
-/* Who collides with whom: bits, sensors, pairs, open sides, and answers of the host. */
+/* Collision filters: bits, sensors, pairs, open sides, and answers of the host. */
 #include <math.h>
 
 #include "bodies.h"
@@ -36,8 +36,12 @@ static void bits_decide(bool flat) {
   static const struct {
     uint32_t ball, ball_meets, slab, slab_meets;
     bool meet;
-  } cases[] = {{1, ~0U, 1, ~0U, true}, {2, 4, 4, 2, true},       {2, 4, 4, 1, false},
-               {2, 1, 4, 2, false},    {0, ~0U, 1, ~0U, false},  {6, 8, 12, 4, true},
+  } cases[] = {{1, ~0U, 1, ~0U, true},
+               {2, 4, 4, 2, true},
+               {2, 4, 4, 1, false},
+               {2, 1, 4, 2, false},
+               {0, ~0U, 1, ~0U, false},
+               {6, 8, 12, 4, true},
                {1U << 31, ~0U, 1, 1U << 31, true}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
     drop d;
@@ -173,7 +177,9 @@ static void an_image_knows_who_is_passing(bool flat) {
   rests(&d);
   scene_close(&d.s);
 }
-static void images_know_who_is_passing(void) { an_image_knows_who_is_passing(false), an_image_knows_who_is_passing(true); }
+static void images_know_who_is_passing(void) {
+  an_image_knows_who_is_passing(false), an_image_knows_who_is_passing(true);
+}
 
 /* --- answers of the host ------------------------------------------------------------------------------------------ */
 

@@ -54,7 +54,7 @@ static void a_force_acts_for_one_iteration(bool flat) {
   CHECK_STATUS(BREVE_OK, breve_object_add_force(s.world, body, push, NULL, NULL));
   CHECK_STATUS(BREVE_OK, breve_object_add_force(s.world, body, push, turn, NULL));
   moves(&s, body, 0, 0, 0);
-  /* What has not acted yet is in images. */
+  /* Forces that have not acted yet are in images. */
   static char image[1 << 20];
   size_t size = 0;
   CHECK_STATUS(BREVE_OK, breve_world_snapshot(s.world, image, sizeof image, &size));

@@ -130,7 +130,7 @@ static void a_crowd_in_space_is_refused_until_it_is_put_apart(void) {
   scene_close(&s);
 }
 
-/* A budget that is less than usual makes steps coarse: it refuses none that are done soon. */
+/* A budget that is less than usual makes steps coarse: it does not refuse steps that are done soon. */
 static void a_small_budget_refuses_no_small_crowd(void) {
   static const char* const kinds[] = {"PhysicalControl", "PlanarControl"};
   for (int kind = 0; kind < 2; ++kind) {

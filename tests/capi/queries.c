@@ -9,8 +9,8 @@ static bool ray(scene* s, const double start[3], const double way[3], const brev
   return found;
 }
 
-static void is_hit(const breve_hit* hit, breve_object object, double distance, double x, double y, double z,
-                   double nx, double ny, double nz) {
+static void is_hit(const breve_hit* hit, breve_object object, double distance, double x, double y, double z, double nx,
+                   double ny, double nz) {
   CHECK(same_object(hit->object, object));
   CHECK_NEAR(distance, hit->distance, 1e-12);
   CHECK_NEAR(x, hit->point[0], 1e-12);
@@ -199,7 +199,7 @@ static void the_nearest_surface_is_found_inside_and_outside(void) {
   point[0] = 1.25e-6, point[1] = 50;
   CHECK_STATUS(BREVE_OK, breve_world_closest(s.world, point, 100, NULL, &found, &hit));
   CHECK(found && same_object(hit.object, c) && fabs(hit.distance - 0.25e-6) < 1e-20);
-  /* Of two around a point the one that it is deeper in. */
+  /* If two bodies are around a point, the one that it is deeper in is found. */
   put_at(&s, b, 0, 0, 0);
   point[0] = 0.5, point[1] = point[2] = 0;
   CHECK_STATUS(BREVE_OK, breve_world_closest(s.world, point, 0, NULL, &found, &hit));
@@ -413,7 +413,7 @@ static void who_only_asks_changes_nothing(void) {
   CHECK(size == again && memcmp(before, after, size) == 0);
   const breve_effect* effect = effect_of(&s, "queries");
   CHECK(effect->active && effect->calls == 2);
-  /* And is told what a restored world has. */
+  /* Queries in a restored world find its bodies. */
   const breve_object mobile = hit.object;
   put_at(&s, mobile, 0, 0, 20);
   CHECK(!ray(&s, origin, way, NULL, &hit));

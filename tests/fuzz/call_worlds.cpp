@@ -186,7 +186,7 @@ breve_status world_methods(Caller& c) {
   }
   return status;
 }
-/// What is kept with worlds and objects.
+/// The user data of worlds and objects.
 const int mark = 0;
 void* const kept = const_cast<int*>(&mark);
 

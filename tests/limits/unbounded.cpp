@@ -22,7 +22,7 @@
 namespace breve::limits {
 namespace {
 
-/// Of a program's first lines: "# expect: BREVE_ERROR_BUDGET BREVE_OK BREVE_OK", the statuses of those calls.
+/// From a program's first lines: "# expect: BREVE_ERROR_BUDGET BREVE_OK BREVE_OK", the statuses of those calls.
 std::string expected_of(const std::string& text) {
   constexpr std::string_view kMark = "# expect: ";
   const std::size_t at = text.find(kMark);

@@ -292,7 +292,7 @@ static void handlers_and_schedules_reach_methods_in_lua(void) {
 
 static void files_that_are_wrong_are_refused_with_a_reason(void) {
   static const char* const texts[] = {
-      "this is no Lua",
+      "this is not Lua",
       "breve.main('X') error('stop')",
       "local x = 1",
       "breve.class('Two Words') breve.main('Two Words')",

@@ -57,7 +57,7 @@ TEST(TiedBodies, MoveAsTheyDoWhereScriptsAreAsked) {
       own.world.step();
       general.world.step();
       if (i != 120) continue;
-      // What is set meanwhile counts from there.
+      // Values that are set meanwhile count from there.
       for (Chain* chain : {&own, &general}) {
         SpringDescription is = chain->dynamics().spring(chain->springs[2]);
         is.strength = 70;

@@ -75,7 +75,7 @@ TEST(ConcaveMass, OfATorusIsPappusVolumeOfItsPolygonAndTendsToTheRoundOne) {
     volume[i] = shape->volume();
     moment[i] = shape->inertia()(1, 1);
     EXPECT_LE(shape->center_of_mass().norm(), 1e-12);
-    // The area of the polygon times the way of its centre, which is a polygon as well.
+    // The area of the polygon times the way of its centre, which is also a polygon.
     const double step = 2 * pi / corners, area = corners * tube * tube * std::sin(step) / 2;
     EXPECT_NEAR(volume[i], area * radius * corners * std::sin(step), 1e-12);
   }

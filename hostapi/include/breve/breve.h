@@ -1574,8 +1574,8 @@ static inline breve_class breve_class_default(void) {
    names it; a class that a file of the program defines wins over it, and it wins over one of the class library. A class of
    the host that has the name already is replaced; programs that are compiled keep the one they have. Runs no script.
    @param description  copied, with all that it points to
-   BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, a name that is no name of a program, a method without `call`, more
-   than 8 parameters, two methods or variables of one name, a type that there is none of; `destroy` is not called then.
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, a name that a program cannot use, a method without `call`,
+   more than 8 parameters, two methods or variables of one name, an unknown type; `destroy` is not called then.
    BREVE_ERROR_BUSY from a callback of a compilation. */
 BREVE_API breve_status breve_runtime_add_class(breve_runtime* runtime, const breve_class* description);
 
@@ -1610,7 +1610,7 @@ BREVE_API breve_status breve_world_methods(breve_world* world, const char* class
 BREVE_API breve_status breve_world_print(breve_world* world, const char* text, size_t size);
 
 /* What `random[bound]` in a script gives, from the world's generator: an int from 0 to bound, a number below bound, or a
-   vector of such numbers. BREVE_OK; BREVE_ERROR_TYPE: the bound is none of these. */
+   vector of such numbers. BREVE_OK; BREVE_ERROR_TYPE: the bound has another type. */
 BREVE_API breve_status breve_world_random(breve_world* world, const breve_value* bound, breve_value* result);
 
 /* ---- what the host keeps of worlds and objects -------------------------------------------------------------------- */
@@ -1640,12 +1640,12 @@ typedef struct breve_state {
      snapshot or hash gives BREVE_ERROR_UNSUPPORTED with the reason that was written. NULL: nothing is saved, and `load` is
      not called. Default NULL */
   bool (*save)(void* user, breve_world* world, breve_write_fn write, void* sink, breve_write_fn reason, void* reason_sink);
-  /* Take bytes that `save` wrote. It is called twice: first with commit false, while the world still is as it was; bytes
-     that are no state give false, and the restore BREVE_ERROR_IMAGE. Then with commit true, when the world is restored;
-     false then means that there was no memory for it. Must be given if `save` is */
+  /* Take bytes that `save` wrote. It is called twice. First with commit false, while the world still is as it was: it
+     returns false if the bytes are not a valid state, and the restore gives BREVE_ERROR_IMAGE. Then with commit true, when
+     the world is restored; false then means that there was no memory for it. Must be given if `save` is */
   bool (*load)(void* user, breve_world* world, const char* bytes, size_t size, bool commit);
-  /* An object is gone, by whatever way; its id is that of no object any more. It may not use this header. NULL: nobody is
-     told. Default NULL */
+  /* Called after an object is gone, however that happened; its id is stale. It must not use this header. NULL: not
+     called. Default NULL */
   void (*gone)(void* user, breve_object object);
   void (*destroy)(void* user); /* as for breve_world_set_user. Default NULL */
 } breve_state;

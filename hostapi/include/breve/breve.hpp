@@ -368,7 +368,7 @@ class World {
   Status set_collides(Object object, Object other, bool on) {
     return status(breve_object_set_collides(get(), object, other, on));
   }
-  /// Who is asked about bodies that ask; null: their objects alone.
+  /// Sets the function that is asked about pairs with a body that asks; null: only the objects are asked.
   Status set_may_collide(breve_may_collide_fn function, void* user = nullptr) {
     return status(breve_world_set_may_collide(get(), function, user));
   }
@@ -390,8 +390,7 @@ class World {
   };
   Result<Found> ray_first(const Vector& start, const Vector& way, const breve_query* query = nullptr) const {
     Found first;
-    const breve_status s =
-        breve_world_ray_first(get(), start.data(), way.data(), query, &first.found, &first.hit);
+    const breve_status s = breve_world_ray_first(get(), start.data(), way.data(), query, &first.found, &first.hit);
     return {status(s), first};
   }
   Result<std::vector<breve_hit>> ray_all(const Vector& start, const Vector& way,
@@ -413,8 +412,7 @@ class World {
   Result<Found> cast(const breve_geometry& geometry, const breve_pose& pose, const Vector& way,
                      const breve_query* query = nullptr) const {
     Found first;
-    const breve_status s =
-        breve_world_cast(get(), &geometry, &pose, way.data(), query, &first.found, &first.hit);
+    const breve_status s = breve_world_cast(get(), &geometry, &pose, way.data(), query, &first.found, &first.hit);
     return {status(s), first};
   }
   Result<Found> closest(const Vector& point, double limit = std::numeric_limits<double>::infinity(),
@@ -924,7 +922,7 @@ class Scene {
     const breve_status s = breve_scene_read(get(), world.get());
     return {s, s == BREVE_OK ? nullptr : breve_world_last_error(world.get())};
   }
-  /// Of a kind whose rows are of that type: rows<breve_instance>(BREVE_SCENE_INSTANCES).
+  /// The rows of a kind, which must have that type: rows<breve_instance>(BREVE_SCENE_INSTANCES).
   template <class Row>
   Rows<Row> rows(breve_scene_kind kind) const {
     breve_rows found{};

@@ -60,9 +60,9 @@ static inline breve_lua_config breve_lua_config_default(void) {
    @param config  copied; NULL: the defaults
    @param name    of the file, as messages show it
    @param text    `size` bytes, copied; NULL only if size is 0
-   @param reason  to be called with `sink` and what is wrong, for people; NULL: nobody is told
-   BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size or right; BREVE_ERROR_COMPILE: the file is no Lua, is bytecode, or
-   failed when it was run; otherwise as breve_runtime_add_class. */
+   @param reason  to be called with `sink` and what is wrong, for people; NULL: not called
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size or right; BREVE_ERROR_COMPILE: the file is not Lua, is bytecode,
+   or failed when it was run; otherwise as breve_runtime_add_class. */
 BREVE_API breve_status breve_lua_add(breve_runtime* runtime, const breve_lua_config* config, const char* name,
                                      const char* text, size_t size, breve_write_fn reason, void* sink);
 

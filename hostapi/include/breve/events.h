@@ -13,10 +13,10 @@ extern "C" {
 /* ---- events ------------------------------------------------------------------------------------------------------ */
 
 /* A host says which events it wants; the lists of an iteration are there from its end until the next one begins, or one is
-   restored. Nothing is gathered that was not asked for: the effect "events" says whether there is anything, and what it
-   costs. What is gathered is no part of the world: neither the hash nor images know of it. What the guard did is in
-   breve_world_interventions, impulses alone in breve_world_impacts. Objects in these lists are perhaps gone: their ids
-   then are stale. */
+   restored. Only events that were asked for are gathered: the effect "events" says whether there are any, and what
+   they cost. Events are not part of the world: neither the hash nor images contain them. breve_world_interventions lists
+   what the guard did, and breve_world_impacts the impulses alone. Objects in these lists may be gone; their ids then
+   are stale. */
 
 /* Kinds of events, to be added. */
 typedef enum breve_event {
@@ -26,19 +26,19 @@ typedef enum breve_event {
   BREVE_EVENT_SLEEP = 8         /* bodies that fall asleep or wake; there are none before breve_world_set_sleeping */
 } breve_event;
 
-/* Gather events of these kinds, of breve_event added, from now on; 0: none. BREVE_OK; BREVE_ERROR_ARGUMENT: a bit that is none.
- */
+/* Gather events of these kinds, of breve_event added, from now on; 0: none.
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a bit that is not a breve_event. */
 BREVE_API breve_status breve_world_set_events(breve_world* world, uint32_t kinds);
 
 /* The kinds that are gathered; 0 for NULL. */
 BREVE_API uint32_t breve_world_events(const breve_world* world);
 
-/* Tell of the contacts of all objects of a class and its descendants, with anything, or end that. Classes that a later
+/* Report the contacts of all objects of a class and its descendants, with anything, or stop that. Classes that a later
    program (breve_world_reload) gives descendants are to be named again.
    BREVE_OK; BREVE_ERROR_NOT_FOUND: the program has no such class. */
 BREVE_API breve_status breve_world_watch_contacts(breve_world* world, const char* class_name, bool on);
 
-/* Tell of the contacts of one object, or end that. BREVE_OK; BREVE_ERROR_NO_BODY. */
+/* Report the contacts of one object, or stop that. BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_watch_contacts(breve_world* world, breve_object object, bool on);
 
 typedef enum breve_phase {
@@ -54,11 +54,11 @@ typedef struct breve_contact {
   uint32_t phase; /* breve_phase */
   uint32_t reserved;
   breve_object a, b; /* a was created earlier */
-  double point[3];   /* midway between their nearest, or deepest, points; world frame. Of an end as it was last */
+  double point[3];   /* midway between their nearest, or deepest, points; world frame. In BREVE_PHASE_END the last */
   double normal[3];  /* unit, from b toward a; likewise */
   double distance;   /* < 0: the depth of the overlap; likewise */
-  double impulse[3]; /* on a, N*s: the sum of the impacts of this iteration (breve_world_impacts). What supports a body that
-                        rests is no impact */
+  double impulse[3]; /* on a, N*s: the sum of the impacts of this iteration (breve_world_impacts). The support of a body
+                        that rests is not an impact */
 } breve_contact;
 
 /* The contacts of the last iteration, in the order of creation of a, then of b.

@@ -161,10 +161,10 @@ BREVE_API breve_status breve_world_queue_click_ray(breve_world* world, const dou
 
 /* ---- forces ------------------------------------------------------------------------------------------------------ */
 
-/* Push bodies with physics. breve_object_set_force sets a force that stays; these come on top of it. What is set here and
-   has not acted yet is part of images. A platform that moves, and pushes what it meets, has breve_object_set_target. */
+/* Push bodies with physics. breve_object_set_force sets a force that stays; these come on top of it. Pushes that have
+   not acted yet are part of images. A platform that moves, and pushes what it meets, has breve_object_set_target. */
 
-/* A force and a torque that act in the next iteration only. Of several calls the sum acts.
+/* A force and a torque that act in the next iteration only. Several calls add up.
    @param force, torque  world frame; NULL: none
    @param point          of the world, where the force acts; NULL: the centre of mass
    BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: not finite, out of the plane of a flat world, or the body has no
@@ -179,7 +179,7 @@ BREVE_API breve_status breve_object_add_force(breve_world* world, breve_object o
 BREVE_API breve_status breve_object_add_impulse(breve_world* world, breve_object object, const double impulse[3],
                                                 const double point[3]);
 
-/* Wake a body that sleeps (breve_world_set_sleeping). Nothing if it does not. BREVE_OK; BREVE_ERROR_NO_BODY. */
+/* Wake a body that sleeps (breve_world_set_sleeping). Does nothing if it is awake. BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_wake(breve_world* world, breve_object object);
 
 #ifdef __cplusplus

@@ -15,8 +15,8 @@ extern "C" {
 /* breve_world_advance runs whole iterations; breve_world_set_paused stops it. The functions here are about what is between:
    none of them is part of images but the length of an iteration, and none runs script. */
 
-/* Let an iteration last so long, from the next one on; a script can set it as well. The time that breve_world_advance keeps
-   stays as it is.
+/* Set the length of an iteration, from the next one on; a script can also set it. The time that breve_world_advance
+   keeps stays as it is.
    @param seconds  finite, > 0
    BREVE_OK; BREVE_ERROR_ARGUMENT. */
 BREVE_API breve_status breve_world_set_iteration_step(breve_world* world, double seconds);

@@ -6,7 +6,7 @@
  *     breve_scene_read(scene, world);                       breve_view_render(view, world, pixels, 0);
  *     breve_scene_rows(scene, BREVE_SCENE_INSTANCES, &rows);
  *
- * The rules of breve.h hold here as well. Neither a scene nor a view belongs to a world: each reads the world that it is
+ * The rules of breve.h also hold here. Neither a scene nor a view belongs to a world: each reads the world that it is
  * given, at that moment, changes nothing in it, and keeps only copies. A scene or a view is used by one thread at a time;
  * different ones may be used by different threads. Their memory comes from the C++ allocator. While none is made nothing
  * of this costs anything: no mesh is built, no picture is decoded, no graphics library is loaded.

@@ -12,7 +12,7 @@ namespace {
 
 static_assert(sizeof(btScalar) == sizeof(float), "the host is to use Bullet with floats");
 
-/// Boxes fall on a floor, many of them, so that pairs of Bullet meet as well.
+/// Many boxes fall on a floor, so that pairs of Bullet also meet.
 class Pile {
  public:
   Pile() : dispatcher_(&configuration_), world_(&dispatcher_, &broad_phase_, &solver_, &configuration_) {

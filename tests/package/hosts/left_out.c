@@ -1,4 +1,4 @@
-/* Of a library without flat worlds and mesh files: what needs one says so, and the rest works. */
+/* A library without flat worlds and mesh files: calls that need one say so, and the rest works. */
 #include <breve/breve.h>
 #include <stdio.h>
 #include <string.h>
