@@ -37,7 +37,8 @@ std::string programs_beside(const std::string& file) {
   const auto folder = std::filesystem::path(file).parent_path();
   for (std::filesystem::directory_iterator it(folder.empty() ? "." : folder, problem), end; !problem && it != end;
        it.increment(problem))
-    if (it->path().extension() == ".tz" || it->path().extension() == ".lua") names.push_back(it->path().filename().string());
+    if (it->path().extension() == ".tz" || it->path().extension() == ".lua")
+      names.push_back(it->path().filename().string());
   if (names.empty()) return {};
   std::sort(names.begin(), names.end());
   const bool more = names.size() > kMost;

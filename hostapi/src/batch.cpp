@@ -38,7 +38,8 @@ class Batch {
     if (wanted_.prepare) wanted_.prepare(wanted_.user, index, &config);
     breve_world* world = nullptr;
     ErrorRecord error;
-    breve_status status = make_world(state_, first_ + static_cast<std::uint32_t>(index), program_, &config, error, &world);
+    breve_status status =
+        make_world(state_, first_ + static_cast<std::uint32_t>(index), program_, &config, error, &world);
     if (world) {
       if (!wanted_.begin || wanted_.begin(wanted_.user, index, world)) status = step_to_the_end(*world);
       outcome.iterations = breve_world_iteration(world);

@@ -20,7 +20,7 @@ breve_object handle_of_gone(const breve_world& world, ObjectId id, std::uint32_t
 
 /// A list of the world's events, or an empty one.
 template <class Event, class Out, class Convert>
-void read_events(const breve_world& world, std::pmr::vector<Event> Events::* list, Out* out, std::size_t capacity,
+void read_events(const breve_world& world, std::pmr::vector<Event> Events::*list, Out* out, std::size_t capacity,
                  std::size_t* count, const char* what, Convert convert) {
   const Events* events = std::as_const(*world.world).gathered();
   if (events) {
@@ -69,17 +69,18 @@ breve_status breve_object_watch_contacts(breve_world* world, breve_object object
 breve_status breve_world_contacts(const breve_world* world, breve_contact* contacts, size_t capacity, size_t* count) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
-    read_events(*world, &Events::contacts, contacts, capacity, count, "contacts", [&](const breve::ContactEvent& event) {
-      breve_contact to{};
-      to.phase = static_cast<std::uint32_t>(event.phase);
-      to.a = handle_of_gone(*world, event.a, event.ticket_a);
-      to.b = handle_of_gone(*world, event.b, event.ticket_b);
-      copy_to(to.point, event.point);
-      copy_to(to.normal, event.normal);
-      to.distance = event.distance;
-      copy_to(to.impulse, event.impulse);
-      return to;
-    });
+    read_events(*world, &Events::contacts, contacts, capacity, count, "contacts",
+                [&](const breve::ContactEvent& event) {
+                  breve_contact to{};
+                  to.phase = static_cast<std::uint32_t>(event.phase);
+                  to.a = handle_of_gone(*world, event.a, event.ticket_a);
+                  to.b = handle_of_gone(*world, event.b, event.ticket_b);
+                  copy_to(to.point, event.point);
+                  copy_to(to.normal, event.normal);
+                  to.distance = event.distance;
+                  copy_to(to.impulse, event.impulse);
+                  return to;
+                });
   });
 }
 

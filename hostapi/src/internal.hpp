@@ -245,7 +245,7 @@ struct breve_world : breve::InMemory {
   mutable std::optional<breve::steve::Profiler> profiler;  // kept when it has stopped, until the next one starts
   bool tracing = false;                                    // a breve_trace_fn runs
   std::unique_ptr<breve::World> world;
-  std::unique_ptr<breve::steve::Machine> machine;  // goes before the world
+  std::unique_ptr<breve::steve::Machine> machine;      // goes before the world
   std::optional<breve::host::MayCollide> may_collide;  // of breve_world_set_may_collide
   mutable breve::host::ErrorRecord error;
   breve::host::References references;
@@ -257,7 +257,7 @@ struct breve_world : breve::InMemory {
   mutable std::pmr::vector<breve::BodyIndex> bulk_bodies;    // of the objects of a call for many; room that is kept
   mutable std::pmr::vector<breve::steve::Slot*> bulk_slots;  // likewise
   breve::host::PreviousPoses previous;
-  double time_scale = 1;                                     // of breve_world_advance
+  double time_scale = 1;  // of breve_world_advance
   breve::host::UserData user;
   std::vector<std::unique_ptr<breve::host::Binding>> bindings;  // of the program's classes of the host
   std::pmr::vector<breve::host::ObjectData> object_data;        // by index of the object

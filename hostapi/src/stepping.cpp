@@ -10,8 +10,8 @@ void PreviousPoses::record(const Bodies& bodies) {
   if (!on_) return;
   poses_.resize(bodies.index_end());
   for (BodyIndex body = 0; body < poses_.size(); ++body)
-    poses_[body] = bodies.used(body) ? Entry{bodies.owner(body), {bodies.location(body), bodies.orientation(body)}}
-                                     : Entry{};
+    poses_[body] =
+        bodies.used(body) ? Entry{bodies.owner(body), {bodies.location(body), bodies.orientation(body)}} : Entry{};
 }
 
 namespace {
@@ -64,8 +64,8 @@ breve_status breve_objects_interpolated(const breve_world* world, const breve_ob
     const bool place = property == BREVE_PROPERTY_LOCATION || property == BREVE_PROPERTY_POSE;
     const bool turn = property == BREVE_PROPERTY_ROTATION || property == BREVE_PROPERTY_POSE;
     if (!place && !turn)
-      fail(BREVE_ERROR_ARGUMENT, "property is " + std::to_string(property) +
-                                     ": only locations, rotations and poses are known from before");
+      fail(BREVE_ERROR_ARGUMENT,
+           "property is " + std::to_string(property) + ": only locations, rotations and poses are known from before");
     if (!world->previous.kept())
       fail(BREVE_ERROR_ARGUMENT, "poses of the iteration before are not kept: call breve_world_set_interpolated first");
     const std::size_t width = (place ? 3U : 0U) + (turn ? 4U : 0U);

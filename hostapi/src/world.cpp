@@ -158,8 +158,8 @@ breve_status make_world(const std::shared_ptr<RuntimeState>& state, std::uint32_
     handle->world->random().set_coarse(c.coarse_random);
     steve::register_resource_kinds(*handle->world);
     handle->user = UserData(c.user, nullptr);
-    handle->machine = make_in<steve::Machine>(&handle->meter, handle->program, *handle->world, &handle->meter,
-                                              std::move(host));
+    handle->machine =
+        make_in<steve::Machine>(&handle->meter, handle->program, *handle->world, &handle->meter, std::move(host));
   });
   if (status != BREVE_OK) return status;
   const breve_status started = guard(handle->error, [&] {

@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kMostEvaluations = 6;
 constexpr double kShare = 0.3;  // of the tolerance, by which the mean velocity may be off before its last correction
-/// The share of a change of the guess in its answer: for an oscillation at w rad/s (w h / 2)^2; beyond it the phase is lost.
+/// The share of a change of the guess in its answer: for an oscillation at w rad/s (w h / 2)^2; beyond it the phase is
+/// lost.
 constexpr double kMostShare = 0.3;
 
 }  // namespace

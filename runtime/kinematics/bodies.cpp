@@ -119,7 +119,8 @@ Bodies::Arrays::Arrays(std::pmr::memory_resource* memory)
       turning(memory),
       rigid(memory),
       free(memory),
-      put{std::pmr::vector<BodyIndex>(memory), std::pmr::vector<BodyIndex>(memory), std::pmr::vector<BodyIndex>(memory)},
+      put{std::pmr::vector<BodyIndex>(memory), std::pmr::vector<BodyIndex>(memory),
+          std::pmr::vector<BodyIndex>(memory)},
       in_put(memory),
       touched(memory),
       shape_changes(std::allocate_shared<std::uint64_t>(std::pmr::polymorphic_allocator<std::uint64_t>(memory), 0)) {}
@@ -262,7 +263,8 @@ std::size_t Bodies::bytes() const {
                                    kFollowers * sizeof(BodyIndex);
   const Arrays& a = *arrays_;
   return sizeof(Arrays) + a.owner.capacity() * kColumns + a.turn_rows.bytes() + a.rigid_rows.bytes() +
-         a.materials.bytes() + a.filters.bytes() + a.appearances.bytes() + a.translating.bytes() + a.turning.bytes() + a.rigid.bytes();
+         a.materials.bytes() + a.filters.bytes() + a.appearances.bytes() + a.translating.bytes() + a.turning.bytes() +
+         a.rigid.bytes();
 }
 
 BodyKind Bodies::kind(BodyIndex body) const { return arrays_->kind[body]; }

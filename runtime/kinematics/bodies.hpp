@@ -158,9 +158,9 @@ class Bodies : public InMemory {
   const CollisionFilter& filter(BodyIndex body) const;
   /// Error{Argument} if `one_way` is not finite, or out of the plane of a flat world.
   void set_filter(BodyIndex body, const CollisionFilter& filter);
-  bool filtered() const;                                        // some body has, or had, a filter of its own
-  const std::pmr::vector<BodyIndex>& picky() const;             // bodies that ask or let pass from some sides, sorted
-  Appearance& appearance(BodyIndex body);  // made on first use
+  bool filtered() const;                             // some body has, or had, a filter of its own
+  const std::pmr::vector<BodyIndex>& picky() const;  // bodies that ask or let pass from some sides, sorted
+  Appearance& appearance(BodyIndex body);            // made on first use
   const Appearance& appearance(BodyIndex body) const;
 
   // --- the stages of a sub-step of h seconds, each over its own active bodies only ----------------

@@ -73,8 +73,8 @@ bool meet_ray(const Shape& shape, const Pose& pose, const Vector3& start, const 
       if (shape.kind() == ShapeKind::Sphere)
         normal = point.stableNormalized();
       else
-        normal = shape.round().is_round() ? normal_at(shape.round(), point)
-                                          : entered_face(shape.polyhedron(), point, along);
+        normal =
+            shape.round().is_round() ? normal_at(shape.round(), point) : entered_face(shape.polyhedron(), point, along);
     }
   }
   if (!(fraction <= most)) return false;

@@ -78,9 +78,9 @@ class Shape : public InMemory {
   const Surface* surface() const;         // Mesh, HeightField: its triangles after scaling; null for others
   const TriangleMesh* triangles() const;  // Mesh
   const HeightGrid* heights() const;      // HeightField
-  /// Splits a closed mesh into convex pieces, which stand for it where it meets other meshes and height fields. In contact
-  /// with anything else its triangles count, and mass and rays are those of the triangles. Error{Argument} for other
-  /// shapes, or as split_into_convex. `charge` counts the work and may throw, which leaves the shape as it was.
+  /// Splits a closed mesh into convex pieces, which stand for it where it meets other meshes and height fields. In
+  /// contact with anything else its triangles count, and mass and rays are those of the triangles. Error{Argument} for
+  /// other shapes, or as split_into_convex. `charge` counts the work and may throw, which leaves the shape as it was.
   void split(const PieceSettings& settings, const std::function<void(std::uint64_t)>& charge);
   const ConvexPieces* pieces() const;  // null unless it was split; after scaling
   /// HeightField: Error{Argument} for other shapes, or as HeightGrid::set_height. Bounds follow, the mass does not.

@@ -8,9 +8,9 @@
 
 namespace breve {
 
-/// One surface, and a convex solid against it. The smaller of two meshes takes part as its convex pieces, or as its hull if
-/// it has none; if both have one size it is the second. A mesh against a height field does likewise. Two height fields are
-/// ground both, and never touch.
+/// One surface, and a convex solid against it. The smaller of two meshes takes part as its convex pieces, or as its
+/// hull if it has none; if both have one size it is the second. A mesh against a height field does likewise. Two height
+/// fields are ground both, and never touch.
 struct SurfacePair {
   const Surface* surface = nullptr;  // null: never touch
   bool convex_is_a = true;

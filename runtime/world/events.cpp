@@ -73,8 +73,8 @@ Events& World::events() {
   return *events_;
 }
 
-/// Two solids touch up to a gap that solvers leave where bodies rest, and touch until it is some more: what trembles does
-/// not begin and end all the time.
+/// Two solids touch up to a gap that solvers leave where bodies rest, and touch until it is some more: what trembles
+/// does not begin and end all the time.
 bool World::Parts::touches_now(BodyIndex a, BodyIndex b, bool before, Contact& contact) const {
   constexpr double kBegins = 1e-4, kEnds = 1e-3;  // of the smaller one's radius
   const Bodies& bodies = *world->bodies_;
@@ -121,8 +121,14 @@ void World::Parts::add_impulses(std::pmr::map<Events::Pair, ContactEvent>& now) 
     const double sign = first ? 1 : -1;
     const Events::Pair key(std::min(one.serial, two.serial), std::max(one.serial, two.serial));
     const bool before = world->events_->touching.contains(key);
-    const ContactEvent event{before ? ContactEvent::Phase::Persist : ContactEvent::Phase::Begin, a, b,
-                             objects.ticket(a), objects.ticket(b), impact.point, sign * impact.normal, 0,
+    const ContactEvent event{before ? ContactEvent::Phase::Persist : ContactEvent::Phase::Begin,
+                             a,
+                             b,
+                             objects.ticket(a),
+                             objects.ticket(b),
+                             impact.point,
+                             sign * impact.normal,
+                             0,
                              Vector3::Zero()};
     now.try_emplace(key, event).first->second.impulse += sign * impact.impulse;
   }
@@ -181,8 +187,8 @@ void World::gather_events() {
   if (events_->wants(Events::kContacts) && events_->any_watched()) parts_->gather_contacts();
   if (events_->wants(Events::kSleep)) parts_->gather_sleep();
   ++effect.calls;
-  effect.items += events_->contacts.size() + events_->lives.size() + events_->sleeps.size() +
-                  events_->announcements.size();
+  effect.items +=
+      events_->contacts.size() + events_->lives.size() + events_->sleeps.size() + events_->announcements.size();
   effect.bytes = events_->bytes();
 }
 

@@ -71,9 +71,7 @@ void PairRules::load(ByteReader& in) {
 }
 
 void PairRules::hash(Hasher& hasher) const {
-  const auto add = [&](const Key& key) {
-    hasher.add(std::uint64_t{key.first.index} << 32 | key.second.index);
-  };
+  const auto add = [&](const Key& key) { hasher.add(std::uint64_t{key.first.index} << 32 | key.second.index); };
   for (const Key& key : excluded_) add(key);
   for (const auto& [key, decision] : near_) {
     add(key);

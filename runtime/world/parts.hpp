@@ -117,7 +117,7 @@ struct World::Parts final : CollisionClient, DynamicsClient, InMemory {
     Vector3 location = Vector3::Zero();
     Quaternion orientation = Quaternion::Identity();
   };
-  std::pmr::vector<Target> targets;       // of bodies that go there in the next iteration
+  std::pmr::vector<Target> targets;  // of bodies that go there in the next iteration
   struct Push {
     ObjectId object;
     Vector3 force = Vector3::Zero(), torque = Vector3::Zero();
@@ -129,7 +129,7 @@ struct World::Parts final : CollisionClient, DynamicsClient, InMemory {
   Extent space;
   Queries queries;
   std::uint64_t moved = 0;  // grows whenever a stage of the step may have moved bodies
-  NeighborRecord near;  // the last update of neighbours
+  NeighborRecord near;      // the last update of neighbours
   std::pmr::deque<InputEvent> input;
   std::pmr::map<std::pmr::string, ResourceLoader, std::less<>> loaders;  // not state: the program's own
 };

@@ -15,8 +15,8 @@ class World::Parts::PushScope {
  private:
   struct Before {
     ObjectId object;
-    Vector3 force, torque;            // that were set
-    Vector3 all_force, all_torque;    // with what acts beside them
+    Vector3 force, torque;          // that were set
+    Vector3 all_force, all_torque;  // with what acts beside them
   };
   void give_back() noexcept;
 

@@ -1,10 +1,11 @@
 /* The smallest host: a world in ten lines. Errors are left out; 03_host_function.c shows them. */
 #include <breve/breve.h>
-#include <string.h>
 #include <stdio.h>
+#include <string.h>
 
 static const char* const text =
-    "@use Control.\nController Hello.\nControl : Hello { + to iterate: print \"hello at \", (self get-time). super iterate. }\n";
+    "@use Control.\nController Hello.\nControl : Hello { + to iterate: print \"hello at \", (self get-time). super "
+    "iterate. }\n";
 
 static void say(void* user, breve_world* world, breve_channel channel, const char* line, size_t size) {
   (void)user, (void)world, (void)channel;

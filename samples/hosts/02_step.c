@@ -34,7 +34,8 @@ static breve_status play(breve_world* world) {
     if (status == BREVE_OK)
       status = breve_objects_interpolated(world, bodies, count, fraction, BREVE_PROPERTY_LOCATION, &places);
     if (i % 6 == 5)
-      printf("frame %2d, iteration %d: x = %.3f\n", i + 1, (int)breve_world_iteration(world), (double)shown[0].place[0]);
+      printf("frame %2d, iteration %d: x = %.3f\n", i + 1, (int)breve_world_iteration(world),
+             (double)shown[0].place[0]);
     /* Slow motion in the second half. */
     if (i == 14 && status == BREVE_OK) status = breve_world_set_time_scale(world, 0.5);
   }

@@ -9,7 +9,8 @@ static const char* const strangers[][2] = {
     {"calls itself", "Control : Main { + to fall: self fall. + to iterate: self fall. }\n"},
     {"takes all memory",
      "Control : Main { + variables: hoard (list). + to iterate: while 1: push \"a long text $hoard\" onto hoard. }\n"},
-    {"reads a file", "@use File.\nControl : Main { + to iterate: print ((new File) open-for-reading with-file \"/etc/passwd\"). }\n"},
+    {"reads a file",
+     "@use File.\nControl : Main { + to iterate: print ((new File) open-for-reading with-file \"/etc/passwd\"). }\n"},
     {"runs a command", "Control : Main { + to iterate: print (self execute command \"ls\"). }\n"},
 };
 
@@ -18,9 +19,9 @@ static void try_one(breve_runtime* runtime, const char* what, const char* body) 
   breve_program* program = NULL;
   breve_world* world = NULL;
   breve_world_config config = breve_world_config_default();
-  config.budget = 100000;              /* turns of loops and calls in one iteration */
-  config.memory_limit = 8u << 20;      /* bytes */
-  config.depth_limit = 200;            /* nested calls */
+  config.budget = 100000;         /* turns of loops and calls in one iteration */
+  config.memory_limit = 8u << 20; /* bytes */
+  config.depth_limit = 200;       /* nested calls */
   snprintf(text, sizeof text, "@use Control.\nController Main.\n%s", body);
   breve_status status = breve_program_compile(runtime, "stranger.tz", text, strlen(text), &program);
   if (status == BREVE_OK) status = breve_world_create(runtime, program, &config, &world);

@@ -12,7 +12,7 @@ const CollisionFilter& filter_of(Machine& machine, const Instance& self) {
 
 /// Give a body a filter that differs from its own in one thing.
 template <class T>
-void change(Machine& machine, const Instance& self, T CollisionFilter::* field, const T& value) {
+void change(Machine& machine, const Instance& self, T CollisionFilter::*field, const T& value) {
   machine.refuse_in_stage("change whom a body collides with");
   const BodyIndex body = body_of(machine, self);
   CollisionFilter filter = bodies_of(machine).filter(body);

@@ -16,19 +16,9 @@ namespace breve::steve {
 
 namespace {
 
-constexpr std::string_view kLaterClasses[] = {"Graph",
-                                              "IRSensor",
-                                              "IRSensors",
-                                              "Movie",
-                                              "NetworkServer",
-                                              "NetworkServers",
-                                              "QProgram",
-                                              "QSystem",
-                                              "Sound",
-                                              "Sounds",
-                                              "Tone",
-                                              "Tones",
-                                              "URL"};
+constexpr std::string_view kLaterClasses[] = {"Graph",          "IRSensor", "IRSensors", "Movie", "NetworkServer",
+                                              "NetworkServers", "QProgram", "QSystem",   "Sound", "Sounds",
+                                              "Tone",           "Tones",    "URL"};
 
 constexpr std::string_view kLaterFiles[] = {"QGAME"};
 

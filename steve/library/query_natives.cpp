@@ -61,8 +61,8 @@ ListCell* answer_of(Machine& machine, bool found, const QueryHit& hit) {
   ListCell* list = machine.heap().list(found ? 4 : 0);
   if (!found) return list;
   const Pin pin(machine, Value::of(Tag::List, list));
-  for (const Value& value : {object_value(machine, hit.object), Value::of(hit.point), Value::of(hit.normal),
-                             Value::of(hit.distance)})
+  for (const Value& value :
+       {object_value(machine, hit.object), Value::of(hit.point), Value::of(hit.normal), Value::of(hit.distance)})
     machine.heap().push(*list, value);
   return list;
 }
@@ -76,8 +76,7 @@ const Shape& shape_of(Machine& machine, Instance* shape, const char* selector) {
   return *resource->shape;
 }
 
-ListCell* control_cast_ray(Machine& machine, Instance& self, Vector3 start, Vector3 way, Text type,
-                           std::int32_t bits) {
+ListCell* control_cast_ray(Machine& machine, Instance& self, Vector3 start, Vector3 way, Text type, std::int32_t bits) {
   const Asked asked(machine, "cast-ray", type, bits);
   QueryHit hit;
   const bool found = put(machine, self, [&](Queries& queries, const Queries::Scene& scene) {
@@ -105,7 +104,8 @@ ListCell* control_cast_shape(Machine& machine, Instance& self, Instance* shape, 
   return answer_of(machine, found, hit);
 }
 
-ListCell* find_in(Machine& machine, const Instance& self, const Shape& shape, const Vector3& place, const Asked& asked) {
+ListCell* find_in(Machine& machine, const Instance& self, const Shape& shape, const Vector3& place,
+                  const Asked& asked) {
   return objects_of(machine, put(machine, self, [&](Queries& queries, const Queries::Scene& scene) -> const Hits& {
                       return queries.overlap(scene, shape, {place, Quaternion::Identity()}, asked.filter());
                     }));

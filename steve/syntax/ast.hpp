@@ -268,8 +268,8 @@ struct Method {
   std::string doc;        // the % lines inside or before it, without the %
   bool is_public = true;  // written with +
   bool broken = false;    // a statement of it could not be read
-  /// Embedded library and classes of the host only: `@native "name" (type).` in place of a body. The type is that of the
-  /// result; none: no value.
+  /// Embedded library and classes of the host only: `@native "name" (type).` in place of a body. The type is that of
+  /// the result; none: no value.
   std::optional<std::string> native;
   std::optional<TypeRef> native_result;
   bool native_dynamic = false;  // `(?)`: the result's type varies

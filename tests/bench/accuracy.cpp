@@ -119,7 +119,8 @@ int main() {
   bool finite = true;
   try {
     auto runtime = breve::Runtime::create().or_throw();
-    std::printf("%-10s %-11s %10s %10s %10s %10s %6s\n", "scene", "rung", "cost", "forces", "energy", "position", "guard");
+    std::printf("%-10s %-11s %10s %10s %10s %10s %6s\n", "scene", "rung", "cost", "forces", "energy", "position",
+                "guard");
     for (const char* scene : kScenes) {
       const auto program = runtime.compile(scene, text_of(scene)).or_throw();
       std::vector<Measured> all;

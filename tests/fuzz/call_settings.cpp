@@ -26,8 +26,8 @@ breve_status force(Caller& c) {
   const breve_world* world = c.world();
   const breve_object object = c.object(world, "Real");
   Out<double[3]> newtons(c, true), about(c, true);
-  const breve_status status = breve_object_force(world, object, newtons.to() ? *newtons.to() : nullptr,
-                                                 about.to() ? *about.to() : nullptr);
+  const breve_status status =
+      breve_object_force(world, object, newtons.to() ? *newtons.to() : nullptr, about.to() ? *about.to() : nullptr);
   newtons.after(status), about.after(status);
   return status;
 }

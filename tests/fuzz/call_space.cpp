@@ -101,9 +101,8 @@ breve_status closest(Caller& c) {
   Ray point;
   const double* at = c.numbers(point);
   const double limit = c.chance(80) ? std::abs(c.finite()) : c.number();
-  return find_one(c, [&](bool* found, breve_hit* hit) {
-    return breve_world_closest(world, at, limit, query.to(), found, hit);
-  });
+  return find_one(
+      c, [&](bool* found, breve_hit* hit) { return breve_world_closest(world, at, limit, query.to(), found, hit); });
 }
 breve_status near(Caller& c) {
   const breve_world* world = c.world();

@@ -24,9 +24,10 @@ constexpr std::size_t kDeepest = 4, kFirstWorlds = 2;
 std::span<const Function> all_functions() {
   static const std::vector<Function> all = [] {
     std::vector<Function> joined;
-    for (const auto part : {runtime_functions(), world_functions(), object_functions(), bulk_functions(),
-                            value_functions(), body_functions(), joint_functions(), space_functions(), event_functions(), step_functions(), setting_functions(), view_functions(),
-                            analysis_functions()})
+    for (const auto part :
+         {runtime_functions(), world_functions(), object_functions(), bulk_functions(), value_functions(),
+          body_functions(), joint_functions(), space_functions(), event_functions(), step_functions(),
+          setting_functions(), view_functions(), analysis_functions()})
       joined.insert(joined.end(), part.begin(), part.end());
     return joined;
   }();

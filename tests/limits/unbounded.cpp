@@ -45,7 +45,11 @@ std::string folder_with_files() {
 class Unbounded {
  public:
   explicit Unbounded(std::string_view mode)
-      : interrupts_(mode == "interrupt"), timed_(mode != "statuses"), watch_(interrupts_), folder_(folder_with_files()), runtime_(make_runtime()) {}
+      : interrupts_(mode == "interrupt"),
+        timed_(mode != "statuses"),
+        watch_(interrupts_),
+        folder_(folder_with_files()),
+        runtime_(make_runtime()) {}
   ~Unbounded() { std::filesystem::remove_all(folder_); }
 
   void run(const std::filesystem::path& path) {
