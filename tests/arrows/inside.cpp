@@ -99,6 +99,7 @@ void Inside::find_dead(std::vector<Offence>& out) const {
     if (begins(file, "tests/") || begins(file, "samples/") || begins(file, "hostapi/include/")) continue;
     for (const Name& name : source.names) {
       if (!is_called_by_name(name) || !is_in_our_style(name.name) || ours.count(name.name) != 0) continue;
+      if (begins(name.name, "luaopen_")) continue;  // the entry of a Lua module, which interpreters find by its name
       const bool tested = of_tests.count(name.name) != 0;
       if (tested && for_tests_.count(name.name) != 0) continue;
       // A method of ours is declared in a header; where only its body is, its base class says who calls it.
