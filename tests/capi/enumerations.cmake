@@ -2,6 +2,7 @@
 # begin with the name of its type: cmake -DHEADERS=folder -P enumerations.cmake
 # "_kind" and "_mode" are left out of the names; a status is BREVE_OK or an error.
 file(GLOB files ${HEADERS}/*.h)
+list(FILTER files EXCLUDE REGEX "breve_lua.h$")  # tests/lua has its functions
 set(header)
 foreach(file IN LISTS files)
   file(READ ${file} text)
