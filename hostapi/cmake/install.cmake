@@ -25,6 +25,11 @@ if(BREVE_WITH_MESHES)
   list(APPEND breve_dependency_targets PkgConfig::breve_assimp)
   string(APPEND breve_dependency_modules ", assimp")
 endif()
+if(BREVE_WITH_RENDER)
+  string(APPEND breve_find_dependencies "find_dependency(Freetype)\n")
+  list(APPEND breve_dependency_targets Freetype::Freetype)
+  string(APPEND breve_dependency_modules ", freetype2")
+endif()
 list(APPEND breve_dependency_targets Threads::Threads ${CMAKE_DL_LIBS})
 
 if(breve_type STREQUAL "SHARED_LIBRARY")
@@ -35,6 +40,9 @@ else()
   set(kind Static)
   # One archive, so that nobody needs to know the parts.
   set(archives breve breve_analysis breve_library breve_machine breve_syntax breve_runtime)
+  if(BREVE_WITH_RENDER)
+    list(APPEND archives breve_render)
+  endif()
   list(TRANSFORM archives REPLACE "(.+)" "$<TARGET_FILE:\\1>")
   install(CODE "
     execute_process(COMMAND \"${CMAKE_COMMAND}\" \"-DAR=${CMAKE_AR}\" \"-DOUT=${made}/libbreve.a\" \"-DARCHIVES=${archives}\"
@@ -54,6 +62,10 @@ write_basic_package_version_file(${made}/breveConfigVersion.cmake COMPATIBILITY 
 install(FILES ${made}/breveConfig.cmake ${made}/breveConfigVersion.cmake ${made}/breve${kind}.cmake
   DESTINATION ${breve_config_folder} COMPONENT development)
 install(FILES ${made}/breve.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+
+if(BREVE_WITH_LUA)
+  install(TARGETS breve_lua ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+endif()
 
 if(BREVE_WITH_COMMAND)
   install(TARGETS breve_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT command)
