@@ -12,17 +12,18 @@ _breve() {
   fi
   case $before in
     --path | --allow-read | --allow-write | --out) COMPREPLY=($(compgen -d -- "$word")); return ;;
-    --positions | --trace) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --positions | --trace | --snapshot | --contact-sheet | --movie | --plot-to | --log) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --accuracy) COMPREPLY=($(compgen -W "fast balanced precise reference conserving" -- "$word")); return ;;
     --format) COMPREPLY=($(compgen -W "markdown html both" -- "$word")); return ;;
-    --iterations | --seconds | --seed | --set | --budget | --physics-budget | --memory | --depth | --trace-limit | --allow)
+    --iterations | --seconds | --seed | --set | --budget | --physics-budget | --memory | --depth | --trace-limit | --allow | --size | --fps | --plot)
       return ;;
   esac
   case $command in
     run)
       options="--iterations --seconds --seed --set --budget --physics-budget --memory --depth --path --allow-read
         --allow-write --no-files --allow-system --accuracy --watch --coarse-random --strict --quiet --verbose --stats
-        --effects --hash --positions --profile --trace --trace-limit --help" ;;
+        --effects --hash --positions --profile --trace --trace-limit --snapshot --contact-sheet --movie --size --fps --plain
+        --plot --plot-to --log --help" ;;
     repl)
       options="--seed --path --allow-read --allow-write --no-files --allow-system --strict --quiet --help" ;;
     check) options="--path --allow --strict --json --help" ;;
