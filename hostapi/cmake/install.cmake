@@ -52,7 +52,7 @@ else()
 endif()
 
 file(RELATIVE_PATH breve_pc_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
-string(REGEX REPLACE "^\\.\\./|/$" "" breve_pc_to_prefix "${breve_pc_to_prefix}")
+string(REGEX REPLACE "/$" "" breve_pc_to_prefix "${breve_pc_to_prefix}")
 configure_file(cmake/breve.pc.in ${made}/breve.pc @ONLY)
 configure_file(cmake/breve${kind}.cmake.in ${made}/breve${kind}.cmake @ONLY)
 configure_package_config_file(cmake/breveConfig.cmake.in ${made}/breveConfig.cmake

@@ -208,9 +208,6 @@ class Island : public InMemory {
   void note_smooth();
   void close_books();
   void take_back_rest();
-  double add_debts(double h);
-  void take_back_debts(double h);
-  double debt_limit() const;
   double stored_now();
 
   // island_momentum.cpp
@@ -219,7 +216,7 @@ class Island : public InMemory {
   static bool take_back(Clustered& one, double gain);
   static void take_back_most(Clustered& one, double gain);
   double moving() const;
-  void take_from_all(double part, double Energy::*account = &Energy::contact_loss);
+  void take_from_all(double part);
   bool touched_from_outside() const;
   double stop_links(Clustered& one, Momenta momenta, double h);
   void coast(double h);

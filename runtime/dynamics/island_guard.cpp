@@ -68,7 +68,6 @@ void Island::step_guarded(DynamicsClient* client, double start, double h) {
   if (refines && !dissolved_) take_back_rest();
   if (attempt > 0 || finished_) use_accuracy(asked);
   if (trouble.found) give_in(trouble, start, h);
-  if (refines) take_back_debts(h);
 }
 
 /// A step of articulated bodies whose energy does not add up is taken again in 2, 4, 8, ... parts: what turns far in a
@@ -127,13 +126,6 @@ void Island::give_in(const Trouble& trouble, double start, double h) {
   const bool lies = trouble.reason == GuardReason::NoSolution && still();
   if (rest || lies) stop(Momenta::Keep, back ? 0 : h);
   if (rest && back) coast(h);
-  // Positions that were put right may hold more than there was, with the same momenta.
-  const double gained = result.account.residual - at_start_.account.residual;
-  if (rest && !back && gained > allowed_ && !calls_out()) {
-    back_to_start();
-    stop(Momenta::Keep, 0);
-    coast(h);
-  }
   intervene(trouble, rest ? GuardAction::Rested : GuardAction::Reported, start);
 }
 
@@ -260,7 +252,7 @@ double Island::stored(double& kinetic, bool start) {
     moving += energy.kinetic;
     sum += energy.potential + energy.springs;
     tree->step_stored = start ? energy.total() : energy.total() - tree->step_stored;
-    (start ? tree->step_kinetic : tree->ended_kinetic) = energy.kinetic;
+    if (start) tree->step_kinetic = energy.kinetic;
     if (!start) tree->booked = energy.total();
   }
   for (const Clustered& one : clusters_) sum += tie_energy_in(one);

@@ -202,18 +202,16 @@ double Island::moving() const {
   return sum;
 }
 
-/// Takes a part of moving(). What is at rest stays so.
-/// @param account  that has it: what contacts and limits gave, they are booked to have taken
-void Island::take_from_all(double part, double Energy::*account) {
+/// Takes a part of moving(), which contacts and limits gave: it is booked as taken by them. What is at rest stays so.
+void Island::take_from_all(double part) {
   if (!(part > 0)) return;
-  const double sign = account == &Energy::residual ? -1 : 1;
   const bool held = touched_from_outside();
   for (Clustered& one : clusters_) {
     const std::span trees = one.entry->system->trees();
     const Common common = common_of(trees, held);
     shorten_inner(trees, common, std::sqrt(1 - part));
-    result.account.*account += sign * part * common.inner;
-    if (one.alone()) trees.front()->account.*account += sign * part * common.inner;
+    result.account.contact_loss += part * common.inner;
+    if (one.alone()) trees.front()->account.contact_loss += part * common.inner;
   }
   placed_ = booked_ = false;
 }

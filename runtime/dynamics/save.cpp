@@ -169,8 +169,6 @@ void Dynamics::Core::save_tree(ByteWriter& out, const Tree& tree) const {
   out.put(tree.step);
   out.put(tree.booked);
   out.put(tree.changed);
-  out.put(tree.debt);
-  out.put(tree.lately);
   each(Writer{out}, tree.account);
   put_numbers(out, tree.state.q);
   put_numbers(out, tree.state.v);
@@ -267,9 +265,6 @@ void Dynamics::Core::load_tree(ByteReader& in, Tree& tree) {
   tree.step = in.get<double>();
   tree.booked = in.get<double>();
   tree.changed = in.get_bool();
-  tree.debt = in.get<double>();
-  tree.lately = in.get<double>();
-  if (!(tree.debt >= 0 && tree.lately >= 0)) ByteReader::fail();
   each(Reader{in}, tree.account);
   for (double& x : tree.state.q) x = in.get<double>();
   for (double& x : tree.state.v) x = in.get<double>();
@@ -304,8 +299,6 @@ void Dynamics::Core::hash(Hasher& hasher) const {
     if (stale[index] != 0) continue;
     const Tree& tree = *trees[index];
     add(tree.step);
-    add(tree.debt);
-    add(tree.lately);
     for (const double x : tree.state.q) add(x);
     for (const double x : tree.state.v) add(x);
     for (const double x : tree.mean) add(x);

@@ -119,9 +119,6 @@ struct Tree : InMemory {
   double step_kinetic = 0;                   // J, likewise
   double booked = std::numeric_limits<double>::quiet_NaN();  // J, that it has by the books
   bool changed = true;                                       // by scripts since
-  double ended_kinetic = 0;                                  // J, as the step ended
-  double lately = 0;                                         // J, the most of that in the last seconds, fading
-  double debt = 0;  // J, that came in over past steps and that no account explains
 
   BodyIndex first_body() const {  // of the lowest index
     BodyIndex first = kNoBody;

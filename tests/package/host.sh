@@ -32,11 +32,13 @@ refused() { ! configure "$@" || fail "host $1 configures and should not"; }
 # CMake breaks its messages into lines.
 says() { tr -s ' \n' ' ' <"$scratch/said" | grep -F -- "$1" >/dev/null || fail "does not say: $1"; }
 
-# commands [-v] TEXT: the commands that compile breve's sources have it, or with -v do not.
+# commands [-v] TEXT: the commands that compile breve's runtime have it, or with -v do not. What draws is a library of its
+# own and links none of the optional parts.
 commands() {
   local want=1
   [[ $1 != -v ]] || { want=0; shift; }
-  grep -F '"command"' "$scratch/build/compile_commands.json" | grep -F -- "$repository/runtime/" >"$scratch/commands"
+  grep -F '"command"' "$scratch/build/compile_commands.json" | grep -F -- "$repository/runtime/" |
+    grep -vF -- "$repository/runtime/render/" >"$scratch/commands"
   [[ -s $scratch/commands ]] || fail "compiles nothing of breve"
   local with all
   with=$(grep -cE -- "$1" "$scratch/commands")

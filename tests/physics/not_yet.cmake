@@ -6,7 +6,8 @@ set(not_yet
     physics.case.ball_joint_spring.conserving physics.case.box_falls_one_centimetre.conserving
     physics.case.free_hinge_that_spins.conserving physics.case.middle_angle_of_ball.conserving
     physics.case.motor_against_closed_loop.conserving physics.case.motor_at_limit.conserving
-    physics.case.motor_to_limit_on_floor.conserving physics.case.spinning_ball_joint.conserving physics.clap.conserving
+    physics.case.motor_to_limit_on_floor.conserving physics.case.overlap_with_dampers.balanced
+    physics.case.overlap_with_dampers.fast physics.case.spinning_ball_joint.conserving physics.clap.conserving
     physics.dominoes_fall.balanced physics.dominoes_fall.conserving physics.dominoes_fall.fast
     physics.overlap_long.balanced physics.overlap_long.conserving physics.overlap_long.fast
     physics.overlap_long.precise physics.overlap_long.reference physics.quadruped_books.conserving

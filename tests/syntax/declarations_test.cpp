@@ -96,9 +96,9 @@ TEST(Constants, OfTheLibraryAreHiddenByThoseOfTheProgram) {
   };
   const auto printed = [](const ast::File& file) { return show(*file.classes.at(0).methods.at(0).body.at(0)); };
   read("first.tz", "@define K 3.", true);
-  EXPECT_EQ(printed(read("user.tz", "NULL : T { + to f: print K. }", false)), "(print 3)");
-  EXPECT_EQ(printed(read("user.tz", "@define K 4.\nNULL : T { + to f: print K. }", false)), "(print 4)");
-  EXPECT_EQ(printed(read("second.tz", "@define K 3.\nNULL : T { + to f: print K. }", true)), "(print 3)");
+  EXPECT_EQ(printed(read("user.tz", "NULL : T { + to f: print K. }", false)), "(print (const K 3))");
+  EXPECT_EQ(printed(read("user.tz", "@define K 4.\nNULL : T { + to f: print K. }", false)), "(print (const K 4))");
+  EXPECT_EQ(printed(read("second.tz", "@define K 3.\nNULL : T { + to f: print K. }", true)), "(print (const K 3))");
   EXPECT_EQ(diagnostics.error_count(), 0U);
   read("other.tz", "@define K 5.", false);
   EXPECT_EQ(diagnostics.error_count(), 1U);
