@@ -92,6 +92,8 @@ void link_joint(Machine& machine, Instance& joint, JointDescription description,
   }
   JointResource& resource = resource_made<JointResource>(machine, joint);
   Mechanics& dynamics = machine.world().dynamics();
+  // The whole assembly is looked through.
+  if (description.parent != kNoBody) machine.charge(dynamics.links_of(description.parent).size());
   resource.index = dynamics.link(description, joint.id);
   resource.is = dynamics.joint(resource.index);
   set_first_limits(dynamics, resource.index, row.kind);

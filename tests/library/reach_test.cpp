@@ -36,7 +36,7 @@ std::string table() {
   for (const auto natives : {functions(), library_natives()})
     for (const Native& native : natives) names[native.reach].insert(std::string(native.name));
   std::ostringstream out;
-  out << "| what | given by the host with | with `breve run` | by |\n| --- | --- | --- | --- |\n";
+  out << "| right | granted by the host with | with `breve run` | used by |\n| --- | --- | --- | --- |\n";
   for (const auto& [reach, text] : rows) {
     out << "| " << text << " |";
     for (const std::string& name : names[reach]) out << (name == *names[reach].begin() ? " `" : ", `") << name << "`";
