@@ -168,8 +168,7 @@ void set_rgb(Machine& machine, Instance& self, Vector3 color, std::int32_t x, st
 
 DataCell* image_get_data(Machine& machine, Instance& self) {
   const std::pmr::vector<std::uint8_t>& bytes = image(machine, self).bytes();
-  constexpr std::size_t kBytesAUnit = 16;  // they are copied
-  machine.charge_for(bytes.size() / kBytesAUnit);
+  machine.charge_for(bytes.size());
   return machine.heap().data({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 

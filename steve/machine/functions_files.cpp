@@ -70,8 +70,7 @@ FilePointer& file_of(PointerCell* pointer) {
 /// NULL if it cannot be opened: with a warning unless there is no such file, which the program is to find out.
 template <class Open>
 PointerCell* open_file(Machine& machine, std::string_view name, Open open) {
-  constexpr std::size_t kBytesAUnit = 16;  // a name is copied, and shown in messages
-  machine.charge_for(name.size() / kBytesAUnit);
+  machine.charge_for(name.size());
   try {
     return machine.heap().pointer(std::make_unique<FilePointer>(open()));
   } catch (const MissingFile&) {
