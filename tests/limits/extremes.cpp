@@ -69,11 +69,10 @@ class Extremes {
     fuzz::World world;
     for (std::size_t i = 0; i < text.cases.size(); ++i) {
       const std::string method = "case-" + std::to_string(i);
-      double least = 1e9;
-      for (int tries = 0; tries < kTries && least > (interrupts_ ? kLongestAfter : kLongest); ++tries) {
+      const double least = least_of_tries(interrupts_ ? kLongestAfter : kLongest, [&] {
         world = make_ready(text, program.get(), std::move(world));
-        least = std::min(least, time(world.get(), text.cases[i].name, method));
-      }
+        return time(world.get(), text.cases[i].name, method);
+      });
       Worst& worst = worst_[text.cases[i].name];
       if (least > worst.time) worst = {least, text.cases[i].statement};
     }
@@ -94,11 +93,12 @@ class Extremes {
   double time(breve_world* world, const std::string& name, const std::string& method) {
     ++calls_;
     watch_.begin(world, name, name == "sleep()");
-    const double began = processor_time();
+    const Used began = Used::now();
     breve_object_call(world, breve_world_controller(world), method.c_str(), nullptr, 0, nullptr);
-    const double taken = processor_time() - began;
-    const double after = watch_.end();
-    return interrupts_ ? after : taken;
+    const Used used = Used::now() - began;
+    const double after = watch_.end(used);
+    if (interrupts_) return after;
+    return used.time <= kLongest ? used.time : Peer::idle(used, used.time);
   }
 
   const bool interrupts_;
