@@ -50,7 +50,10 @@ Accuracy accuracy_of(Rung rung) {
       a.tolerance = 1e-10;
       a.contact_step = 1.0 / 480;
       break;
-    case Rung::Conserving: a.scheme = Scheme::ImplicitMidpoint; break;
+    case Rung::Conserving:
+      a.scheme = Scheme::ImplicitMidpoint;
+      a.contact_step = 1.0 / 200;
+      break;
   }
   return a;
 }
