@@ -124,6 +124,7 @@ void Renderer::Work::set_body_uniforms(const Pass& pass) {
   set_lights(pass);
   program.set("shadows", pass.shadow.on ? 1.0F : 0.0F);
   program.set("shadow_matrix", pass.shadow.matrix);
+  program.set("shadow_texel_slope", pass.shadow.texel_slope);
   program.set("shadow_bias", 6e-5F);
   program.set("shadow_texel", shadow ? 1.0F / static_cast<float>(shadow->side()) : 0.0F);
   program.set("shadow_map", static_cast<int>(kShadowUnit));

@@ -8,7 +8,7 @@ inline constexpr const char* kBodyVertex = R"(
 in vec3 position, normal, tint;
 in vec4 row0, row1, row2, color, extra;
 uniform mat4 view, projection, shadow_matrix;
-uniform float outline, layers, tinted, disc;
+uniform float outline, layers, tinted, disc, shadow_texel_slope;
 uniform vec3 right, up;
 uniform vec4 clip_plane;
 out vec2 corner;
@@ -37,6 +37,10 @@ void main() {
   lit = extra.z;
   tile = extra.xy;
   shadow_place = shadow_matrix * vec4(world, 1);
+  // Three texels along the normal, more than the soft edge reaches, lie clear of the face itself: a face that the light
+  // grazes does not shade itself in stripes.
+  float off = disc > 0.5 ? 0.0 : 3.0 * shadow_texel_slope * shadow_place.w;
+  shadow_place = shadow_matrix * vec4(world + off * normalize(world_normal), 1);
   gl_ClipDistance[0] = dot(vec4(world, 1), clip_plane);
   gl_Position = projection * (view * vec4(world, 1));
   // In a flat world what was made later lies on top, and an outline below its own body.

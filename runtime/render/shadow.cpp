@@ -44,7 +44,8 @@ ShadowLens lens_at(const Vector3f& eye, const Eigen::AlignedBox3f& box) {
   const float slope = away > radius ? sine / std::sqrt(1 - sine * sine) : kWidest;
   const float near = std::max(away - radius, 0.02F * radius), far = away + 8 * radius;
   const Vector3f at = away > 1e-6F ? Vector3f(box.center()) : Vector3f(eye - Vector3f::UnitY());
-  return {true, perspective(std::min(slope, kWidest), near, far) * looking(eye, at)};
+  const float width = std::min(slope, kWidest);
+  return {true, perspective(width, near, far) * looking(eye, at), 2 * width / static_cast<float>(kSide)};
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ namespace breve::render {
 struct ShadowLens {
   bool on = false;
   Matrix4f matrix = Matrix4f::Identity();
+  float texel_slope = 0;  // width of a texel, divided by its distance from the light
 };
 
 /// The flat top that reflects: that of the largest fixed box.
