@@ -39,7 +39,7 @@ if(breve_type STREQUAL "SHARED_LIBRARY")
 else()
   set(kind Static)
   # One archive, so that nobody needs to know the parts.
-  set(archives breve breve_analysis breve_library breve_machine breve_syntax breve_runtime)
+  set(archives breve breve_analysis breve_library breve_machine breve_compile breve_code breve_syntax breve_runtime)
   if(BREVE_WITH_RENDER)
     list(APPEND archives breve_render)
   endif()

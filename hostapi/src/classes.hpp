@@ -3,7 +3,7 @@
 
 #include "functions.hpp"
 #include "internal.hpp"
-#include "steve/machine/foreign.hpp"
+#include "steve/code/foreign.hpp"
 
 namespace breve::host {
 

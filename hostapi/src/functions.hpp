@@ -5,7 +5,7 @@
 
 #include "internal.hpp"
 #include "modules.hpp"
-#include "steve/machine/foreign.hpp"
+#include "steve/code/foreign.hpp"
 
 namespace breve::host {
 

@@ -15,7 +15,7 @@
 #include "runtime/base/memory.hpp"
 #include "runtime/world/pair_rules.hpp"
 #include "runtime/world/world.hpp"
-#include "steve/compile/program.hpp"
+#include "steve/compile/compile.hpp"
 #include "steve/machine/machine.hpp"
 #include "steve/machine/profiler.hpp"
 

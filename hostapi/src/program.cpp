@@ -6,7 +6,8 @@ namespace breve::host {
 namespace {
 
 std::unique_ptr<breve_program> compile_module(breve_runtime& runtime, steve::ModuleSource main, HostModules& modules) {
-  auto result = steve::compile(std::move(main), modules, runtime.allowed, runtime.functions, runtime.classes);
+  auto result = steve::compile(std::move(main), modules, steve::library_source(), runtime.allowed, runtime.functions,
+                               runtime.classes);
   // A program owns its sources; without one the result does.
   const steve::Sources& sources = result.program ? result.program->sources() : result.sources;
   for (const auto& d : result.diagnostics.all()) runtime.diagnostics.push_back(text_of(d, sources));

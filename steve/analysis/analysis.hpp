@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "steve/compile/program.hpp"
+#include "steve/compile/compile.hpp"
 #include "steve/syntax/diagnostic.hpp"
 #include "steve/syntax/source.hpp"
 

@@ -22,7 +22,7 @@ void parse_file(Model& model, std::uint32_t number) {
 Model read_model(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed,
                  const ForeignFunctions& foreign, const ForeignClasses& classes) {
   Model model;
-  CompileResult result = compile(std::move(main), resolver, allowed, foreign, classes);
+  CompileResult result = compile(std::move(main), resolver, library_source(), allowed, foreign, classes);
   model.foreign = foreign;
   model.sources = std::move(result.sources);
   model.diagnostics = result.diagnostics.all();

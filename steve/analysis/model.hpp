@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "steve/analysis/analysis.hpp"
-#include "steve/compile/program.hpp"
+#include "steve/compile/compile.hpp"
 #include "steve/syntax/parser.hpp"
 
 namespace breve::steve {

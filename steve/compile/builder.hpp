@@ -7,16 +7,16 @@
 #include <unordered_map>
 #include <vector>
 
-#include "steve/compile/bytecode.hpp"
-#include "steve/compile/lint_table.hpp"
-#include "steve/compile/program.hpp"
+#include "steve/code/bytecode.hpp"
+#include "steve/compile/compile.hpp"
 #include "steve/compile/scope.hpp"
 
 namespace breve::steve {
 
 class ProgramBuilder final : public CompileScope {
  public:
-  ProgramBuilder(ModuleResolver& resolver, const ForeignFunctions& foreign, const ForeignClasses& classes);
+  ProgramBuilder(ModuleResolver& resolver, const LibrarySource& library, const ForeignFunctions& foreign,
+                 const ForeignClasses& classes);
   CompileResult build(ModuleSource main, const AllowedLints& allowed);
 
   /// One of the library's is loaded if the program has none of that name.
@@ -63,7 +63,7 @@ class ProgramBuilder final : public CompileScope {
   void adopt_keywords(MethodInfo& method, const ClassInfo& cls);
 
   // foreign_library.cpp
-  void gather_foreign_library();  // foreign_library.cpp
+  void gather_foreign_library();
 
   // whole-program checks (lints.cpp)
   void check_calls();
@@ -85,6 +85,7 @@ class ProgramBuilder final : public CompileScope {
   void check_special_methods();
 
   ModuleResolver& resolver_;
+  const LibrarySource& library_;
   std::vector<Declared> declared_;
   std::size_t compiled_ = 0;
   std::vector<ast::TypeRef> checked_;  // types of parameters, looked at when all files are read

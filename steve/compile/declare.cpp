@@ -2,10 +2,9 @@
 #include <algorithm>
 #include <set>
 
+#include "steve/code/numbers.hpp"
 #include "steve/compile/builder.hpp"
 #include "steve/compile/function_compiler.hpp"
-#include "steve/library/library.hpp"
-#include "steve/machine/operators.hpp"
 
 namespace breve::steve {
 
@@ -33,13 +32,13 @@ const ClassInfo* ProgramBuilder::parent_of(ast::Class& tree) {
   if (const ClassInfo* parent = class_named(tree.parent)) return parent;
   // The one that is known is the parent.
   const ClassInfo* known = class_named(tree.name);
-  if (known && !is_later_class(tree.parent)) {
+  if (known && !library_.is_later_class(tree.parent)) {
     diagnostics_.error(tree.parent_span, "class-header", "the parent comes before the ':', the new class after it",
                        "write: " + tree.name + " : " + tree.parent + " {");
     std::swap(tree.name, tree.parent);
     return known;
   }
-  if (is_later_class(tree.parent)) {
+  if (library_.is_later_class(tree.parent)) {
     report_unknown_class(tree.parent, tree.parent_span);
   } else {
     const auto near = near_class(tree.parent);

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "steve/compile/bytecode.hpp"
+#include "steve/code/bytecode.hpp"
 
 namespace breve::steve {
 

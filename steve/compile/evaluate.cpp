@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "steve/compile/function_compiler.hpp"
-#include "steve/library/library.hpp"
 
 namespace breve::steve {
 
@@ -12,12 +11,6 @@ namespace {
 
 constexpr std::size_t kRoom = 4096;  // entries of each table
 constexpr const char* kMethodName = "evaluate";
-
-template <class T>
-void copy_with_room(const std::vector<T>& from, std::vector<T>& to, std::size_t room) {
-  to.reserve(from.size() + room);
-  to = from;
-}
 
 /// Compiles one fragment against the classes that are there.
 class FragmentScope final : public CompileScope {
@@ -28,7 +21,7 @@ class FragmentScope final : public CompileScope {
 
   void report_unknown_class(std::string_view name, const Span& span, Severity) override {
     const auto message = "unknown class '" + std::string(name) + "'";
-    if (find_library_file(name)) {
+    if (program_->library().find_file(name)) {
       diagnostics_.error(span, "unknown-class", message,
                          "the class library has it, but this program does not use it: add @use " + std::string(name) +
                              ". to the program");
@@ -74,28 +67,8 @@ bool gives_value(const ast::Method& tree) {
 
 }  // namespace
 
-Program::Program(const Program& base, std::size_t room)
-    : classes_(base.classes_),
-      class_names_(base.class_names_),
-      controller_(base.controller_),
-      symbols_(base.symbols_),
-      sources_(base.sources_),
-      defines_(base.defines_),
-      code_(std::make_unique<CodeTables>()),
-      diagnostics_(base.diagnostics_),
-      fingerprint_(base.fingerprint_),
-      foreign_(base.foreign_),
-      foreign_classes_(base.foreign_classes_),
-      fragment_methods_(base.fragment_methods_) {
-  copy_with_room(base.code_->strings, code_->strings, room);
-  copy_with_room(base.code_->texts, code_->texts, room);
-  copy_with_room(base.code_->sites, code_->sites, room);
-  copy_with_room(base.code_->members, code_->members, room);
-  copy_with_room(base.code_->interpolations, code_->interpolations, room);
-}
-
 Fragments::Fragments(const Program& base)
-    : program_(new Program(base, kRoom)), functions_(CompileScope::function_table(base.foreign())) {
+    : program_(new Program(base, kRoom)), functions_(CompileScope::function_table(base.library(), base.foreign())) {
   program_->symbols_.intern(kMethodName);
   program_->symbols_.intern(kSessionVariable);
 }

@@ -7,8 +7,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "steve/code/program.hpp"
 #include "steve/compile/emitter.hpp"
-#include "steve/compile/program.hpp"
 #include "steve/syntax/ast.hpp"
 
 namespace breve::steve {

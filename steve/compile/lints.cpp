@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "steve/code/wording.hpp"
 #include "steve/compile/builder.hpp"
 #include "steve/compile/function_compiler.hpp"
-#include "steve/compile/wording.hpp"
 #include "steve/syntax/words.hpp"
 
 namespace breve::steve {

@@ -6,7 +6,6 @@
 
 #include "runtime/base/hasher.hpp"
 #include "steve/compile/builder.hpp"
-#include "steve/library/library.hpp"
 
 namespace breve::steve {
 
@@ -18,24 +17,16 @@ std::string stem(std::string_view name) {
   if (name.ends_with(".tz")) name.remove_suffix(3);
   return std::string(name);
 }
-
-bool mentions(const LibraryFile& file, std::string_view name) {
-  auto classes = file.classes;
-  while (!classes.empty()) {
-    const auto end = std::min(classes.find(' '), classes.size());
-    if (classes.substr(0, end) == name) return true;
-    classes.remove_prefix(std::min(end + 1, classes.size()));
-  }
-  return false;
-}
 }  // namespace
 
-ProgramBuilder::ProgramBuilder(ModuleResolver& resolver, const ForeignFunctions& foreign, const ForeignClasses& classes)
-    : CompileScope(std::shared_ptr<Program>(new Program), function_table(foreign)),
+ProgramBuilder::ProgramBuilder(ModuleResolver& resolver, const LibrarySource& library, const ForeignFunctions& foreign,
+                               const ForeignClasses& classes)
+    : CompileScope(std::shared_ptr<Program>(new Program(library)), function_table(library, foreign)),
       resolver_(resolver),
+      library_(library),
       foreign_given_(classes) {
   program_->foreign_ = foreign;
-  for (const auto& native : library_natives()) natives_.emplace(native.name, &native);
+  for (const auto& native : library.natives) natives_.emplace(native.name, &native);
 }
 
 CompileResult ProgramBuilder::build(ModuleSource main, const AllowedLints& allowed) {
@@ -125,12 +116,12 @@ void ProgramBuilder::load_named(const std::string& name, const ast::Directive& d
     }
   }
   if (load_library(wanted)) return;
-  if (is_later_class(wanted)) {
+  if (library_.is_later_class(wanted)) {
     diagnostics_.error(directive.span, "later-class",
                        "class " + wanted + " is part of a later version of the class library");
     return;
   }
-  if (is_later_file(wanted)) {
+  if (library_.is_later_file(wanted)) {
     diagnostics_.error(directive.span, "later-class",
                        "the file '" + wanted + "' is part of a later version of the class library");
     return;
@@ -148,7 +139,7 @@ void ProgramBuilder::load_named(const std::string& name, const ast::Directive& d
 }
 
 bool ProgramBuilder::load_library(std::string_view name) {
-  const auto* file = find_library_file(name);
+  const auto* file = library_.find_file(name);
   if (!file) return false;
   const auto key = "library:" + std::string(file->name);
   if (loaded_.insert(key).second) load({key, std::string(file->text)}, true);
@@ -187,14 +178,14 @@ void ProgramBuilder::late_directive(const ast::Directive& directive) {
 const ClassInfo* ProgramBuilder::class_named(std::string_view name) {
   if (const auto* cls = program_->find_class(name)) return cls;
   if (load_foreign_class(name, nullptr, {})) return program_->find_class(name);
-  const auto* file = find_library_file(name);
-  if (!file || !mentions(*file, name)) return nullptr;
+  const auto* file = library_.find_file(name);
+  if (!file || !file->defines(name)) return nullptr;
   load_library(name);
   return program_->find_class(name);
 }
 
 void ProgramBuilder::report_unknown_class(std::string_view name, const Span& span, Severity severity) {
-  if (is_later_class(name)) {
+  if (library_.is_later_class(name)) {
     diagnostics_.error(span, "later-class",
                        "class " + std::string(name) + " is part of a later version of the class library");
     return;
@@ -216,7 +207,7 @@ std::string ProgramBuilder::near_class(std::string_view name) const {
     if (!cls->alias.empty()) names.push_back(cls->alias);
   }
   for (const auto& cls : foreign_given_) names.push_back(cls->name());
-  for (const auto& file : library_files())
+  for (const auto& file : library_.files)
     for (auto rest = file.classes; !rest.empty();) {
       const auto end = std::min(rest.find(' '), rest.size());
       names.push_back(rest.substr(0, end));
@@ -266,7 +257,7 @@ void ProgramBuilder::choose_controller() {
   if (cls)
     program_->controller_ = cls;
   else if (diagnostics_.error_count() == 0) {
-    if (is_later_class(controller_name_))
+    if (library_.is_later_class(controller_name_))
       report_unknown_class(controller_name_, controller_span_);
     else
       diagnostics_.error(controller_span_, "unknown-class",
@@ -276,9 +267,9 @@ void ProgramBuilder::choose_controller() {
   }
 }
 
-CompileResult compile(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed,
-                      const ForeignFunctions& foreign, const ForeignClasses& classes) {
-  return ProgramBuilder(resolver, foreign, classes).build(std::move(main), allowed);
+CompileResult compile(ModuleSource main, ModuleResolver& resolver, const LibrarySource& library,
+                      const AllowedLints& allowed, const ForeignFunctions& foreign, const ForeignClasses& classes) {
+  return ProgramBuilder(resolver, library, foreign, classes).build(std::move(main), allowed);
 }
 
 }  // namespace breve::steve

@@ -3,10 +3,11 @@
 
 namespace breve::steve {
 
-std::shared_ptr<const CompileScope::FunctionTable> CompileScope::function_table(const ForeignFunctions& foreign) {
+std::shared_ptr<const CompileScope::FunctionTable> CompileScope::function_table(const LibrarySource& library,
+                                                                                const ForeignFunctions& foreign) {
   auto table = std::make_shared<FunctionTable>();
   std::uint32_t number = 0;
-  for (const auto& native : functions()) table->emplace(native.name, FunctionEntry{number++, native.signature});
+  for (const auto& native : library.functions) table->emplace(native.name, FunctionEntry{number++, native.signature});
   number = 0;
   for (const auto& function : foreign) {
     if (!function->is_method()) table->emplace(function->name(), FunctionEntry{number, function->signature(), true});

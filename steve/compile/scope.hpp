@@ -9,8 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "steve/compile/bytecode.hpp"
-#include "steve/compile/program.hpp"
+#include "steve/code/bytecode.hpp"
+#include "steve/code/library_source.hpp"
+#include "steve/code/program.hpp"
 
 namespace breve::steve {
 
@@ -22,7 +23,8 @@ class CompileScope {
     bool foreign = false;        // then `number` counts the program's ForeignFunctions
   };
   using FunctionTable = std::multimap<std::string_view, FunctionEntry>;
-  static std::shared_ptr<const FunctionTable> function_table(const ForeignFunctions& foreign);
+  static std::shared_ptr<const FunctionTable> function_table(const LibrarySource& library,
+                                                             const ForeignFunctions& foreign);
 
   CompileScope(std::shared_ptr<Program> program, std::shared_ptr<const FunctionTable> functions)
       : program_(std::move(program)), functions_(std::move(functions)) {}

@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "steve/compile/program.hpp"
+#include "steve/code/program.hpp"
 #include "steve/compile/scope.hpp"
 #include "steve/syntax/ast.hpp"
 

@@ -1,7 +1,7 @@
 // Grids in snapshots and hashes, and the making of Patch objects.
 #include "steve/library/grids.hpp"
 
-#include "steve/compile/program.hpp"
+#include "steve/code/program.hpp"
 #include "steve/library/joints.hpp"
 #include "steve/library/resources.hpp"
 

@@ -1,7 +1,5 @@
-// Finding a library file by its name or by a class in it; what is not there yet; kinds of native data.
+// What the library consists of, and what is not there yet; kinds of native data.
 #include "steve/library/library.hpp"
-
-#include <algorithm>
 
 #include "runtime/store/image_resource.hpp"
 #include "runtime/world/camera.hpp"
@@ -43,37 +41,11 @@ constexpr ResourceKind kResourceKinds[] = {
     {PushPoolResource::kKind, &PushPoolResource::load},
 };
 
-/// Is `word` one of the space-separated words of `list`?
-bool holds_word(std::string_view list, std::string_view word) {
-  while (!list.empty()) {
-    const std::size_t space = std::min(list.find(' '), list.size());
-    if (list.substr(0, space) == word) return true;
-    list.remove_prefix(std::min(space + 1, list.size()));
-  }
-  return false;
-}
-
 }  // namespace
 
-const LibraryFile* find_library_file(std::string_view name) {
-  std::string_view stem = name;
-  if (stem.ends_with(".tz")) stem.remove_suffix(3);
-  if (stem.empty()) return nullptr;
-  for (const LibraryFile& file : library_files())
-    if (file.name.substr(0, file.name.size() - 3) == stem) return &file;
-  for (const LibraryFile& file : library_files())
-    if (holds_word(file.classes, stem)) return &file;
-  return nullptr;
-}
-
-std::span<const std::string_view> later_classes() { return kLaterClasses; }
-
-bool is_later_file(std::string_view name) {
-  return std::find(std::begin(kLaterFiles), std::end(kLaterFiles), name) != std::end(kLaterFiles);
-}
-
-bool is_later_class(std::string_view name_or_alias) {
-  return std::find(std::begin(kLaterClasses), std::end(kLaterClasses), name_or_alias) != std::end(kLaterClasses);
+const LibrarySource& library_source() {
+  static const LibrarySource source{library_files(), library_natives(), functions(), kLaterClasses, kLaterFiles};
+  return source;
 }
 
 void register_resource_kinds(World& world) {

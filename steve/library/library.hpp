@@ -1,23 +1,22 @@
-// The class library as the compiler and the machine see it: embedded files, native methods, kinds of native data.
+// The class library as its users see it: embedded files, native methods, kinds of native data.
 #pragma once
 
 #include <span>
 #include <string_view>
 
 #include "runtime/world/world.hpp"
-#include "steve/compile/program.hpp"
-#include "steve/machine/native.hpp"
+#include "steve/code/library_source.hpp"
 
 namespace breve::steve {
 
 /// Every file of the embedded library, in alphabetical order.
 std::span<const LibraryFile> library_files();
 
-/// Classes that the documents name and that this version does not have, aliases too.
-std::span<const std::string_view> later_classes();
-bool is_later_class(std::string_view name_or_alias);
-/// A file of the library that has another name than its classes, and comes with a later version.
-bool is_later_file(std::string_view name);
+/// Every native method of the class library.
+std::span<const Native> library_natives();
+
+/// All that programs are compiled with: these, the functions of the language, and what comes with a later version.
+const LibrarySource& library_source();
 
 /// Teach a world to load the native data of library objects from snapshots. Once per world, before the first load.
 void register_resource_kinds(World& world);

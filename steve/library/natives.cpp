@@ -1,6 +1,7 @@
 // Every native method of the class library, from the tables of the files that define them.
 #include <array>
 
+#include "steve/library/library.hpp"
 #include "steve/library/tables.hpp"
 
 namespace breve::steve {

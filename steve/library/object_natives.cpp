@@ -1,7 +1,7 @@
 // Natives of Object: identity, schedule, notifications, calls by name; and the obsolete selectors of every class.
 #include <cmath>
 
-#include "steve/compile/wording.hpp"
+#include "steve/code/wording.hpp"
 #include "steve/library/obsolete.hpp"
 #include "steve/library/support.hpp"
 #include "steve/library/tables.hpp"

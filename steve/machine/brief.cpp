@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "steve/compile/program.hpp"
+#include "steve/code/program.hpp"
 
 namespace breve::steve {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "steve/compile/wording.hpp"
+#include "steve/code/wording.hpp"
 #include "steve/machine/brief.hpp"
 #include "steve/machine/machine.hpp"
 #include "steve/syntax/lexer.hpp"

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "steve/compile/program.hpp"
+#include "steve/code/program.hpp"
 #include "steve/machine/collecting.hpp"
 #include "steve/machine/heap.hpp"
 

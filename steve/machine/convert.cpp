@@ -1,8 +1,4 @@
-// Conversion on assignment, truth, and reading numbers from strings.
-#include <cctype>
-#include <charconv>
-#include <cstdlib>
-
+// Conversion on assignment, and truth.
 #include <fmt/format.h>
 
 #include "steve/machine/brief.hpp"
@@ -33,59 +29,12 @@ std::string help_for(const Value& v, std::string_view to) {
   throw RunError(RunErrorKind::Conversion, message, help_for(v, to));
 }
 
-bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
-
-std::string_view without_blanks(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  return text;
-}
-
 }  // namespace
 
 std::string a_type(Tag tag) {
   if (tag == Tag::Null) return "no value (NULL)";
   const bool vowel = tag == Tag::Int || tag == Tag::Object;
   return std::string(tag == Tag::Data ? "" : vowel ? "an " : "a ").append(type_name(tag));
-}
-
-std::int32_t leading_int(std::string_view text) {
-  text = without_blanks(text);
-  if (!text.empty() && text.front() == '+') {
-    text.remove_prefix(1);
-    if (!text.empty() && text.front() == '-') return 0;
-  }
-  std::int32_t i = 0;
-  const auto result = std::from_chars(text.data(), text.data() + text.size(), i);
-  if (result.ec == std::errc::result_out_of_range)
-    return text.front() == '-' ? std::numeric_limits<std::int32_t>::min() : std::numeric_limits<std::int32_t>::max();
-  return i;
-}
-
-double leading_double(std::string_view text) {
-  text = without_blanks(text);
-  bool negative = false;
-  if (!text.empty() && (text.front() == '+' || text.front() == '-')) {
-    negative = text.front() == '-';
-    text.remove_prefix(1);
-  }
-  if (text.empty() || text.front() == '-') return 0.0;
-  auto format = std::chars_format::general;
-  if (text.size() > 2 && text[0] == '0' && (text[1] == 'x' || text[1] == 'X')) {
-    const char digit = text[2] == '.' && text.size() > 3 ? text[3] : text[2];
-    if (std::isxdigit(static_cast<unsigned char>(digit)) != 0) {
-      text.remove_prefix(2);
-      format = std::chars_format::hex;
-    }
-  }
-  double d = 0;
-  const auto result = std::from_chars(text.data(), text.data() + text.size(), d, format);
-  if (result.ec == std::errc::result_out_of_range) {
-    // Too large or too small: the C library knows which, and the decimal point of its locale does not matter for that.
-    d = std::strtod(std::string(format == std::chars_format::hex ? "0x" : "").append(text).c_str(), nullptr);
-  } else if (result.ec != std::errc()) {
-    return 0.0;
-  }
-  return negative ? -d : d;
 }
 
 std::int32_t to_int(const Value& v, std::string_view what) {

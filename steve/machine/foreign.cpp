@@ -1,6 +1,6 @@
 // Calls of functions that whoever embeds the language gives: typed slots become values, and the result gets the type
 // that was declared for it.
-#include "steve/machine/foreign.hpp"
+#include "steve/code/foreign.hpp"
 
 #include <array>
 #include <span>

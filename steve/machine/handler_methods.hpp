@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "steve/compile/program.hpp"
+#include "steve/code/program.hpp"
 
 namespace breve::steve {
 

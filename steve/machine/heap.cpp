@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "steve/compile/program.hpp"
+#include "steve/code/program.hpp"
 #include "steve/machine/poison.hpp"
 
 namespace breve::steve {

@@ -12,7 +12,6 @@ namespace {
 constexpr std::string_view kIndex = "an index";
 
 [[noreturn]] void fail_bounds(const std::string& message) { throw RunError(RunErrorKind::Bounds, message); }
-[[noreturn]] void fail_type(const std::string& message) { throw RunError(RunErrorKind::Type, message); }
 
 [[noreturn]] void fail_base(const Value& base) {
   if (base.tag == Tag::Null)

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "runtime/world/menu.hpp"
+#include "steve/code/wording.hpp"
 #include "steve/compile/evaluate.hpp"
-#include "steve/compile/wording.hpp"
 #include "steve/machine/operators.hpp"
 #include "steve/machine/profiler.hpp"
 #include "steve/machine/reload.hpp"

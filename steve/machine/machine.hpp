@@ -14,8 +14,8 @@
 
 #include "runtime/base/poll.hpp"
 #include "runtime/world/world.hpp"
-#include "steve/compile/bytecode.hpp"
-#include "steve/compile/program.hpp"
+#include "steve/code/bytecode.hpp"
+#include "steve/code/program.hpp"
 #include "steve/machine/budget.hpp"
 #include "steve/machine/handler_methods.hpp"
 #include "steve/machine/heap.hpp"

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "runtime/base/ids.hpp"
+#include "steve/code/foreign.hpp"
 #include "steve/machine/files.hpp"
-#include "steve/machine/foreign.hpp"
 #include "steve/machine/value.hpp"
 
 namespace breve::steve {

@@ -8,27 +8,11 @@
 #include <type_traits>
 #include <utility>
 
+#include "steve/code/native.hpp"
 #include "steve/machine/cells.hpp"
 #include "steve/machine/value.hpp"
 
 namespace breve::steve {
-
-class Machine;
-
-/// @param self    the receiver (methods) or the calling instance (functions); never null
-/// @param args    the parameters in declaration order, each in as many slots as its type takes
-/// @param result  NULL on entry
-using NativeFunction = void (*)(Machine& machine, Instance& self, const Slot* args, Value& result);
-
-/// What of the outside a native touches, if the host lets it.
-enum class Reach : std::uint8_t { World, Reads, Writes, Sleeps, RealTime, Entropy, Commands };
-
-struct Native {
-  std::string_view name;  // "real.get-location" (class file, selector) or, for functions, "dot"
-  NativeFunction function;
-  std::string_view signature;  // one letter a parameter, then ':' and that of the result; see SlotType
-  Reach reach;
-};
 
 /// How a C++ type stands in slots. Letters: i d v m s o l h p b(data) a(any) n(nothing).
 template <class T>
@@ -145,9 +129,7 @@ constexpr Native native(std::string_view name, Reach reach = Reach::World) {
   return detail::bind<F>(name, reach, F);
 }
 
-/// Every native method of the class library, and every function that scripts may call. Tables of the folders that
-/// define them, concatenated.
-std::span<const Native> library_natives();
+/// Every function that scripts may call. Tables of the files that define them, concatenated.
 std::span<const Native> functions();
 
 }  // namespace breve::steve

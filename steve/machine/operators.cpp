@@ -22,7 +22,6 @@ bool is_equality(BinaryOp op) { return op == BinaryOp::Eq || op == BinaryOp::Ne;
 Value boolean(bool b) { return Value::of(std::int32_t{b ? 1 : 0}); }
 Value boolean(BinaryOp op, bool same) { return boolean(same == (op == BinaryOp::Eq)); }
 
-[[noreturn]] void fail_type(const std::string& message) { throw RunError(RunErrorKind::Type, message); }
 [[noreturn]] void fail_math(const std::string& message) { throw RunError(RunErrorKind::Math, message); }
 
 /// "cannot multiply a vector by a vector; use dot(a, b) or cross(a, b)"
@@ -220,6 +219,8 @@ bool equal_flat(const Value& a, const Value& b) {
 }
 
 }  // namespace
+
+void fail_type(const std::string& message) { throw RunError(RunErrorKind::Type, message); }
 
 // One difference anywhere makes the whole unequal, so a pair of lists that is being or has been compared can count as
 // equal: cycles end, and shared lists are compared once.

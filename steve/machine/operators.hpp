@@ -4,9 +4,9 @@
 
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <string>
 
+#include "steve/code/numbers.hpp"
 #include "steve/machine/heap.hpp"
 #include "steve/syntax/ast.hpp"
 
@@ -24,15 +24,6 @@ ListCell* to_list(const Value& v, std::string_view what = {});
 HashCell* to_hash(const Value& v, std::string_view what = {});
 PointerCell* to_pointer(const Value& v, std::string_view what = {});
 DataCell* to_data(const Value& v, std::string_view what = {});
-
-/// double to int: toward 0; beyond the range of int the nearest int; NaN gives 0.
-inline std::int32_t truncate_to_int(double d) {
-  if (d > -2147483649.0 && d < 2147483648.0) return static_cast<std::int32_t>(d);
-  if (std::isnan(d)) return 0;
-  return d < 0 ? std::numeric_limits<std::int32_t>::min() : std::numeric_limits<std::int32_t>::max();
-}
-std::int32_t leading_int(std::string_view text);  // 0 if there is none; the nearest int if it is out of range
-double leading_double(std::string_view text);     // C rules without locale; 0.0 if there is none
 
 // Integer arithmetic that wraps.
 inline std::int32_t wrap_add(std::int32_t a, std::int32_t b) {
@@ -55,6 +46,7 @@ double remainder(double a, double b);  // sign of a; RunError{Math} for 0.0
 /// RunError{Math} if |det m| < 1e-21.
 Matrix3 inverse(const Matrix3& m);
 [[noreturn]] void fail_division_by_zero();
+[[noreturn]] void fail_type(const std::string& message);
 
 inline double length(const Vector3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
@@ -107,8 +99,6 @@ std::string a_type(Tag tag);
 using Describe = std::function<std::string(Instance&)>;
 void append_text(std::string& out, const Value& v, const Describe& describe = {}, Heap* heap = nullptr);
 std::string text(const Value& v, const Describe& describe = {}, Heap* heap = nullptr);
-void append_int(std::string& out, std::int32_t i);
-void append_double(std::string& out, double d);  // %f
 StringCell* number_to_string(Heap& heap, std::int32_t i);
 StringCell* number_to_string(Heap& heap, double d);
 

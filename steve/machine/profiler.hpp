@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "runtime/world/stage_observer.hpp"
-#include "steve/compile/program.hpp"
+#include "steve/code/program.hpp"
 #include "steve/machine/native.hpp"
 
 namespace breve::steve {

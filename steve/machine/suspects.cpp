@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "steve/compile/program.hpp"
+#include "steve/code/program.hpp"
 #include "steve/machine/heap.hpp"
 
 namespace breve::steve {

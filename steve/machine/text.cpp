@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "steve/compile/program.hpp"
+#include "steve/code/program.hpp"
 #include "steve/machine/operators.hpp"
 
 namespace breve::steve {
@@ -13,25 +13,12 @@ namespace breve::steve {
 namespace {
 
 constexpr std::size_t kDeepest = 1000;
-constexpr double kFixedLimit = 1e10;         // a vector with a larger component is written with exponents
-constexpr std::size_t kLongestDouble = 330;  // 309 digits, sign, point, six decimals
+constexpr double kFixedLimit = 1e10;  // a vector with a larger component is written with exponents
 
 void append_number(std::string& out, double d, std::chars_format format, int decimals) {
   char buffer[kLongestDouble];
   const auto result = std::to_chars(buffer, buffer + sizeof buffer, d, format, decimals);
   out.append(buffer, result.ptr);
-}
-
-// Six decimals are off by half a millionth at most: that is too much of a number below this, unless it is a round one.
-constexpr double kSmall = 1e-3;
-
-// @return  the end of the text
-char* write_double(char* begin, char* end, double d) {
-  char* last = std::to_chars(begin, end, d, std::chars_format::fixed, 6).ptr;
-  if (d == 0 || !(std::abs(d) < kSmall)) return last;
-  double shown = 0;
-  std::from_chars(begin, last, shown);
-  return shown == d ? last : std::to_chars(begin, end, d).ptr;
 }
 
 void append_triple(std::string& out, const double* v, std::chars_format format) {
@@ -222,16 +209,6 @@ class Writer {
 };
 
 }  // namespace
-
-void append_int(std::string& out, std::int32_t i) {
-  char buffer[16];
-  out.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, i).ptr);
-}
-
-void append_double(std::string& out, double d) {
-  char buffer[kLongestDouble];
-  out.append(buffer, write_double(buffer, buffer + sizeof buffer, d));
-}
 
 void append_text(std::string& out, const Value& v, const Describe& describe, Heap* heap) {
   Writer(out, describe, heap).write(v);

@@ -11,11 +11,10 @@
 #include "runtime/base/error.hpp"
 #include "runtime/base/ids.hpp"
 #include "runtime/base/math.hpp"
+#include "steve/code/types.hpp"
 #include "steve/syntax/source.hpp"
 
 namespace breve::steve {
-
-enum class Tag : std::uint8_t { Null, Int, Double, Vector, Matrix, String, Object, List, Hash, Pointer, Data };
 
 /// The name of a type as `typeof` gives it: "NULL", "int", "double", ...
 std::string_view type_name(Tag tag);
@@ -114,27 +113,6 @@ struct Value {
   explicit Value(Tag t) : head(head_of(t)), bits{0, 0, 0} {}
 };
 static_assert(sizeof(Value) == 32);
-
-/// The kinds of run-time errors.
-enum class RunErrorKind : std::uint8_t {
-  User,
-  Internal,
-  Type,
-  Array,
-  Conversion,
-  FreedObject,
-  NullObject,
-  Math,
-  World,
-  Bounds,
-  UnknownClass,
-  UnknownMethod,
-  UnknownKeyword,
-  MissingKeyword,
-  Depth,
-  Budget,
-  Interrupted,
-};
 
 /// Thrown by everything under the interpreter; the interpreter adds the place and the chain of calls.
 class RunError : public Error {

@@ -47,15 +47,17 @@ const std::vector<Part> kParts = {
       "runtime/contact", "runtime/mechanics", "runtime/dynamics", "runtime/patches", "runtime/learn", "runtime/scene",
       "runtime/store"}},
     {"steve/syntax", {"runtime/base"}},
-    {"steve/compile", {"runtime/base", "steve/syntax", "steve/machine"}},
-    {"steve/machine", {"runtime/base", "runtime/world", "steve/syntax", "steve/compile"}},
+    {"steve/code", {"runtime/base", "steve/syntax"}},
+    {"steve/compile", {"runtime/base", "steve/syntax", "steve/code"}},
+    {"steve/machine", {"runtime/base", "runtime/world", "steve/syntax", "steve/code", "steve/compile"}},
     {"steve/library",
      {"runtime/base", "runtime/world", "runtime/kinematics", "runtime/solid", "runtime/mechanics", "runtime/patches",
-      "runtime/learn", "runtime/scene", "runtime/store", "steve/machine", "steve/compile"}},
-    {"steve/analysis", {"runtime/base", "steve/syntax", "steve/compile", "steve/machine", "steve/library"}},
+      "runtime/learn", "runtime/scene", "runtime/store", "steve/code", "steve/machine"}},
+    {"steve/analysis",
+     {"runtime/base", "steve/syntax", "steve/code", "steve/compile", "steve/machine", "steve/library"}},
     {"hostapi/include", {}},
     {"hostapi/src",
-     {"hostapi/include", "steve/analysis", "steve/library", "steve/machine", "steve/compile", "steve/syntax",
+     {"hostapi/include", "steve/analysis", "steve/library", "steve/machine", "steve/compile", "steve/code", "steve/syntax",
       "runtime/base", "runtime/world", "runtime/kinematics", "runtime/solid", "runtime/mechanics", "runtime/scene",
       "runtime/render", "runtime/store"}},
     {"hostapi/lua", {"hostapi/include"}},
@@ -67,7 +69,6 @@ const std::vector<Part> kParts = {
 const std::map<std::string_view, std::string_view> kVocabulary = {
     {"runtime/solid/shape.hpp", "runtime/"},
     {"runtime/world/resource.hpp", "runtime/"},
-    {"steve/library/library.hpp", "steve/compile"},
 };
 
 /// Which of the libraries we stand on may be seen where. A library that is not listed is not restricted.

@@ -1,7 +1,7 @@
 // Every @native name is bound, with the signature that its declaration promises, and no native is bound in vain.
 #include <set>
 
-#include "steve/machine/native.hpp"
+#include "steve/library/library.hpp"
 #include "tests/library/parsed_library.hpp"
 
 namespace breve::steve {

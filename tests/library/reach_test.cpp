@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "steve/library/library.hpp"
 #include "steve/machine/native.hpp"
 
 namespace breve::steve {

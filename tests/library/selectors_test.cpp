@@ -119,30 +119,31 @@ TEST(Selectors, EveryClassAndMethodIsDocumented) {
 
 TEST(Selectors, AFileIsFoundByItsNameItsClassesAndTheirAliases) {
   for (const char* name : {"Shape.tz", "Shape", "Shapes", "Cube", "Cubes", "PolygonCones"}) {
-    const LibraryFile* file = find_library_file(name);
+    const LibraryFile* file = library_source().find_file(name);
     ASSERT_NE(file, nullptr) << name;
     EXPECT_EQ(file->name, "Shape.tz");
   }
-  EXPECT_EQ(find_library_file("Floor")->name, "Stationary.tz");
-  EXPECT_EQ(find_library_file("Tracer.tz")->name, "Drawing.tz");
-  EXPECT_EQ(find_library_file("NoSuchClass"), nullptr);
-  EXPECT_EQ(find_library_file(""), nullptr);
-  EXPECT_EQ(find_library_file(".tz"), nullptr);
+  EXPECT_EQ(library_source().find_file("Floor")->name, "Stationary.tz");
+  EXPECT_EQ(library_source().find_file("Tracer.tz")->name, "Drawing.tz");
+  EXPECT_EQ(library_source().find_file("NoSuchClass"), nullptr);
+  EXPECT_EQ(library_source().find_file(""), nullptr);
+  EXPECT_EQ(library_source().find_file(".tz"), nullptr);
 }
 
 TEST(Selectors, TheTableOfFilesNamesEveryClassInThem) {
   for (const ast::File& file : ParsedLibrary::get().files)
     for (const ast::Class& cls : file.classes) {
-      EXPECT_NE(find_library_file(cls.name), nullptr) << cls.name;
+      EXPECT_NE(library_source().find_file(cls.name), nullptr) << cls.name;
       const std::string& other = cls.alias.empty() ? cls.name : cls.alias;
-      EXPECT_EQ(find_library_file(other), find_library_file(cls.name)) << other;
+      EXPECT_EQ(library_source().find_file(other), library_source().find_file(cls.name)) << other;
     }
 }
 
 TEST(Selectors, NoClassIsBothHereAndPartOfALaterVersion) {
-  for (std::string_view name : later_classes()) EXPECT_EQ(find_library_file(name), nullptr) << name;
-  EXPECT_TRUE(is_later_class("QProgram"));
-  EXPECT_FALSE(is_later_class("Mobile"));
+  for (std::string_view name : library_source().later_classes)
+    EXPECT_EQ(library_source().find_file(name), nullptr) << name;
+  EXPECT_TRUE(library_source().is_later_class("QProgram"));
+  EXPECT_FALSE(library_source().is_later_class("Mobile"));
 }
 
 TEST(Selectors, ObjectDeclaresControllerAndBirthTimeFirst) {

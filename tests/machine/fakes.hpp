@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runtime/base/memory.hpp"
-#include "steve/compile/program.hpp"
+#include "steve/code/program.hpp"
 #include "steve/machine/heap.hpp"
 
 namespace breve::steve::testing {

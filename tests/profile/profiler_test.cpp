@@ -8,7 +8,8 @@
 #include <string>
 
 #include "runtime/base/memory.hpp"
-#include "steve/compile/program.hpp"
+#include "steve/compile/compile.hpp"
+#include "steve/library/library.hpp"
 
 namespace breve::steve {
 namespace {
@@ -21,7 +22,7 @@ struct NoModules final : ModuleResolver {
 
 std::shared_ptr<const Program> compiled(const std::string& text) {
   NoModules none;
-  auto result = compile({"p.tz", text}, none);
+  auto result = compile({"p.tz", text}, none, library_source());
   EXPECT_TRUE(result.program);
   return result.program;
 }

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -12,10 +11,9 @@
 #include <vector>
 
 #include "runtime/base/ids.hpp"
-#include "steve/compile/lint_table.hpp"
-#include "steve/machine/foreign.hpp"
-#include "steve/machine/native.hpp"
-#include "steve/machine/value.hpp"
+#include "steve/code/foreign.hpp"
+#include "steve/code/native.hpp"
+#include "steve/code/types.hpp"
 #include "steve/syntax/diagnostic.hpp"
 #include "steve/syntax/parser.hpp"
 
@@ -54,29 +52,7 @@ class SymbolTable {
 
 struct ClassInfo;
 struct CodeTables;
-
-/// A type as the compiler knows it. Any: a dynamic value with its tag.
-enum class StaticType : std::uint8_t {
-  Null,
-  Int,
-  Double,
-  Vector,
-  Matrix,
-  String,
-  Object,
-  List,
-  Hash,
-  Pointer,
-  Data,
-  Any
-};
-
-int slot_count(StaticType type);
-inline StaticType static_type(ast::TypeKind kind) {
-  return static_cast<StaticType>(static_cast<int>(kind) + 1);  // KEEP IN STEP: ast::TypeKind, StaticType
-}
-static_assert(static_cast<int>(ast::TypeKind::Int) + 1 == static_cast<int>(StaticType::Int));
-static_assert(static_cast<int>(ast::TypeKind::Data) + 1 == static_cast<int>(StaticType::Data));
+class LibrarySource;
 
 /// In place of an array's size: the declaration is broken, and that is reported already.
 inline constexpr std::int32_t kBrokenType = -2;
@@ -101,7 +77,7 @@ struct ParameterInfo {
   std::uint32_t default_string = 0;         // string: number of the constant + 1; 0 = empty
 };
 
-struct Function;  // bytecode; steve/compile/bytecode.hpp
+struct Function;  // bytecode; steve/code/bytecode.hpp
 
 struct MethodInfo {
   Symbol name = kNoSymbol;
@@ -167,6 +143,7 @@ class Program {
   std::uint64_t fingerprint() const { return fingerprint_; }                   // of all sources, for snapshots
   const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }  // warnings
   const CodeTables& code() const { return *code_; }
+  const LibrarySource& library() const { return *library_; }  // that it was compiled with
   const ForeignFunctions& foreign() const { return foreign_; }
   const ForeignClasses& foreign_classes() const { return foreign_classes_; }  // those that it took in, parents first
 
@@ -174,7 +151,7 @@ class Program {
   friend class CompileScope;
   friend class ProgramBuilder;
   friend class Fragments;
-  Program();
+  explicit Program(const LibrarySource& library);
   Program(const Program& base, std::size_t room);    // with room behind the tables for fragments (evaluate.cpp)
   std::vector<std::shared_ptr<ClassInfo>> classes_;  // shared with the programs that extend this one by fragments
   NameTable<ClassInfo*> class_names_;                // names and aliases
@@ -185,47 +162,10 @@ class Program {
   std::unique_ptr<CodeTables> code_;
   std::vector<Diagnostic> diagnostics_;
   std::uint64_t fingerprint_ = 0;
+  const LibrarySource* library_;
   ForeignFunctions foreign_;  // the methods of foreign_classes_ too
   ForeignClasses foreign_classes_;
   std::vector<std::shared_ptr<MethodInfo>> fragment_methods_;  // outlive their code: profiles name them
 };
-
-/// Finds the text of a module for the compiler. The command reads files; a host decides for itself.
-struct ModuleSource {
-  std::string name;  // as messages show it; two directives that give the same name mean the same file
-  std::string text;
-};
-class ModuleResolver {
- public:
-  virtual ~ModuleResolver() = default;
-  /// @param name      as spelled in the directive ("Control.tz" for `@use Control.`)
-  /// @param from      name of the file that asks, "" for the main file
-  virtual std::optional<ModuleSource> resolve(std::string_view name, std::string_view from) = 0;
-  virtual void add_path(std::string_view) {}  // @path
-};
-
-struct CompileResult {
-  std::shared_ptr<const Program> program;  // null if there were errors
-  Diagnostics diagnostics;
-  Sources sources;  // for formatting diagnostics when there is no program
-};
-
-/// Compile a main file and all that it loads. The class library is always there for @use, without a search path.
-/// @param allowed  codes of lints that are not to be reported
-/// @param foreign  functions besides those of the language, each with a name of its own
-/// @param classes  classes besides those of the class library; one that a file of the program defines wins
-CompileResult compile(ModuleSource main, ModuleResolver& resolver, const AllowedLints& allowed = {},
-                      const ForeignFunctions& foreign = {}, const ForeignClasses& classes = {});
-
-/// The fault in the text of a ForeignClass by itself; "" if there is none.
-std::string fault_of_foreign_class(const std::string& text);
-
-/// A file of the embedded class library: the one named "NAME.tz", or the one that defines class NAME. Null if none.
-struct LibraryFile {
-  std::string_view name;  // "Shape.tz"
-  std::string_view text;
-  std::string_view classes;  // names and aliases defined in it, space-separated
-};
-const LibraryFile* find_library_file(std::string_view name);
 
 }  // namespace breve::steve

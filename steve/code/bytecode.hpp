@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "steve/compile/program.hpp"
+#include "steve/code/program.hpp"
 
 namespace breve::steve {
 

@@ -1,5 +1,5 @@
 // How messages write methods: the same words at compile time and at run time.
-#include "steve/compile/wording.hpp"
+#include "steve/code/wording.hpp"
 
 #include <algorithm>
 #include <set>

@@ -1,9 +1,9 @@
 // Queries on a compiled program: symbols, classes, variables, methods.
-#include "steve/compile/program.hpp"
+#include "steve/code/program.hpp"
 
 #include <algorithm>
 
-#include "steve/compile/bytecode.hpp"
+#include "steve/code/bytecode.hpp"
 
 namespace breve::steve {
 
@@ -74,8 +74,37 @@ bool ClassInfo::responds(Symbol wanted) const {
   return false;
 }
 
-Program::Program() : code_(std::make_unique<CodeTables>()) {}
+Program::Program(const LibrarySource& library) : code_(std::make_unique<CodeTables>()), library_(&library) {}
 Program::~Program() = default;
+
+namespace {
+template <class T>
+void copy_with_room(const std::vector<T>& from, std::vector<T>& to, std::size_t room) {
+  to.reserve(from.size() + room);
+  to = from;
+}
+}  // namespace
+
+Program::Program(const Program& base, std::size_t room)
+    : classes_(base.classes_),
+      class_names_(base.class_names_),
+      controller_(base.controller_),
+      symbols_(base.symbols_),
+      sources_(base.sources_),
+      defines_(base.defines_),
+      code_(std::make_unique<CodeTables>()),
+      diagnostics_(base.diagnostics_),
+      fingerprint_(base.fingerprint_),
+      library_(base.library_),
+      foreign_(base.foreign_),
+      foreign_classes_(base.foreign_classes_),
+      fragment_methods_(base.fragment_methods_) {
+  copy_with_room(base.code_->strings, code_->strings, room);
+  copy_with_room(base.code_->texts, code_->texts, room);
+  copy_with_room(base.code_->sites, code_->sites, room);
+  copy_with_room(base.code_->members, code_->members, room);
+  copy_with_room(base.code_->interpolations, code_->interpolations, room);
+}
 
 const ClassInfo* Program::find_class(std::string_view name) const {
   const auto at = class_names_.find(name);

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "steve/compile/bytecode.hpp"
-#include "steve/compile/program.hpp"
+#include "steve/code/bytecode.hpp"
+#include "steve/code/program.hpp"
 
 namespace breve::steve {
 

@@ -1,0 +1,2 @@
+// A compiler that knows what runs its programs.
+#include "steve/machine/machine.hpp"
