@@ -1,11 +1,10 @@
-// Run-time errors: where they happened, through which calls, and what the reader can do about it.
+// Run-time errors on their way out of the interpreter, and what the reporter is told of them.
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "steve/code/wording.hpp"
 #include "steve/machine/machine.hpp"
-#include "steve/machine/trace.hpp"
 
 namespace breve::steve {
 
@@ -17,53 +16,26 @@ Span Machine::span_of(const Frame& frame, const Instruction* pc) const {
   return function.spans[static_cast<std::size_t>(at)];
 }
 
-namespace {
-
-bool of_library(const TraceLine& line, const Sources& sources) {
-  for (std::uint32_t i = 0; i < sources.size(); ++i)
-    if (sources.file(i).name == line.file) return sources.file(i).embedded;
-  return false;
+// The innermost frame of a call whose arguments are still being converted: its slots hold anything. Such a frame has
+// run nothing yet, and the interpreter's place is still that of the call in the caller.
+bool Machine::half_made(const Frame& frame, const Instruction* pc) const {
+  return &frame == frame_ && frame.caller != nullptr && frame.pc == frame.function->code.data() &&
+         pc == frame.caller->pc;
 }
 
-/// If the innermost call of the user's own stands in a source of the host's, the error names that line.
-void tell_foreign_place(ErrorReport& r, const Sources& sources) {
-  const auto own = std::find_if(r.trace.rbegin(), r.trace.rend(),
-                                [&](const TraceLine& line) { return line.foreign || !of_library(line, sources); });
-  if (own == r.trace.rend() || !own->foreign) return;
-  r.file = own->file;
-  r.line = own->line;
-  r.column = r.length = 0;
-  r.text = fmt::format("{}:{}: error: {}\n", r.file, r.line, r.message) +
-           (r.help.empty() ? "" : "help: " + r.help + '\n') + trace_text(r.trace);
+std::vector<ActiveCall> Machine::active_calls(const Instruction* pc) const {
+  std::vector<ActiveCall> calls;
+  for (const Frame* frame = frame_; frame; frame = frame->caller) {
+    if (pc && half_made(*frame, pc)) continue;
+    const auto* registers = reinterpret_cast<const Slot*>(frame + 1);
+    calls.push_back({frame->method, frame->self, registers, span_of(*frame, frame == frame_ && pc ? pc : frame->pc)});
+  }
+  std::reverse(calls.begin(), calls.end());
+  return calls;
 }
-
-}  // namespace
 
 ErrorReport Machine::report(const RunError& error, const Instruction* pc) const {
-  ErrorReport r;
-  r.kind = error.kind();
-  r.message = cut(error.what(), kLongestMessage);
-  r.help = error.help();
-  const auto& sources = program_->sources();
-  auto frames = active_frames();
-  if (frame_ != nullptr && pc != nullptr && half_made(*frame_, pc)) frames.pop_back();
-  r.trace = trace(frames, pc);
-  // The place shown is the innermost in the user's own files: an error inside the class library is the caller's.
-  Span place;
-  for (const auto* frame : frames) {
-    const auto span = span_of(*frame, frame == frame_ && pc ? pc : frame->pc);
-    const bool narrowed = frame == frames.back() && error.place().line != 0;
-    if (!sources.file(span.file).embedded || place.line == 0) place = narrowed ? error.place() : span;
-  }
-  if (place.line != 0) {
-    r.file = sources.file(place.file).name;
-    r.line = place.line;
-    r.column = place.column;
-    r.length = place.length;
-  }
-  r.text = format({Severity::Error, "run-time", r.message, r.help, place}, sources) + trace_text(r.trace);
-  tell_foreign_place(r, sources);
-  return r;
+  return reporter_.report(error, active_calls(pc), *program_);
 }
 
 void Machine::rethrow(std::size_t depth, const Instruction* pc) {
@@ -120,49 +92,26 @@ void Machine::throw_out_of_memory(std::size_t depth, const Instruction* pc) {
 void Machine::print(std::string_view text) {
   refuse_in_stage("print");
   if (!host_.print) return;
-  constexpr std::uint64_t kMost = std::uint64_t{64} << 20, kBytesPerTurn = 16;
+  constexpr std::uint64_t kBytesPerTurn = 16;
   charge(text.size() / kBytesPerTurn);
-  printed_ += text.size();
-  if (printed_ > kMost)
-    throw RunError(RunErrorKind::Bounds, "more than 64 MB are printed in one iteration or call by the host",
-                   "print less, or write to a file");
-  host_.print(text);
-}
-
-/// Counts each, and makes the text only of those that are reported.
-template <class Text>
-void Machine::tell(Severity severity, Text&& text) {
-  const auto& to = severity == Severity::Error ? host_.error : host_.warn;
-  if (!to) return;
-  constexpr std::uint32_t kMost = 1000;
-  if (told_ <= kMost) ++told_;
-  if (told_ <= kMost) return to(text());
-  if (told_ == kMost + 1) {
-    host_.warn(fmt::format(
-        "{} warnings and errors in one iteration or call by the host: further ones are counted, but not shown", kMost));
-    ++told_;
-  }
-  to({});
+  reporter_.print(text);
 }
 
 void Machine::survive(const RunError& error) {
-  tell(Severity::Error, [&] { return report(error, running()).text; });
+  reporter_.tell(Severity::Error, [&] { return report(error, running()).text; });
 }
 
 void Machine::survive(const ScriptError& error) {
-  tell(Severity::Error, [&] { return error.report().text; });
+  reporter_.tell(Severity::Error, [&] { return error.report().text; });
 }
 
 std::string Machine::stack_trace() const {
   std::string out;
   std::size_t number = 0;
-  for (const auto* active : active_frames()) {
-    const auto& frame = *active;
-    const auto span = span_of(frame, frame.pc);
-    out +=
-        fmt::format("{}. {} (0x{:x}) {} {}:{}\n", number++, frame.self->cls->name, frame.self->serial,
-                    program_->symbols().name(frame.method->name), program_->sources().file(span.file).name, span.line);
-  }
+  for (const ActiveCall& call : active_calls())
+    out += fmt::format("{}. {} (0x{:x}) {} {}:{}\n", number++, call.self->cls->name, call.self->serial,
+                       program_->symbols().name(call.method->name), program_->sources().file(call.span.file).name,
+                       call.span.line);
   return out;
 }
 
@@ -174,15 +123,15 @@ Span Machine::place_of_caller() const {
 }
 
 void Machine::warn(std::string_view text) {
-  tell(Severity::Warning, [&] {
+  reporter_.tell(Severity::Warning, [&] {
     return format({Severity::Warning, "run-time", std::string(text), {}, place_of_caller()}, program_->sources());
   });
 }
 
 void Machine::report_unknown_method(Severity severity, const Instance& self, std::string_view method,
                                     std::string_view consequence) {
-  if (severity != Severity::Error && !warned_.emplace(self.cls->name + " " + std::string(method)).second) return;
-  tell(severity, [&] {
+  if (severity != Severity::Error && !reporter_.is_first(self.cls->name + " " + std::string(method))) return;
+  reporter_.tell(severity, [&] {
     return format(
         {severity, "run-time", fmt::format("class {} has no method '{}': {}", self.cls->name, method, consequence),
          unknown_method_help(method, self.cls, *program_), place_of_caller()},
@@ -191,7 +140,7 @@ void Machine::report_unknown_method(Severity severity, const Instance& self, std
 }
 
 void Machine::warn_once(std::string_view key, std::string_view text) {
-  if (warned_.emplace(key).second) warn(text);
+  if (reporter_.is_first(key)) warn(text);
 }
 
 }  // namespace breve::steve

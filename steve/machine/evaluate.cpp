@@ -38,11 +38,7 @@ class Machine::FragmentScope {
     for (; machine_.strings_.size() > strings_; machine_.strings_.pop_back())
       machine_.heap_->release(machine_.strings_.back());
     machine_.caches_.resize(sites_);
-    if (const auto* function = fragment_.method->function.get(); function && !function->code.empty()) {
-      const auto* first = function->code.data();
-      std::erase_if(machine_.warned_sites_,
-                    [&](const Instruction* at) { return at >= first && at < first + function->code.size(); });
-    }
+    if (const auto* function = fragment_.method->function.get()) machine_.reporter_.forget_places(function->code);
     machine_.fragments_->end(fragment_);
     if (machine_.nesting_ == 0) machine_.fragments_->all_ended();
   }

@@ -27,8 +27,7 @@ Machine::Machine(std::shared_ptr<const Program> program, World& world, std::pmr:
       handler_methods_(memory),
       strings_(memory),
       functions_(steve::functions()),
-      warned_sites_(memory),
-      warned_(memory) {
+      reporter_(host_, memory) {
   budget_heap(*heap_);
   caches_.resize(program_->code().sites.size());
   strings_ = make_constants(*heap_, *program_);
@@ -72,8 +71,7 @@ void Machine::begin_run() {
   interrupted_.store(false, std::memory_order_relaxed);
   budget_.begin_run(host_.budget);
   heap_->take_moved();
-  printed_ = 0;
-  told_ = 0;
+  reporter_.begin_run();
   if (host_.patience > 0) run_began_ = std::chrono::steady_clock::now();
 }
 

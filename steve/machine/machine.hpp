@@ -9,7 +9,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <unordered_set>
 #include <vector>
 
 #include "runtime/base/poll.hpp"
@@ -21,36 +20,9 @@
 #include "steve/machine/heap.hpp"
 #include "steve/machine/machine_host.hpp"
 #include "steve/machine/native.hpp"
+#include "steve/machine/reporter.hpp"
 
 namespace breve::steve {
-
-/// One active method, for reports.
-struct TraceLine {
-  std::string class_name, method, file;  // class of the receiver
-  std::string receiver;                  // "Bird 0xc"; "" if it could not be described
-  std::string arguments;                 // "target (3, 0, 1) weight 2"
-  std::uint32_t line = 0, column = 0;    // of what was running
-  bool foreign = false;                  // the place is one in a source of the host's own
-};
-
-/// A run-time error with everything that is known about it.
-struct ErrorReport {
-  RunErrorKind kind = RunErrorKind::Internal;
-  std::string message, help, file;
-  std::uint32_t line = 0, column = 0, length = 0;
-  std::vector<TraceLine> trace;  // outermost first
-  std::string text;              // all of it, formatted for people: ends with a newline
-};
-
-/// A run-time error on its way out of the interpreter.
-class ScriptError : public Error {
- public:
-  ScriptError(ErrorCode code, ErrorReport report) : Error(code, report.message), report_(std::move(report)) {}
-  const ErrorReport& report() const { return report_; }
-
- private:
-  ErrorReport report_;
-};
 
 class Fragments;
 class Profiler;
@@ -371,26 +343,16 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   const VariableInfo* member_variable(const Instance& instance, Symbol name) const;
   Instance& need_live(const Value& base, std::string_view name) const;
 
-  // errors (errors.cpp)
-  ErrorReport report(const RunError& error, const Instruction* pc) const;
-
-  // trace.cpp
-  std::vector<TraceLine> trace(const std::vector<const Frame*>& frames, const Instruction* pc) const;
-  void describe_call(TraceLine& line, const Frame& frame) const;
-  static void add_places(std::vector<TraceLine>& lines, const std::vector<ForeignPlace>& places);
+  // what is running, and errors in it (errors.cpp)
+  /// @param pc  where the innermost call is; null: as of its last call or slow instruction
+  std::vector<ActiveCall> active_calls(const Instruction* pc = nullptr) const;
   bool half_made(const Frame& frame, const Instruction* pc) const;
-
-  // errors.cpp
+  ErrorReport report(const RunError& error, const Instruction* pc) const;
   [[noreturn]] void rethrow(std::size_t depth, const Instruction* pc);  // from inside a catch block
   [[noreturn]] void throw_out_of_memory(std::size_t depth, const Instruction* pc);
   void survive(const ScriptError& error);
-  template <class Text>
-  void tell(Severity severity, Text&& text);
   Span span_of(const Frame& frame, const Instruction* pc) const;
   Span place_of_caller() const;
-
-  // trace.cpp
-  std::vector<const Frame*> active_frames() const;  // outermost first
   const Instruction* running() const { return frame_ ? frame_->pc : nullptr; }
 
   // machine.cpp
@@ -471,11 +433,8 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   HandlerMethods handler_methods_;         // of the program
   std::pmr::vector<StringCell*> strings_;  // the program's constants
   std::span<const Native> functions_;
-  std::pmr::unordered_set<const Instruction*> warned_sites_;
-  std::pmr::unordered_set<std::pmr::string> warned_;
-  std::uint64_t printed_ = 0;  // bytes, in this iteration or call by the host
-  std::uint32_t told_ = 0;     // reports, likewise
-  bool in_stage_ = false;      // a force method runs
+  Reporter reporter_;
+  bool in_stage_ = false;  // a force method runs
   Budget budget_;
   std::atomic<bool> interrupted_{false};
   const Poll poller_ = [this] { poll(); };

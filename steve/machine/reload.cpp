@@ -173,7 +173,7 @@ void Reload::exchange() {
   machine_.handler_methods_.clear();
   machine_.program_ = program_;
   machine_.fragments_.reset();
-  machine_.warned_sites_.clear();
+  machine_.reporter_.forget_places();
 }
 
 }  // namespace breve::steve

@@ -16,7 +16,7 @@ Value Machine::null_default(StaticType type, std::uint32_t what, const Instructi
   if (host_.strict)
     throw RunError(RunErrorKind::Conversion, "no value (NULL) for " + name,
                    "a method returns a value with 'return'; a missing key of a hash gives no value");
-  if (warned_sites_.insert(pc).second)
+  if (reporter_.is_first(pc))
     warn("no value (NULL) is assigned to " + name +
          "; it becomes its type's zero value (a missing key of a hash and a method without 'return' give none)");
   switch (type) {
@@ -38,8 +38,7 @@ Value Machine::calculate(ast::BinaryOp op, const Value& x, const Value& y, bool 
   if (!missing || op > ast::BinaryOp::Pow) return result;
   constexpr const char* kHelp = "a missing key of a hash and a method without 'return' give none";
   if (host_.strict) throw RunError(RunErrorKind::Conversion, "no value (NULL) is used in arithmetic", kHelp);
-  if (warned_sites_.insert(pc).second)
-    warn(fmt::format("no value (NULL) is used in arithmetic; it counts as 0 ({})", kHelp));
+  if (reporter_.is_first(pc)) warn(fmt::format("no value (NULL) is used in arithmetic; it counts as 0 ({})", kHelp));
   return result;
 }
 

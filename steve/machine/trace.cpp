@@ -1,11 +1,12 @@
 // The chain of calls of a run-time error: who called whom from where, with the values of receivers and arguments.
+#include "steve/machine/trace.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "steve/machine/brief.hpp"
-#include "steve/machine/machine.hpp"
-#include "steve/machine/trace.hpp"
+#include "steve/machine/native.hpp"
 
 namespace breve::steve {
 
@@ -49,7 +50,64 @@ std::string line_of(const TraceLine& call, const TraceLine* caller) {
   return text + '\n';
 }
 
+// The last line is that of a foreign method: its place in its own source, and what it has called there itself.
+void add_places(std::vector<TraceLine>& lines, const std::vector<ForeignPlace>& places) {
+  if (places.empty()) return;
+  lines.back().file = places.back().file;
+  lines.back().line = places.back().line;
+  lines.back().column = 0;
+  lines.back().foreign = true;
+  for (std::size_t i = places.size() - 1; i-- > 0;) {
+    TraceLine& line = lines.emplace_back();
+    line.method = places[i].function;
+    line.file = places[i].file;
+    line.line = places[i].line;
+    line.foreign = true;
+  }
+}
+
+// Values as they are now: a method may have assigned to its parameters.
+void describe_call(TraceLine& line, const ActiveCall& call, const SymbolTable& symbols) {
+  line.receiver = brief(call.self);
+  std::string all;
+  for (const auto& p : call.method->parameters) {
+    if (symbols.name(p.keyword).starts_with('%')) continue;  // of no method that somebody wrote
+    const Slot* slot = call.registers + p.slot;
+    std::string value;
+    switch (p.type) {
+      case StaticType::Int: value = brief(Value::of(slot->i)); break;
+      case StaticType::Double: value = brief(Value::of(slot->d)); break;
+      case StaticType::Vector: value = brief(SlotType<Vector3>::from(slot)); break;
+      case StaticType::Matrix: value = "a matrix"; break;
+      case StaticType::Any:
+      case StaticType::Null: value = brief(SlotType<Value>::from(slot)); break;
+      default: value = brief(Value::of(static_cast<Tag>(p.type), slot->ref)); break;
+    }
+    all += (all.empty() ? "" : " ") + symbols.name(p.keyword) + ' ' + cut(value, kLongestArgument);
+  }
+  line.arguments = cut(all, kLongestArguments);
+}
+
 }  // namespace
+
+std::vector<TraceLine> trace_of(std::span<const ActiveCall> calls, const Program& program,
+                                const std::function<std::vector<ForeignPlace>(std::size_t depth)>& places) {
+  std::vector<TraceLine> lines;
+  lines.reserve(calls.size());
+  for (std::size_t i = 0; i < calls.size(); ++i) {
+    const ActiveCall& call = calls[i];
+    TraceLine& line = lines.emplace_back();
+    line.class_name = call.self->cls->name;
+    line.method = program.symbols().name(call.method->name);
+    line.file = program.sources().file(call.span.file).name;
+    line.line = call.span.line;
+    line.column = call.span.column;
+    if (i < kDescribedAtEachEnd || i + kDescribedAtEachEnd >= calls.size())
+      describe_call(line, call, program.symbols());
+    if (call.method->foreign && places) add_places(lines, places(i + 1));
+  }
+  return lines;
+}
 
 std::string trace_text(const std::vector<TraceLine>& trace) {
   std::vector<const TraceLine*> calls;  // innermost first
@@ -82,78 +140,6 @@ std::string trace_text(const std::vector<TraceLine>& trace) {
     if (hidden && i == half) text += fmt::format("  … {} more calls\n", counted(lines.size() - 2 * half));
   }
   return text;
-}
-
-std::vector<const Machine::Frame*> Machine::active_frames() const {
-  std::vector<const Frame*> frames;
-  for (const Frame* frame = frame_; frame; frame = frame->caller) frames.push_back(frame);
-  std::reverse(frames.begin(), frames.end());
-  return frames;
-}
-
-// The innermost frame of a call whose arguments are still being converted: its slots hold anything. Such a frame has
-// run nothing yet, and the interpreter's place is still that of the call in the caller.
-bool Machine::half_made(const Frame& frame, const Instruction* pc) const {
-  return &frame == frame_ && frame.caller != nullptr && frame.pc == frame.function->code.data() &&
-         pc == frame.caller->pc;
-}
-
-std::vector<TraceLine> Machine::trace(const std::vector<const Frame*>& frames, const Instruction* pc) const {
-  const auto& sources = program_->sources();
-  std::vector<TraceLine> lines;
-  lines.reserve(frames.size());
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const Frame& frame = *frames[i];
-    const auto span = span_of(frame, &frame == frame_ && pc ? pc : frame.pc);
-    TraceLine& line = lines.emplace_back();
-    line.class_name = frame.self->cls->name;
-    line.method = program_->symbols().name(frame.method->name);
-    line.file = sources.file(span.file).name;
-    line.line = span.line;
-    line.column = span.column;
-    if (i < kDescribedAtEachEnd || i + kDescribedAtEachEnd >= frames.size()) describe_call(line, frame);
-    if (frame.method->foreign && host_.places) add_places(lines, host_.places(i + 1));
-  }
-  return lines;
-}
-
-// The last line is that of a foreign method: its place in its own source, and what it has called there itself.
-void Machine::add_places(std::vector<TraceLine>& lines, const std::vector<ForeignPlace>& places) {
-  if (places.empty()) return;
-  lines.back().file = places.back().file;
-  lines.back().line = places.back().line;
-  lines.back().column = 0;
-  lines.back().foreign = true;
-  for (std::size_t i = places.size() - 1; i-- > 0;) {
-    TraceLine& line = lines.emplace_back();
-    line.method = places[i].function;
-    line.file = places[i].file;
-    line.line = places[i].line;
-    line.foreign = true;
-  }
-}
-
-// Values as they are now: a method may have assigned to its parameters.
-void Machine::describe_call(TraceLine& line, const Frame& frame) const {
-  line.receiver = brief(frame.self);
-  const Slot* base = reinterpret_cast<const Slot*>(&frame + 1);
-  std::string all;
-  for (const auto& p : frame.method->parameters) {
-    if (program_->symbols().name(p.keyword).starts_with('%')) continue;  // of no method that somebody wrote
-    const Slot* slot = base + p.slot;
-    std::string value;
-    switch (p.type) {
-      case StaticType::Int: value = brief(Value::of(slot->i)); break;
-      case StaticType::Double: value = brief(Value::of(slot->d)); break;
-      case StaticType::Vector: value = brief(SlotType<Vector3>::from(slot)); break;
-      case StaticType::Matrix: value = "a matrix"; break;
-      case StaticType::Any:
-      case StaticType::Null: value = brief(SlotType<Value>::from(slot)); break;
-      default: value = brief(Value::of(static_cast<Tag>(p.type), slot->ref)); break;
-    }
-    all += (all.empty() ? "" : " ") + program_->symbols().name(p.keyword) + ' ' + cut(value, kLongestArgument);
-  }
-  line.arguments = cut(all, kLongestArguments);
 }
 
 }  // namespace breve::steve
