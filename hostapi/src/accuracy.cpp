@@ -74,7 +74,7 @@ breve_energy energy_from(const Energy& from) {
   return to;
 }
 
-const Mechanics& dynamics_of(const breve_world& world) { return std::as_const(*world.world).dynamics(); }
+const Mechanics& dynamics_of(const breve_world& world) { return std::as_const(*world.world).mechanics(); }
 
 }  // namespace
 }  // namespace breve::host
@@ -109,7 +109,7 @@ breve_status breve_world_accuracy(const breve_world* world, breve_accuracy* accu
 breve_status breve_world_set_accuracy(breve_world* world, const breve_accuracy* accuracy) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
-    world->world->dynamics().set_accuracy(accuracy_of_struct(accuracy, dynamics_of(*world).accuracy()));
+    world->world->mechanics().set_accuracy(accuracy_of_struct(accuracy, dynamics_of(*world).accuracy()));
   });
 }
 
@@ -126,8 +126,8 @@ breve_status breve_object_set_accuracy(breve_world* world, breve_object object, 
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     const breve::BodyIndex body = live_body(*world, object);
-    if (!accuracy) return world->world->dynamics().clear_accuracy(body);
-    world->world->dynamics().set_accuracy(body, accuracy_of_struct(accuracy, dynamics_of(*world).accuracy(body)));
+    if (!accuracy) return world->world->mechanics().clear_accuracy(body);
+    world->world->mechanics().set_accuracy(body, accuracy_of_struct(accuracy, dynamics_of(*world).accuracy(body)));
   });
 }
 
@@ -168,7 +168,7 @@ breve_status breve_world_space(const breve_world* world, int axis, breve_edge* e
 
 breve_status breve_world_set_sleeping(breve_world* world, bool on) {
   if (!world) return BREVE_ERROR_ARGUMENT;
-  return guard(world->error, [&] { world->world->dynamics().set_sleeping(on); });
+  return guard(world->error, [&] { world->world->mechanics().set_sleeping(on); });
 }
 
 breve_status breve_world_set_workers(breve_world* world, uint32_t workers) {
@@ -176,7 +176,7 @@ breve_status breve_world_set_workers(breve_world* world, uint32_t workers) {
   return guard(world->error, [&] {
     constexpr uint32_t kMost = 256;
     if (workers < 1 || workers > kMost) fail(BREVE_ERROR_ARGUMENT, "workers must be 1 to 256");
-    world->world->dynamics().set_workers(static_cast<int>(workers));
+    world->world->mechanics().set_workers(static_cast<int>(workers));
   });
 }
 
@@ -184,7 +184,7 @@ breve_status breve_world_set_guard(breve_world* world, breve_guard mode) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     if (static_cast<unsigned>(mode) >= kGuards) fail(BREVE_ERROR_ARGUMENT, "unknown guard mode");
-    world->world->dynamics().set_guard(static_cast<breve::GuardMode>(mode));
+    world->world->mechanics().set_guard(static_cast<breve::GuardMode>(mode));
   });
 }
 

@@ -224,7 +224,7 @@ breve_status breve_objects_set_property(breve_world* world, const breve_object* 
     if (!has_location(property) && !has_rotation(property)) return;
     for (const BodyIndex body : all) {
       world->previous.forget(body);
-      world->world->dynamics().moved(body);
+      world->world->mechanics().moved(body);
     }
   });
 }

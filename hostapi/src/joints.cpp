@@ -172,7 +172,7 @@ breve_status breve_joint_state(const breve_world* world, breve_object joint, bre
     found.kind = static_cast<breve_joint_kind>(breve::steve::joint_kind(object));
     found.linked = index != breve::kNoJoint;
     if (found.linked) {
-      const Mechanics& dynamics = world->world->dynamics();
+      const Mechanics& dynamics = world->world->mechanics();
       const auto& is = dynamics.joint(index);
       const auto owner = [&](breve::BodyIndex body) {
         return body == breve::kNoBody ? breve_object{} : handle_of(*world, world->world->bodies().owner(body));
@@ -195,7 +195,7 @@ breve_status breve_joint_drive(const breve_world* world, breve_object joint, bre
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     need(drive, "drive");
-    write_struct(drive, drive_from(world->world->dynamics().drive(linked(*world, joint))), "breve_drive");
+    write_struct(drive, drive_from(world->world->mechanics().drive(linked(*world, joint))), "breve_drive");
   });
 }
 
@@ -204,7 +204,7 @@ breve_status breve_joint_set_drive(breve_world* world, breve_object joint, const
   return guard(world->error, [&] {
     need(drive, "drive");
     const JointIndex index = linked(*world, joint);
-    Mechanics& dynamics = world->world->dynamics();
+    Mechanics& dynamics = world->world->mechanics();
     // What an older header does not have stays as it is.
     breve::steve::drive_joint(*world->machine, object_of_kind(*world, joint, "Joint"), index,
                               drive_of(read_config(drive, drive_from(dynamics.drive(index)), "breve_drive")));
@@ -219,8 +219,8 @@ breve_status breve_joint_set_state(breve_world* world, breve_object joint, const
     if (position) vector_of(position, "position");
     if (velocity) vector_of(velocity, "velocity");
     world->machine->refuse_in_stage("move a body");
-    if (position) world->world->dynamics().set_position(index, vector_of(position, "position"));
-    if (velocity) world->world->dynamics().set_velocity(index, vector_of(velocity, "velocity"));
+    if (position) world->world->mechanics().set_position(index, vector_of(position, "position"));
+    if (velocity) world->world->mechanics().set_velocity(index, vector_of(velocity, "velocity"));
   });
 }
 
@@ -263,7 +263,7 @@ breve_status breve_spring_state(const breve_world* world, breve_object spring, d
   return guard(world->error, [&] {
     auto& object = object_of_kind(*world, spring, "Spring");
     const breve::SpringIndex index = breve::steve::spring_of(*world->machine, object);
-    const Mechanics& dynamics = world->world->dynamics();
+    const Mechanics& dynamics = world->world->mechanics();
     if (length) *length = index == breve::kNoSpring ? 0 : dynamics.spring_length(index);
     if (force) *force = index == breve::kNoSpring ? 0 : dynamics.spring_force(index);
   });
@@ -278,7 +278,7 @@ breve_status breve_spring_description(const breve_world* world, breve_object spr
     const breve::SpringIndex index = found ? breve::steve::spring_of(*world->machine, object) : breve::kNoSpring;
     if (index != breve::kNoSpring) {
       const breve::World& w = *world->world;
-      const breve::SpringDescription& tied = w.dynamics().spring(index);
+      const breve::SpringDescription& tied = w.mechanics().spring(index);
       to.from = handle_of(*world, w.bodies().owner(tied.a));
       to.to = handle_of(*world, w.bodies().owner(tied.b));
     }

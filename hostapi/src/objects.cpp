@@ -207,7 +207,7 @@ breve_status breve_object_set_pose(breve_world* world, breve_object object, cons
     world->world->leave(body);
     bodies.set_location(body, world->world->space().inside(place));
     bodies.set_orientation(body, rotation);
-    world->world->dynamics().moved(body);
+    world->world->mechanics().moved(body);
   });
 }
 

@@ -200,7 +200,7 @@ breve_status breve_object_asleep(const breve_world* world, breve_object object, 
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     need(asleep, "asleep");
-    *asleep = std::as_const(*world->world).dynamics().asleep(live_body(*world, object));
+    *asleep = std::as_const(*world->world).mechanics().asleep(live_body(*world, object));
   });
 }
 
@@ -211,7 +211,7 @@ breve_status breve_object_links(const breve_world* world, breve_object object, b
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     const BodyIndex body = live_body(*world, object);
-    const auto all = std::as_const(*world->world).dynamics().links_of(body);
+    const auto all = std::as_const(*world->world).mechanics().links_of(body);
     copy_list(all, links, capacity, count, "links",
               [&](BodyIndex link) { return handle_of(*world, world->world->bodies().owner(link)); });
   });
@@ -222,7 +222,7 @@ breve_status breve_object_joints(const breve_world* world, breve_object object, 
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     const BodyIndex body = live_body(*world, object);
-    const breve::Mechanics& dynamics = std::as_const(*world->world).dynamics();
+    const breve::Mechanics& dynamics = std::as_const(*world->world).mechanics();
     copy_list(dynamics.joints_of(body), joints, capacity, count, "joints",
               [&](breve::JointIndex joint) { return handle_of(*world, dynamics.joint_owner(joint)); });
   });
@@ -236,14 +236,14 @@ breve_status breve_object_set_assembly_pose(breve_world* world, breve_object obj
     const auto location = vector_of(pose->location, "pose.location");
     const auto rotation = rotation_of(pose->rotation, "pose.rotation");
     world->machine->refuse_in_stage("move a body");
-    for (const BodyIndex link : world->world->dynamics().links_of(body)) world->previous.forget(link);
-    world->world->dynamics().move_assembly(body, location, rotation);
+    for (const BodyIndex link : world->world->mechanics().links_of(body)) world->previous.forget(link);
+    world->world->mechanics().move_assembly(body, location, rotation);
   });
 }
 
 breve_status breve_object_set_self_collisions(breve_world* world, breve_object object, bool on) {
   if (!world) return BREVE_ERROR_ARGUMENT;
-  return guard(world->error, [&] { world->world->dynamics().set_self_collisions(live_body(*world, object), on); });
+  return guard(world->error, [&] { world->world->mechanics().set_self_collisions(live_body(*world, object), on); });
 }
 
 // --- what was set ---------------------------------------------------------------------------------------------------
@@ -272,10 +272,10 @@ breve_status breve_object_self_collisions(const breve_world* world, breve_object
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     need(on, "on");
-    *on = std::as_const(*world->world).dynamics().self_collisions(live_body(*world, object));
+    *on = std::as_const(*world->world).mechanics().self_collisions(live_body(*world, object));
   });
 }
 
 bool breve_world_sleeping(const breve_world* world) {
-  return world && std::as_const(*world->world).dynamics().sleeping();
+  return world && std::as_const(*world->world).mechanics().sleeping();
 }

@@ -87,10 +87,10 @@ void start(breve_world& world) {
   world.machine->start();
   if (world.config.dimension == 3 && world.world->dimension() != 3)
     fail(BREVE_ERROR_ARGUMENT, "dimension is 3, but the program's controller makes the world flat");
-  if (world.config.length_unit > 0) world.world->dynamics().set_length_unit(world.config.length_unit);
+  if (world.config.length_unit > 0) world.world->mechanics().set_length_unit(world.config.length_unit);
   if (world.config.integration_step > 0) world.world->set_integration_step(world.config.integration_step);
   if (world.config.iteration_step > 0) world.world->set_iteration_step(world.config.iteration_step);
-  if (world.config.accuracy) world.world->dynamics().set_accuracy(rung_named(world.config.accuracy));
+  if (world.config.accuracy) world.world->mechanics().set_accuracy(rung_named(world.config.accuracy));
   world.config.accuracy = nullptr;  // the host's text may go
 }
 

@@ -47,8 +47,7 @@ std::pmr::vector<JointIndex> Dynamics::joints_of(BodyIndex body) const {
   for (const BodyIndex link : links_of(body)) {
     if (const BodyEntry* known = core_->find(link)) all.insert(all.end(), known->joints.begin(), known->joints.end());
   }
-  std::sort(all.begin(), all.end(),
-            [this](JointIndex x, JointIndex y) { return core_->joints[x].serial < core_->joints[y].serial; });
+  sort_joints(core_->joints, all);
   all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
 }
@@ -76,8 +75,7 @@ void Dynamics::move_assembly(BodyIndex body, const Vector3& location, const Quat
 }
 
 void Dynamics::set_assembly_velocity(BodyIndex body, const Vector3& velocity, const Vector3& spin) {
-  if (!velocity.allFinite()) throw Error(ErrorCode::Argument, "velocity must be finite");
-  if (!spin.allFinite()) throw Error(ErrorCode::Argument, "rotational velocity must be finite");
+  check_motion(velocity, spin);
   if (core_) core_->take_changes();
   const BodyEntry* known = core_ ? core_->find(body) : nullptr;
   if (!known || known->tree == kNone) {
@@ -151,53 +149,23 @@ const AssemblySettings* Dynamics::Core::settings_of(BodyIndex body, bool (*wante
   return nullptr;
 }
 
-void Dynamics::set_self_collisions(BodyIndex body, bool on) {
-  Core& c = core();
-  c.entry(body);
-  c.own[body].has_self = true;
-  c.own[body].self_collisions = on;
-  ++c.rules;
+const AssemblySettings* Dynamics::settings_of(BodyIndex body, bool (*wanted)(const AssemblySettings&)) const {
+  return core_ ? core_->settings_of(body, wanted) : nullptr;
 }
 
-bool Dynamics::self_collisions(BodyIndex body) const {
-  if (!core_) return false;
-  const AssemblySettings* found = core_->settings_of(body, [](const AssemblySettings& s) { return s.has_self; });
-  return found && found->self_collisions;
-}
+void Dynamics::settings_begin(BodyIndex body) { core_->entry(body); }
 
 void Dynamics::set_self_collision_parameters(BodyIndex body, double erp, double cfm) {
-  if (!std::isfinite(erp) || erp < 0 || erp > 1)
-    throw Error(ErrorCode::Argument, fmt::format("self collision erp must be from 0 to 1, but is {}", erp));
-  if (!std::isfinite(cfm) || cfm < 0)
-    throw Error(ErrorCode::Argument, fmt::format("self collision cfm must be finite and >= 0, but is {}", cfm));
+  check_softness_within(erp, cfm);
   Core& c = core();
   c.entry(body);
   c.own[body].self_erp = erp;
   c.own[body].self_cfm = cfm;
 }
 
-void Dynamics::set_accuracy(BodyIndex body, const Accuracy& accuracy) {
-  check(accuracy);
-  Core& c = core();
-  c.entry(body);
-  c.own[body].has_accuracy = true;
-  c.own[body].accuracy = accuracy;
-  c.integrators_changed = true;
-}
-
-void Dynamics::clear_accuracy(BodyIndex body) {
-  if (!core_) return;
-  const auto found = core_->own.find(body);
-  if (found == core_->own.end()) return;
-  found->second.has_accuracy = false;
-  core_->integrators_changed = true;
-}
-
 const Accuracy& Dynamics::Core::accuracy_of(BodyIndex body) {
   const AssemblySettings* found = settings_of(body, [](const AssemblySettings& s) { return s.has_accuracy; });
   return found ? found->accuracy : settings.accuracy;
 }
-
-const Accuracy& Dynamics::accuracy(BodyIndex body) const { return core_ ? core_->accuracy_of(body) : accuracy(); }
 
 }  // namespace breve

@@ -7,16 +7,12 @@
 namespace breve {
 
 Dynamics::Core::Core(std::pmr::memory_resource* where, Bodies& of)
-    : memory(where),
-      bodies(&of),
+    : MechanicsCore(where, of),
       joints(where),
-      free_joints(where),
       springs(where),
-      free_springs(where),
       entry_of(where),
       entries(where),
       free_entries(where),
-      own(where),
       trees(where),
       tree_order(where),
       clusters(where),
@@ -31,8 +27,6 @@ Dynamics::Core::Core(std::pmr::memory_resource* where, Bodies& of)
       aside(where),
       set_of(where),
       island_of(where),
-      interventions(where),
-      impacts(where),
       booked(where),
       unsettled(where),
       scratch(where),

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 
 #include "runtime/dynamics/cluster.hpp"
@@ -14,6 +13,7 @@
 #include "runtime/dynamics/rings.hpp"
 #include "runtime/dynamics/shared_memory.hpp"
 #include "runtime/dynamics/tree.hpp"
+#include "runtime/mechanics/core.hpp"
 
 namespace breve {
 
@@ -23,27 +23,17 @@ inline constexpr std::uint32_t kNone = 0xffffffffU;
 inline constexpr double kNoBook = std::numeric_limits<double>::quiet_NaN();
 inline bool in_books(double booked) { return !std::isnan(booked); }
 
-struct JointEntry {
-  bool used = false;
-  ObjectId owner;
-  JointDescription is;
-  JointDrive drive;
-  std::uint64_t serial = 0;  // in the order of creation
+struct JointEntry : JointRecord {
   std::uint32_t tree = kNone;
   int link = -1;         // of the tree, whose inboard joint this is; -1: none (a ring, or not built yet)
   bool flipped = false;  // the tree goes from the child to the parent
-  bool ring = false;
   JointVector position = Vector3::Zero();  // as last known: whole turns are counted from here
   // Forces, N or N*m, in the last sub-step: of the limits, > 0 of the lower one; in the one before; of the motor's
   // rows.
   JointVector limit = Vector3::Zero(), limit_before = Vector3::Zero(), motor = Vector3::Zero();
 };
 
-struct SpringEntry {
-  bool used = false;
-  ObjectId owner;
-  SpringDescription is;
-  double force = 0;         // N, in the last sub-step
+struct SpringEntry : SpringRecord {
   double booked = kNoBook;  // J, that it holds by the books
   bool set = true;          // since a step was taken
 };
@@ -63,23 +53,6 @@ struct BodyEntry {
   std::uint64_t mark = 0;               // of the last search that came here
 
   explicit BodyEntry(std::pmr::memory_resource* memory) : joints(memory) {}
-};
-
-struct AssemblySettings {
-  bool has_self = false, self_collisions = false;
-  double self_erp = 0, self_cfm = 0;
-  bool has_accuracy = false;
-  Accuracy accuracy;
-};
-
-struct WorldSettings {
-  Vector3 gravity{0, -9.81, 0};
-  Accuracy accuracy = accuracy_of(Rung::Balanced);
-  GuardMode guard = GuardMode::Rest;
-  bool sleeping = false;
-  int fast_contacts = 0;
-  double erp = 0.1, cfm = 1e-6;
-  int workers = 1;
 };
 
 /// What a script or host set in the arrays of a body that dynamics had written.
@@ -111,23 +84,15 @@ struct BodyPlace {
   int link = -1;         // of the tree
 };
 
-struct Dynamics::Core : InMemory {
+struct Dynamics::Core : MechanicsCore {
   Core(std::pmr::memory_resource* memory, Bodies& bodies);
 
-  std::pmr::memory_resource* memory;
-  Bodies* bodies;
-  WorldSettings settings;
-
   std::pmr::vector<JointEntry> joints;
-  std::pmr::vector<JointIndex> free_joints;
-  std::uint64_t next_serial = 0;
   std::pmr::vector<SpringEntry> springs;
-  std::pmr::vector<SpringIndex> free_springs;
 
   std::pmr::vector<std::uint32_t> entry_of;  // by body; kNone: no entry
   std::pmr::vector<BodyEntry> entries;
   std::pmr::vector<std::uint32_t> free_entries;
-  std::pmr::map<BodyIndex, AssemblySettings> own;  // by body
 
   std::pmr::vector<std::unique_ptr<Tree>> trees;             // null: a free place
   std::pmr::vector<std::uint32_t> tree_order;                // by the serial of their first joint
@@ -136,7 +101,6 @@ struct Dynamics::Core : InMemory {
   bool clusters_changed = false;                             // trees or springs between them changed
   bool integrators_changed = false;                          // the accuracy of something changed
   bool loading = false;                                      // trees take their numbers from an image
-  std::uint64_t rules = 0;  // grows when the answer may change whether two bodies push each other
 
   NearPairs near;
   std::pmr::vector<BodyPlace> place_of;               // by body, since islands were found
@@ -148,14 +112,7 @@ struct Dynamics::Core : InMemory {
   std::pmr::vector<std::uint8_t> aside;                // by body; empty: all move
   std::pmr::vector<std::uint32_t> set_of, island_of;   // by body: for finding islands
 
-  std::uint64_t iteration = 0;
-  std::uint64_t sub_step = 0;   // since the beginning, for force methods
-  WorkBound bound;              // of the iteration
   std::uint64_t work_most = 0;  // of the sub-step: what counters.work may become
-  DynamicsCounters counters;
-  std::pmr::vector<Intervention> interventions;
-  std::pmr::vector<Impact> impacts;
-  Energy account;  // works and losses of all since the ledger began
   // J, by body: what those without a tree have by the books. What differs when a step begins, scripts did.
   std::pmr::vector<double> booked;
   std::pmr::vector<BodyIndex> unsettled;  // of them, those that were set since; may name some twice
@@ -194,7 +151,7 @@ struct Dynamics::Core : InMemory {
   const AssemblySettings* settings_of(BodyIndex body, bool (*wanted)(const AssemblySettings&));
   const Accuracy& accuracy_of(BodyIndex body);
 
-  // ties.cpp
+  // springs.cpp
   SpringEntry& tie_at(SpringIndex spring);
 
   // trees.cpp
@@ -225,21 +182,20 @@ struct Dynamics::Core : InMemory {
   void build_clusters();
 
   // islands.cpp
-  void advance(DynamicsClient& client, double start, double h, double share);
-  bool over() const;
+  void advance(MechanicsClient& client, double start, double h, double share);
   std::uint64_t work_left() const;
   std::size_t most_pairs() const;
   std::uint64_t part_of(std::uint64_t work, const Island& island) const;
-  bool pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client);
+  bool pushes(BodyIndex a, BodyIndex b, const MechanicsClient& client);
   bool locates() const;  // impacts, somewhere
   void find_islands();
   void keep_clusters_whole();
   BodyIndex first_of(const ClusterEntry& cluster) const;
   Island& fill(std::size_t place, std::size_t number);
   void step_quiet(Workers* workers, std::size_t count, double start, double h);
-  void run(DynamicsClient& client, double start, double h, int depth);
-  void run_only(DynamicsClient& client, double start, double h, int depth, std::span<const BodyIndex> bodies);
-  void report_lasting(DynamicsClient& client, double moment);
+  void run(MechanicsClient& client, double start, double h, int depth);
+  void run_only(MechanicsClient& client, double start, double h, int depth, std::span<const BodyIndex> bodies);
+  void report_lasting(MechanicsClient& client, double moment);
   bool sleep_through(Island& island);
   void note_rest(Island& island, double h);
   void take_result(Island& island);

@@ -12,25 +12,17 @@
 
 namespace breve {
 
-namespace {
-
-const WorldSettings kSettings{};
-const DynamicsCounters kNoCounters{};
-
-void need_range(std::string_view property, double value, double low, double high) {
-  if (!(value >= low && value <= high))
-    throw Error(ErrorCode::Argument, fmt::format("{} must be from {} to {}, but is {}", property, low, high, value));
-}
-
-}  // namespace
-
 Dynamics::Dynamics(std::pmr::memory_resource* memory, Bodies& bodies) : memory_(memory), bodies_(&bodies) {}
 Dynamics::~Dynamics() = default;
 
 Dynamics::Core& Dynamics::core() {
-  if (!core_) core_ = make_in<Core>(memory_, memory_, *bodies_);
+  if (!core_) {
+    core_ = make_in<Core>(memory_, memory_, *bodies_);
+    share(*core_);
+  }
   return *core_;
 }
+MechanicsCore& Dynamics::inside() { return core(); }
 
 void Dynamics::rebind(Bodies& bodies) {
   bodies_ = &bodies;
@@ -52,20 +44,13 @@ JointVector Dynamics::velocity(JointIndex joint) const {
 }
 
 namespace {
-void need_finite(const JointVector& value, std::string_view what) {
-  if (!value.allFinite()) throw Error(ErrorCode::Argument, fmt::format("{} of a joint must be finite", what));
-}
 void need_in_tree(const JointEntry& joint) {
-  if (joint.link < 0)
-    throw Error(ErrorCode::Argument,
-                fmt::format("the position of a {} joint that closes a loop cannot be set: the other "
-                            "joints of the loop determine it",
-                            name_of(joint.is.kind)));
+  if (joint.link < 0) fail_loop_joint(joint.is.kind);
 }
 }  // namespace
 
 void Dynamics::set_position(JointIndex joint, const JointVector& position) {
-  need_finite(position, "the position");
+  if (!position.allFinite()) fail_not_finite("the position");
   this->joint(joint);
   Core& c = *core_;
   c.take_changes();
@@ -77,7 +62,7 @@ void Dynamics::set_position(JointIndex joint, const JointVector& position) {
 }
 
 void Dynamics::set_velocity(JointIndex joint, const JointVector& velocity) {
-  need_finite(velocity, "the velocity");
+  if (!velocity.allFinite()) fail_not_finite("the velocity");
   this->joint(joint);
   Core& c = *core_;
   c.take_changes();
@@ -128,45 +113,8 @@ void Dynamics::set_gravity(const Vector3& gravity) {
     if (in_books(c.booked[body])) c.unsettled.push_back(body);
   for (const std::uint32_t index : c.tree_order) c.trees[index]->changed = true;
 }
-const Vector3& Dynamics::gravity() const { return core_ ? core_->settings.gravity : kSettings.gravity; }
-
-void Dynamics::set_accuracy(Rung rung) { set_accuracy(accuracy_of(rung)); }
-void Dynamics::set_accuracy(const Accuracy& accuracy) {
-  check(accuracy);
-  core().settings.accuracy = accuracy;
-  core().integrators_changed = true;
-}
-const Accuracy& Dynamics::accuracy() const { return core_ ? core_->settings.accuracy : kSettings.accuracy; }
-
-void Dynamics::set_guard(GuardMode mode) { core().settings.guard = mode; }
-GuardMode Dynamics::guard() const { return core_ ? core_->settings.guard : kSettings.guard; }
-
-void Dynamics::set_sleeping(bool on) {
-  core().settings.sleeping = on;
-  if (!on) core().near.wake_all();
-}
-bool Dynamics::sleeping() const { return core_ && core_->settings.sleeping; }
-
-void Dynamics::set_fast_contacts(int iterations) {
-  need_range("the number of iterations", iterations, 0, kMostIterations);
-  core().settings.fast_contacts = iterations;
-}
-
-void Dynamics::set_softness(double erp, double cfm) {
-  need_range("erp", erp, 0, 1);
-  if (!std::isfinite(cfm) || cfm < 0)
-    throw Error(ErrorCode::Argument, fmt::format("cfm must be finite and >= 0, but is {}", cfm));
-  core().settings.erp = erp;
-  core().settings.cfm = cfm;
-}
-double Dynamics::erp() const { return core_ ? core_->settings.erp : kSettings.erp; }
-double Dynamics::cfm() const { return core_ ? core_->settings.cfm : kSettings.cfm; }
-
-void Dynamics::set_workers(int workers) {
-  need_range("the number of workers", workers, 1, 1024);
-  core().settings.workers = workers;
-}
-int Dynamics::workers() const { return core_ ? core_->settings.workers : 1; }
+void Dynamics::accuracy_changed() { core_->integrators_changed = true; }
+void Dynamics::sleeping_ended() { core_->near.wake_all(); }
 
 void Dynamics::set_force_method(BodyIndex body, bool on) {
   if (!core_ && !on) return;
@@ -186,16 +134,6 @@ bool Dynamics::force_method(BodyIndex body) const {
 
 // --- questions ------------------------------------------------------------------------------------------------------
 
-const DynamicsCounters& Dynamics::counters() const { return core_ ? core_->counters : kNoCounters; }
-
-std::span<const Intervention> Dynamics::interventions() const {
-  return core_ ? std::span<const Intervention>(core_->interventions) : std::span<const Intervention>();
-}
-
-std::span<const Impact> Dynamics::impacts() const {
-  return core_ ? std::span<const Impact>(core_->impacts) : std::span<const Impact>();
-}
-
 Dynamics::Census Dynamics::census() const {
   Census census;
   census.bodies = bodies_->rigid();
@@ -203,15 +141,7 @@ Dynamics::Census Dynamics::census() const {
   const auto count = [](std::size_t& number, ObjectId& first, ObjectId owner) {
     if (number++ == 0) first = owner;
   };
-  for (const JointEntry& joint : core_->joints) {
-    if (!joint.used) continue;
-    count(census.joints, census.first_joint, joint.owner);
-    if (Core::has_limits(joint)) count(census.limits, census.first_limit, joint.owner);
-    if (joint.drive.strength_limit > 0) count(census.motors, census.first_motor, joint.owner);
-    if (joint.drive.stiffness > 0) count(census.springs, census.first_spring, joint.owner);
-  }
-  for (const SpringEntry& tie : core_->springs)
-    if (tie.used) count(census.springs, census.first_spring, tie.owner);
+  count_connections(core_->joints, core_->springs, census);
   core_->near.each([&](const PairKey&, const NearPair& pair) {
     const ObjectId owner = bodies_->owner(pair.a);
     count(census.pairs, census.first_pair, owner);
@@ -240,20 +170,10 @@ std::size_t Dynamics::bytes() const { return core_ ? core_->bytes() : 0; }
 
 // --- the world's side -----------------------------------------------------------------------------------------------
 
-void Dynamics::begin_iteration(std::uint64_t iteration, const WorkBound& bound) {
-  bound_ = bound;
-  if (!core_) return;
-  core_->iteration = iteration;
-  core_->counters = {};
-  core_->interventions.clear();
-  core_->impacts.clear();
-}
-
-void Dynamics::advance(DynamicsClient& client, double start, double h, double share) {
-  core().bound = bound_;
+void Dynamics::advance(MechanicsClient& client, double start, double h, double share) {
+  core().bound = bound();
   core().advance(client, start, h, share);
 }
-bool Dynamics::over() const { return core_ && core_->over(); }
 
 void Dynamics::take_changes() {
   if (core_) core_->take_changes();

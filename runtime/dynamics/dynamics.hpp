@@ -13,23 +13,15 @@ class Dynamics final : public Mechanics {
  public:
   Dynamics(std::pmr::memory_resource* memory, Bodies& bodies);
   ~Dynamics() override;
-  Dynamics(const Dynamics&) = delete;
-  Dynamics& operator=(const Dynamics&) = delete;
   void rebind(Bodies& bodies) override;
 
   // --- joints -----------------------------------------------------------------------------------------------------
   JointIndex link(const JointDescription& description, ObjectId owner) override;
   void unlink(JointIndex joint) override;
-  bool linked(JointIndex joint) const override;
   std::size_t joint_count() const override;
-  const JointDescription& joint(JointIndex joint) const override;
-  ObjectId joint_owner(JointIndex joint) const override;
-  bool closes_ring(JointIndex joint) const override;
   void relink(JointIndex joint, const JointDescription& description) override;
 
-  const JointDrive& drive(JointIndex joint) const override;
   void set_drive(JointIndex joint, const JointDrive& drive) override;
-  double strength_hard_limit(JointIndex joint) const override;
 
   JointVector position(JointIndex joint) const override;
   JointVector velocity(JointIndex joint) const override;
@@ -45,12 +37,7 @@ class Dynamics final : public Mechanics {
   std::pmr::vector<JointIndex> joints_of(BodyIndex body) const override;
   void move_assembly(BodyIndex body, const Vector3& location, const Quaternion& orientation) override;
   void set_assembly_velocity(BodyIndex body, const Vector3& velocity, const Vector3& spin) override;
-  void set_self_collisions(BodyIndex body, bool on) override;
-  bool self_collisions(BodyIndex body) const override;
   void set_self_collision_parameters(BodyIndex body, double erp, double cfm) override;
-  void set_accuracy(BodyIndex body, const Accuracy& accuracy) override;
-  void clear_accuracy(BodyIndex body) override;
-  const Accuracy& accuracy(BodyIndex body) const override;
   Energy energy(BodyIndex body) const override;
   void moved(BodyIndex body) override;
   std::size_t self_penetrations(BodyIndex body) const override;
@@ -58,52 +45,27 @@ class Dynamics final : public Mechanics {
   // --- springs between bodies ---------------------------------------------------------------------------------------
   SpringIndex tie(const SpringDescription& description, ObjectId owner) override;
   void untie(SpringIndex spring) override;
-  bool tied(SpringIndex spring) const override;
-  const SpringDescription& spring(SpringIndex spring) const override;
   void set_spring(SpringIndex spring, const SpringDescription& description) override;
-  double spring_length(SpringIndex spring) const override;
-  double spring_force(SpringIndex spring) const override;
 
   // --- settings of the world ----------------------------------------------------------------------------------------
   int dimension() const override { return 3; }
-  double length_unit() const override { return 1; }
   void set_length_unit(double metres) override;
   void set_gravity(const Vector3& gravity) override;
-  const Vector3& gravity() const override;
-  void set_accuracy(Rung rung) override;
-  void set_accuracy(const Accuracy& accuracy) override;
-  const Accuracy& accuracy() const override;
   std::string describe_accuracy() const override { return describe(accuracy()); }
-  void set_guard(GuardMode mode) override;
-  GuardMode guard() const override;
-  void set_sleeping(bool on) override;
-  bool sleeping() const override;
-  void set_fast_contacts(int iterations) override;
-  void set_softness(double erp, double cfm) override;
-  double erp() const override;
-  double cfm() const override;
-  void set_workers(int workers) override;
-  int workers() const override;
   void set_force_method(BodyIndex body, bool on) override;
   bool force_method(BodyIndex body) const override;
 
   // --- what there is to know ----------------------------------------------------------------------------------------
   bool asleep(BodyIndex body) const override;
   Energy energy() const override;
-  const DynamicsCounters& counters() const override;
-  std::span<const Intervention> interventions() const override;
-  std::span<const Impact> impacts() const override;
   std::size_t bytes() const override;
   Census census() const override;
 
   // --- the world's side ---------------------------------------------------------------------------------------------
-  void begin_iteration(std::uint64_t iteration, const WorkBound& bound) override;
-  void advance(DynamicsClient& client, double start, double h, double share) override;
-  bool over() const override;
+  void advance(MechanicsClient& client, double start, double h, double share) override;
   void abandon() override {}  // a step keeps nothing that the next one would find
   void take_changes() override;
-  bool pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client) const override;
-  std::uint64_t rules() const override;
+  bool pushes(BodyIndex a, BodyIndex b, const MechanicsClient& client) const override;
   void forget(BodyIndex body) override;
   void save(ByteWriter& out) const override;
   void load(ByteReader& in) override;
@@ -114,10 +76,16 @@ class Dynamics final : public Mechanics {
  private:
   // Made with the first joint, tie or physics-enabled body.
   Core& core();
+  MechanicsCore& inside() override;
+  const JointRecord* joint_record(JointIndex joint) const override;
+  const SpringRecord* spring_record(SpringIndex spring) const override;
+  const AssemblySettings* settings_of(BodyIndex body, bool (*wanted)(const AssemblySettings&)) const override;
+  void settings_begin(BodyIndex body) override;
+  void accuracy_changed() override;
+  void sleeping_ended() override;
   std::pmr::memory_resource* memory_;
   Bodies* bodies_;
   std::unique_ptr<Core> core_;
-  WorkBound bound_;  // of the iteration
 };
 
 }  // namespace breve

@@ -169,7 +169,7 @@ void Island::append_bodies(std::pmr::vector<BodyIndex>& out) const {
     for (const TreeLink& link : tree->links) out.push_back(link.body);
 }
 
-void Island::step(DynamicsClient* client, double start, double h) {
+void Island::step(MechanicsClient* client, double start, double h) {
   ++result.counters.islands;
   finished_ = false;
   const Accuracy asked = accuracy_;
@@ -190,7 +190,7 @@ void Island::step(DynamicsClient* client, double start, double h) {
   }
 }
 
-void Island::step_once(DynamicsClient* client, double start, double h) {
+void Island::step_once(MechanicsClient* client, double start, double h) {
   begin(client, h);
   bool bounded = false;
   for (Tree* tree : trees_) {
@@ -229,7 +229,7 @@ void Island::step_once(DynamicsClient* client, double start, double h) {
   }
 }
 
-void Island::begin(DynamicsClient* client, double h) {
+void Island::begin(MechanicsClient* client, double h) {
   locates_ = client && client->locates();
   for (Clustered& one : clusters_) {
     for (const std::uint32_t index : one.entry->trees) {

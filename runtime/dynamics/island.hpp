@@ -39,7 +39,7 @@ class Island : public InMemory {
   /// Moves it from `start` by h seconds; write() is to follow, but where it was dissolved. Touches nothing that
   /// is not the island's if there is no client: on any thread then.
   /// @param client  for handlers and force methods; then on the world's thread only
-  void step(DynamicsClient* client, double start, double h);
+  void step(MechanicsClient* client, double start, double h);
   bool calls_out() const;  // step() needs a client
   /// Work that step() may take, from now on; where it is used up, what is left of the step is finished coarsely.
   void bound_work(std::uint64_t most, const std::atomic<bool>* ended) { meter_.begin(most, ended); }
@@ -164,7 +164,7 @@ class Island : public InMemory {
 
   // island.cpp
   void put_driver(Free& one, double h);
-  void begin(DynamicsClient* client, double h);
+  void begin(MechanicsClient* client, double h);
   void place(double h = 0);  // kinematics and factors of trees, at the state now; for rows of h seconds
   void remember();
   void restore();
@@ -297,14 +297,14 @@ class Island : public InMemory {
   void note_start_poses();
   void book_part(double part, double took);
   void tell_impacts(double time);
-  void step_located(DynamicsClient* client, double start, double h);
+  void step_located(MechanicsClient* client, double start, double h);
   void advance_once(double time, double h);
   bool catch_bounds(double time, double h);
   void look(double h, bool spent);
   int located_impacts() const;
   double contact_part(double left, bool lies) const;
   bool lies(double h) const;
-  bool call(DynamicsClient& client, int pair, double moment, double left);
+  bool call(MechanicsClient& client, int pair, double moment, double left);
   bool holds_rings() const;
   bool has_rows() const;
   bool has_rings() const;
@@ -320,7 +320,7 @@ class Island : public InMemory {
   void refine(double time, Event& event, double h);
   bool is_past(const Event& event);
   double gap_of(const Event& event, double& rate);
-  void meet(DynamicsClient* client, const Event& event, double moment, double left);
+  void meet(MechanicsClient* client, const Event& event, double moment, double left);
   void collide(double time);
   void rebound(std::size_t bound, double time);
   static Motion chord(const Pose& from, const Pose& to, double h);
@@ -377,11 +377,11 @@ class Island : public InMemory {
     std::uint32_t pair;
     double before;  // m, when it was noted
   };
-  void step_guarded(DynamicsClient* client, double start, double h);
+  void step_guarded(MechanicsClient* client, double start, double h);
   void use_accuracy(const Accuracy& accuracy);
-  void step_once(DynamicsClient* client, double start, double h);
-  Trouble try_step(DynamicsClient* client, double start, double h);
-  Trouble try_in_parts(DynamicsClient* client, double start, double h);
+  void step_once(MechanicsClient* client, double start, double h);
+  Trouble try_step(MechanicsClient* client, double start, double h);
+  Trouble try_in_parts(MechanicsClient* client, double start, double h);
   double tolerated(double turnover, double h) const;
   double weight() const;
   void give_in(const Trouble& trouble, double start, double h);

@@ -41,7 +41,7 @@ void Island::use_accuracy(const Accuracy& accuracy) {
   for (Clustered& one : clusters_) one.entry->system->set_accuracy(accuracy);
 }
 
-void Island::step_guarded(DynamicsClient* client, double start, double h) {
+void Island::step_guarded(MechanicsClient* client, double start, double h) {
   const GuardMode mode = core_.settings.guard;
   const Accuracy asked = accuracy_;
   Trouble trouble;
@@ -72,7 +72,7 @@ void Island::step_guarded(DynamicsClient* client, double start, double h) {
 
 /// A step of articulated bodies whose energy does not add up is taken again in 2, 4, 8, ... parts: what turns far in a
 /// sub-step while a joint meets its limit or a foot the floor is not known well enough. Nothing of that is trouble.
-Island::Trouble Island::try_in_parts(DynamicsClient* client, double start, double h) {
+Island::Trouble Island::try_in_parts(MechanicsClient* client, double start, double h) {
   const Accuracy asked = accuracy_;
   Trouble trouble = try_step(client, start, h);
   if (dissolved_ || trees_.empty()) return trouble;
@@ -129,7 +129,7 @@ void Island::give_in(const Trouble& trouble, double start, double h) {
   intervene(trouble, rest ? GuardAction::Rested : GuardAction::Reported, start);
 }
 
-Island::Trouble Island::try_step(DynamicsClient* client, double start, double h) {
+Island::Trouble Island::try_step(MechanicsClient* client, double start, double h) {
   const bool off = core_.settings.guard == GuardMode::Off;
   double kinetic = 0, residual = 0, turnover = 0;
   overlaps_.clear();

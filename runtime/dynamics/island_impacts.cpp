@@ -172,7 +172,7 @@ Motion Island::chord(const Pose& from, const Pose& to, double h) {
 // --- what happens then -----------------------------------------------------------------------------------------------
 
 /// What has come to its moment: the handler first, then the impulses.
-void Island::meet(DynamicsClient* client, const Event& event, double moment, double left) {
+void Island::meet(MechanicsClient* client, const Event& event, double moment, double left) {
   ++result.counters.impacts;
   if (event.point >= 0) return;
   if (event.pair >= 0) {

@@ -178,7 +178,7 @@ void Island::end_unfinished(double held) {
 
 /// Calls the handler of a pair that touches for the first time. False if what it did leaves nothing of the island as it
 /// was: the rest of the step is then taken by the islands that are found anew.
-bool Island::call(DynamicsClient& client, int index, double moment, double left) {
+bool Island::call(MechanicsClient& client, int index, double moment, double left) {
   NearPair& pair = *pairs_[static_cast<std::size_t>(index)];
   pair.reported = true;
   const Contact contact = closest(*core_.bodies->collision_shape(pair.a), pose_of(pair.a),
@@ -261,7 +261,7 @@ void Island::tell_impacts(double time) {
     intervene({true, GuardReason::Impacts, static_cast<double>(impacts_), any_body()}, GuardAction::Reported, time);
 }
 
-void Island::step_located(DynamicsClient* client, double start, double h) {
+void Island::step_located(MechanicsClient* client, double start, double h) {
   double now = 0;
   impacts_ = 0;
   rebounds_.clear();

@@ -18,15 +18,13 @@ bool meet(const Bodies& bodies, BodyIndex a, BodyIndex b) {
 
 }  // namespace
 
-bool Dynamics::pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client) const {
+bool Dynamics::pushes(BodyIndex a, BodyIndex b, const MechanicsClient& client) const {
   if (core_) return core_->pushes(a, b, client);
   // Nothing has moved yet: no joints, no trees.
   return meet(*bodies_, a, b) && !client.ignored(a, b);
 }
 
-std::uint64_t Dynamics::rules() const { return core_ ? core_->rules : 0; }
-
-bool Dynamics::Core::pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client) {
+bool Dynamics::Core::pushes(BodyIndex a, BodyIndex b, const MechanicsClient& client) {
   if (!meet(*bodies, a, b)) return false;
   if (jointed(a, b) || client.ignored(a, b)) return false;
   const BodyEntry *x = find(a), *y = find(b);
@@ -110,11 +108,6 @@ Island& Dynamics::Core::fill(std::size_t place, std::size_t number) {
   return island;
 }
 
-bool Dynamics::Core::over() const {
-  if (bound.ended && bound.ended->load(std::memory_order_relaxed)) return true;
-  return bound.most > 0 && counters.work >= bound.most;
-}
-
 /// That the sub-step may take.
 std::uint64_t Dynamics::Core::work_left() const {
   if (bound.most == 0) return Meter::kNoBound;
@@ -137,7 +130,7 @@ std::size_t Dynamics::Core::most_pairs() const {
   return static_cast<std::size_t>(std::max(bound.most, kUsual) / kUnits);
 }
 
-void Dynamics::Core::advance(DynamicsClient& client, double start, double h, double share) {
+void Dynamics::Core::advance(MechanicsClient& client, double start, double h, double share) {
   const double left = bound.most > counters.work ? static_cast<double>(bound.most - counters.work) : 0;
   work_most = counters.work + static_cast<std::uint64_t>(share * left);
   ++sub_step;
@@ -157,7 +150,7 @@ bool Dynamics::Core::locates() const {
   return false;
 }
 
-void Dynamics::Core::run(DynamicsClient& client, double start, double h, int depth) {
+void Dynamics::Core::run(MechanicsClient& client, double start, double h, int depth) {
   take_changes();
   settle_books(true);
   if (clusters_changed || integrators_changed) build_clusters();
@@ -245,7 +238,7 @@ void Dynamics::Core::step_quiet(Workers* workers, std::size_t count, double star
   if (first) std::rethrow_exception(first);
 }
 
-void Dynamics::Core::run_only(DynamicsClient& client, double start, double h, int depth,
+void Dynamics::Core::run_only(MechanicsClient& client, double start, double h, int depth,
                               std::span<const BodyIndex> some) {
   const std::pmr::vector<std::uint8_t> before(aside, memory);
   aside.assign(bodies->index_end(), 1);
@@ -255,7 +248,7 @@ void Dynamics::Core::run_only(DynamicsClient& client, double start, double h, in
   aside = before;
 }
 
-void Dynamics::Core::report_lasting(DynamicsClient& client, double moment) {
+void Dynamics::Core::report_lasting(MechanicsClient& client, double moment) {
   std::pmr::vector<std::pair<BodyIndex, BodyIndex>> touching(memory);
   near.each([&touching](const PairKey& key, const NearPair& pair) {
     if (key.handled && pair.touching && !pair.reported) touching.emplace_back(key.a, key.b);

@@ -1,30 +1,13 @@
 // The table of joints: making, breaking, placing the child, driving.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "runtime/articulated/forward_dynamics.hpp"
 #include "runtime/articulated/inverse_dynamics.hpp"
-#include "runtime/base/error.hpp"
 #include "runtime/dynamics/core.hpp"
 #include "runtime/mechanics/members.hpp"
 
 namespace breve {
-
-namespace {
-
-[[noreturn]] void refuse(const std::string& what) { throw Error(ErrorCode::Argument, what); }
-
-/// Where the child's body stands when the joint is at zero.
-Pose place_at_zero(const JointDescription& is, const Pose& parent) {
-  Pose child;
-  child.orientation = (parent.orientation * is.relative_rotation).normalized();
-  child.location = parent.location + parent.orientation * is.parent_point - child.orientation * is.child_point;
-  return child;
-}
-
-}  // namespace
 
 namespace {
 
@@ -34,17 +17,14 @@ void attach(Dynamics::Core& core, JointIndex joint) {
   for (const BodyIndex end : {entry.is.child, entry.is.parent}) {
     if (end == kNoBody) continue;
     core.touch_tree(end);
-    std::pmr::vector<JointIndex>& of = core.entry(end).joints;
-    of.insert(std::lower_bound(of.begin(), of.end(), entry.serial,
-                               [&core](JointIndex x, std::uint64_t serial) { return core.joints[x].serial < serial; }),
-              joint);
+    insert_joint(core.joints, joint, core.entry(end).joints);
   }
 }
 
 }  // namespace
 
 JointEntry& Dynamics::Core::at(JointIndex joint) {
-  if (joint >= joints.size() || !joints[joint].used) refuse("the joint is not linked");
+  if (joint >= joints.size() || !joints[joint].used) fail_no_joint();
   return joints[joint];
 }
 
@@ -122,7 +102,7 @@ JointIndex Dynamics::link(const JointDescription& description, ObjectId owner) {
   Core& c = core();
   check(description, *c.bodies);
   c.sync_changes();
-  if (c.free_joints.capacity() <= c.joints.size()) c.free_joints.reserve(2 * c.joints.size() + 16);
+  reserve_free(c.joints, c.free_joints);
   JointEntry made;
   made.used = true;
   made.owner = owner;
@@ -138,14 +118,7 @@ JointIndex Dynamics::link(const JointDescription& description, ObjectId owner) {
   for (const BodyIndex end : ends)
     if (end != kNoBody && c.bodies->kind(end) != BodyKind::Stationary) c.bodies->set_physics(end, true);
   c.place_child(made);  // the last that may be refused
-  JointIndex index;
-  if (c.free_joints.empty()) {
-    index = static_cast<JointIndex>(c.joints.size());
-    c.joints.emplace_back();
-  } else {
-    index = c.free_joints.back();
-    c.free_joints.pop_back();
-  }
+  const JointIndex index = take_place(c.joints, c.free_joints);
   made.serial = c.next_serial++;
   for (const BodyIndex end : ends) {
     if (end == kNoBody) continue;
@@ -213,34 +186,14 @@ void Dynamics::relink(JointIndex joint, const JointDescription& description) {
   c.note_joined(joint);
 }
 
-bool Dynamics::linked(JointIndex joint) const {
-  return core_ && joint < core_->joints.size() && core_->joints[joint].used;
+const JointRecord* Dynamics::joint_record(JointIndex joint) const {
+  return core_ && joint < core_->joints.size() && core_->joints[joint].used ? &core_->joints[joint] : nullptr;
 }
 
 std::size_t Dynamics::joint_count() const { return core_ ? core_->joints.size() - core_->free_joints.size() : 0; }
 
-namespace {
-[[noreturn]] void no_joint() { refuse("the joint is not linked"); }
-}  // namespace
-
-const JointDescription& Dynamics::joint(JointIndex joint) const {
-  if (!core_) no_joint();
-  return core_->at(joint).is;
-}
-ObjectId Dynamics::joint_owner(JointIndex joint) const {
-  if (!core_) no_joint();
-  return core_->at(joint).owner;
-}
-bool Dynamics::closes_ring(JointIndex joint) const {
-  if (!core_) no_joint();
-  return core_->at(joint).ring;
-}
-const JointDrive& Dynamics::drive(JointIndex joint) const {
-  if (!core_) no_joint();
-  return core_->at(joint).drive;
-}
 JointReaction Dynamics::reaction(JointIndex joint) const {
-  if (!core_) no_joint();
+  if (!core_) fail_no_joint();
   core_->take_changes();
   const JointEntry& entry = core_->at(joint);
   return entry.tree == kNone ? JointReaction() : core_->react(entry);
@@ -268,12 +221,6 @@ JointReaction Dynamics::Core::react(const JointEntry& joint) {
   const articulated::Work& work = tree.data.of(joint.link);
   const double sign = joint.flipped ? -1 : 1;
   return {sign * work.force, sign * work.couple};
-}
-
-double Dynamics::strength_hard_limit(JointIndex joint) const {
-  constexpr double kPerMass = 500;  // N*m a kg
-  if (!core_) no_joint();
-  return kPerMass * core_->bodies->mass(core_->at(joint).is.child);
 }
 
 void Dynamics::set_drive(JointIndex joint, const JointDrive& drive) {

@@ -26,15 +26,9 @@ bool follows(double sum) {
   return sum < kStable;
 }
 
-bool bounded(const JointDrive& drive, int axes) {
-  for (int i = 0; i < axes; ++i)
-    if (drive.low[i] > -JointDrive::kNoLimit || drive.high[i] < JointDrive::kNoLimit) return true;
-  return false;
-}
-
 }  // namespace
 
-bool Dynamics::Core::has_limits(const JointEntry& joint) { return bounded(joint.drive, axis_count(joint.is.kind)); }
+bool Dynamics::Core::has_limits(const JointEntry& joint) { return breve::has_limits(joint.drive, joint.is.kind); }
 
 void Dynamics::Core::measure_motors(Tree& tree) {
   // The response of each joint to its own force, with all other joints free.
@@ -144,7 +138,7 @@ void Dynamics::Core::aim(Tree& tree) const {
 
 // --- at the stages --------------------------------------------------------------------------------------------------
 
-Stage::Stage(Dynamics::Core& core, const ClusterEntry& cluster, DynamicsClient* client)
+Stage::Stage(Dynamics::Core& core, const ClusterEntry& cluster, MechanicsClient* client)
     : core_(core), cluster_(cluster), client_(client) {
   for (const std::uint32_t index : cluster.trees) {
     const Tree& tree = *core.trees[index];

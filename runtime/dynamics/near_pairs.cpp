@@ -29,7 +29,7 @@ NearPairs::NearPairs(std::pmr::memory_resource* memory)
       fresh_(memory),
       found_(memory) {}
 
-void NearPairs::enter(const Bodies& bodies, const DynamicsClient& client, BodyIndex body) {
+void NearPairs::enter(const Bodies& bodies, const MechanicsClient& client, BodyIndex body) {
   ProxyIndex index;
   if (free_.empty()) {
     // leave() and wake() take none.
@@ -72,7 +72,7 @@ void NearPairs::forget(BodyIndex body) {
   std::erase(movers_, body);
 }
 
-void NearPairs::gather(const Bodies& bodies, const DynamicsClient& client) {
+void NearPairs::gather(const Bodies& bodies, const MechanicsClient& client) {
   proxy_of_.resize(bodies.index_end(), kNoProxy);
   movers_.clear();
   for (BodyIndex body = 0; body < proxy_of_.size(); ++body) {
@@ -88,7 +88,7 @@ void NearPairs::gather(const Bodies& bodies, const DynamicsClient& client) {
   std::sort(movers_.begin(), movers_.end(), [this](BodyIndex x, BodyIndex y) { return serial(x) < serial(y); });
 }
 
-void NearPairs::refresh(Bodies& bodies, const DynamicsClient& client, const Vector3& gravity, double h,
+void NearPairs::refresh(Bodies& bodies, const MechanicsClient& client, const Vector3& gravity, double h,
                         Asking& asking) {
   const bool again = std::exchange(incomplete_, true);
   const bool gathers = again || bodies.revision() != seen_bodies_;

@@ -66,7 +66,7 @@ class NearPairs {
   /// @param most     pairs that push each other and whose boxes meet; kNoMost: no bound
   /// @throws         Error{Budget} if there are more
   template <class Wanted>
-  void update(Bodies& bodies, const DynamicsClient& client, const Vector3& gravity, double h, std::uint64_t rules,
+  void update(Bodies& bodies, const MechanicsClient& client, const Vector3& gravity, double h, std::uint64_t rules,
               bool strikes, std::size_t most, const Wanted& wanted) {
     Asking asking{most, 0, &wanted, [](const void* asked, PairKey& key) { (*static_cast<const Wanted*>(asked))(key); }};
     refresh(bodies, client, gravity, h, asking);
@@ -201,10 +201,10 @@ class NearPairs {
   static bool reshaped(const Bodies& bodies, const Proxy& proxy);
   static bool displaced(const Bodies& bodies, const Proxy& proxy);
   void wake_met(const Bodies& bodies, const Proxy& proxy);
-  void gather(const Bodies& bodies, const DynamicsClient& client);
+  void gather(const Bodies& bodies, const MechanicsClient& client);
   void find_drivers(const Bodies& bodies);
-  void refresh(Bodies& bodies, const DynamicsClient& client, const Vector3& gravity, double h, Asking& asking);
-  void enter(const Bodies& bodies, const DynamicsClient& client, BodyIndex body);
+  void refresh(Bodies& bodies, const MechanicsClient& client, const Vector3& gravity, double h, Asking& asking);
+  void enter(const Bodies& bodies, const MechanicsClient& client, BodyIndex body);
   void leave(ProxyIndex index);
   void update_boxes(const Bodies& bodies, bool all, const Vector3& gravity, double h, Asking& asking);
   static Vector3 room_of(const Bodies& bodies, const Proxy& proxy, double radius, const Vector3& gravity, double h);

@@ -24,11 +24,6 @@ using members::Writer;
 
 }  // namespace
 
-template <class F, Is<WorldSettings> S>
-void each(const F& f, S& s) {
-  f(s.gravity), each(f, s.accuracy), f(s.guard), f(s.sleeping), f(s.fast_contacts), f(s.erp), f(s.cfm);
-}
-
 template <class F, Is<AssemblySettings> S>
 void each(const F& f, S& s) {
   f(s.has_self), f(s.self_collisions), f(s.self_erp), f(s.self_cfm), f(s.has_accuracy), each(f, s.accuracy);
@@ -180,10 +175,7 @@ void Dynamics::Core::save_tree(ByteWriter& out, const Tree& tree) const {
 
 void Dynamics::Core::load(ByteReader& in) {
   each(Reader{in}, settings);
-  breve::check(settings.accuracy);
-  if (settings.fast_contacts < 0 || settings.fast_contacts > kMostIterations) ByteReader::fail();
-  if (!(settings.erp >= 0 && settings.erp <= 1) || !(settings.cfm >= 0)) ByteReader::fail();
-  if (!is_one_of(settings.guard, GuardMode::Rest) || !settings.gravity.allFinite()) ByteReader::fail();
+  check_loaded(settings);
   each(Reader{in}, account);
   next_serial = in.get<std::uint64_t>();
   sub_step = in.get<std::uint64_t>();
@@ -225,12 +217,7 @@ void Dynamics::Core::load(ByteReader& in) {
 }
 
 void Dynamics::Core::join_loaded() {
-  std::pmr::vector<JointIndex> order(memory);
-  for (JointIndex i = 0; i < joints.size(); ++i)
-    if (joints[i].used) order.push_back(i);
-  std::sort(order.begin(), order.end(),
-            [this](JointIndex x, JointIndex y) { return joints[x].serial < joints[y].serial; });
-  for (const JointIndex index : order) {
+  for (const JointIndex index : used_joints(joints, memory)) {
     const JointDescription& is = joints[index].is;
     check(is, *bodies);
     check(joints[index].drive, is.kind);

@@ -10,7 +10,7 @@ namespace breve {
 class Stage final : public StageForces {
  public:
   /// @param client  asked for the forces of force methods; null: there are none
-  Stage(Dynamics::Core& core, const ClusterEntry& cluster, DynamicsClient* client);
+  Stage(Dynamics::Core& core, const ClusterEntry& cluster, MechanicsClient* client);
 
   bool needed() const { return needed_; }
 
@@ -39,7 +39,7 @@ class Stage final : public StageForces {
 
   Dynamics::Core& core_;
   const ClusterEntry& cluster_;
-  DynamicsClient* client_;
+  MechanicsClient* client_;
   bool aims_ = false, pushed_ = false, asked_ = false, rings_ = false, needed_ = false;
   double script_ = 0, drag_ = 0;
 };

@@ -92,4 +92,17 @@ void check(const JointDrive& drive, JointKind kind) {
   if (!acceptable(drive, axis_count(kind))) explain(drive, kind);
 }
 
+bool has_limits(const JointDrive& drive, JointKind kind) {
+  for (int i = 0; i < axis_count(kind); ++i)
+    if (std::isfinite(drive.low[i]) || std::isfinite(drive.high[i])) return true;
+  return false;
+}
+
+Pose place_at_zero(const JointDescription& is, const Pose& parent) {
+  Pose child;
+  child.orientation = (parent.orientation * is.relative_rotation).normalized();
+  child.location = parent.location + parent.orientation * is.parent_point - child.orientation * is.child_point;
+  return child;
+}
+
 }  // namespace breve

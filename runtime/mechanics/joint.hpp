@@ -10,6 +10,7 @@
 #include "runtime/base/ids.hpp"
 #include "runtime/base/math.hpp"
 #include "runtime/kinematics/bodies.hpp"
+#include "runtime/solid/contact.hpp"
 
 namespace breve {
 
@@ -74,6 +75,12 @@ void check(const JointDescription& is, const Bodies& bodies);
 /// Error{Argument} naming the number that is not finite, negative where it must not be, or a low limit above a high
 /// one.
 void check(const JointDrive& drive, JointKind kind);
+
+/// Some axis of the joint has a limit.
+bool has_limits(const JointDrive& drive, JointKind kind);
+
+/// Where the child's body stands when the joint is at zero.
+Pose place_at_zero(const JointDescription& is, const Pose& parent);
 
 /// What a joint gives.
 struct JointReaction {

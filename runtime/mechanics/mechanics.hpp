@@ -28,9 +28,9 @@
 namespace breve {
 
 /// What mechanics asks of the world around it.
-class DynamicsClient {
+class MechanicsClient {
  public:
-  virtual ~DynamicsClient() = default;
+  virtual ~MechanicsClient() = default;
   /// Position in the order of creation.
   virtual std::uint64_t serial(BodyIndex body) const = 0;
   /// A handler wants to know when these two touch.
@@ -53,8 +53,19 @@ class DynamicsClient {
   virtual Workers* workers() const { return nullptr; }
 };
 
+struct AssemblySettings;
+struct JointRecord;
+struct MechanicsCore;
+struct SpringRecord;
+struct WorldSettings;
+
+/// The virtual functions differ between space and a flat world. The others, in mechanics.cpp, work on what both keep
+/// (core.hpp).
 class Mechanics : public InMemory {
  public:
+  Mechanics() = default;
+  Mechanics(const Mechanics&) = delete;
+  Mechanics& operator=(const Mechanics&) = delete;
   virtual ~Mechanics() = default;
   virtual void rebind(Bodies& bodies) = 0;  // the same bodies, at another address
 
@@ -69,19 +80,19 @@ class Mechanics : public InMemory {
   ///         a point, rotation or normal that is not finite or has no direction. Nothing is changed then
   virtual JointIndex link(const JointDescription& description, ObjectId owner) = 0;
   virtual void unlink(JointIndex joint) = 0;
-  virtual bool linked(JointIndex joint) const = 0;  // names a joint that there is
+  bool linked(JointIndex joint) const;  // names a joint that there is
   virtual std::size_t joint_count() const = 0;
-  virtual const JointDescription& joint(JointIndex joint) const = 0;
-  virtual ObjectId joint_owner(JointIndex joint) const = 0;
-  virtual bool closes_ring(JointIndex joint) const = 0;
+  const JointDescription& joint(JointIndex joint) const;
+  ObjectId joint_owner(JointIndex joint) const;
+  bool closes_ring(JointIndex joint) const;
   /// Point and normal may be changed while it is linked; the bodies are placed anew as by link(). Errors as there.
   virtual void relink(JointIndex joint, const JointDescription& description) = 0;
 
-  virtual const JointDrive& drive(JointIndex joint) const = 0;
+  const JointDrive& drive(JointIndex joint) const;
   /// Error{Argument} naming the number that is not finite, negative where it must not be, or a low limit above a high
   /// one; nothing is changed then. The strength limit is cut to 0 .. strength_hard_limit.
   virtual void set_drive(JointIndex joint, const JointDrive& drive) = 0;
-  virtual double strength_hard_limit(JointIndex joint) const = 0;  // 500 x mass of the child, N*m or N
+  double strength_hard_limit(JointIndex joint) const;  // 500 x mass of the child, N*m or N
 
   /// rad or m, sign as in JointDescription; a revolute joint counts whole revolutions. Universal and ball: angles about
   /// their axes.
@@ -112,14 +123,14 @@ class Mechanics : public InMemory {
   virtual void set_assembly_velocity(BodyIndex body, const Vector3& velocity, const Vector3& spin) = 0;
   /// Settings of the assembly that this body belongs to, kept with the body; the first body in the order of indices
   /// that has some decides for an assembly.
-  virtual void set_self_collisions(BodyIndex body, bool on) = 0;
-  virtual bool self_collisions(BodyIndex body) const = 0;
+  void set_self_collisions(BodyIndex body, bool on);
+  bool self_collisions(BodyIndex body) const;
   /// Contact softness within the assembly, for the iterative solver; used if cfm is not 0.
   virtual void set_self_collision_parameters(BodyIndex body, double erp, double cfm) = 0;
-  virtual void set_accuracy(BodyIndex body, const Accuracy& accuracy) = 0;
-  virtual void clear_accuracy(BodyIndex body) = 0;
-  virtual const Accuracy& accuracy(BodyIndex body) const = 0;  // in force: the assembly's or the world's
-  virtual Energy energy(BodyIndex body) const = 0;             // of its assembly; works and losses since it was made
+  void set_accuracy(BodyIndex body, const Accuracy& accuracy);
+  void clear_accuracy(BodyIndex body);
+  const Accuracy& accuracy(BodyIndex body) const;   // in force: the assembly's or the world's
+  virtual Energy energy(BodyIndex body) const = 0;  // of its assembly; works and losses since it was made
   /// A script put the body somewhere else: if it has joints, its assembly follows now. Otherwise, and where this is not
   /// called, before anything is done with its assembly.
   virtual void moved(BodyIndex body) = 0;
@@ -131,39 +142,39 @@ class Mechanics : public InMemory {
   /// Error{Argument} naming the property. The same body twice gives kNoSpring.
   virtual SpringIndex tie(const SpringDescription& description, ObjectId owner) = 0;
   virtual void untie(SpringIndex spring) = 0;
-  virtual bool tied(SpringIndex spring) const = 0;
-  virtual const SpringDescription& spring(SpringIndex spring) const = 0;
+  bool tied(SpringIndex spring) const;
+  const SpringDescription& spring(SpringIndex spring) const;
   virtual void set_spring(SpringIndex spring, const SpringDescription& description) = 0;  // not its bodies
-  virtual double spring_length(SpringIndex spring) const = 0;                             // m, now
-  virtual double spring_force(SpringIndex spring) const = 0;  // N, in the last sub-step; pulling is positive
+  double spring_length(SpringIndex spring) const;                                         // m, now
+  double spring_force(SpringIndex spring) const;  // N, in the last sub-step; pulling is positive
 
   // --- settings of the world ----------------------------------------------------------------------------------------
   virtual int dimension() const = 0;  // 3, or 2 in a flat world
   /// Metres of what a flat world computes with as 1: sizes from 0.1 to 10 of it are best. In space always 1.
-  virtual double length_unit() const = 0;
+  double length_unit() const;
   /// Error{Argument} if it is not finite and > 0, and in space if it is not 1.
   virtual void set_length_unit(double metres) = 0;
   virtual void set_gravity(const Vector3& gravity) = 0;  // m/s^2; Error{Argument} if not finite
-  virtual const Vector3& gravity() const = 0;
-  virtual void set_accuracy(Rung rung) = 0;
-  virtual void set_accuracy(const Accuracy& accuracy) = 0;  // Error{Argument} naming the setting
-  virtual const Accuracy& accuracy() const = 0;
+  const Vector3& gravity() const;
+  void set_accuracy(Rung rung);
+  void set_accuracy(const Accuracy& accuracy);  // Error{Argument} naming the setting
+  const Accuracy& accuracy() const;
   virtual std::string describe_accuracy() const = 0;  // what the settings mean here, in words, for people
-  virtual void set_guard(GuardMode mode) = 0;
-  virtual GuardMode guard() const = 0;
+  void set_guard(GuardMode mode);
+  GuardMode guard() const;
   /// Bodies at rest may sleep until something touches or changes them (enable-auto-disable). Off at first.
-  virtual void set_sleeping(bool on) = 0;
-  virtual bool sleeping() const = 0;
+  void set_sleeping(bool on);
+  bool sleeping() const;
   /// Contacts by the iterative solver and nothing else (enable-fast-physics), with at most so many iterations; 0: as
   /// the rung says.
-  virtual void set_fast_contacts(int iterations) = 0;
+  void set_fast_contacts(int iterations);
   /// For the softness of the iterative solver; ignored where contacts are solved exactly.
-  virtual void set_softness(double erp, double cfm) = 0;
-  virtual double erp() const = 0;
-  virtual double cfm() const = 0;
+  void set_softness(double erp, double cfm);
+  double erp() const;
+  double cfm() const;
   /// Threads that work on islands, the caller's one of them; results do not depend on it. 1 at first.
-  virtual void set_workers(int workers) = 0;
-  virtual int workers() const = 0;
+  void set_workers(int workers);
+  int workers() const;
   /// The client's stage_force is asked for this body's force at every stage of the integrator.
   virtual void set_force_method(BodyIndex body, bool on) = 0;
   virtual bool force_method(BodyIndex body) const = 0;
@@ -171,9 +182,9 @@ class Mechanics : public InMemory {
   // --- what there is to know ----------------------------------------------------------------------------------------
   virtual bool asleep(BodyIndex body) const = 0;
   virtual Energy energy() const = 0;  // of all physics-enabled bodies
-  virtual const DynamicsCounters& counters() const = 0;
-  virtual std::span<const Intervention> interventions() const = 0;  // of the last iteration
-  virtual std::span<const Impact> impacts() const = 0;              // of the last iteration
+  const DynamicsCounters& counters() const;
+  std::span<const Intervention> interventions() const;  // of the last iteration
+  std::span<const Impact> impacts() const;              // of the last iteration
   virtual std::size_t bytes() const = 0;
   // What the effects ask: how many there are, and who asked first.
   struct Census {
@@ -189,23 +200,41 @@ class Mechanics : public InMemory {
   // --- the world's side ---------------------------------------------------------------------------------------------
   /// Counters, interventions and impacts start again.
   /// @param bound  of the work of all advance() until the next iteration
-  virtual void begin_iteration(std::uint64_t iteration, const WorkBound& bound) = 0;
+  void begin_iteration(std::uint64_t iteration, const WorkBound& bound);
   /// Moves all physics-enabled bodies from time `start` to `start + h`. Error{Numeric} only with the guard off.
   /// @param share  of the work that is left of the bound, that this may take: what needs more is finished coarsely, and
   ///               the guard tells. In (0, 1]
-  virtual void advance(DynamicsClient& client, double start, double h, double share) = 0;
-  virtual bool over() const = 0;  // the work of the iteration is used up, or ended
+  virtual void advance(MechanicsClient& client, double start, double h, double share) = 0;
+  bool over() const;  // the work of the iteration is used up, or ended
   /// Something left advance() by an exception.
   virtual void abandon() = 0;
   /// Finds what was changed in the arrays since, and brings assemblies in step with it.
   virtual void take_changes() = 0;
   /// Contacts of these two are solved here, and their handlers called from here.
-  virtual bool pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client) const = 0;
-  virtual std::uint64_t rules() const = 0;  // grows when that may have changed
+  virtual bool pushes(BodyIndex a, BodyIndex b, const MechanicsClient& client) const = 0;
+  std::uint64_t rules() const;              // grows when that may have changed
   virtual void forget(BodyIndex body) = 0;  // it is going: its joints and springs go with it
   virtual void save(ByteWriter& out) const = 0;
   virtual void load(ByteReader& in) = 0;  // into a fresh one whose bodies are loaded; Error{Image}
   virtual void hash(Hasher& hasher) const = 0;
+
+ protected:
+  void share(MechanicsCore& core) { shared_ = &core; }
+  const WorldSettings& settings() const;
+  const WorkBound& bound() const { return bound_; }
+  /// The inside, which is made if there is none yet.
+  virtual MechanicsCore& inside() = 0;
+  virtual const JointRecord* joint_record(JointIndex joint) const = 0;      // null: it is not linked
+  virtual const SpringRecord* spring_record(SpringIndex spring) const = 0;  // null: it is not connected
+  /// The settings of the first body of the assembly, by index, that has `wanted` ones; null if there is none.
+  virtual const AssemblySettings* settings_of(BodyIndex body, bool (*wanted)(const AssemblySettings&)) const = 0;
+  virtual void settings_begin(BodyIndex) {}  // the body gets settings of its own
+  virtual void accuracy_changed() {}         // of the world, or of some assembly
+  virtual void sleeping_ended() {}
+
+ private:
+  MechanicsCore* shared_ = nullptr;  // null: there is no inside yet
+  WorkBound bound_;                  // of the iteration
 };
 
 }  // namespace breve

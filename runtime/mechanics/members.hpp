@@ -12,6 +12,7 @@
 #include "runtime/base/hasher.hpp"
 #include "runtime/mechanics/account.hpp"
 #include "runtime/mechanics/accuracy.hpp"
+#include "runtime/mechanics/core.hpp"
 #include "runtime/mechanics/joint.hpp"
 #include "runtime/mechanics/spring.hpp"
 
@@ -61,6 +62,12 @@ void each(const F& f, A& a) {
   f(a.link_springs), f(a.contact_stiffness), f(a.contact_damping);
 }
 
+/// But not the length unit, which space does not have.
+template <class F, Is<WorldSettings> S>
+void each(const F& f, S& s) {
+  f(s.gravity), each(f, s.accuracy), f(s.guard), f(s.sleeping), f(s.fast_contacts), f(s.erp), f(s.cfm);
+}
+
 template <class F, Is<Energy> E>
 void each(const F& f, E& e) {
   f(e.motor_work), f(e.script_work), f(e.contact_loss), f(e.friction_loss), f(e.drag_loss), f(e.limit_loss);
@@ -83,6 +90,11 @@ template <class F, Is<SpringDescription> S>
 void each(const F& f, S& s) {
   f(s.a), f(s.b), f(s.point_a), f(s.point_b), f(s.length), f(s.strength), f(s.damping);
   f(s.maximum_force), f(s.mode);
+}
+
+template <class F, Is<SpringRecord> S>
+void each(const F& f, S& s) {
+  f(s.owner), f(s.force), each(f, s.is);
 }
 
 /// Whether all listed members of two are the same, bit for bit.

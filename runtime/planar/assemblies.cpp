@@ -37,10 +37,7 @@ void Planar::Core::collect_beyond(JointIndex joint, std::pmr::vector<BodyIndex>&
   if (of) std::erase(*of, joint);
   collect(entry.is.child, out);
   entry.is.parent = held;
-  if (of)
-    of->insert(std::lower_bound(of->begin(), of->end(), entry.serial,
-                                [this](JointIndex x, std::uint64_t serial) { return joints[x].serial < serial; }),
-               joint);
+  if (of) insert_joint(joints, joint, *of);
 }
 
 bool Planar::Core::jointed(BodyIndex a, BodyIndex b) const {
@@ -123,7 +120,7 @@ void Planar::Core::number_assemblies() {
   }
 }
 
-const OwnSettings* Planar::Core::own_of(BodyIndex body, bool (*wanted)(const OwnSettings&)) const {
+const AssemblySettings* Planar::Core::settings_of(BodyIndex body, bool (*wanted)(const AssemblySettings&)) const {
   if (own.empty()) return nullptr;
   std::pmr::vector<BodyIndex> all(memory);
   collect(body, all);
@@ -135,7 +132,7 @@ const OwnSettings* Planar::Core::own_of(BodyIndex body, bool (*wanted)(const Own
   return nullptr;
 }
 
-bool Planar::Core::pushes(BodyIndex a, BodyIndex b, const DynamicsClient& asked) const {
+bool Planar::Core::pushes(BodyIndex a, BodyIndex b, const MechanicsClient& asked) const {
   if (!bodies->dynamic(a) && !bodies->dynamic(b)) return false;
   const bool solid_a = bodies->dynamic(a) || bodies->driver(a);
   const bool solid_b = bodies->dynamic(b) || bodies->driver(b);
@@ -144,7 +141,7 @@ bool Planar::Core::pushes(BodyIndex a, BodyIndex b, const DynamicsClient& asked)
   if (jointed(a, b)) return false;
   const FlatBody *x = find(a), *y = find(b);
   if (!x || !y || x->assembly == kNoSlot || x->assembly != y->assembly) return true;
-  const OwnSettings* found = own_of(a, [](const OwnSettings& s) { return s.has_self; });
+  const AssemblySettings* found = settings_of(a, [](const AssemblySettings& s) { return s.has_self; });
   return found && found->self_collisions;
 }
 
@@ -171,8 +168,7 @@ std::pmr::vector<JointIndex> Planar::joints_of(BodyIndex body) const {
     const auto found = core_->joints_at.find(link);
     if (found != core_->joints_at.end()) all.insert(all.end(), found->second.begin(), found->second.end());
   }
-  std::sort(all.begin(), all.end(),
-            [this](JointIndex x, JointIndex y) { return core_->joints[x].serial < core_->joints[y].serial; });
+  sort_joints(core_->joints, all);
   all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
 }
@@ -189,8 +185,7 @@ void Planar::move_assembly(BodyIndex body, const Vector3& location, const Quater
 }
 
 void Planar::set_assembly_velocity(BodyIndex body, const Vector3& velocity, const Vector3& spin) {
-  if (!velocity.allFinite()) throw Error(ErrorCode::Argument, "velocity must be finite");
-  if (!spin.allFinite()) throw Error(ErrorCode::Argument, "rotational velocity must be finite");
+  check_motion(velocity, spin);
   take_changes();
   Core& c = *core_;
   const Vector3 center = c.bodies->location(body);
@@ -226,38 +221,12 @@ std::size_t Planar::self_penetrations(BodyIndex body) const {
 
 // --- settings of an assembly ----------------------------------------------------------------------------------------
 
-void Planar::set_self_collisions(BodyIndex body, bool on) {
-  core_->own[body].has_self = true;
-  core_->own[body].self_collisions = on;
-  ++core_->rules;
-}
-
-bool Planar::self_collisions(BodyIndex body) const {
-  const OwnSettings* found = core_->own_of(body, [](const OwnSettings& s) { return s.has_self; });
-  return found && found->self_collisions;
+const AssemblySettings* Planar::settings_of(BodyIndex body, bool (*wanted)(const AssemblySettings&)) const {
+  return core_->settings_of(body, wanted);
 }
 
 void Planar::set_self_collision_parameters(BodyIndex, double erp, double cfm) {
-  if (!std::isfinite(erp) || erp < 0 || erp > 1)
-    throw Error(ErrorCode::Argument, fmt::format("self collision erp must be from 0 to 1, but is {}", erp));
-  if (!std::isfinite(cfm) || cfm < 0)
-    throw Error(ErrorCode::Argument, fmt::format("self collision cfm must be finite and >= 0, but is {}", cfm));
-}
-
-void Planar::set_accuracy(BodyIndex body, const Accuracy& accuracy) {
-  check(accuracy);
-  core_->own[body].has_accuracy = true;
-  core_->own[body].accuracy = accuracy;
-}
-
-void Planar::clear_accuracy(BodyIndex body) {
-  const auto found = core_->own.find(body);
-  if (found != core_->own.end()) found->second.has_accuracy = false;
-}
-
-const Accuracy& Planar::accuracy(BodyIndex body) const {
-  const OwnSettings* found = core_->own_of(body, [](const OwnSettings& s) { return s.has_accuracy; });
-  return found ? found->accuracy : accuracy();
+  check_softness_within(erp, cfm);  // Box2D has neither
 }
 
 }  // namespace breve

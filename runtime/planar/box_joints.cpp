@@ -109,7 +109,7 @@ void Planar::Core::put_drive(FlatJoint& joint) {
   }
   const auto set = [&](auto* b) {
     b->SetLimits(static_cast<float>(low), static_cast<float>(high));
-    b->EnableLimit(has_limits(joint) && !joint.loose);
+    b->EnableLimit(has_limits(joint.drive, joint.is.kind) && !joint.loose);
     b->EnableMotor(drive.strength_limit > 0);
     b->SetMotorSpeed(static_cast<float>(sign * speed / u));
   };

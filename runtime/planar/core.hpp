@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "runtime/contact/law.hpp"
+#include "runtime/mechanics/core.hpp"
 #include "runtime/planar/held.hpp"
 #include "runtime/planar/outline.hpp"
 #include "runtime/planar/planar.hpp"
@@ -23,13 +24,7 @@ struct WarmJoint {
   float x = 0, y = 0, turn = 0, motor = 0, lower = 0, upper = 0;
 };
 
-struct FlatJoint {
-  bool used = false;
-  ObjectId owner;
-  JointDescription is;
-  JointDrive drive;
-  std::uint64_t serial = 0;
-  bool ring = false;
+struct FlatJoint : JointRecord {
   double position = 0;  // rad or m, as last known: whole turns are counted from here
   b2Joint* b2 = nullptr;
   double rate = 0;     // of its own axis at the start of the sub-step, in Box2D's units
@@ -38,12 +33,7 @@ struct FlatJoint {
   bool loose = false;  // its limit is off, since it is to bounce there
 };
 
-struct FlatSpring {
-  bool used = false;
-  ObjectId owner;
-  SpringDescription is;
-  double force = 0;  // N, in the last sub-step
-};
+using FlatSpring = SpringRecord;
 
 /// A body that Box2D knows: one that moves, or that others touch or hang on.
 struct FlatBody {
@@ -81,22 +71,6 @@ struct FlatBody {
 
   /// Nothing but gravity and constant forces act on it.
   bool free_flight() const { return !jointed && !pulled && touching == 0; }
-};
-
-struct OwnSettings {
-  bool has_self = false, self_collisions = false;
-  bool has_accuracy = false;
-  Accuracy accuracy;
-};
-
-struct FlatSettings {
-  Vector3 gravity{0, -9.81, 0};
-  Accuracy accuracy = accuracy_of(Rung::Balanced);
-  GuardMode guard = GuardMode::Rest;
-  bool sleeping = false;
-  int fast_contacts = 0;
-  double erp = 0.1, cfm = 1e-6, unit = 1;
-  int workers = 1;
 };
 
 /// What the guard knows of the energy of the last steps, J.
@@ -159,22 +133,14 @@ struct Strike {
 
 using BodyPair = std::pair<BodyIndex, BodyIndex>;
 
-struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
+struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   Core(std::pmr::memory_resource* memory, Bodies& bodies);
   ~Core() override;
 
-  std::pmr::memory_resource* memory;
-  Bodies* bodies;
-  FlatSettings settings;
-
   std::pmr::vector<FlatJoint> joints;
-  std::pmr::vector<JointIndex> free_joints;
-  std::uint64_t next_serial = 0;
   std::pmr::vector<FlatSpring> springs;
-  std::pmr::vector<SpringIndex> free_springs;
   std::pmr::map<BodyIndex, std::pmr::vector<JointIndex>> joints_at;  // by body, in the order of creation
-  std::pmr::map<BodyIndex, OwnSettings> own;
-  std::pmr::vector<BodyIndex> force_methods;  // in order
+  std::pmr::vector<BodyIndex> force_methods;                         // in order
 
   std::unique_ptr<b2World> b2;
   b2Body* ground = nullptr;          // what joints to the world hang on
@@ -190,13 +156,11 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
 
   std::uint64_t seen_revision = 0, seen_rules = 0, seen_scalings = 0;
   bool rules_seen = false, members_changed = true, materials_changed = true;
-  std::uint64_t rules = 0;           // grows when the answer may change whether two bodies push each other
-  DynamicsClient* client = nullptr;  // during advance()
+  MechanicsClient* client = nullptr;  // during advance()
 
   std::pmr::map<BodyPair, bool> met;  // pairs with a handler whose first touch was reported; true: in this step
-  std::uint64_t iteration = 0, sub_step = 0;
-  double now = 0;  // s, at the start of the current sub-step
-  int calm = 0;    // steps since something was wrong
+  double now = 0;                     // s, at the start of the current sub-step
+  int calm = 0;                       // steps since something was wrong
   EnergyWatch watched;
   double pushed = 0;           // J, by which positions that were put right have lifted things in this step
   int refined = 0;             // the guard's doublings of the sub-steps
@@ -207,13 +171,8 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   double friction = 0;         // J, lost in sliding contacts in this sub-step
   double driven_work = 0;      // J, of bodies moved by scripts on what they touch in this sub-step
   int located = 0;             // impacts of pairs without handler in this sub-step
-  WorkBound bound;             // of the iteration
   std::uint64_t work_most = Meter::kNoBound;  // of the sub-step: what counters.work may become
   bool finishing = false;                     // it is that: the rest is taken coarsely
-  DynamicsCounters counters;
-  std::pmr::vector<Intervention> interventions;
-  std::pmr::vector<Impact> impacts;
-  Energy account;            // works and losses
   double base = 0;           // J: total energy when the ledger began, plus what came and went with bodies
   double springs_known = 0;  // J: of springs, at the end of the last step; what differs since then scripts did
   std::pmr::vector<BodyIndex> scratch;
@@ -264,9 +223,6 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void make_b2(FlatJoint& joint);
   void drop_b2(FlatJoint& joint);
   void put_drive(FlatJoint& joint);
-  static bool has_limits(const FlatJoint& joint) {
-    return std::isfinite(joint.drive.low[0]) || std::isfinite(joint.drive.high[0]);
-  }
 
   // joints.cpp
   double read_position(const FlatJoint& joint) const;
@@ -290,7 +246,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void move_rigidly(std::span<const BodyIndex> some, const Pose& from, const Pose& to);
   void follow(BodyIndex leader, const Pose& from);
   void number_assemblies();
-  const OwnSettings* own_of(BodyIndex body, bool (*wanted)(const OwnSettings&)) const;
+  const AssemblySettings* settings_of(BodyIndex body, bool (*wanted)(const AssemblySettings&)) const;
 
   // waking.cpp
   void place_drivers(double h);
@@ -301,7 +257,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void expect_pairs(const WorkBound& most);
 
   // assemblies.cpp
-  bool pushes(BodyIndex a, BodyIndex b, const DynamicsClient& asked) const;
+  bool pushes(BodyIndex a, BodyIndex b, const MechanicsClient& asked) const;
   Pose pose(BodyIndex body) const { return {bodies->location(body), bodies->orientation(body)}; }
 
   // strikes.cpp: velocities that scripts set on what joints connect
@@ -318,8 +274,7 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void ask_forces();
 
   // step.cpp
-  void advance(DynamicsClient& asked, double start, double h, double share);
-  bool over() const;
+  void advance(MechanicsClient& asked, double start, double h, double share);
   bool worn() const;
   void count_work(int iterations);
   void finish(double left);
@@ -417,6 +372,8 @@ struct Planar::Core final : InMemory, b2ContactListener, b2ContactFilter {
   void load(ByteReader& in);
   void join_loaded();
   void hash(Hasher& hasher) const;
+
+  // forget.cpp
   void forget(BodyIndex body);
 
   b2Vec2 to_b2(const Vector3& v) const {

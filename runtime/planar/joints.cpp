@@ -28,7 +28,7 @@ void need_in_plane(const Vector3& v, const char* what, JointKind kind) {
 }  // namespace
 
 FlatJoint& Planar::Core::at(JointIndex joint) {
-  if (joint >= joints.size() || !joints[joint].used) refuse("the joint is not linked");
+  if (joint >= joints.size() || !joints[joint].used) fail_no_joint();
   return joints[joint];
 }
 
@@ -62,14 +62,6 @@ JointDescription flattened(JointDescription is) {
     is.normal.stableNormalize();
   }
   return is;
-}
-
-/// Where the child's body stands when the joint is at zero.
-Pose place_at_zero(const JointDescription& is, const Pose& parent) {
-  Pose child;
-  child.orientation = (parent.orientation * is.relative_rotation).normalized();
-  child.location = parent.location + parent.orientation * is.parent_point - child.orientation * is.child_point;
-  return child;
 }
 
 }  // namespace
@@ -106,10 +98,7 @@ void attach(Planar::Core& core, JointIndex joint) {
   const FlatJoint& entry = core.joints[joint];
   for (const BodyIndex end : {entry.is.child, entry.is.parent}) {
     if (end == kNoBody) continue;
-    std::pmr::vector<JointIndex>& of = core.joints_at.try_emplace(end).first->second;
-    of.insert(std::lower_bound(of.begin(), of.end(), entry.serial,
-                               [&core](JointIndex x, std::uint64_t serial) { return core.joints[x].serial < serial; }),
-              joint);
+    insert_joint(core.joints, joint, core.joints_at.try_emplace(end).first->second);
   }
 }
 
@@ -119,7 +108,7 @@ JointIndex Planar::link(const JointDescription& description, ObjectId owner) {
   Core& c = *core_;
   c.check_flat(description);
   take_changes();
-  if (c.free_joints.capacity() <= c.joints.size()) c.free_joints.reserve(2 * c.joints.size() + 16);
+  reserve_free(c.joints, c.free_joints);
   FlatJoint made;
   made.used = true;
   made.owner = owner;
@@ -137,14 +126,8 @@ JointIndex Planar::link(const JointDescription& description, ObjectId owner) {
     throw;
   }
   made.serial = c.next_serial++;
-  JointIndex index = static_cast<JointIndex>(c.joints.size());
-  if (c.free_joints.empty()) {
-    c.joints.push_back(made);
-  } else {
-    index = c.free_joints.back();
-    c.free_joints.pop_back();
-    c.joints[index] = made;
-  }
+  const JointIndex index = take_place(c.joints, c.free_joints);
+  c.joints[index] = made;
   for (const BodyIndex end : ends)
     if (end != kNoBody) c.joints_at.at(end).push_back(index);
   c.members_changed = true;
@@ -198,17 +181,11 @@ void Planar::relink(JointIndex joint, const JointDescription& description) {
   c.ensure_world();
 }
 
-bool Planar::linked(JointIndex joint) const { return joint < core_->joints.size() && core_->joints[joint].used; }
-std::size_t Planar::joint_count() const { return core_->joints.size() - core_->free_joints.size(); }
-const JointDescription& Planar::joint(JointIndex joint) const { return core_->at(joint).is; }
-ObjectId Planar::joint_owner(JointIndex joint) const { return core_->at(joint).owner; }
-bool Planar::closes_ring(JointIndex joint) const { return core_->at(joint).ring; }
-const JointDrive& Planar::drive(JointIndex joint) const { return core_->at(joint).drive; }
-
-double Planar::strength_hard_limit(JointIndex joint) const {
-  constexpr double kPerMass = 500;  // N*m a kg
-  return kPerMass * core_->bodies->mass(core_->at(joint).is.child);
+const JointRecord* Planar::joint_record(JointIndex joint) const {
+  return joint < core_->joints.size() && core_->joints[joint].used ? &core_->joints[joint] : nullptr;
 }
+
+std::size_t Planar::joint_count() const { return core_->joints.size() - core_->free_joints.size(); }
 
 void Planar::set_drive(JointIndex joint, const JointDrive& drive) {
   FlatJoint& entry = core_->at(joint);

@@ -33,22 +33,16 @@ bool contacts_are_ready() {
 }  // namespace
 
 Planar::Core::Core(std::pmr::memory_resource* resource, Bodies& all)
-    : memory(resource),
-      bodies(&all),
+    : MechanicsCore(resource, all),
       joints(resource),
-      free_joints(resource),
       springs(resource),
-      free_springs(resource),
       joints_at(resource),
-      own(resource),
       force_methods(resource),
       held(resource),
       slots(resource),
       free_slots(resource),
       slot_of(resource),
       met(resource),
-      interventions(resource),
-      impacts(resource),
       scratch(resource) {}
 
 Planar::Core::~Core() {

@@ -12,27 +12,18 @@
 
 namespace breve {
 
-namespace {
-
-void need_range(std::string_view property, double value, double low, double high) {
-  if (!(value >= low && value <= high))
-    throw Error(ErrorCode::Argument, fmt::format("{} must be from {} to {}, but is {}", property, low, high, value));
-}
-
-void need_finite(double value, std::string_view what) {
-  if (!std::isfinite(value)) throw Error(ErrorCode::Argument, fmt::format("{} of a joint must be finite", what));
-}
-
-}  // namespace
-
 Planar::Planar(std::pmr::memory_resource* memory, Bodies& bodies)
-    : memory_(memory), core_(make_in<Core>(memory, memory, bodies)) {}
+    : memory_(memory), core_(make_in<Core>(memory, memory, bodies)) {
+  share(*core_);
+}
 Planar::~Planar() = default;
+
+MechanicsCore& Planar::inside() { return *core_; }
 
 void Planar::rebind(Bodies& bodies) { core_->bodies = &bodies; }
 
 void Planar::take_settings(const Mechanics& other) {
-  FlatSettings& s = core_->settings;
+  WorldSettings& s = core_->settings;
   s.gravity = other.gravity();
   s.gravity.z() = 0;
   s.accuracy = other.accuracy();
@@ -49,13 +40,10 @@ JointVector Planar::position(JointIndex joint) const { return {core_->read_posit
 JointVector Planar::velocity(JointIndex joint) const { return {core_->read_velocity(core_->at(joint)), 0, 0}; }
 
 void Planar::set_position(JointIndex joint, const JointVector& position) {
-  need_finite(position[0], "the position");
+  if (!std::isfinite(position[0])) fail_not_finite("the position");
   Core& c = *core_;
   FlatJoint& entry = c.at(joint);
-  if (entry.ring)
-    throw Error(ErrorCode::Argument, fmt::format("the position of a {} joint that closes a loop cannot be set: the "
-                                                 "other joints of the loop determine it",
-                                                 name_of(entry.is.kind)));
+  if (entry.ring) fail_loop_joint(entry.is.kind);
   if (entry.is.kind == JointKind::Fixed) return;
   take_changes();
   const JointDescription& is = entry.is;
@@ -77,7 +65,7 @@ void Planar::set_position(JointIndex joint, const JointVector& position) {
 }
 
 void Planar::set_velocity(JointIndex joint, const JointVector& velocity) {
-  need_finite(velocity[0], "the velocity");
+  if (!std::isfinite(velocity[0])) fail_not_finite("the velocity");
   Core& c = *core_;
   const FlatJoint& entry = c.at(joint);
   if (entry.is.kind == JointKind::Fixed) return;
@@ -114,72 +102,7 @@ JointReaction Planar::reaction(JointIndex joint) const {
   return {{force.x * u, force.y * u, 0}, {0, 0, entry.b2->GetReactionTorque(rate) * u * u}};
 }
 
-// --- springs between bodies -----------------------------------------------------------------------------------------
-
-namespace {
-FlatSpring& at(Planar::Core& core, SpringIndex spring) {
-  if (spring >= core.springs.size() || !core.springs[spring].used)
-    throw Error(ErrorCode::Argument, "the spring is not connected");
-  return core.springs[spring];
-}
-void need_ends_in_plane(const SpringDescription& is) {
-  if (is.point_a.z() != 0 || is.point_b.z() != 0)
-    throw Error(ErrorCode::Argument,
-                "spring: a point of attachment is outside the plane, but this world is flat: z must be 0");
-}
-}  // namespace
-
-SpringIndex Planar::tie(const SpringDescription& description, ObjectId owner) {
-  check(description);
-  need_ends_in_plane(description);
-  Core& c = *core_;
-  for (const BodyIndex end : {description.a, description.b})
-    if (!c.bodies->used(end)) throw Error(ErrorCode::Argument, "spring: an end is not a body in the world");
-  if (description.a == description.b) return kNoSpring;
-  if (c.free_springs.capacity() <= c.springs.size()) c.free_springs.reserve(2 * c.springs.size() + 16);
-  SpringIndex index = static_cast<SpringIndex>(c.springs.size());
-  if (c.free_springs.empty()) {
-    c.springs.emplace_back();
-  } else {
-    index = c.free_springs.back();
-    c.free_springs.pop_back();
-  }
-  c.springs[index] = {true, owner, description, 0};
-  c.wake_ends(c.springs[index]);
-  return index;
-}
-
-void Planar::untie(SpringIndex spring) {
-  core_->wake_ends(at(*core_, spring));
-  at(*core_, spring) = FlatSpring();
-  core_->free_springs.push_back(spring);
-}
-
-bool Planar::tied(SpringIndex spring) const { return spring < core_->springs.size() && core_->springs[spring].used; }
-const SpringDescription& Planar::spring(SpringIndex spring) const { return at(*core_, spring).is; }
-
-void Planar::set_spring(SpringIndex spring, const SpringDescription& description) {
-  check(description);
-  need_ends_in_plane(description);
-  FlatSpring& entry = at(*core_, spring);
-  const BodyIndex a = entry.is.a, b = entry.is.b;
-  entry.is = description;
-  entry.is.a = a;
-  entry.is.b = b;
-  core_->wake_ends(entry);
-}
-
-double Planar::spring_length(SpringIndex spring) const {
-  const SpringDescription& is = at(*core_, spring).is;
-  const Pose a = core_->pose(is.a), b = core_->pose(is.b);
-  return (b.location + b.orientation * is.point_b - a.location - a.orientation * is.point_a).norm();
-}
-
-double Planar::spring_force(SpringIndex spring) const { return at(*core_, spring).force; }
-
 // --- settings -------------------------------------------------------------------------------------------------------
-
-double Planar::length_unit() const { return core_->settings.unit; }
 
 void Planar::set_length_unit(double metres) {
   if (!std::isfinite(metres) || !(metres >= 1e-9 && metres <= 1e9))
@@ -203,15 +126,6 @@ void Planar::set_gravity(const Vector3& gravity) {
   for (FlatBody& flat : c.slots)
     if (flat.body != kNoBody && !flat.fixed) flat.b2->SetAwake(true);
 }
-const Vector3& Planar::gravity() const { return core_->settings.gravity; }
-
-void Planar::set_accuracy(Rung rung) { set_accuracy(accuracy_of(rung)); }
-void Planar::set_accuracy(const Accuracy& accuracy) {
-  check(accuracy);
-  core_->settings.accuracy = accuracy;
-}
-const Accuracy& Planar::accuracy() const { return core_->settings.accuracy; }
-
 std::string Planar::describe_accuracy() const {
   const Accuracy& a = accuracy();
   return fmt::format(
@@ -225,33 +139,6 @@ std::string Planar::describe_accuracy() const {
                        : "impacts with handlers at their time of impact",
       length_unit());
 }
-
-void Planar::set_guard(GuardMode mode) { core_->settings.guard = mode; }
-GuardMode Planar::guard() const { return core_->settings.guard; }
-
-void Planar::set_sleeping(bool on) { core_->settings.sleeping = on; }
-bool Planar::sleeping() const { return core_->settings.sleeping; }
-
-void Planar::set_fast_contacts(int iterations) {
-  need_range("the number of iterations", iterations, 0, kMostIterations);
-  core_->settings.fast_contacts = iterations;
-}
-
-void Planar::set_softness(double erp, double cfm) {
-  need_range("erp", erp, 0, 1);
-  if (!std::isfinite(cfm) || cfm < 0)
-    throw Error(ErrorCode::Argument, fmt::format("cfm must be finite and >= 0, but is {}", cfm));
-  core_->settings.erp = erp;
-  core_->settings.cfm = cfm;
-}
-double Planar::erp() const { return core_->settings.erp; }
-double Planar::cfm() const { return core_->settings.cfm; }
-
-void Planar::set_workers(int workers) {
-  need_range("the number of workers", workers, 1, 1024);
-  core_->settings.workers = workers;
-}
-int Planar::workers() const { return core_->settings.workers; }
 
 void Planar::set_force_method(BodyIndex body, bool on) {
   auto& list = core_->force_methods;
@@ -298,9 +185,6 @@ Energy Planar::energy(BodyIndex body) const {
   return sum;
 }
 
-const DynamicsCounters& Planar::counters() const { return core_->counters; }
-std::span<const Intervention> Planar::interventions() const { return core_->interventions; }
-std::span<const Impact> Planar::impacts() const { return core_->impacts; }
 std::size_t Planar::bytes() const { return core_->b2 ? core_->held.bytes() : 0; }
 
 Mechanics::Census Planar::census() const {
@@ -310,17 +194,7 @@ Mechanics::Census Planar::census() const {
   const auto count = [](std::size_t& number, ObjectId& first, ObjectId owner) {
     if (number++ == 0) first = owner;
   };
-  for (const FlatJoint& joint : c.joints) {
-    if (!joint.used) continue;
-    const JointDrive& drive = joint.drive;
-    count(census.joints, census.first_joint, joint.owner);
-    if (axis_count(joint.is.kind) > 0 && (std::isfinite(drive.low[0]) || std::isfinite(drive.high[0])))
-      count(census.limits, census.first_limit, joint.owner);
-    if (drive.strength_limit > 0) count(census.motors, census.first_motor, joint.owner);
-    if (drive.stiffness > 0) count(census.springs, census.first_spring, joint.owner);
-  }
-  for (const FlatSpring& tie : c.springs)
-    if (tie.used) count(census.springs, census.first_spring, tie.owner);
+  count_connections(c.joints, c.springs, census);
   for (const BodyIndex body : c.force_methods)
     if (c.bodies->used(body)) count(census.force_methods, census.first_force_method, c.bodies->owner(body));
   census.asleep = c.counters.sleeping;
@@ -337,18 +211,9 @@ Mechanics::Census Planar::census() const {
 
 // --- the world's side -----------------------------------------------------------------------------------------------
 
-void Planar::begin_iteration(std::uint64_t iteration, const WorkBound& bound) {
-  core_->iteration = iteration;
-  core_->bound = bound;
-  core_->counters = {};
-  core_->interventions.clear();
-  core_->impacts.clear();
-}
-
-void Planar::advance(DynamicsClient& client, double start, double h, double share) {
+void Planar::advance(MechanicsClient& client, double start, double h, double share) {
   core_->advance(client, start, h, share);
 }
-bool Planar::over() const { return core_->over(); }
 void Planar::abandon() { core_->client = nullptr; }
 
 void Planar::take_changes() {
@@ -356,10 +221,9 @@ void Planar::take_changes() {
   if (core_->b2) core_->push_changes();
 }
 
-bool Planar::pushes(BodyIndex a, BodyIndex b, const DynamicsClient& client) const {
+bool Planar::pushes(BodyIndex a, BodyIndex b, const MechanicsClient& client) const {
   return core_->pushes(a, b, client);
 }
-std::uint64_t Planar::rules() const { return core_->rules; }
 void Planar::forget(BodyIndex body) { core_->forget(body); }
 void Planar::save(ByteWriter& out) const { core_->save(out); }
 void Planar::load(ByteReader& in) { core_->load(in); }

@@ -34,21 +34,9 @@ using members::Writer;
 
 }  // namespace
 
-template <class F, Is<FlatSettings> S>
-void each(const F& f, S& s) {
-  f(s.gravity), each(f, s.accuracy), f(s.guard), f(s.sleeping), f(s.fast_contacts), f(s.erp), f(s.cfm), f(s.unit);
-}
-template <class F, Is<OwnSettings> S>
-void each(const F& f, S& s) {
-  f(s.has_self), f(s.self_collisions), f(s.has_accuracy), each(f, s.accuracy);
-}
 template <class F, Is<FlatJoint> J>
 void each(const F& f, J& j) {
   f(j.owner), f(j.serial), f(j.ring), f(j.position), f(j.bend), each(f, j.is), each(f, j.drive);
-}
-template <class F, Is<FlatSpring> S>
-void each(const F& f, S& s) {
-  f(s.owner), f(s.force), each(f, s.is);
 }
 template <class F, Is<FrozenBody> B>
 void each(const F& f, B& b) {
@@ -71,6 +59,12 @@ void each(const F& f, W& w) {
 }
 
 namespace {
+
+/// Self collisions have no softness in a flat world.
+template <class F, Is<AssemblySettings> S>
+void each_own(const F& f, S& s) {
+  f(s.has_self), f(s.self_collisions), f(s.has_accuracy), each(f, s.accuracy);
+}
 
 template <class List>
 void put_list(ByteWriter& out, const List& list) {
@@ -265,6 +259,7 @@ void Planar::Core::save(ByteWriter& out) {
   }
   if (b2) drop_world();
   each(Writer{out}, settings);
+  out.put(settings.unit);
   each(Writer{out}, account);
   out.put(base);
   out.put(springs_known);
@@ -280,7 +275,7 @@ void Planar::Core::save(ByteWriter& out) {
   out.put(static_cast<std::uint64_t>(own.size()));
   for (const auto& [body, one] : own) {
     out.put(body);
-    each(Writer{out}, one);
+    each_own(Writer{out}, one);
   }
   put_free(out, force_methods);
   out.put(static_cast<std::uint64_t>(met.size()));
@@ -295,11 +290,9 @@ void Planar::Core::save(ByteWriter& out) {
 
 void Planar::Core::load(ByteReader& in) {
   each(Reader{in}, settings);
-  breve::check(settings.accuracy);
-  if (settings.fast_contacts < 0 || settings.fast_contacts > kMostIterations) ByteReader::fail();
-  if (!(settings.erp >= 0 && settings.erp <= 1) || !(settings.cfm >= 0)) ByteReader::fail();
-  if (static_cast<int>(settings.guard) > static_cast<int>(GuardMode::Rest)) ByteReader::fail();
-  if (!settings.gravity.allFinite() || settings.gravity.z() != 0) ByteReader::fail();
+  settings.unit = in.get<double>();
+  check_loaded(settings);
+  if (settings.gravity.z() != 0) ByteReader::fail();
   if (!(settings.unit >= 1e-9 && settings.unit <= 1e9)) ByteReader::fail();
   each(Reader{in}, account);
   base = in.get<double>();
@@ -319,7 +312,7 @@ void Planar::Core::load(ByteReader& in) {
   for (std::size_t i = 0; i < settings_count; ++i) {
     const auto body = in.get<BodyIndex>();
     if (!bodies->used(body)) ByteReader::fail();
-    each(Reader{in}, own[body]);
+    each_own(Reader{in}, own[body]);
     breve::check(own[body].accuracy);
   }
   const std::size_t methods = in.get_count(sizeof(BodyIndex));
@@ -343,12 +336,7 @@ void Planar::Core::load(ByteReader& in) {
 }
 
 void Planar::Core::join_loaded() {
-  std::pmr::vector<JointIndex> order(memory);
-  for (JointIndex i = 0; i < joints.size(); ++i)
-    if (joints[i].used) order.push_back(i);
-  std::sort(order.begin(), order.end(),
-            [this](JointIndex x, JointIndex y) { return joints[x].serial < joints[y].serial; });
-  for (const JointIndex index : order) {
+  for (const JointIndex index : used_joints(joints, memory)) {
     const JointDescription& is = joints[index].is;
     check_flat(is);
     check(joints[index].drive, is.kind);
@@ -368,6 +356,7 @@ void Planar::Core::join_loaded() {
 void Planar::Core::hash(Hasher& hasher) const {
   const Adder add{hasher};
   each(add, settings);
+  add(settings.unit);
   each(add, account);
   add(base);
   add(springs_known);
@@ -380,36 +369,8 @@ void Planar::Core::hash(Hasher& hasher) const {
     if (tie.used) each(add, tie);
   for (const auto& [body, one] : own) {
     add(body);
-    each(add, one);
+    each_own(add, one);
   }
-}
-
-void Planar::Core::forget(BodyIndex body) {
-  if (const auto found = joints_at.find(body); found != joints_at.end()) {
-    const std::pmr::vector<JointIndex> held_by(found->second, memory);
-    for (const JointIndex index : held_by) {
-      detach(index);
-      joints[index] = FlatJoint();
-      free_joints.push_back(index);
-    }
-  }
-  for (SpringIndex i = 0; i < springs.size(); ++i)
-    if (springs[i].used && (springs[i].is.a == body || springs[i].is.b == body)) {
-      wake_ends(springs[i]);
-      springs[i] = FlatSpring();
-      free_springs.push_back(i);
-    }
-  const bool known = body < slot_of.size() && slot_of[body] != kNoSlot;
-  if (known) remove_member(slot_of[body]);
-  own.erase(body);
-  std::erase(force_methods, body);
-  std::erase_if(met, [body](const auto& one) { return one.first.first == body || one.first.second == body; });
-  if (!frozen) return;
-  const auto gone = [body](const FrozenBody& one) { return one.body == body; };
-  if (!known && std::any_of(frozen->bodies.begin(), frozen->bodies.end(), gone)) base -= energy_of(body);
-  std::erase_if(frozen->bodies, [body](const FrozenBody& one) { return one.body == body; });
-  std::erase_if(frozen->warm.contacts,
-                [body](const WarmContact& one) { return one.key.a == body || one.key.b == body; });
 }
 
 }  // namespace breve

@@ -52,11 +52,6 @@ int Planar::Core::velocity_iterations() const {
 
 int Planar::Core::position_iterations() const { return effort_of(settings.accuracy.rung).position; }
 
-bool Planar::Core::over() const {
-  if (bound.ended && bound.ended->load(std::memory_order_relaxed)) return true;
-  return bound.most > 0 && counters.work >= bound.most;
-}
-
 /// No more of the sub-step is to be begun than has to be.
 bool Planar::Core::worn() const { return finishing || counters.work >= work_most || over(); }
 
@@ -98,13 +93,13 @@ void Planar::Core::finish(double left) {
   now += left;
 }
 
-void Planar::Core::advance(DynamicsClient& asked, double start, double h, double share) {
+void Planar::Core::advance(MechanicsClient& asked, double start, double h, double share) {
   const double work_left = bound.most > counters.work ? static_cast<double>(bound.most - counters.work) : 0;
   work_most = bound.most == 0 ? Meter::kNoBound : counters.work + static_cast<std::uint64_t>(share * work_left);
   finishing = false;
   struct Asking {
     Core& core;
-    Asking(Core& c, DynamicsClient& who) : core(c) { core.client = &who; }
+    Asking(Core& c, MechanicsClient& who) : core(c) { core.client = &who; }
     ~Asking() { core.client = nullptr; }
   } asking(*this, asked);
   now = start;

@@ -69,7 +69,8 @@ void Planar::Core::set_stops(bool bounce) {
     const bool loose = bounce && end_ahead(joint, rate, end) && -end.rate > slowest_rebound(joint);
     if (loose == joint.loose) continue;
     joint.loose = loose;
-    if (joint.b2 && joint.is.kind != JointKind::Fixed) set_limit(joint, !loose && has_limits(joint));
+    if (joint.b2 && joint.is.kind != JointKind::Fixed)
+      set_limit(joint, !loose && has_limits(joint.drive, joint.is.kind));
   }
 }
 

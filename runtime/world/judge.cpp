@@ -30,7 +30,7 @@ void World::set_pair_judge(PairJudge* judge) { parts_->judge = judge; }
 
 /// What lies on it, asleep, may have lost its ground.
 void World::wake_around(BodyIndex body) {
-  if (bodies_->rigid() == 0 || !dynamics().sleeping()) return;
+  if (bodies_->rigid() == 0 || !mechanics().sleeping()) return;
   // With room for the gap that solvers leave.
   Eigen::AlignedBox3d box = bodies_->bounds(body);
   const Vector3 room = Vector3::Constant(0.05 * bodies_->collision_shape(body)->bounding_radius());

@@ -19,7 +19,7 @@
 
 namespace breve {
 
-struct World::Parts final : CollisionClient, DynamicsClient, InMemory {
+struct World::Parts final : CollisionClient, MechanicsClient, InMemory {
   Parts(World& world, std::pmr::memory_resource* memory);
 
   /// These parts now belong to `owner`, whose bodies they use.
@@ -81,7 +81,7 @@ struct World::Parts final : CollisionClient, DynamicsClient, InMemory {
     if (world->behaviour_) world->behaviour_->expect(units);
   }
 
-  // --- DynamicsClient -----------------------------------------------------------------------------------------------
+  // --- MechanicsClient -----------------------------------------------------------------------------------------------
   bool handled(BodyIndex a, BodyIndex b) const override;
   bool ignored(BodyIndex a, BodyIndex b) const override;
   bool locates() const override { return at_impact; }

@@ -275,8 +275,8 @@ void World::set_impact_timing(bool at_impact) { parts_->at_impact = at_impact; }
 void World::set_gravity(const Vector3& gravity) { parts_->dynamics->set_gravity(gravity); }
 const Vector3& World::gravity() const { return parts_->dynamics->gravity(); }
 
-Mechanics& World::dynamics() { return *parts_->dynamics; }
-const Mechanics& World::dynamics() const { return *parts_->dynamics; }
+Mechanics& World::mechanics() { return *parts_->dynamics; }
+const Mechanics& World::mechanics() const { return *parts_->dynamics; }
 
 void World::flatten() {
   if (bodies_->flat()) return;

@@ -87,11 +87,11 @@ class World : public InMemory {
   Bodies& bodies() { return *bodies_; }
   const Bodies& bodies() const { return *bodies_; }
   /// Joints, springs, accuracy, energy: whatever has to do with forces. Valid until the world is loaded or destroyed.
-  Mechanics& dynamics();
-  const Mechanics& dynamics() const;
-  /// From now on the world is flat: every body has z = 0 and rotates only about z. What dynamics() gave before is gone;
-  /// its settings are kept. Error{Argument} if there are bodies with physics, joints or springs, or a body that is not
-  /// in the plane. Does nothing if it is already flat.
+  Mechanics& mechanics();
+  const Mechanics& mechanics() const;
+  /// From now on the world is flat: every body has z = 0 and rotates only about z. What mechanics() gave before is
+  /// gone; its settings are kept. Error{Argument} if there are bodies with physics, joints or springs, or a body that
+  /// is not in the plane. Does nothing if it is already flat.
   void flatten();
   int dimension() const { return bodies_->flat() ? 2 : 3; }
   /// Objects whose shapes intersect this one's now and that are solvable (physics-enabled, Stationary), creation order.

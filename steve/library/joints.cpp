@@ -66,7 +66,7 @@ JointKind joint_kind(const Instance& joint) { return row_of(joint).kind; }
 JointIndex joint_of(Machine& machine, const Instance& joint) {
   const JointResource* resource = resource_of<JointResource>(machine, &joint);
   if (!resource || resource->index == kNoJoint) return kNoJoint;
-  const Mechanics& dynamics = machine.world().dynamics();
+  const Mechanics& dynamics = machine.world().mechanics();
   const bool ours = dynamics.linked(resource->index) && dynamics.joint_owner(resource->index) == joint.id;
   return ours ? resource->index : kNoJoint;
 }
@@ -91,7 +91,7 @@ void link_joint(Machine& machine, Instance& joint, JointDescription description,
     description.relative_rotation = (from.conjugate() * bodies.orientation(description.child)).normalized();
   }
   JointResource& resource = resource_made<JointResource>(machine, joint);
-  Mechanics& dynamics = machine.world().dynamics();
+  Mechanics& dynamics = machine.world().mechanics();
   // The whole assembly is looked through.
   if (description.parent != kNoBody) machine.charge(dynamics.links_of(description.parent).size());
   resource.index = dynamics.link(description, joint.id);
@@ -104,7 +104,7 @@ void link_joint(Machine& machine, Instance& joint, JointDescription description,
 void break_joint(Machine& machine, Instance& joint) {
   machine.refuse_in_stage("break a joint");
   const JointIndex index = joint_of(machine, joint);
-  if (index != kNoJoint) machine.world().dynamics().unlink(index);
+  if (index != kNoJoint) machine.world().mechanics().unlink(index);
   if (JointResource* resource = resource_of<JointResource>(machine, &joint)) resource->index = kNoJoint;
   set_library_object(machine, joint, "Joint", "parentObject", nullptr);
   set_library_object(machine, joint, "Joint", "childObject", nullptr);
@@ -115,7 +115,7 @@ void prepare_joint(Machine& machine, Instance& joint) {
   const JointIndex index = joint_of(machine, joint);
   resource.was_linked = index != kNoJoint;
   if (!resource.was_linked) return;
-  const Mechanics& dynamics = machine.world().dynamics();
+  const Mechanics& dynamics = machine.world().mechanics();
   resource.is = dynamics.joint(index);
   resource.drive = dynamics.drive(index);
   resource.position = dynamics.position(index);
@@ -133,7 +133,7 @@ void relink_joint(Machine& machine, Instance& joint) {
   Instance* child = library_object(machine, joint, "Joint", "childObject");
   if (!child) return;  // it was not archived
   link_joint(machine, joint, description, library_object(machine, joint, "Joint", "parentObject"), child);
-  Mechanics& dynamics = machine.world().dynamics();
+  Mechanics& dynamics = machine.world().mechanics();
   const JointIndex index = joint_of(machine, joint);
   dynamics.set_drive(index, saved.drive);
   if (dynamics.closes_ring(index)) return;
@@ -143,7 +143,7 @@ void relink_joint(Machine& machine, Instance& joint) {
 }
 
 void drive_joint(Machine& machine, Instance& joint, JointIndex index, const JointDrive& drive) {
-  Mechanics& dynamics = machine.world().dynamics();
+  Mechanics& dynamics = machine.world().mechanics();
   dynamics.set_drive(index, drive);
   if (!(drive.strength_limit > 0)) return;
   if (Slot* had = library_slot(machine, joint, "Joint", "hadStrength")) had->i = 1;
@@ -157,7 +157,7 @@ void drive_joint(Machine& machine, Instance& joint, JointIndex index, const Join
 }
 
 void check_motors(Machine& machine) {
-  const Mechanics& dynamics = machine.world().dynamics();
+  const Mechanics& dynamics = machine.world().mechanics();
   const Bodies& bodies = machine.world().bodies();
   constexpr double kLight = 1e-3;  // kg per N*m or N
   std::size_t left = dynamics.joint_count();
@@ -192,7 +192,7 @@ void check_motors(Machine& machine) {
 SpringIndex spring_of(Machine& machine, Instance& spring) {
   const SpringResource* resource = resource_of<SpringResource>(machine, &spring);
   if (!resource || resource->index == kNoSpring) return kNoSpring;
-  const Mechanics& dynamics = machine.world().dynamics();
+  const Mechanics& dynamics = machine.world().mechanics();
   if (!dynamics.tied(resource->index)) return kNoSpring;
   // A body that went took its springs along, and the number may be another's now.
   const SpringDescription& is = dynamics.spring(resource->index);
@@ -208,7 +208,7 @@ void connect_spring(Machine& machine, Instance& spring, SpringDescription descri
   description.b = body_of(machine, must_live(to, "connect: the object it goes to"));
   if (description.a == description.b) return;
   machine.refuse_in_stage("connect a spring");
-  Mechanics& dynamics = machine.world().dynamics();
+  Mechanics& dynamics = machine.world().mechanics();
   const SpringIndex before = spring_of(machine, spring);
   SpringResource& resource = resource_made<SpringResource>(machine, spring);
   resource.index = dynamics.tie(description, spring.id);
@@ -222,9 +222,9 @@ void change_spring(Machine& machine, Instance& spring, const SpringDescription& 
   const SpringIndex index = spring_of(machine, spring);
   if (index != kNoSpring) {
     SpringDescription changed = description;
-    changed.a = machine.world().dynamics().spring(index).a;
-    changed.b = machine.world().dynamics().spring(index).b;
-    machine.world().dynamics().set_spring(index, changed);
+    changed.a = machine.world().mechanics().spring(index).a;
+    changed.b = machine.world().mechanics().spring(index).b;
+    machine.world().mechanics().set_spring(index, changed);
   }
   resource_made<SpringResource>(machine, spring).is = description;
 }
@@ -248,7 +248,7 @@ Instance* root_of(Machine& machine, Instance& multibody) {
 Instance* multibody_of(Machine& machine, BodyIndex body) {
   World& world = machine.world();
   Instance* oldest = nullptr;
-  for (const BodyIndex link : world.dynamics().links_of(body)) {
+  for (const BodyIndex link : world.mechanics().links_of(body)) {
     Instance* object = machine.instance(world.bodies().owner(link));
     Instance* owner = object ? library_object(machine, *object, "Mobile", "rootOf") : nullptr;
     if (!owner || root_of(machine, *owner) != object) continue;
@@ -282,7 +282,7 @@ std::vector<Instance*> links_of(Machine& machine, Instance& multibody) {
   std::vector<Instance*> links;
   const BodyIndex root = own_root(machine, multibody);
   if (root == kNoBody) return links;
-  for (const BodyIndex body : machine.world().dynamics().links_of(root))
+  for (const BodyIndex body : machine.world().mechanics().links_of(root))
     if (Instance* link = machine.instance(machine.world().bodies().owner(body))) links.push_back(link);
   std::sort(links.begin(), links.end(), [](const Instance* a, const Instance* b) { return a->serial < b->serial; });
   return links;
@@ -292,7 +292,7 @@ std::vector<Instance*> joints_of(Machine& machine, Instance& multibody) {
   std::vector<Instance*> joints;
   const BodyIndex root = own_root(machine, multibody);
   if (root == kNoBody) return joints;
-  const Mechanics& dynamics = machine.world().dynamics();
+  const Mechanics& dynamics = machine.world().mechanics();
   for (const JointIndex joint : dynamics.joints_of(root))
     if (Instance* owner = machine.instance(dynamics.joint_owner(joint))) joints.push_back(owner);
   std::sort(joints.begin(), joints.end(), [](const Instance* a, const Instance* b) { return a->serial < b->serial; });

@@ -49,7 +49,7 @@ void mobile_rotate(Machine& machine, Instance& self, Vector3 axis, double radian
   if (axis.isZero(0)) return;
   machine.world().leave(body);
   bodies_of(machine).set_orientation(body, turn);
-  machine.world().dynamics().moved(body);
+  machine.world().mechanics().moved(body);
 }
 
 void mobile_relative_rotate(Machine& machine, Instance& self, Vector3 axis, double radians) {
@@ -57,7 +57,7 @@ void mobile_relative_rotate(Machine& machine, Instance& self, Vector3 axis, doub
   const BodyIndex body = body_of(machine, self);
   machine.world().leave(body);
   bodies_of(machine).set_orientation(body, turn * bodies_of(machine).orientation(body));
-  machine.world().dynamics().moved(body);
+  machine.world().mechanics().moved(body);
 }
 
 void mobile_offset(Machine& machine, Instance& self, Vector3 displacement) {
@@ -65,7 +65,7 @@ void mobile_offset(Machine& machine, Instance& self, Vector3 displacement) {
   const Vector3 place = bodies_of(machine).location(body) + displacement;
   machine.world().leave(body);
   bodies_of(machine).set_location(body, place.allFinite() ? machine.world().space().inside(place) : place);
-  machine.world().dynamics().moved(body);
+  machine.world().mechanics().moved(body);
 }
 
 // --- physics ---------------------------------------------------------------------------------------------------------
@@ -145,7 +145,7 @@ bool tested(const Mechanics& dynamics, BodyIndex a, BodyIndex b) {
 
 ListCell* mobile_get_colliding_objects(Machine& machine, Instance& self) {
   const BodyIndex body = body_of(machine, self);
-  const Mechanics& dynamics = machine.world().dynamics();
+  const Mechanics& dynamics = machine.world().mechanics();
   constexpr std::uint64_t kOfPair = 512;  // that may touch
   machine.charge_for(machine.world().object_count());
   const auto touching = machine.world().touching(self.id);
@@ -162,7 +162,7 @@ ListCell* mobile_get_colliding_objects(Machine& machine, Instance& self) {
 
 std::int32_t mobile_check_for_self_penetrations(Machine& machine, Instance& self) {
   const BodyIndex body = body_of(machine, self);
-  const Mechanics& dynamics = machine.world().dynamics();
+  const Mechanics& dynamics = machine.world().mechanics();
   for (const ObjectId id : machine.world().touching(self.id)) {
     const BodyIndex other = machine.world().body(id);
     if (dynamics.same_assembly(body, other) && tested(dynamics, body, other)) return 1;
@@ -171,7 +171,7 @@ std::int32_t mobile_check_for_self_penetrations(Machine& machine, Instance& self
 }
 
 void mobile_set_force_method(Machine& machine, Instance& self, std::int32_t on) {
-  machine.world().dynamics().set_force_method(body_of(machine, self), on != 0);
+  machine.world().mechanics().set_force_method(body_of(machine, self), on != 0);
 }
 
 constexpr Native kMobileNatives[] = {

@@ -15,7 +15,7 @@ namespace {
 using Text = StringCell*;
 
 /// What joints hold to it follows at once.
-void moved(Machine& machine, BodyIndex body) { machine.world().dynamics().moved(body); }
+void moved(Machine& machine, BodyIndex body) { machine.world().mechanics().moved(body); }
 
 // --- pose ------------------------------------------------------------------------------------------------------------
 

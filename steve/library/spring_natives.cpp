@@ -24,19 +24,19 @@ Instance* spring_connect(Machine& machine, Instance& self, Instance* from, Insta
 
 void spring_disconnect(Machine& machine, Instance& self) {
   const SpringIndex spring = spring_of(machine, self);
-  if (spring != kNoSpring) machine.world().dynamics().untie(spring);
+  if (spring != kNoSpring) machine.world().mechanics().untie(spring);
 }
 
 void spring_dearchive(Machine& machine, Instance& self) { relink_spring(machine, self); }
 
 double spring_current_length(Machine& machine, Instance& self) {
   const SpringIndex spring = spring_of(machine, self);
-  return spring == kNoSpring ? 0 : machine.world().dynamics().spring_length(spring);
+  return spring == kNoSpring ? 0 : machine.world().mechanics().spring_length(spring);
 }
 
 double spring_get_force(Machine& machine, Instance& self) {
   const SpringIndex spring = spring_of(machine, self);
-  return spring == kNoSpring ? 0 : machine.world().dynamics().spring_force(spring);
+  return spring == kNoSpring ? 0 : machine.world().mechanics().spring_force(spring);
 }
 
 double spring_get_length(Machine& machine, Instance& self) { return description(machine, self).length; }

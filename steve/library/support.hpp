@@ -15,7 +15,7 @@
 namespace breve::steve {
 
 inline Bodies& bodies_of(Machine& machine) { return machine.world().bodies(); }
-inline Mechanics& dynamics_of(Machine& machine) { return machine.world().dynamics(); }
+inline Mechanics& dynamics_of(Machine& machine) { return machine.world().mechanics(); }
 
 /// The body of an object. Error{Argument} if it has none, Error{Stale} if it is freed.
 inline BodyIndex body_of(Machine& machine, const Instance& self) { return machine.world().body(self.id); }

@@ -1,4 +1,4 @@
-// Run-time errors on their way out of the interpreter, and what the reporter is told of them.
+// Run-time errors on their way out of the interpreter, and what the reporter gets of them.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What is known about a run-time error: the place, the remedy, and the calls that led there.
+// A run-time error in full: the place, the remedy, and the calls that led there.
 #pragma once
 
 #include <cstdint>

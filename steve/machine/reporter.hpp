@@ -30,8 +30,8 @@ class Reporter {
   /// Everything that is known about an error while these calls are active, outermost first.
   ErrorReport report(const RunError& error, std::span<const ActiveCall> calls, const Program& program) const;
 
-  /// Of warnings and errors that do not stop the run, the first thousand of an iteration or a call by the host are
-  /// reported; the host is told of the others without a text.
+  /// Reports a warning, or an error that does not stop the run. After the first thousand of an iteration or a call by
+  /// the host, the host gets an empty text for each.
   /// @param text  makes the text, whole lines; called only where it is reported
   template <class Text>
   void tell(Severity severity, Text&& text) {

@@ -26,7 +26,7 @@ struct Ours : testing::Scene {
     world.flatten();
     world.set_integration_step(kStep);
     world.set_iteration_step(kStep);
-    world.dynamics().set_guard(GuardMode::Report);
+    world.mechanics().set_guard(GuardMode::Report);
     const auto wall = [&](double w, double h, double x, double y) {
       plain(body(2, {x, y, 0}, BodyKind::Stationary, Shape::box({w, h, 1})));
     };
@@ -97,7 +97,7 @@ int main() {
     const double first = seconds(ours), second = seconds(direct);
     ratios.push_back(first / second);
     std::printf("round %d: breve %.3f ms, Box2D %.3f ms a step, ratio %.3f; sub-steps %d, contacts %d\n", round,
-                1e3 * first, 1e3 * second, ratios.back(), static_cast<int>(ours.world.dynamics().counters().sub_steps),
+                1e3 * first, 1e3 * second, ratios.back(), static_cast<int>(ours.world.mechanics().counters().sub_steps),
                 direct.world.GetContactCount());
   }
   std::nth_element(ratios.begin(), ratios.begin() + kRounds / 2, ratios.end());

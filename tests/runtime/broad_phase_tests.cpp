@@ -14,7 +14,7 @@ namespace {
 using Reports = std::vector<std::pair<std::uint64_t, std::uint64_t>>;
 
 /// Everything takes part. The order of creation is that of the places.
-class Client final : public CollisionClient, public DynamicsClient {
+class Client final : public CollisionClient, public MechanicsClient {
  public:
   bool takes_part(BodyIndex) const override { return true; }
   bool reported(BodyIndex, BodyIndex) const override { return true; }

@@ -13,8 +13,8 @@ struct Heap : Physics {
   std::vector<ObjectId> bodies;
 
   explicit Heap(Rung rung = Rung::Balanced, int count = 30, int workers = 1) {
-    dynamics().set_accuracy(rung);
-    dynamics().set_workers(workers);
+    mechanics().set_accuracy(rung);
+    mechanics().set_workers(workers);
     body(2, Vector3(0, -2.5, 0), BodyKind::Stationary, Shape::box(Vector3(1000, 5, 1000)));
     for (int i = 0; i < count; ++i) {
       const Vector3 at(1.05 * (i % 3), 0.5 + 1.05 * (i / 9), 1.05 * (i / 3 % 3));
@@ -25,7 +25,7 @@ struct Heap : Physics {
       is.child = index(bodies.back());
       is.parent_point = Vector3(0, 0.6, 0);
       is.child_point = Vector3(0, -0.6, 0);
-      dynamics().link(is, bodies.back());
+      mechanics().link(is, bodies.back());
     }
   }
   void check_finite() {
@@ -33,7 +33,7 @@ struct Heap : Physics {
   }
   int finished() {
     int count = 0;
-    for (const Intervention& one : dynamics().interventions())
+    for (const Intervention& one : mechanics().interventions())
       count += one.reason == GuardReason::Work && one.action == GuardAction::Finished;
     return count;
   }
@@ -50,8 +50,8 @@ TEST(DynamicsBudget, OneThatIsNotReachedChangesNothing) {
       bounded.world.step();
       ASSERT_EQ(bounded.finished(), 0);
       ASSERT_EQ(free.world.hash(), bounded.world.hash()) << name_of(rung) << ", iteration " << i;
-      ASSERT_EQ(free.dynamics().counters().work, bounded.dynamics().counters().work);
-      ASSERT_GT(free.dynamics().counters().work, 0U);
+      ASSERT_EQ(free.mechanics().counters().work, bounded.mechanics().counters().work);
+      ASSERT_GT(free.mechanics().counters().work, 0U);
     }
   }
 }
@@ -62,7 +62,7 @@ TEST(DynamicsBudget, WhereItIsUsedUpTheStepIsFinishedCoarselyAndTheGuardTells) {
     std::uint64_t usual = 0;
     for (int i = 0; i < 20; ++i) {
       alone.world.step();
-      usual = std::max(usual, alone.dynamics().counters().work);
+      usual = std::max(usual, alone.mechanics().counters().work);
     }
     Heap heap(rung, 16);
     const std::uint64_t bound = usual / 10;
@@ -73,7 +73,7 @@ TEST(DynamicsBudget, WhereItIsUsedUpTheStepIsFinishedCoarselyAndTheGuardTells) {
       finished += heap.finished();
       // Work that was begun is finished; then one look and one solution of few sweeps, however small the budget.
       constexpr std::uint64_t kLeast = 60'000;
-      EXPECT_LE(heap.dynamics().counters().work, bound + bound / 10 + kLeast) << name_of(rung) << ", iteration " << i;
+      EXPECT_LE(heap.mechanics().counters().work, bound + bound / 10 + kLeast) << name_of(rung) << ", iteration " << i;
       heap.check_finite();
     }
     // A sub-step of `fast` is as coarse as there is.
@@ -105,7 +105,7 @@ TEST(DynamicsBudget, AnotherIslandsTroubleCostsNobodyItsAccuracy) {
   int finished = 0;
   for (int i = 0; i < 60; ++i) {
     heap.world.step();
-    for (const Intervention& one : heap.dynamics().interventions()) {
+    for (const Intervention& one : heap.mechanics().interventions()) {
       finished += one.reason == GuardReason::Work;
       EXPECT_NE(one.body, ball);
     }
@@ -124,11 +124,11 @@ TEST(DynamicsBudget, StepsThatAreFarTooManyAreTakenAtOnce) {
       s.world.set_integration_step(1e-9);
     else
       accuracy.step = 1e-11;
-    s.dynamics().set_accuracy(accuracy);
+    s.mechanics().set_accuracy(accuracy);
     s.world.bound_physics({1'000'000, nullptr});
     s.run(0.5);
     EXPECT_NEAR(s.world.bodies().location(s.index(ball)).y(), 10 - 0.5 * 9.81 * 0.25, 1e-2);
-    EXPECT_LE(s.dynamics().counters().work, 1'100'000U);
+    EXPECT_LE(s.mechanics().counters().work, 1'100'000U);
   }
 }
 
@@ -139,8 +139,8 @@ TEST(DynamicsBudget, WhereTheEndIsAskedForBodiesStay) {
     heap.world.bound_physics({0, &ended});
     heap.world.step();
     EXPECT_GT(heap.finished(), 0) << name_of(rung);
-    EXPECT_LT(heap.dynamics().counters().work, 1'000U) << name_of(rung);
-    EXPECT_EQ(heap.dynamics().counters().sub_steps, 0U) << name_of(rung);
+    EXPECT_LT(heap.mechanics().counters().work, 1'000U) << name_of(rung);
+    EXPECT_EQ(heap.mechanics().counters().sub_steps, 0U) << name_of(rung);
     ended = false;
     heap.world.step();
     EXPECT_EQ(heap.finished(), 0) << name_of(rung);

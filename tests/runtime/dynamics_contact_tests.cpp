@@ -10,7 +10,7 @@ namespace {
 
 struct Ground : Physics {
   explicit Ground(Rung rung, double step = 1.0 / 60) : Physics(step) {
-    dynamics().set_accuracy(rung);
+    mechanics().set_accuracy(rung);
     body(2, Vector3(0, -2.5, 0), BodyKind::Stationary, Shape::box(Vector3(1000, 5, 1000)));
   }
   void bounce(ObjectId id, double e) {
@@ -28,8 +28,8 @@ TEST(DynamicsContact, ABoxComesToRestOnTheFloor) {
     EXPECT_NEAR(s.at(box).y(), 0.5, 1e-3) << name_of(rung);
     EXPECT_LT(s.velocity(box).norm(), 1e-6) << name_of(rung);
     std::printf("  %-9s y - 0.5 = %.2e  |v| = %.1e  substeps %lu  loss %.4f\n", std::string(name_of(rung)).c_str(),
-                s.at(box).y() - 0.5, s.velocity(box).norm(), s.dynamics().counters().sub_steps,
-                s.dynamics().energy().contact_loss);
+                s.at(box).y() - 0.5, s.velocity(box).norm(), s.mechanics().counters().sub_steps,
+                s.mechanics().energy().contact_loss);
   }
 }
 
@@ -38,21 +38,21 @@ TEST(DynamicsContact, WhatLiesTakesItsStepAsOneAndWhatIsPushedDoesNot) {
   const ObjectId low = s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3(0, 0.5, 0)),
                  high = s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3(0.1, 1.5, 0));
   s.run(2);
-  EXPECT_EQ(s.dynamics().counters().sub_steps, 1U);
+  EXPECT_EQ(s.mechanics().counters().sub_steps, 1U);
   const Vector3 before = s.at(high);
   s.run(10);
-  EXPECT_EQ(s.dynamics().counters().sub_steps, 1U);
+  EXPECT_EQ(s.mechanics().counters().sub_steps, 1U);
   EXPECT_LT((s.at(high) - before).norm(), 1e-7);
   EXPECT_LT(s.velocity(low).norm() + s.velocity(high).norm(), 1e-7);
   // Nothing moves as yet, and will.
   s.world.bodies().set_force(s.index(high), Vector3(20'000, 0, 0));
   s.world.step();
-  EXPECT_GE(s.dynamics().counters().sub_steps, 4U);
+  EXPECT_GE(s.mechanics().counters().sub_steps, 4U);
   EXPECT_GT(s.velocity(high).x(), 0.01);
   s.world.bodies().set_force(s.index(high), Vector3::Zero());
   s.world.bodies().set_velocity(s.index(high), Vector3(0.5, 0, 0));
   s.world.step();
-  EXPECT_GE(s.dynamics().counters().sub_steps, 4U);
+  EXPECT_GE(s.mechanics().counters().sub_steps, 4U);
 }
 
 TEST(DynamicsContact, AnElasticBallKeepsItsHeight) {
@@ -97,20 +97,20 @@ TEST(DynamicsContact, JointLimitsGiveBackWhatTheyShould) {
   is.child = s.index(rod);
   is.child_point = Vector3(0, 0.5, 0);
   is.normal = Vector3::UnitZ();
-  const JointIndex joint = s.dynamics().link(is, rod);
-  JointDrive drive = s.dynamics().drive(joint);
+  const JointIndex joint = s.mechanics().link(is, rod);
+  JointDrive drive = s.mechanics().drive(joint);
   drive.low = Vector3(-0.5, 0, 0);
   drive.high = Vector3(0.3, 0, 0);
   drive.limit_restitution = 1;
-  s.dynamics().set_drive(joint, drive);
-  s.dynamics().set_velocity(joint, Vector3(3, 0, 0));
-  const double start = s.dynamics().energy().total();
+  s.mechanics().set_drive(joint, drive);
+  s.mechanics().set_velocity(joint, Vector3(3, 0, 0));
+  const double start = s.mechanics().energy().total();
   double worst = 0, low = 0, high = 0;
   for (int i = 0; i < 600; ++i) {
     s.world.step();
-    worst = std::max(worst, std::abs(s.dynamics().energy().total() - start));
-    low = std::min(low, s.dynamics().position(joint)[0]);
-    high = std::max(high, s.dynamics().position(joint)[0]);
+    worst = std::max(worst, std::abs(s.mechanics().energy().total() - start));
+    low = std::min(low, s.mechanics().position(joint)[0]);
+    high = std::max(high, s.mechanics().position(joint)[0]);
   }
   EXPECT_GE(low, -0.5 - 1e-9);
   EXPECT_LE(high, 0.3 + 1e-9);
@@ -121,7 +121,7 @@ TEST(DynamicsContact, JointLimitsGiveBackWhatTheyShould) {
 TEST(DynamicsContact, ARingStaysClosed) {
   for (const Rung rung : {Rung::Fast, Rung::Balanced}) {
     Physics s;
-    s.dynamics().set_accuracy(rung);
+    s.mechanics().set_accuracy(rung);
     // Four links in a square that hangs by one corner; the last joint closes the ring.
     std::vector<ObjectId> rods;
     std::vector<JointIndex> joints;
@@ -149,28 +149,28 @@ TEST(DynamicsContact, ARingStaysClosed) {
       }
       is.normal = from.conjugate() * Vector3::UnitZ();
       is.relative_rotation = from.conjugate() * bodies.orientation(is.child);
-      joints.push_back(s.dynamics().link(is, rods[static_cast<std::size_t>(child)]));
+      joints.push_back(s.mechanics().link(is, rods[static_cast<std::size_t>(child)]));
     };
     pin(-1, 0, corners[0]);
     for (int i = 1; i < 4; ++i) pin(i - 1, i, corners[i]);
     pin(3, 0, corners[0]);
-    EXPECT_TRUE(s.dynamics().closes_ring(joints.back()));
-    const double start = s.dynamics().energy().total();
+    EXPECT_TRUE(s.mechanics().closes_ring(joints.back()));
+    const double start = s.mechanics().energy().total();
     double open = 0, highest = 0;  // J in motion: what turns over
     for (int i = 0; i < 300; ++i) {
       s.world.step();
-      highest = std::max(highest, s.dynamics().energy().kinetic);
+      highest = std::max(highest, s.mechanics().energy().kinetic);
       const Bodies& bodies = s.world.bodies();
-      const JointDescription& is = s.dynamics().joint(joints.back());
+      const JointDescription& is = s.mechanics().joint(joints.back());
       const Vector3 gap = bodies.location(is.child) + bodies.orientation(is.child) * is.child_point -
                           bodies.location(is.parent) - bodies.orientation(is.parent) * is.parent_point;
       open = std::max(open, gap.norm());
     }
     std::printf("  ring on %s: open by at most %.1e, energy %.3f -> %.3f\n", std::string(name_of(rung)).c_str(), open,
-                start, s.dynamics().energy().total());
+                start, s.mechanics().energy().total());
     EXPECT_LT(open, 1e-9);
     if (rung != Rung::Fast) {
-      EXPECT_NEAR(s.dynamics().energy().total(), start, 1e-3 * highest);
+      EXPECT_NEAR(s.mechanics().energy().total(), start, 1e-3 * highest);
     }
   }
 }

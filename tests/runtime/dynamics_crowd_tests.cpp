@@ -15,7 +15,7 @@ TEST(DynamicsCrowd, MotorsAtTheirLimitsDoNotHoldUpStepControl) {
   std::uint64_t sum = 0, most = 0, rejected = 0;
   for (int i = 0; i < 60 * kSeconds; ++i) {
     s.step();
-    const DynamicsCounters& c = s.dynamics().counters();
+    const DynamicsCounters& c = s.mechanics().counters();
     sum += c.evaluations;
     rejected += c.rejected;
     most = std::max(most, c.evaluations);
@@ -36,7 +36,7 @@ TEST(DynamicsCrowd, OnFastAWalkerThatStandsTakesOneRungeKuttaStep) {
   std::uint64_t evaluations = 0;
   for (int i = 0; i < 60; ++i) {
     s.world.step();
-    evaluations += s.dynamics().counters().evaluations;
+    evaluations += s.mechanics().counters().evaluations;
   }
   EXPECT_LE(evaluations, 4 * 60U);
 }
@@ -47,7 +47,8 @@ TEST(DynamicsCrowd, WalkersThatDoNotMeetAreIslandsOfTheirOwn) {
   Crowd s(kWalkers, Rung::Balanced);
   for (int i = 0; i < 90; ++i) {
     s.step();
-    ASSERT_EQ(s.dynamics().counters().islands, static_cast<std::uint64_t>(kWalkers)) << "at " << s.world.time() << " s";
+    ASSERT_EQ(s.mechanics().counters().islands, static_cast<std::uint64_t>(kWalkers))
+        << "at " << s.world.time() << " s";
   }
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 struct Floor : Physics {
   explicit Floor(Rung rung = Rung::Balanced) : Physics(1.0 / 60) {
-    dynamics().set_accuracy(rung);
+    mechanics().set_accuracy(rung);
     const ObjectId ground = body(2, Vector3(0, -2.5, 0), BodyKind::Stationary, Shape::box(Vector3(1000, 5, 1000)));
     Material& material = world.bodies().material(index(ground));
     material.static_friction = material.dynamic_friction = 0.5;
@@ -37,9 +37,9 @@ void expect_closed(const Energy& start, const Energy& now, double turnover) {
 TEST(DynamicsEnergy, ABoxThatIsDroppedLosesItsHeightInTheContact) {
   Floor s;
   const ObjectId box = s.box(Vector3(0, 1.5, 0));
-  const Energy start = s.dynamics().energy();
+  const Energy start = s.mechanics().energy();
   s.run(2);
-  const Energy now = s.dynamics().energy();
+  const Energy now = s.mechanics().energy();
   const double fall = s.world.bodies().mass(s.index(box)) * 9.81;  // 1 m
   std::printf("  dropped: contact %.5f friction %.1e residual %.1e of %.3f J\n", now.contact_loss, now.friction_loss,
               now.residual, fall);
@@ -54,9 +54,9 @@ TEST(DynamicsEnergy, ABoxThatSlidesLosesItsSpeedToFriction) {
     Floor s(rung);
     const ObjectId box = s.box(Vector3(0, 0.5, 0));
     s.world.bodies().set_velocity(s.index(box), Vector3(3, 0, 0));
-    const Energy start = s.dynamics().energy();
+    const Energy start = s.mechanics().energy();
     s.run(2);
-    const Energy now = s.dynamics().energy();
+    const Energy now = s.mechanics().energy();
     std::printf("  slid on %s: contact %.1e friction %.5f residual %.1e of %.3f J\n",
                 std::string(name_of(rung)).c_str(), now.contact_loss, now.friction_loss, now.residual, start.kinetic);
     EXPECT_NEAR(now.friction_loss, start.kinetic, 1e-3 * start.kinetic);
@@ -69,9 +69,9 @@ TEST(DynamicsEnergy, AStackThatIsHitAndStandsAccountsForAll) {
   Floor s;
   for (int i = 0; i < 5; ++i) s.box(Vector3(0, 0.5 + i, 0));
   s.box(Vector3(0.1, 5.9, 0));
-  const Energy start = s.dynamics().energy();
+  const Energy start = s.mechanics().energy();
   s.run(3);
-  const Energy now = s.dynamics().energy();
+  const Energy now = s.mechanics().energy();
   const double fell = start.total() - now.total();
   std::printf("  stack: contact %.4f friction %.2e residual %.1e of %.3f J\n", now.contact_loss, now.friction_loss,
               now.residual, fell);
@@ -82,9 +82,9 @@ TEST(DynamicsEnergy, AStackThatIsHitAndStandsAccountsForAll) {
 
 TEST(DynamicsEnergy, AnAssemblyKnowsWhatItsContactsTook) {
   Walker s(Rung::Balanced);
-  const Energy start = s.dynamics().energy(s.index(s.trunk));
+  const Energy start = s.mechanics().energy(s.index(s.trunk));
   for (int i = 0; i < 240; ++i) s.step();
-  const Energy own = s.dynamics().energy(s.index(s.trunk)), all = s.dynamics().energy();
+  const Energy own = s.mechanics().energy(s.index(s.trunk)), all = s.mechanics().energy();
   std::printf("  walker: motors %.3f contact %.3f friction %.3f drag %.3f residual %.4f J\n", own.motor_work,
               own.contact_loss, own.friction_loss, own.drag_loss, own.residual);
   EXPECT_GT(own.contact_loss, 1);
@@ -103,7 +103,7 @@ TEST(DynamicsEnergy, FeetThatRestAreNotASeriesOfImpacts) {
   std::uint64_t impacts = 0, most = 0, sub_steps = 0, evaluations = 0, rejected = 0, solves = 0;
   for (int i = 0; i < 300; ++i) {
     s.step();
-    const DynamicsCounters& c = s.dynamics().counters();
+    const DynamicsCounters& c = s.mechanics().counters();
     impacts += c.impacts;
     most = std::max(most, c.impacts);
     sub_steps += c.sub_steps;
@@ -111,7 +111,7 @@ TEST(DynamicsEnergy, FeetThatRestAreNotASeriesOfImpacts) {
     rejected += c.rejected;
     solves += c.solver_iterations;
     EXPECT_EQ(c.interventions, 0U) << "at " << s.world.time()
-                                   << " s: " << words_for(s.dynamics().interventions()[0].reason);
+                                   << " s: " << words_for(s.mechanics().interventions()[0].reason);
   }
   std::printf(
       "  walker, 5 s: %lu impacts, at most %lu in a step, %lu sub-steps, %lu evaluations, %lu rejected, %lu "

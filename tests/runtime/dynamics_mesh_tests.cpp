@@ -14,7 +14,7 @@ enum class Floor { Box, Mesh, Field };
 
 struct Ground : Physics {
   explicit Ground(Floor floor) {
-    dynamics().set_accuracy(Rung::Balanced);
+    mechanics().set_accuracy(Rung::Balanced);
     body(2, Vector3(0, floor == Floor::Field ? 0.0 : -0.5, 0), BodyKind::Stationary, of(floor));
   }
   static std::shared_ptr<Shape> of(Floor floor) {
@@ -22,7 +22,7 @@ struct Ground : Physics {
     if (floor == Floor::Mesh) return block(Vector3(40, 1, 40)).shape();
     return Shape::height_field(41, 41, 1, std::vector<double>(41 * 41, 0.0));
   }
-  double energy() { return dynamics().energy().kinetic + dynamics().energy().potential; }
+  double energy() { return mechanics().energy().kinetic + mechanics().energy().potential; }
   /// Runs, and yields how much the energy rose over what it had been before, relative to the scale given.
   double rise(double seconds) {
     double most = 0, least = energy();

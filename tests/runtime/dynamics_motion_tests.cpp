@@ -39,7 +39,7 @@ TEST(DynamicsMotion, StartsWhereTheFilesSay) {
     const articulated::State start = ref::load(name).state;
     EXPECT_LE(error_of(machine, start), 1e-12) << name;
     for (const ref::Row& row : ref::rows_of(ref::read("mb_scalars"), name)) {
-      const Energy energy = machine.dynamics().energy();
+      const Energy energy = machine.mechanics().energy();
       EXPECT_NEAR(energy.kinetic, row.number("kinetic"), 1e-11 * std::abs(row.number("kinetic"))) << name;
       EXPECT_NEAR(energy.potential, row.number("potential"), 1e-11 * (1 + std::abs(row.number("potential")))) << name;
     }
@@ -49,7 +49,7 @@ TEST(DynamicsMotion, StartsWhereTheFilesSay) {
 TEST(DynamicsMotion, TheReferenceRungFollowsTheTrajectories) {
   for (const std::string& name : ref::case_names("mb_trajectory")) {
     Machine machine(name, 0.05, false);
-    machine.dynamics().set_accuracy(Rung::Reference);
+    machine.mechanics().set_accuracy(Rung::Reference);
     double worst = 0;
     for (const Moment& moment : moments_of(name)) {
       machine.run(moment.t - machine.world.time());
@@ -69,7 +69,7 @@ TEST(DynamicsMotion, FastAndPreciseErrAsMuchAsTheTextbooks) {
     Machine machine(row.text("case"), row.number("h"), false);
     Accuracy accuracy = accuracy_of(precise ? Rung::Precise : Rung::Fast);
     accuracy.step = 0;
-    machine.dynamics().set_accuracy(accuracy);
+    machine.mechanics().set_accuracy(accuracy);
     machine.run(row.number("t"));
     for (const Moment& moment : moments_of(row.text("case"))) {
       if (moment.t != row.number("t")) continue;

@@ -23,7 +23,7 @@ struct Physics : Scene {
     world.set_iteration_step(step);
     script.recording = false;
   }
-  Mechanics& dynamics() { return world.dynamics(); }
+  Mechanics& mechanics() { return world.mechanics(); }
   /// A physics-enabled body.
   ObjectId rigid(std::shared_ptr<Shape> shape, const Vector3& at, const Quaternion& turn = Quaternion::Identity()) {
     const ObjectId id = body(1, at, BodyKind::Mobile, std::move(shape));
@@ -45,7 +45,7 @@ struct Machine : Physics {
   ref::Case given;
 
   Machine(const std::string& name, double step, bool with_tau) : Physics(step), given(ref::load(name)) {
-    dynamics().set_gravity(given.loads.gravity);
+    mechanics().set_gravity(given.loads.gravity);
     const articulated::Model model(given.links);
     for (std::size_t i = 0; i < given.links.size(); ++i) add(model, i, with_tau);
     // Joints are closed as by an impact without rebound: so all are made before anything moves.
@@ -79,15 +79,15 @@ struct Machine : Physics {
     // The file's angles turn the child along +axis, ours the parent.
     is.normal = link.rotation * -link.axis;
     if (link.type == JointType::Universal) is.other_axis = link.rotation * -link.axis2;
-    const JointIndex joint = joints.back() = dynamics().link(is, id);
-    JointDrive drive = dynamics().drive(joint);
+    const JointIndex joint = joints.back() = mechanics().link(is, id);
+    JointDrive drive = mechanics().drive(joint);
     if (with_tau && given.loads.tau.size() && axis_count(is.kind) > 0 && link.type != JointType::Ball)
       for (int k = 0; k < axis_count(is.kind); ++k) drive.force[k] = given.loads.tau[numbers.v + k];
     if (!given.loads.drives.empty()) {
       drive.stiffness = given.loads.drives[i].stiffness;
       drive.damping = given.loads.drives[i].damping;
     }
-    dynamics().set_drive(joint, drive);
+    mechanics().set_drive(joint, drive);
   }
 
   void start(const articulated::Model& model, std::size_t i) {
@@ -106,20 +106,20 @@ struct Machine : Physics {
       world.bodies().set_rotational_velocity(index(id), spin);
       return;
     }
-    const int axes = axis_count(dynamics().joint(joint).kind);
+    const int axes = axis_count(mechanics().joint(joint).kind);
     if (link.type == articulated::JointType::Ball) {
       start_ball(link, joint, q, v);
     } else if (axes > 0) {
-      dynamics().set_position(joint, {q[0], axes == 2 ? q[1] : 0, 0});
-      dynamics().set_velocity(joint, {v[0], axes == 2 ? v[1] : 0, 0});
+      mechanics().set_position(joint, {q[0], axes == 2 ? q[1] : 0, 0});
+      mechanics().set_velocity(joint, {v[0], axes == 2 ? v[1] : 0, 0});
     }
   }
 
   /// The quaternion and spin of the file, by turning the last link about its joint and striking it.
   void start_ball(const articulated::Link& link, JointIndex joint, const double* q, const double* v) {
     const Quaternion model(q[0], q[1], q[2], q[3]);
-    dynamics().set_ball(joint, link.rotation * model * link.rotation.conjugate(),
-                        link.rotation * (model * Vector3(v[0], v[1], v[2])));
+    mechanics().set_ball(joint, link.rotation * model * link.rotation.conjugate(),
+                         link.rotation * (model * Vector3(v[0], v[1], v[2])));
   }
 
   /// q and v of the file's conventions, read from the poses and velocities of the bodies.
@@ -151,7 +151,7 @@ struct Machine : Physics {
         q[0] = turn.w(), q[1] = turn.x(), q[2] = turn.y(), q[3] = turn.z();
         Eigen::Map<Vector3>{v} = own;
       } else if (joints[i] != kNoJoint) {
-        const JointVector position = dynamics().position(joints[i]), rate = dynamics().velocity(joints[i]);
+        const JointVector position = mechanics().position(joints[i]), rate = mechanics().velocity(joints[i]);
         for (int k = 0; k < articulated::velocity_count(link.type); ++k) q[k] = position[k], v[k] = rate[k];
       }
     }

@@ -24,7 +24,7 @@ struct Books : Scene {
     script.recording = false;
     physics().set_gravity(Vector3::Zero());
   }
-  Mechanics& physics() { return world.dynamics(); }
+  Mechanics& physics() { return world.mechanics(); }
   Bodies& bodies() { return world.bodies(); }
   BodyIndex index(ObjectId id) { return world.body(id); }
   static std::shared_ptr<Shape> weight(double kg) {

@@ -18,7 +18,7 @@ struct Sleepers : Scene {
     script.recording = false;
     physics().set_sleeping(true);
   }
-  Mechanics& physics() { return world.dynamics(); }
+  Mechanics& physics() { return world.mechanics(); }
   BodyIndex index(ObjectId id) { return world.body(id); }
   ObjectId stands(const Vector3& size, const Vector3& at) {
     return body(kStands, at, BodyKind::Stationary, Shape::box(size));

@@ -17,7 +17,7 @@ struct Ground : Physics {
   explicit Ground(Rung rung, double step = 1.0 / 960) : Physics(step) {
     Accuracy accuracy = accuracy_of(rung);
     accuracy.contact_springs = true;
-    dynamics().set_accuracy(accuracy);
+    mechanics().set_accuracy(accuracy);
     floor = body(2, Vector3(0, -2.5, 0), BodyKind::Stationary, Shape::box(Vector3(1000, 5, 1000)));
     give(floor, kRebound);
   }
@@ -39,11 +39,11 @@ TEST(ContactSpringsInAWorld, ABallSinksByItsWeightAndTheLedgerCloses) {
   for (const Rung rung : {Rung::Precise, Rung::Reference}) {
     Ground s(rung);
     const ObjectId ball = s.thing(Shape::sphere(0.5), Vector3(0, 0.5, 0));
-    const double start = s.dynamics().energy().total();
+    const double start = s.mechanics().energy().total();
     s.run(1.5);
     EXPECT_NEAR(0.5 - s.at(ball).y(), kSink, 1e-8) << name_of(rung);
     EXPECT_LT(s.velocity(ball).norm(), 1e-6);
-    const Energy now = s.dynamics().energy();
+    const Energy now = s.mechanics().energy();
     EXPECT_NEAR(now.springs, 0.5 * 1e4 * kSink * kSink, 1e-6);
     EXPECT_NEAR(now.total() + now.contact_loss + now.friction_loss, start, 1e-6);
     EXPECT_NEAR(now.residual, 0, 1e-6);
@@ -53,7 +53,7 @@ TEST(ContactSpringsInAWorld, ABallSinksByItsWeightAndTheLedgerCloses) {
 /// How a ball without weight that comes at `speed` leaves, m/s, and how long it touched, s.
 std::pair<double, double> touch(Rung rung, double speed) {
   Ground s(rung, 1.0 / 9600);
-  s.dynamics().set_gravity(Vector3::Zero());
+  s.mechanics().set_gravity(Vector3::Zero());
   const double gap = 1e-4;
   const ObjectId ball = s.thing(Shape::sphere(0.5), Vector3(0, 0.5 + gap, 0));
   s.world.bodies().set_velocity(s.index(ball), Vector3(0, -speed, 0));
@@ -89,12 +89,12 @@ TEST(ContactSpringsInAWorld, EnergyAfterIsNeverAboveEnergyBefore) {
       Ground s(Rung::Precise, step);
       const ObjectId ball = s.thing(Shape::sphere(0.5), Vector3(0, 0.5, 0));
       s.world.bodies().set_velocity(s.index(ball), Vector3(0, -speed, 0));
-      const double before = s.dynamics().energy().total();
+      const double before = s.mechanics().energy().total();
       double highest = 0;
       for (int k = 0; k * step < 0.08; ++k) {
         s.world.step();
         highest = std::max(highest, s.velocity(ball).y());
-        ASSERT_LE(s.dynamics().energy().total(), before + 1e-9) << speed << ' ' << k;
+        ASSERT_LE(s.mechanics().energy().total(), before + 1e-9) << speed << ' ' << k;
       }
       if (i > 0) {
         EXPECT_NEAR(highest, last, 0.1 * last) << speed;
@@ -110,15 +110,15 @@ TEST(ContactSpringsInAWorld, OrderIsThatOfTheIntegrator) {
   constexpr double kFrequency = 100, kWeak = 1;
   const auto error = [&](double step) {
     Ground s(Rung::Precise, step);
-    s.dynamics().set_gravity(Vector3(0, -kWeak, 0));
+    s.mechanics().set_gravity(Vector3(0, -kWeak, 0));
     Accuracy accuracy = accuracy_of(Rung::Precise);
     accuracy.contact_springs = true;
     accuracy.step = step;
-    s.dynamics().set_accuracy(accuracy);
+    s.mechanics().set_accuracy(accuracy);
     const ObjectId ball = s.thing(Shape::sphere(0.5), Vector3(0, 0.5, 0), 1);
     s.give(s.floor, 1);
     s.run(std::numbers::pi / kFrequency);
-    s.dynamics().set_gravity(Vector3(0, -9.81, 0));
+    s.mechanics().set_gravity(Vector3(0, -9.81, 0));
     s.run(10 * std::numbers::pi / kFrequency);
     EXPECT_NEAR(s.at(ball).y(), 0.5 - 2 * kWeak / (kFrequency * kFrequency), 1e-8);
     return std::abs(s.velocity(ball).y());  // after five periods it is where it was: at the top
@@ -132,7 +132,7 @@ TEST(ContactSpringsInAWorld, ABoxOnASlopeSticksOrSlides) {
   for (const bool holds : {true, false}) {
     Ground s(Rung::Precise);
     const double angle = 0.3, mu = std::tan(angle) * (holds ? 1.02 : 0.98);
-    s.dynamics().set_gravity(9.81 * Vector3(std::sin(angle), -std::cos(angle), 0));
+    s.mechanics().set_gravity(9.81 * Vector3(std::sin(angle), -std::cos(angle), 0));
     s.give(s.floor, kRebound, mu);
     const ObjectId box = s.thing(Shape::box(Vector3(1, 1, 1)), Vector3(0, 0.5, 0), kRebound, mu);
     s.run(1);
@@ -145,7 +145,7 @@ TEST(ContactSpringsInAWorld, ABoxOnASlopeSticksOrSlides) {
       const double a = 9.81 * (std::sin(angle) - mu * std::cos(angle));
       EXPECT_NEAR(way, speed + 0.5 * a, 1e-3 * way);
     }
-    EXPECT_NEAR(s.dynamics().energy().residual, 0, 1e-4);
+    EXPECT_NEAR(s.mechanics().energy().residual, 0, 1e-4);
   }
 }
 
@@ -173,7 +173,7 @@ TEST(ContactSpringsInAWorld, ALoadThatIsTooHeavyIsCarriedByRigidSurfaces) {
 
 TEST(ContactSpringsInAWorld, AHeapOfBoxesThatFallOnEachOtherComesToRestAndGainsNothing) {
   Ground s(Rung::Precise, 1.0 / 60);
-  s.dynamics().set_guard(GuardMode::Report);
+  s.mechanics().set_guard(GuardMode::Report);
   std::vector<ObjectId> boxes;
   for (int i = 0; i < 10; ++i)
     boxes.push_back(s.thing(Shape::box(Vector3(1, 1, 1)), Vector3(0, 0.55 + 1.1 * i, 0), 0.4));
@@ -181,10 +181,10 @@ TEST(ContactSpringsInAWorld, AHeapOfBoxesThatFallOnEachOtherComesToRestAndGainsN
   std::uint64_t told = 0;
   for (int i = 0; i < 600; ++i) {
     s.world.step();
-    most = std::max(most, s.dynamics().energy().kinetic);
-    told += s.dynamics().counters().interventions;
+    most = std::max(most, s.mechanics().energy().kinetic);
+    told += s.mechanics().counters().interventions;
   }
-  EXPECT_LT(std::abs(s.dynamics().energy().residual), 1e-6 * most);
+  EXPECT_LT(std::abs(s.mechanics().energy().residual), 1e-6 * most);
   EXPECT_EQ(told, 0u);
   // The lowest carries ten: its springs are pressed in until they harden.
   EXPECT_NEAR(s.at(boxes.front()).y(), 0.496, 2e-3);
@@ -205,11 +205,11 @@ ObjectId table(Ground& s) {
     is.parent_point = Vector3(x, -0.1, 0);
     is.child_point = Vector3(0, 0.5, 0);
     is.normal = Vector3::UnitZ();
-    const JointIndex joint = s.dynamics().link(is, feet.back());
-    JointDrive drive = s.dynamics().drive(joint);
+    const JointIndex joint = s.mechanics().link(is, feet.back());
+    JointDrive drive = s.mechanics().drive(joint);
     drive.stiffness = 500;
     drive.damping = 20;
-    s.dynamics().set_drive(joint, drive);
+    s.mechanics().set_drive(joint, drive);
   }
   return body;
 }
@@ -217,11 +217,11 @@ ObjectId table(Ground& s) {
 TEST(ContactSpringsInAWorld, AnArticulatedFootStandsOnThem) {
   Ground s(Rung::Precise);
   const ObjectId body = table(s);
-  const double start = s.dynamics().energy().total();
+  const double start = s.mechanics().energy().total();
   s.run(2);
   EXPECT_NEAR(s.at(body).y(), 1.1, 2e-3);
   EXPECT_LT(s.velocity(body).norm(), 1e-3);
-  const Energy now = s.dynamics().energy(), own = s.dynamics().energy(s.index(body));
+  const Energy now = s.mechanics().energy(), own = s.mechanics().energy(s.index(body));
   EXPECT_NEAR(now.total() + now.contact_loss + now.friction_loss + now.drag_loss - now.residual, start, 1e-6);
   EXPECT_NEAR(now.residual, 0, 1e-4);
   EXPECT_NEAR(own.residual, 0, 1e-4);
@@ -234,7 +234,7 @@ TEST(ContactSpringsInAWorld, ArticulatedBodiesStandOnRigidGroundIfAskedTo) {
     Accuracy accuracy = accuracy_of(rung);
     accuracy.contact_springs = true;
     accuracy.link_springs = false;
-    s.dynamics().set_accuracy(accuracy);
+    s.mechanics().set_accuracy(accuracy);
     const ObjectId body = table(s);
     const ObjectId ball = s.thing(Shape::sphere(0.5), Vector3(5, 0.5, 0));
     s.run(1);
@@ -257,10 +257,10 @@ JointIndex arm_on_its_limit(Ground& s, JointKind kind, double low, double high) 
   is.parent_point = Vector3(0.5, 0, 0);
   is.child_point = Vector3(-0.5, 0, 0);
   is.normal = Vector3::UnitZ();
-  const JointIndex joint = s.dynamics().link(is, arm);
-  JointDrive drive = s.dynamics().drive(joint);
+  const JointIndex joint = s.mechanics().link(is, arm);
+  JointDrive drive = s.mechanics().drive(joint);
   for (int k = 0; k < axis_count(kind); ++k) drive.low[k] = low, drive.high[k] = high;
-  s.dynamics().set_drive(joint, drive);
+  s.mechanics().set_drive(joint, drive);
   return joint;
 }
 
@@ -273,14 +273,14 @@ TEST(ContactSpringsInAWorld, LimitsThatJointsRestOnHoldInsideTheStages) {
     Ground s(Rung::Precise, 1.0 / 480);
     const JointIndex joint = arm_on_its_limit(s, kind, low, high);
     s.run(3);
-    EXPECT_LT(s.dynamics().velocity(joint).norm(), 1e-9);
-    EXPECT_LT(s.dynamics().position(joint).norm(), 1e-6);
-    EXPECT_NEAR(s.dynamics().reaction(joint).torque.norm(), 0.1 * 9.81 * 0.5, 1e-4);
-    EXPECT_NEAR(s.dynamics().energy().residual, 0, 1e-5);
+    EXPECT_LT(s.mechanics().velocity(joint).norm(), 1e-9);
+    EXPECT_LT(s.mechanics().position(joint).norm(), 1e-6);
+    EXPECT_NEAR(s.mechanics().reaction(joint).torque.norm(), 0.1 * 9.81 * 0.5, 1e-4);
+    EXPECT_NEAR(s.mechanics().energy().residual, 0, 1e-5);
     for (int i = 0; i < 240; ++i) {
       s.world.step();
-      ASSERT_EQ(s.dynamics().counters().sub_steps, 1U) << i;
-      ASSERT_EQ(s.dynamics().counters().evaluations, 4U) << "nothing swings: each is a step of Runge-Kutta 4";
+      ASSERT_EQ(s.mechanics().counters().sub_steps, 1U) << i;
+      ASSERT_EQ(s.mechanics().counters().evaluations, 4U) << "nothing swings: each is a step of Runge-Kutta 4";
     }
   }
 }
@@ -289,13 +289,13 @@ TEST(ContactSpringsInAWorld, AJointLeavesALimitThatHoldsWhenItIsPulledAway) {
   Ground s(Rung::Precise, 1.0 / 480);
   const JointIndex joint = arm_on_its_limit(s, JointKind::Revolute, -1, 0);
   s.run(1);
-  JointDrive drive = s.dynamics().drive(joint);
+  JointDrive drive = s.mechanics().drive(joint);
   drive.force[0] = -2 * 0.1 * 9.81 * 0.5;  // lifts as much as the weight pulls: as if it fell upward
-  s.dynamics().set_drive(joint, drive);
+  s.mechanics().set_drive(joint, drive);
   s.run(0.1);
   const double inertia = 0.1 * (1.01 / 12 + 0.25);
-  EXPECT_NEAR(s.dynamics().position(joint)[0], -0.5 * 0.1 * 9.81 * 0.5 / inertia * 0.01, 2e-3);
-  EXPECT_NEAR(s.dynamics().energy().residual, 0, 1e-4);
+  EXPECT_NEAR(s.mechanics().position(joint)[0], -0.5 * 0.1 * 9.81 * 0.5 / inertia * 0.01, 2e-3);
+  EXPECT_NEAR(s.mechanics().energy().residual, 0, 1e-4);
 }
 
 TEST(ContactSpringsInAWorld, SurfacesAreRigidOnceTheSettingIsOff) {
@@ -303,12 +303,12 @@ TEST(ContactSpringsInAWorld, SurfacesAreRigidOnceTheSettingIsOff) {
     Ground s(Rung::Precise, 1.0 / 60);
     const ObjectId ball = s.thing(Shape::sphere(0.5), Vector3(0, 0.5, 0));
     s.run(1);
-    EXPECT_GT(s.dynamics().energy().springs, 0);
+    EXPECT_GT(s.mechanics().energy().springs, 0);
     Accuracy rigid = accuracy_of(rung);
     rigid.contact_springs = false;
-    s.dynamics().set_accuracy(rigid);
+    s.mechanics().set_accuracy(rigid);
     s.run(1);
-    EXPECT_EQ(s.dynamics().energy().springs, 0);
+    EXPECT_EQ(s.mechanics().energy().springs, 0);
     EXPECT_NEAR(s.at(ball).y(), 0.5, kSink) << name_of(rung);
     EXPECT_LT(s.velocity(ball).norm(), 1e-3) << name_of(rung);
     s.world.bodies().set_velocity(s.index(ball), Vector3(0, -1, 0));  // an impact takes place again

@@ -12,18 +12,18 @@ namespace {
 
 struct Hard : Physics {
   explicit Hard(Rung rung = Rung::Balanced, double step = 1.0 / 60) : Physics(step) {
-    dynamics().set_accuracy(rung);
-    dynamics().set_guard(GuardMode::Report);
+    mechanics().set_accuracy(rung);
+    mechanics().set_guard(GuardMode::Report);
   }
   ObjectId floor() { return body(2, Vector3(0, -2.5, 0), BodyKind::Stationary, Shape::box(Vector3(1000, 5, 1000))); }
   void measure(double seconds, const std::function<void()>& look = {}) {
     const auto steps = std::llround(seconds / world.iteration_step());
     for (long long i = 0; i < steps; ++i) {
       world.step();
-      sub_steps += dynamics().counters().sub_steps;
-      most = std::max(most, dynamics().counters().sub_steps);
-      evaluations += dynamics().counters().evaluations;
-      interventions += dynamics().counters().interventions;
+      sub_steps += mechanics().counters().sub_steps;
+      most = std::max(most, mechanics().counters().sub_steps);
+      evaluations += mechanics().counters().evaluations;
+      interventions += mechanics().counters().interventions;
       ++iterations;
       if (look) look();
     }
@@ -39,7 +39,7 @@ struct Hard : Physics {
 void stack(int count, double seconds) {
   Hard s;
   s.floor();
-  s.dynamics().set_sleeping(true);
+  s.mechanics().set_sleeping(true);
   std::vector<ObjectId> boxes;
   for (int i = 0; i < count; ++i) boxes.push_back(s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3(0, 0.5 + i, 0)));
   s.measure(seconds);
@@ -47,7 +47,7 @@ void stack(int count, double seconds) {
   const Vector3 top = s.at(boxes.back());
   EXPECT_NEAR(top.y(), count - 0.5, 0.01 * (count - 0.5));
   EXPECT_LT(std::hypot(top.x(), top.z()), 0.01);
-  for (const ObjectId box : boxes) EXPECT_TRUE(s.dynamics().asleep(s.index(box)));
+  for (const ObjectId box : boxes) EXPECT_TRUE(s.mechanics().asleep(s.index(box)));
 }
 
 TEST(DynamicsStability, TenBoxesStandForAMinute) { stack(10, 60); }
@@ -83,7 +83,7 @@ std::vector<ObjectId> chain(Physics& s, int count, double length, double mass, c
       is.parent = s.index(links[static_cast<std::size_t>(i - 1)]);
       is.parent_point = Vector3(0, -0.5 * length, 0);
     }
-    s.dynamics().link(is, links.back());
+    s.mechanics().link(is, links.back());
   }
   return links;
 }
@@ -102,12 +102,12 @@ void heavy_ball(double degrees, Rung rung, double bound) {
   is.parent_point = Vector3(0, -0.25, 0);
   is.child_point = Vector3(0, 0.5, 0);
   is.normal = Vector3::UnitZ();
-  s.dynamics().link(is, weight);
-  const double start = s.dynamics().energy().total(), scale = 1000 * 9.81 * 10.5;
+  s.mechanics().link(is, weight);
+  const double start = s.mechanics().energy().total(), scale = 1000 * 9.81 * 10.5;
   double worst = 0, open = 0, gained = 0;
   s.measure(10, [&] {
-    gained = std::max(gained, (s.dynamics().energy().total() - start) / scale);
-    worst = std::max(worst, std::abs(s.dynamics().energy().total() - start) / scale);
+    gained = std::max(gained, (s.mechanics().energy().total() - start) / scale);
+    worst = std::max(worst, std::abs(s.mechanics().energy().total() - start) / scale);
     const Bodies& bodies = s.world.bodies();
     const Vector3 gap = bodies.location(is.child) + bodies.orientation(is.child) * is.child_point -
                         bodies.location(is.parent) - bodies.orientation(is.parent) * is.parent_point;
@@ -128,7 +128,7 @@ TEST(DynamicsStability, AHeavyBallOnALightChainOnPrecise) { heavy_ball(90, Rung:
 TEST(DynamicsStability, AFastSpinningFlatBodyKeepsItsAngularMomentum) {
   for (const Rung rung : {Rung::Balanced, Rung::Conserving, Rung::Precise}) {
     Hard s(rung, rung == Rung::Precise ? 1.0 / 480 : 1.0 / 60);
-    s.dynamics().set_gravity(Vector3::Zero());
+    s.mechanics().set_gravity(Vector3::Zero());
     Matrix3 inertia = Matrix3::Identity();
     inertia.diagonal() << 100, 60, 1;
     inertia(0, 0) = 60.5;  // a body: no moment above the sum of the other two
@@ -151,9 +151,9 @@ TEST(DynamicsStability, AFastSpinningFlatBodyKeepsItsAngularMomentum) {
 TEST(DynamicsStability, APassivePendulumOfFiveLinksKeepsItsEnergyForAMinute) {
   Hard s;
   chain(s, 5, 0.5, 1, Vector3(1, 0, 0));
-  const double start = s.dynamics().energy().total(), scale = 5 * 9.81 * 2.5;
+  const double start = s.mechanics().energy().total(), scale = 5 * 9.81 * 2.5;
   double worst = 0;
-  s.measure(60, [&] { worst = std::max(worst, std::abs(s.dynamics().energy().total() - start) / scale); });
+  s.measure(60, [&] { worst = std::max(worst, std::abs(s.mechanics().energy().total() - start) / scale); });
   s.print("pendulum of 5");
   std::printf("    dE %.1e\n", worst);
   EXPECT_LE(worst, 0.01);
@@ -162,10 +162,10 @@ TEST(DynamicsStability, APassivePendulumOfFiveLinksKeepsItsEnergyForAMinute) {
 TEST(DynamicsStability, AThousandLinksHang) {
   Hard s;
   chain(s, 1000, 0.1, 0.1, Vector3(0, -1, 0));
-  const double start = s.dynamics().energy().total();
+  const double start = s.mechanics().energy().total();
   s.measure(0.5);
   s.print("1000 links");
-  EXPECT_NEAR(s.dynamics().energy().total(), start, 1e-6 * std::abs(start));
+  EXPECT_NEAR(s.mechanics().energy().total(), start, 1e-6 * std::abs(start));
 }
 
 TEST(DynamicsStability, ABulletDoesNotPassAThinWall) {
@@ -173,7 +173,7 @@ TEST(DynamicsStability, ABulletDoesNotPassAThinWall) {
     for (const double thick : {0.01, 0.001}) {
       for (const Rung rung : {Rung::Balanced, Rung::Precise}) {
         Hard s(rung);
-        s.dynamics().set_gravity(Vector3::Zero());
+        s.mechanics().set_gravity(Vector3::Zero());
         s.body(2, Vector3(20, 0, 0), BodyKind::Stationary, Shape::box(Vector3(thick, 10, 10)));
         const ObjectId ball = s.rigid(Shape::sphere(0.01), Vector3::Zero());
         s.set_velocity(ball, Vector3(speed, 0, 0));
@@ -187,7 +187,7 @@ TEST(DynamicsStability, ABulletDoesNotPassAThinWall) {
 TEST(DynamicsStability, ManyAtOnePointPartGently) {
   for (const int count : {2, 100}) {
     Hard s;
-    s.dynamics().set_gravity(Vector3::Zero());
+    s.mechanics().set_gravity(Vector3::Zero());
     std::vector<ObjectId> balls;
     for (int i = 0; i < count; ++i) balls.push_back(s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3::Zero()));
     double fastest = 0;
@@ -204,7 +204,7 @@ TEST(DynamicsStability, ManyAtOnePointPartGently) {
 
 TEST(DynamicsStability, PlatesThatClapStayWhereTheyAre) {
   Hard s;
-  s.dynamics().set_gravity(Vector3::Zero());
+  s.mechanics().set_gravity(Vector3::Zero());
   const ObjectId a = s.rigid(Shape::box(Vector3(1, 0.1, 1)), Vector3(0, 0.5, 0));
   const ObjectId b = s.rigid(Shape::box(Vector3(1, 0.1, 1)), Vector3(0, -0.5, 0));
   SpringDescription is;
@@ -212,7 +212,7 @@ TEST(DynamicsStability, PlatesThatClapStayWhereTheyAre) {
   is.b = s.index(b);
   is.strength = 5;
   is.damping = 0;
-  s.dynamics().tie(is, a);
+  s.mechanics().tie(is, a);
   double moved = 0;
   s.measure(20, [&] { moved = std::max(moved, (0.5 * (s.at(a) + s.at(b))).norm()); });
   s.print("plates");
@@ -225,11 +225,11 @@ TEST(DynamicsStability, PlatesThatClapStayWhereTheyAre) {
 TEST(DynamicsStability, OnFastAPassivePendulumStaysFinite) {
   Hard s(Rung::Fast);
   chain(s, 5, 0.5, 1, Vector3(1, 0, 0));
-  const double start = s.dynamics().energy().total(), scale = 5 * 9.81 * 2.5;
+  const double start = s.mechanics().energy().total(), scale = 5 * 9.81 * 2.5;
   double most = 0;
-  s.measure(60, [&] { most = std::max(most, (s.dynamics().energy().total() - start) / scale); });
+  s.measure(60, [&] { most = std::max(most, (s.mechanics().energy().total() - start) / scale); });
   s.print("pendulum of 5, fast");
-  std::printf("    dE at most %+.2f, at the end %+.2f\n", most, (s.dynamics().energy().total() - start) / scale);
+  std::printf("    dE at most %+.2f, at the end %+.2f\n", most, (s.mechanics().energy().total() - start) / scale);
   EXPECT_LE(most, 0.1);
 }
 
@@ -249,11 +249,11 @@ TEST(DynamicsStability, OnFastAHeavyTopStaysFinite) {
     is.child = s.index(top);
     is.child_point = Vector3(0, 0, -0.5);
     is.relative_rotation = Quaternion(Eigen::AngleAxisd(0.5, Vector3::UnitY()));
-    s.dynamics().link(is, top);
+    s.mechanics().link(is, top);
     s.world.bodies().set_rotational_velocity(s.index(top), is.relative_rotation * Vector3(0, 0, spin));
-    const double start = s.dynamics().energy().kinetic;
+    const double start = s.mechanics().energy().kinetic;
     double most = 0;
-    s.measure(20, [&] { most = std::max(most, s.dynamics().energy().kinetic / start); });
+    s.measure(20, [&] { most = std::max(most, s.mechanics().energy().kinetic / start); });
     s.print("heavy top, fast");
     std::printf("    at %.0f rad/s: kinetic energy at most %.2f of the start's\n", spin, most);
     EXPECT_LE(most, 1.5);
@@ -282,7 +282,7 @@ TEST(DynamicsStability, OnFastTwentyBoxesStandWhereSmallIslandsAreSolvedDirectly
   Hard s(Rung::Fast);
   Accuracy accuracy = accuracy_of(Rung::Fast);
   accuracy.direct = true;
-  s.dynamics().set_accuracy(accuracy);
+  s.mechanics().set_accuracy(accuracy);
   s.floor();
   std::vector<ObjectId> boxes;
   for (int i = 0; i < 20; ++i) boxes.push_back(s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3(0, 0.5 + i, 0)));

@@ -26,14 +26,14 @@ struct Mixed : Physics {
       is.parent_point = i == 0 ? Vector3(0, 4, 0) : Vector3(0, -0.5, 0);
       if (i > 0) is.parent = index(links[static_cast<std::size_t>(i - 1)]);
       is.normal = Vector3::UnitZ();
-      joints.push_back(dynamics().link(is, links.back()));
+      joints.push_back(mechanics().link(is, links.back()));
     }
-    dynamics().set_velocity(joints[0], Vector3(4, 0, 0));
-    JointDrive drive = dynamics().drive(joints[2]);
+    mechanics().set_velocity(joints[0], Vector3(4, 0, 0));
+    JointDrive drive = mechanics().drive(joints[2]);
     drive.motor_speed = Vector3(1, 0, 0);
     drive.strength_limit = 0.01;
     drive.damping = 0.001;
-    dynamics().set_drive(joints[2], drive);
+    mechanics().set_drive(joints[2], drive);
     for (int i = 0; i < 3; ++i)
       boxes.push_back(rigid(Shape::box(Vector3(1, 1, 1)), Vector3(3, 0.5 + 1.2 * i, 0.1 * i)));
     SpringDescription tie;
@@ -41,7 +41,7 @@ struct Mixed : Physics {
     tie.b = index(boxes[2]);
     tie.strength = 2;
     tie.length = 1;
-    dynamics().tie(tie, links[2]);
+    mechanics().tie(tie, links[2]);
   }
 };
 
@@ -78,7 +78,7 @@ TEST(DynamicsState, WhatAScriptSetSinceTheLastStepIsInTheImage) {
   Mixed s;
   s.run(0.2);
   s.world.bodies().set_velocity(s.index(s.links[1]), Vector3(1, 2, 0));
-  s.dynamics().unlink(s.joints[2]);
+  s.mechanics().unlink(s.joints[2]);
   const auto image = s.world.save(1);
   Scene other;
   other.script.recording = false;
@@ -100,21 +100,21 @@ TEST(DynamicsState, AMovedLinkTakesItsAssemblyAlong) {
   is.parent_point = Vector3(1, 0, 0);
   is.child_point = Vector3(-1, 0, 0);
   is.normal = Vector3::UnitZ();
-  s.dynamics().link(is, b);
+  s.mechanics().link(is, b);
   EXPECT_LT((s.at(b) - Vector3(2, 0, 0)).norm(), kRounding);
   s.world.bodies().set_location(s.index(b), Vector3(10, 0, 0));
-  s.dynamics().take_changes();
+  s.mechanics().take_changes();
   EXPECT_LT((s.at(a) - Vector3(8, 0, 0)).norm(), kRounding);
-  s.dynamics().set_gravity(Vector3::Zero());
+  s.mechanics().set_gravity(Vector3::Zero());
   s.set_velocity(a, Vector3(0, 1, 0));
-  s.dynamics().take_changes();
+  s.mechanics().take_changes();
   EXPECT_LT((s.velocity(a) - Vector3(0, 1, 0)).norm(), kRounding);
   EXPECT_GT(s.velocity(b).norm(), 0.05);  // it answers
   s.set_velocity(a, Vector3(0, 2, 0));
   s.set_velocity(b, Vector3(0, 2, 0));
   s.world.bodies().set_rotational_velocity(s.index(a), Vector3::Zero());
   s.world.bodies().set_rotational_velocity(s.index(b), Vector3::Zero());
-  s.dynamics().take_changes();
+  s.mechanics().take_changes();
   s.run(1);
   EXPECT_LT((s.at(a) - Vector3(8, 2, 0)).norm(), 1e-9);
   EXPECT_LT((s.at(b) - Vector3(10, 2, 0)).norm(), 1e-9);
@@ -123,23 +123,23 @@ TEST(DynamicsState, AMovedLinkTakesItsAssemblyAlong) {
 TEST(DynamicsState, PositionIsPositiveWhenTheParentTurnsAlongTheNormal) {
   for (const bool flipped : {false, true}) {
     Physics s;
-    s.dynamics().set_gravity(Vector3::Zero());
+    s.mechanics().set_gravity(Vector3::Zero());
     const ObjectId parent = s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3::Zero());
     const ObjectId child = s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3::Zero());
     JointDescription is;
     is.parent = s.index(parent);
     is.child = s.index(child);
     is.normal = Vector3::UnitZ();
-    const JointIndex joint = s.dynamics().link(is, child);
+    const JointIndex joint = s.mechanics().link(is, child);
     if (flipped) {
       // Held by the world at its child: the tree then goes the other way.
       JointDescription anchor;
       anchor.kind = JointKind::Fixed;
       anchor.child = s.index(child);
-      s.dynamics().link(anchor, child);
+      s.mechanics().link(anchor, child);
     }
-    s.dynamics().set_position(joint, Vector3(0.3, 0, 0));
-    s.dynamics().set_velocity(joint, Vector3(0.5, 0, 0));
+    s.mechanics().set_position(joint, Vector3(0.3, 0, 0));
+    s.mechanics().set_velocity(joint, Vector3(0.5, 0, 0));
     const Bodies& bodies = s.world.bodies();
     const Quaternion turn = bodies.orientation(s.index(child)).conjugate() * bodies.orientation(s.index(parent));
     EXPECT_NEAR(2 * std::atan2(turn.z(), turn.w()), 0.3, kRounding) << flipped;
@@ -151,23 +151,23 @@ TEST(DynamicsState, PositionIsPositiveWhenTheParentTurnsAlongTheNormal) {
 TEST(DynamicsState, AMotorReachesItsSpeedAndHoldsAgainstALoad) {
   for (const Rung rung : {Rung::Fast, Rung::Balanced, Rung::Precise}) {
     Physics s;
-    s.dynamics().set_accuracy(rung);
+    s.mechanics().set_accuracy(rung);
     const ObjectId arm = s.rigid(Shape::box(Vector3(1, 0.1, 0.1)), Vector3::Zero());
     JointDescription is;
     is.child = s.index(arm);
     is.child_point = Vector3(-0.5, 0, 0);
     is.normal = Vector3::UnitZ();
-    const JointIndex joint = s.dynamics().link(is, arm);
+    const JointIndex joint = s.mechanics().link(is, arm);
     JointDrive drive;
     drive.strength_limit = 1;
-    s.dynamics().set_drive(joint, drive);
+    s.mechanics().set_drive(joint, drive);
     s.run(1);
-    EXPECT_NEAR(s.dynamics().position(joint)[0], 0, 1e-5) << name_of(rung);
+    EXPECT_NEAR(s.mechanics().position(joint)[0], 0, 1e-5) << name_of(rung);
     drive.motor_speed = Vector3(2, 0, 0);
-    s.dynamics().set_drive(joint, drive);
+    s.mechanics().set_drive(joint, drive);
     s.run(1);
-    EXPECT_NEAR(s.dynamics().velocity(joint)[0], 2, 1e-3) << name_of(rung);
-    const Energy energy = s.dynamics().energy();
+    EXPECT_NEAR(s.mechanics().velocity(joint)[0], 2, 1e-3) << name_of(rung);
+    const Energy energy = s.mechanics().energy();
     EXPECT_NEAR(energy.residual, 0, rung == Rung::Fast ? 1e-2 : 1e-4) << name_of(rung);
   }
 }
@@ -213,15 +213,15 @@ TEST(DynamicsState, AJointSaysWhatItHolds) {
   JointDescription is;
   is.kind = JointKind::Fixed;
   is.child = s.index(a);
-  const JointIndex top = s.dynamics().link(is, a);
+  const JointIndex top = s.mechanics().link(is, a);
   is.parent = s.index(a);
   is.child = s.index(b);
   is.parent_point = Vector3(1, 0, 0);
-  const JointIndex weld = s.dynamics().link(is, b);
+  const JointIndex weld = s.mechanics().link(is, b);
   s.run(0.1);
-  EXPECT_LT((s.dynamics().reaction(top).force - Vector3(0, 3 * 9.81, 0)).norm(), 1e-9);
-  EXPECT_LT((s.dynamics().reaction(top).torque - Vector3(0, 0, 2 * 9.81)).norm(), 1e-9);
-  EXPECT_LT((s.dynamics().reaction(weld).force - Vector3(0, 2 * 9.81, 0)).norm(), 1e-9);
+  EXPECT_LT((s.mechanics().reaction(top).force - Vector3(0, 3 * 9.81, 0)).norm(), 1e-9);
+  EXPECT_LT((s.mechanics().reaction(top).torque - Vector3(0, 0, 2 * 9.81)).norm(), 1e-9);
+  EXPECT_LT((s.mechanics().reaction(weld).force - Vector3(0, 2 * 9.81, 0)).norm(), 1e-9);
 }
 
 TEST(DynamicsState, AJointHoldsWhatAFloorPushes) {
@@ -236,16 +236,16 @@ TEST(DynamicsState, AJointHoldsWhatAFloorPushes) {
   is.child = s.index(leg);
   is.parent_point = Vector3(0, -0.5, 0);
   is.child_point = Vector3(0, 0.5, 0);
-  const JointIndex joint = s.dynamics().link(is, leg);
+  const JointIndex joint = s.mechanics().link(is, leg);
   s.run(1);
   // On the leg: the trunk's weight.
-  EXPECT_LT((s.dynamics().reaction(joint).force - Vector3(0, -9.81, 0)).norm(), 1e-6);
-  EXPECT_LT(s.dynamics().reaction(joint).torque.norm(), 1e-6);
+  EXPECT_LT((s.mechanics().reaction(joint).force - Vector3(0, -9.81, 0)).norm(), 1e-6);
+  EXPECT_LT(s.mechanics().reaction(joint).torque.norm(), 1e-6);
 }
 
 TEST(DynamicsState, LinksThatIntersectAreCountedIfTheyAreTested) {
   Physics s;
-  s.dynamics().set_gravity(Vector3::Zero());
+  s.mechanics().set_gravity(Vector3::Zero());
   std::vector<ObjectId> rods;
   for (int i = 0; i < 4; ++i) rods.push_back(s.rigid(Shape::box(Vector3(1, 0.2, 0.2)), Vector3::Zero()));
   for (std::size_t i = 1; i < rods.size(); ++i) {
@@ -255,29 +255,29 @@ TEST(DynamicsState, LinksThatIntersectAreCountedIfTheyAreTested) {
     is.parent_point = Vector3(0.5, 0, 0);
     is.child_point = Vector3(-0.5, 0, 0);
     is.normal = Vector3::UnitZ();
-    const JointIndex joint = s.dynamics().link(is, rods[i]);
-    s.dynamics().set_position(joint, Vector3(1.57, 0, 0));  // a square: the fourth meets the first
+    const JointIndex joint = s.mechanics().link(is, rods[i]);
+    s.mechanics().set_position(joint, Vector3(1.57, 0, 0));  // a square: the fourth meets the first
   }
-  EXPECT_EQ(s.dynamics().self_penetrations(s.index(rods[0])), 0U);
-  s.dynamics().set_self_collisions(s.index(rods[0]), true);
-  EXPECT_EQ(s.dynamics().self_penetrations(s.index(rods[2])), 1U);
-  const JointIndex last = s.dynamics().joints_of(s.index(rods[0])).back();
-  s.dynamics().set_position(last, Vector3(-1.57, 0, 0));
-  EXPECT_EQ(s.dynamics().self_penetrations(s.index(rods[0])), 0U);
+  EXPECT_EQ(s.mechanics().self_penetrations(s.index(rods[0])), 0U);
+  s.mechanics().set_self_collisions(s.index(rods[0]), true);
+  EXPECT_EQ(s.mechanics().self_penetrations(s.index(rods[2])), 1U);
+  const JointIndex last = s.mechanics().joints_of(s.index(rods[0])).back();
+  s.mechanics().set_position(last, Vector3(-1.57, 0, 0));
+  EXPECT_EQ(s.mechanics().self_penetrations(s.index(rods[0])), 0U);
 }
 
 TEST(DynamicsState, TheCounterOfSleepersIsTheirNumber) {
   Physics s(1.0 / 240);
   s.world.set_iteration_step(1.0 / 60);  // four sub-steps
-  s.dynamics().set_sleeping(true);
+  s.mechanics().set_sleeping(true);
   s.body(2, Vector3(0, -0.5, 0), BodyKind::Stationary, Shape::box(Vector3(10, 1, 10)));
   ObjectId last;
   for (int i = 0; i < 3; ++i) last = s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3(2 * i, 0.5, 0));
   s.run(2);
-  EXPECT_EQ(s.dynamics().counters().sleeping, 3U);
+  EXPECT_EQ(s.mechanics().counters().sleeping, 3U);
   s.set_velocity(last, Vector3(0, 1, 0));
   s.world.step();
-  EXPECT_EQ(s.dynamics().counters().sleeping, 2U);
+  EXPECT_EQ(s.mechanics().counters().sleeping, 2U);
 }
 
 TEST(DynamicsState, ALinkThatIsTurnedBeforeTheFirstStepTakesItsAssemblyAlong) {
@@ -290,12 +290,12 @@ TEST(DynamicsState, ALinkThatIsTurnedBeforeTheFirstStepTakesItsAssemblyAlong) {
   is.parent_point = Vector3(1, 0, 0);
   is.child_point = Vector3(-1, 0, 0);
   is.normal = Vector3::UnitZ();
-  s.dynamics().link(is, b);
+  s.mechanics().link(is, b);
   s.world.bodies().set_orientation(s.index(a), Quaternion(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3::UnitZ())));
-  s.dynamics().moved(s.index(a));
+  s.mechanics().moved(s.index(a));
   EXPECT_LT((s.at(b) - Vector3(0, 2, 0)).norm(), kRounding);
   s.world.bodies().set_location(s.index(b), Vector3(1, 2, 0));
-  s.dynamics().moved(s.index(b));
+  s.mechanics().moved(s.index(b));
   EXPECT_LT((s.at(a) - Vector3(1, 0, 0)).norm(), kRounding);
 }
 

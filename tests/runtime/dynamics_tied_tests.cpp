@@ -15,7 +15,7 @@ struct Chain : Physics {
   /// @param asked  a script is asked for the force on a box, and says none: then the cluster is moved as one with
   /// joints
   Chain(Rung rung, bool asked) : Physics(1.0 / 240) {
-    dynamics().set_accuracy(rung);
+    mechanics().set_accuracy(rung);
     const ObjectId post = body(2, Vector3(0, 3, 0), BodyKind::Stationary, Shape::sphere(0.1));
     for (int i = 0; i < 3; ++i) {
       const Vector3 size(0.3 + 0.1 * i, 0.4, 0.2);
@@ -45,9 +45,9 @@ struct Chain : Physics {
     is.maximum_force = 6;
     is.a = index(boxes[0]);
     add(is);
-    if (asked) dynamics().set_force_method(index(boxes[1]), true);
+    if (asked) mechanics().set_force_method(index(boxes[1]), true);
   }
-  void add(const SpringDescription& is) { springs.push_back(dynamics().tie(is, boxes[0])); }
+  void add(const SpringDescription& is) { springs.push_back(mechanics().tie(is, boxes[0])); }
 };
 
 TEST(TiedBodies, MoveAsTheyDoWhereScriptsAreAsked) {
@@ -59,10 +59,10 @@ TEST(TiedBodies, MoveAsTheyDoWhereScriptsAreAsked) {
       if (i != 120) continue;
       // Values that are set meanwhile count from there.
       for (Chain* chain : {&own, &general}) {
-        SpringDescription is = chain->dynamics().spring(chain->springs[2]);
+        SpringDescription is = chain->mechanics().spring(chain->springs[2]);
         is.strength = 70;
         is.point_b = Vector3(0, 0.1, 0.1);
-        chain->dynamics().set_spring(chain->springs[2], is);
+        chain->mechanics().set_spring(chain->springs[2], is);
       }
     }
     // Equations that are solved by repetition end where they are near enough.
@@ -73,10 +73,10 @@ TEST(TiedBodies, MoveAsTheyDoWhereScriptsAreAsked) {
       EXPECT_LT((own.velocity(one) - general.velocity(other)).norm(), slack * 1e-7) << name_of(rung) << ", box " << i;
     }
     for (std::size_t i = 0; i < own.springs.size(); ++i)
-      EXPECT_NEAR(own.dynamics().spring_force(own.springs[i]), general.dynamics().spring_force(general.springs[i]),
+      EXPECT_NEAR(own.mechanics().spring_force(own.springs[i]), general.mechanics().spring_force(general.springs[i]),
                   slack * 1e-6)
           << name_of(rung) << ", spring " << i;
-    const Energy one = own.dynamics().energy(), other = general.dynamics().energy();
+    const Energy one = own.mechanics().energy(), other = general.mechanics().energy();
     EXPECT_NEAR(one.total(), other.total(), slack * 1e-6) << name_of(rung);
     EXPECT_NEAR(one.drag_loss, other.drag_loss, slack * 1e-7) << name_of(rung);
     EXPECT_NEAR(one.script_work, other.script_work, slack * 1e-7) << name_of(rung);

@@ -38,26 +38,26 @@ struct WalkerBody {
     is.parent_point = on_parent;
     is.child_point = on_child;
     is.normal = Vector3::UnitZ();
-    hinges.push_back(in.dynamics().link(is, id));
-    JointDrive drive = in.dynamics().drive(hinges.back());
+    hinges.push_back(in.mechanics().link(is, id));
+    JointDrive drive = in.mechanics().drive(hinges.back());
     drive.strength_limit = 6;
     drive.damping = 0.05;
-    in.dynamics().set_drive(hinges.back(), drive);
+    in.mechanics().set_drive(hinges.back(), drive);
     links.push_back(id);
     return id;
   }
   /// The motor of one hinge aims at a sine of time.
   void aim(Physics& in, std::size_t hinge, double wavelength, double phase, double amplitude) const {
     const double goal = amplitude * std::sin(2 * std::numbers::pi * (in.world.time() / wavelength + phase));
-    JointDrive drive = in.dynamics().drive(hinges[hinge]);
-    drive.motor_speed[0] = 8 * (goal - in.dynamics().position(hinges[hinge])[0]);
-    in.dynamics().set_drive(hinges[hinge], drive);
+    JointDrive drive = in.mechanics().drive(hinges[hinge]);
+    drive.motor_speed[0] = 8 * (goal - in.mechanics().position(hinges[hinge])[0]);
+    in.mechanics().set_drive(hinges[hinge], drive);
   }
 };
 
 struct WalkersGround : Physics {
   WalkersGround(Rung rung, double step) : Physics(step) {
-    dynamics().set_accuracy(rung);
+    mechanics().set_accuracy(rung);
     floor = body(2, Vector3(0, -2.5, 0), BodyKind::Stationary, Shape::box(Vector3(1000, 5, 1000)));
   }
   ObjectId floor;

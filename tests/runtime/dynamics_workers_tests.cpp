@@ -16,9 +16,9 @@ struct Crowd : Physics {
   std::vector<ObjectId> balls;
 
   explicit Crowd(int workers, GuardMode guard = GuardMode::Rest, int count = 6) {
-    dynamics().set_workers(workers);
-    dynamics().set_guard(guard);
-    dynamics().set_sleeping(true);
+    mechanics().set_workers(workers);
+    mechanics().set_guard(guard);
+    mechanics().set_sleeping(true);
     body(2, Vector3(0, -2.5, 0), BodyKind::Stationary, Shape::box(Vector3(1000, 5, 1000)));
     for (int i = 0; i < count; ++i) {
       const double x = 10 * i;
@@ -46,29 +46,29 @@ struct Crowd : Physics {
       is.parent_point = Vector3(0, -0.5, 0);
       is.child_point = Vector3(0, 0.5, 0);
       is.normal = Vector3::UnitZ();
-      joints.push_back(dynamics().link(is, next));
-      JointDrive drive = dynamics().drive(joints.back());
+      joints.push_back(mechanics().link(is, next));
+      JointDrive drive = mechanics().drive(joints.back());
       drive.motor_speed[0] = 3;
       drive.strength_limit = 0.5;
       drive.low[0] = -1;
       drive.high[0] = 1;
-      dynamics().set_drive(joints.back(), drive);
+      mechanics().set_drive(joints.back(), drive);
       last = next;
     }
     SpringDescription tie;
     tie.a = index(first);
     tie.b = index(last);
     tie.length = 0.5;
-    dynamics().tie(tie, first);
+    mechanics().tie(tie, first);
   }
   /// What a host can see of a step.
   std::string events() {
     std::string text;
-    for (const Impact& one : dynamics().impacts())
+    for (const Impact& one : mechanics().impacts())
       text += std::to_string(one.a.index) + '-' + std::to_string(one.b.index) + '@' + std::to_string(one.time) + ' ';
-    for (const Intervention& one : dynamics().interventions())
+    for (const Intervention& one : mechanics().interventions())
       text += std::to_string(one.body.index) + '!' + std::to_string(static_cast<int>(one.reason)) + ' ';
-    const DynamicsCounters& c = dynamics().counters();
+    const DynamicsCounters& c = mechanics().counters();
     return text + std::to_string(c.sub_steps) + ' ' + std::to_string(c.contacts) + ' ' + std::to_string(c.sleeping);
   }
 };
@@ -78,18 +78,18 @@ TEST(DynamicsWorkers, TheHashAndTheEventsDoNotDependOnThem) {
     Crowd one(1);
     std::vector<std::unique_ptr<Crowd>> others;
     for (const int workers : {2, 3, 8}) others.push_back(std::make_unique<Crowd>(workers));
-    one.dynamics().set_accuracy(rung);
-    for (const auto& other : others) other->dynamics().set_accuracy(rung);
+    one.mechanics().set_accuracy(rung);
+    for (const auto& other : others) other->mechanics().set_accuracy(rung);
     std::size_t impacts = 0, interventions = 0;
     for (int i = 0; i < 60; ++i) {
       one.world.step();
-      impacts += one.dynamics().impacts().size();
-      interventions += one.dynamics().interventions().size();
+      impacts += one.mechanics().impacts().size();
+      interventions += one.mechanics().interventions().size();
       for (const auto& other : others) {
         other->world.step();
         ASSERT_EQ(other->world.hash(), one.world.hash()) << name_of(rung) << " step " << i;
         ASSERT_EQ(other->events(), one.events()) << name_of(rung) << " step " << i;
-        ASSERT_EQ(other->dynamics().energy().residual, one.dynamics().energy().residual);
+        ASSERT_EQ(other->mechanics().energy().residual, one.mechanics().energy().residual);
       }
     }
     EXPECT_TRUE(impacts > 10 || rung == Rung::Fast);
@@ -100,7 +100,7 @@ TEST(DynamicsWorkers, TheHashAndTheEventsDoNotDependOnThem) {
 TEST(DynamicsWorkers, TheNumberMayChangeBetweenSteps) {
   Crowd one(1), two(1);
   for (int i = 0; i < 30; ++i) {
-    two.dynamics().set_workers(1 + i % 4);
+    two.mechanics().set_workers(1 + i % 4);
     one.world.step();
     two.world.step();
     ASSERT_EQ(one.world.hash(), two.world.hash());
@@ -112,8 +112,8 @@ TEST(DynamicsWorkers, TheErrorIsThatOfTheFirstIsland) {
   for (const int workers : {1, 2, 4}) {
     Crowd s(workers, GuardMode::Off);
     Accuracy accuracy = accuracy_of(Rung::Conserving);
-    s.dynamics().set_accuracy(accuracy);
-    for (std::size_t i = 0; i < s.joints.size(); i += 4) s.dynamics().set_velocity(s.joints[i], Vector3(1e9, 0, 0));
+    s.mechanics().set_accuracy(accuracy);
+    for (std::size_t i = 0; i < s.joints.size(); i += 4) s.mechanics().set_velocity(s.joints[i], Vector3(1e9, 0, 0));
     try {
       s.run(0.5);
       ADD_FAILURE() << "no error";

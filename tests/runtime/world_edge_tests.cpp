@@ -112,17 +112,17 @@ struct Machine : Scene {
     is.parent_point = {0.5, 0, 0};
     is.child_point = {-0.5, 0, 0};
     is.normal = {0, 0, 1};
-    world.dynamics().link(is, second);
+    world.mechanics().link(is, second);
   }
   Vector3 between() { return at(second) - at(first); }
-  double energy() { return world.dynamics().energy().total(); }
+  double energy() { return world.mechanics().energy().total(); }
 };
 
 TEST(Space, AMachineWrapsAsAWholeByItsFirstBody) {
   for (const bool flat : {false, true}) {
     Machine m(flat, {8, 5, 0});
     m.world.set_space(0, Ending::Wrap, 0, 10);
-    m.world.dynamics().set_assembly_velocity(m.world.body(m.first), {1, 0, 0}, {0, 0, 0});
+    m.world.mechanics().set_assembly_velocity(m.world.body(m.first), {1, 0, 0}, {0, 0, 0});
     for (int i = 0; i < 180; ++i) {
       m.world.step();
       ASSERT_NEAR((m.between() - Vector3(1, 0, 0)).norm(), 0, 1e-3);
@@ -138,9 +138,9 @@ TEST(Space, AWallThrowsAMachineBackWithAllItsEnergy) {
   for (const bool flat : {false, true}) {
     Machine m(flat, {5, 5, 0});
     m.world.set_space(0, Ending::Wall, 0, 10);
-    m.world.dynamics().set_assembly_velocity(m.world.body(m.first), {3, 0.5, 0}, {0, 0, 0});
+    m.world.mechanics().set_assembly_velocity(m.world.body(m.first), {3, 0.5, 0}, {0, 0, 0});
     m.world.bodies().set_rotational_velocity(m.world.body(m.second), {0, 0, 1});
-    m.world.dynamics().take_changes();
+    m.world.mechanics().take_changes();
     m.world.step();
     const double energy = m.energy();
     int turns = 0;
@@ -156,7 +156,7 @@ TEST(Space, AWallThrowsAMachineBackWithAllItsEnergy) {
       last = now;
     }
     EXPECT_GE(turns, 2);
-    EXPECT_NEAR(m.world.dynamics().energy().residual, 0, 0.01 * energy);
+    EXPECT_NEAR(m.world.mechanics().energy().residual, 0, 0.01 * energy);
   }
 }
 
@@ -167,7 +167,7 @@ TEST(Space, WhatHangsOnTheWorldStaysWhereItIs) {
     is.child = m.world.body(m.first);
     is.parent_point = {-5, 5, 0};
     is.normal = {0, 0, 1};
-    m.world.dynamics().link(is, m.first);
+    m.world.mechanics().link(is, m.first);
     m.world.set_space(0, Ending::Wrap, 0, 10);
     for (int i = 0; i < 10; ++i) m.world.step();
     EXPECT_NEAR((m.at(m.first) - Vector3(-5, 5, 0)).norm(), 0, 1e-6);

@@ -99,7 +99,7 @@ TEST(Kinematics, ARotationMatrixIsMadeOrthonormalAndASingularOneRefused) {
 TEST(RigidMotion, FallsExactlyOnEveryRung) {
   for (const Rung rung : {Rung::Fast, Rung::Balanced, Rung::Precise, Rung::Reference, Rung::Conserving}) {
     Scene s;
-    s.world.dynamics().set_accuracy(rung);
+    s.world.mechanics().set_accuracy(rung);
     const ObjectId id = s.body(1, Vector3::Zero());
     s.world.bodies().set_physics(s.world.body(id), true);
     for (int i = 0; i < 10; ++i) s.world.step();

@@ -19,7 +19,7 @@ struct Flat : Scene {
     physics().set_accuracy(rung);
     physics().set_guard(GuardMode::Report);
   }
-  Mechanics& physics() { return world.dynamics(); }
+  Mechanics& physics() { return world.mechanics(); }
   BodyIndex index(ObjectId id) { return world.body(id); }
   Bodies& bodies() { return world.bodies(); }
 

@@ -260,12 +260,12 @@ TEST(PlanarState, EveryRefusedAllocationIsAnErrorAndNothingLeaks) {
 
 TEST(PlanarState, SettingsGoOverWhenAWorldBecomesFlatAndABodyWithPhysicsIsTooLate) {
   Scene scene;
-  scene.world.dynamics().set_gravity({0, -3, 0});
-  scene.world.dynamics().set_accuracy(Rung::Precise);
+  scene.world.mechanics().set_gravity({0, -3, 0});
+  scene.world.mechanics().set_accuracy(Rung::Precise);
   scene.world.flatten();
   EXPECT_EQ(scene.world.dimension(), 2);
-  EXPECT_EQ(scene.world.dynamics().gravity(), Vector3(0, -3, 0));
-  EXPECT_EQ(scene.world.dynamics().accuracy().rung, Rung::Precise);
+  EXPECT_EQ(scene.world.mechanics().gravity(), Vector3(0, -3, 0));
+  EXPECT_EQ(scene.world.mechanics().accuracy().rung, Rung::Precise);
   Scene late;
   late.world.bodies().set_physics(late.world.body(late.body(1, {0, 0, 0})), true);
   EXPECT_THROW(late.world.flatten(), Error);

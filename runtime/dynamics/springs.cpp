@@ -1,43 +1,23 @@
-// The table of springs between bodies, and the force of one.
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-
-#include "runtime/base/error.hpp"
+// The table of springs between bodies.
 #include "runtime/dynamics/core.hpp"
 
 namespace breve {
 
-namespace {
-
-[[noreturn]] void no_spring() { throw Error(ErrorCode::Argument, "the spring is not connected"); }
-
-}  // namespace
-
 SpringEntry& Dynamics::Core::tie_at(SpringIndex spring) {
-  if (spring >= springs.size() || !springs[spring].used) no_spring();
+  if (spring >= springs.size() || !springs[spring].used) fail_no_spring();
   return springs[spring];
 }
 
 SpringIndex Dynamics::tie(const SpringDescription& description, ObjectId owner) {
   check(description);
-  for (const BodyIndex end : {description.a, description.b})
-    if (!bodies_->used(end)) throw Error(ErrorCode::Argument, "spring: an end is not a body in the world");
+  check_ends(description, *bodies_);
   if (description.a == description.b) return kNoSpring;
   Core& c = core();
   c.sync_changes();
-  if (c.free_springs.capacity() <= c.springs.size()) c.free_springs.reserve(2 * c.springs.size() + 16);
+  reserve_free(c.springs, c.free_springs);
   c.entry(description.a);
   c.entry(description.b);
-  SpringIndex index;
-  if (c.free_springs.empty()) {
-    index = static_cast<SpringIndex>(c.springs.size());
-    c.springs.emplace_back();
-  } else {
-    index = c.free_springs.back();
-    c.free_springs.pop_back();
-  }
+  const SpringIndex index = take_place(c.springs, c.free_springs);
   c.springs[index].used = true;
   c.springs[index].owner = owner;
   c.springs[index].is = description;
@@ -67,13 +47,8 @@ void Dynamics::untie(SpringIndex spring) {
   c.clusters_changed = true;
 }
 
-bool Dynamics::tied(SpringIndex spring) const {
-  return core_ && spring < core_->springs.size() && core_->springs[spring].used;
-}
-
-const SpringDescription& Dynamics::spring(SpringIndex spring) const {
-  if (!core_) no_spring();
-  return core_->tie_at(spring).is;
+const SpringRecord* Dynamics::spring_record(SpringIndex spring) const {
+  return core_ && spring < core_->springs.size() && core_->springs[spring].used ? &core_->springs[spring] : nullptr;
 }
 
 void Dynamics::set_spring(SpringIndex spring, const SpringDescription& description) {
@@ -85,18 +60,6 @@ void Dynamics::set_spring(SpringIndex spring, const SpringDescription& descripti
   entry.is.b = b;
   entry.set = true;
   for (const BodyIndex end : {a, b}) core_->near.wake(end);
-}
-
-double Dynamics::spring_length(SpringIndex spring) const {
-  const SpringDescription& is = this->spring(spring);
-  const Vector3 a = bodies_->location(is.a) + bodies_->orientation(is.a) * is.point_a;
-  const Vector3 b = bodies_->location(is.b) + bodies_->orientation(is.b) * is.point_b;
-  return (b - a).norm();
-}
-
-double Dynamics::spring_force(SpringIndex spring) const {
-  if (!core_) no_spring();
-  return core_->tie_at(spring).force;
 }
 
 }  // namespace breve

@@ -1,0 +1,183 @@
+// What Dynamics and Planar have in common: the same settings, tables, messages and numbers, in space and in a flat
+// world.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "fake_behaviour.hpp"
+#include "runtime/base/error.hpp"
+#include "runtime/mechanics/mechanics.hpp"
+
+namespace breve::testing {
+namespace {
+
+class MechanicsTest : public ::testing::TestWithParam<int> {
+ protected:
+  MechanicsTest() {
+    if (GetParam() == 2) scene.world.flatten();
+    scene.script.recording = false;
+  }
+  Mechanics& mechanics() { return scene.world.mechanics(); }
+  BodyIndex cube(double x) {
+    const ObjectId id = scene.body(1, {x, 0, 0}, BodyKind::Mobile, Shape::box({1, 1, 1}));
+    scene.world.bodies().set_physics(scene.world.body(id), true);
+    return scene.world.body(id);
+  }
+  JointIndex slider(BodyIndex parent, BodyIndex child) {
+    JointDescription is;
+    is.kind = JointKind::Prismatic;
+    is.parent = parent;
+    is.child = child;
+    is.parent_point = {1, 0, 0};
+    is.child_point = {-1, 0, 0};
+    return mechanics().link(is, ObjectId{});
+  }
+  SpringIndex spring(BodyIndex a, BodyIndex b) {
+    SpringDescription is;
+    is.a = a;
+    is.b = b;
+    is.point_a = {0.5, 0, 0};
+    is.length = 1;
+    is.strength = 3;
+    return mechanics().tie(is, ObjectId{});
+  }
+
+  Scene scene;
+};
+
+std::string refusal(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::Argument);
+    return error.what();
+  }
+  return "";
+}
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+TEST_P(MechanicsTest, BeginsWithTheDefaultsAndAsksForNothing) {
+  const Mechanics& m = mechanics();
+  EXPECT_EQ(m.dimension(), GetParam());
+  EXPECT_EQ(m.gravity(), Vector3(0, -9.81, 0));
+  EXPECT_EQ(m.accuracy().rung, Rung::Balanced);
+  EXPECT_EQ(m.guard(), GuardMode::Rest);
+  EXPECT_EQ(m.length_unit(), 1);
+  EXPECT_EQ(m.workers(), 1);
+  EXPECT_FALSE(m.sleeping());
+  EXPECT_FALSE(m.over());
+  EXPECT_TRUE(m.impacts().empty());
+  EXPECT_TRUE(m.interventions().empty());
+}
+
+TEST_P(MechanicsTest, GivesBackTheSettingsThatItGot) {
+  Mechanics& m = mechanics();
+  m.set_gravity({1, -2, 0});
+  m.set_accuracy(Rung::Precise);
+  m.set_guard(GuardMode::Report);
+  m.set_sleeping(true);
+  m.set_softness(0.25, 1e-3);
+  m.set_workers(3);
+  EXPECT_EQ(m.gravity(), Vector3(1, -2, 0));
+  EXPECT_EQ(m.accuracy().rung, Rung::Precise);
+  EXPECT_EQ(m.guard(), GuardMode::Report);
+  EXPECT_TRUE(m.sleeping());
+  EXPECT_EQ(m.erp(), 0.25);
+  EXPECT_EQ(m.cfm(), 1e-3);
+  EXPECT_EQ(m.workers(), 3);
+}
+
+TEST_P(MechanicsTest, RefusesBadSettingsInTheSameWordsAndKeepsTheOld) {
+  Mechanics& m = mechanics();
+  EXPECT_EQ(refusal([&] { m.set_softness(1.5, 0); }), "erp must be from 0 to 1, but is 1.5");
+  EXPECT_EQ(refusal([&] { m.set_softness(0.5, -1); }), "cfm must be finite and >= 0, but is -1");
+  EXPECT_EQ(refusal([&] { m.set_workers(0); }), "the number of workers must be from 1 to 1024, but is 0");
+  EXPECT_EQ(refusal([&] { m.set_gravity({kNaN, 0, 0}); }), "gravity must be finite");
+  EXPECT_EQ(refusal([&] { m.set_self_collision_parameters(cube(0), 2, 0); }),
+            "self collision erp must be from 0 to 1, but is 2");
+  EXPECT_NE(refusal([&] { m.set_fast_contacts(-1); }), "");
+  EXPECT_EQ(m.erp(), 0.1);
+  EXPECT_EQ(m.workers(), 1);
+  EXPECT_EQ(m.gravity(), Vector3(0, -9.81, 0));
+}
+
+TEST_P(MechanicsTest, NamesJointsAndSpringsThatAreNotThere) {
+  Mechanics& m = mechanics();
+  for (int made = 0; made < 2; ++made) {  // before and after there has been one
+    EXPECT_FALSE(m.linked(0));
+    EXPECT_FALSE(m.tied(0));
+    EXPECT_EQ(refusal([&] { m.joint(0); }), "the joint is not linked");
+    EXPECT_EQ(refusal([&] { m.drive(7); }), "the joint is not linked");
+    EXPECT_EQ(refusal([&] { m.strength_hard_limit(kNoJoint); }), "the joint is not linked");
+    EXPECT_EQ(refusal([&] { m.spring(0); }), "the spring is not connected");
+    EXPECT_EQ(refusal([&] { m.spring_force(0); }), "the spring is not connected");
+    EXPECT_EQ(refusal([&] { m.spring_length(kNoSpring); }), "the spring is not connected");
+    const BodyIndex a = cube(0), b = cube(4);
+    m.unlink(slider(a, b));
+    m.untie(spring(a, b));
+  }
+}
+
+TEST_P(MechanicsTest, UsesFreePlacesOfItsTablesAgain) {
+  const BodyIndex a = cube(0), b = cube(4), c = cube(8);
+  const JointIndex first = slider(a, b), second = slider(b, c);
+  mechanics().unlink(first);
+  EXPECT_EQ(mechanics().joint_count(), 1U);
+  EXPECT_EQ(slider(a, b), first);
+  EXPECT_EQ(mechanics().joint_count(), 2U);
+  const std::pmr::vector<JointIndex> all = mechanics().joints_of(a);  // in the order of creation
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0], second);
+  EXPECT_EQ(all[1], first);
+}
+
+TEST_P(MechanicsTest, MeasuresSpringsAndLimitsMotors) {
+  const BodyIndex a = cube(0), b = cube(4);
+  const SpringIndex tie = spring(a, b);
+  EXPECT_DOUBLE_EQ(mechanics().spring_length(tie), 3.5);
+  EXPECT_EQ(mechanics().spring_force(tie), 0);
+  const JointIndex joint = slider(a, b);
+  EXPECT_DOUBLE_EQ(mechanics().strength_hard_limit(joint), 500 * scene.world.bodies().mass(b));
+  EXPECT_FALSE(mechanics().closes_ring(joint));
+}
+
+TEST_P(MechanicsTest, SettingsOfOneBodyHoldForItsAssembly) {
+  const BodyIndex a = cube(0), b = cube(4), alone = cube(20);
+  slider(a, b);
+  const std::uint64_t rules = mechanics().rules();
+  mechanics().set_accuracy(b, accuracy_of(Rung::Fast));
+  mechanics().set_self_collisions(b, true);
+  EXPECT_GT(mechanics().rules(), rules);
+  EXPECT_EQ(mechanics().accuracy(a).rung, Rung::Fast);
+  EXPECT_TRUE(mechanics().self_collisions(a));
+  EXPECT_EQ(mechanics().accuracy(alone).rung, Rung::Balanced);
+  EXPECT_FALSE(mechanics().self_collisions(alone));
+  mechanics().clear_accuracy(b);
+  EXPECT_EQ(mechanics().accuracy(a).rung, Rung::Balanced);
+}
+
+TEST_P(MechanicsTest, CountsJointsSpringsAndMotorsAlike) {
+  const BodyIndex a = cube(0), b = cube(4);
+  const JointIndex joint = slider(a, b);
+  spring(a, b);
+  JointDrive drive;
+  drive.low[0] = -1;
+  drive.strength_limit = 1;
+  drive.stiffness = 2;
+  mechanics().set_drive(joint, drive);
+  const Mechanics::Census census = mechanics().census();
+  EXPECT_EQ(census.bodies, 2U);
+  EXPECT_EQ(census.joints, 1U);
+  EXPECT_EQ(census.limits, 1U);
+  EXPECT_EQ(census.motors, 1U);
+  EXPECT_EQ(census.springs, 2U);  // the joint's, and the one between the bodies
+}
+
+INSTANTIATE_TEST_SUITE_P(InSpaceAndFlat, MechanicsTest, ::testing::Values(3, 2),
+                         [](const auto& info) { return info.param == 3 ? "Space" : "Flat"; });
+
+}  // namespace
+}  // namespace breve::testing
