@@ -64,7 +64,7 @@ void Dynamics::Core::sync_changes() {
   try {
     follow_changes();
   } catch (...) {
-    bodies->touch(changed);  // memory has ended: what was not followed is told again
+    bodies->touch(changed);  // there is no more memory: the next step finds them again
     throw;
   }
 }
@@ -119,9 +119,9 @@ void Dynamics::Core::drop_stale_trees() {
 void Dynamics::Core::apply_changes(std::span<const Change> all) {
   for (const Change& change : all) {
     const BodyEntry& known = *find(change.body);
-    // A tree that was built meanwhile has its links elsewhere by round-off: that is no move.
+    // A tree that was built meanwhile has its links elsewhere by round-off: nothing has moved them.
     if (known.tree == kNone || !change.moved) continue;
-    // What another link's move brought here is no move of its own.
+    // Another link's move brought this one here: it was not moved itself.
     if (known.location != change.pose.location || known.orientation.coeffs() != change.pose.orientation.coeffs())
       move_tree(*trees[known.tree], {known.location, known.orientation}, change.pose);
   }

@@ -62,7 +62,7 @@ class Cluster final : public articulated::System, public InMemory {
   void write(const articulated::Vector& q, const articulated::Vector& v);  // likewise, and what the step took
   void place(const articulated::Vector& q, const articulated::Vector& v);  // trees and their links: a stage
 
-  // Of the last step.
+  // The last step: how many steps it took, and its works.
   const articulated::StepCount& count() const { return (finer_now_ ? finer_ : integrator_)->count(); }
   double motor_work() const { return works_[0]; }     // J
   double script_work() const { return works_[1]; }    // J, of forces on joints and bodies

@@ -147,7 +147,7 @@ struct Dynamics::Core : MechanicsCore {
 
   // assemblies.cpp
   bool jointed(BodyIndex a, BodyIndex b) const;
-  /// Of the first body of the assembly, by index, whose settings are `wanted`; null if there is none.
+  /// The settings of the first body of the assembly, by index, that has `wanted` ones; null if there is none.
   const AssemblySettings* settings_of(BodyIndex body, bool (*wanted)(const AssemblySettings&));
   const Accuracy& accuracy_of(BodyIndex body);
 

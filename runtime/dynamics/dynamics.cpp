@@ -1,4 +1,4 @@
-// The face: settings, questions, and the world's side. What does the work is in the files that README.md lists.
+// The functions that others call: settings, questions, and the world's side. The files in README.md do the work.
 #include "runtime/dynamics/dynamics.hpp"
 
 #include <fmt/format.h>

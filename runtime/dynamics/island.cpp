@@ -107,7 +107,7 @@ void Island::add_free(BodyIndex body) {
 }
 
 namespace {
-// An impulse on what only moves as it was told: none that could be seen.
+// The inverse of the mass of a body that a script moves: an impulse does not change its velocity visibly.
 constexpr double kUnmoved = 1e-100;  // 1/kg
 const MassProperties kDriver{1 / kUnmoved, Matrix3::Identity() / kUnmoved, Vector3::Zero(), true};
 }  // namespace
@@ -179,7 +179,7 @@ void Island::step(MechanicsClient* client, double start, double h) {
   try {
     step_guarded(client, start, h);
   } catch (...) {
-    // What a failed step got to is no state that anyone could go on from.
+    // A failed step leaves a state from which nothing can continue.
     if (core_.structure() == structure) {
       use_accuracy(asked);
       back_to_start();

@@ -86,7 +86,7 @@ class Island : public InMemory {
     double next = 0, next_before = 0;
     double v[6], free_v[6];  // velocity and spin: as the solver has them, and without its impulses
     double plain_v[6];       // as the solver had them without rebounds
-    bool driver = false;     // moves as it was told, whatever pushes it; each pair and island has its own of it
+    bool driver = false;     // a script moves it, whatever pushes it; each pair and island has its own of it
   };
   /// Energy as a sub-step began, for what its rows did to it.
   struct Books {
@@ -154,7 +154,7 @@ class Island : public InMemory {
     double time = 0, rate = JointDrive::kNoLimit;
     bool stays = false;  // it was back at once: for the remainder of the step it rests where it is near
   };
-  /// What comes first in a sub-step.
+  /// The first event of a sub-step.
   struct Event {
     double time = 0;                        // s after the start of the sub-step
     int pair = -1, bound = -1, point = -1;  // the last of a spring
@@ -170,7 +170,7 @@ class Island : public InMemory {
   void restore();
   void commit();  // the last smooth() counts: its works go to the account
   Pose pose_of(BodyIndex body) const;
-  /// Of a point, from the centre of mass of a free body, m.
+  /// The vector from the centre of mass of a free body to a point, m.
   Vector3 arm_of(const BodyPlace& free, const Vector3& point) const {
     return point - free_[static_cast<std::size_t>(free.mover)].now.center;
   }

@@ -12,7 +12,7 @@ namespace breve {
 namespace {
 
 constexpr int kFinest = 2;  // attempts after the first
-// Of a step whose energy does not add up, times the bodies that it moves: so that the step of a crowd stays bounded.
+// Sub-steps of a step whose energy does not balance, times the bodies that it moves: a crowd's step stays bounded.
 constexpr std::size_t kMostInParts = 40;
 constexpr double kMended = 0.6;  // of the energy that a step of twice the length left unexplained
 
@@ -51,7 +51,7 @@ void Island::step_guarded(MechanicsClient* client, double start, double h) {
     use_accuracy(finer_settings(asked, ++attempt, h));
   };
   const bool refines = mode == GuardMode::Refine || mode == GuardMode::Rest;
-  // What is too fast for the sub-steps is seen before anything has moved.
+  // Motion that is too fast for the sub-steps is found before anything has moved.
   if (mode != GuardMode::Off) trouble = foresee(h);
   while (trouble.found && refines && attempt < kFinest) {
     refine_from();
@@ -115,14 +115,14 @@ double Island::weight() const {
   return sum * core_.settings.gravity.norm();
 }
 
-/// What did not help is reported, or ended.
+/// Refining did not help: reports the trouble, and puts the island to rest if the settings say so.
 void Island::give_in(const Trouble& trouble, double start, double h) {
   const bool rest = core_.settings.guard == GuardMode::Rest;
   const bool unusable = trouble.reason == GuardReason::NotFinite || trouble.reason == GuardReason::NoSolution;
-  // Energy from nowhere ends with the speeds; positions, put right on the way, are as good as any.
+  // Unexplained energy ends with the speeds; positions, corrected on the way, are as good as any.
   const bool back = unusable || (rest && trouble.reason == GuardReason::Penetration);
   if (back) back_to_start();
-  // What is slow enough to sleep and cannot be moved lies: it does not move by its velocities.
+  // An island that is slow enough to sleep and cannot be solved is resting: its velocities do not move it.
   const bool lies = trouble.reason == GuardReason::NoSolution && still();
   if (rest || lies) stop(Momenta::Keep, back ? 0 : h);
   if (rest && back) coast(h);
@@ -166,13 +166,13 @@ double losses(const Energy& now, const Energy& then) {
 
 }  // namespace
 
-/// What no account explains of the energy that came in since the step began, J.
+/// The energy that came in since the step began and that the energy ledger does not explain, J.
 double Island::unexplained_since_start(double after) const {
   return after - stored_start_ - works(result.account, at_start_.account) + losses(result.account, at_start_.account) -
          handled_;
 }
 
-/// What of the step's change in energy no account explains, of all and of each tree.
+/// The part of the step's change in energy that the energy ledger does not explain, of all and of each tree.
 /// @param turnover  J, of which the residual is to be a small part
 void Island::balance(double& residual, double& turnover) {
   double kinetic = 0;
@@ -273,7 +273,7 @@ double Island::held_energy() const {
   return sum;
 }
 
-/// What stands in the arrays is in the books from now on: what differs from it later, scripts did.
+/// Enters the state of the arrays into the energy ledger: scripts have made whatever differs from it later.
 void Island::book() {
   for (const Free& one : loose_bodies()) {
     // Read back as it will be when a script sets something: a centre of mass off the origin is rounded on the way.

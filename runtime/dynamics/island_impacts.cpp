@@ -91,7 +91,7 @@ double Island::met_limit() const {
 
 namespace {
 
-/// Of an event: when, how wide the gap is then, and its rate.
+/// One look at an event: when, how wide the gap is then, and its rate.
 struct Sight {
   double time, gap, rate;
 };
@@ -119,7 +119,7 @@ void Island::refine(double time, Event& event, double h) {
     now.gap = gap_of(event, now.rate);
     now.gap += event.depth;
     (now.gap < 0 ? high : low) = now.time;
-    // What is near but goes is on its way to come back.
+    // Bodies that are near but separating are about to come back.
     const bool close_by = now.rate <= 0 && std::abs(now.gap) <= close + 1e-15 * std::abs(now.time);
     const bool done = close_by || high - low <= 1e-13 * h;
     const bool remembers = i > 0 && now.rate < 0 && last.rate < 0 && now.gap != last.gap;
@@ -150,7 +150,7 @@ void Island::locate(double time, Event& event, double h) {
   }
 }
 
-/// What was open when the sub-step began and is not where the island stands.
+/// The gap was open when the sub-step began, and it is closed where the island stands.
 bool Island::is_past(const Event& event) {
   double rate = 0;
   if (event.bound >= 0)
@@ -171,7 +171,7 @@ Motion Island::chord(const Pose& from, const Pose& to, double h) {
 
 // --- what happens then -----------------------------------------------------------------------------------------------
 
-/// What has come to its moment: the handler first, then the impulses.
+/// The moment of an event has come: calls the handler first, then applies the impulses.
 void Island::meet(MechanicsClient* client, const Event& event, double moment, double left) {
   ++result.counters.impacts;
   if (event.point >= 0) return;

@@ -202,7 +202,8 @@ double Island::moving() const {
   return sum;
 }
 
-/// Takes a part of moving(), which contacts and limits gave: it is booked as taken by them. What is at rest stays so.
+/// Takes a part of moving(), which contacts and limits gave: it is booked as taken by them. Bodies at rest stay at
+/// rest.
 void Island::take_from_all(double part) {
   if (!(part > 0)) return;
   const bool held = touched_from_outside();
@@ -279,7 +280,7 @@ void Island::keep_wholes(double moved_h, Given given) {
     const contact::Row& row = rows_[i];
     const BodyPlace a = place_of(pairs_[touches_[i].pair]->a), b = place_of(pairs_[touches_[i].pair]->b);
     if (a.tree && a.tree == b.tree) continue;
-    // What was predicted has moved the tree already.
+    // The predicted part has moved the tree already.
     Vector3 impulse = row.axes.transpose() * row.impulse;
     if (given == Given::All) impulse -= solved_h_ * predicted_[i];
     if (given == Given::Pushes) impulse = row.axes.transpose() * Vector3(pushes_[i].impulse, 0, 0);

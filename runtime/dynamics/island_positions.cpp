@@ -10,8 +10,8 @@ namespace breve {
 
 namespace {
 
-// Of what the two bodies would yield if they were free. Where joints leave a body next to no way along the normal,
-// that way would be long: so none is forced that is longer than some fifty times the overlap.
+// The softness of a push, as a part of that of the two bodies if they were free. If joints leave a body hardly any way
+// along the normal, that way would be long: none is forced that is longer than some fifty times the overlap.
 constexpr double kYield = 1e-4;
 
 }  // namespace
@@ -22,7 +22,7 @@ double Island::natural_response(BodyIndex body) const {
 }
 
 void Island::push_apart(double h) {
-  // Of the overlap, in one sub-step. What sweeps leave of it is uneven: pushed apart faster, stacks begin to sway.
+  // The part of the overlap for one sub-step. Sweeps leave an uneven rest: pushed apart faster, stacks begin to sway.
   const double share = accuracy_.direct ? 0.2 : 0.1;
   constexpr double kFastestPush = 3;  // m/s or rad/s, along which nothing is moved faster
   bool any = false;
@@ -32,7 +32,7 @@ void Island::push_apart(double h) {
   for (const Touch& touch : touches_) {
     const NearPair& pair = *pairs_[touch.pair];
     const double deep = -touch.gap - 0.1 * kSkin * size_of_pair(pair);
-    // What is not too deep may come nearer by what room there is.
+    // A contact that is not too deep may come nearer by the room that there is.
     const double rate = deep > 0 ? std::min(share * deep / h, kFastestPush) : std::min(0.0, -touch.gap / h);
     pushes_.push_back({rate, kYield * (natural_response(pair.a) + natural_response(pair.b)), 0});
     fastest = std::max(fastest, rate);
@@ -55,8 +55,8 @@ void Island::push_apart(double h) {
   close_rings();
 }
 
-/// Moves everything for h seconds by the velocities that pushes_ and push_scalars_ ask for, the fastest of which is
-/// told.
+/// Moves everything for h seconds by the velocities that pushes_ and push_scalars_ ask for.
+/// @param fastest  of these velocities, m/s or rad/s
 void Island::move_by_pushes(double fastest, double h) {
   contact::SolveSettings settings;
   // Only a part of an overlap is put right: how exactly does not matter, least where velocities are not exact either.
@@ -170,8 +170,8 @@ bool Island::find_struck(double h) {
   return any;
 }
 
-/// What is met at the end of a sub-step of h seconds, and not before, may not come nearer than it is: what contacts
-/// struck has moved, in the end, with the velocity that they left it, not with the mean.
+/// Contacts that are solved only at the end of a sub-step of h seconds must not come nearer than they are: a body that
+/// contacts struck has moved, in the end, with the velocity that they left it, not with the mean.
 void Island::hold_off(double h) {
   if (!find_struck(h)) return;
   book_moves(-1);

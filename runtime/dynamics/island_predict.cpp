@@ -1,6 +1,6 @@
 // Forces of contacts and limits that go on. Those that held something in the last two sub-steps act on trees inside the
 // stages of smooth motion, as joint forces that do not change on the way: a limb that is pressed on its limit would
-// else be let go and brought back in each sub-step. The solver, after it, finds what was wrong with that.
+// otherwise leave it and come back in each sub-step. The solver, after it, corrects the prediction.
 #include <algorithm>
 
 #include "runtime/articulated/energy.hpp"
@@ -61,7 +61,7 @@ void Island::predict(double h) {
   if (overpressed(h)) forget_prediction();
 }
 
-/// What is predicted is far beyond all that moves and falls in h seconds: contacts on several sides of a link press
+/// The prediction is far beyond all that moves and falls in h seconds: contacts on several sides of a link press
 /// against one another, and parts of that do not balance.
 bool Island::overpressed(double h) const {
   constexpr double kMost = 1e6;
@@ -125,7 +125,7 @@ bool Island::misled(double h) {
 }
 
 /// Contacts on several sides of a link may press against one another as much as they like: no velocity tells. Impulses
-/// of the last sub-step that are beyond all that moves and acts are no place to begin.
+/// of the last sub-step that are beyond all that moves and acts are not a good start.
 bool Island::strained() const {
   constexpr double kMost = 1e8;  // times: a stack of many bodies with light ones below has some thousands
   if (!keeps_books_) return false;

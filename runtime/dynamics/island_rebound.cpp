@@ -10,7 +10,7 @@ namespace breve {
 /// @return  whether there are some
 bool Island::find_rebounds(double h) {
   bool any = false;
-  // What gravity alone adds in two steps is no impact: resting stacks would hop.
+  // A speed that gravity alone adds in two steps is not an impact: resting stacks would hop.
   const double fall = 2 * core_.settings.gravity.norm() * h;
   rebounding_.assign(rows_.size() + scalars_.size(), 0.0);
   for (std::size_t i = 0; i < rows_.size(); ++i) {

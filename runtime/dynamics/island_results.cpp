@@ -186,7 +186,7 @@ void Island::account_rows() {
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const contact::Row& row = rows_[i];
     if (row.impulse == Vector3::Zero()) continue;
-    // What the side that moves as it was told gives is the work of who told it.
+    // The side that a script moves gives work of that script.
     for (const bool first : {true, false}) {
       const int mover = first ? row.a : row.b;
       if (is_driver(mover)) result.account.script_work += (first ? -1 : 1) * row.impulse.dot(rate_of(row, first));
@@ -217,8 +217,8 @@ void Island::account_rows() {
   }
 }
 
-/// What contacts and limits did to trees, as forces that last the h seconds of a sub-step, for who asks what joints
-/// hold.
+/// Notes the impulses of contacts and limits on trees as forces that last the h seconds of a sub-step: the reaction of
+/// a joint is made of them.
 void Island::note_forces(double h) {
   if (trees_.empty()) return;
   for (Tree* tree : trees_) {

@@ -42,7 +42,7 @@ void Island::find_touches(double h, bool speculative) {
   const double fall = core_.settings.gravity.norm() * h;
   quiet_ = 1e-3 * fall + 1e-12;
   looked_h_ = h;
-  // What comes as slowly as something at rest falls in a sub-step is caught by a row before it touches.
+  // A row catches a body before it touches, if it comes as slowly as a body at rest falls in a sub-step.
   constexpr double kMostRoom = 0.05;  // of the size
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     NearPair& pair = *pairs_[i];
@@ -168,8 +168,8 @@ void Island::find_bounds() {
           if (!std::isfinite(limit)) continue;
           Bound bound{link.joint, k, sign, limit, sign * (position[k] - limit), sign * velocity[k], quiet_, false};
           const bool stays = bounds_.size() < rebounds_.size() && rebounds_[bounds_.size()].stays;
-          // Inelastic limits may be met by a row; others are located. What comes as slowly as something at rest falls
-          // in a sub-step, and is not driven, is caught by it before it is there.
+          // Inelastic limits may be met by a row; others are located. A row catches a joint before it is there, if it
+          // comes as slowly as a body at rest falls in a sub-step and is not driven.
           if (joint.drive.limit_restitution > 0) {
             bound.rests = bound.gap <= kLimitSkin && (stays || std::abs(bound.rate) <= quiet_);
           } else {
@@ -405,7 +405,7 @@ void Island::add_bound_row(const Bound& bound) {
   ++result.counters.limits;
 }
 
-/// Of a universal joint each axis has a motor with the joint's strength, of a ball joint all three share one.
+/// Each axis of a universal joint has a motor with the joint's strength; the three of a ball joint share one.
 void Island::add_motor_rows(Tree& tree) {
   const int n = tree.model.velocities();
   for (std::size_t i = 0; i < tree.links.size(); ++i) {

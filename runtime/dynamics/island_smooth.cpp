@@ -72,7 +72,7 @@ void Island::smooth_once(Clustered& one, double time, double h) {
   one.held_work += system.reaction_work();
 }
 
-/// Of the springs between its trees, whose links are placed, J.
+/// The energy of the springs between its trees, whose links are placed, J.
 double Island::tie_energy_in(const Clustered& one) const {
   if (one.entry->tied) return one.entry->tied->spring_energy(core_);
   double sum = 0;
@@ -93,7 +93,7 @@ double Island::stored_in(const Clustered& one, double& kinetic) {
 }
 
 /// Runge-Kutta 4, or semi-implicit Euler where springs are too fast for it, in as many parts as leave little for
-/// projection to the energy. What is gained even so is taken back; what implicit springs lose is lost.
+/// projection to the energy. A gain that remains is taken back; a loss of implicit springs is lost.
 void Island::smooth_fast(Clustered& one, double time, double h) {
   Cluster& system = *one.entry->system;
   for (Tree* tree : system.trees()) tree->part_state = tree->state;

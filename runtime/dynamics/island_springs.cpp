@@ -12,13 +12,13 @@ namespace breve {
 
 namespace {
 
-// Of the smaller body's radius: deeper than the first a spring hardens, so that it carries what lies on it; deeper than
-// the second it is too weak all the same, and the surfaces become rigid.
+// Parts of the smaller body's radius: deeper than the first a spring hardens, so that it carries what lies on it;
+// deeper than the second it is too weak all the same, and the surfaces become rigid.
 constexpr double kLinear = 5e-3, kDeepest = 0.1;
 
 bool sprung(const NearPair& pair) { return pair.spring.stiffness > 0; }
 
-/// Of two masses that may be those of something that does not move: 0.
+/// The reduced mass of two masses; 0 stands for the mass of something that does not move.
 double reduced(double a, double b) { return a > 0 && b > 0 ? a * b / (a + b) : std::max(a, b); }
 
 }  // namespace
@@ -83,8 +83,8 @@ void Island::end_spring(NearPair& pair) {
   pair.warm_count = 0;
 }
 
-/// Takes the points of pairs that are springs out of touches_ into those that are followed. What was a spring is rigid
-/// where the settings, which may change between steps, know of none any more.
+/// Takes the points of pairs that are springs out of touches_ into those that are followed. A former spring is rigid
+/// if the settings, which may change between steps, do not ask for springs any more.
 void Island::take_springs() {
   if (sprung_) sprung_->points.clear();
   followed_.assign(pairs_.size(), 0);
@@ -119,7 +119,7 @@ void Island::take_springs() {
     for (; i < end; ++i) touches_[kept++] = touches_[i];
   }
   touches_.resize(kept);
-  // What is not even near any more.
+  // Springs of pairs that are not even near any more end.
   for (std::size_t i = 0; i < pairs_.size(); ++i)
     if (sprung(*pairs_[i]) && !followed_[i]) end_spring(*pairs_[i]);
 }
@@ -261,7 +261,7 @@ std::size_t Island::pair_of_point(int point) const { return sprung_->points[stat
 
 double Island::gap_of_point(int point, double& rate) { return sprung_->gap_of(static_cast<std::size_t>(point), rate); }
 
-/// What pairs of springs force on links, for who asks what joints hold.
+/// Notes the forces of pairs of springs on links: the reaction of a joint is made of them.
 void Island::note_spring_forces() {
   if (!springs_move()) return;
   for (Tree* tree : trees_)

@@ -69,8 +69,8 @@ void Island::step_quiet(double start, double h) {
   }
 }
 
-/// What is left of a step whose work is used up, in one sub-step as coarse as there is. If somebody wants the end at
-/// once, it is left out: the bodies stay where they are.
+/// The rest of a step whose work is used up, in one sub-step as coarse as there is. If the host interrupts the step,
+/// the rest is left out: the bodies stay where they are.
 void Island::finish(double time, double left) {
   constexpr int kFew = 8;
   finished_ = true;
@@ -115,8 +115,8 @@ void Island::take_fast(double time, double h) {
   push_apart(h);
 }
 
-/// Limits that smooth motion of h seconds has run over, where they are not located, are rows as well. The books of the
-/// sub-step are opened for them, if they are not.
+/// Limits that smooth motion of h seconds has passed and that are not located also become rows. The books of the
+/// sub-step are opened for them, if they are not open.
 /// @return  whether there are some
 bool Island::catch_bounds(double time, double h) {
   if (!spent_) return false;
@@ -146,7 +146,7 @@ void Island::advance_once(double time, double h) {
     place();
     make_rows(Motors::Leave);
     if (hold_rings(time, h)) return;
-    // An impulse that does not close the rings would be energy from nowhere.
+    // An impulse that does not close the loops would add unexplained energy.
     restore();
     for (Clustered& one : clusters_) one.stage->holds_rings = true;
   }
@@ -169,7 +169,7 @@ void Island::advance_once(double time, double h) {
   if (spent_) hold_bounds(h);
 }
 
-/// What of the part of a step that was taken no account explains; it ends because the island is no longer what it was.
+/// Books the unexplained energy of the part of a step that was taken; it ends because the island has changed.
 /// @param held  J, as that part ended, but for contact springs
 void Island::end_unfinished(double held) {
   for (const NearPair* pair : pairs_) held += pair->stored;
@@ -323,7 +323,7 @@ void Island::step_located(MechanicsClient* client, double start, double h) {
 }
 
 /// How many impacts of this step are located in time. Each costs a look at all pairs, and some solutions of all rows:
-/// so that a crowd's step stays as long as its bodies and pairs are many, it has fewer. What comes then is met at the
+/// so that a crowd's step stays as long as its bodies and pairs are many, it has fewer. Later impacts are met at the
 /// end of a sub-step, all at once.
 int Island::located_impacts() const {
   if (accuracy_.rung == Rung::Reference) return accuracy_.impacts;

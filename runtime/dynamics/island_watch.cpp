@@ -1,5 +1,5 @@
-// What the guard looks for in an island: numbers that are none, energy from nowhere, overlaps that grow, and what turns
-// or is damped too fast for its sub-steps.
+// What the guard looks for in an island: numbers that are not finite, unexplained energy, overlaps that grow, and
+// bodies that rotate or are damped too fast for their sub-steps.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -12,10 +12,10 @@ namespace breve {
 
 namespace {
 
-// Of the energy in motion: what a step may gain that no account explains. The fast rung is not meant to keep energy.
+// The unexplained gain that a step may have, as a part of the energy in motion. `fast` is not meant to keep energy.
 constexpr double kResidual = 0.1, kResidualFast = 10;
 
-// Of what lifting all by their own size takes: what may be unexplained of what lies still.
+// The unexplained gain that resting bodies may have, as a part of the energy that lifts each by its own size.
 constexpr double kLying = 1e-5;
 
 constexpr double kMostTurn = 0.5;     // rad in a sub-step

@@ -33,8 +33,8 @@ void put_joint_velocity(const JointDescription& is, bool flipped, const double* 
 /// A ball joint's numbers from the child's turn and spin relative to the parent's frame at zero, in the parent's axes.
 void put_ball(const JointDescription& is, bool flipped, const Quaternion& turn, const Vector3& spin, double* q,
               double* v);
-/// From one place of a joint to another, both in the model's numbers: what a spring in the joint pulls back along. Of a
-/// ball joint the rotation vector, in the axes of the joint's child in the tree, rad.
+/// From one position of a joint to another, both in the model's numbers: a spring in the joint pulls back along it. For
+/// a ball joint it is the rotation vector, in the axes of the joint's child in the tree, rad.
 Vector3 joint_deflection(JointKind kind, const double* from, const double* to);
 /// The model's joint force of forces `f` about or along the joint's axes as they stand now.
 void put_joint_force(const JointDescription& is, bool flipped, const double* q, const JointVector& f, double* tau);

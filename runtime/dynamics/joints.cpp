@@ -38,7 +38,7 @@ void Dynamics::Core::collect(BodyIndex body, std::pmr::vector<BodyIndex>& out) {
     for (const JointIndex index : find(out[i])->joints) {
       const JointDescription& is = joints[index].is;
       const BodyIndex other = is.parent == out[i] ? is.child : is.parent;
-      // What does not move by itself holds nothing together.
+      // A body that does not move by itself connects nothing.
       if (other == kNoBody || !bodies->dynamic(other) || find(other)->mark == search) continue;
       find(other)->mark = search;
       out.push_back(other);
@@ -217,7 +217,7 @@ JointReaction Dynamics::Core::react(const JointEntry& joint) {
   if (joint.link < 0) return of_ring;
   articulated::Vector tau(tree.model.velocities());
   articulated::inverse_dynamics(tree.model, tree.data, tree.state, acceleration, tree.loads, tau);
-  // What goes through the joint to the tree's side beyond it, about the joint's point.
+  // The wrench through the joint on the tree's side beyond it, about the joint's point.
   const articulated::Work& work = tree.data.of(joint.link);
   const double sign = joint.flipped ? -1 : 1;
   return {sign * work.force, sign * work.couple};

@@ -1,5 +1,5 @@
-// Where energy is and where it went. What is in motion, height and springs is summed when somebody asks; works and
-// losses are written down by those who do them. What is left is the residual. Nothing repairs it.
+// Where energy is and where it went. The energy of motion, height and springs is summed when a caller asks; works and
+// losses are noted where they arise. The rest is the residual. Nothing repairs it.
 #include <algorithm>
 
 #include "runtime/articulated/energy.hpp"

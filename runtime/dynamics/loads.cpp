@@ -18,9 +18,9 @@ constexpr double kMotorTime = 0.01;
 // How much stiffer a motor is than the inertia that it moves: by this part of it a load can push a held joint.
 constexpr double kMotorStiffness = 1e6;
 
-/// Whether a step of h follows the tree's springs and dampers by itself. What is slower than the step loses accuracy by
-/// being treated as implicit, what is faster would blow up if it were not. The sum over the joints bounds the square of
-/// the highest frequency times h.
+/// Whether a step of h follows the tree's springs and dampers by itself. A spring that is slower than the step loses
+/// accuracy if it is treated as implicit; one that is faster would blow up if it were not. The sum over the joints
+/// bounds the square of the highest frequency times h.
 bool follows(double sum) {
   constexpr double kStable = 4;  // semi-implicit Euler's limit for one oscillator
   return sum < kStable;

@@ -125,7 +125,7 @@ void NearPairs::find_drivers(const Bodies& bodies) {
   drivers_.erase(std::unique(drivers_.begin(), drivers_.end()), drivers_.end());
 }
 
-/// What stands where it was is not gone through: a world may have many more bodies that stand than bodies that move.
+/// Skips bodies that stand where they were: a world may have many more of them than bodies that move.
 void NearPairs::update_boxes(const Bodies& bodies, bool all, const Vector3& gravity, double h, Asking& asking) {
   if (all) {
     for (Proxy& proxy : proxies_)
@@ -293,8 +293,8 @@ namespace {
 
 }  // namespace
 
-/// A crowd with too many pairs is not searched to its end. Of two bodies that both moved in this update, the one that
-/// was looked at later counts them, with boxes that are those of this step.
+/// A crowd with too many pairs is not searched to its end. If two bodies both moved in this update, the one that
+/// was looked at later counts them, with the boxes of this step.
 void NearPairs::meet(PairKey& key, ProxyIndex other, Asking& asking) const {
   if (!reach_[other].moved || !near(key)) return;
   asking.ask(asking.wanted, key);

@@ -106,7 +106,7 @@ class NearPairs {
   /// Bodies in the order of creation: those that forces move.
   const std::pmr::vector<BodyIndex>& movers() const { return movers_; }
 
-  /// Of each body that forces move: how long it has been still, s, and whether it sleeps.
+  /// For each body that forces move: how long it has been still, s, and whether it sleeps.
   struct Rest {
     double still = 0;
     bool asleep = false;

@@ -82,7 +82,7 @@ void NearPairs::save_standing(ByteWriter& out, const Bodies& bodies) const {
   }
 }
 
-/// Of a body that is known by an image alone, until the next update.
+/// The proxy of a body that is known from an image alone, until the next update.
 NearPairs::Proxy& NearPairs::known(BodyIndex body, std::uint64_t serial, const Bodies& bodies) {
   if (!bodies.used(body)) ByteReader::fail();
   if (proxy_of_[body] != kNoProxy) {

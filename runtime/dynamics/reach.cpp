@@ -9,7 +9,7 @@ namespace breve {
 /// grow when all pairs were gone through: which pairs are in the list before they are near depends on the past.
 /// @return  true if some box grew: new pairs may pass it on further
 bool NearPairs::pass_on(const Bodies& bodies, double h) {
-  // Of the radius: a strike that moves less than this within the step meets what is in the roomy boxes anyway.
+  // Part of the radius: a strike that moves less than this within the step meets only what is in the roomy boxes.
   constexpr double kFar = 0.05, kMore = 1.01;
   fresh_.clear();
   new_keys_.clear();

@@ -92,7 +92,7 @@ bool is_one_of(Enum value, Enum last) {
 void Dynamics::save(ByteWriter& out) const {
   out.put(core_ != nullptr);
   if (!core_) return;
-  // Who is to wake in the next step is awake in the image.
+  // Bodies that wake up in the next step are awake in the image.
   if (core_->settings.sleeping) core_->near.wake_disturbed(*bodies_);
   core_->save(out);
 }

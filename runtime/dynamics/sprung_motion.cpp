@@ -221,7 +221,8 @@ void Island::SprungMotion::follow(SprungPoint& point) const {
   point.slip = point.axes * (island_.point_velocity(pair.a, point.at) - island_.point_velocity(pair.b, point.at));
 }
 
-/// What the springs of a point do that was followed. What was apart when the sub-step began is met by an event.
+/// The forces of the springs of a point that was followed. A point that was open as the sub-step began is met by an
+/// event.
 Island::SprungMotion::Resistance Island::SprungMotion::resist(SprungPoint& point, const Vector2& stretch) const {
   Resistance out;
   if (point.apart == 0) out.press = contact::press(point.spring, point.gap - point.skin, point.slip[0]);
@@ -322,7 +323,7 @@ void Island::SprungMotion::move(const Vector& q, const Vector& d, Vector& out) {
 }
 
 void Island::SprungMotion::rate_of_move(const Vector& d, const Vector& v, Vector& out) {
-  out.setZero(nv_);  // what is no body's has no position
+  out.setZero(nv_);  // a speed that belongs to no body moves no position
   each(
       [&](const Free&, int, int at) {
         out.segment<3>(at) = v.segment<3>(at);

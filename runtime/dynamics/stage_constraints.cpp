@@ -1,6 +1,6 @@
 // The forces of joints that close rings, inside the stages of an integrator: such that the second derivative of what
 // holds the ring closed is zero (Lagrange's multipliers, with the responses of the articulated body); and those of
-// limits, which push as long as a joint would otherwise come too fast. What is left to drift is an integrator's error;
+// limits, which push as long as a joint would otherwise come too fast. The drift that remains is an integrator's error;
 // positions and velocities are put right at the end of the sub-step.
 #include <algorithm>
 #include <cmath>

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kPositions = 7, kVelocities = 6;  // of a body
 
-/// Of a point in the link's frame, m from its origin in world axes.
+/// A point in the link's frame as a vector from its origin, in world axes, m.
 Vector3 turned(const Matrix3& rotation, const Vector3& arm) {
   return arm == Vector3::Zero() ? arm : Vector3(rotation * arm);
 }

@@ -33,7 +33,7 @@ class TiedBodies : public InMemory {
   /// Accelerations `a` at positions `q` and velocities `v`, all of the cluster; the springs' forces are noted.
   Powers accelerate(Dynamics::Core& core, const articulated::Vector& q, const articulated::Vector& v,
                     articulated::Vector& a);
-  /// To the springs, for who asks for them: as at the last stage.
+  /// Gives the springs their forces of the last stage, which scripts may ask for.
   void note_forces(Dynamics::Core& core) const;
   /// J, of all springs; the trees' links are placed.
   double spring_energy(const Dynamics::Core& core) const;

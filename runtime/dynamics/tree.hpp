@@ -84,7 +84,7 @@ struct Tree : InMemory {
   std::pmr::vector<JointIndex> rings;  // joints within the tree (or to the world) that are constraints
   std::pmr::vector<HeldLimit> held;    // limits that act inside the stages of this sub-step
   double hold_time = 0;                // s, in which they bring joints to rest
-  // Of the rows of rings, then of limits that are held: workspace; forces along them, at the last stage.
+  // The rows of loops, then of limits that are held: workspace; forces along them, at the last stage.
   std::pmr::vector<double> row_numbers, row_forces;
   std::pmr::vector<int> row_order;
   bool anchored = false;  // held by the world

@@ -350,7 +350,7 @@ void Dynamics::Core::read_state(Tree& tree) const {
     const JointEntry& joint = joints[link.joint];
     const auto [turn, shift] = between(joint.is);
     read_joint(joint.is, joint.flipped, turn, shift, joint.position, q);
-    // What was kept exactly, and only wrote poses since, is taken up again exactly.
+    // A position that was kept exactly is used again exactly, if only poses were written since.
     constexpr double kSame = 1e-11;  // rad or m
     if (joint.is.kind != JointKind::Ball &&
         (joint_position(joint.is, joint.flipped, q) - joint.position).norm() < kSame)
