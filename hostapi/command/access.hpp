@@ -13,6 +13,7 @@ namespace breve::command {
 /// Options on files and commands, as `run` and `repl` take them.
 struct AccessOptions {
   std::vector<std::string> read, write;  // directories
+  std::vector<std::string> plugins;      // directories whose libraries may be loaded
   bool no_files = false, system = false;
 };
 

@@ -44,7 +44,7 @@ int check(const CheckOptions& options, Output& output) {
   std::size_t errors = 0, warnings = 0, notes = 0;
   Json list = Json::array();
   for (const auto& file : options.files) {
-    Session session(output, options.paths, false, options.strict);
+    Session session(output, options.paths, false, options.strict, nullptr, options.plugins);
     for (const auto& code : options.allowed) {
       if (session.allow(code)) continue;
       output.complain(fmt::format("breve: --allow: {}\n", breve_runtime_last_error(session.runtime())->message));

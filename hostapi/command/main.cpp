@@ -16,6 +16,7 @@
 #include "doc.hpp"
 #include "lsp.hpp"
 #include "repl.hpp"
+#include "replay.hpp"
 #include "run.hpp"
 #include "session.hpp"
 
@@ -26,6 +27,7 @@ using breve::command::CheckOptions;
 using breve::command::DocOptions;
 using breve::command::LspOptions;
 using breve::command::Output;
+using breve::command::ReplayOptions;
 using breve::command::ReplOptions;
 using breve::command::RunOptions;
 
@@ -63,6 +65,13 @@ CLI::Option* several(CLI::App& app, const char* name, const char* type, std::vec
   return app.add_option(name, out, help + "; may be repeated")->type_name(type)->expected(1)->take_all();
 }
 
+void describe_plugins(CLI::App& app, std::vector<std::string>& directories) {
+  several(app, "--allow-plugins", "DIR", directories,
+          "Let @plugin load shared libraries below DIR; they run with all your rights")
+      ->check(CLI::ExistingDirectory)
+      ->type_name("DIR");
+}
+
 void describe_access(CLI::App& app, AccessOptions& o) {
   several(app, "--allow-read", "DIR", o.read,
           "Let the program read files below DIR, as it may below the current directory, its own and those of --path")
@@ -76,6 +85,7 @@ void describe_access(CLI::App& app, AccessOptions& o) {
       ->excludes("--allow-read")
       ->excludes("--allow-write");
   app.add_flag("--allow-system", o.system, "Let the program run commands of the operating system");
+  describe_plugins(app, o.plugins);
 }
 
 void describe_pictures(CLI::App& app, RunOptions& o) {
@@ -122,7 +132,11 @@ void describe_run(CLI::App& app, RunOptions& o) {
                  "Accuracy of bodies with physics: fast, balanced, precise, reference or conserving")
       ->type_name("RUNG")
       ->check(CLI::IsMember({"fast", "balanced", "precise", "reference", "conserving"}));
-  app.add_flag("--watch", o.watch, "When a file of the program changes, continue with the changed program");
+  auto* watch =
+      app.add_flag("--watch", o.watch, "When a file of the program changes, continue with the changed program");
+  app.add_option("--record", o.log, "Record all input of the run, so that `breve replay FILE` repeats it exactly")
+      ->type_name("FILE")
+      ->excludes(watch);
   app.add_flag("--coarse-random", o.coarse_random, "Draw random floats from 32,768 values, as in the original breve");
   app.add_flag("--strict", o.strict, "Treat warnings as errors, both at compile time and during the run");
   app.add_flag("--quiet", o.quiet, "Show no warnings and no progress");
@@ -151,9 +165,22 @@ void describe_check(CLI::App& app, CheckOptions& o) {
   app.add_option("FILE", o.files, "Programs (.tz)")->required();
   several(app, "--path", "DIR", o.paths, "Also search DIR for modules");
   several(app, "--allow", "CODE", o.allowed, "Do not report this lint");
+  describe_plugins(app, o.plugins);
   app.add_flag("--strict", o.strict, "Treat warnings as errors");
   app.add_flag("--json", o.json, "Print JSON: an array of file, line, column, length, severity, code, message, help");
   app.footer(kExitStatuses);
+}
+
+void describe_replay(CLI::App& app, ReplayOptions& o) {
+  app.add_option("FILE", o.file, "A log that `breve run --record` has written")->required();
+  describe_plugins(app, o.plugins);
+  app.add_flag("--hash", o.hash, "Print the hash of the world's state as the last line of the output");
+  app.add_flag("--quiet", o.quiet, "Say nothing unless the runs differ");
+  app.footer(
+      "Run it in the directory where the log was recorded, with the program unchanged. Nothing outside is touched: "
+      "the\n"
+      "program reads what the log holds. It fails at the first iteration that differs from the recorded run.\n" +
+      std::string(kExitStatuses));
 }
 
 void describe_repl(CLI::App& app, ReplOptions& o) {
@@ -224,7 +251,8 @@ std::string near_option(const CLI::App& app) {
 /// @param topic  a command; "": all of them
 int show_help(CLI::App& app, const std::string& topic) {
   if (!topic.empty() && !is_command(app, topic)) {
-    std::cerr << "breve: there is no command '" << topic << "': it must be run, repl, check, doc, lsp or help\n";
+    std::cerr << "breve: there is no command '" << topic
+              << "': it must be run, replay, repl, check, doc, lsp or help\n";
     return breve::command::kWrongUsage;
   }
   const CLI::App& shown = topic.empty() ? app : *app.get_subcommand(topic);
@@ -245,21 +273,25 @@ int main_guarded(int argc, char** argv) {
   CheckOptions check_options;
   DocOptions doc_options;
   LspOptions lsp_options;
+  ReplayOptions replay_options;
   auto* run = app.add_subcommand("run", "Run a program");
+  auto* replay = app.add_subcommand("replay", "Repeat a run that was recorded, and compare it");
   auto* repl = app.add_subcommand("repl", "Type statements that run in a world");
   auto* check = app.add_subcommand("check", "Compile programs and show errors, warnings and notes");
   auto* doc = app.add_subcommand("doc", "Generate reference pages from the comments of programs");
   auto* lsp = app.add_subcommand("lsp", "Language server for editors: errors as you type, completion, definitions");
   std::string topic;
   auto* help = app.add_subcommand("help", "Show this text, or the options of a command");
-  help->add_option("COMMAND", topic, "run, repl, check, doc or lsp");
+  help->add_option("COMMAND", topic, "run, replay, repl, check, doc or lsp");
   describe_run(*run, run_options);
+  describe_replay(*replay, replay_options);
   describe_repl(*repl, repl_options);
   describe_check(*check, check_options);
   describe_doc(*doc, doc_options);
   describe_lsp(*lsp, lsp_options);
   if (argc > 1 && *argv[1] != '-' && !is_command(app, argv[1])) {
-    std::cerr << "breve: there is no command '" << argv[1] << "': it must be run, repl, check, doc, lsp or help\n";
+    std::cerr << "breve: there is no command '" << argv[1]
+              << "': it must be run, replay, repl, check, doc, lsp or help\n";
     return breve::command::kWrongUsage;
   }
   try {
@@ -284,6 +316,7 @@ int main_guarded(int argc, char** argv) {
   Output output;
   if (doc->parsed()) return breve::command::doc(doc_options, output);
   if (repl->parsed()) return breve::command::repl(repl_options, output);
+  if (replay->parsed()) return breve::command::replay(replay_options, output);
   return run->parsed() ? breve::command::run(run_options, output) : breve::command::check(check_options, output);
 }
 

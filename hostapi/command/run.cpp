@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "interventions.hpp"
+#include "log_file.hpp"
 #include "profile.hpp"
 #include "report.hpp"
 #include "session.hpp"
@@ -36,16 +37,6 @@ void watch_for_interrupt() {
 }
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
-
-ExitStatus exit_status(breve_status status) {
-  switch (status) {
-    case BREVE_OK: return kEndedWell;
-    case BREVE_ERROR_MEMORY:
-    case BREVE_ERROR_BUDGET:
-    case BREVE_ERROR_DEPTH: return kLimitHit;
-    default: return kFailed;
-  }
-}
 
 /// "45 s", "2 min 5 s", "3 h 20 min"
 std::string time_words(double seconds) {
@@ -156,6 +147,16 @@ std::uint64_t draw_seed() { return std::random_device()() & 0x7fffffffU; }
 
 constexpr double kLongIteration = 10;  // s that an iteration may take before its position is reported
 
+/// Each of --set has a name and a '='. Otherwise that is reported.
+bool are_settings(const std::vector<std::string>& given, Output& output) {
+  for (const auto& setting : given)
+    if (const std::size_t equal = setting.find('='); equal == 0 || equal == std::string::npos) {
+      output.complain(fmt::format("breve: --set: '{}' is not of the form NAME=VALUE\n", setting));
+      return false;
+    }
+  return true;
+}
+
 /// What --set gives, taken apart at the first '='.
 class Settings {
  public:
@@ -176,31 +177,6 @@ class Settings {
   std::vector<std::string> names_, values_;
   std::vector<breve_setting> list_;
 };
-
-WorldHandle make_world(const Session& session, const breve_program* program, const RunOptions& options,
-                       std::uint64_t seed, Profiling& profiling, breve_status& status) {
-  std::vector<const char*> arguments{options.file.c_str()};
-  for (const auto& argument : options.arguments) arguments.push_back(argument.c_str());
-  breve_world_config config = breve_world_config_default();
-  config.seed = seed;
-  config.arguments = arguments.data();
-  config.argument_count = arguments.size();
-  config.strict = options.strict;
-  config.coarse_random = options.coarse_random;
-  config.verbose = options.verbose;
-  config.accuracy = options.accuracy.empty() ? nullptr : options.accuracy.c_str();
-  config.budget = options.budget.value_or(0);
-  config.physics_budget = options.physics_budget.value_or(0);
-  config.memory_limit = static_cast<std::size_t>(options.memory.value_or(0)) * 1024 * 1024;
-  config.depth_limit = options.depth.value_or(0);
-  config.patience = kLongIteration;
-  const Settings settings(options.settings);
-  settings.configure(config);
-  profiling.configure(config);
-  breve_world* world = nullptr;
-  status = breve_world_create(session.runtime(), program, &config, &world);
-  return WorldHandle(world);
-}
 
 void say_where_it_stopped(const breve_world* world, const RunOptions& options, std::uint64_t seed, Output& output) {
   const breve_error* error = breve_world_last_error(world);
@@ -223,14 +199,45 @@ void say_what_went_on(const breve_world* world, const RunOptions& options, const
 
 }  // namespace
 
+ExitStatus exit_status(breve_status status) {
+  switch (status) {
+    case BREVE_OK: return kEndedWell;
+    case BREVE_ERROR_MEMORY:
+    case BREVE_ERROR_BUDGET:
+    case BREVE_ERROR_DEPTH: return kLimitHit;
+    default: return kFailed;
+  }
+}
+
+WorldHandle make_world(const Session& session, const breve_program* program, const RunOptions& options,
+                       std::uint64_t seed, Profiling* profiling, breve_status& status) {
+  std::vector<const char*> arguments{options.file.c_str()};
+  for (const auto& argument : options.arguments) arguments.push_back(argument.c_str());
+  breve_world_config config = breve_world_config_default();
+  config.seed = seed;
+  config.arguments = arguments.data();
+  config.argument_count = arguments.size();
+  config.strict = options.strict;
+  config.coarse_random = options.coarse_random;
+  config.verbose = options.verbose;
+  config.accuracy = options.accuracy.empty() ? nullptr : options.accuracy.c_str();
+  config.budget = options.budget.value_or(0);
+  config.physics_budget = options.physics_budget.value_or(0);
+  config.memory_limit = static_cast<std::size_t>(options.memory.value_or(0)) * 1024 * 1024;
+  config.depth_limit = options.depth.value_or(0);
+  config.patience = kLongIteration;
+  const Settings settings(options.settings);
+  settings.configure(config);
+  if (profiling) profiling->configure(config);
+  breve_world* world = nullptr;
+  status = breve_world_create(session.runtime(), program, &config, &world);
+  return WorldHandle(world);
+}
+
 int run(const RunOptions& options, Output& output) {
   Session session(output, options.paths, options.quiet, options.strict, &options.access);
   ProgramHandle program;
-  for (const auto& setting : options.settings)
-    if (const std::size_t equal = setting.find('='); equal == 0 || equal == std::string::npos) {
-      output.complain(fmt::format("breve: --set: '{}' is not of the form NAME=VALUE\n", setting));
-      return kWrongUsage;
-    }
+  if (!are_settings(options.settings, output)) return kWrongUsage;
   if (const ExitStatus loaded = session.load(options.file, program); loaded != kEndedWell) return loaded;
 
   const std::uint64_t seed = options.seed ? *options.seed : draw_seed();
@@ -241,7 +248,7 @@ int run(const RunOptions& options, Output& output) {
 
   breve_status status = BREVE_OK;
   Profiling profiling(options);
-  const WorldHandle world = make_world(session, program.get(), options, seed, profiling, status);
+  const WorldHandle world = make_world(session, program.get(), options, seed, &profiling, status);
   if (!world) {
     const breve_error* error = breve_runtime_last_error(session.runtime());
     output.complain(error ? error->text : "breve: cannot make the world\n");
@@ -257,9 +264,12 @@ int run(const RunOptions& options, Output& output) {
     result = kFailed;
   };
   try {
+    std::optional<LogFile> log;
+    if (!options.log.empty()) log.emplace(options, seed, world.get());
     Lookers lookers(session.runtime(), options, output);
     status = iterate(world.get(), options, reloader ? &*reloader : nullptr, interventions, lookers, output);
     lookers.finish(world.get());
+    if (log) log->finish(world.get());
   } catch (const std::exception& e) {
     complain(e);
   }

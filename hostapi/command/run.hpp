@@ -10,6 +10,7 @@
 #include "output.hpp"
 #include "plot.hpp"
 #include "record.hpp"
+#include "session.hpp"
 
 namespace breve::command {
 
@@ -31,11 +32,21 @@ struct RunOptions {
   std::string accuracy;  // rung, "" for the program's own
   RecordOptions record;
   PlotOptions plot;
+  std::string log;                           // of all input, for `breve replay`; "" for none
   std::string positions;                     // CSV file, "" for none
   std::string profile;                       // file, "-" for standard error, "" for none
   std::string trace;                         // JSON file, "" for none
   std::optional<std::uint64_t> trace_limit;  // MB
 };
+
+class Profiling;
+
+/// @param profiling  may be null
+WorldHandle make_world(const Session& session, const breve_program* program, const RunOptions& options,
+                       std::uint64_t seed, Profiling* profiling, breve_status& status);
+
+/// What the command ends with after such a failure.
+ExitStatus exit_status(breve_status status);
 
 /// @return  the exit status
 int run(const RunOptions& options, Output& output);

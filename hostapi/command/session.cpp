@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "lua_file.hpp"
+#include "plugin_access.hpp"
 
 namespace breve::command {
 
@@ -81,8 +82,8 @@ void Session::allow_files(const AccessOptions& access) {
 }
 
 Session::Session(Output& output, const std::vector<std::string>& paths, bool quiet, bool strict,
-                 const AccessOptions* access)
-    : output_(output), paths_(paths), loader_(paths), quiet_(quiet), strict_(strict) {
+                 const AccessOptions* access, const std::vector<std::string>& plugins)
+    : output_(output), paths_(paths), loader_(paths), quiet_(quiet), strict_(strict), plugins_(plugins) {
   breve_runtime_config config = breve_runtime_config_default();
   config.user = this;
   config.print = &Session::print;
@@ -94,6 +95,12 @@ Session::Session(Output& output, const std::vector<std::string>& paths, bool qui
     session.loader_.add_path(directory);
     if (!session.no_files_) session.access_.add_below(directory);
   };
+  if (access) plugins_ = access->plugins;
+  if (!plugins_.empty())
+    config.open_plugin = [](void* user, const char* file, const char* entry, const char*, breve_plugin* plugin,
+                            breve_write_fn reason, void* sink) {
+      return open_plugin_below(static_cast<Session*>(user)->plugins_, file, entry, plugin, reason, sink);
+    };
   if (access) {
     allow_files(*access);
     if (!no_files_) config.files = access_.files();

@@ -29,10 +29,11 @@ using WorldHandle = std::unique_ptr<breve_world, WorldDeleter>;
 class Session {
  public:
   /// @param strict  warnings of the compiler are errors
-  /// @param access  what programs may touch; null: they are not run. Throws std::runtime_error if a path is not a
+  /// @param access   what programs may touch; null: they are not run. Throws std::runtime_error if a path is not a
   /// directory
+  /// @param plugins  directories of plugins of programs that are not run
   Session(Output& output, const std::vector<std::string>& paths, bool quiet, bool strict,
-          const AccessOptions* access = nullptr);
+          const AccessOptions* access = nullptr, const std::vector<std::string>& plugins = {});
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -65,6 +66,7 @@ class Session {
   std::vector<std::string> files_;
   bool quiet_, strict_, no_files_ = true;
   FileAccess access_;
+  std::vector<std::string> plugins_;  // directories of libraries that may be loaded
   std::function<void(const breve_diagnostic&)> listener_;
   breve_runtime* runtime_ = nullptr;
 };

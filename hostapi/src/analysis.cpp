@@ -111,7 +111,7 @@ breve_status breve_analysis_create(breve_runtime* runtime, const char* name, con
     need(analysis, "analysis");
     if (size != 0) need(text, "text");
     const BusyScope busy(*runtime);
-    HostModules modules(runtime->state->config);
+    HostModules modules(*runtime);
     breve::steve::ModuleSource main =
         text ? breve::steve::ModuleSource{name, std::string(text, size)} : main_module(*runtime, modules, name);
     auto made = std::make_unique<breve_analysis>();

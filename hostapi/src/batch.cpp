@@ -47,6 +47,8 @@ class Batch {
       if (wanted_.hashes) (void)breve_world_hash(world, &outcome.hash);
     }
     outcome.status = static_cast<std::uint32_t>(status);
+    const breve_error* const why = world ? breve_world_last_error(world) : error.view();
+    if (status != BREVE_OK && wanted_.failed && why) wanted_.failed(wanted_.user, index, why);
     if (wanted_.end && !wanted_.end(wanted_.user, index, world, &outcome))
       ended_.store(true, std::memory_order_relaxed);
     (void)breve_world_destroy(world);

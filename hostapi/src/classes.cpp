@@ -200,9 +200,10 @@ breve_status breve_runtime_add_class(breve_runtime* runtime, const breve_class* 
   return guard(runtime->error, [&] {
     need(description, "description");
     const auto c = read_config(description, breve_class_default(), "breve_class");
-    const BusyScope busy(*runtime);
+    const AddingScope adding(*runtime);
     auto made = std::make_shared<HostClass>(c);
-    auto& classes = runtime->classes;
+    if (runtime->loading) made->keep(runtime->loading->library);
+    auto& classes = runtime->loading ? runtime->loading->classes : runtime->classes;
     const auto old =
         std::find_if(classes.begin(), classes.end(), [&](const auto& other) { return made->same_name(*other); });
     if (old != classes.end())

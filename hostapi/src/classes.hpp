@@ -32,6 +32,8 @@ class HostClass final : public steve::ForeignClass {
   }
   /// From now on the class answers for the host's data.
   void own(void (*destroy)(void* user)) { destroy_ = destroy; }
+  /// The code of the class is in this library.
+  void keep(std::shared_ptr<const PluginLibrary> library) { library_ = std::move(library); }
   bool same_name(const ForeignClass& other) const { return name() == other.name(); }
   breve_status bind(breve_world& world, void*& binding, Answer& reason) const {
     return bind_ ? bind_(user_, &world, &binding, &Answer::add, &reason) : BREVE_OK;
@@ -49,6 +51,7 @@ class HostClass final : public steve::ForeignClass {
   const breve_places_fn places_;
   void* const user_;
   void (*destroy_)(void* user) = nullptr;
+  std::shared_ptr<const PluginLibrary> library_;
 };
 
 /// A method of a class of the host runs while this stands.

@@ -35,37 +35,68 @@ class OpenFile {
 
 class HostReader final : public steve::FileReader {
  public:
-  explicit HostReader(OpenFile file) : file_(std::move(file)), path_(file_.name()) {
+  HostReader(breve_world& world, OpenFile file) : world_(world), file_(std::move(file)), path_(file_.name()) {
     if (file_.functions().path) path_ = file_.functions().path;
   }
+  /// One that gives what was recorded.
+  HostReader(breve_world& world, OpenFile file, std::string_view path)
+      : world_(world), file_(std::move(file)), path_(path) {}
   static bool fits(const breve_file& file) { return file.read; }
   std::size_t read(char* bytes, std::size_t size) override {
+    Inputs* const inputs = world_.inputs;
+    if (inputs && inputs->replaying()) return replay(*inputs, bytes, size);
+    const auto function = file_.functions().read;
     std::size_t got = 0;
-    if (!file_.functions().read(file_.functions().handle, bytes, size, &got) || got > size)
+    if (!function || !function(file_.functions().handle, bytes, size, &got) || got > size) {
+      if (inputs) inputs->add(Inputs::Kind::Failed, {});
       fail_at("read", file_.name());
+    }
+    if (inputs) inputs->add(Inputs::Kind::Read, {bytes, got});
     return got;
   }
   const std::string& path() const override { return path_; }
 
  private:
+  std::size_t replay(Inputs& inputs, char* bytes, std::size_t size) {
+    const auto recorded = inputs.next(Inputs::Kind::Read);
+    if (!recorded || recorded->size() > size) fail_at("read", file_.name());
+    return recorded->copy(bytes, size);
+  }
+
+  breve_world& world_;
   OpenFile file_;
   std::string path_;
 };
 
 class HostWriter final : public steve::FileWriter {
  public:
-  explicit HostWriter(OpenFile file) : file_(std::move(file)) {}
+  HostWriter(breve_world& world, OpenFile file) : world_(world), file_(std::move(file)) {}
+  /// One that fails where it failed when it was recorded, and writes nothing.
+  HostWriter(breve_world& world, OpenFile file, std::string_view) : world_(world), file_(std::move(file)) {}
   static bool fits(const breve_file& file) { return file.write; }
   void write(std::string_view bytes) override {
-    if (bytes.empty() || file_.functions().write(file_.functions().handle, bytes.data(), bytes.size())) return;
+    if (bytes.empty()) return;
+    const auto function = file_.functions().write;
+    if (passes([&] { return function && function(file_.functions().handle, bytes.data(), bytes.size()); })) return;
     file_.spoil();
     fail_at("write", file_.name());
   }
   void close() override {
-    if (!file_.close()) fail_at("close", file_.name());
+    if (!passes([&] { return file_.close(); })) fail_at("close", file_.name());
   }
 
  private:
+  /// Whether it succeeds, or did when it was recorded.
+  template <class Work>
+  bool passes(Work work) {
+    Inputs* const inputs = world_.inputs;
+    if (inputs && inputs->replaying()) return inputs->next(Inputs::Kind::Written).has_value();
+    const bool succeeded = work();
+    if (inputs) inputs->add(succeeded ? Inputs::Kind::Written : Inputs::Kind::Failed, {});
+    return succeeded;
+  }
+
+  breve_world& world_;
   OpenFile file_;
 };
 
@@ -85,8 +116,30 @@ std::unique_ptr<Wrapper> ask(breve_world& world, std::string_view name, std::str
     return nullptr;
   }
   OpenFile whole(file, std::move(asked));
-  if (Wrapper::fits(file)) return std::make_unique<Wrapper>(std::move(whole));
+  if (Wrapper::fits(file)) return std::make_unique<Wrapper>(world, std::move(whole));
   why = "the host opened it without the required function";
+  return nullptr;
+}
+
+/// The path that a reader gives scripts.
+std::string path_of(const HostReader& file) { return file.path(); }
+std::string path_of(const HostWriter&) { return {}; }
+
+/// The same, recorded or replayed.
+template <class Wrapper, class Open>
+std::unique_ptr<Wrapper> ask_on_tape(breve_world& world, std::string_view name, std::string& why, Open open) {
+  using enum Inputs::Kind;
+  Inputs* const inputs = world.inputs;
+  if (!inputs) return ask<Wrapper>(world, name, why, open);
+  if (!inputs->replaying()) {
+    auto file = ask<Wrapper>(world, name, why, open);
+    inputs->add(file ? Opened : NotOpened, file ? path_of(*file) : why);
+    return file;
+  }
+  const bool refused = inputs->is_next(NotOpened);
+  const auto recorded = inputs->next(refused ? NotOpened : Opened);
+  if (recorded && !refused) return std::make_unique<Wrapper>(world, OpenFile({}, std::string(name)), *recorded);
+  why = recorded ? std::string(*recorded) : "it was not opened in the recorded run";
   return nullptr;
 }
 
@@ -96,17 +149,17 @@ void open_files(breve_world& world, steve::MachineHost& host) {
   const breve_files& files = world.runtime->config.files;
   if (files.open_for_reading)
     host.open_for_reading = [&world, &files](std::string_view name, std::string& why) {
-      return ask<HostReader>(world, name, why,
-                             [&](const char* asked, breve_file* file, breve_write_fn reason, void* sink) {
-                               return files.open_for_reading(files.user, &world, asked, file, reason, sink);
-                             });
+      return ask_on_tape<HostReader>(world, name, why,
+                                     [&](const char* asked, breve_file* file, breve_write_fn reason, void* sink) {
+                                       return files.open_for_reading(files.user, &world, asked, file, reason, sink);
+                                     });
     };
   if (files.open_for_writing)
     host.open_for_writing = [&world, &files](std::string_view name, bool append, std::string& why) {
-      return ask<HostWriter>(world, name, why,
-                             [&](const char* asked, breve_file* file, breve_write_fn reason, void* sink) {
-                               return files.open_for_writing(files.user, &world, asked, append, file, reason, sink);
-                             });
+      return ask_on_tape<HostWriter>(
+          world, name, why, [&](const char* asked, breve_file* file, breve_write_fn reason, void* sink) {
+            return files.open_for_writing(files.user, &world, asked, append, file, reason, sink);
+          });
     };
 }
 

@@ -27,11 +27,14 @@ class HostFunction final : public ForeignFunction {
   breve_status call(const breve_call& call, breve_value& result) const { return call_(user_, &call, &result); }
   /// From now on the function answers for the host's data.
   void own(void (*destroy)(void* user)) { destroy_ = destroy; }
+  /// The code of the function is in this library.
+  void keep(std::shared_ptr<const PluginLibrary> library) { library_ = std::move(library); }
 
  private:
   const breve_function_fn call_;
   void* const user_;
   void (*destroy_)(void* user) = nullptr;
+  std::shared_ptr<const PluginLibrary> library_;
 };
 
 }  // namespace
@@ -82,9 +85,13 @@ void check_name(const breve_runtime& runtime, std::string_view name) {
   const auto functions = steve::functions();
   if (std::any_of(functions.begin(), functions.end(), [&](const auto& f) { return f.name == name; }))
     fail(BREVE_ERROR_ARGUMENT, "the language has a function " + quoted + " already: choose another name");
-  const auto& added = runtime.functions;
-  if (std::any_of(added.begin(), added.end(), [&](const auto& f) { return f->name() == name; }))
+  const auto has = [&](const steve::ForeignFunctions& added) {
+    return std::any_of(added.begin(), added.end(), [&](const auto& f) { return f->name() == name; });
+  };
+  if (has(runtime.functions))
     fail(BREVE_ERROR_ARGUMENT, "the runtime has a function " + quoted + " already: choose another name");
+  if (runtime.loading && has(runtime.loading->functions))
+    fail(BREVE_ERROR_ARGUMENT, "the plugin adds the function " + quoted + " twice");
 }
 
 /// As to_host; numbers, which most arguments are, without the bytes behind them.
@@ -198,10 +205,11 @@ breve_status breve_runtime_add_function(breve_runtime* runtime, const breve_func
     const auto f = read_config(function, breve_function_default(), "breve_function");
     need(f.name, "breve_function.name");
     need(reinterpret_cast<const void*>(f.call), "breve_function.call");
-    const BusyScope busy(*runtime);
+    const AddingScope adding(*runtime);
     check_name(*runtime, f.name);
     auto made = std::make_shared<HostFunction>(f, signature_of(f));
-    runtime->functions.push_back(made);
+    if (runtime->loading) made->keep(runtime->loading->library);
+    (runtime->loading ? runtime->loading->functions : runtime->functions).push_back(made);
     made->own(f.destroy);  // nothing fails any more
   });
 }

@@ -18,6 +18,7 @@
 #include "steve/compile/compile.hpp"
 #include "steve/machine/machine.hpp"
 #include "steve/machine/profiler.hpp"
+#include "tape.hpp"
 
 namespace breve::host {
 
@@ -32,6 +33,26 @@ class HostAllocator final : public std::pmr::memory_resource {
   bool do_is_equal(const std::pmr::memory_resource& other) const noexcept override { return this == &other; }
 
   const breve_runtime_config& config_;
+};
+
+/// The library of a plugin. The functions and classes of the plugin keep it open, and so do all worlds of the runtime:
+/// they may hold data with a destroy callback that the plugin gave.
+struct PluginLibrary {
+  explicit PluginLibrary(const breve_plugin& o) : opened(o) {}
+  ~PluginLibrary() {
+    if (opened.close) opened.close(opened.library);
+  }
+  PluginLibrary(const PluginLibrary&) = delete;
+  PluginLibrary& operator=(const PluginLibrary&) = delete;
+  const breve_plugin opened;
+};
+
+/// A plugin as the programs of a runtime spell it, with what its entry added.
+struct Plugin {
+  std::string file, entry;
+  std::shared_ptr<const PluginLibrary> library;
+  steve::ForeignFunctions functions;
+  steve::ForeignClasses classes;
 };
 
 /// What programs and worlds keep of a runtime after its handle is gone.
@@ -52,6 +73,7 @@ struct RuntimeState {
   HostAllocator allocator;
   breve::Workers workers;    // of its worlds
   std::uint32_t worlds = 0;  // that were made, or begun
+  std::vector<std::shared_ptr<const PluginLibrary>> libraries;
 };
 
 /// Generations of the host's ids are numbers modulo this, plus 1.
@@ -227,6 +249,8 @@ struct breve_runtime {
   breve::steve::ForeignFunctions
       functions;                         // of breve_runtime_add_function; programs keep those they were compiled with
   breve::steve::ForeignClasses classes;  // of breve_runtime_add_class, likewise
+  std::vector<breve::host::Plugin> plugins;
+  breve::host::Plugin* loading = nullptr;  // whose entry runs
   mutable breve::host::ErrorRecord error;
   int busy = 0;  // compilations and world creations in progress
 };
@@ -266,6 +290,8 @@ struct breve_world : breve::InMemory {
   std::pmr::vector<std::uint32_t> method_types;
   std::unique_ptr<bool[]> method_defaults;
   const breve::host::ActiveCall* active = nullptr;  // the innermost
+  std::unique_ptr<breve::host::Recorder> recorder;  // of breve_world_record_start
+  breve::host::Inputs* inputs = nullptr;            // in an iteration that is recorded or replayed
   std::size_t failed_depth = 0;                     // of the method of the host that failed last
   std::vector<breve::steve::ForeignPlace> failed_places;
   double remainder = 0;  // s, kept by breve_world_advance; in [0, iteration step)
@@ -355,6 +381,17 @@ void start_profile(breve_world& world, breve_trace_fn trace, void* user);
 
 /// What of the runtime's breve_files its machine may ask for.
 void open_files(breve_world& world, steve::MachineHost& host);
+
+/// One iteration, recorded or not.
+void step(breve_world& world);
+/// One iteration, as it is.
+void iterate(breve_world& world);
+
+/// The state of a world with that of the host. BREVE_ERROR_UNSUPPORTED if the host cannot save its own.
+std::string image_of(const breve_world& world);
+std::uint64_t hash_of(const breve_world& world);
+/// BREVE_ERROR_IMAGE, and nothing is changed.
+void restore_image(breve_world& world, std::string_view image);
 
 /// BREVE_ERROR_BUSY if script of `world` runs now.
 void need_idle(const breve_world& world, const char* what);

@@ -11,11 +11,13 @@ namespace breve::host {
 /// The host's module callbacks as the compiler sees them.
 class HostModules final : public steve::ModuleResolver {
  public:
-  explicit HostModules(const breve_runtime_config& config) : config_(config) {}
+  explicit HostModules(breve_runtime& runtime) : runtime_(runtime), config_(runtime.state->config) {}
   std::optional<steve::ModuleSource> resolve(std::string_view name, std::string_view from) override;
   void add_path(std::string_view directory) override;
+  steve::PluginParts load_plugin(const std::string& file, const std::string& entry, const std::string& from) override;
 
  private:
+  breve_runtime& runtime_;
   const breve_runtime_config& config_;
 };
 
@@ -35,6 +37,17 @@ class BusyScope {
 
  private:
   breve_runtime& runtime_;
+};
+
+/// Functions or classes are added: by a host while nothing is compiled, or by the entry of a plugin.
+class AddingScope {
+ public:
+  explicit AddingScope(breve_runtime& runtime) {
+    if (!runtime.loading) busy_.emplace(runtime);
+  }
+
+ private:
+  std::optional<BusyScope> busy_;
 };
 
 }  // namespace breve::host

@@ -40,7 +40,7 @@ breve_status breve_program_load(breve_runtime* runtime, const char* name, breve_
     need(program, "program");
     const BusyScope busy(*runtime);
     runtime->diagnostics.clear();
-    HostModules modules(runtime->state->config);
+    HostModules modules(*runtime);
     *program = compile_module(*runtime, main_module(*runtime, modules, name), modules).release();
   });
 }
@@ -54,7 +54,7 @@ breve_status breve_program_compile(breve_runtime* runtime, const char* name, con
     if (size != 0) need(text, "text");
     const BusyScope busy(*runtime);
     runtime->diagnostics.clear();
-    HostModules modules(runtime->state->config);
+    HostModules modules(*runtime);
     *program = compile_module(*runtime, {name, std::string(text ? text : "", size)}, modules).release();
   });
 }
@@ -69,7 +69,7 @@ breve_status breve_program_create_library(breve_runtime* runtime, const char* co
     for (const auto& file : breve::steve::library_files())
       text += "@use " + std::string(file.name.substr(0, file.name.size() - 3)) + ".\n";
     text += "Controller " + std::string(controller ? controller : "PhysicalControl") + ".\n";
-    HostModules modules(runtime->state->config);
+    HostModules modules(*runtime);
     *program = compile_module(*runtime, {"library", std::move(text)}, modules).release();
   });
 }

@@ -18,6 +18,7 @@ breve_status breve_world_reload(breve_world* world, const breve_program* program
   return guard(world->error, [&] {
     need(program, "program");
     need_idle(*world, "breve_world_reload");
+    world->recorder.reset();  // its log is of the program of before
     world->references.forget_all();
     const UnbindOthers at_the_end{*world};
     bind_classes(*world, *program->program);

@@ -101,6 +101,29 @@ void restore(breve_world& world, const char* image, std::size_t size) {
 }
 
 }  // namespace
+
+std::uint64_t hash_of(const breve_world& world) {
+  const std::uint64_t number = world.world->hash();
+  if (!has_state(world)) return number;
+  Hasher hasher;
+  hasher.add(number);
+  hasher.add(std::string_view(states_of(world)));
+  return hasher.value();
+}
+
+std::string image_of(const breve_world& world) {
+  const std::string states = has_state(world) ? states_of(world) : std::string();
+  const auto bytes = world.world->save(world.program->fingerprint());
+  std::string image(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (!has_state(world)) return image;
+  const std::uint64_t tail[2] = {states.size(), kMark};
+  image += states;
+  image.append(reinterpret_cast<const char*>(tail), sizeof tail);
+  return image;
+}
+
+void restore_image(breve_world& world, std::string_view image) { restore(world, image.data(), image.size()); }
+
 }  // namespace breve::host
 
 using namespace breve::host;
@@ -110,14 +133,7 @@ breve_status breve_world_hash(const breve_world* world, uint64_t* hash) {
   return guard(world->error, [&] {
     need(hash, "hash");
     need_idle(*world, "breve_world_hash");
-    std::uint64_t number = world->world->hash();
-    if (has_state(*world)) {
-      breve::Hasher hasher;
-      hasher.add(number);
-      hasher.add(std::string_view(states_of(*world)));
-      number = hasher.value();
-    }
-    *hash = number;
+    *hash = hash_of(*world);
   });
 }
 

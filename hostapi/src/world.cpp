@@ -26,12 +26,21 @@ void speak(breve_world& world, breve_channel channel, std::string_view text) {
 }
 
 /// What the runtime's `system` writes; "" if it says no.
-std::string run_command(breve_world& world, std::string_view command) {
+std::string ask_system(breve_world& world, std::string_view command) {
   const std::string asked(command);
   Answer answer;
   const CallbackScope busy(world);
   const auto& config = world.runtime->config;
   return config.system(config.user, &world, asked.c_str(), &Answer::add, &answer) ? answer.text() : std::string();
+}
+
+/// The same, recorded or replayed.
+std::string run_command(breve_world& world, std::string_view command) {
+  if (world.inputs && world.inputs->replaying())
+    return std::string(world.inputs->next(Inputs::Kind::Command).value_or(std::string_view()));
+  std::string output = ask_system(world, command);
+  if (world.inputs) world.inputs->add(Inputs::Kind::Command, output);
+  return output;
 }
 
 /// Physics is as untrusted as the script that asks for it; but scripts that run in a small budget have bodies, too.
@@ -53,6 +62,8 @@ steve::MachineHost machine_host(breve_world& world) {
   host.may_read_clock = (callbacks.rights & BREVE_RIGHT_REAL_TIME) != 0;
   host.may_draw_entropy = (callbacks.rights & BREVE_RIGHT_ENTROPY) != 0;
   if (callbacks.system) host.system = [&world](std::string_view command) { return run_command(world, command); };
+  host.from_outside = [&world](void* bytes, std::size_t size) { pass_number(world, bytes, size); };
+  host.replays = [&world] { return world.inputs && world.inputs->replaying(); };
   host.call_foreign = [&world](const steve::ForeignFunction& function, steve::Instance& self,
                                std::span<const steve::Value> arguments) {
     return call_function(world, function, self, arguments);
@@ -94,12 +105,6 @@ void start(breve_world& world) {
   world.config.accuracy = nullptr;  // the host's text may go
 }
 
-void step(breve_world& world) {
-  const ScriptScope script(world);
-  world.previous.record(world.world->bodies());
-  world.world->step();
-}
-
 /// Whole iterations that fit, and the rest kept. Decimal steps that do not add up in binary must not lose an iteration.
 void advance(breve_world& world, double seconds) {
   constexpr double kRounding = 1e-9;  // of a step
@@ -119,6 +124,19 @@ void advance(breve_world& world, double seconds) {
 }
 
 }  // namespace
+
+void iterate(breve_world& world) {
+  const ScriptScope script(world);
+  world.previous.record(world.world->bodies());
+  world.world->step();
+}
+
+void step(breve_world& world) {
+  if (world.recorder)
+    record_iteration(world);
+  else
+    iterate(world);
+}
 
 void check_world_config(const breve_world_config& config) {
   if (config.nesting_limit > kMostNesting)

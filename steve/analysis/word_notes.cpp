@@ -17,7 +17,8 @@ constexpr WordNote kDirectives[] = {
     {"include", "@include \"file.tz\"", "Load a file by its name.", kDirective},
     {"path", "@path \"directory\"", "Also search a directory for files.", kDirective},
     {"define", "@define NAME literal.", "Give a name to a number, string, vector or matrix.", kDirective},
-    {"plugin", "@plugin \"file\"(entry).", "Native plugins are not available.", kDirective},
+    {"plugin", "@plugin \"file\"(entry).",
+     "Adds the functions and classes of a shared library, if the host allows plugins.", kDirective},
     {"nib_file", "@nib_file \"file\".", "Ignored: an interface file of another system.", kDirective},
 };
 

@@ -37,6 +37,10 @@ class ProgramBuilder final : public CompileScope {
   void load_named(const std::string& name, const ast::Directive& directive, const std::string& from, bool embedded);
   void late_directive(const ast::Directive& directive);
 
+  // plugins.cpp
+  void load_plugin(const ast::Directive& directive, const std::string& from);
+  std::string taken_name(const PluginParts& parts) const;  // of a function or class that the program has; or ""
+
   // classes (declare.cpp)
   void declare(ast::Class tree);
   const ClassInfo* parent_of(ast::Class& tree);
@@ -90,11 +94,12 @@ class ProgramBuilder final : public CompileScope {
   std::size_t compiled_ = 0;
   std::vector<ast::TypeRef> checked_;  // types of parameters, looked at when all files are read
   std::set<std::string, std::less<>> loaded_;
+  std::set<std::pair<std::string, std::string>> plugins_;  // file and entry
   std::vector<ast::Directive> versions_;
   std::string controller_name_;
   Span controller_span_;
   std::unordered_map<std::string_view, const Native*> natives_;
-  const ForeignClasses& foreign_given_;
+  ForeignClasses foreign_given_;  // and those of the program's plugins
   std::map<std::string, std::size_t, std::less<>>
       foreign_bases_;  // by class: number of its first method in the program
   int depth_ = 0;

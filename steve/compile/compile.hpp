@@ -17,6 +17,12 @@ struct ModuleSource {
   std::string name;  // as messages show it; two directives that give the same name mean the same file
   std::string text;
 };
+/// What a plugin adds to the programs that name it, or why it adds nothing.
+struct PluginParts {
+  ForeignFunctions functions;
+  ForeignClasses classes;
+  std::string fault, help;  // a plugin with a fault adds nothing
+};
 class ModuleResolver {
  public:
   virtual ~ModuleResolver() = default;
@@ -24,6 +30,8 @@ class ModuleResolver {
   /// @param from      name of the file that asks, "" for the main file
   virtual std::optional<ModuleSource> resolve(std::string_view name, std::string_view from) = 0;
   virtual void add_path(std::string_view) {}  // @path
+  /// @param file, entry  as spelled in `@plugin "file"(entry)`. The same parts whenever it is asked for the same plugin
+  virtual PluginParts load_plugin(const std::string& file, const std::string& entry, const std::string& from);
 };
 
 struct CompileResult {

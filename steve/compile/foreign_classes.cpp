@@ -19,7 +19,7 @@ bool ProgramBuilder::load_foreign_class(std::string_view name, const ast::Direct
   const auto given = std::find_if(foreign_given_.begin(), foreign_given_.end(),
                                   [&](const auto& cls) { return cls.get() == foreign_class(name); });
   if (given == foreign_given_.end()) return false;
-  const auto& cls = *given;
+  const auto cls = *given;  // a module that it loads may name a plugin, with more classes
   const std::string key = "host:" + cls->name();
   if (program_->find_class(cls->name()) || !loaded_.insert(key).second) return true;
   const ast::Directive unknown{ast::Directive::Kind::Include, {}, {}, {}, 0, {}};

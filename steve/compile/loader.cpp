@@ -101,6 +101,7 @@ void ProgramBuilder::load_directive(const ast::Directive& directive, const std::
     case Path: resolver_.add_path(directive.text); break;
     case Include: load_named(directive.text, directive, from, embedded); break;
     case Use: load_named(directive.text + ".tz", directive, from, embedded); break;
+    case Plugin: load_plugin(directive, from); break;
     default: break;
   }
 }
@@ -158,11 +159,6 @@ void ProgramBuilder::late_directive(const ast::Directive& directive) {
       }
       controller_name_ = directive.text;
       controller_span_ = directive.span;
-      break;
-    case Plugin:
-      diagnostics_.error(directive.span, "plugins-disabled",
-                         "plugins are not available: cannot load '" + directive.text + "'",
-                         "remove the line; a host can provide functions in place of a plugin");
       break;
     case Use:
       if (!directive.version_op.empty()) versions_.push_back(directive);

@@ -56,6 +56,9 @@ class CompileScope {
   void lint_list_sum(const Span& span);
 
  protected:
+  /// The functions of the program have become more.
+  void renew_function_table() { functions_ = function_table(program_->foreign_); }
+
   std::shared_ptr<Program> program_;
   Diagnostics diagnostics_;
 

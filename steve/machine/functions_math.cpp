@@ -117,7 +117,8 @@ std::int32_t random_seed_from_device(Machine& machine, Instance& self) {
   if (!machine.host().may_draw_entropy)
     refuse_right("randomSeedFromDevRandom", "draw a seed from the operating system", "BREVE_RIGHT_ENTROPY");
   try {
-    const auto seed = static_cast<std::int32_t>(std::random_device{}() & 0x7fffffffU);
+    auto seed = static_cast<std::int32_t>(std::random_device{}() & 0x7fffffffU);
+    if (machine.host().from_outside) machine.host().from_outside(&seed, sizeof seed);
     random_seed(machine, self, seed);
     return seed;
   } catch (const std::exception&) {

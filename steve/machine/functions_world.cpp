@@ -24,16 +24,22 @@ void need_clock(Machine& machine, const char* function) {
   if (!machine.host().may_read_clock) refuse_right(function, "read the real-time clock", "BREVE_RIGHT_REAL_TIME");
 }
 
+double from_outside(Machine& machine, double seconds) {
+  if (machine.host().from_outside) machine.host().from_outside(&seconds, sizeof seconds);
+  return seconds;
+}
+
 double get_real_time(Machine& machine, Instance&) {
   need_clock(machine, "getRealTime");
   const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration<double>(now).count();
+  return from_outside(machine, std::chrono::duration<double>(now).count());
 }
 
 /// Wall-clock seconds since the embedder made the machine's host.
 double get_running_time(Machine& machine, Instance&) {
   need_clock(machine, "getRunningTime");
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - machine.host().started).count();
+  const auto passed = std::chrono::steady_clock::now() - machine.host().started;
+  return from_outside(machine, std::chrono::duration<double>(passed).count());
 }
 
 /// Once at `time`, or again and again from then on. A repeated call whose first time has passed starts one interval
@@ -68,6 +74,7 @@ void sleep_for(Machine& machine, Instance&, double seconds) {
   if (!(seconds > 0)) return;
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(std::fmin(seconds, kLongest));
   machine.charge(static_cast<std::uint64_t>(std::fmin(seconds, kLongest) * kTurnsPerSecond));
+  if (machine.host().replays && machine.host().replays()) return;
   for (auto now = std::chrono::steady_clock::now(); now < end; now = std::chrono::steady_clock::now()) {
     std::this_thread::sleep_for(
         std::min<std::chrono::duration<double>>(end - now, std::chrono::duration<double>(kPiece)));

@@ -33,6 +33,9 @@ struct MachineHost {
   // Where the foreign method stands that is active at this depth of calls, innermost first; empty if that is not known.
   std::function<std::vector<ForeignPlace>(std::size_t depth)> places;
   std::function<void(ObjectId object)> gone;  // an object is being forgotten; runs nothing
+  // A number that comes from outside is on its way to a script: it may be noted, or replaced by one of an earlier run.
+  std::function<void(void* bytes, std::size_t size)> from_outside;
+  std::function<bool()> replays;  // an earlier run is repeated: there is nothing to wait for
   bool may_sleep = false, may_read_clock = false, may_draw_entropy = false;
   std::vector<std::string> arguments;  // [0] is the program file
   std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();

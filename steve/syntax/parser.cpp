@@ -20,13 +20,18 @@ std::vector<ast::Directive> scan_directives(const std::vector<Token>& tokens) {
     if (real[i]->kind != TokenKind::Punctuation || real[i]->text != "@") continue;
     if (real[i + 1]->kind != TokenKind::Name) continue;
     const Word word = word_of(real[i + 1]->text);
-    const bool names_file = word == Word::Include || word == Word::Path;
+    const bool names_file = word == Word::Include || word == Word::Path || word == Word::Plugin;
     if (!(names_file || word == Word::Use)) continue;
     if (real[i + 2]->kind != (names_file ? TokenKind::String : TokenKind::Name)) continue;
     ast::Directive directive;
-    directive.kind = word == Word::Include ? ast::Directive::Kind::Include
-                     : word == Word::Use   ? ast::Directive::Kind::Use
-                                           : ast::Directive::Kind::Path;
+    directive.kind = word == Word::Include  ? ast::Directive::Kind::Include
+                     : word == Word::Use    ? ast::Directive::Kind::Use
+                     : word == Word::Plugin ? ast::Directive::Kind::Plugin
+                                            : ast::Directive::Kind::Path;
+    if (word == Word::Plugin) {  // its entry stands in parentheses; without one the parser complains
+      if (i + 4 >= real.size() || real[i + 4]->kind != TokenKind::Name) continue;
+      directive.entry = real[i + 4]->text;
+    }
     directive.text = real[i + 2]->text;
     directive.span = real[i]->span;
     directive.span.length = real[i + 2]->span.offset + real[i + 2]->span.length - real[i]->span.offset;

@@ -17,7 +17,7 @@ trap 'rm -rf "$work"' EXIT
 {
   echo '#include "breve/analysis.h"'
   echo '#include "breve/view.h"'
-  cat "$include"/breve/{breve,batch,events,space,step,analysis,view}.h |
+  cat "$include"/breve/{breve,batch,debug_draw,events,plugin,record,space,step,analysis,view}.h |
     awk '/^BREVE_API / { on = 1 } on { print } /;/ { on = 0 }' | sed -e 's@/\*.*\*/@@' -e 's/^BREVE_API //' -e 's/;.*/ { __builtin_trap(); }/'
 } >"$work/functions.c"
 (cd "$work" && gcc -std=c11 -g -O0 -fPIC -shared -w -I "$include" functions.c -o libbreve.so)

@@ -62,6 +62,7 @@ const std::vector<Part> kParts = {
       "runtime/render", "runtime/store"}},
     {"hostapi/lua", {"hostapi/include"}},
     {"hostapi/command", {"hostapi/include"}},
+    {"hostapi/api", {}},
     {"samples/hosts", {"hostapi/include"}},
 };
 
@@ -191,8 +192,9 @@ class House {
       if (name.rfind(prefix, 0) == 0 && std::find(folders.begin(), folders.end(), from.folder) == folders.end())
         offend(file, number, std::string(from.folder) + " may not include <" + name + ">");
     const bool plain = name == "stdint.h" || name == "stddef.h" || name == "stdbool.h";
-    const bool part =
-        name == "breve/batch.h" || name == "breve/events.h" || name == "breve/space.h" || name == "breve/step.h";
+    const bool part = name == "breve/batch.h" || name == "breve/debug_draw.h" || name == "breve/events.h" ||
+                      name == "breve/plugin.h" || name == "breve/record.h" || name == "breve/space.h" ||
+                      name == "breve/step.h";
     if (file == "hostapi/include/breve/breve.h" && !plain && !part)
       offend(file, number, "breve.h includes nothing but stdint.h, stddef.h, stdbool.h and its own parts");
     if (file == "hostapi/include/breve/analysis.h" && name != "breve/breve.h")

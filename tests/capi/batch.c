@@ -28,7 +28,19 @@ typedef struct run {
   char arguments[kWorlds][8];
   const char* lists[kWorlds][2];
   size_t stop_after;
+  int failures;
+  char unmade_reason[80], failed_reason[80]; /* of worlds 13 and 7 */
 } run;
+
+static void failed(void* user, size_t index, const breve_error* error) {
+  run* r = user;
+  pthread_mutex_lock(&r->lock);
+  ++r->failures;
+  if (index == 13)
+    snprintf(r->unmade_reason, sizeof r->unmade_reason, "%s:%u: %s", error->file, error->line, error->message);
+  if (index == 7) snprintf(r->failed_reason, sizeof r->failed_reason, "%s", error->message);
+  pthread_mutex_unlock(&r->lock);
+}
 
 static void prepare(void* user, size_t index, breve_world_config* config) {
   run* r = user;
@@ -79,6 +91,7 @@ static run* new_run(void) {
   r->batch.prepare = prepare;
   r->batch.begin = begin;
   r->batch.end = end;
+  r->batch.failed = failed;
   r->stop_after = kWorlds;
   return r;
 }
@@ -133,6 +146,8 @@ static void outcomes_do_not_depend_on_who_runs_the_worlds(void) {
     CHECK_STATUS(BREVE_OK, breve_batch_run(s.runtime, s.program, &runs[i]->batch, runs[i]->outcomes));
     CHECK(runs[i]->prepared == kWorlds && runs[i]->ended == kWorlds && runs[i]->unmade == 1);
     CHECK(runs[i]->begun == kWorlds - 1);
+    CHECK(runs[i]->failures == 2 && strstr(runs[i]->unmade_reason, "unlucky") != NULL);
+    CHECK_TEXT("on purpose", runs[i]->failed_reason);
     CHECK(memcmp(runs[0]->outcomes, runs[i]->outcomes, sizeof runs[0]->outcomes) == 0);
   }
   const breve_outcome* all = runs[0]->outcomes;

@@ -1,8 +1,9 @@
 #!/bin/bash
-# The command, one case a run: command.sh PATH-OF-BREVE CASE. Each case works in an empty directory of its own.
+# The command, one case a run: command.sh PATH-OF-BREVE CASE [PLUGINS]. Each case works in an empty directory of its own.
 set -u
 breve=$(realpath "$1")
 case=$2
+plugins=${3-}  # directory of the sample plugins
 . "$(dirname "$0")/../case.sh"
 
 # expect STATUS ARGS...: run breve; its output is in out and err.
@@ -280,6 +281,41 @@ files_written_here)
   program sub/a.tz 'bug = (new File) open-for-writing with-file "made.txt". bug write text "content". bug close.' ''
   sed -i '2i @use File.' sub/a.tz
   expect 0 run sub/a.tz --iterations 1 --quiet && same "$(cat made.txt)" content
+  ;;
+record)
+  program a.tz 'print random[1000].' 'print random[1000]. print getRealTime().'
+  expect 0 run a.tz --iterations 20 --seed 7 --quiet --record a.log --hash && cp out recorded
+  expect 0 replay a.log --quiet --hash
+  # The times are those of the recorded run; what `init` prints comes from making the world, with the same seed.
+  same "$(cat out)" "$(cat recorded)"
+  expect 0 replay a.log && has err '20 iterations replayed, each as it was recorded'
+  head -c $(($(stat -c %s a.log) - 100)) a.log >cut.log
+  expect 0 replay cut.log && has err 'the log has no end'
+  echo '# changed' >>a.tz
+  expect 1 replay a.log && has err 'has a.tz changed since?'
+  expect 1 replay a.tz && has err 'is not a log of `breve run --record`'
+  expect 1 replay missing.log && has err "cannot read 'missing.log'"
+  rm a.tz
+  expect 2 replay a.log && has err "there is no file 'a.tz' here; the log was recorded in $PWD"
+  expect 1 run missing.tz --record b.log || true
+  expect 2 run a.tz --record b.log --watch && has err 'record'
+  ;;
+plugins)
+  program a.tz 'print smoothNoise(0.25, 3).' ''
+  sed -i '2i @plugin "noise.so"(noise).' a.tz
+  expect 1 run a.tz --iterations 1 --quiet && has err "a.tz:2:1: error: cannot load plugin 'noise.so': the host does not allow plugins"
+  expect 0 run a.tz --iterations 1 --quiet --allow-plugins "$plugins" && same "$(cat out)" "0.297"
+  expect 0 check a.tz --allow-plugins "$plugins"
+  sed -i '2s/.*/@plugin "..\/noise.so"(noise)./' a.tz
+  expect 1 check a.tz --allow-plugins "$plugins" && has err 'its name must be a path below a directory of --allow-plugins'
+  sed -i '2s/.*/@plugin "none.so"(noise)./' a.tz
+  expect 1 check a.tz --allow-plugins "$plugins" && has err "there is no such file in $plugins"
+  sed -i '2s/.*/@plugin "noise.so"(nothing)./' a.tz
+  expect 1 check a.tz --allow-plugins "$plugins" && has err "has no entry 'nothing'"
+  echo text >bad.so
+  sed -i '2s/.*/@plugin "bad.so"(noise)./' a.tz
+  expect 1 check a.tz --allow-plugins . && has err "cannot load plugin 'bad.so'"
+  expect 2 run a.tz --allow-plugins nowhere && has err nowhere
   ;;
 system)
   program a.tz 'print "before". print system("echo inside").' ''

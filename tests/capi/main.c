@@ -38,6 +38,9 @@ void user_data_suite(void);
 void values_suite(void);
 void settings_suite(void);
 void view_suite(void);
+void plugins_suite(void);
+void recording_suite(void);
+void debug_draw_suite(void);
 
 static const struct {
   const char* name;
@@ -78,6 +81,9 @@ static const struct {
     {"stepping", stepping_suite},
     {"threads", threads_suite},
     {"user_data", user_data_suite},
+    {"plugins", plugins_suite},
+    {"recording", recording_suite},
+    {"debug_draw", debug_draw_suite},
     {"values", values_suite},
     {"settings", settings_suite},
     {"view", view_suite},

@@ -46,6 +46,13 @@ static void null_handles_give_an_argument_error_or_nothing(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_list_read(NULL, NULL, 0, NULL, 0));
   CHECK(breve_world_state(NULL, "x") == NULL && breve_world_allocate(NULL, 8) == NULL && !breve_world_has_budget(NULL));
   breve_world_release(NULL, NULL, 0);
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_record_start(NULL, NULL, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_record_stop(NULL));
+  CHECK(!breve_world_recording(NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_record_input(NULL, NULL, 0));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_replay(NULL, "", 0, NULL, NULL, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_debug_draw(NULL, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_plugin_open(NULL, "start", NULL, NULL, NULL));
   CHECK(breve_program_class_count(NULL) == 0);
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_program_class(NULL, 0, &info));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_create(NULL, NULL, NULL, &world));

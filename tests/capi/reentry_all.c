@@ -449,6 +449,31 @@ static breve_status do_events(place* p) {
   TRY(breve_world_announcements(p->world, NULL, 0, &count));
   return breve_world_naps(p->world, NULL, 0, &count);
 }
+static void discard(void* sink, const char* bytes, size_t size) { (void)sink, (void)bytes, (void)size; }
+static breve_status do_record(place* p) {
+  TRY(breve_world_record_start(p->world, discard, NULL));
+  CHECK(breve_world_recording(p->world));
+  return breve_world_record_stop(p->world);
+}
+static breve_status do_record_stop(place* p) { return breve_world_record_stop(p->world); }
+static breve_status do_record_input(place* p) {
+  char byte = 1;
+  return breve_world_record_input(p->world, &byte, 1);
+}
+static breve_status do_replay(place* p) {
+  breve_replay replay;
+  const breve_status status = breve_world_replay(p->world, "", 0, NULL, NULL, &replay);
+  return status == BREVE_ERROR_IMAGE ? BREVE_OK : status;
+}
+static breve_status do_debug_draw(place* p) {
+  const breve_debug_draw draw = breve_debug_draw_default();
+  return breve_world_debug_draw(p->world, &draw);
+}
+static breve_status do_plugin_open(place* p) {
+  breve_plugin plugin;
+  (void)p;
+  return breve_plugin_open("/nowhere/plugin.so", "start", &plugin, NULL, NULL);
+}
 
 /* Works, is busy, or finds nothing: what each function may do in each kind of callback. */
 enum { WORKS = 1, BUSY = 2, NOTHING = 4 };
@@ -468,6 +493,12 @@ static const struct {
     {"breve_world_set_paused", do_set_paused, WORKS, WORKS},
     {"breve_world_draw_random", do_random, WORKS, WORKS},
     {"breve_world_charge", do_charge, WORKS, WORKS},
+    {"breve_world_record_start and _recording", do_record, BUSY, WORKS},
+    {"breve_world_record_stop", do_record_stop, BUSY, WORKS},
+    {"breve_world_record_input", do_record_input, WORKS, WORKS},
+    {"breve_world_replay", do_replay, BUSY, WORKS},
+    {"breve_world_debug_draw", do_debug_draw, WORKS, WORKS},
+    {"breve_plugin_open", do_plugin_open, NOTHING, NOTHING},
     {"breve_runtime_add_class", do_add_class, WORKS, BUSY},
     {"breve_world_prepare_super", do_prepare_super, WORKS, WORKS},
     {"breve_world_methods", do_methods, WORKS, WORKS},

@@ -1,4 +1,6 @@
-// Calls of what says which events are gathered, and of their lists.
+// Calls of what says which events are gathered and of their lists; of logs, debug drawings and plugins.
+#include <cmath>
+
 #include "call_functions.hpp"
 
 namespace breve::fuzz {
@@ -63,7 +65,83 @@ breve_status naps(Caller& c) {
   return read<breve_nap, breve_world_naps>(c, [&](const breve_nap& nap) { c.keep(nap.object); });
 }
 
+// --- logs and lines --------------------------------------------------------------------------------------------------
+
+void append(void* sink, const char* bytes, std::size_t size) { static_cast<std::string*>(sink)->append(bytes, size); }
+void discard(void* sink, const char* bytes, std::size_t size) {
+  const std::string copy(bytes, size);
+  require(sink == nullptr && copy.size() == size, "a log is written to another sink");
+}
+
+/// Recordings end in their own time, or with their world.
+breve_status record_start(Caller& c) {
+  breve_world* world = c.world();
+  const bool null = c.chance(5);
+  if (null || breve_world_recording(world)) c.expect_refusal();
+  return breve_world_record_start(world, null ? nullptr : discard, nullptr);
+}
+breve_status record_stop(Caller& c) { return breve_world_record_stop(c.world()); }
+breve_status recording(Caller& c) {
+  const breve_world* world = c.world();
+  require(world || !breve_world_recording(nullptr), "no world is recorded");
+  (void)breve_world_recording(world);
+  c.accept_null();
+  return BREVE_OK;
+}
+breve_status record_input(Caller& c) {
+  char bytes[4] = {1, 2, 3, 4};
+  return breve_world_record_input(c.world(), bytes, c.word() % 5);
+}
+
+/// A log of two steps, perhaps damaged, replayed.
+breve_status replay(Caller& c) {
+  breve_world* world = c.world();
+  std::string log;
+  if (world && c.chance(70) && breve_world_record_start(world, append, &log) == BREVE_OK) {
+    (void)breve_world_step(world);
+    if (c.chance(50)) (void)breve_world_queue_key(world, "a", true);
+    (void)breve_world_step(world);
+    (void)breve_world_record_stop(world);
+  }
+  if (!log.empty() && c.chance(40)) log[c.word() % log.size()] ^= 4;
+  if (!log.empty() && c.chance(20)) log.resize(c.word() % log.size());
+  Out<breve_replay> result(c);
+  const auto after = [](void*, breve_world* running) { return breve_world_time(running) >= 0; };
+  if (breve_world_recording(world)) c.expect_refusal();
+  const breve_status status = breve_world_replay(world, log.data(), log.size(), after, nullptr, result.to());
+  return result.after(status);
+}
+
+breve_status debug_draw(Caller& c) {
+  const breve_world* world = c.world();
+  breve_debug_draw draw = breve_debug_draw_default();
+  if (c.chance(10)) draw.struct_size = c.struct_size(sizeof draw);
+  draw.parts = c.chance(90) ? c.word() % 256 : c.word();
+  draw.segments = c.chance(90) ? 3 + c.word() % 8 : c.word();
+  draw.impulse_scale = c.number();
+  draw.line = [](void*, const double*, const double*, const double* rgba) { require(rgba[3] >= 0, "no colour"); };
+  draw.point = c.chance(50) ? [](void*, const double*, const double*) {} : nullptr;
+  draw.text = [](void*, const double*, const char* text, const double*) { read_text(text); };
+  if (draw.struct_size != sizeof draw) return breve_world_debug_draw(world, &draw);
+  if (draw.parts > 255 || draw.segments < 3 || draw.segments > 256 || !std::isfinite(draw.impulse_scale))
+    c.expect_refusal();
+  return breve_world_debug_draw(world, &draw);
+}
+
+breve_status plugin_open(Caller& c) {
+  Out<breve_plugin> plugin(c);
+  return plugin.after(
+      breve_plugin_open(c.text_or_null("/nowhere/plugin.so"), c.text_or_null("start"), plugin.to(), nullptr, nullptr));
+}
+
 constexpr Function kFunctions[] = {
+    {"breve_world_record_start", record_start, kBusy | kUnsupported},
+    {"breve_world_record_stop", record_stop, kBusy},
+    {"breve_world_recording", recording, kPlain},
+    {"breve_world_record_input", record_input},
+    {"breve_world_replay", replay, kBusy | kImage},
+    {"breve_world_debug_draw", debug_draw, kScriptError},
+    {"breve_plugin_open", plugin_open, kFile | kNotFound | kUnsupported},
     {"breve_world_set_events", set_events, 0, 2},
     {"breve_world_events", events, kPlain},
     {"breve_world_watch_contacts", watch_class, kNotFound},

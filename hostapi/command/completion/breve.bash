@@ -7,12 +7,12 @@ _breve() {
     if [[ ${COMP_WORDS[i]} != -* ]]; then command=${COMP_WORDS[i]}; break; fi
   done
   if [[ -z $command ]]; then
-    COMPREPLY=($(compgen -W "run repl check doc lsp help --help --version" -- "$word"))
+    COMPREPLY=($(compgen -W "run replay repl check doc lsp help --help --version" -- "$word"))
     return
   fi
   case $before in
-    --path | --allow-read | --allow-write | --out) COMPREPLY=($(compgen -d -- "$word")); return ;;
-    --positions | --trace | --snapshot | --contact-sheet | --movie | --plot-to | --log) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --path | --allow-read | --allow-write | --allow-plugins | --out) COMPREPLY=($(compgen -d -- "$word")); return ;;
+    --positions | --trace | --snapshot | --contact-sheet | --movie | --plot-to | --log | --record) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --accuracy) COMPREPLY=($(compgen -W "fast balanced precise reference conserving" -- "$word")); return ;;
     --format) COMPREPLY=($(compgen -W "markdown html both" -- "$word")); return ;;
     --iterations | --seconds | --seed | --set | --budget | --physics-budget | --memory | --depth | --trace-limit | --allow | --size | --fps | --plot)
@@ -21,16 +21,17 @@ _breve() {
   case $command in
     run)
       options="--iterations --seconds --seed --set --budget --physics-budget --memory --depth --path --allow-read
-        --allow-write --no-files --allow-system --accuracy --watch --coarse-random --strict --quiet --verbose --stats
+        --allow-write --no-files --allow-system --allow-plugins --record --accuracy --watch --coarse-random --strict --quiet --verbose --stats
         --effects --hash --positions --profile --trace --trace-limit --snapshot --contact-sheet --movie --size --fps --plain
         --plot --plot-to --log --help" ;;
     repl)
-      options="--seed --path --allow-read --allow-write --no-files --allow-system --strict --quiet --help" ;;
-    check) options="--path --allow --strict --json --help" ;;
+      options="--seed --path --allow-read --allow-write --no-files --allow-system --allow-plugins --strict --quiet --help" ;;
+    replay) options="--allow-plugins --hash --quiet --help" ;;
+    check) options="--path --allow --allow-plugins --strict --json --help" ;;
     doc) options="--library --out --format --path --help" ;;
     lsp) options="--path --help" ;;
     help)
-      COMPREPLY=($(compgen -W "run repl check doc lsp" -- "$word"))
+      COMPREPLY=($(compgen -W "run replay repl check doc lsp" -- "$word"))
       return ;;
     *) return ;;
   esac

@@ -51,6 +51,9 @@ typedef struct breve_batch {
      NULL: nothing. Default NULL */
   bool (*end)(void* user, size_t index, breve_world* world, const breve_outcome* outcome);
   breve_jobs jobs; /* the host's threads, which then count as `workers`; all NULL: threads of the runtime's. Default NULL */
+  /* World `index` could not be made, or its last step failed: the reason, before `end` is called. `error` is valid until
+     it returns. NULL: nothing. Default NULL */
+  void (*failed)(void* user, size_t index, const breve_error* error);
 } breve_batch;
 
 /* The defaults named above. */

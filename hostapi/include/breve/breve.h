@@ -259,6 +259,30 @@ typedef enum breve_right {
    run. */
 typedef bool (*breve_system_fn)(void* user, breve_world* world, const char* command, breve_write_fn write, void* sink);
 
+/* The entry of a plugin: it adds the plugin's functions and classes with breve_runtime_add_function and
+   breve_runtime_add_class. It is called while a program is compiled and can add nothing else. See plugin.h.
+   @param abi  breve_abi() of the library; BREVE_PLUGIN compares it with the one of the header
+   Returns BREVE_OK. Any other status refuses the plugin; the message is that of the failed call on `runtime`. */
+typedef breve_status (*breve_plugin_fn)(breve_runtime* runtime, uint32_t abi);
+
+/* A plugin that a host has opened. Frozen: it never grows. */
+typedef struct breve_plugin {
+  breve_plugin_fn entry;
+  void* library;                /* the host's own, for `close` */
+  void (*close)(void* library); /* called once, when the runtime and all its programs and worlds are gone, so that
+                                   nothing of the plugin can be called any more. NULL: nothing to do */
+} breve_plugin;
+
+/* Opens the plugin that a program names: `@plugin "file"(entry).` Called once for each pair of file and entry that the
+   programs of a runtime name. breve_plugin_open opens a shared library.
+   @param from    name of the file that contains the directive
+   @param plugin  zeroed; to be filled in
+   @param reason  to say why the plugin is not opened, call it with `sink` and the reason, worded as the end of a
+                  sentence
+   Returns false if the plugin is not opened: the program does not compile. */
+typedef bool (*breve_open_plugin_fn)(void* user, const char* file, const char* entry, const char* from,
+                                     breve_plugin* plugin, breve_write_fn reason, void* sink);
+
 typedef struct breve_runtime_config {
   size_t struct_size;         /* set by breve_runtime_config_default */
   void* user;                 /* passed to every callback. Default NULL */
@@ -272,6 +296,7 @@ typedef struct breve_runtime_config {
   breve_system_fn system;                 /* NULL: running a command is an error in the script. Default NULL */
   uint32_t worker_threads;                /* reserved: must be 0. Default 0 */
   uint32_t rights;                        /* sum of breve_right. Default 0 */
+  breve_open_plugin_fn open_plugin;       /* NULL: @plugin is an error of the program. Default NULL */
 } breve_runtime_config;
 
 /* The defaults named above. */
@@ -1473,7 +1498,8 @@ static inline breve_function breve_function_default(void) {
    @param function  copied
    BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, no name or no `call`, a name that programs cannot call or that
    belongs to the language or to another function of this runtime, too many parameters, an unknown type or
-   BREVE_TYPE_POINTER: `destroy` is not called then. BREVE_ERROR_BUSY from a callback of a compilation. */
+   BREVE_TYPE_POINTER: `destroy` is not called then. BREVE_ERROR_BUSY from a callback of a compilation, but for the entry
+   of a plugin, whose functions belong to the programs that name it. */
 BREVE_API breve_status breve_runtime_add_function(breve_runtime* runtime, const breve_function* function);
 
 /* Charges the work of a host function to the budget of the running script, as a number of loop iterations. The call of
@@ -1876,9 +1902,13 @@ BREVE_API void breve_world_interrupt(breve_world* world);
 #endif
 
 /* The rest of the interface, in parts: space.h (queries, collision filters, forces), events.h (what happened in an
-   iteration), step.h (game loops), batch.h (many worlds). */
+   iteration), step.h (game loops), batch.h (many worlds), record.h (logs of input, and replays), debug_draw.h (lines
+   that show what the simulation does), plugin.h (functions and classes in shared libraries). */
 #include "breve/batch.h"
+#include "breve/debug_draw.h"
 #include "breve/events.h"
+#include "breve/plugin.h"
+#include "breve/record.h"
 #include "breve/space.h"
 #include "breve/step.h"
 

@@ -734,6 +734,20 @@ class World {
   Result<std::size_t> snapshot(Room<unsigned char> room) const {
     return read<std::size_t>(breve_world_snapshot, room.data, room.capacity);
   }
+  /// Records the world from now on; `write` gets `sink` and the bytes of the log.
+  Status record_start(breve_write_fn write, void* sink) { return status(breve_world_record_start(get(), write, sink)); }
+  Status record_stop() { return status(breve_world_record_stop(get())); }
+  bool recording() const { return breve_world_recording(get()); }
+  /// What a host function has read from outside during an iteration: recorded, or replaced by what was recorded.
+  Status record_input(void* bytes, std::size_t size) { return status(breve_world_record_input(get(), bytes, size)); }
+  Result<breve_replay> replay(const void* log, std::size_t size, bool (*after)(void*, breve_world*) = nullptr,
+                              void* user = nullptr) {
+    breve_replay result{};
+    const breve_status s = breve_world_replay(get(), log, size, after, user, &result);
+    return {status(s), result};
+  }
+  /// Draws the world with the host's functions; see breve_debug_draw_default().
+  Status debug_draw(const breve_debug_draw& draw) const { return status(breve_world_debug_draw(get(), &draw)); }
   Status restore(const Snapshot& snapshot) { return restore(snapshot.image.data(), snapshot.image.size()); }
   Status restore(const void* image, std::size_t size) { return status(breve_world_restore(get(), image, size)); }
 
@@ -1019,6 +1033,14 @@ class Files {
  private:
   breve_files files_{};
 };
+
+/// Opens the shared library of a plugin, for a breve_open_plugin_fn; `reason` gets `sink` and why it cannot be opened.
+inline Result<breve_plugin> open_plugin(const char* path, const char* entry, breve_write_fn reason = nullptr,
+                                        void* sink = nullptr) {
+  breve_plugin opened{};
+  const breve_status s = breve_plugin_open(path, entry, &opened, reason, sink);
+  return {Status(s, nullptr), opened};
+}
 
 class Runtime {
  public:
