@@ -29,12 +29,13 @@ std::vector<ast::Directive> scan_directives(const std::vector<Token>& tokens) {
                      : word == Word::Plugin ? ast::Directive::Kind::Plugin
                                             : ast::Directive::Kind::Path;
     if (word == Word::Plugin) {  // its entry stands in parentheses; without one the parser complains
-      if (i + 4 >= real.size() || real[i + 4]->kind != TokenKind::Name) continue;
+      if (i + 5 >= real.size() || real[i + 4]->kind != TokenKind::Name) continue;
       directive.entry = real[i + 4]->text;
     }
     directive.text = real[i + 2]->text;
     directive.span = real[i]->span;
-    directive.span.length = real[i + 2]->span.offset + real[i + 2]->span.length - real[i]->span.offset;
+    const Span& last = real[word == Word::Plugin ? i + 5 : i + 2]->span;
+    directive.span.length = last.offset + last.length - real[i]->span.offset;
     found.push_back(std::move(directive));
   }
   return found;
