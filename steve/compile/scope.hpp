@@ -57,7 +57,7 @@ class CompileScope {
 
  protected:
   /// The functions of the program have become more.
-  void renew_function_table() { functions_ = function_table(program_->foreign_); }
+  void renew_function_table() { functions_ = function_table(program_->library(), program_->foreign_); }
 
   std::shared_ptr<Program> program_;
   Diagnostics diagnostics_;
