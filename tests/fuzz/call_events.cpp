@@ -120,7 +120,7 @@ breve_status debug_draw(Caller& c) {
   draw.segments = c.chance(90) ? 3 + c.word() % 8 : c.word();
   draw.impulse_scale = c.number();
   draw.line = [](void*, const double*, const double*, const double* rgba) { require(rgba[3] >= 0, "no colour"); };
-  draw.point = c.chance(50) ? [](void*, const double*, const double*) {} : nullptr;
+  if (c.chance(50)) draw.point = [](void*, const double*, const double*) {};
   draw.text = [](void*, const double*, const char* text, const double*) { read_text(text); };
   if (draw.struct_size != sizeof draw) return breve_world_debug_draw(world, &draw);
   if (draw.parts > 255 || draw.segments < 3 || draw.segments > 256 || !std::isfinite(draw.impulse_scale))
