@@ -14,7 +14,7 @@ namespace {
 std::map<std::string, std::set<std::string>> wrappers_of(std::istream& in) {
   // Members stand two columns in, functions of the namespace at the start of a line; bodies are further in.
   static const std::regex cls(R"((?:class|struct)(?: \[\[nodiscard\]\])? (\w+)[^;]*)");
-  static const std::regex member(R"((?:  |inline |template )(?:[^ /].*?[ *&])?~?(\w+)\(.*)");
+  static const std::regex member(R"((?:  |inline |template )(?:[^ /].*?[ *&])??~?(\w+)\(.*)");
   static const std::regex called(R"(\bbreve_[a-z0-9_]+(?=[(),]))");
   std::map<std::string, std::set<std::string>> found;
   std::string line, within, name;
