@@ -48,6 +48,7 @@ Island::Island(Dynamics::Core& core, std::pmr::memory_resource* memory)
       rebound_later_(memory),
       rebounds_(memory),
       found_(memory),
+      light_(memory),
       depths_(memory),
       before_(memory),
       predicted_(memory),

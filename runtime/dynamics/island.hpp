@@ -159,6 +159,7 @@ class Island : public InMemory {
     double time = 0;                        // s after the start of the sub-step
     int pair = -1, bound = -1, point = -1;  // the last of a spring
     double depth = 0;  // m or rad, of overlap when the sub-step began: it is an event if it gets deeper
+    double until = 0;  // s, likewise, when it is deepest, if that is over before the sub-step ends; 0: it is not
     bool found() const { return pair >= 0 || bound >= 0 || point >= 0; }
   };
 
@@ -312,7 +313,9 @@ class Island : public InMemory {
   double longest(double left, bool lies) const;
 
   // island_impacts.cpp
-  Event seek(double h);
+  Event seek(double time, double h);
+  bool touches_lightly(std::size_t pair, const Pose& a, const Pose& b, double h, Event& event) const;
+  void check_light_touches(double time, double h, Event& first);
   void locate(double time, Event& event, double h);
   const NearPair& pair_of(const Event& event) const;
   double closeness(const Event& event) const;
@@ -328,7 +331,7 @@ class Island : public InMemory {
   // island_positions.cpp
   void push_apart(double h);
   void move_by_pushes(double fastest, double h);
-  double payable() const;
+  double payable(double h) const;
   void take_back_pushes(double part, double h);
   void hold_bounds(double h);
   bool find_struck(double h);
@@ -400,6 +403,7 @@ class Island : public InMemory {
   BodyIndex not_finite() const;  // the first that shows it
   Trouble judge_residual(double residual, double turnover, double before) const;
   Trouble foresee(double h);
+  void follow_turns(double h);
   Trouble fastest_turn(double h) const;
   Trouble strongest_damper(double h) const;
   double fastest_approach() const;
@@ -468,6 +472,7 @@ class Island : public InMemory {
   std::pmr::vector<std::size_t> rebound_later_;  // of bounds_
   std::pmr::vector<Rebound> rebounds_;           // likewise, the last of each in this step
   std::pmr::vector<Event> found_;                // in a sub-step, with times that are guesses
+  std::pmr::vector<Event> light_;                // likewise, that a path may have which bends there and back
   int impacts_ = 0;                              // located so far in this step
   bool spent_ = false;                           // none is located any more
   std::pmr::vector<double> depths_;              // of pairs: overlap when the sub-step began, m

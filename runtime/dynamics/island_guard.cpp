@@ -44,11 +44,13 @@ void Island::use_accuracy(const Accuracy& accuracy) {
 void Island::step_guarded(MechanicsClient* client, double start, double h) {
   const GuardMode mode = core_.settings.guard;
   const Accuracy asked = accuracy_;
+  follow_turns(h);
+  const Accuracy followed = accuracy_;
   Trouble trouble;
   int attempt = 0;
   const auto refine_from = [&] {
     intervene(trouble, GuardAction::Refined, start);
-    use_accuracy(finer_settings(asked, ++attempt, h));
+    use_accuracy(finer_settings(followed, ++attempt, h));
   };
   const bool refines = mode == GuardMode::Refine || mode == GuardMode::Rest;
   // Motion that is too fast for the sub-steps is found before anything has moved.
@@ -66,7 +68,7 @@ void Island::step_guarded(MechanicsClient* client, double start, double h) {
     trouble = try_step(client, start, h);
   }
   if (refines && !dissolved_) take_back_rest();
-  if (attempt > 0 || finished_) use_accuracy(asked);
+  if (attempt > 0 || finished_ || followed.step != asked.step) use_accuracy(asked);
   if (trouble.found) give_in(trouble, start, h);
 }
 

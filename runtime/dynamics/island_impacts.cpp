@@ -11,10 +11,11 @@ constexpr double kSeen = 1e-6;  // rad, or of the radius: closer than that is no
 }
 
 /// The event that seems to come first; found_ has all, whose times are guesses.
-Island::Event Island::seek(double h) {
+Island::Event Island::seek(double time, double h) {
   constexpr std::uint64_t kUnits = 10;  // of work, a pair
   meter_.add(kUnits * pairs_.size());
   found_.clear();
+  light_.clear();
   place_links();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     if (roles_[i] == Role::Rests || roles_[i] == Role::Springs) continue;
@@ -22,21 +23,25 @@ Island::Event Island::seek(double h) {
     const NearPair& pair = *pairs_[i];
     const Shape &a = *core_.bodies->collision_shape(pair.a), &b = *core_.bodies->collision_shape(pair.b);
     const Pose a1 = pose_of(pair.a), b1 = pose_of(pair.b);
-    double time = h;
-    bool hit = false;
+    double moment = h;
+    bool hit = false, apart = false;
     if (roles_[i] == Role::Far) {
       Contact contact;
       const Motion ma = chord(start_poses_[2 * i], a1, h), mb = chord(start_poses_[2 * i + 1], b1, h);
-      if (pair.cache.axis != Vector3::Zero() && stay_apart(a, ma, b, mb, h, pair.cache.axis)) continue;
-      hit = time_of_impact(a, ma, b, mb, h, time, contact);
+      apart = pair.cache.axis != Vector3::Zero() && stay_apart(a, ma, b, mb, h, pair.cache.axis);
+      hit = !apart && time_of_impact(a, ma, b, mb, h, moment, contact);
     }
-    if (!hit) {
+    if (!hit && !apart) {
       // It left and came back, or its path bends.
       Contact contact;
       hit = closest_within(a, a1, b, b1, -depths_[i], contact) && contact.distance < -depths_[i];
-      time = h;
+      moment = h;
     }
-    if (hit) found_.push_back({time, static_cast<int>(i), -1, -1, depths_[i]});
+    Event light;
+    if (hit)
+      found_.push_back({moment, static_cast<int>(i), -1, -1, depths_[i]});
+    else if (roles_[i] == Role::Far && touches_lightly(i, a1, b1, h, light))
+      light_.push_back(light);
   }
   for (std::size_t i = 0; i < bounds_.size(); ++i) {
     const Bound& bound = bounds_[i];
@@ -54,7 +59,55 @@ Island::Event Island::seek(double h) {
   seek_closing(h);
   const auto sooner = [](const Event& a, const Event& b) { return a.time < b.time; };
   const auto first = std::min_element(found_.begin(), found_.end(), sooner);
-  return first == found_.end() ? Event() : *first;
+  Event event = first == found_.end() ? Event() : *first;
+  if (!light_.empty()) check_light_touches(time, h, event);
+  return event;
+}
+
+/// Whether two bodies may touch within a sub-step of h seconds and have parted again at its end, where they are at `a`
+/// and `b`: the way bends toward the other body and back, as a ball's that just reaches a ceiling.
+/// @param event  when they would meet, if both ways were parabolas
+bool Island::touches_lightly(std::size_t index, const Pose& a, const Pose& b, double h, Event& event) const {
+  const NearPair& pair = *pairs_[index];
+  const Pose &from_a = start_poses_[2 * index], &from_b = start_poses_[2 * index + 1];
+  const Vector3 after = point_velocity(pair.a, a.location) - point_velocity(pair.b, b.location);
+  const Vector3 way = (a.location - from_a.location) - (b.location - from_b.location), before = 2 / h * way - after;
+  // Half of the acceleration times the square of the time: the way lies that much off its chord, times s (1 - s).
+  const Vector3 bend = h * after - way;
+  const double size = size_of_pair(pair);
+  if (!(bend.norm() > kMetSkin * size)) return false;
+  const Vector3 axis = from_a.orientation * pair.cache.axis;
+  if (axis != Vector3::Zero() && !(axis.dot(before) < 0 && axis.dot(after) > 0 && axis.dot(bend) > 0)) return false;
+  const Shape &one = *core_.bodies->collision_shape(pair.a), &two = *core_.bodies->collision_shape(pair.b);
+  Contact last;
+  if (!closest_within(one, a, two, b, bend.norm(), last)) return false;
+  const double bulge = last.normal.dot(bend), more = last.distance - closest(one, from_a, two, from_b).distance;
+  if (!(std::abs(more) < bulge)) return false;
+  // The gap after a part s of the sub-step is first + more s - bulge s (1 - s).
+  const double first = last.distance - more, half = 0.5 * (bulge - more) / bulge, root = half * half - first / bulge;
+  if (!(first > 0 && root > kMetSkin * size / bulge)) return false;
+  event = {h * (half - std::sqrt(root)), static_cast<int>(index), -1, -1, depths_[index], h * half};
+  return true;
+}
+
+/// Whether the first of the light touches, if it comes before `first`, is one: the island is moved to where it would be
+/// deepest. Where none is, the island stands at the end of the sub-step again.
+void Island::check_light_touches(double time, double h, Event& first) {
+  std::sort(light_.begin(), light_.end(), [](const Event& x, const Event& y) { return x.time < y.time; });
+  for (const Event& light : light_) {
+    if (first.found() && first.time <= light.time) break;
+    restore();
+    advance_once(time, light.until);
+    place_links();
+    if (!is_past(light)) continue;
+    found_.push_back(light);
+    first = light;
+    return;  // whoever finds its moment moves the island there
+  }
+  if (first.found()) return;
+  restore();
+  advance_once(time, h);
+  place_links();
 }
 
 double Island::gap_of(const Event& event, double& rate) {
@@ -108,7 +161,7 @@ double closed_between(const Sight& a, const Sight& b) {
 void Island::refine(double time, Event& event, double h) {
   // Newton's method on the gap, then with a memory of one: between a time at which they are apart and one at which they
   // overlap.
-  double low = 0, high = h;
+  double low = 0, high = event.until > 0 ? std::min(event.until, h) : h;
   Sight now{event.time, 0, 0}, last{};
   const double close = closeness(event);
   constexpr int kMost = 30;

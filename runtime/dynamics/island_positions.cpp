@@ -48,7 +48,7 @@ void Island::push_apart(double h) {
   if (any) {
     const double before = result.account.contact_loss;
     move_by_pushes(fastest, h);
-    const double given = before - result.account.contact_loss, most = payable();
+    const double given = before - result.account.contact_loss, most = payable(h);
     if (given > most) take_back_pushes(1 - most / given, h);
     pay_for_moves(before - result.account.contact_loss);
   }
@@ -72,11 +72,12 @@ void Island::move_by_pushes(double fastest, double h) {
   book_moves(1);
 }
 
-/// What pushing trees apart may give, J: a little of what moves, and what lifts them by a little of their size. Springs
-/// that press bodies into one another, or beyond limits, are not to be wound up for nothing.
-double Island::payable() const {
-  constexpr double kLift = 1e-3;
-  return trees_.empty() ? JointDrive::kNoLimit : kFew * moving() + kLift * weight();
+/// What pushing trees apart may give in a sub-step of h seconds, J: a little of what moves, which pays for it, and what
+/// lifts them by a little of their size each second, however many sub-steps that has. Springs that press bodies into
+/// one another, or beyond limits, are not to be wound up for nothing.
+double Island::payable(double h) const {
+  constexpr double kLift = 0.06;  // of their size, 1/s
+  return trees_.empty() ? JointDrive::kNoLimit : kFew * moving() + kLift * h * weight();
 }
 
 /// Takes back a part of the way that move_by_pushes() made in h seconds.

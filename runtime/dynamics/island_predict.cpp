@@ -110,8 +110,9 @@ void Island::begin_solve(double h) {
   bound_motors(h);
 }
 
-/// After place(): whether smooth motion of h seconds made of what was predicted motion, more than there was, where it
-/// should have balanced other forces. What stops something in two sub-steps may be taken for a force that lasts.
+/// After place(): whether smooth motion of h seconds made of what was predicted motion, or heat in dampers, more than
+/// there was, where it should have balanced other forces. What stops something in two sub-steps may be taken for a
+/// force that lasts.
 bool Island::misled(double h) {
   constexpr double kUnbalanced = 0.25;  // of the energy that the prediction gives by itself
   double alone = 0;
@@ -121,7 +122,10 @@ bool Island::misled(double h) {
     alone += 0.5 * h * h * tree->loads.reaction.dot(tree->reacted);
   }
   books_.predicted = alone;
-  return keeps_books_ && alone > books_.kinetic && books_.smooth_kinetic - books_.kinetic > kUnbalanced * alone;
+  if (!keeps_books_ || !(alone > books_.kinetic)) return false;
+  double heat = 0;
+  for (const Clustered& one : clusters_) heat += std::min(one.held_work, one.pending.drag_loss);
+  return std::max(heat, books_.smooth_kinetic - books_.kinetic) > kUnbalanced * alone;
 }
 
 /// Contacts on several sides of a link may press against one another as much as they like: no velocity tells. Impulses

@@ -294,7 +294,7 @@ void Island::step_located(MechanicsClient* client, double start, double h) {
     open_books();
     predict(part);
     advance_once(start + now, part);
-    Event event = spent_ ? Event() : seek(part);
+    Event event = spent_ ? Event() : seek(start + now, part);
     if (whole && (event.found() || !lies(part))) {
       restore();
       result.account = account;

@@ -75,6 +75,18 @@ Island::Trouble Island::foresee(double h) {
   return worst.value > kMostDamping ? worst : Trouble{};
 }
 
+/// Where something turns farther in a sub-step than rules of fixed steps follow, sub-steps are shorter, in a step of h
+/// seconds: what spins fast is nothing that the guard would have to tell of.
+void Island::follow_turns(double h) {
+  constexpr double kMostParts = 16;  // of a sub-step
+  const double part = accuracy_.step > 0 ? std::min(accuracy_.step, h) : h;
+  const double turn = fastest_turn(part).value;
+  if (!(turn > kMostTurn)) return;
+  Accuracy shorter = accuracy_;
+  shorter.step = part / std::min(std::ceil(turn / kMostTurn), kMostParts);
+  use_accuracy(shorter);
+}
+
 Island::Trouble Island::fastest_turn(double h) const {
   Trouble worst{true, GuardReason::FastTurn, 0, kNoBody};
   const auto look = [&worst, h](double spin, BodyIndex body) {

@@ -52,7 +52,7 @@ Accuracy accuracy_of(Rung rung) {
       break;
     case Rung::Conserving:
       a.scheme = Scheme::ImplicitMidpoint;
-      a.contact_step = 1.0 / 200;
+      a.step = 1.0 / 200;
       break;
   }
   return a;

@@ -23,7 +23,7 @@
 
 namespace {
 
-constexpr std::array kScenes{"pendulum", "whip", "spin", "ball", "stack"};
+constexpr std::array kScenes{"pendulum", "whip", "spin", "ball", "stack", "vehicle"};
 constexpr std::array kRungs{BREVE_RUNG_FAST, BREVE_RUNG_BALANCED, BREVE_RUNG_PRECISE, BREVE_RUNG_CONSERVING,
                             BREVE_RUNG_REFERENCE};
 constexpr std::array kNames{"fast", "balanced", "precise", "conserving", "reference"};
@@ -115,13 +115,16 @@ double farthest(const std::vector<breve_pose>& a, const std::vector<breve_pose>&
 
 }  // namespace
 
-int main() {
+/// Arguments are names of scenes; without any it is all.
+int main(int count, char** arguments) {
   bool finite = true;
+  std::vector<const char*> scenes(arguments + 1, arguments + count);
+  if (scenes.empty()) scenes.assign(kScenes.begin(), kScenes.end());
   try {
     auto runtime = breve::Runtime::create().or_throw();
     std::printf("%-10s %-11s %10s %10s %10s %10s %6s\n", "scene", "rung", "cost", "forces", "energy", "position",
                 "guard");
-    for (const char* scene : kScenes) {
+    for (const char* scene : scenes) {
       const auto program = runtime.compile(scene, text_of(scene)).or_throw();
       std::vector<Measured> all;
       for (const breve_rung rung : kRungs) all.push_back(measure(runtime, program, rung));

@@ -130,17 +130,29 @@ TEST(Guard, SeesABodyThatTurnsTooFar) {
   for (const breve_guard guard : kModes) {
     Watched world(guard);
     const breve_object fast = world.body(box(Vector3(1, 2, 3), 1), Vector3::Zero());
-    world.set_spin(fast, Vector3(1, 40, 2));
+    world.set_spin(fast, Vector3(1, 900, 2));
     const breve_object slow = world.body(box(Vector3(1, 2, 3), 1), Vector3(10, 0, 0));
     world.set_spin(slow, Vector3(1, 29, 2));
     const breve_object round = world.body(sphere(1, 1), Vector3(20, 0, 0));
     world.set_spin(round, Vector3(1, 400, 2));
     world.watch(1);
     world.expect_refined(guard, "a body rotates too far in one sub-step", fast);
-    EXPECT_EQ(world.counters().sub_steps, guard >= BREVE_GUARD_REFINE ? 6U : 3U);
+    // Sixteen sub-steps are as many as there are without the guard; it takes four times as many.
+    EXPECT_EQ(world.counters().sub_steps, guard >= BREVE_GUARD_REFINE ? 66U : 18U);
     if (guard != BREVE_GUARD_OFF) {
-      EXPECT_NEAR(world.all.front().value, std::hypot(1, 40, 2) / 60, 1e-12);
+      EXPECT_NEAR(world.all.front().value, std::hypot(1, 900, 2) / 60 / 16, 1e-12);
     }
+  }
+}
+
+TEST(Guard, IsNotNeededWhereSubStepsFollowTheTurn) {
+  for (const breve_guard guard : kModes) {
+    Watched world(guard);
+    const breve_object fast = world.body(box(Vector3(1, 2, 3), 1), Vector3::Zero());
+    world.set_spin(fast, Vector3(1, 100, 2));
+    world.watch(1);
+    EXPECT_TRUE(world.all.empty());
+    EXPECT_EQ(world.counters().sub_steps, 4U) << "100 / 60 rad in parts of at most 0.5";
   }
 }
 
