@@ -11,11 +11,19 @@ namespace {
   throw Error(ErrorCode::File, fmt::format("cannot {} file '{}': opening it succeeded, but this failed", verb, name));
 }
 
+/// How many files a world has open. The process has a bounded number, which other worlds and the host also need.
+using OpenCount = std::shared_ptr<std::size_t>;
+constexpr std::size_t kMostOpen = 100;
+
 /// Closes the file once.
 class OpenFile {
  public:
-  OpenFile(const breve_file& file, std::string name) noexcept : file_(file), name_(std::move(name)) {}
-  OpenFile(OpenFile&& other) noexcept : file_(std::exchange(other.file_, {})), name_(std::move(other.name_)) {}
+  OpenFile(const breve_file& file, std::string name, OpenCount count) noexcept
+      : file_(file), name_(std::move(name)), count_(std::move(count)) {
+    ++*count_;
+  }
+  OpenFile(OpenFile&& other) noexcept
+      : file_(std::exchange(other.file_, {})), name_(std::move(other.name_)), count_(std::move(other.count_)) {}
   ~OpenFile() { close(); }
   OpenFile& operator=(OpenFile&&) = delete;
 
@@ -23,6 +31,7 @@ class OpenFile {
   const std::string& name() const { return name_; }
   void spoil() { keep_ = false; }
   bool close() {
+    if (const OpenCount count = std::move(count_)) --*count;
     const auto close = std::exchange(file_.close, nullptr);
     return !close || close(file_.handle, keep_);
   }
@@ -30,6 +39,7 @@ class OpenFile {
  private:
   breve_file file_;
   std::string name_;
+  OpenCount count_;  // null: it is closed
   bool keep_ = true;
 };
 
@@ -102,7 +112,12 @@ class HostWriter final : public steve::FileWriter {
 
 /// Asks the host. @param open  of the name, the file and the reason's two arguments
 template <class Wrapper, class Open>
-std::unique_ptr<Wrapper> ask(breve_world& world, std::string_view name, std::string& why, Open open) {
+std::unique_ptr<Wrapper> ask(breve_world& world, const OpenCount& count, std::string_view name, std::string& why,
+                             Open open) {
+  if (*count >= kMostOpen) {
+    why = fmt::format("{} files are open, and a world may have no more: close those that are not needed", kMostOpen);
+    return nullptr;
+  }
   std::string asked(name);
   Answer answer;
   breve_file file{};
@@ -115,7 +130,7 @@ std::unique_ptr<Wrapper> ask(breve_world& world, std::string_view name, std::str
     if (why == kNoMemory) throw std::bad_alloc();
     return nullptr;
   }
-  OpenFile whole(file, std::move(asked));
+  OpenFile whole(file, std::move(asked), count);
   if (Wrapper::fits(file)) return std::make_unique<Wrapper>(world, std::move(whole));
   why = "the host opened it without the required function";
   return nullptr;
@@ -127,18 +142,19 @@ std::string path_of(const HostWriter&) { return {}; }
 
 /// The same, recorded or replayed.
 template <class Wrapper, class Open>
-std::unique_ptr<Wrapper> ask_on_tape(breve_world& world, std::string_view name, std::string& why, Open open) {
+std::unique_ptr<Wrapper> ask_on_tape(breve_world& world, const OpenCount& count, std::string_view name,
+                                     std::string& why, Open open) {
   using enum Inputs::Kind;
   Inputs* const inputs = world.inputs;
-  if (!inputs) return ask<Wrapper>(world, name, why, open);
+  if (!inputs) return ask<Wrapper>(world, count, name, why, open);
   if (!inputs->replaying()) {
-    auto file = ask<Wrapper>(world, name, why, open);
+    auto file = ask<Wrapper>(world, count, name, why, open);
     inputs->add(file ? Opened : NotOpened, file ? path_of(*file) : why);
     return file;
   }
   const bool refused = inputs->is_next(NotOpened);
   const auto recorded = inputs->next(refused ? NotOpened : Opened);
-  if (recorded && !refused) return std::make_unique<Wrapper>(world, OpenFile({}, std::string(name)), *recorded);
+  if (recorded && !refused) return std::make_unique<Wrapper>(world, OpenFile({}, std::string(name), count), *recorded);
   why = recorded ? std::string(*recorded) : "it was not opened in the recorded run";
   return nullptr;
 }
@@ -147,17 +163,18 @@ std::unique_ptr<Wrapper> ask_on_tape(breve_world& world, std::string_view name, 
 
 void open_files(breve_world& world, steve::MachineHost& host) {
   const breve_files& files = world.runtime->config.files;
+  const OpenCount count = std::make_shared<std::size_t>(0);
   if (files.open_for_reading)
-    host.open_for_reading = [&world, &files](std::string_view name, std::string& why) {
-      return ask_on_tape<HostReader>(world, name, why,
+    host.open_for_reading = [&world, &files, count](std::string_view name, std::string& why) {
+      return ask_on_tape<HostReader>(world, count, name, why,
                                      [&](const char* asked, breve_file* file, breve_write_fn reason, void* sink) {
                                        return files.open_for_reading(files.user, &world, asked, file, reason, sink);
                                      });
     };
   if (files.open_for_writing)
-    host.open_for_writing = [&world, &files](std::string_view name, bool append, std::string& why) {
+    host.open_for_writing = [&world, &files, count](std::string_view name, bool append, std::string& why) {
       return ask_on_tape<HostWriter>(
-          world, name, why, [&](const char* asked, breve_file* file, breve_write_fn reason, void* sink) {
+          world, count, name, why, [&](const char* asked, breve_file* file, breve_write_fn reason, void* sink) {
             return files.open_for_writing(files.user, &world, asked, append, file, reason, sink);
           });
     };

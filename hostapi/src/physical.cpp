@@ -1,4 +1,6 @@
 // Bodies with physics from C: shapes, forces, surfaces, assemblies.
+#include <fmt/format.h>
+
 #include "physical.hpp"
 
 #include <array>
@@ -84,8 +86,8 @@ std::shared_ptr<Shape> heights_of(const breve_geometry& geometry, std::pmr::memo
 
 double within(double value, double low, double high, const char* what) {
   if (value >= low && value <= high) return value;
-  fail(BREVE_ERROR_ARGUMENT, std::string(what) + " is " + std::to_string(value) + ", not between " +
-                                 std::to_string(low) + " and " + std::to_string(high));
+  fail(BREVE_ERROR_ARGUMENT, std::string(what) + " is " + fmt::to_string(value) + ", not between " +
+                                 fmt::to_string(low) + " and " + fmt::to_string(high));
 }
 
 }  // namespace

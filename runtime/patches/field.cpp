@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "runtime/base/error.hpp"
+#include "runtime/base/pieces.hpp"
 
 namespace breve {
 
@@ -67,11 +68,9 @@ void Field::check_same_size(const Field& other, const char* what) const {
 /// `work(begin, count)` for all elements, piece by piece.
 template <class Work>
 void Field::in_pieces(const Poll& poll, Work&& work) const {
-  constexpr Eigen::Index kPiece = Eigen::Index{1} << 19;  // elements: a few milliseconds
-  for (Eigen::Index begin = 0; begin < length(); begin += kPiece) {
-    work(begin, std::min(kPiece, length() - begin));
-    if (poll) poll();
-  }
+  breve::in_pieces(values_.size(), sizeof(double), poll, [&](std::size_t begin, std::size_t end) {
+    work(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin));
+  });
 }
 
 void Field::fill(double value, const Poll& poll) {
@@ -140,9 +139,11 @@ template <bool kPeriodic>
 void Field::laplacian(const Field& other, double factor, int dimensions, bool added, const Poll& poll) {
   check_same_size(other, "diffuse");
   const auto from = other.values();
-  std::pmr::vector<double> scratch(values_.size(), values_.get_allocator());
+  std::pmr::vector<double> scratch(values_.get_allocator());
+  scratch.reserve(values_.size());
   Eigen::Map<Eigen::ArrayXd> sum(scratch.data(), length());
   in_pieces(poll, [&](auto begin, auto count) {
+    scratch.resize(static_cast<std::size_t>(begin + count));  // new memory, a piece at a time as well
     sum.segment(begin, count) = (-2.0 * dimensions) * from.segment(begin, count);
   });
   // Along each axis the grid is a stack of slabs of `slab` elements that touch the next along the axis.
@@ -201,7 +202,8 @@ void Field::transform(const Field& matrix, Field& result, const Poll& poll) cons
   }
   const Eigen::Map<const RowMajor> left(matrix.values_.data(), matrix.nx_, matrix.ny_);
   const Eigen::Map<const RowMajor> right(values_.data(), nx_, ny_);
-  std::pmr::vector<double> scratch(result.size(), result.values_.get_allocator());
+  std::pmr::vector<double> scratch(result.values_.get_allocator());
+  resize_in_pieces(scratch, result.size(), poll);
   Eigen::Map<RowMajor> product(scratch.data(), result.nx_, result.ny_);
   // So many rows at a time that a piece takes some milliseconds.
   constexpr Eigen::Index kPiece = Eigen::Index{1} << 24;  // multiplications

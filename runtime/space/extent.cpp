@@ -1,6 +1,8 @@
 // Wrapping and reflecting, axis by axis.
 #include "runtime/space/extent.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -14,7 +16,7 @@ void Extent::set(int axis, Ending edge, double low, double high) {
   if (axis < 0 || axis > 2) throw Error(ErrorCode::Argument, "space has no axis " + std::to_string(axis) + " (0 to 2)");
   if (edge == Ending::Open) low = high = 0;
   if (edge != Ending::Open && !(std::isfinite(low) && std::isfinite(high) && std::isfinite(high - low) && low < high)) {
-    throw Error(ErrorCode::Argument, "the bounds of space are " + std::to_string(low) + " and " + std::to_string(high) +
+    throw Error(ErrorCode::Argument, "the bounds of space are " + fmt::to_string(low) + " and " + fmt::to_string(high) +
                                          " (must be finite, the first below the second)");
   }
   axes_[static_cast<std::size_t>(axis)] = {edge, low, high};

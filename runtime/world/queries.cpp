@@ -1,6 +1,8 @@
 // Questions about space, answered from a tree of boxes and then exactly.
 #include "runtime/world/queries.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,7 +20,7 @@ namespace {
 void require_place(const Bodies& bodies, const Vector3& value, const char* what) {
   if (!value.allFinite()) throw Error(ErrorCode::Argument, std::string(what) + " must be finite");
   if (bodies.flat() && value.z() != 0)
-    throw Error(ErrorCode::Argument, std::string(what) + " has a z of " + std::to_string(value.z()) +
+    throw Error(ErrorCode::Argument, std::string(what) + " has a z of " + fmt::to_string(value.z()) +
                                          ", but this world is flat: z must be 0");
 }
 

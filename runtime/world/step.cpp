@@ -177,6 +177,7 @@ void World::run_substeps(double h, std::uint64_t count) {
     for (std::uint64_t i = 0, taken = 1; i < count; i += taken) {
       // What physics has no work left for is taken at once.
       taken = parts.dynamics->over() ? count - i : 1;
+      if (i != 0) parts.expect(0);
       const double length = static_cast<double>(taken) * h;
       parts.share = static_cast<double>(taken) / static_cast<double>(count - i);
       parts.substep_start = clock_.time + static_cast<double>(i) * h;

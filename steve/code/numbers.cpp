@@ -3,7 +3,9 @@
 
 #include <cctype>
 #include <charconv>
-#include <cstdlib>
+#include <cmath>
+#include <limits>
+#include <utility>
 
 namespace breve::steve {
 
@@ -14,6 +16,37 @@ bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 std::string_view without_blanks(std::string_view text) {
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
   return text;
+}
+
+/// Whether a number that no double can hold is too large, and not too small. The C library would know, but it expects
+/// the decimal point of the host's locale.
+bool is_above_one(std::string_view text, std::chars_format format) {
+  const bool hex = format == std::chars_format::hex;
+  std::int64_t before = 0;  // digits between the first one that is not zero and the point; less than 0 behind it
+  bool point = false, begun = false;
+  std::size_t i = 0;
+  for (; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '.') {
+      if (std::exchange(point, true)) break;
+      continue;
+    }
+    if (hex ? std::isxdigit(static_cast<unsigned char>(c)) == 0 : c < '0' || c > '9') break;
+    begun = begun || c != '0';
+    if (begun && !point) ++before;
+    if (!begun && point) --before;
+  }
+  std::int64_t exponent = 0;
+  if (i < text.size() && std::string_view(hex ? "pP" : "eE").find(text[i]) != std::string_view::npos) {
+    text.remove_prefix(i + 1);
+    const bool negative = !text.empty() && text.front() == '-';
+    if (!text.empty() && (text.front() == '+' || negative)) text.remove_prefix(1);
+    std::from_chars_result read = std::from_chars(text.data(), text.data() + text.size(), exponent);
+    if (read.ec == std::errc::result_out_of_range) exponent = std::numeric_limits<std::int32_t>::max();
+    if (negative) exponent = -exponent;
+  }
+  constexpr std::int64_t kBitsOfDigit = 4;
+  return (hex ? kBitsOfDigit * before : before) + exponent > 0;
 }
 
 // Six decimals are off by half a millionth at most: that is too much of a number below this, unless it is a round one.
@@ -53,8 +86,7 @@ double leading_double(std::string_view text) {
   double d = 0;
   const auto result = std::from_chars(text.data(), text.data() + text.size(), d, format);
   if (result.ec == std::errc::result_out_of_range) {
-    // Too large or too small: the C library knows which, and the decimal point of its locale does not matter for that.
-    d = std::strtod(std::string(format == std::chars_format::hex ? "0x" : "").append(text).c_str(), nullptr);
+    d = is_above_one(text, format) ? std::numeric_limits<double>::infinity() : 0.0;
   } else if (result.ec != std::errc()) {
     return 0.0;
   }

@@ -1,4 +1,6 @@
 // Natives of Control and PhysicalControl that set how bodies with physics are computed, and read what came of it.
+#include <fmt/format.h>
+
 #include <array>
 
 #include "steve/library/ledger_values.hpp"
@@ -74,7 +76,7 @@ void set_setting(Machine& machine, Instance&, Text name, double value) {
   const Setting& one = setting_named(view(name), "set-accuracy-setting");
   finite(value, "set-accuracy-setting: the value");
   if (std::abs(value) > 1e9)
-    throw Error(ErrorCode::Argument, "set-accuracy-setting: " + std::to_string(value) + " is too large");
+    throw Error(ErrorCode::Argument, "set-accuracy-setting: " + fmt::to_string(value) + " is too large");
   if (std::find(kFlatSettings.begin(), kFlatSettings.end(), one.name) == kFlatSettings.end())
     warn_if_flat(machine, one.name,
                  "the accuracy setting '" + std::string(one.name) +
@@ -180,7 +182,7 @@ void say_if_ignored(Machine& machine) {
 
 double number_at_least_zero(double value, const char* what) {
   if (!(std::isfinite(value) && value >= 0))
-    throw Error(ErrorCode::Argument, std::string(what) + " is " + std::to_string(value) + " (must be 0 or more)");
+    throw Error(ErrorCode::Argument, std::string(what) + " is " + fmt::to_string(value) + " (must be 0 or more)");
   return value;
 }
 

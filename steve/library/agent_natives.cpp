@@ -1,4 +1,6 @@
 // Natives of GridAgent and of PatchGrid about its agents: entering, moving, who is near, which cells are free.
+#include <fmt/format.h>
+
 #include "steve/library/grids.hpp"
 #include "steve/library/tables.hpp"
 
@@ -147,7 +149,7 @@ void push_agents(Machine& machine, const Occupants& occupants, CellIndex cell, c
 ListCell* agent_get_agents(Machine& machine, Instance& self, std::int32_t radius) {
   const Standing standing = must_stand(machine, self, "get-agents");
   if (radius < 0)
-    throw Error(ErrorCode::Argument, "get-agents: the radius is " + std::to_string(radius) + " (must be >= 0)");
+    throw Error(ErrorCode::Argument, "get-agents: the radius is " + fmt::to_string(radius) + " (must be >= 0)");
   const Grid& grid = *standing.resource->grid;
   const Occupants& occupants = standing.resource->occupants;
   // Agents lie anywhere in memory: what is known of them is fetched while the list is made.

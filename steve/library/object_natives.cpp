@@ -1,4 +1,6 @@
 // Natives of Object: identity, schedule, notifications, calls by name; and the obsolete selectors of every class.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "steve/code/wording.hpp"
@@ -51,7 +53,7 @@ void check_scheduled(Machine& machine, const Instance& self, Text method) {
 void object_schedule(Machine& machine, Instance& self, Text method, double when) {
   check_scheduled(machine, self, method);
   if (!std::isfinite(when) || !machine.world().schedule(self.id, view(method), when))
-    machine.warn("schedule: time " + std::to_string(when) + " is not in the future; '" + std::string(view(method)) +
+    machine.warn("schedule: time " + fmt::to_string(when) + " is not in the future; '" + std::string(view(method)) +
                  "' will not be called");
 }
 

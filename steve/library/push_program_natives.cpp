@@ -1,4 +1,6 @@
 // Natives of PushProgram and PushDiversityPool.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "runtime/learn/push/random_code.hpp"
@@ -208,7 +210,7 @@ PushPoolResource& own_pool(Machine& machine, Instance& self) { return resource_m
 
 void pool_set_tolerance(Machine& machine, Instance& self, std::int32_t tolerance) {
   if (tolerance < 0)
-    throw Error(ErrorCode::Argument, "set-tolerance: " + std::to_string(tolerance) + " (must be >= 0)");
+    throw Error(ErrorCode::Argument, "set-tolerance: " + fmt::to_string(tolerance) + " (must be >= 0)");
   own_pool(machine, self).tolerance = tolerance;
 }
 

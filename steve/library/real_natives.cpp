@@ -1,4 +1,6 @@
 // Natives of Real, Stationary: pose, shape, material, neighbours, collisions.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <span>
 
@@ -180,8 +182,8 @@ void real_set_mu(Machine& machine, Instance& self, double mu) {
 /// @throws Error{Argument} naming the coefficient unless low <= value <= high
 double within(double value, double low, double high, const char* what) {
   if (value >= low && value <= high) return value;
-  throw Error(ErrorCode::Argument, std::string(what) + " is " + std::to_string(value) + ", not between " +
-                                       std::to_string(low) + " and " + std::to_string(high));
+  throw Error(ErrorCode::Argument, std::string(what) + " is " + fmt::to_string(value) + ", not between " +
+                                       fmt::to_string(low) + " and " + fmt::to_string(high));
 }
 
 void real_set_friction(Machine& machine, Instance& self, double at_rest, double in_motion) {

@@ -142,11 +142,13 @@ Instance* build_or_leave(Machine& machine, Instance& self, std::int32_t sides, d
 
 // --- CustomShape -----------------------------------------------------------------------------------------------------
 
-std::vector<Vector3> corners_of(const Value& face) {
+std::vector<Vector3> corners_of(Machine& machine, const Value& face) {
   constexpr std::uint32_t kFewest = 3;
+  constexpr std::uint64_t kOfCorner = 64;
   const ListCell* list = face.tag == Tag::List ? face.list() : nullptr;
   if (!list || list->size < kFewest)
     Machine::fail(RunErrorKind::Type, "add-face: a face is a list of three or more vectors");
+  machine.charge_for(kOfCorner * list->size);
   std::vector<Vector3> corners;
   for (const Value& corner : *list) {
     if (corner.tag != Tag::Vector)
@@ -156,12 +158,14 @@ std::vector<Vector3> corners_of(const Value& face) {
   return corners;
 }
 
-void custom_shape_check_face(Machine&, Instance&, ListCell* vertices) { corners_of(Value::of(Tag::List, vertices)); }
+void custom_shape_check_face(Machine& machine, Instance&, ListCell* vertices) {
+  corners_of(machine, Value::of(Tag::List, vertices));
+}
 
 Instance* custom_shape_build(Machine& machine, Instance& self, ListCell* faces, double density) {
   std::vector<std::vector<Vector3>> solid;
   if (faces)
-    for (const Value& face : *faces) solid.push_back(corners_of(face));
+    for (const Value& face : *faces) solid.push_back(corners_of(machine, face));
   resource(machine, self).shape = Shape::convex(solid, density, machine.heap().memory());
   resource(machine, self).density = density;
   return &self;

@@ -1,4 +1,6 @@
 // Natives of Spring: an elastic connection between points of two bodies.
+#include <fmt/format.h>
+
 #include "steve/library/joints.hpp"
 #include "steve/library/tables.hpp"
 
@@ -45,7 +47,7 @@ double spring_get_length(Machine& machine, Instance& self) { return description(
 template <double SpringDescription::*Member>
 void spring_set(Machine& machine, Instance& self, double value) {
   if (!(std::isfinite(value) && value >= 0))
-    throw Error(ErrorCode::Argument, "a number of " + name_of(self) + " is " + std::to_string(value) +
+    throw Error(ErrorCode::Argument, "a number of " + name_of(self) + " is " + fmt::to_string(value) +
                                          " (length, strength, damping and maximum force are 0 or more)");
   SpringDescription changed = description(machine, self);
   changed.*Member = value;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <vector>
 
+#include "runtime/base/pieces.hpp"
 #include "runtime/solid/height_grid.hpp"
 #include "steve/library/resources.hpp"
 #include "steve/library/support.hpp"
@@ -21,8 +22,9 @@ struct Heights {
   double tile = 1;
   std::vector<double> values;
 
-  explicit Heights(int points)
-      : side(points), values(static_cast<std::size_t>(points) * static_cast<std::size_t>(points)) {}
+  Heights(int points, const Poll& poll) : side(points) {
+    resize_in_pieces(values, static_cast<std::size_t>(points) * static_cast<std::size_t>(points), poll);
+  }
   double& at(int column, int row) {
     return values[static_cast<std::size_t>(row) * static_cast<std::size_t>(side) + static_cast<std::size_t>(column)];
   }
@@ -68,7 +70,7 @@ void set_heights(Machine& machine, Instance& self, const Heights& heights) {
 }
 
 Heights copy_of(const Machine& machine, const HeightGrid& grid) {
-  Heights heights(grid.columns());
+  Heights heights(grid.columns(), machine.poller());
   heights.tile = grid.tile();
   for (int row = 0; row < heights.side; ++row) {
     for (int column = 0; column < heights.side; ++column) heights.at(column, row) = grid.height(column, row);
@@ -85,7 +87,7 @@ bool in(const HeightGrid& grid, std::int32_t column, std::int32_t row) {
 
 void terrain_init(Machine& machine, Instance& self) {
   embody(machine, self, BodyKind::Stationary);
-  set_heights(machine, self, Heights(kFirstSide));
+  set_heights(machine, self, Heights(kFirstSide, machine.poller()));
 }
 
 void terrain_dearchive(Machine& machine, Instance& self) {
@@ -130,11 +132,13 @@ void terrain_generate(Machine& machine, Instance& self, double ruggedness, doubl
     throw Error(ErrorCode::Argument, "generate: the grid has " + std::to_string(grid.columns()) +
                                          " points per side and cannot be doubled again");
   charge_for_points(machine, static_cast<std::uint64_t>(side));
-  Heights heights(side);
+  Heights heights(side, machine.poller());
   heights.tile = grid.tile();
   const double grown = (grid.columns() - 1) * grid.tile() / 2;
   displace(heights, std::pow(2.0, -(1 - ruggedness)), machine.world().random(), machine.poller());
-  for (double& value : heights.values) value *= height;
+  in_pieces(heights.values.size(), sizeof(double), machine.poller(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) heights.values[i] *= height;
+  });
   set_heights(machine, self, heights);
   Bodies& bodies = machine.world().bodies();
   const BodyIndex body = body_of(machine, self);

@@ -52,7 +52,10 @@ Instance* new_instance(Machine& machine, Instance&, StringCell* name) {
 Value call_method_named(Machine& machine, Instance&, Instance* object, StringCell* name, ListCell* list) {
   Instance& receiver = needed(object, "callMethodNamed");
   std::vector<Value> arguments;
-  if (list != nullptr) arguments.assign(list->begin(), list->end());
+  if (list != nullptr) {
+    machine.charge_for(list->size);
+    arguments.assign(list->begin(), list->end());
+  }
   const MethodInfo* method = machine.find_method(*receiver.cls, view(name), arguments.size());
   Value result;
   if (method == nullptr) {

@@ -58,7 +58,9 @@ Value string_with_index(Heap& heap, const Value& base, const Value& key, const V
   if (i < 0 || static_cast<std::size_t>(i) > text.size())
     fail_bounds(fmt::format("index {} is outside a string of {} bytes", i, text.size()));
   const auto at = static_cast<std::size_t>(i);
-  std::pmr::string result(text.substr(0, at), heap.memory());
+  std::pmr::string result(heap.memory());
+  result.reserve(text.size() + view(value.string()).size());  // moved once, not at each part
+  result += text.substr(0, at);
   result += view(value.string());
   if (at < text.size()) result += text.substr(at + 1);
   return Value::of(Tag::String, heap.string(result));

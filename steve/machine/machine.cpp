@@ -100,7 +100,7 @@ void Machine::charge(std::uint64_t turns) {
 
 void Machine::expect(std::uint64_t turns) {
   poll();
-  if (!budget_.affords(turns)) charge(turns);
+  if (turns != 0 && !budget_.affords(turns)) charge(turns);
 }
 
 void Machine::fail_interrupted() {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "runtime/base/pieces.hpp"
 #include "steve/machine/machine.hpp"
 #include "steve/machine/operators.hpp"
 #include "steve/machine/profiler.hpp"
@@ -328,11 +329,18 @@ StringCell* Machine::interpolate(const std::vector<std::string>& texts, const Va
   for (std::size_t i = 0; i < count; ++i)
     if (values[i].tag == Tag::String) least += view(values[i].string()).size();
   heap_->check_room(least);
+  const bool is_long = least > kPieceBytes;
   std::string out = begin ? texts[1] : texts[0];
+  if (is_long) out.reserve(least);
   for (std::size_t i = begin ? 1 : 0; i < count; ++i) {
     if (values[i].tag == Tag::String) {
-      heap_->check_room(out.size() + view(values[i].string()).size());
-      out += view(values[i].string());
+      const std::string_view more = view(values[i].string());
+      heap_->check_room(out.size() + more.size());
+      if (is_long)
+        in_pieces(more.size(), 1, poller_,
+                  [&](std::size_t from, std::size_t to) { out += more.substr(from, to - from); });
+      else
+        out += more;
     } else if (values[i].tag == Tag::Int)
       append_int(out, values[i].i);
     else if (values[i].tag == Tag::Double)

@@ -1,5 +1,5 @@
 /* restored PROGRAM.tz [BUDGET PHYSICS-BUDGET]: a world, and one that is restored from its image before each iteration,
- * are the same after each, on each rung. */
+ * are the same after each, on each rung. A program may say after how many it ends: "# iterations: 8". */
 #include <stdlib.h>
 
 #include "check.h"
@@ -12,6 +12,7 @@ static char* text_of(const char* path, size_t* size) {
   rewind(file);
   char* text = malloc(*size + 1);
   *size = fread(text, 1, *size, file);
+  text[*size] = 0;
   fclose(file);
   return text;
 }
@@ -33,8 +34,13 @@ static bool same(const breve_world* one, const breve_world* other) {
   return hash == again;
 }
 
-static void goes_on_alike(breve_runtime* runtime, breve_program* program, breve_world_config config) {
-  const int iterations = config.budget ? 50 : 24;
+static int iterations_of(const char* text, int otherwise) {
+  const char* mark = "# iterations: ";
+  const char* found = strstr(text, mark);
+  return found ? atoi(found + strlen(mark)) : otherwise;
+}
+
+static void goes_on_alike(breve_runtime* runtime, breve_program* program, breve_world_config config, int iterations) {
   breve_world *one = NULL, *other = NULL;
   CHECK_STATUS(BREVE_OK, breve_world_create(runtime, program, &config, &one));
   CHECK_STATUS(BREVE_OK, breve_world_create(runtime, program, &config, &other));
@@ -67,9 +73,10 @@ int main(int count, char** arguments) {
       config.physics_budget = strtoull(arguments[3], NULL, 10);
       config.depth_limit = 60;
     }
+    const int iterations = iterations_of(text, config.budget ? 50 : 24);
     for (size_t i = 0; i < sizeof rungs / sizeof *rungs; ++i) {
       config.accuracy = rungs[i];
-      goes_on_alike(runtime, program, config);
+      goes_on_alike(runtime, program, config, iterations);
     }
   } else {
     puts(breve_runtime_last_error(runtime)->text);

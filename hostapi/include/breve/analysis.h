@@ -60,8 +60,9 @@ BREVE_API breve_status breve_analysis_create(breve_runtime* runtime, const char*
 /* Does nothing for NULL. */
 BREVE_API void breve_analysis_destroy(breve_analysis* analysis);
 
-/* The errors and warnings of the program, like breve_runtime_diagnostic_count and breve_runtime_diagnostic. */
+/* The errors and warnings of the program, like breve_runtime_diagnostic_count. */
 BREVE_API size_t breve_analysis_diagnostic_count(const breve_analysis* analysis);
+/* As breve_runtime_diagnostic. */
 BREVE_API breve_status breve_analysis_diagnostic(const breve_analysis* analysis, size_t index,
                                                  breve_diagnostic* diagnostic);
 

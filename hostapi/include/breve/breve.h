@@ -23,6 +23,7 @@
  * - Any function may run out of memory and return BREVE_ERROR_MEMORY. Any function that reads or changes joints,
  *   springs or the energy of bodies may return BREVE_ERROR_SCRIPT if their state cannot be computed because numbers
  *   overflow.
+ * - A pointer of a script (BREVE_TYPE_POINTER) can be read, but not passed in: that gives BREVE_ERROR_UNSUPPORTED.
  * - Texts are UTF-8 or plain bytes, terminated by a zero byte; a text that is given with a size may contain zero bytes.
  * - Threads: a world, with all its objects, is used by one thread at a time; so is a runtime while it compiles or
  *   creates a world. A program may be used by any number of threads. Different worlds may be used by different threads;
@@ -544,8 +545,8 @@ static inline breve_world_config breve_world_config_default(void) {
    @param config  copied; NULL: the defaults
    @param world   to be released with breve_world_destroy
    BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, a step that is negative or not finite, a reserved field;
-   BREVE_ERROR_SCRIPT, _BUDGET, _DEPTH, _MEMORY: `init` failed, and no world is created; see
-   breve_runtime_last_error. */
+   BREVE_ERROR_SCRIPT, _BUDGET, _DEPTH, _INTERRUPTED, _MEMORY, or another status of a host function: `init` failed, and
+   no world is created; see breve_runtime_last_error. */
 BREVE_API breve_status breve_world_create(breve_runtime* runtime, const breve_program* program,
                                           const breve_world_config* config, breve_world** world);
 
@@ -765,7 +766,7 @@ static inline breve_geometry breve_geometry_default(void) {
 /* Creates a Shape object. Many bodies may use the same one. Runs script (`init`).
    BREVE_OK; BREVE_ERROR_ARGUMENT: a size or density that is not finite and > 0, faces that do not form a convex solid
    around the origin or a mesh, an index that is not below vertex_count, a height that is not finite; no object is
-   created then. */
+   created then; BREVE_ERROR_NOT_FOUND: the program does not use the class of such a shape. */
 BREVE_API breve_status breve_shape_create(breve_world* world, const breve_geometry* geometry, breve_object* shape);
 
 /* Gives a body its shape, for display and collisions, and the corresponding mass. Runs script (`set-shape`).
@@ -1733,13 +1734,15 @@ BREVE_API breve_status breve_world_queue_choice(breve_world* world, breve_object
 
 /* A number that is equal for two worlds if their whole state is the same, bit for bit: objects, bodies, scripts,
    schedule,
-   generator. BREVE_OK; BREVE_ERROR_BUSY while a script of it runs. */
+   generator. BREVE_OK; BREVE_ERROR_BUSY while a script of it runs; BREVE_ERROR_UNSUPPORTED: the host could not save a
+   state of its own. */
 BREVE_API breve_status breve_world_hash(const breve_world* world, uint64_t* hash);
 
 /* Writes the whole state as an image: portable between runs of one library version on one kind of machine.
    @param image  room for `capacity` bytes; NULL only if capacity is 0
    @param size   the image's size. If it exceeds capacity, nothing is written to image: call again with more room
-   BREVE_OK, also for that size query; BREVE_ERROR_BUSY while a script of it runs. Does not change the world,
+   BREVE_OK, also for that size query; BREVE_ERROR_BUSY while a script of it runs; BREVE_ERROR_UNSUPPORTED: the host
+   could not save a state of its own. Does not change the world,
    except that a flat world with physics continues from its image like a restored one, which may differ in the last bits
    from continuing without a snapshot. The time that breve_world_advance keeps belongs to the host loop, and is not part of
    the image. */

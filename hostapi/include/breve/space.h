@@ -151,7 +151,7 @@ BREVE_API breve_status breve_object_set_collides(breve_world* world, breve_objec
 typedef bool (*breve_may_collide_fn)(void* user, breve_world* world, breve_object object, breve_object other);
 
 /* @param function  NULL: nobody beside the objects themselves is asked. It is not part of images
-   BREVE_OK. */
+   BREVE_OK; BREVE_ERROR_BUSY while a script of this world runs. */
 BREVE_API breve_status breve_world_set_may_collide(breve_world* world, breve_may_collide_fn function, void* user);
 
 /* Queues a click on the first body that a ray meets, or on nothing: breve_world_ray_first, then breve_world_queue_click.
