@@ -18,7 +18,7 @@ inline double processor_time(clockid_t clock = CLOCK_THREAD_CPUTIME_ID) {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Processor time of a thread, and pages of memory that were new to it.
+/// The processor time of a thread, and the pages of memory that were new to it.
 struct Used {
   double time = 0;  // s
   long pages = 0;
