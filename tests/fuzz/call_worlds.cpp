@@ -81,10 +81,15 @@ breve_status world_destroy(Caller& c) {
   return status;
 }
 
+/// The user data of worlds and objects.
+const int mark = 0;
+void* const kept = const_cast<int*>(&mark);
+
 breve_status world_user(Caller& c) {
   const breve_world* world = c.world();
   const void* user = breve_world_user(world);
-  require(user == (world ? &c : nullptr) || (!user && c.called_back()), "another user of a world");
+  require(user == (world ? &c : nullptr) || (world && user == kept) || (!user && c.called_back()),
+          "another user of a world");
   return BREVE_OK;
 }
 breve_status world_last_error(Caller& c) {
@@ -186,10 +191,6 @@ breve_status world_methods(Caller& c) {
   }
   return status;
 }
-/// The user data of worlds and objects.
-const int mark = 0;
-void* const kept = const_cast<int*>(&mark);
-
 breve_status world_set_user(Caller& c) { return breve_world_set_user(c.world(), kept, nullptr); }
 breve_status object_set_user(Caller& c) {
   breve_world* world = c.world();
