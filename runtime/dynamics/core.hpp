@@ -64,6 +64,7 @@ struct Change {
 };
 
 class TiedBodies;
+class TiedMotion;
 
 /// Trees that springs tie together: what one integrator moves.
 struct ClusterEntry : InMemory {
@@ -73,6 +74,7 @@ struct ClusterEntry : InMemory {
   std::pmr::vector<SpringIndex> ties;     // in the order of their indices
   std::unique_ptr<Cluster> system;
   std::unique_ptr<TiedBodies> tied;  // if they are bodies without joints, and more than one or tied to something
+  std::unique_ptr<TiedMotion> points;  // likewise, if they are more than one: as their centres move where that is all
 };
 
 class Island;
@@ -89,6 +91,7 @@ struct Dynamics::Core : MechanicsCore {
 
   std::pmr::vector<JointEntry> joints;
   std::pmr::vector<SpringEntry> springs;
+  std::uint64_t springs_version = 1;  // grows where somebody sets one
 
   std::pmr::vector<std::uint32_t> entry_of;  // by body; kNone: no entry
   std::pmr::vector<BodyEntry> entries;
@@ -191,11 +194,13 @@ struct Dynamics::Core : MechanicsCore {
   void find_islands();
   void keep_clusters_whole();
   BodyIndex first_of(const ClusterEntry& cluster) const;
-  Island& fill(std::size_t place, std::size_t number);
+  Island& fill(std::size_t place, std::size_t number, double h);
   void step_quiet(Workers* workers, std::size_t count, double start, double h);
   void run(MechanicsClient& client, double start, double h, int depth);
   void run_only(MechanicsClient& client, double start, double h, int depth, std::span<const BodyIndex> bodies);
   void report_lasting(MechanicsClient& client, double moment);
+  // lone_body.cpp
+  bool step_alone(BodyIndex body, double start, double h, std::uint64_t work, Energy& sum);
   bool sleep_through(Island& island);
   void note_rest(Island& island, double h);
   void take_result(Island& island);

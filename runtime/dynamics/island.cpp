@@ -21,6 +21,7 @@ Island::Island(Dynamics::Core& core, std::pmr::memory_resource* memory)
       roles_(memory),
       free_(memory),
       pair_drivers_(memory),
+      tied_(memory),
       clusters_(memory),
       trees_(memory),
       pairs_(memory),
@@ -66,6 +67,7 @@ void Island::clear() {
   free_.clear();
   drivers_ = 0;
   pair_drivers_.clear();
+  tied_.clear();
   clusters_.clear();
   trees_.clear();
   pairs_.clear();
@@ -138,6 +140,7 @@ void Island::put_driver(Free& one, double h) {
 }
 
 void Island::add_cluster(ClusterEntry& cluster) {
+  if (tied(cluster)) return;
   clusters_.push_back({&cluster, std::nullopt, 0, false, false, {}, 0, {}});
   for (const std::uint32_t index : cluster.trees) {
     Tree* tree = core_.trees[index].get();
@@ -298,6 +301,7 @@ void Island::restore() {
 void Island::commit() {
   ++result.counters.sub_steps;
   result.account.script_work += free_work_;
+  result.account.drag_loss += tied_loss_;
   if (springs_move()) commit_springs();
   for (const Clustered& one : clusters_) {
     add_works(one.pending, result.account);
@@ -311,6 +315,7 @@ void Island::write() {
     write_free(*core_.bodies, one.body, one.now);
     if (BodyEntry* known = core_.find(one.body)) known->step = one.next;
   }
+  write_tied();
   for (const Clustered& one : clusters_)
     for (const std::uint32_t index : one.entry->trees) {
       core_.trees[index]->step = one.entry->system->next_step();

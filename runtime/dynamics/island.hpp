@@ -31,7 +31,9 @@ class Island : public InMemory {
   void clear();
   void add_free(BodyIndex body);
   void add_drivers(const NearPair& pair);   // after all free bodies: of each pair in turn
-  void add_cluster(ClusterEntry& cluster);  // after all free bodies
+  /// If its bodies move as points for h seconds: they are like free bodies. After all of these.
+  void add_tied(ClusterEntry& cluster, double h);
+  void add_cluster(ClusterEntry& cluster);  // after all free bodies; nothing if it is tied
   void add_pair(NearPair& pair);
   bool empty() const { return free_.empty() && clusters_.empty(); }
   bool has_drivers() const { return drivers_ > 0; }
@@ -107,6 +109,11 @@ class Island : public InMemory {
     double held_work = 0;  // J, likewise, of forces that were predicted
     Books books;           // of the sub-step
     bool alone() const { return entry->trees.size() == 1 && entry->ties.empty(); }
+  };
+  /// Bodies that springs tie, which move as points: from that place in free_ on.
+  struct TiedCluster {
+    ClusterEntry* entry;
+    std::size_t first;
   };
   /// What a pair is in this sub-step: its impact is looked for on the whole way; or only whether it comes back; or it
   /// has rows; or it is a spring.
@@ -195,6 +202,19 @@ class Island : public InMemory {
   std::span<Free> loose_bodies() { return {free_.data(), free_.size() - drivers_}; }
   std::span<const Free> loose_bodies() const { return {free_.data(), free_.size() - drivers_}; }
   void smooth(double time, double h);
+
+  // island_tied.cpp
+  bool tied(const ClusterEntry& cluster) const;
+  std::size_t tied_end() const;
+  bool begin_tied(double h);
+  void take_points(const TiedCluster& one);
+  void smooth_tied(double time, double h);
+  double tied_energy();
+  double held_tied_energy() const;
+  void correct_tied_drag();
+  void write_tied();
+  void book_tied();
+
   void smooth_once(Clustered& one, double time, double h);
   static void forget_parts(Clustered& one);
   void smooth_fast(Clustered& one, double time, double h);
@@ -304,6 +324,7 @@ class Island : public InMemory {
   void look(double h, bool spent);
   int located_impacts() const;
   double contact_part(double left, bool lies) const;
+  double contact_step() const;
   bool lies(double h) const;
   bool call(MechanicsClient& client, int pair, double moment, double left);
   bool holds_rings() const;
@@ -440,10 +461,12 @@ class Island : public InMemory {
   double quiet_ = 0;                      // m/s: slower than this is at rest, in a sub-step of this one
   double looked_h_ = 0;                   // s, of the sub-step that was looked at last
   double free_work_ = 0;                  // J, of scripts on free bodies in the last smooth()
+  double tied_loss_ = 0;                  // J, in dampers of tied_ likewise
   std::pmr::vector<Role> roles_;          // of pairs
   std::pmr::vector<Free> free_;           // the last ones drivers
   std::size_t drivers_ = 0;
   std::pmr::vector<int> pair_drivers_;  // of pairs: the place of the driver in free_, or -1
+  std::pmr::vector<TiedCluster> tied_;
   std::pmr::vector<Clustered> clusters_;
   std::pmr::vector<Tree*> trees_;
   std::pmr::vector<NearPair*> pairs_;

@@ -39,6 +39,7 @@ double Island::stored_now() {
   double sum = 0, kinetic = 0;
   for (const Free& one : loose_bodies())
     sum += one.now.kinetic() - one.now.solid->mass * core_.settings.gravity.dot(one.now.center);
+  sum += tied_energy();
   for (const Clustered& one : clusters_) sum += stored_in(one, kinetic);
   return sum;
 }

@@ -257,6 +257,7 @@ double Island::stored(double& kinetic, bool start) {
     if (start) tree->step_kinetic = energy.kinetic;
     if (!start) tree->booked = energy.total();
   }
+  sum += tied_energy();
   for (const Clustered& one : clusters_) sum += tie_energy_in(one);
   for (const NearPair* pair : pairs_) sum += pair->stored;
   kinetic = moving;
@@ -269,6 +270,7 @@ double Island::stored(double& kinetic, bool start) {
 double Island::held_energy() const {
   double sum = 0;
   for (const Free& one : loose_bodies()) sum += core_.free_energy(one.body).total();
+  sum += held_tied_energy();
   for (Tree* tree : trees_) sum += core_.energy_of(*tree).total();
   for (const Clustered& one : clusters_)
     for (const SpringIndex tie : one.entry->ties) sum += core_.tie_energy(core_.springs[tie].is);
@@ -277,13 +279,18 @@ double Island::held_energy() const {
 
 /// Enters the state of the arrays into the energy ledger: scripts have made whatever differs from it later.
 void Island::book() {
-  for (const Free& one : loose_bodies()) {
+  const std::size_t first = tied_.empty() ? free_.size() : tied_.front().first, end = tied_end();
+  const std::span<const Free> loose = loose_bodies();
+  for (std::size_t i = 0; i < loose.size(); ++i) {
+    if (i >= first && i < end) continue;
+    const Free& one = loose[i];
     // Read back as it will be when a script sets something: a centre of mass off the origin is rounded on the way.
     const bool central = one.now.solid->center_of_mass == Vector3::Zero();
     core_.booked[one.body] = central
                                  ? one.now.kinetic() - one.now.solid->mass * core_.settings.gravity.dot(one.now.center)
                                  : core_.free_energy(one.body).total();
   }
+  book_tied();
   for (Tree* tree : trees_) {
     if (!booked_) tree->booked = core_.energy_of(*tree).total();
     tree->changed = false;

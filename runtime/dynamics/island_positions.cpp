@@ -60,7 +60,8 @@ void Island::push_apart(double h) {
 void Island::move_by_pushes(double fastest, double h) {
   contact::SolveSettings settings;
   // Only a part of an overlap is put right: how exactly does not matter, least where velocities are not exact either.
-  settings.iterations = accuracy_.direct ? accuracy_.iterations : std::max(4, accuracy_.iterations / 4);
+  const bool coarse = accuracy_.rung == Rung::Fast || accuracy_.rung == Rung::Balanced;
+  settings.iterations = coarse ? std::max(4, accuracy_.iterations / (accuracy_.direct ? 2 : 4)) : accuracy_.iterations;
   settings.direct = rows_.empty();
   settings.tolerance = std::max(settings.tolerance, 1e-3 * fastest);
   settings.meter = &meter_;
@@ -207,6 +208,7 @@ void Island::hold_off(double h) {
 void Island::book_moves(double sign) {
   double sum = 0;
   for (const Free& one : loose_bodies()) sum -= one.now.solid->mass * core_.settings.gravity.dot(one.now.center);
+  sum += tied_energy();
   for (const Clustered& one : clusters_) {
     for (const std::uint32_t index : one.entry->trees) {
       Tree& tree = *core_.trees[index];

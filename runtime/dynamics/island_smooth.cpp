@@ -27,10 +27,14 @@ void Island::move_driver(Free& one, double h) {
 
 void Island::smooth(double time, double h) {
   if (springs_move()) return smooth_springs(time, h);
-  free_work_ = 0;
+  free_work_ = tied_loss_ = 0;
   constexpr std::uint64_t kUnits = 10;  // of work, a body
   meter_.add(kUnits * free_.size());
-  for (Free& one : free_) {
+  smooth_tied(time, h);
+  const std::size_t first = tied_.empty() ? free_.size() : tied_.front().first, end = tied_end();
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    if (i >= first && i < end) continue;
+    Free& one = free_[i];
     if (one.driver) {
       move_driver(one, h);
       continue;

@@ -97,11 +97,12 @@ void Dynamics::Core::find_islands() {
 }
 
 /// The island of that number, in the place where islands are worked on.
-Island& Dynamics::Core::fill(std::size_t place, std::size_t number) {
+Island& Dynamics::Core::fill(std::size_t place, std::size_t number, double h) {
   if (islands.size() == place) islands.push_back(make_in<Island>(memory, *this, &shared));
   Island& island = *islands[place];
   island.clear();
   for (const std::uint32_t body : island_free.of(number)) island.add_free(body);
+  for (const std::uint32_t cluster : island_clusters.of(number)) island.add_tied(*clusters[cluster], h);
   for (const std::uint32_t pair : island_pairs.of(number)) island.add_drivers(near.at(pair));
   for (const std::uint32_t cluster : island_clusters.of(number)) island.add_cluster(*clusters[cluster]);
   for (const std::uint32_t pair : island_pairs.of(number)) island.add_pair(near.at(pair));
@@ -173,8 +174,14 @@ void Dynamics::Core::run(MechanicsClient& client, double start, double h, int de
   // hardly for more than a few. Several workers wait for one another at the end of each lot.
   const std::size_t most = settings.workers > 1 ? 64 : 4;
   std::size_t lot = 0, callers = 0;
+  const std::size_t items = near.movers().size() + island_pairs.size();
+  const std::uint64_t each = work == Meter::kNoBound || items == 0 ? work : work / items;
+  Energy alone;
   for (std::size_t i = 0; i < island_count; ++i) {
-    Island& island = fill(lot, i);
+    if (island_pairs.of(i).empty() && island_clusters.of(i).empty() && island_free.of(i).size() == 1 &&
+        step_alone(island_free.of(i).front(), start, h, each, alone))
+      continue;
+    Island& island = fill(lot, i, h);
     if (sleep_through(island)) continue;
     island.bound_work(part_of(work, island), bound.ended);
     if (island.calls_out()) {
@@ -187,6 +194,9 @@ void Dynamics::Core::run(MechanicsClient& client, double start, double h, int de
     lot = 0;
   }
   step_quiet(client.workers(), lot, start, h);
+  // At once, so that sums do not depend on how islands were put together in lots.
+  account.script_work += alone.script_work;
+  account.residual += alone.residual;
   constexpr int kDeepest = 64;  // handlers that make or free bodies, in one step
   for (std::size_t i = 0; i < callers; ++i) {
     std::pmr::vector<BodyIndex> mine(memory), others(memory);

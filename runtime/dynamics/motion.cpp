@@ -11,6 +11,7 @@
 #include "runtime/base/rotation_vector.hpp"
 #include "runtime/dynamics/stage.hpp"
 #include "runtime/dynamics/tied_bodies.hpp"
+#include "runtime/dynamics/tied_motion.hpp"
 #include "runtime/kinematics/free_motion.hpp"
 
 namespace breve {
@@ -72,8 +73,12 @@ void Dynamics::Core::build_clusters() {
         const std::uint32_t tree = tree_of(body);
         return tree == kNone ? -1 : trees[tree]->slot;
       };
-      for (const SpringIndex tie : entry->ties)
-        entry->tied->add(tie, number_of(springs[tie].is.a), number_of(springs[tie].is.b));
+      if (members.size() > 1) entry->points = make_in<TiedMotion>(memory, memory, std::span<Tree* const>(members));
+      for (const SpringIndex tie : entry->ties) {
+        const int a = number_of(springs[tie].is.a), b = number_of(springs[tie].is.b);
+        entry->tied->add(tie, a, b);
+        if (entry->points) entry->points->add(*this, tie, a, b);
+      }
     }
   }
   // Not before: what memory cut short is made anew.
@@ -181,17 +186,7 @@ bool semi_implicit(const Accuracy& accuracy) {
   return accuracy.scheme == articulated::Scheme::SemiImplicitEuler && accuracy.rung != Rung::Fast;
 }
 
-void move_free(FreeBody& body, const Accuracy& accuracy, const Vector3& gravity, double time, double h,
-               double& next_step, Meter& meter) {
-  const Vector3 pull = gravity + body.force / body.solid->mass;
-  if (semi_implicit(accuracy)) {
-    body.velocity += h * pull;
-    body.center += h * body.velocity;
-  } else {
-    // Nothing it depends on changes on the way: the parabola is exact.
-    body.center += h * (body.velocity + (0.5 * h) * pull);
-    body.velocity += h * pull;
-  }
+void turn_free(FreeBody& body, const Accuracy& accuracy, double time, double h, double& next_step, Meter& meter) {
   const bool still = body.spin == Vector3::Zero() && body.torque == Vector3::Zero();
   if (still) return;
   const bool plain = body.solid->round && body.torque == Vector3::Zero();
@@ -203,6 +198,20 @@ void move_free(FreeBody& body, const Accuracy& accuracy, const Vector3& gravity,
   } else {
     turn_by_scheme(body, accuracy, time, h, next_step, meter);
   }
+}
+
+void move_free(FreeBody& body, const Accuracy& accuracy, const Vector3& gravity, double time, double h,
+               double& next_step, Meter& meter) {
+  const Vector3 pull = gravity + body.force / body.solid->mass;
+  if (semi_implicit(accuracy)) {
+    body.velocity += h * pull;
+    body.center += h * body.velocity;
+  } else {
+    // Nothing it depends on changes on the way: the parabola is exact.
+    body.center += h * (body.velocity + (0.5 * h) * pull);
+    body.velocity += h * pull;
+  }
+  turn_free(body, accuracy, time, h, next_step, meter);
 }
 
 }  // namespace breve

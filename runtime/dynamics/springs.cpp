@@ -59,6 +59,7 @@ void Dynamics::set_spring(SpringIndex spring, const SpringDescription& descripti
   entry.is.a = a;
   entry.is.b = b;
   entry.set = true;
+  ++core_->springs_version;
   for (const BodyIndex end : {a, b}) core_->near.wake(end);
 }
 

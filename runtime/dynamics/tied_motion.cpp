@@ -1,0 +1,208 @@
+// Drifts of the points and kicks by the springs.
+#include "runtime/dynamics/tied_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace breve {
+
+namespace {
+
+// Of the fastest oscillation in a part, rad. The scheme of order 4 is stable up to 2.6; energy errs by 3 in 1,000 at 1,
+// and by 4 in 100 at 1.75, where it is all in that oscillation. Leapfrog's period errs by 1 in 10,000 at 0.05.
+constexpr double kMostTurn = 1, kMostTurnFast = 1.75, kSlowTurn = 0.05, kStableTurn = 2;
+constexpr double kMostParts = 32;  // finer steps are left to step control
+
+bool acts_alone(const Dynamics::Core& core, const Tree& tree) {
+  return !core.find(tree.links.front().body)->force_method;
+}
+
+}  // namespace
+
+TiedMotion::TiedMotion(std::pmr::memory_resource* memory, std::span<Tree* const> trees)
+    : trees_(trees.begin(), trees.end(), memory),
+      points_(trees.size(), Point(), memory),
+      pulls_(trees.size(), Vector3(Vector3::Zero()), memory),
+      drags_(trees.size(), Vector3(Vector3::Zero()), memory),
+      ties_(memory),
+      still_(memory) {
+  for (std::size_t i = 0; i < trees_.size(); ++i) points_[i].inverse_mass = 1 / trees_[i]->links.front().solid.mass;
+}
+
+void TiedMotion::add(const Dynamics::Core& core, SpringIndex spring, int a, int b) {
+  const SpringDescription& is = core.springs[spring].is;
+  const auto number = [&](int end, BodyIndex body, const Vector3& at) {
+    if (end >= 0) return end;
+    still_.emplace_back(body, at);
+    points_.emplace_back();
+    drags_.push_back(Vector3::Zero());
+    return static_cast<int>(points_.size()) - 1;
+  };
+  Tie tie{};
+  tie.spring = spring;
+  tie.a = number(a, is.a, is.point_a);
+  tie.b = number(b, is.b, is.point_b);
+  ties_.push_back(tie);
+}
+
+/// What only changes if somebody sets a spring.
+bool TiedMotion::read(const Dynamics::Core& core) {
+  const auto bodies = static_cast<int>(trees_.size());
+  std::pmr::vector<double> pulled(points_.size(), 0.0, core.memory);
+  const auto central = [&](int end, const Vector3& at) {
+    if (end < bodies) return at == trees_[static_cast<std::size_t>(end)]->links.front().origin;
+    still_[static_cast<std::size_t>(end - bodies)].second = at;
+    return true;
+  };
+  damped_ = false;
+  for (Tie& tie : ties_) {
+    const SpringDescription& is = core.springs[tie.spring].is;
+    if (is.mode != SpringMode::Both || is.maximum_force != 0 || !central(tie.a, is.point_a) ||
+        !central(tie.b, is.point_b))
+      return false;
+    tie.length = is.length;
+    tie.strength = is.strength;
+    tie.damping = is.damping;
+    damped_ = damped_ || is.damping > 0;
+    const auto a = static_cast<std::size_t>(tie.a), b = static_cast<std::size_t>(tie.b);
+    tie.yields = points_[a].inverse_mass + points_[b].inverse_mass;
+    pulled[a] += is.strength * points_[a].inverse_mass;
+    pulled[b] += is.strength * points_[b].inverse_mass;
+  }
+  // Gershgorin's bound of the squares of frequencies, body by body.
+  double most = 0;
+  for (const Tie& tie : ties_)
+    most = std::max(most, pulled[static_cast<std::size_t>(tie.a)] + pulled[static_cast<std::size_t>(tie.b)]);
+  fastest_ = std::sqrt(most);
+  part_ = 0;
+  return true;
+}
+
+bool TiedMotion::begin(const Dynamics::Core& core, Rung rung, double h) {
+  most_turn_ = rung == Rung::Fast ? kMostTurnFast : kMostTurn;
+  if (version_ != core.springs_version) {
+    version_ = core.springs_version;
+    plain_ = read(core);
+  }
+  if (!plain_ || !(fastest_ * h <= kMostParts * most_turn_)) return false;
+  for (std::size_t i = 0; i < still_.size(); ++i) {
+    const auto& [body, at] = still_[i];
+    if (core.bodies->velocity(body) != Vector3::Zero() || core.bodies->rotational_velocity(body) != Vector3::Zero())
+      return false;
+    const Pose pose = core.pose(body);
+    points_[trees_.size() + i].center = pose.location + pose.orientation * at;
+  }
+  return std::all_of(trees_.begin(), trees_.end(), [&core](const Tree* tree) { return acts_alone(core, *tree); });
+}
+
+/// What a damper does in `part` seconds.
+void TiedMotion::set_part(double part) {
+  if (part_ == part) return;
+  part_ = part;
+  for (Tie& tie : ties_) {
+    const double rate = tie.damping * tie.yields * part;
+    // (1 - exp(-rate)) / yields, and half of (1 - exp(-2 rate)) / yields.
+    tie.share = tie.yields > 0 ? -std::expm1(-rate) / tie.yields : 0;
+    tie.loss = tie.yields > 0 ? -0.5 * std::expm1(-2 * rate) / tie.yields : 0;
+  }
+}
+
+void TiedMotion::drift(double time) {
+  for (std::size_t i = 0; i < trees_.size(); ++i) points_[i].center += time * points_[i].velocity;
+}
+
+/// @param scale  of the springs' forces
+void TiedMotion::kick(double time, double scale) {
+  Point* const points = points_.data();
+  const double share = time * scale;
+  for (Tie& tie : ties_) {
+    Point &a = points[tie.a], &b = points[tie.b];
+    const Vector3 way = b.center - a.center;
+    const double length = way.norm();
+    tie.force = 0;
+    if (!(length > 0)) continue;
+    tie.force = tie.strength * (length - tie.length);
+    const double push = share * tie.force / length;
+    const double to_a = push * a.inverse_mass, to_b = push * b.inverse_mass;
+    a.velocity += to_a * way;
+    b.velocity -= to_b * way;
+  }
+  for (std::size_t i = 0; i < trees_.size(); ++i) points_[i].velocity += time * pulls_[i];
+}
+
+void TiedMotion::damp(double part) {
+  if (!damped_) return;
+  set_part(part);
+  Point* const points = points_.data();
+  for (Tie& tie : ties_) {
+    Point &a = points[tie.a], &b = points[tie.b];
+    const Vector3 way = b.center - a.center;
+    const double length = way.norm();
+    tie.drag = 0;
+    if (!(length > 0)) continue;
+    const double inverse = 1 / length, speed = inverse * way.dot(b.velocity - a.velocity);
+    tie.drag = tie.damping * speed;
+    const Vector3 impulse = (tie.share * speed * inverse) * way;
+    a.velocity += a.inverse_mass * impulse;
+    b.velocity -= b.inverse_mass * impulse;
+    drags_[static_cast<std::size_t>(tie.a)] += impulse;
+    drags_[static_cast<std::size_t>(tie.b)] -= impulse;
+    loss_ += tie.loss * speed * speed;
+  }
+}
+
+int TiedMotion::step(double h, bool in_one, Meter& meter) {
+  constexpr double kXi = 0.1786178958448091, kLambda = -0.2123418310626054, kChi = -0.06626458266981849;
+  loss_ = 0;
+  std::fill(drags_.begin(), drags_.end(), Vector3(Vector3::Zero()));
+  const double turn = fastest_ * h;
+  const bool slow = turn <= kSlowTurn || in_one;
+  const int parts = slow ? 1 : static_cast<int>(std::ceil(turn / most_turn_));
+  const double part = h / parts, scale = in_one ? std::min(1.0, std::pow(kStableTurn / turn, 2)) : 1;
+  const int evaluations = parts * (!slow ? 4 : damped_ ? 2 : 1);
+  meter.add(static_cast<std::uint64_t>(evaluations) * (1 + (ties_.size() + points_.size()) / 4));
+  for (int i = 0; i < parts; ++i) {
+    if (slow) {
+      drift(0.5 * part);
+      kick(damped_ ? 0.5 * part : part, scale);
+      damp(part);
+      if (damped_) kick(0.5 * part, scale);
+      drift(0.5 * part);
+      continue;
+    }
+    constexpr double kOuter = 0.5 * (1 - 2 * kLambda), kMiddle = 0.5 * (1 - 2 * (kChi + kXi));
+    drift(kXi * part);
+    kick(kOuter * part, 1);
+    drift(kChi * part);
+    kick(kLambda * part, 1);
+    drift(kMiddle * part);
+    damp(part);
+    drift(kMiddle * part);
+    kick(kLambda * part, 1);
+    drift(kChi * part);
+    kick(kOuter * part, 1);
+    drift(kXi * part);
+  }
+  return evaluations;
+}
+
+double TiedMotion::energy() {
+  double sum = 0;
+  for (Tie& tie : ties_) {
+    const Vector3 way = points_[static_cast<std::size_t>(tie.b)].center - points_[static_cast<std::size_t>(tie.a)].center;
+    const double length = way.norm(), stretch = length - tie.length;
+    tie.stored = length > 0 ? 0.5 * tie.strength * stretch * stretch : 0;
+    sum += tie.stored;
+  }
+  return sum;
+}
+
+void TiedMotion::write(Dynamics::Core& core) const {
+  for (const Tie& tie : ties_) {
+    SpringEntry& spring = core.springs[tie.spring];
+    spring.force = tie.force + tie.drag;
+    spring.booked = tie.stored;
+  }
+}
+
+}  // namespace breve
