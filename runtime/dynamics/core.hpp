@@ -73,7 +73,7 @@ struct ClusterEntry : InMemory {
   std::pmr::vector<std::uint32_t> trees;  // in their order
   std::pmr::vector<SpringIndex> ties;     // in the order of their indices
   std::unique_ptr<Cluster> system;
-  std::unique_ptr<TiedBodies> tied;  // if they are bodies without joints, and more than one or tied to something
+  std::unique_ptr<TiedBodies> tied;    // if they are bodies without joints, and more than one or tied to something
   std::unique_ptr<TiedMotion> points;  // likewise, if they are more than one: as their centres move where that is all
 };
 

@@ -30,7 +30,7 @@ class Island : public InMemory {
   // --- what belongs to it, set before a step
   void clear();
   void add_free(BodyIndex body);
-  void add_drivers(const NearPair& pair);   // after all free bodies: of each pair in turn
+  void add_drivers(const NearPair& pair);  // after all free bodies: of each pair in turn
   /// If its bodies move as points for h seconds: they are like free bodies. After all of these.
   void add_tied(ClusterEntry& cluster, double h);
   void add_cluster(ClusterEntry& cluster);  // after all free bodies; nothing if it is tied

@@ -10,7 +10,8 @@ namespace breve {
 void Island::add_tied(ClusterEntry& cluster, double h) {
   const Accuracy& accuracy = cluster.system->accuracy();
   const bool coarse = accuracy.rung == Rung::Fast || accuracy.rung == Rung::Balanced;
-  if (!cluster.points || !coarse || accuracy.custom || accuracy.contact_springs || !cluster.points->begin(core_, accuracy.rung, h))
+  if (!cluster.points || !coarse || accuracy.custom || accuracy.contact_springs ||
+      !cluster.points->begin(core_, accuracy.rung, h))
     return;
   tied_.push_back({&cluster, free_.size()});
   for (const Tree* tree : cluster.points->trees()) add_free(tree->links.front().body);

@@ -1,5 +1,5 @@
-// The step of a free body that nothing is near and nothing ties: most islands of a crowd are such bodies. What an island
-// does for them is a straight line here: the same motion, the same books.
+// The step of a free body that nothing is near and nothing ties: most islands of a crowd are such bodies. What an
+// island does for them is a straight line here: the same motion, the same books.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,7 @@ namespace breve {
 
 namespace {
 
-constexpr double kMostTurn = 0.5;     // rad in a sub-step: beyond it the guard is to look
+constexpr double kMostTurn = 0.5;  // rad in a sub-step: beyond it the guard is to look
 constexpr double kMostParts = 1000;
 constexpr std::uint64_t kUnits = 10;  // of work, a sub-step
 

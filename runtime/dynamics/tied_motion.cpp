@@ -189,7 +189,8 @@ int TiedMotion::step(double h, bool in_one, Meter& meter) {
 double TiedMotion::energy() {
   double sum = 0;
   for (Tie& tie : ties_) {
-    const Vector3 way = points_[static_cast<std::size_t>(tie.b)].center - points_[static_cast<std::size_t>(tie.a)].center;
+    const Vector3 way =
+        points_[static_cast<std::size_t>(tie.b)].center - points_[static_cast<std::size_t>(tie.a)].center;
     const double length = way.norm(), stretch = length - tie.length;
     tie.stored = length > 0 ? 0.5 * tie.strength * stretch * stretch : 0;
     sum += tie.stored;

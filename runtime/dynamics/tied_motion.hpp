@@ -29,7 +29,8 @@ class TiedMotion : public InMemory {
   /// Reads what the springs are set to. Call before each step, and after scripts ran.
   /// @param rung  `fast` takes longer parts
   /// @param h     s, that the step lasts
-  /// @return      whether this is all there is: springs between centres of mass that pull and push without bound, not too
+  /// @return      whether this is all there is: springs between centres of mass that pull and push without bound, not
+  /// too
   ///              fast for the step, bodies that no script is asked for, and other ends that stand still
   bool begin(const Dynamics::Core& core, Rung rung, double h);
 
@@ -76,11 +77,11 @@ class TiedMotion : public InMemory {
   std::pmr::vector<Vector3> pulls_, drags_;
   std::pmr::vector<Tie> ties_;
   std::pmr::vector<std::pair<BodyIndex, Vector3>> still_;  // ends that do not move, in the bodies' frames
-  std::uint64_t version_ = 0;          // of the springs' settings, that was read
+  std::uint64_t version_ = 0;                              // of the springs' settings, that was read
   bool plain_ = false, damped_ = false;
-  double fastest_ = 0;  // rad/s: no oscillation is faster
+  double fastest_ = 0;    // rad/s: no oscillation is faster
   double most_turn_ = 1;  // rad, of that, in a part
-  double part_ = 0;     // s, that shares were made for
+  double part_ = 0;       // s, that shares were made for
   double loss_ = 0;
 };
 
