@@ -199,12 +199,13 @@ struct Dynamics::Core : MechanicsCore {
   void run(MechanicsClient& client, double start, double h, int depth);
   void run_only(MechanicsClient& client, double start, double h, int depth, std::span<const BodyIndex> bodies);
   void report_lasting(MechanicsClient& client, double moment);
-  // lone_body.cpp
-  bool step_alone(BodyIndex body, double start, double h, std::uint64_t work, Energy& sum);
   bool sleep_through(Island& island);
   void note_rest(Island& island, double h);
   void take_result(Island& island);
   ~Core();
+
+  // lone_body.cpp
+  bool step_alone(std::size_t island, double start, double h, std::uint64_t work, Energy& sum);
 
   // forget.cpp
   void forget(BodyIndex body);

@@ -183,7 +183,6 @@ class Island : public InMemory {
     return point - free_[static_cast<std::size_t>(free.mover)].now.center;
   }
   Vector3 point_velocity(BodyIndex body, const Vector3& point) const;
-
   // island_smooth.cpp
   static void move_driver(Free& one, double h);
   /// Where a body is in this island.
@@ -202,7 +201,14 @@ class Island : public InMemory {
   std::span<Free> loose_bodies() { return {free_.data(), free_.size() - drivers_}; }
   std::span<const Free> loose_bodies() const { return {free_.data(), free_.size() - drivers_}; }
   void smooth(double time, double h);
-
+  void smooth_once(Clustered& one, double time, double h);
+  static void forget_parts(Clustered& one);
+  void smooth_fast(Clustered& one, double time, double h);
+  bool stiff(const Clustered& one) const;
+  double gain_of(Clustered& one, double time, double h, int parts);
+  double tie_energy_in(const Clustered& one) const;
+  double stored_in(const Clustered& one, double& kinetic);
+  bool coarse() const;
   // island_tied.cpp
   bool tied(const ClusterEntry& cluster) const;
   std::size_t tied_end() const;
@@ -214,23 +220,12 @@ class Island : public InMemory {
   void correct_tied_drag();
   void write_tied();
   void book_tied();
-
-  void smooth_once(Clustered& one, double time, double h);
-  static void forget_parts(Clustered& one);
-  void smooth_fast(Clustered& one, double time, double h);
-  bool stiff(const Clustered& one) const;
-  double gain_of(Clustered& one, double time, double h, int parts);
-  double tie_energy_in(const Clustered& one) const;
-  double stored_in(const Clustered& one, double& kinetic);
-  bool coarse() const;
-
   // island_books.cpp
   void open_books();  // this and what follows: island_books.cpp
   void note_smooth();
   void close_books();
   void take_back_rest();
   double stored_now();
-
   // island_momentum.cpp
   bool loose(const Clustered& one) const;
   void smooth_whole(Clustered& one, double time, double h);
@@ -244,7 +239,6 @@ class Island : public InMemory {
   void note_wholes(articulated::Vector Tree::*velocity, bool now);
   enum class Given : std::uint8_t { All, Places, Pushes };
   void keep_wholes(double moved_h, Given given);
-
   // island_rows.cpp
   double size_of_pair(const NearPair& pair) const;
   Speeds speeds_of(const contact::Law& law, double size, double h) const;
@@ -269,7 +263,6 @@ class Island : public InMemory {
   double* rows_of(Tree& tree, int count);
   void respond(Tree& tree, const double* j, double* r) const;
   bool strikes(double h) const;
-
   // island_results.cpp
   void solve(double h);  // this and what follows: island_results.cpp
   void solve_rows();
@@ -285,7 +278,6 @@ class Island : public InMemory {
   void note_forces(double h);
   void add_force(BodyIndex body, const Vector3& point, const Vector3& force);
   void keep_warm(double h);
-
   // island_rebound.cpp
   bool find_rebounds(double h);
   void read_row_rates(std::pmr::vector<double>& rates) const;
@@ -294,7 +286,6 @@ class Island : public InMemory {
   void mix(double share);
   void reset_velocities();
   bool is_motor(std::size_t scalar) const { return scalar - limit_rows() < motors_.size(); }
-
   // island_predict.cpp
   const WarmPoint* warm_of(const Touch& touch) const;
   void predict(double h);
@@ -305,7 +296,6 @@ class Island : public InMemory {
   bool strained() const;
   void forget_prediction();
   void solve_after(double h);
-
   // island_step.cpp
   void step_quiet(double start, double h);
   void step_fast(double start, double h);
@@ -332,7 +322,6 @@ class Island : public InMemory {
   bool has_rings() const;
   void place_links();
   double longest(double left, bool lies) const;
-
   // island_impacts.cpp
   Event seek(double time, double h);
   bool touches_lightly(std::size_t pair, const Pose& a, const Pose& b, double h, Event& event) const;
@@ -348,7 +337,6 @@ class Island : public InMemory {
   void collide(double time);
   void rebound(std::size_t bound, double time);
   static Motion chord(const Pose& from, const Pose& to, double h);
-
   // island_positions.cpp
   void push_apart(double h);
   void move_by_pushes(double fastest, double h);
@@ -366,7 +354,6 @@ class Island : public InMemory {
   bool hold_rings(double time, double h);
   double read_ring_errors();
   void close_rings();
-
   // island_springs.cpp
   struct SprungPoint;
   class SprungMotion;
@@ -387,7 +374,6 @@ class Island : public InMemory {
   std::size_t pair_of_point(int point) const;
   double gap_of_point(int point, double& rate);
   void note_spring_forces();
-
   // island_guard.cpp
   /// What went wrong, the body that shows it, and how much: J, m or a ratio.
   struct Trouble {
@@ -419,7 +405,6 @@ class Island : public InMemory {
   void book();
   BodyIndex any_body() const;
   void intervene(const Trouble& trouble, GuardAction action, double time);
-
   // island_watch.cpp
   BodyIndex not_finite() const;  // the first that shows it
   Trouble judge_residual(double residual, double turnover, double before) const;

@@ -151,6 +151,17 @@ bool Dynamics::Core::locates() const {
   return false;
 }
 
+namespace {
+
+void combine_laws(NearPairs& near, const Bodies& bodies) {
+  near.each([&bodies](const PairKey& key, NearPair& pair) {
+    pair.law = contact::combine(bodies.material(key.a), bodies.material(key.b));
+    pair.law_known = true;
+  });
+}
+
+}  // namespace
+
 void Dynamics::Core::run(MechanicsClient& client, double start, double h, int depth) {
   take_changes();
   settle_books(true);
@@ -160,11 +171,7 @@ void Dynamics::Core::run(MechanicsClient& client, double start, double h, int de
     key.pushes = pushes(key.a, key.b, client);
     key.handled = client.handled(key.a, key.b);
   });
-  const Bodies& all = *bodies;
-  near.each([&](const PairKey& key, NearPair& pair) {
-    pair.law = contact::combine(all.material(key.a), all.material(key.b));
-    pair.law_known = true;
-  });
+  combine_laws(near, *bodies);
   enter_books();
   find_islands();
   counters.work += near.movers().size() + island_pairs.size();
@@ -174,13 +181,9 @@ void Dynamics::Core::run(MechanicsClient& client, double start, double h, int de
   // hardly for more than a few. Several workers wait for one another at the end of each lot.
   const std::size_t most = settings.workers > 1 ? 64 : 4;
   std::size_t lot = 0, callers = 0;
-  const std::size_t items = near.movers().size() + island_pairs.size();
-  const std::uint64_t each = work == Meter::kNoBound || items == 0 ? work : work / items;
   Energy alone;
   for (std::size_t i = 0; i < island_count; ++i) {
-    if (island_pairs.of(i).empty() && island_clusters.of(i).empty() && island_free.of(i).size() == 1 &&
-        step_alone(island_free.of(i).front(), start, h, each, alone))
-      continue;
+    if (step_alone(i, start, h, work, alone)) continue;
     Island& island = fill(lot, i, h);
     if (sleep_through(island)) continue;
     island.bound_work(part_of(work, island), bound.ended);

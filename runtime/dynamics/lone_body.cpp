@@ -24,10 +24,14 @@ bool finite(const FreeBody& body) {
 
 }  // namespace
 
-/// @param work  that it may take
+/// @param work  that all islands may take
 /// @param sum   what scripts did, and the residual
 /// @return      false if that is an island's to do; nothing has changed then
-bool Dynamics::Core::step_alone(BodyIndex body, double start, double h, std::uint64_t work, Energy& sum) {
+bool Dynamics::Core::step_alone(std::size_t island, double start, double h, std::uint64_t work, Energy& sum) {
+  if (!island_pairs.of(island).empty() || !island_clusters.of(island).empty()) return false;
+  if (island_free.of(island).size() != 1) return false;
+  const BodyIndex body = island_free.of(island).front();
+  if (work != Meter::kNoBound) work /= near.movers().size() + island_pairs.size();
   if (settings.sleeping || over()) return false;
   const Accuracy& accuracy = accuracy_of(body);
   FreeBody free = read_free(*bodies, body);

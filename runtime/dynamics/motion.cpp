@@ -21,6 +21,27 @@ namespace breve {
 ClusterEntry::ClusterEntry(std::pmr::memory_resource* memory) : trees(memory), ties(memory) {}
 ClusterEntry::~ClusterEntry() = default;
 
+namespace {
+
+/// Springs of a cluster of bodies without joints.
+void tie_bodies(const Dynamics::Core& core, ClusterEntry& entry, std::span<Tree* const> members) {
+  std::pmr::memory_resource* memory = core.memory;
+  entry.tied = make_in<TiedBodies>(memory, memory, members);
+  if (members.size() > 1) entry.points = make_in<TiedMotion>(memory, memory, members);
+  for (std::size_t i = 0; i < members.size(); ++i) members[i]->slot = static_cast<int>(i);
+  const auto number_of = [&core](BodyIndex body) {
+    const BodyEntry* known = core.find(body);
+    return !known || known->tree == kNone ? -1 : core.trees[known->tree]->slot;
+  };
+  for (const SpringIndex tie : entry.ties) {
+    const int a = number_of(core.springs[tie].is.a), b = number_of(core.springs[tie].is.b);
+    entry.tied->add(tie, a, b);
+    if (entry.points) entry.points->add(core, tie, a, b);
+  }
+}
+
+}  // namespace
+
 void Dynamics::Core::build_clusters() {
   clusters.clear();
   std::pmr::vector<std::uint32_t> set(trees.size(), memory);
@@ -66,20 +87,7 @@ void Dynamics::Core::build_clusters() {
       if (!finest || finer(one.rung, finest->rung)) finest = &one;
     }
     entry->system = make_in<Cluster>(memory, memory, members, *finest);
-    if (!entry->ties.empty() && TiedBodies::are(members)) {
-      entry->tied = make_in<TiedBodies>(memory, memory, std::span<Tree* const>(members));
-      for (std::size_t i = 0; i < members.size(); ++i) members[i]->slot = static_cast<int>(i);
-      const auto number_of = [&](BodyIndex body) {
-        const std::uint32_t tree = tree_of(body);
-        return tree == kNone ? -1 : trees[tree]->slot;
-      };
-      if (members.size() > 1) entry->points = make_in<TiedMotion>(memory, memory, std::span<Tree* const>(members));
-      for (const SpringIndex tie : entry->ties) {
-        const int a = number_of(springs[tie].is.a), b = number_of(springs[tie].is.b);
-        entry->tied->add(tie, a, b);
-        if (entry->points) entry->points->add(*this, tie, a, b);
-      }
-    }
+    if (!entry->ties.empty() && TiedBodies::are(members)) tie_bodies(*this, *entry, members);
   }
   // Not before: what memory cut short is made anew.
   clusters_changed = integrators_changed = false;
