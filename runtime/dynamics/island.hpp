@@ -7,20 +7,12 @@
 
 #include "runtime/contact/impacts.hpp"
 #include "runtime/contact/solver.hpp"
+#include "runtime/dynamics/island_result.hpp"
 #include "runtime/dynamics/motion.hpp"
 #include "runtime/dynamics/near_pairs.hpp"
 #include "runtime/dynamics/stage.hpp"
 
 namespace breve {
-
-/// What an island was found to have, and what its step took; added to the world's in the order of islands.
-struct IslandResult {
-  DynamicsCounters counters;
-  Energy account;
-  std::pmr::vector<Impact> impacts;
-  std::pmr::vector<Intervention> interventions;
-  explicit IslandResult(std::pmr::memory_resource* memory) : impacts(memory), interventions(memory) {}
-};
 
 class Island : public InMemory {
  public:

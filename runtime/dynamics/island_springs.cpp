@@ -24,7 +24,8 @@ double reduced(double a, double b) { return a > 0 && b > 0 ? a * b / (a + b) : s
 }  // namespace
 
 bool Island::has_contact_springs() const {
-  return accuracy_.contact_springs && accuracy_.locate_impacts && tied_.empty() && (accuracy_.link_springs || trees_.empty());
+  return accuracy_.contact_springs && accuracy_.locate_impacts && tied_.empty() &&
+         (accuracy_.link_springs || trees_.empty());
 }
 
 bool Island::springs_for(const contact::Law& law) const {

@@ -75,8 +75,8 @@ Island::Trouble Island::foresee(double h) {
   return worst.value > kMostDamping ? worst : Trouble{};
 }
 
-/// Where something turns farther in a sub-step than rules of fixed steps follow, sub-steps are shorter, in a step of h
-/// seconds: what spins fast is nothing that the guard would have to tell of.
+/// Shortens the sub-steps of a step of h seconds in which a body rotates farther than the integrator can follow, so that
+/// a fast spin is no event of the guard.
 void Island::follow_turns(double h) {
   constexpr double kMostParts = 16;  // of a sub-step
   const double part = accuracy_.step > 0 ? std::min(accuracy_.step, h) : h;

@@ -8,10 +8,10 @@ namespace breve {
 
 namespace {
 
-// Of the fastest oscillation in a part, rad. The scheme of order 4 is stable up to 2.6; energy errs by 3 in 1,000 at 1,
+// How far the fastest oscillation rotates in a part, rad. The scheme of order 4 is stable up to 2.6; energy errs by 3 in 1,000 at 1,
 // and by 4 in 100 at 1.75, where it is all in that oscillation. Leapfrog's period errs by 1 in 10,000 at 0.05.
-constexpr double kMostTurn = 1, kMostTurnFast = 1.75, kSlowTurn = 0.05, kStableTurn = 2;
-constexpr double kMostParts = 32;  // finer steps are left to step control
+constexpr double kPartTurn = 1, kPartTurnFast = 1.75, kSlowTurn = 0.05, kStableTurn = 2;
+constexpr double kMostTiedParts = 32;  // finer steps are left to step control
 
 bool acts_alone(const Dynamics::Core& core, const Tree& tree) {
   return !core.find(tree.links.front().body)->force_method;
@@ -79,12 +79,12 @@ bool TiedMotion::read(const Dynamics::Core& core) {
 }
 
 bool TiedMotion::begin(const Dynamics::Core& core, Rung rung, double h) {
-  most_turn_ = rung == Rung::Fast ? kMostTurnFast : kMostTurn;
+  most_turn_ = rung == Rung::Fast ? kPartTurnFast : kPartTurn;
   if (version_ != core.springs_version) {
     version_ = core.springs_version;
     plain_ = read(core);
   }
-  if (!plain_ || !(fastest_ * h <= kMostParts * most_turn_)) return false;
+  if (!plain_ || !(fastest_ * h <= kMostTiedParts * most_turn_)) return false;
   for (std::size_t i = 0; i < still_.size(); ++i) {
     const auto& [body, at] = still_[i];
     if (core.bodies->velocity(body) != Vector3::Zero() || core.bodies->rotational_velocity(body) != Vector3::Zero())

@@ -44,7 +44,7 @@ class TiedMotion : public InMemory {
   /// m/s^2, by all that does not depend on where bodies are.
   void set_pull(std::size_t body, const Vector3& pull) { pulls_[body] = pull; }
 
-  /// Moves the points by h seconds. What is too fast for that is taken as slower if there may be only one part.
+  /// Moves the points by h seconds. Springs that are too stiff for one part count as softer if `in_one`.
   /// @return  evaluations of the forces
   int step(double h, bool in_one, Meter& meter);
   double loss() const { return loss_; }  // J, in the dampers, in the last step
@@ -52,7 +52,7 @@ class TiedMotion : public InMemory {
   const Vector3& drag(std::size_t body) const { return drags_[body]; }
   /// J, of the springs where the points are.
   double energy();
-  /// Forces and energies to the springs, for who asks and for the books; after energy().
+  /// Writes forces and energies to the springs, for callers that ask and for the books; after energy().
   void write(Dynamics::Core& core) const;
 
  private:
