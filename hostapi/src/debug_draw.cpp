@@ -69,7 +69,7 @@ class DebugPainter {
 
   Color color_of(BodyIndex body) const {
     const Appearance& appearance = bodies_.appearance(body);
-    const double dim = world_.dynamics().asleep(body) ? 0.5 : 1;
+    const double dim = world_.mechanics().asleep(body) ? 0.5 : 1;
     return {{dim * appearance.color[0], dim * appearance.color[1], dim * appearance.color[2], 1}};
   }
 
@@ -116,11 +116,11 @@ class DebugPainter {
     if (!object) return;
     if (steve::is_library_kind(*object, "Joint")) {
       const JointIndex joint = steve::joint_of(*handle_.machine, *object);
-      if (joint != kNoJoint) paint_joint(world_.dynamics().joint(joint));
+      if (joint != kNoJoint) paint_joint(world_.mechanics().joint(joint));
     } else if (steve::is_library_kind(*object, "Spring")) {
       const SpringIndex spring = steve::spring_of(*handle_.machine, *object);
       if (spring == kNoSpring) return;
-      const SpringDescription& is = world_.dynamics().spring(spring);
+      const SpringDescription& is = world_.mechanics().spring(spring);
       line(on_body(is.a, is.point_a), on_body(is.b, is.point_b), kOrange);
     }
   }
@@ -151,7 +151,7 @@ class DebugPainter {
   }
 
   void paint_impacts() const {
-    for (const Impact& impact : world_.dynamics().impacts()) {
+    for (const Impact& impact : world_.mechanics().impacts()) {
       point(impact.point, kOrange);
       line(impact.point, impact.point + draw_.impulse_scale * impact.impulse, kOrange);
     }

@@ -76,7 +76,7 @@ Island::Trouble Island::foresee(double h) {
 }
 
 /// Shortens the sub-steps of a step of h seconds in which a body rotates farther than the integrator can follow, so that
-/// a fast spin is no event of the guard.
+/// a fast spin needs no guard.
 void Island::follow_turns(double h) {
   constexpr double kMostParts = 16;  // of a sub-step
   const double part = accuracy_.step > 0 ? std::min(accuracy_.step, h) : h;

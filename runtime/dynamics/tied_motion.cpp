@@ -8,8 +8,9 @@ namespace breve {
 
 namespace {
 
-// How far the fastest oscillation rotates in a part, rad. The scheme of order 4 is stable up to 2.6; energy errs by 3 in 1,000 at 1,
-// and by 4 in 100 at 1.75, where it is all in that oscillation. Leapfrog's period errs by 1 in 10,000 at 0.05.
+// How far the fastest oscillation rotates in a part, rad. The scheme of order 4 is stable up to 2.6; energy errs by 3
+// in 1,000 at 1, and by 4 in 100 at 1.75, where it is all in that oscillation. Leapfrog's period errs by 1 in 10,000 at
+// 0.05.
 constexpr double kPartTurn = 1, kPartTurnFast = 1.75, kSlowTurn = 0.05, kStableTurn = 2;
 constexpr double kMostTiedParts = 32;  // finer steps are left to step control
 
