@@ -32,6 +32,9 @@ constexpr double kNear[] = {1e-3, 1e-6, 0};
 constexpr double kFirstStiffness = 1e3, kLeastStiffness = 0.1, kMostStiffness = 1e8;
 constexpr double kRoundOff = 1e-15;  // of velocities at rows, per unit
 
+/// Impulses that stop fast or heavy bodies are not known better than to this share of what they change.
+constexpr double kRelative = 2e-12;
+
 }  // namespace
 
 double largest_change(const Workspace& work) {
@@ -43,24 +46,22 @@ double largest_change(const Workspace& work) {
 
 namespace {
 
-double attainable(const Workspace& work, const Tolerance& tolerance) {
-  return tolerance.absolute + tolerance.relative * largest_change(work);
-}
+double attainable(const Workspace& work, double tolerance) { return tolerance + kRelative * largest_change(work); }
 
 /// Centres from the impulses of the island: stiffer while that goes well, softer where it does not.
 /// @param most      centres
 /// @param failures  as many may come to nothing
 /// @param left      the violation; in and out
 /// @return          whether it is within the tolerance; the island is at the best centre in any case
-bool approach(Newton& newton, const Workspace& work, double stiffness, int most, int failures,
-              const Tolerance& tolerance, LinearSolves& solves, double& left) {
+bool approach(Newton& newton, const Workspace& work, double stiffness, int most, int failures, double tolerance,
+              LinearSolves& solves, double& left) {
   newton.begin();
   newton.keep();
   // Round-off of velocities, this much larger in the impulses, is not to be seen.
   const double stiffest = std::min(kMostStiffness, attainable(work, tolerance) / (kRoundOff * largest_change(work)));
   stiffness = std::clamp(stiffness, kLeastStiffness, stiffest);
   for (int i = 0; i < most && !solves.spent(); ++i) {
-    const bool settled = newton.settle(stiffness, attainable(work, tolerance), solves);
+    const bool settled = newton.settle(stiffness, tolerance, solves);
     const double now = newton.take();
     if (now < left) {
       const bool fast = now < 0.03 * left;
@@ -112,14 +113,14 @@ namespace {
 
 /// Sweeps from the last step's impulses, as long as each is worth it. Feet far apart hardly feel one another: some
 /// sweeps solve them, or come so near that Newton's method converges from there. Each costs a small part of its steps.
-void sweep_near(Workspace& work, const Tolerance& tolerance) {
+void sweep_near(Workspace& work, double tolerance) {
   constexpr int kMost = 24, kPatience = 2;
   constexpr double kWorth = 0.8;  // of the change that the sweep before made
   double last = std::numeric_limits<double>::infinity();
   Sweeps sweeps(work, false);
   for (int i = 0, slow = 0; i < kMost && slow < kPatience; ++i) {
     const double now = sweeps.next();
-    if (now <= 0.1 * attainable(work, tolerance)) return;
+    if (now <= 0.1 * tolerance) return;
     slow += now > kWorth * last;
     last = now;
   }
@@ -127,7 +128,7 @@ void sweep_near(Workspace& work, const Tolerance& tolerance) {
 
 }  // namespace
 
-double solve_direct(Workspace& work, const Tolerance& tolerance, LinearSolves& solves, bool& solved) {
+double solve_direct(Workspace& work, double tolerance, LinearSolves& solves, bool& solved) {
   double best = violation(work);
   solved = best <= attainable(work, tolerance);
   if (solved) return best;

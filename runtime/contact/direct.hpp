@@ -20,18 +20,12 @@ struct LinearSolves {
   bool spent() const { return left() <= 0; }
 };
 
-/// How large a violation may be left: that many m/s, and that share of what the strongest impulse changes. Impulses
-/// that stop fast or heavy bodies are not known better than to the share that is usual.
-struct Tolerance {
-  double absolute = 1e-9, relative = kRoundedOff;
-};
-
 /// Solve the packed island from the impulses it has. Velocities and impulses of `work` are those of the best iterate,
 /// consistent with each other, inside cones and bounds.
 /// @param solves  grows; where they are spent, the best of what they gave is the result
 /// @param solved  whether the violation is within the tolerance, or as near to it as round-off allows
 /// @return        the violation left, m/s
-double solve_direct(Workspace& work, const Tolerance& tolerance, LinearSolves& solves, bool& solved);
+double solve_direct(Workspace& work, double tolerance, LinearSolves& solves, bool& solved);
 
 /// By how much the worst row violates its law, m/s: the distance to the projected point of a step of the row alone.
 double violation(const Workspace& work);

@@ -55,9 +55,8 @@ bool settle_friction(std::span<const Row> rows, double tolerance, Workspace& wor
     else if (!goes_on({rows[i].slip[0], rows[i].slip[1]}, {u[1], u[2]}))
       grip = Grip::Holds;
     if (grip == before) continue;
-    const double friction = grip == Grip::Holds ? rows[i].static_friction : rows[i].dynamic_friction;
-    changed = changed || friction != c.friction;
-    c.friction = friction;
+    c.friction = grip == Grip::Holds ? rows[i].static_friction : rows[i].dynamic_friction;
+    changed = true;
   }
   return changed;
 }

@@ -38,23 +38,18 @@ void run_sweeps(Workspace& work, int most, double tolerance, Meter* meter, Solve
 /// @param most  operations of the linear solves
 /// @param each  of one of them
 void solve_directly(Workspace& work, const SolveSettings& settings, double most, double each, SolveReport& report) {
-  constexpr double kAlways = 1e4, kMostAlways = 1e6;  // operations, times the share, that there are in any case
-  constexpr double kUnbounded = 1e6;                  // solves
-  const double always = std::min(kMostAlways, kAlways * settings.direct_share);
+  constexpr double kAlways = 1e6, kUnbounded = 1e6;  // operations that are not seen; solves
   const auto units = static_cast<std::uint64_t>(each / kOperations) + 1;
-  LinearSolves solves{0, static_cast<int>(std::min((most + always) / each, kUnbounded)), units, settings.meter};
-  report.residual = solve_direct(work, {settings.tolerance, settings.relative}, solves, report.direct);
+  LinearSolves solves{0, static_cast<int>(std::min((most + kAlways) / each, kUnbounded)), units, settings.meter};
+  report.residual = solve_direct(work, settings.tolerance, solves, report.direct);
   if (!report.direct) {
     // The operations that are left may go into more sweeps than there would be without a direct solution.
-    constexpr double kPatience = 3.3e3, kPatientShare = 100;  // operations, times the square of the share
-    const double left = std::max(most + always - solves.made * each,
-                                 kPatience * std::min(settings.direct_share, kPatientShare) * settings.direct_share);
+    constexpr double kPatience = 3.3e5;  // operations, times the share, that there are in any case
+    const double left = std::max(most + kAlways - solves.made * each, kPatience * settings.direct_share);
     const int sweeps = std::max(settings.iterations,
                                 static_cast<int>(std::min<double>(left / sweep_operations(work), kPatientSweeps)));
-    run_sweeps(work, sweeps, 0.1 * (settings.tolerance + settings.relative * largest_change(work)), settings.meter,
-               report);
-    // From nearer.
-    report.residual = solve_direct(work, {settings.tolerance, settings.relative}, solves, report.direct);
+    run_sweeps(work, sweeps, settings.tolerance * 0.1, settings.meter, report);
+    report.residual = solve_direct(work, settings.tolerance, solves, report.direct);  // from nearer
   }
   report.newton += solves.made;
 }

@@ -52,14 +52,13 @@ struct ScalarRow {
 };
 
 struct SolveSettings {
-  int iterations = 10;            // sweeps of the iterative solver; an upper bound, also of its share of a direct solve
-  bool direct = false;            // to `tolerance`, by Newton's method, and sweeps where it fails
-  double tolerance = 1e-9;        // m/s; sweeps end early when no contact's velocity changes by more
-  double relative = kRoundedOff;  // of what the strongest impulse changes, that a direct solution may be off by as well
-  double direct_share = 1e300;    // a direct solution only where its operations, counted before, are at most this many
-                                  // times those of the sweeps
-  double swept = 0;               // m/s, instead of `tolerance`, for a solution by sweeps alone; 0: the same
-  Meter* meter = nullptr;         // counts the work, and ends it where it is over; null: nobody does
+  int iterations = 10;          // sweeps of the iterative solver; an upper bound, also of its share of a direct solve
+  bool direct = false;          // to `tolerance`, by Newton's method, and sweeps where it fails
+  double tolerance = 1e-9;      // m/s; sweeps end early when no contact's velocity changes by more
+  double direct_share = 1e300;  // a direct solution only where its operations, counted before, are at most this many
+                                // times those of the sweeps
+  double swept = 0;             // m/s, instead of `tolerance`, for a solution by sweeps alone; 0: the same
+  Meter* meter = nullptr;       // counts the work, and ends it where it is over; null: nobody does
 };
 
 struct SolveReport {

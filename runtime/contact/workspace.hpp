@@ -10,9 +10,6 @@
 
 namespace breve::contact {
 
-/// Impulses that stop fast or heavy bodies are not known better than to this share of what they change.
-inline constexpr double kRoundedOff = 2e-12;
-
 /// A mover as the sweeps read it. A free body's velocity is kept here while they run, a tree's stays in its place.
 struct Packed {
   double v[6];          // free: velocity, spin

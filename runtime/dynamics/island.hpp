@@ -306,7 +306,6 @@ class Island : public InMemory {
   void look(double h, bool spent);
   int located_impacts() const;
   double contact_part(double left, bool lies) const;
-  double contact_step() const;
   bool lies(double h) const;
   bool call(MechanicsClient& client, int pair, double moment, double left);
   bool holds_rings() const;

@@ -60,8 +60,7 @@ void Island::push_apart(double h) {
 void Island::move_by_pushes(double fastest, double h) {
   contact::SolveSettings settings;
   // Only a part of an overlap is put right: how exactly does not matter, least where velocities are not exact either.
-  const bool coarse = accuracy_.rung == Rung::Fast || accuracy_.rung == Rung::Balanced;
-  settings.iterations = coarse ? std::max(4, accuracy_.iterations / (accuracy_.direct ? 2 : 4)) : accuracy_.iterations;
+  settings.iterations = accuracy_.direct ? accuracy_.iterations : std::max(4, accuracy_.iterations / 4);
   settings.direct = rows_.empty();
   settings.tolerance = std::max(settings.tolerance, 1e-3 * fastest);
   settings.meter = &meter_;

@@ -142,10 +142,6 @@ void Island::solve_rows() {
   contact::SolveSettings settings;
   const int fast = core_.settings.fast_contacts;
   settings.iterations = fast > 0 ? fast : accuracy_.iterations;
-  // Exact where it costs nothing: the last digits of an iterative solution are most of its work.
-  constexpr double kFastShare = 1e-6, kBalancedShare = 1e-7;
-  if (accuracy_.rung == Rung::Fast) settings.relative = kFastShare;
-  if (accuracy_.rung == Rung::Balanced) settings.relative = kBalancedShare;
   constexpr double kSwept = 0.1;  // of the speed that is rest
   settings.direct = fast == 0;
   settings.direct_share = direct_share();

@@ -54,7 +54,7 @@ double parts_of(double left, double step) {
 double Island::longest(double left, bool lies) const {
   double step = accuracy_.step > 0 ? accuracy_.step : left;
   const bool touching = !lies && (has_rows() || has_rings());
-  if (touching && accuracy_.contact_step > 0) step = std::min(step, contact_step());
+  if (touching && accuracy_.contact_step > 0) step = std::min(step, accuracy_.contact_step);
   return left / parts_of(left, step);
 }
 
@@ -211,16 +211,9 @@ bool Island::call(MechanicsClient& client, int index, double moment, double left
   return true;
 }
 
-/// The longest sub-step of contacts, s. In a crowd of free bodies sweeps leave more than a longer sub-step errs by.
-double Island::contact_step() const {
-  constexpr std::size_t kCrowd = 100;  // bodies and pairs
-  const bool crowd = accuracy_.rung == Rung::Balanced && trees_.empty() && free_.size() + pairs_.size() > kCrowd;
-  return (crowd ? 2 : 1) * accuracy_.contact_step;
-}
-
 double Island::contact_part(double left, bool lies) const {
   const double step = accuracy_.step > 0 ? std::min(accuracy_.step, left) : left;
-  return accuracy_.contact_step > 0 && !lies ? std::min(step, contact_step()) : step;
+  return accuracy_.contact_step > 0 && !lies ? std::min(step, accuracy_.contact_step) : step;
 }
 
 /// Free bodies that are at rest, as far as that can be seen in a step of h seconds: slower than a small part of what

@@ -76,8 +76,9 @@ Island::Trouble Island::foresee(double h) {
 }
 
 /// Shortens the sub-steps of a step of h seconds in which a body rotates farther than the integrator can follow, so that
-/// a fast spin needs no guard.
+/// a fast spin needs no guard. Explicit Euler is there to be studied: its step is the one that was set.
 void Island::follow_turns(double h) {
+  if (accuracy_.scheme == articulated::Scheme::ExplicitEuler) return;
   constexpr double kMostParts = 16;  // of a sub-step
   const double part = accuracy_.step > 0 ? std::min(accuracy_.step, h) : h;
   const double turn = fastest_turn(part).value;

@@ -36,10 +36,7 @@ Accuracy accuracy_of(Rung rung) {
       a.locate_impacts = false;
       a.iterations = 12;
       break;
-    case Rung::Balanced:
-      a.contact_step = 1.0 / 200;
-      a.iterations = 16;
-      break;
+    case Rung::Balanced: a.contact_step = 1.0 / 200; break;
     case Rung::Precise:
       // A light chain that carries a heavy load swings at thousands of rad/s, where the classic scheme alone would blow
       // up at this step.

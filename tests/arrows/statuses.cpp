@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tests/arrows/source.hpp"
+#include "source.hpp"
 
 namespace breve::house {
 namespace {

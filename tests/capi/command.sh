@@ -130,7 +130,7 @@ PhysicalControl : A {
     spinner = new Mobile.
     spinner set-shape to (new Cube init-with size (1, 2, 3)).
     spinner enable-physics.
-    spinner set-rotational-velocity to (1, 400, 2).
+    spinner set-rotational-velocity to (1, 4000, 2).
     self set-accuracy to "fast".
 }
 END

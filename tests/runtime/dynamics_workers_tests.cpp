@@ -25,7 +25,7 @@ struct Crowd : Physics {
       for (int k = 0; k < 3; ++k) rigid(Shape::box(Vector3(1, 1, 1)), Vector3(x, 0.5 + 1.1 * k, 0.02 * i * k));
       chain(Vector3(x, 3, 10));
       const ObjectId spinner = rigid(Shape::box(Vector3(1, 2, 3)), Vector3(x, 5, 20));
-      world.bodies().set_rotational_velocity(index(spinner), Vector3(1, 31 + i, 2));  // the guard looks up
+      world.bodies().set_rotational_velocity(index(spinner), Vector3(1, 500 + 20 * i, 2));  // the guard acts
       balls.push_back(rigid(Shape::sphere(0.5), Vector3(x, 1 + 0.1 * i, 30)));
       world.bodies().material(index(balls.back())).normal_restitution = 0.8;
     }

@@ -44,7 +44,7 @@ NULL : T { + to f: print "@use Not". }
   for (const ast::Directive& each : scan_directives(reading.tokens)) {
     text += fmt::format("{}:{}@{} ", static_cast<int>(each.kind), each.text, each.span.line);
   }
-  EXPECT_EQ(text, "0:a.tz@4 1:Kiln@4 2:p@6 ");
+  EXPECT_EQ(text, "0:a.tz@4 1:Kiln@4 2:p@6 3:x@7 ");
 }
 
 TEST(Directives, MistakesAreReported) {
