@@ -75,8 +75,8 @@ Island::Trouble Island::foresee(double h) {
   return worst.value > kMostDamping ? worst : Trouble{};
 }
 
-/// Shortens the sub-steps of a step of h seconds in which a body rotates farther than the integrator can follow, so that
-/// a fast spin needs no guard. Explicit Euler is there to be studied: its step is the one that was set.
+/// Shortens the sub-steps of a step of h seconds in which a body rotates farther than the integrator can follow, so
+/// that a fast spin needs no guard. Explicit Euler is there to be studied: its step is the one that was set.
 void Island::follow_turns(double h) {
   if (accuracy_.scheme == articulated::Scheme::ExplicitEuler) return;
   constexpr double kMostParts = 16;  // of a sub-step
