@@ -42,6 +42,27 @@ std::string states_of(const breve_world& world) {
   return all;
 }
 
+/// An image in its parts: the world, and behind it what the host saved, if it saves anything.
+class Image {
+ public:
+  explicit Image(const breve_world& world)
+      : has_states_(has_state(world)),
+        states_(has_states_ ? states_of(world) : std::string()),
+        world_(world.world->save(world.program->fingerprint())) {}
+  std::size_t size() const { return world_.size() + (has_states_ ? states_.size() + 2 * sizeof kMark : 0); }
+  void write(char* to) const {
+    to = std::copy(world_.begin(), world_.end(), to);
+    if (!has_states_) return;
+    const std::uint64_t tail[2] = {states_.size(), kMark};
+    std::memcpy(std::copy(states_.begin(), states_.end(), to), tail, sizeof tail);
+  }
+
+ private:
+  const bool has_states_;
+  const std::string states_;
+  const std::pmr::vector<std::uint8_t> world_;
+};
+
 [[noreturn]] void fail_image(const char* why) { fail(BREVE_ERROR_IMAGE, std::string("the image ") + why); }
 
 /// Cuts the host's part off the end of an image.
@@ -112,14 +133,10 @@ std::uint64_t hash_of(const breve_world& world) {
 }
 
 std::string image_of(const breve_world& world) {
-  const std::string states = has_state(world) ? states_of(world) : std::string();
-  const auto bytes = world.world->save(world.program->fingerprint());
-  std::string image(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (!has_state(world)) return image;
-  const std::uint64_t tail[2] = {states.size(), kMark};
-  image += states;
-  image.append(reinterpret_cast<const char*>(tail), sizeof tail);
-  return image;
+  const Image image(world);
+  std::string bytes(image.size(), '\0');
+  image.write(bytes.data());
+  return bytes;
 }
 
 void restore_image(breve_world& world, std::string_view image) { restore(world, image.data(), image.size()); }
@@ -143,18 +160,9 @@ breve_status breve_world_snapshot(const breve_world* world, void* image, size_t 
     if (capacity != 0) need(image, "image");
     need(size, "size");
     need_idle(*world, "breve_world_snapshot");
-    const std::string states = has_state(*world) ? states_of(*world) : std::string();
-    const auto bytes = world->world->save(world->program->fingerprint());
-    const std::uint64_t tail[2] = {states.size(), kMark};
-    const std::size_t tail_size = has_state(*world) ? sizeof tail : 0;
-    const std::size_t all = bytes.size() + states.size() + tail_size;
-    if (all <= capacity) {
-      auto* to = static_cast<char*>(image);
-      std::memcpy(to, bytes.data(), bytes.size());
-      if (!states.empty()) std::memcpy(to + bytes.size(), states.data(), states.size());
-      if (tail_size != 0) std::memcpy(to + bytes.size() + states.size(), tail, tail_size);
-    }
-    *size = all;
+    const Image made(*world);
+    if (made.size() <= capacity) made.write(static_cast<char*>(image));
+    *size = made.size();
   });
 }
 

@@ -190,14 +190,8 @@ bool Island::call(MechanicsClient& client, int index, double moment, double left
   client.impact(pair.a, pair.b, contact, moment);
   core_.sync_changes();
   core_.settle_books(true);
-  if (core_.structure() != before) {
-    end_unfinished(held);
-    dissolved_ = true;
-    unfinished_ = left;
-    return false;
-  }
-  if (!begin_tied(left)) {
-    // A spring is what points cannot follow any more.
+  // Something was made or freed, or a spring was set to what points cannot follow.
+  if (core_.structure() != before || !begin_tied(left)) {
     end_unfinished(held);
     dissolved_ = true;
     unfinished_ = left;

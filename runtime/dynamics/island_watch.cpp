@@ -18,7 +18,6 @@ constexpr double kResidual = 0.1, kResidualFast = 10;
 // The unexplained gain that resting bodies may have, as a part of the energy that lifts each by its own size.
 constexpr double kLying = 1e-5;
 
-constexpr double kMostTurn = 0.5;     // rad in a sub-step
 constexpr double kMostDamping = 1.0;  // c h / I
 
 /// Parts of the smaller body's radius: an overlap that is deeper than the first and grew by more than the second in one

@@ -9,7 +9,6 @@ namespace breve {
 
 namespace {
 
-constexpr double kMostTurn = 0.5;  // rad in a sub-step: beyond it the guard is to look
 constexpr double kMostParts = 1000;
 constexpr std::uint64_t kUnits = 10;  // of work, a sub-step
 

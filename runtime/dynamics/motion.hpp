@@ -25,6 +25,9 @@ struct FreeBody {
 FreeBody read_free(const Bodies& bodies, BodyIndex body);
 void write_free(Bodies& bodies, BodyIndex body, const FreeBody& free);
 
+/// How far a body may rotate in a sub-step, rad, so that a rule of fixed steps follows it.
+inline constexpr double kMostTurn = 0.5;
+
 /// Whether free bodies move by semi-implicit Euler: on `fast`, whose scheme for trees that is, their parabola is exact.
 bool semi_implicit(const Accuracy& accuracy);
 

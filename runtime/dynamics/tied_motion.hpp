@@ -29,9 +29,8 @@ class TiedMotion : public InMemory {
   /// Reads what the springs are set to. Call before each step, and after scripts ran.
   /// @param rung  `fast` takes longer parts
   /// @param h     s, that the step lasts
-  /// @return      whether this is all there is: springs between centres of mass that pull and push without bound, not
-  /// too
-  ///              fast for the step, bodies that no script is asked for, and other ends that stand still
+  /// @return      whether the points can follow: the springs act between centres of mass, pull and push without bound,
+  ///              and are not too fast for the step; no body has a force method; ends outside the cluster stand still
   bool begin(const Dynamics::Core& core, Rung rung, double h);
 
   std::span<Tree* const> trees() const { return trees_; }

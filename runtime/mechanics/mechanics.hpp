@@ -75,9 +75,8 @@ class Mechanics : public InMemory {
   /// points coincide; if it is connected with the parent already, the joint closes a loop: nothing is moved, and the
   /// joint becomes a constraint. A child that the world already holds also closes a loop.
   /// @param owner  the object behind it, for messages and for who_asked; may be null
-  /// @throws Error{Argument} naming the property: a child that is not a body or is Stationary, parent and child the
-  /// same,
-  ///         a point, rotation or normal that is not finite or has no direction. Nothing is changed then
+  /// @throws Error{Argument} naming the property: a child that is not a body or is Stationary, a parent that is the
+  ///         child, a point, rotation or normal that is not finite or has no direction. Nothing is changed then
   virtual JointIndex link(const JointDescription& description, ObjectId owner) = 0;
   virtual void unlink(JointIndex joint) = 0;
   bool linked(JointIndex joint) const;  // names a joint that there is

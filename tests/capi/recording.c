@@ -57,6 +57,21 @@ static breve_status sense(void* user, const breve_call* call, breve_value* resul
   return status;
 }
 
+/* The host's function does not pass what it reads through the log, from the sixth iteration on. */
+static int honest;
+static breve_status waver(void* user, const breve_call* call, breve_value* result) {
+  (void)user;
+  *result = breve_value_int(breve_world_iteration(call->world) < 5 ? 1 : ++honest);
+  return BREVE_OK;
+}
+
+static breve_world* to_interrupt;
+static breve_status interrupt_now(void* user, const breve_call* call, breve_value* result) {
+  (void)user, (void)result;
+  if (to_interrupt == call->world) breve_world_interrupt(call->world);
+  return BREVE_OK;
+}
+
 static const char* const text =
     "@use Control.\n@use Mobile.\nController Lab.\nControl : Lab {\n"
     "  + variables: keys, senses, seed, host (int). clock (float). said, seen (string). probe (object).\n"
@@ -85,19 +100,22 @@ typedef struct lab {
   breve_world* world;
 } lab;
 
+static bool add_function(const lab* l, const char* name, breve_type result, breve_function_fn call) {
+  breve_function f = breve_function_default();
+  f.name = name;
+  f.result = result;
+  f.call = call;
+  return breve_runtime_add_function(l->runtime, &f) == BREVE_OK;
+}
 static bool lab_open(lab* l, const char* program_text) {
   breve_runtime_config config = breve_runtime_config_default();
-  breve_function f = breve_function_default();
   memset(l, 0, sizeof *l);
   config.files.open_for_reading = open_file;
   config.system = system_call;
   config.rights = BREVE_RIGHT_REAL_TIME | BREVE_RIGHT_ENTROPY | BREVE_RIGHT_SLEEP;
-  f.name = "sense";
-  f.result = BREVE_TYPE_INT;
-  f.call = sense;
   const bool fine =
-      breve_runtime_create(&config, &l->runtime) == BREVE_OK &&
-      breve_runtime_add_function(l->runtime, &f) == BREVE_OK &&
+      breve_runtime_create(&config, &l->runtime) == BREVE_OK && add_function(l, "sense", BREVE_TYPE_INT, sense) &&
+      add_function(l, "waver", BREVE_TYPE_INT, waver) && add_function(l, "stopMe", BREVE_TYPE_NULL, interrupt_now) &&
       breve_program_compile(l->runtime, "lab.tz", program_text, strlen(program_text), &l->program) == BREVE_OK &&
       breve_world_create(l->runtime, l->program, NULL, &l->world) == BREVE_OK;
   if (!CHECK(fine) && breve_runtime_last_error(l->runtime)) printf("%s", breve_runtime_last_error(l->runtime)->text);
@@ -187,39 +205,20 @@ static void a_replay_can_be_watched_and_ended(void) {
   erase(&t);
 }
 
-/* The host's function does not pass what it reads through the log, from the sixth iteration on. */
-static int honest;
-static breve_status waver(void* user, const breve_call* call, breve_value* result) {
-  (void)user;
-  *result = breve_value_int(breve_world_iteration(call->world) < 5 ? 1 : ++honest);
-  return BREVE_OK;
-}
-
 static void the_first_iteration_that_differs_is_named(void) {
   const char* wavering =
       "@use Control.\nController Lab.\nControl : Lab { + variables: sum (int).\n"
       "  + to iterate: sum += waver(). super iterate. }\n";
-  breve_function f = breve_function_default();
-  breve_runtime* runtime = NULL;
-  breve_program* program = NULL;
-  breve_world* world = NULL;
-  breve_replay replay;
+  lab l;
   tape t = {0};
-  f.name = "waver";
-  f.result = BREVE_TYPE_INT;
-  f.call = waver;
-  CHECK_STATUS(BREVE_OK, breve_runtime_create(NULL, &runtime));
-  CHECK_STATUS(BREVE_OK, breve_runtime_add_function(runtime, &f));
-  CHECK_STATUS(BREVE_OK, breve_program_compile(runtime, "w.tz", wavering, strlen(wavering), &program));
-  CHECK_STATUS(BREVE_OK, breve_world_create(runtime, program, NULL, &world));
-  CHECK_STATUS(BREVE_OK, breve_world_record_start(world, append, &t));
-  for (int i = 0; i < 9; ++i) CHECK_STATUS(BREVE_OK, breve_world_step(world));
-  CHECK_STATUS(BREVE_OK, breve_world_record_stop(world));
-  CHECK_STATUS(BREVE_OK, breve_world_replay(world, t.bytes, t.size, NULL, NULL, &replay));
+  breve_replay replay;
+  if (!lab_open(&l, wavering)) return;
+  CHECK_STATUS(BREVE_OK, breve_world_record_start(l.world, append, &t));
+  for (int i = 0; i < 9; ++i) CHECK_STATUS(BREVE_OK, breve_world_step(l.world));
+  CHECK_STATUS(BREVE_OK, breve_world_record_stop(l.world));
+  CHECK_STATUS(BREVE_OK, breve_world_replay(l.world, t.bytes, t.size, NULL, NULL, &replay));
   CHECK(replay.differs && replay.iterations == 6 && replay.iteration == 6 && replay.hash != replay.recorded_hash);
-  breve_world_destroy(world);
-  breve_program_destroy(program);
-  breve_runtime_destroy(runtime);
+  lab_close(&l);
   erase(&t);
 }
 
@@ -241,42 +240,25 @@ static void iterations_that_fail_are_part_of_the_run(void) {
   erase(&t);
 }
 
-static breve_world* to_interrupt;
-static breve_status interrupt_now(void* user, const breve_call* call, breve_value* result) {
-  (void)user, (void)result;
-  if (to_interrupt == call->world) breve_world_interrupt(call->world);
-  return BREVE_OK;
-}
-
 static void an_interrupted_iteration_is_replayed_by_its_result(void) {
   const char* endless =
       "@use Control.\nController Lab.\nControl : Lab { + variables: n (int).\n"
       "  + to iterate: k (int). n += 1. if n == 2: { stopMe(). for k = 0, k < 100000000, k += 1: n = n. }\n"
       "    super iterate. }\n";
-  breve_function f = breve_function_default();
-  breve_runtime* runtime = NULL;
-  breve_program* program = NULL;
-  breve_world* world = NULL;
-  breve_replay replay;
+  lab l;
   tape t = {0};
-  f.name = "stopMe";
-  f.call = interrupt_now;
-  CHECK_STATUS(BREVE_OK, breve_runtime_create(NULL, &runtime));
-  CHECK_STATUS(BREVE_OK, breve_runtime_add_function(runtime, &f));
-  CHECK_STATUS(BREVE_OK, breve_program_compile(runtime, "e.tz", endless, strlen(endless), &program));
-  CHECK_STATUS(BREVE_OK, breve_world_create(runtime, program, NULL, &world));
-  to_interrupt = world;
-  CHECK_STATUS(BREVE_OK, breve_world_record_start(world, append, &t));
-  CHECK_STATUS(BREVE_OK, breve_world_step(world));
-  CHECK_STATUS(BREVE_ERROR_INTERRUPTED, breve_world_step(world));
-  CHECK_STATUS(BREVE_OK, breve_world_step(world));
-  CHECK_STATUS(BREVE_OK, breve_world_record_stop(world));
+  breve_replay replay;
+  if (!lab_open(&l, endless)) return;
+  to_interrupt = l.world;
+  CHECK_STATUS(BREVE_OK, breve_world_record_start(l.world, append, &t));
+  CHECK_STATUS(BREVE_OK, breve_world_step(l.world));
+  CHECK_STATUS(BREVE_ERROR_INTERRUPTED, breve_world_step(l.world));
+  CHECK_STATUS(BREVE_OK, breve_world_step(l.world));
+  CHECK_STATUS(BREVE_OK, breve_world_record_stop(l.world));
   to_interrupt = NULL;
-  CHECK_STATUS(BREVE_OK, breve_world_replay(world, t.bytes, t.size, NULL, NULL, &replay));
+  CHECK_STATUS(BREVE_OK, breve_world_replay(l.world, t.bytes, t.size, NULL, NULL, &replay));
   CHECK(!replay.differs && replay.complete && replay.iterations == 3);
-  breve_world_destroy(world);
-  breve_program_destroy(program);
-  breve_runtime_destroy(runtime);
+  lab_close(&l);
   erase(&t);
 }
 
