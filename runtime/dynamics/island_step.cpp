@@ -166,7 +166,7 @@ void Island::advance_once(double time, double h) {
   correct_works(h);
   store_velocities(0.5 * h);
   if (spent_) hold_off(h);
-  if (spent_) hold_bounds(h);
+  hold_bounds(h);
 }
 
 /// Books the unexplained energy of the part of a step that was taken; it ends because the island has changed.
