@@ -39,8 +39,8 @@ struct Settings {
   bool implicit_joints = false;
   /// RungeKutta4 leaves a step to FehlbergAdaptive where its two middle stages, which stand at the same time, disagree:
   /// where h / 3 times the difference of their accelerations (what a scheme of order 3 of the same stages would change)
-  /// is more than the tolerance of the velocity; and where its stages lie on different pieces of the forces. Off: the
-  /// textbook's scheme.
+  /// is more than the tolerance of the velocity; and where its stages lie on different pieces of the forces.
+  /// ImplicitMidpoint is composed of five steps to order 4. Off: the textbook's schemes.
   bool refine = false;
 };
 

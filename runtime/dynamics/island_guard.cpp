@@ -102,8 +102,7 @@ Island::Trouble Island::try_in_parts(MechanicsClient* client, double start, doub
 double Island::tolerated(double turnover, double h) const {
   switch (accuracy_.rung) {
     case Rung::Fast: return (5e-3 * h + 1e-3) * turnover;
-    case Rung::Balanced:
-    case Rung::Conserving: return (5e-3 * h + 5e-4) * turnover;
+    case Rung::Balanced: return (5e-3 * h + 5e-4) * turnover;
     default: return (5e-5 * h + 5e-6) * turnover;
   }
 }

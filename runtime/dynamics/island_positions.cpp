@@ -72,12 +72,16 @@ void Island::move_by_pushes(double fastest, double h) {
   book_moves(1);
 }
 
-/// What pushing trees apart may give in a sub-step of h seconds, J: a little of what moves, which pays for it, and what
-/// lifts them by a little of their size each second, however many sub-steps that has. Springs that press bodies into
-/// one another, or beyond limits, are not to be wound up for nothing.
+/// What pushing trees apart may give in a sub-step of h seconds, J: a little of what moves, which pays for it, and,
+/// where something outside holds them, what lifts them by a little of their size each second, however many sub-steps
+/// that has. What falls freely need not be lifted: its centre of mass stays on its way. Springs that press bodies into
+/// one another, or beyond limits, are not to be wound up for nothing, nor is a body that spins to be drawn out.
 double Island::payable(double h) const {
   constexpr double kLift = 0.06;  // of their size, 1/s
-  return trees_.empty() ? JointDrive::kNoLimit : kFew * moving() + kLift * h * weight();
+  if (trees_.empty()) return JointDrive::kNoLimit;
+  const bool falls = !touched_from_outside() &&
+                     std::all_of(clusters_.begin(), clusters_.end(), [](const Clustered& one) { return one.loose; });
+  return kFew * moving() + (falls ? 0 : kLift * h * weight());
 }
 
 /// Takes back a part of the way that move_by_pushes() made in h seconds.
