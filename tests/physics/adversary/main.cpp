@@ -17,7 +17,7 @@ struct Options {
   std::string rung = "all", family = "all", replay, shrink, measure, output;
   std::uint64_t seed = 1;
   int evaluations = 140, print_case = -1;
-  double seconds = 10, rate = 60;
+  double seconds = 10, rate = 60, work = 3e7;
   bool verbose = false, random = false;
 };
 
@@ -53,7 +53,7 @@ Case load(const std::string& name) {
 }
 
 Setting setting_of(const Options& options, breve_rung rung) {
-  return {rung, options.seconds, 1 / options.rate, options.verbose};
+  return {rung, options.seconds, 1 / options.rate, options.verbose, options.work};
 }
 
 /// Prints the measures; those over their bounds are marked. Returns how many are.
@@ -173,6 +173,7 @@ int main(int count, char** arguments) {
   app.add_option("--measure", options.measure, "what --shrink keeps: energy, momentum, …; the worst unless given");
   app.add_option("--seconds", options.seconds, "of each run");
   app.add_option("--rate", options.rate, "iterations per second");
+  app.add_option("--work", options.work, "counted work of a run that is not cut short");
   app.add_option("--output", options.output, "folder for the worst creatures that exceed a bound");
   app.add_flag("--verbose", options.verbose, "tell each creature; with --replay the balance after each iteration");
   CLI11_PARSE(app, count, arguments);

@@ -135,7 +135,7 @@ class Books {
 
 /// A creature that takes thousands of times what others take is not run to its end. Its work is counted; what the
 /// library tries and throws away it does not count, hence also a limit of time.
-constexpr double kMostWork = 3e7, kMostTime = 30;  // s of CPU
+constexpr double kMostTime = 30;  // s of CPU
 
 /// The work of the last iteration.
 double work_of(const breve::World& world) {
@@ -166,7 +166,7 @@ void run_steps(Creature& creature, const Case& one, const Setting& setting, Verd
     }
     if (setting.tell) books.tell();
     verdict.work += work_of(creature.world());
-    if (verdict.work < kMostWork && seconds_since(begin) < kMostTime) continue;
+    if (verdict.work < setting.work && seconds_since(begin) < kMostTime) continue;
     verdict.cut = setting.seconds - static_cast<double>(i + 1) * setting.step;
     break;
   }

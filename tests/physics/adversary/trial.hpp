@@ -45,6 +45,7 @@ struct Setting {
   breve_rung rung = BREVE_RUNG_BALANCED;
   double seconds = 10, step = 1.0 / 60;
   bool tell = false;  // print the balance as it goes
+  double work = 3e7;  // a run that takes more is cut short
 };
 
 Verdict run_case(const Case& one, const Setting& setting);
