@@ -20,6 +20,7 @@ local cases = {
   ["breve.main"] = function() breve.main(5) end,
   ["breve.use"] = function() breve.use({}) end,
   ["breve.new"] = function() breve.new("Nobody") end,
+  ["a negative count"] = function() breve.new("Bird", -1) end,
   ["breve.free"] = function() breve.free(5) end,
   ["breve.is_a"] = function() breve.is_a(5, "Bird") end,
   ["breve.class_name"] = function() breve.class_name({}) end,
