@@ -34,6 +34,7 @@ static int make_object(lua_State* L) {
     return 1;
   }
   const lua_Integer count = luaL_checkinteger(L, 2);
+  luaL_argcheck(L, count >= 0, 2, "a count is not negative");
   lua_newtable(L);
   for (lua_Integer i = 1; i <= count; ++i) {
     checked(L, w, breve_object_create(w->world, name, &object));

@@ -170,8 +170,9 @@ static int step(lua_State* L) {
 }
 
 static int advance(lua_State* L) {
+  breve_world* world = need_world(L);
   double fraction = 0;
-  check(L, need_world(L), breve_world_advance(need_world(L), luaL_checknumber(L, 2), &fraction));
+  check(L, world, breve_world_advance(world, luaL_checknumber(L, 2), &fraction));
   lua_pushnumber(L, fraction);
   return 1;
 }

@@ -32,6 +32,8 @@ ProgramBuilder::ProgramBuilder(ModuleResolver& resolver, const LibrarySource& li
 CompileResult ProgramBuilder::build(ModuleSource main, const AllowedLints& allowed) {
   loaded_.insert(main.name);
   load(std::move(main), false);
+  // A class that only the directive names is loaded now, so that its methods are compiled with the others.
+  if (!controller_name_.empty()) class_named(controller_name_);
   compile_methods();
   check_versions();
   choose_controller();

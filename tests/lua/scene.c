@@ -41,6 +41,7 @@ breve_status stage_compile(stage* s, const char* text) {
   breve_lua_config config = breve_lua_config_default();
   config.resolve_module = resolve;
   config.user = s;
+  config.allow = s->rights;
   breve_program_destroy(s->program);
   s->program = NULL;
   s->why[0] = 0;

@@ -11,6 +11,7 @@ typedef struct stage {
   char why[2048];              /* why a file was refused */
   const char* steve;           /* the text of the module "Steve.tz"; NULL: there is none */
   const char* module;          /* ... "extra.lua" */
+  uint32_t rights;             /* of breve_lua_right */
   breve_runtime* runtime;
   breve_program* program;
   breve_world* world;

@@ -33,6 +33,7 @@ by_cmake() {
   quietly cmake --build "$scratch/games"
   stepped "$scratch/games/game_c"
   stepped "$scratch/games/game_cpp"
+  [[ -z $(find "$1" -name libbreve_lua.a) ]] || stepped "$scratch/games/game_lua"
 }
 
 # by_pkg_config PREFIX LIBDIR [--static]
@@ -66,7 +67,8 @@ only_breve() {
   [[ $(grep -c '^breve_' "$scratch/symbols") -gt 100 ]] || fail "shows hardly any function"
   ! grep -v '^breve_' "$scratch/symbols" >"$scratch/said" || fail "shows more than breve_*"
   # Each function of the headers is there.
-  cat "$repository"/hostapi/include/breve/*.h | grep -o '^BREVE_API [^(]*' | grep -o 'breve_[a-z0-9_]*$' | sort -u >"$scratch/declared"
+  # breve_lua.h is of the static library breve_lua.
+  find "$repository/hostapi/include/breve" -name '*.h' ! -name breve_lua.h -exec cat {} + | grep -o '^BREVE_API [^(]*' | grep -o 'breve_[a-z0-9_]*$' | sort -u >"$scratch/declared"
   sort -u "$scratch/symbols" | comm -23 "$scratch/declared" - >"$scratch/said"
   [[ ! -s $scratch/said ]] || fail "does not show all functions of the headers"
 }
@@ -78,6 +80,12 @@ case $case in
     by_cmake "$scratch/usr" ""
     by_cmake "$scratch/usr" static
     by_pkg_config "$scratch/usr" "$libdir" --static
+    # An interpreter finds the module below the same prefix.
+    module=$(find "$build/lua" -name breve.so 2>/dev/null | head -1)
+    if [[ $module ]] && command -v lua5.4 >/dev/null; then
+      quietly cmake --install "$build" --prefix "$scratch/usr" --component command
+      LUA_CPATH="$libdir/lua/5.4/?.so" quietly lua5.4 "$repository/tests/lua/module.lua"
+    fi
     # It works wherever it is moved to.
     mv "$scratch/usr" "$scratch/moved"
     by_cmake "$scratch/moved" static
@@ -127,7 +135,7 @@ case $case in
     libdir=$(dirname "$(find "$scratch/root" -name 'libbreve.so')")
     by_cmake "$scratch/root/usr" shared
     by_pkg_config "$scratch/root/usr" "$libdir"
-    for file in bin/breve share/man/man1/breve.1* share/bash-completion/completions/breve share/zsh/vendor-completions/_breve; do
+    for file in bin/breve share/man/man1/breve.1* share/bash-completion/completions/breve share/zsh/vendor-completions/_breve 'lib/*/lua/5.4/breve.so'; do
       compgen -G "$scratch/root/usr/$file" >/dev/null || fail "$file is not in the packages"
     done
     [[ $(LD_LIBRARY_PATH=$libdir "$scratch/root/usr/bin/breve" --version) == *"$(cmake_version)"* ]] || fail "the command does not run"
