@@ -100,6 +100,14 @@ constexpr FunctionNote kNotes[] = {
     {"writeString", "file text", "Write text unchanged."},
     {"fileEOF", "file", "1 if a read has reached the end of the file, else 0."},
     {"closeFile", "file", "Close the file."},
+    {"createUserSensor",
+     "name rows columns range angle distances atDistance byDistance azimuths atAzimuth byAzimuth incidences "
+     "atIncidence "
+     "byIncidence",
+     "Define a type of infrared sensor, in place of an earlier one of that name: rows x columns rays about its z axis, "
+     "up "
+     "to the angle (radians) and the range (length units), and three tables of factors, each a count, the values in "
+     "ascending order and their factors: by distance along the axis, by azimuth and by incidence (radians)."},
 };
 
 std::size_t count_words(std::string_view words) {

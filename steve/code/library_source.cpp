@@ -29,8 +29,4 @@ bool LibrarySource::is_later_class(std::string_view name_or_alias) const {
   return std::find(later_classes.begin(), later_classes.end(), name_or_alias) != later_classes.end();
 }
 
-bool LibrarySource::is_later_file(std::string_view name) const {
-  return std::find(later_files.begin(), later_files.end(), name) != later_files.end();
-}
-
 }  // namespace breve::steve

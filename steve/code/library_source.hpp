@@ -22,13 +22,11 @@ class LibrarySource {
   std::span<const LibraryFile> files;
   std::span<const Native> natives;    // methods of the library's classes
   std::span<const Native> functions;  // that scripts may call
-  // What the documents name and this version lacks: classes, with aliases, and files that are not named after a class.
-  std::span<const std::string_view> later_classes, later_files;
+  std::span<const std::string_view> later_classes;  // that this version lacks, and their aliases
 
   /// The file named "NAME.tz", or the one that defines class NAME. Null if there is none.
   const LibraryFile* find_file(std::string_view name) const;
   bool is_later_class(std::string_view name_or_alias) const;
-  bool is_later_file(std::string_view name) const;
 };
 
 }  // namespace breve::steve

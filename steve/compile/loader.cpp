@@ -124,11 +124,6 @@ void ProgramBuilder::load_named(const std::string& name, const ast::Directive& d
                        "class " + wanted + " is part of a later version of the class library");
     return;
   }
-  if (library_.is_later_file(wanted)) {
-    diagnostics_.error(directive.span, "later-class",
-                       "the file '" + wanted + "' is part of a later version of the class library");
-    return;
-  }
   const bool use = directive.kind == ast::Directive::Kind::Use;
   const auto near = near_class(wanted);
   const std::string help = near.empty() ? "check its spelling, or add the directory it is in with @path or --path"

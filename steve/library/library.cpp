@@ -14,11 +14,8 @@ namespace breve::steve {
 
 namespace {
 
-constexpr std::string_view kLaterClasses[] = {"Graph",          "IRSensor", "IRSensors", "Movie", "NetworkServer",
-                                              "NetworkServers", "QProgram", "QSystem",   "Sound", "Sounds",
-                                              "Tone",           "Tones",    "URL"};
-
-constexpr std::string_view kLaterFiles[] = {"QGAME"};
+constexpr std::string_view kLaterClasses[] = {"Movie",  "NetworkServer", "NetworkServers", "Sound",
+                                              "Sounds", "Tone",          "Tones",          "URL"};
 
 struct ResourceKind {
   std::string_view name;
@@ -44,7 +41,7 @@ constexpr ResourceKind kResourceKinds[] = {
 }  // namespace
 
 const LibrarySource& library_source() {
-  static const LibrarySource source{library_files(), library_natives(), functions(), kLaterClasses, kLaterFiles};
+  static const LibrarySource source{library_files(), library_natives(), functions(), kLaterClasses};
   return source;
 }
 

@@ -173,6 +173,8 @@ constexpr Native kObsoleteNatives[] = {
     native<obsolete<"enable-smooth-drawing">>("obsolete.enable-smooth-drawing"),
     native<obsolete<"get-data-for-shape", DataCell*>>("obsolete.get-data-for-shape"),
     native<obsolete<"get-interface-version", Text>>("obsolete.get-interface-version"),
+    native<obsolete<"get-program-pointer", PointerCell*>>("obsolete.get-program-pointer"),
+    native<obsolete<"test">>("obsolete.test"),
     native<obsolete<"get-link-pointer", PointerCell*>>("obsolete.get-link-pointer"),
     native<obsolete<"get-joint-pointer", PointerCell*>>("obsolete.get-joint-pointer"),
     native<obsolete<"get-multibody-pointer", PointerCell*>>("obsolete.get-multibody-pointer"),

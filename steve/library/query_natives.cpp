@@ -1,4 +1,7 @@
-// Natives of Control that ask where bodies are: rays, shapes, nearest ones.
+// Natives of Control and IRSensor that ask where bodies are: rays, shapes, nearest ones.
+#include <algorithm>
+#include <span>
+
 #include "steve/library/resources.hpp"
 #include "steve/library/support.hpp"
 #include "steve/library/tables.hpp"
@@ -147,6 +150,42 @@ ListCell* control_find_near(Machine& machine, Instance& self, Vector3 place, dou
                     }));
 }
 
+/// The neighbours of one body, as a filter.
+struct NeighborsAsked {
+  explicit NeighborsAsked(Machine& machine, const Instance& owner)
+      : machine(&machine), neighbors(machine.world().neighbor_users(owner.id)) {
+    filter.context = this;
+    filter.wants = [](const void* context, ObjectId object) {
+      const auto& asked = *static_cast<const NeighborsAsked*>(context);
+      const auto user = reinterpret_cast<std::uint64_t>(asked.machine->instance(object));
+      return std::find(asked.neighbors.begin(), asked.neighbors.end(), user) != asked.neighbors.end();
+    };
+  }
+  NeighborsAsked(const NeighborsAsked&) = delete;
+  NeighborsAsked& operator=(const NeighborsAsked&) = delete;
+
+  Machine* machine;
+  std::span<const std::uint64_t> neighbors;
+  QueryFilter filter;
+};
+
+/// { normal, distance }, or an empty list.
+ListCell* sensor_cast_ray(Machine& machine, Instance& self, Instance* owner, Vector3 start, Vector3 way) {
+  const Instance& live = must_live(owner, "get-data: the owner of the sensor");
+  body_of(machine, live);
+  const NeighborsAsked asked(machine, live);
+  QueryHit hit;
+  const bool found = put(machine, self, [&](Queries& queries, const Queries::Scene& scene) {
+    return queries.ray_first(scene, start, way, asked.filter, hit);
+  });
+  machine.charge_for(asked.neighbors.size());
+  ListCell* list = machine.heap().list(found ? 2 : 0);
+  if (!found) return list;
+  const Pin pin(machine, Value::of(Tag::List, list));
+  for (const Value& value : {Value::of(hit.normal), Value::of(hit.distance)}) machine.heap().push(*list, value);
+  return list;
+}
+
 constexpr Native kQueryNatives[] = {
     native<control_cast_ray>("control.cast-ray"),
     native<control_find_on_ray>("control.find-on-ray"),
@@ -156,6 +195,7 @@ constexpr Native kQueryNatives[] = {
     native<control_find_in_box>("control.find-in-box"),
     native<control_find_closest>("control.find-closest"),
     native<control_find_near>("control.find-near"),
+    native<sensor_cast_ray>("ir-sensor.cast-ray-among"),
 };
 
 }  // namespace

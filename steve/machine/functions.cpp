@@ -15,7 +15,8 @@ void charge_for_argument(Machine& machine, std::size_t bytes) {
 std::span<const Native> functions() {
   static const std::vector<Native> kAll = [] {
     std::vector<Native> all;
-    for (const auto table : {math_functions(), object_functions(), world_functions(), file_functions()})
+    for (const auto table :
+         {math_functions(), object_functions(), world_functions(), file_functions(), sensor_functions()})
       all.insert(all.end(), table.begin(), table.end());
     return all;
   }();

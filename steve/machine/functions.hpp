@@ -13,6 +13,7 @@ std::span<const Native> math_functions();
 std::span<const Native> object_functions();
 std::span<const Native> world_functions();
 std::span<const Native> file_functions();
+std::span<const Native> sensor_functions();
 
 /// Throws RunError{World}: the host does not let scripts do this.
 /// @param what   "sleep"; "read the clock on the wall"
