@@ -167,13 +167,18 @@ void Dynamics::Core::run(MechanicsClient& client, double start, double h, int de
   settle_books(true);
   if (clusters_changed || integrators_changed) build_clusters();
   if (settings.sleeping) near.wake_disturbed(*bodies);
-  near.update(*bodies, client, settings.gravity, h, rules + client.rules(), locates(), most_pairs(), [&](PairKey& key) {
-    key.pushes = pushes(key.a, key.b, client);
-    key.handled = client.handled(key.a, key.b);
-  });
+  near.update(*bodies, client, settings.gravity, h, rules + client.rules(), locates(), most_pairs(), bound,
+              [&](PairKey& key) {
+                key.pushes = pushes(key.a, key.b, client);
+                key.handled = client.handled(key.a, key.b);
+              });
+  bound.poll();
   combine_laws(near, *bodies);
+  bound.poll();
   enter_books();
+  bound.poll();
   find_islands();
+  bound.poll();
   counters.work += near.movers().size() + island_pairs.size();
   const std::uint64_t work = work_left();
   // Islands that call nobody first: what a handler does must not pull the ground from under them. They are stepped in
