@@ -167,16 +167,14 @@ void Dynamics::Core::run(MechanicsClient& client, double start, double h, int de
   settle_books(true);
   if (clusters_changed || integrators_changed) build_clusters();
   if (settings.sleeping) near.wake_disturbed(*bodies);
-  near.update(*bodies, client, settings.gravity, h, rules + client.rules(), locates(), most_pairs(), bound,
-              [&](PairKey& key) {
-                key.pushes = pushes(key.a, key.b, client);
-                key.handled = client.handled(key.a, key.b);
-              });
+  const auto wanted = [&](PairKey& key) {
+    key.pushes = pushes(key.a, key.b, client);
+    key.handled = client.handled(key.a, key.b);
+  };
+  near.update(*bodies, client, settings.gravity, h, rules + client.rules(), locates(), most_pairs(), bound, wanted);
   bound.poll();
   combine_laws(near, *bodies);
-  bound.poll();
   enter_books();
-  bound.poll();
   find_islands();
   bound.poll();
   counters.work += near.movers().size() + island_pairs.size();
