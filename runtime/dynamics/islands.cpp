@@ -51,6 +51,7 @@ BodyIndex Dynamics::Core::first_of(const ClusterEntry& cluster) const {
 }
 
 void Dynamics::Core::find_islands() {
+  bound.poll();  // after laws and books of each pair
   keep_clusters_whole();
   // Sets of bodies by union-find. A tree's first link stands for the tree, a cluster's first tree for the cluster.
   set_of.resize(bodies->index_end());
@@ -172,11 +173,9 @@ void Dynamics::Core::run(MechanicsClient& client, double start, double h, int de
     key.handled = client.handled(key.a, key.b);
   };
   near.update(*bodies, client, settings.gravity, h, rules + client.rules(), locates(), most_pairs(), bound, wanted);
-  bound.poll();
   combine_laws(near, *bodies);
   enter_books();
   find_islands();
-  bound.poll();
   counters.work += near.movers().size() + island_pairs.size();
   const std::uint64_t work = work_left();
   // Islands that call nobody first: what a handler does must not pull the ground from under them. They are stepped in
