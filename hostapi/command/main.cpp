@@ -252,7 +252,8 @@ std::string near_option(const CLI::App& app) {
 int refuse_command(const CLI::App& app, const std::string& word) {
   std::cerr << "breve: there is no command '" << word << "': it must be run, replay, repl, check, doc, lsp or help\n";
   std::string best;
-  std::size_t fewest = word.size() / 2;
+  std::size_t fewest =
+      word.size() < 3 ? 1 : std::max<std::size_t>(2, word.size() / 3);  // two: letters that changed places
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
     if (const std::size_t n = edits(word, command->get_name()); n <= fewest) {
       best = command->get_name();
