@@ -93,8 +93,8 @@ double leading_double(std::string_view text) {
   return negative ? -d : d;
 }
 
-char* write_double(char* begin, char* end, double d, int decimals) {
-  char* last = std::to_chars(begin, end, d, std::chars_format::fixed, decimals).ptr;
+char* write_double(char* begin, char* end, double d) {
+  char* last = std::to_chars(begin, end, d, std::chars_format::fixed, 6).ptr;
   if (d == 0 || !(std::abs(d) < kSmall)) return last;
   double shown = 0;
   std::from_chars(begin, last, shown);

@@ -19,12 +19,10 @@ std::int32_t leading_int(std::string_view text);  // 0 if there is none; the nea
 double leading_double(std::string_view text);     // C rules without locale; 0.0 if there is none
 
 inline constexpr std::size_t kLongestDouble = 330;  // 309 digits, sign, point, six decimals
-/// As printf's %.Nf; a small number that so many decimals would show as another one is the shortest text that reads
-/// back.
-/// @param begin     room for kLongestDouble characters
-/// @param decimals  at most six
-/// @return          the end of the text
-char* write_double(char* begin, char* end, double d, int decimals = 6);
+/// As printf's %f; a small number that six decimals would show as another one is the shortest text that reads back.
+/// @param begin  room for kLongestDouble characters
+/// @return       the end of the text
+char* write_double(char* begin, char* end, double d);
 void append_double(std::string& out, double d);
 void append_int(std::string& out, std::int32_t i);
 

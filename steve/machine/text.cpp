@@ -1,5 +1,5 @@
 // The text of values (9): the same bytes as the C library's printf in the "C" locale, without its cost. A number that
-// its decimals would show as another one, such as 1e-9 as 0.000000, is the shortest text that reads back.
+// six decimals would show as another one, such as 1e-9 as 0.000000, is the shortest text that reads back.
 #include <algorithm>
 #include <charconv>
 
@@ -15,15 +15,16 @@ namespace {
 constexpr std::size_t kDeepest = 1000;
 constexpr double kFixedLimit = 1e10;  // a vector with a larger component is written with exponents
 
-void append_triple(std::string& out, const double* v, std::chars_format format) {
-  constexpr int kDecimals = 5;
+void append_number(std::string& out, double d, std::chars_format format, int decimals) {
   char buffer[kLongestDouble];
+  const auto result = std::to_chars(buffer, buffer + sizeof buffer, d, format, decimals);
+  out.append(buffer, result.ptr);
+}
+
+void append_triple(std::string& out, const double* v, std::chars_format format) {
   for (int i = 0; i < 3; ++i) {
     out += i == 0 ? "(" : ", ";
-    char* const end = format == std::chars_format::fixed
-                          ? write_double(buffer, buffer + sizeof buffer, v[i], kDecimals)
-                          : std::to_chars(buffer, buffer + sizeof buffer, v[i], format, kDecimals).ptr;
-    out.append(buffer, end);
+    append_number(out, v[i], format, 5);
   }
   out += ')';
 }
