@@ -248,13 +248,29 @@ std::string near_option(const CLI::App& app) {
   return {};
 }
 
+/// Reports a word that is not a command, and the command or the file that may be meant.
+int refuse_command(const CLI::App& app, const std::string& word) {
+  std::cerr << "breve: there is no command '" << word << "': it must be run, replay, repl, check, doc, lsp or help\n";
+  std::string best;
+  std::size_t fewest =
+      word.size() < 3 ? 1 : std::max<std::size_t>(2, word.size() / 3);  // two: letters that changed places
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    if (const std::size_t n = edits(word, command->get_name()); n <= fewest) {
+      best = command->get_name();
+      fewest = n - (n > 0 ? 1 : 0);
+    }
+  if (word.ends_with(".tz") || word.ends_with(".lua"))
+    std::cerr << "To run a program: breve run " << word << "\n";
+  else if (!best.empty())
+    std::cerr << "Did you mean " << best << "?\n";
+  else
+    std::cerr << "Try `breve help`.\n";
+  return breve::command::kWrongUsage;
+}
+
 /// @param topic  a command; "": all of them
 int show_help(CLI::App& app, const std::string& topic) {
-  if (!topic.empty() && !is_command(app, topic)) {
-    std::cerr << "breve: there is no command '" << topic
-              << "': it must be run, replay, repl, check, doc, lsp or help\n";
-    return breve::command::kWrongUsage;
-  }
+  if (!topic.empty() && !is_command(app, topic)) return refuse_command(app, topic);
   const CLI::App& shown = topic.empty() ? app : *app.get_subcommand(topic);
   std::cout << shown.get_formatter()->make_help(&shown, topic.empty() ? app.get_name() : app.get_name() + " " + topic,
                                                 CLI::AppFormatMode::Normal);
@@ -289,11 +305,7 @@ int main_guarded(int argc, char** argv) {
   describe_check(*check, check_options);
   describe_doc(*doc, doc_options);
   describe_lsp(*lsp, lsp_options);
-  if (argc > 1 && *argv[1] != '-' && !is_command(app, argv[1])) {
-    std::cerr << "breve: there is no command '" << argv[1]
-              << "': it must be run, replay, repl, check, doc, lsp or help\n";
-    return breve::command::kWrongUsage;
-  }
+  if (argc > 1 && *argv[1] != '-' && !is_command(app, argv[1])) return refuse_command(app, argv[1]);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -251,6 +251,8 @@ int run(const RunOptions& options, Output& output) {
   const WorldHandle world = make_world(session, program.get(), options, seed, &profiling, status);
   if (!world) {
     const breve_error* error = breve_runtime_last_error(session.runtime());
+    // A wrong option has no position in a file, which other errors begin with.
+    if (error && status == BREVE_ERROR_ARGUMENT) output.complain("breve: ");
     output.complain(error ? error->text : "breve: cannot make the world\n");
     profiling.finish(nullptr, output);
     return exit_status(status);

@@ -5,12 +5,19 @@
 #include <cstdint>
 #include <limits>
 
+#include "runtime/base/error.hpp"
+
 namespace breve {
 
 /// How much work there may be, and who may end it early.
 struct WorkBound {
   std::uint64_t most = 0;                    // units, see Meter; 0: no bound
   const std::atomic<bool>* ended = nullptr;  // true: nothing more is to be done at all. Outlives the work
+
+  /// @throws  Error{Interrupted} if it is
+  void poll() const {
+    if (ended && ended->load(std::memory_order_relaxed)) throw Error(ErrorCode::Interrupted, "interrupted");
+  }
 };
 
 /// One unit takes about as long as an iteration of a script's loop, some 30 ns: a row swept once, a facet looked at, a

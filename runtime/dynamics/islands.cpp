@@ -51,6 +51,7 @@ BodyIndex Dynamics::Core::first_of(const ClusterEntry& cluster) const {
 }
 
 void Dynamics::Core::find_islands() {
+  bound.poll();  // after laws and books of each pair
   keep_clusters_whole();
   // Sets of bodies by union-find. A tree's first link stands for the tree, a cluster's first tree for the cluster.
   set_of.resize(bodies->index_end());
@@ -167,10 +168,11 @@ void Dynamics::Core::run(MechanicsClient& client, double start, double h, int de
   settle_books(true);
   if (clusters_changed || integrators_changed) build_clusters();
   if (settings.sleeping) near.wake_disturbed(*bodies);
-  near.update(*bodies, client, settings.gravity, h, rules + client.rules(), locates(), most_pairs(), [&](PairKey& key) {
+  const auto wanted = [&](PairKey& key) {
     key.pushes = pushes(key.a, key.b, client);
     key.handled = client.handled(key.a, key.b);
-  });
+  };
+  near.update(*bodies, client, settings.gravity, h, rules + client.rules(), locates(), most_pairs(), bound, wanted);
   combine_laws(near, *bodies);
   enter_books();
   find_islands();

@@ -214,7 +214,9 @@ void NearPairs::seek(ProxyIndex index, Asking& asking) {
   found_.clear();
   tree_.query(tree_.box(proxies_[index].leaf), found_);
   const Proxy& self = proxies_[index];
+  bound_->poll();
   for (const ProxyIndex other_index : found_) {
+    poll();
     const Proxy& other = proxies_[other_index];
     if (other_index == index || !(self.moves || other.moves)) continue;
     PairKey key;
@@ -252,7 +254,10 @@ void NearPairs::release(PairKey& key) {
 
 void NearPairs::merge() {
   if (new_keys_.empty()) return;
-  std::sort(new_keys_.begin(), new_keys_.end(), earlier);
+  std::sort(new_keys_.begin(), new_keys_.end(), [this](const PairKey& x, const PairKey& y) {
+    poll();
+    return earlier(x, y);
+  });
   const auto last = std::unique(new_keys_.begin(), new_keys_.end(), [](const PairKey& x, const PairKey& y) {
     return x.serial_a == y.serial_a && x.serial_b == y.serial_b;
   });
@@ -321,6 +326,7 @@ void NearPairs::reserve_near() {
 void NearPairs::place_near() {
   reserve_near();
   for (PairKey& key : keys_) {
+    poll();
     if (!key.pushes || !near(key)) {
       release(key);
       continue;

@@ -64,23 +64,28 @@ class NearPairs {
   /// @param rules    grows when an answer of `wanted` may have changed
   /// @param strikes  what is struck within the step is to meet what it reaches then
   /// @param most     pairs that push each other and whose boxes meet; kNoMost: no bound
-  /// @throws         Error{Budget} if there are more
+  /// @param bound    says whether the host wants the end
+  /// @throws         Error{Budget} if there are more; Error{Interrupted}
   template <class Wanted>
   void update(Bodies& bodies, const MechanicsClient& client, const Vector3& gravity, double h, std::uint64_t rules,
-              bool strikes, std::size_t most, const Wanted& wanted) {
+              bool strikes, std::size_t most, const WorkBound& bound, const Wanted& wanted) {
+    bound_ = &bound;
     Asking asking{most, 0, &wanted, [](const void* asked, PairKey& key) { (*static_cast<const Wanted*>(asked))(key); }};
     refresh(bodies, client, gravity, h, asking);
     expect(wanted);
     if (rules != seen_rules_ || unasked_)
-      for (PairKey& key : keys_) ask_again(key, wanted);
+      for (PairKey& key : keys_) {
+        poll();
+        ask_again(key, wanted);
+      }
     seen_rules_ = rules;
     unasked_ = true;
     merge();
-    for (const std::size_t index : fresh_) wanted(keys_[index]);
+    ask_fresh(wanted);
     constexpr int kMostPassed = 64;  // bodies, one after the other
     for (int i = 0; strikes && i < kMostPassed && pass_on(bodies, h); ++i) {
       merge();
-      for (const std::size_t index : fresh_) wanted(keys_[index]);
+      ask_fresh(wanted);
     }
     bound_near(most);
     drop_far();
@@ -131,6 +136,18 @@ class NearPairs {
   void hash(Hasher& hasher, const Bodies& bodies) const;
 
  private:
+  /// In each loop whose length is the number of pairs, which may be millions.
+  void poll() {
+    constexpr std::uint32_t kEvery = 1024;
+    if (++polled_ % kEvery == 0) bound_->poll();
+  }
+  template <class Wanted>
+  void ask_fresh(const Wanted& wanted) {
+    for (const std::size_t index : fresh_) {
+      poll();
+      wanted(keys_[index]);
+    }
+  }
   /// Bodies that push each other from now on, or no longer, are awake.
   template <class Wanted>
   void ask_again(PairKey& key, const Wanted& wanted) {
@@ -155,6 +172,7 @@ class NearPairs {
     if (new_keys_.size() < kMany) return;
     std::size_t pushing = 0, room = kMany;
     for (PairKey& key : new_keys_) {
+      poll();
       wanted(key);
       if (!key.pushes || !near(key) || ++pushing / 2 < room) continue;
       pairs_.reserve(pairs_.size() + room);
@@ -247,6 +265,8 @@ class NearPairs {
   std::pmr::vector<std::size_t> fresh_;
   std::pmr::vector<std::uint32_t> found_;
   std::uint64_t boxes_ = 0;
+  const WorkBound* bound_ = nullptr;  // of the update that runs
+  std::uint32_t polled_ = 0;
   std::uint64_t seen_rules_ = 0, seen_bodies_ = ~std::uint64_t{0}, seen_scalings_ = 0;
   // Memory ended in the last update: all is to be looked for again, and `wanted` to be asked of all.
   bool incomplete_ = false, unasked_ = false;

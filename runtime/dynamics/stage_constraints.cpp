@@ -42,7 +42,7 @@ double natural_size(const Tree& tree, int link, const RingRow& row, int column) 
 
 /// Solves the symmetric, positive semidefinite A x = b by Cholesky's method with the largest pivot next. Rows that
 /// depend on others (a plane ring holds its plane several times over) get nothing. A is m x m and is overwritten.
-void solve_semidefinite(int m, double* a, double* b, double* scale, int* order) {
+void solve_semidefinite(const WorkBound& bound, int m, double* a, double* b, double* scale, int* order) {
   constexpr double kDependent = 1e-11;  // of a pivot, rows being scaled to 1
   for (int i = 0; i < m; ++i) {
     order[i] = i;
@@ -55,6 +55,7 @@ void solve_semidefinite(int m, double* a, double* b, double* scale, int* order) 
   const auto at = [&](int i, int k) -> double& { return a[order[i] * m + order[k]]; };
   int rank = 0;
   for (; rank < m; ++rank) {
+    bound.poll();
     int best = rank;
     for (int i = rank + 1; i < m; ++i)
       if (at(i, i) > at(best, best)) best = i;
@@ -84,6 +85,7 @@ struct HeldRows {
   double* part;             // as large
   const double* wanted;     // accelerations
   double* scale;            // count
+  const WorkBound& bound;   // says whether the host wants the end
 };
 
 /// Finds the tree's row_forces. Limits push only, and where they do not, the acceleration is above what is wanted: a
@@ -112,7 +114,7 @@ int solve_pushing(const HeldRows& rows, Tree& tree) {
       force[i] = holds(i) ? rows.wanted[i] : 0;
       for (int k = 0; k < m; ++k) rows.part[i * m + k] = holds(i) && holds(k) ? rows.responses[i * m + k] : 0;
     }
-    solve_semidefinite(m, rows.part, force, rows.scale, tree.row_order.data());
+    solve_semidefinite(rows.bound, m, rows.part, force, rows.scale, tree.row_order.data());
     const double least_force = kRoundOff * largest(force), most_lack = kRoundOff * largest(rows.wanted);
     int row = first;
     while (row < m && !wrong(row, least_force, most_lack)) ++row;
@@ -164,6 +166,7 @@ std::uint64_t Dynamics::Core::hold(Tree& tree, double* acceleration, bool rings,
   int m = 0;
   // All second derivatives first: what answers impulses overwrites the accelerations that they are made of.
   for (std::size_t k = 0; rings && k < tree.rings.size(); ++k) {
+    bound.poll();
     const RingRows ring = ring_rows(tree, joints[tree.rings[k]].is);
     for (int i = 0; i < ring.count; ++i, ++m) {
       const RingRow& row = ring.rows[static_cast<std::size_t>(i)];
@@ -185,13 +188,16 @@ std::uint64_t Dynamics::Core::hold(Tree& tree, double* acceleration, bool rings,
     ++m;
   }
   for (int i = 0; i < m; ++i) {
+    bound.poll();
     tree.work_v = Numbers(j + i * n, n);
     articulated::apply_inverse_mass(tree.model, tree.data, tree.work_v, tree.work_u);
     Numbers(r + i * n, n) = tree.work_u;
   }
-  for (int i = 0; i < m; ++i)
+  for (int i = 0; i < m; ++i) {
+    bound.poll();
     for (int k = 0; k <= i; ++k) a[i * m + k] = a[k * m + i] = Numbers(j + i * n, n).dot(Numbers(r + k * n, n));
-  const int solved = solve_pushing({m, first_limit, a, part, wanted, scale}, tree);
+  }
+  const int solved = solve_pushing({m, first_limit, a, part, wanted, scale, bound}, tree);
   tree.held_force.setZero();
   for (int i = 0; i < m; ++i) {
     const double force = tree.row_forces[static_cast<std::size_t>(i)];

@@ -62,6 +62,7 @@ void Planar::Core::expect_pairs(const WorkBound& most) {
   double looks = 0;  // at contacts that a body has already, one by one for each new one
   for (FlatBody& flat : slots) {
     if (flat.body == kNoBody || !flat.placed) continue;
+    most.poll();
     const Overlaps one(*this, flat);
     pairs += one.pairs;
     contacts += one.contacts;

@@ -66,6 +66,11 @@ void Planar::Core::EndContact(b2Contact* contact) {
 
 void Planar::Core::PreSolve(b2Contact* contact, const b2Manifold*) {
   if (muted) return;
+  // The host wants the end: this step of Box2D has nothing to solve then, and does nothing but move bodies.
+  if (bound.ended && bound.ended->load(std::memory_order_relaxed)) {
+    contact->SetEnabled(false);
+    return;
+  }
   try {
     before_solving(contact);
   } catch (...) {

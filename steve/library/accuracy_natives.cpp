@@ -143,11 +143,17 @@ std::int32_t get_workers(Machine& machine, Instance&) { return dynamics_of(machi
 
 HashCell* get_counters(Machine& machine, Instance&) { return counters_value(machine, dynamics_of(machine).counters()); }
 
-double get_energy(Machine& machine, Instance&) { return dynamics_of(machine).energy().total(); }
-double get_residual(Machine& machine, Instance&) { return dynamics_of(machine).energy().residual; }
-double get_motor_work(Machine& machine, Instance&) { return dynamics_of(machine).energy().motor_work; }
-double get_contact_loss(Machine& machine, Instance&) { return contact_loss_of(dynamics_of(machine).energy()); }
-HashCell* get_ledger(Machine& machine, Instance&) { return ledger_value(machine, dynamics_of(machine).energy()); }
+/// The energy of all bodies, counted.
+Energy energy_of(Machine& machine) {
+  machine.charge(machine.world().object_count());
+  return dynamics_of(machine).energy();
+}
+
+double get_energy(Machine& machine, Instance&) { return energy_of(machine).total(); }
+double get_residual(Machine& machine, Instance&) { return energy_of(machine).residual; }
+double get_motor_work(Machine& machine, Instance&) { return energy_of(machine).motor_work; }
+double get_contact_loss(Machine& machine, Instance&) { return contact_loss_of(energy_of(machine)); }
+HashCell* get_ledger(Machine& machine, Instance&) { return ledger_value(machine, energy_of(machine)); }
 
 // --- PhysicalControl ------------------------------------------------------------------------------------------------
 

@@ -1,5 +1,6 @@
 // Natives of GridAgent and of PatchGrid about its agents: entering, moving, who is near, which cells are free.
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "steve/library/grids.hpp"
 #include "steve/library/tables.hpp"
@@ -151,6 +152,8 @@ ListCell* agent_get_agents(Machine& machine, Instance& self, std::int32_t radius
   if (radius < 0)
     throw Error(ErrorCode::Argument, "get-agents: the radius is " + fmt::to_string(radius) + " (must be >= 0)");
   const Grid& grid = *standing.resource->grid;
+  const double side = 2.0 * radius + 1, within = side * side * (grid.flat() ? 1 : side);
+  machine.charge_for(static_cast<std::uint64_t>(std::min(within, static_cast<double>(grid.cells()))));
   const Occupants& occupants = standing.resource->occupants;
   // Agents lie anywhere in memory: what is known of them is fetched while the list is made.
   std::uint32_t expected = 1;
@@ -182,6 +185,7 @@ ListCell* grid_get_agents(Machine& machine, Instance& self) {
   const GridResource& resource = own_grid(machine, self);
   ListCell* list = machine.heap().list();
   if (!resource.occupants.made()) return list;
+  machine.charge_for(resource.grid->cells());
   for (CellIndex cell = 0; cell < resource.grid->cells(); ++cell)
     push_agents(machine, resource.occupants, cell, nullptr, *list);
   return list;

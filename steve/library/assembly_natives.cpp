@@ -66,7 +66,8 @@ ListCell* multibody_colliding(Machine& machine, Instance& self) {
   const std::vector<Instance*> links = links_of(machine, self);
   std::vector<Instance*> found;
   for (const Instance* link : links)
-    for (const ObjectId id : machine.world().touching(link->id)) {
+    for (const ObjectId id : counted_touching(machine, link->id)) {
+      machine.charge_for(links.size() + found.size());
       Instance* other = machine.instance(id);
       const bool known = std::find(links.begin(), links.end(), other) != links.end() ||
                          std::find(found.begin(), found.end(), other) != found.end();
@@ -104,6 +105,7 @@ void move_by_root(Machine& machine, Instance& self, std::string_view selector, s
   const Quaternion turned = bodies.orientation(body);
   bodies.set_location(body, location);
   bodies.set_orientation(body, orientation);
+  charge_for_assembly(machine, body);
   dynamics_of(machine).move_assembly(body, goal, turned);
 }
 
@@ -148,10 +150,12 @@ Vector3 changed(const Vector3& now, Vector3 wanted) {
 void set_velocity_of_all(Machine& machine, BodyIndex root, const Vector3& velocity, const Vector3& spin) {
   Mechanics& dynamics = dynamics_of(machine);
   Bodies& bodies = bodies_of(machine);
+  const auto links = dynamics.links_of(root);
+  machine.charge(links.size() * links.size());  // the velocities of joints are found anew from those of all links
   dynamics.take_changes();
   const Vector3 center = bodies.location(root);
   const Vector3 more = velocity - bodies.velocity(root), more_spin = spin - bodies.rotational_velocity(root);
-  for (const BodyIndex link : dynamics.links_of(root)) {
+  for (const BodyIndex link : links) {
     const Vector3 now = bodies.velocity(link), now_spin = bodies.rotational_velocity(link);
     bodies.set_velocity(link, changed(now, now + more + more_spin.cross(bodies.location(link) - center)));
     bodies.set_rotational_velocity(link, changed(now_spin, now_spin + more_spin));
@@ -211,7 +215,11 @@ void multibody_self_collision_parameters(Machine& machine, Instance& self, doubl
 }
 
 std::int32_t multibody_check_self_penetration(Machine& machine, Instance& self) {
-  return dynamics_of(machine).self_penetrations(root_body(machine, self)) != 0;
+  const BodyIndex root = root_body(machine, self);
+  if (!dynamics_of(machine).self_collisions(root)) return 0;
+  const std::uint64_t links = dynamics_of(machine).links_of(root).size();
+  machine.charge(links * links);  // pairs
+  return dynamics_of(machine).self_penetrations(root) != 0;
 }
 
 void multibody_set_accuracy(Machine& machine, Instance& self, Text rung) {
@@ -223,7 +231,11 @@ Text multibody_get_accuracy(Machine& machine, Instance& self) {
   return machine.heap().string(name_of(dynamics_of(machine).accuracy(root_body(machine, self)).rung));
 }
 
-Energy energy_of(Machine& machine, Instance& self) { return dynamics_of(machine).energy(root_body(machine, self)); }
+Energy energy_of(Machine& machine, Instance& self) {
+  const BodyIndex root = root_body(machine, self);
+  charge_for_assembly(machine, root);
+  return dynamics_of(machine).energy(root);
+}
 
 double multibody_get_energy(Machine& machine, Instance& self) { return energy_of(machine, self).total(); }
 double multibody_get_residual(Machine& machine, Instance& self) { return energy_of(machine, self).residual; }

@@ -78,6 +78,7 @@ Instance* grid_get_patch(Machine& machine, Instance& self, Vector3 location) {
 
 ListCell* grid_get_patches(Machine& machine, Instance& self) {
   const auto cells = static_cast<CellIndex>(own_grid(machine, self).grid->cells());
+  machine.charge_for(cells);
   ListCell* list = machine.heap().list(cells);
   const Pin pin(machine, Value::of(Tag::List, list));
   for (CellIndex cell = 0; cell < cells; ++cell)
@@ -124,6 +125,8 @@ void grid_write_field(Machine& machine, Instance& self, Instance* field, double 
 /// Red, green and blue from up to three matrices, and opacity from the sum of the three.
 void grid_color_from(Machine& machine, Instance& self, Instance* red, Instance* green, Instance* blue) {
   GridResource& resource = own_grid(machine, self);
+  constexpr std::uint64_t kOfCell = 4;  // numbers
+  machine.charge_for(kOfCell * resource.grid->cells());
   resource.make_colors();
   resource.make_alphas();
   const Field* fields[3] = {};
@@ -149,6 +152,7 @@ void copy_to_grid(Machine& machine, Instance& self, Instance* target, double fac
   const Field& field = own_field(machine, self);
   GridResource& resource = grid_of(machine, target, "copy-to-channel: the patch grid");
   const Grid& grid = *resource.grid;
+  machine.charge_for(grid.cells());
   if constexpr (Channel == 3)
     resource.make_alphas();
   else

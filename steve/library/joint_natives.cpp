@@ -268,11 +268,24 @@ double get_velocity(Machine& machine, Instance& self) {
 Vector3 get_velocity_vector(Machine& machine, Instance& self) {
   return read(machine, self, [](Mechanics& d, JointIndex joint) { return Vector3(d.velocity(joint)); });
 }
-Vector3 get_reaction_force(Machine& machine, Instance& self) {
-  return read(machine, self, [](Mechanics& d, JointIndex joint) { return Vector3(d.reaction(joint).force); });
+/// Forward dynamics of all links, and the dense equations of joints that close loops.
+void charge_for_reaction(Machine& machine, const Mechanics& dynamics, BodyIndex body) {
+  constexpr std::uint64_t kOfLink = 64, kRows = 6, kOperations = 64;  // turns; of a loop; of a turn
+  const std::uint64_t links = dynamics.links_of(body).size(), joints = dynamics.joints_of(body).size();
+  const std::uint64_t rows = kRows * (joints >= links ? joints - links + 1 : 0);
+  machine.charge(kOfLink * links + rows * rows * (rows + kRows * links) / kOperations);
 }
+
+Vector3 reaction(Machine& machine, Instance& self, Vector3 JointReaction::*part) {
+  return read(machine, self, [&machine, part](Mechanics& dynamics, JointIndex joint) -> Vector3 {
+    charge_for_reaction(machine, dynamics, dynamics.joint(joint).child);
+    return dynamics.reaction(joint).*part;
+  });
+}
+
+Vector3 get_reaction_force(Machine& machine, Instance& self) { return reaction(machine, self, &JointReaction::force); }
 Vector3 get_reaction_torque(Machine& machine, Instance& self) {
-  return read(machine, self, [](Mechanics& d, JointIndex joint) { return Vector3(d.reaction(joint).torque); });
+  return reaction(machine, self, &JointReaction::torque);
 }
 
 constexpr Native kJointNatives[] = {

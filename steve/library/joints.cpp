@@ -282,7 +282,9 @@ std::vector<Instance*> links_of(Machine& machine, Instance& multibody) {
   std::vector<Instance*> links;
   const BodyIndex root = own_root(machine, multibody);
   if (root == kNoBody) return links;
-  for (const BodyIndex body : machine.world().mechanics().links_of(root))
+  const auto bodies = machine.world().mechanics().links_of(root);
+  machine.charge(bodies.size());
+  for (const BodyIndex body : bodies)
     if (Instance* link = machine.instance(machine.world().bodies().owner(body))) links.push_back(link);
   std::sort(links.begin(), links.end(), [](const Instance* a, const Instance* b) { return a->serial < b->serial; });
   return links;
@@ -293,10 +295,33 @@ std::vector<Instance*> joints_of(Machine& machine, Instance& multibody) {
   const BodyIndex root = own_root(machine, multibody);
   if (root == kNoBody) return joints;
   const Mechanics& dynamics = machine.world().mechanics();
-  for (const JointIndex joint : dynamics.joints_of(root))
+  const auto indices = dynamics.joints_of(root);
+  machine.charge(indices.size());
+  for (const JointIndex joint : indices)
     if (Instance* owner = machine.instance(dynamics.joint_owner(joint))) joints.push_back(owner);
   std::sort(joints.begin(), joints.end(), [](const Instance* a, const Instance* b) { return a->serial < b->serial; });
   return joints;
+}
+
+void charge_for_assembly(Machine& machine, BodyIndex body) {
+  constexpr std::size_t kOfLink = 4;  // turns
+  const Mechanics& dynamics = machine.world().mechanics();
+  if (dynamics.joint_count() == 0) return;
+  const std::size_t links = dynamics.links_of(body).size();
+  if (links > 1) machine.charge(kOfLink * links);
+}
+
+void follow_moved(Machine& machine, BodyIndex body) {
+  charge_for_assembly(machine, body);
+  machine.world().mechanics().moved(body);
+}
+
+std::pmr::vector<ObjectId> counted_touching(Machine& machine, ObjectId id) {
+  constexpr std::uint64_t kOfObject = 3, kOfPair = 512;  // that may touch
+  machine.charge_for(kOfObject * machine.world().object_count());
+  auto touching = machine.world().touching(id);
+  machine.charge_for(kOfPair * touching.size());
+  return touching;
 }
 
 void add_parts(Machine& machine, Instance& object, std::vector<Instance*>& parts) {

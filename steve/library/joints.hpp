@@ -88,6 +88,12 @@ void set_root(Machine& machine, Instance& multibody, Instance* root);
 std::vector<Instance*> links_of(Machine& machine, Instance& multibody);
 /// Joint objects between them, in the order of creation.
 std::vector<Instance*> joints_of(Machine& machine, Instance& multibody);
+/// Counts what goes through the whole assembly of a body: poses or velocities of all links.
+void charge_for_assembly(Machine& machine, BodyIndex body);
+/// What joints hold to a body that was moved follows at once.
+void follow_moved(Machine& machine, BodyIndex body);
+/// Objects whose shapes touch this one's, counted.
+std::pmr::vector<ObjectId> counted_touching(Machine& machine, ObjectId id);
 /// What an archive of an object needs besides: bodies of joints and springs, parts of a MultiBody.
 void add_parts(Machine& machine, Instance& object, std::vector<Instance*>& parts);
 

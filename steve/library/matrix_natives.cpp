@@ -42,6 +42,7 @@ void copy_plane(Machine& machine, const Field& field, int z, Instance* target, d
   const int width = std::min(picture.width(), field.nx());
   const int height = std::min(picture.height(), field.ny());
   if (width == 0) return;
+  machine.charge_for(static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height));
   const double* const values = field.values().data();
   const auto column = static_cast<std::ptrdiff_t>(field.ny()) * field.nz();
   for (int y = 0; y < height; ++y) {
@@ -53,7 +54,7 @@ void copy_plane(Machine& machine, const Field& field, int z, Instance* target, d
 
 template <Channel C>
 void plane_copy_to_channel(Machine& machine, Instance& self, Instance* target, double factor) {
-  copy_plane(machine, whole_field(machine, self), 0, target, factor, C);
+  copy_plane(machine, own_field(machine, self), 0, target, factor, C);
 }
 
 // --- Matrix3D --------------------------------------------------------------------------------------------------------

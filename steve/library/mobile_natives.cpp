@@ -49,7 +49,7 @@ void mobile_rotate(Machine& machine, Instance& self, Vector3 axis, double radian
   if (axis.isZero(0)) return;
   machine.world().leave(body);
   bodies_of(machine).set_orientation(body, turn);
-  machine.world().mechanics().moved(body);
+  follow_moved(machine, body);
 }
 
 void mobile_relative_rotate(Machine& machine, Instance& self, Vector3 axis, double radians) {
@@ -57,7 +57,7 @@ void mobile_relative_rotate(Machine& machine, Instance& self, Vector3 axis, doub
   const BodyIndex body = body_of(machine, self);
   machine.world().leave(body);
   bodies_of(machine).set_orientation(body, turn * bodies_of(machine).orientation(body));
-  machine.world().mechanics().moved(body);
+  follow_moved(machine, body);
 }
 
 void mobile_offset(Machine& machine, Instance& self, Vector3 displacement) {
@@ -65,7 +65,7 @@ void mobile_offset(Machine& machine, Instance& self, Vector3 displacement) {
   const Vector3 place = bodies_of(machine).location(body) + displacement;
   machine.world().leave(body);
   bodies_of(machine).set_location(body, place.allFinite() ? machine.world().space().inside(place) : place);
-  machine.world().mechanics().moved(body);
+  follow_moved(machine, body);
 }
 
 // --- physics ---------------------------------------------------------------------------------------------------------
@@ -146,10 +146,7 @@ bool tested(const Mechanics& dynamics, BodyIndex a, BodyIndex b) {
 ListCell* mobile_get_colliding_objects(Machine& machine, Instance& self) {
   const BodyIndex body = body_of(machine, self);
   const Mechanics& dynamics = machine.world().mechanics();
-  constexpr std::uint64_t kOfPair = 512;  // that may touch
-  machine.charge_for(machine.world().object_count());
-  const auto touching = machine.world().touching(self.id);
-  machine.charge_for(kOfPair * touching.size());
+  const auto touching = counted_touching(machine, self.id);
   ListCell* list = machine.heap().list(0);
   for (const ObjectId id : touching) {
     const BodyIndex other = machine.world().body(id);
@@ -163,7 +160,7 @@ ListCell* mobile_get_colliding_objects(Machine& machine, Instance& self) {
 std::int32_t mobile_check_for_self_penetrations(Machine& machine, Instance& self) {
   const BodyIndex body = body_of(machine, self);
   const Mechanics& dynamics = machine.world().mechanics();
-  for (const ObjectId id : machine.world().touching(self.id)) {
+  for (const ObjectId id : counted_touching(machine, self.id)) {
     const BodyIndex other = machine.world().body(id);
     if (dynamics.same_assembly(body, other) && tested(dynamics, body, other)) return 1;
   }

@@ -1,4 +1,5 @@
 // Natives of Patch: where a cell is, what it looks like, its state, which cells are around it.
+#include <algorithm>
 #include <cmath>
 
 #include "steve/library/grids.hpp"
@@ -101,6 +102,8 @@ ListCell* patch_neighborhood(Machine& machine, Instance& self, std::int32_t size
   if (size < 0)
     throw Error(ErrorCode::Argument, "the size " + std::to_string(size) + " of a neighborhood (must be >= 0)");
   const Grid grid = *place.resource->grid;
+  const double side = 2.0 * size + 1, within = side * side * (Flat ? 1 : side);
+  machine.charge_for(static_cast<std::uint64_t>(std::min(within, static_cast<double>(grid.cells()))));
   ListCell* list = machine.heap().list();
   const Pin pin(machine, Value::of(Tag::List, list)), pin_grid(machine, Value::of(Tag::Object, place.grid));
   const auto add = [&](CellIndex cell) {

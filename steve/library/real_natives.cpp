@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "steve/library/joints.hpp"
 #include "steve/library/library.hpp"
 #include "steve/library/resources.hpp"
 #include "steve/library/support.hpp"
@@ -15,9 +16,6 @@ namespace breve::steve {
 namespace {
 
 using Text = StringCell*;
-
-/// What joints hold to it follows at once.
-void moved(Machine& machine, BodyIndex body) { machine.world().mechanics().moved(body); }
 
 // --- pose ------------------------------------------------------------------------------------------------------------
 
@@ -41,7 +39,7 @@ void real_move(Machine& machine, Instance& self, Vector3 location) {
   // A matrix that is not finite is refused unchanged.
   machine.world().leave(body);
   bodies_of(machine).set_location(body, location.allFinite() ? machine.world().space().inside(location) : location);
-  moved(machine, body);
+  follow_moved(machine, body);
 }
 
 Vector3 real_get_location(Machine& machine, Instance& self) {
@@ -66,7 +64,7 @@ void real_set_rotation(Machine& machine, Instance& self, Matrix3 rotation) {
   const BodyIndex body = body_of(machine, self);
   machine.world().leave(body);
   bodies_of(machine).set_rotation(body, rotation);
-  moved(machine, body);
+  follow_moved(machine, body);
 }
 
 void real_set_rotation_around(Machine& machine, Instance& self, Vector3 axis, double radians) {
@@ -77,7 +75,7 @@ void real_set_rotation_around(Machine& machine, Instance& self, Vector3 axis, do
   if (length == 0) return;
   machine.world().leave(body);
   bodies_of(machine).set_orientation(body, Quaternion(Eigen::AngleAxisd(radians, axis / length)));
-  moved(machine, body);
+  follow_moved(machine, body);
 }
 
 void real_set_rotation_euler_angles(Machine& machine, Instance& self, Vector3 angles) {
@@ -88,7 +86,7 @@ void real_set_rotation_euler_angles(Machine& machine, Instance& self, Vector3 an
   const BodyIndex body = body_of(machine, self);
   machine.world().leave(body);
   bodies_of(machine).set_orientation(body, turn);
-  moved(machine, body);
+  follow_moved(machine, body);
 }
 
 void real_point(Machine& machine, Instance& self, Vector3 vertex, Vector3 direction) {
@@ -106,7 +104,7 @@ void real_point(Machine& machine, Instance& self, Vector3 vertex, Vector3 direct
                                                   : Eigen::AngleAxisd(std::atan2(sine, from.dot(to)), axis / sine);
   machine.world().leave(body);
   bodies_of(machine).set_orientation(body, Quaternion(turn));
-  moved(machine, body);
+  follow_moved(machine, body);
 }
 
 // --- shape -----------------------------------------------------------------------------------------------------------

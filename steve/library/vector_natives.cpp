@@ -1,4 +1,6 @@
 // Natives of Vector.
+#include <algorithm>
+
 #include "steve/library/field_natives.hpp"
 #include "steve/library/image_access.hpp"
 #include "steve/library/tables.hpp"
@@ -29,6 +31,8 @@ template <Channel C>
 void copy_to_channel(Machine& machine, Instance& self, Instance* target, double factor) {
   const Field& field = own_field(machine, self);
   Image& picture = image_of(machine, target, "copy-to-channel: the image");
+  const auto pixels = static_cast<std::uint64_t>(picture.width()) * static_cast<std::uint64_t>(picture.height());
+  machine.charge_for(std::min(pixels, static_cast<std::uint64_t>(field.nx())));
   int i = 0;
   for (int y = 0; y < picture.height() && i < field.nx(); ++y) {
     std::uint8_t* pixel = picture.row(y).data() + static_cast<std::size_t>(C);

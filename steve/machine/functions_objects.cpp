@@ -72,7 +72,9 @@ Value call_method_named(Machine& machine, Instance&, Instance* object, StringCel
 }
 
 ListCell* keys_of(Machine& machine, Instance&, HashCell* hash) {
-  return hash != nullptr ? machine.heap().keys(*hash) : machine.heap().list();
+  if (hash == nullptr) return machine.heap().list();
+  machine.charge_for(hash->used);
+  return machine.heap().keys(*hash);
 }
 
 std::int32_t has_key(Machine& machine, Instance&, HashCell* hash, Value key) {

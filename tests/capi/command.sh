@@ -234,6 +234,8 @@ near_option)
   program a.tz "" ""
   expect 2 run a.tz --iteration 3 && has err "Did you mean --iterations?"
   expect 2 run a.tz --iterations 1 --sede 3 && has err "Did you mean --seed?"
+  expect 2 rnu a.tz && has err "Did you mean run?"
+  expect 2 a.tz && has err "To run a program: breve run a.tz"
   expect 2 run a.tz --zzz && has err "breve help run"
   ;;
 includes)
