@@ -172,11 +172,19 @@ breve_status program_load(Caller& c) {
   return status;
 }
 
+/// Its plugin may be refused.
+constexpr std::string_view kPlugged = R"(@plugin "plugin.so"(start).
+@use Control.
+Controller Plugged.
+Control : Plugged { + to iterate: print pluggedIn(). }
+)";
+
 breve_status program_compile(Caller& c) {
   breve_runtime* runtime = c.runtime();
   const char* name = c.text_or_null("other.tz");
   std::string_view text = "Controller Nobody. Object : Half { + to init: (";
   if (may_make(c, 40)) text = c.choose().one_of(call_programs());
+  if (may_make(c, 10)) text = kPlugged;
   if (c.chance(5)) text = {};
   if (c.chance(3)) text = {nullptr, 7}, c.expect_refusal();
   Out<breve_program*> made(c);
