@@ -37,3 +37,14 @@ endfunction()
 macro(breve_pkg_config name module)
   pkg_check_modules(breve_${name} REQUIRED IMPORTED_TARGET ${module})
 endmacro()
+
+# breve_optional_package(TARGET PACKAGE USER DEBIAN_PACKAGE): finds what only a sample or test needs. Where it is
+# missing, a message says what is left out.
+macro(breve_optional_package target package user debian)
+  if(NOT TARGET ${target})
+    find_package(${package} QUIET)
+  endif()
+  if(NOT TARGET ${target})
+    message(STATUS "breve: ${user} is left out: ${package} was not found (Debian: ${debian})")
+  endif()
+endmacro()

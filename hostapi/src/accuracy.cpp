@@ -194,20 +194,18 @@ breve_guard breve_world_guard(const breve_world* world) {
 
 // --- what came of it ------------------------------------------------------------------------------------------------
 
+breve_intervention breve::host::to_host(const breve_world& world, const Intervention& one) {
+  // Names are literals: they end with a zero byte.
+  return {one.iteration, one.time, handle_of(world, one.body), words_for(one.reason).data(), name_of(one.action).data(),
+          one.value};
+}
+
 breve_status breve_world_interventions(const breve_world* world, breve_intervention* interventions, size_t capacity,
                                        size_t* count) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     copy_list(dynamics_of(*world).interventions(), interventions, capacity, count, "interventions",
-              [&](const breve::Intervention& one) {
-                // Names are literals: they end with a zero byte.
-                return breve_intervention{one.iteration,
-                                          one.time,
-                                          handle_of(*world, one.body),
-                                          breve::words_for(one.reason).data(),
-                                          breve::name_of(one.action).data(),
-                                          one.value};
-              });
+              [&](const breve::Intervention& one) { return to_host(*world, one); });
   });
 }
 

@@ -1,4 +1,4 @@
-// What happened in an iteration, as lists for the host.
+// What happened in an iteration, as lists for the host, and as calls of its listener.
 #include "physical.hpp"
 
 using namespace breve::host;
@@ -16,6 +16,30 @@ static_assert(int{BREVE_EVENT_CONTACT} == int{Events::kContacts} && int{BREVE_EV
 breve_object handle_of_gone(const breve_world& world, ObjectId id, std::uint32_t ticket) {
   const std::uint64_t generation = (ticket - 1 + std::uint64_t{world.first_generation}) % kGenerations + 1;
   return {id.index, static_cast<std::uint32_t>(generation)};
+}
+
+breve_contact contact_of(const breve_world& world, const breve::ContactEvent& event) {
+  breve_contact to{};
+  to.phase = static_cast<std::uint32_t>(event.phase);
+  to.a = handle_of_gone(world, event.a, event.ticket_a);
+  to.b = handle_of_gone(world, event.b, event.ticket_b);
+  copy_to(to.point, event.point);
+  copy_to(to.normal, event.normal);
+  to.distance = event.distance;
+  copy_to(to.impulse, event.impulse);
+  return to;
+}
+
+breve_life life_of(const breve_world& world, const breve::LifeEvent& event) {
+  return {handle_of_gone(world, event.object, event.ticket), world.program->cls(event.cls).name.c_str(), event.born};
+}
+
+breve_announcement announcement_of(const breve_world& world, const breve::AnnouncementEvent& event) {
+  return {handle_of_gone(world, event.announcer, event.ticket), event.time, event.message.c_str()};
+}
+
+breve_nap nap_of(const breve_world& world, const breve::SleepEvent& event) {
+  return {handle_of_gone(world, event.object, event.ticket), event.asleep};
 }
 
 /// A list of the world's events, or an empty one.
@@ -70,27 +94,15 @@ breve_status breve_world_contacts(const breve_world* world, breve_contact* conta
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     read_events(*world, &Events::contacts, contacts, capacity, count, "contacts",
-                [&](const breve::ContactEvent& event) {
-                  breve_contact to{};
-                  to.phase = static_cast<std::uint32_t>(event.phase);
-                  to.a = handle_of_gone(*world, event.a, event.ticket_a);
-                  to.b = handle_of_gone(*world, event.b, event.ticket_b);
-                  copy_to(to.point, event.point);
-                  copy_to(to.normal, event.normal);
-                  to.distance = event.distance;
-                  copy_to(to.impulse, event.impulse);
-                  return to;
-                });
+                [&](const breve::ContactEvent& event) { return contact_of(*world, event); });
   });
 }
 
 breve_status breve_world_lives(const breve_world* world, breve_life* lives, size_t capacity, size_t* count) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
-    read_events(*world, &Events::lives, lives, capacity, count, "lives", [&](const breve::LifeEvent& event) {
-      return breve_life{handle_of_gone(*world, event.object, event.ticket), world->program->cls(event.cls).name.c_str(),
-                        event.born};
-    });
+    read_events(*world, &Events::lives, lives, capacity, count, "lives",
+                [&](const breve::LifeEvent& event) { return life_of(*world, event); });
   });
 }
 
@@ -99,18 +111,86 @@ breve_status breve_world_announcements(const breve_world* world, breve_announcem
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     read_events(*world, &Events::announcements, announcements, capacity, count, "announcements",
-                [&](const breve::AnnouncementEvent& event) {
-                  return breve_announcement{handle_of_gone(*world, event.announcer, event.ticket), event.time,
-                                            event.message.c_str()};
-                });
+                [&](const breve::AnnouncementEvent& event) { return announcement_of(*world, event); });
   });
 }
 
 breve_status breve_world_naps(const breve_world* world, breve_nap* naps, size_t capacity, size_t* count) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
-    read_events(*world, &Events::sleeps, naps, capacity, count, "naps", [&](const breve::SleepEvent& event) {
-      return breve_nap{handle_of(*world, event.object), event.asleep};
-    });
+    read_events(*world, &Events::sleeps, naps, capacity, count, "naps",
+                [&](const breve::SleepEvent& event) { return nap_of(*world, event); });
+  });
+}
+
+breve_status breve_object_contacts_watched(const breve_world* world, breve_object object, bool* watched) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need(watched, "watched");
+    live_body(*world, object);
+    const Events* events = std::as_const(*world->world).gathered();
+    *watched = events && events->watched(live_id(*world, object), live_instance(*world, object).cls->id);
+  });
+}
+
+breve_status breve_object_contact_force(const breve_world* world, breve_object object, breve_object other,
+                                        double force[3]) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need(force, "force");
+    const BodyIndex body = live_body(*world, object);
+    const BodyIndex with = is_null(other) ? breve::kNoBody : live_body(*world, other);
+    if (with == body) fail(BREVE_ERROR_ARGUMENT, "an object has no contact with itself");
+    copy_to(force, std::as_const(*world->world).mechanics().contact_force(body, with));
+  });
+}
+
+// --- the listener -----------------------------------------------------------------------------------------------------
+
+std::uint32_t Listener::kinds() const {
+  std::uint32_t kinds = 0;
+  if (functions_.contact) kinds |= Events::kContacts;
+  if (functions_.life) kinds |= Events::kLives;
+  if (functions_.announcement) kinds |= Events::kAnnouncements;
+  if (functions_.nap) kinds |= Events::kSleep;
+  return kinds;
+}
+
+template <class Event>
+void Listener::call(void (*function)(void*, breve_world*, const Event*), const Event& event) {
+  if (!function) return;
+  const CallbackScope callback(world_);
+  function(functions_.user, &world_, &event);
+}
+
+void Listener::contact(const breve::ContactEvent& event) { call(functions_.contact, contact_of(world_, event)); }
+void Listener::life(const breve::LifeEvent& event) { call(functions_.life, life_of(world_, event)); }
+void Listener::announcement(const breve::AnnouncementEvent& event) {
+  call(functions_.announcement, announcement_of(world_, event));
+}
+void Listener::sleep(const breve::SleepEvent& event) { call(functions_.nap, nap_of(world_, event)); }
+void Listener::intervention(const breve::Intervention& event) { call(functions_.intervention, to_host(world_, event)); }
+
+breve_status breve_world_set_listener(breve_world* world, const breve_listener* listener) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need_idle(*world, "breve_world_set_listener");
+    const breve_listener functions = read_config(listener, breve_listener_default(), "breve_listener");
+    breve::World& inner = *world->world;
+    if (!listener && !inner.gathered()) return;
+    Events& events = inner.events();
+    events.listen(nullptr, 0, 0);
+    world->listener.reset();
+    if (!listener) return;
+    world->listener.emplace(*world, functions);
+    events.listen(&*world->listener, world->listener->kinds(), inner.mechanics().interventions().size());
+  });
+}
+
+breve_status breve_world_listener(const breve_world* world, breve_listener* listener) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    const breve_listener functions = world->listener ? world->listener->functions() : breve_listener_default();
+    write_struct(listener, functions, "breve_listener");
   });
 }

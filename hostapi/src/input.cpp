@@ -10,7 +10,25 @@ using breve::ObjectId;
 
 namespace {
 
+/// How many bytes the character of UTF-8 takes that begins here; 0: none does.
+std::size_t length_of_character(const char* text) {
+  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned first = byte(0);
+  const std::size_t length = first == 0               ? 0
+                             : first < 0x80           ? 1
+                             : (first & 0xe0) == 0xc0 ? 2
+                             : (first & 0xf0) == 0xe0 ? 3
+                             : (first & 0xf8) == 0xf0 ? 4
+                                                      : 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  return length;
+}
+
 bool is_key(const char* key) {
+  const std::size_t length = length_of_character(key);
+  if (length != 0 && key[length] == '\0') return true;
+  // A byte of some other encoding is one character.
   if (key[0] != '\0' && key[1] == '\0') return true;
   for (const char* arrow : {"up", "down", "left", "right"})
     if (std::strcmp(key, arrow) == 0) return true;

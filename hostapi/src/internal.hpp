@@ -220,6 +220,26 @@ class MayCollide final : public PairJudge {
   void* const user_;
 };
 
+/// The host's callbacks for events.
+class Listener final : public EventListener {
+ public:
+  Listener(breve_world& world, const breve_listener& functions) : world_(world), functions_(functions) {}
+  const breve_listener& functions() const { return functions_; }
+  std::uint32_t kinds() const;
+  void contact(const ContactEvent& event) override;
+  void life(const LifeEvent& event) override;
+  void announcement(const AnnouncementEvent& event) override;
+  void sleep(const SleepEvent& event) override;
+  void intervention(const Intervention& event) override;
+
+ private:
+  template <class Event>
+  void call(void (*function)(void*, breve_world*, const Event*), const Event& event);
+
+  breve_world& world_;
+  const breve_listener functions_;
+};
+
 /// A copy of a versioned struct that an older header may have made smaller: fields that it lacks take the defaults.
 /// @throws  StatusError if its struct_size is not one that this header or an older one gave
 template <class Config>
@@ -271,6 +291,7 @@ struct breve_world : breve::InMemory {
   std::unique_ptr<breve::World> world;
   std::unique_ptr<breve::steve::Machine> machine;      // goes before the world
   std::optional<breve::host::MayCollide> may_collide;  // of breve_world_set_may_collide
+  std::optional<breve::host::Listener> listener;       // of breve_world_set_listener
   mutable breve::host::ErrorRecord error;
   breve::host::References references;
   std::pmr::deque<breve::host::Selector> selectors;  // a callback may add some while one is in use

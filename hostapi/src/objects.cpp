@@ -222,6 +222,18 @@ breve_status breve_object_set_target(breve_world* world, breve_object object, co
   });
 }
 
+breve_status breve_object_target(const breve_world* world, breve_object object, bool* moves, breve_pose* pose) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need(moves, "moves");
+    const auto target = std::as_const(*world->world).target(live_body(*world, object));
+    *moves = target.has_value();
+    if (!target || !pose) return;
+    const breve::Quaternion& q = target->orientation;
+    *pose = {{target->location.x(), target->location.y(), target->location.z()}, {q.w(), q.x(), q.y(), q.z()}};
+  });
+}
+
 breve_status breve_object_velocity(const breve_world* world, breve_object object, double velocity[3]) {
   return get_vector(world, object, velocity, "velocity", &Bodies::velocity);
 }

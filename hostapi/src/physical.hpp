@@ -44,6 +44,8 @@ breve_object make_with(breve_world& world, const char* library_class, Work work)
   return handle_of(world, object.id);
 }
 
+breve_intervention to_host(const breve_world& world, const Intervention& one);
+
 /// A copy of an array, as much as there is room for; the count of all.
 template <class Out, class In, class Convert>
 void copy_list(const In& all, Out* out, std::size_t capacity, std::size_t* count, const char* what, Convert convert) {

@@ -39,6 +39,13 @@ breve_status breve_world_set_iteration_step(breve_world* world, double seconds) 
   return guard(world->error, [&] { world->world->set_iteration_step(seconds); });
 }
 
+double breve_world_integration_step(const breve_world* world) { return world ? world->world->integration_step() : 0; }
+
+breve_status breve_world_set_integration_step(breve_world* world, double seconds) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] { world->world->set_integration_step(seconds); });
+}
+
 double breve_world_time_scale(const breve_world* world) { return world ? world->time_scale : 0; }
 
 breve_status breve_world_set_time_scale(breve_world* world, double scale) {

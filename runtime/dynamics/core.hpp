@@ -223,6 +223,7 @@ struct Dynamics::Core : MechanicsCore {
 
   // ledger.cpp
   Energy energy_of(Tree& tree) const;
+  Vector3 carried(const NearPair& pair) const;
   double joint_springs(Tree& tree) const;
   double tie_energy_in(const SpringDescription& is) const;
   double tie_energy(const SpringDescription& is) const;

@@ -213,7 +213,8 @@ void Island::keep_springs() {
     NearPair& pair = *pairs_[point.pair];
     pair.stored += point.stored;
     if (pair.warm_count == static_cast<int>(pair.warm.size())) continue;
-    pair.warm[static_cast<std::size_t>(pair.warm_count++)] = {point.feature, point.slips, point.stretched, 0};
+    pair.warm[static_cast<std::size_t>(pair.warm_count++)] = {point.feature, point.slips, point.stretched,
+                                                              point.force.dot(point.axes.row(0).transpose())};
   }
 }
 

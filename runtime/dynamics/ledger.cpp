@@ -1,6 +1,8 @@
 // Where energy is and where it went. The energy of motion, height and springs is summed when a caller asks; works and
 // losses are noted where they arise. The rest is the residual. Nothing repairs it.
 #include <algorithm>
+#include <span>
+#include <utility>
 
 #include "runtime/articulated/energy.hpp"
 #include "runtime/articulated/kinematics.hpp"
@@ -168,5 +170,41 @@ Energy Dynamics::energy(BodyIndex body) const {
 }
 
 bool Dynamics::asleep(BodyIndex body) const { return core_ && core_->near.asleep(body); }
+
+/// What a pair carried in the last sub-step, on its `a`.
+Vector3 Dynamics::Core::carried(const NearPair& pair) const {
+  Vector3 force = Vector3::Zero();
+  if (!pair.touching || pair.warm_count == 0) return force;
+  const std::span warm = std::span(pair.warm).first(static_cast<std::size_t>(pair.warm_count));
+  if (!(pair.spring.stiffness > 0)) {
+    for (const WarmPoint& point : warm) force += point.force;
+    return force;
+  }
+  const auto pose = [this](BodyIndex body) { return Pose{bodies->location(body), bodies->orientation(body)}; };
+  const Vector3 normal =
+      closest(*bodies->collision_shape(pair.a), pose(pair.a), *bodies->collision_shape(pair.b), pose(pair.b)).normal;
+  for (const WarmPoint& point : warm) {
+    force += point.before * normal;
+    // The stretch of one that slides is longer than what friction lets its force become.
+    Vector3 along = -pair.spring.tangential_stiffness * point.force;
+    const double most = (point.slides ? pair.law.dynamic_friction : pair.law.static_friction) * point.before;
+    if (along.norm() > most) along *= most / along.norm();
+    force += along;
+  }
+  return force;
+}
+
+Vector3 Dynamics::contact_force(BodyIndex body, BodyIndex other) const {
+  Vector3 force = Vector3::Zero();
+  if (!core_) return force;
+  const auto add = [&](const NearPair& pair) { force += core_->carried(pair) * (pair.a == body ? 1 : -1); };
+  if (other == kNoBody)
+    std::as_const(core_->near).each([&](const PairKey& key, const NearPair& pair) {
+      if (key.a == body || key.b == body) add(pair);
+    });
+  else if (const NearPair* pair = core_->near.find(body, other))
+    add(*pair);
+  return force;
+}
 
 }  // namespace breve

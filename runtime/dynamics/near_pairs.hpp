@@ -17,7 +17,7 @@ struct WarmPoint {
   std::uint32_t feature = 0;
   bool slides = false;              // of a spring
   Vector3 force = Vector3::Zero();  // N, to start from in the next; of a spring its stretch along the surface, m
-  double before = 0;                // N, along the normal, in the sub-step before
+  double before = 0;                // N, along the normal, in the sub-step before; of a spring in the last one
 };
 
 /// Two bodies whose roomy boxes meet. There are several times as many as pairs that may touch, and all are gone through

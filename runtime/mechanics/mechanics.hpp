@@ -180,6 +180,8 @@ class Mechanics : public InMemory {
 
   // --- what there is to know ----------------------------------------------------------------------------------------
   virtual bool asleep(BodyIndex body) const = 0;
+  /// What the contact of two bodies carried in the last sub-step, N on `body`, and with kNoBody all its contacts.
+  virtual Vector3 contact_force(BodyIndex body, BodyIndex other) const = 0;
   virtual Energy energy() const = 0;  // of all physics-enabled bodies
   const DynamicsCounters& counters() const;
   std::span<const Intervention> interventions() const;  // of the last iteration

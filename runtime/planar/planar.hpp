@@ -61,6 +61,7 @@ class Planar final : public Mechanics {
 
   // --- what there is to know ----------------------------------------------------------------------------------------
   bool asleep(BodyIndex body) const override;
+  Vector3 contact_force(BodyIndex body, BodyIndex other) const override;
   Energy energy() const override;
   std::size_t bytes() const override;
   Census census() const override;

@@ -119,6 +119,48 @@ void Planar::Core::note_driven_work(b2Contact* contact, const b2ContactImpulse& 
   }
 }
 
+/// The force on `body`, from Box2D's contacts or, before Box2D's world is made again, from the impulses of its image.
+Vector3 Planar::contact_force(BodyIndex body, BodyIndex other) const {
+  const Core& core = *core_;
+  Vector2 impulse = Vector2::Zero();
+  // The normal points to the body on which the impulse acts, which turns the tangent with it.
+  const auto add = [&impulse](const Vector2& normal, double along, double across) {
+    impulse += along * normal - across * left_of(normal);
+  };
+  const auto meant = [&](BodyIndex a, BodyIndex b) {
+    return (a == body && (other == kNoBody || b == other)) || (b == body && (other == kNoBody || a == other));
+  };
+  if (core.frozen) {
+    for (const WarmContact& one : core.frozen->warm.contacts) {
+      if (!meant(one.key.a, one.key.b)) continue;
+      const BodyIndex from = one.key.a == body ? one.key.b : one.key.a;
+      const Bodies& bodies = *core.bodies;
+      const Contact found =
+          closest(*bodies.collision_shape(body), core.pose(body), *bodies.collision_shape(from), core.pose(from));
+      const Vector2 normal = found.normal.head<2>().stableNormalized();
+      for (int i = 0; i < one.count; ++i)
+        add(normal, static_cast<double>(one.points[i].normal), static_cast<double>(one.points[i].tangent));
+    }
+  } else if (core.b2) {
+    for (b2Contact* contact = core.b2->GetContactList(); contact; contact = contact->GetNext()) {
+      if (!contact->IsTouching()) continue;
+      const BodyIndex a = core_->of(contact->GetFixtureA()->GetBody()).body;
+      const BodyIndex b = core_->of(contact->GetFixtureB()->GetBody()).body;
+      if (!meant(a, b)) continue;
+      b2WorldManifold where;
+      contact->GetWorldManifold(&where);
+      const Vector2 normal = vector_of(where.normal) * (b == body ? 1 : -1);
+      const b2Manifold& manifold = *contact->GetManifold();
+      for (int i = 0; i < manifold.pointCount; ++i)
+        add(normal, static_cast<double>(manifold.points[i].normalImpulse),
+            static_cast<double>(manifold.points[i].tangentImpulse));
+    }
+  }
+  if (!(core.last_step > 0)) return Vector3::Zero();
+  const Vector2 force = impulse * (core.settings.unit / static_cast<double>(core.last_step));
+  return {force.x(), force.y(), 0};
+}
+
 void Planar::Core::PostSolve(b2Contact* contact, const b2ContactImpulse* impulse) {
   note_driven_work(contact, *impulse);
   const float mu = contact->GetFriction();

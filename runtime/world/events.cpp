@@ -19,10 +19,21 @@ Events::Events(std::pmr::memory_resource* memory)
 
 void Events::want(std::uint32_t kinds) {
   wanted_ = kinds;
-  if (!wants(kContacts)) contacts.clear(), touching.clear();
-  if (!wants(kLives)) lives.clear();
-  if (!wants(kAnnouncements)) announcements.clear();
-  if (!wants(kSleep)) sleeps.clear(), asleep.clear();
+  drop_unwanted();
+}
+
+void Events::drop_unwanted() {
+  if (!wants(kContacts)) contacts.clear(), touching.clear(), told_.contacts = 0;
+  if (!wants(kLives)) lives.clear(), told_.lives = 0;
+  if (!wants(kAnnouncements)) announcements.clear(), told_.announcements = 0;
+  if (!wants(kSleep)) sleeps.clear(), asleep.clear(), told_.sleeps = 0;
+}
+
+void Events::listen(EventListener* listener, std::uint32_t kinds, std::size_t interventions) {
+  listener_ = listener;
+  heard_ = listener ? kinds : 0;
+  drop_unwanted();
+  told_ = {contacts.size(), lives.size(), sleeps.size(), announcements.size(), interventions};
 }
 
 void Events::watch(ObjectId object, bool on) {
@@ -52,10 +63,51 @@ std::pmr::set<ClassId> Events::reclassed(std::span<const ClassChange> classes) c
 }
 
 void Events::begin() {
+  const auto keep_untold = [this](auto& list, std::size_t told) {
+    const std::size_t known = listener_ ? std::min(told, list.size()) : list.size();
+    list.erase(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(known));
+  };
+  contacts.clear();
+  sleeps.clear();
+  keep_untold(lives, told_.lives);
+  keep_untold(announcements, told_.announcements);
+  told_ = {};
+}
+
+void Events::clear() {
   contacts.clear();
   lives.clear();
   sleeps.clear();
   announcements.clear();
+  told_ = {};
+}
+
+bool Events::untold(std::size_t interventions) const {
+  return listener_ &&
+         (told_.lives < lives.size() || told_.announcements < announcements.size() ||
+          told_.interventions < interventions || told_.contacts < contacts.size() || told_.sleeps < sleeps.size());
+}
+
+void Events::tell(const std::function<std::span<const Intervention>()>& interventions) {
+  // A callback may make events, which moves the lists, or set that none are wanted, which empties them.
+  const auto each = [this](const auto& list, std::size_t& told, const auto& call) {
+    for (const std::size_t end = list.size(); listener_ && told < std::min(end, list.size());) {
+      const auto& event = list[told++];
+      call(event);
+    }
+  };
+  each(lives, told_.lives, [this](LifeEvent event) { listener_->life(event); });
+  each(announcements, told_.announcements, [this](const AnnouncementEvent& event) {
+    listener_->announcement({event.announcer, event.ticket, event.time,
+                             std::pmr::string(event.message, announcements.get_allocator().resource())});
+  });
+  each(contacts, told_.contacts, [this](ContactEvent event) { listener_->contact(event); });
+  each(sleeps, told_.sleeps, [this](SleepEvent event) { listener_->sleep(event); });
+  for (const std::size_t end = interventions().size();
+       listener_ && told_.interventions < std::min(end, interventions().size());) {
+    const Intervention event = interventions()[told_.interventions++];
+    listener_->intervention(event);
+  }
 }
 
 std::size_t Events::bytes() const {
@@ -173,14 +225,14 @@ void World::Parts::gather_sleep() {
     for (const BodyIndex body : bodies.rigid_bodies())
       if (dynamics->asleep(body)) now.emplace(serial(body), bodies.owner(body));
   for (const auto& [place, object] : events.asleep)
-    if (!now.contains(place) && objects.alive(object)) events.sleeps.push_back({object, false});
+    if (!now.contains(place) && objects.alive(object)) events.sleeps.push_back({object, objects.ticket(object), false});
   for (const auto& [place, object] : now)
-    if (!events.asleep.contains(place)) events.sleeps.push_back({object, true});
+    if (!events.asleep.contains(place)) events.sleeps.push_back({object, objects.ticket(object), true});
   events.asleep.swap(now);
 }
 
 void World::gather_events() {
-  if (!events_ || events_->wanted() == 0) return;
+  if (!events_ || !events_->wants_any()) return;
   Effect& effect = parts_->effects[EffectId::Events];
   parts_->effects.turn_on(EffectId::Events, clock_.iteration, {});
   const StageScope stage(effect, observer_);
@@ -192,15 +244,22 @@ void World::gather_events() {
   effect.bytes = events_->bytes();
 }
 
+void World::tell_events() {
+  if (!events_->untold(parts_->dynamics->interventions().size())) return;
+  parts_->effects.turn_on(EffectId::Events, clock_.iteration, {});
+  const StageScope stage(parts_->effects[EffectId::Events], observer_);
+  events_->tell([this] { return parts_->dynamics->interventions(); });
+}
+
 /// After a restore: what touches or sleeps now began before.
 void World::look_again() {
   if (!events_) return;
-  events_->begin();
+  events_->clear();
   events_->touching.clear();
   events_->asleep.clear();
   if (events_->wants(Events::kContacts) && events_->any_watched()) parts_->gather_contacts();
   if (events_->wants(Events::kSleep)) parts_->gather_sleep();
-  events_->begin();
+  events_->clear();
 }
 
 }  // namespace breve

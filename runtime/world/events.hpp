@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory_resource>
 #include <set>
@@ -15,6 +16,7 @@
 #include "runtime/base/ids.hpp"
 #include "runtime/base/math.hpp"
 #include "runtime/base/memory.hpp"
+#include "runtime/mechanics/account.hpp"
 #include "runtime/world/behaviour.hpp"
 
 namespace breve {
@@ -39,6 +41,7 @@ struct LifeEvent {
 
 struct SleepEvent {
   ObjectId object;
+  std::uint32_t ticket = 0;
   bool asleep = false;
 };
 
@@ -49,13 +52,30 @@ struct AnnouncementEvent {
   std::pmr::string message;
 };
 
+/// Gets events during the iteration. It may change the world as a script may in its `iterate`.
+class EventListener {
+ public:
+  virtual ~EventListener() = default;
+  virtual void contact(const ContactEvent& event) = 0;
+  virtual void life(const LifeEvent& event) = 0;
+  virtual void announcement(const AnnouncementEvent& event) = 0;
+  virtual void sleep(const SleepEvent& event) = 0;
+  virtual void intervention(const Intervention& event) = 0;
+};
+
 class Events : public InMemory {
  public:
   explicit Events(std::pmr::memory_resource* memory);
 
   enum Kind : std::uint32_t { kContacts = 1, kLives = 2, kAnnouncements = 4, kSleep = 8, kAll = 15 };
+  /// Gathers these kinds, and those that the listener wants.
   void want(std::uint32_t kinds);
-  bool wants(Kind kind) const { return (wanted_ & kind) != 0; }
+  /// Tells the listener of these kinds from now on, and of the guard's interventions. Not owned; null: nobody.
+  /// @param interventions  how many there were in this iteration so far
+  void listen(EventListener* listener, std::uint32_t kinds, std::size_t interventions);
+  bool wants(Kind kind) const { return ((wanted_ | heard_) & kind) != 0; }
+  bool wants_any() const { return (wanted_ | heard_) != 0; }
+  bool listened() const { return listener_ != nullptr; }
   std::uint32_t wanted() const { return wanted_; }
   /// Reports the contacts of this object, or of the objects of exactly this class, or stops that.
   void watch(ObjectId object, bool on);
@@ -68,7 +88,12 @@ class Events : public InMemory {
   std::pmr::set<ClassId> reclassed(std::span<const ClassChange> classes) const;
   void take_classes(std::pmr::set<ClassId>& classes) noexcept { classes_.swap(classes); }
 
-  void begin();  // a new iteration: all lists are empty
+  void begin();  // a new iteration: all lists are empty, but for events that callbacks of the last one caused
+  void clear();
+  bool untold(std::size_t interventions) const;
+  /// Tells the listener of what it was not told yet. Events that this causes are left for the next call.
+  /// @param interventions  gives the guard's list, which a callback may move
+  void tell(const std::function<std::span<const Intervention>()>& interventions);
   void forget(ObjectId object) { objects_.erase({object.index, object.generation}); }
 
   // The events so far, in order: contacts by the creation of both objects, the others as they happened.
@@ -85,7 +110,15 @@ class Events : public InMemory {
   std::size_t bytes() const;
 
  private:
-  std::uint32_t wanted_ = 0;
+  /// How many of each list the listener has been told.
+  struct Told {
+    std::size_t contacts = 0, lives = 0, sleeps = 0, announcements = 0, interventions = 0;
+  };
+  void drop_unwanted();
+
+  std::uint32_t wanted_ = 0, heard_ = 0;
+  EventListener* listener_ = nullptr;
+  Told told_;
   std::pmr::set<std::pair<std::uint32_t, std::uint32_t>> objects_;  // index and generation
   std::pmr::set<ClassId> classes_;
 };

@@ -83,7 +83,7 @@ void World::reclass(std::span<const ClassChange> classes) {
   parts_->handlers.swap(handlers);
   if (!events_) return;
   events_->take_classes(watched);
-  events_->begin();  // what is listed names classes by their old numbers
+  events_->clear();  // what is listed names classes by their old numbers
 }
 
 }  // namespace breve

@@ -70,9 +70,14 @@ void World::step() {
   const StageScope iteration("iteration", observer_);
   Parts& parts = *parts_;
   parts.effects.begin_step();
+  const auto tell = [this] {
+    if (events_ && events_->listened()) tell_events();
+  };
+  tell();
   if (events_) events_->begin();
   parts.dynamics->begin_iteration(clock_.iteration, physics_bound_);
   deliver_input();
+  tell();
   parts.objects.join();
   if (behaviour_) {
     Effect& script = parts.effects[EffectId::Script];
@@ -85,16 +90,19 @@ void World::step() {
       if (!alive(id)) continue;
       ++script.calls, ++script.items;
       behaviour_->iterate(id);
+      tell();
     }
     for (const ObjectId id : second) {
       if (!alive(id)) continue;
       ++script.calls, ++script.items;
       behaviour_->post_iterate(id);
+      tell();
     }
   }
   run_scheduled();
   if (behaviour_) behaviour_->end_of_iteration();
   gather_events();
+  tell();
   ++clock_.iteration;
   count_bytes();
 }
@@ -126,6 +134,7 @@ void World::run_scheduled() {
     ++effect.calls;
     const MomentOf moment(clock_.time, entry.when);
     if (behaviour_) behaviour_->scheduled(entry.target, parts.names.text(entry.method));
+    if (events_ && events_->listened()) tell_events();
   }
   effect.items = parts.schedule.size();
 }

@@ -35,6 +35,12 @@ void World::set_target(BodyIndex body, const Vector3* new_location, const Quater
   target.orientation = orientation.normalized();
 }
 
+std::optional<Pose> World::target(BodyIndex body) const {
+  for (const Parts::Target& one : parts_->targets)
+    if (one.object == bodies_->owner(body) && !bodies_->dynamic(body)) return Pose{one.location, one.orientation};
+  return std::nullopt;
+}
+
 void World::leave(BodyIndex body) {
   if (bodies_->rigid() == 0 || !bodies_->driver(body) || bodies_->moving(body)) return;
   const Parts::Target from{bodies_->owner(body), bodies_->location(body), bodies_->orientation(body)};

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <memory_resource>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -142,6 +143,8 @@ class World : public InMemory {
   /// stands. It pushes and carries what it touches. Omitted values stay as they were set for that iteration, or are.
   /// Error{Argument}: it has physics, or the target is not finite.
   void set_target(BodyIndex body, const Vector3* location, const Quaternion* orientation);
+  /// Where the body is to be at the end of the next iteration; none if nobody has set that.
+  std::optional<Pose> target(BodyIndex body) const;
   /// A force and a torque, world axes, that act beside those that are set, in the next iteration only. At `point`,
   /// world frame; null: at the centre of mass. Error{Argument}: not finite, out of the plane of a flat world, or no
   /// body with physics.
@@ -240,6 +243,7 @@ class World : public InMemory {
   // judge.cpp, events.cpp
   void wake_around(BodyIndex body);
   void gather_events();
+  void tell_events();
   void look_again();
   // image.cpp
   void write_image(ByteWriter& out) const;

@@ -308,6 +308,38 @@ TEST(Analysis, TellsOfAProgramThatDoesNotCompile) {
   EXPECT_EQ(breve::Analysis().at("a.tz", 1, 1).status().code(), BREVE_ERROR_ARGUMENT);
 }
 
+TEST(Bodies, TellTheirListenerWhatCarriesThem) {
+  auto runtime = breve::Runtime::create().or_throw();
+  const auto program = runtime.library_program().or_throw();
+  auto world = runtime.world(program).or_throw();
+  int contacts = 0;
+  breve_listener listener = world.listener().or_throw();
+  EXPECT_EQ(listener.contact, nullptr);
+  listener.user = &contacts;
+  listener.contact = [](void* user, breve_world*, const breve_contact*) { ++*static_cast<int*>(user); };
+  ASSERT_TRUE(world.set_listener(&listener));
+  const breve::Object ball = world.create("Mobile").or_throw(), floor = world.create("Floor").or_throw();
+  ASSERT_TRUE(world.watch_contacts(ball));
+  EXPECT_TRUE(world.contacts_watched(ball).or_throw());
+  EXPECT_FALSE(world.contacts_watched(floor).or_throw());
+  breve_geometry box = breve_geometry_default();
+  box.kind = BREVE_SHAPE_BOX;
+  ASSERT_TRUE(world.set_shape(ball, world.create_shape(box).or_throw()));
+  ASSERT_TRUE(world.set_pose(ball, {{0, 0.5, 0}, {1, 0, 0, 0}}));
+  ASSERT_TRUE(world.set_physics(ball, true));
+  for (int i = 0; i < 60; ++i) ASSERT_TRUE(world.step());
+  EXPECT_GT(contacts, 20);
+  EXPECT_NEAR(world.contact_force(ball).or_throw()[1], 9.81, 0.01);
+  EXPECT_NEAR(world.contact_force(floor, ball).or_throw()[1], -9.81, 0.01);
+  ASSERT_TRUE(world.set_listener(nullptr));
+  EXPECT_EQ(world.listener().or_throw().user, nullptr);
+  EXPECT_FALSE(world.target(floor).or_throw().moves);
+  ASSERT_TRUE(world.set_target(floor, world.pose(floor).or_throw()));
+  EXPECT_TRUE(world.target(floor).or_throw().moves);
+  ASSERT_TRUE(world.set_integration_step(0.005));
+  EXPECT_EQ(world.integration_step(), 0.005);
+}
+
 TEST(Bodies, AreBuiltJoinedAndDrivenWithoutAScript) {
   auto runtime = breve::Runtime::create().or_throw();
   const auto program = runtime.library_program().or_throw();

@@ -41,6 +41,8 @@ void view_suite(void);
 void plugins_suite(void);
 void recording_suite(void);
 void debug_draw_suite(void);
+void listener_suite(void);
+void contact_force_suite(void);
 
 static const struct {
   const char* name;
@@ -84,6 +86,8 @@ static const struct {
     {"plugins", plugins_suite},
     {"recording", recording_suite},
     {"debug_draw", debug_draw_suite},
+    {"listener", listener_suite},
+    {"contact_force", contact_force_suite},
     {"values", values_suite},
     {"settings", settings_suite},
     {"view", view_suite},

@@ -15,6 +15,7 @@ static void null_handles_give_an_argument_error_or_nothing(void) {
   breve_class_info info;
   breve_stats stats = breve_stats_default();
   const breve_function function = breve_function_default();
+  breve_listener listener = breve_listener_default();
   double d[4] = {0};
   uint64_t hash;
   size_t size;
@@ -75,6 +76,8 @@ static void null_handles_give_an_argument_error_or_nothing(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_spring_description(NULL, o, &spring));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_queue_click_ray(NULL, d, d));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_iteration_step(NULL, 1));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_integration_step(NULL, 1));
+  CHECK(breve_world_integration_step(NULL) == 0);
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_time_scale(NULL, 1));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_interpolated(NULL, true));
   CHECK(breve_world_time_scale(NULL) == 0 && !breve_world_interpolated(NULL));
@@ -89,6 +92,7 @@ static void null_handles_give_an_argument_error_or_nothing(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_pose(NULL, o, &pose));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_pose(NULL, o, &pose));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_target(NULL, o, &pose));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_target(NULL, o, &is, &pose));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_velocity(NULL, o, d));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_velocity(NULL, o, d));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_rotational_velocity(NULL, o, d));
@@ -144,6 +148,10 @@ static void null_handles_give_an_argument_error_or_nothing(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_lives(NULL, NULL, 0, &size));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_announcements(NULL, NULL, 0, &size));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_naps(NULL, NULL, 0, &size));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_contacts_watched(NULL, o, &is));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_contact_force(NULL, o, o, d));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_listener(NULL, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_listener(NULL, &listener));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_queue_key(NULL, "a", true));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_queue_click(NULL, o));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_reload(NULL, NULL));
@@ -208,6 +216,10 @@ static void null_arguments_give_an_argument_error(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_pose(w, ball, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_pose(w, ball, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_target(w, ball, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_target(w, ball, NULL, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_contacts_watched(w, ball, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_contact_force(w, ball, stage, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_listener(w, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_velocity(w, ball, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_velocity(w, ball, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_rotational_velocity(w, ball, NULL));

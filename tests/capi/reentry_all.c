@@ -151,7 +151,19 @@ static breve_status do_pose(place* p) {
 }
 static breve_status do_target(place* p) {
   const breve_pose pose = {{0, 0, 0}, {1, 0, 0, 0}};
-  return breve_object_set_target(p->world, p->ball, &pose);
+  bool moves;
+  TRY(breve_object_set_target(p->world, p->ball, &pose));
+  return breve_object_target(p->world, p->ball, &moves, NULL);
+}
+static breve_status do_contact_force(place* p) {
+  const breve_object all = {0, 0};
+  double force[3];
+  return breve_object_contact_force(p->world, p->ball, all, force);
+}
+static breve_status do_listener(place* p) {
+  breve_listener listener = breve_listener_default();
+  TRY(breve_world_listener(p->world, &listener));
+  return breve_world_set_listener(p->world, &listener);
 }
 static breve_status do_velocity(place* p) {
   double v[3];
@@ -433,6 +445,7 @@ static breve_status do_stepping(place* p) {
   double numbers[3];
   const breve_array places = {numbers, 0, BREVE_NUMBER_DOUBLE, 3};
   TRY(breve_world_set_iteration_step(p->world, breve_world_iteration_step(p->world)));
+  TRY(breve_world_set_integration_step(p->world, breve_world_integration_step(p->world)));
   TRY(breve_world_set_time_scale(p->world, breve_world_time_scale(p->world)));
   TRY(breve_world_set_interpolated(p->world, true));
   CHECK(breve_world_interpolated(p->world));
@@ -444,6 +457,8 @@ static breve_status do_events(place* p) {
   TRY(breve_world_set_events(p->world, breve_world_events(p->world) | BREVE_EVENT_CONTACT));
   TRY(breve_world_watch_contacts(p->world, "Ball", true));
   TRY(breve_object_watch_contacts(p->world, p->ball, false));
+  bool watched;
+  TRY(breve_object_contacts_watched(p->world, p->ball, &watched));
   TRY(breve_world_contacts(p->world, NULL, 0, &count));
   TRY(breve_world_lives(p->world, NULL, 0, &count));
   TRY(breve_world_announcements(p->world, NULL, 0, &count));
@@ -514,6 +529,8 @@ static const struct {
     {"breve_object_pose", do_pose, WORKS, WORKS},
     {"breve_object_set_target", do_target, WORKS, WORKS},
     {"breve_object_velocity", do_velocity, WORKS, WORKS},
+    {"breve_object_contact_force", do_contact_force, WORKS, WORKS},
+    {"breve_world_set_listener", do_listener, BUSY, WORKS},
     {"breve_object_rotational_velocity", do_turning, WORKS, WORKS},
     {"breve_object_color", do_color, WORKS, WORKS},
     {"breve_object_shape", do_shape, WORKS, WORKS},

@@ -65,6 +65,36 @@ breve_status naps(Caller& c) {
   return read<breve_nap, breve_world_naps>(c, [&](const breve_nap& nap) { c.keep(nap.object); });
 }
 
+breve_status contacts_watched(Caller& c) {
+  const breve_world* world = c.world();
+  const breve_object object = c.object(world, "Real");
+  Out<bool> watched(c);
+  return watched.after(breve_object_contacts_watched(world, object, watched.to()));
+}
+breve_status contact_force(Caller& c) {
+  const breve_world* world = c.world();
+  const breve_object object = c.object(world, "Real");
+  const breve_object other = c.chance(50) ? breve_object{} : c.object_or_null(world, "Real");
+  Out<double[3]> force(c);
+  const breve_status status =
+      force.after(breve_object_contact_force(world, object, other, force.to() ? *force.to() : nullptr));
+  if (force) require(std::isfinite((*force)[1]), "a contact carries a force beyond numbers");
+  return status;
+}
+breve_status set_listener(Caller& c) {
+  breve_world* world = c.world();
+  breve_listener listener = c.listener();
+  if (c.chance(10)) listener.struct_size = c.struct_size(sizeof listener);
+  if (c.chance(30)) listener.contact = nullptr, listener.life = nullptr;
+  return breve_world_set_listener(world, c.chance(20) ? nullptr : &listener);
+}
+breve_status listener(Caller& c) {
+  const breve_world* world = c.world();
+  Out<breve_listener> filled(c);
+  filled.set_size(c.struct_size(sizeof(breve_listener)));
+  return filled.after(breve_world_listener(world, filled.to()));
+}
+
 // --- logs and lines --------------------------------------------------------------------------------------------------
 
 void append(void* sink, const char* bytes, std::size_t size) { static_cast<std::string*>(sink)->append(bytes, size); }
@@ -150,6 +180,10 @@ constexpr Function kFunctions[] = {
     {"breve_world_lives", lives},
     {"breve_world_announcements", announcements},
     {"breve_world_naps", naps},
+    {"breve_object_contacts_watched", contacts_watched, kBody},
+    {"breve_object_contact_force", contact_force, kBody},
+    {"breve_world_set_listener", set_listener, kBusy},
+    {"breve_world_listener", listener},
 };
 
 }  // namespace call_events

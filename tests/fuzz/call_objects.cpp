@@ -140,6 +140,16 @@ breve_status object_shape_faces(Caller& c) {
   return indices.after(status, shape.index_count);
 }
 
+breve_status object_target(Caller& c) {
+  const breve_world* world = c.world();
+  const breve_object object = c.object(world, "Real");
+  Out<bool> moves(c);
+  Out<breve_pose> pose(c, true);
+  const breve_status status = moves.after(breve_object_target(world, object, moves.to(), pose.to()));
+  pose.after(moves && *moves ? status : BREVE_ERROR_ARGUMENT);
+  return status;
+}
+
 constexpr Function kFunctions[] = {
     {"breve_world_controller", world_controller, kPlain},
     {"breve_world_objects", world_objects, kNotFound},
@@ -151,6 +161,7 @@ constexpr Function kFunctions[] = {
     {"breve_object_pose", object_pose, kBody},
     {"breve_object_set_pose", set_pose<breve_object_set_pose>, kBody | kScriptError, 2},
     {"breve_object_set_target", set_pose<breve_object_set_target>, kBody},
+    {"breve_object_target", object_target, kBody},
     {"breve_object_set_assembly_pose", set_pose<breve_object_set_assembly_pose>, kBody | kScriptError},
     {"breve_object_velocity", get_numbers<breve_object_velocity, 3>, kBody},
     {"breve_object_set_velocity", set_numbers<breve_object_set_velocity, 3>, kBody},

@@ -137,19 +137,22 @@ breve_status runtime_add_class(Caller& c) {
   static constexpr const char* kParents[] = {"Object", "Mobile", "HostOne", "Nobody", "-"};
   static constexpr std::uint32_t kTypes[] = {BREVE_TYPE_NULL, BREVE_TYPE_VECTOR, BREVE_TYPE_POINTER, 4711};
   breve_runtime* runtime = c.runtime();
-  const breve_parameter parameter{c.text_or_null("to"), c.choose().one_of(kTypes), 0};
-  const breve_variable variable{"kept", c.choose().one_of(kTypes), 0};
-  breve_method method{};
-  method.name = c.text_or_null("host-method");
-  method.parameters = &parameter;
-  method.parameter_count = c.chance(80) ? 1 : 0;
-  method.call = c.chance(90) ? first_argument : nullptr;
   breve_class description = breve_class_default();
   if (c.chance(10)) description.struct_size = c.struct_size(sizeof description);
+  // Fields beyond it are not looked at.
+  if (description.struct_size != sizeof description) return breve_runtime_add_class(runtime, &description);
+  const bool has_method = c.chance(80), has_parameter = c.chance(80);
+  const breve_parameter parameter{has_method && has_parameter ? c.text_or_null("to") : nullptr, c.choose().one_of(kTypes), 0};
+  const breve_variable variable{"kept", c.choose().one_of(kTypes), 0};
+  breve_method method{};
+  method.name = has_method ? c.text_or_null("host-method") : nullptr;
+  method.parameters = &parameter;
+  method.parameter_count = has_parameter ? 1 : 0;
+  method.call = c.chance(90) ? first_argument : nullptr;
   description.name = c.text_or_null(c.choose().one_of(kNames));
   description.parent = c.text_or_null(c.choose().one_of(kParents));
   description.methods = &method;
-  description.method_count = c.chance(80) ? 1 : 0;
+  description.method_count = has_method ? 1 : 0;
   description.variables = &variable;
   description.variable_count = c.chance(50) ? 1 : 0;
   return breve_runtime_add_class(runtime, &description);
@@ -172,11 +175,19 @@ breve_status program_load(Caller& c) {
   return status;
 }
 
+/// Its plugin may be refused.
+constexpr std::string_view kPlugged = R"(@plugin "plugin.so"(start).
+@use Control.
+Controller Plugged.
+Control : Plugged { + to iterate: print pluggedIn(). }
+)";
+
 breve_status program_compile(Caller& c) {
   breve_runtime* runtime = c.runtime();
   const char* name = c.text_or_null("other.tz");
   std::string_view text = "Controller Nobody. Object : Half { + to init: (";
   if (may_make(c, 40)) text = c.choose().one_of(call_programs());
+  if (may_make(c, 10)) text = kPlugged;
   if (c.chance(5)) text = {};
   if (c.chance(3)) text = {nullptr, 7}, c.expect_refusal();
   Out<breve_program*> made(c);

@@ -14,6 +14,7 @@ class DrawnQuery {
   DrawnQuery(Caller& c, const breve_world* world) : null_(c.chance(40)) {
     if (null_) return;
     query_.struct_size = c.struct_size(sizeof query_);
+    if (query_.struct_size != sizeof query_) return;  // fields beyond it are not looked at
     if (c.chance(40)) query_.class_name = c.class_name();
     if (c.chance(20)) query_.except = c.object_or_null(world, "Real");
     if (c.chance(30)) query_.mask = c.word();

@@ -14,6 +14,19 @@ breve_status set_iteration_step(Caller& c) {
   // A step of a million sub-steps is allowed, and takes too long here.
   return breve_world_set_iteration_step(world, seconds > 1 ? 1 : seconds);
 }
+breve_status integration_step(Caller& c) {
+  const breve_world* world = c.world();
+  const double seconds = breve_world_integration_step(world);
+  require((seconds > 0) == (world != nullptr), "an integration step is not positive");
+  c.accept_null();
+  return BREVE_OK;
+}
+breve_status set_integration_step(Caller& c) {
+  breve_world* world = c.world();
+  const double seconds = c.chance(80) ? 0.01 + 0.05 * static_cast<double>(c.word() % 4) : c.number();
+  if (!std::isfinite(seconds) || !(seconds > 0)) c.expect_refusal();
+  return breve_world_set_integration_step(world, seconds > 0 && seconds < 0.001 ? 0.001 : seconds);
+}
 breve_status time_scale(Caller& c) {
   const breve_world* world = c.world();
   const double scale = breve_world_time_scale(world);
@@ -100,6 +113,8 @@ breve_status batch_run(Caller& c) {
 
 constexpr Function kFunctions[] = {
     {"breve_world_set_iteration_step", set_iteration_step},
+    {"breve_world_integration_step", integration_step, kPlain},
+    {"breve_world_set_integration_step", set_integration_step},
     {"breve_world_time_scale", time_scale, kPlain},
     {"breve_world_set_time_scale", set_time_scale},
     {"breve_world_interpolated", interpolated, kPlain},

@@ -145,6 +145,7 @@ void Caller::finish() {
     require(ledger.bytes == 0, "memory of a world was not given back");
     require(ledger.files == 0, "a file was not closed");
     require(ledger.modules == 0, "a module was not released");
+    require(ledger.plugins == 0, "a plugin was not closed");
     require(ledger.retained == 0, "files were not released");
   }
 }

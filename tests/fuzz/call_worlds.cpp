@@ -174,7 +174,7 @@ breve_status world_has_budget(Caller& c) {
 breve_status world_print(Caller& c) {
   breve_world* world = c.world();
   const char* text = c.text_or_null("fuzz");
-  return breve_world_print(world, text, text ? c.choose().below(5) : 0);
+  return breve_world_print(world, text, text ? c.choose().below(5) : 1);
 }
 breve_status world_methods(Caller& c) {
   static constexpr const char* kNames[] = {"Control", "Mobile", "Chatter", "Nobody"};

@@ -112,6 +112,7 @@ class Caller {
   // --- callbacks
   breve_runtime_config runtime_config();
   breve_trace_fn trace();
+  breve_listener listener();
   void call_back(breve_world* speaker);
   bool called_back() const { return depth_ > 1; }
 
@@ -121,7 +122,7 @@ class Caller {
   /// What one runtime has of the host, to see at the end that it has given everything back.
   struct Ledger {
     Caller* caller = nullptr;
-    std::size_t bytes = 0, files = 0, modules = 0;  // that were given and not given back
+    std::size_t bytes = 0, files = 0, modules = 0, plugins = 0;  // that were given and not given back
     long retained = 0;
   };
 

@@ -128,6 +128,61 @@ struct Callbacks {
     write(sink, nullptr, 0);
     return caller(user).choices_.chance(80);
   }
+  /// A plugin that adds a function, calls back, or is refused.
+  static bool open_plugin(void* user, const char* file, const char* entry, const char* from, breve_plugin* plugin,
+                          breve_write_fn reason, void* sink) {
+    for (const char* text : {file, entry, from}) read_text(text);
+    Caller& host = caller(user);
+    host.call_back(nullptr);
+    const std::size_t answer = host.choices_.below(4);
+    if (answer == 0) reason(sink, "it is not trusted", 17);
+    if (answer <= 1) return false;
+    plugin->entry = answer == 2 ? plugin_entry : nullptr;
+    if (!plugin->entry) plugin->entry = [](breve_runtime*, std::uint32_t) { return BREVE_ERROR_UNSUPPORTED; };
+    plugin->library = user;
+    ++ledger(user).plugins;
+    plugin->close = [](void* library) { --ledger(library).plugins; };
+    return true;
+  }
+  static breve_status plugin_entry(breve_runtime* runtime, std::uint32_t abi) {
+    require(abi == BREVE_ABI, "a plugin is started for another interface");
+    breve_function f = breve_function_default();
+    f.name = "pluggedIn";
+    f.call = [](void*, const breve_call*, breve_value* result) {
+      *result = breve_value_int(1);
+      return BREVE_OK;
+    };
+    // What a plugin may not do is refused, and does no harm.
+    breve_program* program = nullptr;
+    require(breve_program_create_library(runtime, nullptr, &program) != BREVE_OK, "a plugin compiles a program");
+    return breve_runtime_add_function(runtime, &f);
+  }
+  // The functions of the listener. Their user is the Caller.
+  static void call_from_event(void* user, breve_world* world) {
+    auto& host = *static_cast<Caller*>(user);
+    require(breve_world_step(world) == BREVE_ERROR_BUSY, "an event is reported outside of an iteration");
+    if (host.choices_.chance(20)) host.call_back(world);
+  }
+  static void contact(void* user, breve_world* world, const breve_contact* contact) {
+    require(contact->phase <= BREVE_PHASE_END, "a contact has no phase");
+    call_from_event(user, world);
+  }
+  static void life(void* user, breve_world* world, const breve_life* life) {
+    call_from_event(user, world);
+    read_text(life->class_name);
+  }
+  static void announcement(void* user, breve_world* world, const breve_announcement* announcement) {
+    call_from_event(user, world);
+    read_text(announcement->message);
+  }
+  static void nap(void* user, breve_world* world, const breve_nap* nap) {
+    require(nap->object.generation != 0, "nobody falls asleep");
+    call_from_event(user, world);
+  }
+  static void intervention(void* user, breve_world* world, const breve_intervention* intervention) {
+    call_from_event(user, world);
+    read_text(intervention->reason);
+  }
   static void trace(void* user, const breve_trace_event* event) {
     for (const char* text : {event->class_name, event->name, event->file}) read_text(text);
     if (static_cast<Caller*>(user)->choices_.chance(3)) static_cast<Caller*>(user)->call_back(nullptr);
@@ -148,9 +203,21 @@ breve_runtime_config Caller::runtime_config() {
   config.files = {&ledger, Callbacks::open_for_reading, Callbacks::open_for_writing, Callbacks::retain,
                   Callbacks::release_files};
   config.system = Callbacks::system;
+  config.open_plugin = Callbacks::open_plugin;
   return config;
 }
 
 breve_trace_fn Caller::trace() { return Callbacks::trace; }
+
+breve_listener Caller::listener() {
+  breve_listener listener = breve_listener_default();
+  listener.user = this;
+  listener.contact = Callbacks::contact;
+  listener.life = Callbacks::life;
+  listener.announcement = Callbacks::announcement;
+  listener.nap = Callbacks::nap;
+  listener.intervention = Callbacks::intervention;
+  return listener;
+}
 
 }  // namespace breve::fuzz

@@ -651,6 +651,13 @@ BREVE_API breve_status breve_object_set_pose(breve_world* world, breve_object ob
    BREVE_OK; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: as for breve_object_set_pose, or the object has physics. */
 BREVE_API breve_status breve_object_set_target(breve_world* world, breve_object object, const breve_pose* pose);
 
+/* The pose that breve_object_set_target or a script has set and that the object has not reached yet.
+   @param moves  false: it has none
+   @param pose   may be NULL; written only if it has one
+   BREVE_OK; BREVE_ERROR_NO_BODY. */
+BREVE_API breve_status breve_object_target(const breve_world* world, breve_object object, bool* moves,
+                                           breve_pose* pose);
+
 /* Velocity of the centre, length units per second, world frame. BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_velocity(const breve_world* world, breve_object object, double velocity[3]);
 
@@ -1705,7 +1712,8 @@ BREVE_API void breve_world_release(breve_world* world, void* memory, size_t size
 /* ---- input ------------------------------------------------------------------------------------------------------- */
 
 /* Queues the press (down) or release of a key; the controller's handler runs at the start of the next iteration.
-   @param key  one character, or "up", "down", "left", "right" for the arrow keys; otherwise BREVE_ERROR_ARGUMENT */
+   @param key  one character, perhaps of several bytes of UTF-8, or "up", "down", "left", "right" for the arrow keys;
+               otherwise BREVE_ERROR_ARGUMENT */
 BREVE_API breve_status breve_world_queue_key(breve_world* world, const char* key, bool down);
 
 /* Queues a click on an object; the null object means a click on empty space. */

@@ -254,6 +254,8 @@ class World {
   double time() const { return breve_world_time(get()); }
   std::uint64_t iteration() const { return breve_world_iteration(get()); }
   Status set_iteration_step(double seconds) { return status(breve_world_set_iteration_step(get(), seconds)); }
+  double integration_step() const { return breve_world_integration_step(get()); }
+  Status set_integration_step(double seconds) { return status(breve_world_set_integration_step(get(), seconds)); }
   double time_scale() const { return breve_world_time_scale(get()); }
   Status set_time_scale(double scale) { return status(breve_world_set_time_scale(get(), scale)); }
   bool interpolated() const { return breve_world_interpolated(get()); }
@@ -299,6 +301,15 @@ class World {
   Status set_pose(Object object, const breve_pose& pose) { return status(breve_object_set_pose(get(), object, &pose)); }
   Status set_target(Object object, const breve_pose& pose) {
     return status(breve_object_set_target(get(), object, &pose));
+  }
+  struct Target {
+    bool moves = false;  // if false, the pose is not set
+    breve_pose pose{};
+  };
+  Result<Target> target(Object object) const {
+    Target is;
+    const breve_status s = breve_object_target(get(), object, &is.moves, &is.pose);
+    return {status(s), is};
   }
   Result<Vector> velocity(Object object) const { return read_array<3>(breve_object_velocity, object); }
   Status set_velocity(Object object, const Vector& v) {
@@ -449,6 +460,14 @@ class World {
   }
   Result<std::vector<breve_nap>> naps() const { return list<breve_nap>(breve_world_naps); }
   Result<std::size_t> naps(Room<breve_nap> room) const { return fill(room, breve_world_naps); }
+  Result<bool> contacts_watched(Object object) const { return read<bool>(breve_object_contacts_watched, object); }
+  /// The force on `object`, of all bodies that touch it or of one of them.
+  Result<Vector> contact_force(Object object, Object other = {}) const {
+    return read_array<3>(breve_object_contact_force, object, other);
+  }
+  /// Callbacks during the iteration; null: none.
+  Status set_listener(const breve_listener* listener) { return status(breve_world_set_listener(get(), listener)); }
+  Result<breve_listener> listener() const { return read_struct(breve_listener_default(), breve_world_listener); }
 
   // --- what was set, and what is to be seen --------------------------------------------------------------------------
   Result<breve_material> material(Object object) const { return read<breve_material>(breve_object_material, object); }

@@ -41,6 +41,9 @@ BREVE_API breve_status breve_world_watch_contacts(breve_world* world, const char
 /* Report the contacts of one object, or stop that. BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_watch_contacts(breve_world* world, breve_object object, bool on);
 
+/* Are the contacts of an object reported, because it or its class is watched? BREVE_OK; BREVE_ERROR_NO_BODY. */
+BREVE_API breve_status breve_object_contacts_watched(const breve_world* world, breve_object object, bool* watched);
+
 typedef enum breve_phase {
   BREVE_PHASE_BEGIN = 0,   /* they did not touch at the end of the last iteration */
   BREVE_PHASE_PERSIST = 1, /* they still touch */
@@ -67,6 +70,16 @@ typedef struct breve_contact {
    BREVE_OK. */
 BREVE_API breve_status breve_world_contacts(const breve_world* world, breve_contact* contacts, size_t capacity,
                                             size_t* count);
+
+/* The force that a contact carried in the last sub-step, on `object`, N, world frame: for a body of mass m that rests on
+   a floor, m g upward. It is the impulse of the contact, friction included, divided by the length of the sub-step; at an
+   impact it is large. A body that sleeps keeps the force with which it fell asleep. On rungs whose resting contacts are
+   springs (breve_accuracy.contact_springs), the force of these springs. No contacts have to be watched, and nothing is
+   gathered for it. Bodies without physics carry no force between them.
+   @param other  null: the sum over all bodies that touch `object`, as on a scale or a pressure plate
+   BREVE_OK, with 0 if they do not touch; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: both are the same object. */
+BREVE_API breve_status breve_object_contact_force(const breve_world* world, breve_object object, breve_object other,
+                                                  double force[3]);
 
 /* An object that was made or freed. Frozen. */
 typedef struct breve_life {
@@ -98,6 +111,47 @@ typedef struct breve_nap {
 
 /* Those that woke, then those that fell asleep, each in the order of creation. As breve_world_contacts. */
 BREVE_API breve_status breve_world_naps(const breve_world* world, breve_nap* naps, size_t capacity, size_t* count);
+
+/* ---- callbacks ---------------------------------------------------------------------------------------------------- */
+
+/* Functions of a host that get the events during an iteration, one by one, in the order of the lists: no event is lost
+   when breve_world_advance runs several iterations. A function that is not NULL also asks for its kind of event, as
+   breve_world_set_events does; contacts are those of watched objects.
+   - `life`, `announcement` and `intervention` are called as soon as the handler, `iterate` or other call by the world in
+     which the event happened has returned; `contact` and `nap` at the end of the iteration, when they are known. Events
+     between two iterations, and those after an error that ended an iteration, come when the next one begins.
+   - The functions may call any function of this header, and change the world as a script would in its `iterate`: create
+     and free objects, move them, call methods. Functions that cannot work inside an iteration, such as
+     breve_world_step, _restore, _snapshot, _destroy and breve_world_set_listener, return BREVE_ERROR_BUSY and do
+     nothing. Events that a callback itself causes are reported later, never from inside it.
+   - A callback that changes the world is a part of the run: a replay (breve_world_replay) agrees only with the same
+     listener. Callbacks that only read leave no trace in the world. */
+typedef struct breve_listener {
+  size_t struct_size; /* set by breve_listener_default */
+  void* user;         /* passed to the functions. Default NULL */
+  /* Each may be NULL: it is not called. Structs and texts are valid until the function returns. Default NULL */
+  void (*contact)(void* user, breve_world* world, const breve_contact* contact);
+  void (*life)(void* user, breve_world* world, const breve_life* life);
+  void (*announcement)(void* user, breve_world* world, const breve_announcement* announcement);
+  void (*nap)(void* user, breve_world* world, const breve_nap* nap);
+  void (*intervention)(void* user, breve_world* world, const breve_intervention* intervention);
+} breve_listener;
+
+/* The defaults named above. */
+static inline breve_listener breve_listener_default(void) {
+  breve_listener listener;
+  breve_clear(&listener, sizeof listener);
+  listener.struct_size = sizeof listener;
+  return listener;
+}
+
+/* Sets the callbacks of a world. They get the events from now on. They are not part of images.
+   @param listener  copied; NULL: none
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size; BREVE_ERROR_BUSY while a script of this world runs. */
+BREVE_API breve_status breve_world_set_listener(breve_world* world, const breve_listener* listener);
+
+/* The callbacks that were set, or the defaults. BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
+BREVE_API breve_status breve_world_listener(const breve_world* world, breve_listener* listener);
 
 #ifdef __cplusplus
 }

@@ -21,6 +21,14 @@ extern "C" {
    BREVE_OK; BREVE_ERROR_ARGUMENT. */
 BREVE_API breve_status breve_world_set_iteration_step(breve_world* world, double seconds);
 
+/* The longest sub-step, s, see breve_world_config.integration_step. 0 for NULL. */
+BREVE_API double breve_world_integration_step(const breve_world* world);
+
+/* Sets it, from the next iteration on; a script can also set it.
+   @param seconds  finite, > 0
+   BREVE_OK; BREVE_ERROR_ARGUMENT. */
+BREVE_API breve_status breve_world_set_integration_step(breve_world* world, double seconds);
+
 /* How much simulated time breve_world_advance takes a second of its argument for. 1 at first; 0 for NULL. */
 BREVE_API double breve_world_time_scale(const breve_world* world);
 
