@@ -20,8 +20,8 @@ struct LibraryFile {
 class LibrarySource {
  public:
   std::span<const LibraryFile> files;
-  std::span<const Native> natives;    // methods of the library's classes
-  std::span<const Native> functions;  // that scripts may call
+  std::span<const Native> natives;                  // methods of the library's classes
+  std::span<const Native> functions;                // that scripts may call
   std::span<const std::string_view> later_classes;  // that this version lacks, and their aliases
 
   /// The file named "NAME.tz", or the one that defines class NAME. Null if there is none.

@@ -142,7 +142,8 @@ breve_status runtime_add_class(Caller& c) {
   // Fields beyond it are not looked at.
   if (description.struct_size != sizeof description) return breve_runtime_add_class(runtime, &description);
   const bool has_method = c.chance(80), has_parameter = c.chance(80);
-  const breve_parameter parameter{has_method && has_parameter ? c.text_or_null("to") : nullptr, c.choose().one_of(kTypes), 0};
+  const breve_parameter parameter{has_method && has_parameter ? c.text_or_null("to") : nullptr,
+                                  c.choose().one_of(kTypes), 0};
   const breve_variable variable{"kept", c.choose().one_of(kTypes), 0};
   breve_method method{};
   method.name = has_method ? c.text_or_null("host-method") : nullptr;
