@@ -108,7 +108,7 @@ TEST(BroadPhase, OfBodiesThatStandDynamicsLooksAtNoneEither) {
   NearPairs near(std::pmr::get_default_resource());
   const Client client;
   const auto update = [&] {
-    near.update(bodies, client, Vector3(0, -10, 0), 0.1, 1, false, NearPairs::kNoMost,
+    near.update(bodies, client, Vector3(0, -10, 0), 0.1, 1, false, NearPairs::kNoMost, WorkBound{},
                 [](PairKey& key) { key.pushes = true; });
   };
   const auto pairs = [&] {
@@ -149,7 +149,7 @@ TEST(BroadPhase, AGroundWhoseHeightsChangeIsSeen) {
   NearPairs near(std::pmr::get_default_resource());
   const Client client;
   const auto update = [&] {
-    near.update(bodies, client, Vector3(0, -10, 0), 0.1, 1, false, NearPairs::kNoMost,
+    near.update(bodies, client, Vector3(0, -10, 0), 0.1, 1, false, NearPairs::kNoMost, WorkBound{},
                 [](PairKey& key) { key.pushes = true; });
   };
   update();
