@@ -231,20 +231,20 @@ Text multibody_get_accuracy(Machine& machine, Instance& self) {
   return machine.heap().string(name_of(dynamics_of(machine).accuracy(root_body(machine, self)).rung));
 }
 
-Energy energy_of(Machine& machine, Instance& self) {
+Energy assembly_energy(Machine& machine, Instance& self) {
   const BodyIndex root = root_body(machine, self);
   charge_for_assembly(machine, root);
   return dynamics_of(machine).energy(root);
 }
 
-double multibody_get_energy(Machine& machine, Instance& self) { return energy_of(machine, self).total(); }
-double multibody_get_residual(Machine& machine, Instance& self) { return energy_of(machine, self).residual; }
-double multibody_get_motor_work(Machine& machine, Instance& self) { return energy_of(machine, self).motor_work; }
+double multibody_get_energy(Machine& machine, Instance& self) { return assembly_energy(machine, self).total(); }
+double multibody_get_residual(Machine& machine, Instance& self) { return assembly_energy(machine, self).residual; }
+double multibody_get_motor_work(Machine& machine, Instance& self) { return assembly_energy(machine, self).motor_work; }
 double multibody_get_contact_loss(Machine& machine, Instance& self) {
-  return contact_loss_of(energy_of(machine, self));
+  return contact_loss_of(assembly_energy(machine, self));
 }
 HashCell* multibody_get_ledger(Machine& machine, Instance& self) {
-  return ledger_value(machine, energy_of(machine, self));
+  return ledger_value(machine, assembly_energy(machine, self));
 }
 
 constexpr Native kAssemblyNatives[] = {

@@ -1,4 +1,5 @@
 // Calls of what a game loop needs beside steps, and of batches.
+#include <algorithm>
 #include <cmath>
 
 #include "call_functions.hpp"
@@ -12,7 +13,7 @@ breve_status set_iteration_step(Caller& c) {
   const double seconds = c.chance(80) ? 0.01 + 0.05 * static_cast<double>(c.word() % 4) : c.number();
   if (!std::isfinite(seconds) || !(seconds > 0)) c.expect_refusal();
   // A step of a million sub-steps is allowed, and takes too long here.
-  return breve_world_set_iteration_step(world, seconds > 1 ? 1 : seconds);
+  return breve_world_set_iteration_step(world, std::isfinite(seconds) ? std::min(seconds, 1.0) : seconds);
 }
 breve_status integration_step(Caller& c) {
   const breve_world* world = c.world();
