@@ -54,14 +54,23 @@ ObjectId first_of(const ActiveSet& set, const std::pmr::vector<ObjectId>& owner)
   return set.members().empty() ? ObjectId{} : owner[set.members().front()];
 }
 
+/// What a world without bodies has of each kind.
+const std::pmr::vector<BodyIndex> kNoBodies;
+
 }  // namespace
 
 std::size_t Bodies::translating() const { return arrays_ ? arrays_->translating.members().size() : 0; }
 std::size_t Bodies::turning() const { return arrays_ ? arrays_->turning.members().size() : 0; }
 std::size_t Bodies::rigid() const { return arrays_ ? arrays_->rigid.members().size() : 0; }
-const std::pmr::vector<BodyIndex>& Bodies::translating_bodies() const { return arrays_->translating.members(); }
-const std::pmr::vector<BodyIndex>& Bodies::turning_bodies() const { return arrays_->turning.members(); }
-const std::pmr::vector<BodyIndex>& Bodies::rigid_bodies() const { return arrays_->rigid.members(); }
+const std::pmr::vector<BodyIndex>& Bodies::translating_bodies() const {
+  return arrays_ ? arrays_->translating.members() : kNoBodies;
+}
+const std::pmr::vector<BodyIndex>& Bodies::turning_bodies() const {
+  return arrays_ ? arrays_->turning.members() : kNoBodies;
+}
+const std::pmr::vector<BodyIndex>& Bodies::rigid_bodies() const {
+  return arrays_ ? arrays_->rigid.members() : kNoBodies;
+}
 ObjectId Bodies::first_translating() const {
   return arrays_ ? first_of(arrays_->translating, arrays_->owner) : ObjectId{};
 }

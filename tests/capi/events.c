@@ -188,6 +188,18 @@ static void who_falls_asleep_and_wakes_is_told(void) {
   scene_close(&s);
 }
 
+static void a_world_without_bodies_has_events(void) {
+  scene s;
+  if (!open_bodies(&s, false)) return;
+  CHECK_STATUS(BREVE_OK, breve_world_set_events(s.world, 15));
+  CHECK_STATUS(BREVE_OK, breve_world_set_sleeping(s.world, true));
+  step_times(&s, 2);
+  size_t count = 1;
+  CHECK_STATUS(BREVE_OK, breve_world_naps(s.world, NULL, 0, &count));
+  CHECK(count == 0);
+  scene_close(&s);
+}
+
 static void who_is_told_changes_nothing_and_a_restore_begins_no_contact(void) {
   scene s;
   if (!open_bodies(&s, false)) return;
@@ -218,5 +230,6 @@ void events_suite(void) {
   RUN(classes_are_watched_and_ends_name_the_gone);
   RUN(births_deaths_and_announcements_are_told_in_order);
   RUN(who_falls_asleep_and_wakes_is_told);
+  RUN(a_world_without_bodies_has_events);
   RUN(who_is_told_changes_nothing_and_a_restore_begins_no_contact);
 }
