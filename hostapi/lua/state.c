@@ -123,6 +123,14 @@ bl_lib* bl_lib_of(lua_State* L) {
   return lib;
 }
 
+/* At the end of the interpreter: what was being defined becomes no program any more. */
+static int drop_draft(lua_State* L) {
+  bl_lib* lib = (bl_lib*)lua_touserdata(L, 1);
+  bl_program_drop(lib->draft);
+  lib->draft = NULL;
+  return 0;
+}
+
 bl_lib* bl_open(lua_State* L) {
   bl_lib* lib = bl_lib_of(L);
   if (lib) {
@@ -131,6 +139,10 @@ bl_lib* bl_open(lua_State* L) {
   }
   lib = (bl_lib*)lua_newuserdatauv(L, sizeof *lib, 0);
   memset(lib, 0, sizeof *lib);
+  lua_createtable(L, 0, 1);
+  lua_pushcfunction(L, drop_draft);
+  lua_setfield(L, -2, "__gc");
+  lua_setmetatable(L, -2);
   lua_rawgeti(L, LUA_REGISTRYINDEX, LUA_RIDX_MAINTHREAD);
   lib->main = lua_tothread(L, -1);
   lua_pop(L, 1);
