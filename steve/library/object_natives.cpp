@@ -105,7 +105,7 @@ Value call_named(Machine& machine, Instance& self, Text name, std::span<const Va
                          "call-method: " + name_of(self) + " has no method '" + std::string(view(name)) + "' with " +
                              std::to_string(arguments.size()) + (arguments.size() == 1 ? " keyword" : " keywords"),
                          unknown_method_help(view(name), self.cls, machine.program()));
-    if (machine.host().strict) throw error;
+    if (machine.host().strict) throw RunError(error);
     machine.survive(error);
     return {};
   }
