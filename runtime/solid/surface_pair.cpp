@@ -92,8 +92,9 @@ bool may_reach(const SurfacePair& pair, double distance) {
 Gap narrowest_gap(const SurfacePair& pair, double limit, NarrowCounters* counters) {
   const bool sunk = ball_inside(pair);
   Narrowest narrowest(pair, pair.surface->solid() && !sunk, counters);
-  // The search widens until something is found.
-  const double least = 1e-3 * pair.convex.radius;
+  // The search widens until something is found. A point has no size of its own: that of the surface counts.
+  const double size = pair.convex.radius > 0 ? pair.convex.radius : pair.surface->bounds().diagonal().norm();
+  const double least = 1e-3 * size;
   double reach = std::min(least, std::max(limit, 0.0));
   narrowest.search(reach);
   const bool inside = sunk || (narrowest.gap.distance > 0 && center_inside(pair));

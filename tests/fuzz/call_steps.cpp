@@ -39,7 +39,7 @@ breve_status set_time_scale(Caller& c) {
   breve_world* world = c.world();
   const double scale = c.chance(80) ? 0.5 * static_cast<double>(c.word() % 4) : c.number();
   if (!std::isfinite(scale) || scale < 0) c.expect_refusal();
-  return breve_world_set_time_scale(world, scale > 4 ? 4 : scale);
+  return breve_world_set_time_scale(world, std::isfinite(scale) ? std::min(scale, 4.0) : scale);
 }
 breve_status interpolated(Caller& c) {
   const breve_world* world = c.world();
