@@ -17,7 +17,7 @@ class Rows {
     array_.stride = c.chance(50) ? 0 : row + c.word() % 20;
     const std::size_t gap = array_.stride != 0 ? array_.stride : row;
     if (count != 0) bytes_.resize(1 + (count - 1) * gap + row, kPattern);
-    if (c.chance(5)) array_.stride = c.word() % 8;  // too small, or refused for another reason, or none
+    if (c.chance(5)) array_.stride = c.word() % sizeof(float);  // too small, or none
     for (std::size_t i = 0; i < count && array_.number <= BREVE_NUMBER_DOUBLE; ++i) fill(c, 1 + i * gap);
     array_.numbers = bytes_.empty() || c.chance(3) ? nullptr : bytes_.data() + 1;
     before_ = bytes_;
