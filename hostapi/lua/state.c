@@ -123,7 +123,7 @@ bl_lib* bl_lib_of(lua_State* L) {
   return lib;
 }
 
-/* At the end of the interpreter: what was being defined becomes no program any more. */
+/* Frees the draft when the interpreter is closed. */
 static int drop_draft(lua_State* L) {
   bl_lib* lib = (bl_lib*)lua_touserdata(L, 1);
   bl_program_drop(lib->draft);

@@ -270,7 +270,7 @@ Vector3 get_velocity_vector(Machine& machine, Instance& self) {
 }
 /// Forward dynamics of all links, and the dense equations of joints that close loops.
 void charge_for_reaction(Machine& machine, const Mechanics& dynamics, BodyIndex body) {
-  constexpr std::uint64_t kOfLink = 64, kRows = 6, kOperations = 64;  // turns; of a loop; of a turn
+  constexpr std::uint64_t kOfLink = 64, kRows = 6, kOperations = 64;  // units; of a closed loop; of a unit
   const std::uint64_t links = dynamics.links_of(body).size(), joints = dynamics.joints_of(body).size();
   const std::uint64_t rows = kRows * (joints >= links ? joints - links + 1 : 0);
   machine.charge(kOfLink * links + rows * rows * (rows + kRows * links) / kOperations);

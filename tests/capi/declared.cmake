@@ -1,0 +1,18 @@
+# declared_functions(NAMES FOLDER): sets NAMES to the functions that the headers in FOLDER declare, in their order.
+# Those of breve_lua.h are left out: tests/lua has its functions.
+function(declared_functions names folder)
+  file(GLOB files ${folder}/*.h)
+  list(FILTER files EXCLUDE REGEX "breve_lua.h$")
+  set(header)
+  foreach(file IN LISTS files)
+    file(READ ${file} text)
+    string(APPEND header "${text}")
+  endforeach()
+  string(REGEX MATCHALL "BREVE_API [^;(]*breve_[a-z0-9_]+\\(" declarations "${header}")
+  string(REGEX REPLACE "BREVE_API [^;(]*(breve_[a-z0-9_]+)\\(" "\\1" declared "${declarations}")
+  list(LENGTH declared count)
+  if(count LESS 150)
+    message(FATAL_ERROR "found ${count} functions in ${folder}: the pattern is out of date")
+  endif()
+  set(${names} ${declared} PARENT_SCOPE)
+endfunction()
