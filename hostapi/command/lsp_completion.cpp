@@ -32,14 +32,14 @@ int item_kind(std::uint32_t kind) {
 /// Keywords of a method that have no default, as they are written behind its name, with places for their values.
 std::string keyword_snippet(const breve_analysis* analysis, std::size_t method) {
   std::string text;
-  int place = 0;
+  int field = 0;
   for (std::size_t i = method + 1; i < breve_analysis_symbol_count(analysis); ++i) {
     breve_symbol symbol;
     if (breve_analysis_symbol(analysis, i, &symbol) != BREVE_OK || symbol.parent != method) break;
     if (symbol.kind != BREVE_NAME_KEYWORD || *symbol.value) continue;
     breve_symbol parameter;
     if (breve_analysis_symbol(analysis, i + 1, &parameter) != BREVE_OK) break;
-    text += std::string(" ") + symbol.name + " ${" + std::to_string(++place) + ":" + parameter.name + "}";
+    text += std::string(" ") + symbol.name + " ${" + std::to_string(++field) + ":" + parameter.name + "}";
   }
   return text;
 }
@@ -71,7 +71,7 @@ json LspFeatures::completion_item(const ProgramView& program, const breve_comple
 }
 
 json LspFeatures::completion(const json& params) {
-  const LspPlace where = place(params);
+  const LspPosition where = position_of(params);
   json result = {{"isIncomplete", false}, {"items", json::array()}};
   if (where.file.program == nullptr) return result;
   const ProgramView& program = *where.file.program;
@@ -101,7 +101,7 @@ json LspFeatures::completion(const json& params) {
 }
 
 json LspFeatures::signature_help(const json& params) {
-  const LspPlace where = place(params);
+  const LspPosition where = position_of(params);
   if (where.file.program == nullptr) return nullptr;
   breve_analysis* analysis = where.file.program->analysis.get();
   constexpr std::size_t kMost = 10;

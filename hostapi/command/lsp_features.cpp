@@ -31,13 +31,14 @@ int symbol_kind(std::uint32_t kind) {
   }
 }
 
-std::vector<std::size_t> definitions_at(const LspPlace& place) {
+std::vector<std::size_t> definitions_at(const LspPosition& position) {
   std::size_t count = 0;
-  const breve_analysis* analysis = place.file.program->analysis.get();
-  const char* name = place.file.name.c_str();
-  if (breve_analysis_definitions(analysis, name, place.line, place.column, nullptr, 0, &count) != BREVE_OK) return {};
+  const breve_analysis* analysis = position.file.program->analysis.get();
+  const char* name = position.file.name.c_str();
+  if (breve_analysis_definitions(analysis, name, position.line, position.column, nullptr, 0, &count) != BREVE_OK)
+    return {};
   std::vector<std::size_t> symbols(count);
-  breve_analysis_definitions(analysis, name, place.line, place.column, symbols.data(), count, &count);
+  breve_analysis_definitions(analysis, name, position.line, position.column, symbols.data(), count, &count);
   return symbols;
 }
 
@@ -62,8 +63,8 @@ std::string_view text_of(const ProgramView& program, std::string_view name) {
   return {};
 }
 
-LspPlace LspFeatures::place(const json& params) {
-  LspPlace result;
+LspPosition LspFeatures::position_of(const json& params) {
+  LspPosition result;
   const json& where = params.at("position");
   const std::uint32_t line = number(where, "line"), character = number(where, "character");
   result.file = workspace_.view(params.at("textDocument").at("uri").get<std::string>());
@@ -78,11 +79,11 @@ LspPlace LspFeatures::place(const json& params) {
 json LspFeatures::range(const ProgramView& program, const breve_span& span) const {
   const std::string_view text = text_of(program, span.file);
   const std::vector<std::size_t> starts = line_starts(text);
-  const auto place = [&](std::uint32_t line, std::uint32_t column) {
+  const auto converted = [&](std::uint32_t line, std::uint32_t column) {
     if (line == 0) return position(0, 0);
     return position(line - 1, utf16_column(line_of(text, starts, line - 1), column - 1));
   };
-  return {{"start", place(span.line, span.column)}, {"end", place(span.end_line, span.end_column)}};
+  return {{"start", converted(span.line, span.column)}, {"end", converted(span.end_line, span.end_column)}};
 }
 
 json LspFeatures::location(const ProgramView& program, const breve_span& span) {
@@ -92,7 +93,7 @@ json LspFeatures::location(const ProgramView& program, const breve_span& span) {
 }
 
 json LspFeatures::hover(const json& params) {
-  const LspPlace where = place(params);
+  const LspPosition where = position_of(params);
   if (where.file.program == nullptr) return nullptr;
   const breve_analysis* analysis = where.file.program->analysis.get();
   breve_reference reference;
@@ -121,7 +122,7 @@ json LspFeatures::hover(const json& params) {
 }
 
 json LspFeatures::definition(const json& params) {
-  const LspPlace where = place(params);
+  const LspPosition where = position_of(params);
   json result = json::array();
   if (where.file.program == nullptr) return result;
   for (const std::size_t number : definitions_at(where)) {
@@ -134,7 +135,7 @@ json LspFeatures::definition(const json& params) {
 }
 
 json LspFeatures::references(const json& params) {
-  const LspPlace where = place(params);
+  const LspPosition where = position_of(params);
   json result = json::array();
   if (where.file.program == nullptr) return result;
   const std::vector<std::size_t> symbols = definitions_at(where);

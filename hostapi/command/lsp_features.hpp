@@ -9,7 +9,7 @@
 namespace breve::command {
 
 /// A place as the library counts it.
-struct LspPlace {
+struct LspPosition {
   FileView file;
   std::uint32_t line = 0, column = 0;  // from 1, in bytes
 };
@@ -33,7 +33,7 @@ class LspFeatures {
   std::map<std::string, nlohmann::json> diagnostics();
 
  private:
-  LspPlace place(const nlohmann::json& params);
+  LspPosition position_of(const nlohmann::json& params);
   nlohmann::json range(const ProgramView& program, const breve_span& span) const;
   nlohmann::json location(const ProgramView& program, const breve_span& span);
   nlohmann::json completion_item(const ProgramView& program, const breve_completion& item) const;

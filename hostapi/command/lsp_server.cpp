@@ -160,11 +160,11 @@ void LspServer::did_change(const json& params) {
       text = added;
       continue;
     }
-    const auto place = [&](const char* which) {
+    const auto offset = [&](const char* which) {
       const json& where = change.at("range").at(which);
       return offset_of(text, where.at("line").get<std::size_t>(), where.at("character").get<std::size_t>());
     };
-    const std::size_t start = place("start"), end = std::max(start, place("end"));
+    const std::size_t start = offset("start"), end = std::max(start, offset("end"));
     text.replace(start, end - start, added);
   }
   workspace_.change(uri, std::move(text));

@@ -122,13 +122,13 @@ std::string series_svg(const Series& series, const std::string& x_axis, const st
       "<rect width='{0}' height='{1}' fill='#ffffff'/>\n",
       kWidth, kHeight, escaped(title));
   svg += axes(x, y, x_axis);
-  double place = kLeft;
+  double next_label = kLeft;
   for (std::size_t i = 0; i < series.columns.size(); ++i) {
     svg += line(series, i, x, y);
     svg +=
         fmt::format("<rect x='{0}' y='26' width='26' height='5' rx='2.5' fill='{1}'/><text x='{2}' y='35'>{3}</text>\n",
-                    place, kInks[i % kInks.size()], place + 34, escaped(series.names[i]));
-    place += 64 + 11.5 * static_cast<double>(series.names[i].size());
+                    next_label, kInks[i % kInks.size()], next_label + 34, escaped(series.names[i]));
+    next_label += 64 + 11.5 * static_cast<double>(series.names[i].size());
   }
   return svg + "</svg>\n";
 }

@@ -82,11 +82,11 @@ std::string name_of(const breve_profile_node& n) {
 }
 
 /// "flock.tz:12", without the folders.
-std::string place(std::string_view file, std::uint32_t line) {
+std::string location(std::string_view file, std::uint32_t line) {
   return fmt::format("{}:{}", file.substr(file.find_last_of('/') + 1), line);
 }
 
-std::string place_of(const breve_profile_node& n) { return *n.file != '\0' ? place(n.file, n.line) : ""; }
+std::string location_of(const breve_profile_node& n) { return *n.file != '\0' ? location(n.file, n.line) : ""; }
 
 std::string trimmed(std::string line) {
   line.erase(line.find_last_not_of(' ') + 1);
@@ -94,29 +94,29 @@ std::string trimmed(std::string line) {
 }
 
 std::string row(double share, double total, double self, std::uint64_t calls, const std::string& what,
-                const std::string& place) {
+                const std::string& location) {
   const std::string each = calls == 0 ? "" : duration(total / static_cast<double>(calls));
   return trimmed(fmt::format("{:>6.1f} {:>9} {:>9} {:>12} {:>9}  {:<46} {}", 100 * share, duration(total),
-                             duration(self), calls == 0 ? "" : grouped(calls), each, what, place));
+                             duration(self), calls == 0 ? "" : grouped(calls), each, what, location));
 }
 
-std::string heading(const char* percent, const char* what, const char* place) {
+std::string heading(const char* percent, const char* what, const char* location) {
   return trimmed(fmt::format("{:>6} {:>9} {:>9} {:>12} {:>9}  {:<46} {}", percent, "total", "self", "calls", "per call",
-                             what, place));
+                             what, location));
 }
 
-std::string place_in_tree(const Tree& tree, std::size_t node) {
+std::string location_in_tree(const Tree& tree, std::size_t node) {
   const auto& n = tree.nodes[node];
   const char* around = node == 0 ? "" : tree.file_around(n.parent);
-  if (n.call_line == 0 || *around == '\0') return place_of(n);
-  const std::string from = "from " + place(around, n.call_line);
-  return *n.file == '\0' ? from : fmt::format("{}, {}", place_of(n), from);
+  if (n.call_line == 0 || *around == '\0') return location_of(n);
+  const std::string from = "from " + location(around, n.call_line);
+  return *n.file == '\0' ? from : fmt::format("{}, {}", location_of(n), from);
 }
 
 void add_tree(const Tree& tree, std::size_t node, const std::string& indent, const char* branch, std::string& out) {
   const auto& n = tree.nodes[node];
   out += row(tree.share(n.total_seconds), n.total_seconds, n.self_seconds, n.calls, indent + branch + name_of(n),
-             place_in_tree(tree, node));
+             location_in_tree(tree, node));
   std::vector<std::size_t> shown;
   double folded = 0;
   std::uint64_t folded_calls = 0;
@@ -140,7 +140,7 @@ void add_tree(const Tree& tree, std::size_t node, const std::string& indent, con
 }
 
 struct Sum {
-  std::string what, place;
+  std::string what, location;
   double self = 0, total = 0;
   std::uint64_t calls = 0;
 };
@@ -157,9 +157,9 @@ std::string methods_table(const Tree& tree) {
   std::map<std::tuple<int, std::string, std::string>, Sum> sums;
   for (const auto& n : tree.nodes) {
     if (n.kind == BREVE_PROFILE_WORLD) continue;
-    Sum& sum = sums[{n.kind, name_of(n), place_of(n)}];
+    Sum& sum = sums[{n.kind, name_of(n), location_of(n)}];
     sum.what = name_of(n);
-    sum.place = place_of(n);
+    sum.location = location_of(n);
     sum.self += n.self_seconds;
     sum.total += n.total_seconds;  // of nodes one below the other there is only one: recursion counts in the upper
     sum.calls += n.calls;
@@ -168,7 +168,7 @@ std::string methods_table(const Tree& tree) {
   std::size_t rows = 0;
   for (const Sum& s : sorted(sums, &Sum::self)) {
     if (rows++ == kMethodRows || tree.share(s.self) < kFold) break;
-    out += row(tree.share(s.self), s.total, s.self, s.calls, s.what, s.place);
+    out += row(tree.share(s.self), s.total, s.self, s.calls, s.what, s.location);
   }
   return out;
 }
@@ -180,7 +180,7 @@ std::string lines_table(const Tree& tree) {
     const char* file = tree.file_around(n.parent);
     if (n.call_line == 0 || *file == '\0') continue;
     Sum& sum = sums[{file, n.call_line}];
-    sum.place = place(file, n.call_line);
+    sum.location = location(file, n.call_line);
     sum.total += n.total_seconds;
     sum.calls += n.calls;
     const std::string name = name_of(n);
@@ -192,7 +192,7 @@ std::string lines_table(const Tree& tree) {
     if (rows++ == kLineRows || tree.share(s.total) < kFold) break;
     const std::string each = duration(s.total / static_cast<double>(s.calls));
     out += trimmed(fmt::format("{:>6.1f} {:>9} {:>9} {:>12} {:>9}  {:<46} {}", 100 * tree.share(s.total),
-                               duration(s.total), "", grouped(s.calls), each, s.place, s.what));
+                               duration(s.total), "", grouped(s.calls), each, s.location, s.what));
   }
   if (out.empty()) return out;
   return "\nLines with the most expensive calls\n" + heading("%", "line", "calls") + out;

@@ -51,11 +51,11 @@ breve_span span_of(const steve::Sources& sources, const steve::Span& span) {
 }
 
 /// A place in one of the files. BREVE_ERROR_NOT_FOUND if there is no such file or place.
-struct Place {
+struct Position {
   std::uint32_t file, offset;
 };
 
-Place place_of(const breve_analysis& a, const char* file, uint32_t line, uint32_t column) {
+Position position_of(const breve_analysis& a, const char* file, uint32_t line, uint32_t column) {
   need(file, "file");
   const auto number = a.analysis->file_named(file);
   if (!number) fail(BREVE_ERROR_NOT_FOUND, "the program has no file '" + std::string(file) + "'");
@@ -189,8 +189,8 @@ breve_status breve_analysis_name_at(const breve_analysis* analysis, const char* 
   return guard([&] {
     need(analysis, "analysis");
     need(reference, "reference");
-    const Place place = place_of(*analysis, file, line, column);
-    const auto found = analysis->analysis->at(place.file, place.offset);
+    const Position position = position_of(*analysis, file, line, column);
+    const auto found = analysis->analysis->at(position.file, position.offset);
     if (!found) fail(BREVE_ERROR_NOT_FOUND, "there is no name");
     *reference = {kind_of(found->kind),
                   analysis->text(found->name),
@@ -208,8 +208,8 @@ breve_status breve_analysis_definitions(const breve_analysis* analysis, const ch
   return guard([&] {
     need(analysis, "analysis");
     need_room(symbols, capacity, count, "symbols");
-    const Place place = place_of(*analysis, file, line, column);
-    const auto found = analysis->analysis->definitions(place.file, place.offset);
+    const Position position = position_of(*analysis, file, line, column);
+    const auto found = analysis->analysis->definitions(position.file, position.offset);
     if (!found) fail(BREVE_ERROR_NOT_FOUND, "there is no name");
     copy_out(*found, symbols, capacity, count, [](std::size_t symbol) { return symbol; });
   });
@@ -231,8 +231,8 @@ breve_status breve_analysis_callees(const breve_analysis* analysis, const char* 
   return guard([&] {
     need(analysis, "analysis");
     need_room(symbols, capacity, count, "symbols");
-    const Place place = place_of(*analysis, file, line, column);
-    auto found = analysis->analysis->call_at(place.file, place.offset);
+    const Position position = position_of(*analysis, file, line, column);
+    auto found = analysis->analysis->call_at(position.file, position.offset);
     if (!found) fail(BREVE_ERROR_NOT_FOUND, "the position is not in a call");
     analysis->keyword = std::move(found->keyword);
     if (keyword) *keyword = analysis->keyword.c_str();
@@ -246,8 +246,8 @@ breve_status breve_analysis_completions(const breve_analysis* analysis, const ch
   return guard([&] {
     need(analysis, "analysis");
     need_room(items, capacity, count, "items");
-    const Place place = place_of(*analysis, file, line, column);
-    give(*analysis, analysis->analysis->completions(place.file, place.offset), typed, items, capacity, count);
+    const Position position = position_of(*analysis, file, line, column);
+    give(*analysis, analysis->analysis->completions(position.file, position.offset), typed, items, capacity, count);
   });
 }
 

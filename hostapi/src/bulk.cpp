@@ -46,18 +46,18 @@ void read_rows(std::span<const BodyIndex> all, const Rows& rows, Read&& read) {
 
 void read_all(const Bodies& bodies, std::span<const BodyIndex> all, std::uint32_t property, const Rows& rows) {
   const auto copy = [](const Vector3& v, double* to) { std::copy_n(v.data(), 3, to); };
-  const auto turn = [&bodies](BodyIndex body, double* to) {
+  const auto orientation = [&bodies](BodyIndex body, double* to) {
     const Quaternion q = bodies.orientation(body);
     to[0] = q.w(), to[1] = q.x(), to[2] = q.y(), to[3] = q.z();
   };
   switch (property) {
     case BREVE_PROPERTY_LOCATION:
       return read_rows<3>(all, rows, [&](BodyIndex body, double* to) { copy(bodies.location(body), to); });
-    case BREVE_PROPERTY_ROTATION: return read_rows<4>(all, rows, turn);
+    case BREVE_PROPERTY_ROTATION: return read_rows<4>(all, rows, orientation);
     case BREVE_PROPERTY_POSE:
       return read_rows<7>(all, rows, [&](BodyIndex body, double* to) {
         copy(bodies.location(body), to);
-        turn(body, to + 3);
+        orientation(body, to + 3);
       });
     case BREVE_PROPERTY_VELOCITY:
       return read_rows<3>(all, rows, [&](BodyIndex body, double* to) { copy(bodies.velocity(body), to); });

@@ -62,11 +62,11 @@ struct Spot {
   std::string name;
 };
 
-Spot find_place(const Root& root, std::string_view path) {
+Spot find_spot(const Root& root, std::string_view path) {
   if (path.empty()) throw Refusal{};
   if (path.front() == '/') refuse("absolute paths are not allowed");
-  Spot place{Descriptor(::fcntl(root.directory.get(), F_DUPFD_CLOEXEC, 0)), {}};
-  if (!place.folder.good()) refuse_by_errno();
+  Spot spot{Descriptor(::fcntl(root.directory.get(), F_DUPFD_CLOEXEC, 0)), {}};
+  if (!spot.folder.good()) refuse_by_errno();
   while (true) {
     const std::size_t slash = path.find('/');
     const std::string part(path.substr(0, slash));
@@ -74,22 +74,22 @@ Spot find_place(const Root& root, std::string_view path) {
     const bool last = slash == std::string_view::npos;
     if (last) {
       if (part.empty() || part == ".") refuse("it is a directory");
-      place.name = part;
-      return place;
+      spot.name = part;
+      return spot;
     }
     path.remove_prefix(slash + 1);
     if (part.empty() || part == ".") continue;
-    Descriptor next(::openat(place.folder.get(), part.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+    Descriptor next(::openat(spot.folder.get(), part.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
     if (!next.good()) {
       // Without it O_DIRECTORY says of a link what it says of a file.
       struct stat info {};
       const int reason = errno;
-      if (::fstatat(place.folder.get(), part.c_str(), &info, AT_SYMLINK_NOFOLLOW) == 0 && S_ISLNK(info.st_mode))
+      if (::fstatat(spot.folder.get(), part.c_str(), &info, AT_SYMLINK_NOFOLLOW) == 0 && S_ISLNK(info.st_mode))
         refuse("symbolic links are not followed");
       errno = reason;
       refuse_by_errno();
     }
-    place.folder = std::move(next);
+    spot.folder = std::move(next);
   }
 }
 
@@ -107,10 +107,10 @@ std::uint64_t need_plain(const Descriptor& file, const Root& root) {
 /// A file that is read from its start, or written to its end.
 class PlainFile {
  public:
-  PlainFile(Spot place, Descriptor file, std::string temporary, std::uint64_t size, std::uint64_t most)
-      : place_(std::move(place)), file_(std::move(file)), temporary_(std::move(temporary)), size_(size), most_(most) {}
+  PlainFile(Spot spot, Descriptor file, std::string temporary, std::uint64_t size, std::uint64_t most)
+      : spot_(std::move(spot)), file_(std::move(file)), temporary_(std::move(temporary)), size_(size), most_(most) {}
   ~PlainFile() {
-    if (!temporary_.empty()) ::unlinkat(place_.folder.get(), temporary_.c_str(), 0);
+    if (!temporary_.empty()) ::unlinkat(spot_.folder.get(), temporary_.c_str(), 0);
   }
   PlainFile(const PlainFile&) = delete;
   PlainFile& operator=(const PlainFile&) = delete;
@@ -144,48 +144,48 @@ class PlainFile {
   bool close(bool keep) {
     if (!file_.close()) return false;
     if (temporary_.empty()) return true;
-    if (!keep || ::renameat(place_.folder.get(), temporary_.c_str(), place_.folder.get(), place_.name.c_str()) != 0)
+    if (!keep || ::renameat(spot_.folder.get(), temporary_.c_str(), spot_.folder.get(), spot_.name.c_str()) != 0)
       return false;
     temporary_.clear();
     return true;
   }
 
  private:
-  Spot place_;
+  Spot spot_;
   Descriptor file_;
   std::string temporary_;  // its name until it is closed; "": it has its own
   std::uint64_t size_, most_, done_ = 0;
 };
 
 std::unique_ptr<PlainFile> open_to_read(const Root& root, std::string_view path) {
-  Spot place = find_place(root, path);
+  Spot spot = find_spot(root, path);
   // Without O_NONBLOCK a pipe would be waited for.
-  Descriptor file(::openat(place.folder.get(), place.name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  Descriptor file(::openat(spot.folder.get(), spot.name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   if (!file.good()) refuse_by_errno();
   const std::uint64_t size = need_plain(file, root);
-  return std::make_unique<PlainFile>(std::move(place), std::move(file), "", size, root.most_bytes);
+  return std::make_unique<PlainFile>(std::move(spot), std::move(file), "", size, root.most_bytes);
 }
 
-std::unique_ptr<PlainFile> open_to_append(const Root& root, Spot place) {
+std::unique_ptr<PlainFile> open_to_append(const Root& root, Spot spot) {
   constexpr int kHow = O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
-  Descriptor file(::openat(place.folder.get(), place.name.c_str(), kHow, 0666));
+  Descriptor file(::openat(spot.folder.get(), spot.name.c_str(), kHow, 0666));
   if (!file.good()) refuse_by_errno();
   const std::uint64_t size = need_plain(file, root);
-  return std::make_unique<PlainFile>(std::move(place), std::move(file), "", size, root.most_bytes);
+  return std::make_unique<PlainFile>(std::move(spot), std::move(file), "", size, root.most_bytes);
 }
 
 std::unique_ptr<PlainFile> open_to_write(const Root& root, std::string_view path, bool append) {
-  Spot place = find_place(root, path);
-  if (append) return open_to_append(root, std::move(place));
+  Spot spot = find_spot(root, path);
+  if (append) return open_to_append(root, std::move(spot));
   struct stat info {};
-  if (::fstatat(place.folder.get(), place.name.c_str(), &info, AT_SYMLINK_NOFOLLOW) == 0 && !S_ISREG(info.st_mode))
+  if (::fstatat(spot.folder.get(), spot.name.c_str(), &info, AT_SYMLINK_NOFOLLOW) == 0 && !S_ISREG(info.st_mode))
     refuse(S_ISLNK(info.st_mode) ? "symbolic links are not followed" : "it is not a regular file");
   static std::atomic<std::uint64_t> count = 0;
-  const std::string temporary = fmt::format(".{}.{}.{}.part", place.name.substr(0, 100), ::getpid(), ++count);
+  const std::string temporary = fmt::format(".{}.{}.{}.part", spot.name.substr(0, 100), ::getpid(), ++count);
   constexpr int kHow = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
-  Descriptor file(::openat(place.folder.get(), temporary.c_str(), kHow, 0666));
+  Descriptor file(::openat(spot.folder.get(), temporary.c_str(), kHow, 0666));
   if (!file.good()) refuse_by_errno();
-  return std::make_unique<PlainFile>(std::move(place), std::move(file), temporary, 0, root.most_bytes);
+  return std::make_unique<PlainFile>(std::move(spot), std::move(file), temporary, 0, root.most_bytes);
 }
 
 /// The roots of a breve_files, in their order.

@@ -113,9 +113,9 @@ std::string message_of(const breve_world& world, breve_status status, const std:
   if (!reason.empty()) return reason;
   const breve_error* error = world.error.view();
   if (!error || error->status != static_cast<std::uint32_t>(status)) return breve_status_name(status);
-  const std::string place =
+  const std::string location =
       error->line != 0 ? " (" + std::string(error->file) + ":" + std::to_string(error->line) + ")" : "";
-  return error->message + place;
+  return error->message + location;
 }
 
 /// The error of a call that the host made in its method, as it was: it knows the whole chain of calls.
@@ -214,10 +214,10 @@ breve_status breve_runtime_add_function(breve_runtime* runtime, const breve_func
   });
 }
 
-breve_status breve_world_charge(breve_world* world, uint64_t turns) {
+breve_status breve_world_charge(breve_world* world, uint64_t iterations) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
-    if (world->running != 0) world->machine->charge(turns);
+    if (world->running != 0) world->machine->charge(iterations);
   });
 }
 

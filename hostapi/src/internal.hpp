@@ -424,8 +424,8 @@ inline bool is_null(breve_object object) { return object.generation == 0; }
 
 /// The ticket of an object's id, which is not null.
 inline std::uint32_t ticket_of(const breve_world& world, breve_object object) {
-  const std::uint64_t place = object.generation - 1 + kGenerations - world.first_generation;
-  return static_cast<std::uint32_t>(place % kGenerations + 1);
+  const std::uint64_t ordinal = object.generation - 1 + kGenerations - world.first_generation;
+  return static_cast<std::uint32_t>(ordinal % kGenerations + 1);
 }
 
 /// A live object's id: BREVE_ERROR_ARGUMENT for null, BREVE_ERROR_STALE for one that is gone.

@@ -177,7 +177,7 @@ breve_status breve_joint_state(const breve_world* world, breve_object joint, bre
       const auto owner = [&](breve::BodyIndex body) {
         return body == breve::kNoBody ? breve_object{} : handle_of(*world, world->world->bodies().owner(body));
       };
-      found.ring = dynamics.closes_ring(index);
+      found.ring = dynamics.closes_loop(index);
       found.parent = owner(is.parent);
       found.child = owner(is.child);
       copy_to(found.position, dynamics.position(index));
@@ -278,9 +278,9 @@ breve_status breve_spring_description(const breve_world* world, breve_object spr
     const breve::SpringIndex index = found ? breve::steve::spring_of(*world->machine, object) : breve::kNoSpring;
     if (index != breve::kNoSpring) {
       const breve::World& w = *world->world;
-      const breve::SpringDescription& tied = w.mechanics().spring(index);
-      to.from = handle_of(*world, w.bodies().owner(tied.a));
-      to.to = handle_of(*world, w.bodies().owner(tied.b));
+      const breve::SpringDescription& ends = w.mechanics().spring(index);
+      to.from = handle_of(*world, w.bodies().owner(ends.a));
+      to.to = handle_of(*world, w.bodies().owner(ends.b));
     }
     write_struct(description, to, "breve_spring");
   });

@@ -8,8 +8,8 @@ namespace breve::host {
 
 breve_object handle_of(const breve_world& world, ObjectId id) {
   if (!id) return {};
-  const std::uint64_t place = std::uint64_t{world.first_generation} + world.world->ticket(id) - 1;
-  return {id.index, static_cast<std::uint32_t>(place % kGenerations + 1)};
+  const std::uint64_t ordinal = std::uint64_t{world.first_generation} + world.world->ticket(id) - 1;
+  return {id.index, static_cast<std::uint32_t>(ordinal % kGenerations + 1)};
 }
 
 ObjectId id_of(const breve_world& world, breve_object object) {
@@ -201,11 +201,11 @@ breve_status breve_object_set_pose(breve_world* world, breve_object object, cons
     const BodyIndex body = live_body(*world, object);
     const breve::Quaternion rotation = rotation_of(*pose);
     Bodies& bodies = world->world->bodies();
-    const Vector3 place(pose->location[0], pose->location[1], pose->location[2]);
+    const Vector3 location(pose->location[0], pose->location[1], pose->location[2]);
     bodies.allowed_orientation(rotation);  // all or nothing
     world->previous.forget(body);
     world->world->leave(body);
-    bodies.set_location(body, world->world->space().inside(place));
+    bodies.set_location(body, world->world->space().inside(location));
     bodies.set_orientation(body, rotation);
     world->world->mechanics().moved(body);
   });
@@ -217,8 +217,8 @@ breve_status breve_object_set_target(breve_world* world, breve_object object, co
     need(pose, "pose");
     const BodyIndex body = live_body(*world, object);
     const breve::Quaternion rotation = rotation_of(*pose);
-    const Vector3 place(pose->location[0], pose->location[1], pose->location[2]);
-    world->world->set_target(body, &place, &rotation);
+    const Vector3 location(pose->location[0], pose->location[1], pose->location[2]);
+    world->world->set_target(body, &location, &rotation);
   });
 }
 

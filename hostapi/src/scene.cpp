@@ -23,7 +23,7 @@ const char* text_or_empty(const std::string& text) { return text.c_str(); }
 breve_instance row_of(const breve_world& world, const SceneInstance& one) {
   breve_instance row{};
   row.object = handle_of(world, one.object);
-  put(row.transform, one.place);
+  put(row.transform, one.transform);
   put(row.color, one.color);
   put(row.texture_scale, one.texture_scale);
   row.mesh = one.mesh;
@@ -98,7 +98,7 @@ breve_sheet row_of(const breve_world& world, const SceneSheet& one) {
 breve_label row_of(const breve_world& world, const SceneLabel& one) {
   breve_label row{};
   row.object = handle_of(world, one.object);
-  put(row.place, one.place);
+  put(row.place, one.location);
   row.text = text_or_empty(one.text);
   return row;
 }

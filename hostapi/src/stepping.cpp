@@ -68,22 +68,22 @@ breve_status breve_objects_interpolated(const breve_world* world, const breve_ob
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     if (!(fraction >= 0 && fraction <= 1)) fail(BREVE_ERROR_ARGUMENT, "fraction must be from 0 to 1");
-    const bool place = property == BREVE_PROPERTY_LOCATION || property == BREVE_PROPERTY_POSE;
-    const bool turn = property == BREVE_PROPERTY_ROTATION || property == BREVE_PROPERTY_POSE;
-    if (!place && !turn)
+    const bool location = property == BREVE_PROPERTY_LOCATION || property == BREVE_PROPERTY_POSE;
+    const bool orientation = property == BREVE_PROPERTY_ROTATION || property == BREVE_PROPERTY_POSE;
+    if (!location && !orientation)
       fail(BREVE_ERROR_ARGUMENT,
            "property is " + std::to_string(property) + ": only locations, rotations and poses are known from before");
     if (!world->previous.kept())
       fail(BREVE_ERROR_ARGUMENT, "poses of the iteration before are not kept: call breve_world_set_interpolated first");
-    const std::size_t width = (place ? 3U : 0U) + (turn ? 4U : 0U);
+    const std::size_t width = (location ? 3U : 0U) + (orientation ? 4U : 0U);
     const Rows rows(array, count, width);
     const auto all = bodies_of(*world, objects, count);
     double numbers[kMostNumbers];
     for (std::size_t i = 0; i < count; ++i) {
       const Pose pose = between(*world->world, world->previous, all[i], fraction);
-      if (place) std::copy_n(pose.location.data(), 3, numbers);
-      double* const q = numbers + (place ? 3 : 0);
-      if (turn) {
+      if (location) std::copy_n(pose.location.data(), 3, numbers);
+      double* const q = numbers + (location ? 3 : 0);
+      if (orientation) {
         q[0] = pose.orientation.w();
         std::copy_n(pose.orientation.vec().data(), 3, q + 1);
       }

@@ -10,62 +10,65 @@ namespace breve::articulated {
 /// A pivot this small against the largest possible one has no correct digit left: two units of round-off.
 constexpr double kSingular = 4e-16;
 
-/// Lets `felt` rotate freely about an axis. `added` is added to its inertia there. Returns false if that is singular.
-inline bool release(const Vector3& axis, double added, double least, ArticulatedInertia& felt, Vector3& pull_couple,
-                    Vector3& pull_force, double& inverse) {
-  pull_couple = felt.a * axis;
-  pull_force.noalias() = felt.b.transpose() * axis;
+/// Lets `effective` rotate freely about an axis. `added` is added to its inertia there. Returns false if that is
+/// singular.
+inline bool release(const Vector3& axis, double added, double least, ArticulatedInertia& effective,
+                    Vector3& pull_couple, Vector3& pull_force, double& inverse) {
+  pull_couple = effective.a * axis;
+  pull_force.noalias() = effective.b.transpose() * axis;
   const double inertia = axis.dot(pull_couple) + added;
   if (!(inertia > least)) return false;
   inverse = 1 / inertia;
-  felt.subtract_dyad(pull_couple, pull_force, inverse);
+  effective.subtract_dyad(pull_couple, pull_force, inverse);
   return true;
 }
 
-/// Transforms the articulated inertia `felt` of a link into the effective one across its joint, and keeps what `carry`
-/// and `respond` need. `diagonal` (nv) is added to the joint's own inertia. Returns false if that inertia is singular.
-inline bool reduce(const Body& body, const double* diagonal, Work& w, WideWork& wide, ArticulatedInertia& felt) {
+/// Transforms the articulated inertia `effective` of a link into the effective one across its joint, and keeps what
+/// `carry` and `respond` need. `diagonal` (nv) is added to the joint's own inertia. Returns false if that inertia is
+/// singular.
+inline bool reduce(const Body& body, const double* diagonal, Work& w, WideWork& wide, ArticulatedInertia& effective) {
   diagonal += body.v;
   switch (body.type) {
     case JointType::Revolute:
-      return release(w.axis, diagonal[0], kSingular * felt.a.trace(), felt, w.pull_couple, w.pull_force, w.inverse);
+      return release(w.axis, diagonal[0], kSingular * effective.a.trace(), effective, w.pull_couple, w.pull_force,
+                     w.inverse);
     case JointType::Prismatic: {
-      w.pull_couple.noalias() = felt.b * w.axis;
-      w.pull_force = felt.c * w.axis;
+      w.pull_couple.noalias() = effective.b * w.axis;
+      w.pull_force = effective.c * w.axis;
       const double inertia = w.axis.dot(w.pull_force) + diagonal[0];
-      if (!(inertia > kSingular * felt.c.trace())) return false;
+      if (!(inertia > kSingular * effective.c.trace())) return false;
       w.inverse = 1 / inertia;
-      felt.subtract_dyad(w.pull_couple, w.pull_force, w.inverse);
+      effective.subtract_dyad(w.pull_couple, w.pull_force, w.inverse);
       return true;
     }
     case JointType::Universal: {
       // One axis after the other, as if a revolute joint sat on a revolute joint.
-      const double least = kSingular * felt.a.trace();
-      if (!release(w.axis, diagonal[0], least, felt, w.pull_couple, w.pull_force, w.inverse)) return false;
+      const double least = kSingular * effective.a.trace();
+      if (!release(w.axis, diagonal[0], least, effective, w.pull_couple, w.pull_force, w.inverse)) return false;
       wide.coupling = wide.axis2.dot(w.pull_couple);
-      return release(wide.axis2, diagonal[1], least, felt, wide.pull2_couple, wide.pull2_force, wide.inverse2);
+      return release(wide.axis2, diagonal[1], least, effective, wide.pull2_couple, wide.pull2_force, wide.inverse2);
     }
     case JointType::Ball: {
       wide.added = diagonal[0];
-      Symmetric3 own = felt.a;
+      Symmetric3 own = effective.a;
       own += Symmetric3::identity(wide.added);
       if (!invert(own, wide.inverse)) return false;
-      const Matrix3 gain = wide.inverse.matrix() * felt.b;
-      const Matrix3 loss = felt.b.transpose() * gain;
-      felt.c.xx -= loss(0, 0), felt.c.xy -= loss(0, 1), felt.c.xz -= loss(0, 2);
-      felt.c.yy -= loss(1, 1), felt.c.yz -= loss(1, 2), felt.c.zz -= loss(2, 2);
+      const Matrix3 gain = wide.inverse.matrix() * effective.b;
+      const Matrix3 loss = effective.b.transpose() * gain;
+      effective.c.xx -= loss(0, 0), effective.c.xy -= loss(0, 1), effective.c.xz -= loss(0, 2);
+      effective.c.yy -= loss(1, 1), effective.c.yz -= loss(1, 2), effective.c.zz -= loss(2, 2);
       // a - a (a + d)^-1 a = d (1 - d (a + d)^-1); zero but for the implicit part d.
       const double d = wide.added;
       const Symmetric3& i = wide.inverse;
-      felt.a = {d * (1 - d * i.xx), -d * d * i.xy, -d * d * i.xz,
-                d * (1 - d * i.yy), -d * d * i.yz, d * (1 - d * i.zz)};
-      felt.b = d * gain;
+      effective.a = {d * (1 - d * i.xx), -d * d * i.xy, -d * d * i.xz,
+                     d * (1 - d * i.yy), -d * d * i.yz, d * (1 - d * i.zz)};
+      effective.b = d * gain;
       return true;
     }
     case JointType::Free: {
-      if (!invert(felt.c, wide.inverse_mass)) return false;
-      const Matrix3 shift = felt.b * wide.inverse_mass.matrix() * felt.b.transpose();
-      Symmetric3 own = felt.a;
+      if (!invert(effective.c, wide.inverse_mass)) return false;
+      const Matrix3 shift = effective.b * wide.inverse_mass.matrix() * effective.b.transpose();
+      Symmetric3 own = effective.a;
       own.xx -= shift(0, 0), own.xy -= shift(0, 1), own.xz -= shift(0, 2);
       own.yy -= shift(1, 1), own.yz -= shift(1, 2), own.zz -= shift(2, 2);
       return invert(own, wide.inverse);
@@ -82,8 +85,8 @@ inline void carry(const Body& body, const double* tau, Work& w, WideWork& wide, 
   switch (body.type) {
     case JointType::Revolute:
     case JointType::Prismatic: {
-      const Vector3& felt = body.type == JointType::Revolute ? couple : force;
-      w.push = given(0) - w.axis.dot(felt);
+      const Vector3& effective = body.type == JointType::Revolute ? couple : force;
+      w.push = given(0) - w.axis.dot(effective);
       const double rate = w.push * w.inverse;
       couple += rate * w.pull_couple;
       force += rate * w.pull_force;
@@ -108,7 +111,7 @@ inline void carry(const Body& body, const double* tau, Work& w, WideWork& wide, 
       break;
     }
     case JointType::Free:
-      wide.push_force = body.turn * Vector3(given(0), given(1), given(2)) - force;
+      wide.push_force = body.rotation * Vector3(given(0), given(1), given(2)) - force;
       wide.push_couple = w.rotation * Vector3(given(3), given(4), given(5)) - couple;
       force += wide.push_force;
       couple += wide.push_couple;
@@ -117,27 +120,27 @@ inline void carry(const Body& body, const double* tau, Work& w, WideWork& wide, 
   }
 }
 
-/// The joint's accelerations (nv), where its link would have `turn` and `way` if they were zero; adds them to both.
-inline void respond(const Body& body, const Work& w, const WideWork& wide, Vector3& turn, Vector3& way, double* x) {
+/// The joint's accelerations (nv), where its link would have `rotation` and `way` if they were zero; adds them to both.
+inline void respond(const Body& body, const Work& w, const WideWork& wide, Vector3& spin, Vector3& way, double* x) {
   x += body.v;
   switch (body.type) {
     case JointType::Revolute:
-      x[0] = w.inverse * (w.push - w.pull_couple.dot(turn) - w.pull_force.dot(way));
-      turn += x[0] * w.axis;
+      x[0] = w.inverse * (w.push - w.pull_couple.dot(spin) - w.pull_force.dot(way));
+      spin += x[0] * w.axis;
       break;
     case JointType::Prismatic:
-      x[0] = w.inverse * (w.push - w.pull_couple.dot(turn) - w.pull_force.dot(way));
+      x[0] = w.inverse * (w.push - w.pull_couple.dot(spin) - w.pull_force.dot(way));
       way += x[0] * w.axis;
       break;
     case JointType::Universal:
-      x[1] = wide.inverse2 * (wide.push2 - wide.pull2_couple.dot(turn) - wide.pull2_force.dot(way));
-      x[0] = w.inverse * (w.push - w.pull_couple.dot(turn) - w.pull_force.dot(way) - wide.coupling * x[1]);
-      turn += x[0] * w.axis + x[1] * wide.axis2;
+      x[1] = wide.inverse2 * (wide.push2 - wide.pull2_couple.dot(spin) - wide.pull2_force.dot(way));
+      x[0] = w.inverse * (w.push - w.pull_couple.dot(spin) - w.pull_force.dot(way) - wide.coupling * x[1]);
+      spin += x[0] * w.axis + x[1] * wide.axis2;
       break;
     case JointType::Ball: {
-      const Vector3 own = wide.inverse * (wide.push_couple - w.inertia.couple(turn, way));
+      const Vector3 own = wide.inverse * (wide.push_couple - w.inertia.couple(spin, way));
       Eigen::Map<Vector3>{x}.noalias() = w.rotation.transpose() * own;
-      turn += own;
+      spin += own;
       break;
     }
     case JointType::Free: {
@@ -145,9 +148,9 @@ inline void respond(const Body& body, const Work& w, const WideWork& wide, Vecto
       const Vector3 force = wide.push_force - w.inertia.c * way;
       const Vector3 own = wide.inverse * (wide.push_couple - w.inertia.b * (way + wide.inverse_mass * force));
       const Vector3 along = wide.inverse_mass * (force - w.inertia.b.transpose() * own);
-      Eigen::Map<Vector3>{x}.noalias() = body.turn.transpose() * along;
+      Eigen::Map<Vector3>{x}.noalias() = body.rotation.transpose() * along;
       Eigen::Map<Vector3>{x + 3}.noalias() = w.rotation.transpose() * own;
-      turn += own;
+      spin += own;
       way += along;
       break;
     }

@@ -42,7 +42,7 @@ void outward(const Model& model, Data& data, const State& state, const Loads& lo
       const Work& parent = data.of(body.parent);
       WideWork& wide = data.wide_of(body);
       place(body, parent, q, w, wide);
-      turn(body, parent, v, w, wide);
+      move(body, parent, v, w, wide);
     }
     load(body, wrench ? wrench++ : nullptr, w);
   }
@@ -54,15 +54,15 @@ void inward(const Model& model, Data& data) {
     const Body& body = model.body(i);
     Work& w = data.of(i);
     WideWork& wide = data.wide_of(body);
-    ArticulatedInertia felt = w.inertia;
-    if (!reduce(body, diagonal, w, wide, felt)) singular(model, i);
+    ArticulatedInertia effective = w.inertia;
+    if (!reduce(body, diagonal, w, wide, effective)) singular(model, i);
     Vector3 couple = w.couple, force = w.force;
     carry(body, tau, w, wide, couple, force);
     Work& parent = data.of(body.parent);
     if (body.type != JointType::Free) {
-      couple += felt.couple(w.bias_alpha, w.bias_acc);
-      force += felt.force(w.bias_alpha, w.bias_acc);
-      if (body.parent >= 0) parent.inertia.add_shifted(felt, w.offset);
+      couple += effective.couple(w.bias_alpha, w.bias_acc);
+      force += effective.force(w.bias_alpha, w.bias_acc);
+      if (body.parent >= 0) parent.inertia.add_shifted(effective, w.offset);
     }
     parent.couple += couple + w.offset.cross(force);
     parent.force += force;
@@ -122,9 +122,9 @@ void factorize(const Model& model, Data& data, const State& state, const Loads& 
   for (int i = model.size() - 1; i >= 0; --i) {
     const Body& body = model.body(i);
     Work& w = data.of(i);
-    ArticulatedInertia felt = w.inertia;
-    if (!reduce(body, data.diagonal.data(), w, data.wide_of(body), felt)) singular(model, i);
-    if (body.parent >= 0) data.of(body.parent).inertia.add_shifted(felt, w.offset);
+    ArticulatedInertia effective = w.inertia;
+    if (!reduce(body, data.diagonal.data(), w, data.wide_of(body), effective)) singular(model, i);
+    if (body.parent >= 0) data.of(body.parent).inertia.add_shifted(effective, w.offset);
   }
 }
 

@@ -37,7 +37,7 @@ void inverse_dynamics(const Model& model, Data& data, const State& state, const 
     const Work& parent = data.of(body.parent);
     WideWork& wide = data.wide_of(body);
     place(body, parent, q, w, wide);
-    turn(body, parent, v, w, wide);
+    move(body, parent, v, w, wide);
     w.alpha = parent.alpha + w.bias_alpha;
     w.acc = parent.acc + parent.alpha.cross(w.offset) + w.bias_acc;
     add_joint_motion(body, w, wide, acceleration.data(), w.alpha, w.acc);

@@ -20,8 +20,8 @@ inline Matrix3 rotation_matrix(const double* q) {
 }
 
 /// Rotation by the joint's first angle, in the parent's axes.
-inline Matrix3 turned(const Body& body, double angle) {
-  return body.turn + std::sin(angle) * body.turn_sin + std::cos(angle) * body.turn_cos;
+inline Matrix3 rotated(const Body& body, double angle) {
+  return body.rotation + std::sin(angle) * body.rotation_sin + std::cos(angle) * body.rotation_cos;
 }
 
 /// From q: rotation, offset, axis.
@@ -30,53 +30,53 @@ inline void place(const Body& body, const Work& parent, const double* q, Work& w
   w.offset.noalias() = parent.rotation * body.position;
   switch (body.type) {
     case JointType::Revolute:
-      w.rotation.noalias() = parent.rotation * turned(body, q[0]);
+      w.rotation.noalias() = parent.rotation * rotated(body, q[0]);
       w.axis.noalias() = w.rotation * body.axis;
       break;
     case JointType::Prismatic:
-      w.rotation.noalias() = parent.rotation * body.turn;
+      w.rotation.noalias() = parent.rotation * body.rotation;
       w.axis.noalias() = w.rotation * body.axis;
       w.offset += q[0] * w.axis;
       break;
     case JointType::Universal: {
-      const Matrix3 first = parent.rotation * turned(body, q[0]);
+      const Matrix3 first = parent.rotation * rotated(body, q[0]);
       w.axis.noalias() = first * body.axis;
       wide.axis2.noalias() = first * body.axis2;
       w.rotation.noalias() = first * Eigen::AngleAxisd(q[1], body.axis2).toRotationMatrix();
       break;
     }
     case JointType::Ball: {
-      const Matrix3 frame = parent.rotation * body.turn;
+      const Matrix3 frame = parent.rotation * body.rotation;
       w.rotation.noalias() = frame * rotation_matrix(q);
       break;
     }
     case JointType::Free:
-      w.offset += body.turn * Vector3(q[0], q[1], q[2]);
-      w.rotation.noalias() = body.turn * rotation_matrix(q + 3);
+      w.offset += body.rotation * Vector3(q[0], q[1], q[2]);
+      w.rotation.noalias() = body.rotation * rotation_matrix(q + 3);
       break;
-    case JointType::Fixed: w.rotation.noalias() = parent.rotation * body.turn; break;
+    case JointType::Fixed: w.rotation.noalias() = parent.rotation * body.rotation; break;
   }
 }
 
 /// The motion of a joint at rates `x` (nv), added to its link's rotational and its origin's linear motion.
-inline void add_joint_motion(const Body& body, const Work& w, const WideWork& wide, const double* x, Vector3& turn,
+inline void add_joint_motion(const Body& body, const Work& w, const WideWork& wide, const double* x, Vector3& spin,
                              Vector3& way) {
   x += body.v;
   switch (body.type) {
-    case JointType::Revolute: turn += x[0] * w.axis; break;
+    case JointType::Revolute: spin += x[0] * w.axis; break;
     case JointType::Prismatic: way += x[0] * w.axis; break;
-    case JointType::Universal: turn += x[0] * w.axis + x[1] * wide.axis2; break;
-    case JointType::Ball: turn += w.rotation * Vector3(x[0], x[1], x[2]); break;
+    case JointType::Universal: spin += x[0] * w.axis + x[1] * wide.axis2; break;
+    case JointType::Ball: spin += w.rotation * Vector3(x[0], x[1], x[2]); break;
     case JointType::Free:
-      way += body.turn * Vector3(x[0], x[1], x[2]);
-      turn += w.rotation * Vector3(x[3], x[4], x[5]);
+      way += body.rotation * Vector3(x[0], x[1], x[2]);
+      spin += w.rotation * Vector3(x[3], x[4], x[5]);
       break;
     case JointType::Fixed: break;
   }
 }
 
 /// From v, after `place`: spin and the accelerations that come of motion alone.
-inline void turn(const Body& body, const Work& parent, const double* v, Work& w, const WideWork& wide) {
+inline void move(const Body& body, const Work& parent, const double* v, Work& w, const WideWork& wide) {
   v += body.v;
   const Vector3& spin = parent.spin;
   w.bias_acc = spin.cross(spin.cross(w.offset));
@@ -128,7 +128,7 @@ inline void joint_force(const Body& body, const Work& w, const WideWork& wide, c
       break;
     case JointType::Ball: Eigen::Map<Vector3>{tau}.noalias() = w.rotation.transpose() * couple; break;
     case JointType::Free:
-      Eigen::Map<Vector3>{tau}.noalias() = body.turn.transpose() * force;
+      Eigen::Map<Vector3>{tau}.noalias() = body.rotation.transpose() * force;
       Eigen::Map<Vector3>{tau + 3}.noalias() = w.rotation.transpose() * couple;
       break;
     case JointType::Fixed: break;

@@ -13,7 +13,7 @@ void forward_kinematics(const Model& model, Data& data, const State& state) {
     const Work& parent = data.of(body.parent);
     WideWork& wide = data.wide_of(body);
     place(body, parent, q, w, wide);
-    turn(body, parent, v, w, wide);
+    move(body, parent, v, w, wide);
     const Motion& from = data.motion_of(body.parent);
     Motion& to = data.motion_of(i++);
     to.origin = from.origin + w.offset;

@@ -8,19 +8,19 @@ namespace breve::articulated {
 namespace {
 
 /// One column: joint rate `k` of link `i` at 1, against the joints from `i` to the root.
-void fill_column(const Model& model, const Data& data, int i, int k, Vector& unit, Vector& felt,
+void fill_column(const Model& model, const Data& data, int i, int k, Vector& unit, Vector& column,
                  Eigen::MatrixXd& mass) {
   const Body& body = model.body(i);
   const Work& w = data.of(i);
-  Vector3 turn = Vector3::Zero(), way = Vector3::Zero();
+  Vector3 spin = Vector3::Zero(), way = Vector3::Zero();
   unit[k] = 1;
-  add_joint_motion(body, w, data.wide_of(body), unit.data(), turn, way);
+  add_joint_motion(body, w, data.wide_of(body), unit.data(), spin, way);
   unit[k] = 0;
-  Vector3 couple = w.inertia.couple(turn, way), force = w.inertia.force(turn, way);
+  Vector3 couple = w.inertia.couple(spin, way), force = w.inertia.force(spin, way);
   for (int j = i; j >= 0; j = model.body(j).parent) {
     const Body& inner = model.body(j);
-    joint_force(inner, data.of(j), data.wide_of(inner), couple, force, felt.data());
-    for (int m = inner.v; m < inner.v + velocity_count(inner.type); ++m) mass(k, m) = mass(m, k) = felt[m];
+    joint_force(inner, data.of(j), data.wide_of(inner), couple, force, column.data());
+    for (int m = inner.v; m < inner.v + velocity_count(inner.type); ++m) mass(k, m) = mass(m, k) = column[m];
     couple += data.of(j).offset.cross(force);
   }
 }

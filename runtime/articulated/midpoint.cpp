@@ -84,7 +84,7 @@ double Midpoint::largest_change() {
   double largest = 0;
   for (int i = 0; i < static_cast<int>(u_.size()); ++i) {
     const Kind kind = system_.kind(i);
-    if (kind == Kind::Account) {
+    if (kind == Kind::Ledger) {
       change_[i] = 0;
       continue;
     }

@@ -106,15 +106,15 @@ void Model::add(const Link& link) {
   body.position = link.position;
   body.axis = link.axis.normalized();
   body.axis2 = link.axis2.normalized();
-  body.turn = link.rotation.normalized().toRotationMatrix();
+  body.rotation = link.rotation.normalized().toRotationMatrix();
   if (link.type == JointType::Revolute || link.type == JointType::Universal) {
-    const Matrix3 frame = body.turn;
-    body.turn = frame * body.axis * body.axis.transpose();
-    body.turn_sin = frame * cross_matrix(body.axis);
-    body.turn_cos = frame - body.turn;
+    const Matrix3 frame = body.rotation;
+    body.rotation = frame * body.axis * body.axis.transpose();
+    body.rotation_sin = frame * cross_matrix(body.axis);
+    body.rotation_cos = frame - body.rotation;
   } else {
-    body.turn_sin.setZero();
-    body.turn_cos.setZero();
+    body.rotation_sin.setZero();
+    body.rotation_cos.setZero();
   }
   body.com = link.com;
   body.moment = link.mass * link.com;

@@ -54,9 +54,10 @@ struct Body {
   double mass;          // kg
   Vector3 position;     // joint frame's origin in the parent's frame
   Vector3 axis, axis2;  // in the joint frame
-  // The joint's rotation in the parent's axes is turn + sin(q) turn_sin + cos(q) turn_cos for revolute joints and the
-  // first angle of universal ones (Rodrigues' formula, multiplied out); for all others it begins with `turn`.
-  Matrix3 turn, turn_sin, turn_cos;
+  // The joint's rotation in the parent's axes is rotation + sin(q) rotation_sin + cos(q) rotation_cos for revolute
+  // joints and the first angle of universal ones (Rodrigues' formula, multiplied out); for all others it begins with
+  // `rotation`.
+  Matrix3 rotation, rotation_sin, rotation_cos;
   Vector3 com;             // in the body frame
   Vector3 moment;          // mass * com
   Symmetric3 inertia;      // about the body frame's origin, body axes

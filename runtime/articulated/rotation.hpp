@@ -27,8 +27,8 @@ inline Vector3 rate_of_rotation_vector(const Vector3& d, const Vector3& spin) {
     const double half = 0.5 * std::sqrt(square);
     c = (1 - half / std::tan(half)) / square;
   }
-  const Vector3 turn = d.cross(spin);
-  return spin + 0.5 * turn + c * d.cross(turn);
+  const Vector3 across = d.cross(spin);
+  return spin + 0.5 * across + c * d.cross(across);
 }
 
 /// The rotation vector whose exp is Cayley's (1 - [d]x/2)^-1 (1 + [d]x/2): same axis, angle 2 atan(|d|/2).

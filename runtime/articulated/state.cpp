@@ -8,16 +8,16 @@ namespace breve::articulated {
 namespace {
 
 /// Where the rotation of a ball or free joint lies in q and v.
-struct Turn {
+struct Rotation {
   int q, v;
 };
 
 /// Calls f(Turn) for each joint that has a quaternion.
 template <class F>
-void for_each_turn(const Model& model, F f) {
+void for_each_rotation(const Model& model, F f) {
   for (const Body& body : model.bodies()) {
-    if (body.type == JointType::Ball) f(Turn{body.q, body.v});
-    if (body.type == JointType::Free) f(Turn{body.q + 3, body.v + 3});
+    if (body.type == JointType::Ball) f(Rotation{body.q, body.v});
+    if (body.type == JointType::Free) f(Rotation{body.q + 3, body.v + 3});
   }
 }
 
@@ -46,7 +46,7 @@ void put_quaternion(const Quaternion& r, int i, Vector& q) {
 
 State neutral_state(const Model& model) {
   State state{Vector::Zero(model.positions()), Vector::Zero(model.velocities())};
-  for_each_turn(model, [&](Turn t) { state.q[t.q] = 1; });
+  for_each_rotation(model, [&](Rotation t) { state.q[t.q] = 1; });
   return state;
 }
 
@@ -54,9 +54,9 @@ void move(const Model& model, const Vector& q, const Vector& d, Vector& out) {
   for_each_flat(model, [&](int iq, int iv, int n) {
     for (int k = 0; k < n; ++k) out[iq + k] = q[iq + k] + d[iv + k];
   });
-  for_each_turn(model, [&](Turn t) {
-    const Quaternion turned = quaternion_at(q, t.q) * rotation_by(d.segment<3>(t.v));
-    put_quaternion(turned.normalized(), t.q, out);
+  for_each_rotation(model, [&](Rotation t) {
+    const Quaternion rotated = quaternion_at(q, t.q) * rotation_by(d.segment<3>(t.v));
+    put_quaternion(rotated.normalized(), t.q, out);
   });
 }
 
@@ -64,19 +64,19 @@ void difference(const Model& model, const Vector& from, const Vector& to, Vector
   for_each_flat(model, [&](int iq, int iv, int n) {
     for (int k = 0; k < n; ++k) d[iv + k] = to[iq + k] - from[iq + k];
   });
-  for_each_turn(model, [&](Turn t) {
+  for_each_rotation(model, [&](Rotation t) {
     d.segment<3>(t.v) = logarithm(quaternion_at(from, t.q).conjugate() * quaternion_at(to, t.q));
   });
 }
 
 void rate_of_move(const Model& model, const Vector& d, const Vector& v, Vector& out) {
   out = v;
-  for_each_turn(model,
-                [&](Turn t) { out.segment<3>(t.v) = rate_of_rotation_vector(d.segment<3>(t.v), v.segment<3>(t.v)); });
+  for_each_rotation(
+      model, [&](Rotation t) { out.segment<3>(t.v) = rate_of_rotation_vector(d.segment<3>(t.v), v.segment<3>(t.v)); });
 }
 
 void bend_to_cayley(const Model& model, Vector& d) {
-  for_each_turn(model, [&](Turn t) { d.segment<3>(t.v) = cayley(d.segment<3>(t.v)); });
+  for_each_rotation(model, [&](Rotation t) { d.segment<3>(t.v) = cayley(d.segment<3>(t.v)); });
 }
 
 }  // namespace breve::articulated

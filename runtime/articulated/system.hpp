@@ -11,7 +11,7 @@ namespace breve::articulated {
 enum class Kind : signed char {
   Angle,
   Length,
-  Account  // what is integrated along, in units of lengths: nothing depends on it
+  Ledger  // what is integrated along, in units of lengths: nothing depends on it
 };
 
 /// One virtual call an evaluation of all coordinates, never one a joint.

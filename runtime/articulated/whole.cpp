@@ -57,8 +57,8 @@ void move_whole(const Model& model, const Data& data, const Vector3& way, const 
                 const Vector3& center, State& state) {
   const Body& root = model.body(0);
   const Vector3 arm = data.motion_of(0).origin - center;
-  state.q.segment<3>(root.q) += root.turn.transpose() * way;
-  state.v.segment<3>(root.v) += root.turn.transpose() * (velocity + spin.cross(arm));
+  state.q.segment<3>(root.q) += root.rotation.transpose() * way;
+  state.v.segment<3>(root.v) += root.rotation.transpose() * (velocity + spin.cross(arm));
   state.v.segment<3>(root.v + 3) += data.of(0).rotation.transpose() * spin;
 }
 

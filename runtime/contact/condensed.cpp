@@ -57,7 +57,7 @@ void condense(Workspace& work) {
   const std::size_t points = work.points.size(), n = 3 * points + work.scalars.size();
   std::size_t velocities = 0;
   for (const Packed& mover : work.movers)
-    if (mover.place != nullptr) velocities += static_cast<std::size_t>(mover.size);
+    if (mover.source != nullptr) velocities += static_cast<std::size_t>(mover.size);
   work.condensed = n <= std::min(velocities, kMostRows);
   if (!work.condensed) return;
   work.rates.clear();

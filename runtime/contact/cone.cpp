@@ -36,8 +36,8 @@ struct Sliding {
   double across(double x, double y, double& along, double& slope) const {
     const double f1 = m11 * x + m12 * y + c1, f2 = m21 * x + m22 * y + c2;
     along = x * f1 + y * f2;
-    const double turned1 = m12 * x - m11 * y, turned2 = m22 * x - m21 * y;  // M times the normal of d
-    slope = x * turned2 - y * turned1 - along;
+    const double rotated1 = m12 * x - m11 * y, rotated2 = m22 * x - m21 * y;  // M times the normal of d
+    slope = x * rotated2 - y * rotated1 - along;
     return x * f2 - y * f1;
   }
 
@@ -55,18 +55,18 @@ struct Sliding {
 };
 
 /// Newton's method on the circle from (x, y). True if it ended at a root; the direction is a unit vector in any case.
-bool turn_to_root(const Sliding& sliding, int steps, double& x, double& y) {
+bool rotate_to_root(const Sliding& sliding, int steps, double& x, double& y) {
   for (int i = 0; i < steps; ++i) {
     double along = 0, slope = 0;
     const double g = sliding.across(x, y, along, slope);
     if (std::abs(g) <= 1e-15 * (std::abs(along) + std::abs(slope))) return true;
     if (!(slope > 0)) return false;
-    const double turn = std::clamp(-g / slope, -1.0, 1.0);
-    const double nx = x - turn * y, ny = y + turn * x;
+    const double angle = std::clamp(-g / slope, -1.0, 1.0);
+    const double nx = x - angle * y, ny = y + angle * x;
     const double scale = 1 / std::sqrt(nx * nx + ny * ny);
     x = nx * scale;
     y = ny * scale;
-    if (std::abs(turn) < 1e-8) return true;  // the next step would be its square
+    if (std::abs(angle) < 1e-8) return true;  // the next step would be its square
   }
   return false;
 }
@@ -86,8 +86,8 @@ class Directions {
  private:
   Directions() {
     for (int i = 0; i <= kCount; ++i) {
-      const double turn = i % kCount * (2 * std::numbers::pi / kCount);
-      directions_[static_cast<std::size_t>(i)] = {std::cos(turn), std::sin(turn)};
+      const double angle = i % kCount * (2 * std::numbers::pi / kCount);
+      directions_[static_cast<std::size_t>(i)] = {std::cos(angle), std::sin(angle)};
     }
   }
   std::array<Direction, kCount + 1> directions_;
@@ -134,7 +134,7 @@ bool search_from(const Sliding& sliding, int steps, bool exact, double x, double
   if (!(length > 0)) return false;
   x /= length;
   y /= length;
-  const bool root = turn_to_root(sliding, steps, x, y);
+  const bool root = rotate_to_root(sliding, steps, x, y);
   if (!(root || !exact) || !sliding.good(x, y)) return false;
   sliding.impulse(x, y, p);
   return true;

@@ -24,7 +24,7 @@ Equations::Equations(Workspace& work) : work_(work), rows_(3 * work.points.size(
   }
   work.indices.resize(work.movers.size());
   for (const Packed& mover : work.movers)
-    if (mover.place != nullptr) size_ += mover.size;
+    if (mover.source != nullptr) size_ += mover.size;
 }
 
 bool Equations::fits() const { return size_ > 0 && size_ <= kMostVelocities; }
@@ -59,7 +59,7 @@ void Equations::take(const double* q) {
 template <class F>
 void Equations::each_mover(F&& f) {
   for (std::size_t i = 0; i < work_.movers.size(); ++i)
-    if (work_.movers[i].place != nullptr) f(work_.movers[i], work_.indices[i]);
+    if (work_.movers[i].source != nullptr) f(work_.movers[i], work_.indices[i]);
 }
 
 void Equations::get_velocities(double* out) {
@@ -141,9 +141,9 @@ int Equations::band() const {
   const auto look = [&](int a, int b) {
     const Packed &of_a = work_.movers[static_cast<std::size_t>(a)], &of_b = work_.movers[static_cast<std::size_t>(b)];
     const int at_a = work_.indices[static_cast<std::size_t>(a)], at_b = work_.indices[static_cast<std::size_t>(b)];
-    if (of_a.place != nullptr) widest = std::max(widest, of_a.size - 1);
-    if (of_b.place != nullptr) widest = std::max(widest, of_b.size - 1);
-    if (of_a.place == nullptr || of_b.place == nullptr) return;
+    if (of_a.source != nullptr) widest = std::max(widest, of_a.size - 1);
+    if (of_b.source != nullptr) widest = std::max(widest, of_b.size - 1);
+    if (of_a.source == nullptr || of_b.source == nullptr) return;
     widest = std::max(widest, std::max(at_a + of_a.size, at_b + of_b.size) - std::min(at_a, at_b) - 1);
   };
   for (const Point& c : work_.points) look(c.a, c.b);

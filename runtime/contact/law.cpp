@@ -33,7 +33,7 @@ Law combine(const Material& a, const Material& b) {
     law.restitution_threshold = std::max(a.restitution_threshold, b.restitution_threshold);
   } else {
     law.restitution = (a.restitution + b.restitution) / 2;
-    law.restitution_threshold = kQuietApproach;
+    law.restitution_threshold = kRestingApproach;
   }
   law.restitution = std::clamp(law.restitution, 0.0, 1.0);
   law.tangential_restitution = std::clamp(law.tangential_restitution, -1.0, 1.0);

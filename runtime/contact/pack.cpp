@@ -18,7 +18,7 @@ Packed world() {
 
 Packed packed(const Mover& mover) {
   Packed out{};
-  out.place = mover.v;
+  out.source = mover.v;
   out.size = mover.size;
   out.free = mover.inverse_mass > 0;
   if (!out.free) return out;
@@ -195,7 +195,7 @@ void start_over(std::span<const Push> rows, std::span<const double> scalar_biase
 
 void unpack_velocities(const Workspace& work) {
   for (const Packed& mover : work.movers)
-    if (mover.free && mover.place != nullptr) std::copy_n(mover.v, 6, mover.place);
+    if (mover.free && mover.source != nullptr) std::copy_n(mover.v, 6, mover.source);
 }
 
 void unpack(const Workspace& work, std::span<Row> rows, std::span<ScalarRow> scalars) {

@@ -16,7 +16,7 @@ void CollisionStage::start_paths() {
   }
   if (bodies_->size() == 0) return;
   for (const BodyIndex body : bodies_->translating_bodies()) start_path(body);
-  for (const BodyIndex body : bodies_->turning_bodies()) start_path(body);
+  for (const BodyIndex body : bodies_->rotating_bodies()) start_path(body);
   for (const BodyIndex body : bodies_->rigid_bodies()) start_path(body);
 }
 
@@ -37,10 +37,10 @@ void CollisionStage::finish_path(Path& path) {
   // A kinematic body moves with the velocity it had at the start; reading it off would only add rounding.
   path.velocity = path.from.physics ? Vector3((path.to.location - path.from.location) / length) : path.from.velocity;
   if (path.to.orientation.coeffs() == path.from.orientation.coeffs()) return;
-  Quaternion turn = path.to.orientation * path.from.orientation.conjugate();
-  if (turn.w() < 0) turn.coeffs() = -turn.coeffs();
-  const double sine = turn.vec().norm();
-  if (sine > 0) path.rotational_velocity = turn.vec() * (2 * std::atan2(sine, turn.w()) / (sine * length));
+  Quaternion rotation = path.to.orientation * path.from.orientation.conjugate();
+  if (rotation.w() < 0) rotation.coeffs() = -rotation.coeffs();
+  const double sine = rotation.vec().norm();
+  if (sine > 0) path.rotational_velocity = rotation.vec() * (2 * std::atan2(sine, rotation.w()) / (sine * length));
 }
 
 BodyState CollisionStage::state_at(const Path& path, double time) {
@@ -79,11 +79,11 @@ Vector3 CollisionStage::image_of_b(const Pair& pair) const {
   return space_.image(proxies_[pair.a].box.center(), proxies_[pair.b].box.center());
 }
 
-bool CollisionStage::touching(const Substep& substep, const Pair& pair, const Pose& pose_a, const Pose& place_b,
+bool CollisionStage::touching(const Substep& substep, const Pair& pair, const Pose& pose_a, const Pose& wanted_b,
                               Contact& contact) {
   const Shape& a = *bodies_->collision_shape(proxies_[pair.a].body);
   const Shape& b = *bodies_->collision_shape(proxies_[pair.b].body);
-  const Pose pose_b{place_b.location + image_of_b(pair), place_b.orientation};
+  const Pose pose_b{wanted_b.location + image_of_b(pair), wanted_b.orientation};
   const double tolerance = touch_tolerance(a, pose_a, b, pose_b);
   // Spheres around both that are apart settle it; also refuses what is not finite.
   const double reach = a.bounding_radius() + b.bounding_radius() + tolerance;

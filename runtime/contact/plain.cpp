@@ -37,7 +37,7 @@ struct Velocities {
     v[0] += c.mass * x;
     v[1] += c.mass * y;
     v[2] += c.mass * z;
-    for (int k = 0; k < 3; ++k) v[3 + k] += c.turn[3 * k] * x + c.turn[3 * k + 1] * y + c.turn[3 * k + 2] * z;
+    for (int k = 0; k < 3; ++k) v[3 + k] += c.angular[3 * k] * x + c.angular[3 * k + 1] * y + c.angular[3 * k + 2] * z;
   }
 };
 
@@ -84,7 +84,7 @@ inline void answer(Point& own, const double u[3], PlainPoint& c, double next[3])
 }
 
 /// How an impulse changes the spin of a body: its inverse inertia times [arm]x.
-void turn_of(const Packed& m, const double arm[3], double out[9]) {
+void angular_response(const Packed& m, const double arm[3], double out[9]) {
   const double* I = m.inertia;
   const double rows[3][3] = {{I[0], I[1], I[2]}, {I[1], I[3], I[4]}, {I[2], I[4], I[5]}};
   for (int k = 0; k < 3; ++k) {
@@ -96,24 +96,24 @@ void turn_of(const Packed& m, const double arm[3], double out[9]) {
 }
 
 /// A^T M A of a symmetric matrix in the contact's axes.
-void turn_to_world(const Point& c, const LocalMatrix& M, double out[6]) {
+void rotate_to_world(const Point& c, const LocalMatrix& M, double out[6]) {
   const double rows[3][3] = {{M.nn, M.n1, M.n2}, {M.n1, M.s11, M.s12}, {M.n2, M.s12, M.s22}};
-  double turned[3][3];
-  for (int k = 0; k < 3; ++k) to_world(c, rows[k], turned[k]);
+  double rotated[3][3];
+  for (int k = 0; k < 3; ++k) to_world(c, rows[k], rotated[k]);
   int at = 0;
   for (int i = 0; i < 3; ++i)
     for (int k = i; k < 3; ++k)
-      out[at++] = c.normal[i] * turned[0][k] + c.tangent1[i] * turned[1][k] + c.tangent2[i] * turned[2][k];
+      out[at++] = c.normal[i] * rotated[0][k] + c.tangent1[i] * rotated[1][k] + c.tangent2[i] * rotated[2][k];
 }
 
 void fill_plain(const Point& own, const std::pmr::vector<Packed>& movers, PlainPoint& c) {
   c.a = own.a;
   c.b = own.b;
   const Packed &a = movers[static_cast<std::size_t>(c.a)], &b = movers[static_cast<std::size_t>(c.b)];
-  double turn_a[9], turn_b[9];
-  turn_of(a, own.arm_a, turn_a);
-  turn_of(b, own.arm_b, turn_b);
-  for (int k = 0; k < 9; ++k) c.turn[k] = Lanes{turn_a[k], -turn_b[k]};
+  double angular_a[9], angular_b[9];
+  angular_response(a, own.arm_a, angular_a);
+  angular_response(b, own.arm_b, angular_b);
+  for (int k = 0; k < 9; ++k) c.angular[k] = Lanes{angular_a[k], -angular_b[k]};
   c.mass = Lanes{a.inverse_mass, -b.inverse_mass};
   for (int k = 0; k < 3; ++k) {
     c.arm[k] = Lanes{own.arm_a[k], own.arm_b[k]};
@@ -122,7 +122,7 @@ void fill_plain(const Point& own, const std::pmr::vector<Packed>& movers, PlainP
   c.softness = own.softness;
   c.give = own.response.nn;
   c.largest = std::max({own.response.nn, own.response.s11, own.response.s22});
-  turn_to_world(own, own.inverse, c.inverse);
+  rotate_to_world(own, own.inverse, c.inverse);
   const double row[3] = {own.response.nn - own.softness, own.response.n1, own.response.n2};
   to_world(own, row, c.coupling);
 }

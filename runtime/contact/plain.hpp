@@ -14,7 +14,7 @@ using Lanes = double __attribute__((vector_size(16)));
 struct PlainPoint {
   Lanes arm[3];            // m
   Lanes mass;              // inverse
-  Lanes turn[9];           // change of spin by an impulse, row by row
+  Lanes angular[9];        // change of spin by an impulse, row by row
   double normal[3];        // from b toward a
   double inverse[6];       // of the response, made regular and with softness: xx, xy, xz, yy, yz, zz
   double coupling[3];      // what an impulse does to the normal velocity

@@ -32,12 +32,12 @@ Slope project(const Point& c, const double centre[3], const double u[3], double 
   const double x = z1 / length, y = z2 / length;
   p[1] = radius * x;
   p[2] = radius * y;
-  const double turn = rho_t * radius / length;
+  const double rotation = rho_t * radius / length;
   slope.t1n = c.friction * slope.nn * x;
   slope.t2n = c.friction * slope.nn * y;
-  slope.t11 = turn * y * y;
-  slope.t12 = slope.t21 = -turn * x * y;
-  slope.t22 = turn * x * x;
+  slope.t11 = rotation * y * y;
+  slope.t12 = slope.t21 = -rotation * x * y;
+  slope.t22 = rotation * x * x;
   return slope;
 }
 

@@ -18,7 +18,7 @@ struct SideMatrices {
   double made[36];
 
   void read(const Packed& m, const double* own_j, const double* own_r, const Point& c, const double arm[3]) {
-    size = m.place == nullptr ? 0 : m.size;
+    size = m.source == nullptr ? 0 : m.size;
     j = own_j;
     r = own_r;
     if (j != nullptr || size == 0) return;

@@ -15,12 +15,12 @@ struct Packed {
   double v[6];          // free: velocity, spin
   double inverse_mass;  // 0: the world, or a tree
   double inertia[6];    // inverse, world axes: xx, xy, xz, yy, yz, zz
-  double* place;        // where v comes from and goes to; null: the world
+  double* source;       // where v comes from and goes to; null: the world
   int size;
   bool free;
 
-  double* now() { return free ? v : place; }
-  const double* now() const { return free ? v : place; }
+  double* now() { return free ? v : source; }
+  const double* now() const { return free ? v : source; }
 };
 
 /// A contact as the sweeps read it.

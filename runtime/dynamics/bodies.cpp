@@ -17,7 +17,7 @@ Dynamics::Core::Core(std::pmr::memory_resource* where, Bodies& of)
       tree_order(where),
       clusters(where),
       near(where),
-      place_of(where),
+      slot_of(where),
       shared(where),
       islands(where),
       calling(where),

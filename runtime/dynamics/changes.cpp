@@ -25,7 +25,7 @@ bool has_changed_holder(const Dynamics::Core& core, const Tree& tree) {
   };
   const auto freed = [&bodies](BodyIndex body) { return bodies.dynamic(body); };
   return std::any_of(tree.anchors.begin(), tree.anchors.end(), changed) ||
-         std::any_of(tree.ring_holders.begin(), tree.ring_holders.end(), freed);
+         std::any_of(tree.loop_holders.begin(), tree.loop_holders.end(), freed);
 }
 
 bool is_stale(const Dynamics::Core& core, const Tree& tree) {
@@ -135,14 +135,14 @@ void Dynamics::Core::apply_changes(std::span<const Change> all) {
 }
 
 void Dynamics::Core::move_tree(Tree& tree, const Pose& from, const Pose& to) {
-  const Quaternion turn = (to.orientation * from.orientation.conjugate()).normalized();
+  const Quaternion rotation = (to.orientation * from.orientation.conjugate()).normalized();
   const articulated::Body& root = tree.model.body(0);
   if (!tree.anchored) {
     double* q = tree.state.q.data() + root.q;
-    Eigen::Map<Vector3> place{q};
-    place = Vector3(to.location + turn * (Vector3(place) - from.location));
-    const Quaternion turned = (turn * Quaternion(q[3], q[4], q[5], q[6])).normalized();
-    q[3] = turned.w(), q[4] = turned.x(), q[5] = turned.y(), q[6] = turned.z();
+    Eigen::Map<Vector3> position{q};
+    position = Vector3(to.location + rotation * (Vector3(position) - from.location));
+    const Quaternion rotated = (rotation * Quaternion(q[3], q[4], q[5], q[6])).normalized();
+    q[3] = rotated.w(), q[4] = rotated.x(), q[5] = rotated.y(), q[6] = rotated.z();
     // The velocity of a free joint is in the world's axes, and is not turned: as when a single body is turned.
     place_links(tree);
     return;
@@ -153,18 +153,18 @@ void Dynamics::Core::move_tree(Tree& tree, const Pose& from, const Pose& to) {
       for (const JointIndex index : find(link.body)->joints) {
         JointDescription& is = joints[index].is;
         if (is.parent != kNoBody) continue;
-        is.parent_point = to.location + turn * (is.parent_point - from.location);
-        is.relative_rotation = (turn * is.relative_rotation).normalized();
-        is.normal = turn * is.normal;
-        is.other_axis = turn * is.other_axis;
+        is.parent_point = to.location + rotation * (is.parent_point - from.location);
+        is.relative_rotation = (rotation * is.relative_rotation).normalized();
+        is.normal = rotation * is.normal;
+        is.other_axis = rotation * is.other_axis;
       }
     }
     // All links stand where they are to be before it is built anew.
     const std::pmr::vector<TreeLink> links(tree.links, memory);
     for (const TreeLink& link : links) {
       const BodyEntry& known = *find(link.body);
-      const Vector3 location = to.location + turn * (known.location - from.location);
-      bodies->set_motion(link.body, location, (turn * known.orientation).normalized(), bodies->velocity(link.body),
+      const Vector3 location = to.location + rotation * (known.location - from.location);
+      bodies->set_motion(link.body, location, (rotation * known.orientation).normalized(), bodies->velocity(link.body),
                          bodies->rotational_velocity(link.body));
       note_written(link.body);
     }

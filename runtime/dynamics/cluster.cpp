@@ -45,7 +45,7 @@ Cluster::Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees
         kinds_.push_back(length ? Kind::Length : Kind::Angle);
       }
   }
-  kinds_.insert(kinds_.end(), kWorks + motors_.size(), Kind::Account);
+  kinds_.insert(kinds_.end(), kWorks + motors_.size(), Kind::Ledger);
   at_.q.setZero(nq_);
   at_.v.setZero(velocities());
   at_.mean.setZero(velocities());
@@ -186,7 +186,7 @@ void Cluster::accelerate_trees(double t, const Vector& q, const Vector& v, doubl
   for (Tree* tree : trees_) {
     const int n = tree->model.velocities();
     a.segment(from, n) = articulated::forward_dynamics(tree->model, tree->data, tree->state, tree->loads, step, guess_);
-    if (forces_ && !(tree->rings.empty() && tree->held.empty())) {
+    if (forces_ && !(tree->loops.empty() && tree->held.empty())) {
       const std::uint64_t units = forces_->constrain(*tree, a.data() + from);
       if (meter_) meter_->add(units);
     }

@@ -9,8 +9,8 @@
 #include "runtime/dynamics/cluster.hpp"
 #include "runtime/dynamics/dynamics.hpp"
 #include "runtime/dynamics/grouped.hpp"
+#include "runtime/dynamics/loop_rows.hpp"
 #include "runtime/dynamics/near_pairs.hpp"
-#include "runtime/dynamics/rings.hpp"
 #include "runtime/dynamics/shared_memory.hpp"
 #include "runtime/dynamics/tree.hpp"
 #include "runtime/mechanics/core.hpp"
@@ -49,7 +49,7 @@ struct BodyEntry {
   Quaternion orientation{1, 0, 0, 0};
   double step = 0;                      // s, that step control would try next (a free body)
   std::pmr::vector<JointIndex> joints;  // in the order of creation
-  std::uint32_t ties = 0;               // springs that hold it
+  std::uint32_t springs = 0;            // springs that hold it
   std::uint64_t mark = 0;               // of the last search that came here
 
   explicit BodyEntry(std::pmr::memory_resource* memory) : joints(memory) {}
@@ -63,24 +63,24 @@ struct Change {
   bool moved = false, pushed = false, spun = false;  // which of these it set
 };
 
-class TiedBodies;
-class TiedMotion;
+class SpringNetwork;
+class NetworkMotion;
 
 /// Trees that springs tie together: what one integrator moves.
 struct ClusterEntry : InMemory {
   explicit ClusterEntry(std::pmr::memory_resource* memory);
   ~ClusterEntry();
   std::pmr::vector<std::uint32_t> trees;  // in their order
-  std::pmr::vector<SpringIndex> ties;     // in the order of their indices
+  std::pmr::vector<SpringIndex> springs;  // in the order of their indices
   std::unique_ptr<Cluster> system;
-  std::unique_ptr<TiedBodies> tied;    // if they are bodies without joints, and more than one or tied to something
-  std::unique_ptr<TiedMotion> points;  // likewise, if they are more than one: as their centres move where that is all
+  std::unique_ptr<SpringNetwork> network;  // if they are bodies without joints, and more than one or tied to something
+  std::unique_ptr<NetworkMotion> points;   // likewise, if more than one: as their centres move where that is all
 };
 
 class Island;
 
 /// What a body is in the island that moves it.
-struct BodyPlace {
+struct BodySlot {
   Tree* tree = nullptr;  // null: it is free
   int mover = -1;        // in the island's order; -1: nothing moves it
   int link = -1;         // of the tree
@@ -106,7 +106,7 @@ struct Dynamics::Core : MechanicsCore {
   bool loading = false;                                      // trees take their numbers from an image
 
   NearPairs near;
-  std::pmr::vector<BodyPlace> place_of;               // by body, since islands were found
+  std::pmr::vector<BodySlot> slot_of;                 // by body, since islands were found
   SharedMemory shared;                                // of islands, which workers step
   std::pmr::vector<std::unique_ptr<Island>> islands;  // places to work on one
   std::pmr::vector<std::unique_ptr<Island>> calling;  // those of the step that need a client
@@ -155,7 +155,7 @@ struct Dynamics::Core : MechanicsCore {
   const Accuracy& accuracy_of(BodyIndex body);
 
   // springs.cpp
-  SpringEntry& tie_at(SpringIndex spring);
+  SpringEntry& spring_at(SpringIndex spring);
 
   // trees.cpp
   bool needs_tree(BodyIndex body) const;
@@ -194,8 +194,8 @@ struct Dynamics::Core : MechanicsCore {
   void find_islands();
   void keep_clusters_whole();
   BodyIndex first_of(const ClusterEntry& cluster) const;
-  Island& fill(std::size_t place, std::size_t number, double h);
-  void step_quiet(Workers* workers, std::size_t count, double start, double h);
+  Island& fill(std::size_t slot, std::size_t number, double h);
+  void step_undisturbed(Workers* workers, std::size_t count, double start, double h);
   void run(MechanicsClient& client, double start, double h, int depth);
   void run_only(MechanicsClient& client, double start, double h, int depth, std::span<const BodyIndex> bodies);
   void report_lasting(MechanicsClient& client, double moment);
@@ -213,26 +213,26 @@ struct Dynamics::Core : MechanicsCore {
   // dynamics.cpp
   std::size_t bytes() const;
 
-  // rings.cpp
-  RingRows ring_rows(const Tree& tree, const JointDescription& is) const;
+  // loop_rows.cpp
+  LoopRows loop_rows(const Tree& tree, const JointDescription& is) const;
 
   // stage_constraints.cpp
   /// Adds to accelerations (nv), after forward dynamics, what rings force, and limits that are held.
-  std::uint64_t hold(Tree& tree, double* acceleration, bool rings, bool limits);
-  JointReaction push_by_rings(Tree& tree, JointIndex wanted);
+  std::uint64_t hold(Tree& tree, double* acceleration, bool loops, bool limits);
+  JointReaction push_by_loops(Tree& tree, JointIndex wanted);
 
   // ledger.cpp
   Energy energy_of(Tree& tree) const;
   Vector3 carried(const NearPair& pair) const;
   double joint_springs(Tree& tree) const;
-  double tie_energy_in(const SpringDescription& is) const;
-  double tie_energy(const SpringDescription& is) const;
+  double spring_energy_in(const SpringDescription& is) const;
+  double spring_energy(const SpringDescription& is) const;
   Energy free_energy(BodyIndex body) const;
   double book_of(BodyIndex body) const { return body < booked.size() ? booked[body] : kNoBook; }
   void enter_books();
   double settle_books(bool write);
   double settle_tree(Tree& tree, bool write);
-  double settle_tie(SpringEntry& tie, bool write);
+  double settle_spring(SpringEntry& spring, bool write);
   bool known_to_books(BodyIndex body) const;
   void add_stored(Energy& sum);
 

@@ -74,8 +74,8 @@ void Dynamics::set_velocity(JointIndex joint, const JointVector& velocity) {
   c.place_links(tree);
 }
 
-void Dynamics::set_ball(JointIndex joint, const Quaternion& turn, const Vector3& spin) {
-  const double norm = turn.norm();
+void Dynamics::set_ball(JointIndex joint, const Quaternion& rotation, const Vector3& spin) {
+  const double norm = rotation.norm();
   if (!std::isfinite(norm) || !(norm > 0) || !spin.allFinite())
     throw Error(
         ErrorCode::Argument,
@@ -88,7 +88,7 @@ void Dynamics::set_ball(JointIndex joint, const Quaternion& turn, const Vector3&
   need_in_tree(entry);
   Tree& tree = *c.trees[entry.tree];
   const articulated::Body& body = tree.model.body(entry.link);
-  put_ball(entry.is, entry.flipped, turn.normalized(), spin, tree.state.q.data() + body.q,
+  put_ball(entry.is, entry.flipped, rotation.normalized(), spin, tree.state.q.data() + body.q,
            tree.state.v.data() + body.v);
   c.place_links(tree);
 }

@@ -27,7 +27,7 @@ class Dynamics final : public Mechanics {
   JointVector velocity(JointIndex joint) const override;
   void set_position(JointIndex joint, const JointVector& position) override;
   void set_velocity(JointIndex joint, const JointVector& velocity) override;
-  void set_ball(JointIndex joint, const Quaternion& turn, const Vector3& spin) override;
+  void set_ball(JointIndex joint, const Quaternion& rotation, const Vector3& spin) override;
   JointReaction reaction(JointIndex joint) const override;
 
   // --- assemblies: bodies that joints connect ---------------------------------------------------------------------
@@ -43,8 +43,8 @@ class Dynamics final : public Mechanics {
   std::size_t self_penetrations(BodyIndex body) const override;
 
   // --- springs between bodies ---------------------------------------------------------------------------------------
-  SpringIndex tie(const SpringDescription& description, ObjectId owner) override;
-  void untie(SpringIndex spring) override;
+  SpringIndex add_spring(const SpringDescription& description, ObjectId owner) override;
+  void remove_spring(SpringIndex spring) override;
   void set_spring(SpringIndex spring, const SpringDescription& description) override;
 
   // --- settings of the world ----------------------------------------------------------------------------------------

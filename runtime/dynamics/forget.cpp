@@ -14,15 +14,15 @@ void Dynamics::Core::forget(BodyIndex body) {
     joints[joint] = JointEntry();
     free_joints.push_back(joint);
   }
-  for (SpringIndex i = 0; known.ties > 0 && i < springs.size(); ++i) {
+  for (SpringIndex i = 0; known.springs > 0 && i < springs.size(); ++i) {
     if (!springs[i].used || (springs[i].is.a != body && springs[i].is.b != body)) continue;
     for (const BodyIndex end : {springs[i].is.a, springs[i].is.b}) {
       BodyEntry& one = *find(end);
-      --one.ties;
+      --one.springs;
       near.wake(end);
       if (!needs_tree(end) && one.tree != kNone) drop_tree(one.tree);
     }
-    if (in_books(springs[i].booked)) account.script_work -= springs[i].booked;
+    if (in_books(springs[i].booked)) ledger.script_work -= springs[i].booked;
     springs[i] = SpringEntry();
     free_springs.push_back(i);
     clusters_changed = true;

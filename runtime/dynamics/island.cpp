@@ -21,7 +21,7 @@ Island::Island(Dynamics::Core& core, std::pmr::memory_resource* memory)
       roles_(memory),
       free_(memory),
       pair_drivers_(memory),
-      tied_(memory),
+      networks_(memory),
       clusters_(memory),
       trees_(memory),
       pairs_(memory),
@@ -44,7 +44,7 @@ Island::Island(Dynamics::Core& core, std::pmr::memory_resource* memory)
       impulses_(memory),
       plain_scalars_(memory),
       motors_(memory),
-      ring_errors_(memory),
+      loop_errors_(memory),
       start_poses_(memory),
       rebound_later_(memory),
       rebounds_(memory),
@@ -67,7 +67,7 @@ void Island::clear() {
   free_.clear();
   drivers_ = 0;
   pair_drivers_.clear();
-  tied_.clear();
+  networks_.clear();
   clusters_.clear();
   trees_.clear();
   pairs_.clear();
@@ -78,7 +78,7 @@ void Island::clear() {
   unfinished_ = 0;
   error = nullptr;
   result.counters = {};
-  result.account = {};
+  result.ledger = {};
   result.impacts.clear();
   result.interventions.clear();
 }
@@ -98,7 +98,7 @@ void add_works(const Energy& from, Energy& to) {
 }  // namespace
 
 void Island::add_free(BodyIndex body) {
-  core_.place_of[body].mover = static_cast<int>(free_.size());
+  core_.slot_of[body].mover = static_cast<int>(free_.size());
   Free one{};
   one.body = body;
   one.now = read_free(*core_.bodies, body);
@@ -140,7 +140,7 @@ void Island::put_driver(Free& one, double h) {
 }
 
 void Island::add_cluster(ClusterEntry& cluster) {
-  if (tied(cluster)) return;
+  if (is_network(cluster)) return;
   clusters_.push_back({&cluster, std::nullopt, 0, false, false, {}, 0, {}});
   for (const std::uint32_t index : cluster.trees) {
     Tree* tree = core_.trees[index].get();
@@ -149,7 +149,7 @@ void Island::add_cluster(ClusterEntry& cluster) {
     // What joints hold without a degree of freedom is like what does not move.
     const int mover = tree->model.velocities() > 0 ? static_cast<int>(free_.size()) + tree->slot : -1;
     for (std::size_t i = 0; i < tree->links.size(); ++i)
-      core_.place_of[tree->links[i].body] = {tree, mover, static_cast<int>(i)};
+      core_.slot_of[tree->links[i].body] = {tree, mover, static_cast<int>(i)};
   }
   const Accuracy& accuracy = cluster.system->accuracy();
   if (!accuracy_set_ || finer(accuracy.rung, accuracy_.rung)) accuracy_ = accuracy;
@@ -198,7 +198,7 @@ void Island::step_once(MechanicsClient* client, double start, double h) {
   begin(client, h);
   bool bounded = false;
   for (Tree* tree : trees_) {
-    bounded = bounded || !tree->rings.empty();
+    bounded = bounded || !tree->loops.empty();
     for (const TreeLink& link : tree->links)
       bounded =
           bounded || link.motor || (link.joint != kNoJoint && Dynamics::Core::has_limits(core_.joints[link.joint]));
@@ -208,13 +208,13 @@ void Island::step_once(MechanicsClient* client, double start, double h) {
   rows_.clear();
   scalars_.clear();
   motors_.clear();
-  ring_errors_.clear();
+  loop_errors_.clear();
   spent_ = false;
-  const bool quiet = pairs_.empty() && !bounded;
+  const bool undisturbed = pairs_.empty() && !bounded;
   try {
-    if (quiet) {
+    if (undisturbed) {
       placed_ = false;
-      step_quiet(start, h);
+      step_undisturbed(start, h);
     } else if (accuracy_.locate_impacts) {
       step_located(client, start, h);
     } else {
@@ -223,7 +223,7 @@ void Island::step_once(MechanicsClient* client, double start, double h) {
   } catch (const Error& error) {
     // Step control gave up since the work is used up.
     if (error.code() != ErrorCode::Numeric || !meter_.over() || finished_) throw;
-    if (quiet) {
+    if (undisturbed) {
       back_to_start();
       gone_ = 0;
     } else {
@@ -300,13 +300,13 @@ void Island::restore() {
 
 void Island::commit() {
   ++result.counters.sub_steps;
-  result.account.script_work += free_work_;
-  result.account.drag_loss += tied_loss_;
+  result.ledger.script_work += free_work_;
+  result.ledger.drag_loss += network_loss_;
   if (springs_move()) commit_springs();
   for (const Clustered& one : clusters_) {
-    add_works(one.pending, result.account);
+    add_works(one.pending, result.ledger);
     // What springs between trees do is nobody's own.
-    if (one.alone()) add_works(one.pending, core_.trees[one.entry->trees.front()]->account);
+    if (one.alone()) add_works(one.pending, core_.trees[one.entry->trees.front()]->ledger);
   }
 }
 
@@ -315,7 +315,7 @@ void Island::write() {
     write_free(*core_.bodies, one.body, one.now);
     if (BodyEntry* known = core_.find(one.body)) known->step = one.next;
   }
-  write_tied();
+  write_networks();
   for (const Clustered& one : clusters_)
     for (const std::uint32_t index : one.entry->trees) {
       core_.trees[index]->step = one.entry->system->next_step();
@@ -328,7 +328,7 @@ void Island::write() {
 }
 
 Pose Island::pose_of(BodyIndex body) const {
-  const BodyPlace side = place_of(body);
+  const BodySlot side = slot_of(body);
   if (side.mover < 0) return core_.pose(body);
   if (side.tree) return side.tree->pose(side.link);
   const FreeBody& free = free_[static_cast<std::size_t>(side.mover)].now;
@@ -336,7 +336,7 @@ Pose Island::pose_of(BodyIndex body) const {
 }
 
 Vector3 Island::point_velocity(BodyIndex body, const Vector3& point) const {
-  const BodyPlace side = place_of(body);
+  const BodySlot side = slot_of(body);
   if (side.mover < 0) return Vector3::Zero();
   if (side.tree) return articulated::point_velocity(side.tree->data, side.link, point);
   const FreeBody& free = free_[static_cast<std::size_t>(side.mover)].now;

@@ -24,7 +24,7 @@ class Island : public InMemory {
   void add_free(BodyIndex body);
   void add_drivers(const NearPair& pair);  // after all free bodies: of each pair in turn
   /// If its bodies move as points for h seconds: they are like free bodies. After all of these.
-  void add_tied(ClusterEntry& cluster, double h);
+  void add_network(ClusterEntry& cluster, double h);
   void add_cluster(ClusterEntry& cluster);  // after all free bodies; nothing if it is tied
   void add_pair(NearPair& pair);
   bool empty() const { return free_.empty() && clusters_.empty(); }
@@ -56,7 +56,7 @@ class Island : public InMemory {
                    double* j);
   /// The same of a ring's row, and nothing else, into `j`. Zero where the tree itself keeps what the row holds (a plane
   /// ring its plane): round-off there, taken for a direction to push in, would push without bound.
-  static void fill_ring(Tree& tree, const RingRows& ring, const RingRow& row, double* j);
+  static void fill_loop(Tree& tree, const LoopRows& loop, const LoopRow& row, double* j);
   /// Likewise of a joint's limit: how the room to it grows.
   static void fill_limit(const Tree& tree, const JointEntry& joint, int axis, double sign, double* j);
 
@@ -67,12 +67,12 @@ class Island : public InMemory {
   // Parts of the smaller body's radius: within the first, bodies that are slow rest on one another; within the second,
   // they touch, and within the third they have met: what approaches collides there, not before.
   static constexpr double kSkin = 1e-3, kTouchSkin = 1e-4, kMetSkin = 1e-9;
-  static constexpr double kTurnRoom = 0.02;   // of the radius, which turning may bring nearer in a sub-step
-  static constexpr double kTiny = 1e-9;       // of stored energy: round-off of sums
-  static constexpr double kStill = 1e-6;      // of weight(): what may be unexplained of a step of what hardly moves
-  static constexpr double kCoarse = 1e-3;     // tolerances of step control from which contacts are seen less exactly
-  static constexpr double kFew = 0.01;        // of what moves: what may be taken from it without trying again
-  static constexpr double kLimitSkin = 1e-6;  // rad or m
+  static constexpr double kRotationRoom = 0.02;  // of the radius, which turning may bring nearer in a sub-step
+  static constexpr double kTiny = 1e-9;          // of stored energy: round-off of sums
+  static constexpr double kStill = 1e-6;         // of weight(): what may be unexplained of a step of what hardly moves
+  static constexpr double kCoarse = 1e-3;        // tolerances of step control from which contacts are seen less exactly
+  static constexpr double kFew = 0.01;           // of what moves: what may be taken from it without trying again
+  static constexpr double kLimitSkin = 1e-6;     // rad or m
 
   struct Free {
     BodyIndex body;
@@ -88,7 +88,7 @@ class Island : public InMemory {
     double kinetic = 0;         // J, of all trees
     double smooth_kinetic = 0;  // J, likewise, after smooth motion
     double predicted = 0;       // J, that predicted forces give from rest
-    Energy account;             // works and losses
+    Energy ledger;              // works and losses
     double unexplained = 0;     // J, that smooth motion gained
   };
   struct Clustered {
@@ -100,10 +100,10 @@ class Island : public InMemory {
     Energy pending;        // of the last smooth()
     double held_work = 0;  // J, likewise, of forces that were predicted
     Books books;           // of the sub-step
-    bool alone() const { return entry->trees.size() == 1 && entry->ties.empty(); }
+    bool alone() const { return entry->trees.size() == 1 && entry->springs.empty(); }
   };
   /// Bodies that springs tie, which move as points: from that place in free_ on.
-  struct TiedCluster {
+  struct NetworkCluster {
     ClusterEntry* entry;
     std::size_t first;
   };
@@ -117,7 +117,7 @@ class Island : public InMemory {
     Vector3 point, normal;                                               // world; the normal from b toward a
     Vector3 on_a, on_b;                                                  // the point, in the axes of each body
     Vector3 from_a, from_b;                                              // where the bodies' origins were
-    Quaternion turn_a, turn_b;                                           // how the bodies were turned
+    Quaternion orientation_a, orientation_b;                             // how the bodies were turned
     Vector3 velocity_a = Vector3::Zero(), velocity_b = Vector3::Zero();  // of the bodies there, as the sub-step began
     double gap = 0;                                                      // m, at the start of the sub-step
     double approach = 0;  // m/s, v_n when the sub-step began; unknown where nothing is located
@@ -171,19 +171,19 @@ class Island : public InMemory {
   void commit();  // the last smooth() counts: its works go to the account
   Pose pose_of(BodyIndex body) const;
   /// The vector from the centre of mass of a free body to a point, m.
-  Vector3 arm_of(const BodyPlace& free, const Vector3& point) const {
+  Vector3 arm_of(const BodySlot& free, const Vector3& point) const {
     return point - free_[static_cast<std::size_t>(free.mover)].now.center;
   }
   Vector3 point_velocity(BodyIndex body, const Vector3& point) const;
   // island_smooth.cpp
   static void move_driver(Free& one, double h);
   /// Where a body is in this island.
-  BodyPlace place_of(BodyIndex body) const {
-    BodyPlace place = core_.place_of[body];
+  BodySlot slot_of(BodyIndex body) const {
+    BodySlot slot = core_.slot_of[body];
     const std::size_t first = free_.size() - drivers_;
-    for (std::size_t i = first; place.mover < 0 && i < free_.size(); ++i)
-      if (free_[i].body == body) place.mover = static_cast<int>(i);
-    return place;
+    for (std::size_t i = first; slot.mover < 0 && i < free_.size(); ++i)
+      if (free_[i].body == body) slot.mover = static_cast<int>(i);
+    return slot;
   }
   bool is_driver(int mover) const {
     const auto count = static_cast<int>(free_.size());
@@ -198,20 +198,20 @@ class Island : public InMemory {
   void smooth_fast(Clustered& one, double time, double h);
   bool stiff(const Clustered& one) const;
   double gain_of(Clustered& one, double time, double h, int parts);
-  double tie_energy_in(const Clustered& one) const;
+  double spring_energy_in(const Clustered& one) const;
   double stored_in(const Clustered& one, double& kinetic);
   bool coarse() const;
-  // island_tied.cpp
-  bool tied(const ClusterEntry& cluster) const;
-  std::size_t tied_end() const;
-  bool begin_tied(double h);
-  void take_points(const TiedCluster& one);
-  void smooth_tied(double time, double h);
-  double tied_energy();
-  double held_tied_energy() const;
-  void correct_tied_drag();
-  void write_tied();
-  void book_tied();
+  // island_networks.cpp
+  bool is_network(const ClusterEntry& cluster) const;
+  std::size_t networks_end() const;
+  bool begin_networks(double h);
+  void take_points(const NetworkCluster& one);
+  void smooth_networks(double time, double h);
+  double network_energy();
+  double held_network_energy() const;
+  void correct_network_drag();
+  void write_networks();
+  void book_networks();
   // island_books.cpp
   void open_books();  // this and what follows: island_books.cpp
   void note_smooth();
@@ -250,8 +250,8 @@ class Island : public InMemory {
   void add_touch_row(Touch& touch);
   Vector3 carried(const Touch& touch) const;
   void add_bound_row(const Bound& bound);
-  void add_ring_rows(const Tree& tree);
-  std::size_t limit_rows() const { return scalars_.size() - motors_.size() - ring_errors_.size(); }
+  void add_loop_rows(const Tree& tree);
+  std::size_t limit_rows() const { return scalars_.size() - motors_.size() - loop_errors_.size(); }
   double* rows_of(Tree& tree, int count);
   void respond(Tree& tree, const double* j, double* r) const;
   bool strikes(double h) const;
@@ -266,7 +266,7 @@ class Island : public InMemory {
   void correct_works(double h);
   Vector3 rate_of(const contact::Row& row, bool first) const;
   double rate_of(const contact::ScalarRow& row) const;
-  void account_rows();
+  void book_rows();
   void note_forces(double h);
   void add_force(BodyIndex body, const Vector3& point, const Vector3& force);
   void keep_warm(double h);
@@ -289,13 +289,13 @@ class Island : public InMemory {
   void forget_prediction();
   void solve_after(double h);
   // island_step.cpp
-  void step_quiet(double start, double h);
+  void step_undisturbed(double start, double h);
   void step_fast(double start, double h);
   void take_fast(double time, double h);
   void finish(double time, double left);
   /// No further sub-step is to begin: the work is used up, or would be by what holds rings once.
-  bool unaffordable() const { return meter_.over(ring_units()); }
-  std::uint64_t ring_units() const;
+  bool unaffordable() const { return meter_.over(loop_units()); }
+  std::uint64_t loop_units() const;
   bool worn() const { return finished_ || meter_.over(); }  // nothing is to be tried again
   void note_start_poses();
   void book_part(double part, double took);
@@ -308,9 +308,9 @@ class Island : public InMemory {
   double contact_part(double left, bool lies) const;
   bool lies(double h) const;
   bool call(MechanicsClient& client, int pair, double moment, double left);
-  bool holds_rings() const;
+  bool holds_loops() const;
   bool has_rows() const;
-  bool has_rings() const;
+  bool has_loops() const;
   void place_links();
   double longest(double left, bool lies) const;
   // island_impacts.cpp
@@ -342,15 +342,15 @@ class Island : public InMemory {
   void pay_for_moves(double given);
   void hold_off(double h);
   double natural_response(BodyIndex body) const;
-  bool hold_rings(double time, double h);
-  double read_ring_errors();
-  void close_rings();
+  bool hold_loops(double time, double h);
+  double read_loop_errors();
+  void close_loops();
   // island_springs.cpp
   struct SprungPoint;
   class SprungMotion;
   bool has_contact_springs() const;
   bool springs_for(const contact::Law& law) const;
-  double felt_mass(const NearPair& pair, const Vector3& point, const Vector3& normal) const;
+  double effective_mass(const NearPair& pair, const Vector3& point, const Vector3& normal) const;
   void begin_spring(NearPair& pair, const Touch& touch);
   void end_spring(NearPair& pair);
   void take_springs();
@@ -400,8 +400,8 @@ class Island : public InMemory {
   BodyIndex not_finite() const;  // the first that shows it
   Trouble judge_residual(double residual, double turnover, double before) const;
   Trouble foresee(double h);
-  void follow_turns(double h);
-  Trouble fastest_turn(double h) const;
+  void follow_rotations(double h);
+  Trouble fastest_rotation(double h) const;
   Trouble strongest_damper(double h) const;
   double fastest_approach() const;
   void note_overlaps(double h);
@@ -418,7 +418,7 @@ class Island : public InMemory {
   double unfinished_ = 0;  // s
   struct ResultStart {     // what the result was when the step began, for one that is tried again
     DynamicsCounters counters;
-    Energy account;
+    Energy ledger;
     std::size_t impacts = 0;
   };
   ResultStart at_start_;
@@ -434,15 +434,15 @@ class Island : public InMemory {
   bool booked_ = false;                   // the books have what it holds now
   bool placed_ = false;                   // links stand where stored() found them: nothing has moved since
   bool locates_ = false;                  // handlers are called at the moment of impact
-  double quiet_ = 0;                      // m/s: slower than this is at rest, in a sub-step of this one
+  double resting_ = 0;                    // m/s: slower than this is at rest, in a sub-step of this one
   double looked_h_ = 0;                   // s, of the sub-step that was looked at last
   double free_work_ = 0;                  // J, of scripts on free bodies in the last smooth()
-  double tied_loss_ = 0;                  // J, in dampers of tied_ likewise
+  double network_loss_ = 0;               // J, in dampers of networks_ likewise
   std::pmr::vector<Role> roles_;          // of pairs
   std::pmr::vector<Free> free_;           // the last ones drivers
   std::size_t drivers_ = 0;
   std::pmr::vector<int> pair_drivers_;  // of pairs: the place of the driver in free_, or -1
-  std::pmr::vector<TiedCluster> tied_;
+  std::pmr::vector<NetworkCluster> networks_;
   std::pmr::vector<Clustered> clusters_;
   std::pmr::vector<Tree*> trees_;
   std::pmr::vector<NearPair*> pairs_;
@@ -466,7 +466,7 @@ class Island : public InMemory {
   std::pmr::vector<double> free_rates_, plain_rates_, rates_, plain_impulses_, impulses_;
   std::pmr::vector<double> plain_scalars_;  // impulses of all scalar rows without rebound
   std::pmr::vector<MotorRow> motors_;       // scalar rows: of limits, then these, then of rings
-  std::pmr::vector<double> ring_errors_;
+  std::pmr::vector<double> loop_errors_;
   std::pmr::vector<Pose> start_poses_;           // of each pair's two bodies, as the sub-step began
   std::pmr::vector<std::size_t> rebound_later_;  // of bounds_
   std::pmr::vector<Rebound> rebounds_;           // likewise, the last of each in this step

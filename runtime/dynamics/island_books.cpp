@@ -10,10 +10,10 @@ namespace breve {
 
 namespace {
 
-double works_of(const Energy& account) { return account.motor_work + account.script_work; }
+double works_of(const Energy& ledger) { return ledger.motor_work + ledger.script_work; }
 
 /// Of contacts and limits, J.
-double rows_took(const Energy& account) { return account.contact_loss + account.friction_loss + account.limit_loss; }
+double rows_took(const Energy& ledger) { return ledger.contact_loss + ledger.friction_loss + ledger.limit_loss; }
 
 /// Of `change`, what works and losses since `start` do not explain, J.
 double missing(double change, const Energy& start, const Energy& now) {
@@ -39,7 +39,7 @@ double Island::stored_now() {
   double sum = 0, kinetic = 0;
   for (const Free& one : loose_bodies())
     sum += one.now.kinetic() - one.now.solid->mass * core_.settings.gravity.dot(one.now.center);
-  sum += tied_energy();
+  sum += network_energy();
   for (const Clustered& one : clusters_) sum += stored_in(one, kinetic);
   return sum;
 }
@@ -51,10 +51,10 @@ void Island::open_books() {
   double moving = 0;
   for (Clustered& one : clusters_) {
     double kinetic = 0;
-    one.books = {stored_in(one, kinetic), 0, 0, 0, core_.trees[one.entry->trees.front()]->account, 0};
+    one.books = {stored_in(one, kinetic), 0, 0, 0, core_.trees[one.entry->trees.front()]->ledger, 0};
     moving += kinetic;
   }
-  books_ = {stored_now(), moving, 0, 0, result.account, 0};
+  books_ = {stored_now(), moving, 0, 0, result.ledger, 0};
 }
 
 /// After smooth motion: what it gained that nothing explains is its error, not the rows'.
@@ -71,27 +71,27 @@ void Island::note_smooth() {
   placed_ = true;
 }
 
-/// After commit() and account_rows().
+/// After commit() and book_rows().
 void Island::close_books() {
   if (!keeps_books_ || (rows_.empty() && scalars_.empty())) return;
   const bool only_motors = rows_.empty() && limit_rows() == 0;
-  const auto close = [only_motors](const Books& books, double stored, Energy& account) {
-    const double more = missing(stored - books.stored - books.unexplained, books.account, account);
+  const auto close = [only_motors](const Books& books, double stored, Energy& ledger) {
+    const double more = missing(stored - books.stored - books.unexplained, books.ledger, ledger);
     if (only_motors)
-      account.motor_work += more;
+      ledger.motor_work += more;
     else
-      account.contact_loss -= more;
-    settle_rows(books.account, -books.unexplained, account);
+      ledger.contact_loss -= more;
+    settle_rows(books.ledger, -books.unexplained, ledger);
   };
   double kinetic = 0;
   for (Clustered& one : clusters_) {
     // An implicit step and its rows are one: what it lost on the way to them is not the motion's error.
     if (one.semi && !only_motors) one.books.unexplained = std::max(0.0, one.books.unexplained);
     books_.unexplained += one.books.unexplained;
-    if (one.alone()) close(one.books, stored_in(one, kinetic), core_.trees[one.entry->trees.front()]->account);
+    if (one.alone()) close(one.books, stored_in(one, kinetic), core_.trees[one.entry->trees.front()]->ledger);
   }
-  close(books_, stored_now(), result.account);
-  const double gained = rows_took(books_.account) - rows_took(result.account);
+  close(books_, stored_now(), result.ledger);
+  const double gained = rows_took(books_.ledger) - rows_took(result.ledger);
   if (!(gained > kTiny * std::abs(books_.stored))) return;
   const double all = moving();
   if (gained <= kFew * all) {

@@ -44,7 +44,7 @@ void Island::use_accuracy(const Accuracy& accuracy) {
 void Island::step_guarded(MechanicsClient* client, double start, double h) {
   const GuardMode mode = core_.settings.guard;
   const Accuracy asked = accuracy_;
-  follow_turns(h);
+  follow_rotations(h);
   const Accuracy followed = accuracy_;
   Trouble trouble;
   int attempt = 0;
@@ -169,7 +169,7 @@ double losses(const Energy& now, const Energy& then) {
 
 /// The energy that came in since the step began and that the energy ledger does not explain, J.
 double Island::unexplained_since_start(double after) const {
-  return after - stored_start_ - works(result.account, at_start_.account) + losses(result.account, at_start_.account) -
+  return after - stored_start_ - works(result.ledger, at_start_.ledger) + losses(result.ledger, at_start_.ledger) -
          handled_;
 }
 
@@ -178,26 +178,26 @@ double Island::unexplained_since_start(double after) const {
 void Island::balance(double& residual, double& turnover) {
   double kinetic = 0;
   const double after = stored(kinetic, false);
-  const double in = works(result.account, at_start_.account), out = losses(result.account, at_start_.account);
+  const double in = works(result.ledger, at_start_.ledger), out = losses(result.ledger, at_start_.ledger);
   residual = unexplained_since_start(after);
-  result.account.residual += residual;
+  result.ledger.residual += residual;
   turnover = kinetic + std::abs(in) + std::abs(out);
   for (const Clustered& one : clusters_) {
     if (!one.alone()) continue;
     Tree& tree = *core_.trees[one.entry->trees.front()];
     const double change = tree.step_stored;
-    tree.account.residual += change - works(tree.account, tree.step_account) + losses(tree.account, tree.step_account);
+    tree.ledger.residual += change - works(tree.ledger, tree.step_ledger) + losses(tree.ledger, tree.step_ledger);
   }
 }
 
 void Island::keep_start() {
-  at_start_ = {result.counters, result.account, result.impacts.size()};
+  at_start_ = {result.counters, result.ledger, result.impacts.size()};
   free_start_.clear();
   pair_start_.clear();
   for (const Free& one : free_) free_start_.push_back(one.now);
   for (Tree* tree : trees_) {
     tree->step_state = tree->state;
-    tree->step_account = tree->account;
+    tree->step_ledger = tree->ledger;
   }
   for (const NearPair* pair : pairs_) pair_start_.push_back(*pair);
 }
@@ -207,12 +207,12 @@ void Island::back_to_start() {
   const std::uint64_t evaluations = result.counters.evaluations;
   result.counters = at_start_.counters;
   result.counters.evaluations = evaluations;
-  result.account = at_start_.account;
+  result.ledger = at_start_.ledger;
   result.impacts.erase(result.impacts.begin() + static_cast<std::ptrdiff_t>(at_start_.impacts), result.impacts.end());
   for (std::size_t i = 0; i < free_.size(); ++i) free_[i].now = free_start_[i];
   for (Tree* tree : trees_) {
     tree->state = tree->step_state;
-    tree->account = tree->step_account;
+    tree->ledger = tree->step_ledger;
   }
   for (std::size_t i = 0; i < pairs_.size(); ++i) *pairs_[i] = pair_start_[i];
   for (Clustered& one : clusters_) one.entry->system->set_next_step(0);
@@ -222,22 +222,22 @@ void Island::back_to_start() {
 /// Takes velocities, and writes down that their energy is gone: first as what contacts and limits gave in the step.
 void Island::stop(Momenta momenta, double h) {
   placed_ = booked_ = false;
-  const auto take = [](Energy& account, const Energy& start, double lost) {
-    const double rows = losses(start, account) + account.drag_loss - start.drag_loss;
+  const auto take = [](Energy& ledger, const Energy& start, double lost) {
+    const double rows = losses(start, ledger) + ledger.drag_loss - start.drag_loss;
     const double repaid = std::clamp(rows, 0.0, std::max(lost, 0.0));
-    account.contact_loss += repaid;
-    account.residual -= lost - repaid;
+    ledger.contact_loss += repaid;
+    ledger.residual -= lost - repaid;
   };
   for (Free& one : loose_bodies()) {
-    result.account.residual -= one.now.kinetic();
+    result.ledger.residual -= one.now.kinetic();
     one.now.velocity = one.now.spin = Vector3::Zero();
   }
   for (Clustered& one : clusters_) {
     const double lost = stop_links(one, momenta, h);
-    take(result.account, at_start_.account, lost);
+    take(result.ledger, at_start_.ledger, lost);
     if (!one.alone()) continue;
     Tree& tree = *core_.trees[one.entry->trees.front()];
-    take(tree.account, tree.step_account, lost);
+    take(tree.ledger, tree.step_ledger, lost);
   }
 }
 
@@ -256,8 +256,8 @@ double Island::stored(double& kinetic, bool start) {
     if (start) tree->step_kinetic = energy.kinetic;
     if (!start) tree->booked = energy.total();
   }
-  sum += tied_energy();
-  for (const Clustered& one : clusters_) sum += tie_energy_in(one);
+  sum += network_energy();
+  for (const Clustered& one : clusters_) sum += spring_energy_in(one);
   for (const NearPair* pair : pairs_) sum += pair->stored;
   kinetic = moving;
   placed_ = true;
@@ -269,16 +269,16 @@ double Island::stored(double& kinetic, bool start) {
 double Island::held_energy() const {
   double sum = 0;
   for (const Free& one : loose_bodies()) sum += core_.free_energy(one.body).total();
-  sum += held_tied_energy();
+  sum += held_network_energy();
   for (Tree* tree : trees_) sum += core_.energy_of(*tree).total();
   for (const Clustered& one : clusters_)
-    for (const SpringIndex tie : one.entry->ties) sum += core_.tie_energy(core_.springs[tie].is);
+    for (const SpringIndex spring : one.entry->springs) sum += core_.spring_energy(core_.springs[spring].is);
   return sum;
 }
 
 /// Enters the state of the arrays into the energy ledger: scripts have made whatever differs from it later.
 void Island::book() {
-  const std::size_t first = tied_.empty() ? free_.size() : tied_.front().first, end = tied_end();
+  const std::size_t first = networks_.empty() ? free_.size() : networks_.front().first, end = networks_end();
   const std::span<const Free> loose = loose_bodies();
   for (std::size_t i = 0; i < loose.size(); ++i) {
     if (i >= first && i < end) continue;
@@ -289,13 +289,14 @@ void Island::book() {
                                  ? one.now.kinetic() - one.now.solid->mass * core_.settings.gravity.dot(one.now.center)
                                  : core_.free_energy(one.body).total();
   }
-  book_tied();
+  book_networks();
   for (Tree* tree : trees_) {
     if (!booked_) tree->booked = core_.energy_of(*tree).total();
     tree->changed = false;
   }
   for (const Clustered& one : clusters_)
-    for (const SpringIndex tie : one.entry->ties) core_.springs[tie].booked = core_.tie_energy(core_.springs[tie].is);
+    for (const SpringIndex spring : one.entry->springs)
+      core_.springs[spring].booked = core_.spring_energy(core_.springs[spring].is);
 }
 
 bool Island::still() const {

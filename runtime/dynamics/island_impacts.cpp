@@ -215,10 +215,10 @@ Motion Island::chord(const Pose& from, const Pose& to, double h) {
   Motion motion;
   motion.start = from;
   motion.velocity = (to.location - from.location) / h;
-  Quaternion turn = to.orientation * from.orientation.conjugate();
-  if (turn.w() < 0) turn.coeffs() = -turn.coeffs();
-  const double sine = turn.vec().norm();
-  if (sine > 0) motion.rotational_velocity_world = turn.vec() * (2 * std::atan2(sine, turn.w()) / (sine * h));
+  Quaternion rotation = to.orientation * from.orientation.conjugate();
+  if (rotation.w() < 0) rotation.coeffs() = -rotation.coeffs();
+  const double sine = rotation.vec().norm();
+  if (sine > 0) motion.rotational_velocity_world = rotation.vec() * (2 * std::atan2(sine, rotation.w()) / (sine * h));
   return motion;
 }
 
@@ -235,7 +235,7 @@ void Island::meet(MechanicsClient* client, const Event& event, double moment, do
       return;
     double rate = 0;
     gap_of(event, rate);
-    if (springs_for(pair.law) && rate > -std::max(pair.law.restitution_threshold, quiet_)) return;
+    if (springs_for(pair.law) && rate > -std::max(pair.law.restitution_threshold, resting_)) return;
   } else {
     rebound(static_cast<std::size_t>(event.bound), moment);
   }
@@ -251,7 +251,7 @@ void Island::rebound(std::size_t index, double time) {
   touches_.clear();
   scalars_.clear();
   motors_.clear();
-  ring_errors_.clear();
+  loop_errors_.clear();
   numbers_.clear();
   numbers_.reserve(2 * static_cast<std::size_t>(core_.trees[joint.tree]->model.velocities()));
   add_bound_row(bound);
@@ -268,8 +268,8 @@ void Island::rebound(std::size_t index, double time) {
   last.rate = -e * rate;
   tree.state.v -= ((1 + e) * rate / yields) * r;
   const double loss = 0.5 * (1 - e * e) * rate * rate / yields;
-  result.account.limit_loss += loss;
-  tree.account.limit_loss += loss;
+  result.ledger.limit_loss += loss;
+  tree.ledger.limit_loss += loss;
 }
 
 void Island::collide(double time) {
@@ -281,7 +281,7 @@ void Island::collide(double time) {
   for (std::size_t i = 0; i < bounds_.size(); ++i) {
     Bound& bound = bounds_[i];
     bound.rests = bound.gap <= met;
-    if (bound.rests && bound.rate < -quiet_) rebound_later_.push_back(i);
+    if (bound.rests && bound.rate < -resting_) rebound_later_.push_back(i);
   }
   for (const std::size_t bound : rebound_later_) rebound(bound, time);
   if (!rebound_later_.empty()) {
@@ -301,7 +301,7 @@ void Island::collide(double time) {
   for (contact::Row& row : rows_) row.bias = 0, row.impulse = Vector3::Zero();
   for (contact::ScalarRow& row : scalars_) row.bias = 0, row.impulse = 0;
   contact::resolve_impacts(movers_, rows_, laws_, scalars_, settings, workspace_);
-  account_rows();
+  book_rows();
   store_velocities(0);
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     if (rows_[i].impulse == Vector3::Zero()) continue;

@@ -82,10 +82,10 @@ Common started_with(std::span<Tree* const> trees, const Vector3& fall) {
 
 /// Turns trees that stand still among one another as one rigid body for h seconds, with the momenta that they have, by
 /// the midpoint rule: with the spin that the same angular momentum gives half-way.
-void turn_freely(std::span<Tree* const> trees, const Whole& kept, double h) {
-  constexpr double kTurn = 0.01, kMostParts = 100;  // rad in a part
-  const double turn = h * common_of(trees).spin.norm();
-  const double parts = std::clamp(std::ceil(turn / kTurn), 1.0, kMostParts), part = h / parts;
+void rotate_freely(std::span<Tree* const> trees, const Whole& kept, double h) {
+  constexpr double kRotation = 0.01, kMostParts = 100;  // rad in a part
+  const double rotation = h * common_of(trees).spin.norm();
+  const double parts = std::clamp(std::ceil(rotation / kRotation), 1.0, kMostParts), part = h / parts;
   const auto move = [trees](double time) {
     for (Tree* tree : trees) {
       tree->way = time * tree->state.v;
@@ -131,8 +131,8 @@ bool Island::loose(const Clustered& one) const {
     for (const TreeLink& link : tree.links)
       if (core_.find(link.body)->force_method) return false;
   }
-  for (const SpringIndex tie : one.entry->ties) {
-    const SpringDescription& is = core_.springs[tie].is;
+  for (const SpringIndex spring : one.entry->springs) {
+    const SpringDescription& is = core_.springs[spring].is;
     for (const BodyIndex body : {is.a, is.b}) {
       const BodyEntry* known = core_.find(body);
       if (!known || known->tree == kNone) return false;
@@ -184,7 +184,7 @@ void Island::take_back_most(Clustered& one, double gain) {
 /// Something that nothing moves touches what is in the island, or did in this step: momenta are not kept then.
 bool Island::touched_from_outside() const {
   const auto holds = [this](BodyIndex body) {
-    const int mover = place_of(body).mover;
+    const int mover = slot_of(body).mover;
     return mover < 0 || is_driver(mover);
   };
   return touched_ || std::any_of(rows_.begin(), rows_.end(), [&](const contact::Row& row) {
@@ -211,8 +211,8 @@ void Island::take_from_all(double part) {
     const std::span trees = one.entry->system->trees();
     const Common common = common_of(trees, held);
     shorten_inner(trees, common, std::sqrt(1 - part));
-    result.account.contact_loss += part * common.inner;
-    if (one.alone()) trees.front()->account.contact_loss += part * common.inner;
+    result.ledger.contact_loss += part * common.inner;
+    if (one.alone()) trees.front()->ledger.contact_loss += part * common.inner;
   }
   placed_ = booked_ = false;
 }
@@ -240,13 +240,13 @@ void Island::coast(double h) {
     double kinetic = 0;
     const double before = stored_in(one, kinetic);
     Whole wanted = measure(trees);
-    turn_freely(trees, wanted, h);
+    rotate_freely(trees, wanted, h);
     wanted.center += h * (wanted.momentum / wanted.mass + 0.5 * fall);
     wanted.momentum += wanted.mass * fall;
     impose(trees, measure(trees), wanted);
     const double more = stored_in(one, kinetic) - before;
-    result.account.residual += more;
-    if (one.alone()) trees.front()->account.residual += more;
+    result.ledger.residual += more;
+    if (one.alone()) trees.front()->ledger.residual += more;
   }
   placed_ = booked_ = false;
 }
@@ -278,7 +278,7 @@ void Island::keep_wholes(double moved_h, Given given) {
   };
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const contact::Row& row = rows_[i];
-    const BodyPlace a = place_of(pairs_[touches_[i].pair]->a), b = place_of(pairs_[touches_[i].pair]->b);
+    const BodySlot a = slot_of(pairs_[touches_[i].pair]->a), b = slot_of(pairs_[touches_[i].pair]->b);
     if (a.tree && a.tree == b.tree) continue;
     // The predicted part has moved the tree already.
     Vector3 impulse = row.axes.transpose() * row.impulse;

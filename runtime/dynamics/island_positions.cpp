@@ -18,7 +18,7 @@ constexpr double kYield = 1e-4;
 
 /// What a push moves there, were the body free, 1/kg.
 double Island::natural_response(BodyIndex body) const {
-  return core_.place_of[body].mover < 0 ? 0 : 1 / core_.bodies->mass(body);
+  return core_.slot_of[body].mover < 0 ? 0 : 1 / core_.bodies->mass(body);
 }
 
 void Island::push_apart(double h) {
@@ -46,13 +46,13 @@ void Island::push_apart(double h) {
   }
   push_scalars_.resize(scalars_.size(), 0.0);
   if (any) {
-    const double before = result.account.contact_loss;
+    const double before = result.ledger.contact_loss;
     move_by_pushes(fastest, h);
-    const double given = before - result.account.contact_loss, most = payable(h);
+    const double given = before - result.ledger.contact_loss, most = payable(h);
     if (given > most) take_back_pushes(1 - most / given, h);
-    pay_for_moves(before - result.account.contact_loss);
+    pay_for_moves(before - result.ledger.contact_loss);
   }
-  close_rings();
+  close_loops();
 }
 
 /// Moves everything for h seconds by the velocities that pushes_ and push_scalars_ ask for.
@@ -133,8 +133,8 @@ void Island::end_moves(double h) {
     const Vector3 way = h * Vector3(one.v[0], one.v[1], one.v[2]);
     one.now.center += way;
     book_way(one.now.force.dot(way), nullptr);
-    const Vector3 turn = h * Vector3(one.v[3], one.v[4], one.v[5]);
-    if (turn != Vector3::Zero()) one.now.orientation = (rotation_by(turn) * one.now.orientation).normalized();
+    const Vector3 rotation = h * Vector3(one.v[3], one.v[4], one.v[5]);
+    if (rotation != Vector3::Zero()) one.now.orientation = (rotation_by(rotation) * one.now.orientation).normalized();
   }
   for (Tree* tree : trees_) {
     tree->way = h * tree->state.v;
@@ -192,8 +192,8 @@ void Island::hold_off(double h) {
     const Vector3 way = 0.5 * h * (body.velocity - from);
     body.center += way;
     book_way(one.now.force.dot(way), nullptr);
-    const Vector3 turn = 0.5 * h * (body.spin - spin);
-    if (turn != Vector3::Zero()) body.orientation = (rotation_by(turn) * body.orientation).normalized();
+    const Vector3 rotation = 0.5 * h * (body.spin - spin);
+    if (rotation != Vector3::Zero()) body.orientation = (rotation_by(rotation) * body.orientation).normalized();
   }
   for (const Clustered& one : clusters_)
     for (Tree* tree : one.entry->system->trees()) {
@@ -211,18 +211,18 @@ void Island::hold_off(double h) {
 void Island::book_moves(double sign) {
   double sum = 0;
   for (const Free& one : loose_bodies()) sum -= one.now.solid->mass * core_.settings.gravity.dot(one.now.center);
-  sum += tied_energy();
+  sum += network_energy();
   for (const Clustered& one : clusters_) {
     for (const std::uint32_t index : one.entry->trees) {
       Tree& tree = *core_.trees[index];
       const Energy energy = core_.energy_of(tree);
       const double stored = energy.kinetic + energy.potential + energy.springs;
-      if (one.alone()) tree.account.contact_loss -= sign * stored;
+      if (one.alone()) tree.ledger.contact_loss -= sign * stored;
       sum += stored;
     }
-    sum += tie_energy_in(one);
+    sum += spring_energy_in(one);
   }
-  result.account.contact_loss -= sign * sum;
+  result.ledger.contact_loss -= sign * sum;
 }
 
 /// What pushing apart gave, J, is taken from what moves, as far as that is little of it.
@@ -234,16 +234,16 @@ void Island::pay_for_moves(double given) {
 
 /// Scripts' forces work along the way that contacts and limits move positions, which bear it, J.
 void Island::book_way(double work, Tree* tree) {
-  result.account.script_work += work;
-  result.account.contact_loss += work;
+  result.ledger.script_work += work;
+  result.ledger.contact_loss += work;
   if (!tree) return;
-  tree->account.script_work += work;
-  tree->account.contact_loss += work;
+  tree->ledger.script_work += work;
+  tree->ledger.contact_loss += work;
 }
 
-void Island::close_rings() {
+void Island::close_loops() {
   bool any = false;
-  for (Tree* tree : trees_) any = any || !tree->rings.empty();
+  for (Tree* tree : trees_) any = any || !tree->loops.empty();
   if (!any) return;
   touches_.clear();
   bounds_.clear();
@@ -260,8 +260,8 @@ void Island::close_rings() {
     load_velocities();
     double worst = 0;
     for (std::size_t k = 0; k < scalars_.size(); ++k) {
-      scalars_[k].bias = -ring_errors_[k];
-      worst = std::max(worst, std::abs(ring_errors_[k]));
+      scalars_[k].bias = -loop_errors_[k];
+      worst = std::max(worst, std::abs(loop_errors_[k]));
     }
     if (worst < kClosed || i == kMost) break;
     begin_moves();
@@ -276,11 +276,11 @@ void Island::close_rings() {
 }
 
 /// Rings alone: an impulse at the start that leaves them closed at the end of the smooth motion, found by repeating
-/// that; the impulse at the end, which stops what still opens them, is found by close_rings. The rule is the same
+/// that; the impulse at the end, which stops what still opens them, is found by close_loops. The rule is the same
 /// forward and backward in time and moves nothing by hand, so that it neither gains nor loses energy in the long run.
 /// Source: Andersen 1983 (RATTLE).
 /// @return  false if no such impulse is found: near a position in which a ring may fold either way
-bool Island::hold_rings(double time, double h) {
+bool Island::hold_loops(double time, double h) {
   constexpr int kMost = 8;  // each makes the gap smaller by the square of the angle that a link turns
   constexpr double kClosed = 1e-13;
   constexpr double kFound = 1e-9;  // what is left of so little is put right by hand
@@ -295,12 +295,12 @@ bool Island::hold_rings(double time, double h) {
     for (Tree* tree : trees_) tree->state.v += tree->kick;
     smooth(time, h);
     place_links();
-    const double worst = read_ring_errors();
+    const double worst = read_loop_errors();
     if (worst < kClosed) return true;
     if (!(worst < last)) return last < kFound;
     last = worst;
     for (std::size_t k = 0; k < scalars_.size(); ++k) {
-      scalars_[k].bias = -ring_errors_[k] / h;
+      scalars_[k].bias = -loop_errors_[k] / h;
       scalars_[k].impulse = 0;
     }
     for (Free& one : free_) std::fill(one.v, one.v + 6, 0.0);
@@ -318,15 +318,15 @@ bool Island::hold_rings(double time, double h) {
 }
 
 /// How far the rings are open where the trees stand, m or rad; returns the largest.
-double Island::read_ring_errors() {
+double Island::read_loop_errors() {
   std::size_t k = 0;
   double worst = 0;
   for (Tree* tree : trees_)
-    for (const JointIndex index : tree->rings) {
-      const RingRows ring = core_.ring_rows(*tree, core_.joints[index].is);
-      for (int i = 0; i < ring.count; ++i, ++k) {
-        ring_errors_[k] = ring.rows[static_cast<std::size_t>(i)].error;
-        worst = std::max(worst, std::abs(ring_errors_[k]));
+    for (const JointIndex index : tree->loops) {
+      const LoopRows loop = core_.loop_rows(*tree, core_.joints[index].is);
+      for (int i = 0; i < loop.count; ++i, ++k) {
+        loop_errors_[k] = loop.rows[static_cast<std::size_t>(i)].error;
+        worst = std::max(worst, std::abs(loop_errors_[k]));
       }
     }
   return worst;

@@ -77,7 +77,7 @@ bool Island::overpressed(double h) const {
 
 void Island::predict_contact(const Touch& touch, const Vector3& force) {
   const NearPair& pair = *pairs_[touch.pair];
-  const BodyPlace a = place_of(pair.a), b = place_of(pair.b);
+  const BodySlot a = slot_of(pair.a), b = slot_of(pair.b);
   const bool inner = a.tree && a.tree == b.tree;
   for (const auto& [side, sign] : {std::pair(&a, 1.0), std::pair(&b, -1.0)}) {
     if (!side->tree || side->mover < 0) continue;

@@ -24,7 +24,8 @@ bool Island::find_rebounds(double h) {
   for (const Bound& bound : bounds_) {
     if (!bound.rests) continue;
     const double e = core_.joints[bound.joint].drive.limit_restitution, rate = bound.rate;
-    if (e > 0 && rate < -std::max(quiet_, fall) && bound.gap + h * rate < 0) rebounding_[rows_.size() + k] = -e * rate;
+    if (e > 0 && rate < -std::max(resting_, fall) && bound.gap + h * rate < 0)
+      rebounding_[rows_.size() + k] = -e * rate;
     any = any || rebounding_[rows_.size() + k] > 0;
     ++k;
   }

@@ -11,7 +11,7 @@ namespace breve {
 /// What an island was found to have, and what its step took; added to the world's in the order of islands.
 struct IslandResult {
   DynamicsCounters counters;
-  Energy account;
+  Energy ledger;
   std::pmr::vector<Impact> impacts;
   std::pmr::vector<Intervention> interventions;
   explicit IslandResult(std::pmr::memory_resource* memory) : impacts(memory), interventions(memory) {}

@@ -21,12 +21,13 @@ void Island::load_velocities() {
 void Island::store_velocities(double moved_h) {
   for (Free& one : free_) {
     const Vector3 change(one.v[0] - one.free_v[0], one.v[1] - one.free_v[1], one.v[2] - one.free_v[2]);
-    const Vector3 turn(one.v[3] - one.free_v[3], one.v[4] - one.free_v[4], one.v[5] - one.free_v[5]);
+    const Vector3 rotation(one.v[3] - one.free_v[3], one.v[4] - one.free_v[4], one.v[5] - one.free_v[5]);
     one.now.velocity = Vector3(one.v[0], one.v[1], one.v[2]);
     one.now.spin = Vector3(one.v[3], one.v[4], one.v[5]);
     if (moved_h == 0) continue;
     one.now.center += moved_h * change;
-    if (turn != Vector3::Zero()) one.now.orientation = (rotation_by(moved_h * turn) * one.now.orientation).normalized();
+    if (rotation != Vector3::Zero())
+      one.now.orientation = (rotation_by(moved_h * rotation) * one.now.orientation).normalized();
   }
   if (moved_h == 0) return;
   note_wholes(&Tree::smooth_v, false);
@@ -48,7 +49,7 @@ void Island::correct_works(double h) {
           0.5 * h *
           (one.now.force[k] * (one.v[k] - one.free_v[k]) + one.now.torque[k] * (one.v[3 + k] - one.free_v[3 + k]));
   }
-  correct_tied_drag();
+  correct_network_drag();
   for (Clustered& clustered : clusters_)
     for (const std::uint32_t index : clustered.entry->trees) {
       Tree& tree = *core_.trees[index];
@@ -130,7 +131,7 @@ void Island::solve(double h) {
 double Island::direct_share() const {
   constexpr double kSwept = 3, kSolved = 10, kExact = 100;
   // Sweeps hardly close a loop that something presses on.
-  if (!accuracy_.direct) return has_rings() ? kSolved : kSwept;
+  if (!accuracy_.direct) return has_loops() ? kSolved : kSwept;
   switch (accuracy_.rung) {
     case Rung::Reference: return JointDrive::kNoLimit;
     case Rung::Precise: return kExact;
@@ -147,7 +148,7 @@ void Island::solve_rows() {
   settings.direct_share = direct_share();
   settings.meter = &meter_;
   // Sweeps that no exact solution follows end when they change less than could be seen, or a hundredth of that.
-  settings.swept = (accuracy_.direct ? 0.01 * kSwept : kSwept) * quiet_;
+  settings.swept = (accuracy_.direct ? 0.01 * kSwept : kSwept) * resting_;
   const contact::SolveReport report = contact::solve_island(movers_, rows_, scalars_, settings, workspace_);
   result.counters.solver_iterations += static_cast<std::uint64_t>(report.iterations + report.newton);
   result.counters.direct += report.direct;
@@ -177,7 +178,7 @@ double Island::rate_of(const contact::ScalarRow& row) const {
       .dot(Eigen::Map<const articulated::Vector>(mover.v, mover.size));
 }
 
-void Island::account_rows() {
+void Island::book_rows() {
   // A contact force that is constant over the sub-step works along the mean of the velocities before and after. Each
   // tree's own account has what left it through the contact, were it into another body.
   const auto tree_at = [this](int mover) {
@@ -190,16 +191,16 @@ void Island::account_rows() {
     // The side that a script moves gives work of that script.
     for (const bool first : {true, false}) {
       const int mover = first ? row.a : row.b;
-      if (is_driver(mover)) result.account.script_work += (first ? -1 : 1) * row.impulse.dot(rate_of(row, first));
+      if (is_driver(mover)) result.ledger.script_work += (first ? -1 : 1) * row.impulse.dot(rate_of(row, first));
     }
     for (const bool first : {true, false}) {
       const Vector3 mean = (first ? 0.5 : -0.5) * (rate_of(row, first) + before_[2 * i + (first ? 0 : 1)]);
       const double along = row.impulse[0] * mean[0], across = row.impulse[1] * mean[1] + row.impulse[2] * mean[2];
-      result.account.contact_loss -= along;
-      result.account.friction_loss -= across;
+      result.ledger.contact_loss -= along;
+      result.ledger.friction_loss -= across;
       if (Tree* tree = tree_at(first ? row.a : row.b)) {
-        tree->account.contact_loss -= along;
-        tree->account.friction_loss -= across;
+        tree->ledger.contact_loss -= along;
+        tree->ledger.friction_loss -= across;
       }
     }
   }
@@ -209,11 +210,11 @@ void Island::account_rows() {
     const double work = 0.5 * row.impulse * (scalars_before_[i] + rate_of(row));
     Tree& tree = *tree_at(row.a);
     if (i < limits) {
-      result.account.limit_loss -= work;
-      tree.account.limit_loss -= work;
+      result.ledger.limit_loss -= work;
+      tree.ledger.limit_loss -= work;
     } else {
-      result.account.motor_work += work;
-      tree.account.motor_work += work;
+      result.ledger.motor_work += work;
+      tree.ledger.motor_work += work;
     }
   }
 }
@@ -242,7 +243,7 @@ void Island::note_forces(double h) {
 }
 
 void Island::add_force(BodyIndex body, const Vector3& point, const Vector3& force) {
-  const BodyPlace side = place_of(body);
+  const BodySlot side = slot_of(body);
   if (!side.tree) return;
   articulated::Wrench& wrench = side.tree->links[static_cast<std::size_t>(side.link)].contact;
   wrench.force += force;

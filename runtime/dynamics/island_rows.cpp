@@ -28,8 +28,8 @@ Island::Touch Island::touch_at(std::size_t pair, const Pose& a, const Pose& b, c
   touch.on_b = b.orientation.conjugate() * (touch.point - b.location);
   touch.from_a = a.location;
   touch.from_b = b.location;
-  touch.turn_a = a.orientation;
-  touch.turn_b = b.orientation;
+  touch.orientation_a = a.orientation;
+  touch.orientation_b = b.orientation;
   touch.normal = manifold.normal;
   touch.gap = point.distance;
   return touch;
@@ -40,7 +40,7 @@ void Island::find_touches(double h, bool speculative) {
   NarrowCounters narrow;
   narrow.stop = meter_.end();
   const double fall = core_.settings.gravity.norm() * h;
-  quiet_ = 1e-3 * fall + 1e-12;
+  resting_ = 1e-3 * fall + 1e-12;
   looked_h_ = h;
   // A row catches a body before it touches, if it comes as slowly as a body at rest falls in a sub-step.
   constexpr double kMostRoom = 0.05;  // of the size
@@ -52,7 +52,7 @@ void Island::find_touches(double h, bool speculative) {
     double margin = std::max(skin, std::min(2 * fall * h, kMostRoom * size_of(a, b)));
     if (speculative) {
       const Vector3 rate = point_velocity(pair.a, pa.location) - point_velocity(pair.b, pb.location);
-      margin += h * (rate.norm() + fall) + kTurnRoom * size_of(a, b);
+      margin += h * (rate.norm() + fall) + kRotationRoom * size_of(a, b);
     }
     manifolds_.clear();
     find_manifolds(a, pa, b, pb, margin, manifolds_, pair.cache, narrow);
@@ -80,11 +80,11 @@ double Island::size_of_pair(const NearPair& pair) const {
 Island::Speeds Island::speeds_of(const contact::Law& law, double size, double h) const {
   const double fall = core_.settings.gravity.norm() * h;
   if (law.restitution > 0) {
-    const double slow = std::max(law.restitution_threshold, quiet_);
+    const double slow = std::max(law.restitution_threshold, resting_);
     return {slow, slow};
   }
   // Nothing rebounds: a row stops it as well, but for the depth that it would reach until then.
-  return {JointDrive::kNoLimit, std::max(2 * fall, kSkin * size / h) + quiet_};
+  return {JointDrive::kNoLimit, std::max(2 * fall, kSkin * size / h) + resting_};
 }
 
 bool Island::strikes(double h) const {
@@ -166,12 +166,12 @@ void Island::find_bounds() {
         for (const double sign : {1.0, -1.0}) {
           const double limit = sign > 0 ? joint.drive.low[k] : joint.drive.high[k];
           if (!std::isfinite(limit)) continue;
-          Bound bound{link.joint, k, sign, limit, sign * (position[k] - limit), sign * velocity[k], quiet_, false};
+          Bound bound{link.joint, k, sign, limit, sign * (position[k] - limit), sign * velocity[k], resting_, false};
           const bool stays = bounds_.size() < rebounds_.size() && rebounds_[bounds_.size()].stays;
           // Inelastic limits may be met by a row; others are located. A row catches a joint before it is there, if it
           // comes as slowly as a body at rest falls in a sub-step and is not driven.
           if (joint.drive.limit_restitution > 0) {
-            bound.rests = bound.gap <= kLimitSkin && (stays || std::abs(bound.rate) <= quiet_);
+            bound.rests = bound.gap <= kLimitSkin && (stays || std::abs(bound.rate) <= resting_);
           } else {
             if (!link.motor) bound.slow += falling(joint);
             const bool caught = bound.gap <= std::min(bound.slow * looked_h_, kMostRoom);
@@ -198,27 +198,27 @@ void Island::fill(Tree& tree, int link, const Vector3& point, const Vector3& axi
     const articulated::Body& body = tree.model.body(i);
     const articulated::Work& work = tree.data.of(i);
     const Vector3 linear = angular ? Vector3(Vector3::Zero()) : Vector3(sign * axis);
-    const Vector3 turn =
+    const Vector3 rotation =
         angular ? Vector3(sign * axis) : Vector3((point - tree.data.motion_of(i).origin).cross(linear));
     double* at = j + body.v;
     // A push along the axis turns nothing: round-off there, taken for a lever, would turn it without bound.
     constexpr double kRoundOff = 1e-13;
     switch (body.type) {
       case JointType::Revolute: {
-        const double lever = work.axis.dot(turn);
+        const double lever = work.axis.dot(rotation);
         const Vector3& origin = tree.data.motion_of(i).origin;
         if (angular || std::abs(lever) > kRoundOff * (point - origin).lpNorm<1>()) at[0] += lever;
         break;
       }
       case JointType::Prismatic: at[0] += work.axis.dot(linear); break;
       case JointType::Universal:
-        at[0] += work.axis.dot(turn);
-        at[1] += tree.data.wide_of(body).axis2.dot(turn);
+        at[0] += work.axis.dot(rotation);
+        at[1] += tree.data.wide_of(body).axis2.dot(rotation);
         break;
-      case JointType::Ball: Eigen::Map<Vector3>{at} += work.rotation.transpose() * turn; break;
+      case JointType::Ball: Eigen::Map<Vector3>{at} += work.rotation.transpose() * rotation; break;
       case JointType::Free:
-        Eigen::Map<Vector3>{at} += body.turn.transpose() * linear;
-        Eigen::Map<Vector3>{at + 3} += work.rotation.transpose() * turn;
+        Eigen::Map<Vector3>{at} += body.rotation.transpose() * linear;
+        Eigen::Map<Vector3>{at + 3} += work.rotation.transpose() * rotation;
         break;
       case JointType::Fixed: break;
     }
@@ -239,14 +239,14 @@ void Island::make_rows(Motors motors) {
   motors_.clear();
   laws_.clear();
   numbers_.clear();
-  ring_errors_.clear();
-  std::size_t widest = 0, rings = 0, driven = 0;
+  loop_errors_.clear();
+  std::size_t widest = 0, loops = 0, driven = 0;
   for (Tree* tree : trees_) {
     widest = std::max(widest, static_cast<std::size_t>(tree->model.velocities()));
-    rings += tree->rings.size();
+    loops += tree->loops.size();
     for (const TreeLink& link : tree->links) driven += link.motor;
   }
-  numbers_.reserve(widest * (12 * touches_.size() + 2 * bounds_.size() + 6 * driven + 12 * rings));
+  numbers_.reserve(widest * (12 * touches_.size() + 2 * bounds_.size() + 6 * driven + 12 * loops));
   for (Free& one : loose_bodies()) {
     const Matrix3 r = one.now.orientation.toRotationMatrix();
     contact::Mover& mover = movers_[static_cast<std::size_t>(&one - free_.data())];
@@ -258,7 +258,7 @@ void Island::make_rows(Motors motors) {
     if (bound.rests) add_bound_row(bound);
   if (motors == Motors::Drive)
     for (Tree* tree : trees_) add_motor_rows(*tree);
-  for (Tree* tree : trees_) add_ring_rows(*tree);
+  for (Tree* tree : trees_) add_loop_rows(*tree);
 }
 
 /// Velocities at the rows when the sub-step began: seen then, where the rows were found.
@@ -269,7 +269,7 @@ void Island::recall_rates() {
     contact::Row& row = rows_[i];
     const Touch& touch = touches_[i];
     const Vector3 a = row.axes * touch.velocity_a, b = row.axes * touch.velocity_b;
-    const BodyPlace of_a = place_of(pairs_[touch.pair]->a), of_b = place_of(pairs_[touch.pair]->b);
+    const BodySlot of_a = slot_of(pairs_[touch.pair]->a), of_b = slot_of(pairs_[touch.pair]->b);
     const bool inner = of_a.tree && of_a.tree == of_b.tree;
     before_.push_back(inner ? Vector3(a - b) : a);
     before_.push_back(inner ? Vector3::Zero() : b);
@@ -309,11 +309,11 @@ bool is_round(const Shape& shape) { return shape.kind() == ShapeKind::Sphere || 
 /// The point of a body that stood and was turned so, once it is at `now`: what is round about an axis turns about it
 /// without taking its point along, so that only the shortest rotation of the axis counts; a ball has no axis to turn.
 Vector3 carried_by(const Shape& shape, const Vector3& point, const Vector3& on, const Vector3& from,
-                   const Quaternion& turn, const Pose& now) {
+                   const Quaternion& rotation, const Pose& now) {
   if (!is_round(shape)) return now.location + now.orientation * on;
   if (shape.kind() == ShapeKind::Sphere) return point + now.location - from;
   const Vector3 axis = Vector3::Unit(shape.round().axis);
-  return now.location + Quaternion::FromTwoVectors(turn * axis, now.orientation * axis) * (point - from);
+  return now.location + Quaternion::FromTwoVectors(rotation * axis, now.orientation * axis) * (point - from);
 }
 
 }  // namespace
@@ -324,12 +324,12 @@ Vector3 Island::carried(const Touch& touch) const {
   const NearPair& pair = *pairs_[touch.pair];
   const Shape &a = *core_.bodies->collision_shape(pair.a), &b = *core_.bodies->collision_shape(pair.b);
   const auto with_a = [&] {
-    return carried_by(a, touch.point, touch.on_a, touch.from_a, touch.turn_a, pose_of(pair.a));
+    return carried_by(a, touch.point, touch.on_a, touch.from_a, touch.orientation_a, pose_of(pair.a));
   };
   const auto with_b = [&] {
-    return carried_by(b, touch.point, touch.on_b, touch.from_b, touch.turn_b, pose_of(pair.b));
+    return carried_by(b, touch.point, touch.on_b, touch.from_b, touch.orientation_b, pose_of(pair.b));
   };
-  const bool a_moves = place_of(pair.a).mover >= 0, b_moves = place_of(pair.b).mover >= 0;
+  const bool a_moves = slot_of(pair.a).mover >= 0, b_moves = slot_of(pair.b).mover >= 0;
   const bool by_a = a_moves && (is_round(a) || !is_round(b)), by_b = b_moves && (is_round(b) || !is_round(a));
   if (by_a && by_b) return 0.5 * (with_a() + with_b());
   if (by_a) return with_a();
@@ -346,12 +346,12 @@ void Island::add_touch_row(Touch& touch) {
   row.static_friction = pair.law.static_friction;
   row.dynamic_friction = pair.law.dynamic_friction;
   row.pair = static_cast<int>(touch.pair);
-  BodyPlace sides[2] = {place_of(pair.a), place_of(pair.b)};
-  for (BodyPlace& side : sides)
+  BodySlot sides[2] = {slot_of(pair.a), slot_of(pair.b)};
+  for (BodySlot& side : sides)
     if (is_driver(side.mover)) side.mover = pair_drivers_[touch.pair];
   const bool same = sides[0].tree && sides[0].tree == sides[1].tree;
   for (int s = 0; s < 2; ++s) {
-    const BodyPlace& side = sides[s];
+    const BodySlot& side = sides[s];
     if (side.mover < 0 || (s == 1 && same)) continue;
     (s == 0 ? row.a : row.b) = side.mover;
     if (!side.tree) {
@@ -431,14 +431,14 @@ void Island::add_motor_rows(Tree& tree) {
   }
 }
 
-void Island::add_ring_rows(const Tree& of) {
+void Island::add_loop_rows(const Tree& of) {
   Tree& tree = *trees_[static_cast<std::size_t>(of.slot)];
-  for (const JointIndex index : tree.rings) {
-    const RingRows ring = core_.ring_rows(tree, core_.joints[index].is);
-    for (int k = 0; k < ring.count; ++k) {
-      const RingRow& wanted = ring.rows[static_cast<std::size_t>(k)];
+  for (const JointIndex index : tree.loops) {
+    const LoopRows loop = core_.loop_rows(tree, core_.joints[index].is);
+    for (int k = 0; k < loop.count; ++k) {
+      const LoopRow& wanted = loop.rows[static_cast<std::size_t>(k)];
       double *j = rows_of(tree, 1), *r = rows_of(tree, 1);
-      fill_ring(tree, ring, wanted, j);
+      fill_loop(tree, loop, wanted, j);
       respond(tree, j, r);
       contact::ScalarRow row;
       row.a = static_cast<int>(free_.size()) + tree.slot;
@@ -447,7 +447,7 @@ void Island::add_ring_rows(const Tree& of) {
       row.lo = -JointDrive::kNoLimit;
       row.hi = JointDrive::kNoLimit;
       scalars_.push_back(row);
-      ring_errors_.push_back(wanted.error);
+      loop_errors_.push_back(wanted.error);
     }
   }
 }

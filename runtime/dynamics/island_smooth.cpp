@@ -7,7 +7,7 @@
 #include "runtime/base/error.hpp"
 #include "runtime/base/rotation_vector.hpp"
 #include "runtime/dynamics/island.hpp"
-#include "runtime/dynamics/tied_bodies.hpp"
+#include "runtime/dynamics/spring_network.hpp"
 
 namespace breve {
 
@@ -27,11 +27,11 @@ void Island::move_driver(Free& one, double h) {
 
 void Island::smooth(double time, double h) {
   if (springs_move()) return smooth_springs(time, h);
-  free_work_ = tied_loss_ = 0;
+  free_work_ = network_loss_ = 0;
   constexpr std::uint64_t kUnits = 10;  // of work, a body
   meter_.add(kUnits * free_.size());
-  smooth_tied(time, h);
-  const std::size_t first = tied_.empty() ? free_.size() : tied_.front().first, end = tied_end();
+  smooth_networks(time, h);
+  const std::size_t first = networks_.empty() ? free_.size() : networks_.front().first, end = networks_end();
   for (std::size_t i = 0; i < free_.size(); ++i) {
     if (i >= first && i < end) continue;
     Free& one = free_[i];
@@ -67,7 +67,7 @@ void Island::smooth_once(Clustered& one, double time, double h) {
   system.set_slack(coarse() ? kContactSlack : 1);
   system.step(time, h);
   for (Tree* tree : system.trees()) tree->motor_impulse += tree->part_impulse;
-  if (one.entry->tied) one.entry->tied->note_forces(core_);
+  if (one.entry->network) one.entry->network->note_forces(core_);
   result.counters.evaluations += static_cast<std::uint64_t>(system.count().evaluations);
   result.counters.rejected += static_cast<std::uint64_t>(system.count().rejected);
   one.pending.motor_work += system.motor_work();
@@ -77,10 +77,10 @@ void Island::smooth_once(Clustered& one, double time, double h) {
 }
 
 /// The energy of the springs between its trees, whose links are placed, J.
-double Island::tie_energy_in(const Clustered& one) const {
-  if (one.entry->tied) return one.entry->tied->spring_energy(core_);
+double Island::spring_energy_in(const Clustered& one) const {
+  if (one.entry->network) return one.entry->network->spring_energy(core_);
   double sum = 0;
-  for (const SpringIndex tie : one.entry->ties) sum += core_.tie_energy_in(core_.springs[tie].is);
+  for (const SpringIndex spring : one.entry->springs) sum += core_.spring_energy_in(core_.springs[spring].is);
   return sum;
 }
 
@@ -93,7 +93,7 @@ double Island::stored_in(const Clustered& one, double& kinetic) {
     kinetic += energy.kinetic;
     sum += energy.kinetic + energy.potential + energy.springs;
   }
-  return sum + tie_energy_in(one);
+  return sum + spring_energy_in(one);
 }
 
 /// Runge-Kutta 4, or semi-implicit Euler where springs are too fast for it, in as many parts as leave little for

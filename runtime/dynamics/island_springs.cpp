@@ -24,7 +24,7 @@ double reduced(double a, double b) { return a > 0 && b > 0 ? a * b / (a + b) : s
 }  // namespace
 
 bool Island::has_contact_springs() const {
-  return accuracy_.contact_springs && accuracy_.locate_impacts && tied_.empty() &&
+  return accuracy_.contact_springs && accuracy_.locate_impacts && networks_.empty() &&
          (accuracy_.link_springs || trees_.empty());
 }
 
@@ -33,8 +33,8 @@ bool Island::springs_for(const contact::Law& law) const {
 }
 
 /// What an impulse along `normal` has to move there, kg.
-double Island::felt_mass(const NearPair& pair, const Vector3& point, const Vector3& normal) const {
-  const BodyPlace a = place_of(pair.a), b = place_of(pair.b);
+double Island::effective_mass(const NearPair& pair, const Vector3& point, const Vector3& normal) const {
+  const BodySlot a = slot_of(pair.a), b = slot_of(pair.b);
   double yields = 0;
   const auto of_tree = [&](Tree& tree, int first, int second) {
     const articulated::Symmetric3 w = articulated::collision_matrix(tree.model, tree.data, first, point, second, point);
@@ -44,7 +44,7 @@ double Island::felt_mass(const NearPair& pair, const Vector3& point, const Vecto
     of_tree(*a.tree, a.link, b.link);
     return yields > 0 ? 1 / yields : 0;
   }
-  for (const BodyPlace& side : {a, b}) {
+  for (const BodySlot& side : {a, b}) {
     if (side.mover < 0) continue;
     if (side.tree) {
       of_tree(*side.tree, -1, side.link);
@@ -61,24 +61,24 @@ double Island::felt_mass(const NearPair& pair, const Vector3& point, const Vecto
 /// Surfaces that touch become springs. Their stiffness goes with the whole mass on either side, so that a foot carries
 /// its animal; their dampers with what the point feels.
 void Island::begin_spring(NearPair& pair, const Touch& touch) {
-  const auto whole = [this](const BodyPlace& side) {
+  const auto whole = [this](const BodySlot& side) {
     if (side.mover < 0) return 0.0;
     return side.tree ? side.tree->model.mass() : free_[static_cast<std::size_t>(side.mover)].now.solid->mass;
   };
-  const double mass = reduced(whole(place_of(pair.a)), whole(place_of(pair.b)));
-  const double felt = felt_mass(pair, touch.point, touch.normal);
-  if (!(felt > 0)) return;
+  const double mass = reduced(whole(slot_of(pair.a)), whole(slot_of(pair.b)));
+  const double effective = effective_mass(pair, touch.point, touch.normal);
+  if (!(effective > 0)) return;
   const double own = accuracy_.contact_damping;
   const double zeta = own > 0 ? own : contact::damping_ratio(pair.law.restitution);
   if (zeta != calibrated_) dashpots_ = contact::calibrate(calibrated_ = zeta);
-  pair.spring = contact::make_spring(accuracy_.contact_stiffness * mass, dashpots_, felt, pair.law);
+  pair.spring = contact::make_spring(accuracy_.contact_stiffness * mass, dashpots_, effective, pair.law);
   pair.stored = 0;
   pair.warm_count = 0;
 }
 
 /// The surfaces are rigid from now on; what the spring still held is lost.
 void Island::end_spring(NearPair& pair) {
-  result.account.contact_loss += pair.stored;
+  result.ledger.contact_loss += pair.stored;
   pair.spring = {};
   pair.stored = 0;
   pair.warm_count = 0;
@@ -100,11 +100,11 @@ void Island::take_springs() {
     double nearest = JointDrive::kNoLimit;
     bool arrives = false;
     NearPair& pair = *pairs_[touches_[i].pair];
-    const double size = size_of_pair(pair), slow = std::max(pair.law.restitution_threshold, quiet_);
+    const double size = size_of_pair(pair), slow = std::max(pair.law.restitution_threshold, resting_);
     for (; end < touches_.size() && touches_[end].pair == touches_[i].pair; ++end) {
       const Touch& touch = touches_[end];
       nearest = std::min(nearest, touch.gap);
-      arrives = arrives || (touch.gap <= kMetSkin * size && touch.approach <= quiet_ && touch.approach >= -slow);
+      arrives = arrives || (touch.gap <= kMetSkin * size && touch.approach <= resting_ && touch.approach >= -slow);
     }
     const bool apart = nearest >= kMetSkin * size, deep = nearest < -kDeepest * size;
     if (sprung(pair) && (apart || deep)) end_spring(pair);
@@ -239,8 +239,8 @@ void Island::commit_springs() {
     to.friction_loss += from.friction_loss;
     to.limit_loss += from.limit_loss;
   };
-  add(sprung_->lost(), result.account);
-  for (Tree* tree : trees_) add(sprung_->lost(*tree), tree->account);
+  add(sprung_->lost(), result.ledger);
+  for (Tree* tree : trees_) add(sprung_->lost(*tree), tree->ledger);
 }
 
 /// Adds to found_ the points of springs that closed in the sub-step; they are to push from that moment on.

@@ -7,12 +7,12 @@
 #include "runtime/base/rotation_vector.hpp"
 #include "runtime/dynamics/island.hpp"
 #include "runtime/dynamics/joint_frames.hpp"
-#include "runtime/dynamics/tied_bodies.hpp"
+#include "runtime/dynamics/spring_network.hpp"
 
 namespace breve {
 
 /// Schemes of order 4 and 5 hold rings inside their stages, others by a rule of order 2 that is theirs.
-bool Island::holds_rings() const {
+bool Island::holds_loops() const {
   using articulated::Scheme;
   const Scheme scheme = accuracy_.scheme;
   if (scheme == Scheme::RungeKutta4 || scheme == Scheme::Fehlberg4 || scheme == Scheme::Fehlberg5 ||
@@ -22,10 +22,10 @@ bool Island::holds_rings() const {
                      [](const Clustered& one) { return one.entry->system->can_be_finer(); });
 }
 
-std::uint64_t Island::ring_units() const {
+std::uint64_t Island::loop_units() const {
   std::uint64_t units = 0;
   for (const Tree* tree : trees_)
-    if (!tree->rings.empty()) units += tree->hold_units();
+    if (!tree->loops.empty()) units += tree->hold_units();
   return units;
 }
 
@@ -38,8 +38,8 @@ bool Island::has_rows() const {
          std::any_of(bounds_.begin(), bounds_.end(), [](const Bound& bound) { return bound.rests; });
 }
 
-bool Island::has_rings() const {
-  return std::any_of(trees_.begin(), trees_.end(), [](const Tree* tree) { return !tree->rings.empty(); });
+bool Island::has_loops() const {
+  return std::any_of(trees_.begin(), trees_.end(), [](const Tree* tree) { return !tree->loops.empty(); });
 }
 
 namespace {
@@ -53,12 +53,12 @@ double parts_of(double left, double step) {
 /// @param lies  nothing moves that contacts would have to be followed for
 double Island::longest(double left, bool lies) const {
   double step = accuracy_.step > 0 ? accuracy_.step : left;
-  const bool touching = !lies && (has_rows() || has_rings());
+  const bool touching = !lies && (has_rows() || has_loops());
   if (touching && accuracy_.contact_step > 0) step = std::min(step, accuracy_.contact_step);
   return left / parts_of(left, step);
 }
 
-void Island::step_quiet(double start, double h) {
+void Island::step_undisturbed(double start, double h) {
   const double part = longest(h, false);
   const auto parts = static_cast<int>(std::llround(h / part));
   for (int i = 0; i < parts; ++i) {
@@ -107,7 +107,7 @@ void Island::take_fast(double time, double h) {
   predict(h);
   advance_once(time, h);
   commit();
-  account_rows();
+  book_rows();
   close_books();
   note_overlaps(h);
   note_forces(h);
@@ -139,16 +139,16 @@ bool Island::catch_bounds(double time, double h) {
 void Island::advance_once(double time, double h) {
   // A step whose work is used up leaves rings that are dear to hold to the rows, which are swept.
   constexpr std::uint64_t kDear = 20'000;
-  const bool dear = finished_ && ring_units() > kDear, alone = has_rings() && !has_rows() && !dear,
-             in_stages = (!alone || holds_rings()) && !dear;
-  for (Clustered& one : clusters_) one.stage->holds_rings = in_stages;
+  const bool dear = finished_ && loop_units() > kDear, alone = has_loops() && !has_rows() && !dear,
+             in_stages = (!alone || holds_loops()) && !dear;
+  for (Clustered& one : clusters_) one.stage->holds_loops = in_stages;
   if (!in_stages && !dear) {
     place();
     make_rows(Motors::Leave);
-    if (hold_rings(time, h)) return;
+    if (hold_loops(time, h)) return;
     // An impulse that does not close the loops would add unexplained energy.
     restore();
-    for (Clustered& one : clusters_) one.stage->holds_rings = true;
+    for (Clustered& one : clusters_) one.stage->holds_loops = true;
   }
   smooth(time, h);
   if (!catch_bounds(time, h) && alone) return;
@@ -173,7 +173,7 @@ void Island::advance_once(double time, double h) {
 /// @param held  J, as that part ended, but for contact springs
 void Island::end_unfinished(double held) {
   for (const NearPair* pair : pairs_) held += pair->stored;
-  result.account.residual += unexplained_since_start(held);
+  result.ledger.residual += unexplained_since_start(held);
 }
 
 /// Calls the handler of a pair that touches for the first time. False if what it did leaves nothing of the island as it
@@ -191,14 +191,14 @@ bool Island::call(MechanicsClient& client, int index, double moment, double left
   core_.sync_changes();
   core_.settle_books(true);
   // Something was made or freed, or a spring was set to what points cannot follow.
-  if (core_.structure() != before || !begin_tied(left)) {
+  if (core_.structure() != before || !begin_networks(left)) {
     end_unfinished(held);
     dissolved_ = true;
     unfinished_ = left;
     return false;
   }
   for (const Clustered& one : clusters_)
-    if (one.entry->tied) one.entry->tied->begin(core_);
+    if (one.entry->network) one.entry->network->begin(core_);
   handled_ += held_energy() - held;
   for (Free& one : loose_bodies()) one.now = read_free(*core_.bodies, one.body);
   place_links();
@@ -231,7 +231,7 @@ void Island::look(double h, bool spent) {
   rows_.clear();
   scalars_.clear();
   motors_.clear();
-  ring_errors_.clear();
+  loop_errors_.clear();
   find_touches(h, spent);
   take_springs();
   find_bounds();
@@ -250,7 +250,7 @@ void Island::note_start_poses() {
 /// After a part that was to be `part` seconds long, and lasted `took`.
 void Island::book_part(double part, double took) {
   commit();
-  account_rows();
+  book_rows();
   close_books();
   keep_springs();
   note_overlaps(part);
@@ -289,7 +289,7 @@ void Island::step_located(MechanicsClient* client, double start, double h) {
     }
     if (!spent_) find_roles(sub, struck);
     const double part = longest(h - now, whole);
-    const Energy account = result.account;
+    const Energy ledger = result.ledger;
     remember();
     note_start_poses();
     open_books();
@@ -298,7 +298,7 @@ void Island::step_located(MechanicsClient* client, double start, double h) {
     Event event = spent_ ? Event() : seek(start + now, part);
     if (whole && (event.found() || !lies(part))) {
       restore();
-      result.account = account;
+      result.ledger = ledger;
       whole = false;
       continue;
     }

@@ -68,27 +68,27 @@ Island::Trouble Island::judge_residual(double residual, double turnover, double 
 /// What would go wrong in a step of h seconds with the settings as they are, from the state now.
 Island::Trouble Island::foresee(double h) {
   const double part = accuracy_.step > 0 ? std::min(accuracy_.step, h) : h;
-  Trouble worst = fastest_turn(part);
-  if (worst.value > kMostTurn) return worst;
+  Trouble worst = fastest_rotation(part);
+  if (worst.value > kMostRotation) return worst;
   worst = strongest_damper(part);
   return worst.value > kMostDamping ? worst : Trouble{};
 }
 
 /// Shortens the sub-steps of a step of h seconds in which a body rotates farther than the integrator can follow, so
 /// that a fast spin needs no guard. Explicit Euler is there to be studied: its step is the one that was set.
-void Island::follow_turns(double h) {
+void Island::follow_rotations(double h) {
   if (accuracy_.scheme == articulated::Scheme::ExplicitEuler) return;
   constexpr double kMostParts = 16;  // of a sub-step
   const double part = accuracy_.step > 0 ? std::min(accuracy_.step, h) : h;
-  const double turn = fastest_turn(part).value;
-  if (!(turn > kMostTurn)) return;
+  const double rotation = fastest_rotation(part).value;
+  if (!(rotation > kMostRotation)) return;
   Accuracy shorter = accuracy_;
-  shorter.step = part / std::min(std::ceil(turn / kMostTurn), kMostParts);
+  shorter.step = part / std::min(std::ceil(rotation / kMostRotation), kMostParts);
   use_accuracy(shorter);
 }
 
-Island::Trouble Island::fastest_turn(double h) const {
-  Trouble worst{true, GuardReason::FastTurn, 0, kNoBody};
+Island::Trouble Island::fastest_rotation(double h) const {
+  Trouble worst{true, GuardReason::FastRotation, 0, kNoBody};
   const auto look = [&worst, h](double spin, BodyIndex body) {
     if (spin * h > worst.value) worst.value = spin * h, worst.body = body;
   };
@@ -124,8 +124,8 @@ Island::Trouble Island::strongest_damper(double h) const {
     return worst;
   // A Spring's damper is explicit wherever the whole scheme is.
   for (const Clustered& one : clusters_)
-    for (const SpringIndex tie : one.entry->ties) {
-      const SpringDescription& is = core_.springs[tie].is;
+    for (const SpringIndex spring : one.entry->springs) {
+      const SpringDescription& is = core_.springs[spring].is;
       double yields = 0;
       for (const BodyIndex body : {is.a, is.b})
         if (core_.bodies->dynamic(body)) yields += 1 / core_.bodies->mass(body);

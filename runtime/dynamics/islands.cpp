@@ -55,7 +55,7 @@ void Dynamics::Core::find_islands() {
   keep_clusters_whole();
   // Sets of bodies by union-find. A tree's first link stands for the tree, a cluster's first tree for the cluster.
   set_of.resize(bodies->index_end());
-  place_of.assign(bodies->index_end(), {});
+  slot_of.assign(bodies->index_end(), {});
   for (const BodyIndex body : near.movers()) set_of[body] = body;
   const auto root = [this](BodyIndex body) {
     while (set_of[body] != body) body = set_of[body] = set_of[set_of[body]];
@@ -98,12 +98,12 @@ void Dynamics::Core::find_islands() {
 }
 
 /// The island of that number, in the place where islands are worked on.
-Island& Dynamics::Core::fill(std::size_t place, std::size_t number, double h) {
-  if (islands.size() == place) islands.push_back(make_in<Island>(memory, *this, &shared));
-  Island& island = *islands[place];
+Island& Dynamics::Core::fill(std::size_t slot, std::size_t number, double h) {
+  if (islands.size() == slot) islands.push_back(make_in<Island>(memory, *this, &shared));
+  Island& island = *islands[slot];
   island.clear();
   for (const std::uint32_t body : island_free.of(number)) island.add_free(body);
-  for (const std::uint32_t cluster : island_clusters.of(number)) island.add_tied(*clusters[cluster], h);
+  for (const std::uint32_t cluster : island_clusters.of(number)) island.add_network(*clusters[cluster], h);
   for (const std::uint32_t pair : island_pairs.of(number)) island.add_drivers(near.at(pair));
   for (const std::uint32_t cluster : island_clusters.of(number)) island.add_cluster(*clusters[cluster]);
   for (const std::uint32_t pair : island_pairs.of(number)) island.add_pair(near.at(pair));
@@ -195,13 +195,13 @@ void Dynamics::Core::run(MechanicsClient& client, double start, double h, int de
       continue;
     }
     if (++lot < most) continue;
-    step_quiet(client.workers(), lot, start, h);
+    step_undisturbed(client.workers(), lot, start, h);
     lot = 0;
   }
-  step_quiet(client.workers(), lot, start, h);
+  step_undisturbed(client.workers(), lot, start, h);
   // At once, so that sums do not depend on how islands were put together in lots.
-  account.script_work += alone.script_work;
-  account.residual += alone.residual;
+  ledger.script_work += alone.script_work;
+  ledger.residual += alone.residual;
   constexpr int kDeepest = 64;  // handlers that make or free bodies, in one step
   for (std::size_t i = 0; i < callers; ++i) {
     std::pmr::vector<BodyIndex> mine(memory), others(memory);
@@ -226,7 +226,7 @@ void Dynamics::Core::run(MechanicsClient& client, double start, double h, int de
 
 /// The first `count` islands, which call nobody, by the workers. What all see is written when all are done, in their
 /// order: so that nothing depends on which came first, an error neither.
-void Dynamics::Core::step_quiet(Workers* workers, std::size_t count, double start, double h) {
+void Dynamics::Core::step_undisturbed(Workers* workers, std::size_t count, double start, double h) {
   const auto step = [&](std::size_t i) {
     try {
       islands[i]->step(nullptr, start, h);
@@ -331,13 +331,13 @@ void Dynamics::Core::take_result(Island& island) {
   counters.interventions += from.interventions.size();
   counters.work += island.work();
   counters.residual = std::max(counters.residual, c.residual);
-  account.motor_work += from.account.motor_work;
-  account.script_work += from.account.script_work;
-  account.drag_loss += from.account.drag_loss;
-  account.contact_loss += from.account.contact_loss;
-  account.friction_loss += from.account.friction_loss;
-  account.limit_loss += from.account.limit_loss;
-  account.residual += from.account.residual;
+  ledger.motor_work += from.ledger.motor_work;
+  ledger.script_work += from.ledger.script_work;
+  ledger.drag_loss += from.ledger.drag_loss;
+  ledger.contact_loss += from.ledger.contact_loss;
+  ledger.friction_loss += from.ledger.friction_loss;
+  ledger.limit_loss += from.ledger.limit_loss;
+  ledger.residual += from.ledger.residual;
   impacts.insert(impacts.end(), from.impacts.begin(), from.impacts.end());
   interventions.insert(interventions.end(), from.interventions.begin(), from.interventions.end());
 }

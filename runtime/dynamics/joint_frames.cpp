@@ -16,14 +16,14 @@ using articulated::JointType;
 Quaternion about(const Vector3& axis, double angle) { return Quaternion(Eigen::AngleAxisd(angle, axis)); }
 
 /// Angle of the part of a rotation that turns about `axis`, -pi to pi.
-double angle_about(const Quaternion& turn, const Vector3& axis) {
-  const double along = turn.vec().dot(axis);
-  return 2 * std::atan2(turn.w() < 0 ? -along : along, std::abs(turn.w()));
+double angle_about(const Quaternion& rotation, const Vector3& axis) {
+  const double along = rotation.vec().dot(axis);
+  return 2 * std::atan2(rotation.w() < 0 ? -along : along, std::abs(rotation.w()));
 }
 
 double near(double angle, double last) {
-  constexpr double kTurn = 2 * 3.14159265358979323846;
-  return angle + kTurn * std::round((last - angle) / kTurn);
+  constexpr double kRevolution = 2 * 3.14159265358979323846;
+  return angle + kRevolution * std::round((last - angle) / kRevolution);
 }
 
 /// E with R_child = R_parent E relative_rotation, of a joint at these positions.
@@ -41,8 +41,8 @@ JointVector euler(const JointAxes& axes, const Quaternion& excursion) {
 }
 
 Quaternion ball_excursion(const JointDescription& is, bool flipped, const double* q) {
-  const Quaternion turn(q[0], q[1], q[2], q[3]);
-  return flipped ? turn.conjugate() : is.relative_rotation * turn * is.relative_rotation.conjugate();
+  const Quaternion rotation(q[0], q[1], q[2], q[3]);
+  return flipped ? rotation.conjugate() : is.relative_rotation * rotation * is.relative_rotation.conjugate();
 }
 
 /// Columns: rate of the child's spin relative to the parent, parent's frame, by each position's rate.
@@ -101,20 +101,20 @@ void describe_joint(const JointDescription& is, bool flipped, const Quaternion& 
   }
 }
 
-void read_joint(const JointDescription& is, bool flipped, const Quaternion& turn, const Vector3& shift,
+void read_joint(const JointDescription& is, bool flipped, const Quaternion& rotation, const Vector3& shift,
                 const JointVector& last, double* q) {
-  put_joint_position(is, flipped, joint_position_between(is, turn, shift, last), q);
+  put_joint_position(is, flipped, joint_position_between(is, rotation, shift, last), q);
   if (is.kind != JointKind::Ball) return;
-  const Quaternion excursion = turn * is.relative_rotation.conjugate();
+  const Quaternion excursion = rotation * is.relative_rotation.conjugate();
   const Quaternion model =
       flipped ? excursion.conjugate() : is.relative_rotation.conjugate() * excursion * is.relative_rotation;
   q[0] = model.w(), q[1] = model.x(), q[2] = model.y(), q[3] = model.z();
 }
 
-JointVector joint_position_between(const JointDescription& is, const Quaternion& turn, const Vector3& shift,
+JointVector joint_position_between(const JointDescription& is, const Quaternion& rotation, const Vector3& shift,
                                    const JointVector& last) {
   const JointAxes axes = is.kind == JointKind::Fixed ? JointAxes{} : axes_of(is);
-  const Quaternion excursion = turn * is.relative_rotation.conjugate();
+  const Quaternion excursion = rotation * is.relative_rotation.conjugate();
   switch (is.kind) {
     case JointKind::Revolute: return {near(-angle_about(excursion, axes.first), last[0]), 0, 0};
     case JointKind::Prismatic: return {-axes.first.dot(shift), 0, 0};
@@ -176,10 +176,10 @@ void put_joint_position(const JointDescription& is, bool flipped, const JointVec
   }
 }
 
-void put_ball(const JointDescription& is, bool flipped, const Quaternion& turn, const Vector3& spin, double* q,
+void put_ball(const JointDescription& is, bool flipped, const Quaternion& rotation, const Vector3& spin, double* q,
               double* v) {
   const Quaternion& rest = is.relative_rotation;
-  const Quaternion model = flipped ? turn.conjugate() : rest.conjugate() * turn * rest;
+  const Quaternion model = flipped ? rotation.conjugate() : rest.conjugate() * rotation * rest;
   q[0] = model.w(), q[1] = model.x(), q[2] = model.y(), q[3] = model.z();
   Eigen::Map<Vector3>{v}.noalias() = to_model(is, flipped, q) * spin;
 }

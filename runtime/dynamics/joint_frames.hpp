@@ -22,7 +22,7 @@ void describe_joint(const JointDescription& is, bool flipped, const Quaternion& 
 /// @param turn   child's orientation relative to the parent's: R_parent^-1 R_child
 /// @param shift  of the child's point from the parent's point, in the parent's frame, m
 /// @param last   the joint's position as last known, from which whole turns are counted
-void read_joint(const JointDescription& is, bool flipped, const Quaternion& turn, const Vector3& shift,
+void read_joint(const JointDescription& is, bool flipped, const Quaternion& rotation, const Vector3& shift,
                 const JointVector& last, double* q);
 
 JointVector joint_position(const JointDescription& is, bool flipped, const double* q);
@@ -31,7 +31,7 @@ JointVector joint_velocity(const JointDescription& is, bool flipped, const doubl
 void put_joint_position(const JointDescription& is, bool flipped, const JointVector& position, double* q);
 void put_joint_velocity(const JointDescription& is, bool flipped, const double* q, const JointVector& rate, double* v);
 /// A ball joint's numbers from the child's turn and spin relative to the parent's frame at zero, in the parent's axes.
-void put_ball(const JointDescription& is, bool flipped, const Quaternion& turn, const Vector3& spin, double* q,
+void put_ball(const JointDescription& is, bool flipped, const Quaternion& rotation, const Vector3& spin, double* q,
               double* v);
 /// From one position of a joint to another, both in the model's numbers: a spring in the joint pulls back along it. For
 /// a ball joint it is the rotation vector, in the axes of the joint's child in the tree, rad.
@@ -40,7 +40,7 @@ Vector3 joint_deflection(JointKind kind, const double* from, const double* to);
 void put_joint_force(const JointDescription& is, bool flipped, const double* q, const JointVector& f, double* tau);
 
 /// Position of a joint that is in no tree, from its bodies.
-JointVector joint_position_between(const JointDescription& is, const Quaternion& turn, const Vector3& shift,
+JointVector joint_position_between(const JointDescription& is, const Quaternion& rotation, const Vector3& shift,
                                    const JointVector& last);
 
 }  // namespace breve

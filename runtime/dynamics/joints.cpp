@@ -60,11 +60,11 @@ bool Dynamics::Core::held_by_world(BodyIndex body) {
 }
 
 void Dynamics::Core::move_rigidly(std::span<const BodyIndex> some, const Pose& from, const Pose& to) {
-  const Quaternion turn = (to.orientation * from.orientation.conjugate()).normalized();
+  const Quaternion rotation = (to.orientation * from.orientation.conjugate()).normalized();
   for (const BodyIndex body : some) {
     const Vector3 arm = bodies->location(body) - from.location;
-    bodies->set_location(body, to.location + turn * arm);
-    bodies->set_orientation(body, turn * bodies->orientation(body));
+    bodies->set_location(body, to.location + rotation * arm);
+    bodies->set_orientation(body, rotation * bodies->orientation(body));
   }
 }
 
@@ -72,7 +72,7 @@ void Dynamics::Core::place_child(JointEntry& joint) {
   JointDescription& is = joint.is;
   const Pose parent = is.parent == kNoBody ? Pose{} : pose(is.parent);
   const Pose now = pose(is.child);
-  Pose wanted = place_at_zero(is, parent);
+  Pose wanted = pose_at_zero(is, parent);
   if (is.keep_rotation) {
     wanted.location += wanted.orientation * is.child_point - now.orientation * is.child_point;
     wanted.orientation = now.orientation;
@@ -80,14 +80,14 @@ void Dynamics::Core::place_child(JointEntry& joint) {
   std::pmr::vector<BodyIndex> all(memory);
   collect(is.child, all);
   if (is.parent != kNoBody && std::find(all.begin(), all.end(), is.parent) != all.end()) {
-    joint.ring = true;
+    joint.loop = true;
     return;
   }
   if (held_by_world(is.child)) {
-    joint.ring = true;
+    joint.loop = true;
     return;
   }
-  joint.ring = false;
+  joint.loop = false;
   if (wanted.location == now.location && wanted.orientation.coeffs() == now.orientation.coeffs()) return;
   move_rigidly(all, now, wanted);
 }
@@ -118,7 +118,7 @@ JointIndex Dynamics::link(const JointDescription& description, ObjectId owner) {
   for (const BodyIndex end : ends)
     if (end != kNoBody && c.bodies->kind(end) != BodyKind::Stationary) c.bodies->set_physics(end, true);
   c.place_child(made);  // the last that may be refused
-  const JointIndex index = take_place(c.joints, c.free_joints);
+  const JointIndex index = take_slot(c.joints, c.free_joints);
   made.serial = c.next_serial++;
   for (const BodyIndex end : ends) {
     if (end == kNoBody) continue;
@@ -137,7 +137,7 @@ void Dynamics::Core::note_joined(JointIndex joint) {
     if (end == kNoBody || !bodies->dynamic(end) || (find(end)->known && find(end)->tree != kNone)) continue;
     if (!find(end)->known) note_written(end);
   }
-  if (joints[joint].ring) return;
+  if (joints[joint].loop) return;
   collect(joints[joint].is.child, all);
   for (const BodyIndex body : all) note_written(body);
 }
@@ -209,12 +209,12 @@ JointReaction Dynamics::Core::react(const JointEntry& joint) {
   if (tree.loads.tau.size() == 0) tree.loads.tau.setZero(tree.model.velocities());
   tree.loads.tau += tree.limit_force;
   articulated::Vector acceleration = articulated::forward_dynamics(tree.model, tree.data, tree.state, tree.loads, 0);
-  JointReaction of_ring;
-  if (!tree.rings.empty()) {
+  JointReaction of_loop;
+  if (!tree.loops.empty()) {
     hold(tree, acceleration.data(), true, false);
-    of_ring = push_by_rings(tree, static_cast<JointIndex>(&joint - joints.data()));
+    of_loop = push_by_loops(tree, static_cast<JointIndex>(&joint - joints.data()));
   }
-  if (joint.link < 0) return of_ring;
+  if (joint.link < 0) return of_loop;
   articulated::Vector tau(tree.model.velocities());
   articulated::inverse_dynamics(tree.model, tree.data, tree.state, acceleration, tree.loads, tau);
   // The wrench through the joint on the tree's side beyond it, about the joint's point.

@@ -12,7 +12,7 @@
 namespace breve {
 
 Energy Dynamics::Core::energy_of(Tree& tree) const {
-  Energy now = tree.account;
+  Energy now = tree.ledger;
   articulated::forward_kinematics(tree.model, tree.data, tree.state);
   now.kinetic = articulated::kinetic_energy(tree.model, tree.data);
   now.potential = articulated::potential_energy(tree.model, tree.data, settings.gravity);
@@ -35,13 +35,13 @@ double Dynamics::Core::joint_springs(Tree& tree) const {
   return energy;
 }
 
-double Dynamics::Core::tie_energy(const SpringDescription& is) const {
+double Dynamics::Core::spring_energy(const SpringDescription& is) const {
   const Pose a = pose(is.a), b = pose(is.b);
   const Vector3 way = b.location + b.orientation * is.point_b - a.location - a.orientation * is.point_a;
   return pull_of(is, way, Vector3::Zero()).energy;
 }
 
-double Dynamics::Core::tie_energy_in(const SpringDescription& is) const {
+double Dynamics::Core::spring_energy_in(const SpringDescription& is) const {
   // Of trees as they stand after forward kinematics; the arrays may be behind.
   const auto at = [this](BodyIndex body) {
     const BodyEntry* known = find(body);
@@ -72,8 +72,8 @@ void Dynamics::Core::enter_books() {
   }
   for (const std::uint32_t index : tree_order)
     if (!in_books(trees[index]->booked)) trees[index]->booked = energy_of(*trees[index]).total();
-  for (SpringEntry& tie : springs)
-    if (tie.used && !in_books(tie.booked)) tie.booked = tie_energy(tie.is);
+  for (SpringEntry& spring : springs)
+    if (spring.used && !in_books(spring.booked)) spring.booked = spring_energy(spring.is);
 }
 
 bool Dynamics::Core::known_to_books(BodyIndex body) const {
@@ -100,10 +100,10 @@ double Dynamics::Core::settle_books(bool write) {
     changed = changed || trees[index]->changed;
     sum += settle_tree(*trees[index], write);
   }
-  for (SpringEntry& tie : springs)
-    if (tie.used && (changed || tie.set || !bodies->dynamic(tie.is.a) || !bodies->dynamic(tie.is.b)))
-      sum += settle_tie(tie, write);
-  if (write) account.script_work += sum;
+  for (SpringEntry& spring : springs)
+    if (spring.used && (changed || spring.set || !bodies->dynamic(spring.is.a) || !bodies->dynamic(spring.is.b)))
+      sum += settle_spring(spring, write);
+  if (write) ledger.script_work += sum;
   return sum;
 }
 
@@ -111,18 +111,18 @@ double Dynamics::Core::settle_tree(Tree& tree, bool write) {
   if (!tree.changed || !in_books(tree.booked)) return 0;
   const double now = energy_of(tree).total(), work = now - tree.booked;
   if (!write) return work;
-  tree.account.script_work += work;
+  tree.ledger.script_work += work;
   tree.booked = now;
   tree.changed = false;
   return work;
 }
 
-double Dynamics::Core::settle_tie(SpringEntry& tie, bool write) {
-  if (!in_books(tie.booked)) return 0;
-  const double now = tie_energy(tie.is), work = now - tie.booked;
+double Dynamics::Core::settle_spring(SpringEntry& spring, bool write) {
+  if (!in_books(spring.booked)) return 0;
+  const double now = spring_energy(spring.is), work = now - spring.booked;
   if (!write) return work;
-  tie.booked = now;
-  tie.set = false;
+  spring.booked = now;
+  spring.set = false;
   return work;
 }
 
@@ -142,15 +142,15 @@ void Dynamics::Core::add_stored(Energy& sum) {
     sum.kinetic += one.kinetic;
     sum.potential += one.potential;
   }
-  for (const SpringEntry& tie : springs)
-    if (tie.used) sum.springs += tie_energy(tie.is);
+  for (const SpringEntry& spring : springs)
+    if (spring.used) sum.springs += spring_energy(spring.is);
   near.each([&sum](const PairKey&, const NearPair& pair) { sum.springs += pair.stored; });
 }
 
 Energy Dynamics::energy() const {
   if (!core_) return {};
   core_->take_changes();
-  Energy sum = core_->account;
+  Energy sum = core_->ledger;
   sum.script_work += core_->settle_books(false);
   core_->add_stored(sum);
   return sum;

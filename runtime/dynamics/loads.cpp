@@ -5,8 +5,8 @@
 #include "runtime/articulated/kinematics.hpp"
 #include "runtime/dynamics/core.hpp"
 #include "runtime/dynamics/joint_frames.hpp"
+#include "runtime/dynamics/spring_network.hpp"
 #include "runtime/dynamics/stage.hpp"
-#include "runtime/dynamics/tied_bodies.hpp"
 
 namespace breve {
 
@@ -90,7 +90,7 @@ void Dynamics::Core::set_loads(Tree& tree, const Accuracy& accuracy, double h) {
     }
     tree.springs.drives[i] = made;
     // What a motor gives inside the stages does not know of the forces that hold rings: there all of it is the row's.
-    if (drive.strength_limit > 0 && tree.rings.empty()) {
+    if (drive.strength_limit > 0 && tree.loops.empty()) {
       made.motor_gain = kMotorStiffness * link.gain_unit / kMotorTime;
       made.motor_limit = drive.strength_limit;
     }
@@ -144,12 +144,12 @@ Stage::Stage(Dynamics::Core& core, const ClusterEntry& cluster, MechanicsClient*
     const Tree& tree = *core.trees[index];
     aims_ = aims_ || tree.aimed;
     pushed_ = pushed_ || tree.pushed;
-    rings_ = rings_ || !tree.rings.empty();
+    loops_ = loops_ || !tree.loops.empty();
     for (const TreeLink& link : tree.links) asked_ = asked_ || core.find(link.body)->force_method;
   }
   asked_ = asked_ && client != nullptr;
-  needed_ = aims_ || pushed_ || asked_ || rings_ || !cluster.ties.empty();
-  if (cluster.tied) cluster.tied->begin(core);
+  needed_ = aims_ || pushed_ || asked_ || loops_ || !cluster.springs.empty();
+  if (cluster.network) cluster.network->begin(core);
 }
 
 void Stage::aim() {
@@ -159,8 +159,8 @@ void Stage::aim() {
 }
 
 bool Stage::accelerate(const articulated::Vector& q, const articulated::Vector& v, articulated::Vector& a) {
-  if (!cluster_.tied || asked_ || pressed) return false;
-  const TiedBodies::Powers powers = cluster_.tied->accelerate(core_, q, v, a);
+  if (!cluster_.network || asked_ || pressed) return false;
+  const SpringNetwork::Powers powers = cluster_.network->accelerate(core_, q, v, a);
   script_ = powers.script;
   drag_ = powers.drag;
   return true;
@@ -184,8 +184,8 @@ void Stage::add(double time) {
       wrench.couple += link.pressed.couple;
     }
   }
-  if (asked_ && cluster_.tied) cluster_.tied->begin(core_);
-  for (const SpringIndex tie : cluster_.ties) pull(core_.springs[tie]);
+  if (asked_ && cluster_.network) cluster_.network->begin(core_);
+  for (const SpringIndex spring : cluster_.springs) pull(core_.springs[spring]);
 }
 
 Vector3 Stage::asked(Tree& tree, int link, double time) {
@@ -216,7 +216,7 @@ Stage::End Stage::end_of(BodyIndex body, const Vector3& point) const {
 
 void Stage::pull(SpringEntry& spring) {
   const End a = end_of(spring.is.a, spring.is.point_a), b = end_of(spring.is.b, spring.is.point_b);
-  const TiePull pull = pull_of(spring.is, b.point - a.point, b.velocity - a.velocity);
+  const SpringPull pull = pull_of(spring.is, b.point - a.point, b.velocity - a.velocity);
   spring.force = pull.force;
   drag_ += pull.loss;
   const Vector3 force = pull.force * pull.direction;

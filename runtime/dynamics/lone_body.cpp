@@ -37,7 +37,8 @@ bool Dynamics::Core::step_alone(std::size_t island, double start, double h, std:
   const double step = accuracy.step > 0 ? std::min(accuracy.step, h) : h;
   const double parts = std::max(1.0, std::ceil(h / step - 1e-9));
   const bool exact = free.solid->round && free.torque == Vector3::Zero();
-  if (!exact && (!accuracy.implicit_spin || !(free.solid->round || free.spin.norm() * step <= kMostTurn))) return false;
+  if (!exact && (!accuracy.implicit_spin || !(free.solid->round || free.spin.norm() * step <= kMostRotation)))
+    return false;
   if (!(parts <= kMostParts) || kUnits * static_cast<std::uint64_t>(parts) >= work) return false;
   const double before = mechanical_of(free, settings.gravity), part = h / parts;
   BodyEntry* known = find(body);

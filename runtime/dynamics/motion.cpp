@@ -9,34 +9,34 @@
 #include "runtime/articulated/rotation.hpp"
 #include "runtime/base/error.hpp"
 #include "runtime/base/rotation_vector.hpp"
+#include "runtime/dynamics/network_motion.hpp"
+#include "runtime/dynamics/spring_network.hpp"
 #include "runtime/dynamics/stage.hpp"
-#include "runtime/dynamics/tied_bodies.hpp"
-#include "runtime/dynamics/tied_motion.hpp"
 #include "runtime/kinematics/free_motion.hpp"
 
 namespace breve {
 
 // --- clusters -------------------------------------------------------------------------------------------------------
 
-ClusterEntry::ClusterEntry(std::pmr::memory_resource* memory) : trees(memory), ties(memory) {}
+ClusterEntry::ClusterEntry(std::pmr::memory_resource* memory) : trees(memory), springs(memory) {}
 ClusterEntry::~ClusterEntry() = default;
 
 namespace {
 
 /// Springs of a cluster of bodies without joints.
-void tie_bodies(const Dynamics::Core& core, ClusterEntry& entry, std::span<Tree* const> members) {
+void make_network(const Dynamics::Core& core, ClusterEntry& entry, std::span<Tree* const> members) {
   std::pmr::memory_resource* memory = core.memory;
-  entry.tied = make_in<TiedBodies>(memory, memory, members);
-  if (members.size() > 1) entry.points = make_in<TiedMotion>(memory, memory, members);
+  entry.network = make_in<SpringNetwork>(memory, memory, members);
+  if (members.size() > 1) entry.points = make_in<NetworkMotion>(memory, memory, members);
   for (std::size_t i = 0; i < members.size(); ++i) members[i]->slot = static_cast<int>(i);
   const auto number_of = [&core](BodyIndex body) {
     const BodyEntry* known = core.find(body);
     return !known || known->tree == kNone ? -1 : core.trees[known->tree]->slot;
   };
-  for (const SpringIndex tie : entry.ties) {
-    const int a = number_of(core.springs[tie].is.a), b = number_of(core.springs[tie].is.b);
-    entry.tied->add(tie, a, b);
-    if (entry.points) entry.points->add(core, tie, a, b);
+  for (const SpringIndex spring : entry.springs) {
+    const int a = number_of(core.springs[spring].is.a), b = number_of(core.springs[spring].is.b);
+    entry.network->add(spring, a, b);
+    if (entry.points) entry.points->add(core, spring, a, b);
   }
 }
 
@@ -54,9 +54,9 @@ void Dynamics::Core::build_clusters() {
     const BodyEntry* known = find(body);
     return known ? known->tree : kNone;
   };
-  for (const SpringEntry& tie : springs) {
-    if (!tie.used) continue;
-    const std::uint32_t a = tree_of(tie.is.a), b = tree_of(tie.is.b);
+  for (const SpringEntry& spring : springs) {
+    if (!spring.used) continue;
+    const std::uint32_t a = tree_of(spring.is.a), b = tree_of(spring.is.b);
     if (a != kNone && b != kNone) set[set_of(a)] = set_of(b);
   }
   std::pmr::vector<ClusterEntry*> of(trees.size(), nullptr, memory);
@@ -72,7 +72,7 @@ void Dynamics::Core::build_clusters() {
     if (!springs[i].used) continue;
     std::uint32_t tree = tree_of(springs[i].is.a);
     if (tree == kNone) tree = tree_of(springs[i].is.b);
-    if (tree != kNone) of[set_of(tree)]->ties.push_back(i);
+    if (tree != kNone) of[set_of(tree)]->springs.push_back(i);
   }
   for (const auto& entry : clusters) {
     std::pmr::vector<Tree*> members(memory);
@@ -87,7 +87,7 @@ void Dynamics::Core::build_clusters() {
       if (!finest || finer(one.rung, finest->rung)) finest = &one;
     }
     entry->system = make_in<Cluster>(memory, memory, members, *finest);
-    if (!entry->ties.empty() && TiedBodies::are(members)) tie_bodies(*this, *entry, members);
+    if (!entry->springs.empty() && SpringNetwork::are(members)) make_network(*this, *entry, members);
   }
   // Not before: what memory cut short is made anew.
   clusters_changed = integrators_changed = false;
@@ -138,9 +138,9 @@ class Spin final : public articulated::System {
     a = inverse_ * (torque - spin.cross(body_.solid->inertia * spin));
   }
   void move(const articulated::Vector& q, const articulated::Vector& d, articulated::Vector& out) override {
-    const Quaternion turned = (Quaternion(q[0], q[1], q[2], q[3]) * rotation_by(d.head<3>())).normalized();
+    const Quaternion rotated = (Quaternion(q[0], q[1], q[2], q[3]) * rotation_by(d.head<3>())).normalized();
     out.resize(4);
-    out << turned.w(), turned.x(), turned.y(), turned.z();
+    out << rotated.w(), rotated.x(), rotated.y(), rotated.z();
   }
   void rate_of_move(const articulated::Vector& d, const articulated::Vector& v, articulated::Vector& out) override {
     out = articulated::rate_of_rotation_vector(d.head<3>(), v.head<3>());
@@ -154,7 +154,8 @@ class Spin final : public articulated::System {
   const Eigen::Matrix3d inverse_;
 };
 
-void turn_by_scheme(FreeBody& body, const Accuracy& accuracy, double time, double h, double& next_step, Meter& meter) {
+void rotate_by_scheme(FreeBody& body, const Accuracy& accuracy, double time, double h, double& next_step,
+                      Meter& meter) {
   Spin system(body, meter);
   articulated::Settings settings;
   settings.tolerance.relative = accuracy.tolerance;
@@ -174,7 +175,7 @@ void turn_by_scheme(FreeBody& body, const Accuracy& accuracy, double time, doubl
 }
 
 /// Implicit midpoint, and Cayley's rotation with it: the angular momentum stays in the world, size and direction.
-void turn_by_midpoint(FreeBody& body, double h) {
+void rotate_by_midpoint(FreeBody& body, double h) {
   const Quaternion to_own = body.orientation.conjugate();
   const Vector3 spin = to_own * body.spin, torque = to_own * body.torque;
   Vector3 middle, after;
@@ -194,7 +195,7 @@ bool semi_implicit(const Accuracy& accuracy) {
   return accuracy.scheme == articulated::Scheme::SemiImplicitEuler && accuracy.rung != Rung::Fast;
 }
 
-void turn_free(FreeBody& body, const Accuracy& accuracy, double time, double h, double& next_step, Meter& meter) {
+void rotate_free(FreeBody& body, const Accuracy& accuracy, double time, double h, double& next_step, Meter& meter) {
   const bool still = body.spin == Vector3::Zero() && body.torque == Vector3::Zero();
   if (still) return;
   const bool plain = body.solid->round && body.torque == Vector3::Zero();
@@ -202,9 +203,9 @@ void turn_free(FreeBody& body, const Accuracy& accuracy, double time, double h, 
     // A round body without torque turns at its rate: exact.
     body.orientation = (rotation_by(h * body.spin) * body.orientation).normalized();
   } else if (accuracy.implicit_spin) {
-    turn_by_midpoint(body, h);
+    rotate_by_midpoint(body, h);
   } else {
-    turn_by_scheme(body, accuracy, time, h, next_step, meter);
+    rotate_by_scheme(body, accuracy, time, h, next_step, meter);
   }
 }
 
@@ -219,7 +220,7 @@ void move_free(FreeBody& body, const Accuracy& accuracy, const Vector3& gravity,
     body.center += h * (body.velocity + (0.5 * h) * pull);
     body.velocity += h * pull;
   }
-  turn_free(body, accuracy, time, h, next_step, meter);
+  rotate_free(body, accuracy, time, h, next_step, meter);
 }
 
 }  // namespace breve

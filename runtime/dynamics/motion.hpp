@@ -26,14 +26,14 @@ FreeBody read_free(const Bodies& bodies, BodyIndex body);
 void write_free(Bodies& bodies, BodyIndex body, const FreeBody& free);
 
 /// How far a body may rotate in a sub-step, rad, so that a rule of fixed steps follows it.
-inline constexpr double kMostTurn = 0.5;
+inline constexpr double kMostRotation = 0.5;
 
 /// Whether free bodies move by semi-implicit Euler: on `fast`, whose scheme for trees that is, their parabola is exact.
 bool semi_implicit(const Accuracy& accuracy);
 
 /// Its rotation in h seconds without contacts, by the rung's rule.
 /// @param next_step  s, of step control; in and out
-void turn_free(FreeBody& body, const Accuracy& accuracy, double time, double h, double& next_step, Meter& meter);
+void rotate_free(FreeBody& body, const Accuracy& accuracy, double time, double h, double& next_step, Meter& meter);
 
 /// One step of h seconds without contacts. Translation is exact (on `fast` semi-implicit), rotation by the rung's rule.
 /// @param next_step  s, of step control; in and out

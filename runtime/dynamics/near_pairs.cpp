@@ -118,7 +118,7 @@ void NearPairs::refresh(Bodies& bodies, const MechanicsClient& client, const Vec
 void NearPairs::find_drivers(const Bodies& bodies) {
   put_.insert(put_.end(), drivers_.begin(), drivers_.end());
   drivers_.clear();
-  for (const std::pmr::vector<BodyIndex>* some : {&bodies.translating_bodies(), &bodies.turning_bodies()})
+  for (const std::pmr::vector<BodyIndex>* some : {&bodies.translating_bodies(), &bodies.rotating_bodies()})
     for (const BodyIndex body : *some)
       if (bodies.driver(body)) drivers_.push_back(body);
   std::sort(drivers_.begin(), drivers_.end());
@@ -150,14 +150,14 @@ void NearPairs::mark_moved(ProxyIndex index) {
 /// How far a body may come out of its bounds in a step.
 Vector3 NearPairs::room_of(const Bodies& bodies, const Proxy& proxy, double radius, const Vector3& gravity, double h) {
   Vector3 room = Vector3::Constant(1e-3 * radius);
-  const double turn = std::min(bodies.rotational_velocity(proxy.body).norm() * h * radius, radius);
+  const double rotation = std::min(bodies.rotational_velocity(proxy.body).norm() * h * radius, radius);
   const Vector3 speed = bodies.velocity(proxy.body).cwiseAbs();
   if (proxy.moves) {
     // Straight on, falling, turning; twice as far, since it may be pushed on the way.
-    room += (speed + h * gravity.cwiseAbs()) * (2 * h) + Vector3::Constant(2 * turn);
+    room += (speed + h * gravity.cwiseAbs()) * (2 * h) + Vector3::Constant(2 * rotation);
   } else if (bodies.moving(proxy.body)) {
     // It stands at the end of its way, which it turned on too.
-    room += h * speed + Vector3::Constant(turn);
+    room += h * speed + Vector3::Constant(rotation);
   }
   return room;
 }

@@ -31,7 +31,7 @@ void each(const F& f, S& s) {
 
 template <class F, Is<JointEntry> J>
 void each(const F& f, J& j) {
-  f(j.owner), f(j.serial), f(j.ring), f(j.position), f(j.limit), f(j.limit_before), f(j.motor), each(f, j.is),
+  f(j.owner), f(j.serial), f(j.loop), f(j.position), f(j.limit), f(j.limit_before), f(j.motor), each(f, j.is),
       each(f, j.drive);
 }
 
@@ -74,11 +74,11 @@ std::pmr::vector<double> books_of_all(const Dynamics::Core& core) {
 
 /// Energy by the books, as dropping these trees will leave it.
 /// @param books  by body, what those without a tree have
-Energy account_kept(const Dynamics::Core& core, std::span<const std::uint8_t> stale, std::span<double> books) {
-  Energy account = core.account;
+Energy ledger_kept(const Dynamics::Core& core, std::span<const std::uint8_t> stale, std::span<double> books) {
+  Energy ledger = core.ledger;
   for (const std::uint32_t index : core.tree_order)
-    if (stale[index] != 0) account.script_work += core.unbook(*core.trees[index], books);
-  return account;
+    if (stale[index] != 0) ledger.script_work += core.unbook(*core.trees[index], books);
+  return ledger;
 }
 
 /// A number that an image must not make larger than the last of an enumeration.
@@ -108,9 +108,9 @@ void Dynamics::hash(Hasher& hasher) const {
 void Dynamics::Core::save(ByteWriter& out) const {
   const std::pmr::vector<std::uint8_t> stale = stale_trees(*this);
   std::pmr::vector<double> books = books_of_all(*this);
-  const Energy kept_account = account_kept(*this, stale, books);
+  const Energy kept_ledger = ledger_kept(*this, stale, books);
   each(Writer{out}, settings);
-  each(Writer{out}, kept_account);
+  each(Writer{out}, kept_ledger);
   out.put(next_serial);
   out.put(sub_step);
   out.put(static_cast<std::uint64_t>(joints.size()));
@@ -164,7 +164,7 @@ void Dynamics::Core::save_tree(ByteWriter& out, const Tree& tree) const {
   out.put(tree.step);
   out.put(tree.booked);
   out.put(tree.changed);
-  each(Writer{out}, tree.account);
+  each(Writer{out}, tree.ledger);
   put_numbers(out, tree.state.q);
   put_numbers(out, tree.state.v);
   put_numbers(out, tree.mean);
@@ -176,7 +176,7 @@ void Dynamics::Core::save_tree(ByteWriter& out, const Tree& tree) const {
 void Dynamics::Core::load(ByteReader& in) {
   each(Reader{in}, settings);
   check_loaded(settings);
-  each(Reader{in}, account);
+  each(Reader{in}, ledger);
   next_serial = in.get<std::uint64_t>();
   sub_step = in.get<std::uint64_t>();
   get_table(in, joints);
@@ -205,12 +205,12 @@ void Dynamics::Core::load(ByteReader& in) {
     if (!bodies->used(unsettled.back())) ByteReader::fail();
   }
   const bool pending = in.get_bool();
-  std::pmr::vector<std::uint8_t> rings(memory);
-  for (const JointEntry& joint : joints) rings.push_back(joint.ring);
+  std::pmr::vector<std::uint8_t> loops(memory);
+  for (const JointEntry& joint : joints) loops.push_back(joint.loop);
   loading = true;  // the arrays are as they were saved, and stay so
   load_trees(in);
   for (JointIndex i = 0; i < joints.size(); ++i)
-    if (joints[i].tree == kNone) joints[i].ring = rings[i] != 0;  // what a tree that was not there made of it
+    if (joints[i].tree == kNone) joints[i].loop = loops[i] != 0;  // what a tree that was not there made of it
   loading = false;
   graph_changed = pending;
   near.load(in, *bodies);
@@ -224,13 +224,13 @@ void Dynamics::Core::join_loaded() {
     entry(is.child).joints.push_back(index);
     if (is.parent != kNoBody) entry(is.parent).joints.push_back(index);
   }
-  for (const SpringEntry& tie : springs) {
-    if (!tie.used) continue;
-    check(tie.is);
-    if (!is_one_of(tie.is.mode, SpringMode::ContractOnly) || tie.is.a == tie.is.b) ByteReader::fail();
-    for (const BodyIndex end : {tie.is.a, tie.is.b}) {
+  for (const SpringEntry& spring : springs) {
+    if (!spring.used) continue;
+    check(spring.is);
+    if (!is_one_of(spring.is.mode, SpringMode::ContractOnly) || spring.is.a == spring.is.b) ByteReader::fail();
+    for (const BodyIndex end : {spring.is.a, spring.is.b}) {
       if (!bodies->used(end)) ByteReader::fail();
-      ++entry(end).ties;
+      ++entry(end).springs;
     }
   }
 }
@@ -252,7 +252,7 @@ void Dynamics::Core::load_tree(ByteReader& in, Tree& tree) {
   tree.step = in.get<double>();
   tree.booked = in.get<double>();
   tree.changed = in.get_bool();
-  each(Reader{in}, tree.account);
+  each(Reader{in}, tree.ledger);
   for (double& x : tree.state.q) x = in.get<double>();
   for (double& x : tree.state.v) x = in.get<double>();
   for (double& x : tree.mean) x = in.get<double>();
@@ -268,16 +268,16 @@ void Dynamics::Core::hash(Hasher& hasher) const {
   const Adder add{hasher};
   const std::pmr::vector<std::uint8_t> stale = stale_trees(*this);
   std::pmr::vector<double> books = books_of_all(*this);
-  const Energy kept_account = account_kept(*this, stale, books);
+  const Energy kept_ledger = ledger_kept(*this, stale, books);
   each(add, settings);
-  each(add, kept_account);
+  each(add, kept_ledger);
   for (const JointEntry& joint : joints) {
     if (!joint.used) continue;
     const JointEntry kept = as_kept(*this, joint, stale);
     each(add, kept);
   }
-  for (const SpringEntry& tie : springs)
-    if (tie.used) each(add, tie);
+  for (const SpringEntry& spring : springs)
+    if (spring.used) each(add, spring);
   for (const auto& [body, assembly] : own) {
     add(body);
     each(add, assembly);

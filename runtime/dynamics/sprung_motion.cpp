@@ -28,7 +28,7 @@ void Island::SprungMotion::each(const OfFree& of_free, const OfCluster& of_clust
   int q = 0, v = 0;
   for (Free& one : island_.free_) {
     of_free(one, q, v);
-    q += kFreePlaces;
+    q += kFreePositions;
     v += kFreeSpeeds;
   }
   for (std::size_t i = 0; i < island_.clusters_.size(); ++i) {
@@ -47,7 +47,7 @@ void Island::SprungMotion::lay_out() {
   each(
       [this](const Free& one, int, int) {
         for (int k = 0; k < kFreeSpeeds; ++k) kinds_.push_back(k < 3 ? Kind::Length : Kind::Angle);
-        nq_ += kFreePlaces;
+        nq_ += kFreePositions;
         if (!one.driver) mass_ += one.now.solid->mass;
       },
       [this](const Cluster& cluster, const Part&, int, int) {
@@ -91,11 +91,11 @@ void Island::SprungMotion::read(articulated::Instant& at) {
   };
   each(
       [&](const Free& one, int q, int v) {
-        const Quaternion& turn = one.now.orientation;
+        const Quaternion& orientation = one.now.orientation;
         at.q.segment<3>(q) = one.now.center;
-        at.q.segment<4>(q + 3) << turn.w(), turn.x(), turn.y(), turn.z();
+        at.q.segment<4>(q + 3) << orientation.w(), orientation.x(), orientation.y(), orientation.z();
         at.v.segment<3>(v) = one.now.velocity;
-        at.v.segment<3>(v + 3) = turn.conjugate() * one.now.spin;
+        at.v.segment<3>(v + 3) = orientation.conjugate() * one.now.spin;
         take_step(one.next);
       },
       [&](const Cluster& cluster, Part& part, int q, int v) {
@@ -201,8 +201,8 @@ Energy Island::SprungMotion::lost(const Tree& tree) const {
 void Island::SprungMotion::follow(SprungPoint& point) const {
   const NearPair& pair = *island_.pairs_[point.pair];
   const Pose a = island_.pose_of(pair.a), b = island_.pose_of(pair.b);
-  const Quaternion& turn = point.with_a ? a.orientation : b.orientation;
-  Vector3 normal = turn * point.normal;
+  const Quaternion& orientation = point.with_a ? a.orientation : b.orientation;
+  Vector3 normal = orientation * point.normal;
   if (point.round) {
     const Bodies& bodies = *island_.core_.bodies;
     const Contact contact = closest(*bodies.collision_shape(pair.a), a, *bodies.collision_shape(pair.b), b);
@@ -215,7 +215,7 @@ void Island::SprungMotion::follow(SprungPoint& point) const {
     point.at = point.with_a ? Vector3(on_b + point.radius * normal) : Vector3(on_a - point.radius * normal);
     point.gap = normal.dot(on_a - on_b) - point.radius;
   }
-  const Vector3 tangent = turn * point.tangent;
+  const Vector3 tangent = orientation * point.tangent;
   const Vector3 first = (tangent - normal.dot(tangent) * normal).normalized();
   point.axes << normal.transpose(), first.transpose(), normal.cross(first).transpose();
   point.slip = point.axes * (island_.point_velocity(pair.a, point.at) - island_.point_velocity(pair.b, point.at));
@@ -238,7 +238,7 @@ Island::SprungMotion::Resistance Island::SprungMotion::resist(SprungPoint& point
 void Island::SprungMotion::push(const SprungPoint& point, Vector& a) {
   const NearPair& pair = *island_.pairs_[point.pair];
   for (const auto& [body, sign] : {std::pair{pair.a, 1.0}, std::pair{pair.b, -1.0}}) {
-    const BodyPlace side = island_.place_of(body);
+    const BodySlot side = island_.slot_of(body);
     if (side.mover < 0) continue;
     const Vector3 force = sign * point.force;
     if (!side.tree) {
@@ -309,10 +309,10 @@ void Island::SprungMotion::move(const Vector& q, const Vector& d, Vector& out) {
   out.resize(nq_);
   each(
       [&](const Free&, int at, int by) {
-        const Quaternion turn(q[at + 3], q[at + 4], q[at + 5], q[at + 6]);
-        const Quaternion turned = (turn * rotation_by(d.segment<3>(by + 3))).normalized();
+        const Quaternion orientation(q[at + 3], q[at + 4], q[at + 5], q[at + 6]);
+        const Quaternion rotated = (orientation * rotation_by(d.segment<3>(by + 3))).normalized();
         out.segment<3>(at) = q.segment<3>(at) + d.segment<3>(by);
-        out.segment<4>(at + 3) << turned.w(), turned.x(), turned.y(), turned.z();
+        out.segment<4>(at + 3) << rotated.w(), rotated.x(), rotated.y(), rotated.z();
       },
       [&](Cluster& cluster, Part& part, int at, int by) {
         part.q = q.segment(at, cluster.positions());

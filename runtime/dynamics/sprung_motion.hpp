@@ -65,7 +65,7 @@ class Island::SprungMotion final : public articulated::System, public InMemory {
 
  private:
   // A free body has: position of its centre and quaternion; velocity in the world and spin in its own axes.
-  static constexpr int kFreePlaces = 7, kFreeSpeeds = 6;
+  static constexpr int kFreePositions = 7, kFreeSpeeds = 6;
   // After the bodies' own: two stretches a point; then losses of springs, of friction and the work of scripts; then for
   // each tree what it lost to springs, to friction and to limits that are held.
   static constexpr int kWorks = 3, kTreeWorks = 3;

@@ -15,14 +15,14 @@ class Stage final : public StageForces {
   bool needed() const { return needed_; }
 
   void aim() override;
-  bool adds() const override { return pressed || pushed_ || asked_ || !cluster_.ties.empty(); }
+  bool adds() const override { return pressed || pushed_ || asked_ || !cluster_.springs.empty(); }
   void add(double time) override;
   bool accelerate(const articulated::Vector& q, const articulated::Vector& v, articulated::Vector& a) override;
   std::uint64_t constrain(Tree& tree, double* acceleration) override {
-    if (!holds_rings && !pressed) return 0;
-    return core_.hold(tree, acceleration, holds_rings, pressed);
+    if (!holds_loops && !pressed) return 0;
+    return core_.hold(tree, acceleration, holds_loops, pressed);
   }
-  bool holds_rings = false;  // else somebody else does
+  bool holds_loops = false;  // else somebody else does
   bool pressed = false;      // contact springs act on its links
   double script_power() const override { return script_; }
   double drag_power() const override { return drag_; }
@@ -40,7 +40,7 @@ class Stage final : public StageForces {
   Dynamics::Core& core_;
   const ClusterEntry& cluster_;
   MechanicsClient* client_;
-  bool aims_ = false, pushed_ = false, asked_ = false, rings_ = false, needed_ = false;
+  bool aims_ = false, pushed_ = false, asked_ = false, loops_ = false, needed_ = false;
   double script_ = 0, drag_ = 0;
 };
 

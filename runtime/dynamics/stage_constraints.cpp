@@ -14,25 +14,25 @@ namespace breve {
 namespace {
 
 /// Second derivative of a row's error by the links' accelerations, which forward dynamics left.
-double curvature(const Tree& tree, const RingRows& ring, const RingRow& row) {
-  const articulated::Work &c = tree.data.of(ring.child), &p = tree.data.of(ring.parent);
+double curvature(const Tree& tree, const LoopRows& loop, const LoopRow& row) {
+  const articulated::Work &c = tree.data.of(loop.child), &p = tree.data.of(loop.parent);
   if (row.angular) {
     const Vector3 spin = c.spin - p.spin;
-    if (!ring.universal) return row.axis.dot(c.alpha - p.alpha - p.spin.cross(spin));
-    const Vector3 bend = p.spin.cross(ring.first).cross(ring.second) + ring.first.cross(c.spin.cross(ring.second));
+    if (!loop.universal) return row.axis.dot(c.alpha - p.alpha - p.spin.cross(spin));
+    const Vector3 bend = p.spin.cross(loop.first).cross(loop.second) + loop.first.cross(c.spin.cross(loop.second));
     return row.axis.dot(c.alpha - p.alpha) + spin.dot(bend);
   }
   const auto at = [&tree](int link, const Vector3& point, const articulated::Work& work) {
     const Vector3 arm = point - tree.data.motion_of(link).origin;
     return Vector3(work.acc + work.alpha.cross(arm) + work.spin.cross(work.spin.cross(arm)));
   };
-  const Vector3 speed = articulated::point_velocity(tree.data, ring.child, row.on_child) -
-                        articulated::point_velocity(tree.data, ring.parent, row.on_parent);
-  return row.axis.dot(at(ring.child, row.on_child, c) - at(ring.parent, row.on_parent, p) - 2 * p.spin.cross(speed));
+  const Vector3 speed = articulated::point_velocity(tree.data, loop.child, row.on_child) -
+                        articulated::point_velocity(tree.data, loop.parent, row.on_parent);
+  return row.axis.dot(at(loop.child, row.on_child, c) - at(loop.parent, row.on_parent, p) - 2 * p.spin.cross(speed));
 }
 
 /// What a row's column would be by itself if nothing cancelled: arms for what turns, 1 for what slides.
-double natural_size(const Tree& tree, int link, const RingRow& row, int column) {
+double natural_size(const Tree& tree, int link, const LoopRow& row, int column) {
   using articulated::JointType;
   const JointType type = tree.model.body(link).type;
   if (row.angular || type == JointType::Prismatic || (type == JointType::Free && column < 3)) return 1;
@@ -126,12 +126,12 @@ int solve_pushing(const HeldRows& rows, Tree& tree) {
 
 }  // namespace
 
-void Island::fill_ring(Tree& tree, const RingRows& ring, const RingRow& row, double* j) {
+void Island::fill_loop(Tree& tree, const LoopRows& loop, const LoopRow& row, double* j) {
   constexpr double kRoundOff = 1e-9;  // of the natural size; arms far from the world's origin have fewer digits
   const int n = tree.model.velocities();
   std::fill(j, j + n, 0.0);
-  if (ring.child >= 0) fill(tree, ring.child, row.on_child, row.axis, row.angular, 1, j);
-  if (ring.parent >= 0) fill(tree, ring.parent, row.on_parent, row.axis, row.angular, -1, j);
+  if (loop.child >= 0) fill(tree, loop.child, row.on_child, row.axis, row.angular, 1, j);
+  if (loop.parent >= 0) fill(tree, loop.parent, row.on_parent, row.axis, row.angular, -1, j);
   for (int i = 0; i < tree.model.size(); ++i) {
     const articulated::Body& body = tree.model.body(i);
     for (int k = 0; k < articulated::velocity_count(body.type); ++k)
@@ -151,27 +151,27 @@ std::uint64_t dense_units(std::size_t m, std::size_t n, std::size_t solved) {
 }  // namespace
 
 std::uint64_t Tree::hold_units() const {
-  const std::size_t rows = static_cast<std::size_t>(kMostRingRows) * rings.size() + held.size();
+  const std::size_t rows = static_cast<std::size_t>(kMostLoopRows) * loops.size() + held.size();
   return dense_units(rows, static_cast<std::size_t>(model.velocities()), 1);
 }
 
 /// @return  units of work that it took
-std::uint64_t Dynamics::Core::hold(Tree& tree, double* acceleration, bool rings, bool limits) {
+std::uint64_t Dynamics::Core::hold(Tree& tree, double* acceleration, bool loops, bool limits) {
   const int n = tree.model.velocities();
-  const int most = kMostRingRows * static_cast<int>(tree.rings.size()) + static_cast<int>(tree.held.size());
+  const int most = kMostLoopRows * static_cast<int>(tree.loops.size()) + static_cast<int>(tree.held.size());
   double *j = tree.row_numbers.data(), *r = j + most * n, *a = r + most * n, *part = a + most * most,
          *wanted = part + most * most, *scale = wanted + most;
   using Numbers = Eigen::Map<articulated::Vector>;
   articulated::forward_kinematics(tree.model, tree.data, tree.state);
   int m = 0;
   // All second derivatives first: what answers impulses overwrites the accelerations that they are made of.
-  for (std::size_t k = 0; rings && k < tree.rings.size(); ++k) {
+  for (std::size_t k = 0; loops && k < tree.loops.size(); ++k) {
     bound.poll();
-    const RingRows ring = ring_rows(tree, joints[tree.rings[k]].is);
-    for (int i = 0; i < ring.count; ++i, ++m) {
-      const RingRow& row = ring.rows[static_cast<std::size_t>(i)];
-      wanted[m] = -curvature(tree, ring, row);
-      Island::fill_ring(tree, ring, row, j + m * n);
+    const LoopRows loop = loop_rows(tree, joints[tree.loops[k]].is);
+    for (int i = 0; i < loop.count; ++i, ++m) {
+      const LoopRow& row = loop.rows[static_cast<std::size_t>(i)];
+      wanted[m] = -curvature(tree, loop, row);
+      Island::fill_loop(tree, loop, row, j + m * n);
     }
   }
   const int first_limit = m;
@@ -209,13 +209,13 @@ std::uint64_t Dynamics::Core::hold(Tree& tree, double* acceleration, bool rings,
 
 /// Adds what rings push with, as hold() found it last, to the forces on links. Gives that of one joint on its
 /// child, about the joint's point.
-JointReaction Dynamics::Core::push_by_rings(Tree& tree, JointIndex wanted) {
+JointReaction Dynamics::Core::push_by_loops(Tree& tree, JointIndex wanted) {
   JointReaction of;
   std::size_t m = 0;
-  for (const JointIndex index : tree.rings) {
-    const RingRows ring = ring_rows(tree, joints[index].is);
-    for (int i = 0; i < ring.count; ++i, ++m) {
-      const RingRow& row = ring.rows[static_cast<std::size_t>(i)];
+  for (const JointIndex index : tree.loops) {
+    const LoopRows loop = loop_rows(tree, joints[index].is);
+    for (int i = 0; i < loop.count; ++i, ++m) {
+      const LoopRow& row = loop.rows[static_cast<std::size_t>(i)];
       const Vector3 push = tree.row_forces[m] * row.axis;
       if (index == wanted) (row.angular ? of.torque : of.force) += push;
       const auto act = [&](int link, const Vector3& point, double sign) {
@@ -228,15 +228,15 @@ JointReaction Dynamics::Core::push_by_rings(Tree& tree, JointIndex wanted) {
         wrench.force += sign * push;
         wrench.couple += (point - articulated::com_position(tree.model, tree.data, link)).cross(sign * push);
       };
-      act(ring.child, row.on_child, 1);
-      act(ring.parent, row.on_parent, -1);
+      act(loop.child, row.on_child, 1);
+      act(loop.parent, row.on_parent, -1);
     }
   }
   return of;
 }
 
 void Tree::reserve_rows() {
-  const std::size_t n = static_cast<std::size_t>(model.velocities()), m = kMostRingRows * rings.size() + held.size();
+  const std::size_t n = static_cast<std::size_t>(model.velocities()), m = kMostLoopRows * loops.size() + held.size();
   row_numbers.resize(std::max(row_numbers.size(), 2 * m * (n + m + 1)));
   row_forces.resize(std::max(row_forces.size(), m));
   row_order.resize(std::max(row_order.size(), m));

@@ -27,13 +27,13 @@ Tree::Tree(std::pmr::memory_resource* memory, const std::vector<articulated::Lin
       data(model, memory),
       state(articulated::neutral_state(model)),
       links(memory),
-      rings(memory),
+      loops(memory),
       held(memory),
       row_numbers(memory),
       row_forces(memory),
       row_order(memory),
       anchors(memory),
-      ring_holders(memory) {
+      loop_holders(memory) {
   work_q = state.q;
   work_v = work_u = work_w = free_v = smooth_v = way = kick = reacted = motor_impulse = part_impulse = state.v;
   limit_force = held_force = mean = state.v;

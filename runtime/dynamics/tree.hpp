@@ -12,8 +12,8 @@
 #include "runtime/articulated/whole.hpp"
 #include "runtime/base/memory.hpp"
 #include "runtime/kinematics/bodies.hpp"
-#include "runtime/mechanics/account.hpp"
 #include "runtime/mechanics/joint.hpp"
+#include "runtime/mechanics/ledger.hpp"
 #include "runtime/solid/contact.hpp"
 
 namespace breve {
@@ -57,7 +57,7 @@ class Reservation {
   void* block_;
 };
 
-inline constexpr int kMostRingRows = 6;  // of one joint
+inline constexpr int kMostLoopRows = 6;  // of one joint
 
 /// A limit that its joint is near, as it acts inside the stages of a sub-step.
 struct HeldLimit {
@@ -81,7 +81,7 @@ struct Tree : InMemory {
   articulated::Loads loads;
   articulated::Loads springs;  // stiffness and damping of the drives in `loads`, and nothing else
   std::pmr::vector<TreeLink> links;
-  std::pmr::vector<JointIndex> rings;  // joints within the tree (or to the world) that are constraints
+  std::pmr::vector<JointIndex> loops;  // joints within the tree (or to the world) that are constraints
   std::pmr::vector<HeldLimit> held;    // limits that act inside the stages of this sub-step
   double hold_time = 0;                // s, in which they bring joints to rest
   // The rows of loops, then of limits that are held: workspace; forces along them, at the last stage.
@@ -90,7 +90,7 @@ struct Tree : InMemory {
   bool anchored = false;  // held by the world
   bool loose = false;     // it has a free root, and no joint connects it with what does not move by itself
   std::pmr::vector<TreeAnchor> anchors;
-  std::pmr::vector<BodyIndex> ring_holders;  // bodies that do not move by themselves, at which rings end
+  std::pmr::vector<BodyIndex> loop_holders;  // bodies that do not move by themselves, at which rings end
   double step = 0;                           // s, that step control would try next
   articulated::Vector mean;     // (nv) acceleration in the last smooth motion: there the next one's search begins
   int slot = -1;                // in its island
@@ -99,7 +99,7 @@ struct Tree : InMemory {
   bool pushed = false;          // some link has a force or torque set
   articulated::Vector set_tau;  // (nv) of loads.tau, what scripts set
   articulated::Vector work_q, work_v, work_u, work_w;
-  Energy account;  // works and losses since it was made
+  Energy ledger;  // works and losses since it was made
   // An island's, kept here so that a step allocates nothing.
   articulated::State step_state, sub_state;  // as the step, the sub-step began
   articulated::State part_state;             // likewise, at the start of smooth motion
@@ -114,7 +114,7 @@ struct Tree : InMemory {
   articulated::Vector motor_impulse;         // likewise, in all of it
   articulated::Whole whole;                  // without the impulses of the rows
   Vector3 row_center = Vector3::Zero();      // centre of mass where the rows were made
-  Energy step_account;                       // as the step began
+  Energy step_ledger;                        // as the step began
   double step_stored = 0;                    // J, likewise
   double step_kinetic = 0;                   // J, likewise
   double booked = std::numeric_limits<double>::quiet_NaN();  // J, that it has by the books
@@ -125,7 +125,7 @@ struct Tree : InMemory {
     for (const TreeLink& link : links) first = std::min(first, link.body);
     return first;
   }
-  void reserve_rows();  // once `rings` and `held` are known
+  void reserve_rows();  // once `loops` and `held` are known
   /// The pose of the body of a link, after forward_kinematics.
   Pose pose(int link) const;
   Vector3 velocity(int link) const;  // of the body's origin, m/s, world

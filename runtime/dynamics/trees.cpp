@@ -27,11 +27,11 @@ class Plan {
   Plan(const Dynamics::Core& core, std::span<const BodyIndex> bodies, std::pmr::memory_resource* memory)
       : core_(core),
         bodies_(bodies),
-        places_(memory),
+        indices_(memory),
         set_(bodies.size() + 1, memory),
         joints_(memory),
         links_(memory),
-        rings_(memory) {
+        loops_(memory) {
     std::iota(set_.begin(), set_.end(), std::size_t{0});
     gather();
     choose();
@@ -39,7 +39,7 @@ class Plan {
   }
 
   std::span<const Planned> links() const { return links_; }
-  std::span<const JointIndex> rings() const { return rings_; }
+  std::span<const JointIndex> loops() const { return loops_; }
 
  private:
   struct Candidate {
@@ -50,18 +50,18 @@ class Plan {
 
   std::size_t world() const { return bodies_.size(); }
 
-  std::size_t place(BodyIndex body) const {
+  std::size_t index_of(BodyIndex body) const {
     if (body == kNoBody || !core_.bodies->dynamic(body)) return world();
-    return std::lower_bound(places_.begin(), places_.end(), std::pair{body, std::size_t{0}})->second;
+    return std::lower_bound(indices_.begin(), indices_.end(), std::pair{body, std::size_t{0}})->second;
   }
 
   void gather() {
-    for (std::size_t i = 0; i < bodies_.size(); ++i) places_.emplace_back(bodies_[i], i);
-    std::sort(places_.begin(), places_.end());
+    for (std::size_t i = 0; i < bodies_.size(); ++i) indices_.emplace_back(bodies_[i], i);
+    std::sort(indices_.begin(), indices_.end());
     for (const BodyIndex body : bodies_) {
       for (const JointIndex index : core_.find(body)->joints) {
         const JointDescription& is = core_.joints[index].is;
-        const Candidate found{index, place(is.parent), place(is.child)};
+        const Candidate found{index, index_of(is.parent), index_of(is.child)};
         // Each is met at both its ends; the child's counts, or the parent's if the child does not move by itself.
         if (is.child == body || found.child == world()) joints_.push_back(found);
       }
@@ -80,7 +80,7 @@ class Plan {
     for (Candidate& one : joints_) {
       const std::size_t a = set_of(one.parent), b = set_of(one.child);
       if (a == b) {
-        rings_.push_back(one.joint);
+        loops_.push_back(one.joint);
       } else {
         set_[a] = b;
         one.in_tree = true;
@@ -121,24 +121,24 @@ class Plan {
     go(world(), -1);
     if (links_.empty()) links_.push_back({bodies_[free_root()], kNoJoint, -1, false});
     for (std::size_t i = 0; i < links_.size(); ++i) {
-      go(place(links_[i].body), static_cast<int>(i));
+      go(index_of(links_[i].body), static_cast<int>(i));
     }
   }
 
   const Dynamics::Core& core_;
   std::span<const BodyIndex> bodies_;
-  std::pmr::vector<std::pair<BodyIndex, std::size_t>> places_;  // sorted
+  std::pmr::vector<std::pair<BodyIndex, std::size_t>> indices_;  // sorted
   std::pmr::vector<std::size_t> set_;
   std::pmr::vector<Candidate> joints_;
   std::pmr::vector<Planned> links_;
-  std::pmr::vector<JointIndex> rings_;
+  std::pmr::vector<JointIndex> loops_;
 };
 
 }  // namespace
 
 bool Dynamics::Core::needs_tree(BodyIndex body) const {
   const BodyEntry* known = find(body);
-  return known && bodies->dynamic(body) && (!known->joints.empty() || known->ties > 0 || known->force_method);
+  return known && bodies->dynamic(body) && (!known->joints.empty() || known->springs > 0 || known->force_method);
 }
 
 void Dynamics::Core::build_trees() {
@@ -173,7 +173,7 @@ void Dynamics::Core::order_trees() {
 
 void Dynamics::Core::drop_tree(std::uint32_t index) {
   Tree& tree = *trees[index];
-  if (!loading) account.script_work += unbook(tree, booked);
+  if (!loading) ledger.script_work += unbook(tree, booked);
   for (const TreeLink& link : tree.links) {
     if (link.joint != kNoJoint && joints[link.joint].used) {
       JointEntry& joint = joints[link.joint];
@@ -183,7 +183,7 @@ void Dynamics::Core::drop_tree(std::uint32_t index) {
     }
     if (BodyEntry* known = find(link.body)) known->tree = kNone;
   }
-  for (const JointIndex ring : tree.rings) joints[ring].tree = kNone;
+  for (const JointIndex loop : tree.loops) joints[loop].tree = kNone;
   trees[index].reset();
   std::erase(tree_order, index);
   clusters.clear();
@@ -269,16 +269,16 @@ std::unique_ptr<Tree> make_tree(const Dynamics::Core& core, const Plan& plan) {
   tree->links = links;
   tree->anchors = anchors;
   tree->anchored = plan.links().front().joint != kNoJoint;
-  tree->rings.assign(plan.rings().begin(), plan.rings().end());
-  for (const JointIndex ring : tree->rings)
-    for (const BodyIndex end : {core.joints[ring].is.parent, core.joints[ring].is.child})
-      if (end != kNoBody && !core.bodies->dynamic(end)) tree->ring_holders.push_back(end);
+  tree->loops.assign(plan.loops().begin(), plan.loops().end());
+  for (const JointIndex loop : tree->loops)
+    for (const BodyIndex end : {core.joints[loop].is.parent, core.joints[loop].is.child})
+      if (end != kNoBody && !core.bodies->dynamic(end)) tree->loop_holders.push_back(end);
   tree->reserve_rows();
   const auto within = [&links](BodyIndex body) {
     return std::any_of(links.begin(), links.end(), [body](const TreeLink& link) { return link.body == body; });
   };
-  tree->loose = !tree->anchored && std::all_of(tree->rings.begin(), tree->rings.end(), [&](JointIndex ring) {
-    return within(core.joints[ring].is.parent) && within(core.joints[ring].is.child);
+  tree->loose = !tree->anchored && std::all_of(tree->loops.begin(), tree->loops.end(), [&](JointIndex loop) {
+    return within(core.joints[loop].is.parent) && within(core.joints[loop].is.child);
   });
   return tree;
 }
@@ -297,12 +297,12 @@ std::uint32_t enter_tree(Dynamics::Core& core, const Tree& tree, std::span<const
     joint.tree = index;
     joint.link = static_cast<int>(i);
     joint.flipped = plan[i].flipped;
-    joint.ring = false;
+    joint.loop = false;
   }
-  for (const JointIndex ring : tree.rings) {
-    core.joints[ring].tree = index;
-    core.joints[ring].link = -1;
-    core.joints[ring].ring = true;
+  for (const JointIndex loop : tree.loops) {
+    core.joints[loop].tree = index;
+    core.joints[loop].link = -1;
+    core.joints[loop].loop = true;
   }
   return index;
 }
@@ -348,8 +348,8 @@ void Dynamics::Core::read_state(Tree& tree) const {
       continue;
     }
     const JointEntry& joint = joints[link.joint];
-    const auto [turn, shift] = between(joint.is);
-    read_joint(joint.is, joint.flipped, turn, shift, joint.position, q);
+    const auto [rotation, shift] = between(joint.is);
+    read_joint(joint.is, joint.flipped, rotation, shift, joint.position, q);
     // A position that was kept exactly is used again exactly, if only poses were written since.
     constexpr double kSame = 1e-11;  // rad or m
     if (joint.is.kind != JointKind::Ball &&
@@ -405,8 +405,8 @@ void Dynamics::Core::write_back(Tree& tree) {
 
 JointVector Dynamics::Core::read_position(const JointEntry& joint) const {
   if (joint.tree == kNone || joint.link < 0) {
-    const auto [turn, shift] = between(joint.is);
-    return joint_position_between(joint.is, turn, shift, joint.position);
+    const auto [rotation, shift] = between(joint.is);
+    return joint_position_between(joint.is, rotation, shift, joint.position);
   }
   const Tree& tree = *trees[joint.tree];
   return joint_position(joint.is, joint.flipped, tree.state.q.data() + tree.model.body(joint.link).q);

@@ -47,35 +47,35 @@ class Rows {
 /// A set of bodies to loop over: dense, with constant-time insertion and removal.
 class ActiveSet {
  public:
-  explicit ActiveSet(std::pmr::memory_resource* memory) : members_(memory), place_(memory) {}
+  explicit ActiveSet(std::pmr::memory_resource* memory) : members_(memory), slot_(memory) {}
   void set(BodyIndex body, bool active) {
-    if (body >= place_.size()) {
+    if (body >= slot_.size()) {
       if (!active) return;
-      place_.resize(body + 1, kNoBody);
+      slot_.resize(body + 1, kNoBody);
     }
-    const bool member = place_[body] != kNoBody;
+    const bool member = slot_[body] != kNoBody;
     if (member == active) return;
     if (active) {
       members_.push_back(body);  // first: it may throw
-      place_[body] = static_cast<BodyIndex>(members_.size() - 1);
+      slot_[body] = static_cast<BodyIndex>(members_.size() - 1);
       return;
     }
-    members_[place_[body]] = members_.back();
-    place_[members_.back()] = place_[body];
+    members_[slot_[body]] = members_.back();
+    slot_[members_.back()] = slot_[body];
     members_.pop_back();
-    place_[body] = kNoBody;
+    slot_[body] = kNoBody;
   }
-  bool has(BodyIndex body) const { return body < place_.size() && place_[body] != kNoBody; }
+  bool has(BodyIndex body) const { return body < slot_.size() && slot_[body] != kNoBody; }
   const std::pmr::vector<BodyIndex>& members() const { return members_; }
-  std::size_t bytes() const { return (members_.capacity() + place_.capacity()) * sizeof(BodyIndex); }
+  std::size_t bytes() const { return (members_.capacity() + slot_.capacity()) * sizeof(BodyIndex); }
 
  private:
   std::pmr::vector<BodyIndex> members_;
-  std::pmr::vector<BodyIndex> place_;  // by body; kNoBody: not a member
+  std::pmr::vector<BodyIndex> slot_;  // by body; kNoBody: not a member
 };
 
 /// Data of a body that was ever rotated or given an angular velocity.
-struct TurnRow {
+struct RotationRow {
   Quaternion orientation = Quaternion::Identity();
   Vector3 velocity = Vector3::Zero();  // rad/s: own frame if kinematic, world frame if physical
   Vector3 acceleration = Vector3::Zero();
@@ -99,19 +99,19 @@ struct Bodies::Arrays : InMemory {
   std::pmr::vector<ObjectId> owner;  // null: the index is free
   std::pmr::vector<BodyKind> kind;
   std::pmr::vector<Vector3> location, velocity, acceleration;
-  std::pmr::vector<RowIndex> turn_row, rigid_row, material_row, appearance_row, filter_row;
+  std::pmr::vector<RowIndex> rotation_row, rigid_row, material_row, appearance_row, filter_row;
   std::pmr::vector<std::shared_ptr<Shape>> collision_shape, display_shape;
   std::pmr::vector<double> neighborhood;
   std::pmr::vector<std::uint8_t> driven;  // was given a velocity while it had no physics
 
-  Rows<TurnRow> turn_rows;
+  Rows<RotationRow> rotation_rows;
   Rows<RigidRow> rigid_rows;
   Rows<Material> materials;
   Rows<Appearance> appearances;
   Rows<CollisionFilter> filters;
   std::pmr::vector<BodyIndex> picky;  // sorted
 
-  ActiveSet translating, turning, rigid;
+  ActiveSet translating, rotating, rigid;
   std::pmr::vector<BodyIndex> free;  // last removed, first reused
   std::shared_ptr<Shape> default_shape;
   std::size_t used = 0;
@@ -125,9 +125,9 @@ struct Bodies::Arrays : InMemory {
 
   BodyIndex grow();
   bool physics(BodyIndex body) const { return rigid_row[body] != kNoRow && rigid_rows[rigid_row[body]].physics; }
-  TurnRow& turn(BodyIndex body) {
-    if (turn_row[body] == kNoRow) turn_row[body] = turn_rows.make();
-    return turn_rows[turn_row[body]];
+  RotationRow& rotation(BodyIndex body) {
+    if (rotation_row[body] == kNoRow) rotation_row[body] = rotation_rows.make();
+    return rotation_rows[rotation_row[body]];
   }
   RigidRow& make_rigid(BodyIndex body) {
     if (rigid_row[body] == kNoRow) rigid_row[body] = rigid_rows.make();
@@ -163,7 +163,7 @@ struct Bodies::Arrays : InMemory {
     location[body] += h * velocity[body];
     velocity[body] += h * acceleration[body];
   }
-  void turn_one(BodyIndex body, double h);
+  void rotate_one(BodyIndex body, double h);
   void move_rigid_one(BodyIndex body, double h, const Vector3& gravity);
 };
 

@@ -55,7 +55,7 @@ Vector3 about_z(std::string_view property, const Vector3& value, bool flat) {
 }
 
 /// In a flat world: a rotation about z.
-Quaternion turned_about_z(const Quaternion& unit, bool flat) {
+Quaternion rotation_about_z(const Quaternion& unit, bool flat) {
   if (!flat || (unit.x() == 0 && unit.y() == 0)) return unit;
   if (std::hypot(unit.x(), unit.y()) > kInPlane)
     throw Error(ErrorCode::Argument,
@@ -100,7 +100,7 @@ Bodies::Arrays::Arrays(std::pmr::memory_resource* memory)
       location(memory),
       velocity(memory),
       acceleration(memory),
-      turn_row(memory),
+      rotation_row(memory),
       rigid_row(memory),
       material_row(memory),
       appearance_row(memory),
@@ -109,14 +109,14 @@ Bodies::Arrays::Arrays(std::pmr::memory_resource* memory)
       display_shape(memory),
       neighborhood(memory),
       driven(memory),
-      turn_rows(memory),
+      rotation_rows(memory),
       rigid_rows(memory),
       materials(memory),
       appearances(memory),
       filters(memory),
       picky(memory),
       translating(memory),
-      turning(memory),
+      rotating(memory),
       rigid(memory),
       free(memory),
       put{std::pmr::vector<BodyIndex>(memory), std::pmr::vector<BodyIndex>(memory),
@@ -132,7 +132,7 @@ BodyIndex Bodies::Arrays::grow() {
   location.resize(size);
   velocity.resize(size);
   acceleration.resize(size);
-  turn_row.resize(size, kNoRow);
+  rotation_row.resize(size, kNoRow);
   rigid_row.resize(size, kNoRow);
   material_row.resize(size, kNoRow);
   appearance_row.resize(size, kNoRow);
@@ -155,10 +155,10 @@ BodyIndex Bodies::Arrays::grow() {
 void Bodies::Arrays::classify(BodyIndex body) {
   const bool physical = physics(body);
   const bool pushed = velocity[body] != kZero || acceleration[body] != kZero;
-  const RowIndex row = turn_row[body];
-  const bool spun = row != kNoRow && (turn_rows[row].velocity != kZero || turn_rows[row].acceleration != kZero);
+  const RowIndex row = rotation_row[body];
+  const bool spun = row != kNoRow && (rotation_rows[row].velocity != kZero || rotation_rows[row].acceleration != kZero);
   translating.set(body, !physical && pushed);
-  turning.set(body, !physical && spun);
+  rotating.set(body, !physical && spun);
   rigid.set(body, physical && kind[body] != BodyKind::Stationary);
 }
 
@@ -194,11 +194,11 @@ void Bodies::flatten() {
   for (BodyIndex body = 0; body < index_end(); ++body) {
     if (!used(body)) continue;
     const bool vectors = location(body).z() == 0 && velocity(body).z() == 0 && acceleration(body).z() == 0;
-    const Quaternion turn = orientation(body);
+    const Quaternion rotation = orientation(body);
     const Vector3 &spin = rotational_velocity(body), &more = rotational_acceleration(body);
-    const bool turns =
-        turn.x() == 0 && turn.y() == 0 && spin.x() == 0 && spin.y() == 0 && more.x() == 0 && more.y() == 0;
-    if (!vectors || !turns)
+    const bool rotates =
+        rotation.x() == 0 && rotation.y() == 0 && spin.x() == 0 && spin.y() == 0 && more.x() == 0 && more.y() == 0;
+    if (!vectors || !rotates)
       throw Error(ErrorCode::Argument, "the world cannot become flat: a body is not in the plane z = 0");
   }
   flat_ = true;
@@ -233,9 +233,9 @@ void Bodies::remove(BodyIndex body) {
   Arrays& a = *arrays_;
   if (!used(body)) throw std::logic_error("a body to be removed does not exist");
   a.translating.set(body, false);
-  a.turning.set(body, false);
+  a.rotating.set(body, false);
   a.rigid.set(body, false);
-  a.turn_rows.drop(a.turn_row[body]);
+  a.rotation_rows.drop(a.rotation_row[body]);
   a.rigid_rows.drop(a.rigid_row[body]);
   a.materials.drop(a.material_row[body]);
   a.appearances.drop(a.appearance_row[body]);
@@ -262,8 +262,8 @@ std::size_t Bodies::bytes() const {
                                    2 * sizeof(std::shared_ptr<Shape>) + sizeof(double) + 2 * sizeof(std::uint8_t) +
                                    kFollowers * sizeof(BodyIndex);
   const Arrays& a = *arrays_;
-  return sizeof(Arrays) + a.owner.capacity() * kColumns + a.turn_rows.bytes() + a.rigid_rows.bytes() +
-         a.materials.bytes() + a.filters.bytes() + a.appearances.bytes() + a.translating.bytes() + a.turning.bytes() +
+  return sizeof(Arrays) + a.owner.capacity() * kColumns + a.rotation_rows.bytes() + a.rigid_rows.bytes() +
+         a.materials.bytes() + a.filters.bytes() + a.appearances.bytes() + a.translating.bytes() + a.rotating.bytes() +
          a.rigid.bytes();
 }
 
@@ -275,8 +275,8 @@ const Vector3& Bodies::location(BodyIndex body) const { return arrays_->location
 Matrix3 Bodies::rotation(BodyIndex body) const { return orientation(body).toRotationMatrix(); }
 
 Quaternion Bodies::orientation(BodyIndex body) const {
-  const RowIndex row = arrays_->turn_row[body];
-  return row == kNoRow ? Quaternion::Identity() : arrays_->turn_rows[row].orientation;
+  const RowIndex row = arrays_->rotation_row[body];
+  return row == kNoRow ? Quaternion::Identity() : arrays_->rotation_rows[row].orientation;
 }
 
 Vector3 Bodies::allowed_location(const Vector3& location) const {
@@ -289,7 +289,7 @@ Quaternion Bodies::allowed_orientation(const Quaternion& orientation) const {
   if (!std::isfinite(norm) || norm == 0) {
     throw Error(ErrorCode::Argument, "orientation must be a finite quaternion of non-zero length");
   }
-  return turned_about_z(orientation.normalized(), flat_);
+  return rotation_about_z(orientation.normalized(), flat_);
 }
 
 Vector3 Bodies::allowed_velocity(const Vector3& value) const {
@@ -311,9 +311,9 @@ void Bodies::set_location(BodyIndex body, const Vector3& location) {
 void Bodies::set_rotation(BodyIndex body, const Matrix3& rotation) { set_orientation(body, rotation_of(rotation)); }
 
 void Bodies::set_orientation(BodyIndex body, const Quaternion& orientation) {
-  const Quaternion turned = allowed_orientation(orientation);
-  if (arrays_->turn_row[body] == kNoRow && orientation.vec() == kZero) return;
-  arrays_->turn(body).orientation = turned;
+  const Quaternion rotated = allowed_orientation(orientation);
+  if (arrays_->rotation_row[body] == kNoRow && orientation.vec() == kZero) return;
+  arrays_->rotation(body).orientation = rotated;
   arrays_->note_put(body);
   arrays_->note(body);
 }
@@ -322,13 +322,13 @@ const Vector3& Bodies::velocity(BodyIndex body) const { return arrays_->velocity
 const Vector3& Bodies::acceleration(BodyIndex body) const { return arrays_->acceleration[body]; }
 
 const Vector3& Bodies::rotational_velocity(BodyIndex body) const {
-  const RowIndex row = arrays_->turn_row[body];
-  return row == kNoRow ? kZero : arrays_->turn_rows[row].velocity;
+  const RowIndex row = arrays_->rotation_row[body];
+  return row == kNoRow ? kZero : arrays_->rotation_rows[row].velocity;
 }
 
 const Vector3& Bodies::rotational_acceleration(BodyIndex body) const {
-  const RowIndex row = arrays_->turn_row[body];
-  return row == kNoRow ? kZero : arrays_->turn_rows[row].acceleration;
+  const RowIndex row = arrays_->rotation_row[body];
+  return row == kNoRow ? kZero : arrays_->rotation_rows[row].acceleration;
 }
 
 void Bodies::set_velocity(BodyIndex body, const Vector3& value) {
@@ -348,8 +348,8 @@ void Bodies::set_acceleration(BodyIndex body, const Vector3& value) {
 
 void Bodies::set_rotational_velocity(BodyIndex body, const Vector3& value) {
   const Vector3 spin = allowed_spin(value);
-  if (arrays_->turn_row[body] == kNoRow && value == kZero) return;
-  arrays_->turn(body).velocity = spin;
+  if (arrays_->rotation_row[body] == kNoRow && value == kZero) return;
+  arrays_->rotation(body).velocity = spin;
   arrays_->note_driven(body, spin);
   arrays_->classify(body);
   arrays_->note(body);
@@ -357,9 +357,9 @@ void Bodies::set_rotational_velocity(BodyIndex body, const Vector3& value) {
 
 void Bodies::set_rotational_acceleration(BodyIndex body, const Vector3& value) {
   require_finite("rotational acceleration", value);
-  if (arrays_->turn_row[body] == kNoRow && value == kZero) return;
+  if (arrays_->rotation_row[body] == kNoRow && value == kZero) return;
   const Vector3 spin = about_z("rotational acceleration", value, flat_);
-  arrays_->turn(body).acceleration = spin;
+  arrays_->rotation(body).acceleration = spin;
   arrays_->note_driven(body, spin);
   arrays_->classify(body);
   arrays_->note(body);
@@ -373,7 +373,7 @@ bool Bodies::driver(BodyIndex body) const {
   return used(body) && (kind(body) == BodyKind::Stationary || (arrays_->driven[body] != 0 && !physics(body)));
 }
 
-bool Bodies::moving(BodyIndex body) const { return arrays_->translating.has(body) || arrays_->turning.has(body); }
+bool Bodies::moving(BodyIndex body) const { return arrays_->translating.has(body) || arrays_->rotating.has(body); }
 
 Vector3 Bodies::spin(BodyIndex body) const {
   const Vector3& velocity = rotational_velocity(body);
@@ -397,13 +397,14 @@ void Bodies::set_physics(BodyIndex body, bool enabled) {
     row.kinematic_velocity = a.velocity[body];
     row.kinematic_rotational_velocity = rotational_velocity(body);
     // The rotational velocity of a rigid body is in the world frame.
-    if (a.turn_row[body] != kNoRow) {
-      TurnRow& turn = a.turn_rows[a.turn_row[body]];
-      turn.velocity = turn.orientation * turn.velocity;
+    if (a.rotation_row[body] != kNoRow) {
+      RotationRow& rotation = a.rotation_rows[a.rotation_row[body]];
+      rotation.velocity = rotation.orientation * rotation.velocity;
     }
   } else {
     a.velocity[body] = row.kinematic_velocity;
-    if (a.turn_row[body] != kNoRow) a.turn_rows[a.turn_row[body]].velocity = row.kinematic_rotational_velocity;
+    if (a.rotation_row[body] != kNoRow)
+      a.rotation_rows[a.rotation_row[body]].velocity = row.kinematic_rotational_velocity;
   }
   ++a.revision;
   ++a.physics_revision;
@@ -430,7 +431,7 @@ void Bodies::set_torque(BodyIndex body, const Vector3& newton_metres) {
   require_finite("torque", newton_metres);
   const Vector3 about = about_z("torque", newton_metres, flat_);
   arrays_->make_rigid(body).torque = about;
-  if (newton_metres != kZero) arrays_->turn(body);
+  if (newton_metres != kZero) arrays_->rotation(body);
   arrays_->note(body);
 }
 

@@ -165,16 +165,16 @@ class Bodies : public InMemory {
 
   // --- the stages of a sub-step of h seconds, each over its own active bodies only ----------------
   std::size_t translating() const;  // kinematic bodies with a velocity or an acceleration
-  std::size_t turning() const;      // kinematic bodies with a rotational velocity or acceleration
+  std::size_t rotating() const;     // kinematic bodies with a rotational velocity or acceleration
   std::size_t rigid() const;        // physics-enabled bodies that are not Stationary
   const std::pmr::vector<BodyIndex>& translating_bodies() const;  // the first of these, in no order that matters
-  const std::pmr::vector<BodyIndex>& turning_bodies() const;
+  const std::pmr::vector<BodyIndex>& rotating_bodies() const;
   const std::pmr::vector<BodyIndex>& rigid_bodies() const;  // these, in no order that matters
   ObjectId first_translating() const;                       // null if there is none; so the other two
-  ObjectId first_turning() const;
+  ObjectId first_rotating() const;
   ObjectId first_rigid() const;
   void translate(double h);
-  void turn(double h);
+  void rotate(double h);
 
   // --- for the stage that stops bodies at their time of impact -------------------------------------------------------
   BodyState state(BodyIndex body) const;

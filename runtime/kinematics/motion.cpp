@@ -7,8 +7,8 @@
 
 namespace breve {
 
-void Bodies::Arrays::turn_one(BodyIndex body, double h) {
-  TurnRow& row = turn_rows[turn_row[body]];
+void Bodies::Arrays::rotate_one(BodyIndex body, double h) {
+  RotationRow& row = rotation_rows[rotation_row[body]];
   // q' = q (0, w) / 2 with w in the body's own frame; all from the values at the start.
   const Vector3& w = row.velocity;
   const Quaternion rate = row.orientation * Quaternion(0, w.x(), w.y(), w.z());
@@ -20,18 +20,18 @@ void Bodies::Arrays::turn_one(BodyIndex body, double h) {
 void Bodies::Arrays::move_rigid_one(BodyIndex body, double h, const Vector3& gravity) {
   const RigidRow& rigid = rigid_rows[rigid_row[body]];
   const Vector3 pull = gravity + rigid.force / rigid.solid.mass;
-  if (turn_row[body] == kNoRow) {
+  if (rotation_row[body] == kNoRow) {
     velocity[body] += h * pull;
     location[body] += h * velocity[body];
     return;
   }
-  TurnRow& turn = turn_rows[turn_row[body]];
+  RotationRow& rotation = rotation_rows[rotation_row[body]];
   // The centre of mass moves like a point; the body rotates about it.
-  const Vector3 arm = turn.orientation * rigid.solid.center_of_mass;
-  const Vector3 center_velocity = velocity[body] + turn.velocity.cross(arm) + h * pull;
+  const Vector3 arm = rotation.orientation * rigid.solid.center_of_mass;
+  const Vector3 center_velocity = velocity[body] + rotation.velocity.cross(arm) + h * pull;
   const Vector3 center = location[body] + arm + h * center_velocity;
-  const Quaternion to_own = turn.orientation.conjugate();
-  const Vector3 own_spin = to_own * turn.velocity;
+  const Quaternion to_own = rotation.orientation.conjugate();
+  const Vector3 own_spin = to_own * rotation.velocity;
   const Vector3 own_torque = to_own * rigid.torque;
   Vector3 middle;
   Vector3 spin;
@@ -41,11 +41,11 @@ void Bodies::Arrays::move_rigid_one(BodyIndex body, double h, const Vector3& gra
   } else {
     spin = advance_spin(rigid.solid.inertia, own_spin, own_torque, h, middle);
   }
-  turn.orientation = (turn.orientation * rotation_by(h * middle)).normalized();
-  turn.velocity = turn.orientation * spin;
-  const Vector3 new_arm = turn.orientation * rigid.solid.center_of_mass;
+  rotation.orientation = (rotation.orientation * rotation_by(h * middle)).normalized();
+  rotation.velocity = rotation.orientation * spin;
+  const Vector3 new_arm = rotation.orientation * rigid.solid.center_of_mass;
   location[body] = center - new_arm;
-  velocity[body] = center_velocity - turn.velocity.cross(new_arm);
+  velocity[body] = center_velocity - rotation.velocity.cross(new_arm);
 }
 
 namespace {
@@ -60,13 +60,13 @@ const std::pmr::vector<BodyIndex> kNoBodies;
 }  // namespace
 
 std::size_t Bodies::translating() const { return arrays_ ? arrays_->translating.members().size() : 0; }
-std::size_t Bodies::turning() const { return arrays_ ? arrays_->turning.members().size() : 0; }
+std::size_t Bodies::rotating() const { return arrays_ ? arrays_->rotating.members().size() : 0; }
 std::size_t Bodies::rigid() const { return arrays_ ? arrays_->rigid.members().size() : 0; }
 const std::pmr::vector<BodyIndex>& Bodies::translating_bodies() const {
   return arrays_ ? arrays_->translating.members() : kNoBodies;
 }
-const std::pmr::vector<BodyIndex>& Bodies::turning_bodies() const {
-  return arrays_ ? arrays_->turning.members() : kNoBodies;
+const std::pmr::vector<BodyIndex>& Bodies::rotating_bodies() const {
+  return arrays_ ? arrays_->rotating.members() : kNoBodies;
 }
 const std::pmr::vector<BodyIndex>& Bodies::rigid_bodies() const {
   return arrays_ ? arrays_->rigid.members() : kNoBodies;
@@ -74,7 +74,7 @@ const std::pmr::vector<BodyIndex>& Bodies::rigid_bodies() const {
 ObjectId Bodies::first_translating() const {
   return arrays_ ? first_of(arrays_->translating, arrays_->owner) : ObjectId{};
 }
-ObjectId Bodies::first_turning() const { return arrays_ ? first_of(arrays_->turning, arrays_->owner) : ObjectId{}; }
+ObjectId Bodies::first_rotating() const { return arrays_ ? first_of(arrays_->rotating, arrays_->owner) : ObjectId{}; }
 ObjectId Bodies::first_rigid() const { return arrays_ ? first_of(arrays_->rigid, arrays_->owner) : ObjectId{}; }
 
 void Bodies::translate(double h) {
@@ -82,9 +82,9 @@ void Bodies::translate(double h) {
   for (const BodyIndex body : arrays_->translating.members()) arrays_->translate_one(body, h);
 }
 
-void Bodies::turn(double h) {
+void Bodies::rotate(double h) {
   if (!arrays_) return;
-  for (const BodyIndex body : arrays_->turning.members()) arrays_->turn_one(body, h);
+  for (const BodyIndex body : arrays_->rotating.members()) arrays_->rotate_one(body, h);
 }
 
 BodyState Bodies::state(BodyIndex body) const {
@@ -107,8 +107,8 @@ void Bodies::place(BodyIndex body, const Vector3& location, const Quaternion& or
   Arrays& a = *arrays_;
   a.location[body] = location;
   a.velocity[body] = velocity;
-  if (a.turn_row[body] != kNoRow) {
-    TurnRow& row = a.turn_rows[a.turn_row[body]];
+  if (a.rotation_row[body] != kNoRow) {
+    RotationRow& row = a.rotation_rows[a.rotation_row[body]];
     row.orientation = orientation;
     row.velocity = rotational_velocity;
   }
@@ -121,9 +121,9 @@ void Bodies::set_motion(BodyIndex body, const Vector3& location, const Quaternio
   if (!a.rigid.has(body)) a.note_put(body);
   a.location[body] = location;
   a.velocity[body] = velocity;
-  if (a.turn_row[body] == kNoRow && orientation.vec() == Vector3::Zero() && rotational_velocity == Vector3::Zero())
+  if (a.rotation_row[body] == kNoRow && orientation.vec() == Vector3::Zero() && rotational_velocity == Vector3::Zero())
     return;
-  TurnRow& row = a.turn(body);
+  RotationRow& row = a.rotation(body);
   row.orientation = orientation;
   row.velocity = rotational_velocity;
 }
@@ -168,7 +168,7 @@ void Bodies::advance(BodyIndex body, double h, const Vector3& gravity) {
   Arrays& a = *arrays_;
   if (a.rigid.has(body)) a.move_rigid_one(body, h, gravity);
   if (a.translating.has(body)) a.translate_one(body, h);
-  if (a.turning.has(body)) a.turn_one(body, h);
+  if (a.rotating.has(body)) a.rotate_one(body, h);
 }
 
 void Bodies::set_log(std::pmr::vector<BodyIndex>* log) {

@@ -65,13 +65,13 @@ void load(ByteReader& in, CollisionFilter& filter) {
   if (!filter.one_way.allFinite()) ByteReader::fail();
 }
 
-void save(ByteWriter& out, const TurnRow& row) {
+void save(ByteWriter& out, const RotationRow& row) {
   out.put(row.orientation);
   out.put(row.velocity);
   out.put(row.acceleration);
 }
 
-void load(ByteReader& in, TurnRow& row) {
+void load(ByteReader& in, RotationRow& row) {
   row.orientation = in.get_quaternion();
   row.velocity = in.get_vector();
   row.acceleration = in.get_vector();
@@ -130,7 +130,7 @@ void Bodies::save(ByteWriter& out) const {
     out.put(a.driven[body] != 0);
     out.put_shared(a.collision_shape[body]);
     out.put_shared(a.display_shape[body]);
-    save_row(out, a.turn_rows, a.turn_row[body]);
+    save_row(out, a.rotation_rows, a.rotation_row[body]);
     save_row(out, a.rigid_rows, a.rigid_row[body]);
     save_row(out, a.materials, a.material_row[body]);
     save_row(out, a.appearances, a.appearance_row[body]);
@@ -172,7 +172,7 @@ void Bodies::load(ByteReader& in) {
     a.display_shape[body] = in.get_shared<Shape>();
     if (!a.collision_shape[body] || !a.display_shape[body] || a.kind[body] > BodyKind::Link) ByteReader::fail();
     a.collision_shape[body]->report_changes_to(a.shape_changes);
-    load_row(in, a.turn_rows, a.turn_row[body]);
+    load_row(in, a.rotation_rows, a.rotation_row[body]);
     load_row(in, a.rigid_rows, a.rigid_row[body]);
     load_row(in, a.materials, a.material_row[body]);
     load_row(in, a.appearances, a.appearance_row[body]);

@@ -18,7 +18,7 @@ struct JointRecord {
   JointDescription is;
   JointDrive drive;
   std::uint64_t serial = 0;  // in the order of creation
-  bool ring = false;         // it closes a loop
+  bool loop = false;         // it closes a loop
 };
 
 /// The same of a spring.
@@ -72,7 +72,7 @@ struct MechanicsCore : InMemory {
   DynamicsCounters counters;
   std::pmr::vector<Intervention> interventions;
   std::pmr::vector<Impact> impacts;
-  Energy account;  // works and losses of all since the ledger began
+  Energy ledger;  // works and losses of all since the ledger began
 
   bool over() const {
     if (bound.ended && bound.ended->load(std::memory_order_relaxed)) return true;
@@ -90,7 +90,7 @@ void reserve_free(const std::pmr::vector<Entry>& table, std::pmr::vector<Index>&
 
 /// A place for a new entry: a free one, or one more.
 template <class Entry, class Index>
-Index take_place(std::pmr::vector<Entry>& table, std::pmr::vector<Index>& free) {
+Index take_slot(std::pmr::vector<Entry>& table, std::pmr::vector<Index>& free) {
   if (free.empty()) {
     table.emplace_back();
     return static_cast<Index>(table.size() - 1);

@@ -98,7 +98,7 @@ bool has_limits(const JointDrive& drive, JointKind kind) {
   return false;
 }
 
-Pose place_at_zero(const JointDescription& is, const Pose& parent) {
+Pose pose_at_zero(const JointDescription& is, const Pose& parent) {
   Pose child;
   child.orientation = (parent.orientation * is.relative_rotation).normalized();
   child.location = parent.location + parent.orientation * is.parent_point - child.orientation * is.child_point;

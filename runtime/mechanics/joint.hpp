@@ -80,7 +80,7 @@ void check(const JointDrive& drive, JointKind kind);
 bool has_limits(const JointDrive& drive, JointKind kind);
 
 /// Where the child's body stands when the joint is at zero.
-Pose place_at_zero(const JointDescription& is, const Pose& parent);
+Pose pose_at_zero(const JointDescription& is, const Pose& parent);
 
 /// What a joint gives.
 struct JointReaction {

@@ -37,7 +37,7 @@ const SpringRecord& need(const SpringRecord* spring) {
 bool Mechanics::linked(JointIndex joint) const { return joint_record(joint) != nullptr; }
 const JointDescription& Mechanics::joint(JointIndex joint) const { return need(joint_record(joint)).is; }
 ObjectId Mechanics::joint_owner(JointIndex joint) const { return need(joint_record(joint)).owner; }
-bool Mechanics::closes_ring(JointIndex joint) const { return need(joint_record(joint)).ring; }
+bool Mechanics::closes_loop(JointIndex joint) const { return need(joint_record(joint)).loop; }
 const JointDrive& Mechanics::drive(JointIndex joint) const { return need(joint_record(joint)).drive; }
 
 double Mechanics::strength_hard_limit(JointIndex joint) const {
@@ -46,7 +46,7 @@ double Mechanics::strength_hard_limit(JointIndex joint) const {
   return kPerMass * shared_->bodies->mass(child);
 }
 
-bool Mechanics::tied(SpringIndex spring) const { return spring_record(spring) != nullptr; }
+bool Mechanics::has_spring(SpringIndex spring) const { return spring_record(spring) != nullptr; }
 const SpringDescription& Mechanics::spring(SpringIndex spring) const { return need(spring_record(spring)).is; }
 double Mechanics::spring_force(SpringIndex spring) const { return need(spring_record(spring)).force; }
 

@@ -19,9 +19,9 @@
 #include "runtime/base/meter.hpp"
 #include "runtime/base/workers.hpp"
 #include "runtime/kinematics/bodies.hpp"
-#include "runtime/mechanics/account.hpp"
 #include "runtime/mechanics/accuracy.hpp"
 #include "runtime/mechanics/joint.hpp"
+#include "runtime/mechanics/ledger.hpp"
 #include "runtime/mechanics/spring.hpp"
 #include "runtime/solid/contact.hpp"
 
@@ -83,7 +83,7 @@ class Mechanics : public InMemory {
   virtual std::size_t joint_count() const = 0;
   const JointDescription& joint(JointIndex joint) const;
   ObjectId joint_owner(JointIndex joint) const;
-  bool closes_ring(JointIndex joint) const;
+  bool closes_loop(JointIndex joint) const;
   /// Point and normal may be changed while it is linked; the bodies are placed anew as by link(). Errors as there.
   virtual void relink(JointIndex joint, const JointDescription& description) = 0;
 
@@ -101,9 +101,9 @@ class Mechanics : public InMemory {
   /// if the joint closes a loop.
   virtual void set_position(JointIndex joint, const JointVector& position) = 0;
   virtual void set_velocity(JointIndex joint, const JointVector& velocity) = 0;
-  /// The same for a ball joint, without angles: at zero turned by `turn`, child relative to parent, in the parent's
+  /// The same for a ball joint, without angles: at zero turned by `rotation`, child relative to parent, in the parent's
   /// axes, and spinning so. Errors as above, and if it is not a ball joint.
-  virtual void set_ball(JointIndex joint, const Quaternion& turn, const Vector3& spin) = 0;
+  virtual void set_ball(JointIndex joint, const Quaternion& rotation, const Vector3& spin) = 0;
   /// At this moment, from the forces that act now (including those of joints that close loops) and those that contacts
   /// and limits had in the last sub-step.
   virtual JointReaction reaction(JointIndex joint) const = 0;
@@ -139,9 +139,9 @@ class Mechanics : public InMemory {
 
   // --- springs between bodies ---------------------------------------------------------------------------------------
   /// Error{Argument} naming the property. The same body twice gives kNoSpring.
-  virtual SpringIndex tie(const SpringDescription& description, ObjectId owner) = 0;
-  virtual void untie(SpringIndex spring) = 0;
-  bool tied(SpringIndex spring) const;
+  virtual SpringIndex add_spring(const SpringDescription& description, ObjectId owner) = 0;
+  virtual void remove_spring(SpringIndex spring) = 0;
+  bool has_spring(SpringIndex spring) const;
   const SpringDescription& spring(SpringIndex spring) const;
   virtual void set_spring(SpringIndex spring, const SpringDescription& description) = 0;  // not its bodies
   double spring_length(SpringIndex spring) const;                                         // m, now

@@ -10,10 +10,10 @@
 
 #include "runtime/base/bytes.hpp"
 #include "runtime/base/hasher.hpp"
-#include "runtime/mechanics/account.hpp"
 #include "runtime/mechanics/accuracy.hpp"
 #include "runtime/mechanics/core.hpp"
 #include "runtime/mechanics/joint.hpp"
+#include "runtime/mechanics/ledger.hpp"
 #include "runtime/mechanics/spring.hpp"
 
 namespace breve::members {

@@ -4,9 +4,9 @@
 #include <array>
 
 #include "runtime/base/error.hpp"
-#include "runtime/mechanics/account.hpp"
 #include "runtime/mechanics/accuracy.hpp"
 #include "runtime/mechanics/joint.hpp"
+#include "runtime/mechanics/ledger.hpp"
 
 namespace breve {
 

@@ -28,8 +28,8 @@ void check(const SpringDescription& is) {
           "finite and >= 0");
 }
 
-TiePull pull_of(const SpringDescription& is, const Vector3& way, const Vector3& rate) {
-  TiePull pull;
+SpringPull pull_of(const SpringDescription& is, const Vector3& way, const Vector3& rate) {
+  SpringPull pull;
   const double length = way.norm();
   if (!(length > 0)) return pull;  // no direction to pull along
   if (is.mode == SpringMode::ExpandOnly && length > is.length) return pull;

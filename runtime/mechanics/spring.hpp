@@ -31,7 +31,7 @@ struct SpringDescription {
 void check(const SpringDescription& is);
 
 /// What a spring between bodies does now.
-struct TiePull {
+struct SpringPull {
   Vector3 direction = Vector3::Zero();  // unit, from a to b
   double force = 0;                     // N, positive pulls together
   double energy = 0;                    // J, stored
@@ -39,6 +39,6 @@ struct TiePull {
 };
 /// @param way   from the point on a to the point on b, m
 /// @param rate  of that, m/s
-TiePull pull_of(const SpringDescription& is, const Vector3& way, const Vector3& rate);
+SpringPull pull_of(const SpringDescription& is, const Vector3& way, const Vector3& rate);
 
 }  // namespace breve

@@ -57,10 +57,10 @@ Cell3 Grid::cell(CellIndex index) const {
 CellIndex Grid::at(const Vector3& location) const {
   const Vector3 counts(counts_.x, counts_.y, counts_.z);
   const Vector3 low = center_ - 0.5 * counts.cwiseProduct(size_);
-  const Vector3 place = (location - low).cwiseQuotient(size_);
+  const Vector3 position = (location - low).cwiseQuotient(size_);
   constexpr double kFar = 1e15;  // cells; beyond that a double does not tell one from the next
-  if (!place.allFinite() || place.cwiseAbs().maxCoeff() > kFar) return kNoCell;
-  const auto index = [&](int axis) { return static_cast<std::int64_t>(std::floor(place[axis])); };
+  if (!position.allFinite() || position.cwiseAbs().maxCoeff() > kFar) return kNoCell;
+  const auto index = [&](int axis) { return static_cast<std::int64_t>(std::floor(position[axis])); };
   return at(index(0), index(1), index(2));
 }
 

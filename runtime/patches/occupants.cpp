@@ -7,74 +7,74 @@ void Occupants::make(const Grid& grid) {
   if (made()) return;
   const std::size_t cells = grid.cells();
   free_.resize(cells);
-  place_of_free_.resize(cells);
+  slot_of_free_.resize(cells);
   counts_.resize(cells);
-  for (std::size_t i = 0; i < cells; ++i) free_[i] = place_of_free_[i] = static_cast<CellIndex>(i);
-  first_.resize(cells, kNoPlace);  // last: now they are made
+  for (std::size_t i = 0; i < cells; ++i) free_[i] = slot_of_free_[i] = static_cast<CellIndex>(i);
+  first_.resize(cells, kNoSlot);  // last: now they are made
 }
 
-void Occupants::link(Place place, CellIndex cell) {
-  Agent& agent = agents_[place];
+void Occupants::link(Slot slot, CellIndex cell) {
+  Agent& agent = agents_[slot];
   agent.cell = cell;
-  const Place first = first_[cell];
-  if (first == kNoPlace) {
-    agent.before = agent.after = place;
-    first_[cell] = place;
+  const Slot first = first_[cell];
+  if (first == kNoSlot) {
+    agent.before = agent.after = slot;
+    first_[cell] = slot;
     // No longer free: the last free cell takes its place in the array.
-    const CellIndex hole = place_of_free_[cell];
+    const CellIndex hole = slot_of_free_[cell];
     free_[hole] = free_.back();
-    place_of_free_[free_[hole]] = hole;
+    slot_of_free_[free_[hole]] = hole;
     free_.pop_back();
   } else {
-    const Place last = agents_[first].before;
+    const Slot last = agents_[first].before;
     agent.before = last;
     agent.after = first;
-    agents_[last].after = place;
-    agents_[first].before = place;
+    agents_[last].after = slot;
+    agents_[first].before = slot;
   }
   ++counts_[cell];
 }
 
-void Occupants::unlink(Place place) {
-  const Agent& agent = agents_[place];
+void Occupants::unlink(Slot slot) {
+  const Agent& agent = agents_[slot];
   const CellIndex cell = agent.cell;
-  if (agent.after == place) {
-    first_[cell] = kNoPlace;
-    place_of_free_[cell] = static_cast<CellIndex>(free_.size());
+  if (agent.after == slot) {
+    first_[cell] = kNoSlot;
+    slot_of_free_[cell] = static_cast<CellIndex>(free_.size());
     free_.push_back(cell);  // never allocates: once it held all cells
   } else {
-    if (first_[cell] == place) first_[cell] = agent.after;
+    if (first_[cell] == slot) first_[cell] = agent.after;
     agents_[agent.before].after = agent.after;
     agents_[agent.after].before = agent.before;
   }
   --counts_[cell];
 }
 
-Occupants::Place Occupants::enter(ObjectId id, CellIndex cell) {
-  Place place;
+Occupants::Slot Occupants::enter(ObjectId id, CellIndex cell) {
+  Slot slot;
   if (unused_.empty()) {
     // Room for all to leave, so that leaving never allocates.
     if (unused_.capacity() <= agents_.size()) unused_.reserve(2 * agents_.size() + 16);
     agents_.emplace_back();
-    place = static_cast<Place>(agents_.size() - 1);
+    slot = static_cast<Slot>(agents_.size() - 1);
   } else {
-    place = unused_.back();
+    slot = unused_.back();
     unused_.pop_back();
   }
-  agents_[place].id = id;
-  link(place, cell);
-  return place;
+  agents_[slot].id = id;
+  link(slot, cell);
+  return slot;
 }
 
-void Occupants::leave(Place place) {
-  unlink(place);
-  agents_[place] = Agent();
-  unused_.push_back(place);
+void Occupants::leave(Slot slot) {
+  unlink(slot);
+  agents_[slot] = Agent();
+  unused_.push_back(slot);
 }
 
-void Occupants::move(Place place, CellIndex to) {
-  unlink(place);
-  link(place, to);
+void Occupants::move(Slot slot, CellIndex to) {
+  unlink(slot);
+  link(slot, to);
 }
 
 CellIndex Occupants::random_free(Random& random) const {
@@ -92,9 +92,9 @@ void Occupants::save(ByteWriter& out) const {
     out.put(agent.before);
     out.put(agent.after);
   }
-  for (const Place first : first_) out.put(first);
+  for (const Slot first : first_) out.put(first);
   out.put(static_cast<std::uint64_t>(unused_.size()));
-  for (const Place place : unused_) out.put(place);
+  for (const Slot slot : unused_) out.put(slot);
   // Their order decides which cell a random number means.
   out.put(static_cast<std::uint64_t>(free_.size()));
   for (const CellIndex cell : free_) out.put(cell);
@@ -105,13 +105,13 @@ void Occupants::load(ByteReader& in, const Grid& grid) {
   if (!in.get_bool()) return;
   const std::size_t cells = grid.cells();
   agents_.resize(in.get_count(5 * sizeof(std::uint32_t)));
-  if (cells > in.left() / sizeof(Place)) ByteReader::fail();
+  if (cells > in.left() / sizeof(Slot)) ByteReader::fail();
   make(grid);
   for (Agent& agent : agents_) {
     agent.id = in.get_object();
     agent.cell = in.get<CellIndex>();
-    agent.before = in.get<Place>();
-    agent.after = in.get<Place>();
+    agent.before = in.get<Slot>();
+    agent.after = in.get<Slot>();
     if (!agent.id) continue;
     if (agent.cell >= cells || agent.before >= agents_.size() || agent.after >= agents_.size()) ByteReader::fail();
     ++counts_[agent.cell];
@@ -125,24 +125,24 @@ void Occupants::load(ByteReader& in, const Grid& grid) {
   }
   std::size_t occupied = 0;
   for (std::size_t cell = 0; cell < cells; ++cell) {
-    first_[cell] = in.get<Place>();
-    if ((first_[cell] == kNoPlace) != (counts_[cell] == 0)) ByteReader::fail();
-    if (first_[cell] == kNoPlace) continue;
+    first_[cell] = in.get<Slot>();
+    if ((first_[cell] == kNoSlot) != (counts_[cell] == 0)) ByteReader::fail();
+    if (first_[cell] == kNoSlot) continue;
     ++occupied;
     if (first_[cell] >= agents_.size() || !agents_[first_[cell]].id || agents_[first_[cell]].cell != cell)
       ByteReader::fail();
     std::uint32_t length = 1;
-    for (Place p = agents_[first_[cell]].after; p != first_[cell] && length <= counts_[cell]; p = agents_[p].after)
+    for (Slot p = agents_[first_[cell]].after; p != first_[cell] && length <= counts_[cell]; p = agents_[p].after)
       ++length;
     if (length != counts_[cell]) ByteReader::fail();
   }
   unused_.reserve(agents_.size() + 16);
-  unused_.resize(in.get_count(sizeof(Place)));
+  unused_.resize(in.get_count(sizeof(Slot)));
   std::pmr::vector<std::uint8_t> met(agents_.size(), in.memory());
-  for (Place& place : unused_) {
-    place = in.get<Place>();
-    if (place >= agents_.size() || agents_[place].id || met[place] != 0) ByteReader::fail();
-    met[place] = 1;
+  for (Slot& slot : unused_) {
+    slot = in.get<Slot>();
+    if (slot >= agents_.size() || agents_[slot].id || met[slot] != 0) ByteReader::fail();
+    met[slot] = 1;
   }
   std::size_t present = 0;
   for (const Agent& agent : agents_) present += agent.id ? 1U : 0U;
@@ -153,10 +153,10 @@ void Occupants::load(ByteReader& in, const Grid& grid) {
   met.assign(cells, 0);
   for (std::size_t i = 0; i < free_count; ++i) {
     const auto cell = in.get<CellIndex>();
-    if (cell >= cells || first_[cell] != kNoPlace || met[cell] != 0) ByteReader::fail();
+    if (cell >= cells || first_[cell] != kNoSlot || met[cell] != 0) ByteReader::fail();
     met[cell] = 1;
     free_[i] = cell;
-    place_of_free_[cell] = static_cast<CellIndex>(i);
+    slot_of_free_[cell] = static_cast<CellIndex>(i);
   }
 }
 
@@ -166,7 +166,7 @@ void Occupants::hash(Hasher& hasher) const {
     hasher.add(std::uint64_t{agent.id.index} << 32 | agent.id.generation);
     hasher.add(std::uint64_t{agent.cell} << 32 | agent.after);
   }
-  for (const Place first : first_) hasher.add(static_cast<std::uint64_t>(first));
+  for (const Slot first : first_) hasher.add(static_cast<std::uint64_t>(first));
   for (const CellIndex cell : free_) hasher.add(static_cast<std::uint64_t>(cell));
 }
 

@@ -15,17 +15,17 @@ namespace breve {
 /// is drawn without trying.
 class Occupants {
  public:
-  using Place = std::uint32_t;  // of an agent in the tables
-  static constexpr Place kNoPlace = 0xffffffffU;
+  using Slot = std::uint32_t;  // of an agent in the tables
+  static constexpr Slot kNoSlot = 0xffffffffU;
 
   struct Agent {
     ObjectId id;  // null: the place is not in use
     CellIndex cell = kNoCell;
-    Place before = kNoPlace, after = kNoPlace;  // in the circular list of its cell
+    Slot before = kNoSlot, after = kNoSlot;  // in the circular list of its cell
   };
 
   explicit Occupants(std::pmr::memory_resource* memory)
-      : first_(memory), agents_(memory), unused_(memory), free_(memory), place_of_free_(memory), counts_(memory) {}
+      : first_(memory), agents_(memory), unused_(memory), free_(memory), slot_of_free_(memory), counts_(memory) {}
 
   bool made() const { return !first_.empty(); }
   void make(const Grid& grid);  // tables for its cells; nothing if they are there
@@ -38,18 +38,18 @@ class Occupants {
   std::size_t free_cells() const { return free_.size(); }  // cells without any agent
 
   /// A new agent in a cell. @throws std::bad_alloc, and nothing has changed then
-  Place enter(ObjectId id, CellIndex cell);
-  void leave(Place place);
-  void move(Place place, CellIndex to);
+  Slot enter(ObjectId id, CellIndex cell);
+  void leave(Slot slot);
+  void move(Slot slot, CellIndex to);
   /// Is this agent still there?
-  bool holds(Place place, ObjectId id) const { return place < agents_.size() && id && agents_[place].id == id; }
-  const Agent& agent(Place place) const { return agents_[place]; }
-  std::size_t places() const { return agents_.size(); }
-  Place first(CellIndex cell) const { return first_[cell]; }
-  /// The next agent of the same cell; kNoPlace behind the last.
-  Place next(Place place) const {
-    const Agent& a = agents_[place];
-    return a.after == first_[a.cell] ? kNoPlace : a.after;
+  bool holds(Slot slot, ObjectId id) const { return slot < agents_.size() && id && agents_[slot].id == id; }
+  const Agent& agent(Slot slot) const { return agents_[slot]; }
+  std::size_t slots() const { return agents_.size(); }
+  Slot first(CellIndex cell) const { return first_[cell]; }
+  /// The next agent of the same cell; kNoSlot behind the last.
+  Slot next(Slot slot) const {
+    const Agent& a = agents_[slot];
+    return a.after == first_[a.cell] ? kNoSlot : a.after;
   }
   /// A cell without any agent, each equally likely; kNoCell if there is none.
   CellIndex random_free(Random& random) const;
@@ -59,16 +59,16 @@ class Occupants {
   void hash(Hasher& hasher) const;
 
  private:
-  void link(Place place, CellIndex cell);
-  void unlink(Place place);
+  void link(Slot slot, CellIndex cell);
+  void unlink(Slot slot);
 
   std::uint32_t capacity_ = 1;
-  std::pmr::vector<Place> first_;  // by cell
+  std::pmr::vector<Slot> first_;  // by cell
   std::pmr::vector<Agent> agents_;
-  std::pmr::vector<Place> unused_;             // last left, first used again
-  std::pmr::vector<CellIndex> free_;           // cells without agents
-  std::pmr::vector<CellIndex> place_of_free_;  // by cell: where it stands in free_
-  std::pmr::vector<std::uint32_t> counts_;     // by cell
+  std::pmr::vector<Slot> unused_;             // last left, first used again
+  std::pmr::vector<CellIndex> free_;          // cells without agents
+  std::pmr::vector<CellIndex> slot_of_free_;  // by cell: where it stands in free_
+  std::pmr::vector<std::uint32_t> counts_;    // by cell
 };
 
 }  // namespace breve

@@ -20,9 +20,9 @@ void Planar::Core::collect(BodyIndex body, std::pmr::vector<BodyIndex>& out) con
       const BodyIndex other = is.parent == out[i] ? is.child : is.parent;
       // A body that does not move by itself connects nothing.
       if (other == kNoBody || !bodies->dynamic(other)) continue;
-      const auto place = std::lower_bound(known.begin(), known.end(), other);
-      if (place != known.end() && *place == other) continue;
-      known.insert(place, other);
+      const auto position = std::lower_bound(known.begin(), known.end(), other);
+      if (position != known.end() && *position == other) continue;
+      known.insert(position, other);
       out.push_back(other);
     }
   }
@@ -65,16 +65,16 @@ bool Planar::Core::held_by_world(BodyIndex body) const {
 
 void Planar::Core::move_rigidly(std::span<const BodyIndex> some, const Pose& from, const Pose& to) {
   if (from.location == to.location && from.orientation.coeffs() == to.orientation.coeffs()) return;
-  const Quaternion turn = (to.orientation * from.orientation.conjugate()).normalized();
+  const Quaternion rotation = (to.orientation * from.orientation.conjugate()).normalized();
   for (const BodyIndex body : some) {
     const Vector3 arm = bodies->location(body) - from.location;
-    bodies->set_location(body, to.location + turn * arm);
-    bodies->set_orientation(body, turn * bodies->orientation(body));
+    bodies->set_location(body, to.location + rotation * arm);
+    bodies->set_orientation(body, rotation * bodies->orientation(body));
     if (FlatBody* flat = find(body); flat && !flat->fixed) {
       const double before = kinetic_of(*flat);
       push_pose(*flat);
       push_velocity(*flat, flat->velocity, flat->spin.z());
-      account.script_work += kinetic_of(*flat) - before;
+      ledger.script_work += kinetic_of(*flat) - before;
       flat->location = bodies->location(body);
       flat->orientation = bodies->orientation(body);
     }
@@ -87,7 +87,7 @@ void Planar::Core::follow(BodyIndex leader, const Pose& from) {
   std::pmr::vector<BodyIndex> all(memory);
   collect(leader, all);
   const Pose to = pose(leader);
-  const Quaternion turn = (to.orientation * from.orientation.conjugate()).normalized();
+  const Quaternion rotation = (to.orientation * from.orientation.conjugate()).normalized();
   move_rigidly(std::span<const BodyIndex>(all).subspan(1), from, to);
   for (const BodyIndex body : all) {
     const auto found = joints_at.find(body);
@@ -95,9 +95,9 @@ void Planar::Core::follow(BodyIndex leader, const Pose& from) {
     for (const JointIndex index : found->second) {
       JointDescription& is = joints[index].is;
       if (is.parent != kNoBody) continue;
-      is.parent_point = to.location + turn * (is.parent_point - from.location);
-      is.relative_rotation = (turn * is.relative_rotation).normalized();
-      if (is.kind == JointKind::Prismatic) is.normal = turn * is.normal;
+      is.parent_point = to.location + rotation * (is.parent_point - from.location);
+      is.relative_rotation = (rotation * is.relative_rotation).normalized();
+      if (is.kind == JointKind::Prismatic) is.normal = rotation * is.normal;
       if (!joints[index].b2) continue;
       drop_b2(joints[index]);
       make_b2(joints[index]);

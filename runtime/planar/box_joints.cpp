@@ -137,7 +137,7 @@ WarmJoint Planar::Core::warm_of(const FlatJoint& joint) const {
   WarmJoint warm;
   warm.x = impulse.x;
   warm.y = impulse.y;
-  warm.turn = impulse.z;
+  warm.angular = impulse.z;
   return warm;
 }
 
@@ -147,7 +147,7 @@ void Planar::Core::set_warm(FlatJoint& joint, const WarmJoint& warm) {
   else if (joint.is.kind == JointKind::Prismatic)
     write<PrismaticDoor>(static_cast<b2PrismaticJoint*>(joint.b2), warm);
   else
-    static_cast<b2WeldJoint*>(joint.b2)->*WeldDoor::impulse = b2Vec3(warm.x, warm.y, warm.turn);
+    static_cast<b2WeldJoint*>(joint.b2)->*WeldDoor::impulse = b2Vec3(warm.x, warm.y, warm.angular);
 }
 
 }  // namespace breve

@@ -21,7 +21,7 @@ inline constexpr std::uint32_t kNoSlot = 0xffffffffU;
 
 /// Impulses that Box2D starts the next step from.
 struct WarmJoint {
-  float x = 0, y = 0, turn = 0, motor = 0, lower = 0, upper = 0;
+  float x = 0, y = 0, angular = 0, motor = 0, lower = 0, upper = 0;
 };
 
 struct FlatJoint : JointRecord {
@@ -103,7 +103,7 @@ struct FrozenBody {
   float x = 0, y = 0, angle = 0, vx = 0, vy = 0, spin = 0;
   float still = 0;  // s, since when it has been slow enough to sleep
   bool awake = true;
-  Vector3 location = Vector3::Zero(), velocity = Vector3::Zero(), turn = Vector3::Zero();
+  Vector3 location = Vector3::Zero(), velocity = Vector3::Zero(), rotational_velocity = Vector3::Zero();
   Quaternion orientation{1, 0, 0, 0};
 };
 struct FrozenJoint {
@@ -190,7 +190,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   void make_world();
   void drop_world();
   void update_members();
-  b2Vec2 place_of(BodyIndex body) const;
+  b2Vec2 position_of(BodyIndex body) const;
   void add_member(BodyIndex body);
   void remove_member(std::uint32_t slot);
   void fit(FlatBody& flat);  // shape and mass
@@ -304,10 +304,10 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   void consider(b2Fixture* a, int child_a, b2Fixture* b, int child_b, bool handled, double dt, Hit& best, bool& found);
   void look_around(FlatBody& flat, double dt, Hit& best, bool& found);
   void deliver(const Hit& hit, double moment);
-  b2Transform place_after(const FlatBody& flat, double t) const;
+  b2Transform transform_after(const FlatBody& flat, double t) const;
   bool approach_fast(const FlatBody& a, const FlatBody& b, double dt) const;
   bool near_enough(const BodyPair& pair) const;
-  Contact contact_between(b2Fixture* a, int child_a, b2Fixture* b, int child_b, bool turned) const;
+  Contact contact_between(b2Fixture* a, int child_a, b2Fixture* b, int child_b, bool flipped) const;
 
   // touch.cpp: Box2D's callbacks, and what is known of a contact
   void BeginContact(b2Contact* contact) override;
@@ -335,7 +335,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   double kinetic_of(const FlatBody& flat) const;
   double motion_of(const FlatBody& flat) const;
   double energy_of(BodyIndex body) const;
-  void end_account(double dt);
+  void end_ledger(double dt);
   Energy energy() const;
   double springs_energy() const;
   double joint_rate(const FlatJoint& joint) const;
@@ -384,7 +384,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
 
 /// The angle of a rotation about z.
 inline double angle_of(const Quaternion& q) { return 2 * std::atan2(q.z(), q.w()); }
-inline Quaternion turned(double angle) { return {std::cos(angle / 2), 0, 0, std::sin(angle / 2)}; }
+inline Quaternion rotation_about_z(double angle) { return {std::cos(angle / 2), 0, 0, std::sin(angle / 2)}; }
 /// v turned left by a right angle.
 inline Vector2 left_of(const Vector2& v) { return {-v.y(), v.x()}; }
 inline Vector2 vector_of(const b2Vec2& v) { return {v.x, v.y}; }

@@ -39,7 +39,7 @@ void Planar::Core::rest(FlatBody& flat) {
 
 /// In Box2D, where the arrays have it.
 void Planar::Core::hold_still(FlatBody& flat) {
-  flat.b2->SetTransform(place_of(flat.body), static_cast<float>(angle_of(flat.orientation)));
+  flat.b2->SetTransform(position_of(flat.body), static_cast<float>(angle_of(flat.orientation)));
   if (flat.b2->GetType() == b2_staticBody) {
     // Its velocities cannot be set; a change of type makes them zero.
     flat.b2->SetType(b2_kinematicBody);
@@ -153,7 +153,7 @@ void Planar::Core::watch(double moment, bool wrong) {
         "a position or velocity in a flat world is no longer finite; the body was put back to where it was, at rest. "
         "The guard would have reported it (set-guard, breve_world_set_guard)");
   for (const FlatJoint& joint : joints) {
-    if (!joint.used || !joint.b2 || joint.ring) continue;
+    if (!joint.used || !joint.b2 || joint.loop) continue;
     double width = find(joint.is.child)->thickness;
     if (const FlatBody* parent = joint.is.parent == kNoBody ? nullptr : find(joint.is.parent); parent && !parent->fixed)
       width = std::min(width, parent->thickness);

@@ -44,7 +44,7 @@ double gap_between(const Proxy& a, const b2Transform& at_a, const Proxy& b, cons
 }  // namespace
 
 /// Where a body is after t seconds of the coming step, if nothing touches it.
-b2Transform Planar::Core::place_after(const FlatBody& flat, double t) const {
+b2Transform Planar::Core::transform_after(const FlatBody& flat, double t) const {
   const b2Body& b = *flat.b2;
   if ((flat.fixed && !flat.driven) || !b.IsAwake()) return b.GetTransform();
   const b2Vec2 v = b.GetLinearVelocity(), c = b.GetWorldCenter();
@@ -79,7 +79,7 @@ void Planar::Core::consider(b2Fixture* a, int child_a, b2Fixture* b, int child_b
   const auto sweep = [&](const FlatBody& flat) {
     b2Sweep s;
     s.localCenter = flat.b2->GetLocalCenter();
-    const b2Transform end = place_after(flat, dt);
+    const b2Transform end = transform_after(flat, dt);
     s.c0 = flat.b2->GetWorldCenter();
     s.c = b2Mul(end, s.localCenter);
     s.a0 = flat.b2->GetAngle();
@@ -94,7 +94,7 @@ void Planar::Core::consider(b2Fixture* a, int child_a, b2Fixture* b, int child_b
   b2TOIOutput out;
   b2TimeOfImpact(&out, &in);
   if (out.state == b2TOIOutput::e_separated) return;
-  const auto gap_at = [&](double t) { return gap_between(pa, place_after(x, t), pb, place_after(y, t)); };
+  const auto gap_at = [&](double t) { return gap_between(pa, transform_after(x, t), pb, transform_after(y, t)); };
   double t = out.state == b2TOIOutput::e_overlapped ? 0 : double{out.t} * dt;
   // Newton's method on the path of the step.
   const double little = 0.01 * dt;
@@ -144,14 +144,14 @@ bool Planar::Core::find_hit(double dt, Hit& best) {
 /// Whether two bodies that would bounce come faster than where nothing bounces any more.
 bool Planar::Core::approach_fast(const FlatBody& a, const FlatBody& b, double dt) const {
   const b2Vec2 v = a.b2->GetLinearVelocity() - b.b2->GetLinearVelocity();
-  const double turning = std::abs(a.b2->GetAngularVelocity()) + std::abs(b.b2->GetAngularVelocity());
+  const double spin = std::abs(a.b2->GetAngularVelocity()) + std::abs(b.b2->GetAngularVelocity());
   const double fall = settings.gravity.norm() * dt;
-  return v.Length() * settings.unit + turning * settings.unit > std::max(contact::kQuietApproach, fall);
+  return v.Length() * settings.unit + spin * settings.unit > std::max(contact::kRestingApproach, fall);
 }
 
 /// What Box2D does not know yet to be near: it looks at the way of the last step.
 void Planar::Core::look_around(FlatBody& flat, double dt, Hit& best, bool& found) {
-  const b2Transform end = place_after(flat, dt);
+  const b2Transform end = transform_after(flat, dt);
   const b2Vec2 way = end.p - flat.b2->GetPosition();
   if (way.Length() < 0.5F * b2_aabbExtension && std::abs(flat.b2->GetAngularVelocity()) * dt < 0.05) return;
   struct Finder : b2QueryCallback {
@@ -251,7 +251,7 @@ int touch_points(b2Fixture& fa, b2Fixture& fb, int child, b2WorldManifold& where
 
 }  // namespace
 
-Contact Planar::Core::contact_between(b2Fixture* a, int child_a, b2Fixture* b, int child_b, bool turned) const {
+Contact Planar::Core::contact_between(b2Fixture* a, int child_a, b2Fixture* b, int child_b, bool flipped) const {
   b2DistanceOutput where;
   const double gap = gap_between(Proxy(a, child_a), a->GetBody()->GetTransform(), Proxy(b, child_b),
                                  b->GetBody()->GetTransform(), &where);
@@ -267,7 +267,7 @@ Contact Planar::Core::contact_between(b2Fixture* a, int child_a, b2Fixture* b, i
   Contact contact;
   contact.point = from_b2(point);
   contact.normal = length > 0 ? Vector3(normal.x / length, normal.y / length, 0) : Vector3(0, 1, 0);
-  if (turned) contact.normal = -contact.normal;
+  if (flipped) contact.normal = -contact.normal;
   contact.distance = gap * settings.unit;
   return contact;
 }
@@ -279,11 +279,11 @@ void Planar::Core::deliver(const Hit& hit, double moment) {
   ++counters.impacts;
   if (hit.handled) {
     write_back_all();
-    const bool turned = client->serial(x) > client->serial(y);
-    const Contact contact = contact_between(a, child_a, b, hit.child_b, turned);
+    const bool flipped = client->serial(x) > client->serial(y);
+    const Contact contact = contact_between(a, child_a, b, hit.child_b, flipped);
     const std::uint32_t number_a = number_of(a), number_b = number_of(b);
     met[std::minmax(x, y)] = true;
-    client->impact(turned ? y : x, turned ? x : y, contact, moment);
+    client->impact(flipped ? y : x, flipped ? x : y, contact, moment);
     sync();
     // The handler may have freed them, or given them other shapes.
     if (!b2 || !find(x) || !find(y) || !pushes(x, y, *client)) return;

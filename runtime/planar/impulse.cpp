@@ -140,7 +140,7 @@ bool Planar::Core::collide(FlatBody& a, FlatBody& b, const b2WorldManifold& wher
   }
   if (sum == Vector2::Zero()) return false;
   response.give(change);
-  if (!stepping) account.contact_loss += (before - response.kinetic()) * u * u;
+  if (!stepping) ledger.contact_loss += (before - response.kinetic()) * u * u;
   Impact impact;
   impact.a = bodies->owner(b.body);
   impact.b = bodies->owner(a.body);

@@ -39,8 +39,8 @@ void Planar::Core::check_flat(const JointDescription& is) const {
                        name_of(is.kind)));
   need_in_plane(is.parent_point, "the parent's point", is.kind);
   need_in_plane(is.child_point, "the child's point", is.kind);
-  const Quaternion turn = is.relative_rotation.normalized();
-  if (std::hypot(turn.x(), turn.y()) > kInPlane)
+  const Quaternion rotation = is.relative_rotation.normalized();
+  if (std::hypot(rotation.x(), rotation.y()) > kInPlane)
     refuse(fmt::format("{} joint: the relative rotation is not about z, but this world is flat", name_of(is.kind)));
   if (is.kind == JointKind::Revolute && is.normal.head<2>().norm() > kInPlane * is.normal.norm())
     refuse(
@@ -70,7 +70,7 @@ void Planar::Core::place_child(FlatJoint& joint) {
   const JointDescription& is = joint.is;
   const Pose parent = is.parent == kNoBody ? Pose{} : pose(is.parent);
   const Pose now_at = pose(is.child);
-  Pose wanted = place_at_zero(is, parent);
+  Pose wanted = pose_at_zero(is, parent);
   if (is.keep_rotation) {
     wanted.location += wanted.orientation * is.child_point - now_at.orientation * is.child_point;
     wanted.orientation = now_at.orientation;
@@ -78,8 +78,8 @@ void Planar::Core::place_child(FlatJoint& joint) {
   std::pmr::vector<BodyIndex> all(memory);
   collect(is.child, all);
   const bool connected = is.parent != kNoBody && std::find(all.begin(), all.end(), is.parent) != all.end();
-  joint.ring = connected || held_by_world(is.child);
-  if (!joint.ring) move_rigidly(all, now_at, wanted);
+  joint.loop = connected || held_by_world(is.child);
+  if (!joint.loop) move_rigidly(all, now_at, wanted);
   joint.position = 0;
   joint.position = read_position(joint);
 }
@@ -126,7 +126,7 @@ JointIndex Planar::link(const JointDescription& description, ObjectId owner) {
     throw;
   }
   made.serial = c.next_serial++;
-  const JointIndex index = take_place(c.joints, c.free_joints);
+  const JointIndex index = take_slot(c.joints, c.free_joints);
   c.joints[index] = made;
   for (const BodyIndex end : ends)
     if (end != kNoBody) c.joints_at.at(end).push_back(index);
@@ -204,8 +204,8 @@ double Planar::Core::read_position(const FlatJoint& joint) const {
   if (is.kind == JointKind::Fixed) return 0;
   const Pose parent = is.parent == kNoBody ? Pose{} : pose(is.parent), child = pose(is.child);
   if (is.kind == JointKind::Revolute) {
-    const double turn = angle_of(child.orientation) - angle_of(parent.orientation) - angle_of(is.relative_rotation);
-    return joint.position + std::remainder(-sense(is) * turn - joint.position, 2 * M_PI);
+    const double rotation = angle_of(child.orientation) - angle_of(parent.orientation) - angle_of(is.relative_rotation);
+    return joint.position + std::remainder(-sense(is) * rotation - joint.position, 2 * M_PI);
   }
   const Vector3 way =
       child.location + child.orientation * is.child_point - parent.location - parent.orientation * is.parent_point;

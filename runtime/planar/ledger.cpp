@@ -40,8 +40,8 @@ Planar::Core::Balance Planar::Core::balance() const {
     now_is.stored += kinetic_of(flat);
   }
   now_is.stored += springs_energy() - base;
-  now_is.works = account.motor_work + account.script_work;
-  now_is.losses = account.contact_loss + account.friction_loss + account.drag_loss + account.limit_loss;
+  now_is.works = ledger.motor_work + ledger.script_work;
+  now_is.losses = ledger.contact_loss + ledger.friction_loss + ledger.drag_loss + ledger.limit_loss;
   return now_is;
 }
 
@@ -86,12 +86,12 @@ Energy Planar::Core::stored() const {
 
 Energy Planar::Core::energy() const {
   Energy sum = stored();
-  sum.motor_work = account.motor_work;
-  sum.script_work = account.script_work + sum.springs - springs_known;
-  sum.contact_loss = account.contact_loss;
-  sum.friction_loss = account.friction_loss;
-  sum.drag_loss = account.drag_loss;
-  sum.limit_loss = account.limit_loss;
+  sum.motor_work = ledger.motor_work;
+  sum.script_work = ledger.script_work + sum.springs - springs_known;
+  sum.contact_loss = ledger.contact_loss;
+  sum.friction_loss = ledger.friction_loss;
+  sum.drag_loss = ledger.drag_loss;
+  sum.limit_loss = ledger.limit_loss;
   if (!b2) return sum;
   const double works = sum.motor_work + sum.script_work;
   const double losses = sum.contact_loss + sum.friction_loss + sum.drag_loss + sum.limit_loss;
@@ -107,7 +107,7 @@ double Planar::Core::joint_rate(const FlatJoint& joint) const {
 }
 
 /// Gives back what was taken off, and writes down what the sub-step did.
-void Planar::Core::end_account(double dt) {
+void Planar::Core::end_ledger(double dt) {
   const double u = settings.unit;
   const Vector2 gravity = settings.gravity.head<2>();
   double held_back = 0;  // work of all that joins and touches
@@ -123,15 +123,15 @@ void Planar::Core::end_account(double dt) {
     pushed -= flat.mass.mass * u * u * double{b2Dot(down, path)};
     const double w = flat.b2->GetAngularVelocity();
     const Vector2 sum(u * (double{v.x} + flat.before.x), u * (double{v.y} + flat.before.y));
-    const double turn = w + double{flat.before_spin};
-    if (sum == Vector2::Zero() && turn == 0) continue;
+    const double spins = w + double{flat.before_spin};
+    if (sum == Vector2::Zero() && spins == 0) continue;
     const double m = flat.mass.mass;
     const Vector2 change(u * (double{v.x} - flat.before.x), u * (double{v.y} - flat.before.y));
     const Vector2 force = flat.force + flat.asked;
     held_back += (m * change - dt * (m * gravity + force + flat.pull)).dot(sum) / 2 +
-                 (flat.mass.inertia(2, 2) * (w - flat.before_spin) - dt * (flat.torque + flat.twist)) * turn / 2;
+                 (flat.mass.inertia(2, 2) * (w - flat.before_spin) - dt * (flat.torque + flat.twist)) * spins / 2;
     if (flat.has_force || flat.asked != Vector2::Zero())
-      account.script_work += dt * (force.dot(sum) + flat.torque * turn) / 2;
+      ledger.script_work += dt * (force.dot(sum) + flat.torque * spins) / 2;
   }
   double motors = 0;
   for (const FlatJoint& joint : joints) {
@@ -142,13 +142,13 @@ void Planar::Core::end_account(double dt) {
                                 : static_cast<const b2PrismaticJoint*>(joint.b2)->GetMotorForce(rate);
     motors += strength * dt * (joint.rate + joint_rate(joint)) / 2 * u * u;
   }
-  account.motor_work += motors;
-  account.script_work += driven_work;
+  ledger.motor_work += motors;
+  ledger.script_work += driven_work;
   // The rest is lost where bodies touch; if it came in, nothing explains it, and it shows in the residual.
   const double lost = std::max(0.0, motors + driven_work - held_back);
   const double rubbed = std::min(friction, lost);
-  account.friction_loss += rubbed;
-  account.contact_loss += lost - rubbed;
+  ledger.friction_loss += rubbed;
+  ledger.contact_loss += lost - rubbed;
 }
 
 }  // namespace breve

@@ -55,15 +55,15 @@ void Planar::Core::apply_joint(FlatJoint& joint, double dt) {
     v = -b->GetJointSpeed() * u;
     axis = rotated(*b->GetBodyA(), joint.is.normal, 1);
   }
-  const bool turns = joint.is.kind == JointKind::Revolute;
-  const double moves = turns ? of_child.inertia + of_parent.inertia : of_child.mass + of_parent.mass;
+  const bool rotates = joint.is.kind == JointKind::Revolute;
+  const double moves = rotates ? of_child.inertia + of_parent.inertia : of_child.mass + of_parent.mass;
   const double spring = stable_force(drive.stiffness, drive.damping, x - drive.rest[0], v, moves, dt);
-  account.drag_loss += drive.damping * v * v * dt;
-  account.script_work += drive.force[0] * v * dt;
+  ledger.drag_loss += drive.damping * v * v * dt;
+  ledger.script_work += drive.force[0] * v * dt;
   joint.pull = spring + drive.force[0];
   const auto give = [&](FlatBody* flat, double sign) {
     if (!flat || flat->fixed) return;
-    if (turns) {
+    if (rotates) {
       flat->twist += sign * joint.pull * joint.is.normal.z();
       return;
     }
@@ -101,7 +101,7 @@ void Planar::Core::apply_spring(FlatSpring& spring, double dt) {
   };
   const End a = end_of(spring.is.a, spring.is.point_a), b = end_of(spring.is.b, spring.is.point_b);
   const Vector2 way = b.point - a.point, rate = b.velocity - a.velocity;
-  const TiePull pull = pull_of(spring.is, {way.x(), way.y(), 0}, {rate.x(), rate.y(), 0});
+  const SpringPull pull = pull_of(spring.is, {way.x(), way.y(), 0}, {rate.x(), rate.y(), 0});
   spring.force = pull.force;
   if (pull.force == 0 && pull.energy == 0) return;
   const Vector2 along = pull.direction.head<2>();
@@ -117,7 +117,7 @@ void Planar::Core::apply_spring(FlatSpring& spring, double dt) {
     if (spring.is.maximum_force > 0)
       spring.force = std::clamp(spring.force, -spring.is.maximum_force, spring.is.maximum_force);
   }
-  account.drag_loss += pull.loss * dt;
+  ledger.drag_loss += pull.loss * dt;
   const auto give = [&](const End& end, double sign) {
     if (!end.flat || end.flat->fixed) return;
     end.flat->pull += sign * spring.force * along;

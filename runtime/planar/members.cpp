@@ -125,30 +125,30 @@ namespace {
 
 /// As far away as Box2D can tell: nobody meets there what moves without physics.
 constexpr float kFar = 1e15F;
-b2Vec2 nearest_valid(const b2Vec2& place) {
+b2Vec2 nearest_valid(const b2Vec2& position) {
   const auto clamp = [](float x) { return std::isnan(x) ? kFar : std::clamp(x, -kFar, kFar); };
-  return {clamp(place.x), clamp(place.y)};
+  return {clamp(position.x), clamp(position.y)};
 }
 
 }  // namespace
 
 /// Box2D aborts the process on a body whose position or angle is not finite in single precision.
-b2Vec2 Planar::Core::place_of(BodyIndex body) const {
+b2Vec2 Planar::Core::position_of(BodyIndex body) const {
   if (!bodies->orientation(body).coeffs().allFinite())
     throw Error(ErrorCode::Argument, "the orientation of a body is no longer finite");
   const Vector3& location = bodies->location(body);
-  const b2Vec2 place = to_b2(location);
-  if (!place.IsValid() && !bodies->dynamic(body)) return nearest_valid(place);
-  if (!place.IsValid())
+  const b2Vec2 position = to_b2(location);
+  if (!position.IsValid() && !bodies->dynamic(body)) return nearest_valid(position);
+  if (!position.IsValid())
     throw Error(ErrorCode::Argument,
                 fmt::format("a body is at ({}, {}, 0), which is out of the range of single precision; keep scenes of "
                             "flat worlds within some 1,000 length units of the origin",
                             location.x(), location.y()));
-  return place;
+  return position;
 }
 
 void Planar::Core::add_member(BodyIndex body) {
-  const b2Vec2 place = place_of(body);
+  const b2Vec2 position = position_of(body);
   held.hold(kPerWorld + static_cast<std::size_t>(b2->GetBodyCount() + 1) * kPerBody);
   if (free_slots.capacity() <= slots.size()) free_slots.reserve(2 * slots.size() + 16);
   std::uint32_t slot;
@@ -168,7 +168,7 @@ void Planar::Core::add_member(BodyIndex body) {
   flat.material = std::as_const(*bodies).material(body);
   b2BodyDef def;
   def.type = flat.fixed ? b2_staticBody : b2_dynamicBody;
-  def.position = place;
+  def.position = position;
   def.angle = static_cast<float>(angle_of(bodies->orientation(body)));
   def.userData.pointer = slot + 1;
   flat.b2 = b2->CreateBody(&def);
@@ -332,7 +332,7 @@ void Planar::Core::push_pose(FlatBody& flat) {
   // Whole turns stay: joints count them.
   const double before = flat.b2->GetAngle();
   const double angle = before + std::remainder(angle_of(bodies->orientation(flat.body)) - before, 2 * M_PI);
-  flat.b2->SetTransform(place_of(flat.body), static_cast<float>(angle));
+  flat.b2->SetTransform(position_of(flat.body), static_cast<float>(angle));
   flat.b2->SetAwake(true);
   note_placed(flat);
 }
@@ -371,7 +371,7 @@ void Planar::Core::push_shapes() {
       note_placed(flat);
       flat.b2->SetAwake(true);
       wake_met(flat);
-      if (!flat.fixed) account.script_work += kinetic_of(flat) - before;
+      if (!flat.fixed) ledger.script_work += kinetic_of(flat) - before;
     }
     if (flat.fixed && (flat.location != bodies->location(flat.body) ||
                        flat.orientation.coeffs() != bodies->orientation(flat.body).coeffs())) {
@@ -425,7 +425,7 @@ void Planar::Core::push_changes() {
         push_velocity(*flat, flat->velocity, flat->spin.z());
       else
         push_velocity(*flat);
-      account.script_work += kinetic_of(*flat) - before;
+      ledger.script_work += kinetic_of(*flat) - before;
     }
     if (moved || pushed || forced) flat->b2->SetAwake(true);
     flat->location = bodies->location(body);
@@ -439,7 +439,7 @@ void Planar::Core::write_back(FlatBody& flat) {
   const b2Transform& at = flat.b2->GetTransform();
   const double angle = flat.b2->GetAngle(), spin = flat.b2->GetAngularVelocity();
   const Vector3 location = from_b2(at.p);
-  const Quaternion orientation = turned(angle);
+  const Quaternion orientation = rotation_about_z(angle);
   const Vector3 arm = orientation * flat.mass.center_of_mass;
   const Vector3 velocity = from_b2(flat.b2->GetLinearVelocity()) - spin * Vector3(-arm.y(), arm.x(), 0);
   bodies->set_motion(flat.body, location, orientation, velocity, {0, 0, spin});
@@ -455,13 +455,13 @@ bool Planar::Core::is_finite(const FlatBody& flat) {
 }
 
 void Planar::Core::write_back_all() {
-  constexpr float kWholeTurns = 50;  // rad; beyond it single precision is worth less than 4e-6 rad
+  constexpr float kMostAngle = 50;  // rad; beyond it single precision is worth less than 4e-6 rad
   for (FlatBody& flat : slots) {
     if (flat.body == kNoBody || flat.fixed) continue;
     // What fell asleep in this step is written once more.
     if (!flat.b2->IsAwake() && flat.velocity == Vector3::Zero() && flat.spin == Vector3::Zero()) continue;
     if (!is_finite(flat)) continue;  // the guard puts it where it was
-    if (!flat.jointed && std::abs(flat.b2->GetAngle()) > kWholeTurns)
+    if (!flat.jointed && std::abs(flat.b2->GetAngle()) > kMostAngle)
       flat.b2->SetTransform(flat.b2->GetPosition(), std::remainder(flat.b2->GetAngle(), 2 * b2_pi));
     write_back(flat);
   }

@@ -15,7 +15,7 @@ namespace {
 
 using Points = std::pmr::vector<Vector2>;
 
-double turn(const Vector2& a, const Vector2& b, const Vector2& c) { return cross(b - a, c - b); }
+double orientation(const Vector2& a, const Vector2& b, const Vector2& c) { return cross(b - a, c - b); }
 bool before(const Vector2& a, const Vector2& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); }
 
 /// The convex hull, counter-clockwise, without corners on straight lines (Andrew 1979).
@@ -27,7 +27,8 @@ Points hull_of(Points points) {
   const double size = (points.back() - points.front()).squaredNorm();
   const auto add = [&](const Vector2& p, std::size_t least) {
     constexpr double kStraight = 1e-12;
-    while (hull.size() >= least && turn(hull[hull.size() - 2], hull.back(), p) <= kStraight * size) hull.pop_back();
+    while (hull.size() >= least && orientation(hull[hull.size() - 2], hull.back(), p) <= kStraight * size)
+      hull.pop_back();
     hull.push_back(p);
   };
   for (const Vector2& p : points) add(p, 2);
@@ -123,7 +124,7 @@ double area_of(const Points& ring) {
 }
 
 bool in_triangle(const Vector2& p, const Vector2& a, const Vector2& b, const Vector2& c) {
-  return turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0;
+  return orientation(a, b, p) >= 0 && orientation(b, c, p) >= 0 && orientation(c, a, p) >= 0;
 }
 
 using Corners = std::pmr::vector<std::size_t>;
@@ -137,7 +138,7 @@ std::pmr::vector<Corners> triangles_of(const Points& ring, std::pmr::memory_reso
     std::size_t ear = left.size();
     for (std::size_t i = 0; i < left.size() && ear == left.size(); ++i) {
       const std::size_t a = left[(i + left.size() - 1) % left.size()], b = left[i], c = left[(i + 1) % left.size()];
-      if (turn(ring[a], ring[b], ring[c]) <= 0) continue;
+      if (orientation(ring[a], ring[b], ring[c]) <= 0) continue;
       const bool empty = std::none_of(left.begin(), left.end(), [&](std::size_t p) {
         return p != a && p != b && p != c && in_triangle(ring[p], ring[a], ring[b], ring[c]);
       });
@@ -153,7 +154,8 @@ std::pmr::vector<Corners> triangles_of(const Points& ring, std::pmr::memory_reso
 
 bool is_convex(const Points& ring, const Corners& corners) {
   for (std::size_t i = 0; i < corners.size(); ++i)
-    if (turn(ring[corners[i]], ring[corners[(i + 1) % corners.size()]], ring[corners[(i + 2) % corners.size()]]) < 0)
+    if (orientation(ring[corners[i]], ring[corners[(i + 1) % corners.size()]],
+                    ring[corners[(i + 2) % corners.size()]]) < 0)
       return false;
   return true;
 }

@@ -43,14 +43,14 @@ void Planar::set_position(JointIndex joint, const JointVector& position) {
   if (!std::isfinite(position[0])) fail_not_finite("the position");
   Core& c = *core_;
   FlatJoint& entry = c.at(joint);
-  if (entry.ring) fail_loop_joint(entry.is.kind);
+  if (entry.loop) fail_loop_joint(entry.is.kind);
   if (entry.is.kind == JointKind::Fixed) return;
   take_changes();
   const JointDescription& is = entry.is;
   const Pose parent = is.parent == kNoBody ? Pose{} : c.pose(is.parent), from = c.pose(is.child);
   Pose to;
-  const double turn = is.kind == JointKind::Revolute ? -position[0] * is.normal.z() : 0;
-  to.orientation = (parent.orientation * turned(turn) * is.relative_rotation).normalized();
+  const double rotation = is.kind == JointKind::Revolute ? -position[0] * is.normal.z() : 0;
+  to.orientation = (parent.orientation * rotation_about_z(rotation) * is.relative_rotation).normalized();
   to.location = parent.location + parent.orientation * is.parent_point - to.orientation * is.child_point;
   if (is.kind == JointKind::Prismatic) to.location -= position[0] * (parent.orientation * is.normal);
   std::pmr::vector<BodyIndex> all(memory_);
@@ -75,16 +75,16 @@ void Planar::set_velocity(JointIndex joint, const JointVector& velocity) {
   const Pose parent = is.parent == kNoBody ? Pose{} : c.pose(is.parent), child = c.pose(is.child);
   // The bodies on the child's side move as one with it; where the joint closes a loop, only the child is struck.
   std::pmr::vector<BodyIndex> all({is.child}, memory_);
-  if (!entry.ring) c.collect_beyond(joint, all);
-  const bool turns = is.kind == JointKind::Revolute;
-  const Vector3 spin = turns ? Vector3(0, 0, -more * is.normal.z()) : Vector3(0, 0, 0);
-  const Vector3 way = turns ? Vector3(0, 0, 0) : Vector3(-more * (parent.orientation * is.normal));
+  if (!entry.loop) c.collect_beyond(joint, all);
+  const bool rotates = is.kind == JointKind::Revolute;
+  const Vector3 spin = rotates ? Vector3(0, 0, -more * is.normal.z()) : Vector3(0, 0, 0);
+  const Vector3 way = rotates ? Vector3(0, 0, 0) : Vector3(-more * (parent.orientation * is.normal));
   const Vector3 point = child.location + child.orientation * is.child_point;
   for (const BodyIndex body : all) {
     c.bodies->set_rotational_velocity(body, c.bodies->rotational_velocity(body) + spin);
     c.bodies->set_velocity(body, c.bodies->velocity(body) + way + spin.cross(c.bodies->location(body) - point));
   }
-  if (c.b2 && !entry.ring) return c.give_velocities(all);
+  if (c.b2 && !entry.loop) return c.give_velocities(all);
   take_changes();
 }
 
@@ -122,7 +122,7 @@ void Planar::set_gravity(const Vector3& gravity) {
   if (gravity == c.settings.gravity) return;
   const double before = c.stored().total();
   c.settings.gravity = gravity;
-  if (c.b2 || c.frozen) c.account.script_work += c.stored().total() - before;  // else no body has been counted yet
+  if (c.b2 || c.frozen) c.ledger.script_work += c.stored().total() - before;  // else no body has been counted yet
   for (FlatBody& flat : c.slots)
     if (flat.body != kNoBody && !flat.fixed) flat.b2->SetAwake(true);
 }
@@ -142,11 +142,11 @@ std::string Planar::describe_accuracy() const {
 
 void Planar::set_force_method(BodyIndex body, bool on) {
   auto& list = core_->force_methods;
-  const auto place = std::lower_bound(list.begin(), list.end(), body);
-  const bool there = place != list.end() && *place == body;
-  if (on && !there) list.insert(place, body);
+  const auto position = std::lower_bound(list.begin(), list.end(), body);
+  const bool there = position != list.end() && *position == body;
+  if (on && !there) list.insert(position, body);
   if (on || !there) return;
-  list.erase(place);
+  list.erase(position);
   if (FlatBody* flat = core_->find(body)) {
     flat->pulled = false;
     flat->asked = Vector2::Zero();

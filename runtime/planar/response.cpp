@@ -20,7 +20,7 @@ Response::Response(const Planar::Core& core, FlatBody* a, FlatBody* b) : core_(c
   hold_joints();
   columns_ = Matrix::Zero(size(), 6);
   for (const auto& [flat, column] : {std::pair{a, 0}, std::pair{b, 3}}) {
-    const Eigen::Index at = flat ? place(*flat) : -1;
+    const Eigen::Index at = flat ? index_of(*flat) : -1;
     if (at < 0) continue;
     for (int i = 0; i < 3; ++i) columns_(at + i, column + i) = mobility_[at + i];
   }
@@ -33,7 +33,7 @@ double Response::inertia(const FlatBody& flat) {
 }
 
 void Response::gather(FlatBody& flat) {
-  if (flat.fixed || place(flat) >= 0) return;
+  if (flat.fixed || index_of(flat) >= 0) return;
   if (!flat.jointed) {
     bodies_.push_back(&flat);
     return;
@@ -44,7 +44,7 @@ void Response::gather(FlatBody& flat) {
     if (FlatBody* one = const_cast<Planar::Core&>(core_).find(body)) bodies_.push_back(one);
 }
 
-Eigen::Index Response::place(const FlatBody& flat) const {
+Eigen::Index Response::index_of(const FlatBody& flat) const {
   const auto found = std::find(bodies_.begin(), bodies_.end(), &flat);
   return found == bodies_.end() ? -1 : static_cast<Eigen::Index>(3 * (found - bodies_.begin()));
 }
@@ -77,7 +77,7 @@ void Response::add_rows(const FlatJoint& joint, Matrix& jacobian, Eigen::Index& 
   const Vector2 point_a = vector_of(joint.b2->GetAnchorA()), point_b = vector_of(joint.b2->GetAnchorB());
   const auto point_row = [&](const Vector2& along) {
     for (const auto& [flat, point, sign] : {std::tuple{parent, point_a, -1.0}, std::tuple{child, point_b, 1.0}}) {
-      const Eigen::Index at = flat ? place(*flat) : -1;
+      const Eigen::Index at = flat ? index_of(*flat) : -1;
       if (at < 0) continue;
       const Vector2 arm = point - vector_of(flat->b2->GetWorldCenter());
       jacobian(rows, at) = sign * along.x();
@@ -86,19 +86,19 @@ void Response::add_rows(const FlatJoint& joint, Matrix& jacobian, Eigen::Index& 
     }
     ++rows;
   };
-  const auto turn_row = [&] {
+  const auto rotation_row = [&] {
     for (const auto& [flat, sign] : {std::pair{parent, -1.0}, std::pair{child, 1.0}})
-      if (const Eigen::Index at = flat ? place(*flat) : -1; at >= 0) jacobian(rows, at + 2) = sign;
+      if (const Eigen::Index at = flat ? index_of(*flat) : -1; at >= 0) jacobian(rows, at + 2) = sign;
     ++rows;
   };
   if (joint.is.kind == JointKind::Prismatic) {
     point_row(left_of(core_.axis_of(joint)));
-    turn_row();
+    rotation_row();
     return;
   }
   point_row({1, 0});
   point_row({0, 1});
-  if (joint.is.kind == JointKind::Fixed) turn_row();
+  if (joint.is.kind == JointKind::Fixed) rotation_row();
 }
 
 Response::Vector Response::answer(const Vector& impulses) const {
@@ -113,16 +113,16 @@ Response::Vector Response::answer(const Vector2& arm_a, const Vector2& arm_b, co
   return columns_ * load;
 }
 
-Response::Vector Response::answer_turn() const { return columns_.col(5) - columns_.col(2); }
+Response::Vector Response::answer_rotation() const { return columns_.col(5) - columns_.col(2); }
 
 Vector2 Response::at_point(const FlatBody& flat, const Vector2& arm, const Vector& change) const {
-  const Eigen::Index at = place(flat);
+  const Eigen::Index at = index_of(flat);
   if (at < 0) return Vector2::Zero();
   return Vector2(change[at], change[at + 1]) + change[at + 2] * left_of(arm);
 }
 
-double Response::turn(const FlatBody& flat, const Vector& change) const {
-  const Eigen::Index at = place(flat);
+double Response::spin(const FlatBody& flat, const Vector& change) const {
+  const Eigen::Index at = index_of(flat);
   return at < 0 ? 0 : change[at + 2];
 }
 

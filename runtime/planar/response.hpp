@@ -22,18 +22,18 @@ class Response {
   std::span<FlatBody* const> bodies() const { return bodies_; }
   bool holds() const { return jacobian_.rows() > 0; }  // joints hold some of them
   /// Where its three numbers are; -1 for what does not move by itself.
-  Eigen::Index place(const FlatBody& flat) const;
+  Eigen::Index index_of(const FlatBody& flat) const;
 
   /// What these impulses, (size), change velocities by.
   Vector answer(const Vector& impulses) const;
   /// The impulse P on b and -P on a, each at its arm from the centre of mass.
   Vector answer(const Vector2& arm_a, const Vector2& arm_b, const Vector2& impulse) const;
   /// The same of a torque on b, and its opposite on a.
-  Vector answer_turn() const;
+  Vector answer_rotation() const;
   /// The change of the velocity of a point of a body.
   Vector2 at_point(const FlatBody& flat, const Vector2& arm, const Vector& change) const;
   /// The change of its angular velocity.
-  double turn(const FlatBody& flat, const Vector& change) const;
+  double spin(const FlatBody& flat, const Vector& change) const;
   /// The least change, by kinetic energy, to these velocities after which the joints allow them.
   Vector allowed(const Vector& velocities) const;
 

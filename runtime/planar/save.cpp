@@ -36,12 +36,12 @@ using members::Writer;
 
 template <class F, Is<FlatJoint> J>
 void each(const F& f, J& j) {
-  f(j.owner), f(j.serial), f(j.ring), f(j.position), f(j.bend), each(f, j.is), each(f, j.drive);
+  f(j.owner), f(j.serial), f(j.loop), f(j.position), f(j.bend), each(f, j.is), each(f, j.drive);
 }
 template <class F, Is<FrozenBody> B>
 void each(const F& f, B& b) {
   f(b.body), f(b.x), f(b.y), f(b.angle), f(b.vx), f(b.vy), f(b.spin), f(b.still), f(b.awake);
-  f(b.location), f(b.velocity), f(b.turn), f(b.orientation);
+  f(b.location), f(b.velocity), f(b.rotational_velocity), f(b.orientation);
 }
 template <class F, Is<WarmContact> C>
 void each(const F& f, C& c) {
@@ -50,7 +50,7 @@ void each(const F& f, C& c) {
 }
 template <class F, Is<FrozenJoint> J>
 void each(const F& f, J& j) {
-  f(j.joint), f(j.warm.x), f(j.warm.y), f(j.warm.turn), f(j.warm.motor), f(j.warm.lower), f(j.warm.upper);
+  f(j.joint), f(j.warm.x), f(j.warm.y), f(j.warm.angular), f(j.warm.motor), f(j.warm.lower), f(j.warm.upper);
 }
 
 template <class F, Is<EnergyWatch> W>
@@ -96,7 +96,7 @@ void check_frozen(const Frozen& frozen, const Bodies& bodies, std::size_t joints
   if (!std::isfinite(frozen.warm.step)) ByteReader::fail();
   for (const FrozenJoint& one : frozen.warm.joints) {
     const WarmJoint& w = one.warm;
-    if (one.joint >= joints || !all_finite({w.x, w.y, w.turn, w.motor, w.lower, w.upper})) ByteReader::fail();
+    if (one.joint >= joints || !all_finite({w.x, w.y, w.angular, w.motor, w.lower, w.upper})) ByteReader::fail();
   }
   for (const WarmContact& one : frozen.warm.contacts) {
     if (one.count < 0 || one.count > b2_maxManifoldPoints) ByteReader::fail();
@@ -174,7 +174,7 @@ void Planar::Core::set_joints(const Warm& from, double factor) {
   for (const FrozenJoint& one : from.joints) {
     if (one.joint >= joints.size() || !joints[one.joint].used || !joints[one.joint].b2) continue;
     const WarmJoint& w = one.warm;
-    set_warm(joints[one.joint], {f * w.x, f * w.y, f * w.turn, f * w.motor, f * w.lower, f * w.upper});
+    set_warm(joints[one.joint], {f * w.x, f * w.y, f * w.angular, f * w.motor, f * w.lower, f * w.upper});
   }
 }
 
@@ -195,7 +195,7 @@ Frozen Planar::Core::freeze() {
     one.still = sleep_time(*flat->b2);
     one.location = flat->location;
     one.velocity = flat->velocity;
-    one.turn = flat->spin;
+    one.rotational_velocity = flat->spin;
     one.orientation = flat->orientation;
     made.bodies.push_back(one);
   }
@@ -208,9 +208,9 @@ void Planar::Core::thaw() {
   update_members();
   base = kept;
   for (const FlatBody& flat : slots) {
-    const auto place = std::lower_bound(frozen->bodies.begin(), frozen->bodies.end(), flat.body,
-                                        [](const FrozenBody& one, BodyIndex body) { return one.body < body; });
-    const bool counted = place != frozen->bodies.end() && place->body == flat.body;
+    const auto position = std::lower_bound(frozen->bodies.begin(), frozen->bodies.end(), flat.body,
+                                           [](const FrozenBody& one, BodyIndex body) { return one.body < body; });
+    const bool counted = position != frozen->bodies.end() && position->body == flat.body;
     if (flat.body != kNoBody && !flat.fixed && !counted) base += energy_of(flat.body);
   }
   for (const FrozenBody& one : frozen->bodies) {
@@ -221,7 +221,7 @@ void Planar::Core::thaw() {
     flat->b2->SetAngularVelocity(one.spin);
     flat->location = one.location;
     flat->velocity = one.velocity;
-    flat->spin = one.turn;
+    flat->spin = one.rotational_velocity;
     flat->orientation = one.orientation;
   }
   // Their reference angles follow from the bodies' angles, whole turns included.
@@ -260,7 +260,7 @@ void Planar::Core::save(ByteWriter& out) {
   if (b2) drop_world();
   each(Writer{out}, settings);
   out.put(settings.unit);
-  each(Writer{out}, account);
+  each(Writer{out}, ledger);
   out.put(base);
   out.put(springs_known);
   out.put(next_serial);
@@ -294,7 +294,7 @@ void Planar::Core::load(ByteReader& in) {
   check_loaded(settings);
   if (settings.gravity.z() != 0) ByteReader::fail();
   if (!(settings.unit >= 1e-9 && settings.unit <= 1e9)) ByteReader::fail();
-  each(Reader{in}, account);
+  each(Reader{in}, ledger);
   base = in.get<double>();
   springs_known = in.get<double>();
   next_serial = in.get<std::uint64_t>();
@@ -344,11 +344,11 @@ void Planar::Core::join_loaded() {
     joints_at[is.child].push_back(index);
     if (is.parent != kNoBody) joints_at[is.parent].push_back(index);
   }
-  for (const FlatSpring& tie : springs) {
-    if (!tie.used) continue;
-    check(tie.is);
-    if (!bodies->used(tie.is.a) || !bodies->used(tie.is.b) || tie.is.a == tie.is.b ||
-        static_cast<int>(tie.is.mode) > static_cast<int>(SpringMode::ContractOnly))
+  for (const FlatSpring& spring : springs) {
+    if (!spring.used) continue;
+    check(spring.is);
+    if (!bodies->used(spring.is.a) || !bodies->used(spring.is.b) || spring.is.a == spring.is.b ||
+        static_cast<int>(spring.is.mode) > static_cast<int>(SpringMode::ContractOnly))
       ByteReader::fail();
   }
 }
@@ -357,7 +357,7 @@ void Planar::Core::hash(Hasher& hasher) const {
   const Adder add{hasher};
   each(add, settings);
   add(settings.unit);
-  each(add, account);
+  each(add, ledger);
   add(base);
   add(springs_known);
   add(refined);
@@ -365,8 +365,8 @@ void Planar::Core::hash(Hasher& hasher) const {
   each(add, watched);
   for (const FlatJoint& joint : joints)
     if (joint.used) each(add, joint);
-  for (const FlatSpring& tie : springs)
-    if (tie.used) each(add, tie);
+  for (const FlatSpring& spring : springs)
+    if (spring.used) each(add, spring);
   for (const auto& [body, one] : own) {
     add(body);
     each_own(add, one);

@@ -16,20 +16,20 @@ void need_ends_in_plane(const SpringDescription& is) {
 }
 }  // namespace
 
-SpringIndex Planar::tie(const SpringDescription& description, ObjectId owner) {
+SpringIndex Planar::add_spring(const SpringDescription& description, ObjectId owner) {
   check(description);
   need_ends_in_plane(description);
   Core& c = *core_;
   check_ends(description, *c.bodies);
   if (description.a == description.b) return kNoSpring;
   reserve_free(c.springs, c.free_springs);
-  const SpringIndex index = take_place(c.springs, c.free_springs);
+  const SpringIndex index = take_slot(c.springs, c.free_springs);
   c.springs[index] = {true, owner, description, 0};
   c.wake_ends(c.springs[index]);
   return index;
 }
 
-void Planar::untie(SpringIndex spring) {
+void Planar::remove_spring(SpringIndex spring) {
   core_->wake_ends(at(*core_, spring));
   at(*core_, spring) = FlatSpring();
   core_->free_springs.push_back(spring);

@@ -111,7 +111,7 @@ void Planar::Core::advance(MechanicsClient& asked, double start, double h, doubl
   place_drivers(h);
   expect_pairs(bound);
   // Springs that scripts tied, changed or stretched meanwhile.
-  account.script_work += springs_energy() - springs_known;
+  ledger.script_work += springs_energy() - springs_known;
   int count = sub_steps() << refined;
   if (const double longest = longest_step(); longest > 0)
     count = std::max(count, static_cast<int>(std::min(std::ceil(h / longest - 1e-9), kMostSteps)));
@@ -151,31 +151,31 @@ void Planar::Core::advance(MechanicsClient& asked, double start, double h, doubl
 /// @param count  of such sub-steps in the step: what is beyond all numbers is not to be cut into as many on the dearest
 ///               rung as there may be
 double Planar::Core::plan_parts(double dt, int count) {
-  constexpr double kTravel = 0.9 * b2_maxTranslation, kTurn = 0.9 * b2_maxRotation;
+  constexpr double kTravel = 0.9 * b2_maxTranslation, kRotation = 0.9 * b2_maxRotation;
   const double most = std::clamp(std::floor(4096.0 / count), 64.0, 1024.0);
   const double fall = b2->GetGravity().Length();
   // Ten times the speed at which Box2D lets a body sleep.
-  constexpr float kDrowsy = 10 * b2_linearSleepTolerance, kDrowsyTurn = 10 * b2_angularSleepTolerance;
+  constexpr float kDrowsy = 10 * b2_linearSleepTolerance, kDrowsySpin = 10 * b2_angularSleepTolerance;
   double parts = 1;
   awake = count_awake();
   for (FlatBody& flat : slots) {
     if (flat.body == kNoBody || flat.fixed || !flat.b2->IsAwake()) continue;
     const double pull = flat.has_force ? flat.force.norm() / (flat.mass.mass * settings.unit) : 0;
     const double way = (flat.b2->GetLinearVelocity().Length() + (fall + pull) * dt) * dt;
-    const double turn = std::abs(flat.b2->GetAngularVelocity()) * dt;
+    const double rotation = std::abs(flat.b2->GetAngularVelocity()) * dt;
     // Beyond single precision no number of sub-steps helps: the guard sees what becomes of it.
-    if (!std::isfinite(static_cast<float>(way + turn))) continue;
-    parts = std::max({parts, std::ceil(way / kTravel), std::ceil(turn / kTurn)});
+    if (!std::isfinite(static_cast<float>(way + rotation))) continue;
+    parts = std::max({parts, std::ceil(way / kTravel), std::ceil(rotation / kRotation)});
     if (settings.sleeping)
       flat.drowsy = flat.touching > 0 && !flat.jointed && flat.b2->GetLinearVelocity().Length() < kDrowsy &&
-                    std::abs(flat.b2->GetAngularVelocity()) < kDrowsyTurn;
+                    std::abs(flat.b2->GetAngularVelocity()) < kDrowsySpin;
     // A body that moves more than half its width must also meet moving bodies.
     flat.b2->SetBullet(way > flat.thickness);
   }
   if (!(parts <= most)) {
     for (const FlatBody& flat : slots)
       if (flat.body != kNoBody && !flat.fixed && !(flat.b2->GetLinearVelocity().Length() * dt <= most * kTravel))
-        intervene(flat.body, GuardReason::FastTurn, flat.b2->GetLinearVelocity().Length() * settings.unit, now,
+        intervene(flat.body, GuardReason::FastRotation, flat.b2->GetLinearVelocity().Length() * settings.unit, now,
                   GuardAction::Reported);
     return most;
   }
@@ -253,11 +253,11 @@ void Planar::Core::resist_rolling(double dt) {
     FlatBody &a = of(contact->GetFixtureA()->GetBody()), &b = of(contact->GetFixtureB()->GetBody());
     if (a.fixed || b.fixed || !a.drowsy || !b.drowsy || !a.b2->IsAwake() || !b.b2->IsAwake()) continue;
     const double ia = a.mass.inertia(2, 2), ib = b.mass.inertia(2, 2);
-    const double turns = double{b.b2->GetAngularVelocity()} - a.b2->GetAngularVelocity();
-    const double impulse = part * turns / (1 / ia + 1 / ib);
+    const double spin = double{b.b2->GetAngularVelocity()} - a.b2->GetAngularVelocity();
+    const double impulse = part * spin / (1 / ia + 1 / ib);
     a.b2->ApplyAngularImpulse(static_cast<float>(impulse / (u * u)), false);
     b.b2->ApplyAngularImpulse(static_cast<float>(-impulse / (u * u)), false);
-    account.friction_loss += impulse * turns * (1 - part / 2);
+    ledger.friction_loss += impulse * spin * (1 - part / 2);
   }
 }
 
@@ -284,7 +284,7 @@ void Planar::Core::step(double dt, bool bounce) {
   const int iterations = iterations_now();
   b2->Step(static_cast<float>(dt), iterations, position_iterations());
   stepping = false;
-  end_account(dt);
+  end_ledger(dt);
   constexpr double kTooShort = 0.1;  // of a sub-step: single precision tells nothing of what changed in it
   for (FlatJoint& joint : joints)
     if (joint.used && joint.drive.limit_restitution > 0 && dt >= kTooShort * step_length)
@@ -315,18 +315,18 @@ void Planar::Core::report_lasting(double moment) {
     if (!(contact->GetRestitution() >= 2)) continue;
     const BodyIndex x = of(contact->GetFixtureA()->GetBody()).body, y = of(contact->GetFixtureB()->GetBody()).body;
     const BodyPair pair = std::minmax(x, y);
-    const auto [place, fresh] = met.try_emplace(pair, false);
-    if (place->second || !client->handled(x, y)) continue;
-    place->second = true;
-    const bool turned = client->serial(x) > client->serial(y);
-    lasting.push_back({turned ? y : x, turned ? x : y,
+    const auto [entry, fresh] = met.try_emplace(pair, false);
+    if (entry->second || !client->handled(x, y)) continue;
+    entry->second = true;
+    const bool flipped = client->serial(x) > client->serial(y);
+    lasting.push_back({flipped ? y : x, flipped ? x : y,
                        contact_between(contact->GetFixtureA(), contact->GetChildIndexA(), contact->GetFixtureB(),
-                                       contact->GetChildIndexB(), turned)});
+                                       contact->GetChildIndexB(), flipped)});
   }
-  for (auto place = met.begin(); place != met.end();) {
-    const bool told = place->second;
-    place->second = false;
-    place = told || near_enough(place->first) ? std::next(place) : met.erase(place);
+  for (auto entry = met.begin(); entry != met.end();) {
+    const bool told = entry->second;
+    entry->second = false;
+    entry = told || near_enough(entry->first) ? std::next(entry) : met.erase(entry);
   }
   // A handler may free, move and make bodies.
   std::sort(lasting.begin(), lasting.end(), [this](const Lasting& p, const Lasting& q) {

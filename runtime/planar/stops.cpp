@@ -114,8 +114,8 @@ void Planar::Core::rebound(JointIndex index) {
     Response::Vector change;
     double yields = 0;
     if (joint.is.kind == JointKind::Revolute) {
-      change = response.answer_turn();
-      yields = response.turn(*child, change) - (parent ? response.turn(*parent, change) : 0);
+      change = response.answer_rotation();
+      yields = response.spin(*child, change) - (parent ? response.spin(*parent, change) : 0);
     } else {
       const Vector2 axis = axis_of(joint);
       const Vector2 arm = arm_of(joint, *child), other = parent ? arm_of(joint, *parent) : Vector2::Zero();
@@ -125,7 +125,7 @@ void Planar::Core::rebound(JointIndex index) {
     }
     if (yields > 0) response.give(-(1 + joint.drive.limit_restitution) * rate / yields * change);
   }
-  account.limit_loss += (before - response.kinetic()) * settings.unit * settings.unit;
+  ledger.limit_loss += (before - response.kinetic()) * settings.unit * settings.unit;
   spread(*child, parent ? *parent : *child);
 }
 

@@ -14,7 +14,7 @@ void Planar::Core::give_velocities(std::span<const BodyIndex> some) {
     if (!flat || flat->fixed) continue;
     const double before = kinetic_of(*flat);
     push_velocity(*flat);
-    account.script_work += kinetic_of(*flat) - before;
+    ledger.script_work += kinetic_of(*flat) - before;
     flat->b2->SetAwake(true);
     note_known(*flat);
   }
@@ -27,7 +27,7 @@ void Planar::Core::allow_velocities(BodyIndex body) {
   const Response response(*this, nullptr, flat);
   const double before = response.kinetic();
   response.give(response.allowed(response.velocities()));
-  account.script_work += (response.kinetic() - before) * settings.unit * settings.unit;
+  ledger.script_work += (response.kinetic() - before) * settings.unit * settings.unit;
   for (FlatBody* one : response.bodies()) take_velocity(*one);
 }
 
@@ -74,7 +74,7 @@ void Planar::Core::strike(std::span<const Strike> some) {
       const Vector3 center = bodies->orientation(one.body) * flat.mass.center_of_mass;
       for (int i = 0; i < 3; ++i)
         if (i < 2 ? one.pushed : one.spun)
-          axes.push_back({response.place(flat), i, -center.head<2>() / u,
+          axes.push_back({response.index_of(flat), i, -center.head<2>() / u,
                           i < 2 ? bodies->velocity(one.body)[i] / u : bodies->rotational_velocity(one.body).z()});
     }
     const auto count = static_cast<Eigen::Index>(axes.size());
@@ -94,7 +94,7 @@ void Planar::Core::strike(std::span<const Strike> some) {
     solver.setThreshold(1e-8);
     response.give(answers * solver.compute(moves).solve(wanted));
   }
-  account.script_work += (response.kinetic() - before) * u * u;
+  ledger.script_work += (response.kinetic() - before) * u * u;
   for (FlatBody* one : response.bodies()) {
     one->b2->SetAwake(true);
     take_velocity(*one);

@@ -27,7 +27,7 @@ void Planar::Core::place_drivers(double h) {
     const double spin = moving ? bodies->rotational_velocity(flat.body).z() : 0;
     if (flat.b2->GetType() != b2_kinematicBody) flat.b2->SetType(b2_kinematicBody);
     const b2Vec2 back = to_b2(h * velocity);
-    flat.b2->SetTransform(place_of(flat.body) - back, static_cast<float>(flat.b2->GetAngle() - h * spin));
+    flat.b2->SetTransform(position_of(flat.body) - back, static_cast<float>(flat.b2->GetAngle() - h * spin));
     note_placed(flat);
     flat.b2->SetLinearVelocity(to_b2(velocity));
     flat.b2->SetAngularVelocity(static_cast<float>(spin));

@@ -17,7 +17,7 @@ struct Item {
 
 std::uint32_t mesh_for(const SceneInstance& instance, const SceneMesh& mesh, const BatchView& view) {
   if (mesh.form != SceneMesh::Form::Sphere || !view.lens) return instance.mesh;
-  const Vector3f center = instance.place.col(3);
+  const Vector3f center = instance.transform.col(3);
   const float pixels = radius_of(instance, mesh) * view.lens->scale_at(center, view.height);
   constexpr float kSmall = 14;
   if (view.discs && pixels < kSmall && instance.texture == kNoTexture && instance.color.w() >= kOpaque)
@@ -27,7 +27,7 @@ std::uint32_t mesh_for(const SceneInstance& instance, const SceneMesh& mesh, con
 }
 
 GpuInstance packed(const SceneInstance& instance, std::size_t layer) {
-  const Place& p = instance.place;
+  const Transform& p = instance.transform;
   return {p.row(0),
           p.row(1),
           p.row(2),
@@ -55,7 +55,7 @@ Batches batch(const Scene& scene, const BatchView& view, Wanted wanted, const Sc
     if (instance.color.w() <= 0 || &instance == without || (wanted && !wanted(instance))) continue;
     const SceneMesh& mesh = scene.meshes[instance.mesh];
     if (mesh.indices.empty()) continue;
-    const Vector3f center = instance.place.col(3);
+    const Vector3f center = instance.transform.col(3);
     const float away = view.lens ? (view.lens->eye - center).dot(view.lens->back) : 0;
     const Item item{mesh_for(instance, mesh, view), instance.texture, i, away};
     (instance.color.w() < kOpaque ? transparent : opaque).push_back(item);

@@ -24,7 +24,7 @@ const SceneInstance* ground_of(const Scene& scene) {
   float most = 0, others = 0;
   for (const SceneInstance& one : scene.instances) {
     const float radius = radius_of(one, scene.meshes[one.mesh]);
-    const float reach = radius + (one.fixed ? 0 : one.place.col(3).norm() * 0.2F);
+    const float reach = radius + (one.fixed ? 0 : one.transform.col(3).norm() * 0.2F);
     if (one.fixed && radius > most) {
       most = radius;
       largest = &one;

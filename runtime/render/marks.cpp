@@ -27,9 +27,9 @@ void Marks::draw(const std::vector<Row>& rows, std::size_t first, std::size_t co
   array_.bind();
   buffer_.fill(GL_ARRAY_BUFFER, rows.data() + first, count * sizeof(Row), GL_STREAM_DRAW);
   // KEEP IN STEP: rows 0 and 1 and color are attributes 4, 5 and 7 (shaders.cpp).
-  const std::pair<unsigned, std::size_t> places[] = {
+  const std::pair<unsigned, std::size_t> attributes[] = {
       {4, offsetof(Row, first)}, {5, offsetof(Row, second)}, {7, offsetof(Row, color)}};
-  for (const auto& [number, offset] : places) {
+  for (const auto& [number, offset] : attributes) {
     gl_.EnableVertexAttribArray(number);
     gl_.VertexAttribPointer(number, 4, GL_FLOAT, GL_FALSE, sizeof(Row), reinterpret_cast<const void*>(offset));
     gl_.VertexAttribDivisor(number, 1);
@@ -99,7 +99,7 @@ void Marks::begin_sprites(const Shaders& shaders, const Canvas& canvas) {
 
 namespace {
 
-Vector4f place_of(const Letter& one) { return {one.x, one.y, one.width, one.height}; }
+Vector4f rectangle_of(const Letter& one) { return {one.x, one.y, one.width, one.height}; }
 Vector4f source_of(const Letter& one) { return {one.from_x, one.from_y, one.from_width, one.from_height}; }
 
 }  // namespace
@@ -126,7 +126,7 @@ void Marks::draw_labels(const Shaders& shaders, const Scene& scene, const Canvas
   std::vector<Letter> letters;
   for (const SceneLabel& label : scene.labels) {
     double seen[3];
-    if (!project(*canvas.lens, label.place.cast<double>(), canvas.width, canvas.height, seen)) continue;
+    if (!project(*canvas.lens, label.location.cast<double>(), canvas.width, canvas.height, seen)) continue;
     letters.clear();
     const float width = font_.lay(label.text, size, 0, 0, letters);
     const float x = std::round(static_cast<float>(seen[0]) - width / 2);
@@ -138,7 +138,7 @@ void Marks::draw_labels(const Shaders& shaders, const Scene& scene, const Canvas
     for (Letter& one : letters) {
       one.x += x;
       one.y += y;
-      rows.push_back({place_of(one), source_of(one), ink});
+      rows.push_back({rectangle_of(one), source_of(one), ink});
     }
   }
   draw_rows(shaders, rows, canvas);
@@ -157,9 +157,9 @@ void Marks::draw_texts(const Shaders& shaders, const Scene& scene, const Canvas&
     const float edge = brightness(text.color) > 0.5F ? 0.0F : 1.0F;
     for (const float dx : {-1.0F, 1.0F})
       for (const Letter& one : letters)
-        rows.push_back({place_of(one) + Vector4f(dx, 1, 0, 0), source_of(one), {edge, edge, edge, 0.22F}});
+        rows.push_back({rectangle_of(one) + Vector4f(dx, 1, 0, 0), source_of(one), {edge, edge, edge, 0.22F}});
     const Vector4f ink(text.color.x(), text.color.y(), text.color.z(), 1);
-    for (const Letter& one : letters) rows.push_back({place_of(one), source_of(one), ink});
+    for (const Letter& one : letters) rows.push_back({rectangle_of(one), source_of(one), ink});
   }
   draw_rows(shaders, rows, canvas);
 }

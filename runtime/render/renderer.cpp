@@ -15,16 +15,16 @@ namespace {
 Mirror mirror_of(const Scene& scene) {
   const SceneInstance* ground = scene.flags.reflections && scene.dimension == 3 ? ground_of(scene) : nullptr;
   if (!ground || scene.meshes[ground->mesh].form != SceneMesh::Form::Box) return {};
-  return {true, ground->place(1, 3) + ground->place.row(1).head<3>().cwiseAbs().sum() / 2};
+  return {true, ground->transform(1, 3) + ground->transform.row(1).head<3>().cwiseAbs().sum() / 2};
 }
 
 bool moves(const SceneInstance& instance) { return !instance.fixed; }
 
 Lens mirrored(Lens lens, float height) {
-  Matrix4f turn = Matrix4f::Identity();
-  turn(1, 1) = -1;
-  turn(1, 3) = 2 * height;
-  lens.view = lens.view * turn;
+  Matrix4f mirror = Matrix4f::Identity();
+  mirror(1, 1) = -1;
+  mirror(1, 3) = 2 * height;
+  lens.view = lens.view * mirror;
   return lens;
 }
 

@@ -50,9 +50,9 @@ Program::~Program() {
 }
 
 int Program::at(const char* name) const {
-  const auto known = places_.find(std::string_view(name));
-  if (known != places_.end()) return known->second;
-  return places_[name] = gl_.GetUniformLocation(program_, name);
+  const auto known = locations_.find(std::string_view(name));
+  if (known != locations_.end()) return known->second;
+  return locations_[name] = gl_.GetUniformLocation(program_, name);
 }
 
 Shaders::Shaders(const Gl& gl)

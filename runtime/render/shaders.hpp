@@ -31,7 +31,7 @@ class Program {
   int at(const char* name) const;
   const Gl& gl_;
   unsigned program_ = 0;
-  mutable std::map<std::string, int, std::less<>> places_;
+  mutable std::map<std::string, int, std::less<>> locations_;
 };
 
 struct Shaders {

@@ -57,7 +57,7 @@ ShadowLens Renderer::Work::draw_shadows(const Scene& scene) {
   for (const SceneInstance& one : scene.instances) {
     if (!casts(one) || &one == ground) continue;
     const float radius = radius_of(one, scene.meshes[one.mesh]);
-    const Vector3f center = one.place.col(3);
+    const Vector3f center = one.transform.col(3);
     box.extend(center - Vector3f::Constant(radius));
     box.extend(center + Vector3f::Constant(radius));
   }

@@ -83,7 +83,7 @@ namespace {
 
 /// OpenGL's first row is the lowest one.
 template <class Number>
-void turn_over(std::vector<Number>& numbers, std::size_t row, std::size_t rows) {
+void flip_rows(std::vector<Number>& numbers, std::size_t row, std::size_t rows) {
   for (std::size_t y = 0; y < rows / 2; ++y)
     std::swap_ranges(numbers.begin() + static_cast<std::ptrdiff_t>(y * row),
                      numbers.begin() + static_cast<std::ptrdiff_t>((y + 1) * row),
@@ -99,14 +99,14 @@ void Target::read(std::vector<std::uint8_t>& rgba) const {
   gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
   gl_.ReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
   for (std::size_t i = 3; i < rgba.size(); i += 4) rgba[i] = 255;  // blending has written something else there
-  turn_over(rgba, row, static_cast<std::size_t>(height_));
+  flip_rows(rgba, row, static_cast<std::size_t>(height_));
 }
 
 void Target::read_depth(std::vector<float>& depth) const {
   depth.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
   gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, one_);
   gl_.ReadPixels(0, 0, width_, height_, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
-  turn_over(depth, static_cast<std::size_t>(width_), static_cast<std::size_t>(height_));
+  flip_rows(depth, static_cast<std::size_t>(width_), static_cast<std::size_t>(height_));
 }
 
 ShadowTarget::ShadowTarget(const Gl& gl, int side) : gl_(gl), side_(side) {

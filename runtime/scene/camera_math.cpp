@@ -12,7 +12,7 @@ namespace {
 constexpr double kYaw = 0.55, kPitch = -0.30;  // rad
 constexpr double kMargin = 1.06;
 
-Eigen::Matrix3d turn_of(double pitch, double yaw) {
+Eigen::Matrix3d rotation_of(double pitch, double yaw) {
   return (Eigen::AngleAxisd(yaw, Vector3::UnitY()) * Eigen::AngleAxisd(pitch, Vector3::UnitX())).toRotationMatrix();
 }
 
@@ -50,7 +50,7 @@ std::vector<Ball> balls_of(const Scene& scene, bool fixed) {
   std::vector<Ball> balls;
   for (const SceneInstance& one : scene.instances)
     if (one.fixed == fixed)
-      balls.push_back({one.place.col(3).cast<double>(), double{radius_of(one, scene.meshes[one.mesh])}});
+      balls.push_back({one.transform.col(3).cast<double>(), double{radius_of(one, scene.meshes[one.mesh])}});
   if (fixed) return balls;
   for (const SceneSprite& one : scene.sprites)
     balls.push_back({one.center.cast<double>(), one.point ? 0.0 : double{one.size} / 2});
@@ -94,18 +94,18 @@ float Lens::distance(float depth) const {
   return 2 * far * near / (far + near - z * (far - near));
 }
 
-float Lens::scale_at(const Vector3f& place, float picture_height) const {
+float Lens::scale_at(const Vector3f& location, float picture_height) const {
   if (orthographic) return picture_height / (2 * slope);
-  const float away = std::max(near, (eye - place).dot(back));
+  const float away = std::max(near, (eye - location).dot(back));
   return picture_height / (2 * slope * away);
 }
 
 Lens lens_of(const SceneCamera& camera, double aspect) {
   Lens lens;
-  const Eigen::Matrix3d turn = turn_of(camera.pitch, camera.yaw);
-  lens.right = turn.col(0).cast<float>();
-  lens.up = turn.col(1).cast<float>();
-  lens.back = turn.col(2).cast<float>();
+  const Eigen::Matrix3d rotation = rotation_of(camera.pitch, camera.yaw);
+  lens.right = rotation.col(0).cast<float>();
+  lens.up = rotation.col(1).cast<float>();
+  lens.back = rotation.col(2).cast<float>();
   lens.eye = (camera.target + camera.offset).cast<float>();
   const double distance = std::max(1e-6, camera.offset.norm());
   lens.orthographic = camera.orthographic;
@@ -129,10 +129,10 @@ bool project(const Lens& lens, const Vector3& point, int width, int height, doub
 }
 
 float radius_of(const SceneInstance& instance, const SceneMesh& mesh) {
-  const auto turn = instance.place.leftCols<3>();
-  if (mesh.form == SceneMesh::Form::Sphere) return turn.col(0).norm();
-  if (mesh.form == SceneMesh::Form::Box) return Vector3f(turn.colwise().norm().transpose()).norm() / 2;
-  return Vector3f(turn.colwise().norm().transpose()).cwiseProduct(mesh.reach).norm();
+  const auto rotation = instance.transform.leftCols<3>();
+  if (mesh.form == SceneMesh::Form::Sphere) return rotation.col(0).norm();
+  if (mesh.form == SceneMesh::Form::Box) return Vector3f(rotation.colwise().norm().transpose()).norm() / 2;
+  return Vector3f(rotation.colwise().norm().transpose()).cwiseProduct(mesh.reach).norm();
 }
 
 Framing frame_of(const Scene& scene, double slope, double aspect, bool orthographic) {
@@ -153,9 +153,9 @@ Framing frame_of(const Scene& scene, double slope, double aspect, bool orthograp
     return frame;
   }
   // From there each ball is between the planes through the eye that bound the picture.
-  const Eigen::Matrix3d turn = turn_of(kPitch, kYaw);
+  const Eigen::Matrix3d rotation = rotation_of(kPitch, kYaw);
   for (const Ball& b : balls) {
-    const Vector3 seen = turn.transpose() * (b.center - frame.center);
+    const Vector3 seen = rotation.transpose() * (b.center - frame.center);
     for (const auto& [way, half] : {std::pair{std::abs(seen.x()), slope * aspect}, {std::abs(seen.y()), slope}}) {
       const double needed = seen.z() + way / half + b.radius * std::hypot(1.0, half) / half;
       frame.distance = std::max(frame.distance, kMargin * needed);
@@ -184,7 +184,7 @@ SceneCamera framed(const Scene& scene, SceneCamera camera, double aspect, Framin
   camera.target = kept.center;
   camera.pitch = pitch;
   camera.yaw = yaw;
-  camera.offset = kept.distance * turn_of(camera.pitch, camera.yaw).col(2);
+  camera.offset = kept.distance * rotation_of(camera.pitch, camera.yaw).col(2);
   camera.far_plane = std::max(camera.far_plane, 6 * kept.distance);
   return camera;
 }

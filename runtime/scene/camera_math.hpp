@@ -19,7 +19,7 @@ struct Lens {
   /// Length units along the line of sight, of what the depth buffer holds as 0 to 1.
   float distance(float depth) const;
   /// Pixels that a length of 1 takes at that place.
-  float scale_at(const Vector3f& place, float picture_height) const;
+  float scale_at(const Vector3f& location, float picture_height) const;
 };
 
 /// @param aspect  width / height of the picture

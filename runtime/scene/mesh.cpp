@@ -9,7 +9,7 @@ namespace breve {
 
 namespace {
 
-constexpr float kTurn = 2 * std::numbers::pi_v<float>;
+constexpr float kCircle = 2 * std::numbers::pi_v<float>;
 
 std::uint32_t add(SceneMesh& mesh, const Vector3f& position, const Vector3f& normal) {
   mesh.positions.push_back(position);
@@ -38,7 +38,7 @@ void revolve(SceneMesh& mesh, int axis, int segments, const std::vector<std::arr
   const auto ring = static_cast<std::uint32_t>(segments + 1);
   for (const auto& [radius, height, out, up] : profile)
     for (int i = 0; i <= segments; ++i) {
-      const float angle = kTurn * static_cast<float>(i) / static_cast<float>(segments);
+      const float angle = kCircle * static_cast<float>(i) / static_cast<float>(segments);
       const float c = std::cos(angle), s = std::sin(angle);
       add(mesh, about(axis, radius * c, height, radius * s), about(axis, out * c, up, out * s));
     }
@@ -105,9 +105,9 @@ SceneMesh make_box_mesh() {
   mesh.form = SceneMesh::Form::Box;
   for (int axis = 0; axis < 3; ++axis)
     for (const float side : {-0.5F, 0.5F}) {
-      const float turn = side > 0 ? 1.0F : -1.0F;
-      add_polygon(mesh, {about(axis, -0.5F, side, -0.5F * turn), about(axis, 0.5F, side, -0.5F * turn),
-                         about(axis, 0.5F, side, 0.5F * turn), about(axis, -0.5F, side, 0.5F * turn)});
+      const float winding = side > 0 ? 1.0F : -1.0F;
+      add_polygon(mesh, {about(axis, -0.5F, side, -0.5F * winding), about(axis, 0.5F, side, -0.5F * winding),
+                         about(axis, 0.5F, side, 0.5F * winding), about(axis, -0.5F, side, 0.5F * winding)});
     }
   return mesh;
 }
@@ -129,7 +129,7 @@ SceneMesh make_capsule_mesh(int axis, double half, int segments) {
   for (const float side : {1.0F, -1.0F})
     for (int i = 0; i <= rings; ++i) {
       const int step = side > 0 ? i : rings - i;
-      const float angle = kTurn / 4 * static_cast<float>(step) / static_cast<float>(rings);
+      const float angle = kCircle / 4 * static_cast<float>(step) / static_cast<float>(rings);
       profile.push_back({std::sin(angle), side * (static_cast<float>(half) + std::cos(angle)), std::sin(angle),
                          side * std::cos(angle)});
     }

@@ -16,7 +16,7 @@ namespace breve {
 
 using Vector3f = Eigen::Vector3f;
 using Vector4f = Eigen::Vector4f;
-using Place = Eigen::Matrix<float, 3, 4, Eigen::RowMajor>;  // world = place * (x, y, z, 1)
+using Transform = Eigen::Matrix<float, 3, 4, Eigen::RowMajor>;  // world = transform * (x, y, z, 1)
 
 inline constexpr std::uint32_t kNoTexture = 0xffffffffU;
 
@@ -41,7 +41,7 @@ struct SceneTexture {
 
 struct SceneInstance {
   ObjectId object{};
-  Place place = Place::Zero();  // rotation and scale, then location
+  Transform transform = Transform::Zero();  // rotation and scale, then location
   Vector4f color = Vector4f::Zero();
   std::uint32_t mesh = 0, texture = kNoTexture;
   Eigen::Vector2f texture_scale{1.0F, 1.0F};  // length units of a tile
@@ -87,7 +87,7 @@ struct SceneVertex {
 /// Text that belongs to a place in the world.
 struct SceneLabel {
   ObjectId object;
-  Vector3f place = Vector3f::Zero();  // the text stands above it
+  Vector3f location = Vector3f::Zero();  // the text stands above it
   std::string text;
 };
 

@@ -21,7 +21,7 @@ struct Best {
 
 /// The boxes in the frame of a.
 struct Boxes {
-  Matrix3 turn, extent;  // of b; |turn|
+  Matrix3 rotation, extent;  // of b; |rotation|
   Vector3 shift, half_a, half_b;
 
   /// False if some face of a or b is farther than the margin; `best` is then that face.
@@ -32,7 +32,7 @@ struct Boxes {
     }
     if (of_a.distance >= margin) return false;
     for (int i = 0; i < 3; ++i) {
-      const double along = turn.col(i).dot(shift);
+      const double along = rotation.col(i).dot(shift);
       const double d = std::abs(along) - half_b[i] - extent.col(i).dot(half_a);
       if (d > of_b.distance) of_b = {d, i, along > 0 ? -1.0 : 1.0};
     }
@@ -46,9 +46,9 @@ struct Boxes {
       const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
       for (int j = 0; j < 3; ++j) {
         const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-        const double square = turn(i1, j) * turn(i1, j) + turn(i2, j) * turn(i2, j);
+        const double square = rotation(i1, j) * rotation(i1, j) + rotation(i2, j) * rotation(i2, j);
         if (square < kParallel * kParallel) continue;
-        const double along = turn(i1, j) * shift[i2] - turn(i2, j) * shift[i1];
+        const double along = rotation(i1, j) * shift[i2] - rotation(i2, j) * shift[i1];
         const double reach = half_a[i1] * extent(i2, j) + half_a[i2] * extent(i1, j) + half_b[j1] * extent(i, j2) +
                              half_b[j2] * extent(i, j1);
         const double gap = std::abs(along) - reach;
@@ -91,8 +91,8 @@ int face_index(int axis, double sign) { return 2 * axis + (sign > 0 ? 1 : 0); }
 
 bool boxes_manifold(const ConvexPair& pair, const Vector3& half_a, const Vector3& half_b, Manifold& out) {
   Boxes boxes;
-  boxes.turn.noalias() = pair.a.rotation.transpose() * pair.b.rotation;
-  boxes.extent = boxes.turn.cwiseAbs();
+  boxes.rotation.noalias() = pair.a.rotation.transpose() * pair.b.rotation;
+  boxes.extent = boxes.rotation.cwiseAbs();
   boxes.shift.noalias() = pair.a.rotation.transpose() * pair.b.location;
   boxes.half_a = half_a;
   boxes.half_b = half_b;

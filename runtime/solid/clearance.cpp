@@ -13,7 +13,7 @@ Clearance::Clearance(const Placed& convex, const Placed& frame, const Eigen::Ali
     : solid_(convex.solid),
       round_(convex.round),
       radius_(convex.radius),
-      turn_(frame.rotation.transpose() * convex.rotation),
+      rotation_(frame.rotation.transpose() * convex.rotation),
       center_(frame.rotation.transpose() * (convex.location - frame.location)),
       bounds_(bounds_in(frame, convex)) {
   constexpr double kHair = 1e-13;  // of all lengths that take part
@@ -22,7 +22,7 @@ Clearance::Clearance(const Placed& convex, const Placed& frame, const Eigen::Ali
 }
 
 void Clearance::choose_planes(const Vector3& surface_center) {
-  const Vector3 toward = turn_.transpose() * (surface_center - center_);
+  const Vector3 toward = rotation_.transpose() * (surface_center - center_);
   std::array<double, kMostPlanes> heights;
   for (const Plane& plane : solid_->planes) {
     const double height = plane.normal.dot(toward) - plane.offset;
@@ -39,7 +39,7 @@ void Clearance::choose_planes(const Vector3& surface_center) {
   }
   for (std::size_t i = 0; i < plane_count_; ++i) {
     if (round_.is_round()) planes_[i].offset = planes_[i].normal.dot(round_.extreme(planes_[i].normal));
-    planes_[i].normal = turn_ * planes_[i].normal;
+    planes_[i].normal = rotation_ * planes_[i].normal;
     planes_[i].offset += planes_[i].normal.dot(center_);
   }
 }
@@ -58,7 +58,7 @@ double Clearance::of(const Eigen::AlignedBox3d& box) const {
 double Clearance::of_plane(const Facet& facet) const {
   const double height = facet.normal.dot(center_ - facet.corner[0]);
   if (solid_ == nullptr) return std::abs(height) - radius_ - hair_;
-  const Vector3 normal = turn_.transpose() * facet.normal;
+  const Vector3 normal = rotation_.transpose() * facet.normal;
   if (round_.is_round()) return std::abs(height) - normal.dot(round_.extreme(normal)) - hair_;
   lowest_ = solid_->farthest(-normal, lowest_);
   highest_ = solid_->farthest(normal, highest_);

@@ -30,8 +30,8 @@ class Clearance {
   const Polyhedron* solid_;
   Round round_;
   double radius_;
-  Matrix3 turn_;    // from the solid's frame to the surface's
-  Vector3 center_;  // of the solid, in the surface's frame
+  Matrix3 rotation_;  // from the solid's frame to the surface's
+  Vector3 center_;    // of the solid, in the surface's frame
   double hair_;
   Eigen::AlignedBox3d bounds_;
   std::array<Plane, kMostPlanes> planes_;  // of the solid, those that face the middle of the surface

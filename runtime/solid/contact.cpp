@@ -109,17 +109,17 @@ Pose pose_at(const Motion& motion, double t) {
   Pose pose{motion.start.location + t * motion.velocity, motion.start.orientation};
   const double rate = motion.rotational_velocity_world.stableNorm();
   if (rate > 0) {
-    const Quaternion turn(Eigen::AngleAxisd(rate * t, motion.rotational_velocity_world / rate));
-    pose.orientation = (turn * pose.orientation).normalized();
+    const Quaternion rotation(Eigen::AngleAxisd(rate * t, motion.rotational_velocity_world / rate));
+    pose.orientation = (rotation * pose.orientation).normalized();
   }
   return pose;
 }
 
 double touch_tolerance(const Shape& a, const Pose& pa, const Shape& b, const Pose& pb) {
   // Sizes: the geometry's own round-off. Places: that of poses that were rounded after a step.
-  constexpr double kOfSize = 1e-12, kOfPlace = 16 * std::numeric_limits<double>::epsilon();
-  const double place = std::max(pa.location.cwiseAbs().maxCoeff(), pb.location.cwiseAbs().maxCoeff());
-  return kOfSize * (a.bounding_radius() + b.bounding_radius()) + kOfPlace * place;
+  constexpr double kOfSize = 1e-12, kOfCoordinate = 16 * std::numeric_limits<double>::epsilon();
+  const double coordinate = std::max(pa.location.cwiseAbs().maxCoeff(), pb.location.cwiseAbs().maxCoeff());
+  return kOfSize * (a.bounding_radius() + b.bounding_radius()) + kOfCoordinate * coordinate;
 }
 
 }  // namespace breve

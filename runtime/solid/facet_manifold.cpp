@@ -32,8 +32,8 @@ bool stands_out(const Facet& facet, const Vector3& direction, double tolerance) 
 }
 
 /// The triangle as a face that looks along `normal`, which is its own or the opposite one.
-void place_triangle(const Placed& b, bool turned, PlacedFace& out) {
-  place_face(b, turned ? 1 : 0, out);
+void place_triangle(const Placed& b, bool flipped, PlacedFace& out) {
+  place_face(b, flipped ? 1 : 0, out);
   out.index = 0;
 }
 
@@ -67,7 +67,7 @@ bool face_of_solid(const ConvexPair& pair, const Gap& gap, Manifold& out) {
   return clip_faces(reference, incident, Owner::A, pair.margin, pair.slack.rim, out);
 }
 
-bool solid_on_facet(const ConvexPair& pair, const Facet& facet, const Gap& gap, const Vector3& normal, bool turned,
+bool solid_on_facet(const ConvexPair& pair, const Facet& facet, const Gap& gap, const Vector3& normal, bool flipped,
                     Manifold& out) {
   const double plane = normal.dot(pair.b.vertex(0));
   const double height = -pair.a.reach(-normal) - plane;
@@ -75,7 +75,7 @@ bool solid_on_facet(const ConvexPair& pair, const Facet& facet, const Gap& gap, 
   const bool out_standing = stands_out(facet, pair.b.rotation.transpose() * gap.normal, tolerance);
   if (!out_standing || height >= gap.distance - pair.slack.preference) {
     PlacedFace reference, incident;
-    place_triangle(pair.b, turned, reference);
+    place_triangle(pair.b, flipped, reference);
     place_facing(pair.a, -normal, incident);
     const bool clipped = clip_faces(reference, incident, Owner::B, pair.margin, pair.slack.rim, out);
     // Much deeper than the shortest way out, which leads over a seam: the facet beyond has the contact.
@@ -97,11 +97,11 @@ bool facet_manifold(const ConvexPair& pair, const Facet& facet, bool& near, Mani
   if (gap.distance >= pair.margin) return false;
   near = true;
   Vector3 normal = pair.b.rotation * facet.normal;
-  const bool turned = !pair.b.outer && normal.dot(pair.a.location - pair.b.vertex(0)) < 0;
-  if (turned) normal = -normal;
+  const bool flipped = !pair.b.outer && normal.dot(pair.a.location - pair.b.vertex(0)) < 0;
+  if (flipped) normal = -normal;
   if (normal.dot(gap.normal) < kBehind) return false;  // the facet that looks this way has the contact
   const bool found = pair.a.solid == nullptr ? ball_on_facet(pair, facet, gap, normal, out)
-                                             : solid_on_facet(pair, facet, gap, normal, turned, out);
+                                             : solid_on_facet(pair, facet, gap, normal, flipped, out);
   if (!found) return false;
   for (int i = 0; i < out.count; ++i) {
     ContactPoint& point = out.points[at(i)];

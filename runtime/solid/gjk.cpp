@@ -13,7 +13,7 @@ namespace breve {
 
 namespace {
 
-constexpr int kMaxTurns = 256;
+constexpr int kMaxIterations = 256;
 constexpr double kRoundOff = 1e-15;  // relative; a few units in the last place
 constexpr double kHair = 1e-13;      // relative; what is not quite beyond a limit is found exactly
 constexpr double kFlat = 1e-14;      // sine below which a triangle or tetrahedron counts as flat
@@ -208,7 +208,7 @@ bool cores_apart(const Placed& a, const Placed& b, Gap& gap, double enough) {
   Nearest nearest;
   Vector3 toward = a.location - b.location;
   if (toward.squaredNorm() == 0) toward = Vector3::UnitY();
-  for (int turn = 0; turn < kMaxTurns; ++turn) {
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     const Corner corner = corner_along(a, b, toward, static_cast<const Corner*>(nullptr));
     if (simplex.size > 0) {
       const double along = nearest.point.dot(corner.w), slack = nearest.square - along;

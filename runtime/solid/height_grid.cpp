@@ -124,13 +124,13 @@ void HeightGrid::set_height(int column, int row, double value) {
 }
 
 int HeightGrid::column_at(double x) const {
-  const double place = x / (tile_ * scale_.x()) + (columns_ - 1) / 2.0;
-  return static_cast<int>(std::clamp(std::floor(place), 0.0, columns_ - 2.0));
+  const double position = x / (tile_ * scale_.x()) + (columns_ - 1) / 2.0;
+  return static_cast<int>(std::clamp(std::floor(position), 0.0, columns_ - 2.0));
 }
 
 int HeightGrid::row_at(double z) const {
-  const double place = z / (tile_ * scale_.z()) + (rows_ - 1) / 2.0;
-  return static_cast<int>(std::clamp(std::floor(place), 0.0, rows_ - 2.0));
+  const double position = z / (tile_ * scale_.z()) + (rows_ - 1) / 2.0;
+  return static_cast<int>(std::clamp(std::floor(position), 0.0, rows_ - 2.0));
 }
 
 /// Half 0 has the corner at low x and high z, half 1 the one at high x and low z; edge 2 of both is the diagonal.
@@ -178,9 +178,9 @@ bool HeightGrid::height_at(double x, double z, double& height) const {
   const double u = std::clamp((x - low.x()) / (high.x() - low.x()), 0.0, 1.0);
   const double v = std::clamp((z - low.z()) / (high.z() - low.z()), 0.0, 1.0);
   // Along the two edges of the half that the place is in.
-  const double turn = v >= u ? corner(c, r + 1).y() : corner(c + 1, r).y();
-  height = v >= u ? low.y() + v * (turn - low.y()) + u * (high.y() - turn)
-                  : low.y() + u * (turn - low.y()) + v * (high.y() - turn);
+  const double third = v >= u ? corner(c, r + 1).y() : corner(c + 1, r).y();
+  height = v >= u ? low.y() + v * (third - low.y()) + u * (high.y() - third)
+                  : low.y() + u * (third - low.y()) + v * (high.y() - third);
   return true;
 }
 

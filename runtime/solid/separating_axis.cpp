@@ -70,14 +70,14 @@ FaceAxis best_cap(const Placed& a, const Placed& b) {
 FaceAxis best_face(const Placed& a, const Placed& b) {
   if (a.round.is_capsule()) return {-std::numeric_limits<double>::infinity(), 0};
   if (a.round.is_cylinder()) return best_cap(a, b);
-  const Matrix3 turn = a.rotation.transpose() * b.rotation;
+  const Matrix3 rotation = a.rotation.transpose() * b.rotation;
   const Vector3 shift = a.rotation.transpose() * (b.location - a.location);
   Deepest deepest;
   FaceAxis best{-std::numeric_limits<double>::infinity(), 0};
   for (std::size_t f = 0; f < a.solid->planes.size(); ++f) {
     const Plane& plane = a.solid->planes[f];
     if (deepest.bound(plane) <= best.distance) continue;
-    const Vector3 local = turn.transpose() * plane.normal;
+    const Vector3 local = rotation.transpose() * plane.normal;
     const Vector3* low = nullptr;
     double least = std::numeric_limits<double>::infinity();
     for (const Vector3& v : b.solid->vertices) {
@@ -86,7 +86,7 @@ FaceAxis best_face(const Placed& a, const Placed& b) {
       least = height;
       low = &v;
     }
-    const Vector3 point = shift + turn * *low;
+    const Vector3 point = shift + rotation * *low;
     deepest.add(point);
     const double distance = plane.normal.dot(point) - plane.offset;
     if (distance > best.distance) best = {distance, static_cast<int>(f)};
@@ -97,7 +97,7 @@ FaceAxis best_face(const Placed& a, const Placed& b) {
 bool best_edges(const Placed& a, const Placed& b, double to_beat, double apart, EdgeAxis& best) {
   if (to_beat >= std::max(0.0, apart) + kAgree * (a.radius + b.radius)) return false;
   // Edges in the frame of a.
-  const Matrix3 turn = a.rotation.transpose() * b.rotation;
+  const Matrix3 rotation = a.rotation.transpose() * b.rotation;
   const Vector3 shift = a.rotation.transpose() * (b.location - a.location);
   const Polyhedron &sa = *a.solid, &sb = *b.solid;
   Eigen::AlignedBox3d around_a;
@@ -106,11 +106,11 @@ bool best_edges(const Placed& a, const Placed& b, double to_beat, double apart, 
   bool found = false;
   for (std::size_t ib = 0; ib < sb.edges.size(); ++ib) {
     const Edge& eb = sb.edges[ib];
-    const Vector3 start_b = shift + turn * sb.vertices[at(eb.a)], end_b = shift + turn * sb.vertices[at(eb.b)];
+    const Vector3 start_b = shift + rotation * sb.vertices[at(eb.a)], end_b = shift + rotation * sb.vertices[at(eb.b)];
     const Eigen::AlignedBox3d around_b = grown(start_b, end_b, std::max(0.0, -to_beat) + slack);
     if (to_beat < 0 && !around_a.intersects(around_b)) continue;
     const Vector3 edge_b = end_b - start_b;
-    const Vector3 b1 = turn * sb.planes[at(eb.left)].normal, b2 = turn * sb.planes[at(eb.right)].normal;
+    const Vector3 b1 = rotation * sb.planes[at(eb.left)].normal, b2 = rotation * sb.planes[at(eb.right)].normal;
     for (std::size_t ia = 0; ia < sa.edges.size(); ++ia) {
       const Edge& ea = sa.edges[ia];
       const Vector3 &start_a = sa.vertices[at(ea.a)], &end_a = sa.vertices[at(ea.b)];

@@ -206,23 +206,23 @@ Eigen::AlignedBox3d bounds_in(const Placed& frame, const Placed& solid) {
   if (solid.solid == nullptr) {
     return {center - Vector3::Constant(solid.radius), center + Vector3::Constant(solid.radius)};
   }
-  const Matrix3 turn = frame.rotation.transpose() * solid.rotation;
+  const Matrix3 rotation = frame.rotation.transpose() * solid.rotation;
   if (solid.round.is_round()) {
-    const Vector3 half = half_extent(solid.round, turn);
+    const Vector3 half = half_extent(solid.round, rotation);
     return {center - half, center + half};
   }
   Eigen::AlignedBox3d box;
   const auto& vertices = solid.solid->vertices;
   if (solid.solid->neighbors.empty()) {
-    for (const Vector3& v : vertices) box.extend(center + turn * v);
+    for (const Vector3& v : vertices) box.extend(center + rotation * v);
     return box;
   }
   int from = 0;
   for (int i = 0; i < 3; ++i) {
-    const Vector3 axis = turn.row(i);
+    const Vector3 axis = rotation.row(i);
     for (const double sign : {-1.0, 1.0}) {
       from = solid.solid->farthest(sign * axis, from);
-      box.extend(center + turn * vertices[at(from)]);
+      box.extend(center + rotation * vertices[at(from)]);
     }
   }
   return box;

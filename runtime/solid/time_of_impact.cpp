@@ -73,22 +73,24 @@ struct Along {
   }
 };
 
-/// Bound on |second derivative| of n . r for a vertex r of a body, with n turning at `turn` and the body at `spin`.
-double bend(const Placed& body, const Vector3& n, const Vector3& turn, const Vector3& spin, double drift) {
-  if (body.solid == nullptr || (turn == spin && drift == 0)) return 0;
-  if (turn.isZero(0)) return (spin.cross(n).norm() * spin.norm() + drift) * body.radius;
-  const double rate = turn.norm() + spin.norm();
+/// Bound on |second derivative| of n . r for a vertex r of a body, with n turning at `normal_spin` and the body at
+/// `spin`.
+double bend(const Placed& body, const Vector3& n, const Vector3& normal_spin, const Vector3& spin, double drift) {
+  if (body.solid == nullptr || (normal_spin == spin && drift == 0)) return 0;
+  if (normal_spin.isZero(0)) return (spin.cross(n).norm() * spin.norm() + drift) * body.radius;
+  const double rate = normal_spin.norm() + spin.norm();
   return (rate * rate + drift) * body.radius;
 }
 
-/// A time up to which the gap along `n`, turning at `turn`, stays above `target`; `span` if it is so for all of it.
-double safe_time(const Scene& s, const Vector3& n, const Vector3& turn, double target, double span) {
-  const Vector3 n_rate = turn.cross(n);
+/// A time up to which the gap along `n`, turning at `normal_spin`, stays above `target`; `span` if it is so for all of
+/// it.
+double safe_time(const Scene& s, const Vector3& n, const Vector3& normal_spin, double target, double span) {
+  const Vector3 n_rate = normal_spin.cross(n);
   const Along a{s.a, s.a.rotation.transpose() * n, s.a.rotation.transpose() * (n_rate + n.cross(s.spin_a)), 0, 0};
   const Along b{s.b, s.b.rotation.transpose() * n, s.b.rotation.transpose() * (n_rate + n.cross(s.spin_b)),
                 n.dot(s.b.location), n_rate.dot(s.b.location) + n.dot(s.velocity)};
-  const double w = turn.norm(), v = s.velocity.norm();
-  const double curve = bend(s.a, n, turn, s.spin_a, s.drift_a) + bend(s.b, n, turn, s.spin_b, s.drift_b) +
+  const double w = normal_spin.norm(), v = s.velocity.norm();
+  const double curve = bend(s.a, n, normal_spin, s.spin_a, s.drift_a) + bend(s.b, n, normal_spin, s.spin_b, s.drift_b) +
                        w * w * (s.b.location.norm() + v * span) + 2 * w * v;
   // The lowest parabola is a minimum of concave functions that is positive at 0: roots from the right fall to the
   // first.
@@ -106,7 +108,7 @@ double safe_time(const Scene& s, const Vector3& n, const Vector3& turn, double t
 }
 
 /// The rate at which a plane turns that keeps both edges in it: its normal n stays perpendicular to each.
-Vector3 turn_with_edges(const Gap& gap, const Scene& s) {
+Vector3 rotate_with_edges(const Gap& gap, const Scene& s) {
   const Vector3& n = gap.normal;
   const Vector3 x = gap.edge_a.normalized(), z = x.cross(n);
   const double along_x = s.spin_a.cross(n).dot(x);
@@ -118,13 +120,13 @@ Vector3 turn_with_edges(const Gap& gap, const Scene& s) {
 }
 
 double longest_safe_time(const Scene& s, const Gap& gap, double target, double span) {
-  std::array<Vector3, 4> turns{Vector3::Zero(), s.spin_a, s.spin_b, s.spin_a};
-  if (!gap.edge_a.isZero(0)) turns[3] = turn_with_edges(gap, s);
+  std::array<Vector3, 4> normal_spins{Vector3::Zero(), s.spin_a, s.spin_b, s.spin_a};
+  if (!gap.edge_a.isZero(0)) normal_spins[3] = rotate_with_edges(gap, s);
   double longest = 0;
-  for (std::size_t i = 0; i < turns.size() && longest < span; ++i) {
-    const bool tried = std::find(turns.begin(), turns.begin() + static_cast<std::ptrdiff_t>(i), turns[i]) !=
-                       turns.begin() + static_cast<std::ptrdiff_t>(i);
-    if (!tried) longest = std::max(longest, safe_time(s, gap.normal, turns[i], target, span));
+  for (std::size_t i = 0; i < normal_spins.size() && longest < span; ++i) {
+    const bool tried = std::find(normal_spins.begin(), normal_spins.begin() + static_cast<std::ptrdiff_t>(i),
+                                 normal_spins[i]) != normal_spins.begin() + static_cast<std::ptrdiff_t>(i);
+    if (!tried) longest = std::max(longest, safe_time(s, gap.normal, normal_spins[i], target, span));
   }
   return longest;
 }

@@ -43,10 +43,10 @@ struct Local {
   Side side;
 
   Local(const Placed& a, const Placed& b) {
-    const Matrix3 turn = a.rotation.transpose() * b.rotation;
+    const Matrix3 rotation = a.rotation.transpose() * b.rotation;
     const Vector3 shift = a.rotation.transpose() * (b.location - a.location);
-    for (std::size_t i = 0; i < 3; ++i) corner[i] = shift + turn * b.solid->vertices[i];
-    side.normal = turn * b.solid->planes[0].normal;
+    for (std::size_t i = 0; i < 3; ++i) corner[i] = shift + rotation * b.solid->vertices[i];
+    side.normal = rotation * b.solid->planes[0].normal;
     side.offset = side.normal.dot(corner[0]);
     // The origin of a is 0 here.
     if (!b.outer && side.offset > 0) {

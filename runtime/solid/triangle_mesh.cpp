@@ -73,16 +73,16 @@ void TriangleMesh::weld(std::span<const Vector3> corners, std::span<const Triang
   // Sorted by place, equal corners stand side by side; the first of them stays.
   std::pmr::vector<std::int32_t> sorted(corners.size(), original_.get_allocator()), name(sorted);
   std::iota(sorted.begin(), sorted.end(), 0);
-  const auto place = [&](std::int32_t i) {
+  const auto coordinates = [&](std::int32_t i) {
     const Vector3& p = corners[at(i)];
     return std::array{p.x(), p.y(), p.z()};
   };
   std::sort(sorted.begin(), sorted.end(), [&](std::int32_t i, std::int32_t j) {
-    const auto p = place(i), q = place(j);
+    const auto p = coordinates(i), q = coordinates(j);
     return p != q ? p < q : i < j;
   });
   for (std::size_t k = 0; k < sorted.size(); ++k) {
-    const bool same = k > 0 && place(sorted[k]) == place(sorted[k - 1]);
+    const bool same = k > 0 && coordinates(sorted[k]) == coordinates(sorted[k - 1]);
     name[at(sorted[k])] = same ? name[at(sorted[k - 1])] : sorted[k];
   }
   // Renumber in the order of the corners, without those that nothing uses.
@@ -161,10 +161,10 @@ void TriangleMesh::derive() {
         const auto far = std::find_if(other.begin(), other.end(), [&](std::int32_t v) { return v != a && v != b; });
         const Vector3 opposite = far == other.end() ? Vector3::Zero() : Vector3(corners_[at(*far)] - corners_[at(a)]);
         // A neighbour that runs the edge in the same sense shows its back: its normal is turned for the comparison.
-        const bool turned = std::any_of(other.begin(), other.end(), [&](const std::int32_t& v) {
+        const bool reversed = std::any_of(other.begin(), other.end(), [&](const std::int32_t& v) {
           return v == a && other[static_cast<std::size_t>(&v - other.data() + 1) % 3] == b;
         });
-        out = stands_out(normals_[i], turned ? Vector3(-normals_[at(n)]) : normals_[at(n)], opposite, closed_);
+        out = stands_out(normals_[i], reversed ? Vector3(-normals_[at(n)]) : normals_[at(n)], opposite, closed_);
       }
       if (out) active = static_cast<std::uint8_t>(active | (1U << e));
     }

@@ -67,9 +67,9 @@ void CellGrid::scatter(const std::pmr::vector<Vector3>& points) {
   std::uint32_t begin = 0;
   for (std::uint32_t& start : starts_) start = begin += start;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::uint32_t place = starts_[cell_of_point_[i] + 1]++;
-    order_[place] = static_cast<std::uint32_t>(i);
-    sorted_points_[place] = points[i];
+    const std::uint32_t slot = starts_[cell_of_point_[i] + 1]++;
+    order_[slot] = static_cast<std::uint32_t>(i);
+    sorted_points_[slot] = points[i];
   }
 }
 

@@ -100,9 +100,9 @@ void CellGrid::build_table(const std::pmr::vector<Vector3>& points) {
     next += count;
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::uint32_t place = cells_[renumbered_[cell_of_point_[i]]].end++;
-    order_[place] = static_cast<std::uint32_t>(i);
-    sorted_points_[place] = points[i];
+    const std::uint32_t slot = cells_[renumbered_[cell_of_point_[i]]].end++;
+    order_[slot] = static_cast<std::uint32_t>(i);
+    sorted_points_[slot] = points[i];
   }
 }
 

@@ -37,9 +37,9 @@ bool Extent::holds(const Vector3& location) const {
 }
 
 Vector3 Extent::inside(const Vector3& location) const {
-  Vector3 place = location, still = Vector3::Zero();
-  bring_inside(place, still);
-  return place;
+  Vector3 position = location, still = Vector3::Zero();
+  bring_inside(position, still);
+  return position;
 }
 
 namespace {
@@ -48,16 +48,16 @@ namespace {
 void fold(const Extent::Axis& a, double& x, double& v) {
   if (a.edge == Ending::Open || (x >= a.low && x < a.high)) return;
   const double length = a.high - a.low;
-  const double turns = std::floor((x - a.low) / length);
+  const double laps = std::floor((x - a.low) / length);
   // Rounding may leave a place at, or just beyond, an edge.
-  double rest = std::clamp(x - a.low - turns * length, 0.0, length);
+  double rest = std::clamp(x - a.low - laps * length, 0.0, length);
   if (a.edge == Ending::Wrap) {
     x = a.low + (rest < length ? rest : 0.0);
     if (x >= a.high) x = a.low;
     return;
   }
   if (x == a.high) return;
-  if (std::fmod(turns, 2.0) != 0) {
+  if (std::fmod(laps, 2.0) != 0) {
     rest = length - rest;
     v = -v;
   }

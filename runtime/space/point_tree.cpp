@@ -23,8 +23,8 @@ std::uint32_t PointTree::build_node(const std::pmr::vector<Vector3>& points, std
   nodes_.push_back(node);
   const Vector3 sides = node.box.sizes();
   Eigen::Index axis = 0;
-  const bool one_place = !(sides.maxCoeff(&axis) > 0);
-  if (end - begin <= kLeafSize || one_place) return number;
+  const bool coincident = !(sides.maxCoeff(&axis) > 0);
+  if (end - begin <= kLeafSize || coincident) return number;
   const std::uint32_t middle = begin + (end - begin) / 2;
   // Ties by index, so that the tree is the same everywhere.
   std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,

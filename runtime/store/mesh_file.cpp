@@ -172,7 +172,7 @@ Vector3 vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 void collect(const aiScene& scene, MeshData& out, const std::string& name) {
   struct Task {
     const aiNode* node;
-    aiMatrix4x4 place;
+    aiMatrix4x4 transform;
   };
   std::vector<Task> tasks{{scene.mRootNode, aiMatrix4x4()}};
   while (!tasks.empty()) {
@@ -182,7 +182,8 @@ void collect(const aiScene& scene, MeshData& out, const std::string& name) {
       const aiMesh& mesh = *scene.mMeshes[task.node->mMeshes[m]];
       const std::size_t first = out.corners.size();
       if (first + mesh.mNumVertices > 0x7fffffffU) refuse_mesh(name, "it has too many vertices");
-      for (unsigned v = 0; v < mesh.mNumVertices; ++v) out.corners.push_back(vector_of(task.place * mesh.mVertices[v]));
+      for (unsigned v = 0; v < mesh.mNumVertices; ++v)
+        out.corners.push_back(vector_of(task.transform * mesh.mVertices[v]));
       for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
         const aiFace& face = mesh.mFaces[f];
         if (face.mNumIndices != 3) continue;  // points and lines
@@ -197,7 +198,7 @@ void collect(const aiScene& scene, MeshData& out, const std::string& name) {
     }
     for (unsigned c = task.node->mNumChildren; c-- > 0;) {
       const aiNode* child = task.node->mChildren[c];
-      tasks.push_back({child, task.place * child->mTransformation});
+      tasks.push_back({child, task.transform * child->mTransformation});
     }
   }
 }

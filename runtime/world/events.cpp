@@ -224,10 +224,10 @@ void World::Parts::gather_sleep() {
   if (dynamics->sleeping())
     for (const BodyIndex body : bodies.rigid_bodies())
       if (dynamics->asleep(body)) now.emplace(serial(body), bodies.owner(body));
-  for (const auto& [place, object] : events.asleep)
-    if (!now.contains(place) && objects.alive(object)) events.sleeps.push_back({object, objects.ticket(object), false});
-  for (const auto& [place, object] : now)
-    if (!events.asleep.contains(place)) events.sleeps.push_back({object, objects.ticket(object), true});
+  for (const auto& [slot, object] : events.asleep)
+    if (!now.contains(slot) && objects.alive(object)) events.sleeps.push_back({object, objects.ticket(object), false});
+  for (const auto& [slot, object] : now)
+    if (!events.asleep.contains(slot)) events.sleeps.push_back({object, objects.ticket(object), true});
   events.asleep.swap(now);
 }
 

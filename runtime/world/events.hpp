@@ -16,7 +16,7 @@
 #include "runtime/base/ids.hpp"
 #include "runtime/base/math.hpp"
 #include "runtime/base/memory.hpp"
-#include "runtime/mechanics/account.hpp"
+#include "runtime/mechanics/ledger.hpp"
 #include "runtime/world/behaviour.hpp"
 
 namespace breve {

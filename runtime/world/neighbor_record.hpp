@@ -18,7 +18,7 @@ namespace breve {
 class NeighborRecord {
  public:
   explicit NeighborRecord(std::pmr::memory_resource* memory)
-      : points_(memory), ids_(memory), gone_(memory), place_(memory), result_(memory), user_result_(memory) {}
+      : points_(memory), ids_(memory), gone_(memory), slot_(memory), result_(memory), user_result_(memory) {}
 
   /// Begin a new moment; live objects follow in order of creation. @param slots  of the table of objects
   void clear(std::size_t slots);
@@ -49,7 +49,7 @@ class NeighborRecord {
   std::pmr::vector<ObjectId> ids_;
   std::pmr::vector<std::uint8_t> gone_;  // released since the update
   bool any_gone_ = false;
-  std::pmr::vector<std::uint32_t> place_;  // by object slot; of an object not recorded it means nothing
+  std::pmr::vector<std::uint32_t> slot_;  // by object slot; of an object not recorded it means nothing
   std::pmr::vector<ObjectId> result_;
   std::pmr::vector<std::uint64_t> user_result_;
 };

@@ -12,19 +12,19 @@ constexpr std::size_t kShort = 16;  // entries that are faster looked through th
 void Notifications::List::remove_entries(auto&& which) {
   std::erase_if(entries, which);
   removed = 0;
-  places.clear();
+  index.clear();
   indexed = false;
 }
 
 void Notifications::List::build_index() {
   try {
-    places.reserve(entries.size());
+    index.reserve(entries.size());
     for (std::size_t i = 0; i < entries.size(); ++i)
       if (entries[i].observer)
-        places.emplace(key(entries[i].observer, entries[i].message), static_cast<std::uint32_t>(i));
+        index.emplace(key(entries[i].observer, entries[i].message), static_cast<std::uint32_t>(i));
     indexed = true;
   } catch (...) {
-    places.clear();
+    index.clear();
     throw;
   }
 }
@@ -39,8 +39,8 @@ void Notifications::observe(const ObjectTable& objects, ObjectId announcer, cons
   list.entries.push_back(registration);
   if (!list.indexed) return;
   try {
-    list.places.emplace(key(registration.observer, registration.message),
-                        static_cast<std::uint32_t>(list.entries.size() - 1));
+    list.index.emplace(key(registration.observer, registration.message),
+                       static_cast<std::uint32_t>(list.entries.size() - 1));
   } catch (...) {
     list.entries.pop_back();
     throw;
@@ -59,15 +59,15 @@ std::size_t Notifications::unobserve(ObjectId observer, ObjectId announcer, Name
   }
   if (!list.indexed) list.build_index();
   std::size_t count = 0;
-  const auto [first, last] = list.places.equal_range(key(observer, message));
-  for (auto place = first; place != last;) {
-    Registration& r = list.entries[place->second];
+  const auto [first, last] = list.index.equal_range(key(observer, message));
+  for (auto entry = first; entry != last;) {
+    Registration& r = list.entries[entry->second];
     if (!matches(r)) {  // of an earlier object in the same slot
-      ++place;
+      ++entry;
       continue;
     }
     r.observer = {};
-    place = list.places.erase(place);
+    entry = list.index.erase(entry);
     ++count;
   }
   list.removed += count;

@@ -43,13 +43,13 @@ class Notifications {
   /// In order. A removed registration stays as an entry without an observer until there are many: the places stay the
   /// same.
   struct List {
-    explicit List(std::pmr::memory_resource* memory) : entries(memory), places(memory) {}
+    explicit List(std::pmr::memory_resource* memory) : entries(memory), index(memory) {}
     void remove_entries(auto&& which);
     void build_index();
 
     std::pmr::vector<Registration> entries;
     // Observer's slot and message to places in `entries`, found by key only. A short list has none.
-    std::pmr::unordered_multimap<std::uint64_t, std::uint32_t> places;
+    std::pmr::unordered_multimap<std::uint64_t, std::uint32_t> index;
     bool indexed = false;
     std::size_t removed = 0;
     std::size_t sweep_at = 16;  // length at which entries of observers that went are swept out

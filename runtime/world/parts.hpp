@@ -42,7 +42,7 @@ struct World::Parts final : CollisionClient, MechanicsClient, InMemory {
   void count_dynamics();
   void bring_inside();
   // targets.cpp
-  void aim_at_places();
+  void aim_at_targets();
   void reach_targets();
   void save_targets(ByteWriter& out) const;
   void load_targets(ByteReader& in);

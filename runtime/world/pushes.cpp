@@ -77,11 +77,11 @@ void World::add_impulse(BodyIndex body, const Vector3& impulse, const Vector3* p
   }
   // The velocity is that of the origin, which goes around the centre of mass.
   const Vector3 velocity = bodies_->velocity(body) + impulse / solid.mass - spin.cross(center);
-  const Vector3 turning = bodies_->rotational_velocity(body) + spin;
+  const Vector3 spinning = bodies_->rotational_velocity(body) + spin;
   bodies_->allowed_velocity(velocity);
-  bodies_->allowed_spin(turning);
+  bodies_->allowed_spin(spinning);
   bodies_->set_velocity(body, velocity);
-  if (spin != Vector3::Zero()) bodies_->set_rotational_velocity(body, turning);
+  if (spin != Vector3::Zero()) bodies_->set_rotational_velocity(body, spinning);
 }
 
 void World::wake(BodyIndex body) {

@@ -17,7 +17,7 @@ namespace breve {
 namespace {
 
 /// @throws Error{Argument} unless it is finite, and in the plane of a flat world
-void require_place(const Bodies& bodies, const Vector3& value, const char* what) {
+void require_location(const Bodies& bodies, const Vector3& value, const char* what) {
   if (!value.allFinite()) throw Error(ErrorCode::Argument, std::string(what) + " must be finite");
   if (bodies.flat() && value.z() != 0)
     throw Error(ErrorCode::Argument, std::string(what) + " has a z of " + fmt::to_string(value.z()) +
@@ -133,8 +133,8 @@ void Queries::put_in_order() { std::sort(hits_.begin(), hits_.end(), nearer); }
 
 bool Queries::ray_first(const Scene& scene, const Vector3& start, const Vector3& way, const QueryFilter& filter,
                         QueryHit& hit) {
-  require_place(scene.bodies, start, "the start of a ray");
-  require_place(scene.bodies, way, "the way of a ray");
+  require_location(scene.bodies, start, "the start of a ray");
+  require_location(scene.bodies, way, "the way of a ray");
   update(scene);
   const double length = way.stableNorm();
   double most = 1, bound = hair_beyond(most);
@@ -161,8 +161,8 @@ bool Queries::ray_first(const Scene& scene, const Vector3& start, const Vector3&
 
 const std::pmr::vector<QueryHit>& Queries::ray_all(const Scene& scene, const Vector3& start, const Vector3& way,
                                                    const QueryFilter& filter) {
-  require_place(scene.bodies, start, "the start of a ray");
-  require_place(scene.bodies, way, "the way of a ray");
+  require_location(scene.bodies, start, "the start of a ray");
+  require_location(scene.bodies, way, "the way of a ray");
   update(scene);
   const double length = way.stableNorm();
   const auto ask = [&](BodyIndex body) {
@@ -210,7 +210,7 @@ void Queries::images(const Scene& scene, const Eigen::AlignedBox3d& box, Visit&&
 
 const std::pmr::vector<QueryHit>& Queries::overlap(const Scene& scene, const Shape& shape, const Pose& pose,
                                                    const QueryFilter& filter) {
-  require_place(scene.bodies, pose.location, "the place of a volume");
+  require_location(scene.bodies, pose.location, "the place of a volume");
   update(scene);
   Eigen::AlignedBox3d box = shape.bounds(pose.orientation.toRotationMatrix());
   box.translate(pose.location);
@@ -232,8 +232,8 @@ const std::pmr::vector<QueryHit>& Queries::overlap(const Scene& scene, const Sha
 
 bool Queries::cast_first(const Scene& scene, const Shape& shape, const Pose& pose, const Vector3& way,
                          const QueryFilter& filter, QueryHit& hit) {
-  require_place(scene.bodies, pose.location, "the place of a volume");
-  require_place(scene.bodies, way, "the way of a volume");
+  require_location(scene.bodies, pose.location, "the place of a volume");
+  require_location(scene.bodies, way, "the way of a volume");
   update(scene);
   const Eigen::AlignedBox3d own = shape.bounds(pose.orientation.toRotationMatrix());
   const Vector3 middle = pose.location + own.center(), grow = own.sizes() / 2;
@@ -271,7 +271,7 @@ bool Queries::cast_first(const Scene& scene, const Shape& shape, const Pose& pos
 
 bool Queries::nearest(const Scene& scene, const Vector3& point, double limit, const QueryFilter& filter,
                       QueryHit& hit) {
-  require_place(scene.bodies, point, "the point");
+  require_location(scene.bodies, point, "the point");
   update(scene);
   if (!(limit >= 0)) throw Error(ErrorCode::Argument, "the limit of a distance must be >= 0");
   double most = limit, bound = hair_beyond(most);
@@ -306,7 +306,7 @@ bool Queries::nearest(const Scene& scene, const Vector3& point, double limit, co
 
 const std::pmr::vector<QueryHit>& Queries::near(const Scene& scene, const Vector3& point, double radius,
                                                 const QueryFilter& filter) {
-  require_place(scene.bodies, point, "the point");
+  require_location(scene.bodies, point, "the point");
   if (!(radius >= 0)) throw Error(ErrorCode::Argument, "a radius must be >= 0");
   update(scene);
   const Eigen::AlignedBox3d box(point - Vector3::Constant(radius), point + Vector3::Constant(radius));

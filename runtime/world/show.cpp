@@ -22,11 +22,11 @@ const R* resource_as(const World& world, ObjectId id) {
 
 // --- bodies ----------------------------------------------------------------------------------------------------------
 
-Place place_of(const Vector3f& location, const Matrix3& rotation, const Vector3f& scale) {
-  Place place;
-  place.leftCols<3>() = rotation.cast<float>() * scale.asDiagonal();
-  place.col(3) = location;
-  return place;
+Transform transform_of(const Vector3f& location, const Matrix3& rotation, const Vector3f& scale) {
+  Transform transform;
+  transform.leftCols<3>() = rotation.cast<float>() * scale.asDiagonal();
+  transform.col(3) = location;
+  return transform;
 }
 
 void show_axes(const Matrix3& rotation, const Vector3f& center, float length, SceneBuilder& to) {
@@ -81,7 +81,7 @@ void show_body(World& world, ObjectId id, SceneBuilder& to) {
   if (look.bitmap) return show_sprite(world, look, look.bitmap, false, sprite, to);
   if (look.lightmap) return;
   const MeshUse mesh = to.mesh(*shape);
-  SceneInstance instance{id, place_of(center, bodies.rotation(body), mesh.scale), color};
+  SceneInstance instance{id, transform_of(center, bodies.rotation(body), mesh.scale), color};
   instance.mesh = mesh.mesh;
   instance.texture = show_image(world, look.texture, to);
   instance.texture_scale = {drawable(look.texture_scale_x), drawable(look.texture_scale_y)};

@@ -158,7 +158,7 @@ void World::advance_bodies() {
   // A program may set other steps from inside a handler: they hold from the next iteration on.
   const double iteration = clock_.iteration_step;
   const std::uint64_t count = substeps();
-  parts_->aim_at_places();
+  parts_->aim_at_targets();
   {
     const Parts::PushScope pushes(*parts_);
     run_substeps(iteration / static_cast<double>(count), count);
@@ -247,7 +247,7 @@ std::uint32_t World::Parts::signature() const {
   const Bodies& bodies = *world->bodies_;
   std::uint32_t bits = 0;
   if (bodies.translating() != 0) bits |= bit(EffectId::Motion);
-  if (bodies.turning() != 0) bits |= bit(EffectId::Rotation);
+  if (bodies.rotating() != 0) bits |= bit(EffectId::Rotation);
   if (bodies.rigid() != 0) bits |= bit(EffectId::Rigid);
   if (bodies.rigid() != 0 && dynamics->gravity() != Vector3::Zero()) bits |= bit(EffectId::Gravity);
   if (handlers.any_handler() && bodies.size() != 0) {
@@ -321,7 +321,7 @@ bool World::Parts::bring_assembly(BodyIndex body) {
 ObjectId World::Parts::who_asked(EffectId effect) const {
   switch (effect) {
     case EffectId::Motion: return world->bodies_->first_translating();
-    case EffectId::Rotation: return world->bodies_->first_turning();
+    case EffectId::Rotation: return world->bodies_->first_rotating();
     case EffectId::Rigid:
     case EffectId::Gravity: return world->bodies_->first_rigid();
     default: return first_handler;
@@ -353,8 +353,8 @@ void World::Parts::rebuild_stages(std::uint32_t signature) {
                       [](const World::Parts& p) { return p.world->bodies_->translating(); }});
   }
   if ((signature & bit(EffectId::Rotation)) != 0) {
-    stages.push_back({EffectId::Rotation, [](World::Parts& p, double h) { p.world->bodies_->turn(h); },
-                      [](const World::Parts& p) { return p.world->bodies_->turning(); }});
+    stages.push_back({EffectId::Rotation, [](World::Parts& p, double h) { p.world->bodies_->rotate(h); },
+                      [](const World::Parts& p) { return p.world->bodies_->rotating(); }});
   }
   if ((signature & bit(EffectId::Rigid)) != 0) {
     stages.push_back({EffectId::Rigid,

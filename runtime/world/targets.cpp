@@ -25,10 +25,10 @@ void World::set_target(BodyIndex body, const Vector3* new_location, const Quater
   if (!location.allFinite() || !orientation.coeffs().allFinite() || !(orientation.norm() > 0))
     throw Error(ErrorCode::Argument, "a target's location and rotation must be finite");
   const Quaternion now = bodies_->orientation(body);
-  const Eigen::AngleAxisd turn(now.conjugate() * orientation.normalized());
+  const Eigen::AngleAxisd rotation(now.conjugate() * orientation.normalized());
   const double seconds = clock_.iteration_step;
   bodies_->set_velocity(body, (location - bodies_->location(body)) / seconds);
-  bodies_->set_rotational_velocity(body, turn.angle() / seconds * turn.axis());
+  bodies_->set_rotational_velocity(body, rotation.angle() / seconds * rotation.axis());
   if (!known) parts_->targets.emplace_back().object = object;
   Parts::Target& target = known ? *pending : parts_->targets.back();
   target.location = location;
@@ -49,8 +49,8 @@ void World::leave(BodyIndex body) {
 }
 
 /// A body that was put nearby is on its way there; what is new, or was put far away, is there already.
-void World::Parts::aim_at_places() {
-  constexpr double kMostTurn = 0.5;  // rad
+void World::Parts::aim_at_targets() {
+  constexpr double kMostRotation = 0.5;  // rad
   Bodies& bodies = *world->bodies_;
   for (const auto& [body, from] : left) {
     if (!objects.alive(from.object) || objects.at(from.object).serial > advanced) continue;
@@ -58,7 +58,7 @@ void World::Parts::aim_at_places() {
     const Vector3 location = bodies.location(body);
     const Quaternion orientation = bodies.orientation(body);
     const bool near = (location - from.location).norm() <= bodies.collision_shape(body)->bounding_radius() &&
-                      orientation.angularDistance(from.orientation) <= kMostTurn;
+                      orientation.angularDistance(from.orientation) <= kMostRotation;
     if (!near) continue;
     bodies.set_location(body, from.location);
     bodies.set_orientation(body, from.orientation);

@@ -32,15 +32,15 @@ std::optional<std::uint32_t> Analysis::file_named(std::string_view name) const {
 std::optional<std::uint32_t> Analysis::offset_of(std::uint32_t file, std::uint32_t line, std::uint32_t column) const {
   const SourceFile& source = model_->sources.file(file);
   if (line == 0 || column == 0 || line > source.lines.size()) return std::nullopt;
-  const Span place{file, 0, 0, line, column};
-  if (column - 1 > model_->sources.line_text(place).size()) return std::nullopt;
+  const Span at{file, 0, 0, line, column};
+  if (column - 1 > model_->sources.line_text(at).size()) return std::nullopt;
   return source.lines[line - 1] + column - 1;
 }
 
 // Names touch one another only at a point where the later one begins: that one is meant.
 const Use* Analysis::use_at(std::uint32_t file, std::uint32_t offset) const {
-  const auto after = std::upper_bound(uses_.begin(), uses_.end(), offset, [&](std::uint32_t place, const Use& use) {
-    return use.span.file != file ? file < use.span.file : place < use.span.offset;
+  const auto after = std::upper_bound(uses_.begin(), uses_.end(), offset, [&](std::uint32_t position, const Use& use) {
+    return use.span.file != file ? file < use.span.file : position < use.span.offset;
   });
   // A keyword and its parameter may be one word, declared twice at one place.
   const Use* found = nullptr;
@@ -103,11 +103,11 @@ std::vector<std::size_t> Analysis::meanings(const Use& use) const {
   const bool keyword = use.kind == NameKind::Keyword;
   if (use.kind != NameKind::Method && !keyword) return {};
   const std::string_view selector = keyword ? use.selector : use.name;
-  std::vector<MethodPlace> places = methods_of_call(*model_, use.receiver, selector, use.keywords);
-  if (places.empty()) places = methods_of_call(*model_, {}, selector, use.keywords);
+  std::vector<MethodIndex> found = methods_of_call(*model_, use.receiver, selector, use.keywords);
+  if (found.empty()) found = methods_of_call(*model_, {}, selector, use.keywords);
   std::vector<std::size_t> result;
-  for (const MethodPlace& place : places) {
-    const MethodModel& method = model_->method(place);
+  for (const MethodIndex& index : found) {
+    const MethodModel& method = model_->method(index);
     if (!keyword) {
       result.push_back(method.symbol);
       continue;

@@ -38,8 +38,8 @@ class Completer {
         scope_(scope),
         context_(context_at(sources.file(file).text, tokens, offset, body)) {
     const std::string_view text = sources.file(file).text;
-    const std::size_t place = std::min<std::size_t>(offset, text.size());
-    typed_ = text.substr(place - context_.typed, context_.typed);
+    const std::size_t position = std::min<std::size_t>(offset, text.size());
+    typed_ = text.substr(position - context_.typed, context_.typed);
   }
 
   Completions run() {
@@ -88,7 +88,7 @@ class Completer {
   std::optional<CallContext> call() {
     if (!context_.call) return std::nullopt;
     CallContext result;
-    for (const MethodPlace& place : methods()) result.methods.push_back(model_.method(place).symbol);
+    for (const MethodIndex& index : methods()) result.methods.push_back(model_.method(index).symbol);
     result.keyword = context_.call->keyword;
     return result;
   }
@@ -191,9 +191,9 @@ class Completer {
     if (receiver.kind && receiver.kind != TypeKind::Object && receiver.kind != TypeKind::List) return;
     if (receiver.cls != kNoIndex) return methods_of(receiver.cls);
     for (const int rank : {0, 1})
-      for (const auto& [name, place] : model_.selectors) {
-        const ClassModel& cls = model_.classes[place.cls];
-        if (cls.loaded && rank == (model_.symbols[cls.symbol].library ? 1 : 0)) add_symbol(model_.method(place).symbol);
+      for (const auto& [name, index] : model_.selectors) {
+        const ClassModel& cls = model_.classes[index.cls];
+        if (cls.loaded && rank == (model_.symbols[cls.symbol].library ? 1 : 0)) add_symbol(model_.method(index).symbol);
       }
   }
 
@@ -214,19 +214,19 @@ class Completer {
       methods_of(model_.classes[scope_.cls].parent);
   }
 
-  std::vector<MethodPlace> methods() const {
+  std::vector<MethodIndex> methods() const {
     const WrittenCall& call = *context_.call;
     const std::string_view selector = tokens_[call.selector].text;
     const KnownType receiver = receiver_type(call.receiver, call.selector);
-    std::vector<MethodPlace> found = methods_of_call(model_, receiver, selector, call.keywords);
+    std::vector<MethodIndex> found = methods_of_call(model_, receiver, selector, call.keywords);
     if (found.empty()) found = methods_of_call(model_, {}, selector, call.keywords);
     return found;
   }
 
   void keywords() {
     const std::vector<std::string_view>& given = context_.call->keywords;
-    for (const MethodPlace& place : methods()) {
-      const MethodModel& method = model_.method(place);
+    for (const MethodIndex& index : methods()) {
+      const MethodModel& method = model_.method(index);
       for (std::size_t i = 0; i < method.tree->parameters.size(); ++i) {
         const bool used = std::find(given.begin(), given.end(), method.tree->parameters[i].keyword) != given.end();
         if (used) continue;

@@ -92,7 +92,7 @@ class ContextFinder {
     const std::size_t colon = header_colon();
     if (member_ == Member::Method && colon < n_) return statement(colon + 1);
     if (member_ == Member::Method && n_ == member_at_ + 2) return expect(Expected::MethodName);
-    if (!type_place(Expected::Type)) expect(Expected::Nothing);
+    if (!type_position(Expected::Type)) expect(Expected::Nothing);
   }
 
   void expect(Expected expected) { context_.expected = expected; }
@@ -151,7 +151,7 @@ class ContextFinder {
   }
 
   // Behind a '(' of a declaration, or behind the first word of a type.
-  bool type_place(Expected at_parenthesis) {
+  bool type_position(Expected at_parenthesis) {
     if (sign_before("(")) {
       expect(at_parenthesis);
     } else if (sign_before("(", 2) && is_number_type(before())) {
@@ -168,7 +168,7 @@ class ContextFinder {
     const std::size_t start = statement_start(first);
     if (in_declaration(start)) {
       const bool alone = sign_before("(") && n_ - start == 2;
-      if (type_place(alone ? Expected::TypeOrOperand : Expected::Type)) return;
+      if (type_position(alone ? Expected::TypeOrOperand : Expected::Type)) return;
     }
     read_statement(tokens_, start, context_);
   }

@@ -46,7 +46,7 @@ struct FileModel {
   bool loaded = false;
 };
 
-struct MethodPlace {
+struct MethodIndex {
   std::size_t cls = kNoIndex, method = 0;
 };
 
@@ -60,7 +60,7 @@ struct Model {
   std::vector<KnownType> types;  // of the symbols that are variables, parameters, keywords
   std::vector<ClassModel> classes;
   std::map<std::string, std::size_t, std::less<>> class_names;  // aliases too; the program's classes before others
-  std::multimap<std::string, MethodPlace, std::less<>> selectors;
+  std::multimap<std::string, MethodIndex, std::less<>> selectors;
   std::map<std::string, std::size_t, std::less<>> constants;       // to symbols
   std::multimap<std::string, std::size_t, std::less<>> functions;  // to symbols
   std::size_t controller = kNoIndex;                               // class
@@ -73,7 +73,7 @@ struct Model {
   std::size_t find_variable(std::size_t cls, const MethodModel* method, std::string_view name) const;
   /// The symbol of an instance variable, inherited ones too.
   std::size_t find_member(std::size_t cls, std::string_view name) const;
-  const MethodModel& method(const MethodPlace& place) const { return classes[place.cls].methods[place.method]; }
+  const MethodModel& method(const MethodIndex& index) const { return classes[index.cls].methods[index.method]; }
 };
 
 /// Where in a class's text a place is.

@@ -109,7 +109,7 @@ class SymbolMaker {
     cls.variables = model_.symbols.size();
     for (const ast::Variable& v : tree.variables) variable(NameKind::Variable, v, cls.symbol);
     for (const ast::Method& m : tree.methods) {
-      model_.selectors.emplace(m.name, MethodPlace{number, cls.methods.size()});
+      model_.selectors.emplace(m.name, MethodIndex{number, cls.methods.size()});
       cls.methods.push_back(method(m, cls.symbol));
     }
     owner_.clear();

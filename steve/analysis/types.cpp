@@ -116,7 +116,7 @@ class TypeFinder {
     const KnownType receiver = type(*c.receiver);
     if (c.selector == "get-controller" && c.keywords.empty()) return of(TypeKind::Object, model_.controller);
     if (receiver.kind != TypeKind::Object || receiver.cls == kNoIndex) return {};
-    const std::vector<MethodPlace> found = methods_of_call(model_, receiver, c.selector, keywords_of(c));
+    const std::vector<MethodIndex> found = methods_of_call(model_, receiver, c.selector, keywords_of(c));
     if (found.empty()) return {};
     const MethodModel& method = model_.method(found.front());
     if (method.tree->native_result)
@@ -282,39 +282,39 @@ std::vector<std::string_view> keywords_of(const ast::Call& call) {
   return keywords;
 }
 
-std::vector<MethodPlace> methods_of_call(const Model& model, const KnownType& receiver, std::string_view selector,
+std::vector<MethodIndex> methods_of_call(const Model& model, const KnownType& receiver, std::string_view selector,
                                          const std::vector<std::string_view>& keywords) {
-  const auto takes_all = [&](const MethodPlace& place) {
-    const std::vector<ast::Parameter>& parameters = model.method(place).tree->parameters;
+  const auto takes_all = [&](const MethodIndex& index) {
+    const std::vector<ast::Parameter>& parameters = model.method(index).tree->parameters;
     return std::all_of(keywords.begin(), keywords.end(), [&](std::string_view keyword) {
       return std::any_of(parameters.begin(), parameters.end(), [&](const auto& p) { return p.keyword == keyword; });
     });
   };
-  const auto count = [&](const MethodPlace& place) { return model.method(place).tree->parameters.size(); };
+  const auto count = [&](const MethodIndex& index) { return model.method(index).tree->parameters.size(); };
   const auto [first, last] = model.selectors.equal_range(selector);
   const bool known = receiver.cls != kNoIndex;
   const std::vector<std::size_t> line = known ? model.line(receiver.cls) : std::vector<std::size_t>();
   struct Candidate {
-    MethodPlace place;
+    MethodIndex index;
     std::size_t rank;
   };
   // Fit before unfit, the program's before the rest, the receiver's own before inherited, few keywords before many.
   std::vector<Candidate> found;
   for (auto at = first; at != last; ++at) {
-    const MethodPlace place = at->second;
-    const auto step = std::find(line.begin(), line.end(), place.cls);
+    const MethodIndex index = at->second;
+    const auto step = std::find(line.begin(), line.end(), index.cls);
     if (known && step == line.end()) continue;
     const std::size_t far = known ? static_cast<std::size_t>(step - line.begin()) : 0;
-    const std::size_t unloaded = model.classes[place.cls].loaded ? 0 : 1;
+    const std::size_t unloaded = model.classes[index.cls].loaded ? 0 : 1;
     found.push_back(
-        {place, (((takes_all(place) ? 0U : 1U) * 2 + unloaded) * 1000 + std::min<std::size_t>(far, 999)) * 1000 +
-                    std::min<std::size_t>(count(place), 999)});
+        {index, (((takes_all(index) ? 0U : 1U) * 2 + unloaded) * 1000 + std::min<std::size_t>(far, 999)) * 1000 +
+                    std::min<std::size_t>(count(index), 999)});
   }
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.rank < b.rank; });
-  std::vector<MethodPlace> result;
-  const bool any_fits = !found.empty() && takes_all(found.front().place);
+  std::vector<MethodIndex> result;
+  const bool any_fits = !found.empty() && takes_all(found.front().index);
   for (const Candidate& candidate : found)
-    if (!any_fits || takes_all(candidate.place)) result.push_back(candidate.place);
+    if (!any_fits || takes_all(candidate.index)) result.push_back(candidate.index);
   return result;
 }
 

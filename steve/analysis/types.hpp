@@ -15,7 +15,7 @@ KnownType type_of(const Model& model, const Scope& scope, const ast::Expr& expr)
 /// keywords that hold all those given; of an unknown receiver every method of that name, the program's before others,
 /// those that take the keywords before others. Symbols of methods.
 /// @param keywords  those that are written, each once
-std::vector<MethodPlace> methods_of_call(const Model& model, const KnownType& receiver, std::string_view selector,
+std::vector<MethodIndex> methods_of_call(const Model& model, const KnownType& receiver, std::string_view selector,
                                          const std::vector<std::string_view>& keywords);
 
 std::vector<std::string_view> keywords_of(const ast::Call& call);

@@ -136,8 +136,8 @@ class UseFinder {
     if (const auto* member = std::get_if<ast::Member>(&e.node)) this->member(e, *member);
     if (const auto* call = std::get_if<ast::Call>(&e.node)) this->call(*call);
     if (const auto* function = std::get_if<ast::FunctionCall>(&e.node)) this->function(e, *function);
-    if (const auto* made = std::get_if<ast::NewExpr>(&e.node)) class_in_place(made->class_span, made->class_name);
-    if (const auto* all = std::get_if<ast::AllExpr>(&e.node)) class_in_place(all->class_span, all->class_name);
+    if (const auto* made = std::get_if<ast::NewExpr>(&e.node)) class_named(made->class_span, made->class_name);
+    if (const auto* all = std::get_if<ast::AllExpr>(&e.node)) class_named(all->class_span, all->class_name);
     if (const auto* sort = std::get_if<ast::Sort>(&e.node)) {
       Use& use = add(NameKind::Method, sort->selector_span, sort->selector, kNoIndex);
       receiver(use, {ast::TypeKind::Object, scope_.cls});
@@ -145,7 +145,7 @@ class UseFinder {
   }
 
   // The name may be written as a string.
-  void class_in_place(Span span, std::string_view name) {
+  void class_named(Span span, std::string_view name) {
     if (span.length > name.size()) ++span.offset, ++span.column;
     class_name(span, name);
   }

@@ -40,7 +40,7 @@ std::uint64_t key_of(Symbol name, std::size_t count) { return std::uint64_t{name
 }  // namespace
 
 void ClassInfo::add_variable(const VariableInfo& variable) {
-  variable_places_.emplace(variable.name, variables.size());
+  variable_indices_.emplace(variable.name, variables.size());
   variables.push_back(variable);
 }
 
@@ -52,8 +52,8 @@ void ClassInfo::add_method(std::unique_ptr<MethodInfo> method) {
 
 const VariableInfo* ClassInfo::find_variable(Symbol wanted) const {
   for (const ClassInfo* c = this; c; c = c->parent)
-    if (const auto place = c->variable_places_.find(wanted); place != c->variable_places_.end())
-      return &c->variables[place->second];
+    if (const auto index = c->variable_indices_.find(wanted); index != c->variable_indices_.end())
+      return &c->variables[index->second];
   return nullptr;
 }
 

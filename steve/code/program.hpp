@@ -124,7 +124,7 @@ struct ClassInfo {
   bool responds(Symbol name) const;                                     // any number of parameters
 
  private:
-  std::unordered_map<Symbol, std::size_t> variable_places_;        // in `variables`: of several, the first
+  std::unordered_map<Symbol, std::size_t> variable_indices_;       // in `variables`: of several, the first
   std::unordered_map<std::uint64_t, const MethodInfo*> by_count_;  // by name and number of parameters, likewise
   std::unordered_set<Symbol> responds_;
 };

@@ -22,7 +22,7 @@ Operand FunctionCompiler::assign(const ast::Assign& a, const ast::Expr& e) {
     const bool direct = variable->local && variable->class_name() == kNoSymbol;
     return store_variable(*variable, n->name, changed(*a.op, current, value, direct ? &local : nullptr));
   }
-  auto target = place(*a.target);
+  auto target = target_of(*a.target);
   if (!a.op) {
     const auto value = expr(*a.value);
     emit_.at(e.span);
@@ -63,7 +63,7 @@ Operand FunctionCompiler::step(const ast::Step& s, const ast::Expr& e) {
       return {StaticType::Int, slot, false};
     }
   }
-  auto target = place(*s.target);
+  auto target = target_of(*s.target);
   const auto current = load(target);
   emit_.at(e.span);
   const auto one =
@@ -77,14 +77,14 @@ Operand FunctionCompiler::step(const ast::Step& s, const ast::Expr& e) {
 Operand FunctionCompiler::assign_to_variable(const Variable& variable, std::string_view name, const ast::Expr& value) {
   const bool direct = variable.local && variable.class_name() == kNoSymbol;
   const Operand local{variable.type(), variable.local ? variable.local->slot : std::uint16_t{0}, false};
-  const Span place = emit_.span();
+  const Span span = emit_.span();
   if (const auto* c = std::get_if<ast::Call>(&value.node)) {
     call(*c, value);
-    emit_.at(place);
+    emit_.at(span);
     return store_variable(variable, name, {StaticType::Any, kResult, false});
   }
   const auto right = expr(value, direct ? &local : nullptr);
-  emit_.at(place);
+  emit_.at(span);
   return store_variable(variable, name, right);
 }
 
@@ -121,24 +121,24 @@ void FunctionCompiler::check_class(const Operand& object, Symbol class_name, std
   emit_.ext(0, what);
 }
 
-FunctionCompiler::Place FunctionCompiler::place(const ast::Expr& target) {
-  Place p;
+FunctionCompiler::Target FunctionCompiler::target_of(const ast::Expr& target) {
+  Target p;
   p.expr = &target;
   emit_.at(target.span);
   if (const auto* n = std::get_if<ast::Name>(&target.node))
-    place_variable(p, *n);
+    target_variable(p, *n);
   else if (const auto* a = std::get_if<ast::ArrayItem>(&target.node))
-    place_array_item(p, *a);
+    target_array_item(p, *a);
   else if (const auto* m = std::get_if<ast::Member>(&target.node))
-    place_member(p, *m);
+    target_member(p, *m);
   else if (const auto* i = std::get_if<ast::IndexExpr>(&target.node))
-    place_index(p, *i);
+    target_index(p, *i);
   else
     p.value = boxed(expr(target));  // a value, not a place: changing a vector or string in it is an error when it runs
   return p;
 }
 
-void FunctionCompiler::place_variable(Place& p, const ast::Name& n) {
+void FunctionCompiler::target_variable(Target& p, const ast::Name& n) {
   const auto variable = need(n.name, p.expr->span);
   if (!variable || variable->array_size() >= 0) {
     if (variable)
@@ -147,45 +147,45 @@ void FunctionCompiler::place_variable(Place& p, const ast::Name& n) {
     p.value = emit_.temporary(StaticType::Any);
     return;
   }
-  p.kind = Place::Kind::Variable;
+  p.kind = Target::Kind::Variable;
   p.variable = *variable;
   p.name = n.name;
 }
 
-void FunctionCompiler::place_array_item(Place& p, const ast::ArrayItem& a) {
+void FunctionCompiler::target_array_item(Target& p, const ast::ArrayItem& a) {
   const auto variable = need(a.name, p.expr->span);
   if (!variable || variable->array_size() < 0) {
     if (variable) emit_.release(array_slot(*variable, *a.index, a.name));
     p.value = emit_.temporary(StaticType::Any);
     return;
   }
-  p.kind = Place::Kind::ArrayItem;
+  p.kind = Target::Kind::ArrayItem;
   p.variable = *variable;
   p.name = a.name;
   p.key = array_slot(*variable, *a.index, a.name);
 }
 
-void FunctionCompiler::place_member(Place& p, const ast::Member& m) {
+void FunctionCompiler::target_member(Target& p, const ast::Member& m) {
   const int axis = m.name == "x" ? 0 : m.name == "y" ? 1 : m.name == "z" ? 2 : -1;
   if (const auto* n = std::get_if<ast::Name>(&m.base->node); n && axis >= 0) {
     const auto variable = find(n->name);
     if (variable && variable->type() == StaticType::Vector && variable->array_size() < 0) {
-      p.kind = Place::Kind::Component;
+      p.kind = Target::Kind::Component;
       p.variable = *variable;
       p.name = n->name;
       p.axis = axis;
       return;
     }
   }
-  p.base = std::make_unique<Place>(place(*m.base));
-  p.kind = Place::Kind::Member;
+  p.base = std::make_unique<Target>(target_of(*m.base));
+  p.kind = Target::Kind::Member;
   p.site = member_site(m.name);
   p.value = boxed(load(*p.base));
 }
 
-void FunctionCompiler::place_index(Place& p, const ast::IndexExpr& i) {
-  p.base = std::make_unique<Place>(place(*i.base));
-  p.kind = Place::Kind::Index;
+void FunctionCompiler::target_index(Target& p, const ast::IndexExpr& i) {
+  p.base = std::make_unique<Target>(target_of(*i.base));
+  p.kind = Target::Kind::Index;
   p.value = load(*p.base);
   if (p.value.type == StaticType::List) {
     p.value = stable(p.value, *i.index);
@@ -203,11 +203,11 @@ void FunctionCompiler::place_index(Place& p, const ast::IndexExpr& i) {
   p.key = any(*i.index);
 }
 
-Operand FunctionCompiler::load(Place& p) {
+Operand FunctionCompiler::load(Target& p) {
   emit_.at(p.expr->span);
   switch (p.kind) {
-    case Place::Kind::Variable: return read(p.variable);
-    case Place::Kind::Component: {
+    case Target::Kind::Variable: return read(p.variable);
+    case Target::Kind::Component: {
       if (p.variable.local) {
         p.variable.local->used = true;
         return {StaticType::Double, static_cast<std::uint16_t>(p.variable.local->slot + p.axis), false};
@@ -216,29 +216,29 @@ Operand FunctionCompiler::load(Place& p) {
       emit_.emit_imm(Op::GetVar1, target.slot, static_cast<std::int32_t>(p.variable.member->slot) + p.axis);
       return target;
     }
-    case Place::Kind::ArrayItem: return read_array(p.variable, p.key);
-    case Place::Kind::Index: {
+    case Target::Kind::ArrayItem: return read_array(p.variable, p.key);
+    case Target::Kind::Index: {
       const auto target = emit_.temporary(StaticType::Any);
       emit_.emit(p.value.type == StaticType::List ? Op::IndexList : Op::Index, target.slot, p.value.slot, p.key.slot);
       return target;
     }
-    case Place::Kind::Member: {
+    case Target::Kind::Member: {
       const auto target = emit_.temporary(StaticType::Any);
       emit_.emit(Op::Member, target.slot, p.value.slot);
       emit_.ext(0, static_cast<std::int32_t>(p.site));
       return target;
     }
-    case Place::Kind::Value: break;
+    case Target::Kind::Value: break;
   }
   auto value = p.value;
   value.temporary = false;
   return value;
 }
 
-Operand FunctionCompiler::store(Place& p, const Operand& value) {
+Operand FunctionCompiler::store(Target& p, const Operand& value) {
   switch (p.kind) {
-    case Place::Kind::Variable: return store_variable(p.variable, p.name, value);
-    case Place::Kind::Component: {
+    case Target::Kind::Variable: return store_variable(p.variable, p.name, value);
+    case Target::Kind::Component: {
       const auto what = text("component of '" + p.name + "'");
       if (p.variable.local) {
         const Operand component{StaticType::Double, static_cast<std::uint16_t>(p.variable.local->slot + p.axis), false};
@@ -251,8 +251,8 @@ Operand FunctionCompiler::store(Place& p, const Operand& value) {
       emit_.emit_imm(Op::SetVar1, converted.slot, static_cast<std::int32_t>(p.variable.member->slot) + p.axis);
       return converted;
     }
-    case Place::Kind::ArrayItem: return store_array(p, value);
-    case Place::Kind::Value:
+    case Target::Kind::ArrayItem: return store_array(p, value);
+    case Target::Kind::Value:
       emit_.emit_imm(Op::Fail, static_cast<std::uint16_t>(RunErrorKind::Type),
                      text("an element of a temporary value cannot be assigned; store the value in a variable first"));
       return value;
@@ -265,7 +265,7 @@ Operand FunctionCompiler::store(Place& p, const Operand& value) {
   }
   // Lists, hashes and objects change in place; a changed vector, matrix or string goes back to where it came from.
   Label container, end;
-  if (p.kind == Place::Kind::Member) {
+  if (p.kind == Target::Kind::Member) {
     emit_.emit(Op::SetMember, p.value.slot, box.slot);
     emit_.ext(0, static_cast<std::int32_t>(p.site));
     emit_.jump_ext(container);
@@ -277,7 +277,7 @@ Operand FunctionCompiler::store(Place& p, const Operand& value) {
   auto changed = p.value;
   changed.temporary = false;
   const auto stored = store(*p.base, changed);
-  if (p.kind == Place::Kind::Index) {
+  if (p.kind == Target::Kind::Index) {
     emit_.emit(Op::MovAny, result.slot, p.value.slot);
   } else {
     emit_.emit(Op::MovAny, result.slot, box.slot);
@@ -291,7 +291,7 @@ Operand FunctionCompiler::store(Place& p, const Operand& value) {
   return result;
 }
 
-Operand FunctionCompiler::store_array(const Place& p, const Operand& value) {
+Operand FunctionCompiler::store_array(const Target& p, const Operand& value) {
   const auto type = p.variable.type();
   const auto what = text("element of array '" + p.name + "'");
   const auto converted = convert(value, type, what);
@@ -302,9 +302,9 @@ Operand FunctionCompiler::store_array(const Place& p, const Operand& value) {
   return converted;
 }
 
-void FunctionCompiler::release(Place& p) {
+void FunctionCompiler::release(Target& p) {
   emit_.release(p.key);
-  if (p.kind == Place::Kind::Index || p.kind == Place::Kind::Member || p.kind == Place::Kind::Value)
+  if (p.kind == Target::Kind::Index || p.kind == Target::Kind::Member || p.kind == Target::Kind::Value)
     emit_.release(p.value);
   p.key.temporary = p.value.temporary = false;
   if (p.base) release(*p.base);

@@ -266,7 +266,7 @@ void FunctionCompiler::arguments_and_call(const ast::Call& c, Op op, const Opera
   if (c.keywords.size() > 1)
     for (const auto& keyword : c.keywords) ordered = ordered || has_effects(*keyword.value);
   const auto site = [&]() -> CallSite& { return builder_.code().sites[static_cast<std::size_t>(number)]; };
-  const Span place = emit_.span();
+  const Span span = emit_.span();
   std::vector<Operand> values;
   std::vector<Emitter::FreeRegisters> aside;  // so that no argument is kept where an earlier one was worked out
   Operand counter;
@@ -287,7 +287,7 @@ void FunctionCompiler::arguments_and_call(const ast::Call& c, Op op, const Opera
     emit_.emit_imm(Op::NextArgument, counter.slot, number);
     aside.push_back(emit_.set_aside());
   }
-  emit_.at(place);
+  emit_.at(span);
   site().call = emit_.here();
   if (op == Op::Call)
     emit_.emit_imm(op, receiver.slot, number);

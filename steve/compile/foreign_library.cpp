@@ -16,7 +16,7 @@ constexpr std::size_t kMostFunctions = 3;  // that are named
 struct ForeignFile {
   const ClassInfo* cls = nullptr;  // the class of the library that the file is named after
   std::vector<std::string> functions;
-  Span place;
+  Span span;
 };
 
 /// 'name' in "unknown function 'name'"
@@ -45,7 +45,7 @@ void ProgramBuilder::gather_foreign_library() {
     if (file == files.end()) continue;
     ForeignFile& foreign = file->second;
     const std::string name = "'" + quoted_in(d.message) + "'";
-    if (foreign.functions.empty()) foreign.place = d.span;
+    if (foreign.functions.empty()) foreign.span = d.span;
     if (std::find(foreign.functions.begin(), foreign.functions.end(), name) == foreign.functions.end())
       foreign.functions.push_back(name);
   }
@@ -61,7 +61,7 @@ void ProgramBuilder::gather_foreign_library() {
       named.push_back(std::to_string(foreign.functions.size() - kMostFunctions) + " more");
     }
     const std::string& name = foreign.cls->name;
-    kept.error(foreign.place, "foreign-library",
+    kept.error(foreign.span, "foreign-library",
                "this file has the class " + name + " of another version of the class library: it calls " +
                    joined(named) + ", which breve does not have",
                library_.find_file(name) ? "remove the file: breve has a class " + name + " of its own"

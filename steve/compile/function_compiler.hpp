@@ -41,15 +41,15 @@ class FunctionCompiler {
     Symbol class_name() const { return local ? local->class_name : member->class_name; }
   };
   /// Something that can be assigned to, its parts evaluated once.
-  struct Place {
+  struct Target {
     enum class Kind { Variable, Component, ArrayItem, Index, Member, Value } kind = Kind::Value;
-    Variable variable;            // Variable, Component, ArrayItem
-    std::string name;             // for messages
-    int axis = 0;                 // Component: of a vector variable
-    Operand key;                  // ArrayItem: the slot number; Index: the key (any)
-    std::unique_ptr<Place> base;  // Index, Member: where the container came from
-    Operand value;                // Index, Member: the container's value (any, or a list)
-    std::uint32_t site = 0;       // Member
+    Variable variable;             // Variable, Component, ArrayItem
+    std::string name;              // for messages
+    int axis = 0;                  // Component: of a vector variable
+    Operand key;                   // ArrayItem: the slot number; Index: the key (any)
+    std::unique_ptr<Target> base;  // Index, Member: where the container came from
+    Operand value;                 // Index, Member: the container's value (any, or a list)
+    std::uint32_t site = 0;        // Member
     const ast::Expr* expr = nullptr;
   };
 
@@ -145,17 +145,17 @@ class FunctionCompiler {
   Operand changed(ast::BinaryOp op, const Operand& current, const Operand& value, const Operand* into);
   Operand step(const ast::Step& s, const ast::Expr& e);
   Operand assign_to_variable(const Variable& variable, std::string_view name, const ast::Expr& value);
-  Place place(const ast::Expr& target);
-  void place_variable(Place& p, const ast::Name& n);
-  void place_array_item(Place& p, const ast::ArrayItem& a);
-  void place_member(Place& p, const ast::Member& m);
-  void place_index(Place& p, const ast::IndexExpr& i);
-  Operand load(Place& place);
-  Operand store(Place& place, const Operand& value);  // yields the converted value
+  Target target_of(const ast::Expr& target);
+  void target_variable(Target& p, const ast::Name& n);
+  void target_array_item(Target& p, const ast::ArrayItem& a);
+  void target_member(Target& p, const ast::Member& m);
+  void target_index(Target& p, const ast::IndexExpr& i);
+  Operand load(Target& target);
+  Operand store(Target& target, const Operand& value);  // yields the converted value
   Operand store_variable(const Variable& variable, std::string_view name, const Operand& value);
   void write_member(const VariableInfo& member, const Operand& value);
-  Operand store_array(const Place& place, const Operand& value);
-  void release(Place& place);
+  Operand store_array(const Target& target, const Operand& value);
+  void release(Target& target);
   void check_class(const Operand& object, Symbol class_name, std::int32_t what);
 
   // --- statements ----------------------------------------------------------------------------------------------------

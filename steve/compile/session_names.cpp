@@ -65,12 +65,13 @@ class SessionNames {
     statement(f.body);
     if (!names_.contains(f.variable)) return;
     loops_.push_back("%each" + std::to_string(loops_.size()));
-    auto turn = std::make_unique<ast::Stmt>();
-    turn->span = span;
-    turn->node = ast::ExprStmt{make(f.variable_span, ast::Assign{element(f.variable, f.variable_span), std::nullopt,
-                                                                 make(f.variable_span, ast::Name{loops_.back()})})};
+    auto assignment = std::make_unique<ast::Stmt>();
+    assignment->span = span;
+    assignment->node =
+        ast::ExprStmt{make(f.variable_span, ast::Assign{element(f.variable, f.variable_span), std::nullopt,
+                                                        make(f.variable_span, ast::Name{loops_.back()})})};
     ast::Block block;
-    block.body.push_back(std::move(turn));
+    block.body.push_back(std::move(assignment));
     block.body.push_back(std::move(f.body));
     f.body = std::make_unique<ast::Stmt>();
     f.body->span = span;

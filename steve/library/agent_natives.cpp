@@ -10,22 +10,22 @@ namespace breve::steve {
 namespace {
 
 // KEEP IN STEP: the variables of Object and GridAgent come in this order (Object.tz, GridAgent.tz).
-constexpr std::uint32_t kGridSlot = 3, kPlaceSlot = 4;
+constexpr std::uint32_t kGridSlot = 3, kOccupantSlot = 4;
 
 /// Where an agent stands; no resource if it is on no grid.
 struct Standing {
   Instance* grid = nullptr;
   GridResource* resource = nullptr;
-  Occupants::Place place = Occupants::kNoPlace;
-  CellIndex cell() const { return resource->occupants.agent(place).cell; }
+  Occupants::Slot slot = Occupants::kNoSlot;
+  CellIndex cell() const { return resource->occupants.agent(slot).cell; }
 };
 
 Standing standing_of(Machine& machine, const Instance& self) {
   auto* grid = static_cast<Instance*>(self.slots[kGridSlot].ref);
   GridResource* resource = grid ? resource_of<GridResource>(machine, grid) : nullptr;
-  const auto place = static_cast<Occupants::Place>(self.slots[kPlaceSlot].i);
-  if (!resource || !resource->occupants.holds(place, self.id)) return {};
-  return {grid, resource, place};
+  const auto slot = static_cast<Occupants::Slot>(self.slots[kOccupantSlot].i);
+  if (!resource || !resource->occupants.holds(slot, self.id)) return {};
+  return {grid, resource, slot};
 }
 
 Standing must_stand(Machine& machine, const Instance& self, const char* selector) {
@@ -40,7 +40,7 @@ Standing must_stand(Machine& machine, const Instance& self, const char* selector
 
 void leave(Machine& machine, Instance& self) {
   const Standing standing = standing_of(machine, self);
-  if (standing.resource) standing.resource->occupants.leave(standing.place);
+  if (standing.resource) standing.resource->occupants.leave(standing.slot);
   machine.heap().store(self.slots[kGridSlot], nullptr);
 }
 
@@ -50,14 +50,14 @@ std::int32_t enter(Machine& machine, Instance& self, Instance* grid, CellIndex c
   const Standing now = standing_of(machine, self);
   if (now.resource == &resource) {
     if (now.cell() != cell && !resource.occupants.has_room(cell)) return 0;
-    resource.occupants.move(now.place, cell);
+    resource.occupants.move(now.slot, cell);
     return 1;
   }
   if (!resource.occupants.has_room(cell)) return 0;
-  const Occupants::Place place = resource.occupants.enter(self.id, cell);
+  const Occupants::Slot slot = resource.occupants.enter(self.id, cell);
   leave(machine, self);
   machine.heap().store(self.slots[kGridSlot], grid);
-  self.slots[kPlaceSlot].i = static_cast<std::int32_t>(place);
+  self.slots[kOccupantSlot].i = static_cast<std::int32_t>(slot);
   return 1;
 }
 
@@ -80,7 +80,7 @@ std::int32_t move(const Standing& standing, CellIndex cell) {
   if (cell == standing.cell()) return 1;
   Occupants& occupants = standing.resource->occupants;
   if (!occupants.has_room(cell)) return 0;
-  occupants.move(standing.place, cell);
+  occupants.move(standing.slot, cell);
   return 1;
 }
 
@@ -141,7 +141,7 @@ Instance* agent_get_grid(Machine& machine, Instance& self) { return standing_of(
 
 void push_agents(Machine& machine, const Occupants& occupants, CellIndex cell, const Instance* without,
                  ListCell& list) {
-  for (Occupants::Place p = occupants.first(cell); p != Occupants::kNoPlace; p = occupants.next(p)) {
+  for (Occupants::Slot p = occupants.first(cell); p != Occupants::kNoSlot; p = occupants.next(p)) {
     Instance* agent = machine.instance(occupants.agent(p).id);
     if (agent && agent != without) machine.heap().push(list, Value::of(Tag::Object, agent));
   }
@@ -158,8 +158,8 @@ ListCell* agent_get_agents(Machine& machine, Instance& self, std::int32_t radius
   // Agents lie anywhere in memory: what is known of them is fetched while the list is made.
   std::uint32_t expected = 1;
   const auto fetch = [&](CellIndex cell) {
-    const Occupants::Place first = occupants.first(cell);
-    if (first == Occupants::kNoPlace) return;
+    const Occupants::Slot first = occupants.first(cell);
+    if (first == Occupants::kNoSlot) return;
     __builtin_prefetch(&occupants.agent(first));
     ++expected;
   };

@@ -102,11 +102,11 @@ void move_by_root(Machine& machine, Instance& self, std::string_view selector, s
   machine.call(root, selector, arguments);
   if (!root.live()) return;
   const Vector3 goal = bodies.location(body);
-  const Quaternion turned = bodies.orientation(body);
+  const Quaternion goal_orientation = bodies.orientation(body);
   bodies.set_location(body, location);
   bodies.set_orientation(body, orientation);
   charge_for_assembly(machine, body);
-  dynamics_of(machine).move_assembly(body, goal, turned);
+  dynamics_of(machine).move_assembly(body, goal, goal_orientation);
 }
 
 void multibody_move(Machine& machine, Instance& self, Vector3 to) {

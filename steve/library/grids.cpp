@@ -90,22 +90,22 @@ CellIndex cell_in(const GridResource& resource, std::int32_t x, std::int32_t y, 
   return cell;
 }
 
-PatchPlace place_of(Machine& machine, const Instance& patch) {
+PatchCell cell_of(Machine& machine, const Instance& patch) {
   auto* grid = static_cast<Instance*>(patch.slots[kPatchGridSlot].ref);
   GridResource* resource = resource_of<GridResource>(machine, grid);
   if (!resource || !resource->grid) return {};
   const CellIndex cell =
       resource->grid->at(patch.slots[kPatchXSlot].i, patch.slots[kPatchYSlot].i, patch.slots[kPatchZSlot].i);
-  return cell == kNoCell ? PatchPlace{} : PatchPlace{grid, resource, cell};
+  return cell == kNoCell ? PatchCell{} : PatchCell{grid, resource, cell};
 }
 
-PatchPlace attached(Machine& machine, const Instance& patch) {
-  const PatchPlace place = place_of(machine, patch);
-  if (!place.resource)
+PatchCell attached(Machine& machine, const Instance& patch) {
+  const PatchCell at = cell_of(machine, patch);
+  if (!at.resource)
     Machine::fail(RunErrorKind::NullObject,
                   name_of(patch) +
                       " does not belong to a grid; a patch belongs to one from init-patch on, until the grid is freed");
-  return place;
+  return at;
 }
 
 // --- making ----------------------------------------------------------------------------------------------------------

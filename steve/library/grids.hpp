@@ -65,13 +65,13 @@ bool has_code(Machine& machine, std::string_view patch_class);
 inline constexpr std::uint32_t kPatchGridSlot = 3, kPatchXSlot = 4, kPatchYSlot = 5, kPatchZSlot = 6;
 
 /// Where a Patch object is; no resource while it belongs to no grid.
-struct PatchPlace {
+struct PatchCell {
   Instance* grid = nullptr;
   GridResource* resource = nullptr;
   CellIndex cell = kNoCell;
 };
-PatchPlace place_of(Machine& machine, const Instance& patch);
+PatchCell cell_of(Machine& machine, const Instance& patch);
 /// The same. @throws RunError{NullObject} if it belongs to no grid
-PatchPlace attached(Machine& machine, const Instance& patch);
+PatchCell attached(Machine& machine, const Instance& patch);
 
 }  // namespace breve::steve

@@ -110,8 +110,8 @@ void set_relative_rotation(Machine& machine, Instance& self, Vector3 axis, doubl
   finite(radians, "set-relative-rotation: the angle");
   const double length = axis.stableNorm();
   if (length == 0) return;
-  const Quaternion turn(Eigen::AngleAxisd(radians, axis / length));
-  change_description(machine, self, [&](JointDescription& is) { is.relative_rotation = turn; });
+  const Quaternion rotation(Eigen::AngleAxisd(radians, axis / length));
+  change_description(machine, self, [&](JointDescription& is) { is.relative_rotation = rotation; });
 }
 
 template <Vector3 JointDescription::*Member>

@@ -136,7 +136,7 @@ void relink_joint(Machine& machine, Instance& joint) {
   Mechanics& dynamics = machine.world().mechanics();
   const JointIndex index = joint_of(machine, joint);
   dynamics.set_drive(index, saved.drive);
-  if (dynamics.closes_ring(index)) return;
+  if (dynamics.closes_loop(index)) return;
   // Bodies do not know how many revolutions a joint has made.
   dynamics.set_position(index, saved.position);
   dynamics.set_velocity(index, saved.velocity);
@@ -193,7 +193,7 @@ SpringIndex spring_of(Machine& machine, Instance& spring) {
   const SpringResource* resource = resource_of<SpringResource>(machine, &spring);
   if (!resource || resource->index == kNoSpring) return kNoSpring;
   const Mechanics& dynamics = machine.world().mechanics();
-  if (!dynamics.tied(resource->index)) return kNoSpring;
+  if (!dynamics.has_spring(resource->index)) return kNoSpring;
   // A body that went took its springs along, and the number may be another's now.
   const SpringDescription& is = dynamics.spring(resource->index);
   const auto still = [&](std::string_view end, BodyIndex body) {
@@ -211,8 +211,8 @@ void connect_spring(Machine& machine, Instance& spring, SpringDescription descri
   Mechanics& dynamics = machine.world().mechanics();
   const SpringIndex before = spring_of(machine, spring);
   SpringResource& resource = resource_made<SpringResource>(machine, spring);
-  resource.index = dynamics.tie(description, spring.id);
-  if (before != kNoSpring) dynamics.untie(before);
+  resource.index = dynamics.add_spring(description, spring.id);
+  if (before != kNoSpring) dynamics.remove_spring(before);
   resource.is = description;
   set_library_object(machine, spring, "Spring", "fromObject", from);
   set_library_object(machine, spring, "Spring", "toObject", to);

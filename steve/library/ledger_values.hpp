@@ -1,7 +1,7 @@
 // The energy ledger, interventions and counters as values of a script: hashes with one entry for each number.
 #pragma once
 
-#include "runtime/mechanics/account.hpp"
+#include "runtime/mechanics/ledger.hpp"
 #include "steve/machine/machine.hpp"
 
 namespace breve::steve {

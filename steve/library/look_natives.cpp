@@ -85,9 +85,9 @@ void set_bitmap_heading_point(Machine& machine, Instance& self, Vector3 directio
   finite(direction, "a bitmap's heading");
   const CameraState& camera = machine.world().view().camera;
   // Camera axes in the world: it stands at +z of its target, pitched about x, then rotated about y.
-  const Eigen::Quaterniond turn =
+  const Eigen::Quaterniond rotation =
       Eigen::AngleAxisd(camera.yaw, Vector3::UnitY()) * Eigen::AngleAxisd(camera.pitch, Vector3::UnitX());
-  const Vector3 seen = turn.conjugate() * direction;
+  const Vector3 seen = rotation.conjugate() * direction;
   if (seen.x() == 0 && seen.y() == 0) return;
   look(machine, self).bitmap_heading = std::atan2(-seen.x(), seen.y());
 }

@@ -36,7 +36,7 @@ void set(Machine& machine, Instance& self, Vector3 value) {
 }
 
 /// The rotation about an axis of any length; the identity for a zero axis.
-Quaternion turn_about(const Vector3& axis, double radians) {
+Quaternion rotation_about(const Vector3& axis, double radians) {
   finite(axis, "a rotation's axis");
   finite(radians, "a rotation's angle");
   const double length = axis.stableNorm();
@@ -44,27 +44,27 @@ Quaternion turn_about(const Vector3& axis, double radians) {
 }
 
 void mobile_rotate(Machine& machine, Instance& self, Vector3 axis, double radians) {
-  const Quaternion turn = turn_about(axis, radians);
+  const Quaternion rotation = rotation_about(axis, radians);
   const BodyIndex body = body_of(machine, self);
   if (axis.isZero(0)) return;
   machine.world().leave(body);
-  bodies_of(machine).set_orientation(body, turn);
+  bodies_of(machine).set_orientation(body, rotation);
   follow_moved(machine, body);
 }
 
 void mobile_relative_rotate(Machine& machine, Instance& self, Vector3 axis, double radians) {
-  const Quaternion turn = turn_about(axis, radians);
+  const Quaternion rotation = rotation_about(axis, radians);
   const BodyIndex body = body_of(machine, self);
   machine.world().leave(body);
-  bodies_of(machine).set_orientation(body, turn * bodies_of(machine).orientation(body));
+  bodies_of(machine).set_orientation(body, rotation * bodies_of(machine).orientation(body));
   follow_moved(machine, body);
 }
 
 void mobile_offset(Machine& machine, Instance& self, Vector3 displacement) {
   const BodyIndex body = body_of(machine, self);
-  const Vector3 place = bodies_of(machine).location(body) + displacement;
+  const Vector3 location = bodies_of(machine).location(body) + displacement;
   machine.world().leave(body);
-  bodies_of(machine).set_location(body, place.allFinite() ? machine.world().space().inside(place) : place);
+  bodies_of(machine).set_location(body, location.allFinite() ? machine.world().space().inside(location) : location);
   follow_moved(machine, body);
 }
 

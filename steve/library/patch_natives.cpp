@@ -12,75 +12,75 @@ namespace {
 // --- what it is ------------------------------------------------------------------------------------------------------
 
 Vector3 patch_get_location(Machine& machine, Instance& self) {
-  const PatchPlace place = attached(machine, self);
-  return place.resource->grid->corner(place.cell);
+  const PatchCell at = attached(machine, self);
+  return at.resource->grid->corner(at.cell);
 }
 
 Vector3 patch_get_center(Machine& machine, Instance& self) {
-  const PatchPlace place = attached(machine, self);
-  return place.resource->grid->middle(place.cell);
+  const PatchCell at = attached(machine, self);
+  return at.resource->grid->middle(at.cell);
 }
 
 std::int32_t patch_get_state(Machine& machine, Instance& self) {
-  const PatchPlace place = attached(machine, self);
-  return place.resource->states.made() ? place.resource->states.get(place.cell) : 0;
+  const PatchCell at = attached(machine, self);
+  return at.resource->states.made() ? at.resource->states.get(at.cell) : 0;
 }
 
 void patch_set_state(Machine& machine, Instance& self, std::int32_t state) {
-  const PatchPlace place = attached(machine, self);
+  const PatchCell at = attached(machine, self);
   if (state < 0 || state > 255)
     throw Error(ErrorCode::Argument, "the state " + std::to_string(state) + " of a cell (must be 0 to 255)");
-  place.resource->states.make(*place.resource->grid);
-  place.resource->states.set(place.cell, static_cast<std::uint8_t>(state));
+  at.resource->states.make(*at.resource->grid);
+  at.resource->states.set(at.cell, static_cast<std::uint8_t>(state));
 }
 
 // --- look ------------------------------------------------------------------------------------------------------------
 
 /// The place, or none with a hint: programs set colours in `init`, which is too early.
-PatchPlace hinted(Machine& machine, Instance& self, const char* selector) {
-  const PatchPlace place = place_of(machine, self);
-  if (!place.resource)
+PatchCell hinted(Machine& machine, Instance& self, const char* selector) {
+  const PatchCell at = cell_of(machine, self);
+  if (!at.resource)
     machine.warn_once("patch." + std::string(selector) + ":" + self.cls->name,
                       std::string(selector) + ": " + name_of(self) +
                           " does not belong to a grid yet; the call has no effect (use init-patch instead of init)");
-  return place;
+  return at;
 }
 
 void patch_set_color(Machine& machine, Instance& self, Vector3 color) {
   finite(color, "set-color: the color");
-  const PatchPlace place = hinted(machine, self, "set-color");
-  if (!place.resource) return;
-  place.resource->make_colors();
-  place.resource->colors[place.cell] = color;
+  const PatchCell at = hinted(machine, self, "set-color");
+  if (!at.resource) return;
+  at.resource->make_colors();
+  at.resource->colors[at.cell] = color;
 }
 
 Vector3 patch_get_color(Machine& machine, Instance& self) {
-  const PatchPlace place = place_of(machine, self);
-  if (!place.resource || place.resource->colors.empty()) return {1, 1, 1};
-  return place.resource->colors[place.cell];
+  const PatchCell at = cell_of(machine, self);
+  if (!at.resource || at.resource->colors.empty()) return {1, 1, 1};
+  return at.resource->colors[at.cell];
 }
 
 void patch_set_transparency(Machine& machine, Instance& self, double alpha) {
   finite(alpha, "set-transparency: the value");
-  const PatchPlace place = hinted(machine, self, "set-transparency");
-  if (!place.resource) return;
-  place.resource->make_alphas();
-  place.resource->alphas[place.cell] = alpha;
+  const PatchCell at = hinted(machine, self, "set-transparency");
+  if (!at.resource) return;
+  at.resource->make_alphas();
+  at.resource->alphas[at.cell] = alpha;
 }
 
 double patch_get_transparency(Machine& machine, Instance& self) {
-  const PatchPlace place = place_of(machine, self);
-  if (!place.resource || place.resource->alphas.empty()) return GridResource::kAlpha;
-  return place.resource->alphas[place.cell];
+  const PatchCell at = cell_of(machine, self);
+  if (!at.resource || at.resource->alphas.empty()) return GridResource::kAlpha;
+  return at.resource->alphas[at.cell];
 }
 
 // --- neighbours ------------------------------------------------------------------------------------------------------
 
-Instance* neighbor_at(Machine& machine, const PatchPlace& place, std::int64_t dx, std::int64_t dy, std::int64_t dz) {
-  const Grid& grid = *place.resource->grid;
-  const Cell3 c = grid.cell(place.cell);
+Instance* neighbor_at(Machine& machine, const PatchCell& at, std::int64_t dx, std::int64_t dy, std::int64_t dz) {
+  const Grid& grid = *at.resource->grid;
+  const Cell3 c = grid.cell(at.cell);
   const CellIndex cell = grid.at(c.x + dx, c.y + dy, c.z + dz);
-  return cell == kNoCell ? nullptr : patch_of(machine, *place.grid, cell);
+  return cell == kNoCell ? nullptr : patch_of(machine, *at.grid, cell);
 }
 
 template <int X, int Y, int Z>
@@ -98,22 +98,21 @@ Instance* patch_get_patch(Machine& machine, Instance& self, Vector3 offset) {
 
 template <bool Box, bool Flat>
 ListCell* patch_neighborhood(Machine& machine, Instance& self, std::int32_t size) {
-  const PatchPlace place = attached(machine, self);
+  const PatchCell at = attached(machine, self);
   if (size < 0)
     throw Error(ErrorCode::Argument, "the size " + std::to_string(size) + " of a neighborhood (must be >= 0)");
-  const Grid grid = *place.resource->grid;
+  const Grid grid = *at.resource->grid;
   const double side = 2.0 * size + 1, within = side * side * (Flat ? 1 : side);
   machine.charge_for(static_cast<std::uint64_t>(std::min(within, static_cast<double>(grid.cells()))));
   ListCell* list = machine.heap().list();
-  const Pin pin(machine, Value::of(Tag::List, list)), pin_grid(machine, Value::of(Tag::Object, place.grid));
+  const Pin pin(machine, Value::of(Tag::List, list)), pin_grid(machine, Value::of(Tag::Object, at.grid));
   const auto add = [&](CellIndex cell) {
-    if (Instance* patch = patch_of(machine, *place.grid, cell))
-      machine.heap().push(*list, Value::of(Tag::Object, patch));
+    if (Instance* patch = patch_of(machine, *at.grid, cell)) machine.heap().push(*list, Value::of(Tag::Object, patch));
   };
   if constexpr (Box)
-    grid.moore(place.cell, size, Flat, add);
+    grid.moore(at.cell, size, Flat, add);
   else
-    grid.von_neumann(place.cell, size, Flat, add);
+    grid.von_neumann(at.cell, size, Flat, add);
   return list;
 }
 

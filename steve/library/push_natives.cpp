@@ -89,7 +89,7 @@ class Running {
   Pin pin_;
 };
 
-constexpr std::uint64_t kUnitsPerTurn = 2;  // a step of Push takes half as long as an iteration of a script's loop
+constexpr std::uint64_t kUnitsPerIteration = 2;  // a step of Push takes half as long as an iteration of a script's loop
 
 /// Do at most `steps`. 1 if that was not all there was to do.
 std::int32_t advance(Machine& machine, Instance& self, Running& running, std::uint64_t steps) {
@@ -97,7 +97,7 @@ std::int32_t advance(Machine& machine, Instance& self, Running& running, std::ui
     Interpreter& interpreter = running.interpreter();
     const push::Outcome outcome = interpreter.advance(steps, machine.world().random());
     const std::uint32_t called = interpreter.called();
-    machine.charge(1 + interpreter.take_work() / kUnitsPerTurn);
+    machine.charge(1 + interpreter.take_work() / kUnitsPerIteration);
     if (outcome == push::Outcome::Finished) return 0;
     if (outcome == push::Outcome::CutOff) return 1;
     if (outcome == push::Outcome::Called) call_back(machine, self, called);

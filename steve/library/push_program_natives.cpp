@@ -96,14 +96,14 @@ void add_element(Machine& machine, const Value& value, push::Builder& builder) {
 void program_set_from(Machine& machine, Instance& self, ListCell* elements) {
   struct Open {
     const ListCell* list;
-    std::uint32_t next, place;  // element of the list; point of the builder
+    std::uint32_t next, point;  // element of the list; point of the builder
   };
   push::Builder builder(machine.heap().memory());
   std::pmr::vector<Open> open({{elements, 0, builder.begin_list()}}, machine.heap().memory());
   while (!open.empty()) {
     Open& last = open.back();
     if (!last.list || last.next == last.list->size) {
-      builder.end_list(last.place);
+      builder.end_list(last.point);
       open.pop_back();
       continue;
     }
@@ -180,9 +180,9 @@ std::int32_t program_get_top_level_size(Machine& machine, Instance& self) {
 void program_swap_sublists(Machine& machine, Instance& self, std::int32_t x, std::int32_t y) {
   push::Code& code = own_code(machine, self);
   const auto items = static_cast<std::int32_t>(code.length());
-  for (const std::int32_t place : {x, y})
-    if (place < 0 || place >= items)
-      throw Error(ErrorCode::Argument, "swap-sublists: item " + std::to_string(place) + " of a program of " +
+  for (const std::int32_t point : {x, y})
+    if (point < 0 || point >= items)
+      throw Error(ErrorCode::Argument, "swap-sublists: item " + std::to_string(point) + " of a program of " +
                                            std::to_string(items) + " items (they are counted from 0)");
   if (x != y)
     code = push::swap_items(code, static_cast<std::uint32_t>(std::min(x, y)),

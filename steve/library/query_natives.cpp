@@ -107,46 +107,46 @@ ListCell* control_cast_shape(Machine& machine, Instance& self, Instance* shape, 
   return answer_of(machine, found, hit);
 }
 
-ListCell* find_in(Machine& machine, const Instance& self, const Shape& shape, const Vector3& place,
+ListCell* find_in(Machine& machine, const Instance& self, const Shape& shape, const Vector3& location,
                   const Asked& asked) {
   return objects_of(machine, put(machine, self, [&](Queries& queries, const Queries::Scene& scene) -> const Hits& {
-                      return queries.overlap(scene, shape, {place, Quaternion::Identity()}, asked.filter());
+                      return queries.overlap(scene, shape, {location, Quaternion::Identity()}, asked.filter());
                     }));
 }
 
-ListCell* control_find_in_shape(Machine& machine, Instance& self, Instance* shape, Vector3 place, Text type,
+ListCell* control_find_in_shape(Machine& machine, Instance& self, Instance* shape, Vector3 location, Text type,
                                 std::int32_t bits) {
   const Asked asked(machine, "find-in-shape", type, bits);
-  return find_in(machine, self, shape_of(machine, shape, "find-in-shape"), place, asked);
+  return find_in(machine, self, shape_of(machine, shape, "find-in-shape"), location, asked);
 }
 
-ListCell* control_find_in_sphere(Machine& machine, Instance& self, Vector3 place, double radius, Text type,
+ListCell* control_find_in_sphere(Machine& machine, Instance& self, Vector3 location, double radius, Text type,
                                  std::int32_t bits) {
   const Asked asked(machine, "find-in-sphere", type, bits);
-  return find_in(machine, self, *Shape::sphere(radius, machine.heap().memory()), place, asked);
+  return find_in(machine, self, *Shape::sphere(radius, machine.heap().memory()), location, asked);
 }
 
-ListCell* control_find_in_box(Machine& machine, Instance& self, Vector3 place, Vector3 size, Text type,
+ListCell* control_find_in_box(Machine& machine, Instance& self, Vector3 location, Vector3 size, Text type,
                               std::int32_t bits) {
   const Asked asked(machine, "find-in-box", type, bits);
-  return find_in(machine, self, *Shape::box(size, machine.heap().memory()), place, asked);
+  return find_in(machine, self, *Shape::box(size, machine.heap().memory()), location, asked);
 }
 
-ListCell* control_find_closest(Machine& machine, Instance& self, Vector3 place, double limit, Text type,
+ListCell* control_find_closest(Machine& machine, Instance& self, Vector3 location, double limit, Text type,
                                std::int32_t bits) {
   const Asked asked(machine, "find-closest", type, bits);
   QueryHit hit;
   const bool found = put(machine, self, [&](Queries& queries, const Queries::Scene& scene) {
-    return queries.nearest(scene, place, finite(limit, "find-closest: the limit"), asked.filter(), hit);
+    return queries.nearest(scene, location, finite(limit, "find-closest: the limit"), asked.filter(), hit);
   });
   return answer_of(machine, found, hit);
 }
 
-ListCell* control_find_near(Machine& machine, Instance& self, Vector3 place, double radius, Text type,
+ListCell* control_find_near(Machine& machine, Instance& self, Vector3 location, double radius, Text type,
                             std::int32_t bits) {
   const Asked asked(machine, "find-near", type, bits);
   return objects_of(machine, put(machine, self, [&](Queries& queries, const Queries::Scene& scene) -> const Hits& {
-                      return queries.near(scene, place, finite(radius, "find-near: the radius"), asked.filter());
+                      return queries.near(scene, location, finite(radius, "find-near: the radius"), asked.filter());
                     }));
 }
 

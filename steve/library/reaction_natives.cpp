@@ -60,10 +60,10 @@ void reaction_step(Machine& machine, Instance& self, ListCell* fields, double dt
     for (const Value& field : *fields)
       all.push_back(
           &field_of(machine, field.tag == Tag::Object ? field.object() : nullptr, "a matrix of the reaction"));
-  constexpr std::size_t kElementsPerTurn = 16;  // what takes about as long as an iteration of a script's loop
+  constexpr std::size_t kElementsPerIteration = 16;  // what takes about as long as an iteration of a script's loop
   const std::uint64_t elements = all.empty() ? 0 : all.size() * all[0]->size();
   for (std::int32_t i = 0; i < times; ++i) {
-    if (!all.empty()) machine.charge(1 + elements / kElementsPerTurn);
+    if (!all.empty()) machine.charge(1 + elements / kElementsPerIteration);
     const StageScope timed = machine.world().work(EffectId::Diffusion, self.id, elements);
     reaction.step(all, dt, periodic != 0);
   }

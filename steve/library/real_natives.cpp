@@ -80,12 +80,12 @@ void real_set_rotation_around(Machine& machine, Instance& self, Vector3 axis, do
 
 void real_set_rotation_euler_angles(Machine& machine, Instance& self, Vector3 angles) {
   finite(angles, "Euler angles");
-  const Quaternion turn = Eigen::AngleAxisd(angles.z(), Vector3::UnitZ()) *
-                          Eigen::AngleAxisd(angles.y(), Vector3::UnitY()) *
-                          Eigen::AngleAxisd(angles.x(), Vector3::UnitX());
+  const Quaternion rotation = Eigen::AngleAxisd(angles.z(), Vector3::UnitZ()) *
+                              Eigen::AngleAxisd(angles.y(), Vector3::UnitY()) *
+                              Eigen::AngleAxisd(angles.x(), Vector3::UnitX());
   const BodyIndex body = body_of(machine, self);
   machine.world().leave(body);
-  bodies_of(machine).set_orientation(body, turn);
+  bodies_of(machine).set_orientation(body, rotation);
   follow_moved(machine, body);
 }
 
@@ -99,11 +99,11 @@ void real_point(Machine& machine, Instance& self, Vector3 vertex, Vector3 direct
   const Vector3 axis = from.cross(to);
   const double sine = axis.norm();
   // Below this the axis is round-off: the two are parallel or opposite.
-  constexpr double kParallel = 1e-12, kParallelTurn = 0.01;
-  const Eigen::AngleAxisd turn = sine < kParallel ? Eigen::AngleAxisd(kParallelTurn, from)
-                                                  : Eigen::AngleAxisd(std::atan2(sine, from.dot(to)), axis / sine);
+  constexpr double kParallel = 1e-12, kParallelAngle = 0.01;
+  const Eigen::AngleAxisd rotation = sine < kParallel ? Eigen::AngleAxisd(kParallelAngle, from)
+                                                      : Eigen::AngleAxisd(std::atan2(sine, from.dot(to)), axis / sine);
   machine.world().leave(body);
-  bodies_of(machine).set_orientation(body, Quaternion(turn));
+  bodies_of(machine).set_orientation(body, Quaternion(rotation));
   follow_moved(machine, body);
 }
 

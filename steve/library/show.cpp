@@ -75,9 +75,9 @@ void show_volume(ObjectId id, const GridResource& resource, SceneBuilder& to) {
   for (CellIndex cell = 0; cell < grid.cells(); ++cell) {
     const Vector4f color = cell_color(resource, cell);
     if (color.w() < kLeast) continue;
-    SceneInstance box{id, Place::Zero(), color};
-    box.place.leftCols<3>() = drawable(grid.cell_size()).asDiagonal();
-    box.place.col(3) = drawable(grid.middle(cell));
+    SceneInstance box{id, Transform::Zero(), color};
+    box.transform.leftCols<3>() = drawable(grid.cell_size()).asDiagonal();
+    box.transform.col(3) = drawable(grid.middle(cell));
     box.mesh = MeshCache::kBox;
     box.texture_scale = {1, 1};
     box.shadow = color.w() >= 1;
@@ -98,7 +98,7 @@ void show_grid(const World& world, ObjectId id, const GridResource& resource, Sc
 
 void show_spring(Machine& machine, const SpringResource& resource, SceneBuilder& to) {
   const Mechanics& dynamics = dynamics_of(machine);
-  if (resource.index == kNoSpring || !dynamics.tied(resource.index)) return;
+  if (resource.index == kNoSpring || !dynamics.has_spring(resource.index)) return;
   const SpringDescription& spring = dynamics.spring(resource.index);
   const Bodies& bodies = machine.world().bodies();
   const auto end = [&](BodyIndex body, const Vector3& point) {

@@ -26,7 +26,7 @@ Instance* spring_connect(Machine& machine, Instance& self, Instance* from, Insta
 
 void spring_disconnect(Machine& machine, Instance& self) {
   const SpringIndex spring = spring_of(machine, self);
-  if (spring != kNoSpring) machine.world().mechanics().untie(spring);
+  if (spring != kNoSpring) machine.world().mechanics().remove_spring(spring);
 }
 
 void spring_dearchive(Machine& machine, Instance& self) { relink_spring(machine, self); }

@@ -12,7 +12,7 @@ namespace breve::steve {
 class Budget {
  public:
   /// One more loop iteration. True: the piece is at its end, and next_piece is to be asked.
-  bool turn() { return --piece_ == 0; }
+  bool count_iteration() { return --piece_ == 0; }
   /// False: there is nothing left, now and at every later iteration.
   bool next_piece() {
     piece_ = std::min({kPiece, run_, call_});
@@ -28,18 +28,18 @@ class Budget {
     piece_ = 1;
   }
   /// Many loop iterations at once, for the work of native code. False as next_piece.
-  bool charge(std::uint64_t turns) {
+  bool charge(std::uint64_t iterations) {
     give_back();
-    const std::uint64_t used = std::min({turns, run_, call_});
+    const std::uint64_t used = std::min({iterations, run_, call_});
     run_ -= used;
     call_ -= used;
     return next_piece();
   }
   /// Would `charge` say true?
-  bool affords(std::uint64_t turns) const { return turns < std::min(run_, call_) + piece_; }
+  bool affords(std::uint64_t iterations) const { return iterations < std::min(run_, call_) + piece_; }
   /// @param turns  that are allowed; 0: without limit
-  void begin_run(std::uint64_t turns) {
-    run_ = limit(turns);
+  void begin_run(std::uint64_t iterations) {
+    run_ = limit(iterations);
     call_ = kUnlimited;
     next_piece();
   }
@@ -49,8 +49,8 @@ class Budget {
   /// A call by the world, with a limit of its own; what it uses is the run's as well, and not the outer call's.
   class Call {
    public:
-    Call(Budget& budget, std::uint64_t turns) : budget_(budget), outer_((budget.give_back(), budget.call_)) {
-      budget_.call_ = limit(turns);
+    Call(Budget& budget, std::uint64_t iterations) : budget_(budget), outer_((budget.give_back(), budget.call_)) {
+      budget_.call_ = limit(iterations);
       budget_.next_piece();
     }
     ~Call() {
@@ -70,7 +70,9 @@ class Budget {
   static constexpr std::uint64_t kPiece = 1 << 16;  // turns: less than a millisecond, to see an interrupt
   static constexpr std::uint64_t kUnlimited = std::uint64_t{1} << 62;
   // The iteration after the last one that is allowed is the one that fails.
-  static std::uint64_t limit(std::uint64_t turns) { return turns == 0 || turns >= kUnlimited ? kUnlimited : turns + 1; }
+  static std::uint64_t limit(std::uint64_t iterations) {
+    return iterations == 0 || iterations >= kUnlimited ? kUnlimited : iterations + 1;
+  }
   void give_back() {
     run_ += piece_;
     call_ += piece_;

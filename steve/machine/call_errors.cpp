@@ -13,7 +13,7 @@ namespace breve::steve {
 namespace {
 
 constexpr std::size_t kLongestReceiver = 50;
-constexpr std::size_t kMostPlaces = 3;
+constexpr std::size_t kMostLocations = 3;
 
 bool is_name(std::string_view text) {
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
@@ -22,12 +22,12 @@ bool is_name(std::string_view text) {
 }
 
 /// The method in whose text a place stands; null if it is in none.
-const MethodInfo* method_around(const Program& program, const Span& place) {
+const MethodInfo* method_around(const Program& program, const Span& location) {
   const MethodInfo* found = nullptr;
   for (const auto& cls : program.classes()) {
-    if (cls->span.file != place.file) continue;
+    if (cls->span.file != location.file) continue;
     for (const auto& method : cls->methods) {
-      if (method->span.offset > place.offset) continue;
+      if (method->span.offset > location.offset) continue;
       if (found == nullptr || method->span.offset > found->span.offset) found = method.get();
     }
   }
@@ -67,7 +67,7 @@ Machine::Receiver Machine::receiver_of_site(const Span& selector) const {
 // Where the program assigns to a variable of this instance: found in its text, since nobody keeps it otherwise. Null
 // once much has been looked through: errors that do not stop a run may be many.
 std::optional<std::string> Machine::where_assigned(const Receiver& receiver) const {
-  std::vector<std::string> places;
+  std::vector<std::string> locations;
   std::size_t more = 0;
   const auto& sources = program_->sources();
   constexpr std::uint64_t kMostBytes = 8 << 20;  // of text that is looked through in the life of a machine
@@ -83,16 +83,16 @@ std::optional<std::string> Machine::where_assigned(const Receiver& receiver) con
       if (method == nullptr) continue;
       const bool member = tokens[i - 1].text == "::";
       if (!member && !frame_->self->cls->derives_from(*method->owner)) continue;
-      if (places.size() < kMostPlaces) {
-        places.push_back(fmt::format("{}.{} ({}:{})", method->owner->name, program_->symbols().name(method->name),
-                                     sources.file(file).name, tokens[i].span.line));
+      if (locations.size() < kMostLocations) {
+        locations.push_back(fmt::format("{}.{} ({}:{})", method->owner->name, program_->symbols().name(method->name),
+                                        sources.file(file).name, tokens[i].span.line));
       } else {
         ++more;
       }
     }
   }
-  if (more > 0) places.push_back(fmt::format("{} more places", more));
-  return joined(places);
+  if (more > 0) locations.push_back(fmt::format("{} more places", more));
+  return joined(locations);
 }
 
 void Machine::fail_receiver(const Instance* receiver, std::uint32_t number) const {
@@ -136,10 +136,10 @@ void Machine::fail_null_receiver(const CallSite& site) const {
                               : std::string("CLASS");
   const auto found = who.member ? where_assigned(who) : std::nullopt;
   if (!found) throw error(null, fmt::format("assign an object before this line, as in   {} = new {}.", who.text, cls));
-  const std::string& places = *found;
-  if (places.empty())
+  const std::string& locations = *found;
+  if (locations.empty())
     throw error(null, fmt::format("nothing assigns it yet: do so in 'init', as in   {} = new {}.", who.text, cls));
-  throw error(null, fmt::format("it is assigned in {}: has that method been called for this object?", places));
+  throw error(null, fmt::format("it is assigned in {}: has that method been called for this object?", locations));
 }
 
 // The call that a Broadcast instruction is made for: the next one on the register that it fills.
@@ -190,11 +190,12 @@ Instance* Machine::broadcast_member(const Value& element) const {
 void Machine::fail_member(std::string_view name, const Instance* object) const {
   Receiver who;
   if (frame_ != nullptr) {
-    const Span place = span_of(*frame_, frame_->pc);
+    const Span location = span_of(*frame_, frame_->pc);
     const std::string_view text =
-        std::string_view(program_->sources().file(place.file).text).substr(place.offset, place.length);
+        std::string_view(program_->sources().file(location.file).text).substr(location.offset, location.length);
     if (const auto at = text.find("::" + std::string(name)); at != std::string_view::npos)
-      who = receiver_of_site({place.file, place.offset + static_cast<std::uint32_t>(at), 1, place.line, place.column});
+      who = receiver_of_site(
+          {location.file, location.offset + static_cast<std::uint32_t>(at), 1, location.line, location.column});
   }
   const std::string subject = who.text.empty()                        ? "its object"
                               : who.kind == Receiver::Kind::Parameter ? fmt::format("the parameter '{}'", who.text)

@@ -20,7 +20,7 @@ struct ClassInfo;
 
 /// A cell that refers to other cells, so that it can be part of a cycle: list, hash, instance.
 struct Container : Cell {
-  std::uint32_t place = 0;  // index in the heap's table of containers
+  std::uint32_t slot = 0;  // index in the heap's table of containers
   explicit Container(Tag t) : Cell(t) {}
 };
 inline bool is_container(Tag tag) { return tag >= Tag::Object && tag <= Tag::Hash; }

@@ -59,7 +59,7 @@ bool Heap::leads_on(const Container& cell, int levels, int& looks) {
 // --- the table -------------------------------------------------------------------------------------------------------
 
 void Heap::enrol(Container& cell) {
-  cell.place = static_cast<std::uint32_t>(containers_.size());
+  cell.slot = static_cast<std::uint32_t>(containers_.size());
   containers_.push_back(&cell);
   marks_.push_back(new_mark(cell, phase_ == Phase::Idle ? white_ : white_ ^ kColour));
 }
@@ -69,10 +69,10 @@ std::uint8_t Heap::new_mark(const Container& cell, int colour) {
   return static_cast<const Instance&>(cell).cls->reference_slots.empty() ? kInert : static_cast<std::uint8_t>(colour);
 }
 
-void Heap::move_place(std::uint32_t from, std::uint32_t to) {
+void Heap::move_slot(std::uint32_t from, std::uint32_t to) {
   if (from == to) return;
   containers_[to] = containers_[from];
-  containers_[to]->place = to;
+  containers_[to]->slot = to;
   marks_[to] = marks_[from];
 }
 
@@ -80,13 +80,13 @@ void Heap::move_place(std::uint32_t from, std::uint32_t to) {
 // grey ones may become wrong by it: see find_left_grey.
 void Heap::strike(Container& cell) {
   if (partial_ == &cell) partial_ = nullptr;
-  std::uint32_t place = cell.place;
-  if (white_left_ > 0 && is_white(place)) --white_left_;
-  if (place < passed_) {
-    move_place(--passed_, place);
-    place = passed_;
+  std::uint32_t slot = cell.slot;
+  if (white_left_ > 0 && is_white(slot)) --white_left_;
+  if (slot < passed_) {
+    move_slot(--passed_, slot);
+    slot = passed_;
   }
-  move_place(static_cast<std::uint32_t>(containers_.size() - 1), place);
+  move_slot(static_cast<std::uint32_t>(containers_.size() - 1), slot);
   containers_.pop_back();
   marks_.pop_back();
 }
@@ -231,7 +231,7 @@ void Heap::sweep(std::int64_t& work) {
 bool Heap::is_swept_later(const Cell& cell) const {
   if (phase_ != Phase::Sweep || !is_container(cell.tag)) return false;
   const auto& container = static_cast<const Container&>(cell);
-  return is_white(container.place) && !is_leaf(container);
+  return is_white(container.slot) && !is_leaf(container);
 }
 
 // A list or hash goes piece by piece; meanwhile it is held, so that it does not go as a whole by having lost its last

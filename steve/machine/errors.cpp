@@ -92,8 +92,8 @@ void Machine::throw_out_of_memory(std::size_t depth, const Instruction* pc) {
 void Machine::print(std::string_view text) {
   refuse_in_stage("print");
   if (!host_.print) return;
-  constexpr std::uint64_t kBytesPerTurn = 16;
-  charge(text.size() / kBytesPerTurn);
+  constexpr std::uint64_t kBytesPerIteration = 16;
+  charge(text.size() / kBytesPerIteration);
   reporter_.print(text);
 }
 
@@ -116,7 +116,7 @@ std::string Machine::stack_trace() const {
 }
 
 /// The innermost running statement of the program's own files; line 0: there is none.
-Span Machine::place_of_caller() const {
+Span Machine::location_of_caller() const {
   for (const Frame* frame = frame_; frame; frame = frame->caller)
     if (const auto span = span_of(*frame, frame->pc); !program_->sources().file(span.file).embedded) return span;
   return {};
@@ -124,7 +124,7 @@ Span Machine::place_of_caller() const {
 
 void Machine::warn(std::string_view text) {
   reporter_.tell(Severity::Warning, [&] {
-    return format({Severity::Warning, "run-time", std::string(text), {}, place_of_caller()}, program_->sources());
+    return format({Severity::Warning, "run-time", std::string(text), {}, location_of_caller()}, program_->sources());
   });
 }
 
@@ -134,7 +134,7 @@ void Machine::report_unknown_method(Severity severity, const Instance& self, std
   reporter_.tell(severity, [&] {
     return format(
         {severity, "run-time", fmt::format("class {} has no method '{}': {}", self.cls->name, method, consequence),
-         unknown_method_help(method, self.cls, *program_), place_of_caller()},
+         unknown_method_help(method, self.cls, *program_), location_of_caller()},
         program_->sources());
   });
 }

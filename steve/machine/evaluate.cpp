@@ -38,7 +38,7 @@ class Machine::FragmentScope {
     for (; machine_.strings_.size() > strings_; machine_.strings_.pop_back())
       machine_.heap_->release(machine_.strings_.back());
     machine_.caches_.resize(sites_);
-    if (const auto* function = fragment_.method->function.get()) machine_.reporter_.forget_places(function->code);
+    if (const auto* function = fragment_.method->function.get()) machine_.reporter_.forget_locations(function->code);
     machine_.fragments_->end(fragment_);
     if (machine_.nesting_ == 0) machine_.fragments_->all_ended();
   }

@@ -8,8 +8,8 @@
 namespace breve::steve {
 
 void charge_for_argument(Machine& machine, std::size_t bytes) {
-  constexpr std::size_t kBytesPerTurn = 64;
-  machine.charge(bytes / kBytesPerTurn);
+  constexpr std::size_t kBytesPerIteration = 64;
+  machine.charge(bytes / kBytesPerIteration);
 }
 
 std::span<const Native> functions() {

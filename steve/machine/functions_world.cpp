@@ -68,12 +68,12 @@ void unpause_simulation(Machine& machine, Instance&) { machine.world().set_pause
 
 void sleep_for(Machine& machine, Instance&, double seconds) {
   if (!machine.host().may_sleep) refuse_right("sleep", "sleep", "BREVE_RIGHT_SLEEP");
-  constexpr double kLongest = 86400;       // a day: keeps the conversion to integers sound
-  constexpr double kTurnsPerSecond = 1e7;  // what is slept counts as much as work that takes as long
-  constexpr double kPiece = 0.01;          // s: how soon an interrupt is seen
+  constexpr double kLongest = 86400;            // a day: keeps the conversion to integers sound
+  constexpr double kIterationsPerSecond = 1e7;  // what is slept counts as much as work that takes as long
+  constexpr double kPiece = 0.01;               // s: how soon an interrupt is seen
   if (!(seconds > 0)) return;
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(std::fmin(seconds, kLongest));
-  machine.charge(static_cast<std::uint64_t>(std::fmin(seconds, kLongest) * kTurnsPerSecond));
+  machine.charge(static_cast<std::uint64_t>(std::fmin(seconds, kLongest) * kIterationsPerSecond));
   if (machine.host().replays && machine.host().replays()) return;
   for (auto now = std::chrono::steady_clock::now(); now < end; now = std::chrono::steady_clock::now()) {
     std::this_thread::sleep_for(

@@ -215,9 +215,9 @@ class Heap : public InMemory {
   static constexpr std::uint8_t kColour = 2;  // one of the two: white_ says which
   static constexpr std::uint8_t kGrey = 4;
   static constexpr std::uint8_t kInert = 8;  // an instance that can refer to nothing: in no cycle, of no colour
-  bool is_white(std::uint32_t place) const { return (marks_[place] & ~kOther) == white_; }
-  void blacken(std::uint32_t place) {
-    marks_[place] = static_cast<std::uint8_t>((marks_[place] & kOther) | (white_ ^ kColour));
+  bool is_white(std::uint32_t slot) const { return (marks_[slot] & ~kOther) == white_; }
+  void blacken(std::uint32_t slot) {
+    marks_[slot] = static_cast<std::uint8_t>((marks_[slot] & kOther) | (white_ ^ kColour));
   }
   class Marker;
   struct FreeSlot {
@@ -275,7 +275,7 @@ class Heap : public InMemory {
   }
   static bool may_close_cycle(const Container& cell);
   static bool leads_on(const Container& cell, int levels, int& looks);
-  void move_place(std::uint32_t from, std::uint32_t to);
+  void move_slot(std::uint32_t from, std::uint32_t to);
   void enrol(Container& cell);
   static std::uint8_t new_mark(const Container& cell, int colour);
   void strike(Container& cell);
@@ -292,13 +292,13 @@ class Heap : public InMemory {
 
   // marking.cpp
   void shade(Cell* cell);
-  void shade_place(std::uint32_t place);
-  void push_grey(std::uint32_t place);
-  std::uint32_t next_place(std::uint32_t from, std::uint32_t to, std::uint8_t mask, std::uint8_t mark) const;
+  void shade_slot(std::uint32_t slot);
+  void push_grey(std::uint32_t slot);
+  std::uint32_t next_slot(std::uint32_t from, std::uint32_t to, std::uint8_t mask, std::uint8_t mark) const;
   std::uint32_t count_white() const;
   bool pass_to(std::uint8_t kinds, std::int64_t& work);
   void mark(std::int64_t& work);
-  void fetch_place_ahead() const;
+  void fetch_slot_ahead() const;
   void end_of_marking();
   bool find_left_grey();
   /// Before the elements of a half-scanned list or hash move: finish scanning it.

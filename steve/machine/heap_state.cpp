@@ -47,10 +47,10 @@ void Heap::save_state(ByteWriter& out, const std::function<std::uint64_t(const C
 void Heap::save_marks(ByteWriter& out) const {
   if (phase_ == Phase::Idle) return;
   out.put(passed_);
-  for (std::uint32_t place = 0; place < marks_.size(); ++place)
-    out.put(static_cast<std::uint8_t>(is_white(place) ? 0 : marks_[place] == kGrey ? 2 : 1));
+  for (std::uint32_t slot = 0; slot < marks_.size(); ++slot)
+    out.put(static_cast<std::uint8_t>(is_white(slot) ? 0 : marks_[slot] == kGrey ? 2 : 1));
   out.put(static_cast<std::uint64_t>(grey_.size()));
-  for (const std::uint32_t place : grey_) out.put(place);
+  for (const std::uint32_t slot : grey_) out.put(slot);
 }
 
 void Heap::load_marks(ByteReader& in) {
@@ -61,11 +61,11 @@ void Heap::load_marks(ByteReader& in) {
   if (phase_ == Phase::Idle) return;
   passed_ = in.get<std::uint32_t>();
   if (passed_ > containers_.size()) ByteReader::fail();
-  for (std::uint32_t place = 0; place < marks_.size(); ++place) {
+  for (std::uint32_t slot = 0; slot < marks_.size(); ++slot) {
     const auto mark = in.get<std::uint8_t>();
     if (mark > 2) ByteReader::fail();
-    if (mark == 1 && is_white(place)) blacken(place);
-    if (mark == 2) marks_[place] = kGrey;
+    if (mark == 1 && is_white(slot)) blacken(slot);
+    if (mark == 2) marks_[slot] = kGrey;
   }
   const std::size_t waiting = in.get_count(sizeof(std::uint32_t));
   grey_.reserve(waiting + containers_.capacity());

@@ -42,7 +42,7 @@ namespace breve::steve {
   } while (0)
 #define COUNT_CALL()                                                                   \
   do {                                                                                 \
-    if (budget_.turn()) [[unlikely]] { SAVE(); end_of_piece(); }                       \
+    if (budget_.count_iteration()) [[unlikely]] { SAVE(); end_of_piece(); }                       \
     SAFE_POINT();                                                                      \
   } while (0)
 #define SAFE_POINT()                                                                   \

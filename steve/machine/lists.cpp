@@ -188,13 +188,13 @@ ListCell* Heap::copy(const ListCell& original) {
   std::pmr::vector<const ListCell*> pending(memory_);  // originals whose twins are still empty, in order of discovery
   std::pmr::vector<ListCell*> made(memory_);
   const auto twin = [&](const ListCell* from) {
-    const auto [place, fresh] = twins.try_emplace(from, nullptr);
+    const auto [entry, fresh] = twins.try_emplace(from, nullptr);
     if (fresh) {
       pending.push_back(from);
       made.push_back(nullptr);
-      made.back() = place->second = list(from->size);
+      made.back() = entry->second = list(from->size);
     }
-    return place->second;
+    return entry->second;
   };
   try {
     ListCell* copied = twin(&original);

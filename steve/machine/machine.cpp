@@ -81,8 +81,8 @@ void Machine::end_of_piece() {
 }
 
 void Machine::settle() {
-  constexpr std::uint64_t kBytesPerTurn = 128;
-  charge(heap_->take_moved() / kBytesPerTurn);
+  constexpr std::uint64_t kBytesPerIteration = 128;
+  charge(heap_->take_moved() / kBytesPerIteration);
 }
 
 // Says once where a run is that takes so long that it may never end.
@@ -93,14 +93,14 @@ void Machine::look_at_the_clock() {
   warn(fmt::format("this has been running for {:.0f} s: a loop here may not terminate", taken.count()));
 }
 
-void Machine::charge(std::uint64_t turns) {
+void Machine::charge(std::uint64_t iterations) {
   poll();
-  if (!budget_.charge(turns)) fail_budget();
+  if (!budget_.charge(iterations)) fail_budget();
 }
 
-void Machine::expect(std::uint64_t turns) {
+void Machine::expect(std::uint64_t iterations) {
   poll();
-  if (turns != 0 && !budget_.affords(turns)) charge(turns);
+  if (iterations != 0 && !budget_.affords(iterations)) charge(iterations);
 }
 
 void Machine::fail_interrupted() {

@@ -59,8 +59,8 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   void begin_run();
   /// Count the work of native code as this many loop iterations. RunError{Budget} if the budget is used up,
   /// {Interrupted} by the host.
-  void charge(std::uint64_t turns) override;
-  void expect(std::uint64_t turns) override;
+  void charge(std::uint64_t iterations) override;
+  void expect(std::uint64_t iterations) override;
   /// `poll` for the work of the runtime.
   const Poll& poller() const { return poller_; }
   /// Within long work that is charged already: RunError{Interrupted} if the host wants the end.
@@ -70,8 +70,8 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   /// The same, of work that looks at so many elements (numbers, pixels, cells, values of a list): about sixteen take
   /// as long as a loop iteration. Before the work, where it is known, so that what exceeds the budget does not begin.
   void charge_for(std::uint64_t elements) {
-    constexpr std::uint64_t kElementsPerTurn = 16;
-    if (elements >= kElementsPerTurn) charge(elements / kElementsPerTurn);
+    constexpr std::uint64_t kElementsPerIteration = 16;
+    if (elements >= kElementsPerIteration) charge(elements / kElementsPerIteration);
   }
 
   // --- objects ------------------------------------------------------------------------------------------------------
@@ -352,7 +352,7 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   [[noreturn]] void throw_out_of_memory(std::size_t depth, const Instruction* pc);
   void survive(const ScriptError& error);
   Span span_of(const Frame& frame, const Instruction* pc) const;
-  Span place_of_caller() const;
+  Span location_of_caller() const;
   const Instruction* running() const { return frame_ ? frame_->pc : nullptr; }
 
   // machine.cpp
@@ -362,7 +362,7 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   // stage_force.cpp
   [[noreturn]] static void fail_in_stage(std::string_view what);
   void count_call() {
-    if (budget_.turn()) [[unlikely]]
+    if (budget_.count_iteration()) [[unlikely]]
       end_of_piece();
   }
 

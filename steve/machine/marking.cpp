@@ -45,25 +45,25 @@ class Heap::Marker {
 
  private:
   static constexpr std::uint8_t kOnItsWay = kGrey | kColour;  // grey, and in one of the stages
-  static constexpr std::uint32_t kHeads = 16, kPlaces = 8, kReady = 8, kStack = 256, kAhead = 24, kRefill = 32;
+  static constexpr std::uint32_t kHeads = 16, kSlots = 8, kReady = 8, kStack = 256, kAhead = 24, kRefill = 32;
 
   // Roots have their turn in the order of the table, which is nearly that of memory; one that ceases to be a root is
   // shaded by the release of the table of objects.
   void arrived(Cell* cell) {
     if (!is_container(cell->tag) || is_root(*static_cast<const Container*>(cell))) return;
     auto* container = static_cast<Container*>(cell);
-    fetch(&heap_.marks_[container->place]);
-    std::swap(container, places_[next_place_++ % kPlaces]);
+    fetch(&heap_.marks_[container->slot]);
+    std::swap(container, slots_[next_slot_++ % kSlots]);
     if (container != nullptr) darken(*container);
   }
   void darken(Container& cell) {
-    if (!heap_.is_white(cell.place)) return;
+    if (!heap_.is_white(cell.slot)) return;
     if (is_leaf(cell)) {
       if (heap_.white_left_ > 0) --heap_.white_left_;
-      return heap_.blacken(cell.place);
+      return heap_.blacken(cell.slot);
     }
-    if (stacked_ == kStack) return heap_.shade_place(cell.place);
-    heap_.marks_[cell.place] = kOnItsWay;
+    if (stacked_ == kStack) return heap_.shade_slot(cell.slot);
+    heap_.marks_[cell.slot] = kOnItsWay;
     stack_[stacked_++] = &cell;
   }
   void refill();
@@ -83,23 +83,23 @@ class Heap::Marker {
   void flush();
 
   Heap& heap_;
-  std::uint32_t next_head_ = 0, next_place_ = 0, next_ready_ = 0;
+  std::uint32_t next_head_ = 0, next_slot_ = 0, next_ready_ = 0;
   std::uint32_t stacked_ = 0, waiting_ = 0;
-  std::array<Cell*, kHeads> heads_{};         // cells whose heads are on their way
-  std::array<Container*, kPlaces> places_{};  // cells whose marks are on their way
-  std::array<Container*, kReady> ready_{};    // grey cells whose elements are on their way
-  std::array<Container*, kStack> stack_;      // grey cells; those for which there is no room are on grey_
+  std::array<Cell*, kHeads> heads_{};       // cells whose heads are on their way
+  std::array<Container*, kSlots> slots_{};  // cells whose marks are on their way
+  std::array<Container*, kReady> ready_{};  // grey cells whose elements are on their way
+  std::array<Container*, kStack> stack_;    // grey cells; those for which there is no room are on grey_
 };
 
 // What became grey and has moved since, or died, is not where it was: find_left_grey looks for it.
 void Heap::Marker::refill() {
   std::pmr::vector<std::uint32_t>& grey = heap_.grey_;
   while (stacked_ < kRefill && !grey.empty()) {
-    const std::uint32_t place = grey.back();
+    const std::uint32_t slot = grey.back();
     grey.pop_back();
-    if (place >= heap_.marks_.size() || heap_.marks_[place] != kGrey) continue;
-    heap_.marks_[place] = kOnItsWay;
-    stack_[stacked_++] = heap_.containers_[place];
+    if (slot >= heap_.marks_.size() || heap_.marks_[slot] != kGrey) continue;
+    heap_.marks_[slot] = kOnItsWay;
+    stack_[stacked_++] = heap_.containers_[slot];
     fetch(stack_[stacked_ - 1]);
   }
 }
@@ -130,8 +130,8 @@ bool Heap::Marker::settle_reached() {
     if (cell != nullptr) arrived(cell);
     cell = nullptr;
   }
-  for (std::uint32_t i = 0; i < kPlaces; ++i, ++next_place_) {
-    Container*& cell = places_[next_place_ % kPlaces];
+  for (std::uint32_t i = 0; i < kSlots; ++i, ++next_slot_) {
+    Container*& cell = slots_[next_slot_ % kSlots];
     if (cell != nullptr) darken(*cell);
     cell = nullptr;
   }
@@ -141,8 +141,8 @@ bool Heap::Marker::settle_reached() {
 void Heap::Marker::flush() {
   settle_reached();
   const auto wait = [this](const Container& cell) {
-    heap_.marks_[cell.place] = kGrey;
-    heap_.push_grey(cell.place);
+    heap_.marks_[cell.slot] = kGrey;
+    heap_.push_grey(cell.slot);
   };
   for (std::uint32_t i = 0; i < stacked_; ++i) wait(*stack_[i]);
   for (const Container* cell : ready_)
@@ -150,7 +150,7 @@ void Heap::Marker::flush() {
 }
 
 void Heap::Marker::scan(Container& cell, std::int64_t& work) {
-  heap_.marks_[cell.place] = heap_.new_mark(cell, heap_.white_ ^ kColour);
+  heap_.marks_[cell.slot] = heap_.new_mark(cell, heap_.white_ ^ kColour);
   if (heap_.white_left_ > 0) --heap_.white_left_;
   work -= kMark;
   if (cell.tag == Tag::Object) {
@@ -200,22 +200,22 @@ void Heap::Marker::scan_part(std::int64_t& work) {
 }
 
 void Heap::shade(Cell* cell) {
-  if (cell != nullptr && is_container(cell->tag)) shade_place(static_cast<Container*>(cell)->place);
+  if (cell != nullptr && is_container(cell->tag)) shade_slot(static_cast<Container*>(cell)->slot);
 }
 
-void Heap::shade_place(std::uint32_t place) {
-  if (!is_white(place)) return;
-  marks_[place] = kGrey;
-  push_grey(place);
+void Heap::shade_slot(std::uint32_t slot) {
+  if (!is_white(slot)) return;
+  marks_[slot] = kGrey;
+  push_grey(slot);
 }
 
 // Each place is white once in a collection, so there is room; if a damaged image has taken it, find_left_grey helps.
-void Heap::push_grey(std::uint32_t place) {
-  if (grey_.size() < grey_.capacity()) grey_.push_back(place);
+void Heap::push_grey(std::uint32_t slot) {
+  if (grey_.size() < grey_.capacity()) grey_.push_back(slot);
 }
 
 // Eight places at a time.
-std::uint32_t Heap::next_place(std::uint32_t from, std::uint32_t to, std::uint8_t mask, std::uint8_t mark) const {
+std::uint32_t Heap::next_slot(std::uint32_t from, std::uint32_t to, std::uint8_t mask, std::uint8_t mark) const {
   constexpr std::uint64_t kOnes = 0x0101010101010101U;
   const std::uint8_t* marks = marks_.data();
   while (from < to) {
@@ -237,10 +237,10 @@ bool Heap::pass_to(std::uint8_t kinds, std::int64_t& work) {
   if (work <= 0) return false;
   const auto size = static_cast<std::uint32_t>(marks_.size());
   const auto to = static_cast<std::uint32_t>(std::min<std::int64_t>(size, passed_ + work));
-  const std::uint32_t place = next_place(passed_, to, static_cast<std::uint8_t>(~kinds), white_);
-  work -= kPlace * (place - passed_ + 1);
-  passed_ = place;
-  return place < to;
+  const std::uint32_t slot = next_slot(passed_, to, static_cast<std::uint8_t>(~kinds), white_);
+  work -= kSlot * (slot - passed_ + 1);
+  passed_ = slot;
+  return slot < to;
 }
 
 // Roots are scanned as long as few cells wait, so that there is always something to fetch ahead.
@@ -252,7 +252,7 @@ void Heap::mark(std::int64_t& work) {
       continue;
     }
     if (marker.hungry() && pass_to(0, work)) {
-      fetch_place_ahead();
+      fetch_slot_ahead();
       work -= kLook;
       Container& cell = *containers_[passed_++];
       if (!is_root(cell)) continue;
@@ -267,9 +267,9 @@ void Heap::mark(std::int64_t& work) {
   }
 }
 
-void Heap::fetch_place_ahead() const {
-  constexpr std::uint32_t kPlacesAhead = 24;
-  const std::uint32_t ahead = passed_ + kPlacesAhead;
+void Heap::fetch_slot_ahead() const {
+  constexpr std::uint32_t kSlotsAhead = 24;
+  const std::uint32_t ahead = passed_ + kSlotsAhead;
   if (ahead >= containers_.size() || marks_[ahead] != white_) return;
   const auto* cell = reinterpret_cast<const char*>(containers_[ahead]);
   fetch(cell);
@@ -280,7 +280,7 @@ void Heap::fetch_place_ahead() const {
 // through when the stack is empty. True if there was one.
 bool Heap::find_left_grey() {
   const auto size = static_cast<std::uint32_t>(marks_.size());
-  for (std::uint32_t at = 0; (at = next_place(at, size, kGrey, kGrey)) < size; ++at)
+  for (std::uint32_t at = 0; (at = next_slot(at, size, kGrey, kGrey)) < size; ++at)
     if (grey_.size() < grey_.capacity()) grey_.push_back(at);
   return !grey_.empty();
 }

@@ -173,7 +173,7 @@ void Reload::exchange() {
   machine_.handler_methods_.clear();
   machine_.program_ = program_;
   machine_.fragments_.reset();
-  machine_.reporter_.forget_places();
+  machine_.reporter_.forget_locations();
 }
 
 }  // namespace breve::steve

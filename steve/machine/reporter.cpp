@@ -37,18 +37,19 @@ ErrorReport Reporter::report(const RunError& error, std::span<const ActiveCall> 
   const auto& sources = program.sources();
   r.trace = trace_of(calls, program, host_.places);
   // The place shown is the innermost in the user's own files: an error inside the class library is the caller's.
-  Span place;
+  Span location;
   for (const ActiveCall& call : calls) {
-    const bool narrowed = &call == &calls.back() && error.place().line != 0;
-    if (!sources.file(call.span.file).embedded || place.line == 0) place = narrowed ? error.place() : call.span;
+    const bool narrowed = &call == &calls.back() && error.location().line != 0;
+    if (!sources.file(call.span.file).embedded || location.line == 0)
+      location = narrowed ? error.location() : call.span;
   }
-  if (place.line != 0) {
-    r.file = sources.file(place.file).name;
-    r.line = place.line;
-    r.column = place.column;
-    r.length = place.length;
+  if (location.line != 0) {
+    r.file = sources.file(location.file).name;
+    r.line = location.line;
+    r.column = location.column;
+    r.length = location.length;
   }
-  r.text = format({Severity::Error, "run-time", r.message, r.help, place}, sources) + trace_text(r.trace);
+  r.text = format({Severity::Error, "run-time", r.message, r.help, location}, sources) + trace_text(r.trace);
   name_foreign_place(r, sources);
   return r;
 }
@@ -69,8 +70,8 @@ void Reporter::warn_of_silence() const {
         kMostTold));
 }
 
-void Reporter::forget_places(std::span<const Instruction> code) {
-  std::erase_if(warned_places_,
+void Reporter::forget_locations(std::span<const Instruction> code) {
+  std::erase_if(warned_locations_,
                 [&](const Instruction* at) { return at >= code.data() && at < code.data() + code.size(); });
 }
 

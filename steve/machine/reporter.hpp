@@ -20,7 +20,7 @@ namespace breve::steve {
 class Reporter {
  public:
   Reporter(const MachineHost& host, std::pmr::memory_resource* memory)
-      : host_(host), warned_places_(memory), warned_keys_(memory) {}
+      : host_(host), warned_locations_(memory), warned_keys_(memory) {}
 
   /// An iteration or a call by the host begins: its share of printing and reports is whole again.
   void begin_run() { printed_ = told_ = 0; }
@@ -44,17 +44,17 @@ class Reporter {
   }
   /// True the first time that a world asks with this key, or with this place in its code.
   bool is_first(std::string_view key) { return warned_keys_.emplace(key).second; }
-  bool is_first(const Instruction* place) { return warned_places_.insert(place).second; }
+  bool is_first(const Instruction* location) { return warned_locations_.insert(location).second; }
   /// The code is going: other code may come to stand at its addresses.
-  void forget_places(std::span<const Instruction> code);
-  void forget_places() { warned_places_.clear(); }
+  void forget_locations(std::span<const Instruction> code);
+  void forget_locations() { warned_locations_.clear(); }
 
  private:
   static constexpr std::uint64_t kMostTold = 1000;
   void warn_of_silence() const;
 
   const MachineHost& host_;
-  std::pmr::unordered_set<const Instruction*> warned_places_;
+  std::pmr::unordered_set<const Instruction*> warned_locations_;
   std::pmr::unordered_set<std::pmr::string> warned_keys_;
   std::uint64_t printed_ = 0;  // bytes, in this iteration or call by the host
   std::uint64_t told_ = 0;     // reports, likewise

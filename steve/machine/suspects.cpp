@@ -68,15 +68,15 @@ void each_reference(const Container& cell, const Visit& visit) {
 }
 
 // Suspects lie far apart: first the cell is fetched, then, when its head has arrived, what holds its references.
-void fetch_suspects(std::span<Container* const> suspects, std::size_t turn) {
+void fetch_suspects(std::span<Container* const> suspects, std::size_t index) {
   constexpr std::size_t kFar = 16, kNear = 8;
-  if (turn + kFar < suspects.size()) {
-    const auto* far = reinterpret_cast<const char*>(suspects[turn + kFar]);
+  if (index + kFar < suspects.size()) {
+    const auto* far = reinterpret_cast<const char*>(suspects[index + kFar]);
     __builtin_prefetch(far);
     __builtin_prefetch(far + 64);
   }
-  if (turn + kNear >= suspects.size()) return;
-  const Container& near = *suspects[turn + kNear];
+  if (index + kNear >= suspects.size()) return;
+  const Container& near = *suspects[index + kNear];
   if (near.tag == Tag::List) {
     const auto& list = static_cast<const ListCell&>(near);
     __builtin_prefetch(reinterpret_cast<const char*>(list.store) + list.first * list.element_bytes());

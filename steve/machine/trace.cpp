@@ -36,9 +36,9 @@ std::size_t rounds(const std::vector<const TraceLine*>& calls, std::size_t at, s
   return (end - at) / period;
 }
 
-std::string place_text(const TraceLine& line) {
-  const std::string place = fmt::format("{}:{}", line.file, line.line);
-  return line.column == 0 ? place : fmt::format("{}:{}", place, line.column);
+std::string location_text(const TraceLine& line) {
+  const std::string location = fmt::format("{}:{}", line.file, line.line);
+  return line.column == 0 ? location : fmt::format("{}:{}", location, line.column);
 }
 
 std::string line_of(const TraceLine& call, const TraceLine* caller) {
@@ -46,7 +46,7 @@ std::string line_of(const TraceLine& call, const TraceLine* caller) {
       call.class_name.empty() ? "  in " + call.method : fmt::format("  in {}.{}", call.class_name, call.method);
   if (!call.arguments.empty()) text += ' ' + call.arguments;
   if (!call.receiver.empty()) text += fmt::format(" [self: {}]", call.receiver);
-  if (caller != nullptr) text += ", called at " + place_text(*caller);
+  if (caller != nullptr) text += ", called at " + location_text(*caller);
   return text + '\n';
 }
 

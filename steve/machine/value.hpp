@@ -119,16 +119,16 @@ class RunError : public Error {
  public:
   /// @param help   what to do, for the author of the program; "" if the message is sufficient
   /// @param place  what is meant, where that is less than the running expression
-  RunError(RunErrorKind kind, const std::string& message, std::string help = {}, const Span& place = {})
-      : Error(ErrorCode::Script, message), kind_(kind), help_(std::move(help)), place_(place) {}
+  RunError(RunErrorKind kind, const std::string& message, std::string help = {}, const Span& location = {})
+      : Error(ErrorCode::Script, message), kind_(kind), help_(std::move(help)), location_(location) {}
   RunErrorKind kind() const { return kind_; }
   const std::string& help() const { return help_; }
-  const Span& place() const { return place_; }
+  const Span& location() const { return location_; }
 
  private:
   RunErrorKind kind_;
   std::string help_;
-  Span place_;
+  Span location_;
 };
 
 }  // namespace breve::steve

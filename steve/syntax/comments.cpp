@@ -109,7 +109,7 @@ bool Scanner::is_shebang(std::size_t close) const {
 bool Scanner::doc_or_section() {
   const char c = text_[pos_];
   if (c == '%' && !percent_is_modulo()) {
-    token_place_ = span(pos_, 0);
+    token_span_ = span(pos_, 0);
     const std::size_t begin = pos_;
     pos_ = line_end(pos_);
     push(TokenKind::Doc, begin, text_.substr(begin, pos_ - begin));

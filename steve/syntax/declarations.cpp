@@ -183,7 +183,7 @@ double Parser::version_number() {
 // @define NAME literal. Repeating the same definition is not an error, and a definition of the program hides one of the
 // library.
 void Parser::define() {
-  const Span place = items_[pos_ - 1].token->span;
+  const Span location = items_[pos_ - 1].token->span;
   advance();
   const std::string name(token().text);
   const ast::Constant* before = at_name() ? constant_named(name) : nullptr;
@@ -202,7 +202,7 @@ void Parser::define() {
           fmt::format("the other definition is in {}, line {}", sources_.file(before->span.file).name,
                       before->span.line));
   } else if (new_defines_ == nullptr) {
-    error(place, "syntax", "'@define' is not possible here");
+    error(location, "syntax", "'@define' is not possible here");
   } else {
     new_defines_->add(name, value, embedded_);
   }
@@ -242,13 +242,13 @@ void Parser::class_declaration(ast::File& file) {
 void Parser::class_clauses(ast::Class& result) {
   bool version = false;
   for (;;) {
-    const Span place = token().span;
+    const Span location = token().span;
     if (accept("(")) {
       if (!at_word(Word::Aka)) fail_expected("'aka' and an alias of the class");
       advance();
       result.alias = expect_name("a class", result.alias_span);
       expect(")", "after the class's alias");
-      if (version) error(place, "syntax", "the alias of a class comes before its version");
+      if (version) error(location, "syntax", "the alias of a class comes before its version");
     } else if (accept("[")) {
       if (!at_word(Word::Version)) fail_expected("'version'");
       advance();

@@ -258,10 +258,10 @@ ast::ExprPtr Parser::insert_operation() {
     fail_expected("'at' and a place in a list", "write: insert value at list{position}");
   }
   advance();
-  ast::ExprPtr place = postfix();
-  auto* element = std::get_if<ast::IndexExpr>(&place->node);
-  if (element == nullptr || place->parenthesised) {
-    fail(place->span, "syntax", "'insert' needs a position in braces", "write: insert value at list{position}");
+  ast::ExprPtr target = postfix();
+  auto* element = std::get_if<ast::IndexExpr>(&target->node);
+  if (element == nullptr || target->parenthesised) {
+    fail(target->span, "syntax", "'insert' needs a position in braces", "write: insert value at list{position}");
   }
   ast::Insert node{std::move(value), std::move(element->base), std::move(element->index)};
   return make(start, std::move(node));

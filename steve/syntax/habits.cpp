@@ -87,10 +87,10 @@ bool Parser::foreign_declaration() {
                        (at("=", 2) || at(";", 2));
   if (!typed && !untyped) return false;
   const std::string type(typed ? singular_type(token().text) : "float");
-  Span place = token().span;
-  place.length = token(1).span.offset + token(1).span.length - place.offset;
+  Span location = token().span;
+  location.length = token(1).span.offset + token(1).span.length - location.offset;
   const std::string name(token(1).text);
-  error(place, "foreign-declaration",
+  error(location, "foreign-declaration",
         typed ? "a variable is declared with its type after it"
               : fmt::format("'{}' does not declare a variable", token().text),
         fmt::format("write at the beginning of the method: {} ({}).", name, type));
@@ -186,9 +186,9 @@ Diagnostic Parser::after_statement(std::size_t start) {
 // `<>`, `===`, `**`, `->`: what was meant, reported, its extra sign skipped.
 std::optional<ast::BinaryOp> Parser::foreign_operator(ast::BinaryOp op) {
   const auto wrong = [&](std::string_view written, std::string message, std::string help) {
-    Span place = previous().span;
-    place.length = token().span.offset + token().span.length - place.offset;
-    error(place, "foreign-operator", std::move(message), std::move(help));
+    Span location = previous().span;
+    location.length = token().span.offset + token().span.length - location.offset;
+    error(location, "foreign-operator", std::move(message), std::move(help));
     (void)written;
     advance();
   };

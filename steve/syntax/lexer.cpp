@@ -85,14 +85,14 @@ std::vector<Token> Scanner::run() {
     token();
   }
   if (has_last_) tokens_[last_].space_after = true;
-  token_place_ = span(pos_, 0);
+  token_span_ = span(pos_, 0);
   push(TokenKind::End, pos_, {});
   return std::move(tokens_);
 }
 
 void Scanner::token() {
   blank_line_so_far_ = false;
-  token_place_ = span(pos_, 0);
+  token_span_ = span(pos_, 0);
   const char c = text_[pos_];
   if (is_letter(c)) {
     name();
@@ -250,7 +250,7 @@ void Scanner::unexpected_bytes() {
   const bool printable = byte > 0x20 && byte < 0x7F;
   const std::string what = printable ? fmt::format("unexpected character '{}'", text_[begin])
                                      : fmt::format("unexpected byte 0x{:02X} outside a string or comment", byte);
-  Span where = token_place_;
+  Span where = token_span_;
   where.length = static_cast<std::uint32_t>(pos_ - begin);
   error(where, "unexpected-byte", what, help_for_byte(text_.substr(begin, pos_ - begin)));
 }
@@ -262,7 +262,7 @@ void Scanner::push(TokenKind kind, std::size_t begin, std::string_view text) {
   token.text = text;
   token.space_before = space_before_;
   token.starts_line = !token_on_line_;
-  token.span = token_place_;
+  token.span = token_span_;
   token.span.length = static_cast<std::uint32_t>(pos_ - begin);
   tokens_.push_back(token);
   if (kind == TokenKind::Doc) return;

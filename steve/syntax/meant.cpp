@@ -142,19 +142,20 @@ std::optional<Diagnostic> Parser::meant_by_assignment() {
   if (!call || !(at("=") || (at_assignment(0) && !at("::") && !at("{") && !at("[") && !at("(")))) return std::nullopt;
   const Item& receiver = items_[call_start_];
   const Token& name = previous();
-  Span place = receiver.token->span;
-  place.length = name.span.offset + name.span.length - place.offset;
+  Span location = receiver.token->span;
+  location.length = name.span.offset + name.span.length - location.offset;
   const std::string rest = source_of(pos_, std::max(statement_end(), pos_ + 1));
   if (receiver.word == Word::Self)
     return Diagnostic{Severity::Error, "foreign-member", "a variable of the object itself is written without 'self'",
-                      fmt::format("write: {} {}", name.text, rest), place};
+                      fmt::format("write: {} {}", name.text, rest), location};
   if (lacks_self() && receiver.token->text.front() >= 'A' && receiver.token->text.front() <= 'Z')
     return Diagnostic{
         Severity::Error, "foreign-declaration", "a variable is declared with its type after it",
-        fmt::format("write at the beginning of the method: {} ({} object).", name.text, receiver.token->text), place};
+        fmt::format("write at the beginning of the method: {} ({} object).", name.text, receiver.token->text),
+        location};
   const std::string object = source_of(call_start_, call_method_);
   return Diagnostic{Severity::Error, "foreign-member", "a variable of another object is written with '::'",
-                    fmt::format("write: {}::{} {}", object, name.text, rest), place};
+                    fmt::format("write: {}::{} {}", object, name.text, rest), location};
 }
 
 // An operator that no value begins with?

@@ -113,10 +113,10 @@ void Parser::method_header(ast::Method& result) {
 // keyword variable [= literal] (type)
 void Parser::parameter(ast::Method& result) {
   ast::Parameter parameter;
-  const Span place = token().span;
+  const Span location = token().span;
   parameter.keyword = expect_name("a keyword", parameter.keyword_span);
   if (at("(") || at("=")) {
-    error(place, "syntax", fmt::format("the parameter '{}' needs a variable after its keyword", parameter.keyword),
+    error(location, "syntax", fmt::format("the parameter '{}' needs a variable after its keyword", parameter.keyword),
           fmt::format("callers write the keyword, the body uses the variable; they may be the same: {0} {0} (type)",
                       parameter.keyword));
     parameter.variable = parameter.keyword;
@@ -284,23 +284,23 @@ ast::TypeRef Parser::array_type() {
 // Something in the parentheses of a type that is not a type: reported, and read as far as the ')'.
 void Parser::broken_type(ast::TypeRef& result) {
   result.broken = true;
-  const Span place = token().span;
+  const Span location = token().span;
   if (!at_kind(TokenKind::Name)) fail_expected("a type", "for example (int), (vector) or (Name object)");
   if (element_type_of(item().word) || (at_word(Word::Objects, 1) && constant_named(token().text) == nullptr)) {
-    error(place, "unknown-type", "an array needs a number of elements", "for example (5 ints) or (5 Name objects)");
+    error(location, "unknown-type", "an array needs a number of elements", "for example (5 ints) or (5 Name objects)");
   } else if (at_name() && element_type_of(item(1).word)) {
-    error(place, "unknown-type", fmt::format("the size of an array is an integer literal, got '{}'", token().text),
+    error(location, "unknown-type", fmt::format("the size of an array is an integer literal, got '{}'", token().text),
           "constants from @define cannot be used here");
   } else {
     const std::string_view text = token().text;
     const std::string near = nearest(text, kTypeNames);
     const std::string_view foreign = foreign_type(text);
-    error(place, "unknown-type", fmt::format("unknown type {}", describe()),
+    error(location, "unknown-type", fmt::format("unknown type {}", describe()),
           !foreign.empty() ? std::string(foreign)
           : near.empty()   ? fmt::format("for an object of a class write ({} object)", token().text)
                            : fmt::format("did you mean '{}'?", near));
   }
-  while (!at(")") && !at_end() && !at(".") && token().span.line == place.line) advance();
+  while (!at(")") && !at_end() && !at(".") && token().span.line == location.line) advance();
 }
 
 // A literal: number with an optional sign, string, vector or matrix of numbers.

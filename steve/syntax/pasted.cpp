@@ -86,8 +86,8 @@ void Scanner::note_long_string(std::size_t begin, std::size_t close) {
   const char after = at(close);
   const bool word = (after >= 'a' && after <= 'z') || (after >= 'A' && after <= 'Z') || (after >= '0' && after <= '9');
   if (!word) return;
-  suspect_ = {true,  tokens_.size(), begin,        last_,         has_last_,
-              line_, line_start_,    token_place_, space_before_, token_on_line_};
+  suspect_ = {true,  tokens_.size(), begin,       last_,         has_last_,
+              line_, line_start_,    token_span_, space_before_, token_on_line_};
 }
 
 // Go back to that string and end it with its line. Once in a file, so that reading stays linear.
@@ -100,7 +100,7 @@ bool Scanner::blame_long_string() {
   has_last_ = suspect_.has_last;
   line_ = suspect_.line;
   line_start_ = suspect_.line_start;
-  token_place_ = suspect_.place;
+  token_span_ = suspect_.location;
   space_before_ = suspect_.space_before;
   token_on_line_ = suspect_.on_line;
   blank_line_so_far_ = false;

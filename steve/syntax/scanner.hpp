@@ -67,7 +67,7 @@ class Scanner {
   std::size_t line_start_ = 0;
   std::size_t known_line_end_ = 0;
   std::size_t known_from_ = 1;     // [known_from_, known_line_end_] holds no line end
-  Span token_place_;               // of the token being scanned; a string may end on a later line
+  Span token_span_;                // of the token being scanned; a string may end on a later line
   bool blank_line_so_far_ = true;  // nothing but blanks since the line began
   bool token_on_line_ = false;
   bool space_before_ = false;
@@ -80,7 +80,7 @@ class Scanner {
     bool has_last = false;
     std::uint32_t line = 0;
     std::size_t line_start = 0;
-    Span place;
+    Span location;
     bool space_before = false, on_line = false, used = false;
   } suspect_;
   std::size_t errors_ = 0;

@@ -71,7 +71,7 @@ class Interpolation {
   }
 
  private:
-  Span place(std::size_t begin, std::size_t length) const {
+  Span location_of(std::size_t begin, std::size_t length) const {
     return parser_.sources_.span_at(file_, base_ + static_cast<std::uint32_t>(begin),
                                     static_cast<std::uint32_t>(length));
   }
@@ -86,7 +86,7 @@ class Interpolation {
       case '"':
       case '\\': text += c; break;
       case '$':
-        parser_.lint(place(i_, 2), "lint-escaped-dollar", "'\\$' keeps its backslash in the text",
+        parser_.lint(location_of(i_, 2), "lint-escaped-dollar", "'\\$' keeps its backslash in the text",
                      "a '$' before a space or a character other than '{' is printed without a backslash");
         [[fallthrough]];
       default:
@@ -100,7 +100,7 @@ class Interpolation {
   void dollar() {
     const std::size_t start = i_++;
     if (i_ == raw_.size()) {
-      parser_.lint(place(start, 1), "lint-lone-dollar", "a '$' at the end of a string is dropped",
+      parser_.lint(location_of(start, 1), "lint-lone-dollar", "a '$' at the end of a string is dropped",
                    "write the name of a variable after it, or a space to print it");
       return;
     }
@@ -111,7 +111,7 @@ class Interpolation {
     while (i_ < raw_.size() && is_reference_char(raw_[i_])) ++i_;
     if (i_ == name) {
       parser_.lint(
-          place(start, 1), "lint-lone-dollar", "this '$' has no name after it and is printed unchanged",
+          location_of(start, 1), "lint-lone-dollar", "this '$' has no name after it and is printed unchanged",
           "write the name of a variable directly after it, or state that it is intended: # allow: lint-lone-dollar");
       node_.texts.back() += '$';
       i_ = start + 1;
@@ -124,11 +124,11 @@ class Interpolation {
     if (braces && i_ < raw_.size() && raw_[i_] == '}') {
       ++i_;
     } else if (braces) {
-      parser_.lint(place(start, i_ - start), "lint-interpolation",
+      parser_.lint(location_of(start, i_ - start), "lint-interpolation",
                    fmt::format("this is read as '${{{}}}'; the rest is text", part.name),
                    "close the braces directly after the name, or write a whole expression in them");
     }
-    part.span = place(start, i_ - start);
+    part.span = location_of(start, i_ - start);
     add(std::move(part));
   }
 
@@ -137,7 +137,7 @@ class Interpolation {
     std::int32_t value = 0;
     const std::size_t end = literal_index(raw_, i_, value);
     if (end == std::string_view::npos) {
-      parser_.lint(place(i_, 1), "lint-interpolation",
+      parser_.lint(location_of(i_, 1), "lint-interpolation",
                    fmt::format("'{}' after '${}' does not contain a literal number and is text", raw_[i_], part.name),
                    fmt::format("for an element write an expression in braces: ${{{}{{i}}}}", part.name));
       return;
@@ -186,7 +186,7 @@ class Interpolation {
     if (expr == nullptr) return true;
     ast::StringLit::Part part;
     part.expr = std::move(expr);
-    part.span = place(start, i_ - start);
+    part.span = location_of(start, i_ - start);
     add(std::move(part));
     return true;
   }

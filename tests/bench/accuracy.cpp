@@ -96,10 +96,10 @@ Measured measure(breve::Runtime& runtime, const breve::Program& program, breve_r
 /// Where a point of the body's first two axes, 1 m off, stands in the world.
 std::array<double, 3> point(const breve_pose& pose, int axis) {
   const auto [w, x, y, z] = std::tuple(pose.rotation[0], pose.rotation[1], pose.rotation[2], pose.rotation[3]);
-  const std::array<double, 3> turned =
+  const std::array<double, 3> rotated =
       axis == 0 ? std::array{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)}
                 : std::array{2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)};
-  return {pose.location[0] + turned[0], pose.location[1] + turned[1], pose.location[2] + turned[2]};
+  return {pose.location[0] + rotated[0], pose.location[1] + rotated[1], pose.location[2] + rotated[2]};
 }
 
 double farthest(const std::vector<breve_pose>& a, const std::vector<breve_pose>& b) {

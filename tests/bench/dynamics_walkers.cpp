@@ -18,7 +18,7 @@ constexpr double kMostAgainstBullet = 1, kMostFast = 0.5, kMostCrowd = 1.15;
 constexpr int kKinds = 10;      // walkers with genes of their own
 constexpr double kLanding = 1;  // s, not counted
 constexpr double kSeconds = 5;  // counted
-constexpr int kTurns = 10;      // of the two sides, in that time
+constexpr int kRounds = 10;     // of the two sides, in that time
 
 double cost_of(int steps, const std::function<void()>& step) {
   const double start = cpu_seconds();
@@ -31,16 +31,16 @@ struct Pair {
 };
 
 /// Both sides simulate the same time, in turns, after they have landed.
-Pair in_turns(double one_step, const std::function<void()>& one, double other_step,
-              const std::function<void()>& other) {
+Pair alternating(double one_step, const std::function<void()>& one, double other_step,
+                 const std::function<void()>& other) {
   cost_of(static_cast<int>(kLanding / one_step), one);
   cost_of(static_cast<int>(kLanding / other_step), other);
   Pair pair;
   std::vector<double> ratios;
-  for (int i = 0; i < kTurns; ++i) {
-    const double turn = kSeconds / kTurns;
-    const double a = cost_of(static_cast<int>(std::lround(turn / one_step)), one);
-    const double b = cost_of(static_cast<int>(std::lround(turn / other_step)), other);
+  for (int i = 0; i < kRounds; ++i) {
+    const double round = kSeconds / kRounds;
+    const double a = cost_of(static_cast<int>(std::lround(round / one_step)), one);
+    const double b = cost_of(static_cast<int>(std::lround(round / other_step)), other);
     pair.one += a / kSeconds;
     pair.other += b / kSeconds;
     ratios.push_back(a / b);
@@ -57,7 +57,7 @@ bool against_bullet() {
   for (int n = 0; n < kKinds; ++n) {
     Walkers ours(BREVE_RUNG_BALANCED, kStep, 1, n);
     BulletWalker theirs(kStep, genes(n));
-    const Pair pair = in_turns(
+    const Pair pair = alternating(
         kStep, [&] { ours.iterate(); }, kStep, [&] { theirs.iterate(); });
     std::printf("%8d %10.1f %10.1f %8.2f%s\n", n, pair.one * kStep * 1e6, pair.other * kStep * 1e6, pair.ratio,
                 theirs.height() > 0 ? "" : "  (Bullet's fell through the floor)");
@@ -73,7 +73,7 @@ bool rungs() {
   std::vector<double> ratios;
   for (int n = 0; n < kKinds; ++n) {
     Walkers fast(BREVE_RUNG_FAST, kStep, 1, n), balanced(BREVE_RUNG_BALANCED, kStep, 1, n);
-    const Pair pair = in_turns(
+    const Pair pair = alternating(
         kStep, [&] { fast.iterate(); }, kStep, [&] { balanced.iterate(); });
     std::printf("%8d %10.1f %10.1f %8.2f\n", n, pair.one * kStep * 1e6, pair.other * kStep * 1e6, pair.ratio);
     ratios.push_back(pair.ratio);
@@ -88,7 +88,7 @@ bool crowd(breve_rung rung, const char* name) {
   std::vector<std::unique_ptr<Walkers>> alone;
   for (int n = 0; n < kKinds; ++n) alone.push_back(std::make_unique<Walkers>(rung, kStep, 1, n));
   Walkers crowd(rung, kStep, kCount, 0, kKinds);
-  const Pair pair = in_turns(
+  const Pair pair = alternating(
       kStep, [&] { crowd.iterate(); }, kStep,
       [&] {
         for (const auto& one : alone) one->iterate();

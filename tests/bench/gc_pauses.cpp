@@ -147,9 +147,9 @@ bool measure(breve::World& world, int warm, int frames) {
 int main(int count, char** arguments) {
   const std::string objects = count > 1 ? arguments[1] : "1000000";
   const int frames = count > 2 ? std::atoi(arguments[2]) : 2000;
-  const std::string ring = count > 3 ? arguments[3] : "5000";
+  const std::string cycle = count > 3 ? arguments[3] : "5000";
   const bool plain = count > 4;
-  const char* const values[] = {"town.tz", objects.c_str(), ring.c_str(), plain ? "1" : "0"};
+  const char* const values[] = {"town.tz", objects.c_str(), cycle.c_str(), plain ? "1" : "0"};
   try {
     auto runtime = breve::Runtime::create().or_throw();
     const auto program = runtime.compile("town.tz", kProgram).or_throw();

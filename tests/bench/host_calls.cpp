@@ -29,7 +29,7 @@ Control : Calls {
     return sum.
 }
 )";
-constexpr int kTurns = 2'000'000;
+constexpr int kIterations = 2'000'000;
 constexpr int kRounds = 9;  // the fastest counts: the others were disturbed
 constexpr double kBound = 2.5;
 
@@ -41,8 +41,8 @@ breve_status second_of_three(void*, const breve_call* call, breve_value* result)
 
 double seconds_of(breve::World& world, const char* method) {
   const std::clock_t start = std::clock();
-  const double sum = world.call(world.controller(), method, {{"turns", kTurns}}).or_throw().number();
-  if (sum != 2.0 * kTurns) throw breve::Failure(BREVE_ERROR_INTERNAL, "a loop gives another sum");
+  const double sum = world.call(world.controller(), method, {{"turns", kIterations}}).or_throw().number();
+  if (sum != 2.0 * kIterations) throw breve::Failure(BREVE_ERROR_INTERNAL, "a loop gives another sum");
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
@@ -63,7 +63,7 @@ int main() {
   constexpr std::array kMethods = {"run-empty", "run-method", "run-function"};
   for (int round = 0; round < kRounds; ++round)
     for (std::size_t i = 0; i < kMethods.size(); ++i) least[i] = std::min(least[i], seconds_of(world, kMethods[i]));
-  const double method = (least[1] - least[0]) / kTurns * 1e9, host = (least[2] - least[0]) / kTurns * 1e9;
+  const double method = (least[1] - least[0]) / kIterations * 1e9, host = (least[2] - least[0]) / kIterations * 1e9;
   std::printf("steve method %.1f ns, function of the host %.1f ns, ratio %.2f (at most %.1f)\n", method, host,
               host / method, kBound);
   return host <= kBound * method ? 0 : 1;

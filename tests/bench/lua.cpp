@@ -104,20 +104,20 @@ bool row(const char* what, double got, double most, const char* unit) {
 int main() {
   double plain_boids = 1e9, boids = 1e9, tables = 1e9, vectors = 1e9, empty = 1e9, calls = 1e9;
   std::string plain_said, said, ignored;
-  constexpr int kTurns = 1'000'000;
+  constexpr int kIterations = 1'000'000;
   breve::World world = world_of("lua/vectors.lua", ignored);
   for (int round = 0; round < kRounds; ++round) {
     plain_said.clear(), said.clear();
     plain_boids = std::min(plain_boids, run_plain("language/boids.lua", plain_said));
     boids = std::min(boids, run_boids(said));
     tables = std::min(tables, run_plain("language/vectors.lua", ignored));
-    vectors = std::min(vectors, run_method(world, "turn", kTurns));
-    empty = std::min(empty, run_method(world, "empty", kTurns));
-    calls = std::min(calls, run_method(world, "call-native", kTurns));
+    vectors = std::min(vectors, run_method(world, "turn", kIterations));
+    empty = std::min(empty, run_method(world, "empty", kIterations));
+    calls = std::min(calls, run_method(world, "call-native", kIterations));
   }
   bool good = row("1,000 boids, 50 iterations, over plain Lua", boids / plain_boids, kBoids, "x");
   good = row("largest difference of their places", difference(plain_said, said), kPlaces, " ") && good;
   good = row("vectors, 1e6 turns, over tables", vectors / tables, kVectors, "x") && good;
-  good = row("a call of a native method", (calls - empty) / kTurns * 1e9, kCall, "ns") && good;
+  good = row("a call of a native method", (calls - empty) / kIterations * 1e9, kCall, "ns") && good;
   return good ? 0 : 1;
 }

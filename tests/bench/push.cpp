@@ -14,7 +14,7 @@ namespace {
 
 using breve::push::Interpreter;
 
-constexpr std::int32_t kTurns = 2'000'000;
+constexpr std::int32_t kIterations = 2'000'000;
 constexpr int kRounds = 7;  // the fastest counts: the others were disturbed
 constexpr double kBound = 8;
 
@@ -28,9 +28,9 @@ Measured interpreted(const breve::push::Code& program) {
   Interpreter interpreter(std::pmr::get_default_resource());
   breve::Random random(1);
   interpreter.push(interpreter.integers, 0);
-  interpreter.push(interpreter.integers, kTurns);
+  interpreter.push(interpreter.integers, kIterations);
   interpreter.begin(program);
-  std::uint64_t left = 100ULL * kTurns;
+  std::uint64_t left = 100ULL * kIterations;
   const std::clock_t start = std::clock();
   while (interpreter.advance(left, random) == breve::push::Outcome::Paused) interpreter.take_work();
   return {static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, interpreter.effort, interpreter.integers.back()};
@@ -51,9 +51,9 @@ Measured plain() {
                                                 add};  // volatile: calls that the compiler does not see through
   Integers stack{0};
   const std::clock_t start = std::clock();
-  for (std::int32_t turn = 0; turn < kTurns; ++turn)
+  for (std::int32_t iteration = 0; iteration < kIterations; ++iteration)
     for (const volatile Operation& operation : kProgram) operation(stack);
-  return {static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 2ULL * kTurns, stack.back()};
+  return {static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 2ULL * kIterations, stack.back()};
 }
 
 }  // namespace
@@ -66,7 +66,7 @@ int main() {
     if (first.seconds < ours.seconds) ours = first;
     if (second.seconds < theirs.seconds) theirs = second;
   }
-  if (ours.sum != kTurns || theirs.sum != kTurns) return std::puts("the sums differ"), 1;
+  if (ours.sum != kIterations || theirs.sum != kIterations) return std::puts("the sums differ"), 1;
   const auto nanoseconds = [](const Measured& of) { return 1e9 * of.seconds / static_cast<double>(of.steps); };
   const double ratio = nanoseconds(ours) / nanoseconds(theirs);
   std::printf("push: %.1f million steps a second, %.2f ns a step; plain C++ %.2f ns; ratio %.1f (at most %.0f)\n",

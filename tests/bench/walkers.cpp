@@ -65,7 +65,7 @@ void Walkers::add(const Vector3& at, const Genes& genes) {
 /// For a hinge about z: the angle of the parent relative to the child. From poses: breve_joint_state would also work
 /// out what the joint holds.
 double Walkers::angle(breve_object parent, breve_object child) const {
-  const reference::Quaternion between = turn(child).conjugate() * turn(parent);
+  const reference::Quaternion between = orientation(child).conjugate() * orientation(parent);
   return 2 * std::atan(between.z() / between.w());
 }
 
@@ -149,10 +149,10 @@ BulletWalker::BulletWalker(double step, const Genes& genes)
     in_->motors.push_back(std::make_unique<btMultiBodyJointMotor>(in_->body.get(), i, 0, kStrength * step));
     in_->world.addMultiBodyConstraint(in_->motors.back().get());
   }
-  btAlignedObjectArray<btQuaternion> turns;
-  btAlignedObjectArray<btVector3> places;
-  in_->body->forwardKinematics(turns, places);
-  in_->body->updateCollisionObjectWorldTransforms(turns, places);
+  btAlignedObjectArray<btQuaternion> orientations;
+  btAlignedObjectArray<btVector3> positions;
+  in_->body->forwardKinematics(orientations, positions);
+  in_->body->updateCollisionObjectWorldTransforms(orientations, positions);
 }
 
 BulletWalker::~BulletWalker() {

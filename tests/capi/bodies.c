@@ -49,7 +49,7 @@ void put_at(scene* s, breve_object object, double x, double y, double z) {
   CHECK_STATUS(BREVE_OK, breve_object_set_pose(s->world, object, &pose));
 }
 
-void turn_about_z(scene* s, breve_object object, double radians) {
+void rotate_about_z(scene* s, breve_object object, double radians) {
   breve_pose pose = pose_of(s, object);
   pose.rotation[0] = cos(radians / 2);
   pose.rotation[1] = pose.rotation[2] = 0;

@@ -13,7 +13,7 @@ breve_geometry box_of_size(double x, double y, double z);
 /* A body of class "Mobile", "Stationary" or "Link", of that shape, there. */
 breve_object add_body(scene* s, const char* class_name, const breve_geometry* geometry, double x, double y, double z);
 void put_at(scene* s, breve_object object, double x, double y, double z);
-void turn_about_z(scene* s, breve_object object, double radians);
+void rotate_about_z(scene* s, breve_object object, double radians);
 void set_moving(scene* s, breve_object object, double x, double y, double z);
 breve_pose pose_of(scene* s, breve_object object);
 uint64_t hash_of_world(scene* s);

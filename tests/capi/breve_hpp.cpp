@@ -363,11 +363,11 @@ TEST(Bodies, AreBuiltJoinedAndDrivenWithoutAScript) {
   ASSERT_TRUE(world.set_drive(joint, drive));
   EXPECT_EQ(world.links(arm).or_throw().size(), 1U);
   EXPECT_EQ(world.joints(arm).or_throw().size(), 1U);
-  breve_spring tie = breve_spring_default();
-  tie.from = arm;
-  tie.to = ball;
-  tie.strength = 0;
-  ASSERT_TRUE(world.create_spring(tie));
+  breve_spring spring = breve_spring_default();
+  spring.from = arm;
+  spring.to = ball;
+  spring.strength = 0;
+  ASSERT_TRUE(world.create_spring(spring));
   breve_accuracy accuracy = world.accuracy().or_throw();
   accuracy.step = 1e-3;
   ASSERT_TRUE(world.set_accuracy(accuracy));

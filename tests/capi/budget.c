@@ -314,7 +314,7 @@ static const char* const golden_text =
     "  + to get-description: return \"thing\".\n"
     "}\n";
 
-static void a_cut_falls_at_the_same_turn_in_every_build(void) {
+static void a_cut_falls_at_the_same_iteration_in_every_build(void) {
   static const struct {
     uint64_t budget;
     int n;
@@ -343,5 +343,5 @@ void budget_suite(void) {
   RUN(what_a_callback_calls_counts_to_the_call_it_is_in);
   RUN(what_the_warning_of_lost_patience_calls_has_the_same_budget);
   RUN(every_function_that_runs_script_has_a_budget_of_its_own);
-  RUN(a_cut_falls_at_the_same_turn_in_every_build);
+  RUN(a_cut_falls_at_the_same_iteration_in_every_build);
 }

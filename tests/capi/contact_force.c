@@ -101,8 +101,8 @@ static void rests_on_a_slope(breve_rung rung, bool flat) {
   CHECK_STATUS(BREVE_OK, breve_world_set_accuracy(s.world, &accuracy));
   const breve_object slope = add_body(&s, "Stationary", &slab, 0, 0, 0);
   const breve_object box = add_body(&s, "Mobile", &cube, -sin(0.3), cos(0.3), 0);
-  turn_about_z(&s, slope, 0.3);
-  turn_about_z(&s, box, 0.3);
+  rotate_about_z(&s, slope, 0.3);
+  rotate_about_z(&s, box, 0.3);
   CHECK_STATUS(BREVE_OK, breve_object_set_material(s.world, box, &rough));
   CHECK_STATUS(BREVE_OK, breve_object_set_material(s.world, slope, &rough));
   CHECK_STATUS(BREVE_OK, breve_object_set_physics(s.world, box, true));

@@ -16,14 +16,14 @@ TEST(EigenHpp, MapsShareTheMemoryOfVectorsAndPoses) {
 }
 
 TEST(EigenHpp, PosesAndTransformsAgree) {
-  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.5, Eigen::Vector3d(1, 2, 2).normalized()));
-  const breve_pose pose = breve::pose_of(Eigen::Vector3d(1, 2, 3), turn);
+  const Eigen::Quaterniond rotation(Eigen::AngleAxisd(0.5, Eigen::Vector3d(1, 2, 2).normalized()));
+  const breve_pose pose = breve::pose_of(Eigen::Vector3d(1, 2, 3), rotation);
   const Eigen::Isometry3d transform = breve::transform(pose);
   EXPECT_LT(
-      (transform * Eigen::Vector3d(1, 0, 0) - (turn * Eigen::Vector3d(1, 0, 0) + Eigen::Vector3d(1, 2, 3))).norm(),
+      (transform * Eigen::Vector3d(1, 0, 0) - (rotation * Eigen::Vector3d(1, 0, 0) + Eigen::Vector3d(1, 2, 3))).norm(),
       1e-15);
   const breve_pose again = breve::pose_of(transform);
-  EXPECT_LT((breve::rotation(again).coeffs() - turn.coeffs()).norm(), 1e-15);
+  EXPECT_LT((breve::rotation(again).coeffs() - rotation.coeffs()).norm(), 1e-15);
   EXPECT_EQ(breve::location(again), breve::location(pose));
 }
 

@@ -46,13 +46,13 @@ static void a_force_acts_for_one_iteration(bool flat) {
   if (!open_bodies(&s, flat)) return;
   const breve_geometry box = box_of_size(2, 1, 1);
   const breve_object body = floating(&s, &box);
-  const double push[3] = {4, 0, 0}, turn[3] = {0, 0, 1}, steady[3] = {0, 2, 0}, end[3] = {0, 0.5, 0};
+  const double push[3] = {4, 0, 0}, torque[3] = {0, 0, 1}, steady[3] = {0, 2, 0}, end[3] = {0, 0.5, 0};
   double mass = 0;
   CHECK_STATUS(BREVE_OK, breve_object_mass(s.world, body, &mass));
   const double h = breve_world_iteration_step(s.world), moment = mass * 5 / 12;
   CHECK_STATUS(BREVE_OK, breve_object_set_force(s.world, body, steady, NULL));
   CHECK_STATUS(BREVE_OK, breve_object_add_force(s.world, body, push, NULL, NULL));
-  CHECK_STATUS(BREVE_OK, breve_object_add_force(s.world, body, push, turn, NULL));
+  CHECK_STATUS(BREVE_OK, breve_object_add_force(s.world, body, push, torque, NULL));
   moves(&s, body, 0, 0, 0);
   /* Forces that have not acted yet are in images. */
   static char image[1 << 20];
@@ -69,7 +69,7 @@ static void a_force_acts_for_one_iteration(bool flat) {
   CHECK_STATUS(BREVE_OK, breve_world_restore(s.world, image, size));
   step_times(&s, 1);
   put_at(&s, body, 0, 0, 0);
-  turn_about_z(&s, body, 0);
+  rotate_about_z(&s, body, 0);
   CHECK_STATUS(BREVE_OK, breve_object_add_force(s.world, body, push, NULL, end));
   step_times(&s, 1);
   moves(&s, body, 12 * h / mass, 4 * h / mass, (1 - 2) * h / moment);

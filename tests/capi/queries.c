@@ -30,7 +30,7 @@ static void rays_meet_shapes_where_geometry_says(void) {
   round.radius = 1;
   round.height = 4;
   const breve_object a = add_body(&s, "Mobile", &ball, 10, 0, 0), b = add_body(&s, "Stationary", &box, 0, 20, 0);
-  turn_about_z(&s, b, acos(-1) / 4);
+  rotate_about_z(&s, b, acos(-1) / 4);
   const breve_object c = add_body(&s, "Mobile", &round, 0, 0, 30);
   round.kind = BREVE_SHAPE_CAPSULE;
   const breve_object d = add_body(&s, "Mobile", &round, 0, 0, -30);

@@ -170,7 +170,7 @@ static breve_status do_velocity(place* p) {
   const breve_status status = breve_object_velocity(p->world, p->ball, v);
   return status != BREVE_OK ? status : breve_object_set_velocity(p->world, p->ball, v);
 }
-static breve_status do_turning(place* p) {
+static breve_status do_rotation(place* p) {
   double v[3];
   const breve_status status = breve_object_rotational_velocity(p->world, p->ball, v);
   return status != BREVE_OK ? status : breve_object_set_rotational_velocity(p->world, p->ball, v);
@@ -531,7 +531,7 @@ static const struct {
     {"breve_object_velocity", do_velocity, WORKS, WORKS},
     {"breve_object_contact_force", do_contact_force, WORKS, WORKS},
     {"breve_world_set_listener", do_listener, BUSY, WORKS},
-    {"breve_object_rotational_velocity", do_turning, WORKS, WORKS},
+    {"breve_object_rotational_velocity", do_rotation, WORKS, WORKS},
     {"breve_object_color", do_color, WORKS, WORKS},
     {"breve_object_shape", do_shape, WORKS, WORKS},
     {"breve_program_create_library", do_library_program, WORKS, BUSY},

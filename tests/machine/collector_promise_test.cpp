@@ -7,7 +7,7 @@ namespace breve::steve::testing {
 namespace {
 
 /// Rings that are too long to be judged by themselves, dropped while a collection runs.
-void drop_long_ring(World& w, int length = 12'000) {
+void drop_long_cycle(World& w, int length = 12'000) {
   ListCell* first = w.heap.list();
   ListCell* last = first;
   for (int i = 1; i < length; ++i) {
@@ -33,9 +33,9 @@ TEST(CollectorsPromise, AMillionReferencesToAFewCellsDelayNothing) {
   for (int i = 0; i < 1'000'000; ++i) w.heap.push(*many, Value::of(Tag::Object, owner));
   iterations_until(w, 0, 5);
   const std::uint64_t live = w.heap.live_cells();
-  drop_long_ring(w);
+  drop_long_cycle(w);
   w.heap.end_of_iteration();
-  drop_long_ring(w);
+  drop_long_cycle(w);
   const std::uint64_t most = bound(w.heap.live_cells());
   EXPECT_LE(iterations_until(w, live, most), most);
 }
@@ -55,10 +55,10 @@ TEST(CollectorsPromise, CellsWithSixReferencesEachDelayNothing) {
   }
   iterations_until(w, 0, 30);
   const std::uint64_t live = w.heap.live_cells();
-  drop_long_ring(w);
+  drop_long_cycle(w);
   w.heap.end_of_iteration();
   w.heap.end_of_iteration();
-  drop_long_ring(w);
+  drop_long_cycle(w);
   const std::uint64_t most = bound(w.heap.live_cells());
   EXPECT_LE(iterations_until(w, live, most), most);
 }
@@ -78,7 +78,7 @@ TEST(CollectorsPromise, AnObjectThatBecomesAutoFreeWhileACollectionRunsStays) {
     w.heap.push(*list, Value::of(Tag::Object, late.back()));
   }
   for (std::size_t cut = 1; cut < 8; ++cut) {
-    drop_long_ring(w);
+    drop_long_cycle(w);
     for (std::size_t i = 0; i < cut; ++i) w.heap.end_of_iteration();
     for (std::size_t i = cut * 100; i < cut * 100 + 100; ++i) {
       late[i]->auto_free = true;
@@ -106,7 +106,7 @@ TEST(CollectorsPromise, ARingOfAllCellsGoesThoughACollectionHasBegun) {
   }
   w.heap.push(*last, Value::of(Tag::List, first));
   iterations_until(w, 0, 40);
-  drop_long_ring(w);
+  drop_long_cycle(w);
   w.heap.end_of_iteration();
   w.heap.end_of_iteration();
   w.heap.store(owner->slots[0], nullptr);
@@ -115,13 +115,13 @@ TEST(CollectorsPromise, ARingOfAllCellsGoesThoughACollectionHasBegun) {
 }
 
 // A collection that is done early takes its garbage apart little by little, however it hangs together.
-TEST(CollectorsPromise, ALongRingIsFreedInParts) {
+TEST(CollectorsPromise, ALongCycleIsFreedInParts) {
   World w;
   const ClassInfo cls = reference_class(1);
   for (int i = 0; i < 400'000; ++i) w.object(cls);
   iterations_until(w, 0, 30);
   const std::uint64_t live = w.heap.live_cells();
-  drop_long_ring(w, 20'000);
+  drop_long_cycle(w, 20'000);
   const std::uint64_t promised = bound(w.heap.live_cells());
   std::uint64_t most = 0, iterations = 0;
   for (std::uint64_t before = w.heap.live_cells(); before > live && iterations <= promised; ++iterations) {
@@ -134,7 +134,7 @@ TEST(CollectorsPromise, ALongRingIsFreedInParts) {
 }
 
 // They are left out of marking: they live and die by their counts.
-TEST(CollectorsPromise, AnObjectThatCanReferToNothingGoesWithTheRingThatHeldItAndNotBefore) {
+TEST(CollectorsPromise, AnObjectThatCanReferToNothingGoesWithTheCycleThatHeldItAndNotBefore) {
   World w;
   const ClassInfo bare = reference_class(0);
   ListCell* kept = w.heap.list();
@@ -169,13 +169,13 @@ TEST(Collector, ListsThatMoveInTheTableWhileTheyWaitAreScanned) {
   ListCell* short_lived = w.heap.list();
   w.heap.store(owner->slots[0], big);
   w.heap.store(owner->slots[1], short_lived);
-  const Value ring = w.list();
+  const Value cycle = w.list();
   for (int i = 0; i < 30'000; ++i) {
     const Value link = w.list();
-    w.heap.push(*link.list(), ring);
-    w.heap.push(*ring.list(), link);
+    w.heap.push(*link.list(), cycle);
+    w.heap.push(*cycle.list(), link);
   }
-  w.heap.store(owner->slots[2], ring.ref);
+  w.heap.store(owner->slots[2], cycle.ref);
   for (int i = 0; i < kLists; ++i) {
     if (i % 10 == 0) w.heap.push(*short_lived, w.list());
     const Value element = w.list(), inner = w.list();

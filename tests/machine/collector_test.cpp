@@ -22,7 +22,7 @@ TEST(Collector, ListThatHoldsItselfGoes) {
   EXPECT_EQ(w.heap.live_cells(), 0u);
 }
 
-TEST(Collector, RingThroughListHashAndInstanceGoes) {
+TEST(Collector, CycleThroughListHashAndInstanceGoes) {
   World w;
   const ClassInfo cls = reference_class(1);
   ListCell* list = w.heap.list();
@@ -36,7 +36,7 @@ TEST(Collector, RingThroughListHashAndInstanceGoes) {
   EXPECT_EQ(w.roots.destroyed.size(), 1u);
 }
 
-TEST(Collector, RingHeldByALiveInstanceStaysAndGoesWhenItIsDropped) {
+TEST(Collector, CycleHeldByALiveInstanceStaysAndGoesWhenItIsDropped) {
   World w;
   const ClassInfo cls = reference_class(1);
   Instance* owner = w.object(cls);
@@ -52,7 +52,7 @@ TEST(Collector, RingHeldByALiveInstanceStaysAndGoesWhenItIsDropped) {
   EXPECT_EQ(w.heap.live_cells(), 1u);
 }
 
-TEST(Collector, RingHeldByAPinnedRootStays) {
+TEST(Collector, CycleHeldByAPinnedRootStays) {
   World w;
   ListCell* list = w.heap.list();
   w.heap.push(*list, Value::of(Tag::List, list));
@@ -62,7 +62,7 @@ TEST(Collector, RingHeldByAPinnedRootStays) {
   EXPECT_EQ(w.heap.live_cells(), 1u);
 }
 
-TEST(Collector, RingHeldByAFrameWhileACollectionRunsGoesAfterTheFrame) {
+TEST(Collector, CycleHeldByAFrameWhileACollectionRunsGoesAfterTheFrame) {
   World w;
   ListCell* list = w.heap.list();
   w.heap.push(*list, Value::of(Tag::List, list));
@@ -77,13 +77,13 @@ TEST(Collector, RingHeldByAFrameWhileACollectionRunsGoesAfterTheFrame) {
 TEST(Collector, DestroyInACycleRunsOnceInOrderOfCreation) {
   World w;
   const ClassInfo cls = reference_class(1);
-  std::vector<Instance*> ring;
+  std::vector<Instance*> cycle;
   std::vector<std::uint64_t> made;
   for (int i = 0; i < 50; ++i) {
-    ring.push_back(w.auto_object(cls));
-    made.push_back(ring.back()->serial);
+    cycle.push_back(w.auto_object(cls));
+    made.push_back(cycle.back()->serial);
   }
-  for (std::size_t i = 0; i < ring.size(); ++i) w.heap.store(ring[i]->slots[0], ring[(i * 7 + 3) % ring.size()]);
+  for (std::size_t i = 0; i < cycle.size(); ++i) w.heap.store(cycle[i]->slots[0], cycle[(i * 7 + 3) % cycle.size()]);
   for (std::uint64_t i = 0; i < bound(50); ++i) w.heap.end_of_iteration();
   EXPECT_EQ(w.roots.destroyed, made);
   EXPECT_EQ(w.heap.live_cells(), 0u);
@@ -114,12 +114,12 @@ TEST(Collector, GarbageOfABigHeapGoesWithinTheBound) {
   ListCell* live = w.heap.list();
   w.heap.store(owner->slots[0], live);
   for (int i = 0; i < 300'000; ++i) w.heap.push(*live, Value::of(Tag::List, w.heap.list(1)));
-  ListCell* rings = w.heap.list();
-  w.heap.store(owner->slots[1], rings);
+  ListCell* cycles = w.heap.list();
+  w.heap.store(owner->slots[1], cycles);
   for (int i = 0; i < 50'000; ++i) {
-    Value ring = w.list();
-    w.heap.push(*ring.list(), ring);
-    w.heap.push(*rings, ring);
+    Value cycle = w.list();
+    w.heap.push(*cycle.list(), cycle);
+    w.heap.push(*cycles, cycle);
   }
   const std::uint64_t all = w.heap.live_cells();
   w.heap.end_of_iteration();
@@ -288,8 +288,8 @@ TEST(Collector, ListsThatChangeWhileTheyAreScannedLoseNothing) {
   std::mt19937 random(7);
   std::int64_t sum = 0;
   for (int round = 0; round < 40; ++round) {
-    Value ring = w.list();
-    w.heap.push(*ring.list(), ring);  // reason enough for a collection
+    Value cycle = w.list();
+    w.heap.push(*cycle.list(), cycle);  // reason enough for a collection
     w.heap.end_of_iteration();
     for (int i = 0; i < 50; ++i) {
       const auto from = static_cast<std::uint32_t>(random() % big->size);
@@ -316,7 +316,7 @@ TEST(Collector, ListsThatChangeWhileTheyAreScannedLoseNothing) {
 }
 
 // Objects that must be destroyed do not keep other garbage from being taken apart in the same collection.
-TEST(Collector, RingsOfListsGoThoughObjectsDieInEveryCollection) {
+TEST(Collector, CyclesOfListsGoThoughObjectsDieInEveryCollection) {
   World w;
   const ClassInfo cls = reference_class(1);
   std::uint64_t most = 0;
@@ -325,8 +325,8 @@ TEST(Collector, RingsOfListsGoThoughObjectsDieInEveryCollection) {
     Instance* b = w.auto_object(cls);
     w.heap.store(a->slots[0], b);
     w.heap.store(b->slots[0], a);
-    Value ring = w.list();
-    w.heap.push(*ring.list(), ring);
+    Value cycle = w.list();
+    w.heap.push(*cycle.list(), cycle);
     w.heap.end_of_iteration();
     most = std::max(most, w.heap.live_cells());
   }
@@ -338,12 +338,12 @@ TEST(Collector, WhatADyingObjectRefersToIsWholeWhenItsDestroyRuns) {
   const ClassInfo cls = reference_class(2);
   Instance* a = w.auto_object(cls);
   Instance* b = w.auto_object(cls);
-  Value ring = w.list();
-  w.heap.push(*ring.list(), ring);
-  w.heap.push(*ring.list(), number(7));
+  Value cycle = w.list();
+  w.heap.push(*cycle.list(), cycle);
+  w.heap.push(*cycle.list(), number(7));
   w.heap.store(a->slots[0], b);
   w.heap.store(b->slots[0], a);
-  w.heap.store(b->slots[1], ring.ref);
+  w.heap.store(b->slots[1], cycle.ref);
   std::vector<std::uint32_t> sizes;
   w.roots.on_destroy = [&](Instance& instance) {
     if (&instance == b) sizes.push_back(static_cast<ListCell*>(instance.slots[1].ref)->size);
@@ -354,13 +354,13 @@ TEST(Collector, WhatADyingObjectRefersToIsWholeWhenItsDestroyRuns) {
 }
 
 // By counted work: no iteration takes apart much more than a slice, however large one list is.
-TEST(Collector, OneLargeRingIsTakenApartInSlices) {
+TEST(Collector, OneLargeCycleIsTakenApartInSlices) {
   World w;
   constexpr std::uint64_t kMany = 300'000;
   {
-    Value ring = w.list();
-    for (std::uint64_t i = 0; i < kMany; ++i) w.heap.push(*ring.list(), w.list());
-    w.heap.push(*ring.list(), ring);
+    Value cycle = w.list();
+    for (std::uint64_t i = 0; i < kMany; ++i) w.heap.push(*cycle.list(), w.list());
+    w.heap.push(*cycle.list(), cycle);
   }
   std::uint64_t before = w.heap.live_cells(), most = 0, iterations = 0;
   for (; w.heap.live_cells() > 0 && iterations <= bound(kMany); ++iterations) {
@@ -439,11 +439,11 @@ void live_on(World& w, Instance* owner, const ClassInfo& cls, unsigned seed) {
   auto* list = static_cast<ListCell*>(owner->slots[0].ref);
   for (int i = 0; i < 20; ++i) {
     Instance* a = w.auto_object(cls);
-    ListCell* ring = w.heap.list();
-    w.heap.push(*ring, Value::of(Tag::Object, a));
-    w.heap.store(a->slots[0], ring);
+    ListCell* cycle = w.heap.list();
+    w.heap.push(*cycle, Value::of(Tag::Object, a));
+    w.heap.store(a->slots[0], cycle);
     const auto place = static_cast<std::uint32_t>(random() % (list->size + 1));
-    w.heap.insert(*list, place, Value::of(Tag::List, ring));
+    w.heap.insert(*list, place, Value::of(Tag::List, cycle));
     w.heap.remove(*list, random() % 2 == 0 ? place : static_cast<std::uint32_t>(random() % list->size));
   }
   w.heap.end_of_iteration();

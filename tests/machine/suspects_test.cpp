@@ -46,7 +46,7 @@ class Suspects : public ::testing::Test {
   void drop_frames() { roots_.frames.clear(); }
   void end() { heap_.end_of_iteration(); }
   /// A ring of lists, each in the one before.
-  ListCell* ring(int length) {
+  ListCell* cycle(int length) {
     ListCell* first = list();
     ListCell* last = first;
     for (int i = 1; i < length; ++i) {
@@ -65,7 +65,7 @@ class Suspects : public ::testing::Test {
 };
 
 TEST_F(Suspects, AListInItselfGoesInItsIterationWithoutACollection) {
-  ring(1);
+  cycle(1);
   drop_frames();
   end();
   EXPECT_EQ(heap_.live_cells(), 0u);
@@ -73,7 +73,7 @@ TEST_F(Suspects, AListInItselfGoesInItsIterationWithoutACollection) {
 }
 
 TEST_F(Suspects, TwoListsInEachOtherGo) {
-  ring(2);
+  cycle(2);
   drop_frames();
   end();
   EXPECT_EQ(heap_.live_cells(), 0u);
@@ -115,9 +115,9 @@ TEST_F(Suspects, AHashWhoseKeyLeadsBackGoes) {
 }
 
 // The short look at new cells goes three levels down: longer rings, and such as close beyond it, must be found too.
-TEST_F(Suspects, RingsOfEveryLengthGo) {
+TEST_F(Suspects, CyclesOfEveryLengthGo) {
   for (int length = 1; length <= 40; ++length) {
-    ring(length);
+    cycle(length);
     drop_frames();
     end();
     ASSERT_EQ(heap_.live_cells(), 0u) << length;
@@ -125,7 +125,7 @@ TEST_F(Suspects, RingsOfEveryLengthGo) {
   EXPECT_EQ(roots_.collections, 0);
 }
 
-TEST_F(Suspects, RingsClosedAfterTheirCellsWereLookedAtGo) {
+TEST_F(Suspects, CyclesClosedAfterTheirCellsWereLookedAtGo) {
   for (int length = 1; length <= 12; ++length) {
     ListCell* first = list();
     ListCell* last = first;
@@ -169,7 +169,7 @@ TEST_F(Suspects, NewTreesAreNotSuspected) {
 // --- what must stay --------------------------------------------------------------------------------------------------
 
 TEST_F(Suspects, ARingThatAFrameHoldsStaysAndGoesAfterTheFrame) {
-  ListCell* first = ring(3);
+  ListCell* first = cycle(3);
   for (int i = 0; i < 5; ++i) end();
   ASSERT_EQ(heap_.live_cells(), 3u);
   ASSERT_EQ(first->size, 1u);
@@ -180,7 +180,7 @@ TEST_F(Suspects, ARingThatAFrameHoldsStaysAndGoesAfterTheFrame) {
 
 TEST_F(Suspects, ARingHeldByAPlainObjectStaysUntilThatLetsItGo) {
   Instance* owner = object();
-  link(owner, ring(3));
+  link(owner, cycle(3));
   drop_frames();
   for (int i = 0; i < 5; ++i) end();
   ASSERT_EQ(heap_.live_cells(), 4u);
@@ -200,11 +200,11 @@ TEST_F(Suspects, ARingThroughAPlainObjectStays) {
   EXPECT_EQ(heap_.live_cells(), 2u);
 }
 
-TEST_F(Suspects, WhatALivingRingLeadsToStays) {
+TEST_F(Suspects, WhatALivingCycleLeadsToStays) {
   Instance* owner = object();
-  ListCell* alive = ring(2);
+  ListCell* alive = cycle(2);
   link(owner, alive);
-  ListCell* dead = ring(2);
+  ListCell* dead = cycle(2);
   link(dead, alive);
   drop_frames();
   end();
@@ -229,7 +229,7 @@ TEST_F(Suspects, ASuspectThatIsFreedByHandBeforeItIsJudgedDoesNoHarm) {
 }
 
 TEST_F(Suspects, ARingOfFiveThousandListsGoesInItsIterationWithoutACollection) {
-  ListCell* first = ring(5000);
+  ListCell* first = cycle(5000);
   for (ListCell* list = first; heap_.push(*list, number(1)), (list = (*list)[0].list()) != first;) {
   }
   drop_frames();
@@ -239,11 +239,11 @@ TEST_F(Suspects, ARingOfFiveThousandListsGoesInItsIterationWithoutACollection) {
 }
 
 // What the first suspect of a large living structure leads to is alive with it, and is not gathered again for each.
-TEST_F(Suspects, ASmallRingBesideALargeLivingOneGoesInTheSameIteration) {
+TEST_F(Suspects, ASmallCycleBesideALargeLivingOneGoesInTheSameIteration) {
   Instance* owner = object();
-  link(owner, ring(9000));
+  link(owner, cycle(9000));
   drop_frames();
-  ring(2);
+  cycle(2);
   drop_frames();
   end();
   EXPECT_EQ(heap_.live_cells(), 9001u);
@@ -253,16 +253,16 @@ TEST_F(Suspects, ASmallRingBesideALargeLivingOneGoesInTheSameIteration) {
 // --- what does not fit -----------------------------------------------------------------------------------------------
 
 TEST_F(Suspects, ARingThatLeadsTooFarIsLeftToTheCollector) {
-  ring(12'000);
+  cycle(12'000);
   drop_frames();
   for (int i = 0; i < 3; ++i) end();
   EXPECT_EQ(heap_.live_cells(), 0u);
   EXPECT_GE(roots_.collections, 1);
 }
 
-TEST_F(Suspects, MoreRingsThanTheTableHoldsGoAllTheSame) {
-  constexpr int kRings = 40'000;
-  for (int i = 0; i < kRings; ++i) ring(1);
+TEST_F(Suspects, MoreCyclesThanTheTableHoldsGoAllTheSame) {
+  constexpr int kCycles = 40'000;
+  for (int i = 0; i < kCycles; ++i) cycle(1);
   drop_frames();
   for (int i = 0; i < 3; ++i) end();
   EXPECT_EQ(heap_.live_cells(), 0u);
@@ -275,7 +275,7 @@ TEST_F(Suspects, ARingBehindManyLivingSuspectsGoesWithinThePromisedIterations) {
   ListCell* kept = list();
   link(owner, kept);
   constexpr int kSuspects = 200, kLength = 900;
-  for (int i = 0; i < kSuspects; ++i) link(kept, ring(kLength));
+  for (int i = 0; i < kSuspects; ++i) link(kept, cycle(kLength));
   drop_frames();
   for (int i = 0; i < 40; ++i) end();
   const std::uint64_t live = heap_.live_cells();
@@ -288,7 +288,7 @@ TEST_F(Suspects, ARingBehindManyLivingSuspectsGoesWithinThePromisedIterations) {
     }
   };
   disturb();
-  ring(1);
+  cycle(1);
   drop_frames();
   const std::uint64_t most = (live + 19'999) / 20'000 + 2;
   std::uint64_t iterations = 0;
@@ -340,7 +340,7 @@ TEST_F(Suspects, WhatDestroyStoresIsWholeAndStays) {
 
 TEST_F(Suspects, ACycleThatDestroyLeavesBehindGoesInTheNextIterationAtTheLatest) {
   Instance* dying = auto_object();
-  link(dying, ring(2));
+  link(dying, cycle(2));
   drop_frames();
   end();
   end();
@@ -352,8 +352,8 @@ TEST_F(Suspects, ACycleThatDestroyLeavesBehindGoesInTheNextIterationAtTheLatest)
 
 TEST_F(Suspects, WithoutMemoryToJudgeNothingChangesAndTheyAreJudgedLater) {
   Instance* owner = object();
-  link(owner, ring(2));
-  ring(2);
+  link(owner, cycle(2));
+  cycle(2);
   drop_frames();
   heap_.reclaim();
   memory_.fail_at = 0;
@@ -369,7 +369,7 @@ TEST_F(Suspects, WithoutMemoryToJudgeNothingChangesAndTheyAreJudgedLater) {
 TEST_F(Suspects, WhicheverAllocationFailsNothingIsLostAndAllGarbageGoes) {
   Instance* owner = object();
   for (long n = 0; n < 12; ++n) {
-    ListCell* alive = ring(3);
+    ListCell* alive = cycle(3);
     link(owner, alive);
     Instance* a = auto_object();
     Instance* b = auto_object();
@@ -395,9 +395,9 @@ TEST_F(Suspects, WhicheverAllocationFailsNothingIsLostAndAllGarbageGoes) {
 
 TEST_F(Suspects, ARestoredHeapJudgesTheSameSuspects) {
   Instance* owner = object();
-  ListCell* alive = ring(1);
+  ListCell* alive = cycle(1);
   link(owner, alive);
-  ListCell* dead = ring(1);
+  ListCell* dead = cycle(1);
   link(dead, alive);
   heap_.reclaim();  // both are suspected now
   drop_frames();

@@ -81,9 +81,10 @@ TEST(ReferenceFriction, BoxesTipAndSlideBeyondTheirAngles) {
       Slope slope(row.number("critical_angle_deg") * kPi / 180 + beyond, mu, mu, box(Vector3(width, height, 1), 1),
                   0.5 * height);
       const double x = slope.x();
-      const Quaternion turn = slope.world.turn(slope.body);
+      const Quaternion orientation = slope.world.orientation(slope.body);
       slope.world.run(3);
-      const double slid = std::abs(slope.x() - x), tipped = slope.world.turn(slope.body).angularDistance(turn);
+      const double slid = std::abs(slope.x() - x),
+                   tipped = slope.world.orientation(slope.body).angularDistance(orientation);
       std::printf("  %.1f x %.1f at %+.2f degrees: slid %.1e m, tipped %.1e rad\n", width, height, beyond * 180 / kPi,
                   slid, tipped);
       if (beyond < 0) {
@@ -157,7 +158,7 @@ TEST(ReferenceFriction, TheRodOfPainleveGetsAFiniteAnswer) {
     ASSERT_TRUE(impulse.allFinite() && world.spin(body).allFinite());
     cone = std::max(cone, std::hypot(impulse.x(), impulse.z()) - mu * impulse.y());
     energy = std::max(energy, world.mechanical() - before);
-    const Vector3 low = world.at(body) + world.turn(body) * tip;
+    const Vector3 low = world.at(body) + world.orientation(body) * tip;
     depth = std::max(depth, -low.y());
     // What the turning of the rod adds to the force comes a step later.
     const bool slides = row.text("class") == "slides" && row.number("omega") == 0;

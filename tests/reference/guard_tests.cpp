@@ -126,7 +126,7 @@ TEST(Guard, SeesAnOverlapThatGrows) {
     }
 }
 
-TEST(Guard, SeesABodyThatTurnsTooFar) {
+TEST(Guard, SeesABodyThatRotatesTooFar) {
   for (const breve_guard guard : kModes) {
     Watched world(guard);
     const breve_object fast = world.body(box(Vector3(1, 2, 3), 1), Vector3::Zero());
@@ -145,7 +145,7 @@ TEST(Guard, SeesABodyThatTurnsTooFar) {
   }
 }
 
-TEST(Guard, IsNotNeededWhereSubStepsFollowTheTurn) {
+TEST(Guard, IsNotNeededWhereSubStepsFollowTheRotation) {
   for (const breve_guard guard : kModes) {
     Watched world(guard);
     const breve_object fast = world.body(box(Vector3(1, 2, 3), 1), Vector3::Zero());
@@ -213,23 +213,23 @@ TEST(Guard, RestIsInTheLedger) {
   EXPECT_NEAR(after.residual - before.residual, -before.kinetic, 1e-15);
 }
 
-constexpr const char* kNoAccount = "unexplained energy gain";
+constexpr const char* kUnexplained = "unexplained energy gain";
 
 /// A chain of three links that swings, whose end is then tied to a point above it: closing the ring lifts the links by
 /// hand, however fine the sub-steps.
 struct Lifted : Watched {
   Chain chain;
-  Hinge tie;
+  Hinge hinge;
   double before = 0;
   explicit Lifted(breve_guard guard) : Watched(guard) {
     set_gravity(Vector3(0, -9.81, 0));
     chain = hang(*this, {1, 1, 1}, {1, 1, 1});
     start(*this, chain, {0.3, 0.5, 0.4}, {0.5, -0.2, 0.3});
-    tie.child = chain.links.back();
-    tie.child_point = Vector3(0, -0.5, 0);
-    tie.parent_point = at(tie.child) + turn(tie.child) * tie.child_point + Vector3(0, 0.3, 0);
-    tie.normal = -Vector3::UnitZ();
-    EXPECT_TRUE(read(join(tie)).ring);
+    hinge.child = chain.links.back();
+    hinge.child_point = Vector3(0, -0.5, 0);
+    hinge.parent_point = at(hinge.child) + orientation(hinge.child) * hinge.child_point + Vector3(0, 0.3, 0);
+    hinge.normal = -Vector3::UnitZ();
+    EXPECT_TRUE(read(join(hinge)).ring);
     before = mechanical();
   }
   double fastest() const {
@@ -243,11 +243,11 @@ TEST(Guard, RestEndsEnergyFromNowhereThatRefiningLeaves) {
   for (const breve_guard guard : kModes) {
     Lifted world(guard);
     world.watch(1);
-    world.expect_ended(guard, kNoAccount, world.chain.links[0]);
+    world.expect_ended(guard, kUnexplained, world.chain.links[0]);
     if (guard >= BREVE_GUARD_REFINE) {
-      EXPECT_EQ(count(world.all, kNoAccount, "refined"), 2);  // a quarter of the sub-step, then a 64th
+      EXPECT_EQ(count(world.all, kUnexplained, "refined"), 2);  // a quarter of the sub-step, then a 64th
     }
-    EXPECT_LE(world.open(world.tie), 1e-9);
+    EXPECT_LE(world.open(world.hinge), 1e-9);
     const double lifted = world.mechanical();
     EXPECT_GT(lifted, world.before + 1);  // J: so it is a lift, and not little
     if (guard != BREVE_GUARD_REST) {
@@ -297,9 +297,9 @@ Mobile : Pushed {
     for (int i = 0; i < 10; ++i) {
       world.step();
       const std::vector<breve_intervention> told = world.interventions();
-      EXPECT_EQ(count(told, kNoAccount, "refined"), 0);
-      reported += count(told, kNoAccount, "reported");
-      rested += count(told, kNoAccount, "put to rest");
+      EXPECT_EQ(count(told, kUnexplained, "refined"), 0);
+      reported += count(told, kUnexplained, "reported");
+      rested += count(told, kUnexplained, "put to rest");
       if (guard != BREVE_GUARD_REST) continue;
       EXPECT_EQ(world.velocity(chain.links[0]), Vector3::Zero());
       EXPECT_EQ(world.spin(chain.links[0]), Vector3::Zero());

@@ -30,8 +30,8 @@ void set_law(World& world, breve_object body, const Row& row) {
 }
 
 /// A box about `centre` with one face through the point `c`, where its normal is `n`. It is wide enough to hold c.
-Solid slab(const Vector3& centre, const Vector3& c, const Vector3& n, Quaternion* turn) {
-  *turn = Quaternion::FromTwoVectors(Vector3::UnitZ(), n);
+Solid slab(const Vector3& centre, const Vector3& c, const Vector3& n, Quaternion* orientation) {
+  *orientation = Quaternion::FromTwoVectors(Vector3::UnitZ(), n);
   const double depth = n.dot(c - centre), side = 4 * (c - centre).norm() + 2;
   return box(Vector3(side, side, 2 * depth), 1);
 }
@@ -43,18 +43,18 @@ struct Pair {
 Pair build_pair(World& world, const Row& row) {
   const Vector3 c = numbers(row, "c"), n = numbers(row, "n").normalized();
   Pair out;
-  Quaternion turn;
+  Quaternion orientation;
   if (row.text("m_A") == "fixed") {
     const Vector3 centre = c - n;
-    const Solid solid = slab(centre, c, n, &turn);
-    out.a = world.fixed(solid, centre, turn);
+    const Solid solid = slab(centre, c, n, &orientation);
+    out.a = world.fixed(solid, centre, orientation);
   } else {
     const Vector3 centre = numbers(row, "x_A_");
-    Solid solid = slab(centre, c, n, &turn);
+    Solid solid = slab(centre, c, n, &orientation);
     solid.mass = row.number("m_A");
-    const Matrix3 rotation = turn.toRotationMatrix();
+    const Matrix3 rotation = orientation.toRotationMatrix();
     solid.inertia = rotation.transpose() * inertia_of(row, "A") * rotation;
-    out.a = world.body(solid, centre, turn);
+    out.a = world.body(solid, centre, orientation);
     world.set_velocity(out.a, numbers(row, "v_A_"));
     world.set_spin(out.a, numbers(row, "w_A_"));
   }

@@ -109,7 +109,7 @@ double attitude_error(breve_integrator scheme, double h, bool arm, const Quatern
     whirl.world.set_spin(whirl.body, Vector3(4, 1, -3));
   }
   whirl.world.run(1);
-  return whirl.world.turn(whirl.body).angularDistance(exact);
+  return whirl.world.orientation(whirl.body).angularDistance(exact);
 }
 
 Quaternion exact_attitude(bool arm) {
@@ -119,7 +119,7 @@ Quaternion exact_attitude(bool arm) {
     whirl.world.set_spin(whirl.body, Vector3(4, 1, -3));
   }
   whirl.world.run(1);
-  return whirl.world.turn(whirl.body);
+  return whirl.world.orientation(whirl.body);
 }
 
 void attitude_has_full_order(bool arm) {
@@ -133,8 +133,8 @@ void attitude_has_full_order(bool arm) {
   }
 }
 
-TEST(ReferenceIntegrators, AFreeBodyTurnsWithTheFullOrder) { attitude_has_full_order(false); }
-TEST(ReferenceIntegrators, AFloatingBaseTurnsWithTheFullOrder) { attitude_has_full_order(true); }
+TEST(ReferenceIntegrators, AFreeBodyRotatesWithTheFullOrder) { attitude_has_full_order(false); }
+TEST(ReferenceIntegrators, AFloatingBaseRotatesWithTheFullOrder) { attitude_has_full_order(true); }
 
 }  // namespace
 }  // namespace breve::reference

@@ -16,16 +16,16 @@ constexpr double kClosed = 1e-9;  // m, what a ring may be open at the end of a 
 
 /// What a run of a linkage showed.
 struct Followed {
-  double open = 0;                // m, at most
-  double gained = 0, lost = 0;    // J, at most
-  double moving = 0;              // J, the most kinetic energy
-  double turned = 0, spread = 0;  // rad: of the crank, at the end and between its ends
+  double open = 0;                 // m, at most
+  double gained = 0, lost = 0;     // J, at most
+  double moving = 0;               // J, the most kinetic energy
+  double rotated = 0, spread = 0;  // rad: of the crank, at the end and between its ends
 };
 
 /// A crank of 0.4 m, a coupler of 1 m and a rocker of 0.8 m on pivots that are 1 m apart: by Grashof's rule the crank
 /// can turn all the way round, and no position is singular. Each is a uniform rod of 1 kg.
 struct CrankRocker : World {
-  Hinge ring;
+  Hinge loop;
   breve_object crank{};
   CrankRocker(breve_rung rung, double angle, double rate) : World(1.0 / 60, rung) {
     set_guard(BREVE_GUARD_REPORT);
@@ -39,11 +39,11 @@ struct CrankRocker : World {
     crank = join(pin(nullptr, pivot, first, first.begin()));
     const breve_object rocker = join(pin(nullptr, far, third, third.begin()));
     const breve_object coupler = join(pin(&first, first.end(), second, second.begin()));
-    ring = pin(&second, second.end(), third, third.end());
-    EXPECT_TRUE(read(join(ring)).ring);
+    loop = pin(&second, second.end(), third, third.end());
+    EXPECT_TRUE(read(join(loop)).ring);
     // The velocity of the knee, seen from both sides, gives the rates of coupler and rocker.
-    const auto turned = [](const Vector3& arm) { return Vector3(-arm.y(), arm.x(), 0); };
-    const Vector3 by_crank = turned(tip - pivot), by_coupler = turned(knee - tip), by_rocker = turned(knee - far);
+    const auto rotated = [](const Vector3& arm) { return Vector3(-arm.y(), arm.x(), 0); };
+    const Vector3 by_crank = rotated(tip - pivot), by_coupler = rotated(knee - tip), by_rocker = rotated(knee - far);
     const double whole = by_coupler.cross(by_rocker).z();
     const double second_rate = -rate * by_crank.cross(by_rocker).z() / whole;
     const double third_rate = rate * by_coupler.cross(by_crank).z() / whole;
@@ -55,7 +55,7 @@ struct CrankRocker : World {
 
 /// Three bars of 1 m on pivots that are 1 m apart: where they lie in one line, twice a turn, they may fold either way.
 struct Parallelogram : World {
-  Hinge ring;
+  Hinge loop;
   breve_object crank{};
   Parallelogram(breve_rung rung, double angle) : World(1.0 / 60, rung) {
     set_guard(BREVE_GUARD_REPORT);
@@ -65,8 +65,8 @@ struct Parallelogram : World {
     crank = join(pin(nullptr, pivot, first, first.begin()));
     join(pin(nullptr, far, third, third.begin()));
     join(pin(&first, first.end(), second, second.begin()));
-    ring = pin(&second, second.end(), third, third.end());
-    EXPECT_TRUE(read(join(ring)).ring);
+    loop = pin(&second, second.end(), third, third.end());
+    EXPECT_TRUE(read(join(loop)).ring);
   }
 };
 
@@ -79,11 +79,11 @@ Followed follow_linkage(Linkage& linkage, double seconds) {
     const double change = linkage.mechanical() - begin;
     out.gained = std::max(out.gained, change);
     out.lost = std::max(out.lost, -change);
-    out.open = std::max(out.open, linkage.open(linkage.ring));
+    out.open = std::max(out.open, linkage.open(linkage.loop));
     out.moving = std::max(out.moving, linkage.energy().kinetic);
-    out.turned = linkage.read(linkage.crank).position[0];
-    low = std::min(low, out.turned);
-    high = std::max(high, out.turned);
+    out.rotated = linkage.read(linkage.crank).position[0];
+    low = std::min(low, out.rotated);
+    high = std::max(high, out.rotated);
   });
   out.spread = high - low;
   std::printf("  %3.0f s: open %.0e, energy %+.1e and %+.1e of %.1f J, crank over %.2f rad, %.1f sub-steps, %lu told\n",
@@ -139,18 +139,19 @@ TEST(Linkages, AParallelogramGainsNothingWhereItMayFoldEitherWay) {
 struct Loop : World {
   std::array<breve_object, 4> bars{};
   std::array<Hinge, 4> hinges;
-  Loop(breve_rung rung, const Quaternion& turn, double height, double restitution) : World(1.0 / 60, rung) {
+  Loop(breve_rung rung, const Quaternion& orientation, double height, double restitution) : World(1.0 / 60, rung) {
     set_guard(BREVE_GUARD_REPORT);
     set_material(incline(*this, 0), 0.5, restitution);
     constexpr double kLean = 0.3, kThick = 0.05;
     const Vector3 across(std::sin(kLean), std::cos(kLean), 0);
     const Vector3 corners[] = {Vector3::Zero(), Vector3::UnitX(), Vector3::UnitX() + across, across};
-    std::array<Quaternion, 4> turns;
+    std::array<Quaternion, 4> orientations;
     for (std::size_t i = 0; i < 4; ++i) {
       const Vector3 &from = corners[i], &to = corners[(i + 1) % 4], way = to - from;
       const double angle = std::atan2(way.y(), way.x()) - kPi / 2;
-      turns[i] = turn * Quaternion(Eigen::AngleAxisd(angle, Vector3::UnitZ()));
-      bars[i] = body(box(Vector3(kThick, 1, kThick), 1), turn * (0.5 * (from + to)) + Vector3(0, height, 0), turns[i]);
+      orientations[i] = orientation * Quaternion(Eigen::AngleAxisd(angle, Vector3::UnitZ()));
+      bars[i] = body(box(Vector3(kThick, 1, kThick), 1), orientation * (0.5 * (from + to)) + Vector3(0, height, 0),
+                     orientations[i]);
       set_material(bars[i], 0.5, restitution);
     }
     for (std::size_t i = 0; i < 4; ++i) {
@@ -160,7 +161,7 @@ struct Loop : World {
       hinges[i].parent_point = Vector3(0, 0.5, 0);
       hinges[i].child_point = Vector3(0, -0.5, 0);
       hinges[i].normal = -Vector3::UnitZ();
-      hinges[i].rotation = turns[i].conjugate() * turns[next];
+      hinges[i].rotation = orientations[i].conjugate() * orientations[next];
       EXPECT_EQ(read(join(hinges[i])).ring, i == 3);
     }
   }
@@ -173,7 +174,8 @@ struct Loop : World {
   double bent() const {
     double most = 0;
     for (const Hinge& hinge : hinges) {
-      const Vector3 a = World::turn(hinge.parent) * Vector3::UnitZ(), b = World::turn(hinge.child) * Vector3::UnitZ();
+      const Vector3 a = World::orientation(hinge.parent) * Vector3::UnitZ(),
+                    b = World::orientation(hinge.child) * Vector3::UnitZ();
       most = std::max(most, a.cross(b).norm());
     }
     return most;
@@ -190,8 +192,8 @@ struct Loop : World {
   }
 };
 
-void drop_loop(const char* name, breve_rung rung, const Quaternion& turn, double restitution) {
-  Loop loop(rung, turn, 0.7, restitution);
+void drop_loop(const char* name, breve_rung rung, const Quaternion& orientation, double restitution) {
+  Loop loop(rung, orientation, 0.7, restitution);
   const double begin = loop.mechanical(), lying = 4 * 9.81 * 0.025;
   double most = 0, open = 0, bent = 0, rested = 0;
   loop.run(4, [&] {

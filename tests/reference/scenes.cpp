@@ -50,8 +50,8 @@ void start(World& world, const Chain& chain, const std::vector<double>& angles, 
 
 Bar::Bar(World& world, const Vector3& from, const Vector3& to, double mass) : length((to - from).norm()) {
   const double angle = std::atan2(to.y() - from.y(), to.x() - from.x()) - kPi / 2;
-  turn = Quaternion(Eigen::AngleAxisd(angle, Vector3::UnitZ()));
-  body = world.body(rod(length, mass), 0.5 * (from + to), turn);
+  orientation = Quaternion(Eigen::AngleAxisd(angle, Vector3::UnitZ()));
+  body = world.body(rod(length, mass), 0.5 * (from + to), orientation);
 }
 
 Hinge pin(const Bar* parent, const Vector3& on_parent, const Bar& child, const Vector3& on_child) {
@@ -61,7 +61,7 @@ Hinge pin(const Bar* parent, const Vector3& on_parent, const Bar& child, const V
   hinge.parent_point = on_parent;
   hinge.child_point = on_child;
   hinge.normal = -Vector3::UnitZ();
-  hinge.rotation = parent ? parent->turn.conjugate() * child.turn : child.turn;
+  hinge.rotation = parent ? parent->orientation.conjugate() * child.orientation : child.orientation;
   return hinge;
 }
 
@@ -84,8 +84,8 @@ Vector3 along(double tilt) { return Vector3(std::cos(tilt), std::sin(tilt), 0); 
 Vector3 across(double tilt) { return Vector3(-std::sin(tilt), std::cos(tilt), 0); }
 
 breve_object incline(World& world, double tilt) {
-  const Quaternion turn(Eigen::AngleAxisd(tilt, Vector3::UnitZ()));
-  return world.fixed(box(Vector3(200, 10, 200), 1), -5 * across(tilt), turn);
+  const Quaternion orientation(Eigen::AngleAxisd(tilt, Vector3::UnitZ()));
+  return world.fixed(box(Vector3(200, 10, 200), 1), -5 * across(tilt), orientation);
 }
 
 }  // namespace breve::reference

@@ -24,7 +24,7 @@ void start(World& world, const Chain& chain, const std::vector<double>& angles, 
 /// A bar between two points of the plane z = 0; its y axis goes from the first to the second.
 struct Bar {
   breve_object body{};
-  Quaternion turn = Quaternion::Identity();
+  Quaternion orientation = Quaternion::Identity();
   double length = 0;
   Bar() = default;
   Bar(World& world, const Vector3& from, const Vector3& to, double mass);

@@ -25,9 +25,9 @@ Quaternion attitude(const Row& row) {
 /// Which row of a file is wrong by how much: spin in body axes relative to its size, attitude in rad.
 double error_of(const World& world, breve_object body, const Row& row) {
   const Vector3 expected = three_numbers(row, "w1", "w2", "w3");
-  const Vector3 own = world.turn(body).conjugate() * world.spin(body);
+  const Vector3 own = world.orientation(body).conjugate() * world.spin(body);
   return std::max((own - expected).norm() / std::max(1.0, expected.norm()),
-                  world.turn(body).angularDistance(attitude(row)));
+                  world.orientation(body).angularDistance(attitude(row)));
 }
 
 struct FreeTop {
@@ -46,7 +46,7 @@ struct FreeTop {
 /// The first step that reaches the given moment in a whole number of steps, below a longest one.
 double step_for(double t, double longest) { return t / std::ceil(t / longest); }
 
-TEST(ReferenceTops, AFreeBodyTurnsAsTheFileSays) {
+TEST(ReferenceTops, AFreeBodyRotatesAsTheFileSays) {
   for (const std::vector<Row>& rows : groups("top_free", "case")) {
     double worst = 0;
     for (const Row& row : rows) {

@@ -31,12 +31,12 @@ Tree::Tree(const std::string& name, double step, breve_rung rung, bool with_tau)
 }
 
 void Tree::add(const Row& row, bool with_tau, const Row& state) {
-  const Quaternion turn =
+  const Quaternion orientation =
       Quaternion(row.number("rw"), row.number("rx"), row.number("ry"), row.number("rz")).normalized();
   const int parent = row.integer("parent");
   centres_.push_back(vector(row, "c"));
-  places_.push_back(vector(row, "p"));
-  turns_.push_back(turn);
+  positions_.push_back(vector(row, "p"));
+  orientations_.push_back(orientation);
   bodies.push_back(world.body(lump(row.number("mass"), inertia_of(row)), Vector3::Zero()));
   joints.push_back(breve_object{});
   const std::string& type = row.text("type");
@@ -45,14 +45,14 @@ void Tree::add(const Row& row, bool with_tau, const Row& state) {
   hinge.kind = type == "R" ? BREVE_JOINT_REVOLUTE : type == "P" ? BREVE_JOINT_PRISMATIC : BREVE_JOINT_FIXED;
   hinge.child = bodies.back();
   hinge.child_point = -centres_.back();
-  hinge.rotation = turn;
-  hinge.parent_point = places_.back();
+  hinge.rotation = orientation;
+  hinge.parent_point = positions_.back();
   if (parent >= 0) {
     hinge.parent = bodies[static_cast<std::size_t>(parent)];
     hinge.parent_point -= centres_[static_cast<std::size_t>(parent)];
   }
   // The file's numbers turn the child along +axis, ours the parent.
-  if (type != "X") hinge.normal = turn * -vector(row, "a").normalized();
+  if (type != "X") hinge.normal = orientation * -vector(row, "a").normalized();
   joints.back() = world.join(hinge);
   breve_drive drive = world.drive(joints.back());
   drive.low[0] = -INFINITY, drive.high[0] = INFINITY;
@@ -70,16 +70,17 @@ void Tree::start(const Row& row, std::size_t i) {
     if (!row.empty("q0")) world.set_joint(joints[i], row.number("q0"), row.number("u0"));
     return;
   }
-  const Quaternion turn =
-      turns_[i] * Quaternion(row.number("q3"), row.number("q4"), row.number("q5"), row.number("q6"));
-  const Vector3 spin = turn * Vector3(row.number("u3"), row.number("u4"), row.number("u5"));
-  const Vector3 arm = turn * centres_[i];
-  const Vector3 at = places_[i] + turns_[i] * Vector3(row.number("q0"), row.number("q1"), row.number("q2")) + arm;
-  const breve_pose pose{{at.x(), at.y(), at.z()}, {turn.w(), turn.x(), turn.y(), turn.z()}};
+  const Quaternion orientation =
+      orientations_[i] * Quaternion(row.number("q3"), row.number("q4"), row.number("q5"), row.number("q6"));
+  const Vector3 spin = orientation * Vector3(row.number("u3"), row.number("u4"), row.number("u5"));
+  const Vector3 arm = orientation * centres_[i];
+  const Vector3 at =
+      positions_[i] + orientations_[i] * Vector3(row.number("q0"), row.number("q1"), row.number("q2")) + arm;
+  const breve_pose pose{{at.x(), at.y(), at.z()}, {orientation.w(), orientation.x(), orientation.y(), orientation.z()}};
   world.must(breve_object_set_assembly_pose(world.get(), bodies[i], &pose));
   world.set_spin(bodies[i], spin);
-  world.set_velocity(bodies[i],
-                     turns_[i] * Vector3(row.number("u0"), row.number("u1"), row.number("u2")) + spin.cross(arm));
+  world.set_velocity(
+      bodies[i], orientations_[i] * Vector3(row.number("u0"), row.number("u1"), row.number("u2")) + spin.cross(arm));
 }
 
 double Tree::error(const Row& row) const {
@@ -89,12 +90,13 @@ double Tree::error(const Row& row) const {
     const breve_joint_info info = world.read(joints[i]);
     return std::max(std::abs(info.position[0] - row.number("q0")), std::abs(info.velocity[0] - row.number("u0")));
   }
-  const Quaternion turn =
-      turns_[i] * Quaternion(row.number("q3"), row.number("q4"), row.number("q5"), row.number("q6"));
-  const Vector3 at = world.at(bodies[i]) - world.turn(bodies[i]) * centres_[i];
-  const Vector3 place = places_[i] + turns_[i] * Vector3(row.number("q0"), row.number("q1"), row.number("q2"));
-  const Vector3 spin = turn * Vector3(row.number("u3"), row.number("u4"), row.number("u5"));
-  return std::max({(at - place).cwiseAbs().maxCoeff(), world.turn(bodies[i]).angularDistance(turn),
+  const Quaternion orientation =
+      orientations_[i] * Quaternion(row.number("q3"), row.number("q4"), row.number("q5"), row.number("q6"));
+  const Vector3 at = world.at(bodies[i]) - world.orientation(bodies[i]) * centres_[i];
+  const Vector3 position =
+      positions_[i] + orientations_[i] * Vector3(row.number("q0"), row.number("q1"), row.number("q2"));
+  const Vector3 spin = orientation * Vector3(row.number("u3"), row.number("u4"), row.number("u5"));
+  return std::max({(at - position).cwiseAbs().maxCoeff(), world.orientation(bodies[i]).angularDistance(orientation),
                    (world.spin(bodies[i]) - spin).cwiseAbs().maxCoeff()});
 }
 

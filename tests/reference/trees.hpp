@@ -27,9 +27,9 @@ class Tree {
   void add(const Row& row, bool with_tau, const Row& state);
   void start(const Row& row, std::size_t i);
 
-  std::vector<Vector3> centres_;  // of mass, in the file's body frames
-  std::vector<Vector3> places_;   // of joints
-  std::vector<Quaternion> turns_;
+  std::vector<Vector3> centres_;    // of mass, in the file's body frames
+  std::vector<Vector3> positions_;  // of joints
+  std::vector<Quaternion> orientations_;
   std::map<int, Row> springs_;
 };
 

@@ -122,18 +122,18 @@ breve_object World::shape(const Solid& solid) {
   return shape;
 }
 
-breve_object World::body(const Solid& solid, const Vector3& at, const Quaternion& turn) {
+breve_object World::body(const Solid& solid, const Vector3& at, const Quaternion& orientation) {
   const breve_object made = make(body_class.c_str());
   must(breve_object_set_shape(world_, made, shape(solid)));
   must(breve_object_set_physics(world_, made, true));
-  place(made, at, turn);
+  place(made, at, orientation);
   return made;
 }
 
-breve_object World::fixed(const Solid& solid, const Vector3& at, const Quaternion& turn) {
+breve_object World::fixed(const Solid& solid, const Vector3& at, const Quaternion& orientation) {
   const breve_object made = make("Stationary");
   must(breve_object_set_shape(world_, made, shape(solid)));
-  place(made, at, turn);
+  place(made, at, orientation);
   return made;
 }
 
@@ -145,8 +145,8 @@ void World::set_material(breve_object body, const breve_material& material) {
   must(breve_object_set_material(world_, body, &material));
 }
 
-void World::place(breve_object body, const Vector3& at, const Quaternion& turn) {
-  const breve_pose pose{{at.x(), at.y(), at.z()}, {turn.w(), turn.x(), turn.y(), turn.z()}};
+void World::place(breve_object body, const Vector3& at, const Quaternion& orientation) {
+  const breve_pose pose{{at.x(), at.y(), at.z()}, {orientation.w(), orientation.x(), orientation.y(), orientation.z()}};
   must(breve_object_set_pose(world_, body, &pose));
 }
 
@@ -168,7 +168,7 @@ Vector3 World::at(breve_object body) const {
   return vector(pose.location);
 }
 
-Quaternion World::turn(breve_object body) const {
+Quaternion World::orientation(breve_object body) const {
   breve_pose pose;
   must(breve_object_pose(world_, body, &pose));
   return Quaternion(pose.rotation[0], pose.rotation[1], pose.rotation[2], pose.rotation[3]);
@@ -229,8 +229,9 @@ void World::set_joint(breve_object joint, double position, double velocity) {
 
 double World::open(const Hinge& hinge) const {
   const bool held = hinge.parent.generation != 0;
-  const Vector3 from = held ? Vector3(at(hinge.parent) + turn(hinge.parent) * hinge.parent_point) : hinge.parent_point;
-  return (at(hinge.child) + turn(hinge.child) * hinge.child_point - from).norm();
+  const Vector3 from =
+      held ? Vector3(at(hinge.parent) + orientation(hinge.parent) * hinge.parent_point) : hinge.parent_point;
+  return (at(hinge.child) + orientation(hinge.child) * hinge.child_point - from).norm();
 }
 
 void World::step() {

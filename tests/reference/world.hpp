@@ -73,16 +73,16 @@ class World {
   // --- bodies
   std::string body_class = "Mobile";  // of what body() makes
   breve_object make(const char* class_name);
-  breve_object body(const Solid& solid, const Vector3& at, const Quaternion& turn = Quaternion::Identity());
-  breve_object fixed(const Solid& solid, const Vector3& at, const Quaternion& turn = Quaternion::Identity());
+  breve_object body(const Solid& solid, const Vector3& at, const Quaternion& orientation = Quaternion::Identity());
+  breve_object fixed(const Solid& solid, const Vector3& at, const Quaternion& orientation = Quaternion::Identity());
   void set_material(breve_object body, double friction, double restitution, double tangential = 0);
   void set_material(breve_object body, const breve_material& material);
-  void place(breve_object body, const Vector3& at, const Quaternion& turn);
+  void place(breve_object body, const Vector3& at, const Quaternion& orientation);
   void set_velocity(breve_object body, const Vector3& velocity);
   void set_spin(breve_object body, const Vector3& spin);  // rad/s, world axes
   void set_force(breve_object body, const Vector3& force, const Vector3& torque = Vector3::Zero());
   Vector3 at(breve_object body) const;
-  Quaternion turn(breve_object body) const;
+  Quaternion orientation(breve_object body) const;
   Vector3 velocity(breve_object body) const;
   Vector3 spin(breve_object body) const;
   bool asleep(breve_object body) const;

@@ -50,7 +50,7 @@ class Stage {
     client_.reports.clear();
     stage_.begin(client_, 1, Extent());
     bodies_.translate(kStep);
-    bodies_.turn(kStep);
+    bodies_.rotate(kStep);
     stage_.finish(client_, 0, kStep, Vector3::Zero(), at_impact);
     counters = stage_.take_counters();
     Reports found = client_.reports;
@@ -172,7 +172,7 @@ void disturb(Bodies& bodies, Stage& stage, oracle::Dice& dice, std::span<const s
   const bool mobile = bodies.kind(body) == BodyKind::Mobile;
   switch (static_cast<int>(dice.between(0, 8))) {
     case 0: bodies.set_location(body, dice.vector(6)); break;
-    case 1: bodies.set_orientation(body, dice.turn()); break;
+    case 1: bodies.set_orientation(body, dice.rotation()); break;
     case 2: bodies.set_collision_shape(body, shapes[static_cast<std::size_t>(dice.between(0, 2.99))]); break;
     case 3:
       shapes[static_cast<std::size_t>(dice.between(0, 2.99))]->set_scale(dice.vector(1).cwiseAbs() +

@@ -151,7 +151,8 @@ TEST(ImpactGroups, NoGroupGainsEnergyOrStaysInApproach) {
       scene.add_box(std::pow(10, between(random, -1, 1)), random_vector(random, 1), Vector3(1, 0.5, 0.7));
     for (int k = 0; k < 3 * n; ++k) {
       const int a = static_cast<int>(random.below(static_cast<std::uint64_t>(n)));
-      scene.touch(a, a == 0 ? -1 : a - 1, scene.bodies[static_cast<std::size_t>(a)].place + random_vector(random, 0.5),
+      scene.touch(a, a == 0 ? -1 : a - 1,
+                  scene.bodies[static_cast<std::size_t>(a)].position + random_vector(random, 0.5),
                   articulated::random_rotation(random) * Vector3::UnitZ(), 0);
     }
     for (FreeBody& body : scene.bodies)

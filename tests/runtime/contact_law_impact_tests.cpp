@@ -121,12 +121,12 @@ Collision random_collision(Random& random) {
     const double mass = std::pow(10, between(random, -2, 2));
     const Vector3 size(std::pow(10, between(random, -2, 1)), std::pow(10, between(random, -2, 1)), 1);
     const Vector3 squares = size.cwiseProduct(size);
-    const Matrix3 turn = random_rotation(random).toRotationMatrix();
+    const Matrix3 rotation = random_rotation(random).toRotationMatrix();
     const Matrix3 inertia =
-        mass / 12 * turn *
+        mass / 12 * rotation *
         Vector3(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y()).asDiagonal() *
-        turn.transpose();
-    out.W += response(mass, inertia, turn * (0.5 * size.cwiseProduct(random_vector(random, 1))));
+        rotation.transpose();
+    out.W += response(mass, inertia, rotation * (0.5 * size.cwiseProduct(random_vector(random, 1))));
   }
   out.W = (0.5 * (out.W + out.W.transpose())).eval();
   out.n = random_vector(random, 1).normalized();

@@ -12,13 +12,13 @@ namespace breve::contact {
 
 struct FreeBody {
   double mass;
-  Vector3 place;
+  Vector3 position;
   Matrix3 inertia;  // world axes
   Eigen::Matrix<double, 6, 1> v = Eigen::Matrix<double, 6, 1>::Zero();
 
   Vector3 velocity_at(const Vector3& point) const {
     const Vector3 linear = v.head<3>(), spin = v.tail<3>();
-    return linear + spin.cross(point - place);
+    return linear + spin.cross(point - position);
   }
   double kinetic() const {
     const Vector3 spin = v.tail<3>();
@@ -48,8 +48,8 @@ struct Scene {
   Workspace work{std::pmr::get_default_resource()};
   SolveSettings settings{200, false, 1e-9};
 
-  int add_box(double mass, const Vector3& place, const Vector3& size) {
-    bodies.push_back({mass, place, box_inertia(mass, size)});
+  int add_box(double mass, const Vector3& position, const Vector3& size) {
+    bodies.push_back({mass, position, box_inertia(mass, size)});
     return static_cast<int>(bodies.size()) - 1;
   }
   /// a touches b (-1: the ground) at a point; n from b toward a.
@@ -57,8 +57,8 @@ struct Scene {
     Row row;
     row.a = a;
     row.b = b;
-    if (a >= 0) row.arm_a = point - bodies[static_cast<std::size_t>(a)].place;
-    if (b >= 0) row.arm_b = point - bodies[static_cast<std::size_t>(b)].place;
+    if (a >= 0) row.arm_a = point - bodies[static_cast<std::size_t>(a)].position;
+    if (b >= 0) row.arm_b = point - bodies[static_cast<std::size_t>(b)].position;
     row.axes = frame_of(n);
     row.static_friction = row.dynamic_friction = mu;
     row.pair = a * 1000 + b;
@@ -67,7 +67,7 @@ struct Scene {
   }
   /// The four corners of the lower face of a box of this size.
   void rest_on(int a, int b, const Vector3& size, double mu) {
-    const Vector3 centre = bodies[static_cast<std::size_t>(a)].place;
+    const Vector3 centre = bodies[static_cast<std::size_t>(a)].position;
     for (const double x : {-0.5, 0.5})
       for (const double y : {-0.5, 0.5})
         touch(a, b, centre + Vector3(x * size.x(), y * size.y(), -0.5 * size.z()), Vector3::UnitZ(), mu);
@@ -105,11 +105,11 @@ struct Scene {
     Vector3 u = Vector3::Zero();
     if (row.a >= 0) {
       const FreeBody& a = bodies[static_cast<std::size_t>(row.a)];
-      u += a.velocity_at(a.place + row.arm_a);
+      u += a.velocity_at(a.position + row.arm_a);
     }
     if (row.b >= 0) {
       const FreeBody& b = bodies[static_cast<std::size_t>(row.b)];
-      u -= b.velocity_at(b.place + row.arm_b);
+      u -= b.velocity_at(b.position + row.arm_b);
     }
     return row.axes * u;
   }

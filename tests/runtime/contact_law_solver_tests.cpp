@@ -144,19 +144,19 @@ TEST_P(BothWays, FrictionIsACone) {
   for (const reference::Row& row : reference::read("friction_isotropy")) {
     const double angle = row.number("direction_deg") * kRadian;
     // The answer may not depend on how the tangents lie.
-    for (const double turn : {0.0, 0.3, 1.1}) {
+    for (const double rotation : {0.0, 0.3, 1.1}) {
       Scene scene;
       scene.stack({row.number("mass")}, row.number("mu"));
       for (Row& contact : scene.rows)
-        contact.axes = (contact.axes * Eigen::AngleAxisd(turn, Vector3::UnitZ()).toRotationMatrix()).eval();
+        contact.axes = (contact.axes * Eigen::AngleAxisd(rotation, Vector3::UnitZ()).toRotationMatrix()).eval();
       // Pushed at the height of the floor, so that it does not tip.
       scene.bodies[0].inertia *= 1e9;
       scene.pull(Vector3(row.number("force") * std::cos(angle), row.number("force") * std::sin(angle), -kGravity),
                  kStep);
       use(scene);
       scene.solve();
-      EXPECT_NEAR(scene.bodies[0].v[0], row.number("ax") * kStep, 1e-8) << angle << ' ' << turn;
-      EXPECT_NEAR(scene.bodies[0].v[1], row.number("ay") * kStep, 1e-8) << angle << ' ' << turn;
+      EXPECT_NEAR(scene.bodies[0].v[0], row.number("ax") * kStep, 1e-8) << angle << ' ' << rotation;
+      EXPECT_NEAR(scene.bodies[0].v[1], row.number("ay") * kStep, 1e-8) << angle << ' ' << rotation;
     }
   }
 }
@@ -230,7 +230,7 @@ void torture(Scene& scene, Random& random, double most_mu, double decades) {
     const int a = static_cast<int>(random.below(static_cast<std::uint64_t>(n)));
     int b = static_cast<int>(random.below(static_cast<std::uint64_t>(n + 1))) - 1;
     if (a == b) b = -1;
-    const Vector3 point = scene.bodies[static_cast<std::size_t>(a)].place + random_vector(random, 0.5);
+    const Vector3 point = scene.bodies[static_cast<std::size_t>(a)].position + random_vector(random, 0.5);
     const double dynamic = most_mu * random.uniform();
     Row& row = scene.touch(a, b, point, random_rotation(random) * Vector3::UnitZ(), dynamic);
     if (random.below(3) == 0) row.static_friction *= 1.3;

@@ -17,7 +17,7 @@ double left_in_motion(bool plain, bool momentum, int sweeps) {
   Scene scene;
   scene.stack(std::vector<double>(10, 1.0), 0.5);
   for (FreeBody& body : scene.bodies) {
-    body.v[0] = 0.01 * body.place.z();
+    body.v[0] = 0.01 * body.position.z();
     body.v[4] = 0.01;
   }
   scene.pull({0, 0, -9.81}, 1.0 / 60);
@@ -60,7 +60,7 @@ void heap(Scene& scene, Random& random, int boxes, int contacts) {
   }
   for (int i = 0; i < contacts; ++i) {
     const int a = static_cast<int>(random.below(static_cast<std::uint64_t>(boxes)));
-    const Vector3 point = scene.bodies[static_cast<std::size_t>(a)].place + random_vector(random, 0.5);
+    const Vector3 point = scene.bodies[static_cast<std::size_t>(a)].position + random_vector(random, 0.5);
     scene.touch(a, a - 1, point, Vector3::UnitZ(), 0.5).impulse = Vector3(0.1, 0, 0);
   }
 }

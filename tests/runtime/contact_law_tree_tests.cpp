@@ -77,7 +77,7 @@ struct Wood {
       side(row.a, row.ja, row.ra, a, point, axes, random);
       if (random.below(2) == 0) {
         row.b = box;
-        row.arm_b = point - scene.bodies[0].place;
+        row.arm_b = point - scene.bodies[0].position;
       } else if (trees.size() > 1) {
         side(row.b, row.jb, row.rb, 1 - a, point, axes, random);
       }

@@ -128,8 +128,8 @@ TEST(DynamicsContact, ARingStaysClosed) {
     const Vector3 corners[] = {{0, 0, 0}, {1, 0, 0}, {1, -1, 0}, {0, -1, 0}};
     for (int i = 0; i < 4; ++i) {
       const Vector3 a = corners[i], b = corners[(i + 1) % 4];
-      const Quaternion turn = Quaternion::FromTwoVectors(Vector3::UnitY(), b - a);
-      rods.push_back(s.rigid(Shape::box(Vector3(0.1, 1, 0.1)), 0.5 * (a + b), turn));
+      const Quaternion rotation = Quaternion::FromTwoVectors(Vector3::UnitY(), b - a);
+      rods.push_back(s.rigid(Shape::box(Vector3(0.1, 1, 0.1)), 0.5 * (a + b), rotation));
     }
     const auto pin = [&](int parent, int child, const Vector3& at) {
       JointDescription is;
@@ -154,7 +154,7 @@ TEST(DynamicsContact, ARingStaysClosed) {
     pin(-1, 0, corners[0]);
     for (int i = 1; i < 4; ++i) pin(i - 1, i, corners[i]);
     pin(3, 0, corners[0]);
-    EXPECT_TRUE(s.mechanics().closes_ring(joints.back()));
+    EXPECT_TRUE(s.mechanics().closes_loop(joints.back()));
     const double start = s.mechanics().energy().total();
     double open = 0, highest = 0;  // J in motion: what turns over
     for (int i = 0; i < 300; ++i) {

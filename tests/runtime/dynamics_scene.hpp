@@ -25,9 +25,9 @@ struct Physics : Scene {
   }
   Mechanics& mechanics() { return world.mechanics(); }
   /// A physics-enabled body.
-  ObjectId rigid(std::shared_ptr<Shape> shape, const Vector3& at, const Quaternion& turn = Quaternion::Identity()) {
+  ObjectId rigid(std::shared_ptr<Shape> shape, const Vector3& at, const Quaternion& rotation = Quaternion::Identity()) {
     const ObjectId id = body(1, at, BodyKind::Mobile, std::move(shape));
-    world.bodies().set_orientation(world.body(id), turn);
+    world.bodies().set_orientation(world.body(id), rotation);
     world.bodies().set_physics(world.body(id), true);
     return id;
   }
@@ -97,10 +97,10 @@ struct Machine : Physics {
     const ObjectId id = links[i];
     const JointIndex joint = joints[i];
     if (link.type == articulated::JointType::Free) {
-      const Quaternion turn = link.rotation * Quaternion(q[3], q[4], q[5], q[6]);
-      const Vector3 spin = turn * Vector3(v[3], v[4], v[5]);
-      const Vector3 arm = turn * link.com;
-      world.bodies().set_orientation(index(id), turn);
+      const Quaternion rotation = link.rotation * Quaternion(q[3], q[4], q[5], q[6]);
+      const Vector3 spin = rotation * Vector3(v[3], v[4], v[5]);
+      const Vector3 arm = rotation * link.com;
+      world.bodies().set_orientation(index(id), rotation);
       world.bodies().set_location(index(id), link.position + link.rotation * Vector3(q[0], q[1], q[2]) + arm);
       world.bodies().set_velocity(index(id), link.rotation * Vector3(v[0], v[1], v[2]) + spin.cross(arm));
       world.bodies().set_rotational_velocity(index(id), spin);
@@ -137,18 +137,18 @@ struct Machine : Physics {
       const Quaternion from = held ? bodies.orientation(parent) : Quaternion::Identity();
       const Vector3 spin =
           bodies.rotational_velocity(body) - (held ? bodies.rotational_velocity(parent) : Vector3(Vector3::Zero()));
-      const Quaternion turn = link.rotation.conjugate() * from.conjugate() * bodies.orientation(body);
+      const Quaternion rotation = link.rotation.conjugate() * from.conjugate() * bodies.orientation(body);
       const Vector3 own = bodies.orientation(body).conjugate() * spin;
       if (link.type == articulated::JointType::Free) {
         const Vector3 arm = bodies.orientation(body) * -link.com;
         const Vector3 at = bodies.location(body) + arm - link.position;
         const Vector3 speed = bodies.velocity(body) + bodies.rotational_velocity(body).cross(arm);
         Eigen::Map<Vector3>{q} = link.rotation.conjugate() * at;
-        q[3] = turn.w(), q[4] = turn.x(), q[5] = turn.y(), q[6] = turn.z();
+        q[3] = rotation.w(), q[4] = rotation.x(), q[5] = rotation.y(), q[6] = rotation.z();
         Eigen::Map<Vector3>{v} = link.rotation.conjugate() * speed;
         Eigen::Map<Vector3>{v + 3} = own;
       } else if (link.type == articulated::JointType::Ball) {
-        q[0] = turn.w(), q[1] = turn.x(), q[2] = turn.y(), q[3] = turn.z();
+        q[0] = rotation.w(), q[1] = rotation.x(), q[2] = rotation.y(), q[3] = rotation.z();
         Eigen::Map<Vector3>{v} = own;
       } else if (joints[i] != kNoJoint) {
         const JointVector position = mechanics().position(joints[i]), rate = mechanics().velocity(joints[i]);

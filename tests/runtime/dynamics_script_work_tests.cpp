@@ -181,13 +181,13 @@ TEST_P(ScriptWork, OfASpringIsWhatItHoldsMore) {
   is.length = 2.5;
   is.strength = 10;
   is.damping = 0;
-  const SpringIndex spring = physics().tie(is, a);
+  const SpringIndex spring = physics().add_spring(is, a);
   EXPECT_NEAR(work(), 0.5 * 10 * 0.25, 1e-6);
   is.length = 2;
   is.strength = 20;
   physics().set_spring(spring, is);
   EXPECT_NEAR(work(), 0.5 * 20, 1e-6);
-  physics().untie(spring);
+  physics().remove_spring(spring);
   expect(0, 10);
 }
 

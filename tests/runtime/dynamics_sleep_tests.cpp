@@ -182,7 +182,7 @@ TEST_P(SleepInSpace, EndsWhenASpringIsMadeChangedOrCut) {
   is.length = 4;
   is.strength = 100;
   is.damping = 30;
-  const SpringIndex spring = physics().tie(is, box);
+  const SpringIndex spring = physics().add_spring(is, box);
   s.run(20);
   const double hangs = 8 - 4 - 9.81 * s.world.bodies().mass(s.index(box)) / 100;
   EXPECT_NEAR(s.at(box).y(), hangs, 0.05);
@@ -192,7 +192,7 @@ TEST_P(SleepInSpace, EndsWhenASpringIsMadeChangedOrCut) {
   s.run(20);
   EXPECT_NEAR(s.at(box).y(), hangs + 1, 0.05);
   s.fall_asleep(box);
-  physics().untie(spring);
+  physics().remove_spring(spring);
   s.run(5);
   EXPECT_NEAR(s.at(box).y(), 0, 0.05);
 }

@@ -68,17 +68,17 @@ TEST(DynamicsStability, AThousandKilogramsOnOne) {
 /// Links of a chain along `way` from the origin, hinged about z. Returns the bodies.
 std::vector<ObjectId> chain(Physics& s, int count, double length, double mass, const Vector3& way) {
   std::vector<ObjectId> links;
-  const Quaternion turn = Quaternion::FromTwoVectors(-Vector3::UnitY(), way);
+  const Quaternion rotation = Quaternion::FromTwoVectors(-Vector3::UnitY(), way);
   for (int i = 0; i < count; ++i) {
     std::shared_ptr<Shape> shape = Shape::box(Vector3(0.05, length, 0.05));
     shape->set_mass(mass);
-    links.push_back(s.rigid(shape, Vector3::Zero(), turn));
+    links.push_back(s.rigid(shape, Vector3::Zero(), rotation));
     JointDescription is;
     is.child = s.index(links.back());
     is.child_point = Vector3(0, 0.5 * length, 0);
     is.normal = Vector3::UnitZ();
     if (i == 0) {
-      is.relative_rotation = turn;
+      is.relative_rotation = rotation;
     } else {
       is.parent = s.index(links[static_cast<std::size_t>(i - 1)]);
       is.parent_point = Vector3(0, -0.5 * length, 0);
@@ -212,7 +212,7 @@ TEST(DynamicsStability, PlatesThatClapStayWhereTheyAre) {
   is.b = s.index(b);
   is.strength = 5;
   is.damping = 0;
-  s.mechanics().tie(is, a);
+  s.mechanics().add_spring(is, a);
   double moved = 0;
   s.measure(20, [&] { moved = std::max(moved, (0.5 * (s.at(a) + s.at(b))).norm()); });
   s.print("plates");

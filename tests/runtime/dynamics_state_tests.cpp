@@ -36,12 +36,12 @@ struct Mixed : Physics {
     mechanics().set_drive(joints[2], drive);
     for (int i = 0; i < 3; ++i)
       boxes.push_back(rigid(Shape::box(Vector3(1, 1, 1)), Vector3(3, 0.5 + 1.2 * i, 0.1 * i)));
-    SpringDescription tie;
-    tie.a = index(links[2]);
-    tie.b = index(boxes[2]);
-    tie.strength = 2;
-    tie.length = 1;
-    mechanics().tie(tie, links[2]);
+    SpringDescription spring;
+    spring.a = index(links[2]);
+    spring.b = index(boxes[2]);
+    spring.strength = 2;
+    spring.length = 1;
+    mechanics().add_spring(spring, links[2]);
   }
 };
 
@@ -120,7 +120,7 @@ TEST(DynamicsState, AMovedLinkTakesItsAssemblyAlong) {
   EXPECT_LT((s.at(b) - Vector3(10, 2, 0)).norm(), 1e-9);
 }
 
-TEST(DynamicsState, PositionIsPositiveWhenTheParentTurnsAlongTheNormal) {
+TEST(DynamicsState, PositionIsPositiveWhenTheParentRotatesAlongTheNormal) {
   for (const bool flipped : {false, true}) {
     Physics s;
     s.mechanics().set_gravity(Vector3::Zero());
@@ -141,8 +141,8 @@ TEST(DynamicsState, PositionIsPositiveWhenTheParentTurnsAlongTheNormal) {
     s.mechanics().set_position(joint, Vector3(0.3, 0, 0));
     s.mechanics().set_velocity(joint, Vector3(0.5, 0, 0));
     const Bodies& bodies = s.world.bodies();
-    const Quaternion turn = bodies.orientation(s.index(child)).conjugate() * bodies.orientation(s.index(parent));
-    EXPECT_NEAR(2 * std::atan2(turn.z(), turn.w()), 0.3, kRounding) << flipped;
+    const Quaternion rotation = bodies.orientation(s.index(child)).conjugate() * bodies.orientation(s.index(parent));
+    EXPECT_NEAR(2 * std::atan2(rotation.z(), rotation.w()), 0.3, kRounding) << flipped;
     const Vector3 spin = bodies.rotational_velocity(s.index(parent)) - bodies.rotational_velocity(s.index(child));
     EXPECT_NEAR(spin.z(), 0.5, kRounding) << flipped;
   }
@@ -280,7 +280,7 @@ TEST(DynamicsState, TheCounterOfSleepersIsTheirNumber) {
   EXPECT_EQ(s.mechanics().counters().sleeping, 2U);
 }
 
-TEST(DynamicsState, ALinkThatIsTurnedBeforeTheFirstStepTakesItsAssemblyAlong) {
+TEST(DynamicsState, ALinkThatIsRotatedBeforeTheFirstStepTakesItsAssemblyAlong) {
   Physics s;
   const ObjectId a = s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3::Zero());
   const ObjectId b = s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3(5, 5, 5));

@@ -55,11 +55,11 @@ struct Crowd : Physics {
       mechanics().set_drive(joints.back(), drive);
       last = next;
     }
-    SpringDescription tie;
-    tie.a = index(first);
-    tie.b = index(last);
-    tie.length = 0.5;
-    mechanics().tie(tie, first);
+    SpringDescription spring;
+    spring.a = index(first);
+    spring.b = index(last);
+    spring.length = 0.5;
+    mechanics().add_spring(spring, first);
   }
   /// What a host can see of a step.
   std::string events() {

@@ -26,18 +26,18 @@ struct Set {
   double extent = 0;  // the longest side of the box around the points
 };
 
-/// Moments of a box or of a prism with a regular base, about its centre, turned by `turn`.
-inline Moments box_moments(const Vector3& size, const Quaternion& turn) {
+/// Moments of a box or of a prism with a regular base, about its centre, turned by `rotation`.
+inline Moments box_moments(const Vector3& size, const Quaternion& rotation) {
   const Vector3 squares = size.cwiseAbs2() / 12;
-  const Matrix3 r = turn.toRotationMatrix();
+  const Matrix3 r = rotation.toRotationMatrix();
   return {size.prod(), Vector3::Zero(), size.prod() * (r * squares.asDiagonal() * r.transpose())};
 }
-inline Moments prism_moments(int sides, double height, double radius, const Quaternion& turn) {
+inline Moments prism_moments(int sides, double height, double radius, const Quaternion& rotation) {
   const double angle = 2 * std::numbers::pi / sides;
   const double area = sides * radius * radius * std::sin(angle) / 2;
   // Mean square of x over a regular polygon, the same along each axis.
   const double square = radius * radius * (2 + std::cos(angle)) / 12;
-  const Matrix3 r = turn.toRotationMatrix();
+  const Matrix3 r = rotation.toRotationMatrix();
   const Vector3 squares(square, height * height / 12, square);
   return {area * height, Vector3::Zero(), area * height * (r * squares.asDiagonal() * r.transpose())};
 }
@@ -62,10 +62,10 @@ inline Set make_set(int number) {
   Set set;
   set.cloud = static_cast<Cloud>(number % kClouds);
   const int more = 4 + (number / kClouds) * 2;
-  const Quaternion turn = number % 20 < 10 ? dice.turn() : Quaternion::Identity();
+  const Quaternion rotation = number % 20 < 10 ? dice.rotation() : Quaternion::Identity();
   const auto box = [&](const Vector3& size) {
     set.points = box_points(dice, size, more);
-    set.exact = box_moments(size, turn);
+    set.exact = box_moments(size, rotation);
   };
   const auto ball = [&](bool on_sphere) {
     while (static_cast<int>(set.points.size()) < more + 8) {
@@ -101,12 +101,12 @@ inline Set make_set(int number) {
       const int sides = 3 + number / kClouds;
       const auto prism = make_prism(sides, 0.7, 1.3);
       set.points.assign(prism.vertices.begin(), prism.vertices.end());
-      set.exact = prism_moments(sides, 0.7, 1.3, turn);
+      set.exact = prism_moments(sides, 0.7, 1.3, rotation);
       break;
     }
   }
   Eigen::AlignedBox3d bounds;
-  for (Vector3& p : set.points) bounds.extend(p = turn * p + set.center);
+  for (Vector3& p : set.points) bounds.extend(p = rotation * p + set.center);
   set.extent = bounds.sizes().maxCoeff();
   return set;
 }

@@ -41,7 +41,7 @@ class MechanicsTest : public ::testing::TestWithParam<int> {
     is.point_a = {0.5, 0, 0};
     is.length = 1;
     is.strength = 3;
-    return mechanics().tie(is, ObjectId{});
+    return mechanics().add_spring(is, ObjectId{});
   }
 
   Scene scene;
@@ -108,7 +108,7 @@ TEST_P(MechanicsTest, NamesJointsAndSpringsThatAreNotThere) {
   Mechanics& m = mechanics();
   for (int made = 0; made < 2; ++made) {  // before and after there has been one
     EXPECT_FALSE(m.linked(0));
-    EXPECT_FALSE(m.tied(0));
+    EXPECT_FALSE(m.has_spring(0));
     EXPECT_EQ(refusal([&] { m.joint(0); }), "the joint is not linked");
     EXPECT_EQ(refusal([&] { m.drive(7); }), "the joint is not linked");
     EXPECT_EQ(refusal([&] { m.strength_hard_limit(kNoJoint); }), "the joint is not linked");
@@ -117,7 +117,7 @@ TEST_P(MechanicsTest, NamesJointsAndSpringsThatAreNotThere) {
     EXPECT_EQ(refusal([&] { m.spring_length(kNoSpring); }), "the spring is not connected");
     const BodyIndex a = cube(0), b = cube(4);
     m.unlink(slider(a, b));
-    m.untie(spring(a, b));
+    m.remove_spring(spring(a, b));
   }
 }
 
@@ -136,12 +136,12 @@ TEST_P(MechanicsTest, UsesFreePlacesOfItsTablesAgain) {
 
 TEST_P(MechanicsTest, MeasuresSpringsAndLimitsMotors) {
   const BodyIndex a = cube(0), b = cube(4);
-  const SpringIndex tie = spring(a, b);
-  EXPECT_DOUBLE_EQ(mechanics().spring_length(tie), 3.5);
-  EXPECT_EQ(mechanics().spring_force(tie), 0);
+  const SpringIndex made = spring(a, b);
+  EXPECT_DOUBLE_EQ(mechanics().spring_length(made), 3.5);
+  EXPECT_EQ(mechanics().spring_force(made), 0);
   const JointIndex joint = slider(a, b);
   EXPECT_DOUBLE_EQ(mechanics().strength_hard_limit(joint), 500 * scene.world.bodies().mass(b));
-  EXPECT_FALSE(mechanics().closes_ring(joint));
+  EXPECT_FALSE(mechanics().closes_loop(joint));
 }
 
 TEST_P(MechanicsTest, SettingsOfOneBodyHoldForItsAssembly) {

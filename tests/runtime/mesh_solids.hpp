@@ -37,7 +37,7 @@ struct Mesh {
 using Outline = std::vector<std::pair<double, double>>;
 
 /// `outline` runs with the solid on its left, seen with the radius to the right; a radius of 0 is on the axis.
-inline Mesh turned(const Outline& outline, int sides, bool closed) {
+inline Mesh revolved(const Outline& outline, int sides, bool closed) {
   Mesh mesh;
   std::vector<std::vector<std::int32_t>> ring;
   for (const auto& [radius, height] : outline) {
@@ -68,13 +68,13 @@ inline Mesh torus(double radius, double tube, int sides, int around) {
     const double angle = 2 * std::numbers::pi * i / around;
     outline.emplace_back(radius + tube * std::cos(angle), tube * std::sin(angle));
   }
-  return turned(outline, sides, true);
+  return revolved(outline, sides, true);
 }
 
 /// Open above; its foot is at height 0.
 inline Mesh cup(double radius, double height, double wall, int sides) {
-  return turned({{0, 0}, {radius, 0}, {radius, height}, {radius - wall, height}, {radius - wall, wall}, {0, wall}},
-                sides, false);
+  return revolved({{0, 0}, {radius, 0}, {radius, height}, {radius - wall, height}, {radius - wall, wall}, {0, wall}},
+                  sides, false);
 }
 
 /// Half a hollow ball, open above.
@@ -85,7 +85,7 @@ inline Mesh bowl(double radius, double wall, int sides, int rows) {
     const double angle = std::numbers::pi / 2 * (row - rows) / rows, r = i <= rows ? radius : radius - wall;
     outline.emplace_back(row == 0 ? 0 : r * std::cos(angle), r * std::sin(angle));
   }
-  return turned(outline, sides, false);
+  return revolved(outline, sides, false);
 }
 
 inline Mesh block(const Vector3& size) {

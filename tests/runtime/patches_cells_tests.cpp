@@ -247,14 +247,14 @@ TEST(Grid, CellsAreFoundByPlaceAndByIndex) {
   EXPECT_EQ(toroid.at(Vector3(-0.1, 0.5, 1)), toroid.at(3, 0, 0));
 }
 
-TEST(Occupants, StandInRingsAndFreeCellsAreKnownAtAllTimes) {
+TEST(Occupants, StandInCyclesAndFreeCellsAreKnownAtAllTimes) {
   const Grid grid = plane(5, 4, true);
   Occupants occupants(std::pmr::get_default_resource());
   occupants.make(grid);
   occupants.set_capacity(0);
   Random random(5);
   std::vector<std::vector<std::uint32_t>> model(grid.cells());  // ids by cell in order of arrival
-  std::vector<std::pair<Occupants::Place, std::uint32_t>> present;
+  std::vector<std::pair<Occupants::Slot, std::uint32_t>> present;
   const auto take_out = [&](CellIndex cell, std::uint32_t id) { std::erase(model[cell], id); };
   for (std::uint32_t i = 1; i < 3000; ++i) {
     const auto cell = static_cast<CellIndex>(random.below(grid.cells()));
@@ -264,20 +264,20 @@ TEST(Occupants, StandInRingsAndFreeCellsAreKnownAtAllTimes) {
       model[cell].push_back(i);
     } else {
       const auto n = static_cast<std::size_t>(random.below(present.size()));
-      const auto [place, id] = present[n];
-      take_out(occupants.agent(place).cell, id);
+      const auto [slot, id] = present[n];
+      take_out(occupants.agent(slot).cell, id);
       if (what == 1 || present.size() > 15) {
-        occupants.leave(place);
+        occupants.leave(slot);
         present.erase(present.begin() + static_cast<std::ptrdiff_t>(n));
       } else {
-        occupants.move(place, cell);
+        occupants.move(slot, cell);
         model[cell].push_back(id);
       }
     }
     std::size_t free = 0;
     for (CellIndex c = 0; c < grid.cells(); ++c) {
       std::vector<std::uint32_t> found;
-      for (auto p = occupants.first(c); p != Occupants::kNoPlace; p = occupants.next(p))
+      for (auto p = occupants.first(c); p != Occupants::kNoSlot; p = occupants.next(p))
         found.push_back(occupants.agent(p).id.index);
       ASSERT_EQ(found, model[c]) << i;
       ASSERT_EQ(occupants.count(c), found.size());
@@ -311,7 +311,7 @@ TEST(Occupants, StandInRingsAndFreeCellsAreKnownAtAllTimes) {
     }
     for (CellIndex c = 0; c < grid.cells(); ++c) {
       std::uint32_t count = 0;
-      for (auto p = other.first(c); p != Occupants::kNoPlace; p = other.next(p)) ++count;
+      for (auto p = other.first(c); p != Occupants::kNoSlot; p = other.next(p)) ++count;
       ASSERT_EQ(count, other.count(c));
     }
   }

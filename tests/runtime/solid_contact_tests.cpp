@@ -32,12 +32,12 @@ TEST(Closest, ConcentricSpheresHaveAUnitNormalAndFullDepth) {
   EXPECT_EQ(c.normal.norm(), 1);
 }
 
-TEST(Closest, SphereAndTurnedBoxInClosedForm) {
+TEST(Closest, SphereAndRotatedBoxInClosedForm) {
   oracle::Dice dice(1);
   for (int i = 0; i < 2000; ++i) {
     const Vector3 half(dice.between(0.1, 2), dice.between(0.1, 2), dice.between(0.1, 2));
     const auto ball = Shape::sphere(dice.between(0.1, 1)), box = Shape::box(2 * half);
-    const Pose at{dice.vector(3), dice.turn()}, center{dice.vector(4), dice.turn()};
+    const Pose at{dice.vector(3), dice.rotation()}, center{dice.vector(4), dice.rotation()};
     const Vector3 p = at.orientation.conjugate() * (center.location - at.location);
     const Vector3 clamped = p.cwiseMax(-half).cwiseMin(half);
     const bool inside = clamped == p;
@@ -59,7 +59,7 @@ TEST(Closest, PolyhedraApartMatchAllPairsOfFeatures) {
   int apart = 0;
   for (int i = 0; i < 3000; ++i) {
     const auto a = dice.polyhedron(i), b = dice.polyhedron(i / 4);
-    const Pose pa{dice.vector(1), dice.turn()}, pb{dice.vector(3), i % 5 == 0 ? pa.orientation : dice.turn()};
+    const Pose pa{dice.vector(1), dice.rotation()}, pb{dice.vector(3), i % 5 == 0 ? pa.orientation : dice.rotation()};
     const Contact c = closest(*a, pa, *b, pb);
     if (c.distance <= 0) continue;
     ++apart;
@@ -75,8 +75,8 @@ TEST(Closest, TinyGapsKeepTheirDigits) {
   oracle::Dice dice(3);
   for (int i = 0; i < 2000; ++i) {
     const auto a = dice.polyhedron(i), b = dice.polyhedron(i / 4);
-    const Pose pa{dice.vector(1), dice.turn()};
-    Pose pb{dice.vector(3), dice.turn()};
+    const Pose pa{dice.vector(1), dice.rotation()};
+    Pose pb{dice.vector(3), dice.rotation()};
     const Contact far = closest(*a, pa, *b, pb);
     // Move b along the normal to a gap of 1e-3 ... 1e-11: the old distance less the way (the normal stays the best
     // one).
@@ -96,8 +96,8 @@ TEST(Closest, OverlappingBoxesMatchTheFifteenAxes) {
   for (int i = 0; i < 5000; ++i) {
     const Vector3 ha(dice.between(0.1, 1), dice.between(0.1, 1), dice.between(0.1, 1));
     const Vector3 hb(dice.between(0.1, 1), dice.between(0.1, 1), dice.between(0.1, 1));
-    const Pose pa{dice.vector(1), dice.turn()},
-        pb{pa.location + dice.vector(0.8), i % 5 == 0 ? pa.orientation : dice.turn()};
+    const Pose pa{dice.vector(1), dice.rotation()},
+        pb{pa.location + dice.vector(0.8), i % 5 == 0 ? pa.orientation : dice.rotation()};
     const Eigen::Matrix3d ra = pa.orientation.toRotationMatrix(), rb = pb.orientation.toRotationMatrix();
     double expected = -1e9;
     const auto axis = [&](Vector3 n) {
@@ -126,8 +126,8 @@ TEST(Closest, DepthIsTheShortestWayOutForAnyPolyhedra) {
   int overlaps = 0;
   for (int i = 0; i < 1500; ++i) {
     const auto a = dice.polyhedron(i), b = dice.polyhedron(i / 4);
-    const Pose pa{dice.vector(1), dice.turn()};
-    Pose pb{pa.location + dice.vector(0.7), dice.turn()};
+    const Pose pa{dice.vector(1), dice.rotation()};
+    Pose pb{pa.location + dice.vector(0.7), dice.rotation()};
     const Contact c = closest(*a, pa, *b, pb);
     if (c.distance > 0) continue;
     ++overlaps;
@@ -160,7 +160,7 @@ TEST(Closest, SphereOnAConeTipAndSide) {
               kExact);  // first base vertex on +x
 }
 
-TEST(PoseAt, TurnsByTheExponentialMap) {
+TEST(PoseAt, RotatesByTheExponentialMap) {
   const Motion motion{
       {Vector3(1, 2, 3), Quaternion(Eigen::AngleAxisd(0.3, Vector3::UnitX()))}, Vector3(1, 0, 0), Vector3(0, 0, 2)};
   const Pose pose = pose_at(motion, 0.5);

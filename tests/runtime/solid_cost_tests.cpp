@@ -70,7 +70,7 @@ TEST(NarrowCost, AFarPeakMakesNothingDearer) {
   oracle::Dice dice(91);
   for (int i = 0; i < 50; ++i) {
     Motion motion;
-    motion.start = {dice.vector(5), dice.turn()};
+    motion.start = {dice.vector(5), dice.rotation()};
     motion.start.location.y() = 5;
     motion.velocity = Vector3(0.01, 0, 0);
     const NarrowCounters with = asked(*cone, motion, *peak), without = asked(*cone, motion, *plain);
@@ -105,7 +105,7 @@ TEST(NarrowCost, AMeshOnALargeBoxIsLookedAtWhereItTouches) {
   oracle::Dice dice(92);
   for (int i = 0; i < 20; ++i) {
     // Lifted so that it is a thousandth above the floor at its lowest corner, turned in any way but on its flat base.
-    Pose pose{Vector3(dice.between(-20, 20), 0, dice.between(-20, 20)), dice.turn()};
+    Pose pose{Vector3(dice.between(-20, 20), 0, dice.between(-20, 20)), dice.rotation()};
     const Quaternion level(Eigen::AngleAxisd(dice.between(0, 6), dice.direction()));
     double low = 0;
     for (const Vector3& p : mesh->vertices()) low = std::min(low, (pose.orientation * p).y());
@@ -146,7 +146,7 @@ TEST(NarrowCost, WithinALimitTheContactIsTheClosestAndBeyondThereIsNone) {
   for (int i = 0; i < 3000; ++i) {
     const auto solid = i % 5 == 0 ? Shape::sphere(dice.between(0.2, 1)) : dice.polyhedron(i);
     const std::shared_ptr<Shape> other = i % 3 == 0 ? hills : i % 3 == 1 ? mesh : dice.polyhedron(i / 3);
-    const Pose a{dice.vector(2.5), dice.turn()}, b{Vector3::Zero(), dice.turn()};
+    const Pose a{dice.vector(2.5), dice.rotation()}, b{Vector3::Zero(), dice.rotation()};
     const double limit = i % 4 == 0 ? -0.05 : i % 4 == 1 ? 0 : dice.between(1e-9, 1);
     const Contact exact = closest(*solid, a, *other, b);
     Contact found;
@@ -195,8 +195,8 @@ TEST(Clearance, IsNeverMoreThanTheDistanceAndTellsMostFacetsApart) {
     const auto solid = i % 6 == 5   ? Shape::sphere(dice.between(0.2, 3))
                        : i % 6 == 4 ? Shape::prism(40, dice.between(0.1, 1), dice.between(1, 9))
                                     : dice.polyhedron(i);
-    const Placed convex = place(*solid, {dice.vector(3), dice.turn()}),
-                 frame = place(*mesh, {dice.vector(1), dice.turn()});
+    const Placed convex = place(*solid, {dice.vector(3), dice.rotation()}),
+                 frame = place(*mesh, {dice.vector(1), dice.rotation()});
     Auditor auditor(convex, frame, *mesh->surface());
     mesh->surface()->under(mesh->surface()->bounds(), auditor);
     EXPECT_EQ(auditor.counters.facets, 400U);

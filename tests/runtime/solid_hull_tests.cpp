@@ -50,9 +50,9 @@ TEST(HullSets, BoxesAndPrismsHaveTheirOwnFacesAndNoMore) {
     const std::size_t sides = set.cloud == Cloud::Prism ? set.points.size() / 2 : 4;
     ASSERT_EQ(hull.faces.size(), sides + 2) << "set " << i;
     // A point on an edge of a turned box may stand out of it by round-off.
-    const bool turned = i % 20 < 10 && set.cloud != Cloud::Prism;
+    const bool rotated = i % 20 < 10 && set.cloud != Cloud::Prism;
     ASSERT_GE(hull.vertices.size(), 2 * sides) << "set " << i;
-    if (!turned) {
+    if (!rotated) {
       ASSERT_EQ(hull.vertices.size(), 2 * sides) << "set " << i;
     }
   }

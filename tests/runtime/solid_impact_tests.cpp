@@ -72,19 +72,19 @@ TEST(TimeOfImpact, ABulletMeetsAThinWall) {
 
 /// A body that falls freely for `from` seconds and then, until the reference time, follows the chord of its parabola:
 /// at the reference time it is exactly where the falling body is.
-Motion falling(const Vector3& start, double speed, const Quaternion& turned, const Vector3& spin, double from,
+Motion falling(const Vector3& start, double speed, const Quaternion& rotated, const Vector3& spin, double from,
                double to) {
   const auto at = [&](double t) { return Vector3(start + Vector3(0, 0, speed * t - 9.81 * t * t / 2)); };
-  const Pose pose = pose_at({{at(from), turned}, Vector3::Zero(), spin}, from);
+  const Pose pose = pose_at({{at(from), rotated}, Vector3::Zero(), spin}, from);
   return {{at(from), pose.orientation}, (at(to) - at(from)) / (to - from), spin};
 }
 
-void expect_fall_hits(const Shape& shape, const Vector3& start, double speed, const Quaternion& turned,
+void expect_fall_hits(const Shape& shape, const Vector3& start, double speed, const Quaternion& rotated,
                       const Vector3& spin, double expected, double accuracy) {
   const auto floor = Shape::box(Vector3(100, 100, 2));
   const double from = expected - 0.02;
-  Motion motion = falling(start, speed, turned, spin, from, expected);
-  motion.start.orientation = pose_at({{start, turned}, Vector3::Zero(), spin}, from).orientation;
+  Motion motion = falling(start, speed, rotated, spin, from, expected);
+  motion.start.orientation = pose_at({{start, rotated}, Vector3::Zero(), spin}, from).orientation;
   double t = 0;
   Contact contact;
   ASSERT_TRUE(time_of_impact(shape, motion, *floor, still(Vector3(0, 0, -1)), 0.04, t, contact));
@@ -167,9 +167,9 @@ TEST(TimeOfImpact, TumblingSolidsNeverTunnelAndStopAtTheFirstTouch) {
   int hits = 0, sharper = 0;
   for (int i = 0; i < 600; ++i) {
     Scene s{dice.polyhedron(i), i % 6 == 5 ? Shape::sphere(dice.between(0.1, 1)) : dice.polyhedron(i / 4), {}, {}};
-    s.ma = {{Vector3::Zero(), dice.turn()}, Vector3::Zero(), dice.vector(20)};
+    s.ma = {{Vector3::Zero(), dice.rotation()}, Vector3::Zero(), dice.vector(20)};
     const Vector3 at = dice.between(1.2, 5) * dice.direction();
-    s.mb = {{at, dice.turn()}, -at * dice.between(0, 5) + dice.vector(3), dice.vector(20)};
+    s.mb = {{at, dice.rotation()}, -at * dice.between(0, 5) + dice.vector(3), dice.vector(20)};
     double t = 0;
     Contact contact;
     const bool start_apart = s.gap(0) > 1e-9;
@@ -201,9 +201,9 @@ TEST(TimeOfImpact, WhatStaysApartAlongAnAxisIsNeverHit) {
   for (int i = 0; i < 2000; ++i) {
     const double h = dice.between(0.01, 0.2);
     Scene s{dice.polyhedron(i), i % 6 == 5 ? Shape::sphere(dice.between(0.1, 1)) : dice.polyhedron(i / 4), {}, {}};
-    s.ma = {{Vector3::Zero(), dice.turn()}, Vector3::Zero(), dice.vector(5)};
+    s.ma = {{Vector3::Zero(), dice.rotation()}, Vector3::Zero(), dice.vector(5)};
     const Vector3 at = dice.between(1.2, 5) * dice.direction();
-    s.mb = {{at, dice.turn()}, -at * dice.between(0, 5) + dice.vector(3), dice.vector(5)};
+    s.mb = {{at, dice.rotation()}, -at * dice.between(0, 5) + dice.vector(3), dice.vector(5)};
     // The axis of the closest points at the start, or any.
     const Contact start = closest(*s.a, s.ma.start, *s.b, s.mb.start);
     const Vector3 world = i % 5 == 0 ? dice.direction() : start.normal;
@@ -223,11 +223,11 @@ TEST(TimeOfImpact, WhatStaysApartAlongAnAxisIsNeverHit) {
 TEST(TimeOfImpact, RotationAloneBringsATouch) {
   // A rod turning at 4 rad/s next to a wall at distance 0.3 from its middle: the tip arrives at asin(0.3/0.5).
   const auto rod = Shape::box(Vector3(1, 1e-9, 1e-9)), wall = Shape::box(Vector3(4, 1, 4));
-  Motion turning = still(Vector3::Zero());
-  turning.rotational_velocity_world = Vector3(0, 0, 4);
+  Motion rotating = still(Vector3::Zero());
+  rotating.rotational_velocity_world = Vector3(0, 0, 4);
   double t = 0;
   Contact contact;
-  ASSERT_TRUE(time_of_impact(*rod, turning, *wall, still(Vector3(0, 0.8, 0)), 1, t, contact));
+  ASSERT_TRUE(time_of_impact(*rod, rotating, *wall, still(Vector3(0, 0.8, 0)), 1, t, contact));
   EXPECT_NEAR(t, std::asin(0.6) / 4, 1e-9);
 }
 
@@ -249,9 +249,9 @@ TEST(TimeOfImpact, AfterAnImpactThePairCountsAsTouching) {
   for (int i = 0; i < 300; ++i) {
     const auto a = i % 3 == 0 ? Shape::sphere(0.5) : dice.polyhedron(i),
                b = i % 2 == 0 ? Shape::sphere(0.3) : dice.polyhedron(i / 4);
-    const Vector3 place = dice.vector(100), at = 3 * dice.direction();
-    Motion ma{{place, dice.turn()}, Vector3::Zero(), dice.vector(5)};
-    Motion mb{{place + at, dice.turn()}, -at * 2, dice.vector(5)};
+    const Vector3 position = dice.vector(100), at = 3 * dice.direction();
+    Motion ma{{position, dice.rotation()}, Vector3::Zero(), dice.vector(5)};
+    Motion mb{{position + at, dice.rotation()}, -at * 2, dice.vector(5)};
     double t = 0, again = 0;
     Contact contact;
     if (!time_of_impact(*a, ma, *b, mb, 1, t, contact)) continue;

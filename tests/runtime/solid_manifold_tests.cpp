@@ -17,7 +17,9 @@ constexpr double kRim = 6e-4;         // a face counts as larger by 1e-4, six ti
 constexpr double kSideBySide = 0.02;
 const Quaternion kLevel = Quaternion::Identity();
 
-Quaternion turned(double angle, const Vector3& axis) { return Quaternion(Eigen::AngleAxisd(angle, axis.normalized())); }
+Quaternion rotated(double angle, const Vector3& axis) {
+  return Quaternion(Eigen::AngleAxisd(angle, axis.normalized()));
+}
 
 std::pmr::vector<Manifold> find(const Shape& a, const Pose& pa, const Shape& b, const Pose& pb, double margin = 0.01) {
   std::pmr::vector<Manifold> out;
@@ -65,9 +67,9 @@ TEST(Manifold, ABoxFlatOnABoxHasFourPointsAtItsCorners) {
   }
 }
 
-TEST(Manifold, ABoxTurnedByFortyFiveDegreesKeepsFourOfEightPointsThatSpanMuch) {
+TEST(Manifold, ABoxRotatedByFortyFiveDegreesKeepsFourOfEightPointsThatSpanMuch) {
   const auto box = Shape::box(Vector3(1, 1, 1));
-  const auto m = find(*box, {Vector3(0, 0.999, 0), turned(std::numbers::pi / 4, Vector3::UnitY())}, *box, {});
+  const auto m = find(*box, {Vector3(0, 0.999, 0), rotated(std::numbers::pi / 4, Vector3::UnitY())}, *box, {});
   ASSERT_EQ(m.size(), 1U);
   ASSERT_EQ(m[0].count, 4);
   // The octagon's corners are 0.5 / cos(pi / 8) from the middle; four of them a quarter turn apart span 2 r^2.
@@ -90,7 +92,7 @@ TEST(Manifold, AnEdgeOnAFaceHasTwoPointsAndACornerOne) {
   const auto floor = Shape::box(Vector3(10, 2, 10)), box = Shape::box(Vector3(1, 1, 1));
   const Pose ground{Vector3(0, -1, 0), kLevel};
   const double low = std::sqrt(0.5) - 0.001;
-  const auto edge = find(*box, {Vector3(0, low, 0), turned(std::numbers::pi / 4, Vector3::UnitZ())}, *floor, ground);
+  const auto edge = find(*box, {Vector3(0, low, 0), rotated(std::numbers::pi / 4, Vector3::UnitZ())}, *floor, ground);
   ASSERT_EQ(edge.size(), 1U);
   ASSERT_EQ(edge[0].count, 2);
   for (int i = 0; i < 2; ++i) EXPECT_NEAR(edge[0].points[static_cast<std::size_t>(i)].distance, -0.001, kExact);
@@ -107,11 +109,11 @@ TEST(Manifold, AnEdgeOnAFaceHasTwoPointsAndACornerOne) {
 TEST(Manifold, CrossedEdgesHaveOnePointAndParallelEdgesTwo) {
   const auto box = Shape::box(Vector3(1, 1, 1));
   const double apart = 2 * std::sqrt(0.5);
-  const Quaternion on_edge = turned(std::numbers::pi / 4, Vector3::UnitZ());
+  const Quaternion on_edge = rotated(std::numbers::pi / 4, Vector3::UnitZ());
   const Pose below{Vector3::Zero(), on_edge};
   for (const double gap : {-0.002, 0.004}) {
-    const auto crossed =
-        find(*box, {Vector3(0, apart + gap, 0), turned(std::numbers::pi / 2, Vector3::UnitY()) * on_edge}, *box, below);
+    const auto crossed = find(
+        *box, {Vector3(0, apart + gap, 0), rotated(std::numbers::pi / 2, Vector3::UnitY()) * on_edge}, *box, below);
     ASSERT_EQ(crossed.size(), 1U);
     EXPECT_EQ(crossed[0].count, 1);
     expect_near(crossed[0].normal, Vector3::UnitY(), kExact);
@@ -127,7 +129,7 @@ TEST(Manifold, ABallInACornerTouchesEachWallOnce) {
   const auto ball = Shape::sphere(0.5), wall = Shape::box(Vector3(1, 4, 4));
   const Pose at{Vector3(1 - 1e-4, 0.3, -0.2), kLevel};
   const auto one = find(*ball, at, *wall, {});
-  const auto two = find(*ball, at, *wall, {Vector3(0, -0.7, 0), turned(std::numbers::pi / 2, Vector3::UnitZ())});
+  const auto two = find(*ball, at, *wall, {Vector3(0, -0.7, 0), rotated(std::numbers::pi / 2, Vector3::UnitZ())});
   ASSERT_EQ(one.size(), 1U);
   ASSERT_EQ(two.size(), 1U);
   expect_near(one[0].normal, Vector3::UnitX(), kExact);
@@ -164,8 +166,8 @@ void check_random_pairs(std::uint64_t seed, double scale, const Vector3& origin,
     a->set_scale(scale * a->scale());
     b->set_scale(scale * b->scale());
     const Pose pa{origin + scale * dice.vector(1),
-                  i % 5 == 0 ? turned(1e-4 * i / 1500, dice.direction()) : dice.turn()};
-    Pose pb{pa.location + scale * dice.vector(2), i % 5 == 0 ? Quaternion::Identity() : dice.turn()};
+                  i % 5 == 0 ? rotated(1e-4 * i / 1500, dice.direction()) : dice.rotation()};
+    Pose pb{pa.location + scale * dice.vector(2), i % 5 == 0 ? Quaternion::Identity() : dice.rotation()};
     const Contact start = closest(*a, pa, *b, pb);
     const double wanted = scale * dice.between(-0.05, 0.02);
     pb.location += (start.distance - wanted) * start.normal;  // b to where the gap is about as wanted
@@ -245,7 +247,7 @@ TEST(Manifold, FeaturesOfASlidingAndTremblingBoxStayTheSame) {
   oracle::Dice dice(25);
   std::vector<std::uint32_t> first;
   for (int i = 0; i < 1000; ++i) {
-    const Pose at{Vector3(-3 + 0.006 * i, 0.4995, 0.1) + dice.vector(1e-5), turned(1e-4, dice.direction())};
+    const Pose at{Vector3(-3 + 0.006 * i, 0.4995, 0.1) + dice.vector(1e-5), rotated(1e-4, dice.direction())};
     const auto m = find(*box, at, *floor, {Vector3(0, -1, 0), kLevel});
     ASSERT_EQ(m.size(), 1U);
     ASSERT_EQ(m[0].count, 4);
@@ -257,10 +259,10 @@ TEST(Manifold, FeaturesOfASlidingAndTremblingBoxStayTheSame) {
 TEST(Manifold, FeaturesOfATremblingStackOfEqualBoxesStayTheSame) {
   const auto box = Shape::box(Vector3(1, 1, 1));
   oracle::Dice dice(26);
-  for (const auto& turn : {Quaternion::Identity(), turned(std::numbers::pi / 4, Vector3::UnitY())}) {
+  for (const auto& rotation : {Quaternion::Identity(), rotated(std::numbers::pi / 4, Vector3::UnitY())}) {
     std::vector<std::uint32_t> first;
     for (int i = 0; i < 1000; ++i) {
-      const Pose at{Vector3(0, 0.9995, 0) + dice.vector(1e-5), turned(1e-5, dice.direction()) * turn};
+      const Pose at{Vector3(0, 0.9995, 0) + dice.vector(1e-5), rotated(1e-5, dice.direction()) * rotation};
       const auto m = find(*box, at, *box, {});
       ASSERT_EQ(m.size(), 1U);
       ASSERT_EQ(m[0].count, 4);
@@ -275,7 +277,7 @@ TEST(Manifold, AWarmStartFindsTheSameAndDecidesMostPairsThatStayApart) {
   NarrowCounters counters;
   for (int i = 0; i < 300; ++i) {
     const auto a = dice.polyhedron(i), b = dice.polyhedron(i / 4);
-    Pose pa{dice.vector(1), dice.turn()}, pb{dice.vector(1.5), dice.turn()};
+    Pose pa{dice.vector(1), dice.rotation()}, pb{dice.vector(1.5), dice.rotation()};
     const Vector3 drift = dice.vector(1e-3);
     PairCache cache;
     for (int step = 0; step < 20; ++step) {
@@ -303,7 +305,7 @@ TEST(Manifold, SolidsOfManyFacesTouchAsTheirSmoothOriginalsDo) {
   double area = 0;
   for (std::size_t i = 0; i < 4; ++i) area = std::max(area, (flat[0].points[i].on_a - flat[0].points[0].on_a).norm());
   EXPECT_GT(area, 1.99);
-  const auto rolling = find(*disk, {Vector3(0, 0.9995, 0), turned(std::numbers::pi / 2, Vector3::UnitX())}, *floor,
+  const auto rolling = find(*disk, {Vector3(0, 0.9995, 0), rotated(std::numbers::pi / 2, Vector3::UnitX())}, *floor,
                             {Vector3(0, -1, 0), kLevel}, 1e-4);
   ASSERT_EQ(rolling.size(), 1U);
   EXPECT_GE(rolling[0].count, 2);

@@ -88,8 +88,10 @@ class Dice {
   explicit Dice(std::uint64_t seed) : engine_(seed) {}
   double between(double low, double high) { return low + (high - low) * unit_(engine_); }
   Vector3 vector(double size) { return {between(-size, size), between(-size, size), between(-size, size)}; }
-  Quaternion turn() { return Quaternion(between(-1, 1), between(-1, 1), between(-1, 1), between(-1, 1)).normalized(); }
-  Vector3 direction() { return turn() * Vector3::UnitX(); }
+  Quaternion rotation() {
+    return Quaternion(between(-1, 1), between(-1, 1), between(-1, 1), between(-1, 1)).normalized();
+  }
+  Vector3 direction() { return rotation() * Vector3::UnitX(); }
   std::shared_ptr<Shape> polyhedron(int which) {
     switch (which % 4) {
       case 0: return Shape::box(Vector3(between(0.2, 2), between(0.2, 2), between(0.2, 2)));

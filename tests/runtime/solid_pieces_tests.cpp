@@ -142,8 +142,8 @@ TEST(Pieces, ATurnedMeshHasPiecesAsGood) {
   oracle::Dice dice(92);
   for (int i = 0; i < 12; ++i) {
     Mesh mesh = i % 2 == 0 ? ell() : torus(1, 0.35, 12, 8);
-    const Quaternion turn = dice.turn();
-    for (Vector3& p : mesh.corners) p = turn * p + dice.vector(0);
+    const Quaternion rotation = dice.rotation();
+    for (Vector3& p : mesh.corners) p = rotation * p + dice.vector(0);
     const auto shape = split(mesh, 64, 0.1);
     ASSERT_LE(shape->pieces()->excess(), 0.1) << i;
     for (const Vector3& p : mesh.corners) ASSERT_LE(outside(*shape->pieces(), p), 1e-7) << i;
@@ -258,7 +258,7 @@ TEST(PieceContacts, AgreeWithTheTrianglesWhereThePiecesAreExact) {
   const auto shape = split(ell().centered());
   int touching = 0;
   for (int i = 0; i < 300; ++i) {
-    const Pose pose{Vector3(dice.between(-2, 2), dice.between(1, 2.6), dice.between(-2, 2)), dice.turn()};
+    const Pose pose{Vector3(dice.between(-2, 2), dice.between(1, 2.6), dice.between(-2, 2)), dice.rotation()};
     // Against the box as triangles, against the mesh of the floor as pieces.
     const double expected = closest(*shape, pose, *floor_box, {}).distance;
     if (expected < 1e-3) {
@@ -277,7 +277,7 @@ TEST(PieceContacts, TimeOfImpactIsThatOfTheTriangles) {
   const auto shape = split(ell().centered());
   for (int i = 0; i < 60; ++i) {
     const Motion falling{
-        {Vector3(dice.between(-2, 2), 3.5, dice.between(-2, 2)), dice.turn()}, {0, -4, 0}, dice.vector(2)};
+        {Vector3(dice.between(-2, 2), 3.5, dice.between(-2, 2)), dice.rotation()}, {0, -4, 0}, dice.vector(2)};
     const Motion still;
     double expected = -1, found = -2;
     Contact contact;

@@ -18,7 +18,9 @@ using oracle::Dice;
 constexpr double kExact = 1e-12;
 const Quaternion kLevel = Quaternion::Identity();
 
-Quaternion turned(double angle, const Vector3& axis) { return Quaternion(Eigen::AngleAxisd(angle, axis.normalized())); }
+Quaternion rotated(double angle, const Vector3& axis) {
+  return Quaternion(Eigen::AngleAxisd(angle, axis.normalized()));
+}
 
 std::pmr::vector<Manifold> find(const Shape& a, const Pose& pa, const Shape& b, const Pose& pb, double margin = 0.01) {
   std::pmr::vector<Manifold> out;
@@ -203,7 +205,8 @@ TEST(RoundGap, DistanceIsThatOfTheBestSeparatingDirection) {
   Dice dice(1);
   for (int i = 0; i < 150; ++i) {
     const auto a = some_round(dice, i), b = some_solid(dice, i / 2);
-    const Pose pa{dice.vector(1), dice.turn()}, pb{pa.location + dice.between(1, 3) * dice.direction(), dice.turn()};
+    const Pose pa{dice.vector(1), dice.rotation()},
+        pb{pa.location + dice.between(1, 3) * dice.direction(), dice.rotation()};
     const Sampled wanted = sampled(*a, pa, *b, pb, dice);
     if (wanted.distance < 1e-6) continue;
     const Contact found = closest(*a, pa, *b, pb);
@@ -221,8 +224,8 @@ TEST(RoundGap, OverlapIsTheShortestWayOut) {
   int deep = 0;
   for (int i = 0; i < 200; ++i) {
     const auto a = some_round(dice, i), b = some_solid(dice, i / 2);
-    const Pose pa{dice.vector(1), dice.turn()};
-    Pose pb{pa.location + dice.direction(), dice.turn()};
+    const Pose pa{dice.vector(1), dice.rotation()};
+    Pose pb{pa.location + dice.direction(), dice.rotation()};
     // From where they touch inward.
     const Sampled far = sampled(*a, pa, *b, pb, dice);
     const double size = std::min(a->bounding_radius(), b->bounding_radius());
@@ -242,7 +245,7 @@ TEST(RoundGap, DeepOverlapsEndInANormalThatSeparates) {
   Dice dice(3);
   for (int i = 0; i < 300; ++i) {
     const auto a = some_round(dice, i), b = some_solid(dice, i / 2);
-    const Pose pa{dice.vector(1), dice.turn()}, pb{pa.location + dice.vector(0.05), dice.turn()};
+    const Pose pa{dice.vector(1), dice.rotation()}, pb{pa.location + dice.vector(0.05), dice.rotation()};
     const Contact found = closest(*a, pa, *b, pb);
     ASSERT_LT(found.distance, 0) << i;
     EXPECT_NEAR(found.normal.norm(), 1, kExact) << i;
@@ -283,7 +286,7 @@ void expect_line(const std::pmr::vector<Manifold>& found, double depth, const Ve
 
 TEST(RoundManifold, ALyingCylinderTouchesAlongALineOnAnyFloor) {
   const auto cylinder = Shape::cylinder(1, 0.5);
-  const Pose lying{Vector3(0.3, 0.499, 0.2), turned(std::numbers::pi / 2, Vector3::UnitX())};
+  const Pose lying{Vector3(0.3, 0.499, 0.2), rotated(std::numbers::pi / 2, Vector3::UnitX())};
   const Vector3 one(0.3, -0.001, 0.7), other(0.3, -0.001, -0.3);
   expect_line(find(*cylinder, lying, *floor_box(), kFloor), 0.001, one, other);
   const auto hull = Shape::hull(floor_box()->vertices(), 1);
@@ -292,13 +295,13 @@ TEST(RoundManifold, ALyingCylinderTouchesAlongALineOnAnyFloor) {
   const std::vector<double> heights(36, 0.0);
   expect_line(find(*cylinder, lying, *Shape::height_field(6, 6, 2, heights), {}), 0.001, one, other);
   // Turned about its own axis it is the same.
-  const Pose rolled{lying.location, lying.orientation * turned(0.777, Vector3::UnitY())};
+  const Pose rolled{lying.location, lying.orientation * rotated(0.777, Vector3::UnitY())};
   expect_line(find(*cylinder, rolled, *floor_box(), kFloor), 0.001, one, other);
 }
 
 TEST(RoundManifold, ALyingCapsuleTouchesUnderBothEnds) {
   const auto capsule = Shape::capsule(1, 0.5);
-  const Pose lying{Vector3(0, 0.499, 0), turned(std::numbers::pi / 2, Vector3::UnitX())};
+  const Pose lying{Vector3(0, 0.499, 0), rotated(std::numbers::pi / 2, Vector3::UnitX())};
   expect_line(find(*capsule, lying, *floor_box(), kFloor), 0.001, Vector3(0, -0.001, 0.5), Vector3(0, -0.001, -0.5));
   expect_line(find(*capsule, lying, *floor_mesh(), {}), 0.001, Vector3(0, -0.001, 0.5), Vector3(0, -0.001, -0.5));
 }
@@ -323,7 +326,7 @@ TEST(RoundManifold, AStandingCylinderStandsOnFourPointsOfItsRim) {
 TEST(RoundManifold, ATiltedCylinderTouchesWithTheLowestPointOfItsRim) {
   const auto cylinder = Shape::cylinder(1, 0.5);
   const double tilt = 0.3, low = -0.5 * std::cos(tilt) - 0.5 * std::sin(tilt);
-  const Pose pose{Vector3(0, -low - 0.001, 0), turned(tilt, Vector3::UnitZ())};
+  const Pose pose{Vector3(0, -low - 0.001, 0), rotated(tilt, Vector3::UnitZ())};
   for (const auto& [floor, at] : {std::pair(floor_box(), kFloor), std::pair(floor_mesh(), Pose{})}) {
     const auto found = find(*cylinder, pose, *floor, at, 0);
     ASSERT_EQ(found.size(), 1U);
@@ -334,8 +337,8 @@ TEST(RoundManifold, ATiltedCylinderTouchesWithTheLowestPointOfItsRim) {
 
 TEST(RoundManifold, LogsSideBySideTouchAlongALineAndCrossedInAPoint) {
   const auto log = Shape::cylinder(4, 0.5);
-  const Quaternion along_z = turned(std::numbers::pi / 2, Vector3::UnitX());
-  const Quaternion along_x = turned(std::numbers::pi / 2, Vector3::UnitZ());
+  const Quaternion along_z = rotated(std::numbers::pi / 2, Vector3::UnitX());
+  const Quaternion along_x = rotated(std::numbers::pi / 2, Vector3::UnitZ());
   expect_line(find(*log, {Vector3(0, 0.999, 1), along_z}, *log, {Vector3::Zero(), along_z}), 0.001,
               Vector3(0, 0.499, 2), Vector3(0, 0.499, -1));
   const auto crossed = find(*log, {Vector3(0, 0.999, 1), along_x}, *log, {Vector3::Zero(), along_z});
@@ -369,12 +372,12 @@ TEST(RoundImpact, FallingCylindersAndCapsulesLandWhenTheyShould) {
   Dice dice(5);
   for (int i = 0; i < 40; ++i) {
     const auto shape = some_round(dice, i);
-    const Quaternion turn = dice.turn();
-    const double low = -(-highest(*shape, {Vector3::Zero(), turn}, -Vector3::UnitY()));
-    Motion motion{{Vector3(0.1, 2 + low, 0.2), turn}};
+    const Quaternion rotation = dice.rotation();
+    const double low = -(-highest(*shape, {Vector3::Zero(), rotation}, -Vector3::UnitY()));
+    Motion motion{{Vector3(0.1, 2 + low, 0.2), rotation}};
     motion.velocity = Vector3(0.3, -4, 0.1);
     // A spin about its own axis moves nothing of it.
-    motion.rotational_velocity_world = dice.between(-50, 50) * (turn * Vector3::UnitY());
+    motion.rotational_velocity_world = dice.between(-50, 50) * (rotation * Vector3::UnitY());
     double t;
     Contact contact;
     ASSERT_TRUE(time_of_impact(*shape, motion, *floor, still, 1, t, contact)) << i;
@@ -391,7 +394,7 @@ TEST(RoundImpact, TumblingSolidsTouchAtTheTimeThatIsFoundAndNotBefore) {
   int hits = 0;
   for (int i = 0; i < 120; ++i) {
     const auto a = some_round(dice, i), b = some_solid(dice, i / 2);
-    Motion ma{{dice.vector(1), dice.turn()}}, mb{{ma.start.location + 4 * dice.direction(), dice.turn()}};
+    Motion ma{{dice.vector(1), dice.rotation()}}, mb{{ma.start.location + 4 * dice.direction(), dice.rotation()}};
     ma.velocity = 3 * (mb.start.location - ma.start.location) / 4 + dice.vector(0.6);
     ma.rotational_velocity_world = dice.vector(4);
     mb.rotational_velocity_world = dice.vector(4);

@@ -236,7 +236,7 @@ TEST(Shape, BoundsHoldEveryVertexTightly) {
   oracle::Dice dice(22);
   for (int i = 0; i < 20; ++i) {
     const auto shape = dice.polyhedron(i);
-    const Matrix3 r = dice.turn().toRotationMatrix();
+    const Matrix3 r = dice.rotation().toRotationMatrix();
     const auto box = shape->bounds(r);
     Vector3 high = Vector3::Constant(-kInf);
     for (const Vector3& v : shape->vertices()) high = high.cwiseMax(r * v);

@@ -20,7 +20,9 @@ namespace {
 constexpr double kExact = 1e-12;
 const Quaternion kLevel = Quaternion::Identity();
 
-Quaternion turned(double angle, const Vector3& axis) { return Quaternion(Eigen::AngleAxisd(angle, axis.normalized())); }
+Quaternion rotated(double angle, const Vector3& axis) {
+  return Quaternion(Eigen::AngleAxisd(angle, axis.normalized()));
+}
 
 /// The faces of a convex shape as triangles.
 std::shared_ptr<Shape> mesh_of(const Shape& solid) {
@@ -158,7 +160,7 @@ TEST(Mesh, AClosedOneHasTheMassPropertiesOfItsSolid) {
   }
 }
 
-TEST(Mesh, TurnedInsideOutItIsTurnedBack) {
+TEST(Mesh, InsideOutItIsReversed) {
   const auto box = Shape::box(Vector3(1, 2, 3));
   std::vector<Triangle> triangles;
   for (const auto& face : box->faces()) {
@@ -218,7 +220,7 @@ TEST(Mesh, ClosestPointsOfAConvexMeshAreThoseOfItsSolid) {
     const auto solid = dice.polyhedron(i);
     const auto mesh = mesh_of(*solid);
     const auto other = i % 3 == 0 ? Shape::sphere(dice.between(0.1, 1)) : dice.polyhedron(i / 4);
-    const Pose pa{dice.vector(1), dice.turn()}, pb{dice.vector(1.2), dice.turn()};
+    const Pose pa{dice.vector(1), dice.rotation()}, pb{dice.vector(1.2), dice.rotation()};
     const Contact expected = closest(*other, pa, *solid, pb), found = closest(*other, pa, *mesh, pb);
     if (expected.distance > 0) {
       ++apart;
@@ -241,7 +243,7 @@ TEST(Mesh, ManifoldsOnASheetAreThoseOnAFloor) {
   oracle::Dice dice(36);
   for (int i = 0; i < 500; ++i) {
     const double x = dice.between(-4, 4), z = dice.between(-4, 4);
-    const auto m = find(*box, {Vector3(x, 0.499, z), turned(dice.between(0, 3), Vector3::UnitY())}, *floor, {});
+    const auto m = find(*box, {Vector3(x, 0.499, z), rotated(dice.between(0, 3), Vector3::UnitY())}, *floor, {});
     ASSERT_EQ(m.size(), 1U) << "case " << i;
     ASSERT_EQ(m[0].count, 4);
     ASSERT_LE((m[0].normal - Vector3::UnitY()).norm(), kExact);
@@ -263,11 +265,12 @@ TEST(Mesh, ABoxThatSlidesOverSeamsNeverFeelsASidewaysNormal) {
   const auto floor = sheet(20, 0.7, flat), box = Shape::box(Vector3(1, 1, 1)), ball = Shape::sphere(0.5);
   oracle::Dice dice(37);
   for (int i = 0; i < 2000; ++i) {
-    const Vector3 place(-4 + 0.004 * i, 0.5 - dice.between(0, 0.02), 0.003 * i - 3);
-    for (const auto& m : find(*box, {place, turned(1e-3, dice.direction())}, *floor, {}, 0.02)) {
+    const Vector3 position(-4 + 0.004 * i, 0.5 - dice.between(0, 0.02), 0.003 * i - 3);
+    for (const auto& m : find(*box, {position, rotated(1e-3, dice.direction())}, *floor, {}, 0.02)) {
       ASSERT_GT(m.normal.y(), 0.999) << "step " << i;
     }
-    for (const auto& m : find(*ball, {place, kLevel}, *floor, {}, 0.02)) ASSERT_GT(m.normal.y(), 0.999) << "step " << i;
+    for (const auto& m : find(*ball, {position, kLevel}, *floor, {}, 0.02))
+      ASSERT_GT(m.normal.y(), 0.999) << "step " << i;
   }
 }
 
@@ -363,7 +366,7 @@ TEST(HeightField, AgreesWithTheSameSurfaceAsAMesh) {
   oracle::Dice dice(39);
   for (int i = 0; i < 400; ++i) {
     const auto solid = i % 3 == 0 ? Shape::sphere(dice.between(0.1, 0.6)) : dice.polyhedron(i);
-    const Pose at{Vector3(dice.between(-5, 5), dice.between(0.8, 3), dice.between(-5, 5)), dice.turn()};
+    const Pose at{Vector3(dice.between(-5, 5), dice.between(0.8, 3), dice.between(-5, 5)), dice.rotation()};
     const Contact a = closest(*solid, at, *ground, {}), b = closest(*solid, at, *mesh, {});
     if (b.distance > 0) {
       ASSERT_NEAR(a.distance, b.distance, kExact) << "case " << i;
@@ -427,10 +430,10 @@ TEST(SurfaceImpact, NeverStepsOverATouch) {
     const auto solid = i % 5 == 0   ? Shape::sphere(dice.between(0.1, 0.5))
                        : i % 5 == 1 ? mesh_of(*dice.polyhedron(i))
                                     : dice.polyhedron(i);
-    const Motion a{{Vector3(dice.between(-3, 3), dice.between(1, 4), dice.between(-3, 3)), dice.turn()},
+    const Motion a{{Vector3(dice.between(-3, 3), dice.between(1, 4), dice.between(-3, 3)), dice.rotation()},
                    Vector3(dice.between(-2, 2), dice.between(-6, 1), dice.between(-2, 2)),
                    dice.vector(6)};
-    const Motion b{{dice.vector(0.2), turned(0.2, dice.direction())},
+    const Motion b{{dice.vector(0.2), rotated(0.2, dice.direction())},
                    dice.vector(0.3),
                    i % 2 == 0 ? Vector3(Vector3::Zero()) : dice.vector(1)};
     if (closest(*solid, a.start, *surface, b.start).distance <= 1e-9) continue;
@@ -458,7 +461,7 @@ TEST(SurfaceManifold, PointsAreOnBothSurfacesAndWithinTheMargin) {
   int found = 0;
   for (int i = 0; i < 600; ++i) {
     const auto solid = i % 3 == 0 ? Shape::sphere(dice.between(0.1, 0.6)) : dice.polyhedron(i);
-    Pose at{Vector3(dice.between(-4, 4), dice.between(1, 3), dice.between(-4, 4)), dice.turn()};
+    Pose at{Vector3(dice.between(-4, 4), dice.between(1, 3), dice.between(-4, 4)), dice.rotation()};
     const Contact c = closest(*solid, at, *ground, {});
     at.location -= (c.distance + dice.between(-0.01, 0.02)) * c.normal;
     const Contact now = closest(*solid, at, *ground, {});

@@ -302,14 +302,14 @@ TEST(Collision, ImpactTimingStepCallsAtTheEndOfTheSubstepOnly) {
   s.body(kWall, Vector3(2.03, 0, 0), BodyKind::Stationary);
   s.set_velocity(a, Vector3(1, 0, 0));
   s.world.handle_collisions(kBall, kWall, "hit", {});
-  std::vector<double> places;
+  std::vector<double> positions;
   s.script.on_collided = [&](ObjectId, ObjectId, const Vector3&, const Vector3&) {
-    places.push_back(s.at(a).x());
+    positions.push_back(s.at(a).x());
     return false;
   };
   s.world.step();
-  ASSERT_EQ(places.size(), 2U);
-  EXPECT_NEAR(places[0], 0.04, 1e-12);
+  ASSERT_EQ(positions.size(), 2U);
+  EXPECT_NEAR(positions[0], 0.04, 1e-12);
   EXPECT_FALSE(s.world.effects()[EffectId::TimeOfImpact].active);
 }
 
@@ -390,8 +390,8 @@ TEST(Collision, AnElasticGasKeepsItsEnergyAndNothingEscapes) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const double side : {-1.0, 1.0}) {
       const ObjectId wall = s.body(kWall, Vector3::Unit(axis) * side * (kHalf + 0.5), BodyKind::Stationary, slab);
-      const Quaternion turn = Quaternion::FromTwoVectors(Vector3::UnitX(), Vector3::Unit(axis));
-      s.world.bodies().set_orientation(s.world.body(wall), turn);
+      const Quaternion rotation = Quaternion::FromTwoVectors(Vector3::UnitX(), Vector3::Unit(axis));
+      s.world.bodies().set_orientation(s.world.body(wall), rotation);
     }
   }
   std::vector<ObjectId> gas;
@@ -425,12 +425,12 @@ TEST(Collision, AnElasticGasKeepsItsEnergyAndNothingEscapes) {
 TEST(Collision, DoesNotDependOnTheOrderInWhichBodiesWereMade) {
   const auto run = [](bool reversed) {
     Scene s;
-    const Vector3 places[] = {{-3, 0, 0}, {3, 0.3, 0}, {0, 4, 0.2}, {0, -4.5, 0}};
+    const Vector3 positions[] = {{-3, 0, 0}, {3, 0.3, 0}, {0, 4, 0.2}, {0, -4.5, 0}};
     const Vector3 speeds[] = {{40, 0, 0}, {-35, 0, 0}, {0, -41, 0}, {0, 38, 1}};
     ObjectId ids[4];
     for (int k = 0; k < 4; ++k) {
       const int i = reversed ? 3 - k : k;
-      ids[i] = s.body(kBall, places[i]);
+      ids[i] = s.body(kBall, positions[i]);
       s.set_velocity(ids[i], speeds[i]);
     }
     s.world.handle_collisions(kBall, kBall, "hit", {});

@@ -10,7 +10,7 @@
 namespace breve::testing {
 namespace {
 
-Vector3 random_place(Random& random, double size) {
+Vector3 random_position(Random& random, double size) {
   return {size * random.uniform(), size * random.uniform(), size * random.uniform()};
 }
 
@@ -74,10 +74,10 @@ std::vector<double> meetings(bool flat, const Vector3& moved_by) {
   for (int axis = 0; axis < (flat ? 2 : 3); ++axis) m.world.set_space(axis, Ending::Wrap, 0, 4);
   Random random(7);
   for (int i = 0; i < 27; ++i) {
-    const Vector3 place(0.5 + 1.3 * (i % 3), 0.5 + 1.3 * (i / 3 % 3), flat ? 0 : 0.5 + 1.3 * (i / 9));
-    Vector3 v = random_place(random, 2) - Vector3(1, 1, 1);
+    const Vector3 position(0.5 + 1.3 * (i % 3), 0.5 + 1.3 * (i / 3 % 3), flat ? 0 : 0.5 + 1.3 * (i / 9));
+    Vector3 v = random_position(random, 2) - Vector3(1, 1, 1);
     if (flat) v.z() = 0;
-    if (!flat || i < 9) m.ball(0.3, m.world.space().inside(place + moved_by), v);
+    if (!flat || i < 9) m.ball(0.3, m.world.space().inside(position + moved_by), v);
   }
   for (int i = 0; i < 100; ++i) m.world.step();
   std::vector<double> times;
@@ -143,7 +143,7 @@ TEST(Space, AWallThrowsAMachineBackWithAllItsEnergy) {
     m.world.mechanics().take_changes();
     m.world.step();
     const double energy = m.energy();
-    int turns = 0;
+    int returns = 0;
     double last = 1;
     for (int i = 0; i < 600; ++i) {
       m.world.step();
@@ -152,10 +152,10 @@ TEST(Space, AWallThrowsAMachineBackWithAllItsEnergy) {
       ASSERT_GE(m.at(m.first).x(), 0);
       const double now =
           m.world.bodies().velocity(m.world.body(m.first)).x() + m.world.bodies().velocity(m.world.body(m.second)).x();
-      turns += now * last < 0 ? 1 : 0;
+      returns += now * last < 0 ? 1 : 0;
       last = now;
     }
-    EXPECT_GE(turns, 2);
+    EXPECT_GE(returns, 2);
     EXPECT_NEAR(m.world.mechanics().energy().residual, 0, 0.01 * energy);
   }
 }

@@ -29,7 +29,7 @@ TEST(Kinematics, IsExplicitEulerFromTheValuesAtTheStart) {
   EXPECT_LT((s.velocity(id) - (v + n * h * a)).norm(), kRounding);
 }
 
-TEST(Kinematics, TurnsInItsOwnFrameByEulerAndNormalises) {
+TEST(Kinematics, RotatesInItsOwnFrameByEulerAndNormalises) {
   Scene s;
   const ObjectId id = s.body(1, Vector3::Zero());
   const BodyIndex b = s.world.body(id);
@@ -38,8 +38,8 @@ TEST(Kinematics, TurnsInItsOwnFrameByEulerAndNormalises) {
   const double h = s.world.integration_step();
   s.world.step();
   // Three sub-steps, each turning by 2 atan(w h / 2) about the body's own axis.
-  const Quaternion turn(Eigen::AngleAxisd(3 * 2 * std::atan(3 * h / 2), Vector3(0, 1, 0)));
-  const Quaternion expected = Quaternion(Eigen::AngleAxisd(0.7, Vector3(1, 0, 0))) * turn;
+  const Quaternion rotation(Eigen::AngleAxisd(3 * 2 * std::atan(3 * h / 2), Vector3(0, 1, 0)));
+  const Quaternion expected = Quaternion(Eigen::AngleAxisd(0.7, Vector3(1, 0, 0))) * rotation;
   EXPECT_LT(expected.angularDistance(s.world.bodies().orientation(b)), 1e-7);
   EXPECT_LT((s.world.bodies().rotation(b) - Matrix3(expected.toRotationMatrix())).norm(), kRounding);
 }
@@ -85,15 +85,15 @@ TEST(Kinematics, SettersRefuseWhatIsNotFiniteAndChangeNothing) {
 TEST(Kinematics, ARotationMatrixIsMadeOrthonormalAndASingularOneRefused) {
   Scene s;
   const BodyIndex b = s.world.body(s.body(1, Vector3::Zero()));
-  const Matrix3 turn = Quaternion(Eigen::AngleAxisd(1.1, Vector3(1, 2, 3).normalized())).toRotationMatrix();
-  s.world.bodies().set_rotation(b, 2.5 * turn);
-  EXPECT_LT((s.world.bodies().rotation(b) - turn).norm(), kRounding);
+  const Matrix3 rotation = Quaternion(Eigen::AngleAxisd(1.1, Vector3(1, 2, 3).normalized())).toRotationMatrix();
+  s.world.bodies().set_rotation(b, 2.5 * rotation);
+  EXPECT_LT((s.world.bodies().rotation(b) - rotation).norm(), kRounding);
   Matrix3 bad = Matrix3::Identity();
   bad.row(2) = bad.row(1);
   EXPECT_THROW(s.world.bodies().set_rotation(b, bad), Error);
   EXPECT_THROW(s.world.bodies().set_rotation(b, Matrix3::Zero()), Error);
   EXPECT_THROW(s.world.bodies().set_rotation(b, -Matrix3::Identity()), Error);
-  EXPECT_LT((s.world.bodies().rotation(b) - turn).norm(), kRounding);
+  EXPECT_LT((s.world.bodies().rotation(b) - rotation).norm(), kRounding);
 }
 
 TEST(RigidMotion, FallsExactlyOnEveryRung) {
@@ -191,10 +191,10 @@ TEST(RigidMotion, DisablingPhysicsGivesBackTheKinematicVelocity) {
   EXPECT_EQ(s.velocity(id), Vector3(1, 0, 0)) << "the solver takes over position and velocity";
   s.world.step();
   EXPECT_LT(s.velocity(id).y(), 0);
-  const Vector3 place = s.at(id);
+  const Vector3 position = s.at(id);
   s.world.bodies().set_physics(b, false);
   EXPECT_EQ(s.velocity(id), Vector3(1, 0, 0));
-  EXPECT_EQ(s.at(id), place);
+  EXPECT_EQ(s.at(id), position);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ using testing::Scene;
 
 struct Crowd {
   const char* name;
-  std::function<Vector3(Random&, int)> place;
+  std::function<Vector3(Random&, int)> position;
   std::function<double(Random&, int)> radius;
 };
 
@@ -51,7 +51,7 @@ TEST(Neighbors, EqualTheBruteForceAnswerInEveryKindOfCrowd) {
     constexpr int kAgents = 1000;
     std::vector<ObjectId> ids;
     for (int i = 0; i < kAgents; ++i) {
-      ids.push_back(s.body(1, crowd.place(s.world.random(), i)));
+      ids.push_back(s.body(1, crowd.position(s.world.random(), i)));
       s.world.bodies().set_neighborhood_size(s.world.body(ids.back()), crowd.radius(s.world.random(), i));
     }
     s.world.update_neighbors();

@@ -13,7 +13,7 @@
 namespace breve {
 namespace {
 
-Vector3 random_place(Random& random, double size) {
+Vector3 random_position(Random& random, double size) {
   return {size * random.uniform(), size * random.uniform(), size * random.uniform()};
 }
 
@@ -27,10 +27,10 @@ TEST(Extent, WrapsAnyPlaceIntoItsBounds) {
   Random random(1);
   for (int i = 0; i < 10000; ++i) {
     const double x = std::ldexp(random.uniform() - 0.5, static_cast<int>(random.below(60)) - 20);
-    const Vector3 place = space.inside({x, 0, 0});
-    EXPECT_TRUE(space.holds(place)) << x;
+    const Vector3 position = space.inside({x, 0, 0});
+    EXPECT_TRUE(space.holds(position)) << x;
     if (std::abs(x) < 1e6) {
-      EXPECT_NEAR(std::remainder(place.x() - x, 5.0), 0, 1e-9) << x;
+      EXPECT_NEAR(std::remainder(position.x() - x, 5.0), 0, 1e-9) << x;
     }
   }
   EXPECT_TRUE(space.holds(space.inside({std::nextafter(-2.0, -3.0), 0, 0})));
@@ -59,7 +59,7 @@ TEST(Extent, OffsetsAreTheShortestAndTheWayBackIsTheOpposite) {
   EXPECT_EQ(space.offset({9, 1, 9}, {1, 2, 1}), Vector3(2, 1, -8));
   Random random(2);
   for (int i = 0; i < 1000; ++i) {
-    const Vector3 a = random_place(random, 10), b = random_place(random, 10);
+    const Vector3 a = random_position(random, 10), b = random_position(random, 10);
     const Vector3 way = space.offset(a, b);
     EXPECT_EQ(way, -space.offset(b, a));
     EXPECT_LE(std::abs(way.x()), 5.0);
@@ -86,7 +86,7 @@ TEST(Neighbors, AcrossEdgesAreThoseByTheShortestOffset) {
       Neighbors neighbors(std::pmr::get_default_resource());
       std::vector<Vector3> points;
       for (int i = 0; i < 200; ++i) {
-        points.push_back(random_place(random, kSize));
+        points.push_back(random_position(random, kSize));
         neighbors.add(points.back(), i % 7 == 0 ? 0.5 * radius : radius, 1000U + static_cast<unsigned>(i));
       }
       neighbors.close(space);
@@ -163,7 +163,8 @@ TEST(Space, IsInTheHashAndInTheImage) {
     one->world.set_space(0, Ending::Wrap, 0, 10);
     one->world.set_space(2, Ending::Wall, -1, 1);
     Random random(4);
-    for (int i = 0; i < 40; ++i) one->add(random_place(random, 1) * 10, random_place(random, 20) - Vector3(10, 10, 10));
+    for (int i = 0; i < 40; ++i)
+      one->add(random_position(random, 1) * 10, random_position(random, 20) - Vector3(10, 10, 10));
     for (int i = 0; i < 20; ++i) one->world.advance_bodies();
     one->world.update_neighbors();
   }

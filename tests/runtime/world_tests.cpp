@@ -352,27 +352,27 @@ TEST(Notifications, KeepTheirOrderThroughManyRegistrationsAndRemovals) {
     random = random * 1664525 + 1013904223;
     return (random >> 8) % below;
   };
-  for (int turn = 0; turn < 3000; ++turn) {
+  for (int iteration = 0; iteration < 3000; ++iteration) {
     const std::size_t who = draw(60);
     const std::string message = draw(2) ? "ping" : "pong";
-    if (turn % 1000 == 999) {  // freed, and another one in its slot
+    if (iteration % 1000 == 999) {  // freed, and another one in its slot
       s.world.release(observers[who]);
       std::erase_if(expected, [&](const auto& e) { return e.first == who; });
       observers[who] = s.world.create(1, 0, false, false);
-    } else if (draw(5) < (turn / 500 % 2 ? 2U : 3U)) {
+    } else if (draw(5) < (iteration / 500 % 2 ? 2U : 3U)) {
       s.world.observe(observers[who], s.controller, message, "m");
       expected.emplace_back(who, message);
     } else {
       const auto gone = std::erase_if(expected, [&](const auto& e) { return e.first == who && e.second == message; });
       ASSERT_EQ(s.world.unobserve(observers[who], s.controller, message), gone);
     }
-    if (turn % 100 != 0) continue;
+    if (iteration % 100 != 0) continue;
     Calls calls;
     for (const auto& [observer, text] : expected)
       if (text == "ping") calls.push_back("notified " + std::to_string(observers[observer].index) + " m ping");
     s.script.calls.clear();
     s.world.announce(s.controller, "ping");
-    ASSERT_EQ(s.script.calls, calls) << turn;
+    ASSERT_EQ(s.script.calls, calls) << iteration;
   }
 }
 

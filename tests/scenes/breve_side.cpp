@@ -76,7 +76,7 @@ void BreveSide::appear(int body) {
   if (made.generation != 0) return;  // it has been there from the start
   made = world_.make(class_of(one.motion));
   world_.must(breve_object_set_shape(world_.get(), made, shapes_[one.shape]));
-  world_.place(made, one.at, one.turn);
+  world_.place(made, one.at, one.orientation);
   world_.set_material(made, {scene_.friction, scene_.friction, scene_.restitution, 0, scene_.threshold});
   if (one.motion == Motion::Free) world_.must(breve_object_set_physics(world_.get(), made, true));
   if (one.velocity != Vector3::Zero()) world_.set_velocity(made, one.velocity);
@@ -116,7 +116,7 @@ void BreveSide::add_spring(const Spring& spring) {
 /// From poses: breve_joint_state would also work out what the joint holds.
 double BreveSide::angle(int joint) const {
   const Joint& one = scene_.joints[static_cast<std::size_t>(joint)];
-  const Quaternion between = world_.turn(body(one.parent)).conjugate() * world_.turn(body(one.child));
+  const Quaternion between = world_.orientation(body(one.parent)).conjugate() * world_.orientation(body(one.child));
   return 2 * std::atan(between.vec().dot(one.axis) / between.w());
 }
 

@@ -13,7 +13,7 @@ class Draw {
   explicit Draw(unsigned seed) : random_(seed) {}
   double between(double low, double high) { return low + (high - low) * static_cast<double>(random_()) / 4294967296.0; }
   Vector3 within(const Vector3& half);  // of the box between -half and half
-  Quaternion turn(bool flat);
+  Quaternion orientation(bool flat);
 
  private:
   std::mt19937 random_;

@@ -31,11 +31,11 @@ Scene clump(int count, bool flat) {
     if (free) scene.add(one);
   }
   scene.act = [count](Side& side, double) {
-    std::vector<Vector3> places, forces(static_cast<std::size_t>(count), Vector3::Zero());
-    for (int i = 0; i < count; ++i) places.push_back(side.at(i));
-    for (std::size_t i = 0; i < places.size(); ++i)
+    std::vector<Vector3> positions, forces(static_cast<std::size_t>(count), Vector3::Zero());
+    for (int i = 0; i < count; ++i) positions.push_back(side.at(i));
+    for (std::size_t i = 0; i < positions.size(); ++i)
       for (std::size_t k = 0; k < i; ++k) {
-        const Vector3 apart = places[k] - places[i];
+        const Vector3 apart = positions[k] - positions[i];
         const Vector3 pull = kPull * apart / std::pow(apart.squaredNorm() + kSoft * kSoft, 1.5);
         forces[i] += pull;
         forces[k] -= pull;
@@ -78,11 +78,11 @@ Scene meshes() {
   one.at = {0, 0.4, 0};
   scene.add(one);
   one.at = {1.1, 1.5, 0};
-  one.turn = Eigen::AngleAxisd(0.9, Vector3::UnitZ());
+  one.orientation = Eigen::AngleAxisd(0.9, Vector3::UnitZ());
   scene.add(one);
   one.shape = scene.add(bumpy(0.8, 60, 51, 100));
   one.at = {-2.8, 1, 0.2};
-  one.turn = Eigen::AngleAxisd(0.5, Vector3::UnitX());
+  one.orientation = Eigen::AngleAxisd(0.5, Vector3::UnitX());
   scene.add(one);
   return scene;
 }
@@ -214,7 +214,7 @@ void add_flat_bowl(Scene& scene, double radius) {
   for (int i = 0; i < kBoxes; ++i) {
     const double angle = std::numbers::pi * (i + 0.5) / kBoxes;
     one.at = (radius + 0.5) * Vector3(std::cos(angle), -std::sin(angle), 0);
-    one.turn = Eigen::AngleAxisd(-angle, Vector3::UnitZ());
+    one.orientation = Eigen::AngleAxisd(-angle, Vector3::UnitZ());
     scene.add(one);
   }
 }
@@ -249,7 +249,7 @@ Scene pour(bool flat) {
     one.shape = first + static_cast<std::size_t>(i % 5);
     one.at = flat ? Vector3(n * 0.9 - 4.05, 2.2 + 0.02 * (i % 7), 0)
                   : Vector3(n % 4 * 0.7 - 1.05, 2.2 + 0.02 * (i % 7) + n / 4 * 0.7, i / 4 % 4 * 0.6 - 0.9);
-    one.turn = draw.turn(flat);
+    one.orientation = draw.orientation(flat);
     one.born = i / kAtOnce * kEvery;
     if (flat) one.velocity = {0, -3, 0};  // or the next ten would appear in these
     scene.add(one);

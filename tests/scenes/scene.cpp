@@ -99,7 +99,7 @@ Vector3 Draw::within(const Vector3& half) {
   return {x, y, between(-half.z(), half.z())};
 }
 
-Quaternion Draw::turn(bool flat) {
+Quaternion Draw::orientation(bool flat) {
   const double a = between(-3, 3), b = between(-3, 3), c = between(-3, 3);
   const Quaternion about_z(Eigen::AngleAxisd(a, Vector3::UnitZ()));
   if (flat) return about_z;

@@ -61,7 +61,7 @@ enum class Motion {
 struct Body {
   std::size_t shape = 0;
   Vector3 at = Vector3::Zero();
-  Quaternion turn = Quaternion::Identity();
+  Quaternion orientation = Quaternion::Identity();
   Motion motion = Motion::Free;
   int assembly = -1;  // bodies of one assembly pass through each other; -1: none
   Vector3 velocity = Vector3::Zero(), spin = Vector3::Zero();

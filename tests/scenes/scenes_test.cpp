@@ -51,7 +51,7 @@ Scene pair(const Vector3& at, const Joint& joint) {
   return scene;
 }
 
-TEST(Scenes, MotorsAndStopsOfHingesTurnTheChildAboutTheAxis) {
+TEST(Scenes, MotorsAndStopsOfHingesRotateTheChildAboutTheAxis) {
   Joint hinge;
   hinge.child = 1;
   hinge.at = {0.6, 0, 0};
@@ -85,7 +85,7 @@ TEST(Scenes, StopsOfBallJointsAreAboutXAndZ) {
       side.set_force(0, -0.01 * force);
       side.step();
     }
-    return Vector3(side.world().turn(side.body(0)).conjugate() * (side.at(1) - side.at(0)));
+    return Vector3(side.world().orientation(side.body(0)).conjugate() * (side.at(1) - side.at(0)));
   };
   // The heavy body hardly moves; a hundredth is what the stops give.
   EXPECT_NEAR(pushed({0, 0, 1}).z(), 0.6 * std::sin(0.6), 1e-2);

@@ -8,10 +8,10 @@
 namespace breve::scenes {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kCircle = 2 * std::numbers::pi;
 
 Vector3 on_circle(double radius, double z, std::uint32_t i, std::uint32_t sides) {
-  const double angle = kTurn * i / sides;
+  const double angle = kCircle * i / sides;
   return {radius * std::cos(angle), radius * std::sin(angle), z};
 }
 
@@ -89,7 +89,7 @@ Shape torus(double radius, double thickness, std::uint32_t around, std::uint32_t
   out.density = density;
   for (std::uint32_t i = 0; i < around; ++i)
     for (std::uint32_t j = 0; j < across; ++j) {
-      const double u = kTurn * i / around, v = kTurn * j / across, r = radius + thickness * std::cos(v);
+      const double u = kCircle * i / around, v = kCircle * j / across, r = radius + thickness * std::cos(v);
       out.corners.push_back({r * std::cos(u), thickness * std::sin(v), r * std::sin(u)});
       const std::uint32_t next_i = (i + 1) % around, next_j = (j + 1) % across;
       add_quad(out, i * across + j, i * across + next_j, next_i * across + next_j, next_i * across + j);
@@ -103,7 +103,7 @@ Shape bumpy(double radius, std::uint32_t around, std::uint32_t across, double de
   out.density = density;
   for (std::uint32_t j = 1; j < across; ++j)
     for (std::uint32_t i = 0; i < around; ++i) {
-      const double u = kTurn * i / around, v = std::numbers::pi * j / across;
+      const double u = kCircle * i / around, v = std::numbers::pi * j / across;
       const double r = radius * (1 + 0.15 * std::cos(8 * u) * std::pow(std::sin(v), 3));
       out.corners.push_back({r * std::sin(v) * std::cos(u), r * std::cos(v), r * std::sin(v) * std::sin(u)});
     }
@@ -130,7 +130,7 @@ Shape bowl(double inner, double outer, std::uint32_t around, std::uint32_t acros
     const double r = inside ? inner : outer;
     const double v = std::numbers::pi / 2 * (inside ? j + 1 : circles - j) / across;  // from the pole
     for (std::uint32_t i = 0; i < around; ++i) {
-      const double u = kTurn * i / around;
+      const double u = kCircle * i / around;
       out.corners.push_back({r * std::sin(v) * std::cos(u), -r * std::cos(v), r * std::sin(v) * std::sin(u)});
     }
   }
@@ -149,7 +149,7 @@ Shape bowl(double inner, double outer, std::uint32_t around, std::uint32_t acros
 
 MassProperties mass_properties(const Shape& shape) {
   if (shape.form == Form::Ball) {
-    const double mass = shape.density * 2.0 / 3 * kTurn * std::pow(shape.radius, 3);
+    const double mass = shape.density * 2.0 / 3 * kCircle * std::pow(shape.radius, 3);
     return {mass, Vector3::Constant(0.4 * mass * shape.radius * shape.radius)};
   }
   if (shape.form == Form::Box) {

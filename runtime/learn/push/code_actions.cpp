@@ -94,14 +94,14 @@ void extract_code(Interpreter& m) {
 
 void nth_item(Interpreter& m) {
   if (m.integers.empty() || !has_one(m)) return;
-  const std::int32_t place = take(m.integers);
-  if (!first(m).is_empty()) give(m, 1, item(first(m), indexed(place, first(m).length())));
+  const std::int32_t index = take(m.integers);
+  if (!first(m).is_empty()) give(m, 1, item(first(m), indexed(index, first(m).length())));
 }
 
 void nth_rest(Interpreter& m) {
   if (m.integers.empty() || !has_one(m)) return;
-  const std::int32_t place = take(m.integers);
-  if (!first(m).is_empty()) give(m, 1, rest(first(m), indexed(place, first(m).length()), m.memory()));
+  const std::int32_t index = take(m.integers);
+  if (!first(m).is_empty()) give(m, 1, rest(first(m), indexed(index, first(m).length()), m.memory()));
 }
 
 // --- questions -------------------------------------------------------------------------------------------------------
@@ -137,8 +137,8 @@ void is_member(Interpreter& m) {
 void position_of_code(Interpreter& m) {
   if (!has_two(m)) return;
   const Code in = take(m.codes), what = take(m.codes);
-  const std::optional<std::uint32_t> place = position(in, what);
-  m.push(m.integers, place ? static_cast<std::int32_t>(*place) : -1);
+  const std::optional<std::uint32_t> index = position(in, what);
+  m.push(m.integers, index ? static_cast<std::int32_t>(*index) : -1);
 }
 
 void discrepancy_of_codes(Interpreter& m) {

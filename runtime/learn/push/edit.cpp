@@ -72,10 +72,10 @@ Code rest(const Code& code, std::uint32_t count, Memory* memory) {
   return builder.finish();
 }
 
-Code item(const Code& code, std::uint32_t place) {
+Code item(const Code& code, std::uint32_t index) {
   if (!code.is_list()) return code;
   std::uint32_t at = 1;
-  for (; place > 0; --place) at = code.next(at);
+  for (; index > 0; --index) at = code.next(at);
   return code.part(at);
 }
 
@@ -149,9 +149,9 @@ std::optional<std::uint32_t> find(const Code& code, const Code& what) {
 
 std::optional<std::uint32_t> position(const Code& code, const Code& what) {
   if (!code.is_list()) return code == what ? std::optional<std::uint32_t>(0) : std::nullopt;
-  std::uint32_t place = 0;
-  for (std::uint32_t i = 1; i < code.points(); i = code.next(i), ++place)
-    if (code.part(i) == what) return place;
+  std::uint32_t index = 0;
+  for (std::uint32_t i = 1; i < code.points(); i = code.next(i), ++index)
+    if (code.part(i) == what) return index;
   return {};
 }
 

@@ -22,7 +22,7 @@ Code pair(const Code& first, const Code& second, Memory* memory);
 /// The list without its first `count` items; an atom counts as a list of itself.
 Code rest(const Code& code, std::uint32_t count, Memory* memory);
 /// The item at `place` of a list that has it; an atom counts as a list of itself.
-Code item(const Code& code, std::uint32_t place);
+Code item(const Code& code, std::uint32_t index);
 
 /// With the subtree at `point` replaced.
 Code replace(const Code& code, std::uint32_t point, const Code& with, Memory* memory);

@@ -40,7 +40,7 @@ class Box2D : public Side {
     b2BodyDef def;
     def.type = one.motion == Motion::Free ? b2_dynamicBody : b2_staticBody;
     def.position = convert(one.at);
-    def.angle = static_cast<float>(2 * std::atan2(one.turn.z(), one.turn.w()));
+    def.angle = static_cast<float>(2 * std::atan2(one.orientation.z(), one.orientation.w()));
     def.linearVelocity = convert(one.velocity);
     def.angularVelocity = static_cast<float>(one.spin.z());
     bodies_[i] = world_.CreateBody(&def);

@@ -115,7 +115,7 @@ class Bullet : public Side {
     if (one.motion == Motion::Free) mass = mass_properties(scene_.shapes[one.shape]);
     btRigidBody::btRigidBodyConstructionInfo info(mass.mass, nullptr, shapes_[one.shape].shape.get(),
                                                   convert(mass.inertia));
-    info.m_startWorldTransform = btTransform(convert(one.turn), convert(one.at));
+    info.m_startWorldTransform = btTransform(convert(one.orientation), convert(one.at));
     // Bullet multiplies those of a pair.
     info.m_friction = std::sqrt(scene_.friction);
     info.m_restitution = std::sqrt(scene_.restitution);

@@ -119,10 +119,11 @@ class Ode : public Side {
       dBodySetAngularVel(item.body, one.spin.x(), one.spin.y(), one.spin.z());
       if (scene_.flat) dJointAttach(dJointCreatePlane2D(world_, nullptr), item.body, nullptr);
     }
-    const dQuaternion turn = {one.turn.w(), one.turn.x(), one.turn.y(), one.turn.z()};
+    const dQuaternion orientation = {one.orientation.w(), one.orientation.x(), one.orientation.y(),
+                                     one.orientation.z()};
     dGeomSetPosition(item.geometry, one.at.x(), one.at.y(), one.at.z());
     // A field that is placeable lies with y up, as ours.
-    dGeomSetQuaternion(item.geometry, turn);
+    dGeomSetQuaternion(item.geometry, orientation);
   }
 
   Vector3 at(int body) const override { return vector(dGeomGetPosition(of(body).geometry)); }

@@ -17,9 +17,9 @@ Vector3 vector(const Case& is, WorldGene first) {
   return Vector3(is.world[first], is.world[first + 1], is.world[first + 2]);
 }
 
-Quaternion exponential(const Vector3& turn) {
-  const double angle = turn.norm();
-  return angle > 0 ? Quaternion(Eigen::AngleAxisd(angle, turn / angle)) : Quaternion::Identity();
+Quaternion exponential(const Vector3& rotation) {
+  const double angle = rotation.norm();
+  return angle > 0 ? Quaternion(Eigen::AngleAxisd(angle, rotation / angle)) : Quaternion::Identity();
 }
 
 void put(double* out, const Vector3& v) { Vector3::Map(out) = v; }
@@ -60,7 +60,7 @@ Creature::Creature(const Case& is, breve_rung rung, double step) {
     join(is.links[static_cast<std::size_t>(i)], is, i);
   place(is);
   close_loop(is);
-  tie_links(is);
+  add_spring(is);
   // Overlap at the start is moved apart, which lifts bodies and strains springs: a family of its own.
   if (is.on(kSelfCollisions) && (is.family == Family::Overlap || !entangled()))
     if (const breve_status s = breve_object_set_self_collisions(world_.get(), bodies_[0].object, true); s != BREVE_OK)
@@ -119,7 +119,7 @@ void Creature::join(const LinkGenes& genes, const Case& is, int link) {
   joint.axis = vector(genes, kAxisX);
   joint.axis = joint.axis.norm() > 1e-3 ? joint.axis.normalized() : Vector3(0, 0, 1);
   joint.other = joint.axis.unitOrthogonal();
-  joint.zero = exponential(vector(genes, kTurnX));
+  joint.zero = exponential(vector(genes, kRotationX));
   breve_joint_description d = breve_joint_description_default(joint.kind);
   if (joint.parent >= 0) d.parent = bodies_[static_cast<std::size_t>(joint.parent)].object;
   d.child = bodies_[child].object;
@@ -182,7 +182,7 @@ double Creature::lowest() const {
   double low = INFINITY;
   for (int i = 0; i < static_cast<int>(bodies_.size()); ++i) {
     const Pose at = pose(i);
-    const Vector3 up = at.turn.conjugate() * Vector3(0, 1, 0);
+    const Vector3 up = at.orientation.conjugate() * Vector3(0, 1, 0);
     low = std::min(low, at.at.y() - up.cwiseAbs().dot(bodies_[static_cast<std::size_t>(i)].half));
   }
   return low;
@@ -224,24 +224,24 @@ void Creature::close_loop(const Case& is) {
   d.parent = from.object;
   d.child = to.object;
   put(d.parent_point, point);
-  put(d.child_point, other.turn.conjugate() * (at.at + at.turn * point - other.at));
-  put(d.rotation, (at.turn.conjugate() * other.turn).normalized());
+  put(d.child_point, other.orientation.conjugate() * (at.at + at.orientation * point - other.at));
+  put(d.rotation, (at.orientation.conjugate() * other.orientation).normalized());
   put(d.normal, Vector3::UnitZ());
   put(d.other_axis, Vector3::UnitX());
   (void)world_.create_joint(d).or_throw();
   loop_a_ = a, loop_b_ = b;
 }
 
-void Creature::tie_links(const Case& is) {
-  if (!(is[kTie] > 0)) return;
-  const int a = static_cast<int>(is[kTieA]) % is.count(), b = static_cast<int>(is[kTieB]) % is.count();
+void Creature::add_spring(const Case& is) {
+  if (!(is[kSpring] > 0)) return;
+  const int a = static_cast<int>(is[kSpringA]) % is.count(), b = static_cast<int>(is[kSpringB]) % is.count();
   if (a == b) return;
-  tie_ = {a, b, is[kTie], is[kTieLength]};
+  spring_ = {a, b, is[kSpring], is[kSpringLength]};
   breve_spring d = breve_spring_default();
   d.from = bodies_[static_cast<std::size_t>(a)].object;
   d.to = bodies_[static_cast<std::size_t>(b)].object;
-  d.length = tie_.length;
-  d.strength = tie_.strength;
+  d.length = spring_.length;
+  d.strength = spring_.strength;
   d.damping = 0;
   (void)world_.create_spring(d).or_throw();
 }
@@ -254,8 +254,8 @@ bool Creature::entangled() const {
       for (const Joint& joint : joints_) joined |= std::minmax(joint.parent, joint.child) == std::minmax(a, b);
       if (joined) continue;
       const Pose at = pose(a), other = pose(b);
-      if (boxes_overlap({at.at, at.turn.toRotationMatrix(), bodies_[static_cast<std::size_t>(a)].half},
-                        {other.at, other.turn.toRotationMatrix(), bodies_[static_cast<std::size_t>(b)].half}))
+      if (boxes_overlap({at.at, at.orientation.toRotationMatrix(), bodies_[static_cast<std::size_t>(a)].half},
+                        {other.at, other.orientation.toRotationMatrix(), bodies_[static_cast<std::size_t>(b)].half}))
         return true;
     }
   return false;

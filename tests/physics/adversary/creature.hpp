@@ -37,14 +37,14 @@ struct Joint {
 };
 
 /// A Spring between two bodies, centre to centre.
-struct Tie {
+struct Spring {
   int a = -1, b = -1;
   double strength = 0, length = 0;
 };
 
 struct Pose {
   Vector3 at = Vector3::Zero();
-  Quaternion turn = Quaternion::Identity();
+  Quaternion orientation = Quaternion::Identity();
 };
 
 class Creature {
@@ -56,7 +56,7 @@ class Creature {
   const breve::World& world() const { return world_; }
   const std::vector<Body>& bodies() const { return bodies_; }
   const std::vector<Joint>& joints() const { return joints_; }  // of the tree, in order
-  const Tie& tie() const { return tie_; }
+  const Spring& spring() const { return spring_; }
   Vector3 gravity() const { return gravity_; }
 
   Pose pose(int body) const;  // -1: the world's
@@ -69,7 +69,7 @@ class Creature {
   void join(const LinkGenes& genes, const Case& is, int link);
   void set_drive(const LinkGenes& genes, const Case& is, Joint& joint);
   void close_loop(const Case& is);
-  void tie_links(const Case& is);
+  void add_spring(const Case& is);
   void place(const Case& is);
   void set_off(const Case& is);
   bool entangled() const;  // do links overlap that no joint connects directly?
@@ -80,7 +80,7 @@ class Creature {
   breve::World world_;
   std::vector<Body> bodies_;
   std::vector<Joint> joints_;
-  Tie tie_;
+  Spring spring_;
   Vector3 gravity_ = Vector3::Zero();
   int loop_a_ = -1, loop_b_ = -1;
   bool driven_ = false;

@@ -27,9 +27,9 @@ enum LinkGene {
   kAxisX,
   kAxisY,
   kAxisZ,  // the joint's axis in the parent's frame, of any length
-  kTurnX,
-  kTurnY,
-  kTurnZ,  // rotation vector of the link relative to its parent at zero, rad
+  kRotationX,
+  kRotationY,
+  kRotationZ,  // rotation vector of the link relative to its parent at zero, rad
   kRateX,
   kRateY,
   kRateZ,    // rates of the joint at the start, rad/s or m/s
@@ -56,10 +56,10 @@ enum WorldGene {
   kLoopX,
   kLoopY,
   kLoopZ,  // its point on link A, in halves of its edges
-  kTie,
-  kTieA,
-  kTieB,
-  kTieLength,  // a Spring between two links: N/m (0: none), m
+  kSpring,
+  kSpringA,
+  kSpringB,
+  kSpringLength,  // a Spring between two links: N/m (0: none), m
   kFriction,
   kRestitution,
   kThreshold,  // of all surfaces

@@ -30,8 +30,10 @@ Positions positions_of(Creature& creature, const Joint& joint) {
   const Pose parent = creature.pose(joint.parent), child = creature.pose(joint.child);
   const breve_joint_info info = creature.world().joint(joint.object).or_throw();
   // Positive where the parent moves relative to the child: hence the signs.
-  const Matrix3 relative = (parent.turn.conjugate() * child.turn * joint.zero.conjugate()).toRotationMatrix();
-  const Vector3 way = parent.turn.conjugate() * (child.at + child.turn * joint.on_child - parent.at) - joint.on_parent;
+  const Matrix3 relative =
+      (parent.orientation.conjugate() * child.orientation * joint.zero.conjugate()).toRotationMatrix();
+  const Vector3 way =
+      parent.orientation.conjugate() * (child.at + child.orientation * joint.on_child - parent.at) - joint.on_parent;
   switch (joint.kind) {
     case BREVE_JOINT_REVOLUTE:
       out.q[0] = unwound(-angle_about(joint.axis, joint.other, relative * joint.other), info.position[0]);
@@ -44,8 +46,8 @@ Positions positions_of(Creature& creature, const Joint& joint) {
     default: break;
   }
   if (joint.kind == BREVE_JOINT_BALL) {
-    const double turn = Eigen::AngleAxisd(relative).angle();
-    out.square = turn * turn;
+    const double angle = Eigen::AngleAxisd(relative).angle();
+    out.square = angle * angle;
     return out;
   }
   for (int k = 0; k < joint.axes; ++k) {
@@ -69,7 +71,7 @@ State measure(Creature& creature) {
     const Moving& m =
         all.emplace_back(Moving{creature.pose(static_cast<int>(i)), vector(world.velocity(body.object).or_throw()),
                                 vector(world.rotational_velocity(body.object).or_throw())});
-    const Vector3 own = m.pose.turn.conjugate() * m.spin;
+    const Vector3 own = m.pose.orientation.conjugate() * m.spin;
     now.kinetic += 0.5 * body.mass * m.velocity.squaredNorm() + 0.5 * own.dot(body.inertia.cwiseProduct(own));
     now.potential -= body.mass * creature.gravity().dot(m.pose.at);
     now.mass += body.mass;
@@ -80,9 +82,9 @@ State measure(Creature& creature) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Moving& m = all[i];
     const Vector3 from = m.pose.at - now.center;
-    const Vector3 own = m.pose.turn.conjugate() * m.spin;
+    const Vector3 own = m.pose.orientation.conjugate() * m.spin;
     now.spin += bodies[i].mass * from.cross(m.velocity - now.momentum / now.mass) +
-                m.pose.turn * bodies[i].inertia.cwiseProduct(own);
+                m.pose.orientation * bodies[i].inertia.cwiseProduct(own);
     now.roundness += bodies[i].mass * from.squaredNorm() + bodies[i].inertia.maxCoeff();
     now.size = std::max(now.size, from.norm() + bodies[i].half.norm());
   }
@@ -92,9 +94,9 @@ State measure(Creature& creature) {
     now.told = std::max(now.told, at.told);
     now.springs += 0.5 * joint.drive.stiffness * at.square;
   }
-  if (const Tie& tie = creature.tie(); tie.a >= 0) {
-    const double length = (creature.pose(tie.a).at - creature.pose(tie.b).at).norm();
-    now.springs += 0.5 * tie.strength * (length - tie.length) * (length - tie.length);
+  if (const Spring& spring = creature.spring(); spring.a >= 0) {
+    const double length = (creature.pose(spring.a).at - creature.pose(spring.b).at).norm();
+    now.springs += 0.5 * spring.strength * (length - spring.length) * (length - spring.length);
   }
   return now;
 }

@@ -32,7 +32,7 @@ struct Guarded : Flat {
     spring.length = 2.9;
     spring.strength = kSoft * bodies().mass(index(ball)) / (kStep * kStep);
     spring.damping = 0;
-    for (int i = 0; i < count; ++i) physics().tie(spring, ball);
+    for (int i = 0; i < count; ++i) physics().add_spring(spring, ball);
     return ball;
   }
 };
@@ -105,7 +105,7 @@ TEST(PlanarGuard, WithoutItANumberThatIsNoneIsAnErrorAndTheWorldGoesOn) {
   EXPECT_TRUE(flat.at(ball).allFinite());
 }
 
-TEST(PlanarGuard, QuietScenesGiveNoEvents) {
+TEST(PlanarGuard, RestingScenesGiveNoEvents) {
   for (const Rung rung : {Rung::Fast, Rung::Balanced, Rung::Precise}) {
     Guarded flat(GuardMode::Report, rung);
     flat.ground();

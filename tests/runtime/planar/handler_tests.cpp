@@ -56,7 +56,7 @@ TEST(PlanarHandlers, TwoDiscsThatMoveMeetWhenTheirCentresAreTheirRadiiApart) {
   }
 }
 
-TEST(PlanarHandlers, ABarThatTurnsMeetsAWallWithItsCorner) {
+TEST(PlanarHandlers, ABarThatRotatesMeetsAWallWithItsCorner) {
   // The farther corner, at R and phi from the bar's axis, is at d along x when R cos(phi - w t) = d.
   Crowd flat;
   const double w = 2, length = 2, width = 0.2, d = 0.7;

@@ -53,14 +53,14 @@ TEST(PlanarStops, AHingeAndASliderRunBetweenElasticLimitsForEver) {
     const double late = rung == Rung::Fast ? 1.0 / 60 : 0;
     for (int i = 1; i <= 600; ++i) {
       flat.world.step();
-      const double t = i / 60.0, turn = flat.physics().position(hinge)[0], way = flat.physics().position(slider)[0];
+      const double t = i / 60.0, angle = flat.physics().position(hinge)[0], way = flat.physics().position(slider)[0];
       ASSERT_NEAR(flat.physics().energy().total(), start, 1e-4 * start) << i;
-      ASSERT_GT(turn, -0.5 - 1e-4 - 3 * late);
-      ASSERT_LT(turn, 0.3 + 1e-4 + 3 * late);
+      ASSERT_GT(angle, -0.5 - 1e-4 - 3 * late);
+      ASSERT_LT(angle, 0.3 + 1e-4 + 3 * late);
       ASSERT_GT(way, -0.4 - 1e-4 - 2 * late);
       ASSERT_LT(way, 1 + 1e-4 + 2 * late);
       if (rung == Rung::Fast) continue;
-      ASSERT_NEAR(turn, between(3 * t, -0.5, 0.3), 0.005) << i;
+      ASSERT_NEAR(angle, between(3 * t, -0.5, 0.3), 0.005) << i;
       ASSERT_NEAR(way, between(2 * t, -0.4, 1), 0.005) << i;
     }
     EXPECT_NEAR(flat.physics().energy().limit_loss, 0, 1e-4 * start);
@@ -259,7 +259,7 @@ TEST(PlanarStrikes, ALinkWhoseVelocityIsSetIsStruckAndTheOtherAnswers) {
   EXPECT_NEAR(s.physics().energy().residual, 0, impulse * v * kSingle);
 }
 
-TEST(PlanarStrikes, ALinkWhoseSpinIsSetIsTurnedAndTheOtherAnswers) {
+TEST(PlanarStrikes, ALinkWhoseSpinIsSetIsRotatedAndTheOtherAnswers) {
   Rods s;
   constexpr double w = 3;
   s.bodies().set_rotational_velocity(s.index(s.a), {0, 0, w});

@@ -77,7 +77,7 @@ TEST(PlanarMotion, APendulumSwingsWithItsPeriod) {
   flat.hinge({}, ball, {0, 0, 0}, {-l * std::sin(a), l * std::cos(a), 0});
   const double period = 2 * M_PI * std::sqrt((l * l + 0.4 * r * r) / (kG * l)) * (1 + a * a / 16);
   double last = flat.at(ball).x(), time = 0, first = -1, latest = -1;
-  int turns = 0;
+  int periods = 0;
   for (int i = 0; i < 60 * 30; ++i) {
     flat.world.step();
     time += 1.0 / 60;
@@ -87,11 +87,11 @@ TEST(PlanarMotion, APendulumSwingsWithItsPeriod) {
       if (first < 0)
         first = latest;
       else
-        ++turns;
+        ++periods;
     }
     last = x;
   }
-  EXPECT_NEAR((latest - first) / turns, period, 0.002 * period);
+  EXPECT_NEAR((latest - first) / periods, period, 0.002 * period);
 }
 
 TEST(PlanarMotion, ABlockOnAnInclineSticksOrSlidesAsItsFrictionSays) {
@@ -341,7 +341,7 @@ TEST(PlanarMotion, APlateThatMovesAsItIsToldCarriesAndLifts) {
   EXPECT_NEAR(energy.script_work, 9.81 + 1 + 0.25, 0.5);
 }
 
-TEST(PlanarJoints, AHingeCountsItsTurnsAndItsMotorTurnsIt) {
+TEST(PlanarJoints, AHingeCountsItsRevolutionsAndItsMotorRotatesIt) {
   Flat flat;
   flat.physics().set_gravity(Vector3::Zero());
   const ObjectId bar = flat.box(2, 0.2, 0, 0);
@@ -396,7 +396,7 @@ TEST(PlanarJoints, AFixedJointHoldsAndARotatedAssemblyFollowsItsMovedLink) {
   flat.physics().link(is, b);
   EXPECT_NEAR((flat.at(b) - Vector3(1, 0, 0)).norm(), 0, 1e-12);  // it was brought to its place
   flat.bodies().set_location(flat.index(a), {0, 5, 0});
-  flat.turn(a, M_PI / 2);
+  flat.rotate(a, M_PI / 2);
   flat.physics().moved(flat.index(a));
   EXPECT_NEAR((flat.at(b) - Vector3(0, 6, 0)).norm(), 0, 1e-6);
   flat.bodies().set_rotational_velocity(flat.index(a), {0, 0, 2});
@@ -415,7 +415,7 @@ TEST(PlanarJoints, ASpringSwingsWithItsPeriodAndItsEnergyIsInTheLedger) {
   spring.length = 2;
   spring.strength = 10;
   spring.damping = 0;
-  flat.physics().tie(spring, b);
+  flat.physics().add_spring(spring, b);
   flat.world.step();
   const Energy start = flat.physics().energy();
   EXPECT_NEAR(start.total(), 5, 0.05);

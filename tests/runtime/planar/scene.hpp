@@ -25,19 +25,19 @@ struct Flat : Scene {
 
   ObjectId rigid(std::shared_ptr<Shape> shape, double x, double y, double angle = 0, ClassId cls = 1) {
     const ObjectId id = body(cls, {x, y, 0}, BodyKind::Mobile, std::move(shape));
-    turn(id, angle);
+    rotate(id, angle);
     bodies().set_physics(index(id), true);
     return id;
   }
   ObjectId fixed(std::shared_ptr<Shape> shape, double x, double y, double angle = 0, ClassId cls = 2) {
     const ObjectId id = body(cls, {x, y, 0}, BodyKind::Stationary, std::move(shape));
-    turn(id, angle);
+    rotate(id, angle);
     return id;
   }
   ObjectId ground(double width = 1000) { return fixed(Shape::box({width, 10, 1}), 0, -5); }
   ObjectId ball(double radius, double x, double y) { return rigid(Shape::sphere(radius), x, y); }
   ObjectId box(double width, double height, double x, double y) { return rigid(Shape::box({width, height, 1}), x, y); }
-  void turn(ObjectId id, double angle) {
+  void rotate(ObjectId id, double angle) {
     bodies().set_orientation(index(id), Quaternion(std::cos(angle / 2), 0, 0, std::sin(angle / 2)));
   }
   double angle(ObjectId id) {

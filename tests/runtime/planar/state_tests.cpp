@@ -21,7 +21,7 @@ struct Zoo : Flat {
     spring.a = index(boxes[0]);
     spring.b = index(wheel);
     spring.length = 3;
-    physics().tie(spring, wheel);
+    physics().add_spring(spring, wheel);
     world.handle_collisions(1, 2, "hit", controller);
   }
 };
@@ -150,7 +150,7 @@ TEST(PlanarState, OutlinesOfSolidsPrismsAndConcaveMeshesCarryWhatRollsOnThem) {
   std::vector<std::vector<Vector3>> faces(2);
   for (int i = 0; i < 24; ++i) {
     const double angle = 2 * M_PI * i / 24, next = 2 * M_PI * (i + 1) / 24;
-    const auto at = [](double turn, double z) { return Vector3(std::cos(turn), std::sin(turn), z); };
+    const auto at = [](double rotation, double z) { return Vector3(std::cos(rotation), std::sin(rotation), z); };
     faces[0].push_back(at(-angle, -0.5));
     faces[1].push_back(at(angle, 0.5));
     faces.push_back({at(angle, -0.5), at(next, -0.5), at(next, 0.5), at(angle, 0.5)});
@@ -323,7 +323,7 @@ TEST(PlanarState, WhatScriptsDoToSpringsIsTheirWork) {
   spring.length = 2;
   spring.strength = 10;
   spring.damping = 0;
-  const SpringIndex tie = flat.physics().tie(spring, b);
+  const SpringIndex made = flat.physics().add_spring(spring, b);
   const auto expect_work = [&](double work) {
     // A first-order rule swings by some thousandths of the energy.
     EXPECT_NEAR(flat.physics().energy().script_work, work, 0.05);
@@ -339,7 +339,7 @@ TEST(PlanarState, WhatScriptsDoToSpringsIsTheirWork) {
   EXPECT_NEAR(flat.physics().energy().total(), 20, 0.1);  // by 2 m, from rest
   EXPECT_NEAR(stretched, 20, 0.1);
   expect_work(stretched);
-  flat.physics().untie(tie);
+  flat.physics().remove_spring(made);
   expect_work(stretched - 20 + flat.physics().energy().kinetic);
 }
 

@@ -19,10 +19,10 @@
 
 namespace breve {
 
-class TiedMotion : public InMemory {
+class NetworkMotion : public InMemory {
  public:
   /// @param trees  bodies without joints; they outlive it
-  TiedMotion(std::pmr::memory_resource* memory, std::span<Tree* const> trees);
+  NetworkMotion(std::pmr::memory_resource* memory, std::span<Tree* const> trees);
   /// @param a, b  numbers of the bodies at its ends; -1: one that the cluster does not move
   void add(const Dynamics::Core& core, SpringIndex spring, int a, int b);
 
@@ -55,7 +55,7 @@ class TiedMotion : public InMemory {
   void write(Dynamics::Core& core) const;
 
  private:
-  struct Tie {
+  struct Edge {
     int a, b;
     SpringIndex spring;
     double length, strength, damping;
@@ -74,13 +74,13 @@ class TiedMotion : public InMemory {
   std::pmr::vector<Tree*> trees_;
   std::pmr::vector<Point> points_;  // of the trees' bodies, then ends that do not move
   std::pmr::vector<Vector3> pulls_, drags_;
-  std::pmr::vector<Tie> ties_;
+  std::pmr::vector<Edge> edges_;
   std::pmr::vector<std::pair<BodyIndex, Vector3>> still_;  // ends that do not move, in the bodies' frames
   std::uint64_t version_ = 0;                              // of the springs' settings, that was read
   bool plain_ = false, damped_ = false;
-  double fastest_ = 0;    // rad/s: no oscillation is faster
-  double most_turn_ = 1;  // rad, of that, in a part
-  double part_ = 0;       // s, that shares were made for
+  double fastest_ = 0;     // rad/s: no oscillation is faster
+  double most_phase_ = 1;  // rad, of that, in a part
+  double part_ = 0;        // s, that shares were made for
   double loss_ = 0;
 };
 

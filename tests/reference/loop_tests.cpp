@@ -15,7 +15,7 @@ namespace {
 struct Mechanism : World {
   breve_object crank{};
   double sign = 1, zero = 0;
-  std::vector<Hinge> rings;
+  std::vector<Hinge> loops;
   explicit Mechanism(breve_rung rung) : World(1.0 / 60, rung) { set_guard(BREVE_GUARD_REPORT); }
   double angle() const { return zero + sign * read(crank).position[0]; }
   double rate() const { return sign * read(crank).velocity[0]; }
@@ -30,16 +30,16 @@ struct FourBar : Mechanism {
       cranks[i] = Bar(*this, Vector3(i, 0, 0), Vector3(i, 1, 0), 1);
       joints.push_back(join(pin(nullptr, Vector3(i, 0, 0), cranks[i], cranks[i].begin())));
     }
-    std::vector<breve_object> turned;
+    std::vector<breve_object> rotated;
     for (int i = 0; i < 2; ++i) {
       couplers[i] = Bar(*this, Vector3(i, 1, 0), Vector3(i + 1, 1, 0), 1);
-      turned.push_back(join(pin(&cranks[i], cranks[i].end(), couplers[i], couplers[i].begin())));
-      rings.push_back(pin(&couplers[i], couplers[i].end(), cranks[i + 1], cranks[i + 1].end()));
-      EXPECT_TRUE(read(join(rings.back())).ring);
+      rotated.push_back(join(pin(&cranks[i], cranks[i].end(), couplers[i], couplers[i].begin())));
+      loops.push_back(pin(&couplers[i], couplers[i].end(), cranks[i + 1], cranks[i + 1].end()));
+      EXPECT_TRUE(read(join(loops.back())).ring);
     }
     crank = joints[0];
     for (const breve_object joint : joints) set_joint(joint, 0, -1);
-    for (const breve_object joint : turned) set_joint(joint, 0, 1);
+    for (const breve_object joint : rotated) set_joint(joint, 0, 1);
   }
 };
 
@@ -75,7 +75,7 @@ void follow(const std::string& name, breve_rung rung, double until, double bound
     machine.run(row.number("t") - machine.time());
     const double off = machine.angle() - row.number("angle"), rate = machine.rate() - row.number("rate");
     double open = 0;
-    for (const Hinge& ring : machine.rings) open = std::max(open, machine.open(ring));
+    for (const Hinge& loop : machine.loops) open = std::max(open, machine.open(loop));
     std::printf("  %-12s t %4.2f: angle off by %+.1e, rate by %+.1e, open %.0e, energy %+.1e J\n", name.c_str(),
                 row.number("t"), off, rate, open, machine.mechanical() - start);
     EXPECT_LE(std::abs(off), bound) << name << " at " << row.number("t");
@@ -84,17 +84,17 @@ void follow(const std::string& name, breve_rung rung, double until, double bound
   }
 }
 
-TEST(Rings, ReferenceFollowsTheParallelograms) { follow<FourBar>("fourbar_N2", BREVE_RUNG_REFERENCE, 0.5, 1e-7); }
+TEST(ClosedLoops, ReferenceFollowsTheParallelograms) { follow<FourBar>("fourbar_N2", BREVE_RUNG_REFERENCE, 0.5, 1e-7); }
 
-TEST(Rings, ReferenceFollowsTheSliderCrank) { follow<SliderCrank>("slidercrank", BREVE_RUNG_REFERENCE, 3, 1e-7); }
+TEST(ClosedLoops, ReferenceFollowsTheSliderCrank) { follow<SliderCrank>("slidercrank", BREVE_RUNG_REFERENCE, 3, 1e-7); }
 
-TEST(Rings, PreciseFollowsBoth) {
+TEST(ClosedLoops, PreciseFollowsBoth) {
   follow<FourBar>("fourbar_N2", BREVE_RUNG_PRECISE, 0.5, 1e-5);
   follow<SliderCrank>("slidercrank", BREVE_RUNG_PRECISE, 3, 1e-3);
 }
 
 /// At rest, held by the rail and nothing else under the slider: statics gives what each joint holds.
-TEST(Rings, ReactionsKnowOfTheRing) {
+TEST(ClosedLoops, ReactionsIncludeTheLoop) {
   for (const breve_rung rung : {BREVE_RUNG_BALANCED, BREVE_RUNG_REFERENCE}) {
     SliderCrank machine(rung);
     // The crank's torque holds all: work of weights along the one freedom, by differences of the geometry.

@@ -47,10 +47,10 @@ struct Chain : Physics {
     add(is);
     if (asked) mechanics().set_force_method(index(boxes[1]), true);
   }
-  void add(const SpringDescription& is) { springs.push_back(mechanics().tie(is, boxes[0])); }
+  void add(const SpringDescription& is) { springs.push_back(mechanics().add_spring(is, boxes[0])); }
 };
 
-TEST(TiedBodies, MoveAsTheyDoWhereScriptsAreAsked) {
+TEST(SpringNetworks, MoveAsTheyDoWhereScriptsAreAsked) {
   for (const Rung rung : {Rung::Fast, Rung::Balanced, Rung::Precise, Rung::Reference, Rung::Conserving}) {
     Chain own(rung, false), general(rung, true);
     for (int i = 0; i < 240; ++i) {

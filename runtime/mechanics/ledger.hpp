@@ -37,7 +37,7 @@ enum class GuardReason : std::uint8_t {
   NotFinite,
   Residual,
   Penetration,
-  FastTurn,
+  FastRotation,
   FastDamping,
   Impacts,
   NoSolution,

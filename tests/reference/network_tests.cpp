@@ -13,9 +13,9 @@ using namespace breve::reference;
 
 constexpr double kStep = 1.0 / 60;
 
-class Tied : public testing::TestWithParam<breve_rung> {};
+class SpringNetworks : public testing::TestWithParam<breve_rung> {};
 
-breve_object tie(World& world, breve_object a, breve_object b, double length, double strength, double damping) {
+breve_object add_spring(World& world, breve_object a, breve_object b, double length, double strength, double damping) {
   breve_spring spring = breve_spring_default();
   spring.from = a, spring.to = b;
   spring.length = length, spring.strength = strength, spring.damping = damping;
@@ -34,7 +34,7 @@ std::vector<breve_object> block(World& world, int n, double height, double dampi
   for (std::size_t i = 0; i < balls.size(); ++i)
     for (std::size_t k = i + 1; k < balls.size(); ++k) {
       const double length = (world.at(balls[i]) - world.at(balls[k])).norm();
-      if (length < kReach) tie(world, balls[i], balls[k], length, 300, damping);
+      if (length < kReach) add_spring(world, balls[i], balls[k], length, 300, damping);
     }
   return balls;
 }
@@ -42,13 +42,13 @@ std::vector<breve_object> block(World& world, int n, double height, double dampi
 }  // namespace
 
 /// Two masses on a spring: the distance is length + A cos(w t) with w^2 = k (1/m1 + 1/m2). Here w h is 0.8.
-TEST_P(Tied, TwoMassesOscillateAsTheClosedFormSays) {
+TEST_P(SpringNetworks, TwoMassesOscillateAsTheClosedFormSays) {
   constexpr double kStrength = 1536, kLength = 2, kStretch = 0.1;
   World world(kStep, GetParam());
   world.set_gravity(Vector3::Zero());
   const breve_object a = world.body(sphere(0.2, 1), Vector3(0, 5, 0));
   const breve_object b = world.body(sphere(0.2, 2), Vector3(kLength + kStretch, 5, 0));
-  tie(world, a, b, kLength, kStrength, 0);
+  add_spring(world, a, b, kLength, kStrength, 0);
   const double w = std::sqrt(kStrength * 1.5);
   double worst = 0;
   world.run(2, [&] {
@@ -60,14 +60,14 @@ TEST_P(Tied, TwoMassesOscillateAsTheClosedFormSays) {
 }
 
 /// A damper that only slows two masses down: their relative velocity is v exp(-c (1/m1 + 1/m2) t), at any strength.
-TEST_P(Tied, DampersTakeWhatTheClosedFormSays) {
+TEST_P(SpringNetworks, DampersTakeWhatTheClosedFormSays) {
   for (const double damping : {1.0, 1000.0}) {
     World world(kStep, GetParam());
     world.set_gravity(Vector3::Zero());
     const breve_object a = world.body(sphere(0.2, 1), Vector3(0, 5, 0));
     const breve_object b = world.body(sphere(0.2, 3), Vector3(4, 5, 0));
     world.set_velocity(b, Vector3(1, 0, 0));
-    tie(world, a, b, 4, 0, damping);
+    add_spring(world, a, b, 4, 0, damping);
     world.run(0.5);
     const double rate = damping * (1 + 1.0 / 3);
     EXPECT_NEAR((world.velocity(b) - world.velocity(a)).x(), std::exp(-rate * world.time()), 1e-9);
@@ -78,7 +78,7 @@ TEST_P(Tied, DampersTakeWhatTheClosedFormSays) {
 }
 
 /// A block that flies, turns and oscillates for ten seconds.
-TEST_P(Tied, BlocksKeepEnergyAndMomentum) {
+TEST_P(SpringNetworks, BlocksKeepEnergyAndMomentum) {
   World world(kStep, GetParam());
   world.set_gravity(Vector3::Zero());
   const std::vector<breve_object> balls = block(world, 3, 50, 0);
@@ -106,7 +106,7 @@ TEST_P(Tied, BlocksKeepEnergyAndMomentum) {
 }
 
 /// A block that falls on a floor: what it had is in the books, and it lies in the end.
-TEST_P(Tied, FallenBlocksComeToRestByTheBooks) {
+TEST_P(SpringNetworks, FallenBlocksComeToRestByTheBooks) {
   World world(kStep, GetParam());
   world.fixed(box(Vector3(20, 1, 20), 1), Vector3(0, -0.5, 0));
   const std::vector<breve_object> balls = block(world, 3, 1, 5);
@@ -121,12 +121,12 @@ TEST_P(Tied, FallenBlocksComeToRestByTheBooks) {
 }
 
 /// A spring that is set to push only, is followed all the same.
-TEST_P(Tied, SpringsMayChangeTheirMindOnTheWay) {
+TEST_P(SpringNetworks, SpringsMayChangeTheirMindOnTheWay) {
   World world(kStep, GetParam());
   world.set_gravity(Vector3::Zero());
   const breve_object a = world.body(sphere(0.2, 1), Vector3(0, 5, 0));
   const breve_object b = world.body(sphere(0.2, 1), Vector3(1.4, 5, 0));
-  const breve_object spring = tie(world, a, b, 1, 100, 0);
+  const breve_object spring = add_spring(world, a, b, 1, 100, 0);
   world.run(0.5);
   const double energy = world.mechanical();
   breve_spring now = breve_spring_default();
@@ -140,6 +140,7 @@ TEST_P(Tied, SpringsMayChangeTheirMindOnTheWay) {
   EXPECT_NEAR(world.mechanical(), changed, 0.02 * energy);
 }
 
-INSTANTIATE_TEST_SUITE_P(Rungs, Tied, testing::Values(BREVE_RUNG_FAST, BREVE_RUNG_BALANCED), [](const auto& one) {
-  return one.param == BREVE_RUNG_FAST ? std::string("fast") : std::string("balanced");
-});
+INSTANTIATE_TEST_SUITE_P(Rungs, SpringNetworks, testing::Values(BREVE_RUNG_FAST, BREVE_RUNG_BALANCED),
+                         [](const auto& one) {
+                           return one.param == BREVE_RUNG_FAST ? std::string("fast") : std::string("balanced");
+                         });

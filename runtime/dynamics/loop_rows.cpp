@@ -1,5 +1,5 @@
 // Which relations each kind of joint holds: two or three of place, none to three of turning.
-#include "runtime/dynamics/rings.hpp"
+#include "runtime/dynamics/loop_rows.hpp"
 
 #include "runtime/contact/impact_law.hpp"
 #include "runtime/dynamics/core.hpp"
@@ -11,12 +11,12 @@ namespace {
 
 /// The parent's side of the row is where the child's point is, along a prismatic joint's axis far from its own: what
 /// turns with the parent is then told from what slides.
-void add_linear(const Vector3& axis, const Vector3& child, const Vector3& parent, RingRows& rows) {
+void add_linear(const Vector3& axis, const Vector3& child, const Vector3& parent, LoopRows& rows) {
   rows.add({axis, false, child, child, axis.dot(child - parent)});
 }
 
-void add_angular(const Vector3& axis, double error, RingRows& rows) {
-  RingRow row;
+void add_angular(const Vector3& axis, double error, LoopRows& rows) {
+  LoopRow row;
   row.axis = axis;
   row.angular = true;
   row.error = error;
@@ -34,8 +34,8 @@ Pose end_pose(const Dynamics::Core& core, const Tree& tree, BodyIndex body, int&
 
 }  // namespace
 
-RingRows Dynamics::Core::ring_rows(const Tree& tree, const JointDescription& is) const {
-  RingRows rows;
+LoopRows Dynamics::Core::loop_rows(const Tree& tree, const JointDescription& is) const {
+  LoopRows rows;
   const Pose child = end_pose(*this, tree, is.child, rows.child);
   const Pose parent = end_pose(*this, tree, is.parent, rows.parent);
   const Vector3 on_child = child.location + child.orientation * is.child_point;
@@ -49,11 +49,11 @@ RingRows Dynamics::Core::ring_rows(const Tree& tree, const JointDescription& is)
   // A small turn from where the child should be; twice the vector part of its quaternion.
   Quaternion open = child.orientation * (parent.orientation * is.relative_rotation).conjugate();
   if (open.w() < 0) open.coeffs() = -open.coeffs();
-  const Vector3 turn = 2 * open.vec();
+  const Vector3 rotation = 2 * open.vec();
   switch (is.kind) {
     case JointKind::Fixed:
     case JointKind::Prismatic:
-      for (const Vector3* axis : {&normal, &t1, &t2}) add_angular(*axis, axis->dot(turn), rows);
+      for (const Vector3* axis : {&normal, &t1, &t2}) add_angular(*axis, axis->dot(rotation), rows);
       break;
     case JointKind::Revolute: {
       const Vector3 of_child = child.orientation * (is.relative_rotation.conjugate() * is.normal);

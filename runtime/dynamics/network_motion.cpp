@@ -1,5 +1,5 @@
 // Drifts of the points and kicks by the springs.
-#include "runtime/dynamics/tied_motion.hpp"
+#include "runtime/dynamics/network_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +11,8 @@ namespace {
 // How far the fastest oscillation rotates in a part, rad. The scheme of order 4 is stable up to 2.6; energy errs by 3
 // in 1,000 at 1, and by 4 in 100 at 1.75, where it is all in that oscillation. Leapfrog's period errs by 1 in 10,000 at
 // 0.05.
-constexpr double kPartTurn = 1, kPartTurnFast = 1.75, kSlowTurn = 0.05, kStableTurn = 2;
-constexpr double kMostTiedParts = 32;  // finer steps are left to step control
+constexpr double kPartPhase = 1, kPartPhaseFast = 1.75, kSlowPhase = 0.05, kStablePhase = 2;
+constexpr double kMostNetworkParts = 32;  // finer steps are left to step control
 
 bool acts_alone(const Dynamics::Core& core, const Tree& tree) {
   return !core.find(tree.links.front().body)->force_method;
@@ -20,17 +20,17 @@ bool acts_alone(const Dynamics::Core& core, const Tree& tree) {
 
 }  // namespace
 
-TiedMotion::TiedMotion(std::pmr::memory_resource* memory, std::span<Tree* const> trees)
+NetworkMotion::NetworkMotion(std::pmr::memory_resource* memory, std::span<Tree* const> trees)
     : trees_(trees.begin(), trees.end(), memory),
       points_(trees.size(), Point(), memory),
       pulls_(trees.size(), Vector3(Vector3::Zero()), memory),
       drags_(trees.size(), Vector3(Vector3::Zero()), memory),
-      ties_(memory),
+      edges_(memory),
       still_(memory) {
   for (std::size_t i = 0; i < trees_.size(); ++i) points_[i].inverse_mass = 1 / trees_[i]->links.front().solid.mass;
 }
 
-void TiedMotion::add(const Dynamics::Core& core, SpringIndex spring, int a, int b) {
+void NetworkMotion::add(const Dynamics::Core& core, SpringIndex spring, int a, int b) {
   const SpringDescription& is = core.springs[spring].is;
   const auto number = [&](int end, BodyIndex body, const Vector3& at) {
     if (end >= 0) return end;
@@ -39,15 +39,15 @@ void TiedMotion::add(const Dynamics::Core& core, SpringIndex spring, int a, int 
     drags_.push_back(Vector3::Zero());
     return static_cast<int>(points_.size()) - 1;
   };
-  Tie tie{};
-  tie.spring = spring;
-  tie.a = number(a, is.a, is.point_a);
-  tie.b = number(b, is.b, is.point_b);
-  ties_.push_back(tie);
+  Edge edge{};
+  edge.spring = spring;
+  edge.a = number(a, is.a, is.point_a);
+  edge.b = number(b, is.b, is.point_b);
+  edges_.push_back(edge);
 }
 
 /// What only changes if somebody sets a spring.
-bool TiedMotion::read(const Dynamics::Core& core) {
+bool NetworkMotion::read(const Dynamics::Core& core) {
   const auto bodies = static_cast<int>(trees_.size());
   std::pmr::vector<double> pulled(points_.size(), 0.0, core.memory);
   const auto central = [&](int end, const Vector3& at) {
@@ -56,36 +56,36 @@ bool TiedMotion::read(const Dynamics::Core& core) {
     return true;
   };
   damped_ = false;
-  for (Tie& tie : ties_) {
-    const SpringDescription& is = core.springs[tie.spring].is;
-    if (is.mode != SpringMode::Both || is.maximum_force != 0 || !central(tie.a, is.point_a) ||
-        !central(tie.b, is.point_b))
+  for (Edge& edge : edges_) {
+    const SpringDescription& is = core.springs[edge.spring].is;
+    if (is.mode != SpringMode::Both || is.maximum_force != 0 || !central(edge.a, is.point_a) ||
+        !central(edge.b, is.point_b))
       return false;
-    tie.length = is.length;
-    tie.strength = is.strength;
-    tie.damping = is.damping;
+    edge.length = is.length;
+    edge.strength = is.strength;
+    edge.damping = is.damping;
     damped_ = damped_ || is.damping > 0;
-    const auto a = static_cast<std::size_t>(tie.a), b = static_cast<std::size_t>(tie.b);
-    tie.yields = points_[a].inverse_mass + points_[b].inverse_mass;
+    const auto a = static_cast<std::size_t>(edge.a), b = static_cast<std::size_t>(edge.b);
+    edge.yields = points_[a].inverse_mass + points_[b].inverse_mass;
     pulled[a] += is.strength * points_[a].inverse_mass;
     pulled[b] += is.strength * points_[b].inverse_mass;
   }
   // Gershgorin's bound of the squares of frequencies, body by body.
   double most = 0;
-  for (const Tie& tie : ties_)
-    most = std::max(most, pulled[static_cast<std::size_t>(tie.a)] + pulled[static_cast<std::size_t>(tie.b)]);
+  for (const Edge& edge : edges_)
+    most = std::max(most, pulled[static_cast<std::size_t>(edge.a)] + pulled[static_cast<std::size_t>(edge.b)]);
   fastest_ = std::sqrt(most);
   part_ = 0;
   return true;
 }
 
-bool TiedMotion::begin(const Dynamics::Core& core, Rung rung, double h) {
-  most_turn_ = rung == Rung::Fast ? kPartTurnFast : kPartTurn;
+bool NetworkMotion::begin(const Dynamics::Core& core, Rung rung, double h) {
+  most_phase_ = rung == Rung::Fast ? kPartPhaseFast : kPartPhase;
   if (version_ != core.springs_version) {
     version_ = core.springs_version;
     plain_ = read(core);
   }
-  if (!plain_ || !(fastest_ * h <= kMostTiedParts * most_turn_)) return false;
+  if (!plain_ || !(fastest_ * h <= kMostNetworkParts * most_phase_)) return false;
   for (std::size_t i = 0; i < still_.size(); ++i) {
     const auto& [body, at] = still_[i];
     if (core.bodies->velocity(body) != Vector3::Zero() || core.bodies->rotational_velocity(body) != Vector3::Zero())
@@ -97,33 +97,33 @@ bool TiedMotion::begin(const Dynamics::Core& core, Rung rung, double h) {
 }
 
 /// What a damper does in `part` seconds.
-void TiedMotion::set_part(double part) {
+void NetworkMotion::set_part(double part) {
   if (part_ == part) return;
   part_ = part;
-  for (Tie& tie : ties_) {
-    const double rate = tie.damping * tie.yields * part;
+  for (Edge& edge : edges_) {
+    const double rate = edge.damping * edge.yields * part;
     // (1 - exp(-rate)) / yields, and half of (1 - exp(-2 rate)) / yields.
-    tie.share = tie.yields > 0 ? -std::expm1(-rate) / tie.yields : 0;
-    tie.loss = tie.yields > 0 ? -0.5 * std::expm1(-2 * rate) / tie.yields : 0;
+    edge.share = edge.yields > 0 ? -std::expm1(-rate) / edge.yields : 0;
+    edge.loss = edge.yields > 0 ? -0.5 * std::expm1(-2 * rate) / edge.yields : 0;
   }
 }
 
-void TiedMotion::drift(double time) {
+void NetworkMotion::drift(double time) {
   for (std::size_t i = 0; i < trees_.size(); ++i) points_[i].center += time * points_[i].velocity;
 }
 
 /// @param scale  of the springs' forces
-void TiedMotion::kick(double time, double scale) {
+void NetworkMotion::kick(double time, double scale) {
   Point* const points = points_.data();
   const double share = time * scale;
-  for (Tie& tie : ties_) {
-    Point &a = points[tie.a], &b = points[tie.b];
+  for (Edge& edge : edges_) {
+    Point &a = points[edge.a], &b = points[edge.b];
     const Vector3 way = b.center - a.center;
     const double length = way.norm();
-    tie.force = 0;
+    edge.force = 0;
     if (!(length > 0)) continue;
-    tie.force = tie.strength * (length - tie.length);
-    const double push = share * tie.force / length;
+    edge.force = edge.strength * (length - edge.length);
+    const double push = share * edge.force / length;
     const double to_a = push * a.inverse_mass, to_b = push * b.inverse_mass;
     a.velocity += to_a * way;
     b.velocity -= to_b * way;
@@ -131,37 +131,37 @@ void TiedMotion::kick(double time, double scale) {
   for (std::size_t i = 0; i < trees_.size(); ++i) points_[i].velocity += time * pulls_[i];
 }
 
-void TiedMotion::damp(double part) {
+void NetworkMotion::damp(double part) {
   if (!damped_) return;
   set_part(part);
   Point* const points = points_.data();
-  for (Tie& tie : ties_) {
-    Point &a = points[tie.a], &b = points[tie.b];
+  for (Edge& edge : edges_) {
+    Point &a = points[edge.a], &b = points[edge.b];
     const Vector3 way = b.center - a.center;
     const double length = way.norm();
-    tie.drag = 0;
+    edge.drag = 0;
     if (!(length > 0)) continue;
     const double inverse = 1 / length, speed = inverse * way.dot(b.velocity - a.velocity);
-    tie.drag = tie.damping * speed;
-    const Vector3 impulse = (tie.share * speed * inverse) * way;
+    edge.drag = edge.damping * speed;
+    const Vector3 impulse = (edge.share * speed * inverse) * way;
     a.velocity += a.inverse_mass * impulse;
     b.velocity -= b.inverse_mass * impulse;
-    drags_[static_cast<std::size_t>(tie.a)] += impulse;
-    drags_[static_cast<std::size_t>(tie.b)] -= impulse;
-    loss_ += tie.loss * speed * speed;
+    drags_[static_cast<std::size_t>(edge.a)] += impulse;
+    drags_[static_cast<std::size_t>(edge.b)] -= impulse;
+    loss_ += edge.loss * speed * speed;
   }
 }
 
-int TiedMotion::step(double h, bool in_one, Meter& meter) {
+int NetworkMotion::step(double h, bool in_one, Meter& meter) {
   constexpr double kXi = 0.1786178958448091, kLambda = -0.2123418310626054, kChi = -0.06626458266981849;
   loss_ = 0;
   std::fill(drags_.begin(), drags_.end(), Vector3(Vector3::Zero()));
-  const double turn = fastest_ * h;
-  const bool slow = turn <= kSlowTurn || in_one;
-  const int parts = slow ? 1 : static_cast<int>(std::ceil(turn / most_turn_));
-  const double part = h / parts, scale = in_one ? std::min(1.0, std::pow(kStableTurn / turn, 2)) : 1;
+  const double phase = fastest_ * h;
+  const bool slow = phase <= kSlowPhase || in_one;
+  const int parts = slow ? 1 : static_cast<int>(std::ceil(phase / most_phase_));
+  const double part = h / parts, scale = in_one ? std::min(1.0, std::pow(kStablePhase / phase, 2)) : 1;
   const int evaluations = parts * (!slow ? 4 : damped_ ? 2 : 1);
-  meter.add(static_cast<std::uint64_t>(evaluations) * (1 + (ties_.size() + points_.size()) / 4));
+  meter.add(static_cast<std::uint64_t>(evaluations) * (1 + (edges_.size() + points_.size()) / 4));
   for (int i = 0; i < parts; ++i) {
     if (slow) {
       drift(0.5 * part);
@@ -187,23 +187,23 @@ int TiedMotion::step(double h, bool in_one, Meter& meter) {
   return evaluations;
 }
 
-double TiedMotion::energy() {
+double NetworkMotion::energy() {
   double sum = 0;
-  for (Tie& tie : ties_) {
+  for (Edge& edge : edges_) {
     const Vector3 way =
-        points_[static_cast<std::size_t>(tie.b)].center - points_[static_cast<std::size_t>(tie.a)].center;
-    const double length = way.norm(), stretch = length - tie.length;
-    tie.stored = length > 0 ? 0.5 * tie.strength * stretch * stretch : 0;
-    sum += tie.stored;
+        points_[static_cast<std::size_t>(edge.b)].center - points_[static_cast<std::size_t>(edge.a)].center;
+    const double length = way.norm(), stretch = length - edge.length;
+    edge.stored = length > 0 ? 0.5 * edge.strength * stretch * stretch : 0;
+    sum += edge.stored;
   }
   return sum;
 }
 
-void TiedMotion::write(Dynamics::Core& core) const {
-  for (const Tie& tie : ties_) {
-    SpringEntry& spring = core.springs[tie.spring];
-    spring.force = tie.force + tie.drag;
-    spring.booked = tie.stored;
+void NetworkMotion::write(Dynamics::Core& core) const {
+  for (const Edge& edge : edges_) {
+    SpringEntry& spring = core.springs[edge.spring];
+    spring.force = edge.force + edge.drag;
+    spring.booked = edge.stored;
   }
 }
 

@@ -12,18 +12,18 @@
 
 namespace breve {
 
-class TiedBodies : public InMemory {
+class SpringNetwork : public InMemory {
  public:
   /// Whether these are bodies without joints.
   static bool are(std::span<Tree* const> trees);
 
   /// @param trees  they are, and outlive it
-  TiedBodies(std::pmr::memory_resource* memory, std::span<Tree* const> trees) : bodies_(memory), ties_(memory) {
+  SpringNetwork(std::pmr::memory_resource* memory, std::span<Tree* const> trees) : bodies_(memory), edges_(memory) {
     bodies_.reserve(trees.size());
     for (Tree* tree : trees) bodies_.push_back({tree, {}});
   }
   /// @param a, b  numbers of the bodies at its ends; -1: one that the cluster does not move
-  void add(SpringIndex spring, int a, int b) { ties_.push_back({spring, a, b}); }
+  void add(SpringIndex spring, int a, int b) { edges_.push_back({spring, a, b}); }
   /// Reads what springs are set to, and where on the bodies they end. Call before each step, and after scripts ran.
   void begin(const Dynamics::Core& core);
 
@@ -47,11 +47,11 @@ class TiedBodies : public InMemory {
     Vector3 arm = Vector3::Zero();                              // from there to the centre of mass
     Vector3 force = Vector3::Zero(), couple = Vector3::Zero();  // about the centre of mass
   };
-  struct Tied {
+  struct Node {
     Tree* tree;
     Stage stage;
   };
-  struct Tie {
+  struct Edge {
     SpringIndex spring;
     int a, b;
     // As the step began.
@@ -64,17 +64,17 @@ class TiedBodies : public InMemory {
     Vector3 point, velocity;
   };
 
-  static void place(const Tied& body, const double* q, const double* v, Stage& stage);
+  static void place(const Node& body, const double* q, const double* v, Stage& stage);
   End end_of(const Dynamics::Core& core, int number, BodyIndex body, const Vector3& point, const Vector3& own) const;
   Vector3 point_of(const Dynamics::Core& core, int number, BodyIndex body, const Vector3& point,
                    const Vector3& own) const;
   void push(int number, const Vector3& force, const Vector3& point);
-  void pull(Tie& tie, Powers& powers);
-  void pull(const Dynamics::Core& core, Tie& tie, Powers& powers);
-  static void answer(const Tied& body, const Vector3& gravity, const double* v, double* a);
+  void pull(Edge& edge, Powers& powers);
+  void pull(const Dynamics::Core& core, Edge& edge, Powers& powers);
+  static void answer(const Node& body, const Vector3& gravity, const double* v, double* a);
 
-  std::pmr::vector<Tied> bodies_;
-  std::pmr::vector<Tie> ties_;
+  std::pmr::vector<Node> bodies_;
+  std::pmr::vector<Edge> edges_;
   bool pulled_ = false;  // since the step began
 };
 

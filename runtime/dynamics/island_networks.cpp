@@ -3,38 +3,39 @@
 #include <algorithm>
 
 #include "runtime/dynamics/island.hpp"
-#include "runtime/dynamics/tied_motion.hpp"
+#include "runtime/dynamics/network_motion.hpp"
 
 namespace breve {
 
-void Island::add_tied(ClusterEntry& cluster, double h) {
+void Island::add_network(ClusterEntry& cluster, double h) {
   const Accuracy& accuracy = cluster.system->accuracy();
   const bool coarse = accuracy.rung == Rung::Fast || accuracy.rung == Rung::Balanced;
   if (!cluster.points || !coarse || accuracy.custom || accuracy.contact_springs ||
       !cluster.points->begin(core_, accuracy.rung, h))
     return;
-  tied_.push_back({&cluster, free_.size()});
+  networks_.push_back({&cluster, free_.size()});
   for (const Tree* tree : cluster.points->trees()) add_free(tree->links.front().body);
   if (finer(accuracy.rung, accuracy_.rung)) accuracy_ = accuracy;
 }
 
-bool Island::tied(const ClusterEntry& cluster) const {
-  return std::any_of(tied_.begin(), tied_.end(), [&cluster](const TiedCluster& one) { return one.entry == &cluster; });
+bool Island::is_network(const ClusterEntry& cluster) const {
+  return std::any_of(networks_.begin(), networks_.end(),
+                     [&cluster](const NetworkCluster& one) { return one.entry == &cluster; });
 }
 
 /// The first in free_ after all that are tied.
-std::size_t Island::tied_end() const {
-  return tied_.empty() ? 0 : tied_.back().first + tied_.back().entry->points->trees().size();
+std::size_t Island::networks_end() const {
+  return networks_.empty() ? 0 : networks_.back().first + networks_.back().entry->points->trees().size();
 }
 
 /// Springs as scripts have set them. False if they are more than points can follow for h seconds.
-bool Island::begin_tied(double h) {
-  return std::all_of(tied_.begin(), tied_.end(),
-                     [&](const TiedCluster& one) { return one.entry->points->begin(core_, accuracy_.rung, h); });
+bool Island::begin_networks(double h) {
+  return std::all_of(networks_.begin(), networks_.end(),
+                     [&](const NetworkCluster& one) { return one.entry->points->begin(core_, accuracy_.rung, h); });
 }
 
-void Island::take_points(const TiedCluster& one) {
-  TiedMotion& points = *one.entry->points;
+void Island::take_points(const NetworkCluster& one) {
+  NetworkMotion& points = *one.entry->points;
   for (std::size_t i = 0; i < points.trees().size(); ++i) {
     const FreeBody& body = free_[one.first + i].now;
     points.point(i).center = body.center;
@@ -42,16 +43,16 @@ void Island::take_points(const TiedCluster& one) {
   }
 }
 
-void Island::smooth_tied(double time, double h) {
-  for (const TiedCluster& one : tied_) {
-    TiedMotion& points = *one.entry->points;
+void Island::smooth_networks(double time, double h) {
+  for (const NetworkCluster& one : networks_) {
+    NetworkMotion& points = *one.entry->points;
     take_points(one);
     for (std::size_t i = 0; i < points.trees().size(); ++i) {
       const FreeBody& body = free_[one.first + i].now;
       points.set_pull(i, core_.settings.gravity + body.force / body.solid->mass);
     }
     result.counters.evaluations += static_cast<std::uint64_t>(points.step(h, finished_, meter_));
-    tied_loss_ += points.loss();
+    network_loss_ += points.loss();
     for (std::size_t i = 0; i < points.trees().size(); ++i) {
       Free& free = free_[one.first + i];
       FreeBody& body = free.now;
@@ -59,16 +60,16 @@ void Island::smooth_tied(double time, double h) {
       free_work_ += body.force.dot(points.point(i).center - body.center);
       body.center = points.point(i).center;
       body.velocity = points.point(i).velocity;
-      turn_free(body, accuracy_, time, h, free.next, meter_);
+      rotate_free(body, accuracy_, time, h, free.next, meter_);
       free_work_ += 0.5 * h * body.torque.dot(spin + body.spin);
     }
   }
 }
 
 /// J, of the springs where the bodies are.
-double Island::tied_energy() {
+double Island::network_energy() {
   double sum = 0;
-  for (const TiedCluster& one : tied_) {
+  for (const NetworkCluster& one : networks_) {
     take_points(one);
     sum += one.entry->points->energy();
   }
@@ -76,44 +77,44 @@ double Island::tied_energy() {
 }
 
 /// The same where the arrays have the bodies.
-double Island::held_tied_energy() const {
+double Island::held_network_energy() const {
   double sum = 0;
-  for (const TiedCluster& one : tied_)
-    for (const SpringIndex tie : one.entry->ties) sum += core_.tie_energy(core_.springs[tie].is);
+  for (const NetworkCluster& one : networks_)
+    for (const SpringIndex spring : one.entry->springs) sum += core_.spring_energy(core_.springs[spring].is);
   return sum;
 }
 
 /// Dampers pulled along the way that the rows' impulses added as well: half of the change of velocity, for the step.
-void Island::correct_tied_drag() {
-  for (const TiedCluster& one : tied_)
+void Island::correct_network_drag() {
+  for (const NetworkCluster& one : networks_)
     for (std::size_t i = 0; i < one.entry->points->trees().size(); ++i) {
       const Free& free = free_[one.first + i];
       const Vector3& drag = one.entry->points->drag(i);
-      for (int k = 0; k < 3; ++k) tied_loss_ -= 0.5 * drag[k] * (free.v[k] - free.free_v[k]);
+      for (int k = 0; k < 3; ++k) network_loss_ -= 0.5 * drag[k] * (free.v[k] - free.free_v[k]);
     }
 }
 
 /// To the trees that they are outside of the step; the arrays have them.
-void Island::write_tied() {
-  for (const TiedCluster& one : tied_) {
+void Island::write_networks() {
+  for (const NetworkCluster& one : networks_) {
     const std::span<Tree* const> trees = one.entry->points->trees();
     for (std::size_t i = 0; i < trees.size(); ++i) {
       const FreeBody& body = free_[one.first + i].now;
       articulated::State& state = trees[i]->state;
-      const Quaternion& turn = body.orientation;
+      const Quaternion& orientation = body.orientation;
       state.q.head<3>() = body.center;
-      state.q.tail<4>() << turn.w(), turn.x(), turn.y(), turn.z();
+      state.q.tail<4>() << orientation.w(), orientation.x(), orientation.y(), orientation.z();
       state.v.head<3>() = body.velocity;
-      state.v.tail<3>() = turn.conjugate() * body.spin;
+      state.v.tail<3>() = orientation.conjugate() * body.spin;
       core_.note_written(trees[i]->links.front().body);
     }
   }
 }
 
-void Island::book_tied() {
-  if (tied_.empty()) return;
-  if (!booked_) tied_energy();
-  for (const TiedCluster& one : tied_) {
+void Island::book_networks() {
+  if (networks_.empty()) return;
+  if (!booked_) network_energy();
+  for (const NetworkCluster& one : networks_) {
     const std::span<Tree* const> trees = one.entry->points->trees();
     for (std::size_t i = 0; i < trees.size(); ++i) {
       const FreeBody& body = free_[one.first + i].now;
