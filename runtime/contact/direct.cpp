@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "runtime/contact/interior.hpp"
 #include "runtime/contact/newton.hpp"
@@ -25,7 +24,7 @@ namespace {
 constexpr int kFirstCentres = 4, kLastCentres = 10;
 // How near Newton's method is tried again, of the speed that the rows have to stop. The first is often enough, and
 // what is redundant then shares its loads evenly.
-constexpr double kNear[] = {1e-3, 1e-6, 0};
+constexpr double kNear[] = {1e-4, 1e-6, 0};
 // How much stiffer than its own response a row is towards its centre: the higher, the fewer centres do, and the nearer
 // to the solution the first one has to be. A box whose corners are off by 1e-6 of what its weight does in a step shares
 // its load only at 1e6.
@@ -111,19 +110,13 @@ double violation(const Workspace& work) {
 
 namespace {
 
-/// Sweeps from the last step's impulses, as long as each is worth it. Feet far apart hardly feel one another: some
-/// sweeps solve them, or come so near that Newton's method converges from there. Each costs a small part of its steps.
+/// Sweeps from the last step's impulses. Feet far apart hardly feel one another: some sweeps solve them, or come so near
+/// that Newton's method converges from there. All of them cost as much as a few of its steps, so none is too slow.
 void sweep_near(Workspace& work, double tolerance) {
-  constexpr int kMost = 24, kPatience = 2;
-  constexpr double kWorth = 0.8;  // of the change that the sweep before made
-  double last = std::numeric_limits<double>::infinity();
-  Sweeps sweeps(work, false);
-  for (int i = 0, slow = 0; i < kMost && slow < kPatience; ++i) {
-    const double now = sweeps.next();
-    if (now <= 0.1 * tolerance) return;
-    slow += now > kWorth * last;
-    last = now;
-  }
+  constexpr int kSweeps = 24;
+  Sweeps sweeps(work, true);
+  for (int i = 0; i < kSweeps; ++i)
+    if (sweeps.next() <= 0.1 * tolerance || sweeps.diverge()) return;
 }
 
 }  // namespace

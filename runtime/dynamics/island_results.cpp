@@ -147,6 +147,9 @@ void Island::solve_rows() {
   settings.direct = fast == 0;
   settings.direct_share = direct_share();
   settings.meter = &meter_;
+  // Where `fast` solves directly, no digit that cannot be seen in a step is worth a linear solve.
+  constexpr double kUnseen = 1e-3;  // of the speed that is rest
+  if (!accuracy_.direct) settings.tolerance = std::max(settings.tolerance, kUnseen * resting_);
   // Sweeps that no exact solution follows end when they change less than could be seen, or a hundredth of that.
   settings.swept = (accuracy_.direct ? 0.01 * kSwept : kSwept) * resting_;
   const contact::SolveReport report = contact::solve_island(movers_, rows_, scalars_, settings, workspace_);
