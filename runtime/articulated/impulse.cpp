@@ -1,6 +1,9 @@
 // Impulses pass inward through the joints; only the answer of all joints needs a pass outward.
 #include "runtime/articulated/impulse.hpp"
 
+#include <memory_resource>
+#include <vector>
+
 #include "runtime/articulated/elimination.hpp"
 
 namespace breve::articulated {
@@ -37,6 +40,9 @@ void pass_through(const Model& model, Data& data, const double* f, Vector& out) 
     respond(body, w, data.wide_of(body), w.alpha, w.acc, out.data());
   }
 }
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 void clear_forces(Data& data) {
   for (Work& w : data.work) w.couple.setZero(), w.force.setZero();
@@ -118,6 +124,43 @@ void impulse_response(const Model& model, Data& data, std::span<const Impulse> i
 void apply_inverse_mass(const Model& model, Data& data, const Vector& f, Vector& out) {
   clear_forces(data);
   pass_through(model, data, f.data(), out);
+}
+
+Vector inverse_mass_diagonal(const Model& model, Data& data) {
+  // Of links; entry 0 is the world, which does not move.
+  std::pmr::vector<Matrix6> answers(data.work.size(), data.work.get_allocator());
+  answers.front().setZero();
+  Vector diagonal(model.velocities()), force = Vector::Zero(model.velocities()), rates(model.velocities());
+  for (int i = 0; i < model.size(); ++i) {
+    const Body& body = model.body(i);
+    Work& w = data.of(i);
+    WideWork& wide = data.wide_of(body);
+    const Matrix6& parent = answers[static_cast<std::size_t>(body.parent + 1)];
+    // What the link does if it needs `couple` and `force` and does not get them, and its joint gets `f`.
+    const auto answer = [&](const double* f, Vector3 couple, Vector3 force_needed) {
+      carry(body, f, w, wide, couple, force_needed);
+      Vector6 needed;
+      needed << couple + w.offset.cross(force_needed), force_needed;
+      const Vector6 moved = parent * needed;
+      Vector3 alpha = moved.head<3>(), acc = moved.tail<3>() + alpha.cross(w.offset);
+      respond(body, w, wide, alpha, acc, rates.data());
+      Vector6 motion;
+      motion << alpha, acc;
+      return motion;
+    };
+    for (int k = 0; k < 3; ++k) {
+      Matrix6& own = answers[static_cast<std::size_t>(i + 1)];
+      own.col(k) = answer(nullptr, Vector3::Unit(k), Vector3::Zero());
+      own.col(k + 3) = answer(nullptr, Vector3::Zero(), Vector3::Unit(k));
+    }
+    for (int k = body.v; k < body.v + velocity_count(body.type); ++k) {
+      force[k] = 1;
+      answer(force.data(), Vector3::Zero(), Vector3::Zero());
+      force[k] = 0;
+      diagonal[k] = rates[k];
+    }
+  }
+  return diagonal;
 }
 
 Symmetric3 collision_matrix(const Model& model, const Data& data, int link_a, const Vector3& point_a, int link_b,

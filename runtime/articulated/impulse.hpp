@@ -25,6 +25,11 @@ void impulse_response(const Model& model, Data& data, std::span<const Impulse> i
 /// M^-1 f for joint forces or impulses `f` (nv). `out` may be f.
 void apply_inverse_mass(const Model& model, Data& data, const Vector& f, Vector& out);
 
+/// The diagonal of M^-1 (nv): how each joint answers its own force, the other joints being free. Each link's answer to
+/// forces on itself follows from its parent's. Source: the operational space inertia of Kreutz-Delgado, Jain, Rodriguez
+/// 1992. Cost O(links). Allocates; overwrites what is left of the joints' forces in `data`, too.
+Vector inverse_mass_diagonal(const Model& model, Data& data);
+
 /// W with dv = W P: the change of the velocity of b's point relative to a's, by an impulse P on b and -P on a.
 /// Symmetric and positive semidefinite, also in floating point, being a sum of squares: W = sum over joints of u^T D^-1
 /// u, where u is what of the impulse the joint does not take up. Links of one model; -1 is the world. For two models

@@ -176,7 +176,7 @@ void Dynamics::Core::run(MechanicsClient& client, double start, double h, int de
   combine_laws(near, *bodies);
   enter_books();
   find_islands();
-  counters.work += near.movers().size() + island_pairs.size();
+  counters.work += near.movers().size() + island_pairs.size() + near.others();
   const std::uint64_t work = work_left();
   // Islands that call nobody first: what a handler does must not pull the ground from under them. They are stepped in
   // lots that take turns in the same places: what an island works with would not fit the caches for all of a crowd, and

@@ -31,17 +31,12 @@ bool follows(double sum) {
 bool Dynamics::Core::has_limits(const JointEntry& joint) { return breve::has_limits(joint.drive, joint.is.kind); }
 
 void Dynamics::Core::measure_motors(Tree& tree) {
-  // The response of each joint to its own force, with all other joints free.
-  articulated::Vector unit(tree.model.velocities()), answer(tree.model.velocities());
+  const articulated::Vector answers = articulated::inverse_mass_diagonal(tree.model, tree.data);
   for (int i = 0; i < tree.model.size(); ++i) {
     const articulated::Body& body = tree.model.body(i);
     double most = 0;
-    for (int k = 0; k < articulated::velocity_count(body.type); ++k) {
-      unit.setZero();
-      unit[body.v + k] = 1;
-      articulated::apply_inverse_mass(tree.model, tree.data, unit, answer);
-      most = std::max(most, answer[body.v + k] > 0 ? 1 / answer[body.v + k] : 0);
-    }
+    for (int k = body.v; k < body.v + articulated::velocity_count(body.type); ++k)
+      most = std::max(most, answers[k] > 0 ? 1 / answers[k] : 0);
     tree.links[static_cast<std::size_t>(i)].gain_unit = most;
   }
 }

@@ -296,6 +296,15 @@ namespace {
                   most));
 }
 
+[[noreturn]] void fail_by_others(std::size_t most) {
+  throw Error(
+      ErrorCode::Budget,
+      fmt::format("more than {} pairs of bodies are near each other in this step, even if they do not push each other: "
+                  "to examine them takes more than the physics budget (breve_world_config.physics_budget, "
+                  "--physics-budget); slow the bodies down or put them apart",
+                  most));
+}
+
 }  // namespace
 
 /// A crowd with too many pairs is not searched to its end. If two bodies both moved in this update, the one that
@@ -303,15 +312,22 @@ namespace {
 void NearPairs::meet(PairKey& key, ProxyIndex other, Asking& asking) const {
   if (!reach_[other].moved || !near(key)) return;
   asking.ask(asking.wanted, key);
-  if (key.pushes && ++asking.met > asking.most) fail_by_pairs(asking.most);
+  if (key.pushes) {
+    if (++asking.met > asking.most) fail_by_pairs(asking.most);
+  } else if (++asking.others > kOthers * asking.most) {
+    fail_by_others(kOthers * asking.most);
+  }
 }
 
 /// Before anything is forgotten: the worlds that a step like this leaves behind are the same, whatever they found
 /// before.
 void NearPairs::bound_near(std::size_t most) const {
   if (keys_.size() <= most) return;
-  const auto meets = [this](const PairKey& key) { return key.pushes && near(key); };
-  if (static_cast<std::size_t>(std::count_if(keys_.begin(), keys_.end(), meets)) > most) fail_by_pairs(most);
+  std::size_t met = 0, others = 0;
+  for (const PairKey& key : keys_)
+    if (near(key)) ++(key.pushes ? met : others);
+  if (met > most) fail_by_pairs(most);
+  if (others > kOthers * most) fail_by_others(kOthers * most);
 }
 
 /// Where many pairs are new, what they will need at once: what there is no memory for does not begin.
@@ -325,9 +341,12 @@ void NearPairs::reserve_near() {
 /// by those whose boxes meet in each.
 void NearPairs::place_near() {
   reserve_near();
+  others_ = 0;
   for (PairKey& key : keys_) {
     poll();
-    if (!key.pushes || !near(key)) {
+    const bool meets = near(key);
+    if (!key.pushes || !meets) {
+      others_ += meets;
       release(key);
       continue;
     }

@@ -63,14 +63,16 @@ class NearPairs {
   /// Brings boxes and pairs up to date for a step of h seconds.
   /// @param rules    grows when an answer of `wanted` may have changed
   /// @param strikes  what is struck within the step is to meet what it reaches then
-  /// @param most     pairs that push each other and whose boxes meet; kNoMost: no bound
+  /// @param most     pairs that push each other and whose boxes meet; kNoMost: no bound. There may be kOthers times as
+  ///                 many that do not push each other
   /// @param bound    says whether the host wants the end
   /// @throws         Error{Budget} if there are more; Error{Interrupted}
   template <class Wanted>
   void update(Bodies& bodies, const MechanicsClient& client, const Vector3& gravity, double h, std::uint64_t rules,
               bool strikes, std::size_t most, const WorkBound& bound, const Wanted& wanted) {
     bound_ = &bound;
-    Asking asking{most, 0, &wanted, [](const void* asked, PairKey& key) { (*static_cast<const Wanted*>(asked))(key); }};
+    Asking asking{most, 0, 0, &wanted,
+                  [](const void* asked, PairKey& key) { (*static_cast<const Wanted*>(asked))(key); }};
     refresh(bodies, client, gravity, h, asking);
     expect(wanted);
     if (rules != seen_rules_ || unasked_)
@@ -131,6 +133,8 @@ class NearPairs {
   void wake_disturbed(Bodies& bodies);
   std::size_t bytes() const;
   std::uint64_t boxes() const { return boxes_; }  // of bodies, looked at so far
+  /// Pairs whose boxes meet in this step and that do not push each other: links of a chain, bodies that ignore another.
+  std::size_t others() const { return others_; }
   void save(ByteWriter& out, const Bodies& bodies) const;
   void load(ByteReader& in, const Bodies& bodies);
   void hash(Hasher& hasher, const Bodies& bodies) const;
@@ -161,7 +165,7 @@ class NearPairs {
   static constexpr ProxyIndex kNoProxy = 0xffffffffU;
   /// How many pairs there may be that push each other, and `wanted`, which says whether two do.
   struct Asking {
-    std::size_t most, met;  // met: by boxes that moved in this update
+    std::size_t most, met = 0, others = 0;  // met and others: by boxes that moved in this update
     const void* wanted;
     void (*ask)(const void*, PairKey&);
   };
@@ -182,6 +186,7 @@ class NearPairs {
   void bound_near(std::size_t most) const;
   void meet(PairKey& key, ProxyIndex other, Asking& asking) const;
   static constexpr std::size_t kMany = 10'000;
+  static constexpr std::size_t kOthers = 8;
   struct Proxy {
     BodyIndex body = kNoBody;
     std::uint64_t serial = 0;
@@ -230,7 +235,7 @@ class NearPairs {
   void mark_moved(ProxyIndex index);
   void seek(ProxyIndex index, Asking& asking);
   void seek(ProxyIndex index) {
-    Asking none{kNoMost, 0, nullptr, nullptr};
+    Asking none{kNoMost, 0, 0, nullptr, nullptr};
     seek(index, none);
   }
   PairKey* find_key(std::uint64_t serial_a, std::uint64_t serial_b);
@@ -265,6 +270,7 @@ class NearPairs {
   std::pmr::vector<std::size_t> fresh_;
   std::pmr::vector<std::uint32_t> found_;
   std::uint64_t boxes_ = 0;
+  std::size_t others_ = 0;
   const WorkBound* bound_ = nullptr;  // of the update that runs
   std::uint32_t polled_ = 0;
   std::uint64_t seen_rules_ = 0, seen_bodies_ = ~std::uint64_t{0}, seen_scalings_ = 0;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "steve/library/archive_body.hpp"
+#include "steve/library/archive_parse.hpp"
 #include "steve/library/archive_values.hpp"
 #include "steve/library/joints.hpp"
 #include "steve/library/library.hpp"
@@ -171,7 +172,7 @@ class Writer {
       machine_.charge_for(kOfByte * bytes.size());
       pugi::xml_node native = element.append_child("native");
       native.append_attribute("kind") = std::string(resource->kind()).c_str();
-      native.text() = to_hex({reinterpret_cast<const char*>(bytes.data()), bytes.size()}).c_str();
+      native.text() = to_hex({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, machine_.poller()).c_str();
     }
     if (world.has_body(object.id)) write_body(machine_, object, element.append_child("body"));
     for_each_variable(machine_, *object.cls, [&](const ClassInfo& cls, const std::string& name, const VariableInfo& v) {
@@ -191,10 +192,13 @@ class Writer {
 
 // --- reading ---------------------------------------------------------------------------------------------------------
 
-pugi::xml_node parse(pugi::xml_document& document, std::string_view xml) {
-  const auto result = document.load_buffer(xml.data(), xml.size(), pugi::parse_default | pugi::parse_ws_pcdata);
+pugi::xml_node parse(Machine& machine, pugi::xml_document& document, std::string_view xml) {
+  // A hash within a hash is three elements deeper; an archive, an object and a variable are around them.
+  constexpr int kDeepest = 3 * kMostNested + 10;
+  machine.charge_for(kOfByte * xml.size());
+  parse_xml(xml, kDeepest, machine.poller(), document);
   const pugi::xml_node archive = document.child("breve-archive");
-  if (!result || !archive) refuse("this is not an archive");
+  if (!archive) refuse("this is not an archive");
   if (archive.attribute("version").as_int() != kVersion) refuse("this archive is of another version");
   return archive;
 }
@@ -208,8 +212,10 @@ const ClassInfo& class_of(Machine& machine, pugi::xml_node object) {
 
 void read_variables(Machine& machine, Instance& object, pugi::xml_node element, ValueReader& values) {
   std::map<std::pair<std::string, std::string>, pugi::xml_node> written;
-  for (const pugi::xml_node variable : element.children("variable"))
+  for (const pugi::xml_node variable : element.children("variable")) {
+    machine.poll();
     written[{variable.attribute("class").value(), variable.attribute("name").value()}] = variable;
+  }
   // A variable that the archive does not have keeps its default: the class may have grown since.
   for_each_variable(machine, *object.cls, [&](const ClassInfo& cls, const std::string& name, const VariableInfo& v) {
     const auto found = written.find({cls.name, name});
@@ -253,6 +259,7 @@ class Reader {
 
   void make_objects() {
     for (const pugi::xml_node element : archive_.children("object")) {
+      machine_.poll();
       const int id = element.attribute("id").as_int();
       if (id <= 0 || objects_.contains(id)) refuse("the archive is damaged: an object without a number of its own");
       objects_.emplace(id, make(class_of(machine_, element)));
@@ -265,7 +272,7 @@ class Reader {
     ValueReader values(machine_, objects_);
     for (const auto& [object, element] : elements_) {
       if (const pugi::xml_node native = element.child("native")) {
-        const std::string bytes = from_hex(native.text().get());
+        const std::string bytes = from_hex(native.text().get(), machine_.poller());
         ByteReader in(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
         machine_.world().attach(object->id, load_resource(native.attribute("kind").value(), in));
       }
@@ -299,14 +306,12 @@ std::string to_archive(Machine& machine, Instance& root) { return Writer(machine
 
 Instance* from_archive(Machine& machine, std::string_view xml) {
   pugi::xml_document document;
-  machine.charge_for(kOfByte * xml.size());
-  return Reader(machine, parse(document, xml)).read();
+  return Reader(machine, parse(machine, document, xml)).read();
 }
 
 void variables_from_archive(Machine& machine, std::string_view xml, Instance& target) {
   pugi::xml_document document;
-  machine.charge_for(kOfByte * xml.size());
-  const pugi::xml_node archive = parse(document, xml);
+  const pugi::xml_node archive = parse(machine, document, xml);
   const std::string root = archive.attribute("root").value();
   const pugi::xml_node element = archive.find_child_by_attribute("object", "id", root.c_str());
   if (!element) refuse("the archive is damaged: it has no root");

@@ -62,7 +62,7 @@ void write_body(Machine& machine, const Instance& object, pugi::xml_node element
   out.put(std::string_view(look.label));
   element.append_attribute("kind") = kKinds[static_cast<std::size_t>(bodies.kind(body))];
   const auto bytes = out.take();
-  element.text() = to_hex({reinterpret_cast<const char*>(bytes.data()), bytes.size()}).c_str();
+  element.text() = to_hex({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, machine.poller()).c_str();
 }
 
 void read_body(Machine& machine, Instance& object, pugi::xml_node element) {
@@ -70,7 +70,7 @@ void read_body(Machine& machine, Instance& object, pugi::xml_node element) {
   std::size_t number = 0;
   while (number < std::size(kKinds) && kKinds[number] != kind) ++number;
   if (number == std::size(kKinds)) throw Error(ErrorCode::File, "the archive is damaged: unknown kind of body");
-  const std::string bytes = from_hex(element.text().get());
+  const std::string bytes = from_hex(element.text().get(), machine.poller());
   ByteReader in(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
 
   machine.world().embody(object.id, static_cast<BodyKind>(number));

@@ -4,13 +4,14 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <limits>
 #include <vector>
+
+#include "runtime/base/pieces.hpp"
 
 namespace breve::steve {
 
 namespace {
-
-constexpr int kMaxDepth = 500;
 
 [[noreturn]] void damaged(const std::string& what) { throw Error(ErrorCode::File, "the archive is damaged: " + what); }
 
@@ -18,6 +19,11 @@ std::string numbers_text(const double* values, std::size_t count) {
   std::string text;
   for (std::size_t i = 0; i < count; ++i) text += (i == 0 ? "" : " ") + fmt::format("{}", values[i]);
   return text;
+}
+
+std::string shortened(std::string_view text) {
+  constexpr std::size_t kShown = 40;  // bytes
+  return std::string(text.substr(0, kShown)) + (text.size() > kShown ? "..." : "");
 }
 
 std::vector<double> numbers_of(std::string_view text, std::size_t count) {
@@ -29,12 +35,20 @@ std::vector<double> numbers_of(std::string_view text, std::size_t count) {
     if (at == end) break;
     double number = 0;
     const auto [next, error] = std::from_chars(at, end, number);
-    if (error != std::errc{}) damaged("'" + std::string(text) + "' is not a number");
+    if (error != std::errc{}) damaged("'" + shortened(text) + "' is not a number");
     numbers.push_back(number);
     at = next;
+    if (numbers.size() > count) break;
   }
-  if (numbers.size() != count) damaged("'" + std::string(text) + "' has not " + std::to_string(count) + " numbers");
+  if (numbers.size() != count) damaged("'" + shortened(text) + "' has not " + std::to_string(count) + " numbers");
   return numbers;
+}
+
+std::int32_t int_of(std::string_view text) {
+  const double number = numbers_of(text, 1)[0];
+  using Limits = std::numeric_limits<std::int32_t>;
+  if (!(number >= Limits::min() && number <= Limits::max())) damaged("'" + shortened(text) + "' is not an int");
+  return static_cast<std::int32_t>(number);
 }
 
 /// XML cannot hold most control characters, and turns a carriage return into a newline.
@@ -46,27 +60,31 @@ bool plain(std::string_view text) {
 
 }  // namespace
 
-std::string to_hex(std::string_view bytes) {
+std::string to_hex(std::string_view bytes, const Poll& poll) {
   static constexpr std::string_view kDigits = "0123456789abcdef";
   std::string text;
   text.reserve(bytes.size() * 2);
-  for (const char c : bytes) {
-    text += kDigits[static_cast<unsigned char>(c) >> 4];
-    text += kDigits[static_cast<unsigned char>(c) & 15];
-  }
+  in_pieces(bytes.size(), 1, poll, [&](std::size_t begin, std::size_t end) {
+    for (const char c : bytes.substr(begin, end - begin)) {
+      text += kDigits[static_cast<unsigned char>(c) >> 4];
+      text += kDigits[static_cast<unsigned char>(c) & 15];
+    }
+  });
   return text;
 }
 
-std::string from_hex(std::string_view digits) {
+std::string from_hex(std::string_view digits, const Poll& poll) {
   if (digits.size() % 2 != 0) damaged("an odd number of hexadecimal digits");
   std::string bytes;
   bytes.reserve(digits.size() / 2);
-  for (std::size_t i = 0; i < digits.size(); i += 2) {
-    unsigned byte = 0;
-    const char* const end = digits.data() + i + 2;
-    if (std::from_chars(digits.data() + i, end, byte, 16).ptr != end) damaged("a digit that is not hexadecimal");
-    bytes += static_cast<char>(byte);
-  }
+  in_pieces(digits.size() / 2, 1, poll, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      unsigned byte = 0;
+      const char* const from = digits.data() + 2 * i;
+      if (std::from_chars(from, from + 2, byte, 16).ptr != from + 2) damaged("a digit that is not hexadecimal");
+      bytes += static_cast<char>(byte);
+    }
+  });
   return bytes;
 }
 
@@ -77,9 +95,9 @@ bool ValueWriter::seen_before(pugi::xml_node node, std::uint64_t serial) {
 }
 
 void ValueWriter::write(pugi::xml_node parent, const Value& value, int depth) {
-  if (depth > kMaxDepth)
+  if (depth > kMostNested)
     throw Error(ErrorCode::Argument,
-                "lists nested more than " + std::to_string(kMaxDepth) + " deep cannot be archived");
+                "lists nested more than " + std::to_string(kMostNested) + " deep cannot be archived");
   constexpr std::uint64_t kOfValue = 20, kBytesPerIteration = 16;  // turns
   machine_.charge(kOfValue + (value.tag == Tag::String ? view(value.string()).size() / kBytesPerIteration : 0));
   pugi::xml_node node = parent.append_child(
@@ -96,7 +114,7 @@ void ValueWriter::write(pugi::xml_node parent, const Value& value, int depth) {
     case Tag::String: {
       const std::string text(view(value.string()));
       if (!plain(text)) node.append_attribute("hex") = true;
-      node.text() = plain(text) ? text.c_str() : to_hex(text).c_str();
+      node.text() = plain(text) ? text.c_str() : to_hex(text, machine_.poller()).c_str();
       break;
     }
     case Tag::Object: {
@@ -123,7 +141,7 @@ void ValueWriter::write(pugi::xml_node parent, const Value& value, int depth) {
     case Tag::Data:
       if (value.ref) {
         const auto& bytes = value.data()->bytes;
-        node.text() = to_hex({reinterpret_cast<const char*>(bytes.data()), bytes.size()}).c_str();
+        node.text() = to_hex({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, machine_.poller()).c_str();
       }
       break;
   }
@@ -167,17 +185,19 @@ Value ValueReader::read_hash(pugi::xml_node node, int depth) {
 }
 
 Value ValueReader::read(pugi::xml_node element, int depth) {
-  if (depth > kMaxDepth) damaged("its lists are nested too deeply");
+  if (depth > kMostNested) damaged("its lists are nested too deeply");
+  machine_.poll();
   Heap& heap = machine_.heap();
   const std::string_view type = element.name(), text = element.text().get();
   if (type == "null") return {};
-  if (type == "int") return Value::of(static_cast<std::int32_t>(numbers_of(text, 1)[0]));
+  if (type == "int") return Value::of(int_of(text));
   if (type == "double") return Value::of(numbers_of(text, 1)[0]);
   if (type == "vector") return Value::of(Vector3(numbers_of(text, 3).data()));
   if (type == "matrix") return Value::of(Tag::Matrix, heap.matrix(Matrix3(numbers_of(text, 9).data())));
   if (type == "string")
-    return Value::of(Tag::String, heap.string(element.attribute("hex") ? from_hex(text) : std::string(text)));
-  if (type == "data") return Value::of(Tag::Data, heap.data(from_hex(text)));
+    return Value::of(Tag::String,
+                     heap.string(element.attribute("hex") ? from_hex(text, machine_.poller()) : std::string(text)));
+  if (type == "data") return Value::of(Tag::Data, heap.data(from_hex(text, machine_.poller())));
   if (type == "list") return read_list(element, depth);
   if (type == "hash") return read_hash(element, depth);
   if (type == "object") {

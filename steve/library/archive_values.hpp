@@ -11,9 +11,12 @@
 
 namespace breve::steve {
 
-std::string to_hex(std::string_view bytes);
+constexpr int kMostNested = 500;  // lists and hashes within each other
+
+/// `poll` is called now and then, as in all below; it may throw.
+std::string to_hex(std::string_view bytes, const Poll& poll);
 /// @throws Error{File} for anything but pairs of hexadecimal digits
-std::string from_hex(std::string_view digits);
+std::string from_hex(std::string_view digits, const Poll& poll);
 
 /// Writes the values of one archive. Objects are named by the numbers in `objects`; any other is null.
 class ValueWriter {

@@ -151,7 +151,8 @@ void set_velocity_of_all(Machine& machine, BodyIndex root, const Vector3& veloci
   Mechanics& dynamics = dynamics_of(machine);
   Bodies& bodies = bodies_of(machine);
   const auto links = dynamics.links_of(root);
-  machine.charge(links.size() * links.size());  // the velocities of joints are found anew from those of all links
+  constexpr std::size_t kOfLink = 16;  // units of work: the velocities of joints are found anew from those of all links
+  machine.charge(kOfLink * links.size());
   dynamics.take_changes();
   const Vector3 center = bodies.location(root);
   const Vector3 more = velocity - bodies.velocity(root), more_spin = spin - bodies.rotational_velocity(root);

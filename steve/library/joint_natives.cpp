@@ -132,8 +132,10 @@ void scale_part(Machine& machine, Instance& self, Instance* shape_owner, Vector3
   if (!shape_owner) return;
   Instance* shape = library_object(machine, *shape_owner, "Real", "collisionShape");
   if (!shape) return;
-  const Value now = machine.call(*shape, "get-scale"), before = machine.call(*shape, "get-last-scale");
-  if (now.tag != Tag::Vector || before.tag != Tag::Vector) return;
+  const Pin pin(machine, Value::of(Tag::Object, shape));  // the first method may free it
+  const Value now = machine.call(*shape, "get-scale");
+  const Value before = shape->live() ? machine.call(*shape, "get-last-scale") : Value();
+  if (now.tag != Tag::Vector || before.tag != Tag::Vector || !self.live()) return;
   const Vector3 factors = now.vector().cwiseQuotient(before.vector());
   if (!factors.allFinite()) return;
   change_description(machine, self, [&](JointDescription& is) { is.*member = (is.*member).cwiseProduct(factors); });

@@ -143,6 +143,16 @@ TEST(RandomTrees, ImpulsesChangeVelocitiesByTheInverseMassMatrix) {
   });
 }
 
+TEST(RandomTrees, DiagonalOfTheInverseMassMatrixIsFoundInOnePass) {
+  for_random_trees(kTrees, [](Random&, const Model& model, Data& data, const State& state) {
+    Eigen::MatrixXd mass;
+    mass_matrix(model, data, state.q, mass);
+    factorize(model, data, state, {});
+    const Eigen::MatrixXd inverse = mass.llt().solve(Eigen::MatrixXd::Identity(mass.rows(), mass.cols()));
+    expect_close(inverse_mass_diagonal(model, data), inverse.diagonal());
+  });
+}
+
 TEST(RandomTrees, WrenchesAccelerateAsImpulsesChangeVelocities) {
   for_random_trees(300, [](Random& random, const Model& model, Data& data, const State& state) {
     Loads loads;
