@@ -11,9 +11,9 @@ install(DIRECTORY include/breve DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONEN
 
 # The libraries below the static one, each by its find_package or pkg-config, its target and its module of pkg-config.
 set(breve_find_dependencies
-  "find_dependency(Threads)\nfind_dependency(fmt)\nfind_dependency(ZLIB)\nfind_dependency(pugixml)\nfind_dependency(TBB CONFIG)\n")
-set(breve_dependency_targets "fmt::fmt;ZLIB::ZLIB;pugixml::pugixml;TBB::tbb")
-set(breve_dependency_modules "fmt, zlib, pugixml, tbb")
+  "find_dependency(Threads)\nfind_dependency(fmt)\nfind_dependency(ZLIB)\nfind_dependency(pugixml)\nfind_dependency(EXPAT)\nfind_dependency(TBB CONFIG)\n")
+set(breve_dependency_targets "fmt::fmt;ZLIB::ZLIB;pugixml::pugixml;EXPAT::EXPAT;TBB::tbb")
+set(breve_dependency_modules "fmt, zlib, pugixml, expat, tbb")
 if(BREVE_WITH_PLANAR)
   string(APPEND breve_find_dependencies "find_dependency(box2d)\n")
   list(APPEND breve_dependency_targets box2d::box2d)

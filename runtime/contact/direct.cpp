@@ -110,8 +110,8 @@ double violation(const Workspace& work) {
 
 namespace {
 
-/// Sweeps from the last step's impulses. Feet far apart hardly feel one another: some sweeps solve them, or come so near
-/// that Newton's method converges from there. All of them cost as much as a few of its steps, so none is too slow.
+/// Sweeps from the last step's impulses. Feet far apart hardly feel one another: some sweeps solve them, or come so
+/// near that Newton's method converges from there. All of them cost as much as a few of its steps, so none is too slow.
 void sweep_near(Workspace& work, double tolerance) {
   constexpr int kSweeps = 24;
   Sweeps sweeps(work, true);

@@ -1,5 +1,5 @@
-// XML text as a tree. pugixml's own parser takes a text in one piece, however long it is and however deeply it nests;
-// this one can be interrupted and refuses what nests too deeply.
+// XML text as a tree of pugixml. Its own parser takes a text in one piece, however long it is and however deeply it
+// nests; with expat in front of it, reading can be interrupted, and what nests too deeply is refused.
 #pragma once
 
 #include <pugixml.hpp>
@@ -10,7 +10,7 @@
 namespace breve::steve {
 
 /// Appends the elements and texts of `xml` (UTF-8) to `document`. Comments, processing instructions and a document type
-/// without declarations are skipped; texts of white space alone are kept.
+/// without declarations are skipped; texts of white space alone are kept. A tag is at most 4 MB long.
 /// @param most_depth  of elements within each other
 /// @param poll        is called for every few tens of kilobytes, and may throw
 /// @throws Error{File} if `xml` is not well-formed, with the position, or nests too deeply

@@ -82,6 +82,7 @@ const std::map<std::string_view, std::vector<std::string_view>> kLibraries = {
     {"tbb/", {"runtime/base"}},
     {"box2d/", {"runtime/planar"}},
     {"pugixml", {"steve/library"}},
+    {"expat", {"steve/library"}},
     {"GL/", {"runtime/render"}},
     {"freetype/", {"runtime/render"}},
     {"lua", {"hostapi/lua"}},

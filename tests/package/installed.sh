@@ -122,7 +122,7 @@ case $case in
       ls "$scratch/build/${name}_"*.deb >/dev/null 2>&1 || fail "makes no package $name"
     done
     depends() { dpkg-deb -f "$scratch/build/$1_"*.deb Depends; }
-    for library in libc6 libfmt libbox2d libassimp libpugixml libtbb zlib1g; do
+    for library in libc6 libfmt libbox2d libassimp libpugixml libexpat1 libtbb zlib1g; do
       [[ $(depends "libbreve$(abi)") == *$library* ]] || fail "the library does not depend on $library"
     done
     [[ $(depends "libbreve$(abi)") != *bullet* ]] || fail "the library depends on Bullet"
