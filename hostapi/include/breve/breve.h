@@ -260,6 +260,58 @@ typedef enum breve_right {
    run. */
 typedef bool (*breve_system_fn)(void* user, breve_world* world, const char* command, breve_write_fn write, void* sink);
 
+/* A request that a server has received. Texts are never NULL, and everything stays valid until it is answered. Frozen:
+   it never grows. */
+typedef struct breve_request {
+  const char* method; /* "GET", "POST" or "PUT" */
+  const char* target; /* what the peer asks for, as it was sent: "/move_1_2" */
+  const char* from;   /* address of the peer */
+  const void* body;
+  size_t body_size;
+} breve_request;
+
+/* What a world answers; valid during the call. Frozen: it never grows. */
+typedef struct breve_response {
+  uint32_t status;  /* of HTTP: 200, 404 ... */
+  const char* type; /* of the body: "text/html; charset=utf-8" */
+  const void* body;
+  size_t body_size;
+} breve_response;
+
+/* A server that a host has opened for a script. The functions get `handle`, are called by the thread that steps the
+   world, and must not call the library. Frozen: it never grows. */
+typedef struct breve_server {
+  void* handle;
+  /* Fills in the first request that waits. Returns false if none does; it does not wait for one. */
+  bool (*next)(void* handle, breve_request* request);
+  /* Answers the request that `next` gave last. */
+  void (*answer)(void* handle, const breve_response* response);
+  void (*close)(void* handle); /* called once, as the last call. NULL: nothing to do */
+  const char* url;             /* where peers find it: "http://127.0.0.1:8080"; copied at once */
+} breve_server;
+
+/* The network that the scripts of a runtime may use. All zero: none. Frozen: it never grows. */
+typedef struct breve_network {
+  void* user; /* passed to the callbacks */
+  /* Opens a server for a script (NetworkServer). NULL: none is opened.
+     @param port    0: any that is free
+     @param server  zeroed; to be filled in
+     @param reason  to say why it is not opened, call it with `sink` and the reason, worded as the end of a sentence
+     Returns false if it is not opened. */
+  bool (*listen)(void* user, breve_world* world, uint32_t port, breve_server* server, breve_write_fn reason,
+                 void* sink);
+  /* Sends a request for a script (URL, `send-over-network`) and waits for the answer. NULL: none is sent.
+     @param method  "GET", "POST" or "PUT"
+     @param write   passes on the body of the answer, or the reason why there is none, worded as the end of a sentence
+     Returns false if there is no answer. */
+  bool (*fetch)(void* user, breve_world* world, const char* method, const char* url, const void* body, size_t size,
+                breve_write_fn write, void* sink);
+  /* A runtime calls `retain` when it is created, and `release` when neither it nor its programs and worlds can use the
+     callbacks any more. NULL: nothing to do. */
+  void (*retain)(void* user);
+  void (*release)(void* user);
+} breve_network;
+
 /* The entry of a plugin: it adds the plugin's functions and classes with breve_runtime_add_function and
    breve_runtime_add_class. It is called while a program is compiled and can add nothing else. See plugin.h.
    @param abi  breve_abi() of the library; BREVE_PLUGIN compares it with the one of the header
@@ -298,6 +350,7 @@ typedef struct breve_runtime_config {
   uint32_t worker_threads;                /* reserved: must be 0. Default 0 */
   uint32_t rights;                        /* sum of breve_right. Default 0 */
   breve_open_plugin_fn open_plugin;       /* NULL: @plugin is an error of the program. Default NULL */
+  breve_network network;                  /* the network that scripts may use. Default: none */
 } breve_runtime_config;
 
 /* The defaults named above. */
@@ -342,6 +395,40 @@ BREVE_API breve_status breve_files_add_directory(const char* directory, bool may
    @param files  of breve_files_add_directory; all zero afterwards
    BREVE_OK, also for NULL. */
 BREVE_API breve_status breve_files_release(breve_files* files);
+
+/* What breve_network_open allows. */
+typedef struct breve_network_config {
+  size_t struct_size;  /* set by breve_network_config_default */
+  const char* address; /* numeric, on which servers listen; NULL: "127.0.0.1", this machine only. Default NULL */
+  double timeout; /* s of real time, above 0 and at most 3600, that a peer may take to send a request or an answer, and
+                     a world to answer a request: it gets status 503 then. Default 10 */
+  uint64_t most_bytes; /* of a request or an answer, at least 1. Default 1 MiB */
+  bool remote;         /* scripts may send requests to other machines. Default false: to this one only */
+  bool reserved[7];    /* must be false. Default false */
+} breve_network_config;
+
+/* The defaults named above. */
+static inline breve_network_config breve_network_config_default(void) {
+  breve_network_config config;
+  breve_clear(&config, sizeof config);
+  config.struct_size = sizeof config;
+  config.timeout = 10;
+  config.most_bytes = 1048576;
+  return config;
+}
+
+/* Makes callbacks for breve_runtime_config.network that speak HTTP. Servers receive requests in threads of their own; a
+   world answers them between its iterations, in the thread that steps it.
+   @param config   copied; NULL: the defaults
+   @param network  overwritten; to be released with breve_network_release
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, a number out of range, an address that is not numeric, a
+   reserved field that is true; BREVE_ERROR_UNSUPPORTED: the library was built without the network. */
+BREVE_API breve_status breve_network_open(const breve_network_config* config, breve_network* network);
+
+/* Releases `network` after the host has created its runtimes with it, or if it is not needed.
+   @param network  of breve_network_open; all zero afterwards
+   BREVE_OK, also for NULL. */
+BREVE_API breve_status breve_network_release(breve_network* network);
 
 /* Releases the host's handle of a runtime. Programs and worlds made with it remain valid, with its callbacks, until
    they are destroyed. BREVE_OK, also for NULL; BREVE_ERROR_BUSY from a callback of a compilation or of
@@ -1506,8 +1593,8 @@ static inline breve_function breve_function_default(void) {
    @param function  copied
    BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, no name or no `call`, a name that programs cannot call or that
    belongs to the language or to another function of this runtime, too many parameters, an unknown type or
-   BREVE_TYPE_POINTER: `destroy` is not called then. BREVE_ERROR_BUSY from a callback of a compilation, but for the entry
-   of a plugin, whose functions belong to the programs that name it. */
+   BREVE_TYPE_POINTER: `destroy` is not called then. BREVE_ERROR_BUSY from a callback of a compilation, but for the
+   entry of a plugin, whose functions belong to the programs that name it. */
 BREVE_API breve_status breve_runtime_add_function(breve_runtime* runtime, const breve_function* function);
 
 /* Charges the work of a host function to the budget of the running script, as a number of loop iterations. The call of
@@ -1529,7 +1616,7 @@ BREVE_API bool breve_world_has_budget(const breve_world* world);
 /* One keyword of a method with the type of its argument. */
 typedef struct breve_parameter {
   const char* keyword;
-  uint32_t type;     /* breve_type: arguments are converted as in an assignment; BREVE_TYPE_NULL takes any value as it is */
+  uint32_t type; /* breve_type: arguments are converted as in an assignment; BREVE_TYPE_NULL takes any value as it is */
   uint32_t reserved; /* must be 0 */
 } breve_parameter;
 
@@ -1565,13 +1652,14 @@ typedef struct breve_place {
    @param user     breve_class.user
    @param binding  NULL; to be filled with what breve_call.binding is to be in this world
    Any status but BREVE_OK ends the creation of the world with the reason that was written. */
-typedef breve_status (*breve_bind_fn)(void* user, breve_world* world, void** binding, breve_write_fn reason, void* sink);
+typedef breve_status (*breve_bind_fn)(void* user, breve_world* world, void** binding, breve_write_fn reason,
+                                      void* sink);
 
 /* An error comes out of a method, or passes through it, and its chain of calls is made.
    @param call    the call of the method, as breve_function_fn has it
-   @param places  room for `capacity`: the running functions of the host in this call, innermost first; the last one is the
-                  method itself. Texts are good until the next call of this function
-   Returns how many there are, at most capacity are written. It may not call functions of this header. */
+   @param places  room for `capacity`: the running functions of the host in this call, innermost first; the last one is
+   the method itself. Texts are good until the next call of this function Returns how many there are, at most capacity
+   are written. It may not call functions of this header. */
 typedef size_t (*breve_places_fn)(void* user, const breve_call* call, breve_place* places, size_t capacity);
 
 typedef struct breve_class {
@@ -1588,11 +1676,11 @@ typedef struct breve_class {
   const breve_method* methods;     /* NULL only if there are none. Default NULL */
   size_t method_count;             /* Default 0 */
   breve_bind_fn bind;              /* NULL: breve_call.binding is NULL. Default NULL */
-  void (*unbind)(void* binding);   /* the world is destroyed or has got a program without the class; it must not use this
-                                      header. NULL: nothing to do. Default NULL */
-  breve_places_fn places;          /* NULL: the chain of calls has the method's name only. Default NULL */
-  void* user;                      /* handed to `bind` and `places`. Default NULL */
-  void (*destroy)(void* user);     /* as breve_function.destroy. Default NULL */
+  void (*unbind)(void* binding); /* the world is destroyed or has got a program without the class; it must not use this
+                                    header. NULL: nothing to do. Default NULL */
+  breve_places_fn places;        /* NULL: the chain of calls has the method's name only. Default NULL */
+  void* user;                    /* handed to `bind` and `places`. Default NULL */
+  void (*destroy)(void* user);   /* as breve_function.destroy. Default NULL */
 } breve_class;
 
 /* The defaults named above. */
@@ -1604,17 +1692,18 @@ static inline breve_class breve_class_default(void) {
   return class_;
 }
 
-/* Give a class to all programs that are compiled and analysed on this runtime from now on. A program takes it in when it
-   names it; a class that a file of the program defines wins over it, and it wins over one of the class library. A class of
-   the host that has the name already is replaced; programs that are compiled keep the one they have. Runs no script.
+/* Give a class to all programs that are compiled and analysed on this runtime from now on. A program takes it in when
+   it names it; a class that a file of the program defines wins over it, and it wins over one of the class library. A
+   class of the host that has the name already is replaced; programs that are compiled keep the one they have. Runs no
+   script.
    @param description  copied, with all that it points to
    BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, a name that a program cannot use, a method without `call`,
    more than 8 parameters, two methods or variables of one name, an unknown type; `destroy` is not called then.
    BREVE_ERROR_BUSY from a callback of a compilation. */
 BREVE_API breve_status breve_runtime_add_class(breve_runtime* runtime, const breve_class* description);
 
-/* As breve_world_prepare, for calls as `super` makes them: breve_object_call_prepared calls the method that the parent of
-   `class_name` has, whatever the object's own class has. It is for objects of `class_name` and its descendants:
+/* As breve_world_prepare, for calls as `super` makes them: breve_object_call_prepared calls the method that the parent
+   of `class_name` has, whatever the object's own class has. It is for objects of `class_name` and its descendants:
    BREVE_ERROR_TYPE for others.
    BREVE_OK; BREVE_ERROR_NOT_FOUND: the program has no such class; BREVE_ERROR_ARGUMENT: it has no parent. */
 BREVE_API breve_status breve_world_prepare_super(breve_world* world, const char* class_name, const char* method,
@@ -1625,10 +1714,10 @@ typedef struct breve_method_info {
   const char* class_name; /* that defines it */
   const char* name;
   size_t keyword_count;
-  const char* const* keywords;  /* in the order of the declaration; owned by the world until the next call of
-                                   breve_world_methods on it */
-  const uint32_t* types;        /* breve_type of each, likewise; BREVE_TYPE_NULL: any value */
-  const bool* defaults;         /* may it be left out? likewise */
+  const char* const* keywords; /* in the order of the declaration; owned by the world until the next call of
+                                  breve_world_methods on it */
+  const uint32_t* types;       /* breve_type of each, likewise; BREVE_TYPE_NULL: any value */
+  const bool* defaults;        /* may it be left out? likewise */
 } breve_method_info;
 
 /* The methods of a class, its own and those that it inherits, without those that are overridden: in the order of their
@@ -1643,8 +1732,8 @@ BREVE_API breve_status breve_world_methods(breve_world* world, const char* class
    script's budget. BREVE_OK; BREVE_ERROR_SCRIPT: too much was printed, or a force method runs. */
 BREVE_API breve_status breve_world_print(breve_world* world, const char* text, size_t size);
 
-/* What `random[bound]` in a script gives, from the world's generator: an int from 0 to bound, a number below bound, or a
-   vector of such numbers. BREVE_OK; BREVE_ERROR_TYPE: the bound has another type. */
+/* What `random[bound]` in a script gives, from the world's generator: an int from 0 to bound, a number below bound, or
+   a vector of such numbers. BREVE_OK; BREVE_ERROR_TYPE: the bound has another type. */
 BREVE_API breve_status breve_world_random(breve_world* world, const breve_value* bound, breve_value* result);
 
 /* ---- what the host keeps of worlds and objects -------------------------------------------------------------------- */
@@ -1655,28 +1744,28 @@ BREVE_API breve_status breve_world_random(breve_world* world, const breve_value*
 BREVE_API breve_status breve_world_set_user(breve_world* world, void* user, void (*destroy)(void* user));
 
 /* Keep data of the host with an object.
-   @param destroy  called once: when the object is freed (after its `destroy` methods), when the world is destroyed, when
-                   breve_world_restore leaves the object out, or when other data takes the place. NULL: nothing to do. It
-                   must not use this header
-   Data is not part of snapshots: an object that a restore makes anew has none. */
+   @param destroy  called once: when the object is freed (after its `destroy` methods), when the world is destroyed,
+   when breve_world_restore leaves the object out, or when other data takes the place. NULL: nothing to do. It must not
+   use this header Data is not part of snapshots: an object that a restore makes anew has none. */
 BREVE_API breve_status breve_object_set_user(breve_world* world, breve_object object, void* user,
                                              void (*destroy)(void* user));
 
 /* The data of an object, NULL if it has none. BREVE_OK; BREVE_ERROR_STALE; BREVE_ERROR_ARGUMENT: the null object. */
 BREVE_API breve_status breve_object_user(const breve_world* world, breve_object object, void** user);
 
-/* What the host keeps and a world's run depends on: part of its snapshots, and of its hash. A world may have several, each
-   under a name of its own. */
+/* What the host keeps and a world's run depends on: part of its snapshots, and of its hash. A world may have several,
+   each under a name of its own. */
 typedef struct breve_state {
   size_t struct_size; /* as breve_state_default gives it */
   void* user;         /* handed to the callbacks. Default NULL */
-  /* Write the state: bytes that depend on nothing but the run. It may read the world. False: it cannot be saved, and the
-     snapshot or hash gives BREVE_ERROR_UNSUPPORTED with the reason that was written. NULL: nothing is saved, and `load` is
-     not called. Default NULL */
-  bool (*save)(void* user, breve_world* world, breve_write_fn write, void* sink, breve_write_fn reason, void* reason_sink);
+  /* Write the state: bytes that depend on nothing but the run. It may read the world. False: it cannot be saved, and
+     the snapshot or hash gives BREVE_ERROR_UNSUPPORTED with the reason that was written. NULL: nothing is saved, and
+     `load` is not called. Default NULL */
+  bool (*save)(void* user, breve_world* world, breve_write_fn write, void* sink, breve_write_fn reason,
+               void* reason_sink);
   /* Take bytes that `save` wrote. It is called twice. First with commit false, while the world still is as it was: it
-     returns false if the bytes are not a valid state, and the restore gives BREVE_ERROR_IMAGE. Then with commit true, when
-     the world is restored; false then means that there was no memory for it. Must be given if `save` is */
+     returns false if the bytes are not a valid state, and the restore gives BREVE_ERROR_IMAGE. Then with commit true,
+     when the world is restored; false then means that there was no memory for it. Must be given if `save` is */
   bool (*load)(void* user, breve_world* world, const char* bytes, size_t size, bool commit);
   /* Called after an object is gone, however that happened; its id is stale. It must not use this header. NULL: not
      called. Default NULL */
@@ -1692,8 +1781,8 @@ static inline breve_state breve_state_default(void) {
   return state;
 }
 
-/* Make state of the host a part of the world. Images that were taken with it fit only worlds that have state of that name,
-   and the other way round: BREVE_ERROR_IMAGE. Not from a callback of state.
+/* Make state of the host a part of the world. Images that were taken with it fit only worlds that have state of that
+   name, and the other way round: BREVE_ERROR_IMAGE. Not from a callback of state.
    @param name   copied
    @param state  copied; NULL: none of that name any more
    BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, or `save` without `load`. */
@@ -1702,8 +1791,8 @@ BREVE_API breve_status breve_world_set_state(breve_world* world, const char* nam
 /* breve_state.user of the state of that name; NULL if there is none. */
 BREVE_API void* breve_world_state(const breve_world* world, const char* name);
 
-/* Memory that counts against the world's limit, from the runtime's allocator, aligned for any type. NULL if there is none
-   left, or size is 0. It is given back before the world is destroyed, as in breve_class.unbind. */
+/* Memory that counts against the world's limit, from the runtime's allocator, aligned for any type. NULL if there is
+   none left, or size is 0. It is given back before the world is destroyed, as in breve_class.unbind. */
 BREVE_API void* breve_world_allocate(breve_world* world, size_t size);
 
 /* Give back what breve_world_allocate gave, with the same size. NULL is nothing. */
@@ -1752,8 +1841,8 @@ BREVE_API breve_status breve_world_hash(const breve_world* world, uint64_t* hash
    BREVE_OK, also for that size query; BREVE_ERROR_BUSY while a script of it runs; BREVE_ERROR_UNSUPPORTED: the host
    could not save a state of its own. Does not change the world,
    except that a flat world with physics continues from its image like a restored one, which may differ in the last bits
-   from continuing without a snapshot. The time that breve_world_advance keeps belongs to the host loop, and is not part of
-   the image. */
+   from continuing without a snapshot. The time that breve_world_advance keeps belongs to the host loop, and is not part
+   of the image. */
 BREVE_API breve_status breve_world_snapshot(const breve_world* world, void* image, size_t capacity, size_t* size);
 
 /* Restores a snapshot's state in a world of the same program. In the world that the snapshot is from, the ids of that
