@@ -37,7 +37,8 @@ SoundWriter::~SoundWriter() {
 void SoundWriter::listen(breve_world* world) {
   const double now = breve_world_time(world);
   const double until = std::min((now + breve_world_iteration_step(world)) * kRate, static_cast<double>(kMostFrames));
-  // Frames that lie before `until`, and were not written yet. Times are sums of steps: what rounding adds is no frame.
+  // Frames that lie before `until`, and were not written yet. Times are sums of steps, and rounding must not add a
+  // frame.
   constexpr double kRounding = 1e-6;
   const double end = std::ceil(until - kRounding);
   if (!(end > static_cast<double>(frames_))) return;

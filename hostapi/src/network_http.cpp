@@ -13,6 +13,7 @@
 #include <mutex>
 #include <thread>
 
+#undef _res  // of <resolv.h>, which cpp-httplib includes: Eigen has parameters of that name
 #include "internal.hpp"
 
 namespace breve::host {
@@ -49,8 +50,11 @@ class HttpServer {
     server_.set_payload_max_length(settings.most_bytes);
     server_.set_read_timeout(settings.timeout);
     server_.set_write_timeout(settings.timeout);
-    // A port is not shared with another process.
-    server_.set_socket_options([](socket_t) {});
+    // Unlike its default, a port is not shared with another process.
+    server_.set_socket_options([](socket_t socket) {
+      const int yes = 1;
+      setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    });
     const httplib::Server::Handler receive = [this](const httplib::Request& request, httplib::Response& response) {
       serve(request, response);
     };

@@ -56,7 +56,7 @@ void check_format(const SF_INFO& info, const std::string& name) {
 
 }  // namespace
 
-// What is read is counted as it comes: the number of frames that a file states may be anything.
+// Samples are counted as they come: the number of frames that a file states may be anything.
 Samples Samples::parse(std::string_view bytes, const std::string& name, std::pmr::memory_resource* memory,
                        const Poll& poll) {
   if (bytes.size() > kMostFileBytes) refuse_sound(name, "it is too large");

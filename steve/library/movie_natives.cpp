@@ -16,7 +16,8 @@ namespace {
 
 using Text = StringCell*;
 
-constexpr std::uint64_t kOfDrawing = 64, kOfDeflation = 16;  // elements for each pixel
+// Elements for each pixel of a picture, and how many it has: what exceeds a budget does not begin.
+constexpr std::uint64_t kOfDrawing = 16, kOfDeflation = 64, kPixels = 640 * 480;
 
 void no_renderer(Machine& machine, std::string_view selector, std::string_view why) {
   machine.warn_once("renderer:" + std::string(selector), std::string(selector) + ": " + std::string(why));
@@ -29,10 +30,9 @@ const DrawnView* draw(Machine& machine, std::string_view selector) {
     no_renderer(machine, selector, "nothing draws this world");
     return nullptr;
   }
+  machine.charge_for(kOfDrawing * kPixels);
   try {
-    const DrawnView& view = draw();
-    machine.charge_for(kOfDrawing * view.rgba.size() / 4);
-    return &view;
+    return &draw();
   } catch (const Error& error) {
     if (error.code() != ErrorCode::Unsupported && error.code() != ErrorCode::File) throw;
     no_renderer(machine, selector, error.what());
@@ -53,9 +53,9 @@ bool try_to_write(Machine& machine, std::string_view selector, const std::string
 }
 
 bool write_view(Machine& machine, const std::string& name, std::string_view selector) {
+  machine.charge_for(kOfDeflation * kPixels);
   const DrawnView* view = draw(machine, selector);
   if (!view) return false;
-  machine.charge_for(kOfDeflation * view->rgba.size());
   const std::size_t row_bytes = 4 * static_cast<std::size_t>(view->width);
   const std::string png = make_png(
       PngKind::Rgba8, view->width, view->height,
@@ -70,15 +70,15 @@ void save_snapshot(Machine& machine, Instance&, Text name) {
   write_view(machine, std::string(view(name)), "save-snapshot");
 }
 
-/// Black is near. What is not linear is the depth of a perspective view as depth buffers hold it, from `kNear` on.
+/// Black is near. If it is not linear, gray stands for the depth that a depth buffer holds of a view from `kNear` on.
 void save_depth_snapshot(Machine& machine, Instance&, Text file, std::int32_t linear, double farthest) {
   constexpr std::string_view kSelector = "save-depth-snapshot";
   constexpr double kNear = 0.1;
   if (!(farthest > kNear) || !std::isfinite(farthest))
     throw Error(ErrorCode::Argument, fmt::format("save-depth-snapshot: max-dist is {} (must be above 0.1)", farthest));
+  machine.charge_for(kOfDeflation * kPixels);
   const DrawnView* view = draw(machine, kSelector);
   if (!view) return;
-  machine.charge_for(kOfDeflation * view->rgba.size());
   std::vector<double> grays;
   grays.reserve(view->depth.size());
   for (const float value : view->depth) {

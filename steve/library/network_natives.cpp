@@ -262,11 +262,8 @@ void serve_requests(Machine& machine) {
   const ClassInfo* const cls = machine.program().find_class("NetworkServer");
   if (!cls || !machine.host().network) return;
   for (const ObjectId id : machine.world().objects()) {
-    Instance* const server = machine.instance(id);
-    if (!server || !server->live() || !server->cls->derives_from(*cls)) continue;
-    const MethodInfo* serve = machine.find_method(*server->cls, "serve", 0);
-    Value result;
-    if (serve) machine.call_guarded(*server, *serve, {}, result);
+    const Instance* const server = machine.instance(id);
+    if (server && server->live() && server->cls->derives_from(*cls)) machine.scheduled(id, "serve");
   }
 }
 

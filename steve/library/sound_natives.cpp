@@ -59,7 +59,7 @@ void tone_init(Machine& machine, Instance& self) { tone(machine, self); }
 void tone_set_frequency(Machine& machine, Instance& self, double hertz) {
   if (!(hertz >= 0) || hertz > SineTone::kMostFrequency)
     throw Error(ErrorCode::Argument,
-                "set-frequency: " + std::to_string(hertz) + " Hz is no frequency (must be 0 to 1000000)");
+                "set-frequency: " + std::to_string(hertz) + " Hz is not a frequency from 0 to 1000000 Hz");
   tone(machine, self).set_frequency(machine.world().time(), hertz);
 }
 
