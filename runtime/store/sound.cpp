@@ -76,14 +76,15 @@ void PlayedSound::add_to(std::span<float> frames, const Listening& listening) co
   for (const Playing& one : playing_) {
     const double per_second = one.speed * samples.rate();
     const double first = (listening.start - one.since) * per_second, step = per_second / listening.rate;
-    // The first frame that lies in the sound; it has not begun before.
-    const double silent = first < 0 ? std::ceil(-first / step) : 0;
+    // The first frame that lies in the sound; it has not begun before. Rounding must not cost its first or last frame.
+    constexpr double kRounding = 1e-6;
+    const double silent = first < 0 ? std::ceil(-first / step - kRounding) : 0;
     if (silent >= static_cast<double>(frames.size() / 2)) continue;
     for (auto i = static_cast<std::size_t>(silent); 2 * i < frames.size(); ++i) {
       const double frame = std::max(0.0, first + static_cast<double>(i) * step);
-      if (frame > last) break;
-      frames[2 * i] += static_cast<float>(samples.at(frame, 0));
-      frames[2 * i + 1] += static_cast<float>(samples.at(frame, 1));
+      if (frame > last + kRounding) break;
+      frames[2 * i] += static_cast<float>(samples.at(std::min(frame, last), 0));
+      frames[2 * i + 1] += static_cast<float>(samples.at(std::min(frame, last), 1));
     }
   }
 }

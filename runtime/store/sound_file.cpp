@@ -46,6 +46,25 @@ struct Source {
   static Source& of(void* user) { return *static_cast<Source*>(user); }
 };
 
+/// A number of four bytes in a file.
+std::size_t number_at(std::string_view bytes, std::size_t at, bool little) {
+  std::size_t number = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    number = number << 8 | static_cast<unsigned char>(bytes[at + (little ? 3 - i : i)]);
+  return number;
+}
+
+/// libsndfile plays what there is of a file that was cut off. Files that state their size must be as long; those that
+/// were written to a pipe state none.
+void check_length(std::string_view bytes, const std::string& name) {
+  constexpr std::size_t kHead = 12, kUnknown = 0xffffffff;
+  if (bytes.size() < kHead) refuse_sound(name, "it is truncated");
+  const bool riff = bytes.starts_with("RIFF"), au = bytes.starts_with(".snd");
+  if (!riff && !au && !bytes.starts_with("FORM")) return;
+  const std::size_t size = number_at(bytes, au ? 8 : 4, riff), begin = au ? number_at(bytes, 4, false) : 8;
+  if (size != kUnknown && size + begin > bytes.size()) refuse_sound(name, "it is truncated");
+}
+
 void check_format(const SF_INFO& info, const std::string& name) {
   if (info.channels < 1 || info.channels > static_cast<int>(Samples::kMostChannels))
     refuse_sound(name, fmt::format("it has {} channels (must be 1 to {})", info.channels, Samples::kMostChannels));
@@ -60,6 +79,7 @@ void check_format(const SF_INFO& info, const std::string& name) {
 Samples Samples::parse(std::string_view bytes, const std::string& name, std::pmr::memory_resource* memory,
                        const Poll& poll) {
   if (bytes.size() > kMostFileBytes) refuse_sound(name, "it is too large");
+  check_length(bytes, name);
   SF_VIRTUAL_IO access{&Source::size, &Source::seek, &Source::read, &Source::write, &Source::tell};
   Source source{bytes};
   SF_INFO info{};

@@ -76,7 +76,7 @@ static const char* const program =
     "    url = new URL.\n"
     "  + to iterate:\n"
     "    super iterate.\n"
-    "  + to add amount (int) and more (float):\n"
+    "  + to add amount amount (int) and more (float):\n"
     "    total = total + amount.\n"
     "    return \"$amount $more\".\n"
     "  + to show:\n"
@@ -337,7 +337,7 @@ static void a_world_serves_over_loopback(void) {
       "@use Control.\n@use NetworkServer.\nController Host.\nControl : Host {\n"
       "  + variables: server (object). total (int). said (string).\n"
       "  + to init:\n    server = new NetworkServer.\n    server listen on-port 0.\n    said = (server get-url).\n"
-      "  + to double of n (int):\n    total++.\n    return 2 * n.\n}\n";
+      "  + to twice of n (int):\n    total++.\n    return 2 * n.\n}\n";
   static peer p;
   breve_network_config limits = breve_network_config_default();
   const char* base = NULL;
@@ -353,12 +353,12 @@ static void a_world_serves_over_loopback(void) {
   CHECK(strncmp(address, "http://127.0.0.1:", 17) == 0);
 
   for (int i = 0; i < 10; ++i) {
-    visit_while_it_runs(&s, &p, "GET", address, "/double_21", "");
+    visit_while_it_runs(&s, &p, "GET", address, "/twice_21", "");
     CHECK(p.fine && strcmp(p.got, "42") == 0);
   }
   CHECK(int_of(&s, "total") == 10);
   visit_while_it_runs(&s, &p, "GET", address, "/", "");
-  CHECK(p.fine && strstr(p.got, "double_<i>n</i>") != NULL);
+  CHECK(p.fine && strstr(p.got, "twice_<i>n</i>") != NULL);
   visit_while_it_runs(&s, &p, "GET", address, "/set-random-seed_1", "");
   CHECK(!p.fine && strstr(p.got, "404") != NULL);
   visit_while_it_runs(&s, &p, "GET", address, "/%zz", "");
@@ -375,7 +375,7 @@ static void a_world_serves_over_loopback(void) {
   scene_close(&s);
   /* The server is gone with its world. */
   p.size = 0, p.done = false;
-  snprintf(p.url, sizeof p.url, "%s/double_1", address);
+  snprintf(p.url, sizeof p.url, "%s/twice_1", address);
   visit(&p);
   CHECK(!p.fine);
   CHECK_STATUS(BREVE_OK, breve_network_release(&p.network));
