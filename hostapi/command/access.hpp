@@ -14,7 +14,8 @@ namespace breve::command {
 struct AccessOptions {
   std::vector<std::string> read, write;  // directories
   std::vector<std::string> plugins;      // directories whose libraries may be loaded
-  bool no_files = false, system = false;
+  bool no_files = false, system = false, network = false;
+  std::string network_address;  // that servers listen on; "" for this machine only
 };
 
 /// Directories below which files may be read, and some of them written. A program's paths are relative to the current

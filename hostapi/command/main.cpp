@@ -85,6 +85,10 @@ void describe_access(CLI::App& app, AccessOptions& o) {
       ->excludes("--allow-read")
       ->excludes("--allow-write");
   app.add_flag("--allow-system", o.system, "Let the program run commands of the operating system");
+  app.add_flag("--allow-network", o.network, "Let the program open servers and send requests, on this machine only");
+  app.add_option("--network-address", o.network_address,
+                 "With --allow-network: let servers listen on ADDRESS, and requests go to any machine")
+      ->type_name("ADDRESS");
   describe_plugins(app, o.plugins);
 }
 
@@ -95,6 +99,7 @@ void describe_pictures(CLI::App& app, RunOptions& o) {
   app.add_option("--movie", o.record.movie,
                  "A movie of the run, at the pace of simulated time: OUT.gif, or numbered pictures in OUT/")
       ->type_name("OUT.gif|OUT/");
+  app.add_option("--sound", o.sound, "Write what the program plays, from its beginning on")->type_name("OUT.wav");
   app.add_option("--size", o.record.size,
                  "Size of a picture, in pixels (960x600). Those of a contact sheet are a third of it")
       ->type_name("WxH");

@@ -17,6 +17,7 @@
 #include "profile.hpp"
 #include "report.hpp"
 #include "session.hpp"
+#include "sound.hpp"
 #include "watch.hpp"
 
 namespace breve::command {
@@ -107,18 +108,22 @@ bool mended(breve_world* world, Reloader& reloader, Output& output) {
 struct Lookers {
   std::optional<Recorder> recorder;
   std::optional<Plotter> plotter;
+  std::optional<SoundWriter> sound;
 
   Lookers(breve_runtime* runtime, const RunOptions& options, Output& output) {
     if (options.record.any()) recorder.emplace(runtime, options.record, output);
+    if (!options.sound.empty()) sound.emplace(options.sound);
     if (!options.plot.names.empty()) plotter.emplace(options.plot);
   }
   void look(breve_world* world) {
     if (plotter) plotter->look(world);
     if (recorder) recorder->look(world);
+    if (sound) sound->listen(world);
   }
   void finish(breve_world* world) {
     if (plotter) plotter->finish();
     if (recorder) recorder->finish(world);
+    if (sound) sound->finish();
   }
 };
 

@@ -32,6 +32,7 @@ struct RunOptions {
   std::string accuracy;  // rung, "" for the program's own
   RecordOptions record;
   PlotOptions plot;
+  std::string sound;                         // WAV file, "" for none
   std::string log;                           // of all input, for `breve replay`; "" for none
   std::string positions;                     // CSV file, "" for none
   std::string profile;                       // file, "-" for standard error, "" for none

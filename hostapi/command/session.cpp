@@ -69,6 +69,20 @@ void Session::print(void* user, breve_world*, breve_channel channel, const char*
   }
 }
 
+/// The network on this machine, or on the address that was given.
+void Session::allow_network(const AccessOptions& access, breve_runtime_config& config) {
+  breve_network_config network = breve_network_config_default();
+  if (!access.network_address.empty()) {
+    network.address = access.network_address.c_str();
+    network.remote = true;
+  }
+  const breve_status status = breve_network_open(&network, &config.network);
+  if (status == BREVE_ERROR_UNSUPPORTED) throw std::runtime_error("--allow-network: this build has no network");
+  if (status != BREVE_OK)
+    throw std::runtime_error(
+        fmt::format("--network-address: '{}' is not a numeric address such as 0.0.0.0", access.network_address));
+}
+
 /// Where a program's files are looked for: the current directory, which may be written, and where its modules are.
 void Session::allow_files(const AccessOptions& access) {
   no_files_ = access.no_files;
@@ -111,7 +125,10 @@ Session::Session(Output& output, const std::vector<std::string>& paths, bool qui
       static_cast<Session*>(user)->output_.flush();  // what the program printed comes before what the command prints
       return run_command(command, write, sink);
     };
-  if (breve_runtime_create(&config, &runtime_) != BREVE_OK) throw std::runtime_error("cannot make a runtime");
+  if (access && access->network) allow_network(*access, config);
+  const breve_status status = breve_runtime_create(&config, &runtime_);
+  breve_network_release(&config.network);  // the runtime keeps it
+  if (status != BREVE_OK) throw std::runtime_error("cannot make a runtime");
 }
 
 Session::~Session() { breve_runtime_destroy(runtime_); }

@@ -58,6 +58,7 @@ class Session {
   bool show_diagnostics();  // false: there is a warning that is an error
   ExitStatus finish(breve_status status, breve_program* compiled, ProgramHandle& program);
   void allow_files(const AccessOptions& access);
+  static void allow_network(const AccessOptions& access, breve_runtime_config& config);
   static void print(void* user, breve_world* world, breve_channel channel, const char* text, std::size_t size);
 
   Output& output_;

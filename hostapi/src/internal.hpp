@@ -59,9 +59,11 @@ struct Plugin {
 struct RuntimeState {
   explicit RuntimeState(const breve_runtime_config& c) : config(c), allocator(config) {
     if (config.files.retain) config.files.retain(config.files.user);
+    if (config.network.retain) config.network.retain(config.network.user);
   }
   ~RuntimeState() {
     if (config.files.release) config.files.release(config.files.user);
+    if (config.network.release) config.network.release(config.network.user);
   }
   RuntimeState(const RuntimeState&) = delete;
   RuntimeState& operator=(const RuntimeState&) = delete;
@@ -339,6 +341,11 @@ struct breve_world : breve::InMemory {
 };
 
 namespace breve::host {
+
+/// The network that the runtime gives its worlds.
+std::shared_ptr<steve::Network> network_of(breve_world& world);
+/// Scripts of the world may draw their view, if this build draws.
+void let_draw(breve_world& world, steve::MachineHost& host);
 
 /// While it stands the runtime is not to be destroyed.
 class CreationScope {

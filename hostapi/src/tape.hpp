@@ -45,7 +45,19 @@ std::string apply_delta(std::string_view base, std::string_view delta);
 /// What scripts receive from outside in one iteration, in its order.
 class Inputs {
  public:
-  enum class Kind : std::uint8_t { Failed, Number, Opened, NotOpened, Read, Written, Command, Host };
+  enum class Kind : std::uint8_t {
+    Failed,
+    Number,
+    Opened,
+    NotOpened,
+    Read,
+    Written,
+    Command,
+    Host,
+    Request,
+    Fetched,
+    NotFetched
+  };
 
   /// To be filled.
   Inputs() = default;

@@ -14,6 +14,39 @@ using namespace breve::host;
 
 #ifdef BREVE_WITH_RENDER
 
+namespace breve::host {
+
+namespace {
+
+/// The view of a world that draws itself, made when it draws first.
+class OwnView {
+ public:
+  const steve::DrawnView& draw(steve::Machine& machine) {
+    constexpr int kWidth = 640, kHeight = 480;
+    steve::show(machine, scene_);
+    renderer_.paint(scene_.scene(), kWidth, kHeight, picture_);
+    drawn_ = {picture_.width, picture_.height, picture_.rgba, picture_.depth};
+    return drawn_;
+  }
+
+ private:
+  render::Renderer renderer_;
+  SceneBuilder scene_;
+  Picture picture_;
+  steve::DrawnView drawn_;
+};
+
+}  // namespace
+
+void let_draw(breve_world& world, steve::MachineHost& host) {
+  host.draw = [&world, view = std::shared_ptr<OwnView>()]() mutable -> const steve::DrawnView& {
+    if (!view) view = std::make_shared<OwnView>();
+    return view->draw(*world.machine);
+  };
+}
+
+}  // namespace breve::host
+
 struct breve_view {
   breve_view_config config;
   breve::render::Renderer renderer;
@@ -129,6 +162,8 @@ breve_status breve_view_counts(const breve_view* view, breve_view_counters* coun
 }
 
 #else
+
+void breve::host::let_draw(breve_world&, steve::MachineHost&) {}
 
 breve_status breve_view_create(breve_runtime* runtime, const breve_view_config*, breve_view**) {
   if (!runtime) return BREVE_ERROR_ARGUMENT;

@@ -4,6 +4,7 @@
 #include "functions.hpp"
 #include "internal.hpp"
 #include "steve/library/library.hpp"
+#include "steve/library/requests.hpp"
 
 namespace breve::host {
 
@@ -58,6 +59,8 @@ steve::MachineHost machine_host(breve_world& world) {
   host.error = [&world](std::string_view text) { speak(world, BREVE_CHANNEL_ERROR, text); };
   const auto& callbacks = world.runtime->config;
   open_files(world, host);
+  let_draw(world, host);
+  host.network = network_of(world);
   host.may_sleep = (callbacks.rights & BREVE_RIGHT_SLEEP) != 0;
   host.may_read_clock = (callbacks.rights & BREVE_RIGHT_REAL_TIME) != 0;
   host.may_draw_entropy = (callbacks.rights & BREVE_RIGHT_ENTROPY) != 0;
@@ -127,6 +130,7 @@ void advance(breve_world& world, double seconds) {
 
 void iterate(breve_world& world) {
   const ScriptScope script(world);
+  steve::serve_requests(*world.machine);
   world.previous.record(world.world->bodies());
   world.world->step();
 }

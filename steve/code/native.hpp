@@ -18,7 +18,7 @@ struct Value;
 using NativeFunction = void (*)(Machine& machine, Instance& self, const Slot* args, Value& result);
 
 /// What of the outside a native touches, if the host lets it.
-enum class Reach : std::uint8_t { World, Reads, Writes, Sleeps, RealTime, Entropy, Commands };
+enum class Reach : std::uint8_t { World, Reads, Writes, Sleeps, RealTime, Entropy, Commands, Network };
 
 struct Native {
   std::string_view name;  // "real.get-location" (class file, selector) or, for functions, "dot"

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "steve/library/motors.hpp"
+#include "steve/library/pictures.hpp"
 #include "steve/library/tables.hpp"
 
 namespace breve::steve {
@@ -58,6 +59,9 @@ void control_iterate(Machine& machine, Instance&) {
   if (view.offset_pan.steps > 0) view.camera.set_offset(view.offset_pan.advance(view.camera.offset));
   if (view.target_pan.steps > 0) view.camera.set_target(view.target_pan.advance(view.camera.target));
   if (view.offset_pan.steps <= 0) view.frozen = false;
+  if (view.flags.recording)
+    view.flags.recording = write_frame(machine, "movie", static_cast<std::int64_t>(machine.world().iteration()),
+                                       "toggle-recording-to-movie");
 }
 
 double control_get_time(Machine& machine, Instance&) { return machine.world().time(); }

@@ -9,13 +9,11 @@
 #include "steve/library/joints.hpp"
 #include "steve/library/push_resources.hpp"
 #include "steve/library/resources.hpp"
+#include "steve/library/sounds.hpp"
 
 namespace breve::steve {
 
 namespace {
-
-constexpr std::string_view kLaterClasses[] = {"Movie",  "NetworkServer", "NetworkServers", "Sound",
-                                              "Sounds", "Tone",          "Tones",          "URL"};
 
 struct ResourceKind {
   std::string_view name;
@@ -36,12 +34,14 @@ constexpr ResourceKind kResourceKinds[] = {
     {PushInterpreterResource::kKind, &PushInterpreterResource::load},
     {PushProgramResource::kKind, &PushProgramResource::load},
     {PushPoolResource::kKind, &PushPoolResource::load},
+    {SoundResource::kKind, &SoundResource::load},
+    {ToneResource::kKind, &ToneResource::load},
 };
 
 }  // namespace
 
 const LibrarySource& library_source() {
-  static const LibrarySource source{library_files(), library_natives(), functions(), kLaterClasses};
+  static const LibrarySource source{library_files(), library_natives(), functions(), {}};
   return source;
 }
 

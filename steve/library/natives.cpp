@@ -23,7 +23,7 @@ struct Joined {
           vector_natives(),  joint_natives(),    spring_natives(),  assembly_natives(),     accuracy_natives(),
           terrain_natives(), mesh_natives(),     patch_natives(),   grid_natives(),         cell_natives(),
           agent_natives(),   reaction_natives(), push_natives(),    push_program_natives(), query_natives(),
-          filter_natives()})
+          filter_natives(),  sound_natives(),    movie_natives(),   network_natives()})
       for (const Native& native : table) natives.at(count++) = native;
   }
 };

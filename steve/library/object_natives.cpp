@@ -125,15 +125,6 @@ Value object_call_method_with(Machine& machine, Instance& self, Text name, ListC
   return call_named(machine, self, name, values);
 }
 
-// --- network ---------------------------------------------------------------------------------------------------------
-
-[[noreturn]] void no_network(std::string_view selector) {
-  Machine::fail(RunErrorKind::World, std::string(selector) + ": networking is not available in this build");
-}
-
-Instance* object_send_over_network(Machine&, Instance&, Text, std::int32_t) { no_network("send-over-network"); }
-Instance* data_send(Machine&, Instance&, Text, std::int32_t) { no_network("send"); }
-
 // --- obsolete --------------------------------------------------------------------------------------------------------
 
 /// The answer to a program that asks for a dialog without a user: 1.
@@ -159,8 +150,6 @@ constexpr Native kObjectNatives[] = {
     native<object_announce>("object.announce"),
     native<object_call_method>("object.call-method"),
     native<object_call_method_with>("object.call-method-with"),
-    native<object_send_over_network>("object.send-over-network"),
-    native<data_send>("data.send"),
 };
 
 constexpr Native kObsoleteNatives[] = {

@@ -38,5 +38,8 @@ std::span<const Native> agent_natives();
 std::span<const Native> reaction_natives();
 std::span<const Native> push_natives();
 std::span<const Native> push_program_natives();
+std::span<const Native> sound_natives();
+std::span<const Native> movie_natives();
+std::span<const Native> network_natives();
 
 }  // namespace breve::steve

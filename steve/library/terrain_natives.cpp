@@ -1,9 +1,11 @@
 // Natives of Terrain: a body whose shape is a height field of its own, and the heights in it.
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "runtime/base/pieces.hpp"
 #include "runtime/solid/height_grid.hpp"
+#include "steve/library/image_access.hpp"
 #include "steve/library/resources.hpp"
 #include "steve/library/support.hpp"
 #include "steve/library/tables.hpp"
@@ -185,6 +187,66 @@ void terrain_set_scale(Machine& machine, Instance& self, double tile) {
   set_heights(machine, self, heights);
 }
 
+/// The brightness of a picture at a place in pixels, between their centres linearly. 0 ... 1
+double brightness(const Image& picture, double x, double y) {
+  const auto level = [&](int column, int row) {
+    const int inside_x = std::clamp(column, 0, picture.width() - 1),
+              inside_y = std::clamp(row, 0, picture.height() - 1);
+    return (picture.get(inside_x, inside_y, Channel::Red) + picture.get(inside_x, inside_y, Channel::Green) +
+            picture.get(inside_x, inside_y, Channel::Blue)) /
+           3;
+  };
+  const double left = std::floor(x), top = std::floor(y), across = x - left, down = y - top;
+  const int column = static_cast<int>(left), row = static_cast<int>(top);
+  return (1 - down) * ((1 - across) * level(column, row) + across * level(column + 1, row)) +
+         down * ((1 - across) * level(column, row + 1) + across * level(column + 1, row + 1));
+}
+
+void terrain_heights_from_image(Machine& machine, Instance& self, Instance* source, double height) {
+  finite(height, "set-heights: the height");
+  const Image& picture = image_of(machine, source, "set-heights: the image");
+  if (picture.empty()) throw Error(ErrorCode::Argument, "set-heights: the image has no pixels");
+  const HeightGrid& grid = grid_of(machine, self);
+  charge_for_points(machine, static_cast<std::uint64_t>(grid.columns()));
+  Heights heights(grid.columns(), machine.poller());
+  heights.tile = grid.tile();
+  const double last = heights.side - 1;
+  for (int row = 0; row < heights.side; ++row) {
+    for (int column = 0; column < heights.side; ++column)
+      heights.at(column, row) =
+          height * brightness(picture, column * (picture.width() - 1) / last, row * (picture.height() - 1) / last);
+    machine.poll();
+  }
+  set_heights(machine, self, heights);
+}
+
+/// One pass of weights 1, 2, 1 along rows or columns; at the rim the point itself stands for what is beyond.
+void smooth_once(Heights& heights, int right, int down, const Poll& poll) {
+  const Heights before = heights;
+  const auto at = [&](int column, int row) {
+    const int last = before.side - 1;
+    return before.values[static_cast<std::size_t>(std::clamp(row, 0, last)) * static_cast<std::size_t>(before.side) +
+                         static_cast<std::size_t>(std::clamp(column, 0, last))];
+  };
+  for (int row = 0; row < heights.side; ++row, poll())
+    for (int column = 0; column < heights.side; ++column)
+      heights.at(column, row) =
+          (at(column - right, row - down) + 2 * at(column, row) + at(column + right, row + down)) / 4;
+}
+
+void terrain_smooth(Machine& machine, Instance& self, std::int32_t passes) {
+  constexpr std::int32_t kMostPasses = 1000;
+  if (passes < 0 || passes > kMostPasses)
+    throw Error(ErrorCode::Argument, "smooth: " + std::to_string(passes) + " passes (must be 0 to 1000)");
+  Heights heights = copy_of(machine, grid_of(machine, self));
+  for (std::int32_t i = 0; i < passes; ++i) {
+    charge_for_points(machine, static_cast<std::uint64_t>(heights.side));
+    smooth_once(heights, 1, 0, machine.poller());
+    smooth_once(heights, 0, 1, machine.poller());
+  }
+  set_heights(machine, self, heights);
+}
+
 void terrain_load_geo_tiff(Machine&, Instance&, Text file) {
   throw Error(ErrorCode::Unsupported, "load-geo-tiff: '" + std::string(view(file)) +
                                           "' is not read: this version cannot read GeoTIFF files (set heights with "
@@ -200,6 +262,8 @@ constexpr Native kTerrainNatives[] = {
     native<terrain_height_in_world>("terrain.get-height-in-world"),
     native<terrain_get_size>("terrain.get-size"),
     native<terrain_set_scale>("terrain.set-scale"),
+    native<terrain_heights_from_image>("terrain.set-heights"),
+    native<terrain_smooth>("terrain.smooth"),
     native<terrain_load_geo_tiff>("terrain.load-geo-tiff"),
 };
 

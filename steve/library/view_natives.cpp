@@ -174,23 +174,6 @@ void set_display_text_color(Machine& machine, Instance&, Vector3 color) {
   for (OverlayText& text : view_of(machine).texts) text.color = color;
 }
 
-// --- pictures of the view --------------------------------------------------------------------------------------------
-
-void no_renderer(Machine& machine, std::string_view selector) {
-  machine.warn_once("renderer:" + std::string(selector), std::string(selector) + ": nothing draws this world");
-}
-
-void save_snapshot(Machine& machine, Instance&, Text) { no_renderer(machine, "save-snapshot"); }
-void save_depth_snapshot(Machine& machine, Instance&, Text, std::int32_t, double) {
-  no_renderer(machine, "save-depth-snapshot");
-}
-
-void toggle_recording(Machine& machine, Instance&) {
-  DrawingFlags& flags = view_of(machine).flags;
-  flags.recording = !flags.recording;
-  if (flags.recording) no_renderer(machine, "toggle-recording-to-movie");
-}
-
 using Flags = DrawingFlags;
 
 constexpr Native kViewNatives[] = {
@@ -244,9 +227,6 @@ constexpr Native kViewNatives[] = {
     native<set_display_message>("control.set-display-message"),
     native<set_display_text_scale>("control.set-display-text-scale"),
     native<set_display_text_color>("control.set-display-text-color"),
-    native<save_snapshot>("control.save-snapshot"),
-    native<save_depth_snapshot>("control.save-depth-snapshot"),
-    native<toggle_recording>("control.toggle-recording-to-movie"),
 };
 
 }  // namespace

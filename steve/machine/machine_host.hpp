@@ -14,9 +14,17 @@
 #include "runtime/base/ids.hpp"
 #include "steve/code/foreign.hpp"
 #include "steve/machine/files.hpp"
+#include "steve/machine/network.hpp"
 #include "steve/machine/value.hpp"
 
 namespace breve::steve {
+
+/// A picture of a world, valid until the next one is drawn.
+struct DrawnView {
+  int width = 0, height = 0;
+  std::span<const std::uint8_t> rgba;  // rows from the top, 4 bytes a pixel
+  std::span<const float> depth;        // of each pixel, length units along the line of sight; infinite where nothing is
+};
 
 /// What a machine needs from whoever embeds it. Every member may be empty.
 struct MachineHost {
@@ -27,6 +35,8 @@ struct MachineHost {
   std::function<std::unique_ptr<FileReader>(std::string_view name, std::string& why)> open_for_reading;
   std::function<std::unique_ptr<FileWriter>(std::string_view name, bool append, std::string& why)> open_for_writing;
   std::function<std::string(std::string_view command)> system;  // run a shell command; empty: not allowed
+  std::function<const DrawnView&()> draw;                       // the view as it is now; empty: nothing can be drawn
+  std::shared_ptr<Network> network;                             // null: there is none
   // One of the functions that the program was compiled with; not empty if there are any. `self` is the calling
   // instance.
   std::function<Value(const ForeignFunction& function, Instance& self, std::span<const Value> arguments)> call_foreign;

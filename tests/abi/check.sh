@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The binary interface that breve.h, with its parts, analysis.h and view.h declare is the one that is described in breve.abi: functions, the sizes
+# The binary interface that breve.h, with its parts, sound.h, analysis.h and view.h declare is the one that is described in breve.abi: functions, the sizes
 # and fields of structs, the numbers of enumerators. The description is of a library of empty functions, made from the
 # headers alone; that the real one has all of them is seen by whoever links it.
 # Usage: check.sh [--renew]     --renew writes breve.abi anew
@@ -17,7 +17,8 @@ trap 'rm -rf "$work"' EXIT
 {
   echo '#include "breve/analysis.h"'
   echo '#include "breve/view.h"'
-  cat "$include"/breve/{breve,batch,debug_draw,events,plugin,record,space,step,analysis,view}.h |
+  echo '#include "breve/sound.h"'
+  cat "$include"/breve/{breve,batch,debug_draw,events,plugin,record,sound,space,step,analysis,view}.h |
     awk '/^BREVE_API / { on = 1 } on { print } /;/ { on = 0 }' | sed -e 's@/\*.*\*/@@' -e 's/^BREVE_API //' -e 's/;.*/ { __builtin_trap(); }/'
 } >"$work/functions.c"
 (cd "$work" && gcc -std=c11 -g -O0 -fPIC -shared -w -I "$include" functions.c -o libbreve.so)

@@ -79,6 +79,8 @@ const std::map<std::string_view, std::vector<std::string_view>> kLibraries = {
     {"BulletCollision/", {}},
     {"LinearMath/", {}},
     {"assimp/", {"runtime/store"}},
+    {"sndfile", {"runtime/store"}},
+    {"httplib", {"hostapi/src"}},
     {"tbb/", {"runtime/base"}},
     {"box2d/", {"runtime/planar"}},
     {"pugixml", {"steve/library"}},

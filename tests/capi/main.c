@@ -41,6 +41,8 @@ void view_suite(void);
 void plugins_suite(void);
 void recording_suite(void);
 void debug_draw_suite(void);
+void sound_suite(void);
+void network_suite(void);
 void listener_suite(void);
 void contact_force_suite(void);
 
@@ -86,6 +88,8 @@ static const struct {
     {"plugins", plugins_suite},
     {"recording", recording_suite},
     {"debug_draw", debug_draw_suite},
+    {"sound", sound_suite},
+    {"network", network_suite},
     {"listener", listener_suite},
     {"contact_force", contact_force_suite},
     {"values", values_suite},

@@ -1,4 +1,5 @@
 /* NULL for each argument of each function in turn: a status or a nothing, never a crash. */
+#include "breve/sound.h"
 #include "scene.h"
 
 static void null_handles_give_an_argument_error_or_nothing(void) {
@@ -53,6 +54,9 @@ static void null_handles_give_an_argument_error_or_nothing(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_record_input(NULL, NULL, 0));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_replay(NULL, "", 0, NULL, NULL, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_debug_draw(NULL, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_sound(NULL, 0, 44100, NULL, 0));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_network_open(NULL, NULL));
+  CHECK_STATUS(BREVE_OK, breve_network_release(NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_plugin_open(NULL, "start", NULL, NULL, NULL));
   CHECK(breve_program_class_count(NULL) == 0);
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_program_class(NULL, 0, &info));

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "breve/analysis.h"
+#include "breve/sound.h"
 #include "scene.h"
 
 /* Where a call is made from. */
@@ -484,6 +485,10 @@ static breve_status do_debug_draw(place* p) {
   const breve_debug_draw draw = breve_debug_draw_default();
   return breve_world_debug_draw(p->world, &draw);
 }
+static breve_status do_sound(place* p) {
+  float samples[2];
+  return breve_world_sound(p->world, 0, 44100, samples, 1);
+}
 static breve_status do_plugin_open(place* p) {
   breve_plugin plugin;
   (void)p;
@@ -513,6 +518,7 @@ static const struct {
     {"breve_world_record_input", do_record_input, WORKS, WORKS},
     {"breve_world_replay", do_replay, BUSY, WORKS},
     {"breve_world_debug_draw", do_debug_draw, WORKS, WORKS},
+    {"breve_world_sound", do_sound, WORKS, WORKS},
     {"breve_plugin_open", do_plugin_open, NOTHING, NOTHING},
     {"breve_runtime_add_class", do_add_class, WORKS, BUSY},
     {"breve_world_prepare_super", do_prepare_super, WORKS, WORKS},

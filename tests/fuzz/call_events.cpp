@@ -1,6 +1,7 @@
 // Calls of what says which events are gathered and of their lists; of logs, debug drawings and plugins.
 #include <cmath>
 
+#include "breve/sound.h"
 #include "call_functions.hpp"
 
 namespace breve::fuzz {
@@ -158,6 +159,32 @@ breve_status debug_draw(Caller& c) {
   return breve_world_debug_draw(world, &draw);
 }
 
+breve_status sound(Caller& c) {
+  const breve_world* world = c.world();
+  const double time = c.number(), rate = c.chance(80) ? 44100 : c.number();
+  float samples[16];
+  if (!std::isfinite(time) || !(rate >= 1000 && rate <= 1e6)) c.expect_refusal();
+  return breve_world_sound(world, time, rate, samples, c.word() % 9);
+}
+
+breve_status network_open(Caller& c) {
+  const bool null = c.chance(20);
+  breve_network_config config = breve_network_config_default();
+  if (!null) {
+    config.timeout = c.chance(80) ? 1 : c.number();
+    config.most_bytes = c.word() % 1000;
+    if (c.chance(20)) config.address = c.chance(50) ? "::1" : "nowhere";
+    if (!(config.timeout > 0 && config.timeout <= 3600) || config.most_bytes == 0 ||
+        (config.address && config.address[0] == 'n'))
+      c.expect_refusal();
+  }
+  Out<breve_network> network(c);
+  const breve_status status = network.after(breve_network_open(null ? nullptr : &config, network.to()));
+  if (network) require(breve_network_release(network.to()) == BREVE_OK, "a network is not released");
+  return status;
+}
+breve_status network_release(Caller&) { return breve_network_release(nullptr); }
+
 breve_status plugin_open(Caller& c) {
   Out<breve_plugin> plugin(c);
   // A library that every Linux has, with a function that is there, and is not called.
@@ -176,6 +203,9 @@ constexpr Function kFunctions[] = {
     {"breve_world_record_input", record_input},
     {"breve_world_replay", replay, kBusy | kImage},
     {"breve_world_debug_draw", debug_draw, kScriptError},
+    {"breve_world_sound", sound},
+    {"breve_network_open", network_open, kUnsupported},
+    {"breve_network_release", network_release},
     {"breve_plugin_open", plugin_open, kFile | kNotFound | kUnsupported},
     {"breve_world_set_events", set_events, 0, 2},
     {"breve_world_events", events, kPlain},

@@ -32,7 +32,8 @@ std::string table() {
       {Reach::Sleeps, "blocks the thread | `BREVE_RIGHT_SLEEP` | yes"},
       {Reach::RealTime, "reads the real-time clock | `BREVE_RIGHT_REAL_TIME` | yes"},
       {Reach::Entropy, "draws a seed from the operating system | `BREVE_RIGHT_ENTROPY` | yes"},
-      {Reach::Commands, "runs commands | `breve_runtime_config.system` | with `--allow-system`"}};
+      {Reach::Commands, "runs commands | `breve_runtime_config.system` | with `--allow-system`"},
+      {Reach::Network, "uses the network | `breve_runtime_config.network` | with `--allow-network`"}};
   std::map<Reach, std::set<std::string>> names;
   for (const auto natives : {functions(), library_natives()})
     for (const Native& native : natives) names[native.reach].insert(std::string(native.name));

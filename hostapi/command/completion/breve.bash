@@ -12,7 +12,7 @@ _breve() {
   fi
   case $before in
     --path | --allow-read | --allow-write | --allow-plugins | --out) COMPREPLY=($(compgen -d -- "$word")); return ;;
-    --positions | --trace | --snapshot | --contact-sheet | --movie | --plot-to | --log | --record) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --positions | --trace | --snapshot | --contact-sheet | --movie | --sound | --plot-to | --log | --record) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --accuracy) COMPREPLY=($(compgen -W "fast balanced precise reference conserving" -- "$word")); return ;;
     --format) COMPREPLY=($(compgen -W "markdown html both" -- "$word")); return ;;
     --iterations | --seconds | --seed | --set | --budget | --physics-budget | --memory | --depth | --trace-limit | --allow | --size | --fps | --plot)
@@ -21,11 +21,11 @@ _breve() {
   case $command in
     run)
       options="--iterations --seconds --seed --set --budget --physics-budget --memory --depth --path --allow-read
-        --allow-write --no-files --allow-system --allow-plugins --record --accuracy --watch --coarse-random --strict --quiet --verbose --stats
-        --effects --hash --positions --profile --trace --trace-limit --snapshot --contact-sheet --movie --size --fps --plain
+        --allow-write --no-files --allow-network --network-address --allow-system --allow-plugins --record --accuracy --watch --coarse-random --strict --quiet --verbose --stats
+        --effects --hash --positions --profile --trace --trace-limit --snapshot --contact-sheet --movie --sound --size --fps --plain
         --plot --plot-to --log --help" ;;
     repl)
-      options="--seed --path --allow-read --allow-write --no-files --allow-system --allow-plugins --strict --quiet --help" ;;
+      options="--seed --path --allow-read --allow-write --no-files --allow-network --network-address --allow-system --allow-plugins --strict --quiet --help" ;;
     replay) options="--allow-plugins --hash --quiet --help" ;;
     check) options="--path --allow --allow-plugins --strict --json --help" ;;
     doc) options="--library --out --format --path --help" ;;

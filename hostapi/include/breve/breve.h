@@ -260,6 +260,58 @@ typedef enum breve_right {
    run. */
 typedef bool (*breve_system_fn)(void* user, breve_world* world, const char* command, breve_write_fn write, void* sink);
 
+/* A request that a server has received. Texts are never NULL, and everything stays valid until it is answered. Frozen:
+   it never grows. */
+typedef struct breve_request {
+  const char* method; /* "GET", "POST" or "PUT" */
+  const char* target; /* what the peer asks for, as it was sent: "/move_1_2" */
+  const char* from;   /* address of the peer */
+  const void* body;
+  size_t body_size;
+} breve_request;
+
+/* What a world answers; valid during the call. Frozen: it never grows. */
+typedef struct breve_response {
+  uint32_t status;  /* of HTTP: 200, 404 ... */
+  const char* type; /* of the body: "text/html; charset=utf-8" */
+  const void* body;
+  size_t body_size;
+} breve_response;
+
+/* A server that a host has opened for a script. The functions get `handle`, are called by the thread that steps the
+   world, and must not call the library. Frozen: it never grows. */
+typedef struct breve_server {
+  void* handle;
+  /* Fills in the first request that waits. Returns false if none does; it does not wait for one. */
+  bool (*next)(void* handle, breve_request* request);
+  /* Answers the request that `next` gave last. */
+  void (*answer)(void* handle, const breve_response* response);
+  void (*close)(void* handle); /* called once, as the last call. NULL: nothing to do */
+  const char* url;             /* where peers find it: "http://127.0.0.1:8080"; copied at once */
+} breve_server;
+
+/* The network that the scripts of a runtime may use. All zero: none. Frozen: it never grows. */
+typedef struct breve_network {
+  void* user; /* passed to the callbacks */
+  /* Opens a server for a script (NetworkServer). NULL: none is opened.
+     @param port    0: any that is free
+     @param server  zeroed; to be filled in
+     @param reason  to say why it is not opened, call it with `sink` and the reason, worded as the end of a sentence
+     Returns false if it is not opened. */
+  bool (*listen)(void* user, breve_world* world, uint32_t port, breve_server* server, breve_write_fn reason,
+                 void* sink);
+  /* Sends a request for a script (URL, `send-over-network`) and waits for the answer. NULL: none is sent.
+     @param method  "GET", "POST" or "PUT"
+     @param write   passes on the body of the answer, or the reason why there is none, worded as the end of a sentence
+     Returns false if there is no answer. */
+  bool (*fetch)(void* user, breve_world* world, const char* method, const char* url, const void* body, size_t size,
+                breve_write_fn write, void* sink);
+  /* A runtime calls `retain` when it is created, and `release` when neither it nor its programs and worlds can use the
+     callbacks any more. NULL: nothing to do. */
+  void (*retain)(void* user);
+  void (*release)(void* user);
+} breve_network;
+
 /* The entry of a plugin: it adds the plugin's functions and classes with breve_runtime_add_function and
    breve_runtime_add_class. It is called while a program is compiled and can add nothing else. See plugin.h.
    @param abi  breve_abi() of the library; BREVE_PLUGIN compares it with the one of the header
@@ -298,6 +350,7 @@ typedef struct breve_runtime_config {
   uint32_t worker_threads;                /* reserved: must be 0. Default 0 */
   uint32_t rights;                        /* sum of breve_right. Default 0 */
   breve_open_plugin_fn open_plugin;       /* NULL: @plugin is an error of the program. Default NULL */
+  breve_network network;                  /* the network that scripts may use. Default: none */
 } breve_runtime_config;
 
 /* The defaults named above. */
@@ -342,6 +395,40 @@ BREVE_API breve_status breve_files_add_directory(const char* directory, bool may
    @param files  of breve_files_add_directory; all zero afterwards
    BREVE_OK, also for NULL. */
 BREVE_API breve_status breve_files_release(breve_files* files);
+
+/* What breve_network_open allows. */
+typedef struct breve_network_config {
+  size_t struct_size;  /* set by breve_network_config_default */
+  const char* address; /* numeric, on which servers listen; NULL: "127.0.0.1", this machine only. Default NULL */
+  double timeout; /* s of real time, above 0 and at most 3600, that a peer may take to send a request or an answer, and
+                     a world to answer a request: it gets status 503 then. Default 10 */
+  uint64_t most_bytes; /* of a request or an answer, at least 1. Default 1 MiB */
+  bool remote;         /* scripts may send requests to other machines. Default false: to this one only */
+  bool reserved[7];    /* must be false. Default false */
+} breve_network_config;
+
+/* The defaults named above. */
+static inline breve_network_config breve_network_config_default(void) {
+  breve_network_config config;
+  breve_clear(&config, sizeof config);
+  config.struct_size = sizeof config;
+  config.timeout = 10;
+  config.most_bytes = 1048576;
+  return config;
+}
+
+/* Makes callbacks for breve_runtime_config.network that speak HTTP. Servers receive requests in threads of their own; a
+   world answers them between its iterations, in the thread that steps it.
+   @param config   copied; NULL: the defaults
+   @param network  overwritten; to be released with breve_network_release
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, a number out of range, an address that is not numeric, a
+   reserved field that is true; BREVE_ERROR_UNSUPPORTED: the library was built without the network. */
+BREVE_API breve_status breve_network_open(const breve_network_config* config, breve_network* network);
+
+/* Releases `network` after the host has created its runtimes with it, or if it is not needed.
+   @param network  of breve_network_open; all zero afterwards
+   BREVE_OK, also for NULL. */
+BREVE_API breve_status breve_network_release(breve_network* network);
 
 /* Releases the host's handle of a runtime. Programs and worlds made with it remain valid, with its callbacks, until
    they are destroyed. BREVE_OK, also for NULL; BREVE_ERROR_BUSY from a callback of a compilation or of

@@ -38,6 +38,7 @@
 
 #include "breve/analysis.h"
 #include "breve/breve.h"
+#include "breve/sound.h"
 #include "breve/view.h"
 
 inline bool operator==(breve_object a, breve_object b) { return a.index == b.index && a.generation == b.generation; }
@@ -765,6 +766,10 @@ class World {
     const breve_status s = breve_world_replay(get(), log, size, after, user, &result);
     return {status(s), result};
   }
+  /// Computes what the world plays from `time` on: left and right of each frame.
+  Status sound(double time, double rate, float* samples, std::size_t frames) const {
+    return status(breve_world_sound(get(), time, rate, samples, frames));
+  }
   /// Draws the world with the host's functions; see breve_debug_draw_default().
   Status debug_draw(const breve_debug_draw& draw) const { return status(breve_world_debug_draw(get(), &draw)); }
   Status restore(const Snapshot& snapshot) { return restore(snapshot.image.data(), snapshot.image.size()); }
@@ -1051,6 +1056,27 @@ class Files {
 
  private:
   breve_files files_{};
+};
+
+/// The network, for breve_runtime_config.network. Runtimes created with it keep it alive.
+class Network {
+ public:
+  Network() = default;
+  static Result<Network> open(const breve_network_config& config = breve_network_config_default()) {
+    Network network;
+    const breve_status s = breve_network_open(&config, &network.network_);
+    return {Status(s, nullptr), std::move(network)};
+  }
+  Network(Network&& other) noexcept : network_(std::exchange(other.network_, breve_network{})) {}
+  Network& operator=(Network&& other) noexcept {
+    std::swap(network_, other.network_);
+    return *this;
+  }
+  ~Network() { breve_network_release(&network_); }
+  const breve_network& get() const { return network_; }
+
+ private:
+  breve_network network_{};
 };
 
 /// Opens the shared library of a plugin, for a breve_open_plugin_fn; `reason` gets `sink` and why it cannot be opened.

@@ -1,0 +1,279 @@
+// The network by HTTP, on cpp-httplib, which is seen here and nowhere else. A server's threads only receive: a request
+// waits in a queue until the world takes it between two iterations, and its thread waits for the answer.
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <httplib.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#undef _res  // of <resolv.h>, which cpp-httplib includes: Eigen has parameters of that name
+#include "internal.hpp"
+
+namespace breve::host {
+
+namespace {
+
+constexpr std::size_t kMostWaiting = 64;  // requests of a server
+constexpr std::size_t kMostThreads = 8;   // of a server
+
+struct Settings {
+  std::string address = "127.0.0.1";
+  std::chrono::microseconds timeout{};
+  std::size_t most_bytes = 0;
+  bool remote = false;
+  std::atomic<int> owners{1};
+};
+
+void say(breve_write_fn write, void* sink, const std::string& text) { write(sink, text.data(), text.size()); }
+
+// --- servers ---------------------------------------------------------------------------------------------------------
+
+/// A request between the thread that received it and the world.
+struct Exchange {
+  std::string method, target, from, body;
+  std::string answer, type;
+  int status = 503;
+  bool answered = false;
+};
+
+class HttpServer {
+ public:
+  explicit HttpServer(const Settings& settings) : timeout_(settings.timeout) {
+    server_.new_task_queue = [] { return new httplib::ThreadPool(kMostThreads); };
+    server_.set_payload_max_length(settings.most_bytes);
+    server_.set_read_timeout(settings.timeout);
+    server_.set_write_timeout(settings.timeout);
+    // Unlike its default, a port is not shared with another process.
+    server_.set_socket_options([](socket_t socket) {
+      const int yes = 1;
+      setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    });
+    const httplib::Server::Handler receive = [this](const httplib::Request& request, httplib::Response& response) {
+      serve(request, response);
+    };
+    server_.Get(".*", receive).Post(".*", receive).Put(".*", receive);
+  }
+  ~HttpServer() {
+    {
+      const std::lock_guard lock(mutex_);
+      closing_ = true;
+    }
+    changed_.notify_all();
+    server_.stop();
+    if (thread_.joinable()) thread_.join();
+  }
+  HttpServer(const HttpServer&) = delete;
+  HttpServer& operator=(const HttpServer&) = delete;
+
+  /// False with a reason if the port is not free.
+  bool start(const std::string& address, int port, std::string& why) {
+    const int bound = port == 0 ? server_.bind_to_any_port(address) : server_.bind_to_port(address, port) ? port : -1;
+    if (bound < 0) {
+      why = fmt::format("port {} of {} is in use, or cannot be listened on", port, address);
+      return false;
+    }
+    const bool six = address.find(':') != std::string::npos;
+    url_ = six ? fmt::format("http://[{}]:{}", address, bound) : fmt::format("http://{}:{}", address, bound);
+    thread_ = std::thread([this] { server_.listen_after_bind(); });
+    while (!server_.is_running()) std::this_thread::yield();  // stop() before that would be lost
+    return true;
+  }
+  const std::string& url() const { return url_; }
+
+  bool next(breve_request* request) {
+    const std::lock_guard lock(mutex_);
+    if (waiting_.empty()) return false;
+    current_ = std::move(waiting_.front());
+    waiting_.pop_front();
+    *request = {current_->method.c_str(), current_->target.c_str(), current_->from.c_str(), current_->body.data(),
+                current_->body.size()};
+    return true;
+  }
+
+  void answer(const breve_response& response) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!current_) return;
+      current_->status = static_cast<int>(response.status);
+      current_->type = response.type ? response.type : "";
+      if (response.body) current_->answer.assign(static_cast<const char*>(response.body), response.body_size);
+      current_->answered = true;
+      current_.reset();
+    }
+    changed_.notify_all();
+  }
+
+ private:
+  /// In a thread of the server.
+  void serve(const httplib::Request& request, httplib::Response& response) {
+    const auto exchange = std::make_shared<Exchange>();
+    exchange->method = request.method;
+    exchange->target = request.target;
+    exchange->from = request.remote_addr;
+    exchange->body = request.body;
+    std::unique_lock lock(mutex_);
+    if (waiting_.size() < kMostWaiting && !closing_) {
+      waiting_.push_back(exchange);
+      changed_.wait_for(lock, timeout_, [&] { return exchange->answered || closing_; });
+      if (!exchange->answered) std::erase(waiting_, exchange);
+    }
+    response.status = exchange->answered ? exchange->status : 503;
+    if (exchange->answered) response.set_content(exchange->answer, exchange->type);
+  }
+
+  httplib::Server server_;
+  const std::chrono::microseconds timeout_;
+  std::thread thread_;
+  std::string url_;
+  std::mutex mutex_;  // of all below
+  std::condition_variable changed_;
+  std::deque<std::shared_ptr<Exchange>> waiting_;
+  std::shared_ptr<Exchange> current_;
+  bool closing_ = false;
+};
+
+HttpServer& server_at(void* handle) { return *static_cast<HttpServer*>(handle); }
+
+bool listen(void* user, breve_world*, std::uint32_t port, breve_server* server, breve_write_fn reason, void* sink) {
+  const auto& settings = *static_cast<const Settings*>(user);
+  std::string why;
+  try {
+    auto opened = std::make_unique<HttpServer>(settings);
+    if (port <= 0xffff && opened->start(settings.address, static_cast<int>(port), why)) {
+      server->url = opened->url().c_str();
+      server->next = [](void* handle, breve_request* request) { return server_at(handle).next(request); };
+      server->answer = [](void* handle, const breve_response* response) { server_at(handle).answer(*response); };
+      server->close = [](void* handle) { delete &server_at(handle); };
+      server->handle = opened.release();
+      return true;
+    }
+    if (port > 0xffff) why = fmt::format("there is no port {}", port);
+  } catch (const std::exception& e) {
+    why = e.what();
+  }
+  say(reason, sink, why);
+  return false;
+}
+
+// --- requests to others ----------------------------------------------------------------------------------------------
+
+/// "http://host:port" and the path behind it.
+struct Address {
+  std::string server, host, path;
+};
+
+std::optional<Address> address_of(const std::string& url) {
+  constexpr std::string_view kScheme = "http://";
+  if (!url.starts_with(kScheme)) return std::nullopt;
+  for (const char c : url)
+    if (static_cast<unsigned char>(c) <= ' ' || c == 127) return std::nullopt;  // would end the line of the request
+  const std::size_t end = std::min(url.find_first_of("/?#", kScheme.size()), url.size());
+  Address address{url.substr(0, end), url.substr(kScheme.size(), end - kScheme.size()),
+                  url.substr(end, url.find('#', end) - end)};
+  if (address.host.find('@') != std::string::npos) return std::nullopt;
+  const std::size_t colon = address.host.rfind(':'), bracket = address.host.rfind(']');
+  if (colon != std::string::npos && (bracket == std::string::npos || colon > bracket)) address.host.resize(colon);
+  if (!address.path.starts_with('/')) address.path.insert(0, "/");
+  if (address.host.empty()) return std::nullopt;
+  return address;
+}
+
+bool is_this_machine(const std::string& host) { return host == "localhost" || host == "127.0.0.1" || host == "[::1]"; }
+
+/// The body of the answer. Throws Error{File} with the reason.
+std::string fetched(const Settings& settings, const std::string& method, const std::string& url,
+                    std::string_view body) {
+  const auto refuse = [](const std::string& why) { throw Error(ErrorCode::File, why); };
+  const std::optional<Address> address = address_of(url);
+  if (!address) refuse("this is not an address such as http://localhost:8080/page");
+  if (!settings.remote && !is_this_machine(address->host))
+    refuse("the host lets scripts reach servers of this machine only");
+  if (body.size() > settings.most_bytes) refuse("the request is too large");
+  httplib::Client client(address->server);
+  client.set_connection_timeout(settings.timeout);
+  client.set_read_timeout(settings.timeout);
+  client.set_write_timeout(settings.timeout);
+
+  httplib::Request request;
+  request.method = method;
+  request.path = address->path;
+  request.body.assign(body);
+  if (!body.empty()) request.set_header("Content-Type", "text/xml; charset=utf-8");
+  std::string answer;
+  const auto deadline = std::chrono::steady_clock::now() + settings.timeout;
+  bool too_large = false, too_late = false;
+  request.content_receiver = [&](const char* bytes, std::size_t size, std::uint64_t, std::uint64_t) {
+    too_large = size > settings.most_bytes - answer.size();
+    too_late = std::chrono::steady_clock::now() > deadline;
+    if (too_large || too_late) return false;
+    answer.append(bytes, size);
+    return true;
+  };
+  const httplib::Result result = client.send(request);
+  if (too_large) refuse("the answer is too large");
+  if (too_late) refuse("the answer takes too long");
+  if (!result) refuse(httplib::to_string(result.error()));
+  if (result->status < 200 || result->status > 299)
+    refuse(fmt::format("the server answers with status {}", result->status));
+  return answer;
+}
+
+bool fetch(void* user, breve_world*, const char* method, const char* url, const void* body, std::size_t size,
+           breve_write_fn write, void* sink) {
+  try {
+    say(write, sink, fetched(*static_cast<const Settings*>(user), method, url, {static_cast<const char*>(body), size}));
+    return true;
+  } catch (const std::exception& e) {
+    say(write, sink, e.what());
+    return false;
+  }
+}
+
+void retain(void* user) { ++static_cast<Settings*>(user)->owners; }
+void release(void* user) {
+  auto* settings = static_cast<Settings*>(user);
+  if (--settings->owners == 0) delete settings;
+}
+
+bool is_numeric(const std::string& address) {
+  unsigned char bytes[sizeof(in6_addr)];
+  return inet_pton(AF_INET, address.c_str(), bytes) == 1 || inet_pton(AF_INET6, address.c_str(), bytes) == 1;
+}
+
+}  // namespace
+}  // namespace breve::host
+
+using namespace breve::host;
+
+breve_status breve_network_open(const breve_network_config* config, breve_network* network) {
+  return guard([&] {
+    need(network, "network");
+    const auto given = read_config(config, breve_network_config_default(), "breve_network_config");
+    for (const bool reserved : given.reserved)
+      if (reserved) fail(BREVE_ERROR_ARGUMENT, "a reserved field is not false");
+    if (!(given.timeout > 0 && given.timeout <= 3600))
+      fail(BREVE_ERROR_ARGUMENT, "timeout must be above 0 and at most 3600");
+    if (given.most_bytes == 0) fail(BREVE_ERROR_ARGUMENT, "most_bytes must be at least 1");
+    auto settings = std::make_unique<Settings>();
+    if (given.address) settings->address = given.address;
+    if (!is_numeric(settings->address)) fail(BREVE_ERROR_ARGUMENT, "address is not numeric");
+    settings->timeout = std::chrono::microseconds(static_cast<std::int64_t>(std::ceil(given.timeout * 1e6)));
+    settings->most_bytes = static_cast<std::size_t>(given.most_bytes);
+    settings->remote = given.remote;
+    *network = {settings.release(), &listen, &fetch, &retain, &release};
+  });
+}
+
+breve_status breve_network_release(breve_network* network) {
+  if (!network) return BREVE_OK;
+  if (network->release) network->release(network->user);
+  *network = {};
+  return BREVE_OK;
+}
