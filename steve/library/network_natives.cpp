@@ -75,11 +75,16 @@ NetworkAnswer page_in_file(const Service& service, const std::string& name) {
 
 // --- methods ---------------------------------------------------------------------------------------------------------
 
-/// A class of the program itself, not of the library.
-bool is_own(const ClassInfo& cls) { return library_source().find_file(cls.name) == nullptr; }
+/// A method of the program itself: not of the library, and none that the library or the machine calls, such as `init`.
+bool is_own(const MethodInfo& method, std::string_view name) {
+  if (name == "post-iterate" || name == "delete") return false;
+  const ClassInfo* cls = method.owner;
+  while (cls && !library_source().find_file(cls->name)) cls = cls->parent;
+  return cls != method.owner && !(cls && cls->responds(method.name));
+}
 
 bool is_exposed(const Service& service, const MethodInfo& method, std::string_view name) {
-  if (!service.exposed || service.exposed->size == 0) return is_own(*method.owner);
+  if (!service.exposed || service.exposed->size == 0) return is_own(method, name);
   return std::any_of(service.exposed->begin(), service.exposed->end(), [&](const Value& value) {
     return value.tag == Tag::String && view(static_cast<const StringCell*>(value.ref)) == name;
   });
