@@ -75,7 +75,7 @@ NetworkAnswer page_in_file(const Service& service, const std::string& name) {
 
 // --- methods ---------------------------------------------------------------------------------------------------------
 
-/// A method of the program itself: not of the library, and none that the library or the machine calls, such as `init`.
+/// A method that the program adds: the library has no method of that name, and the machine calls none.
 bool is_own(const MethodInfo& method, std::string_view name) {
   if (name == "post-iterate" || name == "delete") return false;
   const ClassInfo* cls = method.owner;
