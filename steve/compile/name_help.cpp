@@ -33,6 +33,21 @@ constexpr Habit kHabits[] = {
     {"endl", "'print' ends the line by itself; inside a string write \\n"},
 };
 
+// Functions of other languages.
+constexpr Habit kFunctionHabits[] = {
+    {"rand", "a random number from 0 to n is written random[n]"},
+    {"random", "a random number from 0 to n is written random[n]"},
+    {"randint", "a random number from 0 to n is written random[n]"},
+    {"mod", "the remainder is written a % b"},
+    {"fmod", "the remainder is written a % b"},
+    {"sqr", "the square of x is written x * x"},
+    {"square", "the square of x is written x * x"},
+    {"append", "a value is put at the end of a list by: push value onto list"},
+    {"push", "a value is put at the end of a list by: push value onto list"},
+    {"str", "a value is put into a text with its name and a '$': \"count: $n\""},
+    {"range", "a loop that counts is written: for i = 0, i < n, i++: ..."},
+};
+
 constexpr std::size_t kLongestApart = 60;  // bytes of a name that is tried as a subtraction: the ways grow fast
 
 constexpr std::size_t kLongestQuote = 60;  // bytes of the program that a help repeats
@@ -40,6 +55,18 @@ constexpr std::size_t kLongestQuote = 60;  // bytes of the program that a help r
 std::string source_text(std::string_view source, const Span& span) {
   if (span.line == 0 || span.length > kLongestQuote) return "...";
   return std::string(source.substr(span.offset, span.length));
+}
+
+/// The name in front of the dot that stands, without a space, before `span`; "" if there is none.
+std::string before_dot(std::string_view source, const Span& span) {
+  const auto part = [&](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  if (span.line == 0 || span.offset < 2 || source[span.offset - 1] != '.') return {};
+  std::size_t begin = span.offset - 1;
+  while (begin > 0 && part(source[begin - 1])) --begin;
+  if (source[begin] >= '0' && source[begin] <= '9') return {};
+  return std::string(source.substr(begin, span.offset - 1 - begin));
 }
 
 bool is_number_text(std::string_view text) {
@@ -61,8 +88,10 @@ std::string spaced(std::string_view name, const Known& known) {
 
 }  // namespace
 
-std::string FunctionCompiler::unknown_name_help(std::string_view name) {
+std::string FunctionCompiler::unknown_name_help(std::string_view name, const Span& span) {
   if (builder_.diagnostics().full()) return {};
+  if (const std::string object = before_dot(builder_.source(span.file), span); !object.empty())
+    return "a '.' ends the statement; a variable of another object is written " + object + "::" + std::string(name);
   std::vector<std::string_view> candidates;
   for (const auto& [local, unused] : locals_) candidates.push_back(local);
   std::sort(candidates.begin(), candidates.end());
@@ -93,16 +122,11 @@ std::string FunctionCompiler::unknown_name_help(std::string_view name) {
 std::string FunctionCompiler::unknown_function_help(const ast::FunctionCall& f, const Span& span) {
   if (builder_.diagnostics().full()) return {};
   const auto& source = builder_.source(span.file);
-  const bool dotted = span.offset >= 2 && source[span.offset - 1] == '.' && source[span.offset - 2] != ' ';
   const auto near = nearest(f.name, builder_.function_names());
   const auto symbol = builder_.symbol(f.name);
-  if (dotted) {
-    std::size_t begin = span.offset - 1;
-    const auto part = [&](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-'; };
-    while (begin > 0 && part(source[begin - 1])) --begin;
-    return "a method is called with a space, not with a dot: (" + source.substr(begin, span.offset - 1 - begin) + " " +
-           f.name + (f.arguments.empty() ? ")" : " keyword value)");
-  }
+  if (const std::string object = before_dot(source, span); !object.empty())
+    return "a method is called with a space, not with a dot: (" + object + " " + f.name +
+           (f.arguments.empty() ? ")" : " keyword value)");
   if (class_.responds(symbol))
     return "'" + f.name + "' is a method: write (self " + f.name + (f.arguments.empty() ? ")" : " keyword value)");
   const std::string argument = f.arguments.size() == 1 ? source_text(source, f.arguments[0]->span) : "...";
@@ -110,6 +134,10 @@ std::string FunctionCompiler::unknown_function_help(const ast::FunctionCall& f, 
     return "the size of a list, a text or a vector is written with bars: |" + argument + "|";
   if (const std::string small = reserved_in_small(f.name); !small.empty() || names_a_print(f.name))
     return "write, in lower case and without parentheses: " + (small.empty() ? "print" : small) + " " + argument;
+  for (const Habit& habit : kFunctionHabits)
+    if (habit.word == f.name) return std::string(habit.help);
+  if (const auto* cls = builder_.class_named(f.name))
+    return "'" + cls->name + "' is a class: write new " + cls->name + " for an instance";
   if (!near.empty()) return "did you mean '" + near + "'?";
   return "a method is called on an object: (object " + f.name + (f.arguments.empty() ? ")" : " keyword value)");
 }

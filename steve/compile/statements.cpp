@@ -94,7 +94,7 @@ std::optional<FunctionCompiler::Variable> FunctionCompiler::find(std::string_vie
 
 std::optional<FunctionCompiler::Variable> FunctionCompiler::need(std::string_view name, const Span& span) {
   if (const auto variable = find(name)) return variable;
-  const std::string help = unknown_name_help(name);
+  const std::string help = unknown_name_help(name, span);
   builder_.diagnostics().error(span, "unknown-variable", "unknown variable '" + std::string(name) + "'", help);
   // Declared here, so that each unknown name is reported once in a method.
   locals_[std::string(name)] = {StaticType::Any, emit_.reserve(StaticType::Any), -1, kNoSymbol, span, false, true};

@@ -90,6 +90,8 @@ void change_description(Machine& machine, Instance& self, Change change) {
   const JointIndex joint = joint_of(machine, self);
   if (joint == kNoJoint) return change(own.is);
   JointDescription description = dynamics_of(machine).joint(joint);
+  constexpr std::size_t kOfLink = 64;  // units of work: the assembly is built anew
+  machine.charge(kOfLink * dynamics_of(machine).links_of(description.child).size());
   change(description);
   dynamics_of(machine).relink(joint, description);
   resource(machine, self).is = dynamics_of(machine).joint(joint);

@@ -193,6 +193,9 @@ void server_answer(Machine& machine, Instance&, Text url, Text index_page, Text 
   const std::string server(view(url));
   // Copies: a method that is called may give the server other ones.
   const std::string start(view(index_page)), pages(view(folder));
+  // It may also free the server, and these with it.
+  const Pin list(machine, exposed ? Value::of(Tag::List, exposed) : Value());
+  const Pin receiver(machine, recipient ? Value::of(Tag::Object, recipient) : Value());
   const Service service{machine, start, pages, exposed, recipient};
   for (std::size_t i = 0; i < kMostAtOnce; ++i) {
     const auto request = network.next_request(server);

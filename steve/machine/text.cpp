@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kDeepest = 1000;
 constexpr double kFixedLimit = 1e10;  // a vector with a larger component is written with exponents
+constexpr double kSmall = 1e-3;       // a vector with only smaller components shows all their digits
 
 void append_number(std::string& out, double d, std::chars_format format, int decimals) {
   char buffer[kLongestDouble];
@@ -29,7 +30,25 @@ void append_triple(std::string& out, const double* v, std::chars_format format) 
   out += ')';
 }
 
+/// Five decimals, or the shortest text that reads back where they would show another number.
+void append_component(std::string& out, double d) {
+  char buffer[kLongestDouble];
+  const auto fixed = std::to_chars(buffer, buffer + sizeof buffer, d, std::chars_format::fixed, 5);
+  double shown = 0;
+  std::from_chars(buffer, fixed.ptr, shown);
+  out.append(buffer, shown == d ? fixed.ptr : std::to_chars(buffer, buffer + sizeof buffer, d).ptr);
+}
+
+/// Small components are shown as they are only if there are no others: next to those they are mostly round-off.
 void append_vector(std::string& out, const double* v) {
+  if (std::all_of(v, v + 3, [](double x) { return std::abs(x) < kSmall; })) {
+    for (int i = 0; i < 3; ++i) {
+      out += i == 0 ? "(" : ", ";
+      append_component(out, v[i]);
+    }
+    out += ')';
+    return;
+  }
   const bool large = std::any_of(v, v + 3, [](double x) { return std::abs(x) > kFixedLimit; });
   append_triple(out, v, large ? std::chars_format::scientific : std::chars_format::fixed);
 }

@@ -111,6 +111,10 @@ Diagnostic Parser::call_mistake() {
     return {Severity::Error, "syntax", fmt::format("unexpected {}", describe()),
             at_text("and") ? "logical and is written '&&'" : "logical or is written '||'", selector.span};
   }
+  if (at_text("is") || at_text("equals") || at_text("isnt")) {
+    return {Severity::Error, "syntax", fmt::format("unexpected {}", describe()),
+            at_text("isnt") ? "to compare, write '!='" : "to compare, write '=='", selector.span};
+  }
   if (last.text == "not" && last.kind == TokenKind::Name) {
     Span where = last.span;
     where.length = selector.span.offset + selector.span.length - where.offset;

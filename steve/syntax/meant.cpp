@@ -113,6 +113,9 @@ std::optional<Diagnostic> Parser::meant_by_first_word(std::size_t start) {
   if (first.text == "ask" && (at(":") || at("[") || at("{")))
     return made("there is no 'ask': a call of a list of objects reaches all of them",
                 fmt::format("write: (all {0}) method.   or: foreach item in (all {0}): {{ ... }}", previous().text));
+  if (names_a_push(first.text) && pos_ == start + 1 && begins_value(token().kind))
+    return made(fmt::format("a value is put into a list with 'push', not '{}'", first.text),
+                "write: push value onto list");
   if ((first.text == "set" || first.text == "let") && pos_ == start + 2 && begins_value(token().kind))
     return made(fmt::format("there is no '{}'", first.text),
                 fmt::format("to give a variable a value write: {} = {}", previous().text,
@@ -154,8 +157,9 @@ std::optional<Diagnostic> Parser::meant_by_assignment() {
         fmt::format("write at the beginning of the method: {} ({} object).", name.text, receiver.token->text),
         location};
   const std::string object = source_of(call_start_, call_method_);
+  const std::string_view space = rest.starts_with("++") || rest.starts_with("--") ? "" : " ";
   return Diagnostic{Severity::Error, "foreign-member", "a variable of another object is written with '::'",
-                    fmt::format("write: {}::{} {}", object, name.text, rest), location};
+                    fmt::format("write: {}::{}{}{}", object, name.text, space, rest), location};
 }
 
 // An operator that no value begins with?

@@ -7,6 +7,20 @@
 
 namespace breve::steve {
 
+namespace {
+
+// What to write in place of `vector(1, 2, 3)` or `int(x)`. `type` is "" where nothing is called.
+std::string called_type_help(std::string_view type) {
+  if (type == "vector") return "a vector is written (x, y, z)";
+  if (type == "list" || type == "hash") return "a list is written { a, b, c }, an empty hash or list {}";
+  if (type == "string") return "a value is put into a text with its name and a '$': \"$n\"";
+  if (type == "int" || type == "float" || type == "double")
+    return "a number is converted where it is assigned to a variable; floor(x) and round(x) give whole numbers";
+  return "reserved words cannot name variables";
+}
+
+}  // namespace
+
 // The node just made wraps what was parsed before it, which is one level deeper now.
 void Parser::deepen() {
   if (++deepest_ <= ast::kMaxNesting) return;
@@ -213,9 +227,10 @@ ast::ExprPtr Parser::word_expression(std::size_t start) {
     }
     default: break;
   }
+  const bool called = pos_ + 1 < items_.size() && items_[pos_ + 1].sign == sign("(");
   fail(token().span, "syntax", fmt::format("expected an expression, got the reserved word '{}'", token().text),
-       starts_statement(0) ? "if a statement is meant, the one before it is unfinished"
-                           : "reserved words cannot name variables");
+       starts_statement(0) ? std::string("if a statement is meant, the one before it is unfinished")
+                           : called_type_help(called ? token().text : std::string_view()));
 }
 
 // (e), (method call), or the vector (e, e, e).

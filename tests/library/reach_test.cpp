@@ -2,6 +2,7 @@
 // reaches out but those that are known here.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -74,6 +75,27 @@ TEST(Reach, NothingElseReachesOut) {
           found.insert(fs::relative(entry.path(), BREVE_SOURCES).string());
     }
   EXPECT_EQ(found, known);
+}
+
+/// A host may set a locale that writes 1,5: no source has functions that follow it.
+TEST(Reach, NothingFollowsTheLocale) {
+  const std::regex words(
+      R"(\b(strto[dfl]\w*|ato[fil]|sto[dfil]+|s?n?printf|v?sscanf|[io]?stringstream|setlocale|std::locale)\s*[\(<])"
+      R"(|\b(isalpha|isalnum|isspace|ispunct|tolower|toupper|strcoll)\()");
+  const char* const parts[] = {"strto", "ato", "sto", "printf",  "scanf",   "stringstream", "locale",
+                               "isal",  "iss", "isp", "tolower", "toupper", "strcoll"};  // expressions take their time
+  for (const char* room : {"runtime", "steve", "hostapi/src"})
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(BREVE_SOURCES) / room)) {
+      const std::string extension = entry.path().extension();
+      if (extension != ".cpp" && extension != ".hpp") continue;
+      std::istringstream lines(read(entry.path()));
+      for (std::string line; std::getline(lines, line);) {
+        const auto has = [&](const char* part) { return line.find(part) != std::string::npos; };
+        if (std::none_of(std::begin(parts), std::end(parts), has)) continue;
+        EXPECT_FALSE(std::regex_search(line.substr(0, line.find("//")), words))
+            << entry.path() << " has a function that follows the locale: " << line;
+      }
+    }
 }
 
 }  // namespace

@@ -22,6 +22,8 @@
 namespace breve::limits {
 namespace {
 
+constexpr double kShown = 0.025;  // s, in the table
+
 /// The worst that was seen of each name.
 struct Worst {
   double time = 0;
@@ -98,7 +100,7 @@ class Extremes {
     const Used used = Used::now() - began;
     const double after = watch_.end(used);
     if (interrupts_) return after;
-    return used.time <= kLongest ? used.time : Peer::idle(used, used.time);
+    return used.time <= kShown ? used.time : Peer::idle(used, used.time);
   }
 
   const bool interrupts_;
@@ -118,7 +120,6 @@ std::vector<std::pair<std::string, Worst>> slowest_first(const std::map<std::str
 }
 
 void print_table(const Extremes& extremes) {
-  constexpr double kShown = 0.025;  // s
   std::printf("| what | worst time, ms | statement |\n| --- | ---: | --- |\n");
   std::size_t others = 0;
   for (const auto& [name, worst] : slowest_first(extremes.worst())) {

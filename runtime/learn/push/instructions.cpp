@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string>
 
 #include "runtime/base/invariant.hpp"
@@ -55,7 +54,8 @@ std::span<const Instruction> instructions() { return {table().all.data(), table(
 
 std::optional<std::uint16_t> find_instruction(std::string_view name) {
   std::string capitals(name);
-  for (char& c : capitals) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  for (char& c : capitals)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
   return table().find(capitals);
 }
 
