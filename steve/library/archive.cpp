@@ -210,6 +210,17 @@ const ClassInfo& class_of(Machine& machine, pugi::xml_node object) {
   return *cls;
 }
 
+/// A value of another type than the variable's is damage, not an error of the program.
+void set_from_archive(Machine& machine, Instance& object, const VariableInfo& variable, const Value& value,
+                      const std::string& name) {
+  try {
+    machine.set_variable(object, variable, value);
+  } catch (const RunError& error) {
+    if (error.kind() != RunErrorKind::Conversion && error.kind() != RunErrorKind::Type) throw;
+    refuse("the archive is damaged: variable '" + name + "' of " + object.cls->name + ": " + error.what());
+  }
+}
+
 void read_variables(Machine& machine, Instance& object, pugi::xml_node element, ValueReader& values) {
   std::map<std::pair<std::string, std::string>, pugi::xml_node> written;
   for (const pugi::xml_node variable : element.children("variable")) {
@@ -223,7 +234,7 @@ void read_variables(Machine& machine, Instance& object, pugi::xml_node element, 
     int i = 0;
     for (const pugi::xml_node value : found->second.children()) {
       if (value.type() != pugi::node_element || i >= elements_of(v)) continue;
-      machine.set_variable(object, element_of(v, i++), values.read(value));
+      set_from_archive(machine, object, element_of(v, i++), values.read(value), name);
     }
   });
 }

@@ -2,6 +2,7 @@
 #include "steve/library/archive_body.hpp"
 
 #include <array>
+#include <cmath>
 
 #include "steve/library/archive_values.hpp"
 #include "steve/library/resources.hpp"
@@ -33,6 +34,16 @@ void for_each_setting(Material& material, Look& look, Visit visit) {
   visit(look.bounding_box);
   visit(look.axis);
   visit(look.neighbor_lines);
+}
+
+[[noreturn]] void refuse_number() {
+  throw Error(ErrorCode::File, "the archive is damaged: a number of a body cannot be");
+}
+
+/// Numbers that no program can give a body come from a damaged archive.
+template <class... Vectors>
+void need_finite(const Vectors&... vectors) {
+  if (!(vectors.allFinite() && ...)) refuse_number();
 }
 
 /// The Shape object in that variable gives the body its geometry.
@@ -79,12 +90,19 @@ void read_body(Machine& machine, Instance& object, pugi::xml_node element) {
   use_shape<&Bodies::set_collision_shape>(machine, object, "collisionShape");
   use_shape<&Bodies::set_display_shape>(machine, object, "displayShape");
   Appearance& look = bodies.appearance(body);
-  bodies.set_location(body, in.get_vector());
-  bodies.set_orientation(body, in.get_quaternion());
+  const Vector3 location = in.get_vector();
+  const Quaternion orientation = in.get_quaternion();
   std::array<Vector3, 6> motion;
   for (Vector3& v : motion) v = in.get_vector();
   look.color = in.get_vector();
-  bodies.set_neighborhood_size(body, in.get<double>());
+  const auto neighborhood = in.get<double>();
+  need_finite(location, orientation.coeffs(), motion[0], motion[1], motion[2], motion[3], motion[4], motion[5],
+              look.color);
+  constexpr double kRoundOff = 1e-6;
+  if (std::abs(orientation.norm() - 1) > kRoundOff || std::isnan(neighborhood)) refuse_number();
+  bodies.set_location(body, location);
+  bodies.set_orientation(body, orientation);
+  bodies.set_neighborhood_size(body, neighborhood);
   // Before the motion: the frame of a rotational velocity depends on it.
   if (in.get_bool()) bodies.set_physics(body, true);
   bodies.set_velocity(body, motion[0]);
@@ -96,8 +114,10 @@ void read_body(Machine& machine, Instance& object, pugi::xml_node element) {
   for_each_setting(bodies.material(body), look, [&](auto& setting) {
     if constexpr (std::is_same_v<std::remove_reference_t<decltype(setting)>, bool>)
       setting = in.get_bool();
-    else
+    else {
       setting = in.get<double>();
+      if (std::isnan(setting)) refuse_number();
+    }
   });
   look.label = in.get_string();
   look.texture = machine.id_of(library_object(machine, object, "Real", "textureImage"));

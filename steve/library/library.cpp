@@ -5,8 +5,10 @@
 #include "runtime/world/camera.hpp"
 #include "runtime/world/drawing.hpp"
 #include "runtime/world/menu.hpp"
+#include "steve/library/evolution_resource.hpp"
 #include "steve/library/grids.hpp"
 #include "steve/library/joints.hpp"
+#include "steve/library/neural_resource.hpp"
 #include "steve/library/push_resources.hpp"
 #include "steve/library/resources.hpp"
 #include "steve/library/sounds.hpp"
@@ -36,6 +38,8 @@ constexpr ResourceKind kResourceKinds[] = {
     {PushPoolResource::kKind, &PushPoolResource::load},
     {SoundResource::kKind, &SoundResource::load},
     {ToneResource::kKind, &ToneResource::load},
+    {NetworkResource::kKind, &NetworkResource::load},
+    {CmaEsResource::kKind, &CmaEsResource::load},
 };
 
 }  // namespace

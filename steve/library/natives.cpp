@@ -17,13 +17,14 @@ struct Joined {
 
   Joined() {
     for (std::span<const Native> table :
-         {object_natives(),  obsolete_natives(), archive_natives(), control_natives(),      view_natives(),
-          camera_natives(),  real_natives(),     look_natives(),    mobile_natives(),       shape_natives(),
-          image_natives(),   menu_natives(),     drawing_natives(), data_natives(),         matrix_natives(),
-          vector_natives(),  joint_natives(),    spring_natives(),  assembly_natives(),     accuracy_natives(),
-          terrain_natives(), mesh_natives(),     patch_natives(),   grid_natives(),         cell_natives(),
-          agent_natives(),   reaction_natives(), push_natives(),    push_program_natives(), query_natives(),
-          filter_natives(),  sound_natives(),    movie_natives(),   network_natives()})
+         {object_natives(),          obsolete_natives(), archive_natives(), control_natives(),      view_natives(),
+          camera_natives(),          real_natives(),     look_natives(),    mobile_natives(),       shape_natives(),
+          image_natives(),           menu_natives(),     drawing_natives(), data_natives(),         matrix_natives(),
+          vector_natives(),          joint_natives(),    spring_natives(),  assembly_natives(),     accuracy_natives(),
+          terrain_natives(),         mesh_natives(),     patch_natives(),   grid_natives(),         cell_natives(),
+          agent_natives(),           reaction_natives(), push_natives(),    push_program_natives(), query_natives(),
+          filter_natives(),          sound_natives(),    movie_natives(),   network_natives(),      neural_natives(),
+          neural_training_natives(), evolution_natives()})
       for (const Native& native : table) natives.at(count++) = native;
   }
 };

@@ -6,13 +6,6 @@
 
 namespace breve::steve {
 
-/// Is this object of a class of the library, or of one that descends from it?
-inline bool is_of_class(const Instance& object, std::string_view name) {
-  const ClassInfo* cls = object.cls;
-  while (cls && cls->name != name) cls = cls->parent;
-  return cls != nullptr;
-}
-
 inline push::Interpreter& interpreter_of(Machine& machine, Instance& self) {
   return resource_made<PushInterpreterResource>(machine, self).interpreter;
 }

@@ -33,6 +33,13 @@ inline void warn_if_flat(Machine& machine, std::string_view setting, std::string
   if (machine.world().dimension() == 2) machine.warn_once("flat:" + std::string(setting), text);
 }
 
+/// Is this object of a class of the library, or of one that descends from it?
+inline bool is_of_class(const Instance& object, std::string_view name) {
+  const ClassInfo* cls = object.cls;
+  while (cls && cls->name != name) cls = cls->parent;
+  return cls != nullptr;
+}
+
 /// The value itself. @throws Error{Argument} "`what` must be finite"
 inline double finite(double value, std::string_view what) {
   if (!std::isfinite(value)) throw Error(ErrorCode::Argument, std::string(what) + " must be finite");

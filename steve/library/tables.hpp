@@ -41,5 +41,8 @@ std::span<const Native> push_program_natives();
 std::span<const Native> sound_natives();
 std::span<const Native> movie_natives();
 std::span<const Native> network_natives();
+std::span<const Native> neural_natives();
+std::span<const Native> neural_training_natives();
+std::span<const Native> evolution_natives();
 
 }  // namespace breve::steve

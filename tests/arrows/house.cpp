@@ -101,6 +101,7 @@ const std::map<std::string_view, std::string_view> kMayBeLonger = {
     {"hostapi/include/breve/breve.h", "the header is the manual of the library"},
     {"hostapi/include/breve/breve.hpp", "one header for hosts in C++, with a wrapper of each function"},
     {"steve/library/Control.tz", "one class, with a hundred and twenty selectors"},
+    {"steve/library/GeneticAlgorithm.tz", "one class, with seventy selectors"},
 };
 
 class House {
