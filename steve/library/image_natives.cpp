@@ -1,8 +1,10 @@
 // Natives of Image: pixels, files, and the library's own pictures.
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "steve/library/image_access.hpp"
+#include "steve/library/pictures.hpp"
 #include "steve/library/tables.hpp"
 
 namespace breve::steve {
@@ -181,15 +183,49 @@ std::int32_t image_get_compression_size(Machine& machine, Instance& self) {
 
 // --- the view --------------------------------------------------------------------------------------------------------
 
-void image_read_pixels(Machine& machine, Instance& self, std::int32_t, std::int32_t) {
-  Image& picture = image(machine, self);
-  machine.charge_for(picture.bytes().size() / 4);
-  if (!picture.empty()) picture = Image(picture.width(), picture.height(), machine.heap().memory());
-  machine.warn_once("renderer:read-pixels", "read-pixels: nothing draws this world; the image is black");
+/// Calls `visit(x, y, pixel)` for the pixels of an image that the view covers, if its pixel (0, 0) is that of the view
+/// at (left, top); `pixel` is the index in the view.
+template <class Visit>
+void for_each_seen(const Image& picture, const DrawnView& view, std::int32_t left, std::int32_t top, Visit&& visit) {
+  for (std::int64_t y = std::max(0, -top); y < std::min<std::int64_t>(picture.height(), view.height - top); ++y)
+    for (std::int64_t x = std::max(0, -left); x < std::min<std::int64_t>(picture.width(), view.width - left); ++x)
+      visit(static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
+            static_cast<std::size_t>((y + top) * view.width + x + left));
 }
 
-void image_read_depth(Machine& machine, Instance&, std::int32_t, std::int32_t, std::int32_t, double) {
-  machine.warn_once("renderer:read-depth", "read-depth: the depth of the view cannot be read");
+/// The view if there is one, and the image black for what is outside of it.
+const DrawnView* begin_reading(Machine& machine, Image& picture, std::string_view selector) {
+  machine.charge_for(picture.bytes().size() / 4);
+  const DrawnView* view = picture.empty() ? nullptr : draw_view(machine, selector);
+  if (!picture.empty()) picture = Image(picture.width(), picture.height(), machine.heap().memory());
+  return view;
+}
+
+/// Window positions that no image reaches from are all the same.
+std::int32_t bounded(std::int32_t position) { return std::clamp(position, -100'000, 100'000); }
+
+void image_read_pixels(Machine& machine, Instance& self, std::int32_t x, std::int32_t y) {
+  Image& picture = image(machine, self);
+  const DrawnView* view = begin_reading(machine, picture, "read-pixels");
+  if (!view) return;
+  for_each_seen(picture, *view, bounded(x), bounded(y), [&](std::int32_t at_x, std::int32_t at_y, std::size_t pixel) {
+    constexpr Channel kChannels[] = {Channel::Red, Channel::Green, Channel::Blue};
+    for (std::size_t k = 0; k < 3; ++k) picture.set(at_x, at_y, kChannels[k], view->rgba[4 * pixel + k] / 255.0);
+  });
+}
+
+/// As write-16-bit-grayscale reads them: the high byte is red, the low one green.
+void image_read_depth(Machine& machine, Instance& self, std::int32_t x, std::int32_t y, std::int32_t linear,
+                      double farthest) {
+  const DepthGrays gray("read-depth", linear != 0, farthest);
+  Image& picture = image(machine, self);
+  const DrawnView* view = begin_reading(machine, picture, "read-depth");
+  if (!view) return;
+  for_each_seen(picture, *view, bounded(x), bounded(y), [&](std::int32_t at_x, std::int32_t at_y, std::size_t pixel) {
+    const auto value = static_cast<int>(std::lround(65535 * gray.of(view->depth[pixel])));
+    picture.set(at_x, at_y, Channel::Red, (value >> 8) / 255.0);
+    picture.set(at_x, at_y, Channel::Green, (value & 255) / 255.0);
+  });
 }
 
 constexpr Native kImageNatives[] = {

@@ -92,11 +92,6 @@ void set_bitmap_heading_point(Machine& machine, Instance& self, Vector3 directio
   look(machine, self).bitmap_heading = std::atan2(-seen.x(), seen.y());
 }
 
-std::int32_t get_light_exposure(Machine& machine, Instance& self) {
-  body_of(machine, self);
-  return 0;
-}
-
 void set_label(Machine& machine, Instance& self, Text text) { look(machine, self).label = view(text); }
 void remove_label(Machine& machine, Instance& self) { look(machine, self).label.clear(); }
 
@@ -124,7 +119,6 @@ constexpr Native kLookNatives[] = {
     native<set_texture_scale_y>("real.set-texture-scale-y"),
     native<set_bitmap_heading>("real.set-bitmap-heading"),
     native<set_bitmap_heading_point>("real.set-bitmap-heading-point"),
-    native<get_light_exposure>("real.get-light-exposure"),
     native<set_label>("mobile.set-label"),
     native<remove_label>("mobile.remove-label"),
 };

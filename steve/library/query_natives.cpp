@@ -1,5 +1,6 @@
-// Natives of Control and IRSensor that ask where bodies are: rays, shapes, nearest ones.
+// Natives of Control, Real and IRSensor that ask where bodies are: rays, shapes, nearest ones.
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "steve/library/resources.hpp"
@@ -186,6 +187,56 @@ ListCell* sensor_cast_ray(Machine& machine, Instance& self, Instance* owner, Vec
   return list;
 }
 
+// --- light exposure --------------------------------------------------------------------------------------------------
+
+/// What a light far away sees: 200 x 200 parallel rays, 310 length units wide, towards the origin.
+struct LightView {
+  static constexpr int kPixels = 200;
+  static constexpr double kPixel = 310.0 / kPixels;
+  Vector3 source, forward, right, up;
+
+  explicit LightView(const Vector3& from) : source(from) {
+    forward = from.norm() > 0 ? Vector3(-from.normalized()) : Vector3(-Vector3::UnitY());
+    const bool steep = std::abs(forward.y()) > 0.999;
+    right = forward.cross(steep ? Vector3::UnitZ() : Vector3::UnitY()).normalized();
+    up = right.cross(forward);
+  }
+  Vector3 start_of(int column, int row) const { return source + place_of(column) * right + place_of(row) * up; }
+  static double place_of(int pixel) { return (pixel + 0.5 - 0.5 * kPixels) * kPixel; }
+  static int pixel_at(double place) {
+    return static_cast<int>(std::clamp(std::floor(place / kPixel + 0.5 * kPixels), 0.0, kPixels - 1.0));
+  }
+};
+
+/// How many of the rays meet this body before any other.
+std::int32_t get_light_exposure(Machine& machine, Instance& self) {
+  World& world = machine.world();
+  const LightExposureState& light = world.view().light_exposure;
+  const BodyIndex body = body_of(machine, self);
+  if (!light.detection || world.dimension() == 2) return 0;
+  const LightView view(light.source);
+  Eigen::AlignedBox3d seen;  // right, up, forward
+  const Eigen::AlignedBox3d bounds = world.bodies().bounds(body);
+  if (bounds.isEmpty() || !bounds.sizes().allFinite()) return 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3 at = bounds.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)) - view.source;
+    seen.extend(Vector3(at.dot(view.right), at.dot(view.up), at.dot(view.forward)));
+  }
+  const double edge = 0.5 * LightView::kPixels * LightView::kPixel;
+  if (seen.max().z() <= 0 || (seen.min().head<2>().array() > edge).any() ||
+      (seen.max().head<2>().array() < -edge).any())
+    return 0;
+  const Vector3 way = seen.max().z() * view.forward;
+  std::int32_t count = 0;
+  for (int row = LightView::pixel_at(seen.min().y()); row <= LightView::pixel_at(seen.max().y()); ++row)
+    for (int column = LightView::pixel_at(seen.min().x()); column <= LightView::pixel_at(seen.max().x()); ++column)
+      count += put(machine, self, [&](Queries& queries, const Queries::Scene& scene) {
+        QueryHit hit;
+        return queries.ray_first(scene, view.start_of(column, row), way, QueryFilter{}, hit) && hit.object == self.id;
+      });
+  return count;
+}
+
 constexpr Native kQueryNatives[] = {
     native<control_cast_ray>("control.cast-ray"),
     native<control_find_on_ray>("control.find-on-ray"),
@@ -196,6 +247,7 @@ constexpr Native kQueryNatives[] = {
     native<control_find_closest>("control.find-closest"),
     native<control_find_near>("control.find-near"),
     native<sensor_cast_ray>("ir-sensor.cast-ray-among"),
+    native<get_light_exposure>("real.get-light-exposure"),
 };
 
 }  // namespace
