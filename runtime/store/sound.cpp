@@ -56,8 +56,12 @@ Samples Samples::load(ByteReader& in) {
 
 // --- sounds ----------------------------------------------------------------------------------------------------------
 
+namespace {
+constexpr double kRounding = 1e-6;  // frames: rounding of times must not cost a sound its first or last frame
+}
+
 bool PlayedSound::has_ended(const Playing& one, double time) const {
-  return (time - one.since) * one.speed >= samples.seconds();
+  return (time - one.since) * one.speed * samples.rate() >= static_cast<double>(samples.frames()) - kRounding;
 }
 
 void PlayedSound::play(double now, double speed) {
@@ -76,8 +80,7 @@ void PlayedSound::add_to(std::span<float> frames, const Listening& listening) co
   for (const Playing& one : playing_) {
     const double per_second = one.speed * samples.rate();
     const double first = (listening.start - one.since) * per_second, step = per_second / listening.rate;
-    // The first frame that lies in the sound; it has not begun before. Rounding must not cost its first or last frame.
-    constexpr double kRounding = 1e-6;
+    // The first frame that lies in the sound; it has not begun before.
     const double silent = first < 0 ? std::ceil(-first / step - kRounding) : 0;
     if (silent >= static_cast<double>(frames.size() / 2)) continue;
     for (auto i = static_cast<std::size_t>(silent); 2 * i < frames.size(); ++i) {

@@ -42,6 +42,7 @@ void tell_values(Machine& machine, Instance& self, ListCell* values) {
   learn::CmaEs& search = search_of(machine, self);
   const ListCell& list = list_of(Value::of(Tag::List, values), "tell: the values");
   machine.charge(search.work());
+  machine.charge_for(list.size);
   std::pmr::vector<double> numbers(machine.heap().memory());
   for (std::uint32_t i = 0; i < list.size; ++i) numbers.push_back(to_double(list[i], "tell: a value"));
   search.tell(numbers, machine.poller());

@@ -22,6 +22,7 @@ void rank_probabilities(std::span<const double> fitness, double pressure, std::s
 }
 
 void proportional_probabilities(std::span<const double> fitness, std::span<double> result) {
+  if (fitness.empty()) return;
   const auto [least, most] = std::minmax_element(fitness.begin(), fitness.end());
   // Scaled before it is summed: the differences of finite numbers may overflow, but halves do not.
   const double scale = 0.5 * *most - 0.5 * *least;
