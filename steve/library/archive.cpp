@@ -49,6 +49,14 @@ void for_each_variable(Machine& machine, const ClassInfo& concrete, Visit visit)
     }
 }
 
+bool always_has_body(const Machine& machine, const ClassInfo& cls) {
+  for (const char* name : {"Mobile", "Stationary", "Link"}) {
+    const ClassInfo* const bodies = machine.program().find_class(name);
+    if (bodies && cls.derives_from(*bodies)) return true;
+  }
+  return false;
+}
+
 int elements_of(const VariableInfo& variable) { return variable.array_size >= 0 ? variable.array_size : 1; }
 
 /// One element of an array, or the variable itself, as a variable of its own.
@@ -288,7 +296,10 @@ class Reader {
         machine_.world().attach(object->id, load_resource(native.attribute("kind").value(), in));
       }
       read_variables(machine_, *object, element, values);
-      if (const pugi::xml_node body = element.child("body")) read_body(machine_, *object, body);
+      if (const pugi::xml_node body = element.child("body"))
+        read_body(machine_, *object, body);
+      else if (always_has_body(machine_, *object->cls))
+        refuse("the archive is damaged: an object has no body");
     }
   }
 
