@@ -254,6 +254,7 @@ class Reader {
   Instance* read() {
     try {
       make_objects();
+      if (!objects_.contains(archive_.attribute("root").as_int())) refuse("the archive is damaged: it has no root");
       fill_objects();
       announce_objects();
     } catch (...) {
@@ -261,8 +262,8 @@ class Reader {
         if (object->live()) machine_.free_instance(*object);
       throw;
     }
-    const auto root = objects_.find(archive_.attribute("root").as_int());
-    return root == objects_.end() || !root->second->live() ? nullptr : root->second;
+    Instance* const root = objects_.at(archive_.attribute("root").as_int());
+    return root->live() ? root : nullptr;
   }
 
  private:
