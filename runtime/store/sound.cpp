@@ -77,13 +77,14 @@ bool PlayedSound::sounds_at(double time) const {
 void PlayedSound::add_to(std::span<float> frames, const Listening& listening) const {
   if (samples.empty()) return;
   const auto last = static_cast<double>(samples.frames() - 1);
+  const std::size_t wanted = frames.size() / 2;
   for (const Playing& one : playing_) {
     const double per_second = one.speed * samples.rate();
     const double first = (listening.start - one.since) * per_second, step = per_second / listening.rate;
     // The first frame that lies in the sound; it has not begun before.
     const double silent = first < 0 ? std::ceil(-first / step - kRounding) : 0;
-    if (silent >= static_cast<double>(frames.size() / 2)) continue;
-    for (auto i = static_cast<std::size_t>(silent); 2 * i < frames.size(); ++i) {
+    if (silent >= static_cast<double>(wanted)) continue;
+    for (auto i = static_cast<std::size_t>(silent); i < wanted; ++i) {
       const double frame = std::max(0.0, first + static_cast<double>(i) * step);
       if (frame > last + kRounding) break;
       frames[2 * i] += static_cast<float>(samples.at(std::min(frame, last), 0));
