@@ -25,8 +25,4 @@ const LibraryFile* LibrarySource::find_file(std::string_view name) const {
   return nullptr;
 }
 
-bool LibrarySource::is_later_class(std::string_view name_or_alias) const {
-  return std::find(later_classes.begin(), later_classes.end(), name_or_alias) != later_classes.end();
-}
-
 }  // namespace breve::steve

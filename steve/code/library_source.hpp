@@ -20,13 +20,11 @@ struct LibraryFile {
 class LibrarySource {
  public:
   std::span<const LibraryFile> files;
-  std::span<const Native> natives;                  // methods of the library's classes
-  std::span<const Native> functions;                // that scripts may call
-  std::span<const std::string_view> later_classes;  // that this version lacks, and their aliases
+  std::span<const Native> natives;    // methods of the library's classes
+  std::span<const Native> functions;  // that scripts may call
 
   /// The file named "NAME.tz", or the one that defines class NAME. Null if there is none.
   const LibraryFile* find_file(std::string_view name) const;
-  bool is_later_class(std::string_view name_or_alias) const;
 };
 
 }  // namespace breve::steve

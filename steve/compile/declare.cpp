@@ -32,19 +32,15 @@ const ClassInfo* ProgramBuilder::parent_of(ast::Class& tree) {
   if (const ClassInfo* parent = class_named(tree.parent)) return parent;
   // The one that is known is the parent.
   const ClassInfo* known = class_named(tree.name);
-  if (known && !library_.is_later_class(tree.parent)) {
+  if (known) {
     diagnostics_.error(tree.parent_span, "class-header", "the parent comes before the ':', the new class after it",
                        "write: " + tree.name + " : " + tree.parent + " {");
     std::swap(tree.name, tree.parent);
     return known;
   }
-  if (library_.is_later_class(tree.parent)) {
-    report_unknown_class(tree.parent, tree.parent_span);
-  } else {
-    const auto near = near_class(tree.parent);
-    diagnostics_.error(tree.parent_span, "unknown-class", "unknown parent class '" + tree.parent + "'",
-                       near.empty() ? "a parent must be defined before its children" : "did you mean '" + near + "'?");
-  }
+  const auto near = near_class(tree.parent);
+  diagnostics_.error(tree.parent_span, "unknown-class", "unknown parent class '" + tree.parent + "'",
+                     near.empty() ? "a parent must be defined before its children" : "did you mean '" + near + "'?");
   return class_named("Object");
 }
 

@@ -38,7 +38,7 @@ void ProgramBuilder::gather_foreign_library() {
   for (const auto& [tree, info] : declared_) {
     const std::uint32_t file = info->span.file;
     if (file == 0 || embedded(info->span) || info->name != file_stem(program_->sources_.file(file).name)) continue;
-    if (library_.find_file(info->name) || library_.is_later_class(info->name)) files[file].cls = info;
+    if (library_.find_file(info->name)) files[file].cls = info;
   }
   for (const Diagnostic& d : diagnostics_.all()) {
     const auto file = d.code == "unknown-function" ? files.find(d.span.file) : files.end();
@@ -64,8 +64,7 @@ void ProgramBuilder::gather_foreign_library() {
     kept.error(foreign.span, "foreign-library",
                "this file has the class " + name + " of another version of the class library: it calls " +
                    joined(named) + ", which breve does not have",
-               library_.find_file(name) ? "remove the file: breve has a class " + name + " of its own"
-                                        : "class " + name + " is part of a later version of the class library");
+               "remove the file: breve has a class " + name + " of its own");
   }
   diagnostics_ = std::move(kept);
 }

@@ -119,11 +119,6 @@ void ProgramBuilder::load_named(const std::string& name, const ast::Directive& d
     }
   }
   if (load_library(wanted)) return;
-  if (library_.is_later_class(wanted)) {
-    diagnostics_.error(directive.span, "later-class",
-                       "class " + wanted + " is part of a later version of the class library");
-    return;
-  }
   const bool use = directive.kind == ast::Directive::Kind::Use;
   const auto near = near_class(wanted);
   const std::string help = near.empty() ? "check its spelling, or add the directory it is in with @path or --path"
@@ -178,11 +173,6 @@ const ClassInfo* ProgramBuilder::class_named(std::string_view name) {
 }
 
 void ProgramBuilder::report_unknown_class(std::string_view name, const Span& span, Severity severity) {
-  if (library_.is_later_class(name)) {
-    diagnostics_.error(span, "later-class",
-                       "class " + std::string(name) + " is part of a later version of the class library");
-    return;
-  }
   const auto near = near_class(name);
   const auto message = "unknown class '" + std::string(name) + "'";
   const auto help = near.empty() ? "define it, or load its file with @use" : "did you mean '" + near + "'?";
@@ -249,15 +239,11 @@ void ProgramBuilder::choose_controller() {
   const auto* cls = class_named(controller_name_);
   if (cls)
     program_->controller_ = cls;
-  else if (diagnostics_.error_count() == 0) {
-    if (library_.is_later_class(controller_name_))
-      report_unknown_class(controller_name_, controller_span_);
-    else
-      diagnostics_.error(controller_span_, "unknown-class",
-                         "the controller class '" + controller_name_ + "' is not defined",
-                         near_class(controller_name_).empty() ? "define it, or name another class"
-                                                              : "did you mean '" + near_class(controller_name_) + "'?");
-  }
+  else if (diagnostics_.error_count() == 0)
+    diagnostics_.error(controller_span_, "unknown-class",
+                       "the controller class '" + controller_name_ + "' is not defined",
+                       near_class(controller_name_).empty() ? "define it, or name another class"
+                                                            : "did you mean '" + near_class(controller_name_) + "'?");
 }
 
 CompileResult compile(ModuleSource main, ModuleResolver& resolver, const LibrarySource& library,

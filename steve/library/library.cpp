@@ -38,14 +38,14 @@ constexpr ResourceKind kResourceKinds[] = {
     {PushPoolResource::kKind, &PushPoolResource::load},
     {SoundResource::kKind, &SoundResource::load},
     {ToneResource::kKind, &ToneResource::load},
-    {NetworkResource::kKind, &NetworkResource::load},
+    {NeuralNetworkResource::kKind, &NeuralNetworkResource::load},
     {CmaEsResource::kKind, &CmaEsResource::load},
 };
 
 }  // namespace
 
 const LibrarySource& library_source() {
-  static const LibrarySource source{library_files(), library_natives(), functions(), {}};
+  static const LibrarySource source{library_files(), library_natives(), functions()};
   return source;
 }
 

@@ -15,7 +15,7 @@ std::span<const LibraryFile> library_files();
 /// Every native method of the class library.
 std::span<const Native> library_natives();
 
-/// All that programs are compiled with: these, the functions of the language, and what comes with a later version.
+/// All that programs are compiled with: these, and the functions of the language.
 const LibrarySource& library_source();
 
 /// Teach a world to load the native data of library objects from snapshots. Once per world, before the first load.

@@ -32,7 +32,7 @@ void set_library_object(Machine& machine, Instance& self, std::string_view owner
 
 const ClassInfo* class_named(Machine& machine, const StringCell* name, std::string_view selector) {
   if (const ClassInfo* cls = machine.program().find_class(view(name))) return cls;
-  if (library_source().find_file(view(name)) || library_source().is_later_class(view(name))) return nullptr;
+  if (library_source().find_file(view(name))) return nullptr;
   Machine::fail(RunErrorKind::UnknownClass,
                 std::string(selector) + ": there is no class '" + std::string(view(name)) + "'");
 }

@@ -23,8 +23,7 @@ constexpr std::array kFiles = {
 };
 constexpr std::array kNatives = {Native{"bird.chirp", &chirp, "d:i", Reach::World}};
 constexpr std::array kFunctions = {Native{"whistle", &chirp, "i:n", Reach::World}};
-constexpr std::array<std::string_view, 1> kLaterClasses = {"Penguin"};
-const LibrarySource kBirds{kFiles, kNatives, kFunctions, kLaterClasses};
+const LibrarySource kBirds{kFiles, kNatives, kFunctions};
 
 constexpr const char* kProgram =
     "@use Birds.\nController Main.\nBird : Main {\n  + to sing:\n    whistle(3).\n    return (self chirp at 440).\n}\n";
@@ -57,18 +56,14 @@ TEST(LibrarySource, ProgramsUseTheClassesNativesAndFunctionsThatAreGiven) {
 TEST(LibrarySource, NothingElseIsThere) {
   EXPECT_NE(errors(kProgram, {}).find("cannot find 'Birds'"), std::string::npos) << errors(kProgram, {});
   EXPECT_NE(errors("@use Control.\n", kBirds).find("cannot find 'Control'"), std::string::npos);
-  const LibrarySource silent{kFiles, {}, {}, {}};
+  const LibrarySource silent{kFiles, {}, {}};
   EXPECT_NE(errors(kProgram, silent).find("no native method is called 'bird.chirp'"), std::string::npos);
   EXPECT_NE(errors(kProgram, silent).find("whistle"), std::string::npos);
 }
 
-TEST(LibrarySource, ClassesOfALaterVersionAreSaidToBe) {
-  EXPECT_NE(errors("@use Penguin.\n", kBirds).find("later-class: class Penguin"), std::string::npos);
-}
-
 TEST(LibrarySource, ASignatureThatDiffersFromTheDeclarationIsAnError) {
   constexpr std::array kOther = {Native{"bird.chirp", &chirp, "v:i", Reach::World}};
-  const LibrarySource other{kFiles, kOther, kFunctions, {}};
+  const LibrarySource other{kFiles, kOther, kFunctions};
   EXPECT_NE(errors(kProgram, other).find("has the signature v:i, but is declared as d:i"), std::string::npos);
 }
 

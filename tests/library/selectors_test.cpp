@@ -139,12 +139,6 @@ TEST(Selectors, TheTableOfFilesNamesEveryClassInThem) {
     }
 }
 
-TEST(Selectors, NoClassIsBothHereAndPartOfALaterVersion) {
-  for (std::string_view name : library_source().later_classes)
-    EXPECT_EQ(library_source().find_file(name), nullptr) << name;
-  EXPECT_FALSE(library_source().is_later_class("Mobile"));
-}
-
 TEST(Selectors, ObjectDeclaresControllerAndBirthTimeFirst) {
   const ast::Class* object = ParsedLibrary::get().find("Object");
   ASSERT_NE(object, nullptr);
