@@ -16,27 +16,29 @@ set(breve_dependency_targets "fmt::fmt;ZLIB::ZLIB;pugixml::pugixml;EXPAT::EXPAT;
 set(breve_dependency_modules "fmt, zlib, pugixml, expat, tbb")
 # Shared ones by their names: their modules of pkg-config ask for what only their own static libraries need.
 set(breve_dependency_libraries "")
+
+# breve_needs_module(NAME MODULE): what breve_pkg_config found is needed below the static library.
+macro(breve_needs_module name module)
+  string(APPEND breve_find_dependencies
+    "find_dependency(PkgConfig)\npkg_check_modules(breve_${name} REQUIRED QUIET IMPORTED_TARGET ${module})\n")
+  list(APPEND breve_dependency_targets PkgConfig::breve_${name})
+endmacro()
+
 if(BREVE_WITH_PLANAR)
   string(APPEND breve_find_dependencies "find_dependency(box2d)\n")
   list(APPEND breve_dependency_targets box2d::box2d)
   string(APPEND breve_dependency_modules ", box2d")
 endif()
 if(BREVE_WITH_MESHES)
-  string(APPEND breve_find_dependencies
-    "find_dependency(PkgConfig)\npkg_check_modules(breve_assimp REQUIRED QUIET IMPORTED_TARGET assimp)\n")
-  list(APPEND breve_dependency_targets PkgConfig::breve_assimp)
+  breve_needs_module(assimp assimp)
   string(APPEND breve_dependency_modules ", assimp")
 endif()
 if(BREVE_WITH_SOUND_FILES)
-  string(APPEND breve_find_dependencies
-    "find_dependency(PkgConfig)\npkg_check_modules(breve_sndfile REQUIRED QUIET IMPORTED_TARGET sndfile)\n")
-  list(APPEND breve_dependency_targets PkgConfig::breve_sndfile)
+  breve_needs_module(sndfile sndfile)
   string(APPEND breve_dependency_libraries " -lsndfile")
 endif()
 if(BREVE_WITH_NETWORK)
-  string(APPEND breve_find_dependencies
-    "find_dependency(PkgConfig)\npkg_check_modules(breve_httplib REQUIRED QUIET IMPORTED_TARGET cpp-httplib)\n")
-  list(APPEND breve_dependency_targets PkgConfig::breve_httplib)
+  breve_needs_module(httplib cpp-httplib)
   string(APPEND breve_dependency_libraries " -lcpp-httplib")
 endif()
 if(BREVE_WITH_RENDER)

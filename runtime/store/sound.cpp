@@ -10,6 +10,7 @@ namespace breve {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kRounding = 1e-6;  // frames: rounding of times must not cost a sound its first or last frame
 
 std::uint64_t digest_of(std::span<const float> values, std::uint32_t channels, std::uint32_t rate) {
   Hasher hasher;
@@ -55,10 +56,6 @@ Samples Samples::load(ByteReader& in) {
 }
 
 // --- sounds ----------------------------------------------------------------------------------------------------------
-
-namespace {
-constexpr double kRounding = 1e-6;  // frames: rounding of times must not cost a sound its first or last frame
-}
 
 bool PlayedSound::has_ended(const Playing& one, double time) const {
   return (time - one.since) * one.speed * samples.rate() >= static_cast<double>(samples.frames()) - kRounding;

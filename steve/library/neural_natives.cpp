@@ -16,7 +16,7 @@ using learn::LayerKind;
 // --- layers ----------------------------------------------------------------------------------------------------------
 
 void append(Machine& machine, Instance& self, LayerKind kind, std::int32_t neurons, Activation activation) {
-  NetworkResource& resource = own_network(machine, self);
+  NeuralNetworkResource& resource = own_network(machine, self);
   learn::Network& network = resource.network;
   const std::uint64_t n = static_cast<std::uint64_t>(std::max(neurons, 0));
   machine.charge_for(network.parameters().size() + n * (static_cast<std::uint64_t>(network.outputs()) + n));
@@ -172,9 +172,9 @@ void set_parameters(Machine& machine, Instance& self, ListCell* list) {
 }
 
 void copy_from(Machine& machine, Instance& self, Instance* other) {
-  const NetworkResource& source = network_of(machine, other, "copy-from: the network");
+  const NeuralNetworkResource& source = neural_network_of(machine, other, "copy-from: the network");
   machine.charge_for(source.network.parameters().size());
-  NetworkResource& target = own_network(machine, self);
+  NeuralNetworkResource& target = own_network(machine, self);
   if (&source == &target) return;
   target.network.assign(source.network);
   target.optimizer.reset();
@@ -183,7 +183,7 @@ void copy_from(Machine& machine, Instance& self, Instance* other) {
 // --- running ---------------------------------------------------------------------------------------------------------
 
 void run_with(Machine& machine, Instance& self, ListCell* list) {
-  NetworkResource& resource = layered_network(machine, self, "run-with");
+  NeuralNetworkResource& resource = layered_network(machine, self, "run-with");
   const learn::Network& network = resource.network;
   const std::size_t given = list ? list->size : 0, expected = static_cast<std::size_t>(network.inputs());
   if (given != expected)
@@ -195,7 +195,7 @@ void run_with(Machine& machine, Instance& self, ListCell* list) {
 }
 
 double get_output(Machine& machine, Instance& self, std::int32_t position) {
-  NetworkResource& resource = layered_network(machine, self, "get-output");
+  NeuralNetworkResource& resource = layered_network(machine, self, "get-output");
   const auto count = static_cast<std::int32_t>(resource.network.outputs());
   if (position < 0 || position >= count)
     refuse_argument("get-output: node " + decimal(position) + " does not exist: the last layer has " + decimal(count));
@@ -203,14 +203,14 @@ double get_output(Machine& machine, Instance& self, std::int32_t position) {
 }
 
 ListCell* get_outputs(Machine& machine, Instance& self) {
-  NetworkResource& resource = own_network(machine, self);
+  NeuralNetworkResource& resource = own_network(machine, self);
   if (resource.network.layers().empty()) return machine.heap().list();
   const learn::Numbers& outputs = resource.present().outputs.back();
   return make_list(machine, outputs.data(), outputs.size());
 }
 
 void reset_state(Machine& machine, Instance& self) {
-  NetworkResource& resource = own_network(machine, self);
+  NeuralNetworkResource& resource = own_network(machine, self);
   resource.network.rest(resource.activity, 1);
 }
 

@@ -5,7 +5,7 @@
 
 namespace breve::steve {
 
-void NetworkResource::save(ByteWriter& out) const {
+void NeuralNetworkResource::save(ByteWriter& out) const {
   network.save(out);
   optimizer.save(out);
   out.put(batch);
@@ -16,7 +16,7 @@ void NetworkResource::save(ByteWriter& out) const {
   for (const learn::Numbers& potentials : activity.potentials) learn::put_numbers(out, potentials);
 }
 
-void NetworkResource::hash(Hasher& hasher) const {
+void NeuralNetworkResource::hash(Hasher& hasher) const {
   network.hash(hasher);
   optimizer.hash(hasher);
   hasher.add(static_cast<std::uint64_t>(batch));
@@ -25,8 +25,8 @@ void NetworkResource::hash(Hasher& hasher) const {
   for (const learn::Numbers& potentials : activity.potentials) learn::hash_numbers(hasher, potentials);
 }
 
-std::unique_ptr<Resource> NetworkResource::load(ByteReader& in) {
-  auto resource = make_in<NetworkResource>(in.memory(), in.memory());
+std::unique_ptr<Resource> NeuralNetworkResource::load(ByteReader& in) {
+  auto resource = make_in<NeuralNetworkResource>(in.memory(), in.memory());
   resource->network.load(in);
   resource->optimizer.load(in, resource->network.parameters().size());
   resource->batch = in.get<std::int32_t>();
@@ -39,15 +39,15 @@ std::unique_ptr<Resource> NetworkResource::load(ByteReader& in) {
   return resource;
 }
 
-NetworkResource& network_of(Machine& machine, Instance* object, std::string_view what) {
+NeuralNetworkResource& neural_network_of(Machine& machine, Instance* object, std::string_view what) {
   Instance& live = must_live(object, what);
   if (!is_of_class(live, "NeuralNetwork"))
     Machine::fail(RunErrorKind::Type, std::string(what) + ": " + name_of(live) + " is not a NeuralNetwork");
   return own_network(machine, live);
 }
 
-NetworkResource& layered_network(Machine& machine, Instance& self, std::string_view what) {
-  NetworkResource& resource = own_network(machine, self);
+NeuralNetworkResource& layered_network(Machine& machine, Instance& self, std::string_view what) {
+  NeuralNetworkResource& resource = own_network(machine, self);
   if (resource.network.layers().empty())
     throw Error(ErrorCode::Argument, std::string(what) + ": the network has no layers; call add-layer first");
   return resource;

@@ -9,10 +9,11 @@
 namespace breve::steve {
 
 /// A NeuralNetwork object: the network, its present activity, and how it is trained.
-class NetworkResource final : public Resource {
+class NeuralNetworkResource final : public Resource {
  public:
   static constexpr std::string_view kKind = "neural-network";
-  explicit NetworkResource(std::pmr::memory_resource* memory) : network(memory), activity(memory), optimizer(memory) {}
+  explicit NeuralNetworkResource(std::pmr::memory_resource* memory)
+      : network(memory), activity(memory), optimizer(memory) {}
   learn::Network network;
   learn::Activity activity;  // of one sample; made anew where it does not fit the layers
   learn::Optimizer optimizer;
@@ -30,15 +31,15 @@ class NetworkResource final : public Resource {
   static std::unique_ptr<Resource> load(ByteReader& in);
 };
 
-inline NetworkResource& own_network(Machine& machine, Instance& self) {
-  return resource_made<NetworkResource>(machine, self);
+inline NeuralNetworkResource& own_network(Machine& machine, Instance& self) {
+  return resource_made<NeuralNetworkResource>(machine, self);
 }
 
 /// The network of an object argument. @throws RunError{NullObject, FreedObject, Type}
-NetworkResource& network_of(Machine& machine, Instance* object, std::string_view what);
+NeuralNetworkResource& neural_network_of(Machine& machine, Instance* object, std::string_view what);
 
 /// The same of a network with layers. @throws Error{Argument} if it has none
-NetworkResource& layered_network(Machine& machine, Instance& self, std::string_view what);
+NeuralNetworkResource& layered_network(Machine& machine, Instance& self, std::string_view what);
 
 /// What the draw of a random number takes, in elements of charge_for.
 constexpr std::uint64_t kOfDraw = 16;

@@ -118,7 +118,7 @@ void set_batch_size(Machine& machine, Instance& self, std::int32_t size) {
 }
 
 double train(Machine& machine, Instance& self, ListCell* inputs, ListCell* targets, std::int32_t epochs) {
-  NetworkResource& resource = layered_network(machine, self, "train");
+  NeuralNetworkResource& resource = layered_network(machine, self, "train");
   if (epochs < 0) refuse_argument("train: " + std::to_string(epochs) + " epochs (must be 0 or more)");
   const Samples samples = samples_of(machine, resource.network, inputs, targets, "train");
   learn::Gradient gradient(machine.heap().memory());
@@ -156,8 +156,8 @@ void mutate(Machine& machine, Instance& self, double deviation, double probabili
 }
 
 void crossover(Machine& machine, Instance& self, Instance* first, Instance* second) {
-  const learn::Network& a = network_of(machine, first, "crossover-weights: the first parent").network;
-  const learn::Network& b = network_of(machine, second, "crossover-weights: the second parent").network;
+  const learn::Network& a = neural_network_of(machine, first, "crossover-weights: the first parent").network;
+  const learn::Network& b = neural_network_of(machine, second, "crossover-weights: the second parent").network;
   learn::Network& child = own_network(machine, self).network;
   if (!a.same_shape(b)) refuse_argument("crossover-weights: the parents have different layers");
   machine.charge_for(kOfDraw * a.parameters().size());
