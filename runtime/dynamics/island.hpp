@@ -229,8 +229,9 @@ class Island : public InMemory {
   double stop_links(Clustered& one, Momenta momenta, double h);
   void coast(double h);
   void note_wholes(articulated::Vector Tree::*velocity, bool now);
-  enum class Given : std::uint8_t { All, Places, Pushes };
+  enum class Given : std::uint8_t { All, Impacts, Places, Pushes };
   void keep_wholes(double moved_h, Given given);
+  bool pushes_itself() const;
   // island_rows.cpp
   double size_of_pair(const NearPair& pair) const;
   Speeds speeds_of(const contact::Law& law, double size, double h) const;
@@ -332,6 +333,7 @@ class Island : public InMemory {
   void push_apart(double h);
   void move_by_pushes(double fastest, double h);
   double payable(double h) const;
+  void shorten_pushes(double before, double h);
   void take_back_pushes(double part, double h);
   void hold_bounds(double h);
   bool find_struck(double h);

@@ -303,6 +303,10 @@ void Island::collide(double time) {
   contact::resolve_impacts(movers_, rows_, laws_, scalars_, settings, workspace_);
   book_rows();
   store_velocities(0);
+  if (pushes_itself()) {
+    note_wholes(&Tree::smooth_v, false);
+    keep_wholes(0, Given::Impacts);
+  }
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     if (rows_[i].impulse == Vector3::Zero()) continue;
     const NearPair& pair = *pairs_[touches_[i].pair];

@@ -263,11 +263,19 @@ void Island::note_wholes(articulated::Vector Tree::*velocity, bool now) {
   }
 }
 
+/// Links of one tree press against each other: of large impulses that cancel, round-off is left.
+bool Island::pushes_itself() const {
+  return std::any_of(rows_.begin(), rows_.end(), [this](const contact::Row& row) {
+    const NearPair& pair = *pairs_[static_cast<std::size_t>(row.pair)];
+    const Tree* tree = slot_of(pair.a).tree;
+    return tree && tree->loose && tree == slot_of(pair.b).tree && row.impulse != Vector3::Zero();
+  });
+}
+
 /// What the rows' impulses, or those of pushing overlap apart, give each tree from outside.
 /// @param moved_h  s, for which positions move by the change of velocity
-/// @param given    by what: by impulses that were not predicted; by all of the sub-step and gravity, but no velocity;
-/// by
-///                 those that push overlap apart, likewise
+/// @param given    by what: by impulses that were not predicted; by those of impacts; by all of the sub-step and
+///                 gravity, but no velocity; by those that push overlap apart, likewise
 void Island::keep_wholes(double moved_h, Given given) {
   outer_.assign(trees_.size(), {});
   const auto add = [this](int mover, const Vector3& impulse, const Vector3& point) {
@@ -294,7 +302,7 @@ void Island::keep_wholes(double moved_h, Given given) {
     if (given == Given::Places && !struck_[free_.size() + i]) continue;
     if (given == Given::Places) outer_[i].linear += solved_h_ * wanted.mass * core_.settings.gravity;
     wanted.center += moved_h / wanted.mass * outer_[i].linear;
-    if (given == Given::All) {
+    if (given == Given::All || given == Given::Impacts) {
       wanted.momentum += outer_[i].linear;
       wanted.spin += outer_[i].angular;
     }

@@ -48,8 +48,7 @@ void Island::push_apart(double h) {
   if (any) {
     const double before = result.ledger.contact_loss;
     move_by_pushes(fastest, h);
-    const double given = before - result.ledger.contact_loss, most = payable(h);
-    if (given > most) take_back_pushes(1 - most / given, h);
+    shorten_pushes(before, h);
     pay_for_moves(before - result.ledger.contact_loss);
   }
   close_loops();
@@ -84,12 +83,27 @@ double Island::payable(double h) const {
   return kFew * moving() + (falls ? 0 : kLift * h * weight());
 }
 
+/// Takes back of what move_by_pushes() has just moved what gives more than is payable: energy is not linear in the way,
+/// so that this takes some tries, and the last one takes back all.
+/// @param before  J, that contacts had lost before
+void Island::shorten_pushes(double before, double h) {
+  constexpr int kTries = 4;
+  double left = 1;  // of the way
+  for (int i = 1; i <= kTries && left > 0; ++i) {
+    const double given = before - result.ledger.contact_loss, most = payable(h);
+    if (!(given > most)) return;
+    const double kept = i < kTries ? left * most / given : 0;
+    take_back_pushes(left - kept, h);
+    left = kept;
+  }
+}
+
 /// Takes back a part of the way that move_by_pushes() made in h seconds.
 void Island::take_back_pushes(double part, double h) {
   book_moves(-1);
   for (Tree* tree : trees_) {
     tree->free_v = tree->state.v;
-    tree->state.v = tree->way / h;
+    tree->state.v = tree->push;
   }
   note_wholes(&Tree::free_v, false);
   end_moves(-part * h);
@@ -137,7 +151,8 @@ void Island::end_moves(double h) {
     if (rotation != Vector3::Zero()) one.now.orientation = (rotation_by(rotation) * one.now.orientation).normalized();
   }
   for (Tree* tree : trees_) {
-    tree->way = h * tree->state.v;
+    tree->push = tree->state.v;
+    tree->way = h * tree->push;
     tree->state.v = tree->free_v;
     articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
     if (tree->driven) book_way(tree->set_tau.dot(tree->way), tree);

@@ -13,7 +13,7 @@ std::size_t estimate(const std::vector<articulated::Link>& links) {
   for (const articulated::Link& link : links)
     numbers +=
         static_cast<std::size_t>(articulated::position_count(link.type) + articulated::velocity_count(link.type));
-  constexpr std::size_t kVectors = 62;  // of an integrator, Data, State and Loads, each (nq) or (nv)
+  constexpr std::size_t kVectors = 63;  // of an integrator, Data, State and Loads, each (nq) or (nv)
   return links.size() * (sizeof(articulated::Body) + sizeof(articulated::Drive) + sizeof(articulated::Wrench) +
                          sizeof(std::string)) +
          kVectors * numbers * sizeof(double);
@@ -35,7 +35,7 @@ Tree::Tree(std::pmr::memory_resource* memory, const std::vector<articulated::Lin
       anchors(memory),
       loop_holders(memory) {
   work_q = state.q;
-  work_v = work_u = work_w = free_v = smooth_v = way = kick = reacted = motor_impulse = part_impulse = state.v;
+  work_v = work_u = work_w = free_v = smooth_v = way = push = kick = reacted = motor_impulse = part_impulse = state.v;
   limit_force = held_force = mean = state.v;
   loads.reaction = state.v;
   step_state = sub_state = part_state = state;
