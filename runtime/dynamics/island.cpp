@@ -335,6 +335,13 @@ Pose Island::pose_of(BodyIndex body) const {
   return {free.center - free.orientation * free.solid->center_of_mass, free.orientation};
 }
 
+/// In world axes, rad/s.
+Vector3 Island::spin_of(BodyIndex body) const {
+  const BodySlot side = slot_of(body);
+  if (side.mover < 0) return Vector3::Zero();
+  return side.tree ? side.tree->data.of(side.link).spin : free_[static_cast<std::size_t>(side.mover)].now.spin;
+}
+
 Vector3 Island::point_velocity(BodyIndex body, const Vector3& point) const {
   const BodySlot side = slot_of(body);
   if (side.mover < 0) return Vector3::Zero();

@@ -121,6 +121,7 @@ class Island : public InMemory {
     Vector3 velocity_a = Vector3::Zero(), velocity_b = Vector3::Zero();  // of the bodies there, as the sub-step began
     double gap = 0;                                                      // m, at the start of the sub-step
     double approach = 0;  // m/s, v_n when the sub-step began; unknown where nothing is located
+    bool far = false;     // touches only if the bodies rotate towards it, and says nothing of whether the pair rests
   };
   /// Speeds of a pair, m/s, that separate impacts from what the rows of a sub-step do.
   struct Speeds {
@@ -174,6 +175,7 @@ class Island : public InMemory {
   Vector3 arm_of(const BodySlot& free, const Vector3& point) const {
     return point - free_[static_cast<std::size_t>(free.mover)].now.center;
   }
+  Vector3 spin_of(BodyIndex body) const;
   Vector3 point_velocity(BodyIndex body, const Vector3& point) const;
   // island_smooth.cpp
   static void move_driver(Free& one, double h);
@@ -387,7 +389,7 @@ class Island : public InMemory {
   Trouble try_in_parts(MechanicsClient* client, double start, double h);
   double tolerated(double turnover, double h) const;
   double weight() const;
-  void give_in(const Trouble& trouble, double start, double h);
+  void give_in(const Trouble& trouble, bool unpaid, double start, double h);
   void keep_start();
   void balance(double& residual, double& turnover);
   void back_to_start();

@@ -67,9 +67,12 @@ void Island::step_guarded(MechanicsClient* client, double start, double h) {
     refine_from();
     trouble = try_step(client, start, h);
   }
+  // More than all that moves: whatever was solved there is wrong, and positions hold what cannot be paid for.
+  const bool unpaid = refines && !dissolved_ && !trouble.found && gained_ > 0 && gained_ > moving();
+  if (unpaid) trouble = {true, GuardReason::Residual, gained_, any_body()};
   if (refines && !dissolved_) take_back_rest();
   if (attempt > 0 || finished_ || followed.step != asked.step) use_accuracy(asked);
-  if (trouble.found) give_in(trouble, start, h);
+  if (trouble.found) give_in(trouble, unpaid && !calls_out() && !worn(), start, h);
 }
 
 /// A step of articulated bodies whose energy does not add up is taken again in 2, 4, 8, ... parts: what turns far in a
@@ -77,7 +80,8 @@ void Island::step_guarded(MechanicsClient* client, double start, double h) {
 Island::Trouble Island::try_in_parts(MechanicsClient* client, double start, double h) {
   const Accuracy asked = accuracy_;
   Trouble trouble = try_step(client, start, h);
-  if (dissolved_ || trees_.empty()) return trouble;
+  const bool coarse = accuracy_.rung == Rung::Fast || accuracy_.rung == Rung::Balanced;
+  if (dissolved_ || (trees_.empty() && coarse)) return trouble;
   std::size_t links = 0;
   for (const Tree* tree : trees_) links += tree->links.size();
   const std::size_t bodies = links + free_.size();
@@ -117,11 +121,12 @@ double Island::weight() const {
 }
 
 /// Refining did not help: reports the trouble, and puts the island to rest if the settings say so.
-void Island::give_in(const Trouble& trouble, double start, double h) {
+/// @param unpaid  springs or heights hold energy that ending all motion does not pay for
+void Island::give_in(const Trouble& trouble, bool unpaid, double start, double h) {
   const bool rest = core_.settings.guard == GuardMode::Rest;
   const bool unusable = trouble.reason == GuardReason::NotFinite || trouble.reason == GuardReason::NoSolution;
   // Unexplained energy ends with the speeds; positions, corrected on the way, are as good as any.
-  const bool back = unusable || (rest && trouble.reason == GuardReason::Penetration);
+  const bool back = unusable || (rest && (unpaid || trouble.reason == GuardReason::Penetration));
   if (back) back_to_start();
   // An island that is slow enough to sleep and cannot be solved is resting: its velocities do not move it.
   const bool lies = trouble.reason == GuardReason::NoSolution && still();
