@@ -65,7 +65,7 @@ MultiBody : Creature {
     arm set-shape to ((new Cube) init-with size (1, .2, .2)).
     joint = new RevoluteJoint.
     joint link parent root to-child arm with-normal (0, 0, 1) with-parent-point (.5, 0, 0) with-child-point (-.5, 0, 0).
-    joint set-limits to-min -1.0 to-max 1.0.
+    joint set-double-spring with-strength 10 with-max 1.0 with-min -1.0.
     self register with-link root.
 }
 Control : Feed {
@@ -90,6 +90,7 @@ Control : Feed {
     } else if name == "Fronts": {
       x = new MultiObjectiveSearch.
       x begin from { 0, 1 } to { 1, 2 } with-objectives 2 with-population 4.
+      x ask.
       x tell values { { 1, 2 }, { 2, 1 }, { 1, 1 }, { 2, 2 } }.
     } else if name == "Program": {
       x = new PushProgram.
