@@ -1,5 +1,5 @@
-// GeoTIFF files are read by GDAL, which is seen here and nowhere else. It reads from memory, may use no other driver, and
-// opens no file.
+// GeoTIFF files are read by GDAL, which is seen here and nowhere else. It reads from memory, may use no other driver,
+// and opens no file.
 #include <cpl_conv.h>
 #include <cpl_error.h>
 #include <cpl_vsi.h>
@@ -81,14 +81,16 @@ HeightRaster HeightRaster::parse_geo_tiff(std::string_view bytes, const std::str
   raster.columns = GDALGetRasterXSize(data.get());
   raster.rows = GDALGetRasterYSize(data.get());
   if (raster.columns < 1 || raster.rows < 1 || raster.columns > kMostSide || raster.rows > kMostSide)
-    refuse_raster(name, fmt::format("it has {} x {} points (at most {} a side)", raster.columns, raster.rows, kMostSide));
+    refuse_raster(name,
+                  fmt::format("it has {} x {} points (at most {} a side)", raster.columns, raster.rows, kMostSide));
   if (GDALGetRasterCount(data.get()) < 1) refuse_raster(name, "it has no band");
 
   // Row by row: a head that claims more than the file has must not take memory for it.
   const GDALRasterBandH band = GDALGetRasterBand(data.get(), 1);
   std::vector<float> row(static_cast<std::size_t>(raster.columns));
   for (int y = 0; y < raster.rows; ++y) {
-    if (GDALRasterIO(band, GF_Read, 0, y, raster.columns, 1, row.data(), raster.columns, 1, GDT_Float32, 0, 0) != CE_None)
+    if (GDALRasterIO(band, GF_Read, 0, y, raster.columns, 1, row.data(), raster.columns, 1, GDT_Float32, 0, 0) !=
+        CE_None)
       refuse_raster(name, CPLGetLastErrorMsg());
     raster.values.insert(raster.values.end(), row.begin(), row.end());
     if (poll) poll();

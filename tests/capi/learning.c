@@ -115,10 +115,11 @@ static void a_network_learns_and_is_archived(void) {
   archive[strlen(archive) / 2] = 0;
   breve_value none = breve_value_int(1);
   const breve_keyword half[] = {{"from-string", breve_value_string(archive)}};
-  CHECK_STATUS(BREVE_OK, breve_object_call(s.world, breve_world_controller(s.world), "parse-xml-network-request", half, 1,
-                                           &none));
-  CHECK(none.type == BREVE_TYPE_OBJECT ? none.as.object.index == 0 : none.type == BREVE_TYPE_NULL ||
-                                                                        (none.type == BREVE_TYPE_INT && none.as.integer == 0));
+  CHECK_STATUS(BREVE_OK, breve_object_call(s.world, breve_world_controller(s.world), "parse-xml-network-request", half,
+                                           1, &none));
+  CHECK(none.type == BREVE_TYPE_OBJECT
+            ? none.as.object.index == 0
+            : none.type == BREVE_TYPE_NULL || (none.type == BREVE_TYPE_INT && none.as.integer == 0));
 
   /* An error of a method is one of the call. */
   const breve_keyword wrong[] = {{"inputs", list_of(s.world, inputs, 3)}};

@@ -1,4 +1,4 @@
-// The program that the fuzzer of what comes from outside feeds, and documents that it takes as they are.
+// The program that fuzz_feed gives its inputs to, and valid documents.
 #pragma once
 
 #include <cstdint>
@@ -124,24 +124,60 @@ Control : Feed {
 }
 )steve";
 
-inline constexpr std::string_view kFeedClasses[] = {"Tree",    "Ball",   "Creature", "Network",         "Search",
-                                                    "Fronts",  "Program", "Picture",  "GADirectedGraph", "Terrain"};
+inline constexpr std::string_view kFeedClasses[] = {"Tree",   "Ball",    "Creature", "Network",         "Search",
+                                                    "Fronts", "Program", "Picture",  "GADirectedGraph", "Terrain"};
 
 inline constexpr std::string_view kConfigurations[] = {
-    "MAX-RANDOM-FLOAT 10\nMIN-RANDOM-FLOAT -10\nMAX-POINTS-IN-PROGRAM 100\nEVALPUSH-LIMIT 150\ntype FLOAT\ntype INTEGER\n",
+    "MAX-RANDOM-FLOAT 10\nMIN-RANDOM-FLOAT -10\nMAX-POINTS-IN-PROGRAM 100\nEVALPUSH-LIMIT 150\ntype FLOAT\ntype "
+    "INTEGER\n",
     "# a comment\ninstruction INTEGER.+\ninstruction CODE.DO*TIMES\ninstruction EXEC.Y\ninstruction FLOAT.ERC\n"
     "instruction NAME.ERC\nNEW-ERC-NAME-PROBABILITY 0.001\nTOP-LEVEL-PUSH-CODE FALSE\nTOP-LEVEL-POP-CODE TRUE\n",
     "MAX-RANDOM-INTEGER 2147483647\nMIN-RANDOM-INTEGER -2147483647\nMAX-POINTS-IN-RANDOM-EXPRESSIONS 25\ntype EXEC\n"
     "type CODE\ntype NAME\ntype VECTOR\ntype BOOLEAN\n"};
 
-inline constexpr std::string_view kTargets[] = {"/add_3_0.5",       "/show", "/", "/walk/map.html?x=1", "/add_%33_%2e5",
-                                                "/end-simulation", "/%2e%2e/secret.html"};
+inline constexpr std::string_view kTargets[] = {
+    "/add_3_0.5", "/show", "/", "/walk/map.html?x=1", "/add_%33_%2e5", "/end-simulation", "/%2e%2e/secret.html"};
 
-inline constexpr std::string_view kWords[] = {
-    "<",          ">",           "</",         "&amp;",       "&#0;",           "&lt;", "\"", "'", "<!DOCTYPE a [<!ENTITY b \"c\">]>", "&b;",
-    "<![CDATA[",  "]]>",         "<?xml",      "-1",          "4294967296",     "1e309", "nan",  "-inf", "99999999999999999999",
-    "0.1",        "\xff\xfe",    "\xc3",       "name=\"\"",   "index=\"1\"",    "type=\"list\"", "..", "%00", "%2F", "_", "__", "instruction ",
-    "type ",      "RIFF",        "data",       "fmt ",        "FORM",           ".snd",  "\n",   " ",    "TRUE"};
+inline constexpr std::string_view kWords[] = {"<",
+                                              ">",
+                                              "</",
+                                              "&amp;",
+                                              "&#0;",
+                                              "&lt;",
+                                              "\"",
+                                              "'",
+                                              "<!DOCTYPE a [<!ENTITY b \"c\">]>",
+                                              "&b;",
+                                              "<![CDATA[",
+                                              "]]>",
+                                              "<?xml",
+                                              "-1",
+                                              "4294967296",
+                                              "1e309",
+                                              "nan",
+                                              "-inf",
+                                              "99999999999999999999",
+                                              "0.1",
+                                              "\xff\xfe",
+                                              "\xc3",
+                                              "name=\"\"",
+                                              "index=\"1\"",
+                                              "type=\"list\"",
+                                              "..",
+                                              "%00",
+                                              "%2F",
+                                              "_",
+                                              "__",
+                                              "instruction ",
+                                              "type ",
+                                              "RIFF",
+                                              "data",
+                                              "fmt ",
+                                              "FORM",
+                                              ".snd",
+                                              "\n",
+                                              " ",
+                                              "TRUE"};
 
 /// The head of a WAV, AIFF or AU file and some samples. Numbers are written with the first byte first or last.
 inline std::string sound_document(std::size_t kind) {

@@ -1,5 +1,5 @@
-// What comes from outside: archives, requests, uploads, configurations of Push and sounds, most of them changed in a few
-// places. The program takes them or says what is wrong; the world can then be used, saved and restored like any other.
+// Inputs from outside: archives, requests, uploads, configurations of Push and sounds, most of them changed in a few
+// places. The program takes them or reports an error; the world can then be used, saved and restored like any other.
 #include <algorithm>
 #include <array>
 #include <string>
@@ -198,7 +198,8 @@ void feed(Fed& to, Choices& choices) {
         check(world, call(world, "take-archive-file", nullptr, "", nullptr));
       break;
     case 1:
-      check(world, call(world, "take-configuration", "from", without_zeros(document(kConfigurations, choices)), nullptr));
+      check(world,
+            call(world, "take-configuration", "from", without_zeros(document(kConfigurations, choices)), nullptr));
       break;
     case 2:
       outside.file = document(to.sounds, choices);

@@ -60,7 +60,8 @@ TEST(Pareto, CrowdingIsTheDistanceOfTheNeighborsInEachObjective) {
   EXPECT_NEAR(order.distances[2], 4.0 / 10 + 6.0 / 10, 1e-15);
   EXPECT_EQ(order.sorted(), (std::vector<std::uint32_t>{0, 3, 1, 2, 4}));
   const std::vector<double> equal(8, 3.0);
-  for (const double distance : CrowdedOrder({equal, 2}, {}).distances) EXPECT_TRUE(distance == 0 || distance == kInfinite);
+  for (const double distance : CrowdedOrder({equal, 2}, {}).distances)
+    EXPECT_TRUE(distance == 0 || distance == kInfinite);
 }
 
 TEST(Variation, CrossedPairsKeepTheirMeanAndTheSpreadOfTheirDistribution) {
@@ -86,7 +87,8 @@ TEST(Variation, CrossedPairsKeepTheirMeanAndTheSpreadOfTheirDistribution) {
 }
 
 TEST(Variation, MutationHasItsProbabilityAndItsDistribution) {
-  // From the middle of 0 to 1, a step has |step| <= d with probability (1 - (1 - d)^(index + 1)) / (1 - (1/2)^(index + 1)).
+  // From the middle of 0 to 1, a step has |step| <= d with probability (1 - (1 - d)^(index + 1)) / (1 - (1/2)^(index +
+  // 1)).
   Random random(7);
   constexpr std::size_t kNumbers = 100'000;
   constexpr double kIndex = 3, kTolerance = 0.02;
@@ -204,7 +206,8 @@ std::vector<Pair> front_of(Pair (*problem)(Point), std::uint64_t seed) {
 
 TEST(Nsga2, FrontsAreAsNearAndAsEvenAsThoseOfThePaper) {
   // Means and variances of ten runs with 25,000 evaluations in tables II and III of Deb and others (2002), NSGA-II with
-  // real numbers. Each seed here must be as near as their mean, and no more uneven than two deviations above their mean.
+  // real numbers. Each seed here must be as near as their mean, and no more uneven than two deviations above their
+  // mean.
   struct Row {
     const char* name;
     Pair (*problem)(Point);

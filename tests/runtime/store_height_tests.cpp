@@ -33,9 +33,9 @@ std::string tiff(std::uint32_t columns, std::uint32_t rows, const std::vector<fl
   };
   const auto size = static_cast<std::uint32_t>(values.size() * sizeof(float));
   constexpr std::uint32_t kHead = 8, kEntries = 11, kMark = kHead + 2 + 12 * kEntries + 4, kData = kMark + 8;
-  const Entry entries[kEntries] = {{256, kLong, 1, columns}, {257, kLong, 1, rows}, {258, kShort, 1, 32},
-                                   {259, kShort, 1, 1},      {262, kShort, 1, 1},   {273, kLong, 1, kData},
-                                   {277, kShort, 1, 1},      {278, kLong, 1, rows}, {279, kLong, 1, size},
+  const Entry entries[kEntries] = {{256, kLong, 1, columns}, {257, kLong, 1, rows},    {258, kShort, 1, 32},
+                                   {259, kShort, 1, 1},      {262, kShort, 1, 1},      {273, kLong, 1, kData},
+                                   {277, kShort, 1, 1},      {278, kLong, 1, rows},    {279, kLong, 1, size},
                                    {339, kShort, 1, 3},      {42113, kAscii, 6, kMark}};
   std::string out("II*\0\x08\0\0\0", 8);
   const auto put = [&](const auto& number) { out.append(reinterpret_cast<const char*>(&number), sizeof number); };

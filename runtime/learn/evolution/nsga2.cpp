@@ -61,9 +61,7 @@ Nsga2::Operator Nsga2::checked(const char* name, double probability, double inde
   return {probability, index};
 }
 
-void Nsga2::set_crossover(double probability, double index) {
-  crossover_ = checked("crossover", probability, index);
-}
+void Nsga2::set_crossover(double probability, double index) { crossover_ = checked("crossover", probability, index); }
 
 void Nsga2::set_mutation(double probability, double index) { mutation_ = checked("mutation", probability, index); }
 
@@ -109,7 +107,8 @@ void Nsga2::tell(std::span<const double> told, const Poll& poll) {
   const auto n = static_cast<std::size_t>(dimension_), m = static_cast<std::size_t>(objectives_);
   const auto size = static_cast<std::size_t>(population_);
   if (told.size() != m * size)
-    refuse(std::to_string(told.size()) + " values (must be " + std::to_string(m * size) + ", one for each objective and candidate)");
+    refuse(std::to_string(told.size()) + " values (must be " + std::to_string(m * size) +
+           ", one for each objective and candidate)");
 
   std::vector<double> all(values_.begin(), values_.end());
   for (const double value : told) all.push_back(comparable(value));

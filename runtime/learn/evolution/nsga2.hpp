@@ -77,9 +77,7 @@ class Nsga2 {
     return {numbers.data() + at * size, size};
   }
   Operator checked(const char* name, double probability, double index) const;
-  ObjectiveValues values() const {
-    return {{values_.data(), values_.size()}, static_cast<std::size_t>(objectives_)};
-  }
+  ObjectiveValues values() const { return {{values_.data(), values_.size()}, static_cast<std::size_t>(objectives_)}; }
   Box box() const { return {{lowest_.data(), lowest_.size()}, {highest_.data(), highest_.size()}}; }
   void breed(Random& random, const Poll& poll);
   void load_numbers(ByteReader& in, std::size_t n, std::size_t m, std::size_t size);
@@ -88,9 +86,9 @@ class Nsga2 {
   Operator crossover_{0.9, 20}, mutation_{0, 20};
   bool asked_ = false;
   std::uint64_t generation_ = 0;
-  Numbers lowest_, highest_;            // n each
-  Numbers candidates_;                  // n x population
-  Numbers survivors_, values_;          // n x population and objectives x population, or empty before the first tell
+  Numbers lowest_, highest_;    // n each
+  Numbers candidates_;          // n x population
+  Numbers survivors_, values_;  // n x population and objectives x population, or empty before the first tell
 };
 
 }  // namespace breve::learn

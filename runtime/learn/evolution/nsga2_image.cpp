@@ -59,9 +59,9 @@ void Nsga2::load_numbers(ByteReader& in, std::size_t n, std::size_t m, std::size
 }
 
 void Nsga2::hash(Hasher& hasher) const {
-  for (const std::uint64_t number : {static_cast<std::uint64_t>(dimension_), static_cast<std::uint64_t>(objectives_),
-                                     static_cast<std::uint64_t>(population_), static_cast<std::uint64_t>(asked_),
-                                     generation_})
+  for (const std::uint64_t number :
+       {static_cast<std::uint64_t>(dimension_), static_cast<std::uint64_t>(objectives_),
+        static_cast<std::uint64_t>(population_), static_cast<std::uint64_t>(asked_), generation_})
     hasher.add(number);
   for (const Operator* each : {&crossover_, &mutation_}) {
     hasher.add(each->probability);

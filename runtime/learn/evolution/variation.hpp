@@ -14,8 +14,8 @@ struct Box {
   std::span<const double> lowest, highest;
 };
 
-/// Crosses two vectors in place: each pair of numbers, with probability 1/2, becomes two numbers that have the same mean
-/// where bounds are far, and are near the parents' for a high index.
+/// Crosses two vectors in place: each pair of numbers, with probability 1/2, becomes two numbers that have the same
+/// mean where bounds are far, and are near the parents' for a high index.
 /// @param index   of the distribution, >= 0; 20 is usual
 void simulated_binary_crossover(std::span<double> first, std::span<double> second, const Box& box, double index,
                                 Random& random);
