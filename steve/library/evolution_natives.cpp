@@ -1,10 +1,12 @@
-// Natives of CMAEvolutionStrategy, and of the selection of a GeneticAlgorithm.
+// Natives of CMAEvolutionStrategy, MultiObjectiveSearch, and of the selection and variation of a GeneticAlgorithm.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "runtime/learn/evolution/pareto.hpp"
 #include "runtime/learn/evolution/selection.hpp"
+#include "runtime/learn/evolution/variation.hpp"
 #include "steve/library/evolution_resource.hpp"
 #include "steve/library/number_lists.hpp"
 #include "steve/library/tables.hpp"
@@ -63,6 +65,150 @@ double get_evaluations(Machine& machine, Instance& self) {
   return static_cast<double>(search_of(machine, self).evaluations());
 }
 
+// --- NSGA-II ---------------------------------------------------------------------------------------------------------
+
+learn::Nsga2& pareto_search_of(Machine& machine, Instance& self) {
+  return resource_made<Nsga2Resource>(machine, self).search;
+}
+
+void begin_pareto(Machine& machine, Instance& self, ListCell* lowest, ListCell* highest, std::int32_t objectives,
+                  std::int32_t population) {
+  const ListCell& low = list_of(Value::of(Tag::List, lowest), "begin: the lowest numbers");
+  const ListCell& high = list_of(Value::of(Tag::List, highest), "begin: the highest numbers");
+  machine.charge_for(std::uint64_t{low.size} * static_cast<std::uint64_t>(std::max(population, 1)) + high.size);
+  std::vector<double> from(low.size), to(high.size);
+  read_numbers(low, from.size(), from.data(), "begin: the lowest numbers");
+  read_numbers(high, to.size(), to.data(), "begin: the highest numbers");
+  pareto_search_of(machine, self).begin(from, to, objectives, population);
+}
+
+void set_pareto_crossover(Machine& machine, Instance& self, double probability, double index) {
+  pareto_search_of(machine, self).set_crossover(probability, index);
+}
+
+void set_pareto_mutation(Machine& machine, Instance& self, double probability, double index) {
+  pareto_search_of(machine, self).set_mutation(probability, index);
+}
+
+ListCell* ask_pareto(Machine& machine, Instance& self) {
+  learn::Nsga2& search = pareto_search_of(machine, self);
+  machine.charge(search.work() / 2);
+  const std::span<const double> numbers = search.ask(machine.world().random(), machine.poller());
+  const auto n = static_cast<std::size_t>(search.dimension());
+  ListCell* const all = machine.heap().list();
+  const Pin pin(machine, Value::of(Tag::List, all));
+  for (std::size_t at = 0; at < numbers.size(); at += n)
+    machine.heap().push(*all, Value::of(Tag::List, make_list(machine, numbers.data() + at, n)));
+  return all;
+}
+
+/// The numbers of a list of lists, each of `length`.
+std::vector<double> read_rows(Machine& machine, const ListCell& rows, std::size_t length, const std::string& what) {
+  machine.charge_for(rows.size * std::uint64_t{length});
+  std::vector<double> numbers;
+  for (std::uint32_t i = 0; i < rows.size; ++i) {
+    const ListCell& row = list_of(rows[i], what + " " + decimal(i));
+    if (row.size != length)
+      refuse_argument(what + " " + decimal(i) + " has " + decimal(row.size) + " values (must be " +
+                      decimal(static_cast<std::int64_t>(length)) + ")");
+    for (std::uint32_t k = 0; k < row.size; ++k) numbers.push_back(to_double(row[k], what));
+  }
+  return numbers;
+}
+
+void tell_pareto(Machine& machine, Instance& self, ListCell* values) {
+  learn::Nsga2& search = pareto_search_of(machine, self);
+  const ListCell& rows = list_of(Value::of(Tag::List, values), "tell: the values");
+  machine.charge(search.work());
+  search.tell(read_rows(machine, rows, static_cast<std::size_t>(search.objectives()), "tell: candidate"),
+              machine.poller());
+}
+
+/// What `row_of` gives of each survivor that none dominates, as a list of lists.
+ListCell* list_front(Machine& machine, Instance& self,
+                     std::span<const double> (learn::Nsga2::*row_of)(std::size_t) const) {
+  const learn::Nsga2& search = pareto_search_of(machine, self);
+  machine.charge(search.work() / 2);
+  ListCell* const all = machine.heap().list();
+  const Pin pin(machine, Value::of(Tag::List, all));
+  for (const std::uint32_t at : search.front(machine.poller())) {
+    const std::span<const double> row = (search.*row_of)(at);
+    machine.heap().push(*all, Value::of(Tag::List, make_list(machine, row.data(), row.size())));
+  }
+  return all;
+}
+ListCell* get_front(Machine& machine, Instance& self) { return list_front(machine, self, &learn::Nsga2::survivor); }
+ListCell* get_front_values(Machine& machine, Instance& self) {
+  return list_front(machine, self, &learn::Nsga2::survivor_values);
+}
+std::int32_t get_pareto_population(Machine& machine, Instance& self) {
+  return pareto_search_of(machine, self).population();
+}
+double get_pareto_evaluations(Machine& machine, Instance& self) {
+  return static_cast<double>(pareto_search_of(machine, self).evaluations());
+}
+
+/// Of individuals with several values of fitness, which are maximised: the indices, the preferred ones first, the front
+/// and the crowding distance of each.
+ListCell* pareto_order(Machine& machine, Instance&, ListCell* fitness) {
+  const ListCell& rows = list_of(Value::of(Tag::List, fitness), "selection: the fitness values");
+  const std::size_t objectives = rows.size == 0 ? 0 : list_of(rows[0], "selection: the fitness values of 0").size;
+  std::vector<double> values = read_rows(machine, rows, objectives, "selection: individual");
+  if (rows.size != 0 && objectives == 0) refuse_argument("selection: an individual has no fitness values");
+  for (double& value : values) value = std::isnan(value) ? learn::comparable(value) : learn::comparable(-value);
+  machine.charge_for(std::uint64_t{rows.size} * values.size());
+  const learn::CrowdedOrder order({values, objectives}, machine.poller());
+  ListCell* const result = machine.heap().list();
+  const Pin pin(machine, Value::of(Tag::List, result));
+  const auto push = [&](const std::vector<double>& numbers) {
+    machine.heap().push(*result, Value::of(Tag::List, make_list(machine, numbers.data(), numbers.size())));
+  };
+  const std::vector<std::uint32_t> sorted = order.sorted();
+  push({sorted.begin(), sorted.end()});
+  push({order.fronts.begin(), order.fronts.end()});
+  push(order.distances);
+  return result;
+}
+
+// --- variation of reals ----------------------------------------------------------------------------------------------
+
+/// A range for each of some numbers, and the numbers, which are brought into it.
+struct Ranged {
+  std::vector<double> lowest, highest;
+  Ranged(std::size_t size, double low, double high) : lowest(size, low), highest(size, high) {}
+  learn::Box box() const { return {lowest, highest}; }
+  std::vector<double> read(Machine& machine, const ListCell& list) const {
+    machine.charge_for(list.size);
+    std::vector<double> numbers(lowest.size());
+    read_numbers(list, numbers.size(), numbers.data(), "variation: the genes");
+    for (double& number : numbers) number = std::clamp(number, lowest[0], highest[0]);
+    return numbers;
+  }
+};
+
+ListCell* mutate_in_range(Machine& machine, Instance&, ListCell* genes, double low, double high, double index) {
+  const ListCell& list = list_of(Value::of(Tag::List, genes), "variation: the genes");
+  if (list.size == 0) return machine.heap().list();
+  const Ranged range(list.size, low, high);
+  std::vector<double> numbers = range.read(machine, list);
+  learn::polynomial_mutation(numbers, range.box(), 1.0 / list.size, index, machine.world().random());
+  return make_list(machine, numbers.data(), numbers.size());
+}
+
+/// One of the two children.
+ListCell* cross_in_range(Machine& machine, Instance&, ListCell* first, ListCell* second, double low, double high,
+                         double index) {
+  const ListCell& one = list_of(Value::of(Tag::List, first), "variation: the genes");
+  const ListCell& other = list_of(Value::of(Tag::List, second), "variation: the genes");
+  if (one.size == 0) return machine.heap().list();
+  const Ranged range(one.size, low, high);
+  std::vector<double> a = range.read(machine, one), b = range.read(machine, other);
+  Random& random = machine.world().random();
+  learn::simulated_binary_crossover(a, b, range.box(), index, random);
+  const std::vector<double>& child = random.below(2) == 0 ? a : b;
+  return make_list(machine, child.data(), child.size());
+}
+
 // --- selection -------------------------------------------------------------------------------------------------------
 
 /// The probability of each individual by linear ranking, or in proportion to its fitness.
@@ -104,6 +250,18 @@ constexpr Native kEvolutionNatives[] = {
     native<get_evaluations>("cma-es.get-evaluations"),
     native<selection_shares>("genetic-algorithm.selection-shares"),
     native<draw_share>("genetic-algorithm.draw-share"),
+    native<pareto_order>("genetic-algorithm.pareto-order"),
+    native<mutate_in_range>("real-vector.mutate-in-range"),
+    native<cross_in_range>("real-vector.cross-in-range"),
+    native<begin_pareto>("multi-objective-search.begin"),
+    native<set_pareto_crossover>("multi-objective-search.set-crossover"),
+    native<set_pareto_mutation>("multi-objective-search.set-mutation"),
+    native<ask_pareto>("multi-objective-search.ask"),
+    native<tell_pareto>("multi-objective-search.tell"),
+    native<get_front>("multi-objective-search.get-front"),
+    native<get_front_values>("multi-objective-search.get-front-values"),
+    native<get_pareto_population>("multi-objective-search.get-population-size"),
+    native<get_pareto_evaluations>("multi-objective-search.get-evaluations"),
 };
 
 }  // namespace

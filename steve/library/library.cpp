@@ -40,6 +40,7 @@ constexpr ResourceKind kResourceKinds[] = {
     {ToneResource::kKind, &ToneResource::load},
     {NeuralNetworkResource::kKind, &NeuralNetworkResource::load},
     {CmaEsResource::kKind, &CmaEsResource::load},
+    {Nsga2Resource::kKind, &Nsga2Resource::load},
 };
 
 }  // namespace

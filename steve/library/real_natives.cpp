@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 #include <span>
 
 #include "steve/library/joints.hpp"
@@ -100,8 +101,13 @@ void real_point(Machine& machine, Instance& self, Vector3 vertex, Vector3 direct
   const double sine = axis.norm();
   // Below this the axis is round-off: the two are parallel or opposite.
   constexpr double kParallel = 1e-12, kParallelAngle = 0.01;
-  const Eigen::AngleAxisd rotation = sine < kParallel ? Eigen::AngleAxisd(kParallelAngle, from)
-                                                      : Eigen::AngleAxisd(std::atan2(sine, from.dot(to)), axis / sine);
+  Eigen::AngleAxisd rotation(std::atan2(sine, from.dot(to)), axis / sine);
+  if (sine < kParallel) {
+    // Bodies of a flat world rotate about z only, and a vertex in the plane is no such axis.
+    const bool flat = machine.world().dimension() == 2;
+    rotation = flat ? Eigen::AngleAxisd(from.dot(to) < 0 ? std::numbers::pi : 0, Vector3::UnitZ())
+                    : Eigen::AngleAxisd(kParallelAngle, from);
+  }
   machine.world().leave(body);
   bodies_of(machine).set_orientation(body, Quaternion(rotation));
   follow_moved(machine, body);

@@ -5,6 +5,7 @@
 
 #include "runtime/base/pieces.hpp"
 #include "runtime/solid/height_grid.hpp"
+#include "runtime/store/height_raster.hpp"
 #include "steve/library/image_access.hpp"
 #include "steve/library/resources.hpp"
 #include "steve/library/support.hpp"
@@ -247,10 +248,22 @@ void terrain_smooth(Machine& machine, Instance& self, std::int32_t passes) {
   set_heights(machine, self, heights);
 }
 
-void terrain_load_geo_tiff(Machine&, Instance&, Text file) {
-  throw Error(ErrorCode::Unsupported, "load-geo-tiff: '" + std::string(view(file)) +
-                                          "' is not read: this version cannot read GeoTIFF files (set heights with "
-                                          "set-height)");
+void terrain_load_geo_tiff(Machine& machine, Instance& self, Text file) {
+  const std::string name(view(file));
+  const std::pmr::string bytes = read_file(machine, name);
+  machine.charge(bytes.size());  // a loop iteration for each byte
+  const HeightRaster raster = HeightRaster::parse_geo_tiff(bytes, name, machine.poller());
+  const HeightGrid& grid = grid_of(machine, self);
+  charge_for_points(machine, static_cast<std::uint64_t>(grid.columns()));
+  Heights heights(grid.columns(), machine.poller());
+  heights.tile = grid.tile();
+  const double last = heights.side - 1;
+  for (int row = 0; row < heights.side; ++row) {
+    for (int column = 0; column < heights.side; ++column)
+      heights.at(column, row) = raster.at(column * (raster.columns - 1) / last, row * (raster.rows - 1) / last);
+    machine.poll();
+  }
+  set_heights(machine, self, heights);
 }
 
 constexpr Native kTerrainNatives[] = {

@@ -36,6 +36,7 @@ void (*target_named(std::string_view name))(Bytes) {
   if (name == "run") return breve::fuzz::fuzz_run;
   if (name == "select") return breve::fuzz::fuzz_select;
   if (name == "restore") return breve::fuzz::fuzz_restore;
+  if (name == "feed") return breve::fuzz::fuzz_feed;
   if (name == "image") return breve::fuzz::fuzz_image;
   return nullptr;
 }

@@ -21,6 +21,10 @@ void fuzz_call(Bytes bytes);
 /// Bytes as a choice of a world and of changes to an image of it. See image_target.cpp.
 void fuzz_image(Bytes bytes);
 
+/// Bytes as a choice of an archive, a request, an upload, a configuration of Push or a sound, and of changes to it. See
+/// feed_target.cpp.
+void fuzz_feed(Bytes bytes);
+
 /// Bytes as the choices of a generator of programs that call any selector of the class library. See select_target.cpp.
 void fuzz_select(Bytes bytes);
 /// The same, each world for 50 iterations and after each restored into another.

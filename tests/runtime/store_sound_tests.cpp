@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint32_t kRate = 8000;
 
-void put(std::string& bytes, std::uint32_t number, int size) {
+void put_number(std::string& bytes, std::uint32_t number, int size) {
   for (int i = 0; i < size; ++i) bytes += static_cast<char>(number >> (8 * i) & 255);
 }
 
@@ -24,23 +24,23 @@ void put(std::string& bytes, std::uint32_t number, int size) {
 std::string wav(std::uint32_t channels, std::uint32_t frames) {
   std::string bytes = "RIFF";
   const std::uint32_t size = 2 * channels * frames;
-  put(bytes, 36 + size, 4);
+  put_number(bytes, 36 + size, 4);
   bytes += "WAVEfmt ";
-  put(bytes, 16, 4);
-  put(bytes, 1, 2);
-  put(bytes, channels, 2);
-  put(bytes, kRate, 4);
-  put(bytes, kRate * 2 * channels, 4);
-  put(bytes, 2 * channels, 2);
-  put(bytes, 16, 2);
+  put_number(bytes, 16, 4);
+  put_number(bytes, 1, 2);
+  put_number(bytes, channels, 2);
+  put_number(bytes, kRate, 4);
+  put_number(bytes, kRate * 2 * channels, 4);
+  put_number(bytes, 2 * channels, 2);
+  put_number(bytes, 16, 2);
   bytes += "data";
-  put(bytes, size, 4);
+  put_number(bytes, size, 4);
   for (std::uint32_t i = 0; i < frames; ++i)
-    for (std::uint32_t c = 0; c < channels; ++c) put(bytes, (c + 1) * 16 * i, 2);
+    for (std::uint32_t c = 0; c < channels; ++c) put_number(bytes, (c + 1) * 16 * i, 2);
   return bytes;
 }
 
-double sample(double frame, std::uint32_t channel) { return 16 * (channel + 1) * frame / 32768; }
+double sample_at(double frame, std::uint32_t channel) { return 16 * (channel + 1) * frame / 32768; }
 
 PlayedSound played(std::uint32_t channels, std::uint32_t frames) {
   PlayedSound sound(std::pmr::get_default_resource());
@@ -76,7 +76,7 @@ TEST_F(SoundFile, IsHeardOnBothSidesFromTheTimeItStartsUntilItEnds) {
   // Ten frames of silence, a hundred of sound, ten of silence.
   const auto samples = heard(sound, 1 - 10.0 / kRate, kRate, 120);
   for (std::size_t i = 0; i < 120; ++i) {
-    const double expected = i < 10 || i >= 110 ? 0 : sample(static_cast<double>(i) - 10, 0);
+    const double expected = i < 10 || i >= 110 ? 0 : sample_at(static_cast<double>(i) - 10, 0);
     EXPECT_NEAR(samples[2 * i], expected, 1e-6) << i;
     EXPECT_EQ(samples[2 * i], samples[2 * i + 1]);
   }
@@ -88,8 +88,8 @@ TEST_F(SoundFile, OfTwoChannelsHasLeftAndRightAndOfMoreTheFirstTwo) {
     sound.play(0, 1);
     const auto samples = heard(sound, 0, kRate, 50);
     for (std::size_t i = 0; i < 50; ++i) {
-      EXPECT_NEAR(samples[2 * i], sample(static_cast<double>(i), 0), 1e-6);
-      EXPECT_NEAR(samples[2 * i + 1], sample(static_cast<double>(i), 1), 1e-6);
+      EXPECT_NEAR(samples[2 * i], sample_at(static_cast<double>(i), 0), 1e-6);
+      EXPECT_NEAR(samples[2 * i + 1], sample_at(static_cast<double>(i), 1), 1e-6);
     }
   }
 }
@@ -101,16 +101,16 @@ TEST_F(SoundFile, TakesFramesBetweenItsOwnLinearlyAtAnySpeedAndRate) {
   const auto samples = heard(sound, 0.003, rate, 300);
   for (std::size_t i = 0; i < 300; ++i) {
     const double frame = (0.003 + static_cast<double>(i) / rate) * 1.7 * kRate;
-    EXPECT_NEAR(samples[2 * i], frame > 999 ? 0 : sample(frame, 0), 1e-6) << i;
+    EXPECT_NEAR(samples[2 * i], frame > 999 ? 0 : sample_at(frame, 0), 1e-6) << i;
   }
 }
 
 TEST_F(SoundFile, StartedOftenIsTheSumAndOfTooManyTheOldestEnds) {
   PlayedSound sound = played(1, 100);
   for (int i = 0; i < 40; ++i) sound.play(0, 1);
-  EXPECT_NEAR(heard(sound, 10.0 / kRate, kRate, 1)[0], 32 * sample(10, 0), 1e-5);
+  EXPECT_NEAR(heard(sound, 10.0 / kRate, kRate, 1)[0], 32 * sample_at(10, 0), 1e-5);
   sound.play(5, 1);  // the others have ended
-  EXPECT_NEAR(heard(sound, 5 + 10.0 / kRate, kRate, 1)[0], sample(10, 0), 1e-6);
+  EXPECT_NEAR(heard(sound, 5 + 10.0 / kRate, kRate, 1)[0], sample_at(10, 0), 1e-6);
   sound.stop();
   EXPECT_FALSE(sound.sounds_at(5));
 }
