@@ -104,7 +104,13 @@ void link_joint(Machine& machine, Instance& joint, JointDescription description,
 void break_joint(Machine& machine, Instance& joint) {
   machine.refuse_in_stage("break a joint");
   const JointIndex index = joint_of(machine, joint);
-  if (index != kNoJoint) machine.world().mechanics().unlink(index);
+  if (index != kNoJoint) {
+    // What asks for the assembly next builds it anew.
+    constexpr std::size_t kOfLink = 16;  // units of work
+    Mechanics& dynamics = machine.world().mechanics();
+    machine.charge(kOfLink * dynamics.links_of(dynamics.joint(index).child).size());
+    dynamics.unlink(index);
+  }
   if (JointResource* resource = resource_of<JointResource>(machine, &joint)) resource->index = kNoJoint;
   set_library_object(machine, joint, "Joint", "parentObject", nullptr);
   set_library_object(machine, joint, "Joint", "childObject", nullptr);
