@@ -106,7 +106,7 @@ void break_joint(Machine& machine, Instance& joint) {
   const JointIndex index = joint_of(machine, joint);
   if (index != kNoJoint) {
     // What asks for the assembly next builds it anew.
-    constexpr std::size_t kOfLink = 16;  // units of work
+    constexpr std::size_t kOfLink = 32;  // units of work
     Mechanics& dynamics = machine.world().mechanics();
     machine.charge(kOfLink * dynamics.links_of(dynamics.joint(index).child).size());
     dynamics.unlink(index);
