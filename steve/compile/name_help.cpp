@@ -197,8 +197,8 @@ std::string FunctionCompiler::unknown_function_help(const ast::FunctionCall& f, 
     return "a value is put at the end of a list by: push value onto " + dotted;
   if (held == StaticType::Hash && (f.name == "get" || f.name == "has" || f.name == "set" || f.name == "put"))
     return "an entry of a hash is written " + dotted + "{key}";
-  if (const std::string object = dotted; !object.empty())
-    return "a method is called with a space, not with a dot: (" + object + " " + f.name +
+  if (!dotted.empty())
+    return "a method is called with a space, not with a dot: (" + dotted + " " + f.name +
            (f.arguments.empty() ? ")" : " keyword value)");
   if (class_.responds(symbol))
     return "'" + f.name + "' is a method: write (self " + f.name + (f.arguments.empty() ? ")" : " keyword value)");
