@@ -319,6 +319,10 @@ int main_guarded(int argc, char** argv) {
       app.exit(e, std::cout, std::cerr);
       return breve::command::kEndedWell;
     }
+    if (app.get_subcommands().empty() && argc > 1 && *argv[1] == '-') {
+      std::cerr << "breve: options come after a command, as in: breve run " << argv[1] << " ... FILE\n";
+      return breve::command::kWrongUsage;
+    }
     const std::string near = near_option(app);
     std::cerr << "breve: " << e.what() << "\n"
               << (near.empty() ? "Try `breve help` or `breve help run`.\n" : "Did you mean " + near + "?\n");

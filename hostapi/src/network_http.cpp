@@ -3,15 +3,19 @@
 #include <arpa/inet.h>
 #include <fmt/format.h>
 #include <httplib.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
 #include <deque>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <vector>
 
 #undef _res  // of <resolv.h>, which cpp-httplib includes: Eigen has parameters of that name
 #include "internal.hpp"
@@ -187,9 +191,57 @@ std::optional<Address> address_of(const std::string& url) {
 
 bool is_this_machine(const std::string& host) { return host == "localhost" || host == "127.0.0.1" || host == "[::1]"; }
 
+/// Copies of the sockets of a request, to end it while another thread connects, writes or reads. A copy keeps its
+/// number until all is over, so that nobody else's socket is shut.
+class Sockets {
+ public:
+  Sockets() = default;
+  Sockets(const Sockets&) = delete;
+  Sockets& operator=(const Sockets&) = delete;
+  ~Sockets() {
+    for (const int copy : copies_) close(copy);
+  }
+  void add(int socket) {
+    const int copy = dup(socket);
+    const std::lock_guard lock(mutex_);
+    if (copy >= 0) copies_.push_back(copy);
+  }
+  void end() {
+    const std::lock_guard lock(mutex_);
+    for (const int copy : copies_) shutdown(copy, SHUT_RDWR);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<int> copies_;
+};
+
+bool is_interrupted(const breve_world* world) {
+  try {
+    if (world) world->machine->poll();
+    return false;
+  } catch (const steve::RunError&) {
+    return true;
+  }
+}
+
+/// Sends in a thread of its own, so that an interrupt of the world ends the wait.
+httplib::Result sent(httplib::Client& client, const httplib::Request& request, const breve_world* world) {
+  constexpr auto kEvery = std::chrono::milliseconds(5);  // how often an interrupt is looked for
+  Sockets sockets;
+  client.set_socket_options([&](int socket) {
+    httplib::default_socket_options(socket);
+    sockets.add(socket);
+  });
+  std::future<httplib::Result> sending = std::async(std::launch::async, [&] { return client.send(request); });
+  while (sending.wait_for(kEvery) != std::future_status::ready)
+    if (is_interrupted(world)) sockets.end();
+  return sending.get();
+}
+
 /// The body of the answer. Throws Error{File} with the reason.
-std::string fetched(const Settings& settings, const std::string& method, const std::string& url,
-                    std::string_view body) {
+std::string fetched(const Settings& settings, const breve_world* world, const std::string& method,
+                    const std::string& url, std::string_view body) {
   const auto refuse = [](const std::string& why) { throw Error(ErrorCode::File, why); };
   const std::optional<Address> address = address_of(url);
   if (!address) refuse("this is not an address such as http://localhost:8080/page");
@@ -216,7 +268,7 @@ std::string fetched(const Settings& settings, const std::string& method, const s
     answer.append(bytes, size);
     return true;
   };
-  const httplib::Result result = client.send(request);
+  const httplib::Result result = sent(client, request, world);
   if (too_large) refuse("the answer is too large");
   if (too_late) refuse("the answer takes too long");
   if (!result) refuse(httplib::to_string(result.error()));
@@ -225,10 +277,11 @@ std::string fetched(const Settings& settings, const std::string& method, const s
   return answer;
 }
 
-bool fetch(void* user, breve_world*, const char* method, const char* url, const void* body, std::size_t size,
+bool fetch(void* user, breve_world* world, const char* method, const char* url, const void* body, std::size_t size,
            breve_write_fn write, void* sink) {
   try {
-    say(write, sink, fetched(*static_cast<const Settings*>(user), method, url, {static_cast<const char*>(body), size}));
+    say(write, sink,
+        fetched(*static_cast<const Settings*>(user), world, method, url, {static_cast<const char*>(body), size}));
     return true;
   } catch (const std::exception& e) {
     say(write, sink, e.what());

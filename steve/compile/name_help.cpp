@@ -30,6 +30,26 @@ constexpr Habit kHabits[] = {
     {"continue", "there is no such statement: put the rest of the loop's body into an 'if'"},
     {"not", "logical not is written !"},
     {"pi", "the constant is written PI"},
+    {"Infinity", "no number is infinite here: write a large one, 1e300"},
+    {"inf", "no number is infinite here: write a large one, 1e300"},
+    {"NaN", "there is no constant for what is not a number"},
+    {"nan", "there is no constant for what is not a number"},
+    {"pass", "an empty body is written {}"},
+    {"quit", "the simulation ends with: self end-simulation."},
+    {"exit", "the simulation ends with: self end-simulation."},
+    {"stop", "the simulation ends with: self end-simulation."},
+    {"del", "an object is removed with: free object.   an element of a list with: remove list{i}."},
+    {"delete", "an object is removed with: free object.   an element of a list with: remove list{i}."},
+    {"global", "what several methods use is declared under '+ variables:' of the class"},
+    {"nonlocal", "what several methods use is declared under '+ variables:' of the class"},
+    {"end", "a block ends with }, a statement with a period"},
+    {"begin", "a block begins with { and ends with }"},
+    {"set", "a value is assigned with =: variable = value"},
+    {"tell", "a call begins with the object: object method keyword value"},
+    {"ask", "a call begins with the object: object method keyword value"},
+    {"console", "write in its place: print value"},
+    {"cout", "write in its place: print a, b"},
+    {"stdout", "write in its place: print value"},
     {"endl", "'print' ends the line by itself; inside a string write \\n"},
 };
 
@@ -45,6 +65,21 @@ constexpr Habit kFunctionHabits[] = {
     {"append", "a value is put at the end of a list by: push value onto list"},
     {"push", "a value is put at the end of a list by: push value onto list"},
     {"str", "a value is put into a text with its name and a '$': \"count: $n\""},
+    {"tostring", "a value is put into a text with its name and a '$': \"count: $n\""},
+    {"String", "a value is put into a text with its name and a '$': \"count: $n\""},
+    {"concat", "texts are joined in a string, by names with a '$': \"$first$second\""},
+    {"exit", "the simulation ends with: self end-simulation."},
+    {"quit", "the simulation ends with: self end-simulation."},
+    {"input", "a program cannot ask its user: give a value with  breve run --set name=value"},
+    {"prompt", "a program cannot ask its user: give a value with  breve run --set name=value"},
+    {"isinstance", "write: (object is-a \"Class\")"},
+    {"instanceof", "write: (object is-a \"Class\")"},
+    {"sizeof", "the number of elements of a list or a hash is written with bars: |list|"},
+    {"delete", "an object is removed with: free object."},
+    {"enumerate", "a loop with an index is written: for i = 0, i < |list|, i++: ..."},
+    {"pairs", "a loop over a hash is written: foreach key in keys(hash): ..."},
+    {"ipairs", "a loop over a list is written: foreach item in list: ..."},
+    {"print_r", "write, without parentheses: print value"},
     {"range", "a loop that counts is written: for i = 0, i < n, i++: ..."},
 };
 
@@ -69,6 +104,22 @@ std::string before_dot(std::string_view source, const Span& span) {
   return std::string(source.substr(begin, span.offset - 1 - begin));
 }
 
+/// The name directly behind the dot that stands, without a space, behind `span`; "" if there is none.
+std::string behind_dot(std::string_view source, const Span& span) {
+  std::size_t begin = span.offset + span.length;
+  if (span.line == 0 || begin + 1 >= source.size() || source[begin] != '.') return {};
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  std::size_t end = ++begin;
+  while (end < source.size() && (letter(source[end]) || (end > begin && source[end] >= '0' && source[end] <= '9')))
+    ++end;
+  return std::string(source.substr(begin, end - begin));
+}
+
+/// Does a language keep its functions of numbers under this name?
+bool names_a_module(std::string_view name) {
+  return name == "Math" || name == "math" || name == "np" || name == "numpy" || name == "std" || name == "cmath";
+}
+
 bool is_number_text(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
@@ -90,8 +141,19 @@ std::string spaced(std::string_view name, const Known& known) {
 
 std::string FunctionCompiler::unknown_name_help(std::string_view name, const Span& span) {
   if (builder_.diagnostics().full()) return {};
-  if (const std::string object = before_dot(builder_.source(span.file), span); !object.empty())
+  const auto& source = builder_.source(span.file);
+  if (const std::string object = before_dot(source, span); !object.empty()) {
+    const auto variable = find(object);
+    if (variable && variable->type() == StaticType::Hash)
+      return "a '.' ends the statement; an entry of a hash is written " + object + "{\"" + std::string(name) + "\"}";
     return "a '.' ends the statement; a variable of another object is written " + object + "::" + std::string(name);
+  }
+  if (const std::string member = behind_dot(source, span); !member.empty() && names_a_module(name)) {
+    if (member == "random" || member == "randint" || member == "rand")
+      return "a random number from 0 to n is written random[n]";
+    if (member == "pi" || member == "PI") return "the constant is written PI";
+    return "functions of numbers stand alone: write " + member + "(...)";
+  }
   std::vector<std::string_view> candidates;
   for (const auto& [local, unused] : locals_) candidates.push_back(local);
   std::sort(candidates.begin(), candidates.end());
@@ -109,6 +171,8 @@ std::string FunctionCompiler::unknown_name_help(std::string_view name, const Spa
   const std::string small = reserved_in_small(name);
   if (!small.empty() && builder_.class_named(name) == nullptr)
     return "the keywords of the language are written in lower case: " + small;
+  if (std::find(candidates.begin(), candidates.end(), name) != candidates.end())
+    return "a constant is known from its @define on: this file needs the @use or @include of the file that defines it";
   if (const auto near = nearest(name, candidates); !near.empty()) return "did you mean '" + near + "'?";
   const std::string text(name);
   if (class_.responds(builder_.symbol(name))) return "'" + text + "' is a method: write (self " + text + ")";
@@ -124,8 +188,17 @@ std::string FunctionCompiler::unknown_function_help(const ast::FunctionCall& f, 
   const auto& source = builder_.source(span.file);
   const auto near = nearest(f.name, builder_.function_names());
   const auto symbol = builder_.symbol(f.name);
-  if (const std::string object = before_dot(source, span); !object.empty())
-    return "a method is called with a space, not with a dot: (" + object + " " + f.name +
+  const std::string dotted = before_dot(source, span);
+  const auto holder = dotted.empty() ? std::nullopt : find(dotted);
+  const StaticType held = holder ? holder->type() : StaticType::Object;
+  if (names_a_size(f.name) && (held == StaticType::List || held == StaticType::String || held == StaticType::Hash))
+    return "the size of a list, a text or a hash is written with bars: |" + dotted + "|";
+  if (held == StaticType::List && (names_a_push(f.name) || f.name == "push"))
+    return "a value is put at the end of a list by: push value onto " + dotted;
+  if (held == StaticType::Hash && (f.name == "get" || f.name == "has" || f.name == "set" || f.name == "put"))
+    return "an entry of a hash is written " + dotted + "{key}";
+  if (!dotted.empty())
+    return "a method is called with a space, not with a dot: (" + dotted + " " + f.name +
            (f.arguments.empty() ? ")" : " keyword value)");
   if (class_.responds(symbol))
     return "'" + f.name + "' is a method: write (self " + f.name + (f.arguments.empty() ? ")" : " keyword value)");

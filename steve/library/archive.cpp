@@ -294,7 +294,12 @@ class Reader {
       if (const pugi::xml_node native = element.child("native")) {
         const std::string bytes = from_hex(native.text().get(), machine_.poller());
         ByteReader in(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
-        machine_.world().attach(object->id, load_resource(native.attribute("kind").value(), in));
+        try {
+          machine_.world().attach(object->id, load_resource(native.attribute("kind").value(), in));
+        } catch (const Error& error) {
+          if (error.code() != ErrorCode::Image) throw;
+          refuse("the archive is damaged: the data of " + name_of(*object) + " cannot be");
+        }
       }
       read_variables(machine_, *object, element, values);
       if (const pugi::xml_node body = element.child("body"))

@@ -82,7 +82,10 @@ Value control_get_random_seed(Machine& machine, Instance&) {
   return Value::of(static_cast<std::int32_t>(seed));
 }
 
-void control_update_neighbors(Machine& machine, Instance&) { machine.world().update_neighbors(); }
+void control_update_neighbors(Machine& machine, Instance&) {
+  machine.charge(machine.world().object_count());
+  machine.world().update_neighbors();
+}
 
 // --- how far space goes
 // ------------------------------------------------------------------------------------------------

@@ -47,6 +47,10 @@ void tell_values(Machine& machine, Instance& self, ListCell* values) {
   machine.charge_for(list.size);
   std::pmr::vector<double> numbers(machine.heap().memory());
   for (std::uint32_t i = 0; i < list.size; ++i) numbers.push_back(to_double(list[i], "tell: a value"));
+  // The matrices of a decomposition are outside of the meter.
+  constexpr std::size_t kMatrices = 3;
+  const auto n = static_cast<std::size_t>(search.dimension());
+  machine.heap().check_room(kMatrices * n * n * sizeof(double));
   search.tell(numbers, machine.poller());
 }
 
@@ -216,13 +220,14 @@ ListCell* selection_shares(Machine& machine, Instance&, ListCell* fitness, std::
   constexpr std::uint64_t kOfSorting = 32;
   const ListCell& list = list_of(Value::of(Tag::List, fitness), "selection: the fitness");
   machine.charge_for(kOfSorting * list.size);
-  std::vector<double> values(list.size), shares(list.size);
+  std::pmr::vector<double> values(list.size, machine.heap().memory()), shares(list.size, machine.heap().memory());
   // A fitness that is not a finite number counts as the least, or the most, that there may be.
   for (std::uint32_t i = 0; i < list.size; ++i) {
     const double value = to_double(list[i], "selection: a fitness");
     constexpr double kMost = std::numeric_limits<double>::max();
     values[i] = std::isnan(value) ? -kMost : std::clamp(value, -kMost, kMost);
   }
+  machine.heap().check_room(2 * list.size * sizeof(std::size_t));  // of sorting, which is outside of the meter
   if (by_rank != 0)
     learn::rank_probabilities(values, pressure, shares);
   else
@@ -233,7 +238,7 @@ ListCell* selection_shares(Machine& machine, Instance&, ListCell* fitness, std::
 std::int32_t draw_share(Machine& machine, Instance&, ListCell* shares) {
   const ListCell& list = list_of(Value::of(Tag::List, shares), "selection: the shares");
   machine.charge_for(list.size);
-  std::vector<double> values(list.size);
+  std::pmr::vector<double> values(list.size, machine.heap().memory());
   read_numbers(list, values.size(), values.data(), "selection: the shares");
   return static_cast<std::int32_t>(learn::draw_index(values, machine.world().random()));
 }

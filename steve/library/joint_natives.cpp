@@ -68,7 +68,14 @@ Instance* link_ball(Machine& machine, Instance& self, Vector3 parent_point, Vect
   return link(machine, self, normal, parent_point, child_point, child, parent, keep_rotation);
 }
 
-void joint_break(Machine& machine, Instance& self) { break_joint(machine, self); }
+void joint_break(Machine& machine, Instance& self) {
+  // What asks for the assembly next builds it anew. KEEP IN STEP: joints.cpp, where a linked joint is linked again.
+  constexpr std::size_t kOfLink = 32;  // units of work
+  const JointIndex joint = joint_of(machine, self);
+  if (joint != kNoJoint)
+    machine.charge(kOfLink * dynamics_of(machine).links_of(dynamics_of(machine).joint(joint).child).size());
+  break_joint(machine, self);
+}
 void joint_archive(Machine& machine, Instance& self) { prepare_joint(machine, self); }
 void joint_dearchive(Machine& machine, Instance& self) { relink_joint(machine, self); }
 

@@ -13,6 +13,23 @@ Enum get_enum(ByteReader& in, int end) {
   return static_cast<Enum>(number);
 }
 
+/// What no program can give a joint comes from a damaged archive or image.
+void need_linkable(const JointResource& joint) {
+  const JointDescription& is = joint.is;
+  constexpr double kFarthest = 1e15;  // m, of a link point: as where joints are linked
+  bool good = joint.position.allFinite() && joint.velocity.allFinite() && is.normal.allFinite() &&
+              is.relative_rotation.coeffs().allFinite() && is.relative_rotation.norm() > 0;
+  for (const Vector3* point : {&is.parent_point, &is.child_point})
+    good = good && point->allFinite() && point->cwiseAbs().maxCoeff() <= kFarthest;
+  if (!good || (is.kind != JointKind::Fixed && !(is.normal.stableNorm() > 0))) ByteReader::fail();
+  try {
+    check(joint.drive, is.kind);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::Argument) ByteReader::fail();
+    throw;
+  }
+}
+
 }  // namespace
 
 void JointResource::save(ByteWriter& out) const {
@@ -57,6 +74,7 @@ std::unique_ptr<Resource> JointResource::load(ByteReader& in) {
   for (double* number : {&r.drive.strength_limit, &r.drive.double_strength, &r.drive.double_max, &r.drive.double_min,
                          &r.drive.damping, &r.drive.stiffness, &r.drive.limit_restitution})
     *number = in.get<double>();
+  need_linkable(r);
   return resource;
 }
 

@@ -51,6 +51,13 @@ BodyIndex end_of(Machine& machine, Instance* end, std::string_view what) {
   return end ? body_of(machine, must_live(end, what)) : kNoBody;
 }
 
+/// What asks for the assembly next builds it anew. KEEP IN STEP: joint_natives.cpp, where a script breaks a joint.
+void charge_for_break(Machine& machine, JointIndex joint) {
+  constexpr std::size_t kOfLink = 32;  // units of work
+  const Mechanics& dynamics = machine.world().mechanics();
+  machine.charge(kOfLink * dynamics.links_of(dynamics.joint(joint).child).size());
+}
+
 }  // namespace
 
 bool is_library_kind(const Instance& object, std::string_view library_class) {
@@ -74,9 +81,10 @@ JointIndex joint_of(Machine& machine, const Instance& joint) {
 void link_joint(Machine& machine, Instance& joint, JointDescription description, Instance* parent, Instance* child) {
   machine.refuse_in_stage("link a joint");
   const Kind& row = row_of(joint);
-  if (joint_of(machine, joint) != kNoJoint) {
+  if (const JointIndex index = joint_of(machine, joint); index != kNoJoint) {
     if (!row.may_be_linked_again)
       throw Error(ErrorCode::Argument, "link: " + name_of(joint) + " is already linked (call break-joint first)");
+    charge_for_break(machine, index);
     break_joint(machine, joint);
   }
   must_live(child, "link: the child");

@@ -214,6 +214,7 @@ std::string fetch(Machine& machine, const char* selector, const char* method, Te
   std::string why(kNotAllowed);
   Network* const network = network_of(machine);
   const auto answer = network ? network->fetch(method, std::string(view(url)), body, why) : std::nullopt;
+  machine.poll();
   if (!answer) Machine::fail(RunErrorKind::World, fmt::format("{}: no answer from '{}': {}", selector, view(url), why));
   machine.charge(answer->size());
   return *answer;
@@ -235,6 +236,7 @@ Instance* send_object(Machine& machine, Instance& self, Text host, std::int32_t 
   std::string why(kNotAllowed);
   Network* const network = network_of(machine);
   const auto answer = network ? network->fetch("POST", url, archive, why) : std::nullopt;
+  machine.poll();
   if (!answer) {
     machine.warn(fmt::format("send-over-network: {} was not sent to {}: {}", name_of(self), url, why));
     return nullptr;

@@ -142,13 +142,17 @@ double get_error(Machine& machine, Instance& self, ListCell* inputs, ListCell* t
 
 // --- evolution -------------------------------------------------------------------------------------------------------
 
+constexpr std::size_t kBetweenPolls = 1 << 16;  // draws: some 3 ms
+
 void mutate(Machine& machine, Instance& self, double deviation, double probability) {
   Numbers& parameters = own_network(machine, self).network.parameters();
   finite(deviation, "mutate-weights: the deviation");
   if (!(probability >= 0 && probability <= 1)) refuse_argument("mutate-weights: the probability must be from 0 to 1");
   machine.charge_for(kOfDraw * parameters.size());
   Random& random = machine.world().random();
+  std::size_t seen = 0;
   for (double& parameter : parameters) {
+    if (++seen % kBetweenPolls == 0) machine.poll();
     if (random.uniform() >= probability && probability < 1) continue;
     const double moved = parameter + deviation * random.gauss();
     if (std::isfinite(moved)) parameter = moved;
@@ -163,8 +167,10 @@ void crossover(Machine& machine, Instance& self, Instance* first, Instance* seco
   machine.charge_for(kOfDraw * a.parameters().size());
   Numbers mixed(machine.heap().memory(), a.parameters().size());
   Random& random = machine.world().random();
-  for (std::size_t i = 0; i < mixed.size(); ++i)
+  for (std::size_t i = 0; i < mixed.size(); ++i) {
+    if (i % kBetweenPolls == 0) machine.poll();
     mixed[i] = random.below(2) == 0 ? a.parameters()[i] : b.parameters()[i];
+  }
   if (!child.same_shape(a)) child.assign(a);
   child.parameters() = std::move(mixed);
   own_network(machine, self).optimizer.reset();

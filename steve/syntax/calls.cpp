@@ -49,8 +49,15 @@ ast::ExprPtr Parser::call(std::size_t start, ast::ExprPtr receiver) {
   ast::Call node;
   node.receiver = std::move(receiver);
   const std::size_t selector = pos_;
+  if (auto number = meant_by_number()) throw SyntaxError{std::move(*number)};
   std::size_t made = 0;
   node.selector = expect_name("a method", node.selector_span);
+  if (at_text("to") && items_[start].token->kind == TokenKind::Name && at_name(1)) {  // `tell leader to eat`
+    call_start_ = start;
+    call_method_ = selector;
+    const std::string_view word = items_[start].token->text;
+    if ((word == "tell" || word == "ask") && lacks_self()) throw SyntaxError{without_self()};
+  }
   while (at_name()) {
     ast::Keyword keyword;
     const std::size_t keyword_start = pos_;
@@ -82,6 +89,9 @@ ast::ExprPtr Parser::call(std::size_t start, ast::ExprPtr receiver) {
 // A keyword without a value: often it is the method of a call that lacks its parentheses.
 void Parser::fail_keyword(const ast::Call& call, std::size_t start, std::size_t keyword) {
   const Token& name = *items_[keyword].token;
+  if (call.selector == "in" && call.keywords.empty() && at(":"))
+    fail(call.selector_span, "foreign-operator", "'in' belongs to 'foreach'",
+         "to look for an element: foreach item in list: if item == wanted: ...");
   if (at(":"))
     fail(token().span, "call-arguments", fmt::format("the keyword '{}' is not followed by ':'", name.text),
          fmt::format("write its value directly: {} {} value", call.selector, name.text));
@@ -107,6 +117,15 @@ void Parser::fail_keyword(const ast::Call& call, std::size_t start, std::size_t 
 Diagnostic Parser::call_mistake() {
   const Token& last = previous();
   const Token& selector = token();
+  if (auto number = meant_by_number()) return std::move(*number);
+  if (at_text("mod") || at_text("div"))
+    return {Severity::Error, "foreign-operator", fmt::format("'{}' is not an operator", selector.text),
+            at_text("mod") ? "the remainder is written a % b" : "a quotient without fraction is written floor(a / b)",
+            selector.span};
+  if (at_text("in")) {
+    return {Severity::Error, "foreign-operator", "'in' belongs to 'foreach'",
+            "to look for an element: foreach item in list: if item == wanted: ...", selector.span};
+  }
   if (at_text("and") || at_text("or")) {
     return {Severity::Error, "syntax", fmt::format("unexpected {}", describe()),
             at_text("and") ? "logical and is written '&&'" : "logical or is written '||'", selector.span};

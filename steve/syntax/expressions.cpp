@@ -113,6 +113,9 @@ void Parser::check_target(const ast::Expr& target) {
     fail(token().span, "bad-target",
          fmt::format("'{}' must come directly after a variable, an element or a member", token().text));
   }
+  if (at("=") && item(1).sign == sign(">") && adjacent(1))
+    fail(token().span, "foreign-operator", "'=>' is not an operator",
+         "methods are not values: give the name of a method as a string");
   std::string help = "to compare, write '=='";
   if (std::holds_alternative<ast::Chain>(target.node))
     help += "; to assign inside an expression, put the assignment in parentheses";
@@ -231,6 +234,13 @@ ast::ExprPtr Parser::list_operation() {
         if (mistake.code != "call-needs-parentheses") throw SyntaxError{mistake};
         throw SyntaxError{needs_parentheses(primary_start_, pos_, end)};
       }
+      const bool dotted = start >= 2 && items_[start - 1].sign == sign(".") && !items_[start].token->space_before &&
+                          items_[start - 2].token->kind == TokenKind::Name && !items_[start - 1].token->space_before;
+      if (dotted)
+        fail(items_[start].token->span, "list-word",
+             fmt::format("'{}' comes before the value and the list, without a dot", items_[start].token->text),
+             fmt::format("write: {} {} onto {}", items_[start].token->text,
+                         pos_ > start + 1 ? source_of(start + 1, pos_) : "value", items_[start - 2].token->text));
       fail_expected("'onto' and a list", "write: push value onto list");
     }
     advance();

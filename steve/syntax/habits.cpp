@@ -120,6 +120,13 @@ bool Parser::foreign_statement() {
   }
   if (foreign_declaration()) return true;
   if (!at_name()) return false;
+  if ((at_text("try") || at_text("catch")) && at(":", 1)) {
+    error(token().span, "foreign-statement", fmt::format("there is no '{}'", token().text),
+          "errors cannot be caught: test with 'if' what could go wrong");
+    advance();
+    advance();
+    return true;
+  }
   const bool block = (at("(", 1) && behind_parentheses(1) != 0 && at("{", behind_parentheses(1))) || at("{", 1);
   if (!block || !one_of(token().text, {"switch", "do", "repeat", "until", "unless", "loop", "try", "match", "forever"}))
     return false;
@@ -161,6 +168,10 @@ Diagnostic Parser::after_statement(std::size_t start) {
   if (at("(") && behind_call)
     return made("call-arguments", fmt::format("the arguments of '{}' need keywords, not parentheses", method),
                 fmt::format("write: {} keyword value", method));
+  if (behind_call && (method == "mod" || method == "div"))
+    return made(
+        "foreign-operator", fmt::format("'{}' is not an operator", method),
+        method == "mod" ? "the remainder is written a % b" : "a quotient without fraction is written floor(a / b)");
   const bool value = at_kind(TokenKind::Int) || at_kind(TokenKind::Double) || at_kind(TokenKind::String);
   if (behind_call && value && !(at_kind(TokenKind::Double) && token().text.front() == '.'))
     return made("call-arguments", fmt::format("this argument of '{}' has no keyword in front", method),
@@ -168,6 +179,21 @@ Diagnostic Parser::after_statement(std::size_t start) {
   if (at("(") && pos_ >= 2 && items_[pos_ - 2].word == Word::New)
     return made("syntax", fmt::format("'new {}' is not followed by parentheses", previous().text),
                 "pass arguments by calling a method of the new object");
+  const bool numbers = previous().kind == TokenKind::Int && at_kind(TokenKind::Int, 1);
+  if (at(",") && numbers && adjacent(0) && adjacent(1))
+    return made("foreign-number", "a number has no comma",
+                fmt::format("a fraction is written {0}.{1}, and digits are not grouped: {0}{1}", previous().text,
+                            token(1).text));
+  if (at(":") && previous().kind == TokenKind::Name && items_[pos_ - 2].token->text == "lambda")
+    return made("foreign-statement", "there is no 'lambda'",
+                "methods are not values: give the name of a method as a string");
+  if (at(",") && pos_ == start + 1 && at_name(1))
+    return made("syntax", "one variable is assigned at a time", fmt::format("write: {} = value.", previous().text));
+  if (at(":") && at("=", 1) && adjacent(1))
+    return made("foreign-operator", "':=' is not an operator", "a value is assigned with =");
+  if (at_kind(TokenKind::String) && adjacent(0) && previous().kind == TokenKind::Name)
+    return made("foreign-string", fmt::format("a string has no '{}' in front", previous().text),
+                "a value is put into a text with its name and a '$': \"$n\"");
   if (at("=")) return made("syntax", "unexpected '='", "a '.' may be missing before this, or '==' may be meant");
   if (at(":"))
     return made("syntax", "unexpected ':' in a statement", "only if, while, for, foreach and else take a ':'");
@@ -176,7 +202,9 @@ Diagnostic Parser::after_statement(std::size_t start) {
   if (at("{") && adjacent(0) && previous().kind == TokenKind::Name)
     return made("missing-brace", "the index that begins here has no '}'", "write: list{index}");
   if (at(")")) return made("syntax", "unmatched ')'", "remove it, or look for a missing '(' before it");
-  if (at("&&") || at("||") || at("?")) return made("syntax", fmt::format("unexpected {}", describe()), "");
+  if (at("&&") || at("||") || at("?"))
+    return made("syntax", fmt::format("unexpected {}", describe()),
+                at("?") ? "there is no operator '?': write if condition: ... else ..." : "");
   const bool swallowed = at_kind(TokenKind::Double) && token().text.front() == '.';
   return made("syntax", fmt::format("expected '.' or an operator, got {}", describe()),
               swallowed ? "write a space after the '.' that ends a statement"

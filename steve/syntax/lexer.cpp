@@ -37,6 +37,9 @@ bool is_tiny(std::string_view digits) {
 }
 
 std::string help_for_byte(std::string_view rest) {
+  if (rest.starts_with('\\')) return "division is written /";
+  if (rest.starts_with('~')) return "logical not is written !; there are no operators for bits";
+  if (rest.starts_with("\xC2\xB0")) return "angles are in radians: 90 degrees are PI / 2";
   if (rest.starts_with('$')) return "variables are written without '$'; '$' belongs inside strings";
   if (rest.starts_with("\xE2\x80\x9C") || rest.starts_with("\xE2\x80\x9D")) return "write straight quotes: \"";
   if (rest.starts_with("\xE2\x80\x98") || rest.starts_with("\xE2\x80\x99")) return "write straight quotes: '";

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 
 #include "steve/syntax/parser_nodes.hpp"
 
@@ -15,6 +16,37 @@ constexpr std::size_t kLongestQuote = 60;  // bytes of the program that a help r
 
 bool begins_value(const TokenKind kind) {
   return kind == TokenKind::Int || kind == TokenKind::Double || kind == TokenKind::String;
+}
+
+// `0x10` as 16, `0b101` as 5, `0o17` as 15; nothing if `letters` are not digits of that base.
+std::optional<std::uint32_t> in_base(std::string_view letters) {
+  const int base = letters.front() == 'x' || letters.front() == 'X'   ? 16
+                   : letters.front() == 'b' || letters.front() == 'B' ? 2
+                   : letters.front() == 'o' || letters.front() == 'O' ? 8
+                                                                      : 0;
+  std::uint32_t value = 0;
+  const char* const last = letters.data() + letters.size();
+  if (base == 0 || letters.size() < 2) return std::nullopt;
+  const auto [end, problem] = std::from_chars(letters.data() + 1, last, value, base);
+  return end == last && problem == std::errc{} ? std::optional(value) : std::nullopt;
+}
+
+// What to write in place of a number with letters directly behind it.
+std::string number_help(std::string_view digits, std::string_view letters) {
+  const std::string_view kinds = "fFdDlLuU";
+  if (const auto value = digits == "0" ? in_base(letters) : std::nullopt)
+    return fmt::format("numbers are decimal: write {}", *value);
+  if (letters.find_first_not_of("_0123456789") == std::string_view::npos) {
+    std::string plain(digits);
+    for (const char c : letters)
+      if (c != '_') plain += c;
+    return fmt::format("the digits of a number are not grouped: write {}", plain);
+  }
+  if (letters.size() == 1 && kinds.find(letters) != std::string_view::npos)
+    return fmt::format("a number has no letter for its type: write {}", digits);
+  if (letters == "e" || letters == "E")
+    return fmt::format("the exponent has no digits: write for example {}e3", digits);
+  return "an operator is missing between the number and the name: for a product write *";
 }
 
 }  // namespace
@@ -90,12 +122,64 @@ bool Parser::lacks_self() {
 
 Diagnostic Parser::without_self() {
   const Token& name = *items_[call_start_].token;
+  const bool tells = name.text == "tell" || name.text == "ask";
+  if (tells && items_[call_method_ + 1].token->kind == TokenKind::Name) {
+    const std::size_t method = call_method_ + (items_[call_method_ + 1].token->text == "to" ? 2 : 1);
+    return {Severity::Error, "foreign-statement", fmt::format("there is no '{}'", name.text),
+            fmt::format("a call begins with the object: {} {}", items_[call_method_].token->text,
+                        source_of(method, std::max(statement_end(), method + 1))),
+            name.span};
+  }
   const std::string call = source_of(call_start_, std::max(statement_end(), call_method_ + 1));
   const bool method = names_of_file().methods.contains(name.text);
   return {Severity::Error, "call-without-object",
           method ? fmt::format("'{}' is a method: a call begins with the object that is called", name.text)
                  : fmt::format("a call begins with an object, and '{}' is not a variable here", name.text),
           fmt::format("to call a method of the object itself write: self {}", call), name.span};
+}
+
+// `0x10`, `1_000`, `1.5f`: letters directly behind a number.
+std::optional<Diagnostic> Parser::meant_by_number() const {
+  if (pos_ == 0 || token().space_before || !at_kind(TokenKind::Name)) return std::nullopt;
+  const Token& number = previous();
+  if (number.kind != TokenKind::Int && number.kind != TokenKind::Double) return std::nullopt;
+  Span where = number.span;
+  where.length += token().span.length;
+  return Diagnostic{Severity::Error, "foreign-number", fmt::format("'{}{}' is not a number", number.text, token().text),
+                    number_help(number.text, token().text), where};
+}
+
+// What statements of other languages are written as. The first word is not a variable, and what follows it cannot be
+// read as a call.
+std::optional<Diagnostic> Parser::meant_by_foreign_statement(std::size_t start) {
+  struct Habit {
+    std::string_view words, help;  // with a blank before and behind each word
+  };
+  static constexpr Habit kStatements[] = {
+      {" assert ", "write: if !(condition): die \"what is wrong\"."},
+      {" throw raise error ", "a program is stopped with an error by: die \"what is wrong\"."},
+      {" repeat loop times forever ", "a loop that counts is written: for i = 0, i < 10, i++: ..."},
+      {" unless ", "write: if !(condition): ..."},
+      {" until ", "write: while !(condition): ..."},
+      {" wait pause delay ", "to do something later write: self schedule method-call \"name\" at-time time."},
+      {" static global extern ", "what several methods use is declared under '+ variables:' of the class"},
+      {" try catch except ", "errors cannot be caught: test with 'if' what could go wrong"},
+      {" case when ", "write: if value == 1: ... else if value == 2: ..."},
+      {" create spawn sprout ",
+       "objects are made with 'new': variable = new Class, or several: variable = 10 new Class"},
+  };
+  const Token& first = *items_[start].token;
+  const auto made = [&](std::string help) {
+    return Diagnostic{Severity::Error, "foreign-statement", fmt::format("there is no statement '{}'", first.text),
+                      std::move(help), first.span};
+  };
+  for (const Habit& habit : kStatements)
+    if (habit.words.find(fmt::format(" {} ", first.text)) != std::string_view::npos)
+      return made(std::string(habit.help));
+  if (pos_ != start + 1 || !begins_value(token().kind)) return std::nullopt;
+  const std::string value = source_of(pos_, std::max(statement_end(), pos_ + 1));
+  if (first.text.starts_with("create-")) return made(fmt::format("write: list = {} new Class", value));
+  return made(fmt::format("a method of the object itself is called as: self {} keyword {}", first.text, value));
 }
 
 // `Print 3`, `If n == 3:`, `println "x"`, `ask Bugs: ...`, `set n 3`.
@@ -116,11 +200,13 @@ std::optional<Diagnostic> Parser::meant_by_first_word(std::size_t start) {
   if (names_a_push(first.text) && pos_ == start + 1 && begins_value(token().kind))
     return made(fmt::format("a value is put into a list with 'push', not '{}'", first.text),
                 "write: push value onto list");
+  if (first.text.size() <= 2 && at_kind(TokenKind::String) && adjacent(0) && pos_ == start + 1)
+    return made("a string has no letter in front", "a value is put into a text with its name and a '$': \"$n\"");
   if ((first.text == "set" || first.text == "let") && pos_ == start + 2 && begins_value(token().kind))
     return made(fmt::format("there is no '{}'", first.text),
                 fmt::format("to give a variable a value write: {} = {}", previous().text,
                             source_of(pos_, std::max(statement_end(), pos_ + 1))));
-  return std::nullopt;
+  return meant_by_foreign_statement(start);
 }
 
 // A value where a keyword should be: `k add 2`, `work at 3`, `self take it new Bug with-energy 3.0`.

@@ -127,7 +127,9 @@ class Parser {
   bool is_sized(std::string_view name);          // wherever it is declared
   std::string source_of(std::size_t first, std::size_t end) const;
   std::size_t statement_end() const;
+  std::optional<Diagnostic> meant_by_number() const;
   std::optional<Diagnostic> meant_by_first_word(std::size_t start);
+  std::optional<Diagnostic> meant_by_foreign_statement(std::size_t start);
   std::optional<Diagnostic> meant_by_value(std::size_t start);
   std::optional<Diagnostic> meant_by_assignment();
   std::optional<Diagnostic> meant_by_operator(std::size_t start);
@@ -222,6 +224,7 @@ class Parser {
   void deepen();
   ast::ExprPtr member(std::size_t start, ast::ExprPtr base);
   ast::ExprPtr counted_new(std::size_t start, ast::ExprPtr count);
+  void foreign_sign() const;
   ast::ExprPtr primary();
   bool at_fraction_point() const;
   ast::ExprPtr name_expression(std::size_t start);

@@ -15,13 +15,23 @@ constexpr std::string_view kBlanks[] = {"\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x8
 
 }  // namespace
 
+// Does `//` stand behind a value, as an operator would?
+bool Scanner::divides() const {
+  if (!has_last_ || tokens_[last_].span.line != line_) return false;
+  const Token& before = tokens_[last_];
+  return before.kind == TokenKind::Name || before.kind == TokenKind::Int || before.kind == TokenKind::Double ||
+         (before.kind == TokenKind::Punctuation && (before.text == ")" || before.text == "|"));
+}
+
 // `// ...` and `/* ... */`.
 bool Scanner::foreign_comment() {
   if (in_string_ || !(starts_with("//") || starts_with("/*"))) return false;
   const bool line = starts_with("//");
   if (!foreign_comment_reported_)
     error(span(pos_, 2), "foreign-comment", fmt::format("'{}' does not begin a comment", line ? "//" : "/*"),
-          line ? "a comment begins with #" : "a comment of several lines is written #! ... !#");
+          line && divides() ? "a comment begins with #; a quotient without fraction is written floor(a / b)"
+          : line            ? "a comment begins with #"
+                            : "a comment of several lines is written #! ... !#");
   foreign_comment_reported_ = true;
   const std::size_t close = line ? line_end(pos_) : text_.find("*/", pos_ + 2);
   skip_to(line || (close != std::string_view::npos && close + 2 <= end_) ? close + (line ? 0 : 2) : line_end(pos_));
@@ -70,6 +80,15 @@ bool Scanner::pasted() {
           "it was pasted from elsewhere, perhaps a web page: type it again");
     skip_to(begin + blank.size());
     space_before_ = true;
+    return true;
+  }
+  if (starts_with("`")) {
+    const std::size_t limit = line_end(pos_);
+    const std::size_t close = std::min(text_.find('`', pos_ + 1), limit);
+    error(span(begin, 1), "curly-quotes", "a string does not begin with '`'",
+          "write straight quotes, and a value by its name and a '$': \"n is $n\"");
+    skip_to(close < limit ? close + 1 : limit);
+    push(TokenKind::String, begin, text_.substr(begin + 1, close - begin - 1));
     return true;
   }
   if (!starts_with("&")) return false;

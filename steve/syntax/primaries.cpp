@@ -95,6 +95,27 @@ ast::ExprPtr Parser::counted_new(std::size_t start, ast::ExprPtr count) {
 
 std::string Parser::class_name(Span& span) { return expect_name("a class", span); }
 
+// Signs of other languages where a value should be: `cout << n`, `<1, 2, 3>`, `"a" .. "b"`.
+void Parser::foreign_sign() const {
+  if (at("<") && previous_is("<"))
+    fail(token().span, "foreign-operator", "'<<' is not an operator",
+         "to write a line: print a, b; a power of two is written 2 ^ n");
+  if (at("<")) {  // `<1, 2, 3>`
+    std::size_t close = pos_ + 1;
+    while (items_[close].sign != sign(">") && items_[close].sign != sign(".") &&
+           items_[close].token->kind != TokenKind::End && items_[close].token->span.line == token().span.line)
+      ++close;
+    if (items_[close].sign == sign(">") && close > pos_ + 1) {
+      std::string inside = source_of(pos_ + 1, close);
+      if (inside.find(',') == std::string::npos) std::replace(inside.begin(), inside.end(), ' ', ',');
+      fail(token().span, "foreign-vector", "a vector is written in parentheses", fmt::format("write: ({})", inside));
+    }
+  }
+  if (at(".") && previous_is(".") && adjacent(0))
+    fail(previous().span, "foreign-operator", "'..' is not an operator",
+         "texts are joined in a string, by names with a '$': \"$first$second\"");
+}
+
 ast::ExprPtr Parser::primary() {
   const std::size_t start = pos_;
   switch (token().kind) {
@@ -138,6 +159,7 @@ ast::ExprPtr Parser::primary() {
       fail(token().span, "syntax", fmt::format("'@{}' is a directive, and must be outside of classes", token(1).text));
     default: break;
   }
+  foreign_sign();
   const bool behind_sign =
       pos_ > 0 && previous().kind == TokenKind::Punctuation && !previous_is(".") && !previous_is("}");
   fail_expected("an expression", behind_sign
@@ -188,6 +210,7 @@ ast::ExprPtr Parser::name_expression(std::size_t start) {
   }
   if (accept("[")) {
     ast::ExprPtr index = value();
+    if (at(":")) fail_expected("']' after the index", "there are no slices: elements are taken one by one, list{i}");
     expect("]", "after the index");
     return make(start, ast::ArrayItem{std::move(name), std::move(index)});
   }
@@ -202,7 +225,8 @@ ast::ExprPtr Parser::word_expression(std::size_t start) {
     case Word::Super: advance(); return make(start, ast::Super{});
     case Word::Random: {
       advance();
-      expect("[", "after 'random'");
+      if (!at("[")) fail_expected("'[' after 'random'", "a random number from 0 to n is written random[n]");
+      advance();
       ast::ExprPtr bound = value();
       expect("]", "after the bound of 'random'");
       return make(start, ast::RandomExpr{std::move(bound)});
@@ -227,7 +251,7 @@ ast::ExprPtr Parser::word_expression(std::size_t start) {
     }
     default: break;
   }
-  const bool called = pos_ + 1 < items_.size() && items_[pos_ + 1].sign == sign("(");
+  const bool called = at("(", 1) || (at(")", 1) && pos_ > 0 && previous_is("("));  // `int(x)`, `(int) x`
   fail(token().span, "syntax", fmt::format("expected an expression, got the reserved word '{}'", token().text),
        starts_statement(0) ? std::string("if a statement is meant, the one before it is unfinished")
                            : called_type_help(called ? token().text : std::string_view()));
@@ -261,8 +285,12 @@ ast::ExprPtr Parser::vector_rest(std::size_t start, ast::ExprPtr x) {
   }
   expect(",", "between the components of a vector");
   ast::ExprPtr y = value();
+  const bool printed = start > 0 && (items_[start - 1].word == Word::Print || items_[start - 1].word == Word::Printf);
   if (at(")"))
-    fail(token().span, "syntax", "a vector has three components, this one has two", "for a flat one write (x, y, 0)");
+    fail(token().span, "syntax", "a vector has three components, this one has two",
+         printed
+             ? fmt::format("to print several values leave out the parentheses: {} a, b", items_[start - 1].token->text)
+             : "for a flat one write (x, y, 0)");
   expect(",", "and a third component of the vector");
   ast::ExprPtr z = value();
   if (at(","))
@@ -284,6 +312,15 @@ ast::ExprPtr Parser::magnitude(std::size_t start) {
 
 ast::ExprPtr Parser::list_literal(std::size_t start) {
   advance();
+  std::size_t second = pos_;  // of a list, or the ':' of a hash as other languages write it
+  if (at_kind(TokenKind::String) || at_kind(TokenKind::Int) || at_kind(TokenKind::Name)) ++second;
+  if (second > pos_ && items_[second].sign == sign(":") && items_[start].match != 0) {
+    error(items_[second].token->span, "foreign-hash", "a hash is not written with its entries",
+          fmt::format("set its entries one by one: hash{{{}}} = value.", source_of(pos_, second)));
+    pos_ = items_[start].match;
+    advance();
+    return make(start, ast::ListLit{{}});
+  }
   std::vector<ast::ExprPtr> elements = items("}", "after the elements of the list");
   return make(start, ast::ListLit{std::move(elements)});
 }

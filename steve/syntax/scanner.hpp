@@ -37,6 +37,7 @@ class Scanner {
 
   // what was written for another language (pasted.cpp)
   bool foreign_comment();
+  bool divides() const;
   void lint_include();
   bool pasted();
   void note_long_string(std::size_t begin, std::size_t close);

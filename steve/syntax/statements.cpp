@@ -285,7 +285,10 @@ void Parser::expect_colon(std::string_view what) {
     return;
   }
   if (at("|")) fail(token().span, "foreign-operator", "a single '|' is not an operator", "logical or is written ||");
-  if (!(token().starts_line || at("{") || starts_statement(0))) fail_expected(fmt::format("':' after {}", what));
+  if (!(token().starts_line || at("{") || starts_statement(0)))
+    fail_expected(fmt::format("':' after {}", what), at(".") && items_[pos_ + 1].token->kind == TokenKind::Double
+                                                         ? "a loop that counts is written: for i = 0, i < n, i++: ..."
+                                                         : "");
   missing(":", what);
 }
 
@@ -295,6 +298,14 @@ void Parser::expect_period(std::size_t start) {
   if (interactive_ && at_end()) return;
   if (!token().starts_line)
     if (auto meant = meant_by_list_word(start)) throw SyntaxError{std::move(*meant)};
+  if (at_word(Word::If) && !token().starts_line) {
+    std::size_t ahead = 1;
+    while (!at(":", ahead) && item(ahead).word != Word::Else && !at(".", ahead) && !at_kind(TokenKind::End, ahead))
+      ++ahead;
+    if (item(ahead).word == Word::Else)
+      fail(token().span, "foreign-operator", "an 'if' has no value",
+           "write: if condition: variable = value. else variable = other.");
+  }
   const bool next_begins = token().starts_line || at("}") || at_end() || (starts_statement(0) && !at_name());
   if (next_begins) return missing(".", "this statement");
   if (at("{")) open_brace_reported_ = true;

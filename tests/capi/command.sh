@@ -235,6 +235,7 @@ near_option)
   expect 2 run a.tz --iteration 3 && has err "Did you mean --iterations?"
   expect 2 run a.tz --iterations 1 --sede 3 && has err "Did you mean --seed?"
   expect 2 rnu a.tz && has err "Did you mean run?"
+  expect 2 --budget 3 a.tz && has err "options come after a command, as in: breve run --budget"
   expect 2 a.tz && has err "To run a program: breve run a.tz"
   expect 2 run a.tz --zzz && has err "breve help run"
   ;;

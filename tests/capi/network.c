@@ -1,6 +1,10 @@
 /* Servers and requests of scripts: by callbacks of the host, recorded and replayed, and over the loopback interface. */
+#include <arpa/inet.h>
 #include <pthread.h>
 #include <stdlib.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
 
 #include "scene.h"
 
@@ -437,6 +441,44 @@ static void a_world_that_does_not_answer_is_not_waited_for_long(void) {
   CHECK_STATUS(BREVE_OK, breve_network_release(&network));
 }
 
+static void* interrupt_soon(void* context) {
+  const struct timespec soon = {0, 50000000};
+  nanosleep(&soon, NULL);
+  breve_world_interrupt(context);
+  return NULL;
+}
+
+/* A peer that takes the connection and never answers: the interrupt ends the wait, long before the timeout. */
+static void an_interrupt_ends_a_fetch(void) {
+  struct sockaddr_in address;
+  socklen_t size = sizeof address;
+  const int peer = socket(AF_INET, SOCK_STREAM, 0);
+  breve_network network;
+  breve_network_config config = breve_network_config_default();
+  struct timespec begun, ended;
+  pthread_t thread;
+  char text[64];
+  scene s;
+  memset(&address, 0, sizeof address);
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  if (!CHECK(bind(peer, (struct sockaddr*)&address, sizeof address) == 0 && listen(peer, 4) == 0)) return;
+  CHECK(getsockname(peer, (struct sockaddr*)&address, &size) == 0);
+  snprintf(text, sizeof text, "http://127.0.0.1:%d/", ntohs(address.sin_port));
+  config.timeout = 300;
+  if (!CHECK_STATUS(BREVE_OK, breve_network_open(&config, &network))) return;
+  if (!open_with(&s, &network)) return;
+  clock_gettime(CLOCK_MONOTONIC, &begun);
+  if (!CHECK(pthread_create(&thread, NULL, interrupt_soon, s.world) == 0)) return;
+  CHECK_STATUS(BREVE_ERROR_INTERRUPTED, call(&s, "get", "from", breve_value_string(text)));
+  clock_gettime(CLOCK_MONOTONIC, &ended);
+  pthread_join(thread, NULL);
+  CHECK(ended.tv_sec - begun.tv_sec < 30);
+  scene_close(&s);
+  close(peer);
+  CHECK_STATUS(BREVE_OK, breve_network_release(&network));
+}
+
 static void bad_limits_are_refused(void) {
   breve_network network;
   breve_network_config config = breve_network_config_default();
@@ -465,5 +507,6 @@ void network_suite(void) {
   RUN(a_world_serves_over_loopback);
   RUN(an_object_travels_from_world_to_world);
   RUN(a_world_that_does_not_answer_is_not_waited_for_long);
+  RUN(an_interrupt_ends_a_fetch);
   RUN(bad_limits_are_refused);
 }

@@ -4,6 +4,7 @@
 //   replay --program FILE                print the program that fuzz_run generates of a file
 //   replay --program-of-seed SEED        the same of a seed
 //   replay --selectors-of-seed SEED      print the program that fuzz_select generates of a seed
+//   replay --keep SEED                   the program that fuzz_run generates of a seed, as `replay text` reads it
 //   replay --functions FIRST COUNT       the functions of breve.h that fuzz_call calls, and how often it does with
 //   seeds replay --checksum FIRST COUNT        FNV-1a of the programs of seeds: each compiler must give the same
 #include <algorithm>
@@ -37,6 +38,7 @@ void (*target_named(std::string_view name))(Bytes) {
   if (name == "select") return breve::fuzz::fuzz_select;
   if (name == "restore") return breve::fuzz::fuzz_restore;
   if (name == "feed") return breve::fuzz::fuzz_feed;
+  if (name == "text") return breve::fuzz::fuzz_text;
   if (name == "image") return breve::fuzz::fuzz_image;
   return nullptr;
 }
@@ -98,6 +100,10 @@ int main(int argc, char** argv) {
     return show(breve::fuzz::bytes_of_seed(number(arguments[1])));
   if (arguments.size() == 2 && arguments[0] == "--selectors-of-seed") {
     std::fputs(breve::fuzz::select_program_of(breve::fuzz::bytes_of_seed(number(arguments[1]))).c_str(), stdout);
+    return 0;
+  }
+  if (arguments.size() == 2 && arguments[0] == "--keep") {
+    std::fputs(breve::fuzz::kept_program_of(breve::fuzz::bytes_of_seed(number(arguments[1]))).c_str(), stdout);
     return 0;
   }
   if (arguments.size() == 3 && arguments[0] == "--checksum")

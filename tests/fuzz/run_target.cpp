@@ -2,6 +2,7 @@
 // run: in a second world, after a snapshot, and after that snapshot is restored, there and here.
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "generator.hpp"
@@ -121,15 +122,10 @@ void compare(const std::string& one, const std::string& other, const char* what,
   finding(what, program + "\n--- one:\n" + one + "\n--- other:\n" + other);
 }
 
-}  // namespace
+constexpr std::string_view kPlanLine = "# plan ";
+constexpr std::size_t kPlanBytes = 64;  // more than a plan takes
 
-void skip_plan(Choices& choices) { const Plan plan(choices); }
-
-void fuzz_run(Bytes bytes) {
-  Choices choices(bytes);
-  const Plan plan(choices);
-  const std::string text = generate_program(choices);
-
+void run_program(const Plan& plan, const std::string& text) {
   Run run;
   run.calls_back = plan.calls_back;
   breve_runtime_config config = breve_runtime_config_default();
@@ -177,6 +173,39 @@ void fuzz_run(Bytes bytes) {
     const std::string again = iterate(world->get(), run, plan.after, plan, text);
     if (!out_of_memory(again)) compare(one_after, again, "a restored world goes on differently", text);
   }
+}
+
+}  // namespace
+
+void skip_plan(Choices& choices) { const Plan plan(choices); }
+
+void fuzz_run(Bytes bytes) {
+  Choices choices(bytes);
+  const Plan plan(choices);
+  run_program(plan, generate_program(choices));
+}
+
+std::string kept_program_of(Bytes bytes) {
+  std::string line(kPlanLine);
+  for (const std::uint8_t byte : bytes.first(std::min(bytes.size(), kPlanBytes))) {
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    line += kDigits[byte / 16];
+    line += kDigits[byte % 16];
+  }
+  Choices choices(bytes);
+  skip_plan(choices);
+  return line + "\n" + generate_program(choices);
+}
+
+void fuzz_text(Bytes bytes) {
+  const std::string text(bytes.begin(), bytes.end());
+  require(text.starts_with(kPlanLine), "the program does not begin with its plan");
+  std::vector<std::uint8_t> drawn;
+  for (std::size_t at = kPlanLine.size(); at + 1 < text.size() && text[at] != '\n'; at += 2)
+    drawn.push_back(static_cast<std::uint8_t>(std::stoi(text.substr(at, 2), nullptr, 16)));
+  Choices choices(drawn);
+  const Plan plan(choices);
+  run_program(plan, text);
 }
 
 }  // namespace breve::fuzz

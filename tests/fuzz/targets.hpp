@@ -34,6 +34,11 @@ std::string select_program_of(Bytes bytes);
 
 /// Bytes as the choices of a generator of valid programs, which are compiled and run. See run_target.cpp.
 void fuzz_run(Bytes bytes);
+/// The text of a program that fuzz_run has run, with a first line that says how: it stays what it was where the
+/// generator changes.
+void fuzz_text(Bytes bytes);
+/// The same as such a text.
+std::string kept_program_of(Bytes bytes);
 /// Pass over the choices that fuzz_run makes before the generator's.
 void skip_plan(Choices& choices);
 

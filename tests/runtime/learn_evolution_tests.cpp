@@ -1,8 +1,10 @@
 // Selection against closed forms; CMA-ES on the functions of its authors.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory_resource>
 #include <numeric>
 
 #include "runtime/base/error.hpp"
@@ -107,6 +109,37 @@ TEST(CmaEs, FindsTheMinimaOfItsAuthorsFunctions) {
   };
   for (const Row& row : {Row{sphere, 1, 1900}, {ellipsoid, 1, 5000}, {reflected, 1, 5000}, {rosenbrock, 0, 8000}})
     for (std::uint64_t seed = 1; seed <= 3; ++seed) EXPECT_GT(evaluations(row.function, row.start, seed, row.most), 0U);
+}
+
+/// Counts the bytes that are taken.
+class Counter final : public std::pmr::memory_resource {
+ public:
+  std::size_t most = 0;
+
+ private:
+  void* do_allocate(std::size_t bytes, std::size_t alignment) override {
+    taken_ += bytes;
+    most = std::max(most, taken_);
+    return std::pmr::new_delete_resource()->allocate(bytes, alignment);
+  }
+  void do_deallocate(void* p, std::size_t bytes, std::size_t alignment) override {
+    taken_ -= bytes;
+    std::pmr::new_delete_resource()->deallocate(p, bytes, alignment);
+  }
+  bool do_is_equal(const std::pmr::memory_resource& other) const noexcept override { return this == &other; }
+  std::size_t taken_ = 0;
+};
+
+TEST(CmaEs, TakesWhatGrowsWithThePopulationFromItsMemory) {
+  constexpr std::size_t kWide = 20, kMany = 2000;
+  Counter counter;
+  CmaEs search(&counter);
+  Random random(1);
+  search.begin(std::vector<double>(kWide, 1), 0.5, kMany);
+  search.ask(random, {});
+  const std::size_t before = counter.most;
+  search.tell(std::vector<double>(kMany, 1), {});
+  EXPECT_GE(counter.most, before + kWide * kMany * sizeof(double));
 }
 
 TEST(CmaEs, GoesOnFromAnImageAsBefore) {

@@ -119,10 +119,12 @@ void CmaEs::tell(std::span<const double> values, const Poll& poll) {
     throw Error(ErrorCode::Argument,
                 std::to_string(values.size()) + " values for " + std::to_string(population_) + " candidates");
   constexpr double kWorst = std::numeric_limits<double>::infinity();
-  std::vector<std::uint32_t> order(values.size());
+  std::pmr::vector<std::uint32_t> order(values.size(), candidates_.memory());
   std::iota(order.begin(), order.end(), 0U);
   const auto value = [&](std::uint32_t i) { return std::isnan(values[i]) ? kWorst : values[i]; };
-  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return value(a) < value(b); });
+  // By number where values are equal: a stable sort would take memory of its own.
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return value(a) < value(b) || (value(a) == value(b) && a < b); });
   const auto n = static_cast<std::size_t>(dimension_);
   if (value(order[0]) < best_value_) {
     best_.resize(n);
@@ -135,7 +137,8 @@ void CmaEs::tell(std::span<const double> values, const Poll& poll) {
 
 void CmaEs::adapt(const Weights& w, std::span<const std::uint32_t> order, const Poll& poll) {
   const Index n = dimension_;
-  MatrixXd steps(n, population_);  // the candidates' distances from the mean, in steps, the best first
+  Numbers distances(candidates_.memory(), candidates_.size());
+  MatrixMap steps = distances.matrix(0, n, population_);  // of candidates from the mean, in steps, the best first
   for (Index k = 0; k < population_; ++k)
     steps.col(k) =
         (candidates_.matrix(0, n, population_).col(order[static_cast<std::size_t>(k)]) - mean_.vector()) / step_;
