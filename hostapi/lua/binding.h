@@ -23,7 +23,9 @@ typedef struct bl_method {
   struct bl_class* owner;
   char* name;     /* in Lua: "set_goal" */
   char* selector; /* in steve: "set-goal" */
-  int index;      /* among all methods of the program, from 1 */
+  char* file;     /* where its function begins */
+  uint32_t line;
+  int index; /* among all methods of the program, from 1 */
   size_t count;
   char* keywords[BL_PARAMETERS];
   char* parameters[BL_PARAMETERS]; /* the same, as Lua spells them */
@@ -92,6 +94,8 @@ typedef struct bl_entry {
   const breve_call* call;
   lua_State* thread;
   const void* below; /* what was on top of the thread's calls before it; NULL: nothing */
+  size_t frames;     /* of the profile, when it began */
+  bool starts;       /* the profile has not yet seen its function */
 } bl_entry;
 
 typedef struct bl_place {
@@ -100,6 +104,7 @@ typedef struct bl_place {
 } bl_place;
 
 typedef struct bl_pool bl_pool;
+typedef struct bl_profile bl_profile;
 
 typedef struct bl_world {
   bl_lib* lib;
@@ -121,6 +126,7 @@ typedef struct bl_world {
   const breve_call* failed; /* the call whose places are kept */
   bl_place places[BL_PLACES];
   size_t place_count;
+  bl_profile* profile; /* NULL: none was taken yet */
 } bl_world;
 
 /* The world whose code runs. Raises an error if there is none. */
@@ -179,6 +185,16 @@ int bl_handle_error(lua_State* L); /* message handler: keeps where an error was 
 /* Push the methods that a class has in Lua, by name: what classes of breve.class define, ancestors too. */
 void bl_push_lua_method(lua_State* L, bl_world* w, const bl_class* owner, const bl_method* method);
 
+/* ---- profiles (profile.c) ---- */
+
+/* breve calls a method while a profile is taken; the call is over, with or without a profile. */
+void bl_profile_call(lua_State* L, bl_world* w, bl_entry* entry);
+void bl_profile_return(bl_world* w, const bl_entry* entry);
+void bl_profile_event(lua_State* L, lua_Debug* call); /* part of the hook */
+void bl_profile_destroy(bl_world* w);
+/* A function in C calls breve for the Lua function that called it: tell its line, if a profile is taken. */
+void bl_profile_line(lua_State* L, bl_world* w);
+
 /* ---- classes (classes.c) ---- */
 
 void bl_open_classes(lua_State* L, bl_lib* lib); /* into the library's table, which is on top */
@@ -205,6 +221,7 @@ bool bl_load(void* user, breve_world* world, const char* bytes, size_t size, boo
 breve_status bl_bind(void* user, breve_world* world, void** binding, breve_write_fn reason, void* sink);
 void* bl_allocate(void* pool, void* block, size_t old_size, size_t new_size); /* lua_Alloc */
 void bl_count_anew(bl_world* w);                                              /* a new call has a budget again */
+void bl_set_hook(lua_State* L, bl_world* w, bool profiled);
 bl_pool* bl_pool_new(breve_world* world);
 void bl_pool_destroy(bl_pool* pool);
 /* Run the file of a program that is being described in a state. As breve_lua_add. */

@@ -88,8 +88,9 @@ static breve_status add_class(breve_runtime* runtime, bl_program* program, bl_cl
   breve_class description = breve_class_default();
   breve_method* methods = (breve_method*)calloc(c->method_count + 1, sizeof *methods);
   breve_parameter* parameters = (breve_parameter*)calloc((c->method_count + 1) * BL_PARAMETERS, sizeof *parameters);
+  breve_place* places = (breve_place*)calloc(c->method_count + 1, sizeof *places);
   breve_status status = BREVE_ERROR_MEMORY;
-  if (methods && parameters) {
+  if (methods && parameters && places) {
     for (size_t i = 0; i < c->method_count; ++i) {
       bl_method* m = c->methods[i];
       methods[i].name = m->selector;
@@ -99,6 +100,8 @@ static breve_status add_class(breve_runtime* runtime, bl_program* program, bl_cl
       methods[i].adopts_keywords = true;
       methods[i].call = bl_call_method;
       methods[i].user = m;
+      places[i].file = m->file;
+      places[i].line = m->line;
       for (size_t k = 0; k < m->count; ++k) parameters[i * BL_PARAMETERS + k].keyword = m->keywords[k];
     }
     description.name = c->name;
@@ -111,10 +114,11 @@ static breve_status add_class(breve_runtime* runtime, bl_program* program, bl_cl
     description.places = bl_places;
     description.user = program;
     description.destroy = bl_program_drop;
+    description.method_places = places;
     status = breve_runtime_add_class(runtime, &description);
     if (status == BREVE_OK) bl_program_hold(program);
   }
-  free(methods), free(parameters);
+  free(methods), free(parameters), free(places);
   return status;
 }
 

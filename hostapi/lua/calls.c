@@ -119,6 +119,7 @@ static breve_status call_prepared(lua_State* L, selector* s, overload* o, const 
   lua_State* const outer = w->running;
   const breve_object self = bl_need_object(L, 1);
   if (!o->prepared) prepare(L, s, o);
+  bl_profile_line(L, w);
   w->running = L;
   const breve_status status = breve_object_call_prepared(w->world, self, o->selector, arguments, o->count, result);
   w->running = outer;
@@ -151,6 +152,7 @@ static int call_named(lua_State* L, selector* s, overload* o) {
   if (s->super_of) return luaL_error(L, "'%s' of super needs all its keywords: %s", s->name, push_forms(L, s));
   lua_State* const outer = w->running;
   const breve_object self = bl_need_object(L, 1);
+  bl_profile_line(L, w);
   w->running = L;
   const breve_status status = breve_object_call(w->world, self, s->name, given, count, &result);
   w->running = outer;
@@ -186,6 +188,7 @@ static int call_single(lua_State* L, selector* s) {
   given.name = o->keywords[keyword];
   lua_State* const outer = s->w->running;
   const breve_object self = bl_need_object(L, 1);
+  bl_profile_line(L, s->w);
   s->w->running = L;
   const breve_status status = breve_object_call(s->w->world, self, s->name, &given, 1, &result);
   s->w->running = outer;

@@ -139,6 +139,7 @@ static int class_assign(lua_State* L) {
 static int class_call(lua_State* L) {
   bl_world* w = bl_current(L, lib_of(L));
   breve_object object;
+  bl_profile_line(L, w);
   const breve_status status = breve_object_create(w->world, lua_tostring(L, lua_upvalueindex(2)), &object);
   if (status != BREVE_OK) return bl_fail(L, w, status);
   bl_push_object(L, w, object);
@@ -240,12 +241,14 @@ void bl_open_classes(lua_State* L, bl_lib* lib) {
 static void describe_method(lua_State* L, bl_program* program, bl_class* owner, const char* name) {
   lua_Debug function;
   lua_pushvalue(L, -1);
-  lua_getinfo(L, ">u", &function);
+  lua_getinfo(L, ">uS", &function);
   if (function.nparams > BL_PARAMETERS + 1)
     luaL_error(L, "method '%s' of class %s has more than %d parameters", name, owner->name, BL_PARAMETERS);
   bl_method* m = bl_class_add_method(program, owner, name);
-  if (!m) luaL_error(L, "there is no memory for a method");
-  for (int i = 2; i <= function.nparams; ++i) { /* the first one is self */
+  if (m) m->file = bl_copy(function.source[0] == '@' ? function.source + 1 : function.short_src, 0, 0);
+  if (!m || !m->file) luaL_error(L, "there is no memory for a method");
+  m->line = function.linedefined > 0 ? (uint32_t)function.linedefined : 0; /* 0: it is in C */
+  for (int i = 2; i <= function.nparams; ++i) {                            /* the first one is self */
     lua_pushvalue(L, -1);
     const char* parameter = lua_getlocal(L, NULL, i);
     m->keywords[m->count] = bl_copy(parameter, '_', '-');

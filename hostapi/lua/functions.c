@@ -29,6 +29,7 @@ static int make_object(lua_State* L) {
   const char* name = class_name(L, 1);
   breve_object object;
   if (lua_isnoneornil(L, 2)) {
+    bl_profile_line(L, w);
     checked(L, w, breve_object_create(w->world, name, &object));
     bl_push_object(L, w, object);
     return 1;
@@ -37,6 +38,7 @@ static int make_object(lua_State* L) {
   luaL_argcheck(L, count >= 0, 2, "a count is not negative");
   lua_newtable(L);
   for (lua_Integer i = 1; i <= count; ++i) {
+    bl_profile_line(L, w);
     checked(L, w, breve_object_create(w->world, name, &object));
     bl_push_object(L, w, object);
     lua_rawseti(L, -2, i);
@@ -46,6 +48,7 @@ static int make_object(lua_State* L) {
 
 static int free_object(lua_State* L) {
   bl_world* w = world_of(L);
+  bl_profile_line(L, w);
   checked(L, w, breve_object_free(w->world, bl_need_object(L, 1)));
   return 0;
 }
@@ -192,6 +195,7 @@ static int get_neighbors(lua_State* L) {
   breve_value list, elements[AT_ONCE];
   size_t count = 0;
   lua_State* const outer = w->running;
+  bl_profile_line(L, w);
   w->running = L;
   breve_status status = breve_object_call_prepared(w->world, bl_need_object(L, 1), *selector, NULL, 0, &list);
   w->running = outer;

@@ -145,12 +145,14 @@ breve_status bl_call_method(void* user, const breve_call* call, breve_value* res
   lua_State* const L = w->running;
   bl_world* const before = w->lib->current;
   lua_Debug top;
-  bl_entry entry = {w->entry, call, L, lua_getstack(L, 0, &top) ? (const void*)top.i_ci : NULL};
+  bl_entry entry = {w->entry, call, L, lua_getstack(L, 0, &top) ? (const void*)top.i_ci : NULL, 0, false};
   if (!w->entry && w->exhausted) bl_count_anew(w);
   w->entry = &entry;
   w->lib->current = w;
   w->failed = NULL;
+  if (breve_world_is_profiled(w->world)) bl_profile_call(L, w, &entry);
   const breve_status status = call_in_lua(L, w, m, call, result);
+  bl_profile_return(w, &entry);
   w->entry = entry.outer;
   w->lib->current = before ? before : w;
   w->running = L;

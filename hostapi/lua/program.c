@@ -39,7 +39,7 @@ static void drop_class(bl_class* owner) {
   for (size_t i = 0; i < owner->method_count; ++i) {
     bl_method* m = owner->methods[i];
     for (size_t k = 0; k < m->count; ++k) free(m->keywords[k]), free(m->parameters[k]);
-    free(m->name), free(m->selector), free(m);
+    free(m->name), free(m->selector), free(m->file), free(m);
   }
   free(owner->methods), free(owner->name), free(owner->parent), free(owner);
 }

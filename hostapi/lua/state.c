@@ -92,26 +92,41 @@ enum {
   TURNS = 250
 }; /* so many instructions take about as long as so many turns of a loop in steve */
 
-static void count_instructions(lua_State* L, lua_Debug* call);
+static void hook(lua_State* L, lua_Debug* event);
 
 /* Once the budget is used up every instruction is an error, so that no pcall in a loop can go on. */
 static void fail_at_once(lua_State* L, bl_world* w, breve_status status) {
   w->exhausted = true;
-  lua_sethook(L, count_instructions, LUA_MASKCOUNT, 1);
-  lua_sethook(w->L, count_instructions, LUA_MASKCOUNT, 1);
+  lua_sethook(L, hook, LUA_MASKCOUNT, 1);
+  lua_sethook(w->L, hook, LUA_MASKCOUNT, 1);
   bl_fail(L, w, status);
 }
 
-static void count_instructions(lua_State* L, lua_Debug* call) {
+static void count_instructions(lua_State* L) {
   bl_world* w = *(bl_world**)lua_getextraspace(L);
   const breve_status status = breve_world_charge(w->world, w->exhausted ? 1 : TURNS);
-  (void)call;
   if (status != BREVE_OK) fail_at_once(L, w, status);
+}
+
+static void hook(lua_State* L, lua_Debug* event) {
+  if (event->event == LUA_HOOKCOUNT)
+    count_instructions(L);
+  else
+    bl_profile_event(L, event);
 }
 
 void bl_count_anew(bl_world* w) {
   w->exhausted = false;
-  lua_sethook(w->L, count_instructions, LUA_MASKCOUNT, INSTRUCTIONS);
+  lua_sethook(w->L, hook, LUA_MASKCOUNT, INSTRUCTIONS);
+}
+
+/* Only a change sets it, since that begins the count of instructions anew. A hook of the host stays. */
+void bl_set_hook(lua_State* L, bl_world* w, bool profiled) {
+  const bool counts = w->pool && breve_world_has_budget(w->world);
+  const int mask = (counts ? LUA_MASKCOUNT : 0) | (profiled ? LUA_MASKCALL | LUA_MASKRET : 0);
+  const lua_Hook before = lua_gethook(L);
+  if (w->exhausted || lua_gethookmask(L) == mask || (before && before != hook)) return;
+  lua_sethook(L, mask == 0 ? NULL : hook, mask, INSTRUCTIONS);
 }
 
 /* ---- the library in a state ------------------------------------------------------------------------------------------ */
@@ -247,6 +262,7 @@ static void destroy_world(void* user) {
       luaL_unref(w->L, LUA_REGISTRYINDEX, references[i]);
     if (w->lib && w->lib->current == w) w->lib->current = NULL;
   }
+  bl_profile_destroy(w);
   bl_program_drop(w->program);
   bl_program_drop(w->staged);
   breve_world_release(world, w, sizeof *w);

@@ -107,58 +107,99 @@ void write_property(World& world, BodyIndex body, std::uint32_t property, const 
   }
 }
 
-World::Holding holding(const breve_world& world, breve_object object) {
-  return is_null(object) ? World::Holding() : world.world->holding(object.index, ticket_of(world, object));
+/// An error names the row that it is about.
+template <class Work>
+void at_row(std::size_t row, Work&& work) {
+  const auto text = [row](const std::exception& e) { return "objects[" + std::to_string(row) + "]: " + e.what(); };
+  try {
+    work();
+  } catch (const StatusError& e) {
+    fail(e.status(), text(e));
+  } catch (const Error& e) {
+    throw Error(e.code(), text(e));
+  }
 }
+
+/// Looks up one object after the other. What a later one needs is on its way from memory meanwhile.
+class Handles {
+ public:
+  static constexpr std::size_t kAhead = 12;
+
+  explicit Handles(const breve_world& world)
+      : all_(world.world->handles()), shift_(kGenerations - 1 - world.first_generation) {}
+
+  /// Null if nobody lives who has it.
+  const ObjectHandle* of(breve_object object) const {
+    const std::uint64_t ordinal = object.generation + shift_;  // as ticket_of, without a division
+    const std::uint64_t ticket = (ordinal >= kGenerations ? ordinal - kGenerations : ordinal) + 1;
+    const bool lives = object.generation != 0 && object.index < all_.size() && all_[object.index].ticket == ticket;
+    return lives ? &all_[object.index] : nullptr;
+  }
+  /// Script data of the object, from this byte on, will be read soon.
+  void expect(breve_object object, std::size_t offset) const {
+    if (object.index < all_.size())
+      __builtin_prefetch(reinterpret_cast<const char*>(all_[object.index].user) + offset);  // NOLINT(*-int-to-ptr)
+  }
+
+ private:
+  const std::span<const ObjectHandle> all_;
+  const std::uint64_t shift_;
+};
 
 // --- variables ------------------------------------------------------------------------------------------------------
 
 /// The first slot of a variable in one object after the other; the name is looked up once for each class in a row.
 class VariableSlots {
  public:
-  VariableSlots(const breve_world& world, const char* name) : world_(world), name_(name) {}
+  VariableSlots(const breve_world& world, const char* name) : world_(world), name_(name), handles_(world) {}
 
-  steve::Slot* of(breve_object object) {
-    const World::Holding held = holding(world_, object);
-    const steve::Instance& instance =
-        held.id ? *reinterpret_cast<steve::Instance*>(held.user) : live_instance(world_, object);  // which says why not
-    if (instance.cls != cls_) {
-      const steve::VariableInfo& variable = variable_named(world_, instance, name_);
-      const steve::StaticType type = variable.type;
-      if (type != steve::StaticType::Int && type != steve::StaticType::Double && type != steve::StaticType::Vector)
-        fail(BREVE_ERROR_TYPE, text_of(instance) + " is neither an int, a float nor a vector");
-      if (cls_ && type != type_)
-        fail(BREVE_ERROR_TYPE, text_of(instance) + " has another type than in the objects before it");
-      cls_ = instance.cls;
-      type_ = type;
-      slot_ = variable.slot;
-    }
-    return instance.slots + slot_;
+  steve::Slot* of(std::size_t row, breve_object object) {
+    const ObjectHandle* const handle = handles_.of(object);
+    if (!handle || handle->cls != cls_)
+      at_row(row, [&] {
+        const steve::Instance& instance = live_instance(world_, object);  // or says why not
+        use(*handle, instance);
+      });
+    // The slots are right behind the head, which is not read.
+    return reinterpret_cast<steve::Slot*>(handle->user + sizeof(steve::Instance)) + slot_;
+  }
+  void expect(breve_object object) const {
+    handles_.expect(object, sizeof(steve::Instance) + slot_ * sizeof(steve::Slot));
   }
   steve::StaticType type() const { return type_; }
   std::size_t width() const { return type_ == steve::StaticType::Vector ? 3 : 1; }
 
  private:
-  std::string text_of(const steve::Instance& instance) const {
-    return "variable '" + std::string(name_) + "' of class " + instance.cls->name;
+  void use(const ObjectHandle& handle, const steve::Instance& instance) {
+    const steve::VariableInfo& variable = variable_named(world_, instance, name_);
+    const steve::StaticType type = variable.type;
+    const auto text = [&] { return "variable '" + std::string(name_) + "' of class " + instance.cls->name; };
+    if (type != steve::StaticType::Int && type != steve::StaticType::Double && type != steve::StaticType::Vector)
+      fail(BREVE_ERROR_TYPE, text() + " is neither an int, a float nor a vector");
+    if (cls_ != kNoClass && type != type_)
+      fail(BREVE_ERROR_TYPE, text() + " has another type than in the objects before it");
+    cls_ = handle.cls;
+    type_ = type;
+    slot_ = variable.slot;
   }
 
   const breve_world& world_;
   const char* name_;
-  const steve::ClassInfo* cls_ = nullptr;
+  const Handles handles_;
+  ClassId cls_ = kNoClass;
   steve::StaticType type_ = steve::StaticType::Double;
   std::uint32_t slot_ = 0;
 };
 
-/// The slots of all of them, or an error. Without objects nothing is known of the variable, and nothing has to be.
-std::span<steve::Slot* const> slots_of(const breve_world& world, const breve_object* objects, std::size_t count,
-                                       VariableSlots& variable) {
+/// Hands the slots of all of them to `take`, or gives an error. Without objects nothing is known of the variable, and
+/// nothing has to be.
+template <class Take>
+void each_slot(const breve_object* objects, std::size_t count, VariableSlots& variable, Take&& take) {
   if (count != 0) need(objects, "objects");
-  auto& all = world.bulk_slots;
-  all.clear();
-  all.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) all.push_back(variable.of(objects[i]));
-  return all;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i + Handles::kAhead < count) variable.expect(objects[i + Handles::kAhead]);
+    take(i, variable.of(i, objects[i]));
+  }
 }
 
 void need_whole(double number) {
@@ -181,11 +222,15 @@ bool lasts(const steve::Value& value) {
 std::span<const BodyIndex> bodies_of(const breve_world& world, const breve_object* objects, std::size_t count) {
   if (count != 0) need(objects, "objects");
   auto& all = world.bulk_bodies;
-  all.clear();
-  all.reserve(count);
+  all.resize(count);
+  const Handles handles(world);
+  BodyIndex* const to = all.data();
   for (std::size_t i = 0; i < count; ++i) {
-    const World::Holding held = holding(world, objects[i]);
-    all.push_back(held.body != kNoBody ? held.body : live_body(world, objects[i]));  // which says why not
+    const ObjectHandle* const handle = handles.of(objects[i]);
+    if (handle && handle->body != kNoBody)
+      to[i] = handle->body;
+    else
+      at_row(i, [&] { to[i] = live_body(world, objects[i]); });  // which says why not
   }
   return all;
 }
@@ -215,7 +260,7 @@ breve_status breve_objects_set_property(breve_world* world, const breve_object* 
     double numbers[kMostNumbers];
     for (std::size_t i = 0; i < count; ++i) {
       rows.get(i, numbers);
-      check_property(std::as_const(*world->world).bodies(), property, numbers);
+      at_row(i, [&] { check_property(std::as_const(*world->world).bodies(), property, numbers); });
     }
     for (std::size_t i = 0; i < count; ++i) {
       rows.get(i, numbers);
@@ -236,25 +281,24 @@ breve_status breve_objects_get(const breve_world* world, const breve_object* obj
     need(name, "name");
     need(array, "array");
     VariableSlots variable(*world, name);
-    const std::span<Slot* const> slots = slots_of(*world, objects, count, variable);
+    // Aside first: an error leaves the host's array as it is.
+    auto& aside = world->bulk_numbers;
+    aside.resize(3 * count);
+    double* const to = aside.data();
+    each_slot(objects, count, variable, [&](std::size_t i, const Slot* slot) {
+      if (variable.type() == StaticType::Double)
+        to[i] = slot->d;
+      else if (variable.type() == StaticType::Int)
+        to[i] = slot->i;
+      else
+        for (std::size_t k = 0; k < 3; ++k) to[3 * i + k] = slot[k].d;
+    });
     if (count == 0) return;
     const Rows rows(array, count, variable.width());
-    switch (variable.type()) {
-      case StaticType::Vector:
-        for (std::size_t i = 0; i < count; ++i) {
-          const double numbers[] = {slots[i][0].d, slots[i][1].d, slots[i][2].d};
-          rows.put<3>(i, numbers);
-        }
-        return;
-      case StaticType::Int:
-        for (std::size_t i = 0; i < count; ++i) {
-          const double number = slots[i]->i;
-          rows.put<1>(i, &number);
-        }
-        return;
-      default:
-        for (std::size_t i = 0; i < count; ++i) rows.put<1>(i, &slots[i]->d);
-    }
+    if (variable.width() == 3)
+      for (std::size_t i = 0; i < count; ++i) rows.put<3>(i, to + 3 * i);
+    else
+      for (std::size_t i = 0; i < count; ++i) rows.put<1>(i, to + i);
   });
 }
 
@@ -265,12 +309,14 @@ breve_status breve_objects_set(breve_world* world, const breve_object* objects, 
     need(name, "name");
     need(array, "array");
     VariableSlots variable(*world, name);
-    const std::span<Slot* const> slots = slots_of(*world, objects, count, variable);
+    auto& slots = world->bulk_slots;
+    slots.resize(count);
+    each_slot(objects, count, variable, [&](std::size_t i, Slot* slot) { slots[i] = slot; });
     if (count == 0) return;
     const Rows rows(array, count, variable.width());
     double numbers[kMostNumbers];
     if (variable.type() == StaticType::Int)
-      for (std::size_t i = 0; i < count; ++i) rows.get(i, numbers), need_whole(numbers[0]);
+      for (std::size_t i = 0; i < count; ++i) rows.get(i, numbers), at_row(i, [&] { need_whole(numbers[0]); });
     for (std::size_t i = 0; i < count; ++i) {
       rows.get(i, numbers);
       if (variable.type() == StaticType::Int)
@@ -288,7 +334,7 @@ breve_status breve_objects_call_prepared(breve_world* world, const breve_object*
   return guard(world->error, [&] {
     Selector& prepared = selector_of(*world, selector, arguments, argument_count);
     if (count != 0) need(objects, "objects");
-    for (std::size_t i = 0; i < count; ++i) live_id(*world, objects[i]);
+    for (std::size_t i = 0; i < count; ++i) at_row(i, [&] { live_id(*world, objects[i]); });
     for (std::size_t i = 0; i < count; ++i) {
       if (results) results[i] = breve_value_null();
       // One that an earlier call freed is passed over.

@@ -130,7 +130,8 @@ void HostClass::describe(const breve_class& c) {
     check_word(c.methods[i].name, "method " + std::to_string(i + 1) + " of class '" + name_ + "'");
     std::string signature;
     text_ += method_text(c, i, signature);
-    methods_.push_back(std::make_unique<HostMethod>(*this, name_, c.methods[i], std::move(signature)));
+    methods_.push_back(std::make_unique<HostMethod>(*this, name_, c.methods[i], std::move(signature),
+                                                    c.method_places ? &c.method_places[i] : nullptr));
   }
   text_ += "}\n";
   check_twice(c);

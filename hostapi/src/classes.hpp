@@ -9,8 +9,11 @@ namespace breve::host {
 
 class HostMethod final : public steve::ForeignMethod {
  public:
-  HostMethod(const HostClass& cls, const std::string& class_name, const breve_method& m, std::string signature)
-      : ForeignMethod(class_name, m.name, std::move(signature), m.doc ? m.doc : "", m.adopts_keywords),
+  /// @param place  where it is declared; null: that is not known
+  HostMethod(const HostClass& cls, const std::string& class_name, const breve_method& m, std::string signature,
+             const breve_place* place)
+      : ForeignMethod(class_name, m.name, std::move(signature), m.doc ? m.doc : "", m.adopts_keywords,
+                      place && place->file ? place->file : "", place ? place->line : 0),
         cls_(cls),
         call_(m.call),
         user_(m.user) {}

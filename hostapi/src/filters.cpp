@@ -75,7 +75,7 @@ breve_status breve_object_set_collides(breve_world* world, breve_object object, 
 breve_status breve_world_set_may_collide(breve_world* world, breve_may_collide_fn function, void* user) {
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
-    need_idle(*world, "set who is asked about collisions");
+    need_idle(*world, "breve_world_set_may_collide");
     world->may_collide.reset();
     if (function) world->may_collide.emplace(*world, function, user);
     world->world->set_pair_judge(world->may_collide ? &*world->may_collide : nullptr);

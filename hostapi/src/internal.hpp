@@ -303,6 +303,7 @@ struct breve_world : breve::InMemory {
   mutable std::pmr::vector<std::pair<std::pmr::string, std::pmr::string>> effect_texts;
   mutable std::pmr::vector<breve::BodyIndex> bulk_bodies;    // of the objects of a call for many; room that is kept
   mutable std::pmr::vector<breve::steve::Slot*> bulk_slots;  // likewise
+  mutable std::pmr::vector<double> bulk_numbers;             // likewise
   breve::host::PreviousPoses previous;
   double time_scale = 1;  // of breve_world_advance
   breve::host::UserData user;
@@ -334,6 +335,7 @@ struct breve_world : breve::InMemory {
         effect_texts(&meter),
         bulk_bodies(&meter),
         bulk_slots(&meter),
+        bulk_numbers(&meter),
         previous(&meter),
         object_data(&meter),
         method_keywords(&meter),

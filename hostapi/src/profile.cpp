@@ -43,6 +43,11 @@ steve::Profiler& profiler_of(const breve_world& world) {
   return *world.profiler;
 }
 
+void need_no_trace(const breve_world& world, const char* function) {
+  if (world.tracing)
+    fail(BREVE_ERROR_BUSY, std::string(function) + " was called by the breve_trace_fn of this profile");
+}
+
 }  // namespace
 
 void start_profile(breve_world& world, breve_trace_fn trace, void* user) {
@@ -105,4 +110,34 @@ breve_status breve_world_profile_cost(const breve_world* world, double* seconds)
     need_idle(*world, "breve_world_profile_cost");
     *seconds = profiler_of(*world).overhead_seconds();
   });
+}
+
+bool breve_world_is_profiled(const breve_world* world) {
+  return world && world->profiler && world->profiler->recording();
+}
+
+breve_status breve_world_profile_enter(breve_world* world, const char* class_name, const breve_place* place) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need(place, "place");
+    need(place->function, "place.function");
+    need(place->file, "place.file");
+    need_no_trace(*world, "breve_world_profile_enter");
+    if (world->profiler)
+      world->profiler->enter_code(place, class_name ? class_name : "", place->function, place->file, place->line);
+  });
+}
+
+breve_status breve_world_profile_leave(breve_world* world) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  return guard(world->error, [&] {
+    need_no_trace(*world, "breve_world_profile_leave");
+    if (world->profiler) world->profiler->leave_code();
+  });
+}
+
+breve_status breve_world_profile_line(breve_world* world, uint32_t line) {
+  if (!world) return BREVE_ERROR_ARGUMENT;
+  if (world->profiler) world->profiler->set_foreign_line(line);
+  return BREVE_OK;
 }

@@ -20,6 +20,7 @@ void load_ids(ByteReader& in, std::pmr::vector<ObjectId>& ids) {
 
 ObjectTable::ObjectTable(std::pmr::memory_resource* memory)
     : slots_(memory),
+      handles_(memory),
       free_(memory),
       order_{std::pmr::vector<ObjectId>(memory)},
       iterating_{std::pmr::vector<ObjectId>(memory)},
@@ -36,6 +37,7 @@ ObjectId ObjectTable::create(ClassId cls, std::uint64_t user, bool iterates, boo
       // Room for all to be released, so that release() never allocates.
       if (free_.capacity() <= slots_.size()) free_.reserve(2 * slots_.size() + 16);
       tickets_.make_room(slots_.size() + 1);
+      handles_.resize(slots_.size() + 1);
       slots_.emplace_back();
       free_.push_back(static_cast<std::uint32_t>(slots_.size() - 1));
     }
@@ -59,6 +61,7 @@ ObjectId ObjectTable::create(ClassId cls, std::uint64_t user, bool iterates, boo
   ++live_;
   const ObjectId id{index, generation};
   tickets_.issue(id);
+  handles_[index] = handle_of(index);
   order_.ids.back() = id;
   joining_.back() = id;
   return id;
@@ -67,11 +70,19 @@ ObjectId ObjectTable::create(ClassId cls, std::uint64_t user, bool iterates, boo
 void ObjectTable::release(ObjectId id) {
   Slot& slot = at(id);
   slot.live = false;
+  handles_[id.index] = {};
   const std::unique_ptr<Resource> last_act = std::move(slot.resource);
   // A slot whose generations or tickets are used up is never reused: a stale id must not come alive again.
   if (reusable(id.index)) free_.push_back(id.index);
   --live_;
   ++released_;
+}
+
+ObjectHandle ObjectTable::handle_of(std::uint32_t index) const {
+  const Slot& slot = slots_[index];
+  const std::uint32_t ticket = slot.live ? tickets_.of({index, slot.generation}) : 0;
+  return ticket == 0 || ticket == Tickets::kLost ? ObjectHandle()
+                                                 : ObjectHandle{ticket, slot.body, slot.user, slot.cls};
 }
 
 bool ObjectTable::reusable(std::uint32_t index) const {
@@ -91,7 +102,7 @@ ObjectTable::Slot& ObjectTable::at(ObjectId id) {
 const ObjectTable::Slot& ObjectTable::at(ObjectId id) const { return const_cast<ObjectTable*>(this)->at(id); }
 
 std::size_t ObjectTable::bytes() const {
-  return slots_.capacity() * sizeof(Slot) + tickets_.bytes() +
+  return slots_.capacity() * sizeof(Slot) + handles_.capacity() * sizeof(ObjectHandle) + tickets_.bytes() +
          (order_.ids.capacity() + iterating_.ids.capacity() + post_iterating_.ids.capacity() + joining_.capacity()) *
              sizeof(ObjectId);
 }
@@ -209,6 +220,8 @@ void ObjectTable::load(ByteReader& in, FindLoader find_loader, const void* conte
   tickets_.load(in);
   tickets_.make_room(slots_.size());  // a forged image may have too few
   check_loaded(in.memory());
+  handles_.resize(slots_.size());
+  for (std::uint32_t index = 0; index < handles_.size(); ++index) handles_[index] = handle_of(index);
   free_.reserve(slots_.size());  // release() never allocates
 }
 

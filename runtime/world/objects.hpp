@@ -12,6 +12,7 @@
 #include "runtime/base/ids.hpp"
 #include "runtime/kinematics/bodies.hpp"
 #include "runtime/world/behaviour.hpp"
+#include "runtime/world/object_handle.hpp"
 #include "runtime/world/resource.hpp"
 #include "runtime/world/tickets.hpp"
 
@@ -22,9 +23,9 @@ class ObjectTable {
   struct Slot {
     std::uint32_t generation = 0;  // of the instance that lives here, or lived here last
     ClassId cls = kNoClass;
-    std::uint64_t user = 0;    // the script side's own, an address perhaps: in no image
+    std::uint64_t user = 0;    // the script side's own, an address perhaps: in no image; see set_user
     std::uint64_t serial = 0;  // 1, 2, ... in order of creation
-    BodyIndex body = kNoBody;
+    BodyIndex body = kNoBody;  // see set_body
     std::uint32_t events = 0;  // scheduled calls that wait for it
     bool live = false, iterates = false, post_iterates = false;
     std::unique_ptr<Resource> resource;
@@ -64,13 +65,13 @@ class ObjectTable {
   std::uint32_t ticket(ObjectId id) const { return tickets_.of(id); }
   /// The live instance of a ticket, or null.
   ObjectId holder(std::uint32_t index, std::uint32_t ticket) const {
-    return held(index, ticket) ? ObjectId{index, slots_[index].generation} : ObjectId{};
+    const bool held = index < handles_.size() && ticket != 0 && handles_[index].ticket == ticket;
+    return held ? ObjectId{index, slots_[index].generation} : ObjectId{};
   }
-  /// Its slot, or null.
-  const Slot* held(std::uint32_t index, std::uint32_t ticket) const {
-    const ObjectId id{index, tickets_.generation(index, ticket)};
-    return id && alive(id) ? &slots_[index] : nullptr;
-  }
+  /// What a host reads of many objects, by index. It repeats what the slots have, in a third of their bytes.
+  std::span<const ObjectHandle> handles() const { return handles_; }
+  void set_user(ObjectId id, std::uint64_t user) { handles_[id.index].user = at(id).user = user; }
+  void set_body(ObjectId id, BodyIndex body) { handles_[id.index].body = at(id).body = body; }
   /// This table takes the place of `abandoned` in the same world.
   void keep_tickets(const ObjectTable& abandoned);
 
@@ -96,8 +97,11 @@ class ObjectTable {
   void load_slot(ByteReader& in, Slot& slot, FindLoader find_loader, const void* context);
   void check_loaded(std::pmr::memory_resource* memory) const;
 
+  ObjectHandle handle_of(std::uint32_t index) const;
+
   std::pmr::vector<Slot> slots_;
-  std::pmr::vector<std::uint32_t> free_;  // last freed, first reused
+  std::pmr::vector<ObjectHandle> handles_;  // KEEP IN STEP: cls, user and body of the slots
+  std::pmr::vector<std::uint32_t> free_;    // last freed, first reused
   SparseIds order_, iterating_, post_iterating_;
   std::pmr::vector<ObjectId> joining_;
   Tickets tickets_;

@@ -42,6 +42,8 @@ void ObjectTable::reclass(std::span<const ClassChange> classes, Reclassed& lists
     slot.iterates = change.iterates;
     slot.post_iterates = change.post_iterates;
   }
+  for (ObjectHandle& handle : handles_)
+    if (handle.ticket != 0) handle.cls = classes[handle.cls].to;
   if (!lists.changed) return;
   iterating_ = {std::move(lists.iterating)};
   post_iterating_ = {std::move(lists.post_iterating)};

@@ -54,12 +54,12 @@ ObjectId World::create(ClassId cls, std::uint64_t user, bool iterates, bool post
 
 void World::release(ObjectId id) {
   Parts& parts = *parts_;
-  ObjectTable::Slot& slot = parts.objects.at(id);
+  const ObjectTable::Slot& slot = parts.objects.at(id);
   if (slot.body != kNoBody) {
     parts.collisions.forget(slot.body);
     parts.dynamics->forget(slot.body);
     bodies_->remove(slot.body);
-    slot.body = kNoBody;
+    parts.objects.set_body(id, kNoBody);
   }
   if (slot.events != 0) parts.schedule.forget(parts.objects, id);
   parts.notifications.forget(id);
@@ -75,13 +75,10 @@ std::uint32_t World::ticket(ObjectId id) const { return parts_->objects.ticket(i
 ObjectId World::holder(std::uint32_t index, std::uint32_t ticket) const {
   return parts_->objects.holder(index, ticket);
 }
-World::Holding World::holding(std::uint32_t index, std::uint32_t ticket) const {
-  const ObjectTable::Slot* const slot = parts_->objects.held(index, ticket);
-  return slot ? Holding{{index, slot->generation}, slot->user, slot->body} : Holding();
-}
+std::span<const ObjectHandle> World::handles() const { return parts_->objects.handles(); }
 std::uint64_t World::user(ObjectId id) const { return parts_->objects.at(id).user; }
 void World::set_user(ObjectId id, std::uint64_t user) {
-  parts_->objects.at(id).user = user;
+  parts_->objects.set_user(id, user);
   parts_->near.set_user(id, user);
 }
 bool World::runs(ObjectId id, bool iterates, bool post_iterates) const {
@@ -116,9 +113,8 @@ void World::add_resource_kind(std::string_view kind, ResourceLoader loader) {
 // --- bodies ---------------------------------------------------------------------------------------------------------
 
 void World::embody(ObjectId id, BodyKind kind) {
-  ObjectTable::Slot& slot = parts_->objects.at(id);
-  if (slot.body != kNoBody) throw Error(ErrorCode::Argument, "the object already has a body");
-  slot.body = bodies_->add(kind, id);
+  if (parts_->objects.at(id).body != kNoBody) throw Error(ErrorCode::Argument, "the object already has a body");
+  parts_->objects.set_body(id, bodies_->add(kind, id));
 }
 
 bool World::has_body(ObjectId id) const { return parts_->objects.alive(id) && parts_->objects.at(id).body != kNoBody; }

@@ -21,6 +21,7 @@
 #include "runtime/world/behaviour.hpp"
 #include "runtime/world/effects.hpp"
 #include "runtime/world/events.hpp"
+#include "runtime/world/object_handle.hpp"
 #include "runtime/world/queries.hpp"
 #include "runtime/world/resource.hpp"
 #include "runtime/world/stage_observer.hpp"
@@ -55,13 +56,8 @@ class World : public InMemory {
   /// What hosts know an instance by, together with its index, also if it is gone. No restore gives it to another one.
   std::uint32_t ticket(ObjectId id) const;
   ObjectId holder(std::uint32_t index, std::uint32_t ticket) const;  // the live instance; null if there is none
-  /// The same with what belongs to it, in one look: for those who ask of many.
-  struct Holding {
-    ObjectId id;
-    std::uint64_t user = 0;
-    BodyIndex body = kNoBody;  // if it has one
-  };
-  Holding holding(std::uint32_t index, std::uint32_t ticket) const;
+  /// By index, for those who ask of many: an object is live if its ticket stands there. Good until one is created.
+  std::span<const ObjectHandle> handles() const;
   std::uint64_t user(ObjectId id) const;  // Error{Stale} if not alive
   void set_user(ObjectId id, std::uint64_t user);
   ClassId class_of(ObjectId id) const;

@@ -42,12 +42,21 @@ using ForeignFunctions = std::vector<std::shared_ptr<const ForeignFunction>>;
 class ForeignMethod : public ForeignFunction {
  public:
   /// @param adopts  its keywords are those of the method that it overrides, if there is one
-  ForeignMethod(const std::string& cls, const std::string& name, std::string signature, std::string doc, bool adopts)
-      : ForeignFunction(cls + '.' + name, std::move(signature), std::move(doc), true), adopts_(adopts) {}
+  /// @param file    of its own source; "" if that is not known
+  ForeignMethod(const std::string& cls, const std::string& name, std::string signature, std::string doc, bool adopts,
+                std::string file, std::uint32_t line)
+      : ForeignFunction(cls + '.' + name, std::move(signature), std::move(doc), true),
+        adopts_(adopts),
+        file_(std::move(file)),
+        line_(line) {}
   bool adopts_keywords() const { return adopts_; }
+  const std::string& file() const { return file_; }
+  std::uint32_t line() const { return line_; }
 
  private:
   const bool adopts_;
+  const std::string file_;
+  const std::uint32_t line_;
 };
 
 /// A class whose methods are foreign functions. A program takes it in when it names it, as a class of the library.

@@ -71,7 +71,8 @@ void Machine::call_foreign(std::size_t number, Instance& self, const Slot* args)
     if (letters[i] == 'm') pins_.push_back(values[i]);  // no slot holds its cell
     args += slots_of_letter(letters[i]);
   }
-  const ProfileScope scope(profiler_, Callee::of(function), profiler_ ? running_line() : 0);
+  // A method is entered already, as the one that a program sees.
+  const ProfileScope scope(profiler_, function.is_method() ? nullptr : &function, profiler_ ? running_line() : 0);
   const Value result = host_.call_foreign(function, self, std::span<const Value>(values.data(), count));
   if (letters.back() == 'd' && result.tag == Tag::Double) {  // in words: see Value
     result_.head = Value::head_of(Tag::Double);

@@ -76,7 +76,16 @@ ProfileNode Profiler::describe(const Node& node) const {
   result.kind = callee.kind;
   result.call_line = node.line;
   if (callee.cls) result.class_name = callee.cls->name.c_str();
-  if (callee.method) {
+  if (callee.code) {
+    result.class_name = callee.code->class_name.c_str();
+    result.name = callee.code->name.c_str();
+    result.file = callee.code->file.c_str();
+    result.line = callee.code->line;
+  } else if (callee.method && callee.method->foreign && !callee.method->foreign->file().empty()) {
+    result.name = node.program->symbols().name(callee.method->name).c_str();
+    result.file = callee.method->foreign->file().c_str();
+    result.line = callee.method->foreign->line();
+  } else if (callee.method) {
     result.name = node.program->symbols().name(callee.method->name).c_str();
     result.file = node.program->sources().file(callee.method->span.file).name.c_str();
     result.line = callee.method->span.line;

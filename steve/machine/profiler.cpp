@@ -9,7 +9,7 @@
 namespace breve::steve {
 
 Profiler::Profiler(std::shared_ptr<const Program> program, std::pmr::memory_resource* memory, Trace trace)
-    : programs_(memory), nodes_(memory), stack_(memory), rows_(memory) {
+    : programs_(memory), nodes_(memory), stack_(memory), code_(memory), rows_(memory) {
   programs_.push_back(std::move(program));
   clear();
   measure_itself();
@@ -62,6 +62,9 @@ void Profiler::enter(const Callee& callee, std::uint32_t line, Clock::time_point
   if (!recording_) return;
   try {
     charge(now);
+    // Lines of the text that stands for a foreign class mean nothing to anybody.
+    if (nodes_[current_].callee.foreign) line = foreign_line_;
+    foreign_line_ = 0;
     const std::uint32_t found = child(callee, line);
     stack_.push_back(found);
     if (found != current_) ++nodes_[found].calls;  // else there was no room for a node
@@ -74,9 +77,29 @@ void Profiler::enter(const Callee& callee, std::uint32_t line, Clock::time_point
   }
 }
 
+void Profiler::enter_code(const void* key, std::string_view class_name, std::string_view name, std::string_view file,
+                          std::uint32_t line) noexcept {
+  if (depth_ == 0 || !recording_) return;
+  const auto now = Clock::now();
+  try {
+    auto* const memory = nodes_.get_allocator().resource();
+    auto found = code_.find(key);
+    if (found == code_.end())
+      found = code_
+                  .try_emplace(key, ForeignCode{std::pmr::string(class_name, memory), std::pmr::string(name, memory),
+                                                std::pmr::string(file, memory), line})
+                  .first;
+    enter(Callee::of(found->second), 0, now);
+  } catch (const std::bad_alloc&) {
+    out_of_memory_ = true;
+    stop();
+  }
+}
+
 void Profiler::leave(Clock::time_point now) noexcept {
   --depth_;
   if (!recording_) return;
+  foreign_line_ = 0;
   const std::uint32_t left = stack_.back();
   charge(now);
   stack_.pop_back();
@@ -131,13 +154,14 @@ bool Profiler::renew(Node& node, const Callee& callee) const {
   const Callee& before = node.callee;
   const auto& now = *programs_.back();
   if (before.kind != callee.kind || node.program == &now) return false;
+  if (!before.method != !callee.method || !before.code != !callee.code) return false;
   if (before.method) {
     if (before.method->owner->name != callee.method->owner->name ||
         before.method->parameters.size() != callee.method->parameters.size() ||
         node.program->symbols().name(before.method->name) != now.symbols().name(callee.method->name))
       return false;
-  } else if (before.name != callee.name || !before.cls != !callee.cls ||
-             (before.cls && before.cls->name != callee.cls->name)) {
+  } else if ((before.code && before.code->class_name != callee.code->class_name) || before.name != callee.name ||
+             !before.cls != !callee.cls || (before.cls && before.cls->name != callee.cls->name)) {
     return false;
   }
   node.callee = callee;

@@ -12,7 +12,9 @@
 #include <functional>
 #include <memory>
 #include <memory_resource>
+#include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "runtime/world/stage_observer.hpp"
@@ -31,6 +33,12 @@ enum class ProfileKind : std::uint8_t {
   Act        // `new`, `free`, `sort`, `print`
 };
 
+/// Code of whoever embeds the language, such as a function of another language, as the profiler keeps it.
+struct ForeignCode {
+  std::pmr::string class_name, name, file;
+  std::uint32_t line = 0;
+};
+
 /// Something that can be called.
 struct Callee {
   ProfileKind kind = ProfileKind::World;
@@ -38,12 +46,19 @@ struct Callee {
   std::string_view name;               // of what is neither method nor native; a literal, or the program keeps it
   const ClassInfo* cls = nullptr;      // whose method it is; of Act: the class that `new` or `free` is about, or null
   const MethodInfo* method = nullptr;  // Method, Native
+  const ForeignCode* code = nullptr;   // of what enter_code entered: a Method, or a Function without a class
+  bool foreign = false;                // its calls have the line that set_foreign_line gave
 
   static Callee of(const MethodInfo& m) {
-    return {m.native ? ProfileKind::Native : ProfileKind::Method, &m, {}, m.owner, &m};
+    return {m.native ? ProfileKind::Native : ProfileKind::Method, &m, {}, m.owner, &m, nullptr, m.foreign != nullptr};
   }
   static Callee of(const breve::steve::Native& f) { return {ProfileKind::Function, &f, f.name, nullptr, nullptr}; }
-  static Callee of(const ForeignFunction& f) { return {ProfileKind::Function, &f, f.name(), nullptr, nullptr}; }
+  static Callee of(const ForeignFunction& f) {
+    return {ProfileKind::Function, &f, f.name(), nullptr, nullptr, nullptr, true};
+  }
+  static Callee of(const ForeignCode& c) {
+    return {c.class_name.empty() ? ProfileKind::Function : ProfileKind::Method, &c, c.name, nullptr, nullptr, &c, true};
+  }
   bool same_as(const Callee& other) const {
     return key == other.key && kind == other.kind && name.data() == other.name.data();
   }
@@ -100,7 +115,23 @@ class Profiler final : public StageObserver {
   void stage_begins(std::string_view stage, Clock::time_point now) noexcept override {
     enter(Callee::stage(stage), 0, now);
   }
-  void stage_ends(Clock::time_point now) noexcept override { leave(now); }
+  void stage_ends(Clock::time_point now) noexcept override {
+    while (in_code()) leave(now);
+    leave(now);
+  }
+
+  // --- told by foreign code: what it calls in its own language. A call of a foreign method or function takes back what
+  // --- it has entered and not left.
+  bool recording() const { return recording_; }
+  /// Nothing while nothing is entered. @param key  stands for the code in this profile: texts are copied once
+  void enter_code(const void* key, std::string_view class_name, std::string_view name, std::string_view file,
+                  std::uint32_t line) noexcept;
+  /// Leave what was entered by enter_code last; nothing if something else was entered since.
+  void leave_code() noexcept {
+    if (in_code()) leave();
+  }
+  /// Where the running foreign code makes its next call.
+  void set_foreign_line(std::uint32_t line) { foreign_line_ = line; }
 
   // --- read when nothing runs ---------------------------------------------------------------------------------------
   void stop() noexcept { recording_ = false; }
@@ -134,6 +165,7 @@ class Profiler final : public StageObserver {
     double self = 0, total = 0;  // s
   };
 
+  bool in_code() const { return recording_ && !stack_.empty() && nodes_[stack_.back()].callee.code; }
   void enter(const Callee& callee, std::uint32_t line, Clock::time_point now) noexcept;
   void leave(Clock::time_point now) noexcept;
   void charge(Clock::time_point now) {
@@ -155,6 +187,8 @@ class Profiler final : public StageObserver {
   std::pmr::vector<std::shared_ptr<const Program>> programs_;
   std::pmr::vector<Node> nodes_;
   std::pmr::vector<std::uint32_t> stack_;  // entered nodes
+  std::pmr::unordered_map<const void*, ForeignCode> code_;
+  std::uint32_t foreign_line_ = 0;
   std::uint32_t current_ = 0;
   std::size_t depth_ = 0;  // entries without their exit, also while nothing is recorded
   Clock::time_point start_, last_;
@@ -176,6 +210,12 @@ class ProfileScope {
     if (!profiler_) return;
     depth_ = profiler_->depth();
     profiler_->enter(callee, line);
+  }
+  /// For a foreign call: what its code enters is left with it. @param function  null: it is entered already
+  ProfileScope(Profiler* profiler, const ForeignFunction* function, std::uint32_t line) : profiler_(profiler) {
+    if (!profiler_) return;
+    depth_ = profiler_->depth();
+    if (function) profiler_->enter(Callee::of(*function), line);
   }
   ~ProfileScope() {
     if (profiler_) profiler_->unwind(depth_);

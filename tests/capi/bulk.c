@@ -168,7 +168,7 @@ static void what_is_refused_changes_nothing(const char* text, bool flat) {
   all[4 * 7] = 1;
   all[4 * 7 + 3] = all[4 * 7 + 6] = 0;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_objects_set_property(w, a.birds, kBirds, BREVE_PROPERTY_POSE, &poses));
-  CHECK_TEXT("a rotation has length 0: it is not a rotation", breve_world_last_error(w)->message);
+  CHECK_TEXT("objects[4]: a rotation has length 0: it is not a rotation", breve_world_last_error(w)->message);
   all[4 * 7 + 3] = 1;
   if (flat) {
     all[4 * 7 + 2] = 0.5; /* out of the plane */
@@ -190,6 +190,7 @@ static void what_is_refused_changes_nothing(const char* text, bool flat) {
   a.birds[4] = nobody;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_objects_property(w, a.birds, kBirds, BREVE_PROPERTY_LOCATION, &places));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_objects_get(w, a.birds, kBirds, "energy", &ages));
+  CHECK_TEXT("objects[4]: the null object was given where a live one is needed", breve_world_last_error(w)->message);
   a.birds[4] = gone;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_objects_property(w, a.birds, kBirds, 6, &places));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_objects_property(w, a.birds, kBirds, BREVE_PROPERTY_COLOR, &places));
@@ -207,6 +208,7 @@ static void what_is_refused_changes_nothing(const char* text, bool flat) {
   CHECK_STATUS(BREVE_OK, breve_objects_set(w, NULL, 0, "anything", &places));
   all[0] = 1, all[1] = 2.5, all[2] = 3;
   CHECK_STATUS(BREVE_ERROR_TYPE, breve_objects_set(w, a.birds, 3, "age", &ages));
+  CHECK_TEXT("objects[1]: an int cannot represent 2.500000", breve_world_last_error(w)->message);
   CHECK_STATUS(BREVE_ERROR_TYPE, breve_objects_get(w, a.birds, 3, "name", &ages));
   CHECK_STATUS(BREVE_ERROR_TYPE, breve_objects_get(w, a.birds, 3, "friend", &ages));
   CHECK_STATUS(BREVE_ERROR_UNSUPPORTED, breve_objects_get(w, a.birds, 3, "past", &ages));

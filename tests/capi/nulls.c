@@ -176,6 +176,10 @@ static void null_handles_give_an_argument_error_or_nothing(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_profile_node_count(NULL, &size));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_profile_node(NULL, 0, &node));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_profile_cost(NULL, d));
+  CHECK(!breve_world_is_profiled(NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_profile_enter(NULL, NULL, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_profile_leave(NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_profile_line(NULL, 1));
 }
 
 static void null_arguments_give_an_argument_error(void) {
@@ -210,6 +214,10 @@ static void null_arguments_give_an_argument_error(void) {
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_profile_node_count(w, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_profile_node(w, 0, NULL));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_profile_cost(w, NULL));
+  const breve_place nowhere = {"turn", NULL, 1}, unnamed = {NULL, "ship.lua", 1};
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_profile_enter(w, "Ship", NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_profile_enter(w, "Ship", &nowhere));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_profile_enter(w, "Ship", &unnamed));
   CHECK_STATUS(BREVE_OK, breve_world_profile_stop(w));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_objects(w, NULL, NULL, 3, &size));
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_objects(w, NULL, NULL, 0, NULL));

@@ -399,6 +399,119 @@ static void a_reloaded_method_goes_on_in_its_node(void) {
   scene_close(&s);
 }
 
+/* --- code of the host ---------------------------------------------------------------------------------------------- */
+
+typedef struct pilot {
+  bool leaves; /* what it enters */
+} pilot;
+
+/* As a binding of another language would: its own functions, and the lines of its calls. */
+static breve_status steer(void* user, const breve_call* call, breve_value* result) {
+  static const breve_place look = {"look", "ship.lua", 30}, helper = {"helper", "ship.lua", 40};
+  breve_world* w = call->world;
+  (void)result;
+  CHECK(breve_world_is_profiled(w));
+  CHECK_STATUS(BREVE_OK, breve_world_profile_line(w, 21));
+  CHECK_STATUS(BREVE_OK, breve_world_profile_enter(w, "Ship", &look));
+  CHECK_STATUS(BREVE_OK, breve_world_profile_line(w, 31));
+  CHECK_STATUS(BREVE_OK, breve_object_call(w, call->self, "report", NULL, 0, NULL));
+  CHECK_STATUS(BREVE_OK, breve_world_profile_enter(w, NULL, &helper));
+  if (!((pilot*)user)->leaves) return BREVE_OK;
+  CHECK_STATUS(BREVE_OK, breve_world_profile_leave(w));
+  CHECK_STATUS(BREVE_OK, breve_world_profile_leave(w));
+  /* What the world entered is not the host's to leave. */
+  for (int i = 0; i < 3; ++i) CHECK_STATUS(BREVE_OK, breve_world_profile_leave(w));
+  return BREVE_OK;
+}
+
+static bool open_ship(scene* s, pilot* p) {
+  static const char* const text =
+      "@use Control.\n@use Ship.\nController Main.\n"
+      "Ship : Liner {\n+ to report: return 1.\n}\n" /* 5 */
+      "Control : Main {\n+ variables:\n ship (object).\n+ to init:\n ship = new Liner.\n"
+      "+ to iterate:\n ship steer.\n ship wait.\n}\n"; /* 13, 14 */
+  breve_class ship = breve_class_default();
+  breve_world_config config = breve_world_config_default();
+  breve_method methods[2];
+  const breve_place places[] = {{NULL, "ship.lua", 20}, {NULL, NULL, 0}};
+  memset(methods, 0, sizeof methods);
+  methods[0].name = "steer";
+  methods[1].name = "wait";
+  for (int i = 0; i < 2; ++i) methods[i].call = steer, methods[i].user = p;
+  ship.name = "Ship";
+  ship.methods = methods;
+  ship.method_count = 2;
+  ship.method_places = places;
+  config.profile = true;
+  memset(s, 0, sizeof *s);
+  CHECK_STATUS(BREVE_OK, breve_runtime_create(NULL, &s->runtime));
+  CHECK_STATUS(BREVE_OK, breve_runtime_add_class(s->runtime, &ship));
+  return CHECK_STATUS(BREVE_OK, breve_program_compile(s->runtime, "scene.tz", text, strlen(text), &s->program)) &&
+         CHECK_STATUS(BREVE_OK, breve_world_create(s->runtime, s->program, &config, &s->world));
+}
+
+static void code_of_the_host_is_in_the_tree(void) {
+  for (int leaves = 0; leaves < 2; ++leaves) {
+    scene s;
+    pilot p = {leaves != 0};
+    if (!open_ship(&s, &p)) return;
+    for (int i = 0; i < 3; ++i) CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+    const size_t script = child(&s, child(&s, 0, "", "iteration", 0), "", "script", 0);
+    const size_t iterate = child(&s, script, "Main", "iterate", 0);
+    const size_t turn = child(&s, iterate, "Ship", "steer", 13), wait = child(&s, iterate, "Ship", "wait", 14);
+    CHECK(turn != 0 && wait != 0 && node_at(&s, turn).calls == 3 && node_at(&s, turn).kind == BREVE_PROFILE_METHOD);
+    CHECK_TEXT("ship.lua", node_at(&s, turn).file);
+    CHECK(node_at(&s, turn).line == 20 && node_at(&s, turn).parent == iterate);
+    const size_t look = child(&s, turn, "Ship", "look", 21);
+    CHECK(look != 0 && node_at(&s, look).kind == BREVE_PROFILE_METHOD && node_at(&s, look).line == 30);
+    CHECK(node_at(&s, look).calls == 3);
+    CHECK_TEXT("ship.lua", node_at(&s, look).file);
+    CHECK(node_at(&s, child(&s, look, "Liner", "report", 31)).calls == 3);
+    const size_t helper = child(&s, look, "", "helper", 0);
+    CHECK(helper != 0 && node_at(&s, helper).kind == BREVE_PROFILE_FUNCTION && node_at(&s, helper).line == 40);
+    CHECK(child(&s, wait, "Ship", "look", 21) != 0);
+    scene_close(&s);
+  }
+}
+
+static void without_a_profile_nothing_is_entered(void) {
+  static const breve_place place = {"look", "ship.lua", 1};
+  scene s;
+  if (!scene_open_text(&s, program_text, NULL)) return;
+  CHECK(!breve_world_is_profiled(s.world));
+  CHECK_STATUS(BREVE_OK, breve_world_profile_enter(s.world, "Ship", &place));
+  CHECK_STATUS(BREVE_OK, breve_world_profile_leave(s.world));
+  CHECK_STATUS(BREVE_OK, breve_world_profile_start(s.world, NULL, NULL));
+  CHECK(breve_world_is_profiled(s.world));
+  /* Nothing of the world runs: what the host does meanwhile is not counted. */
+  CHECK_STATUS(BREVE_OK, breve_world_profile_enter(s.world, "Ship", &place));
+  CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+  CHECK_STATUS(BREVE_OK, breve_world_profile_leave(s.world));
+  CHECK(child(&s, 0, "Ship", "look", 0) == 0 && child(&s, 0, "", "iteration", 0) != 0);
+  CHECK_STATUS(BREVE_OK, breve_world_profile_stop(s.world));
+  CHECK(!breve_world_is_profiled(s.world));
+  scene_close(&s);
+}
+
+static void enter_from_a_trace(void* user, const breve_trace_event* event) {
+  static const breve_place place = {"look", "ship.lua", 1};
+  record* r = user;
+  (void)event;
+  r->status = breve_world_profile_enter(r->world, NULL, &place);
+  if (r->status == BREVE_ERROR_BUSY && breve_world_profile_leave(r->world) == BREVE_ERROR_BUSY) ++r->events;
+}
+
+static void a_trace_callback_cannot_enter_code(void) {
+  scene s;
+  record r = {0};
+  if (!scene_open_text(&s, program_text, NULL)) return;
+  r.world = s.world;
+  CHECK_STATUS(BREVE_OK, breve_world_profile_start(s.world, enter_from_a_trace, &r));
+  CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+  CHECK(r.events > 0 && r.status == BREVE_ERROR_BUSY);
+  scene_close(&s);
+}
+
 void profile_suite(void) {
   RUN(calls_are_counted_below_the_line_that_made_them);
   RUN(init_and_what_the_engine_does_are_in_the_tree);
@@ -415,4 +528,7 @@ void profile_suite(void) {
   RUN(a_budget_cuts_at_the_same_place);
   RUN(a_profile_without_memory_ends_and_the_run_goes_on);
   RUN(a_reloaded_method_goes_on_in_its_node);
+  RUN(code_of_the_host_is_in_the_tree);
+  RUN(without_a_profile_nothing_is_entered);
+  RUN(a_trace_callback_cannot_enter_code);
 }

@@ -268,6 +268,13 @@ static breve_status do_profile_cost(place* p) {
   double seconds;
   return breve_world_profile_cost(p->world, &seconds);
 }
+static breve_status do_profile_enter(place* p) {
+  static const breve_place ship = {"turn", "ship.c", 7};
+  CHECK(!breve_world_is_profiled(NULL));
+  TRY(breve_world_profile_line(p->world, 3));
+  TRY(breve_world_profile_enter(p->world, "Ship", &ship));
+  return breve_world_profile_leave(p->world);
+}
 static breve_status do_reload(place* p) { return breve_world_reload(p->world, p->program); }
 static breve_status do_evaluate(place* p) { return breve_world_evaluate(p->world, nobody, "calls += 0", 10, NULL); }
 static breve_status do_session(place* p) {
@@ -576,6 +583,7 @@ static const struct {
     {"breve_world_profile_node", do_profile_node, WORKS | BUSY | NOTHING, WORKS | NOTHING},
     {"breve_world_profile_cost", do_profile_cost, WORKS | BUSY | NOTHING, WORKS | NOTHING},
     {"breve_world_profile_stop", do_profile_stop, WORKS | BUSY | NOTHING, WORKS | NOTHING},
+    {"breve_world_profile_enter, _leave and _line, breve_world_is_profiled", do_profile_enter, WORKS, WORKS},
     {"breve_world_reload", do_reload, BUSY, WORKS},
     {"breve_world_evaluate", do_evaluate, WORKS, WORKS},
     {"breve_world_session", do_session, WORKS, WORKS},

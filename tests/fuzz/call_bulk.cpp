@@ -115,7 +115,7 @@ constexpr Function kFunctions[] = {
     {"breve_objects_set_property", objects_set_property, kBody | kScriptError, 2},
     {"breve_objects_get", objects_get, kVariable | kType, 2},
     {"breve_objects_set", objects_set, kVariable | kType, 2},
-    {"breve_objects_call_prepared", objects_call_prepared, kScript | kValue | kNotFound, 2},
+    {"breve_objects_call_prepared", objects_call_prepared, kScript | kValue | kType | kNotFound, 2},
 };
 
 }  // namespace call_bulk

@@ -152,6 +152,8 @@ breve_status runtime_add_class(Caller& c) {
   method.call = c.chance(90) ? first_argument : nullptr;
   description.name = c.text_or_null(c.choose().one_of(kNames));
   description.parent = c.text_or_null(c.choose().one_of(kParents));
+  const breve_place place{nullptr, c.chance(50) ? "host.lua" : nullptr, 3};
+  description.method_places = c.chance(50) ? &place : nullptr;
   description.methods = &method;
   description.method_count = has_method ? 1 : 0;
   description.variables = &variable;

@@ -334,6 +334,26 @@ breve_status world_profile_cost(Caller& c) {
   return seconds.after(breve_world_profile_cost(world, seconds.to()));
 }
 
+breve_status world_is_profiled(Caller& c) {
+  const breve_world* world = c.world();
+  require(world || !breve_world_is_profiled(nullptr), "no world is profiled");
+  (void)breve_world_is_profiled(world);
+  c.accept_null();
+  return BREVE_OK;
+}
+breve_status world_profile_enter(Caller& c) {
+  static constexpr breve_place kPlaces[] = {{"turn", "ship.lua", 7}, {"look", "ship.lua", 0}, {nullptr, "ship.lua", 1}};
+  breve_world* world = c.world();
+  const char* class_name = c.chance(50) ? "Ship" : nullptr;
+  const std::size_t which = c.choose().below(4);
+  return breve_world_profile_enter(world, class_name, which < 3 ? &kPlaces[which] : nullptr);
+}
+breve_status world_profile_leave(Caller& c) { return breve_world_profile_leave(c.world()); }
+breve_status world_profile_line(Caller& c) {
+  breve_world* world = c.world();
+  return breve_world_profile_line(world, static_cast<std::uint32_t>(c.word()));
+}
+
 // --- changing what runs ----------------------------------------------------------------------------------------------
 
 breve_status world_reload(Caller& c) {
@@ -385,6 +405,10 @@ constexpr Function kFunctions[] = {
     {"breve_world_profile_node", world_profile_node, kProfile},
     {"breve_world_profile_cost", world_profile_cost, kProfile},
     {"breve_world_reload", world_reload, kBusy | kReload},
+    {"breve_world_is_profiled", world_is_profiled, kPlain},
+    {"breve_world_profile_enter", world_profile_enter, kBusy},
+    {"breve_world_profile_leave", world_profile_leave, kBusy},
+    {"breve_world_profile_line", world_profile_line},
 };
 
 }  // namespace call_worlds

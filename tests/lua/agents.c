@@ -327,6 +327,105 @@ static void modules_are_found_through_the_host(void) {
   stage_end(&s);
 }
 
+/* Finds a node by a path of "Class.method" or "function:line" below the root. If there is none, its calls are 0. */
+static breve_profile_node node_at_path(breve_world* world, const char* const* path, size_t length) {
+  breve_profile_node node, none;
+  size_t count = 0, at = 0;
+  memset(&none, 0, sizeof none);
+  CHECK_STATUS(BREVE_OK, breve_world_profile_node_count(world, &count));
+  for (size_t step = 0; step < length; ++step) {
+    size_t found = 0;
+    for (size_t i = at + 1; i < count && found == 0; ++i) {
+      char name[200];
+      if (breve_world_profile_node(world, i, &node) != BREVE_OK) return none;
+      if (node.class_name[0] != 0 || node.line == 0)
+        sprintf(name, "%s%s%s", node.class_name, node.class_name[0] ? "." : "", node.name);
+      else
+        sprintf(name, "%s:%u", node.name, (unsigned)node.line);
+      if (node.parent == at && strcmp(name, path[step]) == 0) found = i;
+    }
+    if (found == 0) return none;
+    at = found;
+  }
+  return breve_world_profile_node(world, at, &node) == BREVE_OK ? node : none;
+}
+
+/* What runs in an iteration, with the lines of this program. */
+static const char* const profiled_program =
+    "breve.use 'Steve.tz'\n" MAIN                                                  /* 1 to 3 */
+    "local Bird = breve.class('Bird', 'Animal')\n"                                 /* 4 */
+    "local function helper(n) return n + 1 end\n"                                  /* 5 */
+    "local function walk() coroutine.yield() helper(1) end\n"                      /* 6 */
+    "local function fall() helper(0) error('fallen') end\n"                        /* 7 */
+    "local function last() return helper(2) end\n"                                 /* 8 */
+    "function Bird:init() self.sum = 0 end\n"                                      /* 9 */
+    "function Bird:add_up(n) self.sum = helper(self.sum) + n end\n"                /* 10 */
+    "function Bird:answer() return 42 end\n"                                       /* 11 */
+    "function Bird:iterate()\n"                                                    /* 12 */
+    "  self:add_up(1) self:add_up(2)\n"                                            /* 13 */
+    "  self:legs()\n"                                                              /* 14 */
+    "  self:ask()\n"                                                               /* 15 */
+    "  pcall(fall)\n"                                                              /* 16 */
+    "  local c = coroutine.create(walk) coroutine.resume(c) coroutine.resume(c)\n" /* 17 */
+    "  return last()\n"                                                            /* 18 */
+    "end\n"
+    "function Main:init() self.bird = Bird() end\n";
+
+static void check_profile(breve_world* world) {
+#define BIRD "iteration", "script", "Bird.iterate"
+  static const char* const iterate[] = {BIRD};
+  static const char* const add[] = {BIRD, "Bird.add-up"};
+  static const char* const helper[] = {BIRD, "Bird.add-up", "helper:5"};
+  static const char* const legs[] = {BIRD, "Animal.legs"};
+  static const char* const answer[] = {BIRD, "Animal.ask", "Bird.answer"};
+  static const char* const fall[] = {BIRD, "function:7"}; /* a call by C has no name for it */
+  static const char* const walk[] = {BIRD, "function:6"};
+  static const char* const last[] = {BIRD, "function:8"}; /* nor has a tail call */
+  breve_profile_node n = node_at_path(world, iterate, 3);
+  CHECK(n.calls == 5 && n.line == 12 && n.kind == BREVE_PROFILE_METHOD && strstr(n.file, ".lua") != NULL);
+  n = node_at_path(world, add, 4);
+  CHECK(n.calls == 10 && n.line == 10 && n.call_line == 13 && n.kind == BREVE_PROFILE_METHOD);
+  n = node_at_path(world, helper, 5);
+  CHECK(n.calls == 10 && n.call_line == 10 && n.kind == BREVE_PROFILE_FUNCTION && strstr(n.file, ".lua") != NULL);
+  n = node_at_path(world, legs, 4);
+  CHECK(n.calls == 5 && n.call_line == 14);
+  CHECK_TEXT("Steve.tz", n.file);
+  n = node_at_path(world, answer, 5);
+  CHECK(n.calls == 5 && n.line == 11);
+  CHECK(node_at_path(world, fall, 4).calls == 5);
+  CHECK(node_at_path(world, walk, 4).calls == 5);
+  CHECK(node_at_path(world, last, 4).calls == 5);
+#undef BIRD
+}
+
+static void profiles_have_methods_of_both_languages(void) {
+  static const char* const iterate[] = {"iteration", "script", "Bird.iterate"};
+  uint64_t hashes[2] = {0, 1};
+  for (int profiled = 0; profiled < 2; ++profiled) {
+    stage s;
+    breve_world_config config = breve_world_config_default();
+    stage_begin(&s);
+    s.steve = "@use Mobile.\nMobile : Animal {\n+ to legs: return 4.\n+ to ask: return (self answer).\n}\n";
+    config.profile = profiled;
+    config.budget = 1000000;
+    if (!stage_open(&s, profiled_program, &config)) return;
+    for (int i = 0; i < 5; ++i) CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+    CHECK_STATUS(BREVE_OK, breve_world_hash(s.world, &hashes[profiled]));
+    CHECK_TEXT("", s.told);
+    if (profiled) {
+      check_profile(s.world);
+      CHECK_STATUS(BREVE_OK, breve_world_profile_stop(s.world));
+      CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+      CHECK(node_at_path(s.world, iterate, 3).calls == 5);
+      CHECK_STATUS(BREVE_OK, breve_world_profile_start(s.world, NULL, NULL));
+      for (int i = 0; i < 5; ++i) CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+      check_profile(s.world);
+    }
+    stage_end(&s);
+  }
+  CHECK(hashes[0] == hashes[1]);
+}
+
 int main(void) {
   RUN(classes_in_lua_derive_from_the_library);
   RUN(selectors_map_by_one_rule);
@@ -340,6 +439,7 @@ int main(void) {
   RUN(handlers_and_schedules_reach_methods_in_lua);
   RUN(files_that_are_wrong_are_refused_with_a_reason);
   RUN(modules_are_found_through_the_host);
+  RUN(profiles_have_methods_of_both_languages);
   if (failures != 0) printf("%d checks failed\n", failures);
   return failures != 0;
 }

@@ -125,6 +125,7 @@ case $case in
     for library in libc6 libfmt libbox2d libassimp libpugixml libexpat1 libtbb zlib1g; do
       [[ $(depends "libbreve$(abi)") == *$library* ]] || fail "the library does not depend on $library"
     done
+    [[ $(dpkg-deb -f "$scratch/build/libbreve$(abi)_"*.deb Recommends) == *libosmesa6* ]] || fail "views have no OSMesa"
     [[ $(depends "libbreve$(abi)") != *bullet* ]] || fail "the library depends on Bullet"
     for name in breve libbreve-dev; do
       [[ $(depends $name) == *"libbreve$(abi) (= $(cmake_version))"* ]] || fail "$name depends on another library"

@@ -1680,6 +1680,8 @@ typedef struct breve_class {
   breve_places_fn places;          /* NULL: the chain of calls has the method's name only. Default NULL */
   void* user;                      /* handed to `bind` and `places`. Default NULL */
   void (*destroy)(void* user);     /* as breve_function.destroy. Default NULL */
+  const breve_place* method_places; /* where each of the `method_count` methods is declared, for profiles; `function` is not
+                                       read, and a method whose `file` is NULL has no place. NULL: none has. Default NULL */
 } breve_class;
 
 /* The defaults named above. */
@@ -1946,6 +1948,28 @@ BREVE_API breve_status breve_world_profile_node(const breve_world* world, size_t
 
 /* The cost of profiling that was subtracted from the nodes, s: an estimate. As breve_world_profile_node_count. */
 BREVE_API breve_status breve_world_profile_cost(const breve_world* world, double* seconds);
+
+/* Is a profile being taken? A binding of another language asks before it enters its functions: without a profile it has
+   nothing to do then. False for NULL. */
+BREVE_API bool breve_world_is_profiled(const breve_world* world);
+
+/* A function of the host's own language begins inside a function or method of the host that a script called: it becomes a
+   node below the one that runs. What a callback of the script enters and does not leave is left when the callback
+   returns. Has no effect without a profile, or while nothing of the world runs. Runs no script.
+   @param class_name  the class whose method it is; NULL or "": it is a function, of the kind BREVE_PROFILE_FUNCTION
+   @param place       where it is declared, and its name. The address stands for the function in this profile: the texts
+                      are copied when it is entered for the first time, and later changes are not seen
+   BREVE_OK; BREVE_ERROR_ARGUMENT: `place`, its `function` or its `file` is NULL; BREVE_ERROR_BUSY inside a
+   breve_trace_fn. */
+BREVE_API breve_status breve_world_profile_enter(breve_world* world, const char* class_name, const breve_place* place);
+
+/* The function that was entered last ends. Has no effect if something else was entered since.
+   BREVE_OK; BREVE_ERROR_BUSY inside a breve_trace_fn. */
+BREVE_API breve_status breve_world_profile_leave(breve_world* world);
+
+/* The line from which the running function of the host makes its next call: breve_profile_node.call_line of what it
+   enters or calls next. Without it that is 0. BREVE_OK. */
+BREVE_API breve_status breve_world_profile_line(breve_world* world, uint32_t line);
 
 /* ---- reload and evaluate ----------------------------------------------------------------------------------------- */
 

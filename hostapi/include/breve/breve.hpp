@@ -788,6 +788,12 @@ class World {
     return read<breve_profile_node>(breve_world_profile_node, index);
   }
   Result<double> profile_cost() const { return read<double>(breve_world_profile_cost); }
+  bool is_profiled() const noexcept { return breve_world_is_profiled(get()); }
+  Status profile_enter(const char* class_name, const breve_place& place) {
+    return status(breve_world_profile_enter(get(), class_name, &place));
+  }
+  Status profile_leave() { return status(breve_world_profile_leave(get())); }
+  Status profile_line(std::uint32_t line) { return status(breve_world_profile_line(get(), line)); }
   /// All nodes; the root is the first.
   Result<std::vector<breve_profile_node>> profile() const {
     std::size_t count = 0;
