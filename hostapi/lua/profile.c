@@ -1,4 +1,4 @@
-/* Profiles: while breve takes one, a hook of Lua tells it which functions of Lua run. Functions in C are not told:
+/* Profiles: while breve takes one, a hook of Lua reports which functions of Lua run. Functions in C are not told:
    their time counts in their caller, and breve itself enters what they call of it. An error leaves frames without a
    return: they end with a frame further out, or at the next call at their depth, for which Lua uses their CallInfo
    again. */
@@ -14,8 +14,7 @@ typedef struct code {
   const char* source; /* its text's address, its line and its counts are its key: some share a line */
   int line;
   unsigned char parameters, upvalues;
-  const char* class_name; /* "": it is not a method */
-  char name[60], file[120];
+  char class_name[60], name[60], file[120]; /* no class: it is not a method */
   breve_place place;
 } code;
 
@@ -63,7 +62,7 @@ static code* make_code(lua_State* L, bl_world* w, lua_Debug* function) {
   c->line = function->linedefined;
   c->parameters = function->nparams;
   c->upvalues = function->nups;
-  c->class_name = m ? m->owner->name : "";
+  keep(c->class_name, sizeof c->class_name, m ? m->owner->name : "");
   keep(c->name, sizeof c->name, m ? m->selector : function->name ? function->name : "function");
   keep(c->file, sizeof c->file, file_of(function));
   c->place.function = c->name;

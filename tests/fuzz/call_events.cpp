@@ -200,7 +200,7 @@ constexpr Function kFunctions[] = {
     {"breve_world_record_start", record_start, kBusy | kUnsupported},
     {"breve_world_record_stop", record_stop, kBusy},
     {"breve_world_recording", recording, kPlain},
-    {"breve_world_record_input", record_input},
+    {"breve_world_record_input", record_input, kImage},
     {"breve_world_replay", replay, kBusy | kImage},
     {"breve_world_debug_draw", debug_draw, kScriptError},
     {"breve_world_sound", sound},

@@ -20,7 +20,11 @@ static int refuses(const char* text, const char* why) {
 }
 
 int main(void) {
-  if (breve_runtime_create(NULL, &runtime) != BREVE_OK) return 1;
+  breve_runtime_config config = breve_runtime_config_default();
+  if (breve_files_add_directory(".", true, 0, &config.files) != BREVE_OK) return 1; /* for the mesh file */
+  const breve_status made = breve_runtime_create(&config, &runtime);
+  breve_files_release(&config.files);
+  if (made != BREVE_OK) return 1;
   const int flat = refuses("@use PlanarControl.\nController G.\nPlanarControl : G { + to init: new Object. }\n",
                            "BREVE_WITH_PLANAR=OFF");
   const int mesh = refuses(
