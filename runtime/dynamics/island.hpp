@@ -45,6 +45,7 @@ class Island : public InMemory {
   double unfinished() const { return unfinished_; }
   void append_bodies(std::pmr::vector<BodyIndex>& out) const;
   /// Slow enough to sleep, all of it.
+  double unseen() const;
   bool still() const;
   enum class Momenta : bool { Take, Keep };  // the last of what nothing outside touches
   void stop(Momenta momenta, double h);      // all velocities zero but these, h seconds after the step began

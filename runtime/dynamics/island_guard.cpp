@@ -68,7 +68,9 @@ void Island::step_guarded(MechanicsClient* client, double start, double h) {
     trouble = try_step(client, start, h);
   }
   // More than all that moves: whatever was solved there is wrong, and positions hold what cannot be paid for.
-  const bool unpaid = refines && !dissolved_ && !trouble.found && gained_ > 0 && gained_ > moving();
+  constexpr double kMuch = 10;  // times what a step may leave unexplained
+  const bool unpaid = refines && !dissolved_ && !trouble.found && gained_ > unseen() && gained_ > kMuch * allowed_ &&
+                      gained_ > moving();
   if (unpaid) trouble = {true, GuardReason::Residual, gained_, any_body()};
   if (refines && !dissolved_) take_back_rest();
   if (attempt > 0 || finished_ || followed.step != asked.step) use_accuracy(asked);
@@ -304,8 +306,19 @@ void Island::book() {
       core_.springs[spring].booked = core_.spring_energy(core_.springs[spring].is);
 }
 
+namespace {
+constexpr double kSlow = 0.02;  // m/s and rad/s
+}
+
+/// Energy of trees as slow as what is still, J.
+double Island::unseen() const {
+  double mass = 0;
+  for (const Tree* tree : trees_)
+    for (const TreeLink& link : tree->links) mass += link.solid.mass;
+  return 0.5 * kSlow * kSlow * mass;
+}
+
 bool Island::still() const {
-  constexpr double kSlow = 0.02;  // m/s and rad/s
   for (const Free& one : loose_bodies())
     if (one.now.velocity.norm() > kSlow || one.now.spin.norm() > kSlow) return false;
   for (Tree* tree : trees_) {

@@ -98,6 +98,8 @@ breve_status batch_run(Caller& c) {
   batch.struct_size = c.struct_size(sizeof batch);
   batch.count = c.word() % 4;
   batch.iterations = 1 + c.word() % 3;
+  // A struct that ends before the iterations asks for worlds that never end.
+  if (batch.struct_size < offsetof(breve_batch, iterations) + sizeof batch.iterations) batch.count = 0;
   batch.workers = 1;
   batch.hashes = c.chance(50);
   batch.user = &run;
