@@ -83,7 +83,9 @@ Island::Trouble Island::try_in_parts(MechanicsClient* client, double start, doub
   const Accuracy asked = accuracy_;
   Trouble trouble = try_step(client, start, h);
   const bool coarse = accuracy_.rung == Rung::Fast || accuracy_.rung == Rung::Balanced;
-  if (dissolved_ || (trees_.empty() && coarse)) return trouble;
+  // Bodies without joints gain little, and a row of dominoes would cost four times as much.
+  constexpr std::size_t kFewFree = 2;
+  if (dissolved_ || (trees_.empty() && (coarse || free_.size() > kFewFree))) return trouble;
   std::size_t links = 0;
   for (const Tree* tree : trees_) links += tree->links.size();
   const std::size_t bodies = links + free_.size();
