@@ -166,9 +166,11 @@ void Island::end_moves(double h) {
 bool Island::find_struck(double h) {
   struck_.assign(movers_.size(), 0);
   bool any = false;
+  // Where impacts are located, only what rotates toward a row from afar comes too near.
+  const bool all = spent_ || trees_.empty();
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const contact::Row& row = rows_[i];
-    if (row.impulse == Vector3::Zero()) continue;
+    if (row.impulse == Vector3::Zero() || !(all || touches_[i].far)) continue;
     const double gap = touches_[i].gap, before = before_[2 * i][0] - before_[2 * i + 1][0];
     const double after = rate_of(row, true)[0] - rate_of(row, false)[0];
     if (gap + 0.5 * h * (before + after) >= std::min(gap, 0.0) - kTouchSkin * size_of_pair(*pairs_[touches_[i].pair]))
@@ -181,7 +183,7 @@ bool Island::find_struck(double h) {
   for (const Bound& bound : bounds_) {
     if (!bound.rests) continue;
     const contact::ScalarRow& row = scalars_[k++];
-    if (row.impulse == 0) continue;
+    if (row.impulse == 0 || !all) continue;
     const double reached = bound.gap + 0.5 * h * (bound.rate + rate_of(row));
     if (reached >= std::min(bound.gap, 0.0) - kLimitSkin) continue;
     any = true;

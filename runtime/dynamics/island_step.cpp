@@ -165,7 +165,7 @@ void Island::advance_once(double time, double h) {
   // A force that is constant over the step moves by half of what its change of velocity would.
   correct_works(h);
   store_velocities(0.5 * h);
-  if (spent_ || trees_.empty()) hold_off(h);
+  hold_off(h);
   hold_bounds(h);
 }
 
