@@ -166,8 +166,9 @@ void Island::end_moves(double h) {
 bool Island::find_struck(double h) {
   struck_.assign(movers_.size(), 0);
   bool any = false;
-  // Where impacts are located, only what rotates toward a row from afar comes too near.
+  // Where impacts are located, only what rotates toward a row from afar comes too near; `balanced` does not see that.
   const bool all = spent_ || trees_.empty();
+  if (!all && accuracy_.rung == Rung::Balanced) return false;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const contact::Row& row = rows_[i];
     if (row.impulse == Vector3::Zero() || !(all || touches_[i].far)) continue;
