@@ -45,7 +45,6 @@ class Island : public InMemory {
   double unfinished() const { return unfinished_; }
   void append_bodies(std::pmr::vector<BodyIndex>& out) const;
   /// Slow enough to sleep, all of it.
-  double unseen() const;
   bool still() const;
   enum class Momenta : bool { Take, Keep };  // the last of what nothing outside touches
   void stop(Momenta momenta, double h);      // all velocities zero but these, h seconds after the step began
@@ -122,7 +121,7 @@ class Island : public InMemory {
     Vector3 velocity_a = Vector3::Zero(), velocity_b = Vector3::Zero();  // of the bodies there, as the sub-step began
     double gap = 0;                                                      // m, at the start of the sub-step
     double approach = 0;  // m/s, v_n when the sub-step began; unknown where nothing is located
-    bool far = false;     // touches only if the bodies rotate towards it, and says nothing of whether the pair rests
+    bool far = false;     // touches only if the bodies rotate toward it, and says nothing of whether the pair rests
   };
   /// Speeds of a pair, m/s, that separate impacts from what the rows of a sub-step do.
   struct Speeds {
@@ -390,6 +389,7 @@ class Island : public InMemory {
   Trouble try_in_parts(MechanicsClient* client, double start, double h);
   double tolerated(double turnover, double h) const;
   double weight() const;
+  double energy_of_stillness() const;
   void give_in(const Trouble& trouble, bool unpaid, double start, double h);
   void keep_start();
   void balance(double& residual, double& turnover);

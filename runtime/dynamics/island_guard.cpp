@@ -11,7 +11,8 @@ namespace breve {
 
 namespace {
 
-constexpr int kFinest = 2;  // attempts after the first
+constexpr int kFinest = 2;      // attempts after the first
+constexpr double kSlow = 0.02;  // m/s and rad/s: slower is still
 // Sub-steps of a step whose energy does not balance, times the bodies that it moves: a crowd's step stays bounded.
 constexpr std::size_t kMostInParts = 40;
 constexpr double kMended = 0.6;  // of the energy that a step of twice the length left unexplained
@@ -69,8 +70,8 @@ void Island::step_guarded(MechanicsClient* client, double start, double h) {
   }
   // More than all that moves: whatever was solved there is wrong, and positions hold what cannot be paid for.
   constexpr double kMuch = 10;  // times what a step may leave unexplained
-  const bool unpaid = refines && !dissolved_ && !trouble.found && gained_ > unseen() && gained_ > kMuch * allowed_ &&
-                      gained_ > moving();
+  const bool unpaid = refines && !dissolved_ && !trouble.found && gained_ > energy_of_stillness() &&
+                      gained_ > kMuch * allowed_ && gained_ > moving();
   if (unpaid) trouble = {true, GuardReason::Residual, gained_, any_body()};
   if (refines && !dissolved_) take_back_rest();
   if (attempt > 0 || finished_ || followed.step != asked.step) use_accuracy(asked);
@@ -308,12 +309,8 @@ void Island::book() {
       core_.springs[spring].booked = core_.spring_energy(core_.springs[spring].is);
 }
 
-namespace {
-constexpr double kSlow = 0.02;  // m/s and rad/s
-}
-
-/// Energy of trees as slow as what is still, J.
-double Island::unseen() const {
+/// What trees have at most that are still, J.
+double Island::energy_of_stillness() const {
   double mass = 0;
   for (const Tree* tree : trees_)
     for (const TreeLink& link : tree->links) mass += link.solid.mass;

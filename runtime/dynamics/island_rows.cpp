@@ -51,11 +51,13 @@ void Island::find_touches(double h, bool speculative) {
     const Pose pa = pose_of(pair.a), pb = pose_of(pair.b);
     const double skin = kSkin * size_of(a, b);
     const double near = std::max(skin, std::min(2 * fall * h, kMostRoom * size_of(a, b)));
-    // What rests on an edge and tips comes down on points that lie farther off.
-    double margin = near + 2 * h * (spin_of(pair.a) - spin_of(pair.b)).norm() * size_of(a, b);
+    double margin = near;
     if (speculative) {
       const Vector3 rate = point_velocity(pair.a, pa.location) - point_velocity(pair.b, pb.location);
       margin += h * (rate.norm() + fall) + kRotationRoom * size_of(a, b);
+    } else {
+      // What rests on an edge and tips comes down on points that lie farther off.
+      margin += 2 * h * (spin_of(pair.a) - spin_of(pair.b)).norm() * size_of(a, b);
     }
     manifolds_.clear();
     find_manifolds(a, pa, b, pb, margin, manifolds_, pair.cache, narrow);

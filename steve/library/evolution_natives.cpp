@@ -17,6 +17,19 @@ namespace {
 
 learn::CmaEs& search_of(Machine& machine, Instance& self) { return resource_made<CmaEsResource>(machine, self).search; }
 
+/// The candidates that a search asks to be judged, as a list of lists.
+template <class Search>
+ListCell* list_candidates(Machine& machine, Search& search) {
+  machine.charge(search.work() / 2);
+  const std::span<const double> numbers = search.ask(machine.world().random(), machine.poller());
+  const auto n = static_cast<std::size_t>(search.dimension());
+  ListCell* const all = machine.heap().list();
+  const Pin pin(machine, Value::of(Tag::List, all));
+  for (std::size_t at = 0; at < numbers.size(); at += n)
+    machine.heap().push(*all, Value::of(Tag::List, make_list(machine, numbers.data() + at, n)));
+  return all;
+}
+
 // --- CMA-ES ----------------------------------------------------------------------------------------------------------
 
 void begin_search(Machine& machine, Instance& self, ListCell* mean, double step, std::int32_t population) {
@@ -29,15 +42,7 @@ void begin_search(Machine& machine, Instance& self, ListCell* mean, double step,
 }
 
 ListCell* ask_candidates(Machine& machine, Instance& self) {
-  learn::CmaEs& search = search_of(machine, self);
-  machine.charge(search.work() / 2);
-  const std::span<const double> numbers = search.ask(machine.world().random(), machine.poller());
-  const auto n = static_cast<std::size_t>(search.dimension());
-  ListCell* const all = machine.heap().list();
-  const Pin pin(machine, Value::of(Tag::List, all));
-  for (std::size_t at = 0; at < numbers.size(); at += n)
-    machine.heap().push(*all, Value::of(Tag::List, make_list(machine, numbers.data() + at, n)));
-  return all;
+  return list_candidates(machine, search_of(machine, self));
 }
 
 void tell_values(Machine& machine, Instance& self, ListCell* values) {
@@ -80,7 +85,7 @@ void begin_pareto(Machine& machine, Instance& self, ListCell* lowest, ListCell* 
   const ListCell& low = list_of(Value::of(Tag::List, lowest), "begin: the lowest numbers");
   const ListCell& high = list_of(Value::of(Tag::List, highest), "begin: the highest numbers");
   machine.charge_for(std::uint64_t{low.size} * static_cast<std::uint64_t>(std::max(population, 1)) + high.size);
-  std::vector<double> from(low.size), to(high.size);
+  std::pmr::vector<double> from(low.size, machine.heap().memory()), to(high.size, machine.heap().memory());
   read_numbers(low, from.size(), from.data(), "begin: the lowest numbers");
   read_numbers(high, to.size(), to.data(), "begin: the highest numbers");
   pareto_search_of(machine, self).begin(from, to, objectives, population);
@@ -95,21 +100,14 @@ void set_pareto_mutation(Machine& machine, Instance& self, double probability, d
 }
 
 ListCell* ask_pareto(Machine& machine, Instance& self) {
-  learn::Nsga2& search = pareto_search_of(machine, self);
-  machine.charge(search.work() / 2);
-  const std::span<const double> numbers = search.ask(machine.world().random(), machine.poller());
-  const auto n = static_cast<std::size_t>(search.dimension());
-  ListCell* const all = machine.heap().list();
-  const Pin pin(machine, Value::of(Tag::List, all));
-  for (std::size_t at = 0; at < numbers.size(); at += n)
-    machine.heap().push(*all, Value::of(Tag::List, make_list(machine, numbers.data() + at, n)));
-  return all;
+  return list_candidates(machine, pareto_search_of(machine, self));
 }
 
 /// The numbers of a list of lists, each of `length`.
-std::vector<double> read_rows(Machine& machine, const ListCell& rows, std::size_t length, const std::string& what) {
+std::pmr::vector<double> read_rows(Machine& machine, const ListCell& rows, std::size_t length,
+                                   const std::string& what) {
   machine.charge_for(rows.size * std::uint64_t{length});
-  std::vector<double> numbers;
+  std::pmr::vector<double> numbers(machine.heap().memory());
   for (std::uint32_t i = 0; i < rows.size; ++i) {
     const ListCell& row = list_of(rows[i], what + " " + decimal(i));
     if (row.size != length)
@@ -157,7 +155,7 @@ double get_pareto_evaluations(Machine& machine, Instance& self) {
 ListCell* pareto_order(Machine& machine, Instance&, ListCell* fitness) {
   const ListCell& rows = list_of(Value::of(Tag::List, fitness), "selection: the fitness values");
   const std::size_t objectives = rows.size == 0 ? 0 : list_of(rows[0], "selection: the fitness values of 0").size;
-  std::vector<double> values = read_rows(machine, rows, objectives, "selection: individual");
+  std::pmr::vector<double> values = read_rows(machine, rows, objectives, "selection: individual");
   if (rows.size != 0 && objectives == 0) refuse_argument("selection: an individual has no fitness values");
   for (double& value : values) value = std::isnan(value) ? learn::comparable(value) : learn::comparable(-value);
   machine.charge_for(std::uint64_t{rows.size} * values.size());

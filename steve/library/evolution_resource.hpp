@@ -7,36 +7,29 @@
 
 namespace breve::steve {
 
-class CmaEsResource final : public Resource {
+/// A search of runtime/learn/evolution.
+template <class Search>
+class SearchResource final : public Resource {
  public:
-  static constexpr std::string_view kKind = "cma-es";
-  explicit CmaEsResource(std::pmr::memory_resource* memory) : search(memory) {}
-  learn::CmaEs search;
+  static const std::string_view kKind;
+  explicit SearchResource(std::pmr::memory_resource* memory) : search(memory) {}
+  Search search;
 
   std::string_view kind() const override { return kKind; }
   void save(ByteWriter& out) const override { search.save(out); }
   void hash(Hasher& hasher) const override { search.hash(hasher); }
   static std::unique_ptr<Resource> load(ByteReader& in) {
-    auto resource = make_in<CmaEsResource>(in.memory(), in.memory());
+    auto resource = make_in<SearchResource>(in.memory(), in.memory());
     resource->search.load(in);
     return resource;
   }
 };
 
-class Nsga2Resource final : public Resource {
- public:
-  static constexpr std::string_view kKind = "multi-objective-search";
-  explicit Nsga2Resource(std::pmr::memory_resource* memory) : search(memory) {}
-  learn::Nsga2 search;
-
-  std::string_view kind() const override { return kKind; }
-  void save(ByteWriter& out) const override { search.save(out); }
-  void hash(Hasher& hasher) const override { search.hash(hasher); }
-  static std::unique_ptr<Resource> load(ByteReader& in) {
-    auto resource = make_in<Nsga2Resource>(in.memory(), in.memory());
-    resource->search.load(in);
-    return resource;
-  }
-};
+using CmaEsResource = SearchResource<learn::CmaEs>;
+using Nsga2Resource = SearchResource<learn::Nsga2>;
+template <>
+inline constexpr std::string_view CmaEsResource::kKind = "cma-es";
+template <>
+inline constexpr std::string_view Nsga2Resource::kKind = "multi-objective-search";
 
 }  // namespace breve::steve

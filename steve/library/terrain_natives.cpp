@@ -203,10 +203,10 @@ double brightness(const Image& picture, double x, double y) {
          down * ((1 - across) * level(column, row + 1) + across * level(column + 1, row + 1));
 }
 
-void terrain_heights_from_image(Machine& machine, Instance& self, Instance* source, double height) {
-  finite(height, "set-heights: the height");
-  const Image& picture = image_of(machine, source, "set-heights: the image");
-  if (picture.empty()) throw Error(ErrorCode::Argument, "set-heights: the image has no pixels");
+/// Heights out of a table of columns x rows that is stretched over the whole terrain.
+/// @param height_at  (column, row), between the places of the table too
+template <class HeightAt>
+void set_heights_from(Machine& machine, Instance& self, int columns, int rows, HeightAt&& height_at) {
   const HeightGrid& grid = grid_of(machine, self);
   charge_for_points(machine, static_cast<std::uint64_t>(grid.columns()));
   Heights heights(grid.columns(), machine.poller());
@@ -214,11 +214,18 @@ void terrain_heights_from_image(Machine& machine, Instance& self, Instance* sour
   const double last = heights.side - 1;
   for (int row = 0; row < heights.side; ++row) {
     for (int column = 0; column < heights.side; ++column)
-      heights.at(column, row) =
-          height * brightness(picture, column * (picture.width() - 1) / last, row * (picture.height() - 1) / last);
+      heights.at(column, row) = height_at(column * (columns - 1) / last, row * (rows - 1) / last);
     machine.poll();
   }
   set_heights(machine, self, heights);
+}
+
+void terrain_heights_from_image(Machine& machine, Instance& self, Instance* source, double height) {
+  finite(height, "set-heights: the height");
+  const Image& picture = image_of(machine, source, "set-heights: the image");
+  if (picture.empty()) throw Error(ErrorCode::Argument, "set-heights: the image has no pixels");
+  set_heights_from(machine, self, picture.width(), picture.height(),
+                   [&](double column, double row) { return height * brightness(picture, column, row); });
 }
 
 /// One pass of weights 1, 2, 1 along rows or columns; at the rim the point itself stands for what is beyond.
@@ -253,17 +260,8 @@ void terrain_load_geo_tiff(Machine& machine, Instance& self, Text file) {
   const std::pmr::string bytes = read_file(machine, name);
   machine.charge(bytes.size());  // a loop iteration for each byte
   const HeightRaster raster = HeightRaster::parse_geo_tiff(bytes, name, machine.poller());
-  const HeightGrid& grid = grid_of(machine, self);
-  charge_for_points(machine, static_cast<std::uint64_t>(grid.columns()));
-  Heights heights(grid.columns(), machine.poller());
-  heights.tile = grid.tile();
-  const double last = heights.side - 1;
-  for (int row = 0; row < heights.side; ++row) {
-    for (int column = 0; column < heights.side; ++column)
-      heights.at(column, row) = raster.at(column * (raster.columns - 1) / last, row * (raster.rows - 1) / last);
-    machine.poll();
-  }
-  set_heights(machine, self, heights);
+  set_heights_from(machine, self, raster.columns, raster.rows,
+                   [&](double column, double row) { return raster.at(column, row); });
 }
 
 constexpr Native kTerrainNatives[] = {

@@ -10,6 +10,7 @@
 #include "runtime/base/error.hpp"
 #include "runtime/learn/evolution/cma_es.hpp"
 #include "runtime/learn/evolution/selection.hpp"
+#include "tests/runtime/search_images.hpp"
 
 namespace breve::learn {
 namespace {
@@ -154,37 +155,7 @@ TEST(CmaEs, GoesOnFromAnImageAsBefore) {
   };
   for (int i = 0; i < 10; ++i) tell(search, random);
   search.ask(random, {});
-  ByteWriter out;
-  search.save(out);
-  const auto bytes = out.take();
-  CmaEs copy(std::pmr::get_default_resource());
-  ByteReader in(bytes.data(), bytes.size());
-  copy.load(in);
-  Random other = random;
-  for (int i = 0; i < 10; ++i) {
-    tell(search, random);
-    tell(copy, other);
-  }
-  Hasher a, b;
-  search.hash(a);
-  copy.hash(b);
-  EXPECT_EQ(a.value(), b.value());
-  for (std::size_t size = 0; size < bytes.size(); ++size) {
-    ByteReader cut(bytes.data(), size);
-    EXPECT_THROW(CmaEs(std::pmr::get_default_resource()).load(cut), Error);
-  }
-  for (int round = 0; round < 5000; ++round) {  // forged: refused, or another search that runs
-    auto forged = bytes;
-    forged[random.below(forged.size())] = static_cast<std::uint8_t>(random.below(256));
-    CmaEs forger(std::pmr::get_default_resource());
-    ByteReader from(forged.data(), forged.size());
-    try {
-      forger.load(from);
-    } catch (const Error&) {
-      continue;
-    }
-    if (forger.dimension() == 3) tell(forger, random);
-  }
+  expect_goes_on_from_image(search, random, tell, [](const CmaEs& forged) { return forged.dimension() == 3; });
 }
 
 TEST(CmaEs, ValuesWithoutSenseDoNoHarm) {

@@ -11,6 +11,7 @@
 
 #include "runtime/base/error.hpp"
 #include "runtime/learn/evolution/nsga2.hpp"
+#include "tests/runtime/search_images.hpp"
 
 namespace breve::learn {
 namespace {
@@ -242,37 +243,8 @@ TEST(Nsga2, GoesOnFromAnImageAsBefore) {
   search.set_mutation(0.4, 15);
   for (int i = 0; i < 10; ++i) advance(search, random);
   search.ask(random, {});
-  ByteWriter out;
-  search.save(out);
-  const auto bytes = out.take();
-  Nsga2 copy(std::pmr::get_default_resource());
-  ByteReader in(bytes.data(), bytes.size());
-  copy.load(in);
-  Random other = random;
-  for (int i = 0; i < 10; ++i) {
-    advance(search, random);
-    advance(copy, other);
-  }
-  Hasher a, b;
-  search.hash(a);
-  copy.hash(b);
-  EXPECT_EQ(a.value(), b.value());
-  for (std::size_t size = 0; size < bytes.size(); ++size) {
-    ByteReader cut(bytes.data(), size);
-    EXPECT_THROW(Nsga2(std::pmr::get_default_resource()).load(cut), Error);
-  }
-  for (int round = 0; round < 5000; ++round) {  // forged: refused, or another search that runs
-    auto forged = bytes;
-    forged[random.below(forged.size())] = static_cast<std::uint8_t>(random.below(256));
-    Nsga2 forger(std::pmr::get_default_resource());
-    ByteReader from(forged.data(), forged.size());
-    try {
-      forger.load(from);
-    } catch (const Error&) {
-      continue;
-    }
-    if (forger.dimension() == 2 && forger.objectives() == 2) advance(forger, random);
-  }
+  expect_goes_on_from_image(search, random, advance,
+                            [](const Nsga2& forged) { return forged.dimension() == 2 && forged.objectives() == 2; });
 }
 
 TEST(Nsga2, WhatMakesNoSenseIsRefused) {
