@@ -1,12 +1,17 @@
-# cmake -DAR=… -DOUT=libbreve.a "-DARCHIVES=a;b" -P merge_archives.cmake: one archive with the members of all.
-file(REMOVE "${OUT}")
-set(script "CREATE ${OUT}\n")
+# cmake -DAR=… -DOUT=libbreve.a "-DARCHIVES=a;b" -P merge_archives.cmake: one archive with the members of all. It is made
+# under a name of its own and then renamed: whoever installs the same build meanwhile finds a whole one.
+string(RANDOM LENGTH 12 own)
+set(made "${OUT}.${own}.a")
+set(script "CREATE ${made}\n")
 foreach(archive ${ARCHIVES})
   string(APPEND script "ADDLIB ${archive}\n")
 endforeach()
 string(APPEND script "SAVE\nEND\n")
-file(WRITE "${OUT}.mri" "${script}")
-execute_process(COMMAND "${AR}" -M INPUT_FILE "${OUT}.mri" RESULT_VARIABLE failed ERROR_VARIABLE said)
+file(WRITE "${made}.mri" "${script}")
+execute_process(COMMAND "${AR}" -M INPUT_FILE "${made}.mri" RESULT_VARIABLE failed ERROR_VARIABLE said)
+file(REMOVE "${made}.mri")
 if(failed OR said)
+  file(REMOVE "${made}")
   message(FATAL_ERROR "breve: cannot merge ${ARCHIVES}: ${said}")
 endif()
+file(RENAME "${made}" "${OUT}")
