@@ -47,12 +47,16 @@ struct FlatBody {
   bool pulled = false;     // a spring or force method acts on it
   bool has_force = false;  // set by scripts
   bool drowsy = false;     // may sleep, touches and is slow
+  bool gathered = false;   // for a solution of what touches and is joined
   bool placed = true;      // stands elsewhere, or has other fixtures, than when Box2D last paired
   int touching = 0;        // contacts that touch
   b2Body* b2 = nullptr;
   b2Vec2 at{0, 0}, before{0, 0};             // the centre of mass and its velocity at the start of the sub-step
   b2Vec2 kick{0, 0}, kicked_velocity{0, 0};  // what was taken off, and what was left
   float before_spin = 0;
+  b2Vec2 given{0, 0};  // velocity that collisions within Box2D's step have changed it by
+  float given_spin = 0;
+  std::uint32_t part = kNoSlot;  // of what is solved
   std::uint32_t assembly = kNoSlot;
   double thickness = 0;             // half its narrowest width, length units
   double twist = 0;                 // N*m, with `pull`
@@ -69,6 +73,11 @@ struct FlatBody {
   Vector3 location = Vector3::Zero(), velocity = Vector3::Zero(), spin = Vector3::Zero();
   Quaternion orientation{1, 0, 0, 0};
 
+  /// Velocity and spin before the sub-step's forces, in Box2D's units, with what collisions within it gave.
+  Vector3 velocity_before() const {
+    const b2Vec2 v = before + given;
+    return {double{v.x}, double{v.y}, double{before_spin} + double{given_spin}};
+  }
   /// Nothing but gravity and constant forces act on it.
   bool free_flight() const { return !jointed && !pulled && touching == 0; }
 };
@@ -162,15 +171,16 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   double now = 0;                     // s, at the start of the current sub-step
   int calm = 0;                       // steps since something was wrong
   EnergyWatch watched;
-  double pushed = 0;           // J, by which positions that were put right have lifted things in this step
-  int refined = 0;             // the guard's doublings of the sub-steps
-  int awake = 0;               // bodies, when the sub-step was planned or its rest began
-  double step_length = 0;      // s, of the sub-step that is being taken, uncut
-  std::exception_ptr failure;  // what went wrong in a callback of Box2D, which must come to its end all the same
-  bool stepping = false;       // inside b2World::Step
-  double friction = 0;         // J, lost in sliding contacts in this sub-step
-  double driven_work = 0;      // J, of bodies moved by scripts on what they touch in this sub-step
-  int located = 0;             // impacts of pairs without handler in this sub-step
+  double pushed = 0;                  // J, by which positions that were put right have lifted things in this step
+  int refined = 0;                    // the guard's doublings of the sub-steps
+  int awake = 0;                      // bodies, when the sub-step was planned or its rest began
+  double step_length = 0;             // s, of the sub-step that is being taken, uncut
+  double lightest = 0, heaviest = 0;  // kg, of bodies that move by themselves, in this sub-step
+  std::exception_ptr failure;         // what went wrong in a callback of Box2D, which must come to its end all the same
+  bool stepping = false;              // inside b2World::Step
+  double friction = 0;                // J, lost in sliding contacts in this sub-step
+  double driven_work = 0;             // J, of bodies moved by scripts on what they touch in this sub-step
+  int located = 0;                    // impacts of pairs without handler in this sub-step
   std::uint64_t work_most = Meter::kNoBound;  // of the sub-step: what counters.work may become
   bool finishing = false;                     // it is that: the rest is taken coarsely
   double base = 0;           // J: total energy when the ledger began, plus what came and went with bodies
@@ -180,6 +190,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   // members.cpp: which bodies Box2D knows
   FlatBody* find(BodyIndex body);
   const FlatBody* find(BodyIndex body) const { return const_cast<Core*>(this)->find(body); }
+  const FlatBody& of(const b2Body* b) const { return const_cast<Core*>(this)->of(b); }
   FlatBody& of(const b2Body* b) {
     return slots[static_cast<std::size_t>(const_cast<b2Body*>(b)->GetUserData().pointer - 1)];
   }
@@ -292,6 +303,10 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   void resist_rolling(double dt);
   void report_lasting(double moment);
 
+  // landings.cpp: what Box2D's sweeps solve badly
+  class Island;
+  void settle_landings(double dt);
+
   // impacts.cpp: where the next first touch is
   struct Hit {
     b2Fixture *a = nullptr, *b = nullptr;
@@ -339,6 +354,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   Energy energy() const;
   double springs_energy() const;
   double joint_rate(const FlatJoint& joint) const;
+  double motor_work(const FlatJoint& joint, double dt) const;
   // guard.cpp
   void watch(double moment, bool wrong);
   struct Balance {

@@ -106,6 +106,16 @@ double Planar::Core::joint_rate(const FlatJoint& joint) const {
   return joint.is.kind == JointKind::Prismatic ? static_cast<const b2PrismaticJoint*>(joint.b2)->GetJointSpeed() : 0;
 }
 
+/// The work of a joint's motor in this sub-step, J.
+double Planar::Core::motor_work(const FlatJoint& joint, double dt) const {
+  if (!joint.used || !joint.b2 || !(joint.drive.strength_limit > 0) || joint.is.kind == JointKind::Fixed) return 0;
+  const auto rate = static_cast<float>(1 / dt);
+  const double strength = joint.is.kind == JointKind::Revolute
+                              ? static_cast<const b2RevoluteJoint*>(joint.b2)->GetMotorTorque(rate)
+                              : static_cast<const b2PrismaticJoint*>(joint.b2)->GetMotorForce(rate);
+  return strength * dt * (joint.rate + joint_rate(joint)) / 2 * settings.unit * settings.unit;
+}
+
 /// Gives back what was taken off, and writes down what the sub-step did.
 void Planar::Core::end_ledger(double dt) {
   const double u = settings.unit;
@@ -128,20 +138,14 @@ void Planar::Core::end_ledger(double dt) {
     const double m = flat.mass.mass;
     const Vector2 change(u * (double{v.x} - flat.before.x), u * (double{v.y} - flat.before.y));
     const Vector2 force = flat.force + flat.asked;
-    held_back += (m * change - dt * (m * gravity + force + flat.pull)).dot(sum) / 2 +
+    // Gravity works along the way that the body was moved, which is not the mean velocity's where something struck.
+    held_back += (m * change - dt * (force + flat.pull)).dot(sum) / 2 - dt * u * m * gravity.dot(vector_of(moved_by)) +
                  (flat.mass.inertia(2, 2) * (w - flat.before_spin) - dt * (flat.torque + flat.twist)) * spins / 2;
     if (flat.has_force || flat.asked != Vector2::Zero())
       ledger.script_work += dt * (force.dot(sum) + flat.torque * spins) / 2;
   }
   double motors = 0;
-  for (const FlatJoint& joint : joints) {
-    if (!joint.used || !joint.b2 || !(joint.drive.strength_limit > 0) || joint.is.kind == JointKind::Fixed) continue;
-    const float rate = static_cast<float>(1 / dt);
-    const double strength = joint.is.kind == JointKind::Revolute
-                                ? static_cast<const b2RevoluteJoint*>(joint.b2)->GetMotorTorque(rate)
-                                : static_cast<const b2PrismaticJoint*>(joint.b2)->GetMotorForce(rate);
-    motors += strength * dt * (joint.rate + joint_rate(joint)) / 2 * u * u;
-  }
+  for (const FlatJoint& joint : joints) motors += motor_work(joint, dt);
   ledger.motor_work += motors;
   ledger.script_work += driven_work;
   // The rest is lost where bodies touch; if it came in, nothing explains it, and it shows in the residual.

@@ -6,9 +6,8 @@
 
 namespace breve {
 
-namespace {}  // namespace
-
-Response::Response(const Planar::Core& core, FlatBody* a, FlatBody* b) : core_(core), bodies_(core.memory) {
+Response::Response(const Planar::Core& core, FlatBody* a, FlatBody* b)
+    : core_(core), bodies_(core.memory), held_(core.memory) {
   if (a) gather(*a);
   if (b) gather(*b);
   mobility_.resize(size());
@@ -50,18 +49,17 @@ Eigen::Index Response::index_of(const FlatBody& flat) const {
 }
 
 void Response::hold_joints() {
-  std::pmr::vector<JointIndex> held(core_.memory);
   for (const FlatBody* flat : bodies_) {
     const auto found = core_.joints_at.find(flat->body);
-    if (found != core_.joints_at.end()) held.insert(held.end(), found->second.begin(), found->second.end());
+    if (found != core_.joints_at.end()) held_.insert(held_.end(), found->second.begin(), found->second.end());
   }
-  std::sort(held.begin(), held.end());
-  held.erase(std::unique(held.begin(), held.end()), held.end());
+  std::sort(held_.begin(), held_.end());
+  held_.erase(std::unique(held_.begin(), held_.end()), held_.end());
   constexpr std::size_t kMost = 100;  // joints; larger assemblies answer as if none held, and Box2D's joints follow
-  if (held.empty() || held.size() > kMost) return;
-  jacobian_ = Matrix::Zero(static_cast<Eigen::Index>(3 * held.size()), size());
+  if (held_.empty() || held_.size() > kMost) return;
+  jacobian_ = Matrix::Zero(static_cast<Eigen::Index>(3 * held_.size()), size());
   Eigen::Index rows = 0;
-  for (const JointIndex index : held) add_rows(core_.joints[index], jacobian_, rows);
+  for (const JointIndex index : held_) add_rows(core_.joints[index], jacobian_, rows);
   jacobian_.conservativeResize(rows, Eigen::NoChange);
   spread_ = mobility_.asDiagonal() * jacobian_.transpose();
   Matrix between = jacobian_ * spread_;
@@ -131,6 +129,20 @@ Response::Vector Response::allowed(const Vector& velocities) const {
   return -spread_ * between_.solve(jacobian_ * velocities);
 }
 
+std::pmr::vector<std::pair<JointIndex, WarmJoint>> Response::holding(const Vector& impulses) const {
+  std::pmr::vector<std::pair<JointIndex, WarmJoint>> all(core_.memory);
+  const Vector held = -between_.solve(jacobian_ * (mobility_.asDiagonal() * impulses));
+  Eigen::Index row = 0;
+  for (const JointIndex index : held_) {
+    WarmJoint warm;
+    warm.x = static_cast<float>(held[row++]);
+    warm.y = static_cast<float>(held[row++]);
+    if (core_.joints[index].is.kind == JointKind::Fixed) warm.angular = static_cast<float>(held[row++]);
+    all.emplace_back(index, warm);
+  }
+  return all;
+}
+
 Response::Vector Response::velocities() const {
   Vector all(size());
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -147,9 +159,13 @@ void Response::give(const Vector& change) const {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(3 * i);
     b2Body& b = *bodies_[i]->b2;
-    b.SetLinearVelocity(b.GetLinearVelocity() +
-                        b2Vec2(static_cast<float>(change[at]), static_cast<float>(change[at + 1])));
-    b.SetAngularVelocity(b.GetAngularVelocity() + static_cast<float>(change[at + 2]));
+    const b2Vec2 given(static_cast<float>(change[at]), static_cast<float>(change[at + 1]));
+    const auto given_spin = static_cast<float>(change[at + 2]);
+    b.SetLinearVelocity(b.GetLinearVelocity() + given);
+    b.SetAngularVelocity(b.GetAngularVelocity() + given_spin);
+    if (!core_.stepping) continue;
+    bodies_[i]->given += given;
+    bodies_[i]->given_spin += given_spin;
   }
 }
 

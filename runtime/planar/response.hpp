@@ -37,6 +37,9 @@ class Response {
   /// The least change, by kinetic energy, to these velocities after which the joints allow them.
   Vector allowed(const Vector& velocities) const;
 
+  /// What impulses of joints hold against these on the bodies, (size), as a step of Box2D may start from.
+  std::pmr::vector<std::pair<JointIndex, WarmJoint>> holding(const Vector& impulses) const;
+
   Vector velocities() const;  // as Box2D has them
   void give(const Vector& change) const;
   double kinetic() const;  // in Box2D's units
@@ -49,6 +52,7 @@ class Response {
 
   const Planar::Core& core_;
   std::pmr::vector<FlatBody*> bodies_;
+  std::pmr::vector<JointIndex> held_;
   Vector mobility_;
   Matrix jacobian_, spread_, columns_;  // columns_: of the impulses on a, and on b
   Eigen::LDLT<Matrix> between_;

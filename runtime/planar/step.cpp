@@ -1,6 +1,7 @@
 // One integration step: sub-steps of Box2D, cut at first touches that somebody wants to know about.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "runtime/planar/core.hpp"
 
@@ -217,6 +218,8 @@ void Planar::Core::run(double dt) {
 /// Notes the velocities at the start of a sub-step, and takes off half of the acceleration where it is known.
 void Planar::Core::kick(double dt) {
   friction = driven_work = 0;
+  lightest = std::numeric_limits<double>::infinity();
+  heaviest = 0;
   for (FlatJoint& joint : joints)
     if (joint.used && (joint.drive.strength_limit > 0 || joint.drive.limit_restitution > 0))
       joint.rate = joint_rate(joint);
@@ -227,6 +230,10 @@ void Planar::Core::kick(double dt) {
     flat.at = flat.b2->GetWorldCenter();
     flat.before = flat.b2->GetLinearVelocity();
     flat.before_spin = flat.b2->GetAngularVelocity();
+    flat.given.SetZero();
+    flat.given_spin = 0;
+    lightest = std::min(lightest, flat.mass.mass);
+    heaviest = std::max(heaviest, flat.mass.mass);
     if (!flat.free_flight() || !flat.b2->IsAwake()) continue;
     b2Vec2 pull = gravity;
     if (flat.has_force) {
@@ -284,6 +291,7 @@ void Planar::Core::step(double dt, bool bounce) {
   const int iterations = iterations_now();
   b2->Step(static_cast<float>(dt), iterations, position_iterations());
   stepping = false;
+  settle_landings(dt);
   end_ledger(dt);
   constexpr double kTooShort = 0.1;  // of a sub-step: single precision tells nothing of what changed in it
   for (FlatJoint& joint : joints)
