@@ -1,9 +1,10 @@
 // Landings on light bodies. Box2D starts each step from the impulses of the last one, and its sweeps hardly converge
 // where something heavy presses on something light. The impulse that stopped a heavy body would therefore push it up
-// again in the next step, and so create energy. If bodies of very different masses touch or are joined, and one of them
-// has struck hard or contacts have given energy, the solver of runtime/contact replaces Box2D's velocities of all that
-// is connected with them: it solves the impact first, without rebound (bodies that rebound have collided before), then
-// the forces of the sub-step. Only the impulses of the second solution start the next step.
+// again in the next step, and so create energy; long chains of joints that spin gain energy for the same reason. If
+// bodies of very different masses touch or are joined and one of them has struck hard, or if contacts and joints have
+// given energy, the solver of runtime/contact replaces Box2D's velocities of all that is connected with them: it solves
+// the impact first, without rebound (bodies that rebound have collided before), then the forces of the sub-step. Only
+// the impulses of the second solution start the next step.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,7 +19,7 @@ constexpr double kUneven = 4;  // ratio of two masses, from which Box2D's sweeps
 // What strikes so deep in a sub-step, or as after a fall from so high, is solved at once; both are parts of the smaller
 // body's radius of gyration.
 constexpr double kDeep = 0.1, kHigh = 0.25;
-constexpr double kGain = 0.02;  // of the energy of motion: what contacts may err by
+constexpr double kGain = 0.002;  // of the energy of motion: what contacts may err by
 
 bool moves(const FlatBody* flat) { return flat && !flat->fixed; }
 
@@ -33,8 +34,8 @@ struct Together {
   std::uint32_t next;  // one of them that stands for more of them; itself at last
   double gain = 0;     // J, that contacts and joints gave beyond the work of motors
   double allowed = 0;  // J, of that
-  bool uneven = false, struck = false;
-  bool suspect() const { return uneven && (struck || gain > allowed); }
+  bool uneven = false, joined = false, struck = false;
+  bool suspect() const { return (uneven && struck) || ((uneven || joined) && gain > allowed); }
 };
 
 /// Which bodies touch or are joined, by their slots, and what a sub-step did to them.
@@ -96,6 +97,7 @@ void Landings::weigh() {
   for_joints([this](const FlatJoint& joint, const FlatBody& child, const FlatBody* parent) {
     Together& all = together(child);
     all.gain -= core_.motor_work(joint, dt_);
+    all.joined = true;
     all.uneven = all.uneven || uneven(&child, parent);
   });
   for_contacts([this](const FlatBody& a, const FlatBody& b, b2Contact* contact) { weigh_contact(a, b, contact); });
@@ -150,7 +152,7 @@ double Landings::strike_of(const FlatBody& a, const FlatBody& b, b2Contact* cont
 }  // namespace
 
 void Planar::Core::settle_landings(double dt) {
-  if (!(heaviest > kUneven * lightest)) return;
+  if (joints.empty() && !(heaviest > kUneven * lightest)) return;
   Landings landings(*this, dt);
   for (FlatBody& flat : slots) flat.gathered = false;
   for (FlatBody& flat : slots) {
