@@ -22,7 +22,7 @@ class Books {
   void take_back_rest();
   double gained() const { return gained_; }  // J, that contacts and limits gave in this try of the step
 
-  // Of the sub-step, J.
+  // Energies of the sub-step, J.
   double kinetic() const { return sub_start_.kinetic; }
   double smooth_kinetic() const { return sub_start_.smooth_kinetic; }
   double predicted() const { return sub_start_.predicted; }

@@ -50,7 +50,7 @@ class Contacts {
  public:
   explicit Contacts(State& state);
 
-  /// Of a step: nothing is known to be near, no joint has rebounded.
+  /// Begins a step: nothing is known to be near, no joint has rebounded.
   /// @param awaited  handlers are called at the moment of impact
   void begin(bool awaited);
   /// Forgets what touches; roles of pairs and rebounds stay.

@@ -67,7 +67,7 @@ double energy_of_stillness(const State& state) {
 
 namespace {
 
-/// Of the springs of networks, whose bodies stand where the arrays have them.
+/// Springs of networks, whose bodies stand where the arrays have them.
 double held_network_energy(const State& state) {
   double sum = 0;
   for (const NetworkCluster& one : state.networks)

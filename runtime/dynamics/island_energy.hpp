@@ -7,9 +7,9 @@ namespace breve::island {
 
 /// Positions and velocities of a network's points from its bodies.
 void take_points(State& state, const NetworkCluster& one);
-/// Of the springs of networks.
+/// Springs of networks.
 double network_energy(State& state);
-/// Of the springs between the trees of a cluster, whose links are placed.
+/// Springs between the trees of a cluster, whose links are placed.
 double spring_energy(const State& state, const Clustered& one);
 /// All that a cluster has; `kinetic` is set to what is in motion.
 double stored_energy(State& state, const Clustered& one, double& kinetic);
@@ -19,7 +19,7 @@ double stored_energy(State& state);
 double weight(const State& state);
 /// What trees have at most that are still.
 double energy_of_stillness(const State& state);
-/// What stands in the world's arrays: while a handler may change it.
+/// The state in the world's arrays, while a handler may change it.
 double held_energy(const State& state);
 
 }  // namespace breve::island

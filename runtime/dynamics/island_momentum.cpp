@@ -57,7 +57,7 @@ void Momentum::sum_outer(const Impulse& impulse_of) {
   }
 }
 
-/// What was summed for a tree.
+/// Moves a tree by the impulse that was summed for it.
 void Momentum::give(std::size_t tree, double moved_h, Velocities velocities) {
   Tree* const one[] = {state_.trees[tree]};
   const Outer& outer = outer_[tree];

@@ -88,7 +88,7 @@ class Rows {
   void book();
   void note_contact_forces(double h);
   void note_limit_forces(double h);
-  /// What was solved is where the next solution begins.
+  /// The next solution begins with these impulses.
   /// @param h  s, that the impulses lasted; 0: an event cut the sub-step so short that they say nothing of forces
   void keep_warm(double h);
 

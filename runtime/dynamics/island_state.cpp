@@ -147,7 +147,7 @@ bool State::loose(const Clustered& one) const {
   return true;
 }
 
-/// What is near may be pressed by contact springs: they act on links inside the stages.
+/// Contact springs may press on links of whatever is near: they act inside the stages.
 void State::begin(MechanicsClient* client, double h) {
   const bool pressed = has_contact_springs() && !pairs.empty();
   for (Clustered& one : clusters) {

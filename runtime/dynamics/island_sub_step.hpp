@@ -24,7 +24,7 @@ class SubStep {
         loops_(loops),
         overlaps_(overlaps) {}
 
-  /// What is near, for h seconds.
+  /// Finds out what is near, for h seconds.
   /// @param spent  no impact is located any more: rows are to stop whatever comes within them
   void look(double h, bool spent);
   /// Notes the state, to which State::restore() goes back, and what is taken to go on for h seconds.

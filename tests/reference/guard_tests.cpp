@@ -215,7 +215,7 @@ TEST(Guard, RestIsInTheLedger) {
 
 constexpr const char* kUnexplained = "unexplained energy gain";
 
-/// A chain of three links that swings, whose end is then tied to a point above it: closing the ring lifts the links by
+/// A chain of three links that swings, whose end is then joined to a point above: closing the loop lifts the links by
 /// hand, however fine the sub-steps.
 struct Lifted : Watched {
   Chain chain;

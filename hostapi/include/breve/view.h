@@ -126,7 +126,7 @@ typedef struct breve_overlay_text {
   float color[3];
 } breve_overlay_text;
 
-/* A camera stands at target + offset. Without rotation it looks along -z; it is pitched about x, then turned about y. */
+/* A camera stands at target + offset. Without rotation it looks along -z; it is pitched about x, then rotated about y. */
 typedef struct breve_camera {
   breve_object object; /* null: the controller's */
   double target[3], offset[3];
