@@ -229,7 +229,7 @@ struct Lifted : Watched {
     hinge.child_point = Vector3(0, -0.5, 0);
     hinge.parent_point = at(hinge.child) + orientation(hinge.child) * hinge.child_point + Vector3(0, 0.3, 0);
     hinge.normal = -Vector3::UnitZ();
-    EXPECT_TRUE(read(join(hinge)).ring);
+    EXPECT_TRUE(read(join(hinge)).loop);
     before = mechanical();
   }
   double fastest() const {

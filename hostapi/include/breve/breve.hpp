@@ -713,7 +713,7 @@ class World {
   /// Stops the running script; may be called from any thread, or a signal handler.
   void interrupt() noexcept { breve_world_interrupt(get()); }
   /// Charges the work of a host function to the budget, as a number of loop iterations.
-  Status charge(std::uint64_t turns) { return status(breve_world_charge(get(), turns)); }
+  Status charge(std::uint64_t iterations) { return status(breve_world_charge(get(), iterations)); }
 
   // --- what the host keeps -------------------------------------------------------------------------------------------
   Result<void*> user(Object object) const { return read<void*>(breve_object_user, object); }
