@@ -38,10 +38,7 @@ Impacts::Impacts(State& state, Contacts& contacts, ContactSprings& springs, Rows
 
 void Impacts::note_start() {
   start_poses_.clear();
-  for (const NearPair* pair : state_.pairs) {
-    start_poses_.push_back(state_.pose_of(pair->a));
-    start_poses_.push_back(state_.pose_of(pair->b));
-  }
+  for (const NearPair* pair : state_.pairs) start_poses_.push_back({state_.pose_of(pair->a), state_.pose_of(pair->b)});
 }
 
 /// All events are in found_ then, with times that are guesses.
@@ -74,7 +71,7 @@ void Impacts::seek_pairs(double h) {
     bool hit = false, apart = false;
     if (role == Role::Far) {
       Contact contact;
-      const Motion ma = chord(start_poses_[2 * i], a1, h), mb = chord(start_poses_[2 * i + 1], b1, h);
+      const Motion ma = chord(start_poses_[i].a, a1, h), mb = chord(start_poses_[i].b, b1, h);
       apart = pair.cache.axis != Vector3::Zero() && stay_apart(a, ma, b, mb, h, pair.cache.axis);
       hit = !apart && time_of_impact(a, ma, b, mb, h, moment, contact);
     }
@@ -123,7 +120,7 @@ void Impacts::seek_closing(double h) {
 /// @param event  when they would meet, if both paths were parabolas
 bool Impacts::touches_lightly(std::size_t index, const Pose& a, const Pose& b, double h, Event& event) const {
   const NearPair& pair = *state_.pairs[index];
-  const Pose &from_a = start_poses_[2 * index], &from_b = start_poses_[2 * index + 1];
+  const auto& [from_a, from_b] = start_poses_[index];
   const Vector3 after = state_.point_velocity(pair.a, a.location) - state_.point_velocity(pair.b, b.location);
   const Vector3 way = (a.location - from_a.location) - (b.location - from_b.location), before = 2 / h * way - after;
   // Half of the acceleration times the square of the time: the path lies that much off its chord, times s (1 - s).

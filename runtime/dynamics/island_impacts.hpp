@@ -48,6 +48,10 @@ class Impacts {
   void rebound(std::size_t bound, double time);
   void resolve();
 
+  struct Poses {
+    Pose a, b;
+  };
+
   State& state_;
   Contacts& contacts_;
   ContactSprings& springs_;
@@ -56,7 +60,7 @@ class Impacts {
   Momentum& momentum_;
   SubStep& sub_step_;
   Handlers& handlers_;
-  std::pmr::vector<Pose> start_poses_;           // of each pair's two bodies, as the sub-step began
+  std::pmr::vector<Poses> start_poses_;          // of each pair, as the sub-step began
   std::pmr::vector<Event> found_;                // in a sub-step, with times that are guesses
   std::pmr::vector<Event> light_;                // likewise, that a path may have which bends there and back
   std::pmr::vector<std::size_t> rebound_later_;  // of bounds

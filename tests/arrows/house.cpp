@@ -72,6 +72,47 @@ const std::map<std::string_view, std::string_view> kVocabulary = {
     {"runtime/world/resource.hpp", "runtime/"},
 };
 
+/// The classes that step an island, as runtime/dynamics/README.md lists them: each knows those before it. A line has
+/// the files of one class, without "runtime/dynamics/island_".
+const std::vector<std::vector<std::string_view>> kIslandClasses = {
+    {"result"},
+    {"state", "poses"},
+    {"energy"},
+    {"arrays"},
+    {"balance"},
+    {"handlers"},
+    {"contacts"},
+    {"springs"},
+    {"networks"},
+    {"smooth"},
+    {"rows", "row_results"},
+    {"momentum"},
+    {"books"},
+    {"predict"},
+    {"rebound"},
+    {"solve"},
+    {"positions"},
+    {"loops"},
+    {"overlaps"},
+    {"sub_step"},
+    {"impacts", "collide"},
+    {"step"},
+    {"watch"},
+    {"guard"},
+};
+
+/// The position of a file in kIslandClasses; behind the last one if it is not there.
+std::size_t island_class_of(const std::string& file) {
+  constexpr std::string_view kPrefix = "runtime/dynamics/island_";
+  if (file.rfind(kPrefix, 0) != 0) return kIslandClasses.size();
+  const std::string name = file.substr(kPrefix.size(), file.rfind('.') - kPrefix.size());
+  const auto has = [&name](const std::vector<std::string_view>& files) {
+    return std::find(files.begin(), files.end(), name) != files.end();
+  };
+  return static_cast<std::size_t>(std::find_if(kIslandClasses.begin(), kIslandClasses.end(), has) -
+                                  kIslandClasses.begin());
+}
+
 /// Which of the libraries we stand on may be seen where. A library that is not listed is not restricted.
 const std::map<std::string_view, std::vector<std::string_view>> kLibraries = {
     {"bullet/", {}},  // a peer of benchmarks, and nothing that the library links
@@ -218,6 +259,8 @@ class House {
     const bool shared = word != kVocabulary.end() && from.folder.rfind(word->second, 0) == 0;
     if (to != &from && !shared && from.may_include.count(to->folder) == 0)
       offend(file, number, std::string(from.folder) + " may not include " + name);
+    if (name.rfind("runtime/dynamics/island_", 0) == 0 && island_class_of(name) > island_class_of(file))
+      offend(file, number, "the class may not know " + name + ", which stands above it");
   }
 
   /// The parts of the house, the floors they are on, and each folder of tests.
