@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iostream>
 #include <map>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <string>
@@ -159,6 +160,7 @@ class House {
         if (is_source(entry.path()) && entry.path().extension() != ".tz") inside_.add(relative(entry.path()));
     for (const breve::house::Offence& found : inside_.offences()) offend(found.file, found.line, found.what);
     check_readmes();
+    check_effects();
     for (const std::string& offence : offences_) std::cout << offence << '\n';
     std::cout << files_ << " files, " << includes_ << " includes, " << offences_.size() << " offences\n";
     if (files_ == 0) std::cout << "no sources under " << root_ << ": wrong folder?\n";
@@ -273,6 +275,21 @@ class House {
         if (entry.is_directory()) folders.insert(relative(entry.path()));
     for (const std::string& folder : folders)
       if (fs::exists(root_ / folder) && !has_readme(folder)) offend(folder, 0, "no README.md");
+  }
+
+  /// The page on architecture lists the effects that the world has.
+  void check_effects() {
+    const std::string table = "runtime/world/effects.cpp", page = "docs/architecture.md";
+    std::ifstream effects(root_ / table), pages(root_ / page);
+    std::string text, line;
+    while (std::getline(pages, line)) text += line + ' ';
+    const std::size_t begin = std::min(text.find("An effect is something"), text.size());
+    const std::string list = text.substr(begin, text.find('.', begin) - begin);
+    static const std::regex kEffect(R"re(^    \{"([a-z ]+)", ")re");
+    std::smatch found;
+    for (std::size_t number = 1; std::getline(effects, line); ++number)
+      if (std::regex_search(line, found, kEffect) && list.find(" " + found[1].str()) == std::string::npos)
+        offend(table, number, page + " does not list the effect '" + found[1].str() + "'");
   }
 
   /// A folder that only a compiler looks into (hostapi/include) may be described by its parent's page.
