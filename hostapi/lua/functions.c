@@ -7,7 +7,7 @@ static bl_world* world_of(lua_State* L) { return bl_current(L, (bl_lib*)lua_tous
 
 bl_world* bl_current(lua_State* L, bl_lib* lib) {
   if (lib->loading || !lib->current)
-    luaL_error(L, "there is no world yet: what needs one stands in a method, such as 'init'");
+    luaL_error(L, "there is no world yet: write code that needs one into a method, such as 'init'");
   return lib->current;
 }
 

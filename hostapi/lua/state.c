@@ -90,7 +90,7 @@ void* bl_allocate(void* user, void* block, size_t old_size, size_t new_size) {
 enum {
   INSTRUCTIONS = 1000,
   TURNS = 250
-}; /* so many instructions take about as long as so many turns of a loop in steve */
+}; /* so many instructions take about as long as so many iterations of a loop in steve */
 
 static void hook(lua_State* L, lua_Debug* event);
 

@@ -176,7 +176,7 @@ breve_status breve_world_debug_draw(const breve_world* world, const breve_debug_
     need(draw, "draw");
     const auto given = read_config(draw, breve_debug_draw_default(), "breve_debug_draw");
     if ((given.parts & ~std::uint32_t{BREVE_DEBUG_ALL}) != 0)
-      fail(BREVE_ERROR_ARGUMENT, "breve_debug_draw.parts has bits of no breve_debug");
+      fail(BREVE_ERROR_ARGUMENT, "breve_debug_draw.parts has bits that are not a breve_debug");
     if (given.segments < 3 || given.segments > kMostSegments)
       fail(BREVE_ERROR_ARGUMENT, "breve_debug_draw.segments must be 3 to " + std::to_string(kMostSegments));
     if (!std::isfinite(given.impulse_scale)) fail(BREVE_ERROR_ARGUMENT, "breve_debug_draw.impulse_scale is not finite");

@@ -174,17 +174,25 @@ std::unique_ptr<PlainFile> open_to_append(const Root& root, Spot spot) {
   return std::make_unique<PlainFile>(std::move(spot), std::move(file), "", size, root.most_bytes);
 }
 
+/// A new file beside the one that it will replace. Several threads may write that one at once, each to its own.
+Descriptor create_temporary(const Spot& spot, std::string& name) {
+  constexpr int kHow = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, kMost = 1000;
+  for (int i = 1;; ++i) {
+    name = fmt::format(".{}.{}.{}.part", spot.name.substr(0, 100), ::getpid(), i);
+    Descriptor file(::openat(spot.folder.get(), name.c_str(), kHow, 0666));
+    if (file.good()) return file;
+    if (errno != EEXIST || i == kMost) refuse_by_errno();
+  }
+}
+
 std::unique_ptr<PlainFile> open_to_write(const Root& root, std::string_view path, bool append) {
   Spot spot = find_spot(root, path);
   if (append) return open_to_append(root, std::move(spot));
   struct stat info {};
   if (::fstatat(spot.folder.get(), spot.name.c_str(), &info, AT_SYMLINK_NOFOLLOW) == 0 && !S_ISREG(info.st_mode))
     refuse(S_ISLNK(info.st_mode) ? "symbolic links are not followed" : "it is not a regular file");
-  static std::atomic<std::uint64_t> count = 0;
-  const std::string temporary = fmt::format(".{}.{}.{}.part", spot.name.substr(0, 100), ::getpid(), ++count);
-  constexpr int kHow = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
-  Descriptor file(::openat(spot.folder.get(), temporary.c_str(), kHow, 0666));
-  if (!file.good()) refuse_by_errno();
+  std::string temporary;
+  Descriptor file = create_temporary(spot, temporary);
   return std::make_unique<PlainFile>(std::move(spot), std::move(file), temporary, 0, root.most_bytes);
 }
 

@@ -177,7 +177,7 @@ breve_status breve_joint_state(const breve_world* world, breve_object joint, bre
       const auto owner = [&](breve::BodyIndex body) {
         return body == breve::kNoBody ? breve_object{} : handle_of(*world, world->world->bodies().owner(body));
       };
-      found.ring = dynamics.closes_loop(index);
+      found.loop = dynamics.closes_loop(index);
       found.parent = owner(is.parent);
       found.child = owner(is.child);
       copy_to(found.position, dynamics.position(index));

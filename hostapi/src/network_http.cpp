@@ -270,7 +270,7 @@ std::string fetched(const Settings& settings, const breve_world* world, const st
   };
   const httplib::Result result = sent(client, request, world);
   if (too_large) refuse("the answer is too large");
-  if (too_late) refuse("the answer takes too long");
+  if (too_late) refuse("the answer took too long");
   if (!result) refuse(httplib::to_string(result.error()));
   if (result->status < 200 || result->status > 299)
     refuse(fmt::format("the server answers with status {}", result->status));

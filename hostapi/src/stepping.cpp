@@ -74,7 +74,8 @@ breve_status breve_objects_interpolated(const breve_world* world, const breve_ob
       fail(BREVE_ERROR_ARGUMENT,
            "property is " + std::to_string(property) + ": only locations, rotations and poses are known from before");
     if (!world->previous.kept())
-      fail(BREVE_ERROR_ARGUMENT, "poses of the iteration before are not kept: call breve_world_set_interpolated first");
+      fail(BREVE_ERROR_ARGUMENT,
+           "the poses of the last iteration are not kept: call breve_world_set_interpolated first");
     const std::size_t width = (location ? 3U : 0U) + (orientation ? 4U : 0U);
     const Rows rows(array, count, width);
     const auto all = bodies_of(*world, objects, count);

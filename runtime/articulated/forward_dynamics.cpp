@@ -31,7 +31,7 @@ void load(const Body& body, const Wrench* wrench, Work& w) {
   w.force -= wrench->force;
 }
 
-/// @param again  since the last call only loads have changed: everything stands and turns as it did
+/// @param again  since the last call only loads have changed: everything stands and rotates as it did
 void outward(const Model& model, Data& data, const State& state, const Loads& loads, bool again) {
   const double *q = state.q.data(), *v = state.v.data();
   const Wrench* wrench = loads.wrenches.empty() ? nullptr : loads.wrenches.data();

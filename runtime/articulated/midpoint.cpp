@@ -60,7 +60,7 @@ bool Midpoint::find_mean(const Instant& at, double h) {
     change_ = result_ - u_;
     const double largest = largest_change();
     if ((guessed || evaluations_ > 1) && largest <= kShare * tolerance_.relative) return true;
-    // The first two guesses are not corrected: what the rule makes of their difference says how much turns in a step.
+    // The first two guesses are not corrected: what the rule makes of their difference says how much rotates in a step.
     if (evaluations_ == 2 && change_.norm() > kMostShare * last_change_.norm()) return false;
     // Where the change shrinks by a constant factor, this goes to its end at once.
     double beyond = 0;

@@ -34,7 +34,7 @@ class NewtonKrylov {
   int most_;  // dimensions of the Krylov space
   Vector f_, trial_, direction_, best_;
   Eigen::MatrixXd basis_;  // (size, most + 1), orthonormal columns
-  Eigen::MatrixXd upper_;  // (most + 1, most), Hessenberg, turned to upper triangular as it grows
+  Eigen::MatrixXd upper_;  // (most + 1, most), Hessenberg, rotated to upper triangular as it grows
   Vector cosines_, sines_, right_;
 };
 

@@ -15,7 +15,7 @@ struct State {
 State neutral_state(const Model& model);
 
 /// q moved along the tangent `d` (nv): angles and ways add, quaternions become q * exp(d) and have unit length again.
-/// A free joint's place moves by the first three of its numbers. `out` may be q. No allocation.
+/// A free joint's position moves by the first three of its numbers. `out` may be q. No allocation.
 void move(const Model& model, const Vector& q, const Vector& d, Vector& out);
 
 /// The tangent d (nv) with move(from, d) = to; rotations by the shorter way. No allocation.

@@ -143,7 +143,7 @@ void Dynamics::Core::move_tree(Tree& tree, const Pose& from, const Pose& to) {
     position = Vector3(to.location + rotation * (Vector3(position) - from.location));
     const Quaternion rotated = (rotation * Quaternion(q[3], q[4], q[5], q[6])).normalized();
     q[3] = rotated.w(), q[4] = rotated.x(), q[5] = rotated.y(), q[6] = rotated.z();
-    // The velocity of a free joint is in the world's axes, and is not turned: as when a single body is turned.
+    // The velocity of a free joint is in the world's axes, and is not rotated: as when a single body is rotated.
     place_links(tree);
     return;
   }

@@ -1,4 +1,4 @@
-// Trees that springs tie together, as one system for an integrator: joint coordinates of all, and as further
+// Trees that springs connect, as one system for an integrator: joint coordinates of all, and as further
 // coordinates the works that the energy ledger keeps, so that they are integrated by the same stages as the motion.
 #pragma once
 
@@ -19,7 +19,7 @@ namespace breve {
 class StageForces {
  public:
   virtual ~StageForces() = default;
-  /// Sets what depends on the trees' states, which are the stage's: motors' speeds, forces of joints that turn with
+  /// Sets what depends on the trees' states, which are the stage's: motors' speeds, forces of joints that rotate with
   /// them.
   virtual void aim() = 0;
   /// True if add() has something to do: the trees' links must then be placed.
@@ -27,7 +27,7 @@ class StageForces {
   /// Adds what springs, contacts and scripts do to wrenches of the trees' links, which stand where the stage is if
   /// adds() says so.
   virtual void add(double time) = 0;
-  /// Adds what holds rings closed and joints within limits to the accelerations (nv) of a tree that has some, after its
+  /// Adds what holds loops closed and joints within limits to the accelerations (nv) of a tree that has some, after its
   /// forward dynamics. Returns the units of work that it took.
   virtual std::uint64_t constrain(Tree& tree, double* acceleration) = 0;
   /// Where nothing acts that needs links to be placed, and all trees are single bodies: their accelerations (nv), at q

@@ -25,9 +25,9 @@ inline bool in_books(double booked) { return !std::isnan(booked); }
 
 struct JointEntry : JointRecord {
   std::uint32_t tree = kNone;
-  int link = -1;         // of the tree, whose inboard joint this is; -1: none (a ring, or not built yet)
+  int link = -1;         // of the tree, whose inboard joint this is; -1: none (a loop joint, or not built yet)
   bool flipped = false;  // the tree goes from the child to the parent
-  JointVector position = Vector3::Zero();  // as last known: whole turns are counted from here
+  JointVector position = Vector3::Zero();  // as last known: full rotations are counted from here
   // Forces, N or N*m, in the last sub-step: of the limits, > 0 of the lower one; in the one before; of the motor's
   // rows.
   JointVector limit = Vector3::Zero(), limit_before = Vector3::Zero(), motor = Vector3::Zero();
@@ -66,15 +66,16 @@ struct Change {
 class SpringNetwork;
 class NetworkMotion;
 
-/// Trees that springs tie together: what one integrator moves.
+/// Trees that springs connect: what one integrator moves.
 struct ClusterEntry : InMemory {
   explicit ClusterEntry(std::pmr::memory_resource* memory);
   ~ClusterEntry();
   std::pmr::vector<std::uint32_t> trees;  // in their order
   std::pmr::vector<SpringIndex> springs;  // in the order of their indices
   std::unique_ptr<Cluster> system;
-  std::unique_ptr<SpringNetwork> network;  // if they are bodies without joints, and more than one or tied to something
-  std::unique_ptr<NetworkMotion> points;   // likewise, if more than one: as their centres move where that is all
+  std::unique_ptr<SpringNetwork>
+      network;  // if they are bodies without joints, and more than one or connected to something
+  std::unique_ptr<NetworkMotion> points;  // likewise, if more than one: as their centres move where that is all
 };
 
 class Island;
@@ -217,7 +218,7 @@ struct Dynamics::Core : MechanicsCore {
   LoopRows loop_rows(const Tree& tree, const JointDescription& is) const;
 
   // stage_constraints.cpp
-  /// Adds to accelerations (nv), after forward dynamics, what rings force, and limits that are held.
+  /// Adds to accelerations (nv), after forward dynamics, what loops force, and limits that are held.
   std::uint64_t hold(Tree& tree, double* acceleration, bool loops, bool limits);
   JointReaction push_by_loops(Tree& tree, JointIndex wanted);
 

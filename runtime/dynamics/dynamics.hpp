@@ -75,7 +75,7 @@ class Dynamics final : public Mechanics {
   struct Core;  // the inside
 
  private:
-  // Made with the first joint, tie or physics-enabled body.
+  // Made with the first joint, spring or physics-enabled body.
   Core& core();
   MechanicsCore& inside() override;
   const JointRecord* joint_record(JointIndex joint) const override;

@@ -1,12 +1,12 @@
-// The books of a sub-step whose rows are solved at its end. They take forces as constant: works by the mean of
-// velocities are of second order only. What rows did in fact is known all the same, since smooth motion is measured by
-// itself: it is what the energy changed by after that. Contacts and limits give nothing: what the solution gave is
-// taken back from the motion of links among one another.
+// What the rows of a sub-step did to the energy.
+#include "runtime/dynamics/island_books.hpp"
+
 #include <algorithm>
+#include <cmath>
 
-#include "runtime/dynamics/island.hpp"
+#include "runtime/dynamics/island_energy.hpp"
 
-namespace breve {
+namespace breve::island {
 
 namespace {
 
@@ -34,79 +34,71 @@ void settle_rows(const Energy& start, double lost, Energy& now) {
 
 }  // namespace
 
-/// Kinetic, potential and in springs, J.
-double Island::stored_now() {
-  double sum = 0, kinetic = 0;
-  for (const Free& one : loose_bodies())
-    sum += one.now.kinetic() - one.now.solid->mass * core_.settings.gravity.dot(one.now.center);
-  sum += network_energy();
-  for (const Clustered& one : clusters_) sum += stored_in(one, kinetic);
-  return sum;
-}
-
 /// At the start of a sub-step, once it is known which touches and limits will be rows.
-void Island::open_books() {
-  keeps_books_ = !trees_.empty() && has_rows() && !springs_move();
-  if (!keeps_books_) return;
+void Books::open() {
+  kept_ = !state_.trees.empty() && contacts_.any() && !springs_.move();
+  if (!kept_) return;
   double moving = 0;
-  for (Clustered& one : clusters_) {
+  for (Clustered& one : state_.clusters) {
     double kinetic = 0;
-    one.books = {stored_in(one, kinetic), 0, 0, 0, core_.trees[one.entry->trees.front()]->ledger, 0};
+    const Tree& first = *state_.core.trees[one.entry->trees.front()];
+    one.sub_start = {stored_energy(state_, one, kinetic), 0, 0, 0, first.ledger, 0};
     moving += kinetic;
   }
-  books_ = {stored_now(), moving, 0, 0, result.ledger, 0};
+  sub_start_ = {stored_energy(state_), moving, 0, 0, state_.result.ledger, 0};
 }
 
 /// After smooth motion: what it gained that nothing explains is its error, not the rows'.
-void Island::note_smooth() {
-  if (!keeps_books_) return;
-  books_.smooth_kinetic = 0;
-  for (Clustered& one : clusters_) {
+void Books::note_smooth() {
+  if (!kept_) return;
+  sub_start_.smooth_kinetic = 0;
+  for (Clustered& one : state_.clusters) {
     const Energy& did = one.pending;
     double kinetic = 0;
-    one.books.unexplained =
-        stored_in(one, kinetic) - one.books.stored - did.motor_work - did.script_work - one.held_work + did.drag_loss;
-    books_.smooth_kinetic += kinetic;
+    one.sub_start.unexplained = stored_energy(state_, one, kinetic) - one.sub_start.stored - did.motor_work -
+                                did.script_work - one.held_work + did.drag_loss;
+    sub_start_.smooth_kinetic += kinetic;
   }
-  placed_ = true;
+  state_.placed = true;
 }
 
-/// After commit() and book_rows().
-void Island::close_books() {
-  if (!keeps_books_ || (rows_.empty() && scalars_.empty())) return;
-  const bool only_motors = rows_.empty() && limit_rows() == 0;
-  const auto close = [only_motors](const Books& books, double stored, Energy& ledger) {
-    const double more = missing(stored - books.stored - books.unexplained, books.ledger, ledger);
+/// After the works of smooth motion and of the rows went to the ledger.
+void Books::close() {
+  if (!kept_ || rows_.empty()) return;
+  const bool only_motors = rows_.contacts() == 0 && rows_.limits() == 0;
+  const auto close = [only_motors](const SubStepEnergy& start, double stored, Energy& ledger) {
+    const double more = missing(stored - start.stored - start.unexplained, start.ledger, ledger);
     if (only_motors)
       ledger.motor_work += more;
     else
       ledger.contact_loss -= more;
-    settle_rows(books.ledger, -books.unexplained, ledger);
+    settle_rows(start.ledger, -start.unexplained, ledger);
   };
   double kinetic = 0;
-  for (Clustered& one : clusters_) {
+  for (Clustered& one : state_.clusters) {
     // An implicit step and its rows are one: what it lost on the way to them is not the motion's error.
-    if (one.semi && !only_motors) one.books.unexplained = std::max(0.0, one.books.unexplained);
-    books_.unexplained += one.books.unexplained;
-    if (one.alone()) close(one.books, stored_in(one, kinetic), core_.trees[one.entry->trees.front()]->ledger);
+    if (one.semi && !only_motors) one.sub_start.unexplained = std::max(0.0, one.sub_start.unexplained);
+    sub_start_.unexplained += one.sub_start.unexplained;
+    if (one.alone())
+      close(one.sub_start, stored_energy(state_, one, kinetic), state_.core.trees[one.entry->trees.front()]->ledger);
   }
-  close(books_, stored_now(), result.ledger);
-  const double gained = rows_took(books_.ledger) - rows_took(result.ledger);
-  if (!(gained > kTiny * std::abs(books_.stored))) return;
-  const double all = moving();
+  close(sub_start_, stored_energy(state_), state_.result.ledger);
+  const double gained = rows_took(sub_start_.ledger) - rows_took(state_.result.ledger);
+  if (!(gained > kTiny * std::abs(sub_start_.stored))) return;
+  const double all = momentum_.moving();
   if (gained <= kFew * all) {
-    take_from_all(gained / all);
+    momentum_.take_from_all(gained / all);
     return;
   }
   gained_ += gained;
-  touched_ = touched_from_outside();
+  momentum_.note_touched();
 }
 
 /// What they gave all the same, however finely the step was taken.
-void Island::take_back_rest() {
-  const double all = moving();
-  if (gained_ > 0 && all > 0) take_from_all(std::min(1.0, gained_ / all));
+void Books::take_back_rest() {
+  const double all = momentum_.moving();
+  if (gained_ > 0 && all > 0) momentum_.take_from_all(std::min(1.0, gained_ / all));
   gained_ = 0;
 }
 
-}  // namespace breve
+}  // namespace breve::island

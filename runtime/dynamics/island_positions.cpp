@@ -1,96 +1,108 @@
-// Overlap and open rings: positions alone are put right, nothing gets velocity.
+// Positions that are put right by hand.
+#include "runtime/dynamics/island_positions.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "runtime/articulated/kinematics.hpp"
 #include "runtime/base/rotation_vector.hpp"
-#include "runtime/dynamics/island.hpp"
+#include "runtime/dynamics/island_energy.hpp"
 
-namespace breve {
+namespace breve::island {
 
 namespace {
 
-// The softness of a push, as a part of that of the two bodies if they were free. If joints leave a body hardly any way
-// along the normal, that way would be long: none is forced that is longer than some fifty times the overlap.
+// The softness of a push, as a part of that of the two bodies if they were free. Where joints let a body
+// hardly move along the normal, it would have to move far: no motion is forced that is longer than some fifty times the
+// overlap.
 constexpr double kYield = 1e-4;
 
 }  // namespace
 
-/// What a push moves there, were the body free, 1/kg.
-double Island::natural_response(BodyIndex body) const {
-  return core_.slot_of[body].mover < 0 ? 0 : 1 / core_.bodies->mass(body);
+Positions::Positions(State& state, Contacts& contacts, Rows& rows, Momentum& momentum)
+    : state_(state),
+      contacts_(contacts),
+      rows_(rows),
+      momentum_(momentum),
+      pushes_(state.memory),
+      scalar_pushes_(state.memory),
+      struck_(state.memory) {}
+
+double Positions::softness(const NearPair& pair) const {
+  return kYield * (state_.natural_response(pair.a) + state_.natural_response(pair.b));
 }
 
-void Island::push_apart(double h) {
+/// Pushes apart what still overlaps after h seconds, by a part of the overlap.
+void Positions::push_apart(double h) {
   // The part of the overlap for one sub-step. Sweeps leave an uneven rest: pushed apart faster, stacks begin to sway.
-  const double share = accuracy_.direct ? 0.2 : 0.1;
+  const double share = state_.accuracy.direct ? 0.2 : 0.1;
   constexpr double kFastestPush = 3;  // m/s or rad/s, along which nothing is moved faster
   bool any = false;
   double fastest = 0;
   pushes_.clear();
-  push_scalars_.clear();
-  for (const Touch& touch : touches_) {
-    const NearPair& pair = *pairs_[touch.pair];
-    const double deep = -touch.gap - 0.1 * kSkin * size_of_pair(pair);
+  scalar_pushes_.clear();
+  for (const Touch& touch : contacts_.touches()) {
+    const NearPair& pair = contacts_.pair_of(touch);
+    const double deep = -touch.gap - 0.1 * kSkin * state_.size_of_pair(pair);
     // A contact that is not too deep may come nearer by the room that there is.
     const double rate = deep > 0 ? std::min(share * deep / h, kFastestPush) : std::min(0.0, -touch.gap / h);
-    pushes_.push_back({rate, kYield * (natural_response(pair.a) + natural_response(pair.b)), 0});
+    pushes_.push_back({rate, softness(pair), 0});
     fastest = std::max(fastest, rate);
     any = any || deep > 0;
   }
-  for (const Bound& bound : bounds_) {
-    if (!bound.rests) continue;
-    push_scalars_.push_back(std::min(-share * std::min(bound.gap, 0.0) / h, kFastestPush));
-    fastest = std::max(fastest, push_scalars_.back());
+  for (std::size_t i = 0; i < rows_.limits(); ++i) {
+    const Bound& bound = rows_.limit(i).bound;
+    scalar_pushes_.push_back(std::min(-share * std::min(bound.gap, 0.0) / h, kFastestPush));
+    fastest = std::max(fastest, scalar_pushes_.back());
     any = any || bound.gap < -kLimitSkin;
   }
-  push_scalars_.resize(scalars_.size(), 0.0);
-  if (any) {
-    const double before = result.ledger.contact_loss;
-    move_by_pushes(fastest, h);
-    shorten_pushes(before, h);
-    pay_for_moves(before - result.ledger.contact_loss);
-  }
-  close_loops();
+  scalar_pushes_.resize(rows_.scalars().size(), 0.0);
+  if (!any) return;
+  const double before = state_.result.ledger.contact_loss;
+  move_by_pushes(fastest, h);
+  shorten_pushes(before, h);
+  pay_for_moves(before - state_.result.ledger.contact_loss);
 }
 
-/// Moves everything for h seconds by the velocities that pushes_ and push_scalars_ ask for.
+/// Moves everything for h seconds by the velocities that pushes_ and scalar_pushes_ ask for. The solver solves the rows
+/// again that it solved last: those that the island has now.
 /// @param fastest  of these velocities, m/s or rad/s
-void Island::move_by_pushes(double fastest, double h) {
+void Positions::move_by_pushes(double fastest, double h) {
   contact::SolveSettings settings;
   // Only a part of an overlap is put right: how exactly does not matter, least where velocities are not exact either.
-  settings.iterations = accuracy_.direct ? accuracy_.iterations : std::max(4, accuracy_.iterations / 4);
-  settings.direct = rows_.empty();
+  settings.iterations =
+      state_.accuracy.direct ? state_.accuracy.iterations : std::max(4, state_.accuracy.iterations / 4);
+  settings.direct = rows_.contacts() == 0;
   settings.tolerance = std::max(settings.tolerance, 1e-3 * fastest);
-  settings.meter = &meter_;
+  settings.meter = &state_.meter;
   if (settings.direct) settings.tolerance = 1e-14;
   book_moves(-1);
   begin_moves();
-  contact::solve_again(pushes_, push_scalars_, settings, workspace_);
+  contact::solve_again(pushes_, scalar_pushes_, settings, rows_.workspace());
   end_moves(h);
   book_moves(1);
 }
 
 /// What pushing trees apart may give in a sub-step of h seconds, J: a little of what moves, which pays for it, and,
 /// where something outside holds them, what lifts them by a little of their size each second, however many sub-steps
-/// that has. What falls freely need not be lifted: its centre of mass stays on its way. Springs that press bodies into
+/// that has. What falls freely need not be lifted: its centre of mass goes on as it did. Springs that press bodies into
 /// one another, or beyond limits, are not to be wound up for nothing, nor is a body that spins to be drawn out.
-double Island::payable(double h) const {
+double Positions::payable(double h) const {
   constexpr double kLift = 0.06;  // of their size, 1/s
-  if (trees_.empty()) return JointDrive::kNoLimit;
-  const bool falls = !touched_from_outside() &&
-                     std::all_of(clusters_.begin(), clusters_.end(), [](const Clustered& one) { return one.loose; });
-  return kFew * moving() + (falls ? 0 : kLift * h * weight());
+  if (state_.trees.empty()) return JointDrive::kNoLimit;
+  const bool falls = !momentum_.touched_from_outside() && std::all_of(state_.clusters.begin(), state_.clusters.end(),
+                                                                      [](const Clustered& one) { return one.loose; });
+  return kFew * momentum_.moving() + (falls ? 0 : kLift * h * weight(state_));
 }
 
-/// Takes back of what move_by_pushes() has just moved what gives more than is payable: energy is not linear in the way,
-/// so that this takes some tries, and the last one takes back all.
+/// Takes back of what move_by_pushes() has just moved what gives more than is payable: energy is not linear in the
+/// distance, so that this takes some tries, and the last one takes back all.
 /// @param before  J, that contacts had lost before
-void Island::shorten_pushes(double before, double h) {
+void Positions::shorten_pushes(double before, double h) {
   constexpr int kTries = 4;
-  double left = 1;  // of the way
+  double left = 1;  // of the motion
   for (int i = 1; i <= kTries && left > 0; ++i) {
-    const double given = before - result.ledger.contact_loss, most = payable(h);
+    const double given = before - state_.result.ledger.contact_loss, most = payable(h);
     if (!(given > most)) return;
     const double kept = i < kTries ? left * most / given : 0;
     take_back_pushes(left - kept, h);
@@ -98,94 +110,90 @@ void Island::shorten_pushes(double before, double h) {
   }
 }
 
-/// Takes back a part of the way that move_by_pushes() made in h seconds.
-void Island::take_back_pushes(double part, double h) {
+/// Takes back a part of the motion that move_by_pushes() made in h seconds.
+void Positions::take_back_pushes(double part, double h) {
   book_moves(-1);
-  for (Tree* tree : trees_) {
+  for (Tree* tree : state_.trees) {
     tree->free_v = tree->state.v;
     tree->state.v = tree->push;
   }
-  note_wholes(&Tree::free_v, false);
+  momentum_.note(&Tree::free_v, false);
   end_moves(-part * h);
   book_moves(1);
 }
 
-/// The way of a sub-step is that of a constant force. Where it is another (what presses on a limit may swing there and
-/// back meanwhile) a joint that was stopped would stand beyond its limit: it is put where it began, or to the limit.
-void Island::hold_bounds(double h) {
-  push_scalars_.clear();
+/// The motion of a sub-step is that of a constant force. Where it is another (what presses on a limit may swing there
+/// and back meanwhile) a joint that was stopped would stand beyond its limit: it is put where it began, or to the
+/// limit.
+void Positions::hold_bounds(double h) {
+  scalar_pushes_.clear();
   double fastest = 0;
-  for (const Bound& bound : bounds_) {
-    if (!bound.rests) continue;
-    const double gap = bound.sign * (core_.read_position(core_.joints[bound.joint])[bound.axis] - bound.limit);
-    push_scalars_.push_back((std::min(bound.gap, 0.0) - gap) / h);
-    fastest = std::max(fastest, push_scalars_.back());
+  for (std::size_t i = 0; i < rows_.limits(); ++i) {
+    const Bound& bound = rows_.limit(i).bound;
+    const double gap =
+        bound.sign * (state_.core.read_position(state_.core.joints[bound.joint])[bound.axis] - bound.limit);
+    scalar_pushes_.push_back((std::min(bound.gap, 0.0) - gap) / h);
+    fastest = std::max(fastest, scalar_pushes_.back());
   }
   if (!(fastest * h > kLimitSkin)) return;
-  push_scalars_.resize(scalars_.size(), 0.0);
+  scalar_pushes_.resize(rows_.scalars().size(), 0.0);
   pushes_.clear();
-  for (const Touch& touch : touches_) {
-    const NearPair& pair = *pairs_[touch.pair];
-    const double yields = natural_response(pair.a) + natural_response(pair.b);
-    pushes_.push_back({std::min(0.0, -touch.gap / h), kYield * yields, 0});
-  }
+  for (const Touch& touch : contacts_.touches())
+    pushes_.push_back({std::min(0.0, -touch.gap / h), softness(contacts_.pair_of(touch)), 0});
   move_by_pushes(fastest, h);
 }
 
-/// The rows' solution is taken as a velocity that lasts h and then is gone. Between these two the movers have none.
-void Island::begin_moves() {
-  for (Free& one : free_) std::fill(one.v, one.v + 6, 0.0);
-  for (Tree* tree : trees_) {
+void Positions::begin_moves() {
+  for (Free& one : state_.free_bodies) std::fill(one.v, one.v + 6, 0.0);
+  for (Tree* tree : state_.trees) {
     tree->free_v = tree->state.v;
     tree->state.v.setZero();
   }
-  note_wholes(&Tree::free_v, false);
+  momentum_.note(&Tree::free_v, false);
 }
 
-void Island::end_moves(double h) {
-  for (Free& one : free_) {
+void Positions::end_moves(double h) {
+  for (Free& one : state_.free_bodies) {
     const Vector3 way = h * Vector3(one.v[0], one.v[1], one.v[2]);
     one.now.center += way;
     book_way(one.now.force.dot(way), nullptr);
     const Vector3 rotation = h * Vector3(one.v[3], one.v[4], one.v[5]);
     if (rotation != Vector3::Zero()) one.now.orientation = (rotation_by(rotation) * one.now.orientation).normalized();
   }
-  for (Tree* tree : trees_) {
+  for (Tree* tree : state_.trees) {
     tree->push = tree->state.v;
     tree->way = h * tree->push;
     tree->state.v = tree->free_v;
     articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
     if (tree->driven) book_way(tree->set_tau.dot(tree->way), tree);
   }
-  keep_wholes(h, Given::Pushes);
+  momentum_.give_pushes(h, pushes_);
 }
 
 /// Notes what contacts and limits struck so that it is nearer, having moved for h seconds with the mean of the
 /// velocities before and after, than it may be. What rests, rolls or slides is not.
 /// @return  whether there is something
-bool Island::find_struck(double h) {
-  struck_.assign(movers_.size(), 0);
+bool Positions::find_struck(double h) {
+  struck_.assign(rows_.movers().size(), 0);
   bool any = false;
   // Where impacts are located, only what rotates toward a row from afar comes too near; `balanced` does not see that.
-  const bool all = spent_ || trees_.empty();
-  if (!all && accuracy_.rung == Rung::Balanced) return false;
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    const contact::Row& row = rows_[i];
-    if (row.impulse == Vector3::Zero() || !(all || touches_[i].far)) continue;
-    const double gap = touches_[i].gap, before = before_[2 * i][0] - before_[2 * i + 1][0];
-    const double after = rate_of(row, true)[0] - rate_of(row, false)[0];
-    if (gap + 0.5 * h * (before + after) >= std::min(gap, 0.0) - kTouchSkin * size_of_pair(*pairs_[touches_[i].pair]))
-      continue;
+  const bool all = contacts_.spent() || state_.trees.empty();
+  if (!all && state_.accuracy.rung == Rung::Balanced) return false;
+  for (std::size_t i = 0; i < rows_.contacts(); ++i) {
+    const auto& [touch, pair, row, law] = rows_.contact(i);
+    if (row.impulse == Vector3::Zero() || !(all || touch.far)) continue;
+    const double gap = touch.gap, before = rows_.before(i, true)[0] - rows_.before(i, false)[0];
+    const double after = rows_.rate_of(row, true)[0] - rows_.rate_of(row, false)[0];
+    const double reached = gap + 0.5 * h * (before + after);
+    if (reached >= std::min(gap, 0.0) - kTouchSkin * state_.size_of_pair(pair)) continue;
     any = true;
     if (row.a >= 0) struck_[static_cast<std::size_t>(row.a)] = 1;
     if (row.b >= 0) struck_[static_cast<std::size_t>(row.b)] = 1;
   }
-  std::size_t k = 0;
-  for (const Bound& bound : bounds_) {
-    if (!bound.rests) continue;
-    const contact::ScalarRow& row = scalars_[k++];
+  for (std::size_t i = 0; i < rows_.limits(); ++i) {
+    const auto& [bound, row] = rows_.limit(i);
     if (row.impulse == 0 || !all) continue;
-    const double reached = bound.gap + 0.5 * h * (bound.rate + rate_of(row));
+    const double reached = bound.gap + 0.5 * h * (bound.rate + rows_.rate_of(row));
     if (reached >= std::min(bound.gap, 0.0) - kLimitSkin) continue;
     any = true;
     struck_[static_cast<std::size_t>(row.a)] = 1;
@@ -195,16 +203,16 @@ bool Island::find_struck(double h) {
 
 /// Contacts that are solved only at the end of a sub-step of h seconds must not come nearer than they are: a body that
 /// contacts struck has moved, in the end, with the velocity that they left it, not with the mean.
-void Island::hold_off(double h) {
+void Positions::hold_off(double h) {
   if (!find_struck(h)) return;
   book_moves(-1);
-  note_wholes(&Tree::smooth_v, true);
+  momentum_.note(&Tree::smooth_v, true);
   // Semi-implicit Euler has moved them with the velocity after, but for the rows' part.
-  const bool semi = semi_implicit(accuracy_);
-  for (std::size_t i = 0; i < free_.size(); ++i) {
+  const bool semi = semi_implicit(state_.accuracy);
+  for (std::size_t i = 0; i < state_.free_bodies.size(); ++i) {
     if (!struck_[i]) continue;
-    const Free& one = free_[i];
-    FreeBody& body = free_[i].now;
+    const Free& one = state_.free_bodies[i];
+    FreeBody& body = state_.free_bodies[i].now;
     const Vector3 from = semi ? Vector3(one.free_v[0], one.free_v[1], one.free_v[2]) : one.before.velocity;
     const Vector3 spin = semi ? Vector3(one.free_v[3], one.free_v[4], one.free_v[5]) : one.before.spin;
     const Vector3 way = 0.5 * h * (body.velocity - from);
@@ -213,141 +221,51 @@ void Island::hold_off(double h) {
     const Vector3 rotation = 0.5 * h * (body.spin - spin);
     if (rotation != Vector3::Zero()) body.orientation = (rotation_by(rotation) * body.orientation).normalized();
   }
-  for (const Clustered& one : clusters_)
+  for (const Clustered& one : state_.clusters)
     for (Tree* tree : one.entry->system->trees()) {
-      if (one.semi || !struck_[free_.size() + static_cast<std::size_t>(tree->slot)]) continue;
+      if (one.semi || !struck_[static_cast<std::size_t>(state_.mover_of(*tree))]) continue;
       tree->way = 0.5 * h * (tree->state.v - tree->sub_state.v);
       articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
       if (tree->driven) book_way(tree->set_tau.dot(tree->way), tree);
     }
-  keep_wholes(0.5 * h, Given::Places);
+  momentum_.give_positions(0.5 * h, struck_);
   book_moves(1);
 }
 
 /// What pushing apart gave or took, as height, in motion or in springs, is booked as what contacts did: with a sign
 /// before and after it.
-void Island::book_moves(double sign) {
+void Positions::book_moves(double sign) {
   double sum = 0;
-  for (const Free& one : loose_bodies()) sum -= one.now.solid->mass * core_.settings.gravity.dot(one.now.center);
-  sum += network_energy();
-  for (const Clustered& one : clusters_) {
+  for (const Free& one : state_.loose_bodies())
+    sum -= one.now.solid->mass * state_.core.settings.gravity.dot(one.now.center);
+  sum += network_energy(state_);
+  for (const Clustered& one : state_.clusters) {
     for (const std::uint32_t index : one.entry->trees) {
-      Tree& tree = *core_.trees[index];
-      const Energy energy = core_.energy_of(tree);
+      Tree& tree = *state_.core.trees[index];
+      const Energy energy = state_.core.energy_of(tree);
       const double stored = energy.kinetic + energy.potential + energy.springs;
       if (one.alone()) tree.ledger.contact_loss -= sign * stored;
       sum += stored;
     }
-    sum += spring_energy_in(one);
+    sum += spring_energy(state_, one);
   }
-  result.ledger.contact_loss -= sign * sum;
+  state_.result.ledger.contact_loss -= sign * sum;
 }
 
 /// What pushing apart gave, J, is taken from what moves, as far as that is little of it.
-void Island::pay_for_moves(double given) {
-  if (trees_.empty() || !(given > 0)) return;
-  const double all = moving();
-  if (all > 0) take_from_all(std::min(kFew, given / all));
+void Positions::pay_for_moves(double given) {
+  if (state_.trees.empty() || !(given > 0)) return;
+  const double all = momentum_.moving();
+  if (all > 0) momentum_.take_from_all(std::min(kFew, given / all));
 }
 
-/// Scripts' forces work along the way that contacts and limits move positions, which bear it, J.
-void Island::book_way(double work, Tree* tree) {
-  result.ledger.script_work += work;
-  result.ledger.contact_loss += work;
+/// Scripts' forces work, J, where contacts and limits move positions: these provide it.
+void Positions::book_way(double work, Tree* tree) {
+  state_.result.ledger.script_work += work;
+  state_.result.ledger.contact_loss += work;
   if (!tree) return;
   tree->ledger.script_work += work;
   tree->ledger.contact_loss += work;
 }
 
-void Island::close_loops() {
-  bool any = false;
-  for (Tree* tree : trees_) any = any || !tree->loops.empty();
-  if (!any) return;
-  touches_.clear();
-  bounds_.clear();
-  constexpr int kMost = 4;  // Newton's method from a small error: two are enough but far from the solution
-  constexpr double kClosed = 1e-13;
-  contact::SolveSettings settings;
-  settings.direct = true;
-  settings.iterations = accuracy_.iterations;
-  contact::SolveSettings exact = settings;
-  exact.tolerance = 1e-14;  // a length here: rings are closed to round-off
-  for (int i = 0;; ++i) {
-    place();
-    make_rows(Motors::Leave);
-    load_velocities();
-    double worst = 0;
-    for (std::size_t k = 0; k < scalars_.size(); ++k) {
-      scalars_[k].bias = -loop_errors_[k];
-      worst = std::max(worst, std::abs(loop_errors_[k]));
-    }
-    if (worst < kClosed || i == kMost) break;
-    begin_moves();
-    contact::solve_island(movers_, {}, scalars_, exact, workspace_);
-    end_moves(1);
-  }
-  // Velocities along the rings where they stand now.
-  for (contact::ScalarRow& row : scalars_) row.bias = 0, row.impulse = 0;
-  load_velocities();
-  contact::solve_island(movers_, {}, scalars_, settings, workspace_);
-  store_velocities(0);
-}
-
-/// Rings alone: an impulse at the start that leaves them closed at the end of the smooth motion, found by repeating
-/// that; the impulse at the end, which stops what still opens them, is found by close_loops. The rule is the same
-/// forward and backward in time and moves nothing by hand, so that it neither gains nor loses energy in the long run.
-/// Source: Andersen 1983 (RATTLE).
-/// @return  false if no such impulse is found: near a position in which a ring may fold either way
-bool Island::hold_loops(double time, double h) {
-  constexpr int kMost = 8;  // each makes the gap smaller by the square of the angle that a link turns
-  constexpr double kClosed = 1e-13;
-  constexpr double kFound = 1e-9;  // what is left of so little is put right by hand
-  for (Tree* tree : trees_) tree->kick.setZero();
-  contact::SolveSettings settings;
-  settings.direct = true;
-  settings.iterations = accuracy_.iterations;
-  settings.tolerance = kClosed;
-  double last = JointDrive::kNoLimit;
-  for (int i = 0; i < kMost; ++i) {
-    restore();
-    for (Tree* tree : trees_) tree->state.v += tree->kick;
-    smooth(time, h);
-    place_links();
-    const double worst = read_loop_errors();
-    if (worst < kClosed) return true;
-    if (!(worst < last)) return last < kFound;
-    last = worst;
-    for (std::size_t k = 0; k < scalars_.size(); ++k) {
-      scalars_[k].bias = -loop_errors_[k] / h;
-      scalars_[k].impulse = 0;
-    }
-    for (Free& one : free_) std::fill(one.v, one.v + 6, 0.0);
-    for (Tree* tree : trees_) {
-      tree->way = tree->state.v;
-      tree->state.v.setZero();
-    }
-    contact::solve_island(movers_, {}, scalars_, settings, workspace_);
-    for (Tree* tree : trees_) {
-      tree->kick += tree->state.v;
-      tree->state.v = tree->way;
-    }
-  }
-  return last < kFound;
-}
-
-/// How far the rings are open where the trees stand, m or rad; returns the largest.
-double Island::read_loop_errors() {
-  std::size_t k = 0;
-  double worst = 0;
-  for (Tree* tree : trees_)
-    for (const JointIndex index : tree->loops) {
-      const LoopRows loop = core_.loop_rows(*tree, core_.joints[index].is);
-      for (int i = 0; i < loop.count; ++i, ++k) {
-        loop_errors_[k] = loop.rows[static_cast<std::size_t>(i)].error;
-        worst = std::max(worst, std::abs(loop_errors_[k]));
-      }
-    }
-  return worst;
-}
-
-}  // namespace breve
+}  // namespace breve::island

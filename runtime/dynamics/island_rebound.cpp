@@ -1,72 +1,84 @@
-// Rebounds of what is not located in time: all at the end of a sub-step, with no more energy than there was.
+// Rebounds of what is not located in time.
+#include "runtime/dynamics/island_rebound.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include "runtime/dynamics/island.hpp"
+namespace breve::island {
 
-namespace breve {
+Rebounds::Rebounds(State& state, Contacts& contacts, Rows& rows)
+    : state_(state),
+      contacts_(contacts),
+      rows_(rows),
+      speeds_(state.memory),
+      free_rates_(state.memory),
+      plain_rates_(state.memory),
+      rates_(state.memory),
+      plain_impulses_(state.memory),
+      impulses_(state.memory),
+      plain_scalars_(state.memory) {}
 
 /// Speeds at which rows are to part that were approached as the sub-step began, by Newton's law of restitution.
 /// @return  whether there are some
-bool Island::find_rebounds(double h) {
+bool Rebounds::find(double h) {
   bool any = false;
   // A speed that gravity alone adds in two steps is not an impact: resting stacks would hop.
-  const double fall = 2 * core_.settings.gravity.norm() * h;
-  rebounding_.assign(rows_.size() + scalars_.size(), 0.0);
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    const contact::Law& law = laws_[i];
-    const double rate = before_[2 * i][0] - before_[2 * i + 1][0];
-    const bool hits = touches_[i].gap + h * rate < 0;
-    if (hits && rate < -std::max(law.restitution_threshold, fall)) rebounding_[i] = -law.restitution * rate;
-    any = any || rebounding_[i] > 0;
+  const double fall = 2 * state_.core.settings.gravity.norm() * h;
+  speeds_.assign(rows_.contacts() + rows_.scalars().size(), 0.0);
+  for (std::size_t i = 0; i < rows_.contacts(); ++i) {
+    const auto& [touch, pair, row, law] = rows_.contact(i);
+    const double rate = rows_.before(i, true)[0] - rows_.before(i, false)[0];
+    const bool hits = touch.gap + h * rate < 0;
+    if (hits && rate < -std::max(law.restitution_threshold, fall)) speeds_[i] = -law.restitution * rate;
+    any = any || speeds_[i] > 0;
   }
-  std::size_t k = 0;
-  for (const Bound& bound : bounds_) {
-    if (!bound.rests) continue;
-    const double e = core_.joints[bound.joint].drive.limit_restitution, rate = bound.rate;
-    if (e > 0 && rate < -std::max(resting_, fall) && bound.gap + h * rate < 0)
-      rebounding_[rows_.size() + k] = -e * rate;
-    any = any || rebounding_[rows_.size() + k] > 0;
-    ++k;
+  for (std::size_t i = 0; i < rows_.limits(); ++i) {
+    const Bound& bound = rows_.limit(i).bound;
+    const double e = state_.core.joints[bound.joint].drive.limit_restitution, rate = bound.rate;
+    double& speed = speeds_[rows_.contacts() + i];  // limits are the first of the scalar rows
+    if (e > 0 && rate < -std::max(contacts_.resting(), fall) && bound.gap + h * rate < 0) speed = -e * rate;
+    any = any || speed > 0;
   }
   return any;
 }
 
 /// Velocities at all rows but those of motors, one after the other.
-void Island::read_row_rates(std::pmr::vector<double>& rates) const {
+void Rebounds::read_rates(std::pmr::vector<double>& rates) const {
   rates.clear();
-  for (const contact::Row& row : rows_) {
-    const Vector3 rate = rate_of(row, true) - rate_of(row, false);
+  for (const contact::Row& row : rows_.rows()) {
+    const Vector3 rate = rows_.rate_of(row, true) - rows_.rate_of(row, false);
     rates.insert(rates.end(), rate.data(), rate.data() + 3);
   }
-  for (std::size_t i = 0; i < scalars_.size(); ++i)
-    if (!is_motor(i)) rates.push_back(rate_of(scalars_[i]));
+  for (std::size_t i = 0; i < rows_.scalars().size(); ++i)
+    if (!rows_.is_motor(i)) rates.push_back(rows_.rate_of(rows_.scalars()[i]));
 }
 
-void Island::read_impulses(std::pmr::vector<double>& impulses) const {
+void Rebounds::read_impulses(std::pmr::vector<double>& impulses) const {
   impulses.clear();
-  for (const contact::Row& row : rows_) impulses.insert(impulses.end(), row.impulse.data(), row.impulse.data() + 3);
-  for (std::size_t i = 0; i < scalars_.size(); ++i)
-    if (!is_motor(i)) impulses.push_back(scalars_[i].impulse);
+  for (const contact::Row& row : rows_.rows())
+    impulses.insert(impulses.end(), row.impulse.data(), row.impulse.data() + 3);
+  for (std::size_t i = 0; i < rows_.scalars().size(); ++i)
+    if (!rows_.is_motor(i)) impulses.push_back(rows_.scalars()[i].impulse);
 }
 
-/// Solves the rows without rebound, then with it, and goes from the first solution toward the second as far as
-/// contacts, limits and loops together give no energy: with several at once, Newton's law may.
-void Island::solve_rebounding() {
-  solve_rows();
-  read_row_rates(plain_rates_);
+void Rebounds::ask() {
+  read_rates(plain_rates_);
   read_impulses(plain_impulses_);
   plain_scalars_.clear();
-  for (const contact::ScalarRow& row : scalars_) plain_scalars_.push_back(row.impulse);
-  for (Free& one : free_) std::copy_n(one.v, 6, one.plain_v);
-  for (Tree* tree : trees_) tree->way = tree->state.v;
-  for (std::size_t i = 0; i < rows_.size(); ++i)
-    if (rebounding_[i] > 0) rows_[i].bias = rebounding_[i];
-  for (std::size_t i = 0; i < scalars_.size(); ++i)
-    if (rebounding_[rows_.size() + i] > 0) scalars_[i].bias = rebounding_[rows_.size() + i];
-  reset_velocities();
-  solve_rows();
-  read_row_rates(rates_);
+  for (const contact::ScalarRow& row : rows_.scalars()) plain_scalars_.push_back(row.impulse);
+  for (Free& one : state_.free_bodies) std::copy_n(one.v, 6, one.plain_v);
+  for (Tree* tree : state_.trees) tree->way = tree->state.v;
+  for (std::size_t i = 0; i < rows_.contacts(); ++i)
+    if (speeds_[i] > 0) rows_.rows()[i].bias = speeds_[i];
+  for (std::size_t i = 0; i < rows_.scalars().size(); ++i)
+    if (speeds_[rows_.contacts() + i] > 0) rows_.scalars()[i].bias = speeds_[rows_.contacts() + i];
+  state_.reset_velocities();
+}
+
+/// Goes from the solution without rebound toward the one with it as far as contacts, limits and loops together give no
+/// energy: with several at once, Newton's law may.
+void Rebounds::settle() {
+  read_rates(rates_);
   read_impulses(impulses_);
   const auto gained = [&](double share) {
     double sum = 0;
@@ -86,20 +98,15 @@ void Island::solve_rebounding() {
 }
 
 /// Impulses and velocities between the two solutions.
-void Island::mix(double share) {
+void Rebounds::mix(double share) {
   std::size_t at = 0;
   const auto between = [share](double& value, double plain) { value = plain + share * (value - plain); };
-  for (contact::Row& row : rows_)
+  for (contact::Row& row : rows_.rows())
     for (int k = 0; k < 3; ++k) between(row.impulse[k], plain_impulses_[at++]);
-  for (std::size_t i = 0; i < scalars_.size(); ++i) between(scalars_[i].impulse, plain_scalars_[i]);
-  for (Free& one : free_)
+  for (std::size_t i = 0; i < rows_.scalars().size(); ++i) between(rows_.scalars()[i].impulse, plain_scalars_[i]);
+  for (Free& one : state_.free_bodies)
     for (int k = 0; k < 6; ++k) between(one.v[k], one.plain_v[k]);
-  for (Tree* tree : trees_) tree->state.v = tree->way + share * (tree->state.v - tree->way);
+  for (Tree* tree : state_.trees) tree->state.v = tree->way + share * (tree->state.v - tree->way);
 }
 
-void Island::reset_velocities() {
-  for (Free& one : free_) std::copy_n(one.free_v, 6, one.v);
-  for (Tree* tree : trees_) tree->state.v = tree->free_v;
-}
-
-}  // namespace breve
+}  // namespace breve::island

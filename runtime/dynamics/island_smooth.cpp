@@ -1,4 +1,6 @@
 // Smooth motion of what an island holds; on `fast` in as many parts as keep the energy.
+#include "runtime/dynamics/island_smooth.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -6,10 +8,11 @@
 #include "runtime/articulated/energy.hpp"
 #include "runtime/base/error.hpp"
 #include "runtime/base/rotation_vector.hpp"
-#include "runtime/dynamics/island.hpp"
+#include "runtime/dynamics/common_motion.hpp"
+#include "runtime/dynamics/island_energy.hpp"
 #include "runtime/dynamics/spring_network.hpp"
 
-namespace breve {
+namespace breve::island {
 
 namespace {
 
@@ -17,95 +20,117 @@ constexpr int kMostParts = 16;  // of a step
 // Of step control where contacts act, if its tolerance is not finer than that.
 constexpr double kContactSlack = 10;
 
-}  // namespace
-
-void Island::move_driver(Free& one, double h) {
+void move_driver(Free& one, double h) {
   one.now.center += h * one.now.velocity;
   if (one.now.spin != Vector3::Zero())
     one.now.orientation = (rotation_by(h * one.now.spin) * one.now.orientation).normalized();
 }
 
-void Island::smooth(double time, double h) {
-  if (springs_move()) return smooth_springs(time, h);
-  free_work_ = network_loss_ = 0;
+/// Takes from the motion of a cluster's links among one another what a step gained that nothing explains, or gives it
+/// back: momenta and loops stay as they are, since all their velocities are shortened alike.
+/// Source: Hairer, Lubich and Wanner 2006, IV.4 (projection to the energy).
+/// @param gain  J
+/// @return  false if that is more than a small part of that motion's energy: nothing was changed
+bool take_back(Clustered& one, double gain) {
+  const std::span trees = one.entry->system->trees();
+  const Common common = common_of(trees);
+  if (!(std::abs(gain) <= kFew * common.inner)) return false;
+  shorten_inner(trees, common, std::sqrt(1 - gain / common.inner));
+  return true;
+}
+
+/// The same where no finer step would help: whatever it is, down to links at rest among one another.
+void take_back_most(Clustered& one, double gain) {
+  if (!(gain > 0)) return;
+  const std::span trees = one.entry->system->trees();
+  const Common common = common_of(trees);
+  if (common.inner > 0) shorten_inner(trees, common, std::sqrt(std::max(0.0, 1 - gain / common.inner)));
+}
+
+void add_works(const Energy& from, Energy& to) {
+  to.motor_work += from.motor_work;
+  to.script_work += from.script_work;
+  to.drag_loss += from.drag_loss;
+}
+
+}  // namespace
+
+void SmoothMotion::move(double time, double h) {
+  if (springs_.move()) {
+    free_work_ = springs_.smooth(time, h);
+    return;
+  }
+  free_work_ = 0;
   constexpr std::uint64_t kUnits = 10;  // of work, a body
-  meter_.add(kUnits * free_.size());
-  smooth_networks(time, h);
-  const std::size_t first = networks_.empty() ? free_.size() : networks_.front().first, end = networks_end();
-  for (std::size_t i = 0; i < free_.size(); ++i) {
+  state_.meter.add(kUnits * state_.free_bodies.size());
+  networks_.move(time, h, free_work_);
+  const std::size_t first = state_.networks_begin(), end = state_.networks_end();
+  for (std::size_t i = 0; i < state_.free_bodies.size(); ++i) {
     if (i >= first && i < end) continue;
-    Free& one = free_[i];
+    Free& one = state_.free_bodies[i];
     if (one.driver) {
       move_driver(one, h);
       continue;
     }
     const Vector3 center = one.now.center, spin = one.now.spin;
-    move_free(one.now, accuracy_, core_.settings.gravity, time, h, one.next, meter_);
+    move_free(one.now, state_.accuracy, state_.core.settings.gravity, time, h, one.next, state_.meter);
     free_work_ += one.now.force.dot(one.now.center - center) + 0.5 * h * one.now.torque.dot(spin + one.now.spin);
   }
-  for (Clustered& one : clusters_) {
-    forget_parts(one);
-    one.semi = semi_implicit(accuracy_);
-    if (one.entry->system->can_be_finer())
-      smooth_fast(one, time, h);
-    else
-      smooth_whole(one, time, h);
-  }
+  for (Clustered& one : state_.clusters) move_cluster(one, time, h);
 }
 
-/// Impulses of contacts are taken as constant over a sub-step: where some act, more digits are not seen.
-bool Island::coarse() const { return has_rows() && accuracy_.tolerance >= kCoarse; }
-
-void Island::forget_parts(Clustered& one) {
-  one.pending = {};
-  one.held_work = 0;
-  for (Tree* tree : one.entry->system->trees()) tree->motor_impulse.setZero();
+void SmoothMotion::move_cluster(Clustered& one, double time, double h) {
+  one.forget_parts();
+  one.semi = semi_implicit(state_.accuracy);
+  if (one.entry->system->can_be_finer())
+    move_fast(one, time, h);
+  else
+    move_whole(one, time, h);
 }
 
-void Island::smooth_once(Clustered& one, double time, double h) {
+void SmoothMotion::move_once(Clustered& one, double time, double h) {
   Cluster& system = *one.entry->system;
-  system.set_slack(coarse() ? kContactSlack : 1);
+  system.set_slack(contacts_.coarse() ? kContactSlack : 1);
   system.step(time, h);
   for (Tree* tree : system.trees()) tree->motor_impulse += tree->part_impulse;
-  if (one.entry->network) one.entry->network->note_forces(core_);
-  result.counters.evaluations += static_cast<std::uint64_t>(system.count().evaluations);
-  result.counters.rejected += static_cast<std::uint64_t>(system.count().rejected);
+  if (one.entry->network) one.entry->network->note_forces(state_.core);
+  state_.result.counters.evaluations += static_cast<std::uint64_t>(system.count().evaluations);
+  state_.result.counters.rejected += static_cast<std::uint64_t>(system.count().rejected);
   one.pending.motor_work += system.motor_work();
   one.pending.script_work += system.script_work();
   one.pending.drag_loss += system.drag_loss();
   one.held_work += system.reaction_work();
 }
 
-/// The energy of the springs between its trees, whose links are placed, J.
-double Island::spring_energy_in(const Clustered& one) const {
-  if (one.entry->network) return one.entry->network->spring_energy(core_);
-  double sum = 0;
-  for (const SpringIndex spring : one.entry->springs) sum += core_.spring_energy_in(core_.springs[spring].is);
-  return sum;
-}
-
-/// Energy of a cluster, all of it; `kinetic` what is in motion.
-double Island::stored_in(const Clustered& one, double& kinetic) {
-  double sum = 0;
-  kinetic = 0;
-  for (const std::uint32_t index : one.entry->trees) {
-    const Energy energy = core_.energy_of(*core_.trees[index]);
-    kinetic += energy.kinetic;
-    sum += energy.kinetic + energy.potential + energy.springs;
+/// One piece of smooth motion of h seconds, after which a cluster that nothing holds has the momenta it had, and what
+/// gravity gave it.
+void SmoothMotion::move_whole(Clustered& one, double time, double h) {
+  if (!one.loose) return move_once(one, time, h);
+  const std::span trees = one.entry->system->trees();
+  articulated::Whole wanted = measure(trees);
+  Vector3 force = Vector3::Zero();
+  for (const Tree* tree : trees) {
+    force += tree->outer_force;
+    wanted.spin += h * (tree->outer_couple + (tree->row_center - wanted.center).cross(tree->outer_force));
   }
-  return sum + spring_energy_in(one);
+  const Vector3& gravity = state_.core.settings.gravity;
+  force += wanted.mass * gravity;
+  wanted.center += h / wanted.mass * (wanted.momentum + 0.5 * h * force);
+  wanted.momentum += h * force;
+  move_once(one, time, h);
+  impose(trees, measure(trees), wanted);
 }
 
 /// Runge-Kutta 4, or semi-implicit Euler where springs are too fast for it, in as many parts as leave little for
 /// projection to the energy. A gain that remains is taken back; a loss of implicit springs is lost.
-void Island::smooth_fast(Clustered& one, double time, double h) {
+void SmoothMotion::move_fast(Clustered& one, double time, double h) {
   Cluster& system = *one.entry->system;
   for (Tree* tree : system.trees()) tree->part_state = tree->state;
-  bool implicit = stiff(one) || finished_;
+  bool implicit = state_.stiff(one) || state_.finished;
   system.set_finer(!implicit);
-  const double still = kStill * weight();
+  const double still = kStill * weight(state_);
   for (int parts = 1;; parts *= 2) {
-    const bool last = 2 * parts > kMostParts || worn();
+    const bool last = 2 * parts > kMostParts || state_.worn();
     double gain = std::numeric_limits<double>::infinity();
     try {
       gain = gain_of(one, time, h, parts);
@@ -117,9 +142,9 @@ void Island::smooth_fast(Clustered& one, double time, double h) {
       take_back_most(one, gain);
       break;
     }
-    ++result.counters.rejected;
+    ++state_.result.counters.rejected;
     for (Tree* tree : system.trees()) tree->state = tree->part_state;
-    forget_parts(one);
+    one.forget_parts();
     if (!last) continue;
     implicit = true;
     system.set_finer(false);
@@ -129,24 +154,64 @@ void Island::smooth_fast(Clustered& one, double time, double h) {
   one.semi = implicit;
 }
 
-/// Some joint has a spring or damper that a step may not follow: semi-implicit Euler holds it whatever its stiffness,
-/// and takes energy from it.
-bool Island::stiff(const Clustered& one) const {
-  for (const std::uint32_t index : one.entry->trees)
-    for (const articulated::Drive& drive : core_.trees[index]->loads.drives)
-      if (drive.stiffness > 0 || drive.damping > 0) return true;
-  return false;
-}
-
 /// Takes the step in parts. What it gained that nothing explains, J.
-double Island::gain_of(Clustered& one, double time, double h, int parts) {
+double SmoothMotion::gain_of(Clustered& one, double time, double h, int parts) {
   double kinetic = 0;
-  const double before = stored_in(one, kinetic);
-  for (int i = 0; i < parts; ++i) smooth_whole(one, time + i * h / parts, h / parts);
+  const double before = stored_energy(state_, one, kinetic);
+  for (int i = 0; i < parts; ++i) move_whole(one, time + i * h / parts, h / parts);
   const Energy& did = one.pending;
   const double gain =
-      stored_in(one, kinetic) - before - (did.motor_work + did.script_work + one.held_work - did.drag_loss);
+      stored_energy(state_, one, kinetic) - before - (did.motor_work + did.script_work + one.held_work - did.drag_loss);
   return std::abs(gain) <= kTiny * std::abs(before) ? 0 : gain;
 }
 
-}  // namespace breve
+/// Motors, dampers and scripts pushed along the path of smooth motion; they also worked along what the rows' impulses
+/// added to it: half of the change of velocity for h.
+void SmoothMotion::correct_works(double h) {
+  for (const Free& one : state_.free_bodies) {
+    for (int k = 0; k < 3; ++k)
+      free_work_ +=
+          0.5 * h *
+          (one.now.force[k] * (one.v[k] - one.free_v[k]) + one.now.torque[k] * (one.v[3 + k] - one.free_v[3 + k]));
+  }
+  networks_.correct_drag();
+  for (Clustered& clustered : state_.clusters)
+    for (const std::uint32_t index : clustered.entry->trees) {
+      Tree& tree = *state_.core.trees[index];
+      if (!tree.driven) continue;
+      const bool semi = clustered.semi;
+      const articulated::Vector &before = tree.sub_state.v, &free = tree.smooth_v, &after = tree.state.v;
+      for (int i = 0; i < tree.model.size(); ++i) {
+        const TreeLink& link = tree.links[static_cast<std::size_t>(i)];
+        if (link.joint == kNoJoint) continue;
+        const articulated::Body& body = tree.model.body(i);
+        const double damping = state_.core.joints[link.joint].drive.damping;
+        for (int k = body.v; k < body.v + articulated::velocity_count(body.type); ++k) {
+          const double change = after[k] - free[k], mean = 0.5 * (before[k] + free[k]);
+          clustered.pending.motor_work += 0.5 * change * tree.motor_impulse[k];
+          clustered.pending.script_work += (semi ? 1 : 0.5) * change * h * tree.set_tau[k];
+          // An implicit damper pushes against the velocity that comes of it.
+          if (semi && !link.slow_spring)
+            clustered.pending.drag_loss += damping * h * (after[k] * after[k] - free[k] * mean);
+          else
+            clustered.pending.drag_loss += 0.5 * change * damping * h * (semi ? before[k] : mean);
+        }
+      }
+    }
+}
+
+void SmoothMotion::commit() {
+  ++state_.result.counters.sub_steps;
+  state_.result.ledger.script_work += free_work_;
+  if (springs_.move())
+    springs_.commit();
+  else
+    state_.result.ledger.drag_loss += networks_.loss();
+  for (const Clustered& one : state_.clusters) {
+    add_works(one.pending, state_.result.ledger);
+    // What springs between trees do is nobody's own.
+    if (one.alone()) add_works(one.pending, state_.core.trees[one.entry->trees.front()]->ledger);
+  }
+}
+
+}  // namespace breve::island

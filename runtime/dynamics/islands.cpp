@@ -179,8 +179,8 @@ void Dynamics::Core::run(MechanicsClient& client, double start, double h, int de
   counters.work += near.movers().size() + island_pairs.size() + near.others();
   const std::uint64_t work = work_left();
   // Islands that call nobody first: what a handler does must not pull the ground from under them. They are stepped in
-  // lots that take turns in the same places: what an island works with would not fit the caches for all of a crowd, and
-  // hardly for more than a few. Several workers wait for one another at the end of each lot.
+  // lots that use the same memory one after the other: what an island works with would not fit the caches for all of a
+  // crowd, and hardly for more than a few. Several workers wait for one another at the end of each lot.
   const std::size_t most = settings.workers > 1 ? 64 : 4;
   std::size_t lot = 0, callers = 0;
   Energy alone;
@@ -308,12 +308,12 @@ void Dynamics::Core::note_rest(Island& island, double h) {
   }
   if (!all) return;
   for (const BodyIndex body : scratch) near.rest(body).asleep = true;
-  island.stop(Island::Momenta::Take, h);
+  island.fall_asleep(h);
   island.write();
 }
 
 void Dynamics::Core::take_result(Island& island) {
-  const IslandResult& from = island.result;
+  const IslandResult& from = island.result();
   const DynamicsCounters& c = from.counters;
   counters.sub_steps += c.sub_steps;
   counters.evaluations += c.evaluations;

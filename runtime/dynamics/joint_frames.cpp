@@ -15,7 +15,7 @@ using articulated::JointType;
 
 Quaternion about(const Vector3& axis, double angle) { return Quaternion(Eigen::AngleAxisd(angle, axis)); }
 
-/// Angle of the part of a rotation that turns about `axis`, -pi to pi.
+/// Angle of the part of a rotation that is about `axis`, -pi to pi.
 double angle_about(const Quaternion& rotation, const Vector3& axis) {
   const double along = rotation.vec().dot(axis);
   return 2 * std::atan2(rotation.w() < 0 ? -along : along, std::abs(rotation.w()));
@@ -119,7 +119,7 @@ JointVector joint_position_between(const JointDescription& is, const Quaternion&
     case JointKind::Revolute: return {near(-angle_about(excursion, axes.first), last[0]), 0, 0};
     case JointKind::Prismatic: return {-axes.first.dot(shift), 0, 0};
     case JointKind::Universal: {
-      // E = Rot(first, -p0) Rot(second, -p1): the second axis is where E took it only by the first turn.
+      // E = Rot(first, -p0) Rot(second, -p1): the second axis is where E took it only by the first rotation.
       const Vector3 carried = excursion * axes.second;
       const Vector3 third = axes.first.cross(axes.second);
       const double first = -std::atan2(carried.dot(third), carried.dot(axes.second));

@@ -21,7 +21,7 @@ void describe_joint(const JointDescription& is, bool flipped, const Quaternion& 
 /// The model's numbers for a relative rotation and shift of two bodies, as near as the joint allows.
 /// @param turn   child's orientation relative to the parent's: R_parent^-1 R_child
 /// @param shift  of the child's point from the parent's point, in the parent's frame, m
-/// @param last   the joint's position as last known, from which whole turns are counted
+/// @param last   the joint's position as last known, from which full rotations are counted
 void read_joint(const JointDescription& is, bool flipped, const Quaternion& rotation, const Vector3& shift,
                 const JointVector& last, double* q);
 
@@ -30,7 +30,8 @@ JointVector joint_velocity(const JointDescription& is, bool flipped, const doubl
 /// The inverses: numbers of the model from positions and rates.
 void put_joint_position(const JointDescription& is, bool flipped, const JointVector& position, double* q);
 void put_joint_velocity(const JointDescription& is, bool flipped, const double* q, const JointVector& rate, double* v);
-/// A ball joint's numbers from the child's turn and spin relative to the parent's frame at zero, in the parent's axes.
+/// A ball joint's numbers from the child's rotation and spin relative to the parent's frame at zero, in the parent's
+/// axes.
 void put_ball(const JointDescription& is, bool flipped, const Quaternion& rotation, const Vector3& spin, double* q,
               double* v);
 /// From one position of a joint to another, both in the model's numbers: a spring in the joint pulls back along it. For

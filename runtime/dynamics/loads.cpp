@@ -84,7 +84,7 @@ void Dynamics::Core::set_loads(Tree& tree, const Accuracy& accuracy, double h) {
       made.damping = drive.damping;
     }
     tree.springs.drives[i] = made;
-    // What a motor gives inside the stages does not know of the forces that hold rings: there all of it is the row's.
+    // What a motor gives inside the stages does not know of the forces that hold loops: there all of it is the row's.
     if (drive.strength_limit > 0 && tree.loops.empty()) {
       made.motor_gain = kMotorStiffness * link.gain_unit / kMotorTime;
       made.motor_limit = drive.strength_limit;

@@ -1,4 +1,4 @@
-// The step of a free body that nothing is near and nothing ties: most islands of a crowd are such bodies. What an
+// The step of a free body that nothing is near and no spring holds: most islands of a crowd are such bodies. What an
 // island does for them is a straight line here: the same motion, the same books.
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// Which relations each kind of joint holds: two or three of place, none to three of turning.
+// Which relations each kind of joint holds: two or three of position, none to three of rotation.
 #include "runtime/dynamics/loop_rows.hpp"
 
 #include "runtime/contact/impact_law.hpp"
@@ -10,7 +10,7 @@ namespace breve {
 namespace {
 
 /// The parent's side of the row is where the child's point is, along a prismatic joint's axis far from its own: what
-/// turns with the parent is then told from what slides.
+/// rotates with the parent is then told from what slides.
 void add_linear(const Vector3& axis, const Vector3& child, const Vector3& parent, LoopRows& rows) {
   rows.add({axis, false, child, child, axis.dot(child - parent)});
 }
@@ -23,7 +23,7 @@ void add_angular(const Vector3& axis, double error, LoopRows& rows) {
   rows.add(row);
 }
 
-/// Place and turn of an end: a link of the tree as it stands, or a body that does not move by itself.
+/// Position and rotation of an end: a link of the tree as it stands, or a body that does not move by itself.
 Pose end_pose(const Dynamics::Core& core, const Tree& tree, BodyIndex body, int& link) {
   link = -1;
   if (body == kNoBody) return {};
@@ -46,7 +46,7 @@ LoopRows Dynamics::Core::loop_rows(const Tree& tree, const JointDescription& is)
   if (is.kind != JointKind::Prismatic) add_linear(normal, on_child, on_parent, rows);
   add_linear(t1, on_child, on_parent, rows);
   add_linear(t2, on_child, on_parent, rows);
-  // A small turn from where the child should be; twice the vector part of its quaternion.
+  // A small rotation from where the child should be; twice the vector part of its quaternion.
   Quaternion open = child.orientation * (parent.orientation * is.relative_rotation).conjugate();
   if (open.w() < 0) open.coeffs() = -open.coeffs();
   const Vector3 rotation = 2 * open.vec();

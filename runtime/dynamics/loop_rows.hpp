@@ -1,4 +1,4 @@
-// A joint that closes a ring, as relations between the motions of its two bodies: what a joint of a tree gives for
+// A joint that closes a loop, as relations between the motions of its two bodies: what a joint of a tree gives for
 // nothing. Positions are kept closed by a projection after each sub-step.
 #pragma once
 

@@ -200,7 +200,7 @@ void rotate_free(FreeBody& body, const Accuracy& accuracy, double time, double h
   if (still) return;
   const bool plain = body.solid->round && body.torque == Vector3::Zero();
   if (plain) {
-    // A round body without torque turns at its rate: exact.
+    // A round body without torque rotates at its rate: exact.
     body.orientation = (rotation_by(h * body.spin) * body.orientation).normalized();
   } else if (accuracy.implicit_spin) {
     rotate_by_midpoint(body, h);

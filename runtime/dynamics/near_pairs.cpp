@@ -153,10 +153,10 @@ Vector3 NearPairs::room_of(const Bodies& bodies, const Proxy& proxy, double radi
   const double rotation = std::min(bodies.rotational_velocity(proxy.body).norm() * h * radius, radius);
   const Vector3 speed = bodies.velocity(proxy.body).cwiseAbs();
   if (proxy.moves) {
-    // Straight on, falling, turning; twice as far, since it may be pushed on the way.
+    // Straight on, falling, rotating; twice as far, since it may be pushed meanwhile.
     room += (speed + h * gravity.cwiseAbs()) * (2 * h) + Vector3::Constant(2 * rotation);
   } else if (bodies.moving(proxy.body)) {
-    // It stands at the end of its way, which it turned on too.
+    // It stands where its motion ends, and it may have rotated.
     room += h * speed + Vector3::Constant(rotation);
   }
   return room;

@@ -1,5 +1,6 @@
-// The motion of bodies that only springs between their centres of mass tie: no spring turns a body, so that what moves
-// is a set of points. Flat arrays of points and springs, gone through once for each evaluation of the forces.
+// The motion of bodies that only springs between their centres of mass connect: no spring rotates a body, so
+// that what moves is a set of points. Flat arrays of points and springs, gone through once for each evaluation of
+// forces.
 //
 // Forces are those of the positions alone, in a symmetric scheme of order 4 with four evaluations (Omelyan, Mryglod and
 // Folk 2002: position-extended Forest-Ruth-like) or, where the springs are slow beside the step, in the leapfrog scheme

@@ -1,4 +1,4 @@
-// A cluster of bodies without joints that springs tie to one another: the same equations as of any cluster, with
+// A cluster of bodies without joints that springs connect: the same equations as of any cluster, with
 // nothing in them that only joints need. Bodies are numbered as the cluster's trees are.
 #pragma once
 

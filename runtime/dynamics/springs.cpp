@@ -21,7 +21,7 @@ SpringIndex Dynamics::add_spring(const SpringDescription& description, ObjectId 
   c.springs[index].used = true;
   c.springs[index].owner = owner;
   c.springs[index].is = description;
-  // Whoever ties moving bodies stretches the spring.
+  // Connecting bodies that move stretches the spring.
   c.springs[index].booked = c.known_to_books(description.a) || c.known_to_books(description.b) ? 0 : kNoBook;
   for (const BodyIndex end : {description.a, description.b}) {
     ++c.entry(end).springs;

@@ -8,7 +8,7 @@
 #include "runtime/articulated/rotation.hpp"
 #include "runtime/base/rotation_vector.hpp"
 
-namespace breve {
+namespace breve::island {
 
 using articulated::Kind;
 using articulated::Vector;
@@ -24,23 +24,23 @@ constexpr std::uint64_t kNoPiece = 0xcbf29ce484222325, kPrime = 0x100000001b3;  
 
 /// Calls of_free(body, first place, first speed) and of_cluster(cluster, part, first place, first speed) in order.
 template <class OfFree, class OfCluster>
-void Island::SprungMotion::each(const OfFree& of_free, const OfCluster& of_cluster) {
+void SprungMotion::each(const OfFree& of_free, const OfCluster& of_cluster) {
   int q = 0, v = 0;
-  for (Free& one : island_.free_) {
+  for (Free& one : state_.free_bodies) {
     of_free(one, q, v);
     q += kFreePositions;
     v += kFreeSpeeds;
   }
-  for (std::size_t i = 0; i < island_.clusters_.size(); ++i) {
-    const Clustered& one = island_.clusters_[i];
+  for (std::size_t i = 0; i < state_.clusters.size(); ++i) {
+    const Clustered& one = state_.clusters[i];
     of_cluster(*one.entry->system, parts_[i], q, v);
     q += one.entry->system->positions();
     v += one.entry->system->velocities();
   }
 }
 
-void Island::SprungMotion::lay_out() {
-  parts_.resize(island_.clusters_.size());
+void SprungMotion::lay_out() {
+  parts_.resize(state_.clusters.size());
   kinds_.clear();
   nq_ = 0;
   mass_ = 0;
@@ -54,13 +54,13 @@ void Island::SprungMotion::lay_out() {
         for (int k = 0; k < cluster.velocities(); ++k) kinds_.push_back(cluster.kind(k));
         nq_ += cluster.positions();
       });
-  for (const Tree* tree : island_.trees_) mass_ += tree->model.mass();
+  for (const Tree* tree : state_.trees) mass_ += tree->model.mass();
   bodies_v_ = static_cast<int>(kinds_.size());
   while (room_ < points.size()) room_ = std::max(kLeastRoom, 2 * room_);
-  const int size = tree_works_at(static_cast<int>(island_.trees_.size()));
+  const int size = tree_works_at(static_cast<int>(state_.trees.size()));
   kinds_.resize(static_cast<std::size_t>(size), Kind::Length);
-  pushes_.assign(island_.free_.size(), {});
-  const Accuracy& accuracy = island_.accuracy_;
+  pushes_.assign(state_.free_bodies.size(), {});
+  const Accuracy& accuracy = state_.accuracy;
   const double tolerance = std::min(accuracy.tolerance, kCoarsest);
   const bool same =
       integrator_ && nv_ == size && start_.q.size() == nq_ && scheme_ == accuracy.scheme && tolerance_ == tolerance;
@@ -81,9 +81,9 @@ void Island::SprungMotion::lay_out() {
 
 // --- the state ------------------------------------------------------------------------------------------------------
 
-double Island::SprungMotion::stretch_unit() const { return 1 / std::sqrt(island_.accuracy_.contact_stiffness); }
+double SprungMotion::stretch_unit() const { return 1 / std::sqrt(state_.accuracy.contact_stiffness); }
 
-void Island::SprungMotion::read(articulated::Instant& at) {
+void SprungMotion::read(articulated::Instant& at) {
   at.v.setZero();
   at.step = 0;
   const auto take_step = [&at](double step) {
@@ -106,7 +106,7 @@ void Island::SprungMotion::read(articulated::Instant& at) {
         at.v.segment(v, part.v.size()) = part.v;
         take_step(cluster.next_step());
       });
-  island_.place_links();
+  state_.place_links();
   for (std::size_t i = 0; i < points.size(); ++i) {
     follow(points[i]);
     at.v.segment<2>(stretch_at(i)) = (points[i].axes * points[i].stretch).tail<2>() / stretch_unit();
@@ -114,7 +114,7 @@ void Island::SprungMotion::read(articulated::Instant& at) {
 }
 
 /// The bodies' state, without what a step brings about beside it.
-void Island::SprungMotion::place(const Vector& q, const Vector& v) {
+void SprungMotion::place(const Vector& q, const Vector& v) {
   each(
       [&](Free& one, int at_q, int at_v) {
         one.now.center = q.segment<3>(at_q);
@@ -129,7 +129,7 @@ void Island::SprungMotion::place(const Vector& q, const Vector& v) {
       });
 }
 
-void Island::SprungMotion::write(const articulated::Instant& at) {
+void SprungMotion::write(const articulated::Instant& at) {
   place(at.q, at.v);
   each([&](Free& one, int, int) { one.next = at.step; },
        [&](Cluster& cluster, Part& part, int q, int v) {
@@ -140,13 +140,13 @@ void Island::SprungMotion::write(const articulated::Instant& at) {
        });
 }
 
-void Island::SprungMotion::step(double time, double h) {
+void SprungMotion::step(double time, double h) {
   lay_out();
   read(start_);
   start_.t = time;
   end_ = start_;
   const auto press = [this](bool on) {
-    for (Clustered& one : island_.clusters_) one.stage->pressed = on;
+    for (Clustered& one : state_.clusters) one.stage->pressed = on;
   };
   press(true);
   try {
@@ -159,35 +159,35 @@ void Island::SprungMotion::step(double time, double h) {
   press(false);
   write(end_);
   const articulated::StepCount& count = integrator_->count();
-  island_.result.counters.evaluations += static_cast<std::uint64_t>(count.evaluations);
-  island_.result.counters.rejected += static_cast<std::uint64_t>(count.rejected);
+  state_.result.counters.evaluations += static_cast<std::uint64_t>(count.evaluations);
+  state_.result.counters.rejected += static_cast<std::uint64_t>(count.rejected);
 }
 
-void Island::SprungMotion::look() {
-  island_.place_links();
+void SprungMotion::look() {
+  state_.place_links();
   for (std::size_t i = 0; i < points.size(); ++i) {
     follow(points[i]);
     resist(points[i], end_.v.segment<2>(stretch_at(i)) * stretch_unit());
   }
 }
 
-double Island::SprungMotion::gap_of(std::size_t index, double& rate) {
+double SprungMotion::gap_of(std::size_t index, double& rate) {
   SprungPoint& point = points[index];
   follow(point);
   rate = point.slip[0];
   return point.gap;
 }
 
-Energy Island::SprungMotion::lost() const {
+Energy SprungMotion::lost() const {
   Energy all;
   all.contact_loss = end_.v[works_at()] * mass_;
   all.friction_loss = end_.v[works_at() + 1] * mass_;
   all.script_work = end_.v[works_at() + 2] * mass_;
-  for (const Tree* tree : island_.trees_) all.limit_loss += lost(*tree).limit_loss;
+  for (const Tree* tree : state_.trees) all.limit_loss += lost(*tree).limit_loss;
   return all;
 }
 
-Energy Island::SprungMotion::lost(const Tree& tree) const {
+Energy SprungMotion::lost(const Tree& tree) const {
   Energy own;
   own.contact_loss = end_.v[tree_works_at(tree.slot)] * mass_;
   own.friction_loss = end_.v[tree_works_at(tree.slot) + 1] * mass_;
@@ -198,13 +198,13 @@ Energy Island::SprungMotion::lost(const Tree& tree) const {
 // --- forces ----------------------------------------------------------------------------------------------------------
 
 /// Where the point is and how fast it slips, at the island's state.
-void Island::SprungMotion::follow(SprungPoint& point) const {
-  const NearPair& pair = *island_.pairs_[point.pair];
-  const Pose a = island_.pose_of(pair.a), b = island_.pose_of(pair.b);
+void SprungMotion::follow(SprungPoint& point) const {
+  const NearPair& pair = *state_.pairs[point.pair];
+  const Pose a = state_.pose_of(pair.a), b = state_.pose_of(pair.b);
   const Quaternion& orientation = point.with_a ? a.orientation : b.orientation;
   Vector3 normal = orientation * point.normal;
   if (point.round) {
-    const Bodies& bodies = *island_.core_.bodies;
+    const Bodies& bodies = *state_.core.bodies;
     const Contact contact = closest(*bodies.collision_shape(pair.a), a, *bodies.collision_shape(pair.b), b);
     normal = contact.normal;
     point.at = contact.point;
@@ -218,12 +218,12 @@ void Island::SprungMotion::follow(SprungPoint& point) const {
   const Vector3 tangent = orientation * point.tangent;
   const Vector3 first = (tangent - normal.dot(tangent) * normal).normalized();
   point.axes << normal.transpose(), first.transpose(), normal.cross(first).transpose();
-  point.slip = point.axes * (island_.point_velocity(pair.a, point.at) - island_.point_velocity(pair.b, point.at));
+  point.slip = point.axes * (state_.point_velocity(pair.a, point.at) - state_.point_velocity(pair.b, point.at));
 }
 
 /// The forces of the springs of a point that was followed. A point that was open as the sub-step began is met by an
 /// event.
-Island::SprungMotion::Resistance Island::SprungMotion::resist(SprungPoint& point, const Vector2& stretch) const {
+SprungMotion::Resistance SprungMotion::resist(SprungPoint& point, const Vector2& stretch) const {
   Resistance out;
   if (point.apart == 0) out.press = contact::press(point.spring, point.gap - point.skin, point.slip[0]);
   out.drag = contact::drag(point.spring, stretch, point.slip.tail<2>(), out.press.force);
@@ -235,16 +235,16 @@ Island::SprungMotion::Resistance Island::SprungMotion::resist(SprungPoint& point
   return out;
 }
 
-void Island::SprungMotion::push(const SprungPoint& point, Vector& a) {
-  const NearPair& pair = *island_.pairs_[point.pair];
+void SprungMotion::push(const SprungPoint& point, Vector& a) {
+  const NearPair& pair = *state_.pairs[point.pair];
   for (const auto& [body, sign] : {std::pair{pair.a, 1.0}, std::pair{pair.b, -1.0}}) {
-    const BodySlot side = island_.slot_of(body);
+    const BodySlot side = state_.slot_of(body);
     if (side.mover < 0) continue;
     const Vector3 force = sign * point.force;
     if (!side.tree) {
       articulated::Wrench& on = pushes_[static_cast<std::size_t>(side.mover)];
       on.force += force;
-      on.couple += island_.arm_of(side, point.at).cross(force);
+      on.couple += state_.arm_of(side, point.at).cross(force);
       continue;
     }
     articulated::Wrench& on = side.tree->links[static_cast<std::size_t>(side.link)].pressed;
@@ -257,11 +257,11 @@ void Island::SprungMotion::push(const SprungPoint& point, Vector& a) {
   }
 }
 
-void Island::SprungMotion::acceleration(double t, const Vector& q, const Vector& v, double step, Vector& a) {
+void SprungMotion::acceleration(double t, const Vector& q, const Vector& v, double step, Vector& a) {
   place(q, v);
   a.setZero();
-  pushes_.assign(island_.free_.size(), {});
-  for (Tree* tree : island_.trees_)
+  pushes_.assign(state_.free_bodies.size(), {});
+  for (Tree* tree : state_.trees)
     for (TreeLink& link : tree->links) link.pressed = {};
   piece_ = kNoPiece;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -276,7 +276,7 @@ void Island::SprungMotion::acceleration(double t, const Vector& q, const Vector&
   }
   each(
       [&](const Free& one, int, int at) {
-        const articulated::Wrench& pushed = pushes_[static_cast<std::size_t>(&one - island_.free_.data())];
+        const articulated::Wrench& pushed = pushes_[static_cast<std::size_t>(&one - state_.free_bodies.data())];
         if (one.driver) {
           const double power = pushed.force.dot(one.now.velocity) + pushed.couple.dot(one.now.spin);
           a[works_at() + 2] -= power / mass_;
@@ -285,7 +285,7 @@ void Island::SprungMotion::acceleration(double t, const Vector& q, const Vector&
         const MassProperties& solid = *one.now.solid;
         const Vector3 spin = v.segment<3>(at + 3);
         const Vector3 torque = one.now.orientation.conjugate() * (one.now.torque + pushed.couple);
-        a.segment<3>(at) = island_.core_.settings.gravity + (one.now.force + pushed.force) / solid.mass;
+        a.segment<3>(at) = state_.core.settings.gravity + (one.now.force + pushed.force) / solid.mass;
         a.segment<3>(at + 3) = Eigen::Matrix3d(solid.inertia).inverse() * (torque - spin.cross(solid.inertia * spin));
         a[works_at() + 2] += (one.now.force.dot(one.now.velocity) + one.now.torque.dot(one.now.spin)) / mass_;
       },
@@ -305,7 +305,7 @@ void Island::SprungMotion::acceleration(double t, const Vector& q, const Vector&
 
 // --- the space that positions lie in --------------------------------------------------------------------------------
 
-void Island::SprungMotion::move(const Vector& q, const Vector& d, Vector& out) {
+void SprungMotion::move(const Vector& q, const Vector& d, Vector& out) {
   out.resize(nq_);
   each(
       [&](const Free&, int at, int by) {
@@ -322,7 +322,7 @@ void Island::SprungMotion::move(const Vector& q, const Vector& d, Vector& out) {
       });
 }
 
-void Island::SprungMotion::rate_of_move(const Vector& d, const Vector& v, Vector& out) {
+void SprungMotion::rate_of_move(const Vector& d, const Vector& v, Vector& out) {
   out.setZero(nv_);  // a speed that belongs to no body moves no position
   each(
       [&](const Free&, int, int at) {
@@ -337,7 +337,7 @@ void Island::SprungMotion::rate_of_move(const Vector& d, const Vector& v, Vector
       });
 }
 
-void Island::SprungMotion::bend_to_cayley(Vector& d) {
+void SprungMotion::bend_to_cayley(Vector& d) {
   each([&](const Free&, int, int at) { d.segment<3>(at + 3) = articulated::cayley(d.segment<3>(at + 3)); },
        [&](Cluster& cluster, Part& part, int, int at) {
          part.v = d.segment(at, cluster.velocities());
@@ -346,4 +346,4 @@ void Island::SprungMotion::bend_to_cayley(Vector& d) {
        });
 }
 
-}  // namespace breve
+}  // namespace breve::island

@@ -6,16 +6,16 @@
 #include <optional>
 
 #include "runtime/articulated/integrator.hpp"
-#include "runtime/dynamics/island.hpp"
+#include "runtime/dynamics/island_state.hpp"
 
-namespace breve {
+namespace breve::island {
 
 /// A point of a pair whose surfaces are springs, as it is followed through one sub-step. The features that touch at its
 /// start are followed, so that nothing jumps between stages; a round body is asked for its closest point.
-struct Island::SprungPoint {
+struct SprungPoint {
   std::uint32_t pair = 0, feature = 0;
   bool round = false;   // one body is a sphere, the other has no neighbouring faces to choose from
-  bool with_a = false;  // the normal turns with a; else with b
+  bool with_a = false;  // the normal rotates with a; else with b
   double apart = 0;     // m, as the sub-step began: until it is closed, which is an event, the point does not push
   bool slides = false;  // as the sub-step began: then friction has the dynamic coefficient all along
   Vector3 on_a = Vector3::Zero(), on_b = Vector3::Zero();  // in the frames of the bodies, m
@@ -35,10 +35,10 @@ struct Island::SprungPoint {
   bool slips = false;                                    // its friction gives way
 };
 
-class Island::SprungMotion final : public articulated::System, public InMemory {
+class SprungMotion final : public articulated::System, public InMemory {
  public:
-  SprungMotion(Island& island, std::pmr::memory_resource* memory)
-      : points(memory), island_(island), kinds_(memory), pushes_(memory), parts_(memory) {}
+  explicit SprungMotion(State& state)
+      : points(state.memory), state_(state), kinds_(state.memory), pushes_(state.memory), parts_(state.memory) {}
 
   std::pmr::vector<SprungPoint> points;  // of the sub-step
 
@@ -92,7 +92,7 @@ class Island::SprungMotion final : public articulated::System, public InMemory {
   int works_at() const { return stretch_at(room_); }
   int tree_works_at(int slot) const { return works_at() + kWorks + kTreeWorks * slot; }
 
-  Island& island_;
+  State& state_;
   std::pmr::vector<articulated::Kind> kinds_;
   std::pmr::vector<articulated::Wrench> pushes_;  // on free bodies
   std::pmr::vector<Part> parts_;                  // of clusters
@@ -107,4 +107,4 @@ class Island::SprungMotion final : public articulated::System, public InMemory {
   double tolerance_ = 0;
 };
 
-}  // namespace breve
+}  // namespace breve::island

@@ -1,5 +1,5 @@
-// The forces of joints that close rings, inside the stages of an integrator: such that the second derivative of what
-// holds the ring closed is zero (Lagrange's multipliers, with the responses of the articulated body); and those of
+// The forces of joints that close loops, inside the stages of an integrator: such that the second derivative of what
+// holds the loop closed is zero (Lagrange's multipliers, with the responses of the articulated body); and those of
 // limits, which push as long as a joint would otherwise come too fast. The drift that remains is an integrator's error;
 // positions and velocities are put right at the end of the sub-step.
 #include <algorithm>
@@ -7,7 +7,8 @@
 
 #include "runtime/articulated/impulse.hpp"
 #include "runtime/articulated/kinematics.hpp"
-#include "runtime/dynamics/island.hpp"
+#include "runtime/dynamics/core.hpp"
+#include "runtime/dynamics/jacobians.hpp"
 
 namespace breve {
 
@@ -31,17 +32,8 @@ double curvature(const Tree& tree, const LoopRows& loop, const LoopRow& row) {
   return row.axis.dot(at(loop.child, row.on_child, c) - at(loop.parent, row.on_parent, p) - 2 * p.spin.cross(speed));
 }
 
-/// What a row's column would be by itself if nothing cancelled: arms for what turns, 1 for what slides.
-double natural_size(const Tree& tree, int link, const LoopRow& row, int column) {
-  using articulated::JointType;
-  const JointType type = tree.model.body(link).type;
-  if (row.angular || type == JointType::Prismatic || (type == JointType::Free && column < 3)) return 1;
-  const Vector3& origin = tree.data.motion_of(link).origin;
-  return std::max((row.on_child - origin).norm(), (row.on_parent - origin).norm());
-}
-
 /// Solves the symmetric, positive semidefinite A x = b by Cholesky's method with the largest pivot next. Rows that
-/// depend on others (a plane ring holds its plane several times over) get nothing. A is m x m and is overwritten.
+/// depend on others (a plane loop holds its plane several times over) get nothing. A is m x m and is overwritten.
 void solve_semidefinite(const WorkBound& bound, int m, double* a, double* b, double* scale, int* order) {
   constexpr double kDependent = 1e-11;  // of a pivot, rows being scaled to 1
   for (int i = 0; i < m; ++i) {
@@ -78,7 +70,7 @@ void solve_semidefinite(const WorkBound& bound, int m, double* a, double* b, dou
   for (int i = 0; i < m; ++i) b[i] *= scale[i];
 }
 
-/// Rows of rings, then of limits, in a tree's row_numbers.
+/// Rows of loops, then of limits, in a tree's row_numbers.
 struct HeldRows {
   int count, first_limit;
   const double* responses;  // count x count: how a force along one changes the acceleration along another
@@ -124,24 +116,6 @@ int solve_pushing(const HeldRows& rows, Tree& tree) {
   }
 }
 
-}  // namespace
-
-void Island::fill_loop(Tree& tree, const LoopRows& loop, const LoopRow& row, double* j) {
-  constexpr double kRoundOff = 1e-9;  // of the natural size; arms far from the world's origin have fewer digits
-  const int n = tree.model.velocities();
-  std::fill(j, j + n, 0.0);
-  if (loop.child >= 0) fill(tree, loop.child, row.on_child, row.axis, row.angular, 1, j);
-  if (loop.parent >= 0) fill(tree, loop.parent, row.on_parent, row.axis, row.angular, -1, j);
-  for (int i = 0; i < tree.model.size(); ++i) {
-    const articulated::Body& body = tree.model.body(i);
-    for (int k = 0; k < articulated::velocity_count(body.type); ++k)
-      if (std::abs(j[body.v + k]) > kRoundOff * natural_size(tree, i, row, k)) return;
-  }
-  std::fill(j, j + n, 0.0);
-}
-
-namespace {
-
 /// Units of work of how m rows of n numbers answer each other, and of as many symmetric equations as were solved.
 std::uint64_t dense_units(std::size_t m, std::size_t n, std::size_t solved) {
   constexpr std::size_t kOperations = 64;  // a unit
@@ -171,14 +145,14 @@ std::uint64_t Dynamics::Core::hold(Tree& tree, double* acceleration, bool loops,
     for (int i = 0; i < loop.count; ++i, ++m) {
       const LoopRow& row = loop.rows[static_cast<std::size_t>(i)];
       wanted[m] = -curvature(tree, loop, row);
-      Island::fill_loop(tree, loop, row, j + m * n);
+      fill_loop_row(tree, loop, row, j + m * n);
     }
   }
   const int first_limit = m;
   for (HeldLimit& held : tree.held) {
     if (!limits) break;
     const JointEntry& joint = joints[held.joint];
-    Island::fill_limit(tree, joint, held.axis, held.sign, j + m * n);
+    fill_limit_row(tree, joint, held.axis, held.sign, j + m * n);
     const Numbers row(j + m * n, n);
     // Overlap is for positions to put right: a force that did would add energy.
     const double gap = std::max(held.sign * (read_position(joint)[held.axis] - held.limit), 0.0);
@@ -207,7 +181,7 @@ std::uint64_t Dynamics::Core::hold(Tree& tree, double* acceleration, bool loops,
   return dense_units(static_cast<std::size_t>(m), static_cast<std::size_t>(n), static_cast<std::size_t>(solved));
 }
 
-/// Adds what rings push with, as hold() found it last, to the forces on links. Gives that of one joint on its
+/// Adds what loops push with, as hold() found it last, to the forces on links. Gives that of one joint on its
 /// child, about the joint's point.
 JointReaction Dynamics::Core::push_by_loops(Tree& tree, JointIndex wanted) {
   JointReaction of;

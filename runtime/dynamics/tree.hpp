@@ -31,7 +31,7 @@ struct TreeLink {
   bool slow_spring = false;                                   // its joint's spring is slower than the step
   double slow_damping = 0;                                    // of that, if it is
   bool motor = false;                                         // its joint has one
-  double gain_unit = 0;  // inertia that the joint's motor feels as the tree was built, kg or kg*m^2
+  double gain_unit = 0;  // effective inertia of the joint's motor as the tree was built, kg or kg*m^2
 };
 
 /// A body that does not move by itself and holds the tree, and where it stood when the tree was built.
@@ -71,7 +71,7 @@ struct HeldLimit {
 struct Tree : InMemory {
   Tree(std::pmr::memory_resource* memory, const std::vector<articulated::Link>& description);
 
-  /// Units of work to hold rings and limits once, as Core::hold does.
+  /// Units of work to hold loops and limits once, as Core::hold does.
   std::uint64_t hold_units() const;
 
   Reservation reserved;
@@ -90,7 +90,7 @@ struct Tree : InMemory {
   bool anchored = false;  // held by the world
   bool loose = false;     // it has a free root, and no joint connects it with what does not move by itself
   std::pmr::vector<TreeAnchor> anchors;
-  std::pmr::vector<BodyIndex> loop_holders;  // bodies that do not move by themselves, at which rings end
+  std::pmr::vector<BodyIndex> loop_holders;  // bodies that do not move by themselves, at which loops end
   double step = 0;                           // s, that step control would try next
   articulated::Vector mean;     // (nv) acceleration in the last smooth motion: there the next one's search begins
   int slot = -1;                // in its island

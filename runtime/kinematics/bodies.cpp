@@ -60,7 +60,7 @@ Quaternion rotation_about_z(const Quaternion& unit, bool flat) {
   if (std::hypot(unit.x(), unit.y()) > kInPlane)
     throw Error(ErrorCode::Argument,
                 fmt::format("orientation is rotated out of the plane (quaternion {}, {}, {}, {}), but this world is "
-                            "flat: bodies turn about z only",
+                            "flat: bodies rotate about z only",
                             unit.w(), unit.x(), unit.y(), unit.z()));
   return Quaternion(unit.w(), 0, 0, unit.z()).normalized();
 }

@@ -57,7 +57,7 @@ void Planar::Core::make_b2(FlatJoint& joint) {
     def.localAnchorB = to_b2(is.child_point);
     def.collideConnected = false;
   };
-  // Its angle now is the position with all its turns, whatever turns the two bodies have made.
+  // Its angle now is the position with all full rotations, whatever the two bodies have made.
   const double at_zero = double{child->GetAngle()} - parent->GetAngle();
   if (is.kind == JointKind::Revolute) {
     b2RevoluteJointDef def;

@@ -25,7 +25,7 @@ struct WarmJoint {
 };
 
 struct FlatJoint : JointRecord {
-  double position = 0;  // rad or m, as last known: whole turns are counted from here
+  double position = 0;  // rad or m, as last known: full rotations are counted from here
   b2Joint* b2 = nullptr;
   double rate = 0;     // of its own axis at the start of the sub-step, in Box2D's units
   double pull = 0;     // N or N*m that its spring, damper and set force give in this sub-step

@@ -224,7 +224,7 @@ void Planar::Core::thaw() {
     flat->spin = one.rotational_velocity;
     flat->orientation = one.orientation;
   }
-  // Their reference angles follow from the bodies' angles, whole turns included.
+  // Their reference angles follow from the bodies' angles, full rotations included.
   for (FlatJoint& joint : joints) {
     if (!joint.used) continue;
     drop_b2(joint);

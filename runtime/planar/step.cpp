@@ -119,7 +119,7 @@ void Planar::Core::advance(MechanicsClient& asked, double start, double h, doubl
   const Balance before = balance();
   pushed = 0;
   for (int i = 0; i < count && b2; ++i) {
-    // Box2D moves nothing further than two units or a quarter turn in one step: what is faster needs more of them.
+    // Box2D moves nothing further than two units or a right angle in one step: what is faster needs more of them.
     const double dt = h / count;
     if (finishing) break;
     if (worn()) {

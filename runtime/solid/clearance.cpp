@@ -1,5 +1,5 @@
 // Boxes against the bounds and the faces of a solid. A surface that lies on a large box is within its bounds, however
-// these are turned; the box's upper face tells what of it is far.
+// these are rotated; the box's upper face tells what of it is far.
 #include "runtime/solid/clearance.hpp"
 
 #include <algorithm>

@@ -15,7 +15,7 @@ struct Pose {
   Quaternion orientation = Quaternion::Identity();
 };
 
-/// Rigid motion from `start` at constant velocity; the body turns about its origin at constant rate. World frame.
+/// Rigid motion from `start` at constant velocity; the body rotates about its origin at constant rate. World frame.
 struct Motion {
   Pose start;
   Vector3 velocity = Vector3::Zero();

@@ -37,7 +37,7 @@ void place_triangle(const Placed& b, bool flipped, PlacedFace& out) {
   out.index = 0;
 }
 
-/// Ball: where a seam would turn the normal a little, the plane of the face is what it touches.
+/// Ball: where a seam would rotate the normal a little, the plane of the face is what it touches.
 bool ball_on_facet(const ConvexPair& pair, const Facet& facet, const Gap& gap, const Vector3& normal, Manifold& out) {
   out.normal = gap.normal;
   out.count = 1;

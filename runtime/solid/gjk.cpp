@@ -2,8 +2,8 @@
 // Bullet's GJK was measured first: on boxes in general position it stops early in 0.3 % of the cases with a distance
 // too large by up to a fifth, which would let conservative advancement step over a contact. Here the point of a simplex
 // closest to the origin is the best over all its sub-simplices, so that no wrong feature is kept; at 15 small problems
-// a turn this costs little, and a polyhedron ends after finitely many turns. Cylinders have no vertices: each turn
-// takes the point that is farthest, until what that could still gain is round-off.
+// an iteration this costs little, and a polyhedron ends after finitely many iterations. Cylinders have no vertices:
+// each one takes the point that is farthest, until what that could still gain is round-off.
 #include <array>
 #include <limits>
 

@@ -78,7 +78,7 @@ Polyhedron make_prism(int sides, double height, double radius) {
   add_ring(prism.vertices, sides, -height / 2, radius, 0.5);
   add_ring(prism.vertices, sides, height / 2, radius, 0.5);
   std::pmr::vector<int> bottom, top;
-  // Rising angles turn from +x to +z: clockwise seen from +y.
+  // Rising angles rotate from +x to +z: clockwise seen from +y.
   for (int i = 0; i < sides; ++i) bottom.push_back(i);
   for (int i = sides - 1; i >= 0; --i) top.push_back(sides + i);
   prism.faces = {bottom, top};

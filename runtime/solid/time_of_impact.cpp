@@ -1,8 +1,8 @@
 // First touch of two moving solids by conservative advancement (Mirtich 1996), with bounds of second order.
-// At each stop the closest points give a direction n. Let n turn at some constant rate; then along n every vertex moves
-// as f + f' t + r, |r| <= M t^2 / 2, and the gap stays open until the lowest of these parabolas reaches zero. Any rate
-// is valid; the one that follows the touching features makes the last stops converge like Newton's method, where the
-// classical bound on speeds converges only linearly. Several rates are tried and the longest safe step is taken.
+// At each stop the closest points give a direction n. Let n rotate at some constant rate; then along n every vertex
+// moves as f + f' t + r, |r| <= M t^2 / 2, and the gap stays open until the lowest of these parabolas reaches zero. Any
+// rate is valid; the one that follows the touching features makes the last stops converge like Newton's method, where
+// the classical bound on speeds converges only linearly. Several rates are tried and the longest safe step is taken.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,7 +24,7 @@ constexpr int kMaxPairs = 64;
 constexpr int kNewtonSteps = 8;
 
 /// Two bodies at one moment, seen from the origin of a. A solid of revolution has no points that rotate about its axis,
-/// so that only the rest of its spin moves it; that rest turns itself, by at most `drift` (rad/s^2).
+/// so that only the rest of its spin moves it; that rest rotates itself, by at most `drift` (rad/s^2).
 struct Scene {
   Placed a, b;       // a.location is zero
   Vector3 velocity;  // of b relative to a
@@ -44,7 +44,7 @@ struct Scene {
   }
 };
 
-/// Vertices of one body along the turning direction: value and rate of each, and the extreme at a later time.
+/// Vertices of one body along the rotating direction: value and rate of each, and the extreme at a later time.
 struct Along {
   const Placed& body;
   Vector3 value, rate;  // in the body's frame: f = value . r + value0, f' = rate . r + rate0
@@ -73,7 +73,7 @@ struct Along {
   }
 };
 
-/// Bound on |second derivative| of n . r for a vertex r of a body, with n turning at `normal_spin` and the body at
+/// Bound on |second derivative| of n . r for a vertex r of a body, with n rotating at `normal_spin` and the body at
 /// `spin`.
 double bend(const Placed& body, const Vector3& n, const Vector3& normal_spin, const Vector3& spin, double drift) {
   if (body.solid == nullptr || (normal_spin == spin && drift == 0)) return 0;
@@ -82,7 +82,7 @@ double bend(const Placed& body, const Vector3& n, const Vector3& normal_spin, co
   return (rate * rate + drift) * body.radius;
 }
 
-/// A time up to which the gap along `n`, turning at `normal_spin`, stays above `target`; `span` if it is so for all of
+/// A time up to which the gap along `n`, rotating at `normal_spin`, stays above `target`; `span` if it is so for all of
 /// it.
 double safe_time(const Scene& s, const Vector3& n, const Vector3& normal_spin, double target, double span) {
   const Vector3 n_rate = normal_spin.cross(n);
@@ -107,7 +107,7 @@ double safe_time(const Scene& s, const Vector3& n, const Vector3& normal_spin, d
   return 0;
 }
 
-/// The rate at which a plane turns that keeps both edges in it: its normal n stays perpendicular to each.
+/// The rate at which a plane rotates that keeps both edges in it: its normal n stays perpendicular to each.
 Vector3 rotate_with_edges(const Gap& gap, const Scene& s) {
   const Vector3& n = gap.normal;
   const Vector3 x = gap.edge_a.normalized(), z = x.cross(n);
@@ -282,7 +282,7 @@ class FacetAdvancement final : public FacetVisitor {
 };
 
 /// All that a convex solid may pass in the frame of the surface: a ball about its place that holds it, along a path
-/// that the turning frame bends; and what is `more` beyond.
+/// that the rotating frame bends; and what is `more` beyond.
 Eigen::AlignedBox3d swept(const Mover& convex, const Mover& frame, double h, double more) {
   const double spin = frame.motion.rotational_velocity_world.norm();
   const int pieces = spin > 0 ? 16 : 1;

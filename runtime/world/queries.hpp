@@ -58,7 +58,7 @@ class Queries {
   /// with that image which is nearest to the solid's centre.
   const std::pmr::vector<QueryHit>& overlap(const Scene& scene, const Shape& shape, const Pose& pose,
                                             const QueryFilter& filter);
-  /// The body that a solid meets first when it is moved by `way` without turning; `distance` is how far it comes. One
+  /// The body that a solid meets first when it is moved by `way` without rotation; `distance` is how far it comes. One
   /// that it meets to begin with: 0.
   bool cast_first(const Scene& scene, const Shape& shape, const Pose& pose, const Vector3& way,
                   const QueryFilter& filter, QueryHit& hit);

@@ -281,7 +281,8 @@ class Reader {
     for (const pugi::xml_node element : archive_.children("object")) {
       machine_.poll();
       const int id = element.attribute("id").as_int();
-      if (id <= 0 || objects_.contains(id)) refuse("the archive is damaged: an object without a number of its own");
+      if (id <= 0 || objects_.contains(id))
+        refuse("the archive is damaged: two objects have the same number, or one has none");
       objects_.emplace(id, make(class_of(machine_, element)));
       pins_.emplace_back(machine_, Value::of(Tag::Object, objects_.at(id)));
       elements_.emplace_back(objects_.at(id), element);

@@ -37,7 +37,7 @@ void for_each_setting(Material& material, Look& look, Visit visit) {
 }
 
 [[noreturn]] void refuse_number() {
-  throw Error(ErrorCode::File, "the archive is damaged: a number of a body cannot be");
+  throw Error(ErrorCode::File, "the archive is damaged: a number of a body is out of range");
 }
 
 /// Numbers that no program can give a body come from a damaged archive.

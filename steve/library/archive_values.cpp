@@ -98,7 +98,7 @@ void ValueWriter::write(pugi::xml_node parent, const Value& value, int depth) {
   if (depth > kMostNested)
     throw Error(ErrorCode::Argument,
                 "lists nested more than " + std::to_string(kMostNested) + " deep cannot be archived");
-  constexpr std::uint64_t kOfValue = 20, kBytesPerIteration = 16;  // turns
+  constexpr std::uint64_t kOfValue = 20, kBytesPerIteration = 16;  // iterations
   machine_.charge(kOfValue + (value.tag == Tag::String ? view(value.string()).size() / kBytesPerIteration : 0));
   pugi::xml_node node = parent.append_child(
       value.tag == Tag::Null || value.tag == Tag::Pointer ? "null" : std::string(type_name(value.tag)).c_str());

@@ -110,7 +110,7 @@ void set_relative_rotation_matrix(Machine& machine, Instance& self, Matrix3 rota
   const Eigen::JacobiSVD<Matrix3> svd(rotation, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Matrix3 nearest = svd.matrixU() * svd.matrixV().transpose();
   if (nearest.determinant() < 0)
-    throw Error(ErrorCode::Argument, "set-relative-rotation-matrix: this matrix is a mirror, not a rotation");
+    throw Error(ErrorCode::Argument, "set-relative-rotation-matrix: this matrix is a reflection, not a rotation");
   change_description(machine, self, [&](JointDescription& is) { is.relative_rotation = Quaternion(nearest); });
 }
 

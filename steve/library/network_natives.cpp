@@ -137,7 +137,7 @@ NetworkAnswer accept(const Service& service, const NetworkRequest& request) {
     const MethodInfo* method = machine.find_method(*receiver.cls, name, arguments.size());
     return method && machine.call_guarded(receiver, *method, arguments, result);
   };
-  if (!controller) return failure(503, "nobody is there to receive it\n");
+  if (!controller) return failure(503, "the program has no controller to receive it\n");
   Value sent, answered;
   const Value text[] = {text_value(machine, request.body)};
   if (!call_hook(*controller, "parse-xml-network-request", text, sent) || sent.tag != Tag::Object || !sent.ref)

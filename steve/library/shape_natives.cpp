@@ -99,7 +99,7 @@ std::shared_ptr<Shape> lying(const Shape& prism, std::pmr::memory_resource* memo
 constexpr std::int32_t kRoundSides = 64;  // as many as a round shape is worth
 
 void charge_for_sides(Machine& machine, std::int32_t sides) {
-  constexpr std::uint64_t kOfSide = 64;  // turns
+  constexpr std::uint64_t kOfSide = 64;  // iterations
   if (sides > 0) machine.charge(kOfSide * static_cast<std::uint64_t>(sides));
 }
 

@@ -37,7 +37,7 @@ class Budget {
   }
   /// Would `charge` say true?
   bool affords(std::uint64_t iterations) const { return iterations < std::min(run_, call_) + piece_; }
-  /// @param turns  that are allowed; 0: without limit
+  /// @param turns  iterations that are allowed; 0: without limit
   void begin_run(std::uint64_t iterations) {
     run_ = limit(iterations);
     call_ = kUnlimited;
@@ -67,7 +67,7 @@ class Budget {
   };
 
  private:
-  static constexpr std::uint64_t kPiece = 1 << 16;  // turns: less than a millisecond, to see an interrupt
+  static constexpr std::uint64_t kPiece = 1 << 16;  // iterations: less than a millisecond, to see an interrupt
   static constexpr std::uint64_t kUnlimited = std::uint64_t{1} << 62;
   // The iteration after the last one that is allowed is the one that fails.
   static std::uint64_t limit(std::uint64_t iterations) {

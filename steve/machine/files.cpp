@@ -21,7 +21,7 @@ void check_name(const char* verb, std::string_view name) {
     refuse(verb, name.substr(0, zero), "the name contains a zero byte");
 }
 
-constexpr std::uint64_t kOfOpening = 4000;  // turns: what operating systems take for it
+constexpr std::uint64_t kOfOpening = 4000;  // iterations: what operating systems take for it
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 // How the collector of the whole heap marks what is alive. Nearly all of its time is waiting for memory: cells lie far
-// apart. So each cell is asked for some turns before it is looked at, its elements some turns before they are read, and
+// apart. So each cell is asked for some units before it is looked at, its elements some units before they are read, and
 // what leads no further is never queued. Between slices nothing is on its way: all that waits is grey.
 //
 // Sources: Cher, Hosking and Vitek 2004 (a queue of cells to fetch before the stack of those to scan).

@@ -26,7 +26,7 @@ struct Rule {
   std::string_view reason;
 };
 
-constexpr std::array<Rule, 15> kRules{{
+constexpr std::array<Rule, 22> kRules{{
     {"is no", " no ", R"((^|[\w']+ )(is|are|was|were) no \w+)",
      R"(^([Tt]|[Ww])?here |no (longer|more|less|later|earlier|better|worse|matter|farther|smaller|larger|such)$)",
      "write 'is not a'"},
@@ -49,8 +49,35 @@ constexpr std::array<Rule, 15> kRules{{
     {"where there is none", " none", R"(\b[Ww]here there (is|are) none\b)", "", "write 'if there is none', or name it"},
     {"lets go", " go", R"(\b([Ll]ets?|letting) go\b)", "", "write 'disconnects', 'releases'"},
     {"and its like", " like", R"(\band (its|their|the) like\b)", "", "write 'and similar methods', or 'such as'"},
-    {"term", "", R"(\bfelt mass\b|\bno account\b|\b(from|of) nowhere\b)", "",
-     "the field's terms: effective mass, energy ledger, unexplained energy"},
+    {"term", "", R"(\bno account\b|\b(from|of) nowhere\b|\b(own|energy) account\b)", "",
+     "the field's terms: energy ledger, unexplained energy"},
+    {"term: felt", "fe",
+     R"(\b(mass|inertia|point|body|bodies|joint|motor|row|side)s? (that |which )?(is |are )?(feels?|felt)\b)"
+     R"(|\bfelt (mass|inertia)\b|\b(joint|point|body)'s motor feels\b)",
+     "", "the field's terms: effective mass, effective inertia; a body receives a force"},
+    {"term: ring", "ing",
+     R"(\b([Cc]los(e|es|ed|ing)|[Oo]pens?|[Hh](o|e)lds?) (a|the|their|its|such|these)? ?rings?\b)"
+     R"(|\brings? (that )?(is |are )?(closed|close|open|hold)\b|\b[Rr]ing joints?\b)",
+     "", "the field's terms: closed loop, loop joint"},
+    {"term: tie", "ti",
+     R"(\b[Ss]prings? (that |which |only )?(tie|ties|tied)\b|\b([Tt]ied|[Tt]ying) (to|by|together|with)\b)"
+     R"(|\b[Tt]ies (bodies|links|trees)\b|\b(joint|spring), tie\b)",
+     "", "springs connect bodies"},
+    {"term: turn", "urn",
+     R"(\b[Tt]urn(s|ed|ing)? (freely |evenly |fast |slowly )?about (its|their|an?|the|[xyz]|some|one|that|which)\b)"
+     R"(|\b(whole|full|quarter|half|all its) turns?\b|\bplace and turn\b|\bturn and (place|spin)\b)"
+     R"(|\b(bodies|body|links?|joints?|wheels?|limbs?|spin|shapes?) (that )?turns?\b)",
+     "", "the field's terms: rotation, orientation; a body rotates"},
+    {"term: turns", "turns", R"(\b(many|some|[0-9]+|million|thousand) turns\b|// turns\b)", "",
+     "a loop has iterations, a joint full rotations"},
+    {"term: quiet", "uiet",
+     R"(\b[Qq]uiet (bod|island|pair|contact|stack|pile)\w*)"
+     R"(|\b(bod(y|ies)|islands?|stacks?|piles?) (is|are|gets?|becomes?|lies?|stands?) quiet\b)",
+     "", "the field's term: a body is resting, or comes to rest"},
+    {"term: place", "place",
+     R"(\b(body|bodies|link|object|child|parent|joint)('s|s') places?\b)"
+     R"(|\bplaces? and (velocit|spin|orientation|rotation|turn)\w*)",
+     "", "the field's terms: position, pose"},
     {"citation", "",
      R"(\bDESIGN [0-9]|\bCLASSES [0-9]|\bSTYLE\.md|\b[Ll]anguage(,| document,?) (section )?[0-9]|[(; ]F[0-9]{1,2}\b[,;)])",
      "", "give the reason in place, or cite a paper or book"},

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iostream>
 #include <map>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <string>
@@ -72,6 +73,47 @@ const std::map<std::string_view, std::string_view> kVocabulary = {
     {"runtime/world/resource.hpp", "runtime/"},
 };
 
+/// The classes that step an island, as runtime/dynamics/README.md lists them: each knows those before it. A line has
+/// the files of one class, without "runtime/dynamics/island_".
+const std::vector<std::vector<std::string_view>> kIslandClasses = {
+    {"result"},
+    {"state", "poses"},
+    {"energy"},
+    {"arrays"},
+    {"balance"},
+    {"handlers"},
+    {"contacts"},
+    {"springs"},
+    {"networks"},
+    {"smooth"},
+    {"rows", "row_results"},
+    {"momentum"},
+    {"books"},
+    {"predict"},
+    {"rebound"},
+    {"solve"},
+    {"positions"},
+    {"loops"},
+    {"overlaps"},
+    {"sub_step"},
+    {"impacts", "collide"},
+    {"step"},
+    {"watch"},
+    {"guard"},
+};
+
+/// The position of a file in kIslandClasses; behind the last one if it is not there.
+std::size_t island_class_of(const std::string& file) {
+  constexpr std::string_view kPrefix = "runtime/dynamics/island_";
+  if (file.rfind(kPrefix, 0) != 0) return kIslandClasses.size();
+  const std::string name = file.substr(kPrefix.size(), file.rfind('.') - kPrefix.size());
+  const auto has = [&name](const std::vector<std::string_view>& files) {
+    return std::find(files.begin(), files.end(), name) != files.end();
+  };
+  return static_cast<std::size_t>(std::find_if(kIslandClasses.begin(), kIslandClasses.end(), has) -
+                                  kIslandClasses.begin());
+}
+
 /// Which of the libraries we stand on may be seen where. A library that is not listed is not restricted.
 const std::map<std::string_view, std::vector<std::string_view>> kLibraries = {
     {"bullet/", {}},  // a peer of benchmarks, and nothing that the library links
@@ -118,6 +160,7 @@ class House {
         if (is_source(entry.path()) && entry.path().extension() != ".tz") inside_.add(relative(entry.path()));
     for (const breve::house::Offence& found : inside_.offences()) offend(found.file, found.line, found.what);
     check_readmes();
+    check_effects();
     for (const std::string& offence : offences_) std::cout << offence << '\n';
     std::cout << files_ << " files, " << includes_ << " includes, " << offences_.size() << " offences\n";
     if (files_ == 0) std::cout << "no sources under " << root_ << ": wrong folder?\n";
@@ -218,6 +261,8 @@ class House {
     const bool shared = word != kVocabulary.end() && from.folder.rfind(word->second, 0) == 0;
     if (to != &from && !shared && from.may_include.count(to->folder) == 0)
       offend(file, number, std::string(from.folder) + " may not include " + name);
+    if (name.rfind("runtime/dynamics/island_", 0) == 0 && island_class_of(name) > island_class_of(file))
+      offend(file, number, "the class may not know " + name + ", which stands above it");
   }
 
   /// The parts of the house, the floors they are on, and each folder of tests.
@@ -230,6 +275,21 @@ class House {
         if (entry.is_directory()) folders.insert(relative(entry.path()));
     for (const std::string& folder : folders)
       if (fs::exists(root_ / folder) && !has_readme(folder)) offend(folder, 0, "no README.md");
+  }
+
+  /// The page on architecture lists the effects that the world has.
+  void check_effects() {
+    const std::string table = "runtime/world/effects.cpp", page = "docs/architecture.md";
+    std::ifstream effects(root_ / table), pages(root_ / page);
+    std::string text, line;
+    while (std::getline(pages, line)) text += line + ' ';
+    const std::size_t begin = std::min(text.find("An effect is something"), text.size());
+    const std::string list = text.substr(begin, text.find('.', begin) - begin);
+    static const std::regex kEffect(R"re(^    \{"([a-z ]+)", ")re");
+    std::smatch found;
+    for (std::size_t number = 1; std::getline(effects, line); ++number)
+      if (std::regex_search(line, found, kEffect) && list.find(" " + found[1].str()) == std::string::npos)
+        offend(table, number, page + " does not list the effect '" + found[1].str() + "'");
   }
 
   /// A folder that only a compiler looks into (hostapi/include) may be described by its parent's page.

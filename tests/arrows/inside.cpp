@@ -22,7 +22,34 @@ const std::map<std::string_view, std::string_view> kMayBeLong = {
     {"steve/machine/interpreter.cpp", "the interpreter's loop is one function, alone in its file"},
 };
 
+/// Files whose lines only look like variables, each with its reason.
+const std::map<std::string_view, std::string_view> kHaveNoState = {
+    {"runtime/render/shader_texts.hpp", "the lines are texts in the language of shaders"},
+};
+
 bool begins(const std::string& text, std::string_view with) { return text.rfind(with, 0) == 0; }
+
+/// Two runtimes in one process share nothing; the command is a process of its own.
+bool is_library(const std::string& file) {
+  return begins(file, "runtime/") || begins(file, "steve/") || begins(file, "hostapi/src/") ||
+         begins(file, "hostapi/lua/");
+}
+
+/// A variable that lives as long as the process or thread and can change; its name, or nothing.
+std::string state_on(const std::string& line) {
+  static const std::regex constant(R"(\bconstexpr\b|\bconst\b[^*]*$|\* ?const\b)");
+  static const std::regex local(R"(^\s*(inline )?(static|thread_local)\b[^();]*?(\w+)\s*(=|\{|;))");
+  static const std::regex wide(
+      R"(^(?!(using|extern|namespace|class|struct|enum|template|return|friend|typedef|union|goto|else)\b))"
+      R"((inline |volatile )*[A-Za-z_][\w:<>, *&]* ([a-z_]\w*)( = [^()]*|\{[^()]*\})?;)");
+  const std::string code = line.substr(0, line.find("//"));
+  const std::string before = code.substr(0, code.find_first_of("={;"));
+  std::smatch found;
+  if (std::regex_search(before, constant)) return {};
+  if (std::regex_search(code, found, local)) return found[3];
+  if (std::regex_search(code, found, wide)) return found[3];
+  return {};
+}
 
 std::string last_part(const std::string& owner) {
   const std::size_t colon = owner.rfind(':');
@@ -71,6 +98,7 @@ std::vector<Offence> Inside::offences() const {
   for (const auto& [file, source] : files_) {
     if (begins(file, "tests/")) continue;
     find_long(file, source, out);
+    find_state(file, out);
     if (is_header(file)) find_false_headings(file, source, out);
   }
   find_dead(out);
@@ -86,6 +114,15 @@ void Inside::find_long(const std::string& file, const Source& source, std::vecto
                      "'" + name.name + "' has " + std::to_string(lines) + " lines, more than " +
                          std::to_string(kLongestFunction)});
   }
+}
+
+void Inside::find_state(const std::string& file, std::vector<Offence>& out) const {
+  if (!is_library(file) || kHaveNoState.count(file) != 0) return;
+  std::ifstream in(root_ / file);
+  std::string line;
+  for (std::size_t number = 1; std::getline(in, line); ++number)
+    if (const std::string name = state_on(line); !name.empty())
+      out.push_back({file, number, "'" + name + "' is shared by all runtimes of the process"});
 }
 
 // By name: where two functions share one, the dead one hides behind the other. The linker finds those (dead.sh).

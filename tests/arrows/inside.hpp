@@ -1,4 +1,5 @@
-// What the house asks of the inside of its files: short functions, no uncalled functions, headings that are true.
+// What the house asks of the inside of its files: short functions, no uncalled functions, no state of the process,
+// headings that are true.
 #pragma once
 
 #include <filesystem>
@@ -26,6 +27,7 @@ class Inside {
 
  private:
   void find_long(const std::string& file, const Source& source, std::vector<Offence>& out) const;
+  void find_state(const std::string& file, std::vector<Offence>& out) const;
   void find_dead(std::vector<Offence>& out) const;
   void find_false_headings(const std::string& file, const Source& source, std::vector<Offence>& out) const;
 

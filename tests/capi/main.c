@@ -37,6 +37,7 @@ void threads_suite(void);
 void user_data_suite(void);
 void values_suite(void);
 void settings_suite(void);
+void setters_suite(void);
 void view_suite(void);
 void plugins_suite(void);
 void recording_suite(void);
@@ -96,6 +97,7 @@ static const struct {
     {"contact_force", contact_force_suite},
     {"values", values_suite},
     {"settings", settings_suite},
+    {"setters", setters_suite},
     {"view", view_suite},
     /* clang-format on */
 };

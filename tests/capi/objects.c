@@ -130,7 +130,7 @@ static void poses_are_read_and_written(void) {
   CHECK_STATUS(BREVE_OK, breve_object_pose(s.world, ball, &pose));
   CHECK(pose.location[0] == 0 && pose.location[1] == 0 && pose.location[2] == 0);
   CHECK(pose.rotation[0] == 1 && pose.rotation[1] == 0 && pose.rotation[2] == 0 && pose.rotation[3] == 0);
-  const breve_pose put = {{1, -2, 3}, {0, 0, 1e-200, 0}}; /* half a turn about y, not of unit length */
+  const breve_pose put = {{1, -2, 3}, {0, 0, 1e-200, 0}}; /* 180 degrees about y, not of unit length */
   CHECK_STATUS(BREVE_OK, breve_object_set_pose(s.world, ball, &put));
   CHECK_STATUS(BREVE_OK, breve_object_pose(s.world, ball, &pose));
   CHECK(pose.location[0] == 1 && pose.location[1] == -2 && pose.location[2] == 3);

@@ -55,7 +55,7 @@ static void a_creature_is_built_and_driven_without_a_script(void) {
   CHECK_NEAR(3.5, height_of(&s, lower), 1e-12);
   breve_joint_info info;
   CHECK_STATUS(BREVE_OK, breve_joint_state(s.world, elbow, &info));
-  CHECK(info.kind == BREVE_JOINT_REVOLUTE && info.linked && !info.ring);
+  CHECK(info.kind == BREVE_JOINT_REVOLUTE && info.linked && !info.loop);
   CHECK(same(info.parent, upper) && same(info.child, lower));
   CHECK_NEAR(5, info.hard_limit, 1e-12);
   breve_object parts[4];

@@ -177,6 +177,28 @@ static void a_camera_that_the_program_places_is_not_automatic(void) {
 
 /* --- pictures ------------------------------------------------------------------------------------------------------- */
 
+static void a_camera_that_is_half_wrong_leaves_the_last_one(void) {
+  scene s;
+  if (!open_show(&s, "")) return;
+  breve_view_config config = breve_view_config_default();
+  config.width = config.height = 8;
+  uint8_t rgba[8 * 8 * 4];
+  breve_view* view = NULL;
+  breve_camera mine, read;
+  breve_clear(&mine, sizeof mine);
+  mine.offset[2] = 30, mine.yaw = 0.25, mine.field_of_view = 1, mine.far_plane = 500;
+  if (CHECK_STATUS(BREVE_OK, breve_view_create(s.runtime, &config, &view))) {
+    CHECK_STATUS(BREVE_OK, breve_view_set_camera(view, &mine));
+    mine.offset[2] = 40, mine.pitch = NAN;
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_view_set_camera(view, &mine));
+    CHECK_STATUS(BREVE_OK, breve_view_render(view, s.world, rgba, 0));
+    CHECK_STATUS(BREVE_OK, breve_view_camera(view, &read));
+    CHECK(read.offset[2] == 30 && read.yaw == 0.25 && read.pitch == 0);
+  }
+  breve_view_destroy(view);
+  scene_close(&s);
+}
+
 static void the_silhouette_of_a_sphere_has_its_area_and_middle(void) {
   scene s;
   shot p;
@@ -345,6 +367,7 @@ void view_suite(void) {
   RUN(lines_texts_and_lights_are_rows);
   RUN(a_point_is_seen_where_the_camera_says);
   RUN(a_camera_that_the_program_places_is_not_automatic);
+  RUN(a_camera_that_is_half_wrong_leaves_the_last_one);
   RUN(the_silhouette_of_a_sphere_has_its_area_and_middle);
   RUN(a_plane_has_its_depth);
   RUN(a_lit_face_has_its_colour);

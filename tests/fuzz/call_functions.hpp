@@ -16,7 +16,7 @@ inline constexpr Statuses kBusy = status_bit(BREVE_ERROR_BUSY), kStale = status_
                           kUnsupported = status_bit(BREVE_ERROR_UNSUPPORTED), kReload = status_bit(BREVE_ERROR_RELOAD);
 /// The function returns its result, and no status: NULL handles give 0, false or NULL, which its call looks at.
 inline constexpr Statuses kPlain = Statuses{1} << 31;
-/// An object's place in space.
+/// An object's pose.
 inline constexpr Statuses kBody = kStale | status_bit(BREVE_ERROR_NO_BODY);
 /// A variable by its name.
 inline constexpr Statuses kVariable = kStale | kNotFound | kUnsupported;

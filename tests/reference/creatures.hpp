@@ -6,7 +6,7 @@
 namespace breve::reference {
 
 struct Habits {
-  bool limits = false;   // joints turn by less than 0.6 rad to either side
+  bool limits = false;   // joints rotate by less than 0.6 rad to either side
   double rebound = 0;    // of those limits
   double threshold = 0;  // m/s, of restitution
 };

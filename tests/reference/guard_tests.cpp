@@ -215,7 +215,7 @@ TEST(Guard, RestIsInTheLedger) {
 
 constexpr const char* kUnexplained = "unexplained energy gain";
 
-/// A chain of three links that swings, whose end is then tied to a point above it: closing the ring lifts the links by
+/// A chain of three links that swings, whose end is then joined to a point above: closing the loop lifts the links by
 /// hand, however fine the sub-steps.
 struct Lifted : Watched {
   Chain chain;
@@ -229,7 +229,7 @@ struct Lifted : Watched {
     hinge.child_point = Vector3(0, -0.5, 0);
     hinge.parent_point = at(hinge.child) + orientation(hinge.child) * hinge.child_point + Vector3(0, 0.3, 0);
     hinge.normal = -Vector3::UnitZ();
-    EXPECT_TRUE(read(join(hinge)).ring);
+    EXPECT_TRUE(read(join(hinge)).loop);
     before = mechanical();
   }
   double fastest() const {

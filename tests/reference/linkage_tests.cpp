@@ -40,7 +40,7 @@ struct CrankRocker : World {
     const breve_object rocker = join(pin(nullptr, far, third, third.begin()));
     const breve_object coupler = join(pin(&first, first.end(), second, second.begin()));
     loop = pin(&second, second.end(), third, third.end());
-    EXPECT_TRUE(read(join(loop)).ring);
+    EXPECT_TRUE(read(join(loop)).loop);
     // The velocity of the knee, seen from both sides, gives the rates of coupler and rocker.
     const auto rotated = [](const Vector3& arm) { return Vector3(-arm.y(), arm.x(), 0); };
     const Vector3 by_crank = rotated(tip - pivot), by_coupler = rotated(knee - tip), by_rocker = rotated(knee - far);
@@ -66,7 +66,7 @@ struct Parallelogram : World {
     join(pin(nullptr, far, third, third.begin()));
     join(pin(&first, first.end(), second, second.begin()));
     loop = pin(&second, second.end(), third, third.end());
-    EXPECT_TRUE(read(join(loop)).ring);
+    EXPECT_TRUE(read(join(loop)).loop);
   }
 };
 
@@ -162,7 +162,7 @@ struct Loop : World {
       hinges[i].child_point = Vector3(0, -0.5, 0);
       hinges[i].normal = -Vector3::UnitZ();
       hinges[i].rotation = orientations[i].conjugate() * orientations[next];
-      EXPECT_EQ(read(join(hinges[i])).ring, i == 3);
+      EXPECT_EQ(read(join(hinges[i])).loop, i == 3);
     }
   }
   double widest() const {

@@ -35,7 +35,7 @@ struct FourBar : Mechanism {
       couplers[i] = Bar(*this, Vector3(i, 1, 0), Vector3(i + 1, 1, 0), 1);
       rotated.push_back(join(pin(&cranks[i], cranks[i].end(), couplers[i], couplers[i].begin())));
       loops.push_back(pin(&couplers[i], couplers[i].end(), cranks[i + 1], cranks[i + 1].end()));
-      EXPECT_TRUE(read(join(loops.back())).ring);
+      EXPECT_TRUE(read(join(loops.back())).loop);
     }
     crank = joints[0];
     for (const breve_object joint : joints) set_joint(joint, 0, -1);
@@ -62,7 +62,7 @@ struct SliderCrank : Mechanism {
     on_rail.kind = BREVE_JOINT_PRISMATIC;
     on_rail.normal = Vector3::UnitX();
     rail = join(on_rail);
-    EXPECT_TRUE(read(rail).ring);
+    EXPECT_TRUE(read(rail).loop);
   }
 };
 

@@ -1,4 +1,4 @@
-// Bodies that only springs tie, against closed forms and conservation laws: on `fast` and `balanced` they move as
+// Bodies that only springs connect, against closed forms and conservation laws: on `fast` and `balanced` they move as
 // points, with the springs in flat arrays.
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ breve_object add_spring(World& world, breve_object a, breve_object b, double len
   return made;
 }
 
-/// A block of n x n x n balls of 1 kg, each tied to its neighbours along the axes and the diagonals of faces.
+/// A block of n x n x n balls of 1 kg, each connected to its neighbours along the axes and the diagonals of faces.
 std::vector<breve_object> block(World& world, int n, double height, double damping) {
   constexpr double kReach = 1.5;
   std::vector<breve_object> balls;

@@ -39,7 +39,7 @@ Hinge pin(const Bar* parent, const Vector3& on_parent, const Bar& child, const V
 /// A double pyramid, thin as a needle, with one tip at `tip` from its centre: what it touches, it touches with a point.
 Solid needle(const Vector3& tip, double mass, const Matrix3& inertia);
 
-/// A wide floor with its upper face at y = 0, turned about z by `tilt`: a plane that rises toward +x.
+/// A wide floor with its upper face at y = 0, rotated about z by `tilt`: a plane that rises toward +x.
 breve_object incline(World& world, double tilt);
 /// Unit vector up the slope, and the slope's normal.
 Vector3 along(double tilt);

@@ -238,7 +238,7 @@ TEST(RandomTrees, ImplicitDrivesAreASolveWithTheirOwnDiagonal) {
 
 TEST(RandomTrees, MovingAndDifferenceAreInverse) {
   for_random_trees(200, [](Random& random, const Model& model, Data&, const State& state) {
-    const Vector d = random_forces(random, model.velocities());  // up to 2 rad along each axis: below a half turn...
+    const Vector d = random_forces(random, model.velocities());  // up to 2 rad along each axis: below 180 degrees...
     const Vector small = 0.8 * d;                                // ...in all three together
     Vector q(model.positions()), back(model.velocities());
     move(model, state.q, small, q);

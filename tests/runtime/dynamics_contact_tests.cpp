@@ -122,7 +122,7 @@ TEST(DynamicsContact, ARingStaysClosed) {
   for (const Rung rung : {Rung::Fast, Rung::Balanced}) {
     Physics s;
     s.mechanics().set_accuracy(rung);
-    // Four links in a square that hangs by one corner; the last joint closes the ring.
+    // Four links in a square that hangs by one corner; the last joint closes the loop.
     std::vector<ObjectId> rods;
     std::vector<JointIndex> joints;
     const Vector3 corners[] = {{0, 0, 0}, {1, 0, 0}, {1, -1, 0}, {0, -1, 0}};

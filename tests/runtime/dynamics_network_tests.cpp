@@ -1,4 +1,4 @@
-// Bodies that only springs tie: moved without what joints need, and so the same as by the way that all others are
+// Bodies that only springs connect: moved without what joints need, and equal to the way in which all others are
 // moved.
 #include <gtest/gtest.h>
 

@@ -33,7 +33,7 @@ struct Mesh {
   }
 };
 
-/// Radius and height of a corner of the outline that is turned about the y axis.
+/// Radius and height of a corner of the outline that is rotated about the y axis.
 using Outline = std::vector<std::pair<double, double>>;
 
 /// `outline` runs with the solid on its left, seen with the radius to the right; a radius of 0 is on the axis.

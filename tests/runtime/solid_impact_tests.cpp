@@ -105,7 +105,7 @@ TEST(TimeOfImpact, FallingBodiesMatchTheReference) {
 }
 
 TEST(TimeOfImpact, ATurningArmMeetsAPeg) {
-  // The reference arm turns about its end: here a rod of twice the length turns about its middle.
+  // The reference arm rotates about its end: here a rod of twice the length rotates about its middle.
   double t = 0;
   Contact contact;
   Motion arm = still(Vector3::Zero());

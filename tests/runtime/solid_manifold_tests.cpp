@@ -72,7 +72,7 @@ TEST(Manifold, ABoxRotatedByFortyFiveDegreesKeepsFourOfEightPointsThatSpanMuch) 
   const auto m = find(*box, {Vector3(0, 0.999, 0), rotated(std::numbers::pi / 4, Vector3::UnitY())}, *box, {});
   ASSERT_EQ(m.size(), 1U);
   ASSERT_EQ(m[0].count, 4);
-  // The octagon's corners are 0.5 / cos(pi / 8) from the middle; four of them a quarter turn apart span 2 r^2.
+  // The octagon's corners are 0.5 / cos(pi / 8) from the middle; four of them 90 degrees apart span 2 r^2.
   const double r = 0.5 / std::cos(std::numbers::pi / 8);
   std::vector<double> angles;
   for (const ContactPoint& p : m[0].points) {

@@ -294,7 +294,7 @@ TEST(RoundManifold, ALyingCylinderTouchesAlongALineOnAnyFloor) {
   expect_line(find(*cylinder, lying, *floor_mesh(), {}), 0.001, one, other);
   const std::vector<double> heights(36, 0.0);
   expect_line(find(*cylinder, lying, *Shape::height_field(6, 6, 2, heights), {}), 0.001, one, other);
-  // Turned about its own axis it is the same.
+  // Rotated about its own axis it is the same.
   const Pose rolled{lying.location, lying.orientation * rotated(0.777, Vector3::UnitY())};
   expect_line(find(*cylinder, rolled, *floor_box(), kFloor), 0.001, one, other);
 }

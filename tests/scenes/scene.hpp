@@ -70,7 +70,7 @@ struct Body {
 
 enum class Link { Hinge, Ball };
 
-/// It connects two bodies as they are at the start, where its position is zero. Positive: the child turns about the
+/// It connects two bodies as they are at the start, where its position is zero. Positive: the child rotates about the
 /// axis.
 struct Joint {
   Link kind = Link::Hinge;

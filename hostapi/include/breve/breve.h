@@ -971,7 +971,7 @@ BREVE_API breve_status breve_joint_break(breve_world* world, breve_object joint)
 typedef struct breve_joint_info {
   uint32_t kind; /* breve_joint_kind */
   bool linked;   /* if false, all of the following is zero */
-  bool ring;     /* closes a loop: acts as a constraint */
+  bool loop;     /* closes a loop: acts as a constraint */
   breve_object parent, child;
   double position[3]; /* rad or m; a revolute joint counts whole revolutions */
   double velocity[3]; /* rad/s or m/s */
@@ -1601,87 +1601,89 @@ BREVE_API breve_status breve_runtime_add_function(breve_runtime* runtime, const 
    the function itself counts as one. Has no effect if no script runs, or without a budget.
    BREVE_OK; BREVE_ERROR_BUDGET: the budget is used up; BREVE_ERROR_INTERRUPTED: breve_world_interrupt. Return these
    from the callback; if it continues, the script ends when it returns. */
-BREVE_API breve_status breve_world_charge(breve_world* world, uint64_t turns);
+BREVE_API breve_status breve_world_charge(breve_world* world, uint64_t iterations);
 
-/* Has the world a budget, of an iteration or of a call? Where it has none, nothing is counted. */
+/* Whether the world has a budget for iterations or calls. Without one, nothing is counted. */
 BREVE_API bool breve_world_has_budget(const breve_world* world);
 
 /* ---- classes of the host ------------------------------------------------------------------------------------------ */
 
-/* A class that the host writes in its own language. Programs name it like one of the class library: they derive classes
-   from it, make objects of it and call its methods, and it may itself derive from any class of theirs. Methods of the
-   world's own names do what they do in steve: `init` runs for each new object, from the root class down, `iterate` and
-   `post-iterate` in each iteration, `destroy` when an object is freed. See docs/host_classes.md. */
+/* A class that the host implements in its own language. Programs use it like one of the class library: they derive classes
+   from it, create objects of it and call its methods. It may itself be derived from any of their classes. Methods with
+   special names work as in steve: `init` runs for each new object, from the root class down, `iterate` and `post-iterate`
+   run in each iteration, and `destroy` runs when an object is freed. See docs/host_classes.md. */
 
-/* One keyword of a method with the type of its argument. */
+/* One keyword of a method, with the type of its argument. */
 typedef struct breve_parameter {
   const char* keyword;
-  uint32_t type;     /* breve_type: arguments are converted as in an assignment; BREVE_TYPE_NULL takes any value as it is */
+  uint32_t type;     /* breve_type: arguments are converted as in an assignment; BREVE_TYPE_NULL accepts any value unchanged */
   uint32_t reserved; /* must be 0 */
 } breve_parameter;
 
-/* A method. It is called as a function of the host is; breve_call.self is the receiver. Frozen: it never grows. */
+/* A method. It is called like a host function; breve_call.self is the receiver. Frozen. */
 typedef struct breve_method {
   const char* name;                  /* a selector: "set-goal" */
-  const char* doc;                   /* what it does, for editors; NULL: nothing */
+  const char* doc;                   /* a description, for editors; NULL: none */
   const breve_parameter* parameters; /* NULL only if there are none */
   size_t parameter_count;            /* at most 8 */
   uint32_t result;                   /* breve_type; BREVE_TYPE_NULL: any value, or none */
-  bool adopts_keywords; /* if it overrides a method with as many keywords that has others: its keywords are those, in
-                           their order. Callers then need not know which of the two they call */
+  bool adopts_keywords; /* if it overrides a method with the same number of keywords but different ones, it takes those,
+                           in their order, so that callers need not know which of the two they call */
   bool reserved[3];     /* must be false */
   breve_function_fn call;
-  void* user; /* handed to `call` */
+  void* user; /* passed to `call` */
 } breve_method;
 
-/* An instance variable, read and written by breve_object_get and _set, and by the methods of derived classes. */
+/* An instance variable. breve_object_get and _set read and write it, and so do the methods of derived classes. */
 typedef struct breve_variable {
   const char* name;
   uint32_t type;     /* breve_type, but not BREVE_TYPE_NULL or BREVE_TYPE_POINTER */
   uint32_t reserved; /* must be 0 */
 } breve_variable;
 
-/* Where code of the host stands, for the chain of calls of an error. */
+/* A position in the host's source code, for the call chain of an error. */
 typedef struct breve_place {
-  const char* function; /* as its source calls it; copied */
+  const char* function; /* its name in that source; copied */
   const char* file;     /* copied */
   uint32_t line;        /* from 1; 0 if not known */
 } breve_place;
 
-/* A world is made of a program with the class, before anything runs in it. Its objects may not be made yet.
+/* Called when a world is created from a program with the class, before anything runs in it. It must not create objects.
    @param user     breve_class.user
-   @param binding  NULL; to be filled with what breve_call.binding is to be in this world
-   Any status but BREVE_OK ends the creation of the world with the reason that was written. */
+   @param binding  initially NULL; set it to the value of breve_call.binding for this world
+   Any status except BREVE_OK ends the creation of the world, with the reason that was written. */
 typedef breve_status (*breve_bind_fn)(void* user, breve_world* world, void** binding, breve_write_fn reason, void* sink);
 
-/* An error comes out of a method, or passes through it, and its chain of calls is made.
-   @param call    the call of the method, as breve_function_fn has it
-   @param places  room for `capacity`: the running functions of the host in this call, innermost first; the last one is the
-                  method itself. Texts are good until the next call of this function
-   Returns how many there are, at most capacity are written. It may not call functions of this header. */
+/* Called when an error leaves a method, or passes through it, to collect the call chain.
+   @param call    the call of the method, as for breve_function_fn
+   @param places  room for `capacity` places: the running functions of the host in this call, innermost first; the last one
+                  is the method itself. Texts must be valid until the next call of this function
+   Returns the total number, even if it exceeds capacity; writes at most capacity places. It must not call functions of
+   this header. */
 typedef size_t (*breve_places_fn)(void* user, const breve_call* call, breve_place* places, size_t capacity);
 
 typedef struct breve_class {
-  size_t struct_size;              /* as breve_class_default gives it */
-  const char* name;                /* must be given */
+  size_t struct_size;              /* set by breve_class_default */
+  const char* name;                /* required */
   const char* alias;               /* another name, as in `(aka Birds)`. NULL: none. Default NULL */
   const char* parent;              /* a class of the library, the host or a program. Default "Object" */
-  const char* const* modules;      /* `module_count` modules that programs load before, as by @include, such as the one
-                                      with the parent. NULL only if there are none. Default NULL */
+  const char* const* modules;      /* `module_count` modules that programs load before it, as with @include, such as the
+                                      module of the parent. NULL only if there are none. Default NULL */
   size_t module_count;             /* Default 0 */
-  const char* doc;                 /* NULL: nothing. Default NULL */
+  const char* doc;                 /* a description, for editors. NULL: none. Default NULL */
   const breve_variable* variables; /* NULL only if there are none. Default NULL */
   size_t variable_count;           /* Default 0 */
   const breve_method* methods;     /* NULL only if there are none. Default NULL */
   size_t method_count;             /* Default 0 */
   breve_bind_fn bind;              /* NULL: breve_call.binding is NULL. Default NULL */
-  void (*unbind)(void* binding);   /* the world is destroyed or has got a program without the class; it must not use this
-                                      header. NULL: nothing to do. Default NULL */
-  breve_places_fn places;          /* NULL: the chain of calls has the method's name only. Default NULL */
-  void* user;                      /* handed to `bind` and `places`. Default NULL */
+  void (*unbind)(void* binding);   /* called when the world is destroyed, or its program is replaced by one without the
+                                      class; it must not use this header. NULL: nothing to do. Default NULL */
+  breve_places_fn places;          /* NULL: call chains contain the method's name only. Default NULL */
+  void* user;                      /* passed to `bind` and `places`. Default NULL */
   void (*destroy)(void* user);     /* as breve_function.destroy. Default NULL */
-  const breve_place* method_places; /* where each of the `method_count` methods is declared, for profiles; `function` is not
-                                       read, and a method whose `file` is NULL has no place. NULL: none has. Default NULL */
+  const breve_place* method_places; /* the declaration of each of the `method_count` methods, for profiles; `function` is
+                                       ignored, and `file` may be NULL if it is unknown. NULL: all are unknown. Default
+                                       NULL */
 } breve_class;
 
 /* The defaults named above. */
@@ -1693,81 +1695,83 @@ static inline breve_class breve_class_default(void) {
   return class_;
 }
 
-/* Give a class to all programs that are compiled and analysed on this runtime from now on. A program takes it in when it
-   names it; a class that a file of the program defines wins over it, and it wins over one of the class library. A class of
-   the host that has the name already is replaced; programs that are compiled keep the one they have. Runs no script.
-   @param description  copied, with all that it points to
+/* Adds a class for all programs that are compiled and analysed on this runtime from now on. A program contains it if it uses
+   its name. A class that a file of the program defines takes precedence over it, and it takes precedence over one of the
+   class library. It replaces an earlier class of the host with the same name; programs that are already compiled keep
+   theirs. Runs no script.
+   @param description  copied, with everything that it points to
    BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, a name that a program cannot use, a method without `call`,
-   more than 8 parameters, two methods or variables of one name, an unknown type; `destroy` is not called then.
+   more than 8 parameters, two methods or variables with the same name, or an unknown type; `destroy` is not called then.
    BREVE_ERROR_BUSY from a callback of a compilation. */
 BREVE_API breve_status breve_runtime_add_class(breve_runtime* runtime, const breve_class* description);
 
-/* As breve_world_prepare, for calls as `super` makes them: breve_object_call_prepared calls the method that the parent of
-   `class_name` has, whatever the object's own class has. It is for objects of `class_name` and its descendants:
-   BREVE_ERROR_TYPE for others.
-   BREVE_OK; BREVE_ERROR_NOT_FOUND: the program has no such class; BREVE_ERROR_ARGUMENT: it has no parent. */
+/* As breve_world_prepare, for calls like those of `super`: breve_object_call_prepared then calls the method of the parent of
+   `class_name`, even if the object's own class overrides it. It works for objects of `class_name` and its descendants;
+   others give BREVE_ERROR_TYPE.
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: the program does not have the class; BREVE_ERROR_ARGUMENT: the class does not have a
+   parent. */
 BREVE_API breve_status breve_world_prepare_super(breve_world* world, const char* class_name, const char* method,
                                                  const char* const* keywords, size_t count, breve_selector* selector);
 
-/* A method that the objects of a class answer to. Texts are owned by the program. */
+/* A method of a class. Texts are owned by the program. */
 typedef struct breve_method_info {
-  const char* class_name; /* that defines it */
+  const char* class_name; /* the class that defines it */
   const char* name;
   size_t keyword_count;
   const char* const* keywords;  /* in the order of the declaration; owned by the world until the next call of
                                    breve_world_methods on it */
-  const uint32_t* types;        /* breve_type of each, likewise; BREVE_TYPE_NULL: any value */
-  const bool* defaults;         /* may it be left out? likewise */
+  const uint32_t* types;        /* breve_type of each, owned likewise; BREVE_TYPE_NULL: any value */
+  const bool* defaults;         /* whether each may be left out; owned likewise */
 } breve_method_info;
 
-/* The methods of a class, its own and those that it inherits, without those that are overridden: in the order of their
-   declaration, those of the class first.
-   @param methods  room for `capacity`; NULL only if capacity is 0
-   @param count    how many there are, also where that is more than capacity: at most capacity are written
-   BREVE_OK; BREVE_ERROR_NOT_FOUND: the program has no such class. */
+/* The methods of a class, including those that it inherits and does not override, in the order of declaration; the methods
+   of the class itself come first.
+   @param methods  room for `capacity` methods; NULL only if capacity is 0
+   @param count    the total number, even if it exceeds capacity; at most capacity methods are written
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: the program does not have the class. */
 BREVE_API breve_status breve_world_methods(breve_world* world, const char* class_name, breve_method_info* methods,
                                            size_t capacity, size_t* count);
 
-/* What `print` in a script does: `size` bytes go to the print callback on BREVE_CHANNEL_PRINT. It counts to the running
-   script's budget. BREVE_OK; BREVE_ERROR_SCRIPT: too much was printed, or a force method runs. */
+/* Prints like `print` in a script: passes `size` bytes to the print callback on BREVE_CHANNEL_PRINT, and charges the budget
+   of the running script. BREVE_OK; BREVE_ERROR_SCRIPT: too much was printed, or a force method runs. */
 BREVE_API breve_status breve_world_print(breve_world* world, const char* text, size_t size);
 
-/* What `random[bound]` in a script gives, from the world's generator: an int from 0 to bound, a number below bound, or a
+/* The result of `random[bound]` in a script, from the world's generator: an int from 0 to bound, a number below bound, or a
    vector of such numbers. BREVE_OK; BREVE_ERROR_TYPE: the bound has another type. */
 BREVE_API breve_status breve_world_random(breve_world* world, const breve_value* bound, breve_value* result);
 
-/* ---- what the host keeps of worlds and objects -------------------------------------------------------------------- */
+/* ---- user data and state of the host ------------------------------------------------------------------------------ */
 
-/* Keep data of the host with a world; breve_world_user reads it.
-   @param destroy  called once, when the world is destroyed or other data takes the place; NULL: nothing to do. It must
-                   not use this header */
+/* Attaches data of the host to a world; breve_world_user reads it.
+   @param destroy  called once, when the world is destroyed or the data is replaced; it must not use this header. NULL:
+                   nothing to do */
 BREVE_API breve_status breve_world_set_user(breve_world* world, void* user, void (*destroy)(void* user));
 
-/* Keep data of the host with an object.
+/* Attaches data of the host to an object.
    @param destroy  called once: when the object is freed (after its `destroy` methods), when the world is destroyed, when
-                   breve_world_restore leaves the object out, or when other data takes the place. NULL: nothing to do. It
-                   must not use this header
-   Data is not part of snapshots: an object that a restore makes anew has none. */
+                   breve_world_restore removes the object, or when the data is replaced; it must not use this header. NULL:
+                   nothing to do
+   Data is not part of snapshots: an object that a restore creates again does not have any. */
 BREVE_API breve_status breve_object_set_user(breve_world* world, breve_object object, void* user,
                                              void (*destroy)(void* user));
 
-/* The data of an object, NULL if it has none. BREVE_OK; BREVE_ERROR_STALE; BREVE_ERROR_ARGUMENT: the null object. */
+/* The data of an object; NULL if it does not have any. BREVE_OK; BREVE_ERROR_STALE; BREVE_ERROR_ARGUMENT: the null object. */
 BREVE_API breve_status breve_object_user(const breve_world* world, breve_object object, void** user);
 
-/* What the host keeps and a world's run depends on: part of its snapshots, and of its hash. A world may have several, each
-   under a name of its own. */
+/* State of the host that influences the run of a world: it becomes part of the world's snapshots and of its hash. A world may
+   have several states, each with its own name. */
 typedef struct breve_state {
-  size_t struct_size; /* as breve_state_default gives it */
-  void* user;         /* handed to the callbacks. Default NULL */
-  /* Write the state: bytes that depend on nothing but the run. It may read the world. False: it cannot be saved, and the
-     snapshot or hash gives BREVE_ERROR_UNSUPPORTED with the reason that was written. NULL: nothing is saved, and `load` is
-     not called. Default NULL */
+  size_t struct_size; /* set by breve_state_default */
+  void* user;         /* passed to the callbacks. Default NULL */
+  /* Writes the state, as bytes that depend on the run only. It may read the world. It returns false if the state cannot be
+     saved; the snapshot or hash then gives BREVE_ERROR_UNSUPPORTED with the reason that was written. NULL: nothing is
+     saved, and `load` is not called. Default NULL */
   bool (*save)(void* user, breve_world* world, breve_write_fn write, void* sink, breve_write_fn reason, void* reason_sink);
-  /* Take bytes that `save` wrote. It is called twice. First with commit false, while the world still is as it was: it
-     returns false if the bytes are not a valid state, and the restore gives BREVE_ERROR_IMAGE. Then with commit true, when
-     the world is restored; false then means that there was no memory for it. Must be given if `save` is */
+  /* Reads bytes that `save` wrote. It is called twice: first with commit false, before the world is changed, where it
+     returns false if the bytes are not a valid state, and the restore gives BREVE_ERROR_IMAGE; then with commit true, after
+     the world has been restored, where false means that memory ran out. Required if `save` is given */
   bool (*load)(void* user, breve_world* world, const char* bytes, size_t size, bool commit);
-  /* Called after an object is gone, however that happened; its id is stale. It must not use this header. NULL: not
+  /* Called after an object was freed or removed for any reason; its id is stale. It must not use this header. NULL: not
      called. Default NULL */
   void (*gone)(void* user, breve_object object);
   void (*destroy)(void* user); /* as for breve_world_set_user. Default NULL */
@@ -1781,21 +1785,21 @@ static inline breve_state breve_state_default(void) {
   return state;
 }
 
-/* Make state of the host a part of the world. Images that were taken with it fit only worlds that have state of that name,
-   and the other way round: BREVE_ERROR_IMAGE. Not from a callback of state.
+/* Makes state of the host a part of the world. Images that were taken with it can be restored only in worlds that have a
+   state with this name, and the other way round: otherwise BREVE_ERROR_IMAGE. The callbacks of a state must not call it.
    @param name   copied
-   @param state  copied; NULL: none of that name any more
+   @param state  copied; NULL: removes the state with this name
    BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, or `save` without `load`. */
 BREVE_API breve_status breve_world_set_state(breve_world* world, const char* name, const breve_state* state);
 
-/* breve_state.user of the state of that name; NULL if there is none. */
+/* breve_state.user of the state with this name; NULL if there is none. */
 BREVE_API void* breve_world_state(const breve_world* world, const char* name);
 
-/* Memory that counts against the world's limit, from the runtime's allocator, aligned for any type. NULL if there is none
-   left, or size is 0. It is given back before the world is destroyed, as in breve_class.unbind. */
+/* Allocates memory with the runtime's allocator, counted against the world's limit and aligned for any type. Returns NULL if
+   memory runs out or size is 0. Release it before the world is destroyed, for example in breve_class.unbind. */
 BREVE_API void* breve_world_allocate(breve_world* world, size_t size);
 
-/* Give back what breve_world_allocate gave, with the same size. NULL is nothing. */
+/* Releases memory from breve_world_allocate; the size must be the same. Does nothing for NULL. */
 BREVE_API void breve_world_release(breve_world* world, void* memory, size_t size);
 
 /* ---- input ------------------------------------------------------------------------------------------------------- */
@@ -1829,26 +1833,24 @@ BREVE_API breve_status breve_world_queue_choice(breve_world* world, breve_object
 
 /* ---- snapshots --------------------------------------------------------------------------------------------------- */
 
-/* A number that is equal for two worlds if their whole state is the same, bit for bit: objects, bodies, scripts,
-   schedule,
-   generator. BREVE_OK; BREVE_ERROR_BUSY while a script of it runs; BREVE_ERROR_UNSUPPORTED: the host could not save a
-   state of its own. */
+/* A number that is equal for two worlds if their whole state is the same, bit for bit: objects, bodies, scripts, schedule,
+   random number generator. BREVE_OK; BREVE_ERROR_BUSY while a script of it runs; BREVE_ERROR_UNSUPPORTED: the host could
+   not save a state of its own. */
 BREVE_API breve_status breve_world_hash(const breve_world* world, uint64_t* hash);
 
 /* Writes the whole state as an image: portable between runs of one library version on one kind of machine.
    @param image  room for `capacity` bytes; NULL only if capacity is 0
    @param size   the image's size. If it exceeds capacity, nothing is written to image: call again with more room
    BREVE_OK, also for that size query; BREVE_ERROR_BUSY while a script of it runs; BREVE_ERROR_UNSUPPORTED: the host
-   could not save a state of its own. Does not change the world,
-   except that a flat world with physics continues from its image like a restored one, which may differ in the last bits
-   from continuing without a snapshot. The time that breve_world_advance keeps belongs to the host loop, and is not part of
-   the image. */
+   could not save a state of its own. Does not change the world, except that a flat world with physics continues from its
+   image like a restored one, which may differ in the last bits from continuing without a snapshot. The time that
+   breve_world_advance carries over belongs to the host's loop and is not part of the image. */
 BREVE_API breve_status breve_world_snapshot(const breve_world* world, void* image, size_t capacity, size_t* size);
 
 /* Restores a snapshot's state in a world of the same program. In the world that the snapshot is from, the ids of that
    time are valid again; ids that were created since are stale, and no new object gets one of them. A world of another
    runtime that has the same number there (the first, the second ...) shares these ids; in any other world the host must
-   look its objects up again. The time that breve_world_advance keeps is discarded. Runs no script.
+   look its objects up again. The time that breve_world_advance carries over is discarded. Runs no script.
    BREVE_OK; BREVE_ERROR_IMAGE: damaged, or of another program or version: the world is unchanged; BREVE_ERROR_BUSY
    while a script of it runs. */
 BREVE_API breve_status breve_world_restore(breve_world* world, const void* image, size_t size);
@@ -1949,26 +1951,26 @@ BREVE_API breve_status breve_world_profile_node(const breve_world* world, size_t
 /* The cost of profiling that was subtracted from the nodes, s: an estimate. As breve_world_profile_node_count. */
 BREVE_API breve_status breve_world_profile_cost(const breve_world* world, double* seconds);
 
-/* Is a profile being taken? A binding of another language asks before it enters its functions: without a profile it has
-   nothing to do then. False for NULL. */
+/* Whether a profile is running. A binding of another language checks this first: without a profile it need not report its
+   functions. False for NULL. */
 BREVE_API bool breve_world_is_profiled(const breve_world* world);
 
-/* A function of the host's own language begins inside a function or method of the host that a script called: it becomes a
-   node below the one that runs. What a callback of the script enters and does not leave is left when the callback
+/* Reports that a function of the host's own language begins inside a host function or method that a script called: it
+   becomes a node below the running one. Functions that a callback enters and does not leave end when the callback
    returns. Has no effect without a profile, or while nothing of the world runs. Runs no script.
    @param class_name  the class whose method it is; NULL or "": it is a function, of the kind BREVE_PROFILE_FUNCTION
-   @param place       where it is declared, and its name. The address stands for the function in this profile: the texts
-                      are copied when it is entered for the first time, and later changes are not seen
+   @param place       its declaration and name. Its address identifies the function in this profile: the texts are copied
+                      when it is entered for the first time, and later changes are ignored
    BREVE_OK; BREVE_ERROR_ARGUMENT: `place`, its `function` or its `file` is NULL; BREVE_ERROR_BUSY inside a
    breve_trace_fn. */
 BREVE_API breve_status breve_world_profile_enter(breve_world* world, const char* class_name, const breve_place* place);
 
-/* The function that was entered last ends. Has no effect if something else was entered since.
+/* Reports that the function that was entered last ends. Has no effect if something else was entered since.
    BREVE_OK; BREVE_ERROR_BUSY inside a breve_trace_fn. */
 BREVE_API breve_status breve_world_profile_leave(breve_world* world);
 
-/* The line from which the running function of the host makes its next call: breve_profile_node.call_line of what it
-   enters or calls next. Without it that is 0. BREVE_OK. */
+/* Sets the line from which the running function of the host makes its next call: breve_profile_node.call_line of the
+   function that it enters or calls next, which is 0 otherwise. BREVE_OK. */
 BREVE_API breve_status breve_world_profile_line(breve_world* world, uint32_t line);
 
 /* ---- reload and evaluate ----------------------------------------------------------------------------------------- */
@@ -2007,8 +2009,8 @@ BREVE_API breve_status breve_world_evaluate(breve_world* world, breve_object sel
    one is created, it is a hash that the script has not created yet. */
 BREVE_API breve_status breve_world_session(breve_world* world, breve_value* hash);
 
-/* Can these statements be run as they are? False while a bracket, string or comment is open or the last statement is
-   incomplete, so that the user should be asked for another line. True for a text with other errors, and for an empty
+/* Whether these statements can be run as they are. False while a bracket, string or comment is open or the last statement
+   is incomplete, so that the user should be asked for another line. True for a text with other errors, and for an empty
    one. */
 BREVE_API bool breve_statements_complete(const char* text, size_t size);
 
@@ -2023,7 +2025,7 @@ BREVE_API void breve_world_interrupt(breve_world* world);
 }
 #endif
 
-/* The rest of the interface, in parts: space.h (queries, collision filters, forces), events.h (what happened in an
+/* The rest of the interface, in parts: space.h (queries, collision filters, forces), events.h (the events of an
    iteration), step.h (game loops), batch.h (many worlds), record.h (logs of input, and replays), debug_draw.h (lines
    that show what the simulation does), plugin.h (functions and classes in shared libraries). */
 #include "breve/batch.h"

@@ -189,7 +189,7 @@ struct Keyword {
 inline const char* version() { return breve_version(); }
 inline std::uint32_t abi() { return breve_abi(); }
 
-/// Can these statements be evaluated as they are? Otherwise another line must follow.
+/// Whether these statements can be evaluated as they are; otherwise another line must follow.
 inline bool statements_complete(std::string_view text) { return breve_statements_complete(text.data(), text.size()); }
 
 inline std::size_t lint_count() { return breve_lint_count(); }
@@ -271,9 +271,9 @@ class World {
   Status set_user(void* user, void (*destroy)(void* user) = nullptr) {
     return status(breve_world_set_user(get(), user, destroy));
   }
-  /// Print as a script does.
+  /// Prints like `print` in a script.
   Status print(std::string_view text) { return status(breve_world_print(get(), text.data(), text.size())); }
-  /// What random[bound] gives in a script.
+  /// The result of random[bound] in a script.
   Result<Value> random(const Value& bound) { return read_value(breve_world_random, &bound); }
   bool has_budget() const { return breve_world_has_budget(get()); }
   const breve_error* last_error() const { return breve_world_last_error(get()); }
@@ -380,11 +380,11 @@ class World {
   Status set_collides(Object object, Object other, bool on) {
     return status(breve_object_set_collides(get(), object, other, on));
   }
-  /// Sets the function that is asked about pairs with a body that asks; null: only the objects are asked.
+  /// Sets the function that decides about pairs in which a filter has `asks`; null: only the objects decide.
   Status set_may_collide(breve_may_collide_fn function, void* user = nullptr) {
     return status(breve_world_set_may_collide(get(), function, user));
   }
-  /// In the next iteration only, at a point of the world or, without one, at the centre of mass.
+  /// Acts in the next iteration only, at a point in the world frame or, without one, at the centre of mass.
   Status add_force(Object object, const Vector& force, const Vector* point = nullptr, const Vector& torque = {}) {
     return status(breve_object_add_force(get(), object, force.data(), torque.data(), point ? point->data() : nullptr));
   }
@@ -393,7 +393,7 @@ class World {
   }
   Status wake(Object object) { return status(breve_object_wake(get(), object)); }
 
-  // --- queries: what was found first, if anything was, or all that was -----------------------------------------------
+  // --- queries: the first body that was found, if any was, or all of them --------------------------------------------
   struct Found {
     bool found = false;
     breve_hit hit{};
@@ -462,15 +462,15 @@ class World {
   Result<std::vector<breve_nap>> naps() const { return list<breve_nap>(breve_world_naps); }
   Result<std::size_t> naps(Room<breve_nap> room) const { return fill(room, breve_world_naps); }
   Result<bool> contacts_watched(Object object) const { return read<bool>(breve_object_contacts_watched, object); }
-  /// The force on `object`, of all bodies that touch it or of one of them.
+  /// The force on `object` from all bodies that touch it, or from one of them.
   Result<Vector> contact_force(Object object, Object other = {}) const {
     return read_array<3>(breve_object_contact_force, object, other);
   }
-  /// Callbacks during the iteration; null: none.
+  /// Sets the callbacks that get the events during an iteration; null: none.
   Status set_listener(const breve_listener* listener) { return status(breve_world_set_listener(get(), listener)); }
   Result<breve_listener> listener() const { return read_struct(breve_listener_default(), breve_world_listener); }
 
-  // --- what was set, and what is to be seen --------------------------------------------------------------------------
+  // --- settings and appearance of bodies -----------------------------------------------------------------------------
   Result<breve_material> material(Object object) const { return read<breve_material>(breve_object_material, object); }
   struct Force {
     Vector force, torque;
@@ -651,7 +651,7 @@ class World {
                                        const char* const* keywords = nullptr, std::size_t count = 0) {
     return read<breve_selector>(breve_world_prepare_super, class_name, method, keywords, count);
   }
-  /// What the objects of a class answer to. The keywords are good until the next call.
+  /// The methods of a class. The keywords are valid until the next call.
   Result<std::vector<breve_method_info>> methods(const char* class_name) {
     std::size_t count = 0;
     breve_status s = breve_world_methods(get(), class_name, nullptr, 0, &count);
@@ -713,19 +713,19 @@ class World {
   /// Stops the running script; may be called from any thread, or a signal handler.
   void interrupt() noexcept { breve_world_interrupt(get()); }
   /// Charges the work of a host function to the budget, as a number of loop iterations.
-  Status charge(std::uint64_t turns) { return status(breve_world_charge(get(), turns)); }
+  Status charge(std::uint64_t iterations) { return status(breve_world_charge(get(), iterations)); }
 
-  // --- what the host keeps -------------------------------------------------------------------------------------------
+  // --- user data and state of the host -------------------------------------------------------------------------------
   Result<void*> user(Object object) const { return read<void*>(breve_object_user, object); }
   Status set_user(Object object, void* user, void (*destroy)(void* user) = nullptr) {
     return status(breve_object_set_user(get(), object, user, destroy));
   }
-  /// State of the host that is part of snapshots and of the hash; null: none of that name any more.
+  /// State of the host that is part of snapshots and of the hash; null: removes the state with that name.
   Status set_state(const char* name, const breve_state* state) {
     return status(breve_world_set_state(get(), name, state));
   }
   void* state(const char* name) const { return breve_world_state(get(), name); }
-  /// Memory that counts against the world's limit; null if there is none left.
+  /// Allocates memory that counts against the world's limit; null if memory runs out.
   void* allocate(std::size_t size) { return breve_world_allocate(get(), size); }
   void release(void* memory, std::size_t size) { breve_world_release(get(), memory, size); }
 
@@ -758,7 +758,7 @@ class World {
   Status record_start(breve_write_fn write, void* sink) { return status(breve_world_record_start(get(), write, sink)); }
   Status record_stop() { return status(breve_world_record_stop(get())); }
   bool recording() const { return breve_world_recording(get()); }
-  /// What a host function has read from outside during an iteration: recorded, or replaced by what was recorded.
+  /// Records the bytes that a host function read from outside, or replaces them by the recorded ones in a replay.
   Status record_input(void* bytes, std::size_t size) { return status(breve_world_record_input(get(), bytes, size)); }
   Result<breve_replay> replay(const void* log, std::size_t size, bool (*after)(void*, breve_world*) = nullptr,
                               void* user = nullptr) {
@@ -766,7 +766,7 @@ class World {
     const breve_status s = breve_world_replay(get(), log, size, after, user, &result);
     return {status(s), result};
   }
-  /// Computes what the world plays from `time` on: left and right of each frame.
+  /// Computes the sound of the world from `time` on: left and right of each frame.
   Status sound(double time, double rate, float* samples, std::size_t frames) const {
     return status(breve_world_sound(get(), time, rate, samples, frames));
   }
@@ -937,7 +937,7 @@ class Analysis {
   std::unique_ptr<breve_analysis, Destroy> handle_;
 };
 
-/// Rows of a scene; see breve_rows. Good until the scene is read again.
+/// Rows of a scene; see breve_rows. Valid until the scene is read again.
 template <class Row>
 class Rows {
  public:
@@ -951,7 +951,7 @@ class Rows {
   breve_rows rows_;
 };
 
-/// What there is to see in a world; see breve/view.h.
+/// The visible scene of a world; see breve/view.h.
 class Scene {
  public:
   Scene() = default;
@@ -991,14 +991,14 @@ class Scene {
   std::unique_ptr<breve_scene, Destroy> handle_;
 };
 
-/// Where a camera sees a point: pixels from the left and the top, and the distance.
+/// Projects a point into a picture: pixels from the left and the top, and the distance.
 inline Result<Vector> project(const breve_camera& camera, std::uint32_t width, std::uint32_t height, Vector point) {
   Vector seen{};
   const breve_status s = breve_camera_project(&camera, width, height, point.data(), seen.data());
   return {{s, nullptr}, seen};
 }
 
-/// A picture as a PNG file; rows side by side.
+/// A picture as a PNG file; its rows are contiguous.
 inline Result<std::vector<std::uint8_t>> png(std::uint32_t width, std::uint32_t height, const std::uint8_t* rgba) {
   std::vector<std::uint8_t> bytes;
   std::size_t size = 0;
@@ -1010,7 +1010,7 @@ inline Result<std::vector<std::uint8_t>> png(std::uint32_t width, std::uint32_t 
   return {{s, nullptr}, std::move(bytes)};
 }
 
-/// Draws worlds; see breve/view.h. Made by Runtime::view.
+/// Draws worlds; see breve/view.h. Created by Runtime::view.
 class View {
  public:
   View() = default;
@@ -1023,7 +1023,7 @@ class View {
   }
   Status depth(float* to, std::size_t stride = 0) const { return {breve_view_depth(get(), to, stride), nullptr}; }
   Status set_camera(const breve_camera& camera) { return {breve_view_set_camera(get(), &camera), nullptr}; }
-  /// Look through the program's camera again.
+  /// Uses the program's camera again.
   Status reset_camera() { return {breve_view_set_camera(get(), nullptr), nullptr}; }
   Result<breve_camera> camera() const {
     breve_camera found{};
@@ -1113,7 +1113,7 @@ class Runtime {
     const breve_status s = breve_program_load(get(), name, &made);
     return {status(s), Program(made)};
   }
-  /// A program without a text of its own: the whole class library, with one of its controllers.
+  /// A program that consists of the class library alone, with one of its controllers.
   Result<Program> library_program(const char* controller = nullptr) {
     breve_program* made = nullptr;
     const breve_status s = breve_program_create_library(get(), controller, &made);

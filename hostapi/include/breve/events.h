@@ -1,4 +1,4 @@
-/* events.h: what happened in an iteration, as lists: contacts, births and deaths, announcements, who sleeps. A part of breve.h,
+/* events.h: the events of an iteration: contacts, creation and end of objects, announcements, sleep. A part of breve.h,
  * whose rules hold here.
  */
 #ifndef BREVE_EVENTS_H
@@ -12,61 +12,62 @@ extern "C" {
 
 /* ---- events ------------------------------------------------------------------------------------------------------ */
 
-/* A host says which events it wants; the lists of an iteration are there from its end until the next one begins, or one is
-   restored. Only events that were asked for are gathered: the effect "events" says whether there are any, and what
-   they cost. Events are not part of the world: neither the hash nor images contain them. breve_world_interventions lists
-   what the guard did, and breve_world_impacts the impulses alone. Objects in these lists may be gone; their ids then
-   are stale. */
+/* The host selects the kinds of events that it wants. The lists of an iteration are valid from its end until the next one
+   begins or an image is restored. Only the selected kinds are collected; the effect "events" reports whether any are, and
+   what they cost. Events are not part of the world: neither the hash nor images contain them.
+   breve_world_interventions lists the actions of the guard, and breve_world_impacts the impulses alone. Objects in these
+   lists may have been freed; their ids are stale then. */
 
-/* Kinds of events, to be added. */
+/* Kinds of events; add them to select several. */
 typedef enum breve_event {
   BREVE_EVENT_CONTACT = 1,      /* see breve_world_watch_contacts */
-  BREVE_EVENT_LIFE = 2,         /* births and deaths */
-  BREVE_EVENT_ANNOUNCEMENT = 4, /* `announce`, whether somebody observes it or not */
-  BREVE_EVENT_SLEEP = 8         /* bodies that fall asleep or wake; there are none before breve_world_set_sleeping */
+  BREVE_EVENT_LIFE = 2,         /* objects that were created or freed */
+  BREVE_EVENT_ANNOUNCEMENT = 4, /* `announce`, whether an object observes it or not */
+  BREVE_EVENT_SLEEP = 8         /* bodies that fall asleep or wake up; requires breve_world_set_sleeping */
 } breve_event;
 
-/* Gather events of these kinds, of breve_event added, from now on; 0: none.
+/* Selects the kinds of events that are collected from now on.
+   @param kinds  a sum of breve_event; 0: none
    BREVE_OK; BREVE_ERROR_ARGUMENT: a bit that is not a breve_event. */
 BREVE_API breve_status breve_world_set_events(breve_world* world, uint32_t kinds);
 
-/* The kinds that are gathered; 0 for NULL. */
+/* The kinds that are collected. 0 for NULL. */
 BREVE_API uint32_t breve_world_events(const breve_world* world);
 
-/* Report the contacts of all objects of a class and its descendants, with anything, or stop that. Classes that a later
-   program (breve_world_reload) gives descendants are to be named again.
-   BREVE_OK; BREVE_ERROR_NOT_FOUND: the program has no such class. */
+/* Starts or stops reporting the contacts of all objects of a class and its descendants. After a reload
+   (breve_world_reload) that gives a class new descendants, call it again.
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: the program does not have the class. */
 BREVE_API breve_status breve_world_watch_contacts(breve_world* world, const char* class_name, bool on);
 
-/* Report the contacts of one object, or stop that. BREVE_OK; BREVE_ERROR_NO_BODY. */
+/* Starts or stops reporting the contacts of one object. BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_watch_contacts(breve_world* world, breve_object object, bool on);
 
-/* Are the contacts of an object reported, because it or its class is watched? BREVE_OK; BREVE_ERROR_NO_BODY. */
+/* Whether the contacts of an object are reported, because it or its class is watched. BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_contacts_watched(const breve_world* world, breve_object object, bool* watched);
 
 typedef enum breve_phase {
   BREVE_PHASE_BEGIN = 0,   /* they did not touch at the end of the last iteration */
   BREVE_PHASE_PERSIST = 1, /* they still touch */
-  BREVE_PHASE_END = 2      /* they do not touch any more */
+  BREVE_PHASE_END = 2      /* they no longer touch */
 } breve_phase;
 
-/* Two bodies that touch at the end of the iteration, or between which an impact was in it. To touch, a gap of 1e-4 of the
-   smaller one's radius is enough; a contact ends at 1e-3, so that what rests does not tremble between the two. Bodies
-   without physics that meet and part again within one iteration are not seen. Frozen. */
+/* Two bodies that touch at the end of an iteration, or that collided during it. A contact begins when the gap is at most
+   1e-4 of the smaller radius and ends when it exceeds 1e-3, so that a body at rest does not flicker between the two.
+   Bodies without physics that meet and part within one iteration are not reported. Frozen. */
 typedef struct breve_contact {
   uint32_t phase; /* breve_phase */
   uint32_t reserved;
   breve_object a, b; /* a was created earlier */
-  double point[3];   /* midway between their nearest, or deepest, points; world frame. In BREVE_PHASE_END the last */
-  double normal[3];  /* unit, from b toward a; likewise */
-  double distance;   /* < 0: the depth of the overlap; likewise */
+  double point[3];   /* midway between their nearest (or deepest) points, world frame. In BREVE_PHASE_END: the last one */
+  double normal[3];  /* unit, from b toward a; in BREVE_PHASE_END: the last one */
+  double distance;   /* negative: the depth of the overlap; in BREVE_PHASE_END: the last one */
   double impulse[3]; /* on a, N*s: the sum of the impacts of this iteration (breve_world_impacts). The support of a body
                         that rests is not an impact */
 } breve_contact;
 
 /* The contacts of the last iteration, in the order of creation of a, then of b.
-   @param contacts  room for `capacity`; NULL only if capacity is 0
-   @param count     how many there are, also where that is more than capacity: at most capacity are written
+   @param contacts  room for `capacity` contacts; NULL only if capacity is 0
+   @param count     the total number, even if it exceeds capacity; at most capacity contacts are written
    BREVE_OK. */
 BREVE_API breve_status breve_world_contacts(const breve_world* world, breve_contact* contacts, size_t capacity,
                                             size_t* count);
@@ -81,35 +82,35 @@ BREVE_API breve_status breve_world_contacts(const breve_world* world, breve_cont
 BREVE_API breve_status breve_object_contact_force(const breve_world* world, breve_object object, breve_object other,
                                                   double force[3]);
 
-/* An object that was made or freed. Frozen. */
+/* An object that was created or freed. Frozen. */
 typedef struct breve_life {
   breve_object object;
   const char* class_name; /* owned by the program */
-  bool born;              /* else it is gone */
+  bool born;              /* created; false: freed */
 } breve_life;
 
-/* In the order in which it happened. As breve_world_contacts. What happens between iterations is in the list as well, from
-   when it happens until the next one begins. */
+/* Objects that were created or freed, in that order in time. As breve_world_contacts. The list also contains events between
+   two iterations, until the next iteration begins. */
 BREVE_API breve_status breve_world_lives(const breve_world* world, breve_life* lives, size_t capacity, size_t* count);
 
-/* What an object announced. Frozen. */
+/* An announcement of an object. Frozen. */
 typedef struct breve_announcement {
   breve_object announcer;
   double time;         /* s */
   const char* message; /* owned by the world until the next iteration begins */
 } breve_announcement;
 
-/* In the order in which they were made. As breve_world_lives. */
+/* Announcements, in the order in which they were made. As breve_world_lives. */
 BREVE_API breve_status breve_world_announcements(const breve_world* world, breve_announcement* announcements,
                                                  size_t capacity, size_t* count);
 
-/* A body that fell asleep or woke in the iteration. Frozen. */
+/* A body that fell asleep or woke up during the iteration. Frozen. */
 typedef struct breve_nap {
   breve_object object;
   bool asleep;
 } breve_nap;
 
-/* Those that woke, then those that fell asleep, each in the order of creation. As breve_world_contacts. */
+/* Bodies that woke up, then bodies that fell asleep, each in the order of creation. As breve_world_contacts. */
 BREVE_API breve_status breve_world_naps(const breve_world* world, breve_nap* naps, size_t capacity, size_t* count);
 
 /* ---- callbacks ---------------------------------------------------------------------------------------------------- */

@@ -8,8 +8,8 @@
  *     }
  *
  * A plugin belongs to the programs that name it. Two programs of one runtime share it, with the same functions and
- * classes; a program that does not name it does not see them. A function or class of a plugin takes precedence over
- * nothing: a name that the program has already is an error. Plugins run with all rights of the process. See
+ * classes; a program that does not name it does not see them. A function or class of a plugin never
+ * replaces another one: a name that the program already has is an error. Plugins run with all rights of the process. See
  * docs/plugins.md.
  */
 #ifndef BREVE_PLUGIN_H
@@ -52,7 +52,7 @@ extern "C" {
    @param path    of the library; one without '/' is searched by the rules of the system's loader
    @param entry   name of a function that BREVE_PLUGIN defines
    @param plugin  filled in; its `close` unloads the library
-   @param reason  called with `sink` and the reason if the library is not opened; NULL: nobody asks
+   @param reason  called with `sink` and the reason if the library is not opened; may be NULL
    BREVE_OK; BREVE_ERROR_FILE: the system cannot load the library; BREVE_ERROR_NOT_FOUND: it has no such entry;
    BREVE_ERROR_UNSUPPORTED: this build cannot load libraries. */
 BREVE_API breve_status breve_plugin_open(const char* path, const char* entry, breve_plugin* plugin,

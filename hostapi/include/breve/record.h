@@ -59,7 +59,7 @@ typedef struct breve_replay {
    @param world   of the same program, made with the same configuration, with the same states of the host
    @param log     `size` bytes
    @param after   called after each iteration; it may look at the world but not change it. Returns false to end the
-                  replay. NULL: nobody asks
+                  replay. May be NULL
    @param replay  the result
    BREVE_OK, whether the runs agree or not: see `replay`; BREVE_ERROR_IMAGE: not a log, a damaged one, or one of another
    program or version; BREVE_ERROR_BUSY while a script of the world runs; BREVE_ERROR_ARGUMENT: the world is being

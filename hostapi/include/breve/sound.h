@@ -15,13 +15,13 @@ extern "C" {
 /* ---- sound ------------------------------------------------------------------------------------------------------- */
 
 /* Computes what the Sound and Tone objects of a world play, as they are now. After each iteration a host asks for the
-   frames from breve_world_time to the end of the next iteration; the call changes nothing, and gives the same again if
-   it is repeated. Runs no script.
-   @param time    of the first frame, simulated s. What began later is not heard before it began
+   frames from breve_world_time to the end of the next iteration. The call changes nothing and can be repeated. Runs no
+   script.
+   @param time    of the first frame, simulated s. A sound that began later is silent until it begins
    @param rate    frames per second, from 1000 to 1e6
-   @param samples left and right of each frame, 2 * frame_count numbers, which are overwritten; the sum of all that
-   plays, each from -1 to 1. NULL only if frame_count is 0 BREVE_OK; BREVE_ERROR_ARGUMENT: a time or rate that is not
-   finite or out of range. */
+   @param samples left and right of each frame, 2 * frame_count numbers, which are overwritten: the sum of all sounds,
+                  from -1 to 1. NULL only if frame_count is 0
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a time or rate that is not finite or out of range. */
 BREVE_API breve_status breve_world_sound(const breve_world* world, double time, double rate, float* samples,
                                          size_t frame_count);
 

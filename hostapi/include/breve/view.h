@@ -1,18 +1,18 @@
-/* breve/view.h: what there is to see in a world. A host with a renderer of its own reads the scene: instances of shared
- * meshes, lines, text, cameras, lights. Any other host has the library draw it into an array of pixels, without a screen.
+/* breve/view.h: the visible scene of a world. A host with its own renderer reads the scene as data: instances of shared
+ * meshes, lines, text, cameras, lights. Any other host lets the library draw it into an array of pixels, without a screen.
  *
  *     breve_scene* scene;                                   breve_view* view;
  *     breve_scene_create(&scene);                           breve_view_create(runtime, NULL, &view);
  *     breve_scene_read(scene, world);                       breve_view_render(view, world, pixels, 0);
  *     breve_scene_rows(scene, BREVE_SCENE_INSTANCES, &rows);
  *
- * The rules of breve.h also hold here. Neither a scene nor a view belongs to a world: each reads the world that it is
- * given, at that moment, changes nothing in it, and keeps only copies. A scene or a view is used by one thread at a time;
- * different ones may be used by different threads. Their memory comes from the C++ allocator. While none is made nothing
- * of this costs anything: no mesh is built, no picture is decoded, no graphics library is loaded.
+ * The rules of breve.h also hold here. A scene or view does not belong to a world: it reads the world that it is given,
+ * as it is at that moment, does not change it, and keeps only copies. Each scene or view is used by one thread at a time;
+ * different ones may be used by different threads. Their memory comes from the C++ allocator. As long as none is created,
+ * this costs nothing: no mesh is built, no picture is decoded, no graphics library is loaded.
  *
- * Numbers here are float, as renderers take them; what is too large for one is cut off at 1e18. Colours are red, green,
- * blue and alpha from 0 to 1, encoded as sRGB, as scripts give them.
+ * Numbers are float, as renderers use them; larger ones are clamped to 1e18. Colours are red, green, blue and alpha from
+ * 0 to 1, encoded as sRGB, as in scripts.
  */
 #ifndef BREVE_VIEW_H
 #define BREVE_VIEW_H
@@ -27,16 +27,16 @@ extern "C" {
 
 typedef struct breve_scene breve_scene;
 
-/* Rows that lie in an array of the library: the first one, how many there are, and the bytes from one to the next. These
-   rows grow as structs with struct_size do: a later library may have longer ones, so a host steps by `stride`. They are
-   good until the next call of breve_scene_read on that scene. */
+/* An array of the library: its first row, the number of rows, and the number of bytes from one row to the next. A later
+   library may have longer rows, so a host must step by `stride`. Rows are valid until the next call of breve_scene_read on
+   the same scene. */
 typedef struct breve_rows {
   const void* data; /* NULL if there are none */
   size_t count;
   size_t stride;
 } breve_rows;
 
-/* What a scene has rows of. */
+/* The arrays of a scene. */
 typedef enum breve_scene_kind {
   BREVE_SCENE_INSTANCES = 0, /* breve_instance, in order of creation */
   BREVE_SCENE_MESHES = 1,    /* breve_mesh */
@@ -53,41 +53,41 @@ typedef enum breve_scene_kind {
 
 #define BREVE_NO_TEXTURE UINT32_MAX
 
-/* A mesh drawn at a place. */
+/* A mesh, drawn with a pose. */
 typedef struct breve_instance {
   breve_object object;    /* the body or grid that it shows */
   float transform[12];    /* three rows of four: world = transform * (x, y, z, 1) */
   float color[4];
-  float texture_scale[2]; /* length units that one tile of the texture takes, across and along */
+  float texture_scale[2]; /* the size of one tile of the texture, across and along, in length units */
   uint32_t mesh;          /* row of BREVE_SCENE_MESHES */
   uint32_t texture;       /* row of BREVE_SCENE_TEXTURES, or BREVE_NO_TEXTURE */
   uint32_t casts_shadow;  /* 0 or 1 */
   uint32_t fixed;         /* 1: a Stationary or Terrain */
 } breve_instance;
 
-/* Triangles that instances share. Bodies with shapes that look alike have the same mesh: there is one for all spheres. */
+/* Triangles that instances share. Bodies whose shapes look alike have the same mesh; there is one for all spheres. */
 typedef struct breve_mesh {
-  const float* positions; /* 3 for each vertex; NULL in a row that is not in use */
+  const float* positions; /* 3 for each vertex; NULL in an unused row */
   const float* normals;   /* 3 for each vertex, of unit length */
-  const float* uvs;       /* 2 for each vertex: 0 to 1 over a terrain, else 0 */
-  const float* colors;    /* 3 for each vertex, in place of the instance's; NULL: none */
+  const float* uvs;       /* 2 for each vertex: 0 to 1 across a terrain, otherwise 0 */
+  const float* colors;    /* 3 for each vertex, instead of the instance's colour; NULL: none */
   const uint32_t* indices; /* 3 for each triangle, counter-clockwise seen from outside */
   size_t vertex_count, index_count;
-  uint64_t revision;      /* another number when this row holds another mesh, or a changed one */
+  uint64_t revision;      /* changes when the row holds another mesh, or a changed one */
 } breve_mesh;
 
 typedef struct breve_texture {
   breve_object image;  /* the Image object */
-  const uint8_t* rgba; /* 4 for each pixel, rows from the top; NULL in a row that is not in use */
+  const uint8_t* rgba; /* 4 for each pixel, rows from the top; NULL in an unused row */
   uint32_t width, height;
-  uint64_t revision;   /* another number when the pixels are others */
+  uint64_t revision;   /* changes when the pixels change */
 } breve_texture;
 
 typedef struct breve_line {
   float from[3], to[3];
   float color[4];
   float width;      /* pixels */
-  uint32_t pattern; /* bit i of 16: the i-th two pixels are drawn, over and over */
+  uint32_t pattern; /* 16 bits, repeated along the line: bit i draws the i-th pair of pixels */
 } breve_line;
 
 typedef struct breve_vertex {
@@ -98,11 +98,11 @@ typedef struct breve_vertex {
 typedef struct breve_sprite {
   breve_object object;
   float center[3];
-  float size;       /* its side in length units; of a point: its diameter in pixels */
+  float size;       /* the length of its side, in length units; for a point: its diameter, in pixels */
   float heading;    /* rad, counter-clockwise on the screen */
   float color[4];
   uint32_t texture; /* row of BREVE_SCENE_TEXTURES */
-  uint32_t glow;    /* 1: it is added to what is behind it */
+  uint32_t glow;    /* 1: its colour is added to the background */
   uint32_t point;   /* 1: a disc without a texture */
 } breve_sprite;
 
@@ -110,23 +110,23 @@ typedef struct breve_sheet {
   breve_object object;
   float corner[3], across[3], along[3]; /* its low corner and its sides */
   uint32_t columns, rows;
-  const uint8_t* rgba; /* a pixel for each cell, those along `across` first */
+  const uint8_t* rgba; /* one pixel for each cell; cells along `across` are contiguous */
   uint64_t revision;
 } breve_sheet;
 
 typedef struct breve_label {
   breve_object object;
-  float place[3]; /* the text stands above it */
+  float place[3]; /* the text is drawn above this point */
   const char* text;
 } breve_label;
 
 typedef struct breve_overlay_text {
   const char* text;
-  float x, y; /* of the picture, -1 to 1: where its baseline begins */
+  float x, y; /* the start of its baseline in the picture, -1 to 1 */
   float color[3];
 } breve_overlay_text;
 
-/* A camera stands at target + offset. Without rotation it looks along -z; it is pitched about x, then turned about y. */
+/* A camera stands at target + offset. Without rotation it looks along -z; it is pitched about x, then rotated about y. */
 typedef struct breve_camera {
   breve_object object; /* null: the controller's */
   double target[3], offset[3];
@@ -134,7 +134,7 @@ typedef struct breve_camera {
   double field_of_view;   /* rad, vertical */
   double far_plane;       /* length units */
   double window[4];       /* x, y, width, height in pixels from the lower left; all 0: the whole picture */
-  uint32_t automatic;     /* 1: the program has placed none, and whoever draws shows the whole scene */
+  uint32_t automatic;     /* 1: the program has not placed one, and the renderer should show the whole scene */
   uint32_t orthographic;  /* 1: half the height of the picture is distance * tan(field_of_view / 2) */
 } breve_camera;
 
@@ -143,18 +143,18 @@ typedef struct breve_light {
   float ambient[3], diffuse[3], specular[3]; /* factors, not encoded */
 } breve_light;
 
-/* What there is one of. */
+/* Settings of the scene as a whole. */
 typedef struct breve_backdrop {
-  size_t struct_size; /* as breve_backdrop_default gives it */
+  size_t struct_size; /* set by breve_backdrop_default */
   float color[3];
   uint32_t texture;   /* row of BREVE_SCENE_TEXTURES, or BREVE_NO_TEXTURE */
-  float scroll[2];    /* texture widths and heights by which it has slid */
+  float scroll[2];    /* its offset, in texture widths and heights */
   uint32_t mountains; /* 1: the built-in sky box */
   uint32_t fog;       /* 1: on */
   float fog_start, fog_end, fog_intensity; /* length units from the camera */
   float fog_color[3];
   uint32_t dimension; /* 2 or 3 */
-  uint32_t lighting, shadows, reflections, outline, text; /* 0 or 1: what the program has switched on */
+  uint32_t lighting, shadows, reflections, outline, text; /* 0 or 1: enabled by the program */
   double time;        /* simulated, s */
   uint64_t iteration;
 } breve_backdrop;
@@ -167,20 +167,20 @@ static inline breve_backdrop breve_backdrop_default(void) {
   return backdrop;
 }
 
-/* An empty scene.
-   @param scene  to be given back to breve_scene_destroy
+/* Creates an empty scene.
+   @param scene  destroy it with breve_scene_destroy
    BREVE_OK; BREVE_ERROR_MEMORY. */
 BREVE_API breve_status breve_scene_create(breve_scene** scene);
 
-/* NULL is nothing. */
+/* Does nothing for NULL. */
 BREVE_API void breve_scene_destroy(breve_scene* scene);
 
-/* Read what there is to see in the world now. Meshes and textures keep their rows from one reading to the next. Runs no
-   script, changes nothing that breve_world_hash covers. May be called from a callback while script runs.
-   BREVE_OK; BREVE_ERROR_MEMORY: then the scene is empty. */
+/* Reads the scene of a world as it is now. Meshes and textures keep their rows from one call to the next. Runs no script,
+   and does not change anything that breve_world_hash covers. May be called from a callback while script runs.
+   BREVE_OK; BREVE_ERROR_MEMORY: the scene is empty then. */
 BREVE_API breve_status breve_scene_read(breve_scene* scene, breve_world* world);
 
-/* The rows of one part of what was read last.
+/* One array of the scene, as it was read last.
    @param part  breve_scene_kind
    BREVE_OK; BREVE_ERROR_ARGUMENT. */
 BREVE_API breve_status breve_scene_rows(const breve_scene* scene, uint32_t part, breve_rows* rows);
@@ -188,14 +188,14 @@ BREVE_API breve_status breve_scene_rows(const breve_scene* scene, uint32_t part,
 /* BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
 BREVE_API breve_status breve_scene_backdrop(const breve_scene* scene, breve_backdrop* backdrop);
 
-/* The main camera for a picture of that size: the program's, or one that shows all that moves. Shape of the picture alone
-   counts. An automatic camera glides from one call to the next, so that it does not jump.
+/* The main camera for a picture with this aspect ratio: the program's camera, or one that shows everything that moves. An
+   automatic camera moves smoothly from one call to the next.
    BREVE_OK; BREVE_ERROR_ARGUMENT: a side is 0. */
 BREVE_API breve_status breve_scene_camera(breve_scene* scene, uint32_t width, uint32_t height, breve_camera* camera);
 
-/* Where a camera sees a point.
-   @param seen  pixels from the left and from the top of the picture; and the distance along the line of sight
-   BREVE_OK; BREVE_ERROR_ARGUMENT; BREVE_ERROR_NOT_FOUND: it is behind the camera. */
+/* Projects a point into a camera's picture.
+   @param seen  the pixels from the left and from the top of the picture, and the distance along the line of sight
+   BREVE_OK; BREVE_ERROR_ARGUMENT; BREVE_ERROR_NOT_FOUND: the point is behind the camera. */
 BREVE_API breve_status breve_camera_project(const breve_camera* camera, uint32_t width, uint32_t height,
                                             const double point[3], double seen[3]);
 
@@ -205,17 +205,17 @@ BREVE_API breve_status breve_camera_project(const breve_camera* camera, uint32_t
 typedef struct breve_view breve_view;
 
 typedef enum breve_look {
-  BREVE_LOOK_FULL = 0, /* what a program leaves open is made good-looking: soft light, sky, haze */
-  BREVE_LOOK_PLAIN = 1 /* nothing but the colours and lights that the program sets */
+  BREVE_LOOK_FULL = 0, /* soft light, sky and haze where the program does not set anything else */
+  BREVE_LOOK_PLAIN = 1 /* only the colours and lights that the program sets */
 } breve_look;
 
 typedef struct breve_view_config {
-  size_t struct_size; /* as breve_view_config_default gives it */
+  size_t struct_size; /* set by breve_view_config_default */
   uint32_t width, height; /* pixels, 1 to 16384. Default 640 x 480 */
-  uint32_t samples;   /* of each pixel, against jagged edges: 1, 2 or 4. Default 4 */
+  uint32_t samples;   /* per pixel, for antialiasing: 1, 2 or 4. Default 4 */
   uint32_t look;      /* breve_look. Default BREVE_LOOK_FULL */
-  const char* font;   /* a file of TrueType or OpenType, read now; NULL: DejaVu Sans. Without it no text is drawn. Default
-                         NULL */
+  const char* font;   /* a TrueType or OpenType file, read by breve_view_create. NULL: DejaVu Sans; if that is not installed,
+                         no text is drawn. Default NULL */
 } breve_view_config;
 
 /* The defaults named above. */
@@ -229,12 +229,12 @@ static inline breve_view_config breve_view_config_default(void) {
   return config;
 }
 
-/* What the last picture took. */
+/* Costs of the last picture. */
 typedef struct breve_view_counters {
-  size_t struct_size; /* as breve_view_counters_default gives it */
-  uint64_t draw_calls; /* does not grow with the number of bodies of one shape */
+  size_t struct_size; /* set by breve_view_counters_default */
+  uint64_t draw_calls; /* independent of the number of bodies with the same shape */
   uint64_t instances, triangles;
-  uint64_t uploads; /* meshes and textures that were new */
+  uint64_t uploads; /* new meshes and textures */
 } breve_view_counters;
 
 /* All zero, to be filled in. */
@@ -245,42 +245,43 @@ static inline breve_view_counters breve_view_counters_default(void) {
   return counters;
 }
 
-/* Make a view: this is when the graphics library is loaded.
+/* Creates a view. The first one loads the graphics library.
    @param config  copied; NULL: the defaults
-   @param view    to be given back to breve_view_destroy
-   BREVE_OK; BREVE_ERROR_ARGUMENT: a size, a number of samples or a look that there is none of; BREVE_ERROR_FILE: no font;
+   @param view    destroy it with breve_view_destroy
+   BREVE_OK; BREVE_ERROR_ARGUMENT: an invalid size, number of samples or look; BREVE_ERROR_FILE: the font cannot be read;
    BREVE_ERROR_UNSUPPORTED: OSMesa is not installed, or the library was built without BREVE_WITH_RENDER. The text is in
    breve_runtime_last_error. */
 BREVE_API breve_status breve_view_create(breve_runtime* runtime, const breve_view_config* config, breve_view** view);
 
-/* NULL is nothing. */
+/* Does nothing for NULL. */
 BREVE_API void breve_view_destroy(breve_view* view);
 
-/* Draw the world as it is now. As breve_scene_read.
-   @param rgba    rows from the top, 4 bytes a pixel; alpha is 255
-   @param stride  bytes from one row to the next; 0: they lie side by side
+/* Draws the world as it is now. As breve_scene_read.
+   @param rgba    rows from the top, 4 bytes per pixel; alpha is 255
+   @param stride  bytes from one row to the next; 0: the rows are contiguous
    BREVE_OK; BREVE_ERROR_ARGUMENT: `stride` is too small; BREVE_ERROR_MEMORY. */
 BREVE_API breve_status breve_view_render(breve_view* view, breve_world* world, uint8_t* rgba, size_t stride);
 
-/* How far each pixel of the last picture is away, in length units along the line of sight; infinite where nothing is.
-   Inside a sub-window the numbers mean nothing.
-   BREVE_OK; BREVE_ERROR_ARGUMENT: `stride` is too small or no multiple of 4; BREVE_ERROR_NOT_FOUND: no picture yet. */
+/* The depth of each pixel of the last picture: the distance along the line of sight, in length units; infinite where nothing
+   is visible. Pixels of sub-windows have no meaningful depth.
+   BREVE_OK; BREVE_ERROR_ARGUMENT: `stride` is too small or not a multiple of 4; BREVE_ERROR_NOT_FOUND: nothing has been
+   drawn yet. */
 BREVE_API breve_status breve_view_depth(const breve_view* view, float* depth, size_t stride);
 
-/* Look through this camera from now on; NULL: through the program's.
+/* Sets the camera of the following pictures; NULL: the program's camera.
    BREVE_OK; BREVE_ERROR_ARGUMENT: a number is not finite. */
 BREVE_API breve_status breve_view_set_camera(breve_view* view, const breve_camera* camera);
 
-/* The camera of the last picture, as it was placed.
-   BREVE_OK; BREVE_ERROR_NOT_FOUND: no picture yet. */
+/* The camera of the last picture, with its actual position.
+   BREVE_OK; BREVE_ERROR_NOT_FOUND: nothing has been drawn yet. */
 BREVE_API breve_status breve_view_camera(const breve_view* view, breve_camera* camera);
 
 /* BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
 BREVE_API breve_status breve_view_counts(const breve_view* view, breve_view_counters* counters);
 
-/* The bytes of a PNG file.
-   @param bytes  room for `capacity`; NULL only if capacity is 0
-   @param size   how many there are, also where that is more than capacity: then nothing is written
+/* Encodes a picture as a PNG file.
+   @param bytes  room for `capacity` bytes; NULL only if capacity is 0
+   @param size   the size of the file. If it exceeds capacity, nothing is written to bytes
    BREVE_OK; BREVE_ERROR_ARGUMENT: a side is not from 1 to 32768, or `stride` is too small. */
 BREVE_API breve_status breve_png(uint32_t width, uint32_t height, const uint8_t* rgba, size_t stride, uint8_t* bytes,
                                  size_t capacity, size_t* size);

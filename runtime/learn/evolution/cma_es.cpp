@@ -114,7 +114,7 @@ std::span<const double> CmaEs::ask(Random& random, const Poll& poll) {
 }
 
 void CmaEs::tell(std::span<const double> values, const Poll& poll) {
-  if (!asked_) throw Error(ErrorCode::Argument, "there are no candidates to tell the values of: ask first");
+  if (!asked_) throw Error(ErrorCode::Argument, "there are no candidates to report values for: ask for them first");
   if (values.size() != static_cast<std::size_t>(population_))
     throw Error(ErrorCode::Argument,
                 std::to_string(values.size()) + " values for " + std::to_string(population_) + " candidates");

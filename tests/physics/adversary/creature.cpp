@@ -142,7 +142,7 @@ void Creature::set_drive(const LinkGenes& genes, const Case& is, Joint& joint) {
   if (has_motors(is.family)) {
     drive.strength_limit = genes[kStrength] * genes[kMass];
     if (drive.strength_limit > 0) joint.speed = genes[kSpeed];
-    // The axes of a ball joint turn with it: the work of a force along them is not force times way.
+    // The axes of a ball joint rotate with it: the work of a force along them is not force times path.
     if (joint.kind != BREVE_JOINT_BALL) joint.torque = genes[kTorque] * genes[kMass];
   }
   joint.frequency = genes[kFrequency];

@@ -16,7 +16,7 @@ double angle_about(const Vector3& axis, const Vector3& a, const Vector3& b) {
   return std::atan2(axis.dot(a.cross(b)), a.dot(b) - axis.dot(a) * axis.dot(b));
 }
 
-/// The angle of as many whole turns as the joint tells.
+/// The angle of as many full rotations as the joint reports.
 double unwound(double angle, double told) { return angle + 2 * kPi * std::round((told - angle) / (2 * kPi)); }
 
 }  // namespace

@@ -21,7 +21,7 @@ struct State {
 
 State measure(Creature& creature);
 
-/// Positions of a joint, from poses alone but for whole turns, which are as the joint tells them.
+/// Positions of a joint, from poses alone but for full rotations, which are as the joint reports them.
 struct Positions {
   Vector3 q = Vector3::Zero();
   double told = 0;    // the greatest difference to what the joint tells

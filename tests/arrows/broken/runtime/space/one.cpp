@@ -9,3 +9,5 @@ int helper(int x) { return x + 1; }
 }  // namespace
 
 void Headings::stands_here() { helper(1); }
+
+int counter = 0;

@@ -1,0 +1,45 @@
+// The state as a step began, to which a step that went wrong returns, and the balance of energy since then.
+#pragma once
+
+#include "runtime/dynamics/island_state.hpp"
+
+namespace breve::island {
+
+class Balance {
+ public:
+  explicit Balance(State& state);
+
+  void keep_start();
+  void back_to_start();
+  /// Measures the energy as a try of the step begins, J.
+  double open();
+  /// A handler brought in that much, J.
+  void add_handled(double energy) { handled_ += energy; }
+  /// The energy that came in since the step began and that the energy ledger does not explain, J.
+  double unexplained(double after) const;
+  /// Enters into the ledger the part of the step's change in energy that it does not explain, of all and of each tree.
+  /// @param turnover  set to the energy, J, of which the residual is to be a small part
+  /// @return          the residual, J
+  double close(double& turnover);
+  const Energy& start_ledger() const { return start_.ledger; }
+
+ private:
+  struct ResultStart {
+    DynamicsCounters counters;
+    Energy ledger;
+    std::size_t impacts = 0;
+  };
+  double measure(double& kinetic, bool start);
+
+  State& state_;
+  ResultStart start_;
+  std::pmr::vector<FreeBody> free_start_;
+  std::pmr::vector<NearPair> pair_start_;
+  double stored_start_ = 0;  // J
+  double handled_ = 0;       // J
+};
+
+/// What left by contacts, friction, drag and limits between two states of a ledger, J.
+double losses(const Energy& now, const Energy& then);
+
+}  // namespace breve::island

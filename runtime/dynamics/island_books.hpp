@@ -1,0 +1,42 @@
+// The books of a sub-step whose rows are solved at its end. They take forces as constant: works by the mean of
+// velocities are of second order only. What rows did in fact is known all the same, since smooth motion is measured by
+// itself: it is what the energy changed by after that. Contacts and limits give nothing: what the solution gave is
+// taken back from the motion of links among one another.
+#pragma once
+
+#include "runtime/dynamics/island_momentum.hpp"
+#include "runtime/dynamics/island_springs.hpp"
+
+namespace breve::island {
+
+class Books {
+ public:
+  Books(State& state, Contacts& contacts, ContactSprings& springs, Rows& rows, Momentum& momentum)
+      : state_(state), contacts_(contacts), springs_(springs), rows_(rows), momentum_(momentum) {}
+
+  void begin_try() { gained_ = 0; }
+  void open();
+  bool kept() const { return kept_; }  // open() found rows to come
+  void note_smooth();
+  void close();
+  void take_back_rest();
+  double gained() const { return gained_; }  // J, that contacts and limits gave in this try of the step
+
+  // Energies of the sub-step, J.
+  double kinetic() const { return sub_start_.kinetic; }
+  double smooth_kinetic() const { return sub_start_.smooth_kinetic; }
+  double predicted() const { return sub_start_.predicted; }
+  void set_predicted(double energy) { sub_start_.predicted = energy; }
+
+ private:
+  State& state_;
+  Contacts& contacts_;
+  ContactSprings& springs_;
+  Rows& rows_;
+  Momentum& momentum_;
+  SubStepEnergy sub_start_;  // of all
+  bool kept_ = false;
+  double gained_ = 0;
+};
+
+}  // namespace breve::island

@@ -1,0 +1,101 @@
+// What happens at the moment of an impact.
+#include <algorithm>
+
+#include "runtime/contact/impacts.hpp"
+#include "runtime/dynamics/island_impacts.hpp"
+
+namespace breve::island {
+
+void Impacts::meet(MechanicsClient* client, const Event& event, double moment, double left) {
+  ++state_.result.counters.impacts;
+  if (event.point >= 0) return;
+  if (event.pair >= 0) {
+    NearPair& pair = *state_.pairs[static_cast<std::size_t>(event.pair)];
+    pair.touching = true;
+    const bool awaited = pair.handled && !pair.reported && client && client->locates();
+    if (awaited && !handlers_.call(*client, pair, moment, left)) return;
+    double rate = 0;
+    gap_of(event, rate);
+    if (state_.springs_for(pair.law) && rate > -std::max(pair.law.restitution_threshold, contacts_.resting())) return;
+  } else {
+    rebound(static_cast<std::size_t>(event.bound), moment);
+  }
+  collide(moment);
+}
+
+/// A joint that since it last came did not get further from its limit than what counts as resting there stays: so that
+/// rebounds come to an end where other contacts press it on.
+void Impacts::rebound(std::size_t index, double time) {
+  contacts_.touches().clear();
+  rows_.make_only(index);
+  const auto& [bound, row] = rows_.limit(0);
+  const JointEntry& joint = state_.core.joints[bound.joint];
+  Tree& tree = *state_.core.trees[joint.tree];
+  const int n = tree.model.velocities();
+  const Eigen::Map<const articulated::Vector> j(row.ja, n), r(row.ra, n);
+  const double rate = j.dot(tree.state.v), yields = j.dot(r);
+  if (!(rate < 0) || !(yields > 0)) return;
+  Rebound& last = contacts_.rebound_of(index);
+  last.stays = 0.5 * last.rate * (time - last.time) <= kLimitSkin;
+  const double e = last.stays ? 0 : joint.drive.limit_restitution;
+  last.time = time;
+  last.rate = -e * rate;
+  tree.state.v -= ((1 + e) * rate / yields) * r;
+  const double loss = 0.5 * (1 - e * e) * rate * rate / yields;
+  state_.result.ledger.limit_loss += loss;
+  tree.ledger.limit_loss += loss;
+}
+
+/// Contacts and limits that are met now. Limits that are struck rebound first, one after the other.
+void Impacts::find_met(double time) {
+  contacts_.find_touches_now();
+  contacts_.find_bounds();
+  const double met = contacts_.met_limit();
+  for (std::size_t i = 0; i < contacts_.bounds().size(); ++i) {
+    Bound& bound = contacts_.bounds()[i];
+    bound.rests = bound.gap <= met;
+    if (bound.rests && bound.rate < -contacts_.resting()) rebound_later_.push_back(i);
+  }
+  if (rebound_later_.empty()) return;
+  for (const std::size_t bound : rebound_later_) rebound(bound, time);
+  rebound_later_.clear();
+  contacts_.find_touches_now();
+  contacts_.find_bounds();
+  for (Bound& bound : contacts_.bounds()) bound.rests = bound.gap <= met;
+}
+
+void Impacts::collide(double time) {
+  state_.place();
+  find_met(time);
+  rows_.make(Rows::Motors::Leave);
+  state_.load_velocities();
+  rows_.read_rates();
+  resolve();
+  rows_.book();
+  state_.store_velocities();
+  if (momentum_.pushes_itself()) {
+    momentum_.note(&Tree::smooth_v, false);
+    momentum_.give_impacts();
+  }
+  const Bodies& bodies = *state_.core.bodies;
+  for (std::size_t i = 0; i < rows_.contacts(); ++i) {
+    const auto& [touch, pair, row, law] = rows_.contact(i);
+    if (row.impulse == Vector3::Zero()) continue;
+    state_.result.impacts.push_back({bodies.owner(pair.a), bodies.owner(pair.b), time, touch.point, touch.normal,
+                                     row.axes.transpose() * row.impulse});
+  }
+}
+
+void Impacts::resolve() {
+  constexpr int kLeast = 50;  // sweeps
+  contact::ImpactSettings settings;
+  settings.rest.iterations = std::max(kLeast, state_.accuracy.iterations);
+  settings.rest.direct = true;
+  settings.rest.direct_share = solver_.direct_share();
+  settings.rest.meter = &state_.meter;
+  for (contact::Row& row : rows_.rows()) row.bias = 0, row.impulse = Vector3::Zero();
+  for (contact::ScalarRow& row : rows_.scalars()) row.bias = 0, row.impulse = 0;
+  contact::resolve_impacts(rows_.movers(), rows_.rows(), rows_.laws(), rows_.scalars(), settings, rows_.workspace());
+}
+
+}  // namespace breve::island

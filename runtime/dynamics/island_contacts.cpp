@@ -1,0 +1,233 @@
+// What one look at the pairs of an island finds.
+#include "runtime/dynamics/island_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace breve::island {
+
+Contacts::Contacts(State& state)
+    : state_(state),
+      touches_(state.memory),
+      bounds_(state.memory),
+      rebounds_(state.memory),
+      roles_(state.memory),
+      depths_(state.memory),
+      manifolds_(state.memory) {}
+
+void Contacts::begin(bool awaited) {
+  awaited_ = awaited;
+  clear();
+  forget_rebounds();
+  spent_ = false;
+}
+
+void Contacts::clear() {
+  touches_.clear();
+  bounds_.clear();
+}
+
+namespace {
+
+constexpr double kRotationRoom = 0.02;  // of the radius, which rotation may bring nearer in a sub-step
+constexpr double kCoarse = 1e-3;        // tolerances of step control from which contacts are seen less exactly
+
+Touch touch_at(std::size_t pair, const Pose& a, const Pose& b, const Manifold& manifold, const ContactPoint& point) {
+  Touch touch;
+  touch.pair = static_cast<std::uint32_t>(pair);
+  touch.feature = point.feature;
+  touch.point = 0.5 * (point.on_a + point.on_b);
+  touch.on_a = a.orientation.conjugate() * (touch.point - a.location);
+  touch.on_b = b.orientation.conjugate() * (touch.point - b.location);
+  touch.from_a = a.location;
+  touch.from_b = b.location;
+  touch.orientation_a = a.orientation;
+  touch.orientation_b = b.orientation;
+  touch.normal = manifold.normal;
+  touch.gap = point.distance;
+  return touch;
+}
+
+}  // namespace
+
+void Contacts::find_touches(double h, bool speculative) {
+  spent_ = speculative;
+  touches_.clear();
+  NarrowCounters narrow;
+  narrow.stop = state_.meter.end();
+  const double fall = state_.core.settings.gravity.norm() * h;
+  resting_ = 1e-3 * fall + 1e-12;
+  looked_h_ = h;
+  // A row catches a body before it touches, if it comes as slowly as a body at rest falls in a sub-step.
+  constexpr double kMostRoom = 0.05;  // of the size
+  constexpr double kHastens = 1.5;    // of its speed, within a sub-step, of a point that comes nearer by rotation
+  for (std::size_t i = 0; i < state_.pairs.size(); ++i) {
+    NearPair& pair = *state_.pairs[i];
+    const Shape &a = state_.shape(pair.a), &b = state_.shape(pair.b);
+    const Pose pa = state_.pose_of(pair.a), pb = state_.pose_of(pair.b);
+    const double size = state_.size_of_pair(pair);
+    const double near = std::max(kSkin * size, std::min(2 * fall * h, kMostRoom * size));
+    double margin = near;
+    if (speculative) {
+      const Vector3 rate = state_.point_velocity(pair.a, pa.location) - state_.point_velocity(pair.b, pb.location);
+      margin += h * (rate.norm() + fall) + kRotationRoom * size;
+    } else {
+      // What rests on an edge and tips comes down on points that lie farther off.
+      margin += 2 * h * (state_.spin_of(pair.a) - state_.spin_of(pair.b)).norm() * size;
+    }
+    manifolds_.clear();
+    find_manifolds(a, pa, b, pb, margin, manifolds_, pair.cache, narrow);
+    for (const Manifold& manifold : manifolds_) {
+      ++state_.result.counters.manifolds;
+      for (int k = 0; k < manifold.count; ++k) {
+        const ContactPoint& point = manifold.points[static_cast<std::size_t>(k)];
+        Touch touch = touch_at(i, pa, pb, manifold, point);
+        touch.velocity_a = state_.point_velocity(pair.a, touch.point);
+        touch.velocity_b = state_.point_velocity(pair.b, touch.point);
+        if (!speculative) {
+          touch.approach = manifold.normal.dot(touch.velocity_a - touch.velocity_b);
+          touch.far = touch.gap > near;
+          if (touch.far && touch.gap + kHastens * h * touch.approach > near) continue;
+        }
+        touches_.push_back(touch);
+      }
+    }
+  }
+  state_.result.counters.pairs += narrow.pairs;
+  constexpr std::uint64_t kUnits = 10;  // of work, a pair
+  state_.meter.add(kUnits * (state_.pairs.size() + narrow.pairs) + narrow.facets + narrow.boxes + touches_.size());
+}
+
+Contacts::Speeds Contacts::speeds_of(const contact::Law& law, double size, double h) const {
+  const double fall = state_.core.settings.gravity.norm() * h;
+  if (law.restitution > 0) {
+    const double slow = std::max(law.restitution_threshold, resting_);
+    return {slow, slow};
+  }
+  // Nothing rebounds: a row stops it as well, but for the depth that it would reach until then.
+  return {JointDrive::kNoLimit, std::max(2 * fall, kSkin * size / h) + resting_};
+}
+
+bool Contacts::strikes(double h) const {
+  for (const Touch& touch : touches_) {
+    const NearPair& pair = pair_of(touch);
+    const double size = state_.size_of_pair(pair);
+    if (touch.gap <= kMetSkin * size && touch.approach < -speeds_of(pair.law, size, h).strike) return true;
+  }
+  for (const Bound& bound : bounds_)
+    if (!bound.held && bound.gap <= met_limit() && bound.rate < -bound.slow) return true;
+  return false;
+}
+
+void Contacts::find_roles(double h, bool struck) {
+  roles_.assign(state_.pairs.size(), Role::Far);
+  for (std::size_t i = 0; i < state_.pairs.size(); ++i)
+    if (state_.pairs[i]->spring.stiffness > 0) roles_[i] = Role::Springs;
+  depths_.assign(state_.pairs.size(), 0.0);
+  for (const Touch& touch : touches_) {
+    const NearPair& pair = pair_of(touch);
+    const double size = state_.size_of_pair(pair);
+    const bool touching = touch.gap <= kTouchSkin * size;
+    // It becomes a spring when it meets: that moment is looked for.
+    const bool springs = state_.springs_for(pair.law) && touch.gap >= -kTouchSkin * size;
+    const Speeds speeds = speeds_of(pair.law, size, h);
+    Role& role = roles_[touch.pair];
+    if (touch.far) continue;
+    depths_[touch.pair] = std::max(depths_[touch.pair], -touch.gap);
+    // A first touch that a handler waits for is met, however slow.
+    if (awaited_ && pair.handled && !pair.touching && touch.gap > kMetSkin * size && touch.approach < 0) continue;
+    const bool slow = std::abs(touch.approach) <= speeds.slow;
+    if (!springs && (slow || (struck && touching && touch.approach < 0)))
+      role = Role::Rests;
+    else if (touching && touch.approach > 0 && role == Role::Far)
+      role = Role::Leaves;
+  }
+  std::erase_if(touches_, [this](const Touch& touch) { return roles_[touch.pair] != Role::Rests; });
+}
+
+void Contacts::find_touches_now() {
+  touches_.clear();
+  NarrowCounters narrow;
+  narrow.stop = state_.meter.end();
+  for (std::size_t i = 0; i < state_.pairs.size(); ++i) {
+    NearPair& pair = *state_.pairs[i];
+    if (pair.spring.stiffness > 0) continue;  // it gives way to what is sudden
+    const Shape &a = state_.shape(pair.a), &b = state_.shape(pair.b);
+    const Pose pa = state_.pose_of(pair.a), pb = state_.pose_of(pair.b);
+    const double size = state_.size_of_pair(pair);
+    manifolds_.clear();
+    find_manifolds(a, pa, b, pb, kTouchSkin * size, manifolds_, pair.cache, narrow);
+    for (const Manifold& manifold : manifolds_)
+      for (int k = 0; k < manifold.count; ++k) {
+        const ContactPoint& point = manifold.points[static_cast<std::size_t>(k)];
+        if (point.distance > kTouchSkin * size) continue;
+        touches_.push_back(touch_at(i, pa, pb, manifold, point));
+      }
+  }
+}
+
+/// How fast what rests falls in a sub-step, as the rate of a joint: twice that of a free link's rim, m/s or rad/s.
+double Contacts::falling(const JointEntry& joint) const {
+  const double fall = 2 * state_.core.settings.gravity.norm() * looked_h_;
+  if (joint.is.kind == JointKind::Prismatic) return fall;
+  return fall / state_.shape(joint.is.child).bounding_radius();
+}
+
+void Contacts::find_bounds() {
+  constexpr double kMostRoom = 1e-3;  // rad or m
+  bounds_.clear();
+  for (Tree* tree : state_.trees) {
+    for (const TreeLink& link : tree->links) {
+      if (link.joint == kNoJoint) continue;
+      const JointEntry& joint = state_.core.joints[link.joint];
+      if (!Dynamics::Core::has_limits(joint)) continue;
+      const JointVector position = state_.core.read_position(joint), velocity = state_.core.read_velocity(joint);
+      for (int k = 0; k < axis_count(joint.is.kind); ++k) {
+        for (const double sign : {1.0, -1.0}) {
+          const double limit = sign > 0 ? joint.drive.low[k] : joint.drive.high[k];
+          if (!std::isfinite(limit)) continue;
+          Bound bound{link.joint, k, sign, limit, sign * (position[k] - limit), sign * velocity[k], resting_, false};
+          const bool stays = bounds_.size() < rebounds_.size() && rebounds_[bounds_.size()].stays;
+          // Inelastic limits may be met by a row; others are located. A row catches a joint before it is there, if it
+          // comes as slowly as a body at rest falls in a sub-step and is not driven.
+          if (joint.drive.limit_restitution > 0) {
+            bound.rests = bound.gap <= kLimitSkin && (stays || std::abs(bound.rate) <= resting_);
+          } else {
+            if (!link.motor) bound.slow += falling(joint);
+            const bool caught = bound.gap <= std::min(bound.slow * looked_h_, kMostRoom);
+            bound.rests = bound.gap <= kLimitSkin || (caught && std::abs(bound.rate) <= bound.slow);
+          }
+          bounds_.push_back(bound);
+        }
+      }
+    }
+  }
+  rebounds_.resize(bounds_.size());
+}
+
+/// How far from its limit a joint is taken to have met it, rad or m: as exactly as the moments of events are found.
+double Contacts::met_limit() const {
+  constexpr double kFound = 1e-12;
+  return state_.accuracy.tolerance >= kCoarse ? kSeen : kFound;
+}
+
+bool Contacts::any() const {
+  const auto driven = [](const Tree* tree) {
+    return std::any_of(tree->links.begin(), tree->links.end(), [](const TreeLink& link) { return link.motor; });
+  };
+  return !touches_.empty() || std::any_of(state_.trees.begin(), state_.trees.end(), driven) ||
+         std::any_of(bounds_.begin(), bounds_.end(), [](const Bound& bound) { return bound.rests; });
+}
+
+bool Contacts::coarse() const { return any() && state_.accuracy.tolerance >= kCoarse; }
+
+const WarmPoint* Contacts::warm_of(const Touch& touch) const {
+  const NearPair& pair = pair_of(touch);
+  for (int k = 0; k < pair.warm_count; ++k) {
+    const WarmPoint& warm = pair.warm[static_cast<std::size_t>(k)];
+    if (warm.feature == touch.feature) return &warm;
+  }
+  return nullptr;
+}
+
+}  // namespace breve::island

@@ -1,0 +1,110 @@
+// The contacts and joint limits of an island that are near: what one look at its pairs and joints finds, and which of
+// that rests, so that it becomes a row, or is an impact to be located.
+#pragma once
+
+#include "runtime/dynamics/island_state.hpp"
+
+namespace breve::island {
+
+inline constexpr double kSeen = 1e-6;  // rad, or of the radius: closer is not looked at where contacts act
+
+/// What a pair is in this sub-step: its impact is looked for on the whole path; or only whether it comes back; or it
+/// has rows; or it is a spring.
+enum class Role : std::uint8_t { Far, Leaves, Rests, Springs };
+
+/// A point that touches, or nearly, as rows see it.
+struct Touch {
+  std::uint32_t pair = 0;
+  std::uint32_t feature = 0;
+  Vector3 point, normal;                                               // world; the normal from b toward a
+  Vector3 on_a, on_b;                                                  // the point, in the axes of each body
+  Vector3 from_a, from_b;                                              // where the bodies' origins were
+  Quaternion orientation_a, orientation_b;                             // of the bodies then
+  Vector3 velocity_a = Vector3::Zero(), velocity_b = Vector3::Zero();  // of the bodies there, as the sub-step began
+  double gap = 0;                                                      // m, at the start of the sub-step
+  double approach = 0;  // m/s, v_n when the sub-step began; unknown where nothing is located
+  bool far = false;     // touches only if the bodies rotate toward it, and says nothing of whether the pair rests
+  Vector3 predicted = Vector3::Zero();  // N, world axes: a force that is taken to go on and acts inside the stages
+};
+
+/// A joint's limit that is near, or was passed.
+struct Bound {
+  JointIndex joint;
+  int axis;
+  double sign;        // the gap grows with sign * position
+  double limit;       // the position, m or rad
+  double gap;         // m or rad
+  double rate;        // of the gap when the sub-step began
+  double slow;        // slower than this it is caught by a row, and does not strike
+  bool rests;         // it is a row; else it is to be located
+  bool held = false;  // it acts inside the stages, and is not located
+};
+
+/// When a joint left its limit, s, and how fast.
+struct Rebound {
+  double time = 0, rate = JointDrive::kNoLimit;
+  bool stays = false;  // it was back at once: for the remainder of the step it rests where it is near
+};
+
+class Contacts {
+ public:
+  explicit Contacts(State& state);
+
+  /// Begins a step: nothing is known to be near, no joint has rebounded.
+  /// @param awaited  handlers are called at the moment of impact
+  void begin(bool awaited);
+  /// Forgets what touches; roles of pairs and rebounds stay.
+  void clear();
+  /// @param speculative  no impact is located any more: rows are to stop whatever comes within h seconds
+  void find_touches(double h, bool speculative);
+  void find_touches_now();
+  void find_bounds();
+  /// @param struck  what touches has collided already: what still approaches then is stopped by rows
+  void find_roles(double h, bool struck);
+  void forget_rebounds() { rebounds_.clear(); }
+
+  /// Something touches that approaches so fast that it collides at once.
+  bool strikes(double h) const;
+  /// Known before rows are made: whether there will be some beside those of loops.
+  bool any() const;
+  /// Impulses of contacts are taken as constant over a sub-step: where some act, more digits are not seen.
+  bool coarse() const;
+  double met_limit() const;
+  const WarmPoint* warm_of(const Touch& touch) const;
+
+  std::pmr::vector<Touch>& touches() { return touches_; }
+  const std::pmr::vector<Touch>& touches() const { return touches_; }
+  std::pmr::vector<Bound>& bounds() { return bounds_; }
+  const std::pmr::vector<Bound>& bounds() const { return bounds_; }
+  NearPair& pair_of(const Touch& touch) const { return *state_.pairs[touch.pair]; }
+  Role role(std::size_t pair) const { return roles_[pair]; }
+  double depth(std::size_t pair) const { return depths_[pair]; }  // m, of overlap when the sub-step began
+  Rebound& rebound_of(std::size_t bound) { return rebounds_[bound]; }
+  /// m/s: slower than this is at rest, in a sub-step of this length.
+  double resting() const { return resting_; }
+  /// No impact is located any more: the last look was speculative.
+  bool spent() const { return spent_; }
+
+ private:
+  /// Speeds of a pair, m/s, that separate impacts from what the rows of a sub-step do.
+  struct Speeds {
+    double slow;    // approaching or leaving slower than this rests
+    double strike;  // what touches and approaches faster collides at once
+  };
+  Speeds speeds_of(const contact::Law& law, double size, double h) const;
+  double falling(const JointEntry& joint) const;
+
+  State& state_;
+  std::pmr::vector<Touch> touches_;
+  std::pmr::vector<Bound> bounds_;      // in the order of trees, links, axes and ends
+  std::pmr::vector<Rebound> rebounds_;  // of bounds_: the last of each in this step
+  std::pmr::vector<Role> roles_;        // of pairs
+  std::pmr::vector<double> depths_;     // of pairs
+  std::pmr::vector<Manifold> manifolds_;
+  double resting_ = 0;   // m/s
+  double looked_h_ = 0;  // s, of the sub-step that was looked at last
+  bool awaited_ = false;
+  bool spent_ = false;
+};
+
+}  // namespace breve::island

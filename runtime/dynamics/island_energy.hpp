@@ -1,0 +1,25 @@
+// Energies of what an island holds, where its bodies stand, J.
+#pragma once
+
+#include "runtime/dynamics/island_state.hpp"
+
+namespace breve::island {
+
+/// Positions and velocities of a network's points from its bodies.
+void take_points(State& state, const NetworkCluster& one);
+/// Springs of networks.
+double network_energy(State& state);
+/// Springs between the trees of a cluster, whose links are placed.
+double spring_energy(const State& state, const Clustered& one);
+/// All that a cluster has; `kinetic` is set to what is in motion.
+double stored_energy(State& state, const Clustered& one, double& kinetic);
+/// Kinetic, potential and in springs, of all.
+double stored_energy(State& state);
+/// What it takes to lift all links by their own size: of that, what lies still may err by round-off of its solution.
+double weight(const State& state);
+/// What trees have at most that are still.
+double energy_of_stillness(const State& state);
+/// The state in the world's arrays, while a handler may change it.
+double held_energy(const State& state);
+
+}  // namespace breve::island

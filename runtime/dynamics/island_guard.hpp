@@ -1,0 +1,43 @@
+// The guard: a step of an island in which something goes wrong (island_watch and island_overlaps find what) is tried
+// again more finely, and an island for which that does not help is put to rest. It reports everything that it does.
+#pragma once
+
+#include "runtime/dynamics/island_step.hpp"
+#include "runtime/dynamics/island_watch.hpp"
+
+namespace breve::island {
+
+class Guard {
+ public:
+  Guard(State& state, Balance& balance, Books& books, Momentum& momentum, Overlaps& overlaps, Handlers& handlers,
+        Step& step)
+      : state_(state),
+        balance_(balance),
+        books_(books),
+        momentum_(momentum),
+        overlaps_(overlaps),
+        handlers_(handlers),
+        step_(step),
+        watch_(state) {}
+
+  void step(MechanicsClient* client, double start, double h);
+  /// Puts the island to rest, h seconds after the step began: all velocities zero but momenta that are kept.
+  void put_to_rest(Momenta momenta, double h);
+
+ private:
+  Trouble take(MechanicsClient* client, double start, double h);
+  Trouble take_in_parts(MechanicsClient* client, double start, double h);
+  void give_in(const Trouble& trouble, bool unpaid, double start, double h);
+
+  State& state_;
+  Balance& balance_;
+  Books& books_;
+  Momentum& momentum_;
+  Overlaps& overlaps_;
+  Handlers& handlers_;
+  Step& step_;
+  Watch watch_;
+  double unexplained_ = 0, allowed_ = 0;  // J, of the last try of a step
+};
+
+}  // namespace breve::island

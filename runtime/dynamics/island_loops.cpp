@@ -1,0 +1,107 @@
+// Joints that close loops.
+#include "runtime/dynamics/island_loops.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace breve::island {
+
+bool Loops::in_stages() const {
+  using articulated::Scheme;
+  const Scheme scheme = state_.accuracy.scheme;
+  if (scheme == Scheme::RungeKutta4 || scheme == Scheme::Fehlberg4 || scheme == Scheme::Fehlberg5 ||
+      scheme == Scheme::FehlbergAdaptive)
+    return true;
+  return std::all_of(state_.clusters.begin(), state_.clusters.end(),
+                     [](const Clustered& one) { return one.entry->system->can_be_finer(); });
+}
+
+/// Loops alone: an impulse at the start that leaves them closed at the end of the smooth motion, found by repeating
+/// that; the impulse at the end, which stops what still opens them, is found by close(). The rule is the same
+/// forward and backward in time and moves nothing by hand, so that it neither gains nor loses energy in the long run.
+/// Source: Andersen 1983 (RATTLE).
+bool Loops::hold(double time, double h) {
+  constexpr int kMost = 8;  // each makes the gap smaller by the square of the angle by which a link rotates
+  constexpr double kClosed = 1e-13;
+  constexpr double kFound = 1e-9;  // what is left of so little is put right by hand
+  for (Tree* tree : state_.trees) tree->kick.setZero();
+  contact::SolveSettings settings;
+  settings.direct = true;
+  settings.iterations = state_.accuracy.iterations;
+  settings.tolerance = kClosed;
+  double last = JointDrive::kNoLimit;
+  for (int i = 0; i < kMost; ++i) {
+    state_.restore();
+    for (Tree* tree : state_.trees) tree->state.v += tree->kick;
+    smooth_.move(time, h);
+    state_.place_links();
+    const double worst = read_errors();
+    if (worst < kClosed) return true;
+    if (!(worst < last)) return last < kFound;
+    last = worst;
+    for (std::size_t k = 0; k < rows_.loops(); ++k) {
+      rows_.loop(k).bias = -rows_.loop_error(k) / h;
+      rows_.loop(k).impulse = 0;
+    }
+    for (Free& one : state_.free_bodies) std::fill(one.v, one.v + 6, 0.0);
+    for (Tree* tree : state_.trees) {
+      tree->way = tree->state.v;
+      tree->state.v.setZero();
+    }
+    contact::solve_island(rows_.movers(), {}, rows_.scalars(), settings, rows_.workspace());
+    for (Tree* tree : state_.trees) {
+      tree->kick += tree->state.v;
+      tree->state.v = tree->way;
+    }
+  }
+  return last < kFound;
+}
+
+/// Positions first, then velocities along the loops.
+void Loops::close() {
+  if (!state_.has_loops()) return;
+  contacts_.clear();
+  constexpr int kMost = 4;  // Newton's method from a small error: two are enough but far from the solution
+  constexpr double kClosed = 1e-13;
+  contact::SolveSettings settings;
+  settings.direct = true;
+  settings.iterations = state_.accuracy.iterations;
+  contact::SolveSettings exact = settings;
+  exact.tolerance = 1e-14;  // a length here: loops are closed to round-off
+  for (int i = 0;; ++i) {
+    state_.place();
+    rows_.make(Rows::Motors::Leave);
+    state_.load_velocities();
+    double worst = 0;
+    for (std::size_t k = 0; k < rows_.loops(); ++k) {
+      rows_.loop(k).bias = -rows_.loop_error(k);
+      worst = std::max(worst, std::abs(rows_.loop_error(k)));
+    }
+    if (worst < kClosed || i == kMost) break;
+    positions_.begin_moves();
+    contact::solve_island(rows_.movers(), {}, rows_.scalars(), exact, rows_.workspace());
+    positions_.end_moves(1);
+  }
+  // Velocities along the loops where they stand now.
+  for (contact::ScalarRow& row : rows_.scalars()) row.bias = 0, row.impulse = 0;
+  state_.load_velocities();
+  contact::solve_island(rows_.movers(), {}, rows_.scalars(), settings, rows_.workspace());
+  state_.store_velocities();
+}
+
+/// How far the loops are open where the trees stand, m or rad; returns the largest.
+double Loops::read_errors() {
+  std::size_t k = 0;
+  double worst = 0;
+  for (Tree* tree : state_.trees)
+    for (const JointIndex index : tree->loops) {
+      const LoopRows loop = state_.core.loop_rows(*tree, state_.core.joints[index].is);
+      for (int i = 0; i < loop.count; ++i, ++k) {
+        rows_.loop_error(k) = loop.rows[static_cast<std::size_t>(i)].error;
+        worst = std::max(worst, std::abs(rows_.loop_error(k)));
+      }
+    }
+  return worst;
+}
+
+}  // namespace breve::island

@@ -1,0 +1,42 @@
+// Positions that are put right by hand: overlap is pushed apart, joints are held at their limits. Nothing gets
+// velocity.
+#pragma once
+
+#include "runtime/dynamics/island_momentum.hpp"
+
+namespace breve::island {
+
+class Positions {
+ public:
+  Positions(State& state, Contacts& contacts, Rows& rows, Momentum& momentum);
+
+  void push_apart(double h);
+  void hold_off(double h);
+  void hold_bounds(double h);
+
+  // The rows' solution is taken as a velocity that lasts h seconds and then is gone. Between these two the movers have
+  // none.
+  void begin_moves();
+  void end_moves(double h);
+
+ private:
+  void move_by_pushes(double fastest, double h);
+  double payable(double h) const;
+  void shorten_pushes(double before, double h);
+  void take_back_pushes(double part, double h);
+  bool find_struck(double h);
+  void book_moves(double sign);
+  void book_way(double work, Tree* tree);
+  void pay_for_moves(double given);
+  double softness(const NearPair& pair) const;
+
+  State& state_;
+  Contacts& contacts_;
+  Rows& rows_;
+  Momentum& momentum_;
+  std::pmr::vector<contact::Push> pushes_;  // of contact rows
+  std::pmr::vector<double> scalar_pushes_;  // of scalar rows: the velocity that puts them right, m/s or rad/s
+  std::pmr::vector<std::uint8_t> struck_;   // of movers: contacts changed its velocity
+};
+
+}  // namespace breve::island

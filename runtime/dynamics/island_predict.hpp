@@ -1,0 +1,31 @@
+// Forces of contacts and limits that go on. Those that held something in the last two sub-steps act on trees inside the
+// stages of smooth motion, as joint forces that do not change on the way: a limb that is pressed on its limit would
+// otherwise leave it and come back in each sub-step. The solver, after it, corrects the prediction.
+#pragma once
+
+#include "runtime/dynamics/island_books.hpp"
+
+namespace breve::island {
+
+class Prediction {
+ public:
+  Prediction(State& state, Contacts& contacts, Rows& rows, Books& books)
+      : state_(state), contacts_(contacts), rows_(rows), books_(books) {}
+
+  /// After a look at what is near and Books::open(), for the smooth motion of h seconds that follows.
+  void make(double h);
+  bool misled(double h);
+  void forget();
+  bool strained() const;
+
+ private:
+  bool overpressed(double h) const;
+  void add_contact(const Touch& touch);
+
+  State& state_;
+  Contacts& contacts_;
+  Rows& rows_;
+  Books& books_;
+};
+
+}  // namespace breve::island

@@ -1,0 +1,176 @@
+// Velocities at an island's rows, and what follows from their impulses: works and losses, forces in joints, and where
+// the next solution begins.
+#include <algorithm>
+
+#include "runtime/dynamics/island_rows.hpp"
+
+namespace breve::island {
+
+/// Velocities at the rows when the sub-step began: seen then, where the rows were found.
+void Rows::recall_rates() {
+  before_.clear();
+  scalars_before_.clear();
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const auto& [touch, pair, row, law] = contact(i);
+    const Vector3 a = row.axes * touch.velocity_a, b = row.axes * touch.velocity_b;
+    const BodySlot of_a = state_.slot_of(pair.a), of_b = state_.slot_of(pair.b);
+    const bool inner = of_a.tree && of_a.tree == of_b.tree;
+    before_.push_back({inner ? Vector3(a - b) : a, inner ? Vector3(Vector3::Zero()) : b});
+    row.slip[0] = a[1] - b[1];
+    row.slip[1] = a[2] - b[2];
+  }
+  for (const std::size_t bound : limits_) scalars_before_.push_back(contacts_.bounds()[bound].rate);
+  for (const MotorRow& motor : motors_) scalars_before_.push_back(motor.tree->sub_state.v[motor.velocity]);
+  scalars_before_.resize(scalars_.size(), 0.0);
+}
+
+/// The same where the movers stand, with the velocities that they have.
+void Rows::read_rates() {
+  before_.clear();
+  scalars_before_.clear();
+  for (contact::Row& row : rows_) {
+    const Vector3 a = rate_of(row, true), b = rate_of(row, false);
+    before_.push_back({a, b});
+    row.slip[0] = a[1] - b[1];
+    row.slip[1] = a[2] - b[2];
+  }
+  for (const contact::ScalarRow& row : scalars_) scalars_before_.push_back(rate_of(row));
+}
+
+void Rows::set_biases(double h) {
+  for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i].bias = std::min(0.0, -contacts_.touches()[i].gap / h);
+  for (std::size_t i = 0; i < limits(); ++i) limit(i).row.bias = std::min(0.0, -limit(i).bound.gap / h);
+}
+
+void Rows::set_length(double h) {
+  solved_h_ = h;
+  for (contact::Row& row : rows_) row.impulse *= h;
+  for (contact::ScalarRow& row : scalars_) row.impulse *= h;
+}
+
+void Rows::begin_cold() {
+  for (contact::Row& row : rows_) row.impulse = Vector3::Zero();
+}
+
+Vector3 Rows::rate_of(const contact::Row& row, bool first) const {
+  const int index = first ? row.a : row.b;
+  if (index < 0) return Vector3::Zero();
+  const contact::Mover& mover = movers_[static_cast<std::size_t>(index)];
+  const double *v = mover.v, *j = first ? row.ja : row.jb;
+  if (!j) {
+    const Vector3& arm = first ? row.arm_a : row.arm_b;
+    return row.axes * (Vector3(v[0], v[1], v[2]) + Vector3(v[3], v[4], v[5]).cross(arm));
+  }
+  const Eigen::Map<const articulated::Vector> velocity(v, mover.size);
+  Vector3 rate;
+  for (int k = 0; k < 3; ++k)
+    rate[k] = Eigen::Map<const articulated::Vector>(j + k * mover.size, mover.size).dot(velocity);
+  return rate;
+}
+
+double Rows::rate_of(const contact::ScalarRow& row) const {
+  const contact::Mover& mover = movers_[static_cast<std::size_t>(row.a)];
+  return Eigen::Map<const articulated::Vector>(row.ja, mover.size)
+      .dot(Eigen::Map<const articulated::Vector>(mover.v, mover.size));
+}
+
+void Rows::book() {
+  // A contact force that is constant over the sub-step works along the mean of the velocities before and after. Each
+  // tree's own ledger has what left it through the contact, even if it went into another body.
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const contact::Row& row = rows_[i];
+    if (row.impulse == Vector3::Zero()) continue;
+    // The side that a script moves gives work of that script.
+    for (const bool first : {true, false}) {
+      const int mover = first ? row.a : row.b;
+      if (state_.is_driver(mover))
+        state_.result.ledger.script_work += (first ? -1 : 1) * row.impulse.dot(rate_of(row, first));
+    }
+    for (const bool first : {true, false}) {
+      const Vector3 mean = (first ? 0.5 : -0.5) * (rate_of(row, first) + before(i, first));
+      const double along = row.impulse[0] * mean[0], across = row.impulse[1] * mean[1] + row.impulse[2] * mean[2];
+      state_.result.ledger.contact_loss -= along;
+      state_.result.ledger.friction_loss -= across;
+      if (Tree* tree = state_.tree_of(first ? row.a : row.b)) {
+        tree->ledger.contact_loss -= along;
+        tree->ledger.friction_loss -= across;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < limits() + motors(); ++i) {
+    const contact::ScalarRow& row = scalars_[i];
+    const double work = 0.5 * row.impulse * (scalars_before_[i] + rate_of(row));
+    Tree& tree = *state_.tree_of(row.a);
+    if (i < limits()) {
+      state_.result.ledger.limit_loss -= work;
+      tree.ledger.limit_loss -= work;
+    } else {
+      state_.result.ledger.motor_work += work;
+      tree.ledger.motor_work += work;
+    }
+  }
+}
+
+/// Notes the impulses of contacts and limits on trees as forces that last the h seconds of a sub-step: the reaction of
+/// a joint is made of them.
+void Rows::note_contact_forces(double h) {
+  for (Tree* tree : state_.trees) {
+    for (TreeLink& link : tree->links) link.contact = {};
+    tree->limit_force.setZero();
+  }
+  for (std::size_t i = 0; i < contacts(); ++i) {
+    const auto& [touch, pair, row, law] = contact(i);
+    if (row.impulse == Vector3::Zero()) continue;
+    const Vector3 force = row.axes.transpose() * row.impulse / h;
+    state_.add_force(pair.a, touch.point, force);
+    state_.add_force(pair.b, touch.point, -force);
+  }
+}
+
+void Rows::note_limit_forces(double h) {
+  for (std::size_t i = 0; i < limits(); ++i) {
+    const contact::ScalarRow& row = scalars_[i];
+    Tree& tree = *state_.tree_of(row.a);
+    tree.limit_force += row.impulse / h * Eigen::Map<const articulated::Vector>(row.ja, tree.model.velocities());
+  }
+}
+
+void Rows::keep_warm(double h) {
+  // An event may cut a sub-step to a sliver: that says nothing of forces.
+  const bool kept = h > 0;
+  // By the old ones, before they are written over.
+  before_force_.clear();
+  for (std::size_t i = 0; kept && i < contacts(); ++i) {
+    const Touch& touch = contact(i).touch;
+    const WarmPoint* warm = contacts_.warm_of(touch);
+    before_force_.push_back(warm ? std::max(0.0, warm->force.dot(touch.normal)) : 0);
+  }
+  for (NearPair* pair : state_.pairs) {
+    if (pair->spring.stiffness > 0) continue;  // ContactSprings::keep() does it
+    if (kept) pair->warm_count = 0;
+    pair->touching = false;
+  }
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const auto& [touch, pair, row, law] = contact(i);
+    pair.touching = pair.touching || touch.gap <= kSkin * state_.size_of_pair(pair) || row.impulse[0] > 0;
+    if (!kept || pair.warm_count == static_cast<int>(pair.warm.size()) || row.impulse == Vector3::Zero()) continue;
+    pair.warm[static_cast<std::size_t>(pair.warm_count++)] = {touch.feature, false,
+                                                              row.axes.transpose() * row.impulse / h, before_force_[i]};
+  }
+  if (!kept) return;
+  for (const Bound& bound : contacts_.bounds()) {
+    JointEntry& joint = state_.core.joints[bound.joint];
+    joint.limit_before[bound.axis] = joint.limit[bound.axis];
+  }
+  for (const Bound& bound : contacts_.bounds()) state_.core.joints[bound.joint].limit[bound.axis] = 0;
+  for (std::size_t i = 0; i < limits(); ++i) {
+    const auto& [bound, row] = limit(i);
+    state_.core.joints[bound.joint].limit[bound.axis] += bound.sign * row.impulse / h;
+  }
+  for (std::size_t i = 0; i < motors(); ++i) {
+    const auto& [driven, row] = motor(i);
+    state_.core.joints[driven.joint].motor[driven.axis] = row.impulse / h;
+  }
+}
+
+}  // namespace breve::island

@@ -1,0 +1,137 @@
+// The solution of an island's rows, and how it moves what it changed.
+#include "runtime/dynamics/island_solve.hpp"
+
+#include <algorithm>
+
+#include "runtime/articulated/kinematics.hpp"
+#include "runtime/base/rotation_vector.hpp"
+
+namespace breve::island {
+
+void Solver::solve_after(double h) {
+  rows_.make(Rows::Motors::Drive);
+  rows_.recall_rates();
+  begin(h);
+  if (rows_.empty()) return;
+  const bool rebounds = contacts_.spent() && rebounds_.find(h);
+  if (rebounds) rebounds_.note_free();
+  rebounds ? solve_rebounding() : solve_rows();
+  if (!shorten_couples(h)) return;
+  state_.reset_velocities();
+  rows_.set_biases(h);
+  rebounds ? solve_rebounding() : solve_rows();
+}
+
+/// Velocities as they were without what was predicted, and the impulses at which the solution begins.
+void Solver::begin(double h) {
+  state_.load_velocities();
+  // It acted along the rows as they lay when the sub-step began: what is taken away is what it gave, so that nothing is
+  // left that no row pushes along.
+  for (Tree* tree : state_.trees) {
+    if (tree->loads.reacts) tree->free_v -= h * tree->reacted;
+  }
+  rows_.set_length(h);
+  if (prediction_.strained()) rows_.begin_cold();
+  for (Tree* tree : state_.trees) tree->state.v = tree->free_v;
+  rows_.set_biases(h);
+  bound_motors(h);
+}
+
+/// Without rebound, then with it.
+void Solver::solve_rebounding() {
+  solve_rows();
+  rebounds_.ask();
+  solve_rows();
+  rebounds_.settle();
+}
+
+void Solver::solve_rows() {
+  contact::SolveSettings settings;
+  const int fast = state_.core.settings.fast_contacts;
+  settings.iterations = fast > 0 ? fast : state_.accuracy.iterations;
+  constexpr double kSwept = 0.1;  // of the speed that is rest
+  settings.direct = fast == 0;
+  settings.direct_share = direct_share();
+  settings.meter = &state_.meter;
+  // Where `fast` solves directly, no digit that cannot be seen in a step is worth a linear solve.
+  constexpr double kUnseen = 1e-3;  // of the speed that is rest
+  if (!state_.accuracy.direct) settings.tolerance = std::max(settings.tolerance, kUnseen * contacts_.resting());
+  // Sweeps that no exact solution follows end when they change less than could be seen, or a hundredth of that.
+  settings.swept = (state_.accuracy.direct ? 0.01 * kSwept : kSwept) * contacts_.resting();
+  const contact::SolveReport report =
+      contact::solve_island(rows_.movers(), rows_.rows(), rows_.scalars(), settings, rows_.workspace());
+  state_.result.counters.solver_iterations += static_cast<std::uint64_t>(report.iterations + report.newton);
+  state_.result.counters.direct += report.direct;
+  state_.result.counters.residual = std::max(state_.result.counters.residual, report.residual);
+}
+
+/// How many times the operations of the sweeps a direct solution may take: those that a stack would need to come as
+/// near to the solution are many more than are allowed. Only `reference` has no bound.
+double Solver::direct_share() const {
+  constexpr double kSwept = 3, kSolved = 10, kExact = 100;
+  // Sweeps hardly close a loop that something presses on.
+  if (!state_.accuracy.direct) return state_.has_loops() ? kSolved : kSwept;
+  switch (state_.accuracy.rung) {
+    case Rung::Reference: return JointDrive::kNoLimit;
+    case Rung::Precise: return kExact;
+    default: return kSolved;
+  }
+}
+
+/// After smooth motion of h seconds: what is left of each motor's strength, and the speed that it is to reach.
+void Solver::bound_motors(double h) {
+  if (rows_.motors() == 0) return;
+  for (Tree* tree : state_.trees)
+    if (tree->aimed) state_.core.aim(*tree);
+  for (std::size_t i = 0; i < rows_.motors(); ++i) {
+    const auto& [motor, row] = rows_.motor(i);
+    const double given = motor.tree->motor_impulse[motor.velocity], most = motor.strength * h;
+    row.bias = motor.tree->loads.motor_speed[motor.velocity];
+    row.lo = std::min(0.0, -most - given);
+    row.hi = std::max(0.0, most - given);
+  }
+}
+
+/// The couple of a ball joint's motor is bounded as a whole: where its three numbers are more than that together, each
+/// is bounded by its share.
+/// @return  whether some were: the rows are to be solved again
+bool Solver::shorten_couples(double h) {
+  constexpr double kRoundOff = 1e-9;
+  bool any = false;
+  for (std::size_t i = 0; i < rows_.motors(); ++i) {
+    const MotorRow& motor = rows_.motor(i).motor;
+    if (motor.shared < 3) continue;
+    const auto row = [this, i](std::size_t k) -> contact::ScalarRow& { return rows_.motor(i + k).row; };
+    const Vector3 given = motor.tree->motor_impulse.segment<3>(motor.velocity);
+    const Vector3 whole = given + Vector3(row(0).impulse, row(1).impulse, row(2).impulse);
+    const double most = motor.strength * h;
+    if (!(whole.norm() > (1 + kRoundOff) * most)) continue;
+    const Vector3 left = whole * (most / whole.norm()) - given;
+    for (std::size_t k = 0; k < 3; ++k) {
+      row(k).lo = std::min(0.0, left[static_cast<int>(k)]);
+      row(k).hi = std::max(0.0, left[static_cast<int>(k)]);
+    }
+    any = true;
+  }
+  return any;
+}
+
+void Solver::move_by_impulses(double moved_h) {
+  for (Free& one : state_.free_bodies) {
+    const Vector3 change(one.v[0] - one.free_v[0], one.v[1] - one.free_v[1], one.v[2] - one.free_v[2]);
+    const Vector3 rotation(one.v[3] - one.free_v[3], one.v[4] - one.free_v[4], one.v[5] - one.free_v[5]);
+    one.now.center += moved_h * change;
+    if (rotation != Vector3::Zero())
+      one.now.orientation = (rotation_by(moved_h * rotation) * one.now.orientation).normalized();
+  }
+  momentum_.note(&Tree::smooth_v, false);
+  // Semi-implicit Euler moves with the velocity after.
+  for (const Clustered& one : state_.clusters)
+    for (Tree* tree : one.entry->system->trees()) {
+      tree->way = (one.semi ? 2 : 1) * moved_h * (tree->state.v - tree->smooth_v);
+      articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
+    }
+  momentum_.give_impulses(moved_h);
+}
+
+}  // namespace breve::island

@@ -1,0 +1,40 @@
+// The solution of an island's rows after smooth motion, and how it moves what it changed.
+#pragma once
+
+#include "runtime/dynamics/island_predict.hpp"
+#include "runtime/dynamics/island_rebound.hpp"
+
+namespace breve::island {
+
+class Solver {
+ public:
+  Solver(State& state, Contacts& contacts, Rows& rows, Momentum& momentum, Prediction& prediction)
+      : state_(state),
+        contacts_(contacts),
+        rows_(rows),
+        momentum_(momentum),
+        prediction_(prediction),
+        rebounds_(state, contacts, rows) {}
+
+  /// Makes rows where smooth motion of h seconds has led to, where the trees are placed, and solves them.
+  void solve_after(double h);
+  /// Positions follow what the impulses changed, for so many seconds.
+  void move_by_impulses(double moved_h);
+  double direct_share() const;
+
+ private:
+  void begin(double h);
+  void bound_motors(double h);
+  bool shorten_couples(double h);
+  void solve_rows();
+  void solve_rebounding();
+
+  State& state_;
+  Contacts& contacts_;
+  Rows& rows_;
+  Momentum& momentum_;
+  Prediction& prediction_;
+  Rebounds rebounds_;
+};
+
+}  // namespace breve::island

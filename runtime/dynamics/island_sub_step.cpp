@@ -1,0 +1,98 @@
+// One sub-step of an island.
+#include "runtime/dynamics/island_sub_step.hpp"
+
+#include <algorithm>
+
+namespace breve::island {
+
+void SubStep::look(double h, bool spent) {
+  if (state_.has_contact_springs())
+    state_.place();
+  else
+    state_.place_links();
+  rows_.clear();
+  contacts_.find_touches(h, spent);
+  springs_.take();
+  contacts_.find_bounds();
+  springs_.hold_limits(h);
+}
+
+void SubStep::open(double h) {
+  state_.remember();
+  books_.open();
+  prediction_.make(h);
+}
+
+/// Limits that smooth motion of h seconds has passed and that are not located also become rows. The books of the
+/// sub-step are opened for them, if they are not open.
+/// @return  whether there are some
+bool SubStep::catch_bounds(double time, double h) {
+  if (!contacts_.spent()) return false;
+  bool any = false;
+  for (Bound& bound : contacts_.bounds()) {
+    if (bound.rests || bound.held) continue;
+    const double gap =
+        bound.sign * (state_.core.read_position(state_.core.joints[bound.joint])[bound.axis] - bound.limit);
+    bound.rests = gap < std::min(bound.gap, 0.0) - kLimitSkin;
+    any = any || bound.rests;
+  }
+  if (!any || books_.kept()) return any;
+  state_.restore();
+  books_.open();
+  smooth_.move(time, h);
+  return true;
+}
+
+void SubStep::advance(double time, double h) {
+  // A step whose work is used up leaves loops that are dear to hold to the rows, which are swept.
+  constexpr std::uint64_t kDear = 20'000;
+  const bool dear = state_.finished && state_.loop_units() > kDear;
+  const bool alone = state_.has_loops() && !contacts_.any() && !dear;
+  const bool in_stages = (!alone || loops_.in_stages()) && !dear;
+  for (Clustered& one : state_.clusters) one.stage->holds_loops = in_stages;
+  if (!in_stages && !dear) {
+    state_.place();
+    rows_.make(Rows::Motors::Leave);
+    if (loops_.hold(time, h)) return;
+    // An impulse that does not close the loops would add unexplained energy.
+    state_.restore();
+    for (Clustered& one : state_.clusters) one.stage->holds_loops = true;
+  }
+  smooth_.move(time, h);
+  if (!catch_bounds(time, h) && alone) return;
+  books_.note_smooth();
+  state_.place(h);
+  if (prediction_.misled(h)) {
+    prediction_.forget();
+    state_.restore();
+    smooth_.move(time, h);
+    books_.note_smooth();
+    state_.place(h);
+  }
+  solver_.solve_after(h);
+  // A force that is constant over the step moves by half of what its change of velocity would.
+  smooth_.correct_works(h);
+  state_.store_velocities();
+  solver_.move_by_impulses(0.5 * h);
+  positions_.hold_off(h);
+  positions_.hold_bounds(h);
+}
+
+void SubStep::keep(double part, double took) {
+  smooth_.commit();
+  rows_.book();
+  books_.close();
+  springs_.keep();
+  overlaps_.note(part);
+  if (state_.trees.empty()) return;
+  rows_.note_contact_forces(took);
+  springs_.note_forces();
+  rows_.note_limit_forces(took);
+}
+
+void SubStep::put_right(double h) {
+  positions_.push_apart(h);
+  loops_.close();
+}
+
+}  // namespace breve::island

@@ -1,0 +1,2 @@
+// Rows that know who solves them.
+#include "runtime/dynamics/island_solve.hpp"
