@@ -1,6 +1,8 @@
 // Pictures of worlds.
 #include <cstring>
 #include <limits>
+#include <memory>
+#include <optional>
 
 #include "physical.hpp"
 #include "runtime/store/image.hpp"
@@ -21,9 +23,11 @@ namespace {
 /// The view of a world that draws itself, made when it draws first.
 class OwnView {
  public:
-  const steve::DrawnView& draw(steve::Machine& machine) {
+  const steve::DrawnView& draw(steve::Machine& machine, const steve::ViewPart& part) {
     constexpr int kWidth = 640, kHeight = 480;
     steve::show(machine, scene_);
+    const PicturePart needed{part.left, part.top, part.width, part.height};
+    renderer_.set_part(part.width != 0 ? std::optional(needed) : std::nullopt);
     renderer_.paint(scene_.scene(), kWidth, kHeight, picture_);
     drawn_ = {picture_.width, picture_.height, picture_.rgba, picture_.depth};
     return drawn_;
@@ -39,9 +43,10 @@ class OwnView {
 }  // namespace
 
 void let_draw(breve_world& world, steve::MachineHost& host) {
-  host.draw = [&world, view = std::shared_ptr<OwnView>()]() mutable -> const steve::DrawnView& {
-    if (!view) view = std::make_shared<OwnView>();
-    return view->draw(*world.machine);
+  const auto view = std::make_shared<std::optional<OwnView>>();
+  host.draw = [&world, view](const steve::ViewPart& part) -> const steve::DrawnView& {
+    if (!*view) view->emplace();
+    return (*view)->draw(*world.machine, part);
   };
 }
 

@@ -68,7 +68,7 @@ static inline breve_batch breve_batch_default(void) {
 /* Make, run and destroy `count` worlds of a program, as many at a time as there are threads, and return when all have ended.
    What each world does depends on its seed, arguments and settings alone, not on the number of threads. The callbacks of
    a world, and those of the runtime for it, are called by the thread that runs it, so that several are called at once;
-   they may use that world, and not the runtime. Runs script.
+   they may use that world, but not destroy it (BREVE_ERROR_BUSY), and not the runtime. Runs script.
    @param batch     copied
    @param outcomes  room for `count`, by index; may be NULL
    BREVE_OK, also where worlds failed: see `outcomes`; BREVE_ERROR_ARGUMENT: a wrong struct_size, enqueue without wait or wait
