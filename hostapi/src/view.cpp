@@ -1,4 +1,5 @@
 // Pictures of worlds.
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -199,7 +200,7 @@ breve_status breve_png(uint32_t width, uint32_t height, const uint8_t* rgba, siz
     const std::string file = breve::make_png(
         breve::PngKind::Rgba8, static_cast<int>(width), static_cast<int>(height),
         [&](std::size_t y, std::span<std::uint8_t> to) { std::memcpy(to.data(), rgba + y * step, row); }, {});
-    if (file.size() <= capacity) std::memcpy(bytes, file.data(), file.size());
+    if (file.size() <= capacity) std::copy(file.begin(), file.end(), bytes);
     *size = file.size();
   });
 }
