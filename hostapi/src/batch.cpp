@@ -41,6 +41,7 @@ class Batch {
     breve_status status =
         make_world(state_, first_ + static_cast<std::uint32_t>(index), program_, &config, error, &world);
     if (world) {
+      world->in_batch = true;
       if (!wanted_.begin || wanted_.begin(wanted_.user, index, world)) status = step_to_the_end(*world);
       outcome.iterations = breve_world_iteration(world);
       outcome.time = breve_world_time(world);
@@ -51,6 +52,7 @@ class Batch {
     if (status != BREVE_OK && wanted_.failed && why) wanted_.failed(wanted_.user, index, why);
     if (wanted_.end && !wanted_.end(wanted_.user, index, world, &outcome))
       ended_.store(true, std::memory_order_relaxed);
+    if (world) world->in_batch = false;
     (void)breve_world_destroy(world);
   }
 

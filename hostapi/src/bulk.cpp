@@ -55,10 +55,8 @@ void read_all(const Bodies& bodies, std::span<const BodyIndex> all, std::uint32_
       return read_rows<3>(all, rows, [&](BodyIndex body, double* to) { copy(bodies.location(body), to); });
     case BREVE_PROPERTY_ROTATION: return read_rows<4>(all, rows, orientation);
     case BREVE_PROPERTY_POSE:
-      return read_rows<7>(all, rows, [&](BodyIndex body, double* to) {
-        copy(bodies.location(body), to);
-        orientation(body, to + 3);
-      });
+      return rows.single() ? bodies.write_poses<float>(all, rows.bytes(), rows.stride())
+                           : bodies.write_poses<double>(all, rows.bytes(), rows.stride());
     case BREVE_PROPERTY_VELOCITY:
       return read_rows<3>(all, rows, [&](BodyIndex body, double* to) { copy(bodies.velocity(body), to); });
     case BREVE_PROPERTY_ROTATIONAL_VELOCITY:
@@ -72,12 +70,19 @@ void read_all(const Bodies& bodies, std::span<const BodyIndex> all, std::uint32_
   }
 }
 
+/// As unit_quaternion and what a body makes of it, without the roots and divisions where they cannot fail: in space any
+/// finite quaternion is a rotation unless it is zero.
+void check_rotation(const Bodies& bodies, const double* in) {
+  const bool zero = in[0] == 0 && in[1] == 0 && in[2] == 0 && in[3] == 0;
+  if (zero || bodies.flat()) bodies.allowed_orientation(unit_quaternion(in, "a rotation"));
+}
+
 /// @throws  Error{Argument} if a body cannot have these numbers; no body is asked for
 void check_property(const Bodies& bodies, std::uint32_t property, const double* in) {
   const std::size_t width = width_of(property);
   need_finite(in, width, "array.numbers");
   if (has_location(property)) bodies.allowed_location(Vector3(in[0], in[1], in[2]));
-  if (has_rotation(property)) bodies.allowed_orientation(unit_quaternion(in + width - 4, "a rotation"));
+  if (has_rotation(property)) check_rotation(bodies, in + width - 4);
   if (property == BREVE_PROPERTY_VELOCITY) bodies.allowed_velocity(Vector3(in[0], in[1], in[2]));
   if (property == BREVE_PROPERTY_ROTATIONAL_VELOCITY) bodies.allowed_spin(Vector3(in[0], in[1], in[2]));
 }

@@ -318,8 +318,9 @@ struct breve_world : breve::InMemory {
   breve::host::Inputs* inputs = nullptr;            // in an iteration that is recorded or replayed
   std::size_t failed_depth = 0;                     // of the method of the host that failed last
   std::vector<breve::steve::ForeignPlace> failed_places;
-  double remainder = 0;  // s, kept by breve_world_advance; in [0, iteration step)
-  int running = 0;       // calls of the host that run script, one inside the other
+  double remainder = 0;   // s, kept by breve_world_advance; in [0, iteration step)
+  int running = 0;        // calls of the host that run script, one inside the other
+  bool in_batch = false;  // breve_batch_run destroys it, and its callbacks may not
   std::uint64_t errors = 0, warnings = 0;
 
   /// @param number  of the world among those of its runtime

@@ -46,11 +46,13 @@ const steve::ClassInfo& class_named(const breve_world& world, const char* name) 
 }
 
 breve::Quaternion unit_quaternion(const double numbers[4], const char* what) {
-  // Scaled by its largest part first, so that the length of no finite quaternion overflows or vanishes.
   const Eigen::Vector4d q(numbers[1], numbers[2], numbers[3], numbers[0]);
   const double largest = q.cwiseAbs().maxCoeff();
   if (largest == 0) fail(BREVE_ERROR_ARGUMENT, std::string(what) + " has length 0: it is not a rotation");
-  return breve::Quaternion(Eigen::Vector4d((q / largest).normalized()));
+  // Scaled by its largest part first where squares would overflow or vanish.
+  constexpr double kLow = 1e-100, kHigh = 1e100;
+  if (largest < kLow || largest > kHigh) return breve::Quaternion(Eigen::Vector4d((q / largest).normalized()));
+  return breve::Quaternion(Eigen::Vector4d(q.normalized()));
 }
 
 namespace {

@@ -34,6 +34,10 @@ class Rows {
     bytes_ = static_cast<char*>(array->numbers);
   }
 
+  char* bytes() const { return bytes_; }
+  std::size_t stride() const { return stride_; }  // of bytes
+  bool single() const { return single_; }         // floats
+
   /// W numbers, which is its width: a copy of a known size is some moves.
   template <std::size_t W>
   void put(std::size_t row, const double* numbers) const {

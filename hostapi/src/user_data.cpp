@@ -45,10 +45,7 @@ breve_status breve_object_set_user(breve_world* world, breve_object object, void
   return guard(world->error, [&] {
     const auto id = live_id(*world, object);
     auto& all = world->object_data;
-    if (id.index >= all.size()) {
-      all.reserve(std::max<std::size_t>(2 * all.capacity(), id.index + 1));
-      all.resize(id.index + 1);
-    }
+    if (id.index >= all.size()) all.resize(id.index + 1);
     all[id.index].ticket = ticket_of(*world, object);
     all[id.index].user = UserData(user, destroy);
   });

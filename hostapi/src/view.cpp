@@ -1,6 +1,9 @@
 // Pictures of worlds.
+#include <algorithm>
 #include <cstring>
 #include <limits>
+#include <memory>
+#include <optional>
 
 #include "physical.hpp"
 #include "runtime/store/image.hpp"
@@ -21,9 +24,11 @@ namespace {
 /// The view of a world that draws itself, made when it draws first.
 class OwnView {
  public:
-  const steve::DrawnView& draw(steve::Machine& machine) {
+  const steve::DrawnView& draw(steve::Machine& machine, const steve::ViewPart& part) {
     constexpr int kWidth = 640, kHeight = 480;
     steve::show(machine, scene_);
+    const PicturePart needed{part.left, part.top, part.width, part.height};
+    renderer_.set_part(part.width != 0 ? std::optional(needed) : std::nullopt);
     renderer_.paint(scene_.scene(), kWidth, kHeight, picture_);
     drawn_ = {picture_.width, picture_.height, picture_.rgba, picture_.depth};
     return drawn_;
@@ -39,9 +44,10 @@ class OwnView {
 }  // namespace
 
 void let_draw(breve_world& world, steve::MachineHost& host) {
-  host.draw = [&world, view = std::shared_ptr<OwnView>()]() mutable -> const steve::DrawnView& {
-    if (!view) view = std::make_shared<OwnView>();
-    return view->draw(*world.machine);
+  const auto view = std::make_shared<std::optional<OwnView>>();
+  host.draw = [&world, view](const steve::ViewPart& part) -> const steve::DrawnView& {
+    if (!*view) view->emplace();
+    return (*view)->draw(*world.machine, part);
   };
 }
 
@@ -194,7 +200,7 @@ breve_status breve_png(uint32_t width, uint32_t height, const uint8_t* rgba, siz
     const std::string file = breve::make_png(
         breve::PngKind::Rgba8, static_cast<int>(width), static_cast<int>(height),
         [&](std::size_t y, std::span<std::uint8_t> to) { std::memcpy(to.data(), rgba + y * step, row); }, {});
-    if (file.size() <= capacity) std::memcpy(bytes, file.data(), file.size());
+    if (file.size() <= capacity) std::copy(file.begin(), file.end(), bytes);
     *size = file.size();
   });
 }

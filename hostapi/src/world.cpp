@@ -256,7 +256,10 @@ breve_status breve_world_create(breve_runtime* runtime, const breve_program* pro
 
 breve_status breve_world_destroy(breve_world* world) {
   if (!world) return BREVE_OK;
-  const breve_status status = guard(world->error, [&] { need_idle(*world, "breve_world_destroy"); });
+  const breve_status status = guard(world->error, [&] {
+    need_idle(*world, "breve_world_destroy");
+    if (world->in_batch) fail(BREVE_ERROR_BUSY, "breve_world_destroy: the batch that runs this world destroys it");
+  });
   if (status != BREVE_OK) return status;
   const auto memory_outlives_it = world->runtime;
   delete world;

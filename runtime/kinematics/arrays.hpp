@@ -3,8 +3,8 @@
 #pragma once
 
 #include <array>
-#include <deque>
 #include <memory_resource>
+#include <utility>
 #include <vector>
 
 #include "runtime/kinematics/bodies.hpp"
@@ -14,34 +14,44 @@ namespace breve {
 using RowIndex = std::uint32_t;
 inline constexpr RowIndex kNoRow = 0xffffffffU;
 
-/// Rows that are made on demand and reused; references stay valid while others are made.
+/// Rows that are made on demand and reused; references stay valid while others are made. They lie in chunks of a power
+/// of two, so that finding one takes a shift and a mask; those of bodies made one after the other are neighbours.
 template <class Row>
 class Rows {
  public:
-  explicit Rows(std::pmr::memory_resource* memory) : rows_(memory), free_(memory) {}
+  explicit Rows(std::pmr::memory_resource* memory) : chunks_(memory), free_(memory) {}
   RowIndex make() {
     if (free_.empty()) {
       // Room for all to be dropped, so that drop() never allocates.
-      if (free_.capacity() <= rows_.size()) free_.reserve(2 * rows_.size() + 16);
-      rows_.emplace_back();
-      return static_cast<RowIndex>(rows_.size() - 1);
+      if (free_.capacity() <= size_) free_.reserve(2 * size_ + 16);
+      if (size_ == chunks_.size() * kChunk) add_chunk();
+      chunks_.back().emplace_back();
+      return static_cast<RowIndex>(size_++);
     }
     const RowIndex row = free_.back();
     free_.pop_back();
-    rows_[row] = Row();
+    (*this)[row] = Row();
     return row;
   }
   void drop(RowIndex& row) {
     if (row != kNoRow) free_.push_back(row);
     row = kNoRow;
   }
-  Row& operator[](RowIndex row) { return rows_[row]; }
-  const Row& operator[](RowIndex row) const { return rows_[row]; }
-  std::size_t bytes() const { return rows_.size() * sizeof(Row); }
+  Row& operator[](RowIndex row) { return chunks_[row / kChunk][row % kChunk]; }
+  const Row& operator[](RowIndex row) const { return chunks_[row / kChunk][row % kChunk]; }
+  std::size_t bytes() const { return size_ * sizeof(Row); }
 
  private:
-  std::pmr::deque<Row> rows_;
+  static constexpr std::size_t kChunk = 32;
+  void add_chunk() {
+    std::pmr::vector<Row> chunk(chunks_.get_allocator().resource());
+    chunk.reserve(kChunk);  // and it never grows
+    chunks_.push_back(std::move(chunk));
+  }
+
+  std::pmr::vector<std::pmr::vector<Row>> chunks_;
   std::pmr::vector<RowIndex> free_;
+  std::size_t size_ = 0;
 };
 
 /// A set of bodies to loop over: dense, with constant-time insertion and removal.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <memory_resource>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -106,6 +107,12 @@ class Bodies : public InMemory {
   const Vector3& location(BodyIndex body) const;
   Matrix3 rotation(BodyIndex body) const;
   Quaternion orientation(BodyIndex body) const;
+  /// The poses of some bodies, seven numbers for each: location, orientation as (w, x, y, z). For thousands of them
+  /// this takes half the time of asking for one after the other.
+  /// @param to      the first row, at any address
+  /// @param stride  bytes from one row to the next
+  template <class Number>  // float or double
+  void write_poses(std::span<const BodyIndex> some, char* to, std::size_t stride) const;
   void set_location(BodyIndex body, const Vector3& location);
   void set_rotation(BodyIndex body, const Matrix3& rotation);  // made orthonormal; Error{Argument} if it is singular
   void set_orientation(BodyIndex body, const Quaternion& orientation);

@@ -1,5 +1,6 @@
 // The stages that move bodies: kinematic translation and rotation by explicit Euler, and free rigid motion.
 #include <cmath>
+#include <cstring>
 
 #include "runtime/base/rotation_vector.hpp"
 #include "runtime/kinematics/arrays.hpp"
@@ -174,5 +175,27 @@ void Bodies::advance(BodyIndex body, double h, const Vector3& gravity) {
 void Bodies::set_log(std::pmr::vector<BodyIndex>* log) {
   if (arrays_) arrays_->log = log;
 }
+
+template <class Number>
+void Bodies::write_poses(std::span<const BodyIndex> some, char* to, std::size_t stride) const {
+  const Arrays* const a = arrays_.get();
+  const Quaternion unrotated = Quaternion::Identity();
+  for (const BodyIndex body : some) {
+    const RowIndex row = a->rotation_row[body];
+    const Quaternion& q = row == kNoRow ? unrotated : a->rotation_rows[row].orientation;
+    const Vector3& at = a->location[body];
+    // One by one, at any address: a copy of all seven would wait for them to be stored first.
+    const auto put = [to](std::size_t index, double value) {
+      const auto number = static_cast<Number>(value);
+      std::memcpy(to + index * sizeof number, &number, sizeof number);
+    };
+    put(0, at.x()), put(1, at.y()), put(2, at.z());
+    put(3, q.w()), put(4, q.x()), put(5, q.y()), put(6, q.z());
+    to += stride;
+  }
+}
+
+template void Bodies::write_poses<float>(std::span<const BodyIndex> some, char* to, std::size_t stride) const;
+template void Bodies::write_poses<double>(std::span<const BodyIndex> some, char* to, std::size_t stride) const;
 
 }  // namespace breve

@@ -20,6 +20,19 @@ Mirror mirror_of(const Scene& scene) {
 
 bool moves(const SceneInstance& instance) { return !instance.fixed; }
 
+Window common(const Window& a, const Window& b) {
+  const int left = std::max(a.left, b.left), bottom = std::max(a.bottom, b.bottom);
+  return {left, bottom, std::min(a.left + a.width, b.left + b.width) - left,
+          std::min(a.bottom + a.height, b.bottom + b.height) - bottom};
+}
+
+/// The part of a picture that must be drawn. Motion blur mixes whole pictures and therefore needs all of it.
+Window needed_of(const std::optional<PicturePart>& part, const Scene& scene, int width, int height) {
+  const Window all{0, 0, width, height};
+  if (!part || scene.flags.blur) return all;
+  return common(all, {part->left, height - part->top - part->height, part->width, part->height});
+}
+
 Lens mirrored(Lens lens, float height) {
   Matrix4f mirror = Matrix4f::Identity();
   mirror(1, 1) = -1;
@@ -79,6 +92,8 @@ void Renderer::Work::paint_camera(const Scene& scene, const SceneCamera& camera,
     width = static_cast<int>(camera.width);
     height = static_cast<int>(camera.height);
   }
+  const Window cut = common({left, bottom, width, height}, needed);
+  if (cut.empty()) return;
   const Lens lens = lens_of(camera, static_cast<double>(width) / height);
   Pass pass{&scene, &camera, &lens, width, height, ground_of(scene) != nullptr, draw_shadows(scene), mirror_of(scene)};
   if (window || left != 0 || bottom != 0) pass.mirror.on = false;  // its image is as large as the whole picture
@@ -86,7 +101,7 @@ void Renderer::Work::paint_camera(const Scene& scene, const SceneCamera& camera,
   target->bind();
   gl.Viewport(left, bottom, width, height);
   gl.Enable(GL_SCISSOR_TEST);
-  gl.Scissor(left, bottom, width, height);
+  gl.Scissor(cut.left, cut.bottom, cut.width, cut.height);
   gl.ClearColor(0, 0, 0, 1);
   gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   const Canvas canvas{&lens, width, height, &counters.draw_calls};
@@ -108,6 +123,8 @@ void Renderer::Work::paint_camera(const Scene& scene, const SceneCamera& camera,
 }
 
 void Renderer::Work::read(const Lens& lens, Picture& picture) {
+  // Copying keeps to the scissor, which is that of the last camera.
+  context.gl().Scissor(needed.left, needed.bottom, std::max(0, needed.width), std::max(0, needed.height));
   target->resolve();
   target->read(picture.rgba);
   target->read_depth(picture.depth);
@@ -136,6 +153,7 @@ void Renderer::Work::paint(const Scene& scene, int width, int height, Picture& p
     target.reset();
     target = std::make_unique<Target>(context.gl(), width, height, settings.samples);
   }
+  needed = needed_of(part, scene, width, height);
   const double aspect = static_cast<double>(width) / height;
   if (scene.cameras.empty()) throw Error(ErrorCode::Argument, "the scene has no camera");
   last_camera = own_camera ? *own_camera : framed(scene, scene.cameras[0], aspect, framing);
@@ -157,6 +175,7 @@ void Renderer::paint(const Scene& scene, int width, int height, Picture& picture
 }
 
 void Renderer::set_camera(const std::optional<SceneCamera>& camera) { work_->own_camera = camera; }
+void Renderer::set_part(const std::optional<PicturePart>& part) { work_->part = part; }
 const SceneCamera& Renderer::camera() const { return work_->last_camera; }
 const Counters& Renderer::counters() const { return work_->counters; }
 

@@ -41,6 +41,8 @@ class Renderer {
   void paint(const Scene& scene, int width, int height, Picture& picture);
   /// The main camera in place of the scene's from now on; none: the scene's.
   void set_camera(const std::optional<SceneCamera>& camera);
+  /// Only this part of the pictures is needed from now on: the rest of their pixels is undefined. None: all of it.
+  void set_part(const std::optional<PicturePart>& part);
   /// The main camera of the last picture, as it was framed.
   const SceneCamera& camera() const;
   const Counters& counters() const;

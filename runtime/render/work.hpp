@@ -39,6 +39,12 @@ struct Air {
   Vector3f color, horizon, zenith;
 };
 
+/// A rectangle of the target: as OpenGL counts, from the lower left corner.
+struct Window {
+  int left = 0, bottom = 0, width = 0, height = 0;
+  bool empty() const { return width <= 0 || height <= 0; }
+};
+
 struct Renderer::Work {
   explicit Work(const Settings& given);
   ~Work();
@@ -78,6 +84,8 @@ struct Renderer::Work {
   std::unique_ptr<Target> target, reflection;
   std::unique_ptr<ShadowTarget> shadow;
   std::optional<SceneCamera> own_camera;
+  std::optional<PicturePart> part;  // that is needed
+  Window needed;                    // the same in the picture that is being drawn
   SceneCamera last_camera;
   Framing framing;
   Counters counters;

@@ -12,4 +12,9 @@ struct Picture {
   std::vector<float> depth;        // of each pixel, length units along the line of sight; infinite where nothing is
 };
 
+/// A rectangle of a picture, in pixels from its upper left corner. It may reach beyond the picture.
+struct PicturePart {
+  int left = 0, top = 0, width = 0, height = 0;
+};
+
 }  // namespace breve

@@ -16,7 +16,15 @@ bool PairRules::Earlier::operator()(const Key& x, const Key& y) const {
 }
 
 bool PairRules::exclude(ObjectId a, ObjectId b, bool excluded) {
-  return excluded ? excluded_.insert(key_of(a, b)).second : excluded_.erase(key_of(a, b)) != 0;
+  const Key key = key_of(a, b);
+  if (excluded) return insert(key);
+  mirrored_.erase(Key(key.second, key.first));
+  return excluded_.erase(key) != 0;
+}
+
+bool PairRules::insert(const Key& key) {
+  mirrored_.emplace(key.second, key.first);  // first: without its partner it does no harm
+  return excluded_.insert(key).second;
 }
 
 void PairRules::begin() {
@@ -33,9 +41,16 @@ bool PairRules::finish() {
 }
 
 void PairRules::forget(ObjectId object) {
-  const auto of_object = [&](const Key& key) { return key.first == object || key.second == object; };
-  std::erase_if(excluded_, of_object);
-  std::erase_if(near_, [&](const auto& entry) { return of_object(entry.first); });
+  const auto drop = [object](auto& some, auto& others) {
+    auto at = some.lower_bound(Key(object, ObjectId()));
+    while (at != some.end() && at->first == object) {
+      others.erase(Key(at->second, object));
+      at = some.erase(at);
+    }
+  };
+  drop(excluded_, mirrored_);
+  drop(mirrored_, excluded_);
+  std::erase_if(near_, [&](const auto& entry) { return entry.first.first == object || entry.first.second == object; });
 }
 
 void PairRules::save(ByteWriter& out) const {
@@ -61,7 +76,7 @@ void PairRules::load(ByteReader& in) {
     return key;
   };
   for (std::size_t left = in.get_count(4 * sizeof(std::uint32_t)); left > 0; --left)
-    if (!excluded_.insert(read_key()).second) ByteReader::fail();
+    if (!insert(read_key())) ByteReader::fail();
   for (std::size_t left = in.get_count(4 * sizeof(std::uint32_t)); left > 0; --left) {
     const auto [at, is_new] = near_.emplace(read_key(), Decision());
     if (!is_new) ByteReader::fail();

@@ -16,7 +16,7 @@ namespace breve {
 
 class PairRules {
  public:
-  explicit PairRules(std::pmr::memory_resource* memory) : excluded_(memory), near_(memory) {}
+  explicit PairRules(std::pmr::memory_resource* memory) : excluded_(memory), mirrored_(memory), near_(memory) {}
 
   /// Returns whether that is a change.
   bool exclude(ObjectId a, ObjectId b, bool excluded);
@@ -54,8 +54,10 @@ class PairRules {
     bool operator()(const Key& x, const Key& y) const;
   };
   static Key key_of(ObjectId a, ObjectId b);
+  bool insert(const Key& key);  // into the two sets of excluded pairs
 
   std::pmr::set<Key, Earlier> excluded_;
+  std::pmr::set<Key, Earlier> mirrored_;  // the same pairs the other way round, to find those of one object
   std::pmr::map<Key, Decision, Earlier> near_;
 };
 

@@ -118,6 +118,11 @@ struct World::Parts final : CollisionClient, MechanicsClient, InMemory {
     Quaternion orientation = Quaternion::Identity();
   };
   std::pmr::vector<Target> targets;  // of bodies that go there in the next iteration
+  // By body: which of the targets may be its own. It is if the object is the body's; other entries are left behind.
+  std::pmr::vector<std::uint32_t> target_places;
+  Target* target_of(BodyIndex body);  // null: it has none
+  void make_room_for_target(BodyIndex body);
+  void add_target(BodyIndex body, const Target& target);  // of a body that has none
   struct Push {
     ObjectId object;
     Vector3 force = Vector3::Zero(), torque = Vector3::Zero();

@@ -13,13 +13,10 @@ void World::set_target(BodyIndex body, const Vector3* new_location, const Quater
   if (bodies_->dynamic(body))
     throw Error(ErrorCode::Argument,
                 "a body with physics is moved by forces: only a body without physics can have a target");
-  const ObjectId object = bodies_->owner(body);
-  parts_->targets.reserve(parts_->targets.size() + 1);  // before anything is changed
-  const auto pending = std::find_if(parts_->targets.begin(), parts_->targets.end(),
-                                    [object](const Parts::Target& one) { return one.object == object; });
-  const bool known = pending != parts_->targets.end();
-  Vector3 location = known ? pending->location : bodies_->location(body);
-  Quaternion orientation = known ? pending->orientation : bodies_->orientation(body);
+  parts_->make_room_for_target(body);  // before anything is changed
+  Parts::Target* const known = parts_->target_of(body);
+  Vector3 location = known ? known->location : bodies_->location(body);
+  Quaternion orientation = known ? known->orientation : bodies_->orientation(body);
   if (new_location) location = *new_location;
   if (new_orientation) orientation = *new_orientation;
   if (!location.allFinite() || !orientation.coeffs().allFinite() || !(orientation.norm() > 0))
@@ -29,16 +26,33 @@ void World::set_target(BodyIndex body, const Vector3* new_location, const Quater
   const double seconds = clock_.iteration_step;
   bodies_->set_velocity(body, (location - bodies_->location(body)) / seconds);
   bodies_->set_rotational_velocity(body, rotation.angle() / seconds * rotation.axis());
-  if (!known) parts_->targets.emplace_back().object = object;
-  Parts::Target& target = known ? *pending : parts_->targets.back();
-  target.location = location;
-  target.orientation = orientation.normalized();
+  const Parts::Target target{bodies_->owner(body), location, orientation.normalized()};
+  if (known)
+    *known = target;
+  else
+    parts_->add_target(body, target);
 }
 
 std::optional<Pose> World::target(BodyIndex body) const {
-  for (const Parts::Target& one : parts_->targets)
-    if (one.object == bodies_->owner(body) && !bodies_->dynamic(body)) return Pose{one.location, one.orientation};
-  return std::nullopt;
+  const Parts::Target* const known = parts_->target_of(body);
+  if (!known || bodies_->dynamic(body)) return std::nullopt;
+  return Pose{known->location, known->orientation};
+}
+
+World::Parts::Target* World::Parts::target_of(BodyIndex body) {
+  if (body >= target_places.size()) return nullptr;
+  const std::size_t place = target_places[body];
+  return place < targets.size() && targets[place].object == world->bodies_->owner(body) ? &targets[place] : nullptr;
+}
+
+void World::Parts::make_room_for_target(BodyIndex body) {
+  if (body >= target_places.size()) target_places.resize(body + 1);
+  if (targets.size() == targets.capacity()) targets.reserve(2 * targets.size() + 16);
+}
+
+void World::Parts::add_target(BodyIndex body, const Target& target) {
+  target_places[body] = static_cast<std::uint32_t>(targets.size());
+  targets.push_back(target);
 }
 
 void World::leave(BodyIndex body) {
@@ -113,7 +127,11 @@ void World::Parts::load_targets(ByteReader& in) {
       keep(target);
     }
   };
-  load([this](const Target& target) { targets.push_back(target); });
+  load([this](const Target& target) {
+    const BodyIndex body = objects.at(target.object).body;
+    make_room_for_target(body);
+    add_target(body, target);
+  });
   load([this](const Target& target) { left.try_emplace(objects.at(target.object).body, target); });
   advanced = in.get<std::uint64_t>();
 }

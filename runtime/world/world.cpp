@@ -26,6 +26,7 @@ World::Parts::Parts(World& owner, std::pmr::memory_resource* memory)
       dynamics(make_in<Dynamics>(memory, memory, *owner.bodies_)),
       stages(memory),
       targets(memory),
+      target_places(memory),
       pushes(memory),
       left(memory),
       queries(memory),

@@ -193,20 +193,22 @@ void for_each_seen(const Image& picture, const DrawnView& view, std::int32_t lef
             static_cast<std::size_t>((y + top) * view.width + x + left));
 }
 
-/// The view if there is one, and the image black for what is outside of it.
-const DrawnView* begin_reading(Machine& machine, Image& picture, std::string_view selector) {
+/// Window positions that no image reaches from are all the same.
+std::int32_t bounded(std::int32_t position) { return std::clamp(position, -100'000, 100'000); }
+
+/// The view where the image covers it, if there is one, and the image black for what is outside of it.
+const DrawnView* begin_reading(Machine& machine, Image& picture, std::string_view selector, std::int32_t left,
+                               std::int32_t top) {
   machine.charge_for(picture.bytes().size() / 4);
-  const DrawnView* view = picture.empty() ? nullptr : draw_view(machine, selector);
+  const DrawnView* view =
+      picture.empty() ? nullptr : draw_view(machine, selector, 0, {left, top, picture.width(), picture.height()});
   if (!picture.empty()) picture = Image(picture.width(), picture.height(), machine.heap().memory());
   return view;
 }
 
-/// Window positions that no image reaches from are all the same.
-std::int32_t bounded(std::int32_t position) { return std::clamp(position, -100'000, 100'000); }
-
 void image_read_pixels(Machine& machine, Instance& self, std::int32_t x, std::int32_t y) {
   Image& picture = image(machine, self);
-  const DrawnView* view = begin_reading(machine, picture, "read-pixels");
+  const DrawnView* view = begin_reading(machine, picture, "read-pixels", bounded(x), bounded(y));
   if (!view) return;
   for_each_seen(picture, *view, bounded(x), bounded(y), [&](std::int32_t at_x, std::int32_t at_y, std::size_t pixel) {
     constexpr Channel kChannels[] = {Channel::Red, Channel::Green, Channel::Blue};
@@ -219,7 +221,7 @@ void image_read_depth(Machine& machine, Instance& self, std::int32_t x, std::int
                       double farthest) {
   const DepthGrays gray("read-depth", linear != 0, farthest);
   Image& picture = image(machine, self);
-  const DrawnView* view = begin_reading(machine, picture, "read-depth");
+  const DrawnView* view = begin_reading(machine, picture, "read-depth", bounded(x), bounded(y));
   if (!view) return;
   for_each_seen(picture, *view, bounded(x), bounded(y), [&](std::int32_t at_x, std::int32_t at_y, std::size_t pixel) {
     const auto value = static_cast<int>(std::lround(65535 * gray.of(view->depth[pixel])));

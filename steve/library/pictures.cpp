@@ -23,7 +23,7 @@ void no_renderer(Machine& machine, std::string_view selector, std::string_view w
 
 }  // namespace
 
-const DrawnView* draw_view(Machine& machine, std::string_view selector, std::uint64_t more) {
+const DrawnView* draw_view(Machine& machine, std::string_view selector, std::uint64_t more, const ViewPart& part) {
   const auto& draw = machine.host().draw;
   if (!draw) {
     no_renderer(machine, selector, "nothing draws this world");
@@ -31,7 +31,7 @@ const DrawnView* draw_view(Machine& machine, std::string_view selector, std::uin
   }
   machine.charge_for((kOfDrawing + more) * kPixels);
   try {
-    return &draw();
+    return &draw(part);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::Unsupported && error.code() != ErrorCode::File) throw;
     no_renderer(machine, selector, error.what());

@@ -13,7 +13,9 @@ constexpr std::uint64_t kOfDeflation = 64;  // work for each pixel of a picture 
 
 /// The view as it is now; null with a warning that names `selector` where nothing draws.
 /// @param more  work that the caller does for each pixel: a picture that would exceed the budget is not begun
-const DrawnView* draw_view(Machine& machine, std::string_view selector, std::uint64_t more = 0);
+/// @param part  what the caller looks at; the other pixels are undefined
+const DrawnView* draw_view(Machine& machine, std::string_view selector, std::uint64_t more = 0,
+                           const ViewPart& part = {});
 
 /// Depths as grays from 0, which is near, to 1. If they are not linear, a gray stands for the depth that a depth buffer
 /// holds of a view from 0.1 on.

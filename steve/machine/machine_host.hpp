@@ -26,6 +26,11 @@ struct DrawnView {
   std::span<const float> depth;        // of each pixel, length units along the line of sight; infinite where nothing is
 };
 
+/// A rectangle of the view, in pixels from its upper left corner. Without a size: all of it.
+struct ViewPart {
+  int left = 0, top = 0, width = 0, height = 0;
+};
+
 /// What a machine needs from whoever embeds it. Every member may be empty.
 struct MachineHost {
   std::function<void(std::string_view text)> print;  // what scripts print, as written
@@ -35,8 +40,9 @@ struct MachineHost {
   std::function<std::unique_ptr<FileReader>(std::string_view name, std::string& why)> open_for_reading;
   std::function<std::unique_ptr<FileWriter>(std::string_view name, bool append, std::string& why)> open_for_writing;
   std::function<std::string(std::string_view command)> system;  // run a shell command; empty: not allowed
-  std::function<const DrawnView&()> draw;                       // the view as it is now; empty: nothing can be drawn
-  std::shared_ptr<Network> network;                             // null: there is none
+  // The view as it is now, whose pixels outside of the part are undefined; empty: nothing can be drawn.
+  std::function<const DrawnView&(const ViewPart& part)> draw;
+  std::shared_ptr<Network> network;  // null: there is none
   // One of the functions that the program was compiled with; not empty if there are any. `self` is the calling
   // instance.
   std::function<Value(const ForeignFunction& function, Instance& self, std::span<const Value> arguments)> call_foreign;

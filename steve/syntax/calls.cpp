@@ -130,6 +130,9 @@ Diagnostic Parser::call_mistake() {
     return {Severity::Error, "syntax", fmt::format("unexpected {}", describe()),
             at_text("and") ? "logical and is written '&&'" : "logical or is written '||'", selector.span};
   }
+  if (at_text("is") && (at_text("a", 1) || at_text("an", 1)))
+    return {Severity::Error, "syntax", "a question about a class needs parentheses", "write: (object is a \"Name\")",
+            selector.span};
   if (at_text("is") || at_text("equals") || at_text("isnt")) {
     return {Severity::Error, "syntax", fmt::format("unexpected {}", describe()),
             at_text("isnt") ? "to compare, write '!='" : "to compare, write '=='", selector.span};

@@ -239,6 +239,9 @@ void Parser::declaration(std::vector<ast::Variable>& into, std::string_view what
 // (int), (object), (Name object), (5 ints), (5 Name objects)
 ast::TypeRef Parser::type() {
   const std::size_t start = pos_;
+  if (at("["))
+    fail(token().span, "unknown-type", "the size of an array stands in its type, not behind its name",
+         "write: name (10 ints), or name (list) for an array that grows");
   if (!at("(")) fail_expected("a type in parentheses", "for example (int), (vector) or (Name object)");
   advance();
   ast::TypeRef result;

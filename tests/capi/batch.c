@@ -59,6 +59,7 @@ static bool begin(void* user, size_t index, breve_world* world) {
   run* r = user;
   const breve_value most = breve_value_int(index == 3 ? 2 : 1000);
   CHECK_STATUS(BREVE_OK, breve_object_set(world, breve_world_controller(world), "most", &most));
+  CHECK_STATUS(BREVE_ERROR_BUSY, breve_world_destroy(world));
   pthread_mutex_lock(&r->lock);
   ++r->begun;
   pthread_mutex_unlock(&r->lock);
@@ -72,6 +73,7 @@ static bool end(void* user, size_t index, breve_world* world, const breve_outcom
   CHECK(hash == outcome->hash);
   if (outcome->status == BREVE_ERROR_SCRIPT && world)
     CHECK(strstr(breve_world_last_error(world)->text, "on purpose") != NULL);
+  if (world) CHECK_STATUS(BREVE_ERROR_BUSY, breve_world_destroy(world));
   pthread_mutex_lock(&r->lock);
   ++r->ended;
   r->unmade += world == NULL;

@@ -56,6 +56,22 @@ static void data_of_worlds_and_objects_ends_with_them(void) {
   CHECK(of_two == 1 && of_other == 1);
 }
 
+static void data_of_many_objects_takes_little_memory(void) {
+  enum { kMany = 1000, kMost = 200 }; /* bytes for each object, those that the vector keeps for growth included */
+  guest g;
+  breve_object all[kMany];
+  int ended = 0;
+  breve_stats before = breve_stats_default(), after = breve_stats_default();
+  if (!guest_begin(&g, NULL)) return;
+  for (size_t i = 0; i < kMany; ++i) CHECK_STATUS(BREVE_OK, breve_object_create(g.world, "Mobile", &all[i]));
+  CHECK_STATUS(BREVE_OK, breve_world_stats(g.world, &before));
+  for (size_t i = 0; i < kMany; ++i) CHECK_STATUS(BREVE_OK, breve_object_set_user(g.world, all[i], &ended, count_up));
+  CHECK_STATUS(BREVE_OK, breve_world_stats(g.world, &after));
+  CHECK(after.memory_used - before.memory_used < kMany * kMost);
+  guest_close(&g);
+  CHECK(ended == kMany);
+}
+
 /* A counter that scripts of the host would read. */
 typedef struct counter {
   int value, loads, gone, ended;
@@ -159,6 +175,7 @@ static void hosts_print_and_draw_as_scripts_do(void) {
 
 void user_data_suite(void) {
   RUN(data_of_worlds_and_objects_ends_with_them);
+  RUN(data_of_many_objects_takes_little_memory);
   RUN(state_of_the_host_is_part_of_snapshots_and_hash);
   RUN(memory_of_the_host_counts_against_the_limit);
   RUN(hosts_print_and_draw_as_scripts_do);

@@ -69,7 +69,7 @@ static inline breve_batch breve_batch_default(void) {
 /* Creates, runs and destroys `count` worlds of a program, as many at a time as there are threads, and returns when all have
    ended. The run of each world depends only on its seed, arguments and settings, not on the number of threads. The
    callbacks of a world, and those of the runtime for it, are called by the thread that runs it, several at the same time;
-   they may use that world, and not the runtime. Runs script.
+   they may use that world, but not destroy it (BREVE_ERROR_BUSY), and not the runtime. Runs script.
    @param batch     copied
    @param outcomes  room for `count`, by index; may be NULL
    BREVE_OK, also if worlds failed: see `outcomes`; BREVE_ERROR_ARGUMENT: a wrong struct_size, only one of enqueue and wait, a

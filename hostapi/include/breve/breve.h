@@ -638,7 +638,8 @@ BREVE_API breve_status breve_world_create(breve_runtime* runtime, const breve_pr
                                           const breve_world_config* config, breve_world** world);
 
 /* Destroys a world and frees everything that it holds. Runs no script: no object's `destroy` is called.
-   BREVE_OK, also for NULL; BREVE_ERROR_BUSY while a script of it runs: nothing is destroyed then. */
+   BREVE_OK, also for NULL; BREVE_ERROR_BUSY while a script of it runs, and for a world of a batch (breve_batch_run):
+   nothing is destroyed then. */
 BREVE_API breve_status breve_world_destroy(breve_world* world);
 
 /* breve_world_config.user. */
