@@ -97,8 +97,8 @@ void describe_pictures(CLI::App& app, RunOptions& o) {
   app.add_option("--contact-sheet", o.record.contact_sheet, "At the end, twelve moments of the run in one picture")
       ->type_name("OUT.png");
   app.add_option("--movie", o.record.movie,
-                 "A movie of the run, at the pace of simulated time: OUT.gif, or numbered pictures in OUT/")
-      ->type_name("OUT.gif|OUT/");
+                 "A movie of the run, at the pace of simulated time: OUT.mp4, OUT.gif, or numbered pictures in OUT/")
+      ->type_name("OUT.mp4|OUT.gif|OUT/");
   app.add_option("--sound", o.sound, "Write what the program plays, from its beginning on")->type_name("OUT.wav");
   app.add_option("--size", o.record.size,
                  "Size of a picture, in pixels (960x600). Those of a contact sheet are a third of it")

@@ -108,6 +108,7 @@ void Renderer::Work::paint_camera(const Scene& scene, const SceneCamera& camera,
 }
 
 void Renderer::Work::read(const Lens& lens, Picture& picture) {
+  context.gl().Disable(GL_SCISSOR_TEST);  // that of the last window would bound what is resolved
   target->resolve();
   target->read(picture.rgba);
   target->read_depth(picture.depth);

@@ -381,6 +381,54 @@ closed_output)
   same "$(cat err)" ""
   same "$(wc -l <out)" 2
   ;;
+movies)
+  program a.tz 'bug = new Mobile. bug set-velocity to (9, 0, 0).' ''
+  for kind in mp4 mkv webm avi gif; do
+    expect 0 run a.tz --iterations 10 --quiet --size 63x41 --fps 20 --movie "a.$kind"
+    [ -s "a.$kind" ] || fail "a.$kind is empty"
+  done
+  # 0 to 0.6 s in steps of 0.06 s, at 20 frames a second: 13 frames of even sides.
+  python3 - a.mp4 <<'END' || fail "what a.mp4 holds"
+import struct, sys
+data = open(sys.argv[1], "rb").read()
+def boxes(begin, end):
+    while begin < end:
+        size, kind = struct.unpack(">I4s", data[begin:begin + 8])
+        yield kind, begin + 8, begin + size
+        begin += size
+def find(path, begin=0, end=len(data)):
+    for kind, first, last in boxes(begin, end):
+        if kind == path[0]:
+            return (first, last) if len(path) == 1 else find(path[1:], first, last)
+table = find([b"moov", b"trak", b"mdia", b"minf", b"stbl", b"stsz"])[0]
+assert struct.unpack(">I", data[table + 8:table + 12])[0] == 13
+header = find([b"moov", b"trak", b"tkhd"])[1]
+assert struct.unpack(">II", data[header - 8:header]) == (62 << 16, 40 << 16)
+assert find([b"moov"])[0] < find([b"mdat"])[0], "players begin before they have all of it"
+END
+  expect 1 run a.tz --iterations 1 --quiet --movie a.xyz && has err 'there is no movie format of that name; .mp4'
+  expect 1 run a.tz --iterations 1 --quiet --movie nowhere/a.mp4 && has err 'cannot write nowhere/a.mp4: No such file'
+  for file in full.mp4 full.gif; do
+    ln -s /dev/full "$file"
+    expect 1 run a.tz --iterations 1 --quiet --movie "$file" && has err "cannot write $file: No space left on device"
+  done
+  ln -s /dev/full full.png
+  expect 1 run a.tz --iterations 1 --quiet --snapshot full.png && has err 'cannot write full.png: No space left on device'
+  # The world goes on where scripts find no space.
+  program b.tz '' 'self save-snapshot to "none/b.png".'
+  expect 0 run b.tz --iterations 2 --hash && has err "none/b.png' not written" && has out hash
+  ;;
+picture_sizes)
+  program a.tz '' ''
+  for size in 0x10 10x0 1000000x10 10x1000000; do
+    expect 1 run a.tz --iterations 1 --quiet --size $size --snapshot a.png && has err 'each side must be from 1 to 16384'
+  done
+  for size in x 10 10x 10x-3 9999999999x2; do
+    expect 1 run a.tz --iterations 1 --quiet --size $size --snapshot a.png && has err "'$size' is not a WIDTHxHEIGHT"
+  done
+  [ ! -e a.png ] || fail "a picture of no size"
+  expect 0 run a.tz --iterations 1 --quiet --size 1x1 --snapshot a.png --movie a.gif && [ -s a.gif ]
+  ;;
 interrupt)
   program a.tz 'print "begun".' ''
   "$breve" run a.tz --seed 1 --stats >out 2>err &
