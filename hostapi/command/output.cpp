@@ -49,6 +49,7 @@ void Output::complain(std::string_view text) {
   flush();
   clear_progress();
   write_all(STDERR_FILENO, text);
+  if (listener_) listener_(text);
 }
 
 void Output::flush() {

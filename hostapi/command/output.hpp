@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -16,6 +17,8 @@ class Output {
 
   void print(std::string_view text);     // standard output
   void complain(std::string_view text);  // standard error, at once
+  /// Also hand what goes to standard error to `listener`; an empty one ends that.
+  void listen(std::function<void(std::string_view)> listener) { listener_ = std::move(listener); }
   void flush();
   /// Flush if the last time was long enough ago that somebody may be waiting.
   void flush_sometimes();
@@ -30,6 +33,7 @@ class Output {
   void clear_progress();
 
   std::string buffer_;
+  std::function<void(std::string_view)> listener_;
   std::chrono::steady_clock::time_point flushed_;
   bool open_ = true;
   bool terminal_, error_terminal_;

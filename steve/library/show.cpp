@@ -69,7 +69,7 @@ void show_sheet(const World& world, ObjectId id, const GridResource& resource, b
   to.scene().sheets.push_back(std::move(sheet));
 }
 
-/// Of a grid with states, cells of state 0 are not to be seen.
+/// If the grid has states, cells of state 0 are not to be seen.
 /// @param colored  something has set colours; else cells are as in a sheet
 /// @param solid    cells are opaque or not to be seen
 void show_volume(const World& world, ObjectId id, const GridResource& resource, bool colored, bool solid,
