@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "runtime/scene/mesh.hpp"
 #include "runtime/world/show.hpp"
@@ -171,6 +172,42 @@ void show_terrains(Machine& machine, SceneBuilder& to) {
   instances.erase(std::remove_if(instances.begin(), instances.end(), shown_as_lines), instances.end());
 }
 
+std::string text_variable(Machine& machine, Instance& self, std::string_view name) {
+  const Slot* slot = library_slot(machine, self, "Graph", name);
+  return slot && slot->ref ? std::string(view(static_cast<const StringCell*>(slot->ref))) : std::string();
+}
+
+ListCell* list_variable(Machine& machine, Instance& self, std::string_view name) {
+  const Slot* slot = library_slot(machine, self, "Graph", name);
+  return slot ? static_cast<ListCell*>(slot->ref) : nullptr;
+}
+
+float number_of(const Value& value) {
+  if (value.tag == Tag::Int) return static_cast<float>(value.i);
+  return value.tag == Tag::Double ? static_cast<float>(value.d) : std::numeric_limits<float>::quiet_NaN();
+}
+
+/// A Graph object that has lines is a plot over the picture.
+void show_graph(Machine& machine, Instance& self, SceneBuilder& to) {
+  const ListCell* colors = list_variable(machine, self, "lineColors");
+  const ListCell* values = list_variable(machine, self, "lineValues");
+  if (!colors || !values || values->size == 0) return;
+  ScenePlot plot;
+  plot.object = self.id;
+  plot.title = text_variable(machine, self, "graphTitle");
+  plot.x_axis = text_variable(machine, self, "xAxisName");
+  plot.y_axis = text_variable(machine, self, "yAxisName");
+  for (std::uint32_t i = 0; i < std::min(colors->size, values->size); ++i) {
+    const Value color = (*colors)[i], list = (*values)[i];
+    ScenePlot::Line line;
+    if (color.tag == Tag::Vector) line.color = color_of(color.vector(), 1).head<3>();
+    if (list.tag == Tag::List && list.ref)
+      for (const Value& value : *static_cast<const ListCell*>(list.ref)) line.values.push_back(number_of(value));
+    plot.lines.push_back(std::move(line));
+  }
+  to.scene().plots.push_back(std::move(plot));
+}
+
 }  // namespace
 
 void show(Machine& machine, SceneBuilder& scene) {
@@ -178,7 +215,8 @@ void show(Machine& machine, SceneBuilder& scene) {
   World& world = machine.world();
   breve::show(world, scene);
   for (const ObjectId id : world.objects()) {
-    const Instance* instance = machine.instance(id);
+    Instance* instance = machine.instance(id);
+    if (instance && is_library_kind(*instance, "Graph")) show_graph(machine, *instance, scene);
     if (const auto* grid = resource_of<GridResource>(machine, instance)) show_grid(machine, id, *grid, scene);
     if (const auto* spring = resource_of<SpringResource>(machine, instance)) show_spring(machine, *spring, scene);
   }

@@ -102,6 +102,11 @@ constexpr GoldenScene kScenes[] = {
             "\"\xC3\xA4\xC3\xB6\xC3\xBC \xE2\x89\xA4 5\" at-x -.9 at-y -.8 number 1 with-color (1, .8, .2). "},
     {"large_text", CAMERA
      "self set-display-text-scale to 2. self set-display-text to \"Large\" at-x -.6 at-y 0 with-color (1, 1, 1). "},
+    {"graph", CAMERA
+     "graph = new Graph. graph set-title to \"waves\". graph set-x-axis-name to \"step\". graph set-y-axis-name to "
+     "\"m\". "
+     "graph add-line with-color (1, .6, .1). graph add-line with-color (.3, .7, 1). for n = 0, n < 60, n++: { graph "
+     "add-point on-line 0 with-value sin(n * .2). graph add-point on-line 1 with-value 2 * cos(n * .1). } "},
     {"labels", PAIR "thing set-label to \"thing\". other set-label to \"other\". "},
     {"boxes_and_axes", PAIR "thing show-bounding-box. other show-axis. other show-bounding-box. "},
     {"lines_between",

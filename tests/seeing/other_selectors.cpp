@@ -15,6 +15,7 @@ namespace {
 #define SPRUNG PAIR "thing enable-physics. other enable-physics. tie = ((new Spring) connect from thing to other). "
 #define CUBE VIEW "thing = ((new Thing) become from box in (1, 1, 1)). thing set-texture-scale to 3. "
 #define PAINTED CUBE "picture = ((new Image) init-with width 4 height 4). thing set-texture-image to picture. "
+#define PLOT VIEW "graph = new Graph. graph add-line with-color (1, 0, 0). "
 #define EACH "for n = 0, n < 16, n++: picture "
 #define AT " at-x (n % 4) at-y (n / 4)."
 #define MATRIX "other = ((new Matrix2D) init-with x-size 4 y-size 4). other set-all-values to .9. "
@@ -37,6 +38,11 @@ namespace {
 #define SLICE PAINTED "field = ((new Matrix3D) init-with x-size 4 y-size 4 z-size 4). field set-all-values to .9. "
 
 constexpr Selector kOthers[] = {
+    {"Graph add-line", VIEW "graph = new Graph. ", "graph add-line with-color (1, 0, 0)."},
+    {"Graph add-point", PLOT, "for n = 0, n < 9, n++: graph add-point on-line 0 with-value n * n."},
+    {"Graph set-title", PLOT, "graph set-title to \"squares\"."},
+    {"Graph set-x-axis-name", PLOT, "graph set-x-axis-name to \"number\"."},
+    {"Graph set-y-axis-name", PLOT, "graph set-y-axis-name to \"its square\"."},
     {"Image load", PAINTED, "picture load from \"images/checker.png\"."},
     {"Image set-size", PAINTED "picture load from \"images/checker.png\". ", "picture set-size width 4 height 4."},
     {"Image set-pixel", PAINTED, EACH "set-pixel to (1, 1, 0)" AT},

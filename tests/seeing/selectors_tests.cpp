@@ -55,8 +55,6 @@ TEST(DrawingSelectors, NoneOfTheTableIsForgotten) {
       "Control unique-color", "Control enable-light-exposure-detection", "Control disable-light-exposure-detection",
       // Whether a window draws as often as the world steps: a picture that is asked for is always drawn.
       "Control enable-draw-every-frame", "Control disable-draw-every-frame",
-      // A Graph keeps numbers and names; it is not in the world.
-      "Graph set-x-axis-name", "Graph set-y-axis-name", "Graph add-line",
       // Obsolete.
       "Camera set-camera-pointer",
       // Text.
