@@ -61,7 +61,13 @@ void show_sheet(const World& world, ObjectId id, const GridResource& resource, b
   for (CellIndex cell = 0; cell < grid.cells(); ++cell) {
     const Cell3 at = grid.cell(cell);
     Vector4f color = colored ? cell_color(resource, cell) : drawn_color(world, resource, cell);
-    if (resource.alphas.empty()) color.w() = 1;
+    if (resource.alphas.empty()) {
+      color.w() = 1;
+    } else if (colored && (resource.states.made() || resource.occupants.made())) {
+      const Vector4f below = drawn_color(world, resource, cell);  // shows through
+      color = Vector4f(below + color.w() * (color - below));
+      color.w() = 1;
+    }
     const auto pixel =
         static_cast<std::size_t>(at.y) * static_cast<std::size_t>(grid.nx()) + static_cast<std::size_t>(at.x);
     for (int part = 0; part < 4; ++part) sheet.rgba[4 * pixel + static_cast<std::size_t>(part)] = byte_of(color[part]);
