@@ -109,6 +109,7 @@ void describe_pictures(CLI::App& app, RunOptions& o) {
       ->type_name("N")
       ->check(CLI::Range(0.001, 1000.0));
   app.add_flag("--plain", o.record.plain, "Draw nothing but the colours and lights that the program sets");
+  app.add_flag("--live", o.live, "Show the world from above on the terminal, and the plotted values");
   auto* plot = several(app, "--plot", "METHOD", o.plot.names,
                        "What a method or variable of the controller says after each iteration: a number or a vector");
   app.add_option("--plot-to", o.plot.plot, "Draw that over time; the numbers go beside it, into OUT.csv")

@@ -25,8 +25,10 @@ class Output {
   /// False once the reader of standard output has gone away: there is no point in going on.
   bool open() const { return open_; }
 
-  /// A line on the terminal that replaces the one before; does nothing if standard error is not a terminal.
-  void progress(std::string_view line);
+  /// Lines on the terminal that replace those before; does nothing if standard error is not a terminal.
+  void progress(std::string_view lines);
+  /// These lines stay.
+  void keep_progress();
   bool shows_progress() const { return error_terminal_; }
 
  private:
@@ -38,6 +40,7 @@ class Output {
   bool open_ = true;
   bool terminal_, error_terminal_;
   bool progress_shown_ = false;
+  std::size_t progress_breaks_ = 0;  // line breaks in what is shown
 };
 
 }  // namespace breve::command

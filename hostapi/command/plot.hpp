@@ -27,6 +27,7 @@ class Plotter {
   void look(breve_world* world);
   /// @throws std::runtime_error if a file cannot be written
   void finish() const;
+  const Series& series() const { return series_; }
 
  private:
   void add(const std::string& name, const breve_value& value, std::size_t& column);

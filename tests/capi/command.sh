@@ -418,6 +418,22 @@ END
   program b.tz '' 'self save-snapshot to "none/b.png".'
   expect 0 run b.tz --iterations 2 --hash && has err "none/b.png' not written" && has out hash
   ;;
+live)
+  # `script` runs it on a terminal; what that shows is in out.
+  program a.tz 'bug = new Mobile. bug set-color to (1, 0, 0). self point-camera at (0, 0, 0) from (0, 5, 9).' 'print "step $turns".'
+  COLORTERM=truecolor script -qec "'$breve' run a.tz --iterations 20 --seed 1 --live --plot turns" /dev/null >out </dev/null 2>err ||
+    fail "--live on a terminal"
+  has out '▀' && has out '38;2;' && has out 'iteration 20' && has out 'turns 20' && has out '█' && has out 'step 20'
+  # Red in the middle: the body, seen from above.
+  python3 - out <<'END' || fail "the body is not seen"
+import re, sys
+text = open(sys.argv[1], encoding="utf-8").read()
+assert any(int(r) > 150 and int(g) < 90 for r, g in re.findall(r"[34]8;2;(\d+);(\d+);\d+", text))
+END
+  COLORTERM='' script -qec "'$breve' run a.tz --iterations 2 --seed 1 --live" /dev/null >out </dev/null 2>err
+  has out '38;5;'
+  expect 0 run a.tz --iterations 2 --seed 1 --live && has err '--live needs a terminal'
+  ;;
 picture_sizes)
   program a.tz '' ''
   for size in 0x10 10x0 1000000x10 10x1000000; do

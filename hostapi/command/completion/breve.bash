@@ -22,7 +22,7 @@ _breve() {
     run)
       options="--iterations --seconds --seed --set --budget --physics-budget --memory --depth --path --allow-read
         --allow-write --no-files --allow-network --network-address --allow-system --allow-plugins --record --accuracy --watch --coarse-random --strict --quiet --verbose --stats
-        --effects --hash --positions --profile --trace --trace-limit --snapshot --contact-sheet --movie --sound --size --fps --plain
+        --effects --hash --positions --profile --trace --trace-limit --snapshot --contact-sheet --movie --sound --size --fps --plain --live
         --plot --plot-to --log --help" ;;
     view)
       options="--seed --set --path --allow-read --allow-write --no-files --allow-network --network-address --allow-system --allow-plugins
