@@ -418,6 +418,31 @@ END
   program b.tz '' 'self save-snapshot to "none/b.png".'
   expect 0 run b.tz --iterations 2 --hash && has err "none/b.png' not written" && has out hash
   ;;
+damaged_pictures)
+  python3 - <<'END'
+import struct, zlib
+def chunk(kind, data): return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+def png(width, height, pixels): return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0)) +
+                                        chunk(b"IDAT", zlib.compress(pixels)) + chunk(b"IEND", b""))
+whole = png(8, 8, b"".join(b"\0" + bytes(32) for _ in range(8)))
+files = {"cut": whole[:60], "short": png(8, 8, b"\0" * 40), "huge": png(100000, 100000, b"\0" * 40), "wide": png(30000, 30000, b"\0" * 40),
+         "none": b"", "text": b"not a picture", "zero": png(0, 8, b""), "jpeg": b"\xff\xd8\xff\xe0" + bytes(40),
+         "tga": bytes([0, 0, 2]) + bytes(9) + b"\xff\xff\xff\xff\x20\0"}
+for name, data in files.items(): open(name + ".png", "wb").write(data)
+END
+  program a.tz '' 'print "on".'
+  sed -i 's/^  + to iterate:/  + to try file name (string):\n    if ((new Image) load from name): print "loaded", name.\n&/; 2i @use Image.' a.tz
+  for name in cut short huge none text zero jpeg; do
+    sed "s/bug = 0\./self try file \"$name.png\"./" a.tz >b.tz
+    expect 0 run b.tz --iterations 1 --seed 1 --memory 200 && has err "$name.png' not loaded: cannot read image file" && same "$(cat out)" on
+  done
+  for name in wide tga; do # 3.6 and 17 GB of pixels
+    sed "s/bug = 0\./self try file \"$name.png\"./" a.tz >b.tz
+    "$breve" run b.tz --iterations 1 --seed 1 --memory 200 >out 2>err
+    [ $? -le 3 ] && [ -s err ] || fail "$name.png is refused with a message"
+    ! grep -q loaded out || fail "$name.png is loaded"
+  done
+  ;;
 live)
   # `script` runs it on a terminal; what that shows is in out.
   program a.tz 'bug = new Mobile. bug set-color to (1, 0, 0). self point-camera at (0, 0, 0) from (0, 5, 9).' 'print "step $turns".'
