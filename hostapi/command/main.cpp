@@ -113,7 +113,7 @@ void describe_pictures(CLI::App& app, RunOptions& o) {
   auto* plot = several(app, "--plot", "METHOD", o.plot.names,
                        "What a method or variable of the controller says after each iteration: a number or a vector");
   app.add_option("--plot-to", o.plot.plot, "Draw that over time; the numbers go beside it, into OUT.csv")
-      ->type_name("OUT.svg")
+      ->type_name("OUT.svg|OUT.png")
       ->needs(plot);
   app.add_option("--log", o.plot.log, "Write these numbers as a table")->type_name("OUT.csv")->needs(plot);
 }

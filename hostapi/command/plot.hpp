@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "record.hpp"
+
 namespace breve::command {
 
 struct PlotOptions {
@@ -39,6 +41,9 @@ class Plotter {
 std::string series_csv(const Series& series);
 /// A picture in SVG, legible at half its size.
 std::string series_svg(const Series& series, const std::string& x_axis, const std::string& title);
+
+/// The same as pixels. @throws std::runtime_error if the font is not installed
+Frame series_picture(const Series& series, const std::string& x_axis);
 
 /// Marks of an axis: a step of 1, 2 or 5 times a power of ten, so that there are about `count`.
 std::vector<double> axis_marks(double low, double high, int count);

@@ -3,12 +3,12 @@
 
 #include <SDL.h>
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
 
+#include "letters.hpp"
 #include "record.hpp"
 
 namespace breve::command {
@@ -41,13 +41,7 @@ class Window {
   Frame pixels() const;
 
  private:
-  struct Glyph {
-    SDL_Rect source{};
-    float left = 0, top = 0, advance = 0;
-  };
-  static constexpr std::uint32_t kFirst = 32, kCount = 224;  // characters: Latin-1
   void load_font();
-  const Glyph& glyph(std::uint32_t character) const;
 
   struct Quit {
     void operator()(const int*) const { SDL_Quit(); }
@@ -62,7 +56,7 @@ class Window {
   std::unique_ptr<SDL_Window, Destroy> window_;
   std::unique_ptr<SDL_Renderer, Destroy> renderer_;
   std::unique_ptr<SDL_Texture, Destroy> picture_, letters_;
-  std::array<Glyph, kCount> glyphs_{};
+  Letters font_;
   int width_, height_;
 };
 

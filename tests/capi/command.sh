@@ -418,6 +418,36 @@ END
   program b.tz '' 'self save-snapshot to "none/b.png".'
   expect 0 run b.tz --iterations 2 --hash && has err "none/b.png' not written" && has out hash
   ;;
+plot_png)
+  program a.tz '' ''
+  expect 0 run a.tz --iterations 20 --quiet --plot turns --plot-to a.png && has a.csv '^time,turns'
+  # 900 x 520 pixels, white paper, and a line of the first ink from the lower left to the upper right.
+  python3 - <<'END' || fail "what a.png shows"
+import struct, zlib
+data, at, pixels = open("a.png", "rb").read(), 8, b""
+while at < len(data):
+    size, kind = struct.unpack(">I4s", data[at:at + 8])
+    if kind == b"IHDR": width, height = struct.unpack(">II", data[at + 8:at + 16])
+    if kind == b"IDAT": pixels += data[at + 8:at + 8 + size]
+    at += 12 + size
+assert (width, height) == (900, 520)
+raw, rows, before = zlib.decompress(pixels), [], bytearray(4 * width)
+for y in range(height):
+    filter, row = raw[y * (4 * width + 1)], bytearray(raw[y * (4 * width + 1) + 1:(y + 1) * (4 * width + 1)])
+    for x in range(len(row)):
+        a, b, c = (row[x - 4] if x > 3 else 0), before[x], (before[x - 4] if x > 3 else 0)
+        p = a + b - c
+        nearest = min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
+        row[x] = (row[x] + (0, a, b, (a + b) // 2, nearest)[filter]) & 255
+    rows.append(row); before = row
+ink = [(x, y) for y in range(70, 450) for x in range(92, 876) if abs(rows[y][4 * x] - 0) < 30 and abs(rows[y][4 * x + 2] - 178) < 30]
+assert rows[5][:4] == bytes([255] * 4) and len(ink) > 500
+low, high = min(ink), max(ink)
+assert low[0] < 110 and low[1] > 430 and high[0] > 860 and high[1] < 80
+END
+  ln -s /dev/full full.png
+  expect 1 run a.tz --iterations 2 --quiet --plot turns --plot-to full.png && has err 'No space left on device'
+  ;;
 damaged_pictures)
   python3 - <<'END'
 import struct, zlib
