@@ -112,9 +112,20 @@ void Viewer::make_view() {
   changed_ = true;
 }
 
+/// A program that switched drawing of every frame off has two pictures in a second while it runs.
+bool Viewer::may_wait() {
+  constexpr double kRarely = 0.5;  // s
+  breve_scene* scene = scene_.get();
+  if (!scene && breve_scene_create(&scene) == BREVE_OK) scene_.reset(scene);
+  breve_backdrop backdrop = breve_backdrop_default();
+  if (paused_ || movie_ || since_drawn_ > kRarely || !scene_) return false;
+  return breve_scene_read(scene, world_.get()) == BREVE_OK && breve_scene_backdrop(scene, &backdrop) == BREVE_OK &&
+         backdrop.every_frame == 0;
+}
+
 void Viewer::render() {
   if (!view_) make_view();
-  if (!changed_) return;
+  if (!changed_ || may_wait()) return;
   if (breve_view_render(view_.get(), world_.get(), picture_.rgba.data(), 0) != BREVE_OK) {
     const breve_error* error = breve_world_last_error(world_.get());
     throw std::runtime_error(error ? error->message : "nothing can be drawn");
@@ -122,6 +133,7 @@ void Viewer::render() {
   breve_camera seen;
   if (breve_view_camera(view_.get(), &seen) == BREVE_OK) camera_.follow(seen);
   changed_ = false;
+  since_drawn_ = 0;
 }
 
 /// The movie has the pace of simulated time, as that of `breve run`.
@@ -163,6 +175,7 @@ void Viewer::frame(double seconds, int number) {
   while (SDL_PollEvent(&event) != 0) handle(event);
   watch_files();
   advance(seconds);
+  since_drawn_ += seconds;
   render();
   window_->show(picture_);
   measure();

@@ -58,6 +58,7 @@ void Viewer::handle(const SDL_Event& event) {
   if (camera_.moved() && view_) {
     breve_view_set_camera(view_.get(), &camera_.camera());
     changed_ = true;
+    since_drawn_ = 1;  // the mouse does not wait
   }
 }
 

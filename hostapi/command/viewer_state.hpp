@@ -32,6 +32,7 @@ class Viewer {
   void advance(double seconds);
   bool step();
   void watch_files();
+  bool may_wait();
   void render();
   void make_view();
   void record_frame();
@@ -62,6 +63,9 @@ class Viewer {
   struct ViewDeleter {
     void operator()(breve_view* view) const { breve_view_destroy(view); }
   };
+  struct SceneDeleter {
+    void operator()(breve_scene* scene) const { breve_scene_destroy(scene); }
+  };
   struct Row {
     int x, y, width;
     breve_object item;
@@ -78,6 +82,8 @@ class Viewer {
   Interventions guard_;
   std::unique_ptr<Window> window_;
   std::unique_ptr<breve_view, ViewDeleter> view_;
+  std::unique_ptr<breve_scene, SceneDeleter> scene_;  // read for what the program wants of the window
+  double since_drawn_ = 0;                            // s
   Frame picture_;
   ViewerCamera camera_;
   std::unique_ptr<MovieWriter> movie_;

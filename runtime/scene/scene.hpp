@@ -146,6 +146,7 @@ struct SceneFlags {
   float blur_factor = 0.1F;
   float text_scale = 1;
   std::uint64_t clears = 0;
+  bool every_frame = true;  // else a window may leave out pictures
 };
 
 /// Room is kept from one moment to the next. Meshes and textures keep their numbers as long as something uses them.

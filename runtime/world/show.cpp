@@ -225,7 +225,8 @@ void show_flags(const ViewState& view, SceneBuilder& to) {
                       flags.blur,
                       drawable(flags.blur_factor),
                       drawable(view.text_scale),
-                      view.clears};
+                      view.clears,
+                      flags.every_frame};
   for (const OverlayText& text : view.texts) {
     if (text.text.empty()) continue;
     to.scene().texts.push_back(

@@ -161,8 +161,31 @@ static void lines_texts_and_lights_are_rows(void) {
   breve_backdrop backdrop = breve_backdrop_default();
   CHECK_STATUS(BREVE_OK, breve_scene_backdrop(scene, &backdrop));
   CHECK(backdrop.color[2] == 0.75F && backdrop.dimension == 3 && backdrop.texture == BREVE_NO_TEXTURE);
+  CHECK(backdrop.skybox[0] == BREVE_NO_TEXTURE && backdrop.every_frame == 1);
   breve_rows rows;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_scene_rows(scene, 11, &rows));
+  breve_scene_destroy(scene);
+  scene_close(&s);
+}
+
+static void a_sky_box_is_six_textures(void) {
+  scene s;
+  if (!open_show(&s,
+                 "\t\tself set-skybox-images to {\"images/sky.png\", \"images/clouds.png\", \"images/sky.png\", "
+                 "\"images/sky.png\", \"images/sky.png\", \"images/ground.png\"}.\n"
+                 "\t\tself disable-draw-every-frame.\n"))
+    return;
+  breve_scene* scene = NULL;
+  CHECK_STATUS(BREVE_OK, breve_scene_create(&scene));
+  CHECK_STATUS(BREVE_OK, breve_scene_read(scene, s.world));
+  breve_backdrop backdrop = breve_backdrop_default();
+  CHECK_STATUS(BREVE_OK, breve_scene_backdrop(scene, &backdrop));
+  const breve_rows textures = rows_of(scene, BREVE_SCENE_TEXTURES);
+  for (int i = 0; i < 6; ++i) {
+    if (!CHECK(backdrop.skybox[i] < textures.count)) continue;
+    CHECK(((const breve_texture*)row(&textures, backdrop.skybox[i]))->width == (i == 5 ? 64 : 128));
+  }
+  CHECK(backdrop.every_frame == 0);
   breve_scene_destroy(scene);
   scene_close(&s);
 }
@@ -396,6 +419,7 @@ void view_suite(void) {
   RUN(bodies_that_look_alike_share_a_mesh);
   RUN(triangles_of_every_shape_face_outward);
   RUN(lines_texts_and_lights_are_rows);
+  RUN(a_sky_box_is_six_textures);
   RUN(a_point_is_seen_where_the_camera_says);
   RUN(a_camera_that_the_program_places_is_not_automatic);
   RUN(the_silhouette_of_a_sphere_has_its_area_and_middle);

@@ -128,6 +128,19 @@ wait
 has 'mended.tz reloaded'
 grep -q '^mended: .*stopped' output.txt && fail "does not go on after an edit"
 
+# Without drawing of every frame most frames show the picture of the one before.
+sed 's/    ball add-menu/    ball set-velocity to (4, 0, 0). self set-iteration-step to .02. self set-integration-step to .02.\n&/' toy.tz >on.tz
+sed 's/    ball add-menu/    self disable-draw-every-frame.\n&/' on.tz >off.tz
+printf '1 key F4\n20 shot 0.png\n21 shot 1.png\n22 shot 2.png\n23 shot 3.png\n24 quit\n' >play.txt
+equal_frames() {
+  show 0 "$1" --play play.txt
+  local count=0 i
+  for i in 0 1 2; do cmp -s "$i.png" "$((i + 1)).png" && count=$((count + 1)); done
+  echo "$count"
+}
+[[ $(equal_frames on.tz) == 0 ]] || fail "a frame is left out"
+[[ $(equal_frames off.tz) -ge 2 ]] || fail "no frame is left out"
+
 printf '3 fly away\n' >play.txt
 show 1 toy.tz --play play.txt
 has "play.txt:1: '3 fly away' is not an action of --play"
