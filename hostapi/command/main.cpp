@@ -19,6 +19,7 @@
 #include "replay.hpp"
 #include "run.hpp"
 #include "session.hpp"
+#include "viewer.hpp"
 
 namespace {
 
@@ -30,6 +31,7 @@ using breve::command::Output;
 using breve::command::ReplayOptions;
 using breve::command::ReplOptions;
 using breve::command::RunOptions;
+using breve::command::ViewOptions;
 
 constexpr const char* kExitStatuses =
     "Exit status: 0 success, 1 compile or run-time error, 2 wrong usage, 3 a limit was exceeded.";
@@ -97,8 +99,8 @@ void describe_pictures(CLI::App& app, RunOptions& o) {
   app.add_option("--contact-sheet", o.record.contact_sheet, "At the end, twelve moments of the run in one picture")
       ->type_name("OUT.png");
   app.add_option("--movie", o.record.movie,
-                 "A movie of the run, at the pace of simulated time: OUT.gif, or numbered pictures in OUT/")
-      ->type_name("OUT.gif|OUT/");
+                 "A movie of the run, at the pace of simulated time: OUT.mp4, OUT.gif, or numbered pictures in OUT/")
+      ->type_name("OUT.mp4|OUT.gif|OUT/");
   app.add_option("--sound", o.sound, "Write what the program plays, from its beginning on")->type_name("OUT.wav");
   app.add_option("--size", o.record.size,
                  "Size of a picture, in pixels (960x600). Those of a contact sheet are a third of it")
@@ -107,10 +109,11 @@ void describe_pictures(CLI::App& app, RunOptions& o) {
       ->type_name("N")
       ->check(CLI::Range(0.001, 1000.0));
   app.add_flag("--plain", o.record.plain, "Draw nothing but the colours and lights that the program sets");
+  app.add_flag("--live", o.live, "Show the world from above on the terminal, and the plotted values");
   auto* plot = several(app, "--plot", "METHOD", o.plot.names,
                        "What a method or variable of the controller says after each iteration: a number or a vector");
   app.add_option("--plot-to", o.plot.plot, "Draw that over time; the numbers go beside it, into OUT.csv")
-      ->type_name("OUT.svg")
+      ->type_name("OUT.svg|OUT.png")
       ->needs(plot);
   app.add_option("--log", o.plot.log, "Write these numbers as a table")->type_name("OUT.csv")->needs(plot);
 }
@@ -164,6 +167,33 @@ void describe_run(CLI::App& app, RunOptions& o) {
   describe_pictures(app, o);
   app.footer("Without --iterations and --seconds the program runs until it ends the simulation or is interrupted.\n" +
              std::string(kExitStatuses));
+}
+
+void describe_view(CLI::App& app, ViewOptions& o) {
+  constexpr const char* kWhole = "whole number (0 or more)";
+  app.add_option("FILE", o.run.file, "The program (.tz)")->required();
+  app.add_option("ARGS", o.run.arguments,
+                 "Arguments of the program, after its own name. After -- they may look like options");
+  number(app, "--seed", "K", o.run.seed, kWhole, "Seed of the random numbers (1)");
+  several(app, "--set", "NAME=VALUE", o.run.settings, "Set a variable of the controller before its init");
+  several(app, "--path", "DIR", o.run.paths, "Also search DIR for modules and data files");
+  describe_access(app, o.run.access);
+  app.add_option("--accuracy", o.run.accuracy,
+                 "Accuracy of bodies with physics: fast, balanced, precise, reference or conserving")
+      ->type_name("RUNG")
+      ->check(CLI::IsMember({"fast", "balanced", "precise", "reference", "conserving"}));
+  app.add_flag("--watch", o.run.watch, "When a file of the program changes, continue with the changed program");
+  app.add_option("--size", o.run.record.size, "Size of the window, in pixels (960x600)")->type_name("WxH");
+  app.add_option("--speed", o.speed, "Simulated seconds in a second (1)")
+      ->type_name("X")
+      ->check(CLI::Range(0.001, 1000.0));
+  app.add_flag("--paused", o.paused, "Begin paused");
+  app.add_flag("--plain", o.run.record.plain, "Draw nothing but the colours and lights that the program sets");
+  app.add_flag("--strict", o.run.strict, "Treat warnings as errors");
+  app.add_flag("--quiet", o.run.quiet, "Show no warnings");
+  app.add_flag("--verbose", o.run.verbose, "Report each use of an obsolete method and each action of the guard");
+  app.add_option("--play", o.play, "Take input from a file, for tests; see docs/viewer.md")->type_name("FILE");
+  app.footer("F1 in the window lists its keys.\n" + std::string(kExitStatuses));
 }
 
 void describe_check(CLI::App& app, CheckOptions& o) {
@@ -282,6 +312,23 @@ int show_help(CLI::App& app, const std::string& topic) {
   return breve::command::kEndedWell;
 }
 
+/// Help that was asked for, or what is wrong on the command line. @return  the exit status
+int refuse_options(const CLI::App& app, const CLI::ParseError& e, int argc, char** argv) {
+  const bool asked = e.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);
+  if (asked) {
+    app.exit(e, std::cout, std::cerr);
+    return breve::command::kEndedWell;
+  }
+  if (app.get_subcommands().empty() && argc > 1 && *argv[1] == '-') {
+    std::cerr << "breve: options come after a command, as in: breve run " << argv[1] << " ... FILE\n";
+    return breve::command::kWrongUsage;
+  }
+  const std::string near = near_option(app);
+  std::cerr << "breve: " << e.what() << "\n"
+            << (near.empty() ? "Try `breve help` or `breve help run`.\n" : "Did you mean " + near + "?\n");
+  return breve::command::kWrongUsage;
+}
+
 int main_guarded(int argc, char** argv) {
   // A reader of the output who goes away is seen as an error of write().
   std::signal(SIGPIPE, SIG_IGN);
@@ -291,6 +338,7 @@ int main_guarded(int argc, char** argv) {
   app.footer("`breve help` shows this text, `breve help run` the options of a command.");
   RunOptions run_options;
   ReplOptions repl_options;
+  ViewOptions view_options;
   CheckOptions check_options;
   DocOptions doc_options;
   LspOptions lsp_options;
@@ -298,15 +346,17 @@ int main_guarded(int argc, char** argv) {
   auto* run = app.add_subcommand("run", "Run a program");
   auto* replay = app.add_subcommand("replay", "Repeat a run that was recorded, and compare it");
   auto* repl = app.add_subcommand("repl", "Type statements that run in a world");
+  auto* view = app.add_subcommand("view", "Run a program in a window");
   auto* check = app.add_subcommand("check", "Compile programs and show errors, warnings and notes");
   auto* doc = app.add_subcommand("doc", "Generate reference pages from the comments of programs");
   auto* lsp = app.add_subcommand("lsp", "Language server for editors: errors as you type, completion, definitions");
   std::string topic;
   auto* help = app.add_subcommand("help", "Show this text, or the options of a command");
-  help->add_option("COMMAND", topic, "run, replay, repl, check, doc or lsp");
+  help->add_option("COMMAND", topic, "run, view, replay, repl, check, doc or lsp");
   describe_run(*run, run_options);
   describe_replay(*replay, replay_options);
   describe_repl(*repl, repl_options);
+  describe_view(*view, view_options);
   describe_check(*check, check_options);
   describe_doc(*doc, doc_options);
   describe_lsp(*lsp, lsp_options);
@@ -314,19 +364,7 @@ int main_guarded(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    const bool asked = e.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);
-    if (asked) {
-      app.exit(e, std::cout, std::cerr);
-      return breve::command::kEndedWell;
-    }
-    if (app.get_subcommands().empty() && argc > 1 && *argv[1] == '-') {
-      std::cerr << "breve: options come after a command, as in: breve run " << argv[1] << " ... FILE\n";
-      return breve::command::kWrongUsage;
-    }
-    const std::string near = near_option(app);
-    std::cerr << "breve: " << e.what() << "\n"
-              << (near.empty() ? "Try `breve help` or `breve help run`.\n" : "Did you mean " + near + "?\n");
-    return breve::command::kWrongUsage;
+    return refuse_options(app, e, argc, argv);
   }
   if (help->parsed()) return show_help(app, topic);
   if (lsp->parsed()) return breve::command::lsp(lsp_options);
@@ -336,6 +374,7 @@ int main_guarded(int argc, char** argv) {
   }
   Output output;
   if (doc->parsed()) return breve::command::doc(doc_options, output);
+  if (view->parsed()) return breve::command::view(view_options, output);
   if (repl->parsed()) return breve::command::repl(repl_options, output);
   if (replay->parsed()) return breve::command::replay(replay_options, output);
   return run->parsed() ? breve::command::run(run_options, output) : breve::command::check(check_options, output);

@@ -1,4 +1,5 @@
-// Movies without a codec: animated GIF, and numbered PNGs for any program that makes movies of them.
+// Movies without a codec: animated GIF, and numbered PNGs for any program that makes movies of them. The others are in
+// movie_codec.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <stdexcept>
 
 #include "gif.hpp"
+#include "movie_codec.hpp"
 #include "record.hpp"
 
 namespace breve::command {
@@ -79,11 +81,13 @@ class Frames final : public MovieWriter {
 std::unique_ptr<MovieWriter> open_movie(const std::string& path, double fps, Output& output) {
   if (path.ends_with(".gif")) return std::make_unique<GifMovie>(path, fps);
   if (path.ends_with("/")) return std::make_unique<Frames>(path.substr(0, path.size() - 1));
+  std::string why;
+  if (auto movie = open_codec_movie(path, fps, why)) return movie;
   const std::string directory = path + ".frames";
   output.complain(
-      fmt::format("breve: this build writes movies as .gif or as numbered pictures; the frames go to {0}.\n"
+      fmt::format("breve: {3}, so the frames go to {0} as numbered pictures.\n"
                   "       To pack them: ffmpeg -framerate {1} -i {0}/frame_%05d.png {2}\n",
-                  directory, fps, path));
+                  directory, fps, path, why));
   return std::make_unique<Frames>(directory);
 }
 

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 
 namespace breve::command {
@@ -49,6 +50,7 @@ void Output::complain(std::string_view text) {
   flush();
   clear_progress();
   write_all(STDERR_FILENO, text);
+  if (listener_) listener_(text);
 }
 
 void Output::flush() {
@@ -64,17 +66,25 @@ void Output::flush_sometimes() {
   if (!buffer_.empty() && std::chrono::steady_clock::now() - flushed_ > kPatience) flush();
 }
 
-void Output::progress(std::string_view line) {
+void Output::progress(std::string_view lines) {
   if (!error_terminal_) return;
   flush();
-  write_all(STDERR_FILENO, "\r\x1b[K" + std::string(line));
+  clear_progress();
+  write_all(STDERR_FILENO, lines);
   progress_shown_ = true;
+  progress_breaks_ = static_cast<std::size_t>(std::count(lines.begin(), lines.end(), '\n'));
+}
+
+void Output::keep_progress() {
+  if (progress_shown_) write_all(STDERR_FILENO, "\n");
+  progress_shown_ = false;
 }
 
 void Output::clear_progress() {
   if (!progress_shown_) return;
   progress_shown_ = false;
-  write_all(STDERR_FILENO, "\r\x1b[K");
+  const std::string up = progress_breaks_ > 0 ? "\x1b[" + std::to_string(progress_breaks_) + "A" : std::string();
+  write_all(STDERR_FILENO, "\r" + up + "\x1b[J");
 }
 
 }  // namespace breve::command

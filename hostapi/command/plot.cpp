@@ -68,9 +68,15 @@ void Plotter::finish() const {
   if (options_.plot.empty()) return;
   std::string title;
   for (const std::string& name : options_.names) title += (title.empty() ? "" : ", ") + name;
-  write_text(options_.plot, series_svg(series_, "simulated time, s", title));
+  constexpr const char* kAxis = "simulated time, s";
+  const bool png = options_.plot.ends_with(".png");
+  if (png)
+    write_png(series_picture(series_, kAxis), options_.plot);
+  else
+    write_text(options_.plot, series_svg(series_, kAxis, title));
   if (!options_.log.empty()) return;
-  const std::size_t dot = options_.plot.ends_with(".svg") ? options_.plot.size() - 4 : options_.plot.size();
+  const bool named = png || options_.plot.ends_with(".svg");
+  const std::size_t dot = named ? options_.plot.size() - 4 : options_.plot.size();
   write_text(options_.plot.substr(0, dot) + ".csv", series_csv(series_));
 }
 

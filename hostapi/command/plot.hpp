@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "record.hpp"
+
 namespace breve::command {
 
 struct PlotOptions {
@@ -27,6 +29,7 @@ class Plotter {
   void look(breve_world* world);
   /// @throws std::runtime_error if a file cannot be written
   void finish() const;
+  const Series& series() const { return series_; }
 
  private:
   void add(const std::string& name, const breve_value& value, std::size_t& column);
@@ -38,6 +41,9 @@ class Plotter {
 std::string series_csv(const Series& series);
 /// A picture in SVG, legible at half its size.
 std::string series_svg(const Series& series, const std::string& x_axis, const std::string& title);
+
+/// The same as pixels. @throws std::runtime_error if the font is not installed
+Frame series_picture(const Series& series, const std::string& x_axis);
 
 /// Marks of an axis: a step of 1, 2 or 5 times a power of ten, so that there are about `count`.
 std::vector<double> axis_marks(double low, double high, int count);

@@ -1,4 +1,4 @@
-// Lines in SVG. Colours are those of Okabe and Ito (2008), which people of all kinds of vision tell apart.
+// Lines in SVG.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,34 +6,13 @@
 #include <cmath>
 #include <string_view>
 
-#include "plot.hpp"
+#include "plot_layout.hpp"
 
 namespace breve::command {
 
+using namespace layout;
+
 namespace {
-
-constexpr double kWidth = 900, kHeight = 520, kLeft = 92, kRight = 24, kTop = 64, kBottom = 74;
-constexpr std::array<std::string_view, 7> kInks{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                                "#e69f00", "#56b4e9", "#333333"};
-constexpr std::size_t kMostPoints = 2000;  // of a line: more are not seen
-
-struct Range {
-  double low = 0, high = 1;
-  bool any = false;
-  void take(double number) {
-    if (!std::isfinite(number)) return;
-    low = any ? std::min(low, number) : number;
-    high = any ? std::max(high, number) : number;
-    any = true;
-  }
-  void widen() {
-    if (high > low) return;
-    const double half = std::max(std::abs(low) * 0.05, 1e-9);
-    low -= half;
-    high += half;
-  }
-  double part(double number) const { return (number - low) / (high - low); }
-};
 
 std::string escaped(std::string_view text) {
   std::string out;
@@ -48,13 +27,6 @@ std::string escaped(std::string_view text) {
       out += c;
   }
   return out;
-}
-
-double x_at(const Range& x, double number) { return kLeft + x.part(number) * (kWidth - kLeft - kRight); }
-double y_at(const Range& y, double number) { return kHeight - kBottom - y.part(number) * (kHeight - kTop - kBottom); }
-
-std::string mark_text(double mark, double step) {
-  return std::abs(mark) < step * 1e-6 ? "0" : fmt::format("{:.6g}", mark);
 }
 
 std::string axes(const Range& x, const Range& y, const std::string& x_axis) {
@@ -109,12 +81,7 @@ std::vector<double> axis_marks(double low, double high, int count) {
 }
 
 std::string series_svg(const Series& series, const std::string& x_axis, const std::string& title) {
-  Range x, y;
-  for (const double time : series.times) x.take(time);
-  for (const auto& column : series.columns)
-    for (const double number : column) y.take(number);
-  x.widen();
-  y.widen();
+  const auto [x, y] = ranges_of(series);
   std::string svg = fmt::format(
       "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {0} {1}' width='{0}' height='{1}' "
       "font-family='DejaVu Sans, Helvetica, Arial, sans-serif' font-size='19' fill='#2b3138'>\n"

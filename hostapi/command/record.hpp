@@ -37,7 +37,7 @@ class MovieWriter {
   virtual void add(const Frame& frame) = 0;  // std::runtime_error
   virtual void finish() = 0;                 // std::runtime_error
 };
-/// An animated GIF, or numbered PNGs in a directory. @throws std::runtime_error
+/// A movie of the format that its name ends with, or numbered PNGs in a directory. @throws std::runtime_error
 std::unique_ptr<MovieWriter> open_movie(const std::string& path, double fps, Output& output);
 
 class Recorder {

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "interventions.hpp"
+#include "live.hpp"
 #include "log_file.hpp"
 #include "profile.hpp"
 #include "report.hpp"
@@ -54,7 +55,7 @@ class Progress {
   Progress(const RunOptions& options, Output& output) : options_(options), output_(output) {}
 
   void show(const breve_world* world) {
-    if (options_.quiet || !output_.shows_progress()) return;
+    if (options_.quiet || options_.live || !output_.shows_progress()) return;
     const auto now = Clock::now();
     if (now < next_) return;
     next_ = now + kEvery;
@@ -109,21 +110,30 @@ struct Lookers {
   std::optional<Recorder> recorder;
   std::optional<Plotter> plotter;
   std::optional<SoundWriter> sound;
+  std::optional<LiveView> live;
 
   Lookers(breve_runtime* runtime, const RunOptions& options, Output& output) {
     if (options.record.any()) recorder.emplace(runtime, options.record, output);
     if (!options.sound.empty()) sound.emplace(options.sound);
     if (!options.plot.names.empty()) plotter.emplace(options.plot);
+    if (!options.live) return;
+    if (!output.shows_progress())
+      output.complain("breve: --live needs a terminal: nothing is shown\n");
+    else
+      live.emplace(runtime, options.record.plain, output);
   }
+  const Series* series() const { return plotter ? &plotter->series() : nullptr; }
   void look(breve_world* world) {
     if (plotter) plotter->look(world);
     if (recorder) recorder->look(world);
     if (sound) sound->listen(world);
+    if (live) live->look(world, series());
   }
   void finish(breve_world* world) {
     if (plotter) plotter->finish();
     if (recorder) recorder->finish(world);
     if (sound) sound->finish();
+    if (live) live->finish(world, series());
   }
 };
 

@@ -26,6 +26,7 @@ struct RunOptions {
   std::optional<std::uint32_t> depth;           // nested calls
   std::vector<std::string> settings;            // name=value: variables of the controller
   bool watch = false;                           // reload the program when its files change
+  bool live = false;                            // draw the world on the terminal
   bool coarse_random = false;
   AccessOptions access;
   bool strict = false, quiet = false, verbose = false, stats = false, effects = false, hash = false;

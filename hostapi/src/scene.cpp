@@ -282,6 +282,8 @@ breve_status breve_scene_backdrop(const breve_scene* scene, breve_backdrop* back
     filled.text = is.flags.text;
     filled.time = is.time;
     filled.iteration = is.iteration;
+    std::copy(is.backdrop.skybox.begin(), is.backdrop.skybox.end(), filled.skybox);
+    filled.every_frame = is.flags.every_frame;
     write_struct(backdrop, filled, "breve_backdrop");
   });
 }

@@ -60,8 +60,11 @@ Batches batch(const Scene& scene, const BatchView& view, Wanted wanted, const Sc
     const Item item{mesh_for(instance, mesh, view), instance.texture, i, away};
     (instance.color.w() < kOpaque ? transparent : opaque).push_back(item);
   }
-  std::stable_sort(opaque.begin(), opaque.end(), [](const Item& a, const Item& b) {
-    return a.mesh != b.mesh ? a.mesh < b.mesh : a.texture < b.texture;
+  // The nearest first: what is behind them need not be shaded.
+  std::stable_sort(opaque.begin(), opaque.end(), [&](const Item& a, const Item& b) {
+    if (a.mesh != b.mesh) return a.mesh < b.mesh;
+    if (a.texture != b.texture) return a.texture < b.texture;
+    return view.by_distance && a.away < b.away;
   });
   if (view.by_distance)
     std::stable_sort(transparent.begin(), transparent.end(),

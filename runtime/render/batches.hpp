@@ -28,7 +28,7 @@ struct Batches {
 struct BatchView {
   const Lens* lens = nullptr;
   float height = 0;         // of the picture, pixels
-  bool discs = true;        // small spheres may be squares: not in a shadow map
+  bool discs = true;        // small spheres may be squares
   bool by_distance = true;  // transparent ones from back to front; of a flat world in order of creation
 };
 

@@ -82,10 +82,9 @@ void Renderer::Work::draw_backdrop(const Pass& pass) {
   context.gl().Enable(GL_DEPTH_TEST);
 }
 
-void Renderer::Work::set_lights(const Pass& pass) {
+void Renderer::Work::set_lights(const Pass& pass, const Program& program) {
   constexpr std::size_t kMost = 8;
   const Scene& scene = *pass.scene;
-  const Program& program = shaders.body;
   const std::size_t count = std::min(scene.lights.size(), kMost);
   program.set("lights", static_cast<int>(count));
   for (std::size_t i = 0; i < count; ++i) {
@@ -105,11 +104,9 @@ void Renderer::Work::set_lights(const Pass& pass) {
   program.set("fill", settings.look == Look::Full ? 1.0F : 0.0F);
 }
 
-void Renderer::Work::set_body_uniforms(const Pass& pass) {
+void Renderer::Work::set_body_uniforms(const Pass& pass, const Program& program) {
   const Scene& scene = *pass.scene;
   const Lens& lens = *pass.lens;
-  const Program& program = shaders.body;
-  program.use();
   program.set("view", lens.view);
   program.set("projection", lens.projection);
   program.set("eye", lens.eye);
@@ -118,11 +115,9 @@ void Renderer::Work::set_body_uniforms(const Pass& pass) {
   program.set("sight", lens.orthographic ? Vector3f(-lens.back) : Vector3f(0, 0, 0));
   const bool full = settings.look == Look::Full;
   const bool flat = scene.dimension == 2;
-  program.set("mode", flat ? 0 : scene.flags.lighting ? 1 : full ? 2 : 0);
   program.set("layers", flat ? static_cast<float>(scene.instances.size()) + 2 : 0.0F);
   program.set("picture", static_cast<float>(pass.width), static_cast<float>(pass.height));
-  set_lights(pass);
-  program.set("shadows", pass.shadow.on ? 1.0F : 0.0F);
+  set_lights(pass, program);
   program.set("shadow_matrix", pass.shadow.matrix);
   program.set("shadow_texel_slope", pass.shadow.texel_slope);
   program.set("shadow_bias", 6e-5F);
@@ -131,7 +126,6 @@ void Renderer::Work::set_body_uniforms(const Pass& pass) {
   if (pass.shadow.on) shadow->bind_texture(kShadowUnit);
   program.set("image", static_cast<int>(kImageUnit));
   program.set("reflection", static_cast<int>(kReflectionUnit));
-  program.set("mirror", pass.mirror.on && !pass.reflected ? 1.0F : 0.0F);
   program.set("mirror_height", pass.mirror.height);
   if (pass.mirror.on && !pass.reflected) reflection->bind_color(kReflectionUnit);
   program.set("clip_plane", pass.reflected ? Vector4f(0, 1, 0, -pass.mirror.height) : Vector4f(0, 0, 0, 1));
@@ -145,16 +139,34 @@ void Renderer::Work::set_body_uniforms(const Pass& pass) {
   program.set("haze_end", haze ? std::max(0.92F * lens.far, 3 * away) : 0.0F);
 }
 
-void Renderer::Work::draw_batches(const Pass& pass, const std::vector<Batch>& batches) {
+/// In use, with the uniforms of this pass.
+const Program& Renderer::Work::body_program(const Pass& pass, const Batch& batch) {
+  const Scene& scene = *pass.scene;
+  BodyKind kind;
+  kind.disc = batch.mesh == kDiscMesh;
+  kind.textured = batch.texture != kNoTexture;
+  kind.shadows = pass.shadow.on;
+  kind.mirror = pass.mirror.on && !pass.reflected;
+  kind.mode = scene.dimension == 2 ? 0 : scene.flags.lighting ? 1 : settings.look == Look::Full ? 2 : 0;
+  const Program& program = shaders.body(kind);
+  program.use();
+  if (std::find(ready.begin(), ready.end(), &program) == ready.end()) {
+    set_body_uniforms(pass, program);
+    ready.push_back(&program);
+  }
+  return program;
+}
+
+void Renderer::Work::draw_batches(const Pass& pass, const std::vector<Batch>& batches, float outline) {
   const Gl& gl = context.gl();
   for (const Batch& one : batches) {
     const MeshBuffer& buffer = mesh(*pass.scene, one.mesh);
-    shaders.body.set("tinted", buffer.tinted() ? 1.0F : 0.0F);
-    shaders.body.set("textured", one.texture != kNoTexture ? 1.0F : 0.0F);
+    const Program& program = body_program(pass, one);
+    program.set("outline", outline);
+    program.set("tinted", buffer.tinted() ? 1.0F : 0.0F);
     bind_texture(*pass.scene, one.texture, kImageUnit);
     (buffer.two_sided() ? gl.Disable : gl.Enable)(GL_CULL_FACE);
     const bool disc = one.mesh == kDiscMesh;
-    shaders.body.set("disc", disc ? 1.0F : 0.0F);
     // Coverage is what its edge is made of; blending would count it twice.
     if (disc) gl.Disable(GL_BLEND);
     if (disc && settings.samples > 1) gl.Enable(GL_SAMPLE_ALPHA_TO_COVERAGE);
@@ -175,15 +187,11 @@ void Renderer::Work::draw_bodies(const Pass& pass, bool (*wanted)(const SceneIns
   const Batches all = batch(scene, {pass.lens, static_cast<float>(pass.height), discs, !flat}, wanted);
   if (all.instances.empty()) return;
   instances.fill(GL_ARRAY_BUFFER, all.instances.data(), all.instances.size() * sizeof(GpuInstance), GL_STREAM_DRAW);
-  set_body_uniforms(pass);
+  ready.clear();
   gl.PolygonMode(GL_FRONT_AND_BACK, scene.flags.outline ? GL_LINE : GL_FILL);
-  shaders.body.set("outline", 0.0F);
   draw_batches(pass, all.opaque);
-  if (flat && settings.look == Look::Full) {
-    shaders.body.set("outline", kOutlinePixels / pass.lens->scale_at({0, 0, 0}, static_cast<float>(pass.height)));
-    draw_batches(pass, all.opaque);
-    shaders.body.set("outline", 0.0F);
-  }
+  if (flat && settings.look == Look::Full)
+    draw_batches(pass, all.opaque, kOutlinePixels / pass.lens->scale_at({0, 0, 0}, static_cast<float>(pass.height)));
   gl.DepthMask(GL_FALSE);
   draw_batches(pass, all.transparent);
   gl.DepthMask(GL_TRUE);

@@ -29,6 +29,7 @@ class Marks {
                     Bind bind_texture);
   void draw_labels(const Shaders& shaders, const Scene& scene, const Canvas& canvas);
   void draw_texts(const Shaders& shaders, const Scene& scene, const Canvas& canvas);
+  void draw_plots(const Shaders& shaders, const Scene& scene, const Canvas& canvas);  // plots.cpp
 
  private:
   struct Row {
@@ -36,6 +37,7 @@ class Marks {
   };
   void draw(const std::vector<Row>& rows, std::size_t first, std::size_t count, const Canvas& canvas);
   void draw_rows(const Shaders& shaders, const std::vector<Row>& rows, const Canvas& canvas);
+  void add_words(const std::string& words, int size, float x, float y, float align, std::vector<Row>& rows);
   static std::vector<const SceneSprite*> sorted(const std::vector<SceneSprite>& sprites, const Lens& lens);
   static Row row_of(const SceneSprite& sprite);
   void begin_sprites(const Shaders& shaders, const Canvas& canvas);

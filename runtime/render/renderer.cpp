@@ -118,6 +118,7 @@ void Renderer::Work::paint_camera(const Scene& scene, const SceneCamera& camera,
   gl.Disable(GL_DEPTH_TEST);
   marks.draw_labels(shaders, scene, canvas);
   if (scene.flags.text && camera.text) marks.draw_texts(shaders, scene, canvas);
+  if (scene.flags.text && camera.text && !window) marks.draw_plots(shaders, scene, canvas);
   gl.DepthMask(GL_TRUE);
   gl.Enable(GL_DEPTH_TEST);
 }

@@ -4,11 +4,14 @@
 
 namespace breve::render {
 
+// Bodies have a program for each combination of `disc`, `textured`, `shadows`, `mirror` (0.0 or 1.0) and `mode` (0:
+// plain colours, 1: lights, 2: studio), which are macros: a renderer in software computes both sides of every `if`
+// whose condition is a uniform.
 inline constexpr const char* kBodyVertex = R"(
 in vec3 position, normal, tint;
 in vec4 row0, row1, row2, color, extra;
 uniform mat4 view, projection, shadow_matrix;
-uniform float outline, layers, tinted, disc, shadow_texel_slope;
+uniform float outline, layers, tinted, shadow_texel_slope;
 uniform vec3 right, up;
 uniform vec4 clip_plane;
 out vec2 corner;
@@ -55,10 +58,10 @@ flat in float lit;
 flat in vec2 tile;
 uniform vec3 eye, sight, sky, ground, horizon, fog_color, key;
 uniform vec3 light_place[8], light_ambient[8], light_diffuse[8], light_specular[8];
-uniform int lights, mode;  // mode 0: plain colours, 1: lights, 2: studio
-uniform float shadows, textured, outline, fill, haze_start, haze_end, fog_start, fog_end, fog_power, mirror, mirror_height;
+uniform int lights;
+uniform float outline, fill, haze_start, haze_end, fog_start, fog_end, fog_power, mirror_height;
 in vec2 corner;
-uniform float shadow_texel, shadow_bias, disc;
+uniform float shadow_texel, shadow_bias;
 uniform vec3 right, up;
 uniform vec2 picture;
 uniform sampler2D image, reflection;
@@ -153,12 +156,28 @@ inline constexpr const char* kDepthVertex = R"(
 in vec3 position;
 in vec4 row0, row1, row2;
 uniform mat4 shadow_matrix;
+uniform vec3 eye;
+uniform float disc;
+out vec2 corner;
 void main() {
   vec4 p = vec4(position, 1);
-  gl_Position = shadow_matrix * vec4(dot(row0, p), dot(row1, p), dot(row2, p), 1);
+  vec3 world = vec3(dot(row0, p), dot(row1, p), dot(row2, p));
+  corner = position.xy;
+  if (disc > 0.5) {  // a small sphere: a square through its middle, towards the light, of which the shader keeps a circle
+    vec3 center = vec3(row0.w, row1.w, row2.w), way = normalize(center - eye);
+    vec3 right = normalize(cross(abs(way.y) > 0.9 ? vec3(1, 0, 0) : vec3(0, 1, 0), way));
+    world = center + length(vec3(row0.x, row1.x, row2.x)) * (right * corner.x + cross(way, right) * corner.y);
+  }
+  gl_Position = shadow_matrix * vec4(world, 1);
 }
 )";
-inline constexpr const char* kDepthFragment = "void main() {}\n";
+inline constexpr const char* kDepthFragment = R"(
+in vec2 corner;
+uniform float disc;
+void main() {
+  if (disc > 0.5 && dot(corner, corner) > 1.0) discard;
+}
+)";
 
 inline constexpr const char* kBackdropVertex = R"(
 uniform vec3 right, up, back;
@@ -378,7 +397,7 @@ vec3 linear(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)),
 void main() {
   float cover = texture(image, place).r;
   if (plate.z > 0.5) {
-    float round_by = min(plate.x, plate.y) * 0.3;
+    float round_by = min(min(plate.x, plate.y) * 0.3, 10.0);
     vec2 q = abs(inside - plate.xy * 0.5) - plate.xy * 0.5 + round_by;
     cover = clamp(0.5 - (length(max(q, vec2(0))) + min(max(q.x, q.y), 0.0) - round_by), 0.0, 1.0);
   }

@@ -11,10 +11,10 @@ namespace {
 // KEEP IN STEP: the numbers of attributes in buffers.cpp and marks.cpp.
 constexpr const char* kAttributes[] = {"position", "normal", "uv", "tint", "row0", "row1", "row2", "color", "extra"};
 
-unsigned compile(const Gl& gl, unsigned kind, const char* text) {
+unsigned compile(const Gl& gl, unsigned kind, const char* text, const std::string& macros) {
   const unsigned shader = gl.CreateShader(kind);
-  const char* texts[] = {"#version 330 core\n", text};
-  gl.ShaderSource(shader, 2, texts, nullptr);
+  const char* texts[] = {"#version 330 core\n", macros.c_str(), text};
+  gl.ShaderSource(shader, 3, texts, nullptr);
   gl.CompileShader(shader);
   int good = 0;
   gl.GetShaderiv(shader, GL_COMPILE_STATUS, &good);
@@ -27,9 +27,9 @@ unsigned compile(const Gl& gl, unsigned kind, const char* text) {
 
 }  // namespace
 
-Program::Program(const Gl& gl, const char* vertex, const char* fragment) : gl_(gl) {
-  const unsigned first = compile(gl, GL_VERTEX_SHADER, vertex);
-  const unsigned second = compile(gl, GL_FRAGMENT_SHADER, fragment);
+Program::Program(const Gl& gl, const char* vertex, const char* fragment, const std::string& macros) : gl_(gl) {
+  const unsigned first = compile(gl, GL_VERTEX_SHADER, vertex, macros);
+  const unsigned second = compile(gl, GL_FRAGMENT_SHADER, fragment, macros);
   program_ = gl.CreateProgram();
   gl.AttachShader(program_, first);
   gl.AttachShader(program_, second);
@@ -56,13 +56,26 @@ int Program::at(const char* name) const {
 }
 
 Shaders::Shaders(const Gl& gl)
-    : body(gl, kBodyVertex, kBodyFragment),
-      depth(gl, kDepthVertex, kDepthFragment),
+    : depth(gl, kDepthVertex, kDepthFragment),
       backdrop(gl, kBackdropVertex, kBackdropFragment),
       line(gl, kLineVertex, kLineFragment),
       sprite(gl, kSpriteVertex, kSpriteFragment),
       plain(gl, kPlainVertex, kPlainFragment),
       sheet(gl, kSheetVertex, kSheetFragment),
-      text(gl, kTextVertex, kTextFragment) {}
+      text(gl, kTextVertex, kTextFragment),
+      gl_(gl) {}
+
+const Program& Shaders::body(const BodyKind& kind) {
+  std::unique_ptr<Program>& kept = bodies_[kind];
+  if (!kept) {
+    std::string macros;
+    const std::pair<const char*, bool> switches[] = {
+        {"disc", kind.disc}, {"textured", kind.textured}, {"shadows", kind.shadows}, {"mirror", kind.mirror}};
+    for (const auto& [name, on] : switches) macros += std::string("#define ") + name + (on ? " 1.0\n" : " 0.0\n");
+    macros += "#define mode " + std::to_string(kind.mode) + "\n";
+    kept = std::make_unique<Program>(gl_, kBodyVertex, kBodyFragment, macros);
+  }
+  return *kept;
+}
 
 }  // namespace breve::render

@@ -1,7 +1,9 @@
 // The programs that run for each vertex and pixel, and how their inputs are named.
 #pragma once
 
+#include <compare>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -13,8 +15,9 @@ namespace breve::render {
 /// A linked program. Uniforms that it does not use are ignored.
 class Program {
  public:
+  /// @param macros  lines of `#define` for both
   /// @throws Error{Internal} with the compiler's words
-  Program(const Gl& gl, const char* vertex, const char* fragment);
+  Program(const Gl& gl, const char* vertex, const char* fragment, const std::string& macros = {});
   ~Program();
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
@@ -34,9 +37,23 @@ class Program {
   mutable std::map<std::string, int, std::less<>> locations_;
 };
 
+/// What one program for bodies computes.
+struct BodyKind {
+  bool disc = false;  // small spheres, as squares
+  bool textured = false, shadows = false, mirror = false;
+  int mode = 0;  // 0: plain colours, 1: lights, 2: studio
+  auto operator<=>(const BodyKind&) const = default;
+};
+
 struct Shaders {
   explicit Shaders(const Gl& gl);
-  Program body, depth, backdrop, line, sprite, plain, sheet, text;
+  /// Made when it is used first.
+  const Program& body(const BodyKind& kind);
+  Program depth, backdrop, line, sprite, plain, sheet, text;
+
+ private:
+  const Gl& gl_;
+  std::map<BodyKind, std::unique_ptr<Program>> bodies_;
 };
 
 }  // namespace breve::render

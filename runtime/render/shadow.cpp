@@ -73,14 +73,22 @@ ShadowLens Renderer::Work::draw_shadows(const Scene& scene) {
   gl.Disable(GL_CULL_FACE);
   gl.Enable(GL_POLYGON_OFFSET_FILL);
   gl.PolygonOffset(1.6F, 5.0F);
-  Batches all = batch(scene, {nullptr, 0, false, false}, casts, ground);
+  // How large spheres are in the map decides how finely they are drawn, as in a picture.
+  const Vector3f eye = scene.lights[0].position.cast<float>();
+  Lens sight;
+  sight.eye = eye;
+  sight.back = (eye - box.center()).normalized();
+  sight.slope = lens.texel_slope * kSide / 2;
+  const Batches all = batch(scene, {&sight, kSide, true, false}, casts, ground);
   instances.fill(GL_ARRAY_BUFFER, all.instances.data(), all.instances.size() * sizeof(GpuInstance), GL_STREAM_DRAW);
   shaders.depth.use();
   shaders.depth.set("shadow_matrix", lens.matrix);
+  shaders.depth.set("eye", eye);
   for (const auto* batches : {&all.opaque, &all.transparent})
     for (const Batch& one : *batches) {
-      const bool sphere = scene.meshes[one.mesh].form == SceneMesh::Form::Sphere;
-      const MeshBuffer& buffer = mesh(scene, sphere ? kSphereMesh + 1 : one.mesh);
+      shaders.depth.set("disc", one.mesh == kDiscMesh ? 1.0F : 0.0F);
+      // A coarse sphere lies within the one that is seen, which so does not shade itself.
+      const MeshBuffer& buffer = mesh(scene, one.mesh > kSphereMesh + 1 ? kSphereMesh + 1 : one.mesh);
       buffer.draw(instances, one.first, one.count);
       ++counters.draw_calls;
     }

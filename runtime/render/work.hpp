@@ -60,10 +60,11 @@ struct Renderer::Work {
   // bodies.cpp
   void draw_backdrop(const Pass& pass);
   void draw_bodies(const Pass& pass, bool (*wanted)(const SceneInstance&) = nullptr);
-  void draw_batches(const Pass& pass, const std::vector<Batch>& batches);
+  void draw_batches(const Pass& pass, const std::vector<Batch>& batches, float outline = 0);
+  const Program& body_program(const Pass& pass, const Batch& batch);
   void draw_sheets(const Pass& pass);
-  void set_body_uniforms(const Pass& pass);
-  void set_lights(const Pass& pass);
+  void set_body_uniforms(const Pass& pass, const Program& program);
+  void set_lights(const Pass& pass, const Program& program);
   Air air_of(const Scene& scene) const;
   // uploads.cpp
   const MeshBuffer& mesh(const Scene& scene, std::uint32_t number);
@@ -89,6 +90,7 @@ struct Renderer::Work {
   SceneCamera last_camera;
   Framing framing;
   Counters counters;
+  std::vector<const Program*> ready;       // those for bodies that have the uniforms of this pass
   std::vector<std::uint8_t> last_picture;  // that motion blur mixes with
   std::uint64_t last_clears = 0;
 };

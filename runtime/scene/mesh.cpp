@@ -32,7 +32,7 @@ Vector3f about(int axis, float first, float along, float second) {
 }
 
 /// Rings of vertices, `segments` + 1 each, joined by triangles: a surface of revolution.
-/// @param profile  radius, height along the axis; and the normal's part outward and along
+/// @param profile  radius, height along the axis; and the normal's part outward and along. From the top down
 void revolve(SceneMesh& mesh, int axis, int segments, const std::vector<std::array<float, 4>>& profile) {
   const auto base = static_cast<std::uint32_t>(mesh.positions.size());
   const auto ring = static_cast<std::uint32_t>(segments + 1);
@@ -45,8 +45,8 @@ void revolve(SceneMesh& mesh, int axis, int segments, const std::vector<std::arr
   for (std::uint32_t level = 0; level + 1 < profile.size(); ++level)
     for (std::uint32_t i = 0; i + 1 < ring; ++i) {
       const std::uint32_t a = base + level * ring + i;
-      add_triangle(mesh, a, a + 1, a + ring);
-      add_triangle(mesh, a + 1, a + ring + 1, a + ring);
+      add_triangle(mesh, a, a + ring, a + 1);
+      add_triangle(mesh, a + 1, a + ring, a + ring + 1);
     }
 }
 

@@ -98,6 +98,17 @@ struct SceneText {
   Vector3f color = Vector3f::Zero();
 };
 
+/// Lines of numbers over the picture. A point of a line is one further along x than the one before it.
+struct ScenePlot {
+  struct Line {
+    Vector3f color = Vector3f::Zero();
+    std::vector<float> values;
+  };
+  ObjectId object;
+  std::string title, x_axis, y_axis;
+  std::vector<Line> lines;
+};
+
 struct SceneCamera {
   ObjectId object;  // null: the main one
   Vector3 target{0, 0, 0}, offset{0, 0, 30};
@@ -135,6 +146,7 @@ struct SceneFlags {
   float blur_factor = 0.1F;
   float text_scale = 1;
   std::uint64_t clears = 0;
+  bool every_frame = true;  // else a window may leave out pictures
 };
 
 /// Room is kept from one moment to the next. Meshes and textures keep their numbers as long as something uses them.
@@ -151,6 +163,7 @@ struct Scene {
   std::vector<SceneSheet> sheets;
   std::vector<SceneLabel> labels;
   std::vector<SceneText> texts;
+  std::vector<ScenePlot> plots;
   std::vector<SceneCamera> cameras;  // the main one first
   std::vector<SceneLight> lights;
   SceneFog fog;

@@ -29,6 +29,7 @@ void SceneBuilder::begin() {
   scene_.sheets.clear();
   scene_.labels.clear();
   scene_.texts.clear();
+  scene_.plots.clear();
   scene_.cameras.clear();
   scene_.lights.clear();
   scene_.backdrop = SceneBackdrop();

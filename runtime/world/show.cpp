@@ -172,6 +172,21 @@ void show_window(ObjectId id, const CameraResource& resource, SceneBuilder& to) 
   to.scene().cameras.push_back(camera);
 }
 
+/// What the light exposure source sees, in a window at the lower left.
+void show_exposure(const World& world, SceneBuilder& to) {
+  const LightExposureState& light = world.view().light_exposure;
+  if (!light.drawing || world.dimension() == 2) return;
+  constexpr double kWindow = 96, kMargin = 6;  // pixels
+  CameraState state;
+  state.set_offset(light.source.norm() > 0 ? light.source : Vector3(0, 1, 0));
+  state.set_far_plane(4 * state.distance() + 1000);
+  SceneCamera camera = camera_of(state);
+  camera.text = false;
+  camera.x = camera.y = kMargin;
+  camera.width = camera.height = kWindow;
+  to.scene().cameras.push_back(camera);
+}
+
 /// Light 0 is on; another one once a program has placed or coloured it.
 void show_lights(const ViewState& view, SceneBuilder& to) {
   const LightState none;
@@ -193,6 +208,8 @@ void show_backdrop(const World& world, SceneBuilder& to) {
   backdrop.scroll_x = drawable(state.scroll_x * static_cast<double>(world.iteration()));
   backdrop.scroll_y = drawable(state.scroll_y * static_cast<double>(world.iteration()));
   backdrop.mountains = state.mountains;
+  if (!state.skybox.empty())
+    for (std::size_t i = 0; i < state.sides.size(); ++i) backdrop.skybox[i] = show_image(world, state.sides[i], to);
   const FogState& fog = world.view().fog;
   to.scene().fog = {fog.enabled, drawable(fog.start), drawable(fog.end), drawable(fog.intensity),
                     color_of(fog.color, 1).head<3>()};
@@ -208,7 +225,8 @@ void show_flags(const ViewState& view, SceneBuilder& to) {
                       flags.blur,
                       drawable(flags.blur_factor),
                       drawable(view.text_scale),
-                      view.clears};
+                      view.clears,
+                      flags.every_frame};
   for (const OverlayText& text : view.texts) {
     if (text.text.empty()) continue;
     to.scene().texts.push_back(
@@ -239,6 +257,7 @@ void show(World& world, SceneBuilder& scene) {
     if (const auto* drawing = resource_as<DrawingResource>(world, id)) show_drawing(*drawing, scene);
     if (const auto* line = resource_as<LineResource>(world, id)) show_line(world, *line, scene);
   }
+  show_exposure(world, scene);
 }
 
 }  // namespace breve

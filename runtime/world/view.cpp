@@ -79,6 +79,8 @@ void visit(Visitor& v, View& view) {
   v.field(view.backdrop.scroll_x);
   v.field(view.backdrop.scroll_y);
   v.field(view.backdrop.skybox);
+  if (!view.backdrop.skybox.empty())
+    for (auto& side : view.backdrop.sides) v.field(side);
   v.field(view.backdrop.mountains);
   auto& flags = view.flags;
   for (auto* flag : {&flags.lighting, &flags.shadow_volumes, &flags.shadows, &flags.reflections, &flags.shadow_catcher,

@@ -41,6 +41,7 @@ struct BackdropState {
   ObjectId texture;                            // an Image object or null
   double scroll_x = 0.001, scroll_y = 0.0001;  // texture widths per drawn frame
   std::pmr::vector<std::pmr::string> skybox;   // six files: front, back, left, right, top, bottom; empty: none
+  std::array<ObjectId, 6> sides;               // their Image objects, null where a file is missing
   bool mountains = false;                      // the built-in skybox
 };
 

@@ -1,8 +1,12 @@
 // Natives of Image: pixels, files, and the library's own pictures.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
+#include "runtime/store/patterns.hpp"
 #include "steve/library/image_access.hpp"
 #include "steve/library/pictures.hpp"
 #include "steve/library/tables.hpp"
@@ -32,22 +36,6 @@ Instance* image_set_size(Machine& machine, Instance& self, std::int32_t width, s
 void charge_for_decoding(Machine& machine, int width, int height) {
   constexpr std::uint64_t kOfPixel = 32;
   machine.charge_for(kOfPixel * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height));
-}
-
-Instance* image_load(Machine& machine, Instance& self, Text file) {
-  const std::string name(view(file));
-  try {
-    image(machine, self) = Image::parse(read_file(machine, name), name, machine.heap().memory(),
-                                        [&](int width, int height) { charge_for_decoding(machine, width, height); });
-  } catch (const MissingFile&) {
-    warn_of_missing_image(machine, name);
-    return nullptr;
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::File) throw;
-    machine.warn_once("image:" + name, "image '" + name + "' not loaded: " + error.what());
-    return nullptr;
-  }
-  return &self;
 }
 
 void charge_for_deflation(Machine& machine, const Image& picture) {
@@ -91,42 +79,53 @@ std::int32_t image_write_16_bit(Machine& machine, Instance& self, Text file) {
 
 // --- the library's own pictures --------------------------------------------------------------------------------------
 
-constexpr int kPatternSide = 64;
-
-void set_grey(Image& picture, int x, int y, std::uint8_t level) {
-  for (Channel channel : {Channel::Red, Channel::Green, Channel::Blue}) picture.set_byte(x, y, channel, level);
-}
-
-Image checker() {
-  constexpr int kField = kPatternSide / 8;
-  constexpr std::uint8_t kLight = 255, kDark = 192;
-  Image picture(kPatternSide, kPatternSide);
-  for (int y = 0; y < kPatternSide; ++y)
-    for (int x = 0; x < kPatternSide; ++x) set_grey(picture, x, y, (x / kField + y / kField) % 2 == 0 ? kLight : kDark);
-  return picture;
-}
-
-/// A coarse grain, the same every time: a hash of the place, not a draw from the world's random numbers.
-Image ground() {
-  constexpr std::uint8_t kDarkest = 176;
-  constexpr std::uint32_t kGrains = 80;
-  Image picture(kPatternSide, kPatternSide);
-  for (int y = 0; y < kPatternSide; ++y)
-    for (int x = 0; x < kPatternSide; ++x) {
-      std::uint32_t mixed = static_cast<std::uint32_t>(x) * 0x9e3779b1U + static_cast<std::uint32_t>(y) * 0x85ebca77U;
-      mixed = (mixed ^ (mixed >> 15)) * 0x2c1b3c6dU;
-      set_grey(picture, x, y, static_cast<std::uint8_t>(kDarkest + (mixed >> 16) % kGrains));
-    }
-  return picture;
+/// Replace the pixels by those of a pattern.
+void paint(Machine& machine, Instance& self, std::string_view pattern) {
+  constexpr std::uint64_t kOfPixel = 64;
+  machine.charge_for(kOfPixel * kMostPatternPixels);
+  image(machine, self) = paint_pattern(pattern, machine.heap().memory());
 }
 
 void image_paint_pattern(Machine& machine, Instance& self, Text name) {
-  if (view(name) == "checker")
-    image(machine, self) = checker();
-  else if (view(name) == "ground")
-    image(machine, self) = ground();
-  else
-    throw Error(ErrorCode::Argument, "there is no pattern '" + std::string(view(name)) + "'");
+  if (std::find(kPatterns.begin(), kPatterns.end(), view(name)) == kPatterns.end())
+    throw Error(ErrorCode::Argument,
+                fmt::format("there is no pattern '{}'; the patterns are {}", view(name), fmt::join(kPatterns, ", ")));
+  paint(machine, self, view(name));
+}
+
+/// The bytes of a picture file. Without them `self` shows the picture that stands in for the file, if there is one.
+std::optional<std::pmr::string> read_picture(Machine& machine, Instance& self, const std::string& name, bool& painted) {
+  const auto pattern = pattern_of_file(name);
+  try {
+    return read_file(machine, name);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::File) throw;
+    // The library's own pictures need no file and no right to read one.
+    painted = pattern.has_value();
+    if (pattern)
+      paint(machine, self, *pattern);
+    else if (dynamic_cast<const MissingFile*>(&error))
+      warn_of_missing_image(machine, name);
+    else
+      machine.warn_once("image:" + name, "image '" + name + "' not loaded: " + error.what());
+    return std::nullopt;
+  }
+}
+
+Instance* image_load(Machine& machine, Instance& self, Text file) {
+  const std::string name(view(file));
+  bool painted = false;
+  const auto bytes = read_picture(machine, self, name, painted);
+  if (!bytes) return painted ? &self : nullptr;
+  try {
+    image(machine, self) = Image::parse(*bytes, name, machine.heap().memory(),
+                                        [&](int width, int height) { charge_for_decoding(machine, width, height); });
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::File) throw;
+    machine.warn_once("image:" + name, "image '" + name + "' not loaded: " + error.what());
+    return nullptr;
+  }
+  return &self;
 }
 
 // --- pixels ----------------------------------------------------------------------------------------------------------

@@ -160,8 +160,6 @@ constexpr Native kObjectNatives[] = {
 constexpr Native kObsoleteNatives[] = {
     native<obsolete<"beep">>("obsolete.beep"),
     native<obsolete<"disable-smooth-drawing">>("obsolete.disable-smooth-drawing"),
-    native<obsolete<"disable-volumetric-drawing">>("obsolete.disable-volumetric-drawing"),
-    native<obsolete<"enable-volumetric-drawing">>("obsolete.enable-volumetric-drawing"),
     native<obsolete<"get-grid-pointer", PointerCell*>>("obsolete.get-grid-pointer"),
     native<obsolete<"set-patch-pointer", void, PointerCell*>>("obsolete.set-patch-pointer"),
     native<obsolete<"enable-smooth-drawing">>("obsolete.enable-smooth-drawing"),

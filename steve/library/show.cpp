@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "runtime/scene/mesh.hpp"
 #include "runtime/world/show.hpp"
@@ -60,7 +61,13 @@ void show_sheet(const World& world, ObjectId id, const GridResource& resource, b
   for (CellIndex cell = 0; cell < grid.cells(); ++cell) {
     const Cell3 at = grid.cell(cell);
     Vector4f color = colored ? cell_color(resource, cell) : drawn_color(world, resource, cell);
-    if (resource.alphas.empty()) color.w() = 1;
+    if (resource.alphas.empty()) {
+      color.w() = 1;
+    } else if (colored && (resource.states.made() || resource.occupants.made())) {
+      const Vector4f below = drawn_color(world, resource, cell);  // shows through
+      color = Vector4f(below + color.w() * (color - below));
+      color.w() = 1;
+    }
     const auto pixel =
         static_cast<std::size_t>(at.y) * static_cast<std::size_t>(grid.nx()) + static_cast<std::size_t>(at.x);
     for (int part = 0; part < 4; ++part) sheet.rgba[4 * pixel + static_cast<std::size_t>(part)] = byte_of(color[part]);
@@ -69,12 +76,19 @@ void show_sheet(const World& world, ObjectId id, const GridResource& resource, b
   to.scene().sheets.push_back(std::move(sheet));
 }
 
-void show_volume(ObjectId id, const GridResource& resource, SceneBuilder& to) {
+/// If the grid has states, cells of state 0 are not to be seen.
+/// @param colored  something has set colours; else cells are as in a sheet
+/// @param solid    cells are opaque or not to be seen
+void show_volume(const World& world, ObjectId id, const GridResource& resource, bool colored, bool solid,
+                 SceneBuilder& to) {
   const Grid& grid = *resource.grid;
-  constexpr float kLeast = 1.0F / 255;  // below that nothing is to be seen
+  const float least = solid ? 0.5F : 1.0F / 255;  // below that nothing is to be seen
+  const bool states = resource.states.made();
   for (CellIndex cell = 0; cell < grid.cells(); ++cell) {
-    const Vector4f color = cell_color(resource, cell);
-    if (color.w() < kLeast) continue;
+    if (states && resource.states.get(cell) == 0) continue;
+    Vector4f color = colored ? cell_color(resource, cell) : drawn_color(world, resource, cell);
+    if (color.w() < least) continue;
+    if (solid) color.w() = 1;
     SceneInstance box{id, Transform::Zero(), color};
     box.transform.leftCols<3>() = drawable(grid.cell_size()).asDiagonal();
     box.transform.col(3) = drawable(grid.middle(cell));
@@ -85,15 +99,22 @@ void show_volume(ObjectId id, const GridResource& resource, SceneBuilder& to) {
   }
 }
 
+/// Is this variable of a library class set to anything but 0?
+bool is_set(Machine& machine, Instance* self, std::string_view owner, std::string_view name) {
+  const Slot* slot = self ? library_slot(machine, *self, owner, name) : nullptr;
+  return slot && slot->i != 0;
+}
+
 /// Shows nothing of a grid that has neither colours nor states nor agents.
-void show_grid(const World& world, ObjectId id, const GridResource& resource, SceneBuilder& to) {
+void show_grid(Machine& machine, ObjectId id, const GridResource& resource, SceneBuilder& to) {
+  const World& world = machine.world();
   if (!resource.grid) return;
   const bool colored = !resource.colors.empty() || !resource.alphas.empty();
   const bool drawn = resource.states.made() || resource.occupants.made();
   if (resource.grid->flat() && (colored || drawn))
     show_sheet(world, id, resource, colored, to);
-  else if (colored)
-    show_volume(id, resource, to);
+  else if (colored || resource.states.made())
+    show_volume(world, id, resource, colored, is_set(machine, machine.instance(id), "PatchGrid", "drawsSurface"), to);
 }
 
 void show_spring(Machine& machine, const SpringResource& resource, SceneBuilder& to) {
@@ -113,9 +134,37 @@ Vector3f color_variable(Machine& machine, Instance& self, std::string_view name)
   return slot ? color_of(Vector3(slot[0].d, slot[1].d, slot[2].d), 1).head<3>() : Vector3f(1, 1, 1);
 }
 
-/// The instance of a terrain gets a mesh that is coloured by height.
+/// The edges of a mesh, each once, in the colour of their first end.
+void show_edges(const SceneInstance& instance, const SceneMesh& mesh, SceneBuilder& to) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+  edges.reserve(mesh.indices.size());
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+    const std::uint32_t from = mesh.indices[i], end = mesh.indices[i % 3 == 2 ? i - 2 : i + 1];
+    edges.emplace_back(std::min(from, end), std::max(from, end));
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  const auto at = [&](std::uint32_t vertex) {
+    return Vector3f(instance.transform * mesh.positions[vertex].homogeneous());
+  };
+  for (const auto& [from, end] : edges) {
+    Vector4f color = instance.color;
+    color.head<3>() = mesh.colors[from];
+    to.scene().lines.push_back({at(from), at(end), color});
+  }
+}
+
+/// The instance of a terrain gets a mesh that is coloured by height; of a wireframe there are lines in its place.
 void show_terrains(Machine& machine, SceneBuilder& to) {
-  for (SceneInstance& instance : to.scene().instances) {
+  std::vector<SceneInstance>& instances = to.scene().instances;
+  const auto shown_as_lines = [&](const SceneInstance& instance) {
+    const SceneMesh& mesh = to.mesh_data(instance.mesh);
+    if (mesh.form != SceneMesh::Form::Ground || mesh.colors.empty()) return false;
+    if (!is_set(machine, machine.instance(instance.object), "Terrain", "drawsWireframe")) return false;
+    show_edges(instance, mesh, to);
+    return true;
+  };
+  for (SceneInstance& instance : instances) {
     SceneMesh& mesh = to.mesh_data(instance.mesh);
     if (mesh.form != SceneMesh::Form::Ground) continue;
     Instance* self = machine.instance(instance.object);
@@ -126,6 +175,43 @@ void show_terrains(Machine& machine, SceneBuilder& to) {
     color_by_height(mesh, valley, peak);
     if (old != mesh.colors) mesh.revision += std::uint64_t{1} << 32;
   }
+  instances.erase(std::remove_if(instances.begin(), instances.end(), shown_as_lines), instances.end());
+}
+
+std::string text_variable(Machine& machine, Instance& self, std::string_view name) {
+  const Slot* slot = library_slot(machine, self, "Graph", name);
+  return slot && slot->ref ? std::string(view(static_cast<const StringCell*>(slot->ref))) : std::string();
+}
+
+ListCell* list_variable(Machine& machine, Instance& self, std::string_view name) {
+  const Slot* slot = library_slot(machine, self, "Graph", name);
+  return slot ? static_cast<ListCell*>(slot->ref) : nullptr;
+}
+
+float number_of(const Value& value) {
+  if (value.tag == Tag::Int) return static_cast<float>(value.i);
+  return value.tag == Tag::Double ? static_cast<float>(value.d) : std::numeric_limits<float>::quiet_NaN();
+}
+
+/// A Graph object that has lines is a plot over the picture.
+void show_graph(Machine& machine, Instance& self, SceneBuilder& to) {
+  const ListCell* colors = list_variable(machine, self, "lineColors");
+  const ListCell* values = list_variable(machine, self, "lineValues");
+  if (!colors || !values || values->size == 0) return;
+  ScenePlot plot;
+  plot.object = self.id;
+  plot.title = text_variable(machine, self, "graphTitle");
+  plot.x_axis = text_variable(machine, self, "xAxisName");
+  plot.y_axis = text_variable(machine, self, "yAxisName");
+  for (std::uint32_t i = 0; i < std::min(colors->size, values->size); ++i) {
+    const Value color = (*colors)[i], list = (*values)[i];
+    ScenePlot::Line line;
+    if (color.tag == Tag::Vector) line.color = color_of(color.vector(), 1).head<3>();
+    if (list.tag == Tag::List && list.ref)
+      for (const Value& value : *static_cast<const ListCell*>(list.ref)) line.values.push_back(number_of(value));
+    plot.lines.push_back(std::move(line));
+  }
+  to.scene().plots.push_back(std::move(plot));
 }
 
 }  // namespace
@@ -135,8 +221,9 @@ void show(Machine& machine, SceneBuilder& scene) {
   World& world = machine.world();
   breve::show(world, scene);
   for (const ObjectId id : world.objects()) {
-    const Instance* instance = machine.instance(id);
-    if (const auto* grid = resource_of<GridResource>(machine, instance)) show_grid(world, id, *grid, scene);
+    Instance* instance = machine.instance(id);
+    if (instance && is_library_kind(*instance, "Graph")) show_graph(machine, *instance, scene);
+    if (const auto* grid = resource_of<GridResource>(machine, instance)) show_grid(machine, id, *grid, scene);
     if (const auto* spring = resource_of<SpringResource>(machine, instance)) show_spring(machine, *spring, scene);
   }
   show_terrains(machine, scene);

@@ -1,5 +1,4 @@
 // Natives of Control that set what is drawn around the bodies: lights, shadows, backdrop, fog, text, pictures.
-#include "steve/library/image_access.hpp"
 #include "steve/library/support.hpp"
 #include "steve/library/tables.hpp"
 
@@ -100,29 +99,41 @@ void set_background_scroll_rate(Machine& machine, Instance&, double x, double y)
   view_of(machine).backdrop.scroll_y = finite(y, "the background scroll rate");
 }
 
-void set_skybox_images(Machine& machine, Instance&, ListCell* files) {
-  constexpr std::uint32_t kSides = 6;
-  if (!files || files->size != kSides) {
+/// Take the names of the six files. 0 with a warning if there are not six.
+std::int32_t name_skybox(Machine& machine, Instance&, ListCell* files) {
+  BackdropState& backdrop = view_of(machine).backdrop;
+  if (!files || files->size != backdrop.sides.size()) {
     machine.warn("set-skybox-images needs six file names: front, back, left, right, top, bottom");
-    return;
+    return 0;
   }
-  std::vector<std::string> names;
+  std::pmr::vector<std::pmr::string> fresh(backdrop.skybox.get_allocator());
   for (const Value& file : *files) {
     if (file.tag != Tag::String) Machine::fail(RunErrorKind::Type, "set-skybox-images: every element must be a string");
-    names.emplace_back(view(file.string()));
+    fresh.emplace_back(view(file.string()));
   }
-  // Only now: the host that is asked may change the list.
-  for (const std::string& name : names) {
-    if (find_file(machine, name).empty()) warn_of_missing_image(machine, name);
-  }
-  auto& skybox = view_of(machine).backdrop.skybox;
-  std::pmr::vector<std::pmr::string> fresh(names.begin(), names.end(), skybox.get_allocator());
-  skybox.swap(fresh);
-  view_of(machine).backdrop.mountains = false;
+  backdrop.skybox.swap(fresh);
+  backdrop.mountains = false;
+  return 1;
+}
+
+ObjectId& skybox_side(Machine& machine, std::int32_t number) {
+  auto& sides = view_of(machine).backdrop.sides;
+  if (number < 0 || static_cast<std::size_t>(number) >= sides.size())
+    throw Error(ErrorCode::Argument, "a sky box has no side " + std::to_string(number) + ": its sides are 0 to 5");
+  return sides[static_cast<std::size_t>(number)];
+}
+
+Instance* get_skybox_side(Machine& machine, Instance&, std::int32_t number) {
+  return machine.instance(skybox_side(machine, number));
+}
+
+void set_skybox_side(Machine& machine, Instance&, Instance* image, std::int32_t number) {
+  skybox_side(machine, number) = machine.id_of(image);
 }
 
 void set_mountain_skybox(Machine& machine, Instance&) {
   view_of(machine).backdrop.skybox.clear();
+  view_of(machine).backdrop.sides = {};
   view_of(machine).backdrop.mountains = true;
 }
 
@@ -219,7 +230,9 @@ constexpr Native kViewNatives[] = {
     native<set_background_texture_image>("control.set-background-texture-image"),
     native<set_background_texture>("control.set-background-texture"),
     native<set_background_scroll_rate>("control.set-background-scroll-rate"),
-    native<set_skybox_images>("control.set-skybox-images", Reach::Reads),
+    native<name_skybox>("control.name-skybox"),
+    native<get_skybox_side>("control.get-skybox-side"),
+    native<set_skybox_side>("control.set-skybox-side"),
     native<set_mountain_skybox>("control.set-mountain-skybox"),
     native<enable<&Flags::text>>("control.enable-text"),
     native<disable<&Flags::text>>("control.disable-text"),

@@ -381,6 +381,125 @@ closed_output)
   same "$(cat err)" ""
   same "$(wc -l <out)" 2
   ;;
+movies)
+  program a.tz 'bug = new Mobile. bug set-velocity to (9, 0, 0).' ''
+  for kind in mp4 mkv webm avi gif; do
+    expect 0 run a.tz --iterations 10 --quiet --size 63x41 --fps 20 --movie "a.$kind"
+    [ -s "a.$kind" ] || fail "a.$kind is empty"
+  done
+  # 0 to 0.6 s in steps of 0.06 s, at 20 frames a second: 13 frames of even sides.
+  python3 - a.mp4 <<'END' || fail "what a.mp4 holds"
+import struct, sys
+data = open(sys.argv[1], "rb").read()
+def boxes(begin, end):
+    while begin < end:
+        size, kind = struct.unpack(">I4s", data[begin:begin + 8])
+        yield kind, begin + 8, begin + size
+        begin += size
+def find(path, begin=0, end=len(data)):
+    for kind, first, last in boxes(begin, end):
+        if kind == path[0]:
+            return (first, last) if len(path) == 1 else find(path[1:], first, last)
+table = find([b"moov", b"trak", b"mdia", b"minf", b"stbl", b"stsz"])[0]
+assert struct.unpack(">I", data[table + 8:table + 12])[0] == 13
+header = find([b"moov", b"trak", b"tkhd"])[1]
+assert struct.unpack(">II", data[header - 8:header]) == (62 << 16, 40 << 16)
+assert find([b"moov"])[0] < find([b"mdat"])[0], "players begin before they have all of it"
+END
+  expect 1 run a.tz --iterations 1 --quiet --movie a.xyz && has err 'there is no movie format of that name; .mp4'
+  expect 1 run a.tz --iterations 1 --quiet --movie nowhere/a.mp4 && has err 'cannot write nowhere/a.mp4: No such file'
+  for file in full.mp4 full.gif; do
+    ln -s /dev/full "$file"
+    expect 1 run a.tz --iterations 1 --quiet --movie "$file" && has err "cannot write $file: No space left on device"
+  done
+  ln -s /dev/full full.png
+  expect 1 run a.tz --iterations 1 --quiet --snapshot full.png && has err 'cannot write full.png: No space left on device'
+  # The world goes on where scripts find no space.
+  program b.tz '' 'self save-snapshot to "none/b.png".'
+  expect 0 run b.tz --iterations 2 --hash && has err "none/b.png' not written" && has out hash
+  ;;
+plot_png)
+  program a.tz '' ''
+  expect 0 run a.tz --iterations 20 --quiet --plot turns --plot-to a.png && has a.csv '^time,turns'
+  # 900 x 520 pixels, white paper, and a line of the first ink from the lower left to the upper right.
+  python3 - <<'END' || fail "what a.png shows"
+import struct, zlib
+data, at, pixels = open("a.png", "rb").read(), 8, b""
+while at < len(data):
+    size, kind = struct.unpack(">I4s", data[at:at + 8])
+    if kind == b"IHDR": width, height = struct.unpack(">II", data[at + 8:at + 16])
+    if kind == b"IDAT": pixels += data[at + 8:at + 8 + size]
+    at += 12 + size
+assert (width, height) == (900, 520)
+raw, rows, before = zlib.decompress(pixels), [], bytearray(4 * width)
+for y in range(height):
+    filter, row = raw[y * (4 * width + 1)], bytearray(raw[y * (4 * width + 1) + 1:(y + 1) * (4 * width + 1)])
+    for x in range(len(row)):
+        a, b, c = (row[x - 4] if x > 3 else 0), before[x], (before[x - 4] if x > 3 else 0)
+        p = a + b - c
+        nearest = min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
+        row[x] = (row[x] + (0, a, b, (a + b) // 2, nearest)[filter]) & 255
+    rows.append(row); before = row
+ink = [(x, y) for y in range(70, 450) for x in range(92, 876) if abs(rows[y][4 * x] - 0) < 30 and abs(rows[y][4 * x + 2] - 178) < 30]
+assert rows[5][:4] == bytes([255] * 4) and len(ink) > 500
+low, high = min(ink), max(ink)
+assert low[0] < 110 and low[1] > 430 and high[0] > 860 and high[1] < 80
+END
+  ln -s /dev/full full.png
+  expect 1 run a.tz --iterations 2 --quiet --plot turns --plot-to full.png && has err 'No space left on device'
+  ;;
+damaged_pictures)
+  python3 - <<'END'
+import struct, zlib
+def chunk(kind, data): return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+def png(width, height, pixels): return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0)) +
+                                        chunk(b"IDAT", zlib.compress(pixels)) + chunk(b"IEND", b""))
+whole = png(8, 8, b"".join(b"\0" + bytes(32) for _ in range(8)))
+files = {"cut": whole[:60], "short": png(8, 8, b"\0" * 40), "huge": png(100000, 100000, b"\0" * 40), "wide": png(30000, 30000, b"\0" * 40),
+         "none": b"", "text": b"not a picture", "zero": png(0, 8, b""), "jpeg": b"\xff\xd8\xff\xe0" + bytes(40),
+         "tga": bytes([0, 0, 2]) + bytes(9) + b"\xff\xff\xff\xff\x20\0"}
+for name, data in files.items(): open(name + ".png", "wb").write(data)
+END
+  program a.tz '' 'print "on".'
+  sed -i 's/^  + to iterate:/  + to try file name (string):\n    if ((new Image) load from name): print "loaded", name.\n&/; 2i @use Image.' a.tz
+  for name in cut short huge none text zero jpeg; do
+    sed "s/bug = 0\./self try file \"$name.png\"./" a.tz >b.tz
+    expect 0 run b.tz --iterations 1 --seed 1 --memory 200 && has err "$name.png' not loaded: cannot read image file" && same "$(cat out)" on
+  done
+  for name in wide tga; do # 3.6 and 17 GB of pixels
+    sed "s/bug = 0\./self try file \"$name.png\"./" a.tz >b.tz
+    "$breve" run b.tz --iterations 1 --seed 1 --memory 200 >out 2>err
+    [ $? -le 3 ] && [ -s err ] || fail "$name.png is refused with a message"
+    ! grep -q loaded out || fail "$name.png is loaded"
+  done
+  ;;
+live)
+  # `script` runs it on a terminal; what that shows is in out.
+  program a.tz 'bug = new Mobile. bug set-color to (1, 0, 0). self point-camera at (0, 0, 0) from (0, 5, 9).' 'print "step $turns".'
+  COLORTERM=truecolor script -qec "'$breve' run a.tz --iterations 20 --seed 1 --live --plot turns" /dev/null >out </dev/null 2>err ||
+    fail "--live on a terminal"
+  has out '▀' && has out '38;2;' && has out 'iteration 20' && has out 'turns 20' && has out '█' && has out 'step 20'
+  # Red in the middle: the body, seen from above.
+  python3 - out <<'END' || fail "the body is not seen"
+import re, sys
+text = open(sys.argv[1], encoding="utf-8").read()
+assert any(int(r) > 150 and int(g) < 90 for r, g in re.findall(r"[34]8;2;(\d+);(\d+);\d+", text))
+END
+  COLORTERM='' script -qec "'$breve' run a.tz --iterations 2 --seed 1 --live" /dev/null >out </dev/null 2>err
+  has out '38;5;'
+  expect 0 run a.tz --iterations 2 --seed 1 --live && has err '--live needs a terminal'
+  ;;
+picture_sizes)
+  program a.tz '' ''
+  for size in 0x10 10x0 1000000x10 10x1000000; do
+    expect 1 run a.tz --iterations 1 --quiet --size $size --snapshot a.png && has err 'each side must be from 1 to 16384'
+  done
+  for size in x 10 10x 10x-3 9999999999x2; do
+    expect 1 run a.tz --iterations 1 --quiet --size $size --snapshot a.png && has err "'$size' is not a WIDTHxHEIGHT"
+  done
+  [ ! -e a.png ] || fail "a picture of no size"
+  expect 0 run a.tz --iterations 1 --quiet --size 1x1 --snapshot a.png --movie a.gif && [ -s a.gif ]
+  ;;
 interrupt)
   program a.tz 'print "begun".' ''
   "$breve" run a.tz --seed 1 --stats >out 2>err &

@@ -10,7 +10,7 @@ enum { kWidth = 640, kHeight = 480, kPixels = kWidth * kHeight };
 static const double kPercent = 0.01;
 
 static const char* const start =
-    "@use Control.\n@use Mobile.\n@use Stationary.\n@use Shape.\n@use Image.\n"
+    "@use Control.\n@use Mobile.\n@use Stationary.\n@use Shape.\n@use Image.\n@use Camera.\n"
     "Mobile : Thing {\n"
     "\t+ to become from shape (object) at place (vector) in color (vector):\n"
     "\t\tself set-shape to shape. self move to place. self set-color to color. return self.\n"
@@ -67,6 +67,18 @@ static breve_rows rows_of(breve_scene* scene, uint32_t kind) {
 
 static const void* row(const breve_rows* rows, size_t i) { return (const char*)rows->data + i * rows->stride; }
 
+/* Six times the volume, by the divergence theorem: above 0 if the triangles are counter-clockwise seen from outside. */
+static double six_volumes(const breve_mesh* mesh) {
+  double six = 0;
+  for (size_t i = 0; i < mesh->index_count; i += 3) {
+    const float* a = mesh->positions + 3 * mesh->indices[i];
+    const float* b = mesh->positions + 3 * mesh->indices[i + 1];
+    const float* c = mesh->positions + 3 * mesh->indices[i + 2];
+    six += a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+  }
+  return six;
+}
+
 static void bodies_that_look_alike_share_a_mesh(void) {
   scene s;
   if (!open_show(&s,
@@ -93,17 +105,37 @@ static void bodies_that_look_alike_share_a_mesh(void) {
   const breve_mesh* sphere = row(&meshes, first->mesh);
   CHECK(sphere->vertex_count > 100 && sphere->index_count % 3 == 0);
   for (size_t i = 0; i < sphere->index_count; ++i) CHECK(sphere->indices[i] < sphere->vertex_count);
-  /* Six times the volume, by the divergence theorem: of a unit ball 8 pi, of its mesh a little less. */
-  double six = 0;
-  for (size_t i = 0; i < sphere->index_count; i += 3) {
-    const float* a = sphere->positions + 3 * sphere->indices[i];
-    const float* b = sphere->positions + 3 * sphere->indices[i + 1];
-    const float* c = sphere->positions + 3 * sphere->indices[i + 2];
-    six += a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
-  }
-  CHECK_NEAR(8 * acos(-1), six, kPercent * 8 * acos(-1));
+  CHECK_NEAR(8 * acos(-1), six_volumes(sphere), kPercent * 8 * acos(-1));
   breve_scene_destroy(scene);
   scene_close(&s);
+}
+
+static void triangles_of_every_shape_face_outward(void) {
+  scene s;
+  const double pi = acos(-1);
+  const struct {
+    const char* shape;
+    double volume; /* a ball is a little larger than its mesh */
+  } shapes[] = {{"(new Cube) init-with size (1, 2, 3)", 6},
+                {"(new Sphere) init-with radius 2", pi * 32 / 3},
+                {"(new Cylinder) init-with radius 1 height 3", 3 * pi},
+                {"(new Capsule) init-with radius 1 length 2", 2 * pi + pi * 4 / 3},
+                {"(new PolygonDisk) init-with sides 4 height 3 radius 1", 6},
+                {"(new PolygonCone) init-with sides 4 height 3 radius 1", 2}};
+  for (size_t i = 0; i < sizeof shapes / sizeof shapes[0]; ++i) {
+    char body[256];
+    snprintf(body, sizeof body, "\t\t(new Thing) become from (%s) at (1, 2, 3) in (1, 1, 1).\n", shapes[i].shape);
+    if (!open_show(&s, body)) return;
+    breve_scene* scene = NULL;
+    CHECK_STATUS(BREVE_OK, breve_scene_create(&scene));
+    CHECK_STATUS(BREVE_OK, breve_scene_read(scene, s.world));
+    const breve_rows all = rows_of(scene, BREVE_SCENE_INSTANCES), meshes = rows_of(scene, BREVE_SCENE_MESHES);
+    const breve_instance* one = row(&all, 0);
+    const double scale = one->transform[0] * one->transform[5] * one->transform[10];
+    CHECK_NEAR(shapes[i].volume, scale * six_volumes(row(&meshes, one->mesh)) / 6, 2 * kPercent * shapes[i].volume);
+    breve_scene_destroy(scene);
+    scene_close(&s);
+  }
 }
 
 static void lines_texts_and_lights_are_rows(void) {
@@ -129,8 +161,31 @@ static void lines_texts_and_lights_are_rows(void) {
   breve_backdrop backdrop = breve_backdrop_default();
   CHECK_STATUS(BREVE_OK, breve_scene_backdrop(scene, &backdrop));
   CHECK(backdrop.color[2] == 0.75F && backdrop.dimension == 3 && backdrop.texture == BREVE_NO_TEXTURE);
+  CHECK(backdrop.skybox[0] == BREVE_NO_TEXTURE && backdrop.every_frame == 1);
   breve_rows rows;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_scene_rows(scene, 11, &rows));
+  breve_scene_destroy(scene);
+  scene_close(&s);
+}
+
+static void a_sky_box_is_six_textures(void) {
+  scene s;
+  if (!open_show(&s,
+                 "\t\tself set-skybox-images to {\"images/sky.png\", \"images/clouds.png\", \"images/sky.png\", "
+                 "\"images/sky.png\", \"images/sky.png\", \"images/ground.png\"}.\n"
+                 "\t\tself disable-draw-every-frame.\n"))
+    return;
+  breve_scene* scene = NULL;
+  CHECK_STATUS(BREVE_OK, breve_scene_create(&scene));
+  CHECK_STATUS(BREVE_OK, breve_scene_read(scene, s.world));
+  breve_backdrop backdrop = breve_backdrop_default();
+  CHECK_STATUS(BREVE_OK, breve_scene_backdrop(scene, &backdrop));
+  const breve_rows textures = rows_of(scene, BREVE_SCENE_TEXTURES);
+  for (int i = 0; i < 6; ++i) {
+    if (!CHECK(backdrop.skybox[i] < textures.count)) continue;
+    CHECK(((const breve_texture*)row(&textures, backdrop.skybox[i]))->width == (i == 5 ? 64 : 128));
+  }
+  CHECK(backdrop.every_frame == 0);
   breve_scene_destroy(scene);
   scene_close(&s);
 }
@@ -289,6 +344,26 @@ static void a_shadow_lies_where_the_light_throws_it(void) {
   scene_close(&s);
 }
 
+static void a_window_leaves_the_rest_of_the_picture(void) {
+  scene s;
+  shot p;
+  if (!open_show(&s,
+                 "\t\tself set-background-color to (0, .5, 0). self point-camera at (0, 0, 0) from (0, 0, 20).\n"
+                 "\t\t(new Thing) become from box at (0, 0, 0) in (1, 1, 1).\n"
+                 "\t\teye = new Camera. eye look at (50, 0, 0) from (0, 0, 5). eye set-position with-x 10 with-y 20.\n"
+                 "\t\teye set-size with-height 60 with-width 80.\n"))
+    return;
+  if (take(&s, &p)) {
+    CHECK(pixel(&p, 320, 240)[0] == 255);                            /* the box */
+    CHECK(pixel(&p, 5, 5)[1] > 100 && pixel(&p, 600, 470)[1] > 100); /* the background around */
+    CHECK(pixel(&p, 12, 480 - 22)[1] > 100 &&
+          pixel(&p, 12, 480 - 22)[0] == 0); /* and in the window, which sees no box */
+    CHECK_NEAR(19.5, p.depth[240 * kWidth + 320], kPercent * 19.5);
+  }
+  drop(&p);
+  scene_close(&s);
+}
+
 static uint64_t draw_calls(int bodies) {
   scene s;
   shot p;
@@ -364,7 +439,9 @@ static void what_cannot_be_drawn_is_refused(void) {
 
 void view_suite(void) {
   RUN(bodies_that_look_alike_share_a_mesh);
+  RUN(triangles_of_every_shape_face_outward);
   RUN(lines_texts_and_lights_are_rows);
+  RUN(a_sky_box_is_six_textures);
   RUN(a_point_is_seen_where_the_camera_says);
   RUN(a_camera_that_the_program_places_is_not_automatic);
   RUN(a_camera_that_is_half_wrong_leaves_the_last_one);
@@ -372,6 +449,7 @@ void view_suite(void) {
   RUN(a_plane_has_its_depth);
   RUN(a_lit_face_has_its_colour);
   RUN(a_shadow_lies_where_the_light_throws_it);
+  RUN(a_window_leaves_the_rest_of_the_picture);
   RUN(draw_calls_do_not_grow_with_bodies);
   RUN(a_picture_changes_nothing);
   RUN(what_cannot_be_drawn_is_refused);

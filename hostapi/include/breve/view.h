@@ -157,6 +157,9 @@ typedef struct breve_backdrop {
   uint32_t lighting, shadows, reflections, outline, text; /* 0 or 1: enabled by the program */
   double time;        /* simulated, s */
   uint64_t iteration;
+  uint32_t skybox[6];   /* rows of BREVE_SCENE_TEXTURES: front (-z), back, left (-x), right, top, bottom; drawn if none is
+                           BREVE_NO_TEXTURE */
+  uint32_t every_frame; /* 1: a window should draw after every iteration; 0: it may leave out pictures */
 } breve_backdrop;
 
 /* All zero, to be filled in. */

@@ -1,0 +1,153 @@
+#!/usr/bin/env bash
+# The window of `breve view` on a screen in memory, with input from a file.
+# Usage: viewer.sh XVFB_RUN BREVE DIRECTORY
+set -euo pipefail
+xvfb=$1 breve=$(realpath "$2") directory=$3
+if [[ $xvfb != inside ]]; then
+  rm -rf "$directory"
+  mkdir -p "$directory"
+  # xvfb-run also fails if it cannot tidy up after itself: the file that is made at the end counts.
+  "$xvfb" -a -s '-screen 0 1280x800x24' bash "$0" inside "$breve" "$directory" || true
+  [[ -e $directory/passed ]]
+  exit
+fi
+cd "$directory"
+fail() {
+  echo "viewer.sh: $1" >&2
+  cat output.txt >&2
+  exit 1
+}
+# show STATUS ARGUMENTS…: breve view; what it says is in output.txt.
+show() {
+  local wanted=$1 status=0
+  shift
+  SDL_RENDER_DRIVER=software "$breve" view "$@" --size 480x320 >output.txt 2>&1 || status=$?
+  [[ $status == "$wanted" ]] || fail "status $status and not $wanted of: breve view $*"
+}
+has() { grep -q -- "$1" output.txt || fail "'$1' is not in what it says"; }
+
+cat >toy.tz <<'END'
+@use Control.
+@use Mobile.
+@use Shape.
+Controller Toy.
+Control : Toy {
+  + variables:
+    ball (object).
+  + to init:
+    self point-camera at (0, 0, 0) from (0, 4, 20).
+    ball = new Ball.
+    ball add-menu named "Paint it" for-method "paint".
+  + to catch-key-a-down: print "key a".
+  + to catch-key-up-down: print "key up".
+  + to click on thing (object):
+    if thing: print "click on a", (thing get-type).
+    else print "click on nothing".
+    super click on thing.
+}
+Mobile : Ball {
+  + variables:
+    mood (string).
+  + to init:
+    mood = "calm".
+    self set-shape to ((new Sphere) init-with radius 2).
+    self set-color to (1, .5, .1).
+  + to paint:
+    print "painted". self set-color to (0, 0, 1).
+}
+END
+cat >play.txt <<'END'
+0 shot first.png
+2 say begin
+3 key F5
+5 say paused
+6 key F6
+7 say stepped
+8 key F5
+9 click 240 160
+9 key a
+9 key Up
+13 shot selected.png
+14 key F3
+# The seventh row of the menu is a line, and the ball's own entry is below it.
+16 click 60 168
+20 shot painted.png
+21 drag 240 160 300 190 left
+22 wheel 4
+23 drag 240 160 260 200 right
+25 shot moved.png
+26 key Home
+28 shot home.png
+29 click 470 310
+30 key F1
+30 key F2
+32 shot panels.png
+33 key F1
+34 key F9
+35 key F10
+36 key F8
+60 key F10
+62 say end
+63 quit
+END
+show 0 toy.tz --seed 1 --play play.txt
+[[ $(sed -n 's/^paused: \(.*\) s  iteration.*/\1/p' output.txt) == "$(sed -n 's/^begin: \(.*\) s  iteration.*/\1/p' output.txt)" ]] ||
+  fail "time passes while it is paused"
+grep -q '^stepped: .*\[paused\]' output.txt || fail "a step does not leave it paused"
+[[ $(sed -n 's/^stepped: .*iteration \([0-9]*\) .*/\1/p' output.txt) == \
+  $(($(sed -n 's/^paused: .*iteration \([0-9]*\) .*/\1/p' output.txt) + 1)) ]] || fail "a step is not one iteration"
+has 'click on a Ball'
+has 'click on nothing'
+has '^key a'
+has '^key up'
+has '^painted'
+has '^end: .*speed 2'
+for picture in first selected painted moved home panels breve-0001; do
+  [[ $(head -c 8 "$picture.png" | od -An -tx1 | tr -d ' \n') == 89504e470d0a1a0a ]] || fail "$picture.png is not a PNG file"
+done
+for pair in first:selected selected:painted painted:moved moved:home home:panels; do
+  cmp -s "${pair%:*}.png" "${pair#*:}.png" && fail "the pictures $pair are the same"
+done
+[[ -s breve-0001.mp4 || -d breve-0001.mp4.frames ]] || fail "no movie was recorded"
+
+# An error shows its line, and the window stays; with --watch the program goes on once it is mended.
+sed 's/mood = "calm"/mood = "calm". self schedule method-call "burst" at-time .3/; s/^  + to paint:/  + to burst: die "burst".\n&/' toy.tz >bad.tz
+printf '30 shot error.png\n30 say failed\n40 quit\n' >play.txt
+show 1 bad.tz --play play.txt
+has 'bad.tz:[0-9]*:[0-9]*: error: burst'
+has '^failed: .*stopped by an error'
+cp bad.tz mended.tz
+rm output.txt
+printf '30 say failed\n400 say mended\n401 quit\n' >play.txt
+(
+  until grep -q '^failed' output.txt 2>/dev/null; do sleep 0.1; done
+  sed -i 's/die "burst"/print "mended"/' mended.tz
+) &
+show 0 mended.tz --watch --play play.txt
+wait
+has 'mended.tz reloaded'
+grep -q '^mended: .*stopped' output.txt && fail "does not go on after an edit"
+
+# Without drawing of every frame most frames show the picture of the one before.
+sed 's/    ball add-menu/    ball set-velocity to (4, 0, 0). self set-iteration-step to .02. self set-integration-step to .02.\n&/' toy.tz >on.tz
+sed 's/    ball add-menu/    self disable-draw-every-frame.\n&/' on.tz >off.tz
+printf '1 key F4\n20 shot 0.png\n21 shot 1.png\n22 shot 2.png\n23 shot 3.png\n24 quit\n' >play.txt
+equal_frames() {
+  show 0 "$1" --play play.txt
+  local count=0 i
+  for i in 0 1 2; do cmp -s "$i.png" "$((i + 1)).png" && count=$((count + 1)); done
+  echo "$count"
+}
+[[ $(equal_frames on.tz) == 0 ]] || fail "a frame is left out"
+[[ $(equal_frames off.tz) -ge 2 ]] || fail "no frame is left out"
+
+printf '3 fly away\n' >play.txt
+show 1 toy.tz --play play.txt
+has "play.txt:1: '3 fly away' is not an action of --play"
+show 2 nowhere.tz
+has nowhere.tz
+status=0
+env -u DISPLAY SDL_VIDEODRIVER=x11 "$breve" view toy.tz >output.txt 2>&1 || status=$?
+[[ $status == 1 ]] || fail "without a screen the status is $status"
+has 'cannot open a window'
+touch passed
