@@ -312,11 +312,13 @@ ast::ExprPtr Parser::magnitude(std::size_t start) {
 
 ast::ExprPtr Parser::list_literal(std::size_t start) {
   advance();
-  std::size_t second = pos_;  // of a list, or the ':' of a hash as other languages write it
+  std::size_t second = pos_;  // of a list, or the ':' or '=' of a hash as other languages write it
   if (at_kind(TokenKind::String) || at_kind(TokenKind::Int) || at_kind(TokenKind::Name)) ++second;
-  if (second > pos_ && items_[second].sign == sign(":") && items_[start].match != 0) {
+  const bool assigned = items_[second].sign == sign("=") && at_name() && !is_variable(token());
+  if (second > pos_ && (items_[second].sign == sign(":") || assigned) && items_[start].match != 0) {
+    const std::string key = assigned ? fmt::format("\"{}\"", token().text) : source_of(pos_, second);
     error(items_[second].token->span, "foreign-hash", "a hash is not written with its entries",
-          fmt::format("set its entries one by one: hash{{{}}} = value.", source_of(pos_, second)));
+          fmt::format("set its entries one by one: hash{{{}}} = value.", key));
     pos_ = items_[start].match;
     advance();
     return make(start, ast::ListLit{{}});
@@ -333,12 +335,22 @@ std::vector<ast::ExprPtr> Parser::items(std::string_view close, std::string_view
   do {
     if (!result.empty() && at(close)) fail_expected("a value after the comma", "leave out the last comma");
     result.push_back(value());
+    if (close == "}") lint_element(*result.back());
   } while (accept(","));
   if (!accept(close))
     fail_expected(fmt::format("',' or '{}' {}", close, where),
                   fmt::format("the '{}' of line {} is still open", items_[first - 1].token->text,
                               items_[first - 1].token->span.line));
   return result;
+}
+
+// `{ 1, n = 2 }`: allowed, and seldom meant.
+void Parser::lint_element(const ast::Expr& element) {
+  const auto* assign = std::get_if<ast::Assign>(&element.node);
+  if (assign == nullptr || assign->op || element.parenthesised) return;
+  lint(element.span, "lint-assignment-element", "this element of the list is an assignment",
+       "to compare, write '=='; if it is meant, put it in parentheses; an entry of a hash is set by: hash{key} = "
+       "value.");
 }
 
 ast::ExprPtr Parser::matrix_literal(std::size_t start) {
