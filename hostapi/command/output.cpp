@@ -1,6 +1,7 @@
 // Writing to file descriptors with a buffer of our own, so that a reader who goes away is a fact and not a signal.
 #include "output.hpp"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -23,6 +24,15 @@ bool write_all(int descriptor, std::string_view text) {
     text.remove_prefix(static_cast<std::size_t>(written));
   }
   return true;
+}
+
+/// As many of the parts of a line, which commas separate, as a line of the terminal has room for: a line that wraps
+/// cannot be removed by '\r'.
+std::string_view fitting(std::string_view line) {
+  winsize size{};
+  if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || line.size() < size.ws_col) return line;
+  const std::size_t comma = line.rfind(", ", size.ws_col - 1);
+  return line.substr(0, comma == std::string_view::npos ? std::size_t{size.ws_col} - 1 : comma);
 }
 
 }  // namespace
@@ -67,7 +77,7 @@ void Output::flush_sometimes() {
 void Output::progress(std::string_view line) {
   if (!error_terminal_) return;
   flush();
-  write_all(STDERR_FILENO, "\r\x1b[K" + std::string(line));
+  write_all(STDERR_FILENO, "\r\x1b[K" + std::string(fitting(line)));
   progress_shown_ = true;
 }
 
