@@ -136,7 +136,11 @@ std::int32_t random_seed_from_device(Machine& machine, Instance& self) {
 }
 
 Vector3 color_to_hsv(Machine&, Instance&, Vector3 rgb) { return rgb_to_hsv(rgb); }
-Vector3 color_to_rgb(Machine&, Instance&, Vector3 hsv) { return hsv_to_rgb(hsv); }
+Vector3 color_to_rgb(Machine& machine, Instance&, Vector3 hsv) {
+  constexpr std::uint64_t kOfRemainder = 4;  // turns: that of a hue of 1e308, bit by bit
+  machine.charge(kOfRemainder);
+  return hsv_to_rgb(hsv);
+}
 Vector3 color_number(Machine&, Instance&, std::int32_t n) { return unique_color(n); }
 
 constexpr std::array kMathFunctions = {
