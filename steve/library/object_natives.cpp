@@ -75,7 +75,7 @@ void object_unschedule(Machine& machine, Instance& self, Text method, double whe
   constexpr std::uint64_t kOfSearch = 4;  // turns
   machine.charge(kOfSearch);
   // Without the name of a method each of the object's calls is looked at.
-  if (view(method).empty()) machine.charge_for(machine.world().scheduled_count());
+  if (view(method).empty()) machine.charge(machine.world().scheduled_count());
   machine.world().unschedule(self.id, view(method), when);
 }
 
