@@ -312,13 +312,11 @@ ast::ExprPtr Parser::magnitude(std::size_t start) {
 
 ast::ExprPtr Parser::list_literal(std::size_t start) {
   advance();
-  std::size_t second = pos_;  // of a list, or the ':' or '=' of a hash as other languages write it
+  std::size_t second = pos_;  // of a list, or the ':' of a hash as other languages write it
   if (at_kind(TokenKind::String) || at_kind(TokenKind::Int) || at_kind(TokenKind::Name)) ++second;
-  const bool assigned = items_[second].sign == sign("=") && at_name() && !is_variable(token());
-  if (second > pos_ && (items_[second].sign == sign(":") || assigned) && items_[start].match != 0) {
-    const std::string key = assigned ? fmt::format("\"{}\"", token().text) : source_of(pos_, second);
+  if (second > pos_ && items_[second].sign == sign(":") && items_[start].match != 0) {
     error(items_[second].token->span, "foreign-hash", "a hash is not written with its entries",
-          fmt::format("set its entries one by one: hash{{{}}} = value.", key));
+          fmt::format("set its entries one by one: hash{{{}}} = value.", source_of(pos_, second)));
     pos_ = items_[start].match;
     advance();
     return make(start, ast::ListLit{{}});
