@@ -1,6 +1,7 @@
 // Writing to file descriptors with a buffer of our own, so that a reader who goes away is a fact and not a signal.
 #include "output.hpp"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -24,6 +25,15 @@ bool write_all(int descriptor, std::string_view text) {
     text.remove_prefix(static_cast<std::size_t>(written));
   }
   return true;
+}
+
+/// As many of the parts of a line, which commas separate, as a line of the terminal has room for: a line that wraps
+/// cannot be removed by '\r'.
+std::string_view fitting(std::string_view line) {
+  winsize size{};
+  if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || line.size() < size.ws_col) return line;
+  const std::size_t comma = line.rfind(", ", size.ws_col - 1);
+  return line.substr(0, comma == std::string_view::npos ? std::size_t{size.ws_col} - 1 : comma);
 }
 
 }  // namespace
@@ -70,7 +80,8 @@ void Output::progress(std::string_view lines) {
   if (!error_terminal_) return;
   flush();
   clear_progress();
-  write_all(STDERR_FILENO, lines);
+  const bool one = lines.find('\n') == std::string_view::npos;  // several are laid out for the terminal's width
+  write_all(STDERR_FILENO, one ? fitting(lines) : lines);
   progress_shown_ = true;
   progress_breaks_ = static_cast<std::size_t>(std::count(lines.begin(), lines.end(), '\n'));
 }

@@ -73,8 +73,9 @@ class Progress {
       of = fmt::format(", {:.0f} % of {} s", 100 * done, *options_.seconds);
     }
     const std::string left = done > 0 ? ", " + time_words(elapsed * (1 - done) / done) + " to go" : "";
-    output_.progress(fmt::format("iteration {}{}, {:.2f} s simulated, {:.3g} x real time, {:.0f} iterations/s{}",
-                                 iteration, of, time, time / elapsed, static_cast<double>(iteration) / elapsed, left));
+    // What matters most first: a narrow terminal shows the beginning.
+    output_.progress(fmt::format("iteration {}{}{}, {:.3g} x real time, {:.2f} s simulated, {:.0f} iterations/s",
+                                 iteration, of, left, time / elapsed, time, static_cast<double>(iteration) / elapsed));
   }
 
  private:

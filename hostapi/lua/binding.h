@@ -76,15 +76,25 @@ char* bl_copy(const char* text, char from, char to);
 
 typedef struct bl_lib {
   lua_State* main;
-  struct bl_world* current; /* whose code runs, or ran last; NULL: none yet */
-  bl_program* loading;      /* its file is being run to be described; NULL: none is */
-  bl_program* draft;        /* in an interpreter: what breve.class adds to outside of files; NULL: nothing */
-  bool running_file;        /* a world's file is being run: its classes are not the world's yet */
-  int vectors, matrices;    /* references of their metatables */
-  int classes;              /* ... of a table: name -> class table */
-  int sorted_keys;          /* ... of a function: the keys of a table, in order */
-  int save_hook, load_hook; /* functions of breve.on_save and breve.on_load, or LUA_NOREF */
+  struct bl_world* current;           /* whose code runs, or ran last; NULL: none yet */
+  bl_program* loading;                /* its file is being run to be described; NULL: none is */
+  bl_program* draft;                  /* in an interpreter: what breve.class adds to outside of files; NULL: nothing */
+  bool running_file;                  /* a world's file is being run: its classes are not the world's yet */
+  int vectors, matrices;              /* references of their metatables */
+  int classes;                        /* ... of a table: name -> class table */
+  int sorted_keys;                    /* ... of a function: the keys of a table, in order */
+  int save_hook, load_hook;           /* functions of breve.on_save and breve.on_load, or LUA_NOREF */
+  size_t steps;                       /* of patterns, not yet counted */
+  struct bl_description* description; /* a file runs without a world, in a state of its own; NULL: none does */
 } bl_lib;
+
+/* What bounds a file that is run to be described, where no world does. */
+typedef struct bl_description {
+  lua_State* L;
+  size_t used;    /* bytes */
+  uint64_t turns; /* as in a world's budget */
+  bool exhausted;
+} bl_description;
 
 /* ---- what belongs to one world ---- */
 
@@ -209,7 +219,11 @@ void bl_push_own(lua_State* L, bl_lib* lib, const char* class_name, const char* 
 bl_lib* bl_open(lua_State* L); /* makes the library's table and leaves it on the stack */
 /* Into the globals of a state of the world's own. */
 void bl_open_safe_libraries(lua_State* L, bl_lib* lib, uint32_t allow);
-void bl_open_order(lua_State* L); /* pairs and next */
+void bl_open_order(lua_State* L);                 /* pairs and next */
+void bl_open_patterns(lua_State* L, bl_lib* lib); /* find, match, gmatch, gsub of string */
+void bl_open_metered(lua_State* L, bl_lib* lib);  /* what else works on much at once */
+/* Count work, in turns of a loop in steve; an error if the budget is used up, or a host interrupts. */
+void bl_charge(lua_State* L, bl_lib* lib, uint64_t turns);
 int bl_ordered_pairs(lua_State* L);
 int bl_sorted_keys(lua_State* L);                  /* a function of Lua: the keys of a table, in order */
 void bl_open_functions(lua_State* L, bl_lib* lib); /* breve.new and so on, into the table on top */
@@ -220,6 +234,7 @@ bool bl_save(void* user, breve_world* world, breve_write_fn write, void* sink, b
 bool bl_load(void* user, breve_world* world, const char* bytes, size_t size, bool commit);
 breve_status bl_bind(void* user, breve_world* world, void** binding, breve_write_fn reason, void* sink);
 void* bl_allocate(void* pool, void* block, size_t old_size, size_t new_size); /* lua_Alloc */
+lua_State* bl_description_open(bl_description* description);                  /* NULL: no memory */
 void bl_count_anew(bl_world* w);                                              /* a new call has a budget again */
 void bl_set_hook(lua_State* L, bl_world* w, bool profiled);
 bl_pool* bl_pool_new(breve_world* world);

@@ -49,30 +49,23 @@ static int open_description(lua_State* L) {
   const bl_program* program = (const bl_program*)lua_touserdata(L, 1);
   bl_lib* lib = bl_open(L);
   if (!program->config.state) {
+    lib->description = (bl_description*)lua_touserdata(L, 2);
     lua_setglobal(L, "breve");
     bl_open_safe_libraries(L, lib, program->config.allow);
   }
   return 0;
 }
 
-/* A file that does not end when it is run would stop the host for good. */
-static void refuse_to_go_on(lua_State* L, lua_Debug* call) {
-  (void)call;
-  luaL_error(L, "the file runs too long outside of its methods");
-}
-
 static breve_status describe(bl_program* program, breve_write_fn reason, void* sink) {
-  enum { MOST_INSTRUCTIONS = 100000000 };
+  bl_description bounds;
   lua_State* L = program->config.state;
-  if (!L) {
-    L = luaL_newstate();
-    if (!L) return BREVE_ERROR_MEMORY;
-    lua_sethook(L, refuse_to_go_on, LUA_MASKCOUNT, MOST_INSTRUCTIONS);
-  }
+  if (!L) L = bl_description_open(&bounds);
+  if (!L) return BREVE_ERROR_MEMORY;
   lua_pushcfunction(L, open_description);
   lua_pushlightuserdata(L, program);
+  lua_pushlightuserdata(L, program->config.state ? NULL : &bounds);
   breve_status status = BREVE_OK;
-  if (lua_pcall(L, 1, 0, 0) != LUA_OK) {
+  if (lua_pcall(L, 2, 0, 0) != LUA_OK) {
     lua_pop(L, 1);
     status = BREVE_ERROR_MEMORY;
   } else {

@@ -59,6 +59,12 @@ static void describe(lua_State* L, key* k) {
   }
 }
 
+enum { PIECE = 1024, SHARE = 2 }; /* keys between two looks at the budget, and how many of them are one turn */
+
+static void count_key(lua_State* L, lua_Integer number) {
+  if (number % PIECE == 0) bl_charge(L, bl_lib_of(L), PIECE / SHARE);
+}
+
 /* A function of Lua: table -> table of its keys. In an object, 0 is not a key: its id stands there. */
 int bl_sorted_keys(lua_State* L) {
   luaL_checktype(L, 1, LUA_TTABLE);
@@ -70,7 +76,9 @@ int bl_sorted_keys(lua_State* L) {
     if (object && lua_isinteger(L, -2) && lua_tointeger(L, -2) == 0) continue;
     lua_pushvalue(L, -2);
     lua_rawseti(L, 2, ++count);
+    count_key(L, count);
   }
+  bl_charge(L, bl_lib_of(L), (uint64_t)count);
   key* keys = (key*)lua_newuserdatauv(L, ((size_t)count + 1) * sizeof *keys, 0);
   for (lua_Integer i = 0; i < count; ++i) {
     lua_rawgeti(L, 2, i + 1);
@@ -118,6 +126,7 @@ static bool is_sequence(lua_State* L, int table) {
       lua_pop(L, 2);
       return false;
     }
+    count_key(L, (lua_Integer)count);
   }
   return count == size;
 }

@@ -112,12 +112,13 @@ static int load_text(lua_State* L) {
   const char* text = lua_tolstring(L, 1, &size);
   const char* name = luaL_optstring(L, 2, text);
   const bool has_env = !lua_isnone(L, 4);
+  bl_charge(L, lib_of(L), size); /* reading a byte of a program takes about as long as a turn of a loop */
   if (luaL_loadbufferx(L, text, size, name, "t") != LUA_OK) {
     lua_pushnil(L);
     lua_insert(L, -2);
     return 2;
   }
-  lua_pushvalue(L, has_env ? 4 : lua_upvalueindex(1)); /* the globals of the file */
+  lua_pushvalue(L, has_env ? 4 : lua_upvalueindex(2)); /* the globals of the file */
   if (!lua_setupvalue(L, -2, 1)) lua_pop(L, 1);
   return 1;
 }
@@ -202,8 +203,9 @@ void bl_run_program(lua_State* L, bl_lib* lib, bl_program* program) {
     lua_pushcclosure(L, require_module, 3);
     lua_setfield(L, -2, "require");
   }
-  lua_pushvalue(L, -1);
-  lua_pushcclosure(L, load_text, 1);
+  lua_pushlightuserdata(L, lib);
+  lua_pushvalue(L, -2);
+  lua_pushcclosure(L, load_text, 2);
   lua_setfield(L, -2, "load");
   if (!lua_setupvalue(L, -2, 1)) lua_pop(L, 1);
   lua_call(L, 0, 0);
@@ -269,4 +271,6 @@ void bl_open_safe_libraries(lua_State* L, bl_lib* lib, uint32_t allow) {
   luaL_setfuncs(L, math_functions, 1);
   lua_pop(L, 1);
   bl_open_order(L);
+  bl_open_patterns(L, lib);
+  bl_open_metered(L, lib);
 }

@@ -1,5 +1,6 @@
 /* The Lua side of a world: its state, whose memory is the world's and whose loops count in its budget, and the file of
    its program, run in it. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "binding.h"
@@ -7,6 +8,11 @@
 /* ---- memory: small blocks of a few sizes, kept for the next one of that size --------------------------------------- */
 
 enum { STEP = 16, LARGEST = 512, CLASSES = LARGEST / STEP, CHUNK = 32768 };
+enum {
+  MUCH = 1 << 20,         /* bytes: so much is counted at once */
+  BYTES = 128,            /* so many count as one turn of a loop in steve */
+  LONGEST_TEXT = 4 << 20, /* bytes, where a budget bounds work: one instruction compares two texts */
+};
 
 typedef union chunk {
   union chunk* next;
@@ -19,6 +25,8 @@ struct bl_pool {
   char* room; /* not given out yet, in the last chunk */
   size_t left;
   void* kept[CLASSES];
+  bl_world* w;
+  uint64_t owed; /* bytes of large blocks that were taken since they were counted last */
 };
 
 bl_pool* bl_pool_new(breve_world* world) {
@@ -38,8 +46,16 @@ void bl_pool_destroy(bl_pool* pool) {
   breve_world_release(pool->world, pool, sizeof *pool);
 }
 
+static void look_soon(bl_world* w);
+
 static void* take(bl_pool* pool, size_t size) {
-  if (size > LARGEST) return breve_world_allocate(pool->world, size);
+  if (size > LARGEST) {
+    void* large = breve_world_allocate(pool->world, size);
+    if (!large) return NULL;
+    pool->owed += size;
+    if (pool->owed >= MUCH && pool->w) look_soon(pool->w);
+    return large;
+  }
   const size_t number = (size - 1) / STEP, rounded = (number + 1) * STEP;
   void* block = pool->kept[number];
   if (block) {
@@ -72,7 +88,11 @@ static void give_back(bl_pool* pool, void* block, size_t size) {
 
 void* bl_allocate(void* user, void* block, size_t old_size, size_t new_size) {
   bl_pool* pool = (bl_pool*)user;
-  if (!block) return new_size == 0 ? NULL : take(pool, new_size);
+  if (!block) { /* the old size is what the block is for */
+    const bool too_long = old_size == LUA_TSTRING && new_size > LONGEST_TEXT;
+    if (new_size == 0 || (too_long && breve_world_has_budget(pool->world))) return NULL;
+    return take(pool, new_size);
+  }
   if (new_size == 0) {
     give_back(pool, block, old_size);
     return NULL;
@@ -88,9 +108,11 @@ void* bl_allocate(void* user, void* block, size_t old_size, size_t new_size) {
 /* ---- the budget ---------------------------------------------------------------------------------------------------- */
 
 enum {
-  INSTRUCTIONS = 1000,
-  TURNS = 250
-}; /* so many instructions take about as long as so many iterations of a loop in steve */
+  INSTRUCTIONS = 200,
+  TURNS = 50,            /* so many instructions take about as long as so many iterations of a loop in steve */
+  MOST_TURNS = 25000000, /* of a file that is described: a second or two */
+  MOST_BYTES = 256 << 20 /* of the same */
+};
 
 static void hook(lua_State* L, lua_Debug* event);
 
@@ -102,10 +124,28 @@ static void fail_at_once(lua_State* L, bl_world* w, breve_status status) {
   bl_fail(L, w, status);
 }
 
+static void charge_world(lua_State* L, bl_world* w, uint64_t turns) {
+  const breve_status status = breve_world_charge(w->world, turns);
+  if (status != BREVE_OK) fail_at_once(L, w, status);
+}
+
+/* Large blocks were taken: the next instruction counts them, and not the one that ends a piece. */
+static void look_soon(bl_world* w) {
+  lua_State* const threads[] = {w->L, w->running};
+  for (size_t i = 0; i < 2; ++i)
+    if (threads[i] && lua_gethook(threads[i]) == hook && (lua_gethookmask(threads[i]) & LUA_MASKCOUNT) != 0)
+      lua_sethook(threads[i], hook, lua_gethookmask(threads[i]), 1);
+}
+
 static void count_instructions(lua_State* L) {
   bl_world* w = *(bl_world**)lua_getextraspace(L);
-  const breve_status status = breve_world_charge(w->world, w->exhausted ? 1 : TURNS);
-  if (status != BREVE_OK) fail_at_once(L, w, status);
+  uint64_t turns = w->exhausted ? 1 : TURNS;
+  if (w->pool->owed >= MUCH) {
+    turns += w->pool->owed / BYTES;
+    w->pool->owed = 0;
+  }
+  if (!w->exhausted && lua_gethookcount(L) != INSTRUCTIONS) lua_sethook(L, hook, lua_gethookmask(L), INSTRUCTIONS);
+  charge_world(L, w, turns);
 }
 
 static void hook(lua_State* L, lua_Debug* event) {
@@ -118,6 +158,55 @@ static void hook(lua_State* L, lua_Debug* event) {
 void bl_count_anew(bl_world* w) {
   w->exhausted = false;
   lua_sethook(w->L, hook, LUA_MASKCOUNT, INSTRUCTIONS);
+}
+
+/* ---- a file without a world ------------------------------------------------------------------------------------------ */
+
+static void count_described(lua_State* L, lua_Debug* event);
+
+static void charge_description(lua_State* L, bl_description* d, uint64_t turns) {
+  d->turns = d->turns + turns < turns ? UINT64_MAX : d->turns + turns;
+  if (!d->exhausted && d->turns <= MOST_TURNS) return;
+  d->exhausted = true; /* no pcall can go on */
+  lua_sethook(L, count_described, LUA_MASKCOUNT, 1);
+  lua_sethook(d->L, count_described, LUA_MASKCOUNT, 1);
+  luaL_error(L, "the file runs too long outside of its methods");
+}
+
+static void count_described(lua_State* L, lua_Debug* event) {
+  (void)event;
+  charge_description(L, *(bl_description**)lua_getextraspace(L), TURNS);
+}
+
+static void* allocate_described(void* user, void* block, size_t old_size, size_t new_size) {
+  bl_description* d = (bl_description*)user;
+  const size_t before = block ? old_size : 0;
+  if (new_size == 0) {
+    free(block);
+    d->used -= before;
+    return NULL;
+  }
+  if (new_size > before && (new_size > MOST_BYTES || d->used - before > MOST_BYTES - new_size)) return NULL;
+  void* moved = realloc(block, new_size);
+  if (!moved) return NULL;
+  d->used = d->used - before + new_size;
+  return moved;
+}
+
+lua_State* bl_description_open(bl_description* d) {
+  memset(d, 0, sizeof *d);
+  d->L = lua_newstate(allocate_described, d);
+  if (!d->L) return NULL;
+  *(bl_description**)lua_getextraspace(d->L) = d;
+  lua_sethook(d->L, count_described, LUA_MASKCOUNT, INSTRUCTIONS);
+  return d->L;
+}
+
+void bl_charge(lua_State* L, bl_lib* lib, uint64_t turns) {
+  if (lib->description)
+    charge_description(L, lib->description, turns);
+  else if (lib->current && lib->current->pool)
+    charge_world(L, lib->current, turns);
 }
 
 /* Only a change sets it, since that begins the count of instructions anew. A hook of the host stays. */
@@ -268,10 +357,12 @@ static void destroy_world(void* user) {
   breve_world_release(world, w, sizeof *w);
 }
 
-static breve_status fail_lua(lua_State* L, int code, breve_write_fn reason, void* sink) {
+static breve_status fail_lua(const bl_world* w, int code, breve_write_fn reason, void* sink) {
+  lua_State* L = w->L;
   const char* message = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "an error that is not a text";
   if (code != LUA_ERRMEM) reason(sink, message, strlen(message));
   lua_pop(L, 1);
+  if (w->exhausted) return w->raised_status;
   return code == LUA_ERRMEM ? BREVE_ERROR_MEMORY : BREVE_ERROR_SCRIPT;
 }
 
@@ -298,12 +389,13 @@ static breve_status make_world(breve_world* world, bl_program* program, breve_wr
       return BREVE_ERROR_MEMORY;
     }
     *(bl_world**)lua_getextraspace(w->L) = w;
+    w->pool->w = w;
     if (breve_world_has_budget(world)) bl_count_anew(w);
   }
   w->running = w->L;
   request r = {w, program};
   const int code = call_protected(w->L, open_world, &r);
-  breve_status status = code == LUA_OK ? BREVE_OK : fail_lua(w->L, code, reason, sink);
+  breve_status status = code == LUA_OK ? BREVE_OK : fail_lua(w, code, reason, sink);
   if (status == BREVE_OK) {
     breve_state state = breve_state_default();
     state.user = w;
@@ -344,7 +436,7 @@ breve_status bl_bind(void* user, breve_world* world, void** binding, breve_write
   if (code != LUA_OK) {
     w->staged = NULL;
     bl_program_drop(before);
-    return fail_lua(w->L, code, reason, sink);
+    return fail_lua(w, code, reason, sink);
   }
   bl_program_drop(before);
   bl_program_hold(program);

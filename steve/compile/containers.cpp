@@ -37,7 +37,7 @@ Operand FunctionCompiler::function_call(const ast::FunctionCall& f, const ast::E
                                    "function '" + f.name + "' takes " + counts +
                                        (counts == "1" ? " argument, not " : " arguments, not ") +
                                        std::to_string(f.arguments.size()),
-                                   "the arguments are written in parentheses, with commas between them");
+                                   argument_count_help(f, e.span));
     } else {
       builder_.diagnostics().error(e.span, "unknown-function", "unknown function '" + f.name + "'",
                                    unknown_function_help(f, e.span));

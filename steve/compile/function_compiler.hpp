@@ -59,6 +59,7 @@ class FunctionCompiler {
   std::optional<Variable> need(std::string_view name, const Span& span);  // reports an unknown one
   std::string unknown_name_help(std::string_view name, const Span& span);
   std::string unknown_function_help(const ast::FunctionCall& f, const Span& span);
+  std::string argument_count_help(const ast::FunctionCall& f, const Span& span);
   std::int32_t text(std::string what);
   std::int32_t text_for(const Variable& variable, std::string_view name);
 

@@ -16,8 +16,10 @@ using enum Severity;
 constexpr std::array kLints{
     Lint{"lint-allow", Warning, "a comment '# allow:' names an unknown lint"},
     Lint{"lint-assignment-condition", Warning, "a condition is an assignment, where '==' may be meant"},
+    Lint{"lint-assignment-element", Warning, "an element of a list is an assignment, where '==' may be meant"},
     Lint{"lint-bypassed-override", Warning, "calls that match the parent's method never reach this override"},
     Lint{"lint-call-on-value", Warning, "a method is called on a number, text or another value without methods"},
+    Lint{"lint-chained-comparison", Warning, "'a < b < c', which compares the result of 'a < b' with c"},
     Lint{"lint-dot", Warning, "'a.b' without spaces: two statements, the second without effect"},
     Lint{"lint-escaped-dollar", Warning, "'\\$' in a string, which keeps its backslash"},
     Lint{"lint-implicit-return", Note, "the value of a method without 'return' is used"},

@@ -197,6 +197,10 @@ std::string FunctionCompiler::unknown_function_help(const ast::FunctionCall& f, 
     return "a value is put at the end of a list by: push value onto " + dotted;
   if (held == StaticType::Hash && (f.name == "get" || f.name == "has" || f.name == "set" || f.name == "put"))
     return "an entry of a hash is written " + dotted + "{key}";
+  if (held == StaticType::Hash && (f.name == "values" || f.name == "items" || f.name == "entries"))
+    return "write: foreach key in keys(" + dotted + "): ... " + dotted + "{key} ...";
+  if ((held == StaticType::List || held == StaticType::Hash) && f.name == "clear")
+    return "a list or a hash is emptied by: " + dotted + " = {}";
   if (!dotted.empty())
     return "a method is called with a space, not with a dot: (" + dotted + " " + f.name +
            (f.arguments.empty() ? ")" : " keyword value)");
@@ -213,6 +217,14 @@ std::string FunctionCompiler::unknown_function_help(const ast::FunctionCall& f, 
     return "'" + cls->name + "' is a class: write new " + cls->name + " for an instance";
   if (!near.empty()) return "did you mean '" + near + "'?";
   return "a method is called on an object: (object " + f.name + (f.arguments.empty() ? ")" : " keyword value)");
+}
+
+// `h.keys()`: the function gets its value in parentheses.
+std::string FunctionCompiler::argument_count_help(const ast::FunctionCall& f, const Span& span) {
+  const std::string dotted = before_dot(builder_.source(span.file), span);
+  if (!dotted.empty() && f.arguments.empty() && builder_.find_function(f.name, 1))
+    return "nothing is called with a '.': write " + f.name + "(" + dotted + ")";
+  return "the arguments are written in parentheses, with commas between them";
 }
 
 // Operators whose operands give no error, and never what was meant.

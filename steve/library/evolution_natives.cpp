@@ -76,6 +76,13 @@ double get_evaluations(Machine& machine, Instance& self) {
 
 // --- NSGA-II ---------------------------------------------------------------------------------------------------------
 
+/// Is there memory to sort so many individuals? It is outside of the meter: their fronts, how many dominate each of
+/// them, their distances and their order, with what sorting takes for itself.
+void need_room_to_sort(Machine& machine, std::size_t individuals) {
+  constexpr std::size_t kOfIndividual = 4 * sizeof(std::uint32_t) + 2 * sizeof(double);
+  machine.heap().check_room(kOfIndividual * individuals);
+}
+
 learn::Nsga2& pareto_search_of(Machine& machine, Instance& self) {
   return resource_made<Nsga2Resource>(machine, self).search;
 }
@@ -100,6 +107,7 @@ void set_pareto_mutation(Machine& machine, Instance& self, double probability, d
 }
 
 ListCell* ask_pareto(Machine& machine, Instance& self) {
+  need_room_to_sort(machine, static_cast<std::size_t>(pareto_search_of(machine, self).population()));
   return list_candidates(machine, pareto_search_of(machine, self));
 }
 
@@ -122,8 +130,9 @@ void tell_pareto(Machine& machine, Instance& self, ListCell* values) {
   learn::Nsga2& search = pareto_search_of(machine, self);
   const ListCell& rows = list_of(Value::of(Tag::List, values), "tell: the values");
   machine.charge(search.work());
-  search.tell(read_rows(machine, rows, static_cast<std::size_t>(search.objectives()), "tell: candidate"),
-              machine.poller());
+  const auto objectives = static_cast<std::size_t>(search.objectives());
+  need_room_to_sort(machine, 2 * static_cast<std::size_t>(search.population()) * (1 + objectives));
+  search.tell(read_rows(machine, rows, objectives, "tell: candidate"), machine.poller());
 }
 
 /// What `row_of` gives of each survivor that none dominates, as a list of lists.
@@ -131,6 +140,7 @@ ListCell* list_front(Machine& machine, Instance& self,
                      std::span<const double> (learn::Nsga2::*row_of)(std::size_t) const) {
   const learn::Nsga2& search = pareto_search_of(machine, self);
   machine.charge(search.work() / 2);
+  need_room_to_sort(machine, static_cast<std::size_t>(search.population()));
   ListCell* const all = machine.heap().list();
   const Pin pin(machine, Value::of(Tag::List, all));
   for (const std::uint32_t at : search.front(machine.poller())) {
@@ -158,7 +168,10 @@ ListCell* pareto_order(Machine& machine, Instance&, ListCell* fitness) {
   std::pmr::vector<double> values = read_rows(machine, rows, objectives, "selection: individual");
   if (rows.size != 0 && objectives == 0) refuse_argument("selection: an individual has no fitness values");
   for (double& value : values) value = std::isnan(value) ? learn::comparable(value) : learn::comparable(-value);
+  constexpr std::uint64_t kOfOrder = 8;  // turns: of the order of a few
+  machine.charge(kOfOrder);
   machine.charge_for(std::uint64_t{rows.size} * values.size());
+  need_room_to_sort(machine, rows.size);
   const learn::CrowdedOrder order({values, objectives}, machine.poller());
   ListCell* const result = machine.heap().list();
   const Pin pin(machine, Value::of(Tag::List, result));
@@ -176,12 +189,13 @@ ListCell* pareto_order(Machine& machine, Instance&, ListCell* fitness) {
 
 /// A range for each of some numbers, and the numbers, which are brought into it.
 struct Ranged {
-  std::vector<double> lowest, highest;
-  Ranged(std::size_t size, double low, double high) : lowest(size, low), highest(size, high) {}
+  std::pmr::vector<double> lowest, highest;
+  Ranged(Machine& machine, std::size_t size, double low, double high)
+      : lowest(size, low, machine.heap().memory()), highest(size, high, machine.heap().memory()) {}
   learn::Box box() const { return {lowest, highest}; }
-  std::vector<double> read(Machine& machine, const ListCell& list) const {
+  std::pmr::vector<double> read(Machine& machine, const ListCell& list) const {
     machine.charge_for(list.size);
-    std::vector<double> numbers(lowest.size());
+    std::pmr::vector<double> numbers(lowest.size(), machine.heap().memory());
     read_numbers(list, numbers.size(), numbers.data(), "variation: the genes");
     for (double& number : numbers) number = std::clamp(number, lowest[0], highest[0]);
     return numbers;
@@ -191,8 +205,8 @@ struct Ranged {
 ListCell* mutate_in_range(Machine& machine, Instance&, ListCell* genes, double low, double high, double index) {
   const ListCell& list = list_of(Value::of(Tag::List, genes), "variation: the genes");
   if (list.size == 0) return machine.heap().list();
-  const Ranged range(list.size, low, high);
-  std::vector<double> numbers = range.read(machine, list);
+  const Ranged range(machine, list.size, low, high);
+  std::pmr::vector<double> numbers = range.read(machine, list);
   learn::polynomial_mutation(numbers, range.box(), 1.0 / list.size, index, machine.world().random());
   return make_list(machine, numbers.data(), numbers.size());
 }
@@ -203,11 +217,11 @@ ListCell* cross_in_range(Machine& machine, Instance&, ListCell* first, ListCell*
   const ListCell& one = list_of(Value::of(Tag::List, first), "variation: the genes");
   const ListCell& other = list_of(Value::of(Tag::List, second), "variation: the genes");
   if (one.size == 0) return machine.heap().list();
-  const Ranged range(one.size, low, high);
-  std::vector<double> a = range.read(machine, one), b = range.read(machine, other);
+  const Ranged range(machine, one.size, low, high);
+  std::pmr::vector<double> a = range.read(machine, one), b = range.read(machine, other);
   Random& random = machine.world().random();
   learn::simulated_binary_crossover(a, b, range.box(), index, random);
-  const std::vector<double>& child = random.below(2) == 0 ? a : b;
+  const std::pmr::vector<double>& child = random.below(2) == 0 ? a : b;
   return make_list(machine, child.data(), child.size());
 }
 

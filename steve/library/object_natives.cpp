@@ -60,7 +60,9 @@ void object_schedule(Machine& machine, Instance& self, Text method, double when)
 void object_schedule_repeating(Machine& machine, Instance& self, Text method, double interval) {
   World& world = machine.world();
   if (!(interval > 0) || !std::isfinite(interval)) {
-    machine.warn("schedule-repeating: interval " + std::to_string(interval) + " is not more than 0; '" +
+    constexpr std::uint64_t kOfWarning = 32;  // turns
+    machine.charge(kOfWarning);
+    machine.warn("schedule-repeating: interval " + fmt::to_string(interval) + " is not more than 0; '" +
                  std::string(view(method)) + "' will not be called");
     return;
   }
@@ -70,6 +72,10 @@ void object_schedule_repeating(Machine& machine, Instance& self, Text method, do
 }
 
 void object_unschedule(Machine& machine, Instance& self, Text method, double when) {
+  constexpr std::uint64_t kOfSearch = 4;  // turns
+  machine.charge(kOfSearch);
+  // Without the name of a method each of the object's calls is looked at.
+  if (view(method).empty()) machine.charge(machine.world().scheduled_count());
   machine.world().unschedule(self.id, view(method), when);
 }
 

@@ -15,6 +15,7 @@ namespace {
 
 // Work for each pixel of a picture, and how many it has.
 constexpr std::uint64_t kOfDrawing = 16, kPixels = 640 * 480;
+constexpr std::uint64_t kOfObject = 16384;  // of an object that may have to be drawn: its corners are passed on first
 constexpr double kNear = 0.1;
 
 void no_renderer(Machine& machine, std::string_view selector, std::string_view why) {
@@ -29,7 +30,7 @@ const DrawnView* draw_view(Machine& machine, std::string_view selector, std::uin
     no_renderer(machine, selector, "nothing draws this world");
     return nullptr;
   }
-  machine.charge_for((kOfDrawing + more) * kPixels);
+  machine.charge_for((kOfDrawing + more) * kPixels + kOfObject * machine.world().object_count());
   try {
     return &draw(part);
   } catch (const Error& error) {

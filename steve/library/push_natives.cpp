@@ -156,6 +156,8 @@ void interpreter_reset_effort(Machine& machine, Instance& self) { own_interprete
 // --- settings --------------------------------------------------------------------------------------------------------
 
 void interpreter_configure(Machine& machine, Instance& self, StringCell* text) {
+  constexpr std::uint64_t kOfSettings = 32;  // turns
+  machine.charge(kOfSettings);
   machine.charge_for(view(text).size());
   std::pmr::string unknown(machine.heap().memory());
   own_interpreter(machine, self).settings.read(view(text), unknown, machine.poller());

@@ -1,4 +1,6 @@
 // Natives of Shape and its solids.
+#include <algorithm>
+
 #include "runtime/solid/pieces.hpp"
 #include "steve/library/resources.hpp"
 #include "steve/library/support.hpp"
@@ -75,11 +77,15 @@ Vector3 shape_get_last_scale(Machine& machine, Instance& self) {
 
 // --- builders --------------------------------------------------------------------------------------------------------
 
+constexpr std::uint64_t kOfSolid = 6;  // turns: to make any shape, and to free the one before
+
 Instance* build_sphere(Machine& machine, Instance& self, double radius) {
+  machine.charge(kOfSolid);
   return build(machine, self, Shape::sphere(radius, machine.heap().memory()));
 }
 
 Instance* build_cube(Machine& machine, Instance& self, Vector3 size) {
+  machine.charge(kOfSolid);
   return build(machine, self, Shape::box(size, machine.heap().memory()));
 }
 
@@ -99,8 +105,8 @@ std::shared_ptr<Shape> lying(const Shape& prism, std::pmr::memory_resource* memo
 constexpr std::int32_t kRoundSides = 64;  // as many as a round shape is worth
 
 void charge_for_sides(Machine& machine, std::int32_t sides) {
-  constexpr std::uint64_t kOfSide = 64;  // iterations
-  if (sides > 0) machine.charge(kOfSide * static_cast<std::uint64_t>(sides));
+  constexpr std::uint64_t kOfSide = 64;                                      // iterations
+  machine.charge(kOfSide * static_cast<std::uint64_t>(std::max(sides, 1)));  // also for a shape that is refused
 }
 
 Instance* build_disk(Machine& machine, Instance& self, std::int32_t sides, double height, double radius) {

@@ -48,6 +48,7 @@ void fail_kind(const Instance& object, std::string_view kind, std::string_view n
 
 ObjectId object_with_index(Machine& machine, std::int32_t index) {
   if (index <= 0) return {};
+  machine.charge_for(machine.world().object_count());
   for (ObjectId id : machine.world().objects())
     if (id.index == static_cast<std::uint32_t>(index)) return id;
   return {};

@@ -153,6 +153,8 @@ void terrain_generate(Machine& machine, Instance& self, double ruggedness, doubl
 void terrain_set_height(Machine& machine, Instance& self, std::int32_t column, std::int32_t row, double height) {
   finite(height, "set-height: the height");
   if (!in(grid_of(machine, self), column, row)) return;
+  constexpr std::uint64_t kOfHeight = 64;  // turns: the bounds of the squares around it, and of those that hold them
+  machine.charge(kOfHeight);
   const std::shared_ptr<Shape>& shape = shape_of(machine, self);
   shape->set_height(column, row, height);
   use(machine, self, shape);  // its bounds may be others
@@ -246,6 +248,7 @@ void terrain_smooth(Machine& machine, Instance& self, std::int32_t passes) {
   constexpr std::int32_t kMostPasses = 1000;
   if (passes < 0 || passes > kMostPasses)
     throw Error(ErrorCode::Argument, "smooth: " + std::to_string(passes) + " passes (must be 0 to 1000)");
+  charge_for_points(machine, static_cast<std::uint64_t>(grid_of(machine, self).columns()));  // of the copy
   Heights heights = copy_of(machine, grid_of(machine, self));
   for (std::int32_t i = 0; i < passes; ++i) {
     charge_for_points(machine, static_cast<std::uint64_t>(heights.side));

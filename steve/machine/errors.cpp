@@ -97,12 +97,18 @@ void Machine::print(std::string_view text) {
   reporter_.print(text);
 }
 
+namespace {
+constexpr std::uint64_t kOfError = 500;  // turns: what it takes to leave the calls of one, and to say what is wrong
+}
+
 void Machine::survive(const RunError& error) {
   reporter_.tell(Severity::Error, [&] { return report(error, running()).text; });
+  charge(kOfError);
 }
 
 void Machine::survive(const ScriptError& error) {
   reporter_.tell(Severity::Error, [&] { return error.report().text; });
+  charge(kOfError);
 }
 
 std::string Machine::stack_trace() const {

@@ -26,9 +26,9 @@ constexpr std::uint64_t kOfOpening = 4000;  // iterations: what operating system
 }  // namespace
 
 std::unique_ptr<FileReader> open_for_reading(Machine& machine, std::string_view name) {
+  machine.charge(kOfOpening);  // before a refusal, which takes longer than a turn as well
   check_name("read", name);
   if (!machine.host().open_for_reading) refuse("read", name, "the host does not let scripts read files");
-  machine.charge(kOfOpening);
   std::string why;
   auto file = machine.host().open_for_reading(name, why);
   if (!file && why.empty()) throw MissingFile(fmt::format("cannot read file '{}': there is no such file", name));
@@ -37,9 +37,9 @@ std::unique_ptr<FileReader> open_for_reading(Machine& machine, std::string_view 
 }
 
 std::unique_ptr<FileWriter> open_for_writing(Machine& machine, std::string_view name, bool append) {
+  machine.charge(kOfOpening);
   check_name("write", name);
   if (!machine.host().open_for_writing) refuse("write", name, "the host does not let scripts write files");
-  machine.charge(kOfOpening);
   std::string why;
   auto file = machine.host().open_for_writing(name, append, why);
   if (!file) refuse("write", name, why.empty() ? "it cannot be opened" : why);

@@ -158,7 +158,9 @@ ListCell* read_words(Machine& machine, Instance&, PointerCell* pointer) {
 }
 
 void write_string(Machine& machine, Instance&, PointerCell* pointer, StringCell* text) {
+  constexpr std::uint64_t kOfWriting = 8;  // turns
   FileWriter& file = file_of(pointer).writer();
+  machine.charge(kOfWriting);
   try {
     file.write(view(text));
   } catch (const Error& error) {

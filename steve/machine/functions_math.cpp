@@ -24,8 +24,8 @@ std::string shown(double number) {
 
 /// A result that is not a number gives a warning, once per function.
 double checked(Machine& machine, std::string_view name, double argument, double result) {
-  if (!std::isfinite(result)) [[unlikely]]
-    machine.warn_once(name, fmt::format("{}({}) is {}", name, shown(argument), shown(result)));
+  if (!std::isfinite(result) && machine.warns_first(name)) [[unlikely]]
+    machine.warn(fmt::format("{}({}) is {}", name, shown(argument), shown(result)));
   return result;
 }
 
@@ -47,8 +47,8 @@ double rounded_up(Machine& m, Instance&, double x) { return checked(m, "ceil", x
 double rounded(Machine& m, Instance&, double x) { return checked(m, "round", x, std::round(x)); }
 double raised(Machine& m, Instance&, double x, double y) {
   const double result = std::pow(x, y);
-  if (!std::isfinite(result)) [[unlikely]]
-    m.warn_once("pow", fmt::format("pow({}, {}) is {}", shown(x), shown(y), shown(result)));
+  if (!std::isfinite(result) && m.warns_first("pow")) [[unlikely]]
+    m.warn(fmt::format("pow({}, {}) is {}", shown(x), shown(y), shown(result)));
   return result;
 }
 double arc_tangent_of_two(Machine&, Instance&, double y, double x) { return std::atan2(y, x); }
@@ -123,6 +123,8 @@ void random_seed(Machine& machine, Instance&, std::int32_t seed) {
 std::int32_t random_seed_from_device(Machine& machine, Instance& self) {
   if (!machine.host().may_draw_entropy)
     refuse_right("randomSeedFromDevRandom", "draw a seed from the operating system", "BREVE_RIGHT_ENTROPY");
+  constexpr std::uint64_t kOfDevice = 4000;  // turns: it is opened, read and closed
+  machine.charge(kOfDevice);
   try {
     auto seed = static_cast<std::int32_t>(std::random_device{}() & 0x7fffffffU);
     if (machine.host().from_outside) machine.host().from_outside(&seed, sizeof seed);
@@ -134,7 +136,11 @@ std::int32_t random_seed_from_device(Machine& machine, Instance& self) {
 }
 
 Vector3 color_to_hsv(Machine&, Instance&, Vector3 rgb) { return rgb_to_hsv(rgb); }
-Vector3 color_to_rgb(Machine&, Instance&, Vector3 hsv) { return hsv_to_rgb(hsv); }
+Vector3 color_to_rgb(Machine& machine, Instance&, Vector3 hsv) {
+  constexpr std::uint64_t kOfRemainder = 4;  // turns: that of a hue of 1e308, bit by bit
+  machine.charge(kOfRemainder);
+  return hsv_to_rgb(hsv);
+}
 Vector3 color_number(Machine&, Instance&, std::int32_t n) { return unique_color(n); }
 
 constexpr std::array kMathFunctions = {

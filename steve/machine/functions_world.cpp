@@ -59,6 +59,7 @@ void add_event(Machine& machine, Instance& self, StringCell* method, double time
 }
 
 void remove_event(Machine& machine, Instance& self, StringCell* method, double time) {
+  if (view(method).empty()) machine.charge(machine.world().scheduled_count());
   if (self.live()) machine.world().unschedule(self.id, view(method), time);
 }
 

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::uint32_t kLeastIndex = 8;
 constexpr std::uint32_t kMostEntries = 0x40000000U;
+constexpr std::size_t kOfNewKey = 128;  // bytes: what a key moves until the hash has its size, whatever size that is
 
 /// The entry that holds `key`, or null. Ends because the index is never full.
 HashCell::Entry* look_up(const HashCell& hash, const Value& key, std::uint32_t code) {
@@ -76,6 +77,7 @@ void Heap::set(HashCell& hash, const Value& key, const Value& value) {
   if (HashCell::Entry* entry = look_up(hash, key, code)) return store(entry->value, value);
   const Value new_key = key, new_value = value;
   if (hash.used == hash.entry_capacity) regrow(hash);
+  move_bytes(kOfNewKey);
   retain(new_key);
   retain(new_value);
   new (&hash.entries[hash.used]) HashCell::Entry{new_key, new_value, code};

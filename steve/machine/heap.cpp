@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t kFirstChunk = 2048;
 constexpr std::size_t kLargestChunk = 65536;
+constexpr std::size_t kBetweenLooks = 4096;  // cells of garbage: less than a millisecond
 
 /// Where the bytes of a shared text are, as far as they go.
 char* body(SharedText* text) { return reinterpret_cast<char*>(text) + offsetof(SharedText, bytes); }
@@ -390,9 +391,14 @@ bool Heap::reclaim_round() {
     });
     // Last in, first out: freeing a cell puts its children at the end, so the table never outgrows the heap, and a
     // structure however deep goes without recursion. Cells that must stay are gathered at the front.
-    std::size_t kept = 0;
+    std::size_t kept = 0, seen = 0;
+    bool cut = false;  // a host that interrupts does not wait for millions of cells
     do {
       while (zero_.size() > kept) {
+        if (++seen % kBetweenLooks == 0 && ended()) {
+          cut = true;
+          break;
+        }
         Cell* cell = zero_.back();
         if (cell->count == 0 && (waits(*cell) || is_swept_later(*cell))) {
           std::swap(zero_.back(), zero_[kept++]);
@@ -406,7 +412,7 @@ bool Heap::reclaim_round() {
           suspect(*static_cast<Container*>(cell));
         }
       }
-    } while (drop_lonely_suspects());
+    } while (!cut && drop_lonely_suspects());
     doom_waiting(kept);
     roots_.visit_frames([](Cell* cell) {
       if (cell != nullptr && !cell->immortal) cell->mark = 0;
@@ -421,7 +427,7 @@ bool Heap::reclaim_round() {
 // A destroy method may leave new garbage, and auto-free instances too. The limit is for one that makes its successor.
 void Heap::reclaim_all() {
   constexpr int kRounds = 1000;
-  for (int round = 0; round < kRounds && reclaim_round(); ++round) {
+  for (int round = 0; round < kRounds && reclaim_round() && !ended(); ++round) {
   }
 }
 

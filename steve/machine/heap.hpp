@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory_resource>
@@ -162,6 +163,9 @@ class Heap : public InMemory {
     budget_ = budget;
     settle_ = std::move(settle);
   }
+  /// @param ended  true: no more garbage is to be freed now than is begun; the rest waits for the next safe point. It
+  ///               outlives the heap
+  void set_ended(const std::atomic<bool>* ended) { ended_ = ended; }
   /// In the middle of long work, where memory may run out as well: count so many bytes, and settle when they are many.
   void work_on(std::size_t bytes) {
     constexpr std::uint64_t kMany = 1 << 20;
@@ -197,8 +201,11 @@ class Heap : public InMemory {
     if (moved_ >= kMany && budget_ != nullptr) budget_->hold();
   }
 
+  bool ended() const { return ended_ && ended_->load(std::memory_order_relaxed); }
+
   std::uint64_t moved_ = 0;
   Budget* budget_ = nullptr;
+  const std::atomic<bool>* ended_ = nullptr;
   std::function<void()> settle_;
 
   // Each phase passes over containers_ once; places before passed_ have been passed. New cells of a running collection

@@ -114,6 +114,8 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   void warn(std::string_view text);
   /// The same, at most once per world for each `key`.
   void warn_once(std::string_view key, std::string_view text);
+  /// Is this the first time? For a warning whose text takes long to make.
+  bool warns_first(std::string_view key) { return reporter_.is_first(key); }
   /// Say, at the place of the running statement, that `self` has no such method and which may be meant. An error
   /// is reported each time, a warning once for each class.
   /// @param consequence  "nothing is registered"
@@ -381,6 +383,7 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   // machine.cpp
   void budget_heap(Heap& heap) {
     heap.set_budget(&budget_, [this] { settle(); });
+    heap.set_ended(&interrupted_);
   }
   void settle();
   [[noreturn]] void fail_budget() const;

@@ -232,13 +232,18 @@ ListCell* Machine::all_of(const ClassInfo& cls) {
 void Machine::free_value(const Value& value) {
   if (value.tag == Tag::List && value.list()) {
     const auto* list = value.list();
+    charge(list->size);  // one for each object, also where it is free already
     std::vector<Instance*> objects;
     for (const auto& element : *list)
       if (element.tag == Tag::Object && element.object()) objects.push_back(element.object());
     const Pin pin(*this, value);
     const StackMark mark(*this);
     for (auto* object : objects) pins_.push_back(Value::of(Tag::Object, object));
-    for (auto* object : objects) free_instance(*object);
+    constexpr std::size_t kBetweenPolls = 1024;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      if (i % kBetweenPolls == 0) poll();
+      free_instance(*objects[i]);
+    }
     return;
   }
   if (value.tag != Tag::Object) return;

@@ -89,7 +89,7 @@ ast::ExprPtr Parser::call(std::size_t start, ast::ExprPtr receiver) {
 // A keyword without a value: often it is the method of a call that lacks its parentheses.
 void Parser::fail_keyword(const ast::Call& call, std::size_t start, std::size_t keyword) {
   const Token& name = *items_[keyword].token;
-  if (call.selector == "in" && call.keywords.empty() && at(":"))
+  if (call.selector == "in" && call.keywords.empty())
     fail(call.selector_span, "foreign-operator", "'in' belongs to 'foreach'",
          "to look for an element: foreach item in list: if item == wanted: ...");
   if (at(":"))
@@ -122,9 +122,10 @@ Diagnostic Parser::call_mistake() {
     return {Severity::Error, "foreign-operator", fmt::format("'{}' is not an operator", selector.text),
             at_text("mod") ? "the remainder is written a % b" : "a quotient without fraction is written floor(a / b)",
             selector.span};
-  if (at_text("in")) {
+  if (at_text("in") || (at_text("not") && at_text("in", 1))) {
     return {Severity::Error, "foreign-operator", "'in' belongs to 'foreach'",
-            "to look for an element: foreach item in list: if item == wanted: ...", selector.span};
+            "to look for an element: foreach item in list: if item == wanted: ...",
+            at_text("in") ? selector.span : token(1).span};
   }
   if (at_text("and") || at_text("or")) {
     return {Severity::Error, "syntax", fmt::format("unexpected {}", describe()),

@@ -18,7 +18,11 @@ struct Operator {
 using ast::BinaryOp;
 
 // Tightest last.
-constexpr int kProduct = 4, kSum = 3, kLevels = 5;
+constexpr int kProduct = 4, kSum = 3, kComparison = 2, kLevels = 5;
+
+bool orders(BinaryOp op) {
+  return op == BinaryOp::Lt || op == BinaryOp::Le || op == BinaryOp::Gt || op == BinaryOp::Ge;
+}
 
 std::optional<BinaryOp> operator_at(int level, std::uint16_t text) {
   switch (level) {
@@ -150,7 +154,25 @@ ast::ExprPtr Parser::chain(int level) {
   }
   if (result.rest.empty()) return std::move(result.first);
   if (level == kProduct) lint_chain(result, first_end);
+  if (level == kComparison) lint_comparisons(result);
   return make(start, std::move(result));
+}
+
+// `1 < n < 3` compares the result of `1 < n`, which is 0 or 1, with 3.
+void Parser::lint_comparisons(const ast::Chain& chain) {
+  for (std::size_t i = 1; i < chain.rest.size(); ++i) {
+    if (!orders(chain.rest[i - 1].first) || !orders(chain.rest[i].first)) continue;
+    const auto sign_of = [&](std::size_t k) {
+      const Span& at = chain.operators[k];
+      return sources_.file(at.file).text.substr(at.offset, at.length);
+    };
+    const std::string first = text_of(i == 1 ? *chain.first : *chain.rest[i - 2].second);
+    const std::string middle = text_of(*chain.rest[i - 1].second), last = text_of(*chain.rest[i].second);
+    lint(chain.operators[i], "lint-chained-comparison",
+         "this compares the result of the comparison before it, which is 0 or 1",
+         fmt::format("write: {} {} {} && {} {} {}", first, sign_of(i - 1), middle, middle, sign_of(i), last));
+    return;
+  }
 }
 
 // '^' takes all that stands to its left.
@@ -221,6 +243,7 @@ ast::ExprPtr Parser::list_operation() {
   const std::size_t start = pos_;
   const Word word = item().word;
   advance();
+  refuse_dotted(start);
   if (word == Word::Push || word == Word::Prepend) {
     ast::ExprPtr value = expression();
     if (at_name() && (at_text("into") || at_text("to") || at_text("on") || at_text("in")))
@@ -234,13 +257,11 @@ ast::ExprPtr Parser::list_operation() {
         if (mistake.code != "call-needs-parentheses") throw SyntaxError{mistake};
         throw SyntaxError{needs_parentheses(primary_start_, pos_, end)};
       }
-      const bool dotted = start >= 2 && items_[start - 1].sign == sign(".") && !items_[start].token->space_before &&
-                          items_[start - 2].token->kind == TokenKind::Name && !items_[start - 1].token->space_before;
-      if (dotted)
+      if (const std::string_view list = before_dot(start); !list.empty())
         fail(items_[start].token->span, "list-word",
              fmt::format("'{}' comes before the value and the list, without a dot", items_[start].token->text),
              fmt::format("write: {} {} onto {}", items_[start].token->text,
-                         pos_ > start + 1 ? source_of(start + 1, pos_) : "value", items_[start - 2].token->text));
+                         pos_ > start + 1 ? source_of(start + 1, pos_) : "value", list));
       fail_expected("'onto' and a list", "write: push value onto list");
     }
     advance();
@@ -262,6 +283,7 @@ ast::ExprPtr Parser::insert_operation() {
   const Nest nest(*this);
   const std::size_t start = pos_;
   advance();
+  refuse_dotted(start);
   ast::ExprPtr value = expression();
   if (!at_text("at")) {
     if (at_stray_call()) throw SyntaxError{call_mistake()};
@@ -281,6 +303,7 @@ ast::ExprPtr Parser::sort_operation() {
   const Nest nest(*this);
   const std::size_t start = pos_;
   advance();
+  refuse_dotted(start);
   ast::ExprPtr list = postfix();
   if (!at_text("with")) {
     fail(token().span, "sort-with", fmt::format("expected 'with' and the name of a method, got {}", describe()),

@@ -100,6 +100,39 @@ std::string Parser::source_of(std::size_t first, std::size_t end) const {
   return text;
 }
 
+// The same of an expression, however it was read.
+std::string Parser::text_of(const ast::Expr& expression) const {
+  const Span& span = expression.span;
+  std::string text = sources_.file(span.file).text.substr(span.offset, span.length);
+  if (text.size() > kLongestQuote || text.find('\n') != std::string::npos) text = "...";
+  return text;
+}
+
+// The name in front of the dot that stands, without spaces, in front of this word; "" if there is none.
+std::string_view Parser::before_dot(std::size_t word) const {
+  if (word < 2 || items_[word - 1].sign != sign(".") || items_[word].token->space_before) return {};
+  const Token& name = *items_[word - 2].token;
+  return name.kind == TokenKind::Name && !items_[word - 1].token->space_before ? name.text : std::string_view();
+}
+
+// `k.pop()`, `k.sort()`, `k.remove(1)`: what works on a list stands in front of it. The current item is behind the
+// word.
+void Parser::refuse_dotted(std::size_t word) const {
+  const std::string_view list = before_dot(word);
+  if (list.empty() || !at("(")) return;
+  const std::string_view name = items_[word].token->text;
+  std::string help;
+  switch (items_[word].word) {
+    case Word::Push:
+    case Word::Prepend: return;  // their value is known once it is read
+    case Word::Insert: help = fmt::format("write: insert value at {}{{position}}", list); break;
+    case Word::Remove: help = fmt::format("write: remove {}{{position}}", list); break;
+    case Word::Sort: help = fmt::format("write: sort {} with method-name", list); break;
+    default: help = fmt::format("write: {} {}", name, list); break;
+  }
+  fail(items_[word].token->span, "list-word", fmt::format("'{}' comes before the list, without a dot", name), help);
+}
+
 // The item that ends the statement around the current one, or its line.
 std::size_t Parser::statement_end() const {
   std::size_t i = pos_;

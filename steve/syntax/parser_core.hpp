@@ -126,6 +126,8 @@ class Parser {
   bool is_variable_only(std::string_view name);  // and no method
   bool is_sized(std::string_view name);          // wherever it is declared
   std::string source_of(std::size_t first, std::size_t end) const;
+  std::string_view before_dot(std::size_t word) const;
+  void refuse_dotted(std::size_t word) const;
   std::size_t statement_end() const;
   std::optional<Diagnostic> meant_by_number() const;
   std::optional<Diagnostic> meant_by_first_word(std::size_t start);
@@ -216,6 +218,8 @@ class Parser {
   ast::ExprPtr insert_operation();
   ast::ExprPtr sort_operation();
   void lint_chain(const ast::Chain& chain, std::size_t first_end);
+  void lint_comparisons(const ast::Chain& chain);
+  std::string text_of(const ast::Expr& expression) const;
   template <typename Node>
   ast::ExprPtr make(std::size_t start, Node node);
 
@@ -233,6 +237,7 @@ class Parser {
   ast::ExprPtr vector_rest(std::size_t start, ast::ExprPtr x);
   ast::ExprPtr magnitude(std::size_t start);
   ast::ExprPtr list_literal(std::size_t start);
+  void lint_element(const ast::Expr& element);
   ast::ExprPtr matrix_literal(std::size_t start);
   std::vector<ast::ExprPtr> items(std::string_view close, std::string_view where);
   std::string class_name(Span& span);

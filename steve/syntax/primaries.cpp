@@ -333,12 +333,22 @@ std::vector<ast::ExprPtr> Parser::items(std::string_view close, std::string_view
   do {
     if (!result.empty() && at(close)) fail_expected("a value after the comma", "leave out the last comma");
     result.push_back(value());
+    if (close == "}") lint_element(*result.back());
   } while (accept(","));
   if (!accept(close))
     fail_expected(fmt::format("',' or '{}' {}", close, where),
                   fmt::format("the '{}' of line {} is still open", items_[first - 1].token->text,
                               items_[first - 1].token->span.line));
   return result;
+}
+
+// `{ 1, n = 2 }`: allowed, and seldom meant.
+void Parser::lint_element(const ast::Expr& element) {
+  const auto* assign = std::get_if<ast::Assign>(&element.node);
+  if (assign == nullptr || assign->op || element.parenthesised) return;
+  lint(element.span, "lint-assignment-element", "this element of the list is an assignment",
+       "to compare, write '=='; if it is meant, put it in parentheses; an entry of a hash is set by: hash{key} = "
+       "value.");
 }
 
 ast::ExprPtr Parser::matrix_literal(std::size_t start) {

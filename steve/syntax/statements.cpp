@@ -1,6 +1,8 @@
 // Statements, and how parsing goes on after a broken one.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "steve/syntax/parser_nodes.hpp"
 
 namespace breve::steve {
@@ -115,7 +117,9 @@ void Parser::read_statements(std::vector<ast::StmtPtr>& into) {
     const auto* alone = std::get_if<ast::ExprStmt>(&into.back()->node);
     if (alone == nullptr || alone->expr->parenthesised) continue;
     const auto* chain = std::get_if<ast::Chain>(&alone->expr->node);
-    if (chain != nullptr && chain->rest.back().first == ast::BinaryOp::Eq) comparison = chain;
+    if (chain != nullptr && chain->rest.back().first >= ast::BinaryOp::Lt &&
+        chain->rest.back().first <= ast::BinaryOp::Ne)
+      comparison = chain;
   }
 }
 
@@ -211,6 +215,15 @@ ast::StmtPtr Parser::foreach_statement(std::size_t start) {
   if (!at_text("in")) fail_expected("'in' and a list", "write: foreach item in list: statement");
   advance();
   node.list = header_part();
+  if (at(".") && at_name(1) && adjacent(0) && adjacent(1)) {
+    const std::string list = text_of(*node.list), name(token(1).text);
+    std::string help = fmt::format("a method is called with a space: ({} {})", list, name);
+    if (name == "keys") help = fmt::format("write: keys({})", list);
+    if (name == "values" || name == "items")
+      help = fmt::format("write: foreach key in keys({0}): ... {0}{{key}} ...", list);
+    error(token(1).span, "syntax", "nothing is called with a '.'", help);
+    pos_ += std::max<std::size_t>(2, at("(", 2) ? behind_parentheses(2) : 0);
+  }
   expect_colon("the list of 'foreach'");
   node.body = statement();
   return make_statement(start, std::move(node));

@@ -318,15 +318,15 @@ static void a_cut_falls_at_the_same_iteration_in_every_build(void) {
   static const struct {
     uint64_t budget;
     int n;
-  } cuts[] = {{60, 55},   {61, 56},    {62, 57},       {63, 58},       {64, 59},       {65, 60},        {66, 61},
-              {68, 62},   {70, 63},    {75, 66},       {80, 67},       {85, 70},       {90, 70},        {95, 73},
-              {100, 76},  {105, 78},   {110, 83},      {115, 88},      {120, 93},      {125, 98},       {130, 103},
-              {135, 108}, {140, 113},  {145, 118},     {150, 123},     {160, 133},     {170, 143},      {180, 153},
-              {200, 173}, {1000, 973}, {65535, 65508}, {65536, 65509}, {65537, 65510}, {200000, 199973}};
+  } cuts[] = {{72, 65},   {73, 65},    {74, 65},       {75, 66},       {76, 66},       {78, 67},
+              {80, 67},   {85, 70},    {90, 70},       {95, 71},       {100, 73},      {105, 77},
+              {110, 79},  {115, 84},   {120, 89},      {125, 94},      {130, 99},      {135, 104},
+              {140, 109}, {145, 114},  {150, 119},     {160, 129},     {170, 139},     {180, 149},
+              {200, 169}, {1000, 969}, {65535, 65504}, {65536, 65505}, {65537, 65506}, {200000, 199969}};
   for (size_t i = 0; i < sizeof cuts / sizeof *cuts; ++i) {
     scene s;
     breve_world_config config = breve_world_config_default();
-    config.budget = cuts[i].budget; /* init needs less than 60 */
+    config.budget = cuts[i].budget; /* init needs less than 72 */
     if (!scene_open_text(&s, golden_text, &config)) return;
     CHECK_STATUS(BREVE_ERROR_BUDGET, call(&s, "go"));
     if (!CHECK(int_of(&s, "n") == cuts[i].n)) printf("  {%d, %d},\n", (int)cuts[i].budget, int_of(&s, "n"));

@@ -513,6 +513,17 @@ interrupt)
   same $? 0
   tail -n 1 err | python3 -c 'import json,sys; assert json.loads(sys.stdin.read())["iterations"] >= 0' || fail "statistics"
   ;;
+progress)
+  # On a terminal of 60 columns, which `script` makes. The run goes on until it is interrupted.
+  program a.tz '' 'turns = turns + 1.'
+  script -qc "stty cols 60; timeout -s INT 4 '$breve' run a.tz --seed 1 --seconds 1000000000" typescript >/dev/null </dev/null
+  tr '\r' '\n' <typescript | sed 's/\x1b\[K//' | grep ^iteration >out
+  has out '^iteration [0-9]*, 0 % of 1000000000 s, [0-9]* h [0-9]* min to go$'
+  lacks out '.\{60\}'
+  script -qc "stty cols 200; timeout -s INT 4 '$breve' run a.tz --seed 1 --iterations 1000000000" typescript >/dev/null </dev/null
+  tr '\r' '\n' <typescript | sed 's/\x1b\[K//' >out
+  has out '^iteration [0-9]* of 1000000000, .* to go, .* x real time, .* s simulated, .* iterations/s$'
+  ;;
 check)
   program good.tz '' ''
   program bad.tz 'nowhere = 3. nothing = 4.' ''

@@ -37,6 +37,7 @@ ClassLibrary::ClassLibrary() {
   breve_analysis* analysis = nullptr;
   require(breve_analysis_create(runtime.get(), "empty.tz", kText.data(), kText.size(), &analysis) == BREVE_OK,
           "the class library cannot be analysed");
+  std::map<std::size_t, std::string> module_of;                          // by symbol
   std::map<std::size_t, std::size_t> class_of;                           // by symbol
   std::map<std::size_t, std::pair<std::size_t, std::size_t>> method_of;  // by symbol: class, selector
   for (std::size_t i = 0; i < breve_analysis_symbol_count(analysis); ++i) {
@@ -44,10 +45,13 @@ ClassLibrary::ClassLibrary() {
     if (breve_analysis_symbol(analysis, i, &symbol) != BREVE_OK || !symbol.library) continue;
     const auto cls = class_of.find(symbol.parent);
     switch (symbol.kind) {
-      case BREVE_NAME_MODULE: modules_.push_back(module_name(symbol.name)); break;
+      case BREVE_NAME_MODULE:
+        modules_.push_back(module_name(symbol.name));
+        module_of[i] = modules_.back();
+        break;
       case BREVE_NAME_CLASS:
         class_of[i] = numbers_[symbol.name] = classes_.size();
-        classes_.push_back({symbol.name, symbol.parent_class, {}, {}});
+        classes_.push_back({symbol.name, symbol.parent_class, module_of[symbol.parent], {}, {}});
         break;
       case BREVE_NAME_METHOD:
         if (cls == class_of.end()) break;

@@ -23,7 +23,7 @@ struct LibraryVariable {
 };
 
 struct LibraryClass {
-  std::string name, parent;
+  std::string name, parent, module;
   std::vector<LibrarySelector> selectors;
   std::vector<LibraryVariable> variables;
 };

@@ -6,7 +6,7 @@
 
 namespace breve::fuzz {
 
-inline constexpr std::array<std::string_view, 5> kImageScenes = {
+inline constexpr std::array<std::string_view, 6> kImageScenes = {
     // Abstract agents: every kind of value, cycles, garbage, schedule, notifications, handlers, neighbours, a menu.
     R"(@use Control.
 @use Mobile.
@@ -210,6 +210,63 @@ Control : Dish {
     board update-concentrations.
     reaction step by 0.5.
     u copy-to-red-channel of-image picture with-scale 1.0.
+})",
+    // What learns, and what sounds: networks in training, searches between their questions, Push in the middle of a
+    // run.
+    R"(@use Control.
+@use SFFNetwork.
+@use CMAEvolutionStrategy.
+@use MultiObjectiveSearch.
+@use Push.
+@use Sound.
+@use Line.
+@use Mobile.
+Controller School.
+Control : School {
+  + variables:
+    network, search, fronts, interpreter, program, pool, tone, line (object).
+    questions, answers, values, pairs (list).
+  + to count:
+    interpreter push-integer value 3.
+  + to init:
+    i (int).
+    network = new NeuralNetwork.
+    network add-layer with-neuron-count 2.
+    network add-elman-layer with-neuron-count 3.
+    network add-continuous-time-layer with-neuron-count 1.
+    network set-optimizer to "adam" with-learning-rate 0.1.
+    questions = { { 0, 1 }, { 1, 0 } }.
+    answers = { { 1 }, { 0 } }.
+    search = new CMAEvolutionStrategy.
+    search begin at { 0, 1, 2 } with-step 0.5 with-population 4.
+    fronts = new MultiObjectiveSearch.
+    fronts begin from { 0, 1 } to { 1, 2 } with-objectives 2 with-population 4.
+    for i = 0, i < 4, i++: { push i onto values. push { i, 3 - i } onto pairs. }
+    interpreter = new PushInterpreter.
+    interpreter add-instruction for-instance self for-method "count" named "COUNT".
+    program = new PushProgram.
+    program parse program "( X INTEGER.DEFINE 1 1000000 EXEC.DO*RANGE ( INTEGER.DUP CODE.DUP COUNT [1 2 3] 0.5 TRUE ) ) ".
+    interpreter add-macro named "TWICE" for-code program.
+    pool = new PushDiversityPool.
+    pool add program program.
+    tone = new Tone.
+    tone set-frequency to 440.0.
+    line = ((new Line) connect from (new Mobile) to (new Mobile) with-color (1, 0, 0) with-style "- -").
+    interpreter run program program for-steps 30.
+    search ask.
+    fronts ask.
+  + to iterate:
+    super iterate.
+    network train with-inputs questions with-targets answers.
+    network run-with inputs { 0.5, 1 }.
+    search tell values values.
+    search ask.
+    fronts tell values pairs.
+    fronts ask.
+    interpreter step for-steps 20.
+    program mutate with-interpreter interpreter.
+    pool add program program.
+    tone set-frequency to 440.0 + random[10.0].
 })",
 };
 

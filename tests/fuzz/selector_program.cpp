@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <initializer_list>
+#include <set>
 
 #include "class_library.hpp"
 
@@ -66,17 +67,29 @@ class SelectorProgram {
 
   std::string text() {
     choose_classes();
-    for (const std::string& module : library_.modules()) line("@use " + module + ".");
     line("Controller Main.");
     for (const std::string& cls : classes_) write_class(cls);
     write_controller();
-    return out_;
+    return uses() + out_;
   }
 
  private:
   struct Object {
     std::string variable, cls;
   };
+
+  /// The modules of all classes that the program names: to read the whole library takes longer than to run it.
+  std::string uses() const {
+    std::set<std::string> used;
+    for (const LibraryClass& cls : library_.classes())
+      if (cls.name == base_ || std::find(classes_.begin(), classes_.end(), cls.name) != classes_.end() ||
+          has(out_, "\"" + cls.name + "\""))
+        used.insert(cls.module);
+    std::string text;
+    for (const std::string& module : library_.modules())
+      if (used.contains(module)) text += "@use " + module + ".\n";
+    return text;
+  }
 
   void line(const std::string& text) { out_ += text + "\n"; }
   std::string pick(Texts texts) { return texts.begin()[choose_.below(texts.size())]; }

@@ -25,6 +25,100 @@ static void loops_count_in_the_budget(void) {
   stage_end(&s);
 }
 
+/* Functions of Lua's libraries work at one stretch. Without being counted, each of these would go on for minutes to
+ * ages. */
+static void functions_of_libraries_count_in_the_budget(void) {
+  static const char* const works[] = {
+      "('a'):rep(30000):find(('.-'):rep(30) .. 'b')",
+      "('a'):rep(30000):match(('a*'):rep(20) .. 'b')",
+      "for w in ('a'):rep(30000):gmatch(('a?'):rep(30) .. ('a'):rep(30) .. 'b') do end",
+      "('('):rep(100000):gsub('%b()', '')",
+      "local s = ('a'):rep(1000000) while true do s:find(('a'):rep(1000) .. 'b', 1, true) end",
+      "('').rep('', 1e15)",
+      "local t = {} for i = 1, 50000 do t[i] = i end while true do table.insert(t, 1, 0) end",
+      "local t = {} for i = 1, 50000 do t[i] = i end while true do table.remove(t, 1) t[#t + 1] = 1 end",
+      "table.move({}, 1, 1e15, 2)",
+      "local t = {} for i = 1, 50000 do t[i] = i % 7 end while true do table.sort(t) end",
+      "local t = {} for i = 1, 50000 do t[i] = '' end while true do table.concat(t) end",
+      "local t = {} for i = 1, 50000 do t[i] = i end while true do table.unpack(t) end",
+      "local t = {} for i = 1, 50000 do t['k' .. i] = i end while true do next(t) end",
+      "local t = {} for i = 1, 50000 do t[i] = i end while true do pairs(t) end",
+      "local s = ('x'):rep(1000000) while true do s:byte(1, 100000) end",
+      "local s = ('x'):rep(1000000) while true do utf8.len(s) end",
+      "local s = ('x'):rep(1000000) while true do local t = s .. 'y' end",
+      "local s = ('x '):rep(100000) while true do load(s) end",
+      "local s = ('1'):rep(1000000) while true do tonumber(s, 3) end",
+      "while true do pcall(string.rep, '', 1e15) end",
+  };
+  for (size_t i = 0; i < sizeof works / sizeof *works; ++i) {
+    char text[512];
+    stage s;
+    breve_world_config config = breve_world_config_default();
+    stage_begin(&s);
+    config.budget = 300000;
+    snprintf(text, sizeof text, MAIN "function Main:work() %s end\n", works[i]);
+    if (!stage_open(&s, text, &config)) return;
+    if (!CHECK_STATUS(BREVE_ERROR_BUDGET, stage_call(&s, "work", NULL))) printf("  %s\n", works[i]);
+    stage_end(&s);
+  }
+}
+
+/* A file is run once without a world, and once more for each: neither goes on for ever, whatever it catches. */
+static void a_file_that_never_ends_is_refused(void) {
+  static const char* const texts[] = {
+      "while true do end",
+      "while true do pcall(function() while true do end end) end",
+      "coroutine.wrap(function() while true do pcall(function() while true do end end) end end)()",
+      "('a'):rep(30000):find(('.-'):rep(30) .. 'b')",
+      "local t = {} for i = 1, 1e9 do t[i] = {} end",
+      "local s = 'x' while true do s = s .. s end",
+  };
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; ++i) {
+    char text[512];
+    stage s;
+    stage_begin(&s);
+    snprintf(text, sizeof text, MAIN "%s\n", texts[i]);
+    const breve_status status = stage_compile(&s, text);
+    if (!CHECK(status == BREVE_ERROR_COMPILE || status == BREVE_ERROR_MEMORY)) printf("  %s\n", texts[i]);
+    stage_end(&s);
+  }
+  stage s;
+  breve_world_config config = breve_world_config_default();
+  stage_begin(&s);
+  config.budget = 300000;
+  /* Only where there is a world are random numbers others than 0.5. */
+  CHECK_STATUS(BREVE_OK, stage_compile(&s, MAIN "if math.random() ~= 0.5 then while true do end end\n"));
+  CHECK_STATUS(BREVE_ERROR_BUDGET, breve_world_create(s.runtime, s.program, &config, &s.world));
+  stage_end(&s);
+}
+
+/* Equal elements keep their order: Lua's own sort would leave them as its clock had it. */
+static void sorting_is_stable_and_tables_move_as_in_lua(void) {
+  stage s;
+  stage_begin(&s);
+  if (!stage_open(
+          &s,
+          MAIN "function Main:stable() local t = {} for i = 1, 500 do t[i] = {i * 7 % 10, i} end "
+               "  table.sort(t, function(a, b) return a[1] < b[1] end) "
+               "  for i = 2, 500 do local a, b = t[i - 1], t[i] if a[1] > b[1] or (a[1] == b[1] and a[2] > b[2]) then "
+               "return false end end return true end\n"
+               "function Main:numbers() local t = {5, 2, 8, 1, 9, 3} table.sort(t) return table.concat(t) == '123589' "
+               "  and not pcall(table.sort, {1, 'a'}) and not pcall(table.sort, {2, 1}, 5) end\n"
+               "function Main:moved() local t = {1, 2, 3} table.insert(t, 4) table.insert(t, 1, 0) local r = "
+               "table.remove(t, 2) return table.concat(t) == '0234' and r == 1 and table.remove(t) == 4 and "
+               "  table.remove({}) == nil and not pcall(table.insert, t, 9, 1) and not pcall(table.insert, t) and not "
+               "pcall(table.remove, t, 9) end\n"
+               "function Main:errors() local ok, text = pcall(function() ('x'):rep({}) end) "
+               "  return text:match(\"^agents.lua:%d+: bad argument #1 to 'rep' %(number expected, got table%)$\") ~= "
+               "nil end\n",
+          NULL))
+    return;
+  static const char* const claims[] = {"stable", "numbers", "moved", "errors"};
+  for (size_t i = 0; i < sizeof claims / sizeof *claims; ++i)
+    if (!CHECK_NEAR(1, stage_number(&s, claims[i]), 0)) printf("  %s\n", claims[i]);
+  stage_end(&s);
+}
+
 static void memory_counts_against_the_limit(void) {
   stage s;
   breve_world_config config = breve_world_config_default();
@@ -220,6 +314,9 @@ static void two_worlds_of_one_seed_are_equal(void) {
 
 int main(void) {
   RUN(loops_count_in_the_budget);
+  RUN(functions_of_libraries_count_in_the_budget);
+  RUN(a_file_that_never_ends_is_refused);
+  RUN(sorting_is_stable_and_tables_move_as_in_lua);
   RUN(memory_counts_against_the_limit);
   RUN(every_limit_is_survived);
   RUN(nothing_reaches_the_machine);
