@@ -15,11 +15,14 @@ Vector3 own_momentum(const Model& model, const Data& data, int link) {
 
 }  // namespace
 
+double kinetic_energy_of_link(const Model& model, const Data& data, int link) {
+  return 0.5 * (model.body(link).mass * com_velocity(model, data, link).squaredNorm() +
+                data.of(link).spin.dot(own_momentum(model, data, link)));
+}
+
 double kinetic_energy(const Model& model, const Data& data) {
   double energy = 0;
-  for (int i = 0; i < model.size(); ++i)
-    energy += 0.5 * (model.body(i).mass * com_velocity(model, data, i).squaredNorm() +
-                     data.of(i).spin.dot(own_momentum(model, data, i)));
+  for (int i = 0; i < model.size(); ++i) energy += kinetic_energy_of_link(model, data, i);
   return energy;
 }
 

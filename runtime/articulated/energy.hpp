@@ -7,6 +7,8 @@ namespace breve::articulated {
 
 /// All after forward_kinematics on `data`. Cost O(links). No allocation.
 
+/// J, of one link's centre of mass and spin.
+double kinetic_energy_of_link(const Model& model, const Data& data, int link);
 /// J, of all links' centres of mass and spins.
 double kinetic_energy(const Model& model, const Data& data);
 /// J: -sum m g.x, zero at the world's origin.

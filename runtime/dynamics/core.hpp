@@ -165,7 +165,7 @@ struct Dynamics::Core : MechanicsCore {
   void order_trees();
   void drop_tree(std::uint32_t tree);
   void build_tree(std::span<const BodyIndex> component);
-  double unbook(const Tree& tree, std::span<double> books) const;
+  double unbook(Tree& tree, std::span<double> books) const;
   double book_together(std::span<const BodyIndex> component);
   void read_state(Tree& tree) const;
   std::pair<Quaternion, Vector3> between(const JointDescription& is) const;  // the child as seen from the parent

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "runtime/articulated/energy.hpp"
 #include "runtime/articulated/forward_dynamics.hpp"
 #include "runtime/articulated/impulse.hpp"
 #include "runtime/articulated/kinematics.hpp"
@@ -193,10 +194,22 @@ void Dynamics::Core::drop_tree(std::uint32_t index) {
 
 /// Its bodies have by the books what they have alone; what their joints' springs held is gone, by whoever freed them.
 /// @return the work of that, J
-double Dynamics::Core::unbook(const Tree& tree, std::span<double> books) const {
+double Dynamics::Core::unbook(Tree& tree, std::span<double> books) const {
   if (!in_books(tree.booked)) return 0;
+  articulated::forward_kinematics(tree.model, tree.data, tree.state);
   double sum = 0;
-  for (const TreeLink& link : tree.links) sum += books[link.body] = free_energy(link.body).total();
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    const BodyIndex body = tree.links[i].body;
+    if (bodies->dynamic(body)) {
+      sum += books[body] = free_energy(body).total();
+      continue;
+    }
+    // A body that does not move by forces any more leaves with what it had in the tree, whatever it was given since.
+    const auto link = static_cast<int>(i);
+    books[body] = kNoBook;
+    sum += articulated::kinetic_energy_of_link(tree.model, tree.data, link) -
+           tree.model.body(link).mass * settings.gravity.dot(articulated::com_position(tree.model, tree.data, link));
+  }
   return sum - tree.booked;
 }
 
