@@ -9,7 +9,7 @@ out=$(realpath "$2")
 worlds=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../../samples/worlds")
 # Simulated seconds, where eight are not the moment that shows most.
 declare -A seconds=([aggregation.tz]=600 [ants.tz]=60 [beam.tz]=200 [bounce.tz]=2.3 [car.tz]=3 [dilemma.tz]=60 [dominoes.lua]=6
-  [echo.tz]=400 [gray_scott.tz]=400 [life.tz]=20 [life_3d.tz]=12 [peaks.tz]=60 [plants.tz]=20 [ragdoll.tz]=1.5 [random_walk.tz]=60
+  [echo.tz]=400 [gray_scott.tz]=400 [highland.tz]=12 [life.tz]=20 [life_3d.tz]=12 [peaks.tz]=60 [plants.tz]=20 [ragdoll.tz]=1.5 [random_walk.tz]=60
   [stack.tz]=4 [termites.tz]=600 [terrain.tz]=12 [tierra.tz]=600 [wolf_sheep.tz]=40 [xor.tz]=60)
 scratch=$(mktemp -d)  # for files that programs write
 trap 'rm -rf "$scratch"' EXIT

@@ -107,13 +107,27 @@ std::uint64_t need_plain(const Descriptor& file, const Root& root) {
 /// A file that is read from its start, or written to its end.
 class PlainFile {
  public:
-  PlainFile(Spot spot, Descriptor file, std::string temporary, std::uint64_t size, std::uint64_t most)
-      : spot_(std::move(spot)), file_(std::move(file)), temporary_(std::move(temporary)), size_(size), most_(most) {}
+  PlainFile(Spot spot, Descriptor file, std::uint64_t size, std::uint64_t most)
+      : spot_(std::move(spot)), file_(std::move(file)), size_(size), most_(most) {}
   ~PlainFile() {
     if (!temporary_.empty()) ::unlinkat(spot_.folder.get(), temporary_.c_str(), 0);
   }
   PlainFile(const PlainFile&) = delete;
   PlainFile& operator=(const PlainFile&) = delete;
+
+  /// Begins a new file beside the one that it will replace. Several threads may write that one at once, each to its own.
+  void create_temporary() {
+    constexpr int kHow = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, kMost = 1000;
+    for (int i = 1;; ++i) {
+      std::string name = fmt::format(".{}.{}.{}.part", spot_.name.substr(0, 100), ::getpid(), i);
+      file_ = Descriptor(::openat(spot_.folder.get(), name.c_str(), kHow, 0666));
+      if (file_.good()) {
+        temporary_ = std::move(name);
+        return;
+      }
+      if (errno != EEXIST || i == kMost) refuse_by_errno();
+    }
+  }
 
   bool read(void* bytes, std::size_t size, std::size_t& got) {
     // A file may grow while it is read.
@@ -163,7 +177,7 @@ std::unique_ptr<PlainFile> open_to_read(const Root& root, std::string_view path)
   Descriptor file(::openat(spot.folder.get(), spot.name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   if (!file.good()) refuse_by_errno();
   const std::uint64_t size = need_plain(file, root);
-  return std::make_unique<PlainFile>(std::move(spot), std::move(file), "", size, root.most_bytes);
+  return std::make_unique<PlainFile>(std::move(spot), std::move(file), size, root.most_bytes);
 }
 
 std::unique_ptr<PlainFile> open_to_append(const Root& root, Spot spot) {
@@ -171,18 +185,7 @@ std::unique_ptr<PlainFile> open_to_append(const Root& root, Spot spot) {
   Descriptor file(::openat(spot.folder.get(), spot.name.c_str(), kHow, 0666));
   if (!file.good()) refuse_by_errno();
   const std::uint64_t size = need_plain(file, root);
-  return std::make_unique<PlainFile>(std::move(spot), std::move(file), "", size, root.most_bytes);
-}
-
-/// A new file beside the one that it will replace. Several threads may write that one at once, each to its own.
-Descriptor create_temporary(const Spot& spot, std::string& name) {
-  constexpr int kHow = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, kMost = 1000;
-  for (int i = 1;; ++i) {
-    name = fmt::format(".{}.{}.{}.part", spot.name.substr(0, 100), ::getpid(), i);
-    Descriptor file(::openat(spot.folder.get(), name.c_str(), kHow, 0666));
-    if (file.good()) return file;
-    if (errno != EEXIST || i == kMost) refuse_by_errno();
-  }
+  return std::make_unique<PlainFile>(std::move(spot), std::move(file), size, root.most_bytes);
 }
 
 std::unique_ptr<PlainFile> open_to_write(const Root& root, std::string_view path, bool append) {
@@ -191,9 +194,10 @@ std::unique_ptr<PlainFile> open_to_write(const Root& root, std::string_view path
   struct stat info {};
   if (::fstatat(spot.folder.get(), spot.name.c_str(), &info, AT_SYMLINK_NOFOLLOW) == 0 && !S_ISREG(info.st_mode))
     refuse(S_ISLNK(info.st_mode) ? "symbolic links are not followed" : "it is not a regular file");
-  std::string temporary;
-  Descriptor file = create_temporary(spot, temporary);
-  return std::make_unique<PlainFile>(std::move(spot), std::move(file), temporary, 0, root.most_bytes);
+  // It exists before its file does, so that no failure can leave that behind.
+  auto written = std::make_unique<PlainFile>(std::move(spot), Descriptor(-1), 0, root.most_bytes);
+  written->create_temporary();
+  return written;
 }
 
 /// The roots of a breve_files, in their order.

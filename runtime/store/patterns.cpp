@@ -104,6 +104,13 @@ Color color_of(std::string_view name, int x, int y) {
 
 }  // namespace
 
+std::uint64_t pattern_work(std::string_view name) {
+  constexpr std::uint64_t kOfPixel = 5, kPlainPixelsOfUnit = 4;  // measured
+  constexpr auto kPlain = static_cast<std::uint64_t>(kSmallSide * kSmallSide) / kPlainPixelsOfUnit;
+  constexpr auto kOther = static_cast<std::uint64_t>(kSide * kSide) * kOfPixel;
+  return name == "checker" || name == "ground" ? kPlain : kOther;
+}
+
 Image paint_pattern(std::string_view name, std::pmr::memory_resource* memory) {
   if (std::find(kPatterns.begin(), kPatterns.end(), name) == kPatterns.end()) return Image(memory);
   if (name == "checker") return checker(memory);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 
@@ -15,8 +16,9 @@ namespace breve {
 ///   clouds, sky       white clouds on blue; the sky is paler and has fewer
 ///   star              a soft white spark on nothing, for bitmaps and light maps
 inline constexpr std::array<std::string_view, 6> kPatterns{"checker", "ground", "noise", "clouds", "sky", "star"};
-inline constexpr std::uint64_t kMostPatternPixels = 128 * 128;
 
+/// The work of painting it, in units of Meter.
+std::uint64_t pattern_work(std::string_view name);
 /// The pattern of that name: the same pixels on every machine. Empty if there is none.
 Image paint_pattern(std::string_view name, std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 

@@ -81,8 +81,7 @@ std::int32_t image_write_16_bit(Machine& machine, Instance& self, Text file) {
 
 /// Replace the pixels by those of a pattern.
 void paint(Machine& machine, Instance& self, std::string_view pattern) {
-  constexpr std::uint64_t kOfPixel = 64;
-  machine.charge_for(kOfPixel * kMostPatternPixels);
+  machine.charge(pattern_work(pattern));
   image(machine, self) = paint_pattern(pattern, machine.heap().memory());
 }
 
