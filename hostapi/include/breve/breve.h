@@ -1611,9 +1611,9 @@ BREVE_API bool breve_world_has_budget(const breve_world* world);
 
 /* A class that the host implements in its own language. Programs use it like a class of the class library: they derive
    classes from it, create objects of it and call its methods. A host class may itself be derived from a class of the
-   library or of a program. Methods with special names work as in steve: `init` runs for each new object, from the root
-   class down; `iterate` and `post-iterate` run in each iteration; and `destroy` runs when an object is freed. See
-   docs/host_classes.md. */
+   library, of the host or of a program. Methods with special names work as in steve: `init` runs for each new object,
+   from the root class down; `iterate` and `post-iterate` run in each iteration; and `destroy` runs when an object is
+   freed. See docs/host_classes.md. */
 
 /* One keyword of a method, with the type of its argument. */
 typedef struct breve_parameter {
@@ -1762,11 +1762,12 @@ BREVE_API breve_status breve_world_set_user(breve_world* world, void* user, void
 BREVE_API breve_status breve_object_set_user(breve_world* world, breve_object object, void* user,
                                              void (*destroy)(void* user));
 
-/* The data of an object; NULL if it does not have any. BREVE_OK; BREVE_ERROR_STALE; BREVE_ERROR_ARGUMENT: the null object. */
+/* Reads the user data of an object; NULL if it does not have any. BREVE_OK; BREVE_ERROR_STALE; BREVE_ERROR_ARGUMENT: the
+   null object. */
 BREVE_API breve_status breve_object_user(const breve_world* world, breve_object object, void** user);
 
-/* State of the host that influences the run of a world: it becomes part of the world's snapshots and of its hash. A world may
-   have several states, each with its own name. */
+/* State of the host that influences the run of a world. It becomes part of the world's snapshots and of its hash. A world
+   may have several states, each with its own name. */
 typedef struct breve_state {
   size_t struct_size; /* set by breve_state_default */
   void* user;         /* passed to the callbacks. Default NULL */
