@@ -1609,33 +1609,35 @@ BREVE_API bool breve_world_has_budget(const breve_world* world);
 
 /* ---- classes of the host ------------------------------------------------------------------------------------------ */
 
-/* A class that the host implements in its own language. Programs use it like one of the class library: they derive classes
-   from it, create objects of it and call its methods. It may itself be derived from any of their classes. Methods with
-   special names work as in steve: `init` runs for each new object, from the root class down, `iterate` and `post-iterate`
-   run in each iteration, and `destroy` runs when an object is freed. See docs/host_classes.md. */
+/* A class that the host implements in its own language. Programs use it like a class of the class library: they derive
+   classes from it, create objects of it and call its methods. A host class may itself be derived from a class of the
+   library, of the host or of a program. Methods with special names work as in steve: `init` runs for each new object,
+   from the root class down; `iterate` and `post-iterate` run in each iteration; and `destroy` runs when an object is
+   freed. See docs/host_classes.md. */
 
 /* One keyword of a method, with the type of its argument. */
 typedef struct breve_parameter {
   const char* keyword;
-  uint32_t type;     /* breve_type: arguments are converted as in an assignment; BREVE_TYPE_NULL accepts any value unchanged */
+  uint32_t type;     /* breve_type. Arguments are converted as in an assignment. BREVE_TYPE_NULL: any value, unchanged */
   uint32_t reserved; /* must be 0 */
 } breve_parameter;
 
-/* A method. It is called like a host function; breve_call.self is the receiver. Frozen. */
+/* A method of a host class. It is called like a host function; breve_call.self is the receiver. Frozen. */
 typedef struct breve_method {
   const char* name;                  /* a selector: "set-goal" */
   const char* doc;                   /* a description, for editors; NULL: none */
   const breve_parameter* parameters; /* NULL only if there are none */
   size_t parameter_count;            /* at most 8 */
   uint32_t result;                   /* breve_type; BREVE_TYPE_NULL: any value, or none */
-  bool adopts_keywords; /* if it overrides a method with the same number of keywords but different ones, it takes those,
-                           in their order, so that callers need not know which of the two they call */
+  bool adopts_keywords; /* true: if the method overrides one that has the same number of keywords but different ones, it
+                           takes over those keywords, in their order, so that callers do not have to know which of the
+                           two methods they call */
   bool reserved[3];     /* must be false */
   breve_function_fn call;
   void* user; /* passed to `call` */
 } breve_method;
 
-/* An instance variable. breve_object_get and _set read and write it, and so do the methods of derived classes. */
+/* An instance variable. breve_object_get, breve_object_set and the methods of derived classes can read and write it. */
 typedef struct breve_variable {
   const char* name;
   uint32_t type;     /* breve_type, but not BREVE_TYPE_NULL or BREVE_TYPE_POINTER */
@@ -1644,32 +1646,35 @@ typedef struct breve_variable {
 
 /* A position in the host's source code, for the call chain of an error. */
 typedef struct breve_place {
-  const char* function; /* its name in that source; copied */
+  const char* function; /* the name of the function in that source; copied */
   const char* file;     /* copied */
-  uint32_t line;        /* from 1; 0 if not known */
+  uint32_t line;        /* counts from 1; 0 if not known */
 } breve_place;
 
-/* Called when a world is created from a program with the class, before anything runs in it. It must not create objects.
+/* Called when a world is created from a program that contains the class, before anything runs in the world. The function
+   must not create objects.
    @param user     breve_class.user
-   @param binding  initially NULL; set it to the value of breve_call.binding for this world
-   Any status except BREVE_OK ends the creation of the world, with the reason that was written. */
+   @param binding  initially NULL; set it to the value that breve_call.binding is to have in this world
+   If the function returns a status other than BREVE_OK, the creation of the world fails with the reason that the function
+   has written. */
 typedef breve_status (*breve_bind_fn)(void* user, breve_world* world, void** binding, breve_write_fn reason, void* sink);
 
-/* Called when an error leaves a method, or passes through it, to collect the call chain.
+/* Called to collect the call chain when an error leaves a method or passes through it. The function must not call functions
+   of this header.
    @param call    the call of the method, as for breve_function_fn
-   @param places  room for `capacity` places: the running functions of the host in this call, innermost first; the last one
-                  is the method itself. Texts must be valid until the next call of this function
-   Returns the total number, even if it exceeds capacity; writes at most capacity places. It must not call functions of
-   this header. */
+   @param places  room for `capacity` places. The function writes the running functions of the host in this call, innermost
+                  first; the last one is the method itself. Texts must be valid until the next call of this function
+   Returns the total number, even if it exceeds capacity; writes at most capacity places. */
 typedef size_t (*breve_places_fn)(void* user, const breve_call* call, breve_place* places, size_t capacity);
 
+/* The description of a host class. */
 typedef struct breve_class {
   size_t struct_size;              /* set by breve_class_default */
   const char* name;                /* required */
   const char* alias;               /* another name, as in `(aka Birds)`. NULL: none. Default NULL */
   const char* parent;              /* a class of the library, the host or a program. Default "Object" */
-  const char* const* modules;      /* `module_count` modules that programs load before it, as with @include, such as the
-                                      module of the parent. NULL only if there are none. Default NULL */
+  const char* const* modules;      /* `module_count` modules, such as the module of the parent. Programs load them before
+                                      the class, as with @include. NULL only if there are none. Default NULL */
   size_t module_count;             /* Default 0 */
   const char* doc;                 /* a description, for editors. NULL: none. Default NULL */
   const breve_variable* variables; /* NULL only if there are none. Default NULL */
@@ -1677,17 +1682,18 @@ typedef struct breve_class {
   const breve_method* methods;     /* NULL only if there are none. Default NULL */
   size_t method_count;             /* Default 0 */
   breve_bind_fn bind;              /* NULL: breve_call.binding is NULL. Default NULL */
-  void (*unbind)(void* binding);   /* called when the world is destroyed, or its program is replaced by one without the
-                                      class; it must not use this header. NULL: nothing to do. Default NULL */
-  breve_places_fn places;          /* NULL: call chains contain the method's name only. Default NULL */
+  void (*unbind)(void* binding);   /* called when the world is destroyed, or when its program is replaced by one without
+                                      the class. It must not call functions of this header. NULL: nothing is called.
+                                      Default NULL */
+  breve_places_fn places;          /* NULL: call chains contain only the name of the method. Default NULL */
   void* user;                      /* passed to `bind` and `places`. Default NULL */
   void (*destroy)(void* user);     /* as breve_function.destroy. Default NULL */
-  const breve_place* method_places; /* the declaration of each of the `method_count` methods, for profiles; `function` is
+  const breve_place* method_places; /* where each of the `method_count` methods is declared, for profiles. `function` is
                                        ignored, and `file` may be NULL if it is unknown. NULL: all are unknown. Default
                                        NULL */
 } breve_class;
 
-/* The defaults named above. */
+/* Returns a description with the defaults named above. */
 static inline breve_class breve_class_default(void) {
   breve_class class_;
   breve_clear(&class_, sizeof class_);
@@ -1696,25 +1702,25 @@ static inline breve_class breve_class_default(void) {
   return class_;
 }
 
-/* Adds a class for all programs that are compiled and analysed on this runtime from now on. A program contains it if it uses
-   its name. A class that a file of the program defines takes precedence over it, and it takes precedence over one of the
-   class library. It replaces an earlier class of the host with the same name; programs that are already compiled keep
-   theirs. Runs no script.
+/* Adds a host class to all programs that are compiled or analysed on this runtime from now on. A program contains the class
+   if it uses the name of the class. A class of the same name that a file of the program defines takes precedence over the
+   host class, and the host class takes precedence over one of the class library. It replaces an earlier host class of the
+   same name; programs that are already compiled keep the earlier class. Does not run script.
    @param description  copied, with everything that it points to
    BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, a name that a program cannot use, a method without `call`,
    more than 8 parameters, two methods or variables with the same name, or an unknown type; `destroy` is not called then.
    BREVE_ERROR_BUSY from a callback of a compilation. */
 BREVE_API breve_status breve_runtime_add_class(breve_runtime* runtime, const breve_class* description);
 
-/* As breve_world_prepare, for calls like those of `super`: breve_object_call_prepared then calls the method of the parent of
-   `class_name`, even if the object's own class overrides it. It works for objects of `class_name` and its descendants;
-   others give BREVE_ERROR_TYPE.
+/* Prepares a selector, as breve_world_prepare does, but for calls like those of `super`: breve_object_call_prepared then
+   calls the method of the parent of `class_name`, even if the object's own class overrides it. The selector works for
+   objects of `class_name` and its descendants; a call of any other object returns BREVE_ERROR_TYPE.
    BREVE_OK; BREVE_ERROR_NOT_FOUND: the program does not have the class; BREVE_ERROR_ARGUMENT: the class does not have a
    parent. */
 BREVE_API breve_status breve_world_prepare_super(breve_world* world, const char* class_name, const char* method,
                                                  const char* const* keywords, size_t count, breve_selector* selector);
 
-/* A method of a class. Texts are owned by the program. */
+/* A method of a class, as a program sees it. Texts are owned by the program. */
 typedef struct breve_method_info {
   const char* class_name; /* the class that defines it */
   const char* name;
@@ -1722,13 +1728,13 @@ typedef struct breve_method_info {
   const char* const* keywords;  /* in the order of the declaration; owned by the world until the next call of
                                    breve_world_methods on it */
   const uint32_t* types;        /* breve_type of each, owned likewise; BREVE_TYPE_NULL: any value */
-  const bool* defaults;         /* whether each may be left out; owned likewise */
+  const bool* defaults;         /* whether each keyword may be left out; owned likewise */
 } breve_method_info;
 
-/* The methods of a class, including those that it inherits and does not override, in the order of declaration; the methods
-   of the class itself come first.
+/* Reads the methods of a class, including those that it inherits and does not override, in the order of declaration. The
+   methods of the class itself come first.
    @param methods  room for `capacity` methods; NULL only if capacity is 0
-   @param count    the total number, even if it exceeds capacity; at most capacity methods are written
+   @param count    receives the total number, even if it exceeds capacity; at most capacity methods are written
    BREVE_OK; BREVE_ERROR_NOT_FOUND: the program does not have the class. */
 BREVE_API breve_status breve_world_methods(breve_world* world, const char* class_name, breve_method_info* methods,
                                            size_t capacity, size_t* count);
@@ -1737,8 +1743,8 @@ BREVE_API breve_status breve_world_methods(breve_world* world, const char* class
    of the running script. BREVE_OK; BREVE_ERROR_SCRIPT: too much was printed, or a force method runs. */
 BREVE_API breve_status breve_world_print(breve_world* world, const char* text, size_t size);
 
-/* The result of `random[bound]` in a script, from the world's generator: an int from 0 to bound, a number below bound, or a
-   vector of such numbers. BREVE_OK; BREVE_ERROR_TYPE: the bound has another type. */
+/* Computes the result of `random[bound]` in a script, from the world's generator: an int from 0 to bound, a number below
+   bound, or a vector of such numbers. BREVE_OK; BREVE_ERROR_TYPE: the bound has another type. */
 BREVE_API breve_status breve_world_random(breve_world* world, const breve_value* bound, breve_value* result);
 
 /* ---- user data and state of the host ------------------------------------------------------------------------------ */
@@ -1756,11 +1762,12 @@ BREVE_API breve_status breve_world_set_user(breve_world* world, void* user, void
 BREVE_API breve_status breve_object_set_user(breve_world* world, breve_object object, void* user,
                                              void (*destroy)(void* user));
 
-/* The data of an object; NULL if it does not have any. BREVE_OK; BREVE_ERROR_STALE; BREVE_ERROR_ARGUMENT: the null object. */
+/* Reads the user data of an object; NULL if it does not have any. BREVE_OK; BREVE_ERROR_STALE; BREVE_ERROR_ARGUMENT: the
+   null object. */
 BREVE_API breve_status breve_object_user(const breve_world* world, breve_object object, void** user);
 
-/* State of the host that influences the run of a world: it becomes part of the world's snapshots and of its hash. A world may
-   have several states, each with its own name. */
+/* State of the host that influences the run of a world. It becomes part of the world's snapshots and of its hash. A world
+   may have several states, each with its own name. */
 typedef struct breve_state {
   size_t struct_size; /* set by breve_state_default */
   void* user;         /* passed to the callbacks. Default NULL */

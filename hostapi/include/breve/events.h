@@ -1,5 +1,5 @@
-/* events.h: the events of an iteration: contacts, creation and end of objects, announcements, sleep. A part of breve.h,
- * whose rules hold here.
+/* events.h: reports the events of an iteration: contacts, the creation and freeing of objects, announcements, and sleep. It
+ * is a part of breve.h, and the rules at the top of breve.h hold here.
  */
 #ifndef BREVE_EVENTS_H
 #define BREVE_EVENTS_H
@@ -12,13 +12,13 @@ extern "C" {
 
 /* ---- events ------------------------------------------------------------------------------------------------------ */
 
-/* The host selects the kinds of events that it wants. The lists of an iteration are valid from its end until the next one
-   begins or an image is restored. Only the selected kinds are collected; the effect "events" reports whether any are, and
-   what they cost. Events are not part of the world: neither the hash nor images contain them.
-   breve_world_interventions lists the actions of the guard, and breve_world_impacts the impulses alone. Objects in these
-   lists may have been freed; their ids are stale then. */
+/* The host selects the kinds of events that it wants, and reads them as lists. The lists of an iteration are valid from its
+   end until the next iteration begins or an image is restored. The world collects only the selected kinds; the effect
+   "events" reports whether it collects any, and what they cost. Events are not part of the world: neither the hash nor
+   images contain them. breve_world_interventions lists the actions of the guard, and breve_world_impacts lists the
+   impulses alone. An object in these lists may have been freed; its id is then stale. */
 
-/* Kinds of events; add them to select several. */
+/* The kinds of events; add them to select several. */
 typedef enum breve_event {
   BREVE_EVENT_CONTACT = 1,      /* see breve_world_watch_contacts */
   BREVE_EVENT_LIFE = 2,         /* objects that were created or freed */
@@ -27,11 +27,11 @@ typedef enum breve_event {
 } breve_event;
 
 /* Selects the kinds of events that are collected from now on.
-   @param kinds  a sum of breve_event; 0: none
-   BREVE_OK; BREVE_ERROR_ARGUMENT: a bit that is not a breve_event. */
+   @param kinds  a sum of breve_event values; 0: none
+   BREVE_OK; BREVE_ERROR_ARGUMENT: kinds has a bit that is not a breve_event. */
 BREVE_API breve_status breve_world_set_events(breve_world* world, uint32_t kinds);
 
-/* The kinds that are collected. 0 for NULL. */
+/* Returns the kinds of events that are collected. Returns 0 for NULL. */
 BREVE_API uint32_t breve_world_events(const breve_world* world);
 
 /* Starts or stops reporting the contacts of all objects of a class and its descendants. After a reload
@@ -42,43 +42,48 @@ BREVE_API breve_status breve_world_watch_contacts(breve_world* world, const char
 /* Starts or stops reporting the contacts of one object. BREVE_OK; BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_watch_contacts(breve_world* world, breve_object object, bool on);
 
-/* Whether the contacts of an object are reported, because it or its class is watched. BREVE_OK; BREVE_ERROR_NO_BODY. */
+/* Reads whether the contacts of an object are reported, because the object or its class is watched. BREVE_OK;
+   BREVE_ERROR_NO_BODY. */
 BREVE_API breve_status breve_object_contacts_watched(const breve_world* world, breve_object object, bool* watched);
 
+/* The phase of a contact between two bodies. */
 typedef enum breve_phase {
-  BREVE_PHASE_BEGIN = 0,   /* they did not touch at the end of the last iteration */
-  BREVE_PHASE_PERSIST = 1, /* they still touch */
-  BREVE_PHASE_END = 2      /* they no longer touch */
+  BREVE_PHASE_BEGIN = 0,   /* the bodies did not touch at the end of the last iteration */
+  BREVE_PHASE_PERSIST = 1, /* the bodies still touch */
+  BREVE_PHASE_END = 2      /* the bodies no longer touch */
 } breve_phase;
 
-/* Two bodies that touch at the end of an iteration, or that collided during it. A contact begins when the gap is at most
-   1e-4 of the smaller radius and ends when it exceeds 1e-3, so that a body at rest does not flicker between the two.
-   Bodies without physics that meet and part within one iteration are not reported. Frozen. */
+/* A contact of two bodies that touch at the end of an iteration, or that collided during it. A contact begins when the gap
+   is at most 1e-4 of the smaller radius, and ends when the gap exceeds 1e-3 of it, so that the contact of a body at rest
+   does not begin and end over and over. Two bodies without physics that meet and part within one iteration are not
+   reported. Frozen. */
 typedef struct breve_contact {
   uint32_t phase; /* breve_phase */
   uint32_t reserved;
   breve_object a, b; /* a was created earlier */
-  double point[3];   /* midway between their nearest (or deepest) points, world frame. In BREVE_PHASE_END: the last one */
-  double normal[3];  /* unit, from b toward a; in BREVE_PHASE_END: the last one */
-  double distance;   /* negative: the depth of the overlap; in BREVE_PHASE_END: the last one */
-  double impulse[3]; /* on a, N*s: the sum of the impacts of this iteration (breve_world_impacts). The support of a body
-                        that rests is not an impact */
+  double point[3];   /* midway between their nearest (or deepest) points, world frame. In BREVE_PHASE_END: the last point */
+  double normal[3];  /* unit length, from b toward a. In BREVE_PHASE_END: the last normal */
+  double distance;   /* negative: the depth of the overlap. In BREVE_PHASE_END: the last distance */
+  double impulse[3]; /* on a, N*s: the sum of the impacts of this iteration (breve_world_impacts). The force that supports
+                        a resting body is not an impact */
 } breve_contact;
 
-/* The contacts of the last iteration, in the order of creation of a, then of b.
+/* Reads the contacts of the last iteration, in the order of creation of a, then of b.
    @param contacts  room for `capacity` contacts; NULL only if capacity is 0
-   @param count     the total number, even if it exceeds capacity; at most capacity contacts are written
+   @param count     receives the total number, even if it exceeds capacity; at most capacity contacts are written
    BREVE_OK. */
 BREVE_API breve_status breve_world_contacts(const breve_world* world, breve_contact* contacts, size_t capacity,
                                             size_t* count);
 
-/* The force that a contact carried in the last sub-step, on `object`, N, world frame: for a body of mass m that rests on
-   a floor, m g upward. It is the impulse of the contact, friction included, divided by the length of the sub-step; at an
-   impact it is large. A body that sleeps keeps the force with which it fell asleep. On rungs whose resting contacts are
-   springs (breve_accuracy.contact_springs), the force of these springs. No contacts have to be watched, and nothing is
-   gathered for it. Bodies without physics carry no force between them.
+/* Reads the force that a contact exerted on `object` in the last sub-step, N, world frame. For a body of mass m that rests
+   on a floor, it is m g upward. The force is the impulse of the contact, including friction, divided by the length of the
+   sub-step; at an impact it is large. On rungs whose resting contacts are springs (breve_accuracy.contact_springs), it is
+   the force of these springs. A body that sleeps keeps the force with which it fell asleep. The contacts do not have to be
+   watched, and the world does not collect anything for this function. Bodies without physics do not exert forces on each
+   other.
    @param other  null: the sum over all bodies that touch `object`, as on a scale or a pressure plate
-   BREVE_OK, with 0 if they do not touch; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: both are the same object. */
+   BREVE_OK, with a force of 0 if the bodies do not touch; BREVE_ERROR_NO_BODY; BREVE_ERROR_ARGUMENT: both are the same
+   object. */
 BREVE_API breve_status breve_object_contact_force(const breve_world* world, breve_object object, breve_object other,
                                                   double force[3]);
 
@@ -89,8 +94,9 @@ typedef struct breve_life {
   bool born;              /* created; false: freed */
 } breve_life;
 
-/* Objects that were created or freed, in that order in time. As breve_world_contacts. The list also contains events between
-   two iterations, until the next iteration begins. */
+/* Reads the objects that were created or freed, in the order in which this happened. The list also contains objects that
+   were created or freed after the iteration, until the next iteration begins. Takes the same parameters and returns the
+   same statuses as breve_world_contacts. */
 BREVE_API breve_status breve_world_lives(const breve_world* world, breve_life* lives, size_t capacity, size_t* count);
 
 /* An announcement of an object. Frozen. */
@@ -100,7 +106,8 @@ typedef struct breve_announcement {
   const char* message; /* owned by the world until the next iteration begins */
 } breve_announcement;
 
-/* Announcements, in the order in which they were made. As breve_world_lives. */
+/* Reads the announcements, in the order in which they were made. The list also contains announcements that
+   were made after the iteration. Takes the same parameters and returns the same statuses as breve_world_contacts. */
 BREVE_API breve_status breve_world_announcements(const breve_world* world, breve_announcement* announcements,
                                                  size_t capacity, size_t* count);
 
@@ -110,27 +117,29 @@ typedef struct breve_nap {
   bool asleep;
 } breve_nap;
 
-/* Bodies that woke up, then bodies that fell asleep, each in the order of creation. As breve_world_contacts. */
+/* Reads the bodies that woke up, then the bodies that fell asleep, each group in the order of creation. Takes the same
+   parameters and returns the same statuses as breve_world_contacts. */
 BREVE_API breve_status breve_world_naps(const breve_world* world, breve_nap* naps, size_t capacity, size_t* count);
 
 /* ---- callbacks ---------------------------------------------------------------------------------------------------- */
 
-/* Functions of a host that get the events during an iteration, one by one, in the order of the lists: no event is lost
-   when breve_world_advance runs several iterations. A function that is not NULL also asks for its kind of event, as
-   breve_world_set_events does; contacts are those of watched objects.
-   - `life`, `announcement` and `intervention` are called as soon as the handler, `iterate` or other call by the world in
-     which the event happened has returned; `contact` and `nap` at the end of the iteration, when they are known. Events
-     between two iterations, and those after an error that ended an iteration, come when the next one begins.
-   - The functions may call any function of this header, and change the world as a script would in its `iterate`: create
-     and free objects, move them, call methods. Functions that cannot work inside an iteration, such as
+/* Functions of a host that receive the events during an iteration, one by one, in the order of the lists. No event is lost
+   when breve_world_advance runs several iterations. A function that is not NULL also selects its kind of event, as
+   breve_world_set_events does. Contacts are reported for watched objects only.
+   - The world calls `life`, `announcement` and `intervention` as soon as the handler, `iterate` or other call by the world
+     in which the event happened has returned. It calls `contact` and `nap` at the end of the iteration, when these events
+     are known. Events between two iterations, and events after an error that ended an iteration, are reported when the
+     next iteration begins.
+   - The functions may call any function of this header, and change the world as a script may in its `iterate`: create
+     and free objects, move them, and call methods. Functions that cannot work inside an iteration, such as
      breve_world_step, _restore, _snapshot, _destroy and breve_world_set_listener, return BREVE_ERROR_BUSY and do
      nothing. Events that a callback itself causes are reported later, never from inside it.
-   - A callback that changes the world is a part of the run: a replay (breve_world_replay) agrees only with the same
-     listener. Callbacks that only read leave no trace in the world. */
+   - A callback that changes the world is a part of the run: a replay (breve_world_replay) agrees with the run only if the
+     same listener is set. Callbacks that only read do not affect the world. */
 typedef struct breve_listener {
   size_t struct_size; /* set by breve_listener_default */
   void* user;         /* passed to the functions. Default NULL */
-  /* Each may be NULL: it is not called. Structs and texts are valid until the function returns. Default NULL */
+  /* A function that is NULL is not called. Structs and texts are valid until the function returns. Default NULL */
   void (*contact)(void* user, breve_world* world, const breve_contact* contact);
   void (*life)(void* user, breve_world* world, const breve_life* life);
   void (*announcement)(void* user, breve_world* world, const breve_announcement* announcement);
@@ -138,7 +147,7 @@ typedef struct breve_listener {
   void (*intervention)(void* user, breve_world* world, const breve_intervention* intervention);
 } breve_listener;
 
-/* The defaults named above. */
+/* Returns a listener with the defaults named above. */
 static inline breve_listener breve_listener_default(void) {
   breve_listener listener;
   breve_clear(&listener, sizeof listener);
@@ -146,12 +155,12 @@ static inline breve_listener breve_listener_default(void) {
   return listener;
 }
 
-/* Sets the callbacks of a world. They get the events from now on. They are not part of images.
+/* Sets the callbacks of a world, which receive all events from now on. Images do not contain the callbacks.
    @param listener  copied; NULL: none
    BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size; BREVE_ERROR_BUSY while a script of this world runs. */
 BREVE_API breve_status breve_world_set_listener(breve_world* world, const breve_listener* listener);
 
-/* The callbacks that were set, or the defaults. BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
+/* Reads the callbacks that were set, or the defaults. BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size. */
 BREVE_API breve_status breve_world_listener(const breve_world* world, breve_listener* listener);
 
 #ifdef __cplusplus
