@@ -115,7 +115,8 @@ class PlainFile {
   PlainFile(const PlainFile&) = delete;
   PlainFile& operator=(const PlainFile&) = delete;
 
-  /// Begins a new file beside the one that it will replace. Several threads may write that one at once, each to its own.
+  /// Begins a new file beside the one that it will replace. Several threads may write that one at once, each to its
+  /// own.
   void create_temporary() {
     constexpr int kHow = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, kMost = 1000;
     for (int i = 1;; ++i) {
