@@ -45,6 +45,8 @@ Instance* dearchive_xml(Machine& machine, Instance&, Text file) {
 }
 
 Instance* parse_request(Machine& machine, Instance&, Text xml) {
+  constexpr std::uint64_t kOfRequest = 128;  // iterations: one that is refused at once takes as long
+  machine.charge(kOfRequest);
   Instance* object = nullptr;
   try_archive(machine, "request not understood", [&] { object = from_archive(machine, view(xml)); });
   return object;

@@ -110,6 +110,8 @@ ListCell* control_cast_shape(Machine& machine, Instance& self, Instance* shape, 
 
 ListCell* find_in(Machine& machine, const Instance& self, const Shape& shape, const Vector3& location,
                   const Asked& asked) {
+  constexpr std::uint64_t kOfShape = 32;  // iterations: a shape and its list take as long, however little is near
+  machine.charge(kOfShape);
   return objects_of(machine, put(machine, self, [&](Queries& queries, const Queries::Scene& scene) -> const Hits& {
                       return queries.overlap(scene, shape, {location, Quaternion::Identity()}, asked.filter());
                     }));
