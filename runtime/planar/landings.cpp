@@ -48,7 +48,7 @@ class Landings {
     for_joints([this](const FlatJoint&, const FlatBody& child, const FlatBody* parent) { unite(&child, parent); });
     weigh();
   }
-  const Together& of(const FlatBody& flat) { return all_[root(slot_of(flat))]; }
+  Together& of(const FlatBody& flat) { return all_[root(slot_of(flat))]; }
 
  private:
   template <class F>
@@ -73,7 +73,6 @@ class Landings {
     const std::uint32_t first = root(slot_of(*a)), second = root(slot_of(*b));
     all_[std::max(first, second)].next = std::min(first, second);
   }
-  Together& together(const FlatBody& flat) { return all_[root(slot_of(flat))]; }
   void weigh();
   void weigh_contact(const FlatBody& a, const FlatBody& b, b2Contact* contact);
   double given_to(const FlatBody& flat) const;
@@ -89,13 +88,13 @@ void Landings::weigh() {
   const double fall = core_.settings.gravity.norm() * dt_;
   for (const FlatBody& flat : core_.slots) {
     if (flat.body == kNoBody || flat.fixed || !flat.b2->IsAwake()) continue;
-    Together& all = together(flat);
+    Together& all = of(flat);
     all.gain += given_to(flat);
     // What rests takes up the speed of a sub-step's fall again and again.
     all.allowed += kGain * core_.motion_of(flat) + 0.5 * flat.mass.mass * fall * fall;
   }
   for_joints([this](const FlatJoint& joint, const FlatBody& child, const FlatBody* parent) {
-    Together& all = together(child);
+    Together& all = of(child);
     all.gain -= core_.motor_work(joint, dt_);
     all.joined = true;
     all.uneven = all.uneven || uneven(&child, parent);
@@ -104,7 +103,7 @@ void Landings::weigh() {
 }
 
 void Landings::weigh_contact(const FlatBody& a, const FlatBody& b, b2Contact* contact) {
-  Together& all = together(a.fixed ? b : a);
+  Together& all = of(a.fixed ? b : a);
   all.uneven = all.uneven || uneven(&a, &b);
   // What scripts move may give energy.
   if (a.driven || b.driven) all.allowed = std::numeric_limits<double>::infinity();

@@ -5,8 +5,9 @@
 #include <filesystem>
 #include <fstream>
 #include <set>
-#include <sstream>
 #include <string>
+
+#include "tests/library/selector_table.hpp"
 
 namespace {
 
@@ -38,18 +39,8 @@ TEST(Coverage, EverySelectorOfTheTableIsCalledByAProgram) {
   const std::set<std::string> by_machine = {"init", "destroy"};
   const std::set<std::string> called = names_called();
   ASSERT_GT(called.size(), 300U);
-  std::ifstream in(BREVE_SELECTORS);
-  std::string line;
-  std::getline(in, line);
-  while (std::getline(in, line)) {
-    std::stringstream cells(line);
-    std::string cls, alias, parent, selector;
-    std::getline(cells, cls, '\t');
-    std::getline(cells, alias, '\t');
-    std::getline(cells, parent, '\t');
-    std::getline(cells, selector, '\t');
-    EXPECT_TRUE(by_machine.contains(selector) || called.contains(selector)) << cls << " " << selector;
-  }
+  for (const breve::SelectorRow& row : breve::selector_rows(BREVE_SELECTORS))
+    EXPECT_TRUE(by_machine.contains(row.selector) || called.contains(row.selector)) << row.cls << " " << row.selector;
 }
 
 }  // namespace

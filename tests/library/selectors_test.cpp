@@ -1,34 +1,9 @@
 // Every selector that the table promises exists with its keywords, types and defaults, and is documented.
-#include <fstream>
-#include <sstream>
-
 #include "tests/library/parsed_library.hpp"
+#include "tests/library/selector_table.hpp"
 
 namespace breve::steve {
 namespace {
-
-struct Row {
-  std::string cls, alias, parent, selector;
-  std::vector<std::string> keywords;  // "keyword:type=default"
-};
-
-std::vector<Row> rows() {
-  std::ifstream in(BREVE_SELECTORS);
-  std::vector<Row> all;
-  std::string line;
-  std::getline(in, line);
-  while (std::getline(in, line)) {
-    std::vector<std::string> cells;
-    std::stringstream cells_in(line);
-    for (std::string cell; std::getline(cells_in, cell, '\t');) cells.push_back(cell);
-    cells.resize(5);
-    Row row{cells[0], cells[1], cells[2], cells[3], {}};
-    std::stringstream words(cells[4]);
-    for (std::string word; words >> word;) row.keywords.push_back(word);
-    all.push_back(row);
-  }
-  return all;
-}
 
 std::string type_text(const ast::TypeRef& type) {
   switch (type.kind) {
@@ -90,9 +65,9 @@ TEST(Selectors, EveryFileOfTheLibraryParsesWithoutAWordOfComplaint) {
 }
 
 TEST(Selectors, EveryRowOfTheTableExistsWithItsKeywordsTypesAndDefaults) {
-  const std::vector<Row> table = rows();
+  const std::vector<SelectorRow> table = selector_rows(BREVE_SELECTORS);
   ASSERT_GT(table.size(), 450U);
-  for (const Row& row : table) {
+  for (const SelectorRow& row : table) {
     SCOPED_TRACE(row.cls + " " + row.selector);
     const ast::Class* cls = ParsedLibrary::get().find(row.cls);
     ASSERT_NE(cls, nullptr);

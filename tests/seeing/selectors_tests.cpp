@@ -4,13 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <memory>
 #include <set>
-#include <sstream>
 #include <string>
 
 #include "stage.hpp"
+#include "tests/library/selector_table.hpp"
 
 namespace breve::seeing {
 namespace {
@@ -63,21 +62,13 @@ TEST(DrawingSelectors, NoneOfTheTableIsForgotten) {
   std::set<std::string> known;
   for (const auto list : {control_selectors(), body_selectors(), other_selectors()})
     for (const Selector& one : list) known.insert(one.name);
-  std::ifstream in(BREVE_SELECTORS);
-  std::string line, forgotten;
-  std::getline(in, line);
-  while (std::getline(in, line)) {
-    std::stringstream cells(line);
-    std::string cls, alias, parent, selector;
-    std::getline(cells, cls, '\t');
-    std::getline(cells, alias, '\t');
-    std::getline(cells, parent, '\t');
-    std::getline(cells, selector, '\t');
-    const std::string padded = "-" + selector + "-";
+  std::string forgotten;
+  for (const SelectorRow& row : selector_rows(BREVE_SELECTORS)) {
+    const std::string padded = "-" + row.selector + "-";
     bool drawing = false;
     for (const char* word : words) drawing = drawing || padded.find("-" + std::string(word) + "-") != std::string::npos;
-    const std::string name = cls + " " + selector;
-    if (selector.starts_with("get-") || excused.contains(name)) continue;
+    const std::string name = row.cls + " " + row.selector;
+    if (row.selector.starts_with("get-") || excused.contains(name)) continue;
     if (drawing && !known.contains(name)) forgotten += name + "\n";
   }
   EXPECT_EQ(forgotten, "");
