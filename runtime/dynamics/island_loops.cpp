@@ -29,6 +29,7 @@ bool Loops::hold(double time, double h) {
   settings.direct = true;
   settings.iterations = state_.accuracy.iterations;
   settings.tolerance = kClosed;
+  settings.meter = &state_.meter;
   double last = JointDrive::kNoLimit;
   for (int i = 0; i < kMost; ++i) {
     state_.restore();
@@ -57,32 +58,89 @@ bool Loops::hold(double time, double h) {
   return last < kFound;
 }
 
+bool Loops::stand_open() const {
+  constexpr double kOpen = 1e-6;  // of the smaller body's size, or rad
+  const auto size_of = [this](BodyIndex body) {
+    return body != kNoBody && state_.core.bodies->dynamic(body) ? state_.shape(body).bounding_radius()
+                                                                : JointDrive::kNoLimit;
+  };
+  for (const Tree* tree : state_.trees)
+    for (const JointIndex index : tree->loops) {
+      const JointDescription& is = state_.core.joints[index].is;
+      const LoopRows loop = state_.core.loop_rows(*tree, is);
+      const double most = kOpen * std::min(size_of(is.child), size_of(is.parent));
+      for (int i = 0; i < loop.count; ++i) {
+        const LoopRow& row = loop.rows[static_cast<std::size_t>(i)];
+        if (std::abs(row.error) > (row.angular ? kOpen : most)) return true;
+      }
+    }
+  return false;
+}
+
 /// Positions first, then velocities along the loops.
 void Loops::close() {
   if (!state_.has_loops()) return;
   contacts_.clear();
   constexpr int kMost = 4;  // Newton's method from a small error: two are enough but far from the solution
   constexpr double kClosed = 1e-13;
-  contact::SolveSettings settings;
-  settings.direct = true;
-  settings.iterations = state_.accuracy.iterations;
-  contact::SolveSettings exact = settings;
-  exact.tolerance = 1e-14;  // a length here: loops are closed to round-off
+  bool open = false;
   for (int i = 0;; ++i) {
     state_.place();
     rows_.make(Rows::Motors::Leave);
     state_.load_velocities();
+    if (i == 0) open = stand_open();
     double worst = 0;
-    for (std::size_t k = 0; k < rows_.loops(); ++k) {
-      rows_.loop(k).bias = -rows_.loop_error(k);
-      worst = std::max(worst, std::abs(rows_.loop_error(k)));
-    }
-    if (worst < kClosed || i == kMost) break;
-    positions_.begin_moves();
-    contact::solve_island(rows_.movers(), {}, rows_.scalars(), exact, rows_.workspace());
-    positions_.end_moves(1);
+    for (std::size_t k = 0; k < rows_.loops(); ++k) worst = std::max(worst, std::abs(rows_.loop_error(k)));
+    if (worst < kClosed || i == kMost || !approach(open)) break;
   }
-  // Velocities along the loops where they stand now.
+  close_velocities();
+}
+
+/// One step of Newton's method towards closed loops, for rows that were made where the trees stand. Rows of loops that
+/// stand open may contradict one another: they yield a little, so that there is a step at all, and it is shortened
+/// until the sum of the squares of their errors falls.
+///
+/// Source: Nocedal and Wright 2006, 10.3 (Levenberg-Marquardt).
+/// @return  false if nothing was gained: the trees stand where they stood
+bool Loops::approach(bool open) {
+  constexpr double kYield = 1e-6;    // of a row's own response
+  constexpr double kShorter = 0.25;  // of a step that leads away
+  constexpr double kShortest = 0.01;
+  contact::SolveSettings exact;
+  exact.direct = true;
+  exact.iterations = state_.accuracy.iterations;
+  exact.tolerance = 1e-14;  // a length here: loops are closed to round-off
+  exact.meter = &state_.meter;
+  const double before = errors_squared();
+  for (std::size_t k = 0; k < rows_.loops(); ++k) {
+    contact::ScalarRow& row = rows_.loop(k);
+    row.bias = -rows_.loop_error(k);
+    if (open) row.softness = kYield * rows_.response(row);
+  }
+  positions_.begin_moves();
+  contact::solve_island(rows_.movers(), {}, rows_.scalars(), exact, rows_.workspace());
+  positions_.end_moves(1);
+  if (!open) return true;
+  double length = 1;
+  for (;;) {
+    state_.place_links();
+    if (errors_squared() < before) return true;
+    if (length < kShortest) break;
+    positions_.move_back((1 - kShorter) * length);
+    length *= kShorter;
+  }
+  positions_.move_back(length);
+  state_.place();
+  rows_.make(Rows::Motors::Leave);
+  return false;
+}
+
+/// Velocities along the loops where they stand now.
+void Loops::close_velocities() {
+  contact::SolveSettings settings;
+  settings.direct = true;
+  settings.iterations = state_.accuracy.iterations;
+  settings.meter = &state_.meter;
   for (contact::ScalarRow& row : rows_.scalars()) row.bias = 0, row.impulse = 0;
   state_.load_velocities();
   contact::solve_island(rows_.movers(), {}, rows_.scalars(), settings, rows_.workspace());
@@ -102,6 +160,14 @@ double Loops::read_errors() {
       }
     }
   return worst;
+}
+
+/// The sum of the squares of what read_errors() finds.
+double Loops::errors_squared() {
+  read_errors();
+  double sum = 0;
+  for (std::size_t k = 0; k < rows_.loops(); ++k) sum += rows_.loop_error(k) * rows_.loop_error(k);
+  return sum;
 }
 
 }  // namespace breve::island

@@ -1,5 +1,5 @@
 // Joints that close loops: held closed by the stages of an integrator, by impulses at both ends of smooth motion, or by
-// a projection of positions after it.
+// a projection of positions after it. Loops may be impossible to close: they then end as nearly closed as they can be.
 #pragma once
 
 #include "runtime/dynamics/island_positions.hpp"
@@ -17,10 +17,17 @@ class Loops {
   /// Smooth motion of h seconds that leaves the loops closed, where no other rows are.
   /// @return  false if none was found: near a position in which a loop may fold either way
   bool hold(double time, double h);
+  /// Some loop stands open, by more than an integrator errs: it is still to be closed, or cannot be. Stages and hold()
+  /// begin from closed loops; such loops are left to the rows.
+  bool stand_open() const;
+  /// Closes them by hand, as far as they can be closed.
   void close();
 
  private:
   double read_errors();
+  double errors_squared();
+  bool approach(bool open);
+  void close_velocities();
 
   State& state_;
   Contacts& contacts_;

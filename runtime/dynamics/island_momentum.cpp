@@ -126,7 +126,7 @@ double Momentum::moving() const {
   const bool held = touched_from_outside();
   double sum = 0;
   for (const Clustered& one : state_.clusters) sum += common_of(one.entry->system->trees(), held).inner;
-  return sum;
+  return std::max(sum, 0.0);  // links that stand still among one another may have less than nothing, by round-off
 }
 
 /// Takes a part of moving(), which contacts and limits gave: it is booked as taken by them. Bodies at rest stay at

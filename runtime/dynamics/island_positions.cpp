@@ -113,13 +113,17 @@ void Positions::shorten_pushes(double before, double h) {
 /// Takes back a part of the motion that move_by_pushes() made in h seconds.
 void Positions::take_back_pushes(double part, double h) {
   book_moves(-1);
+  move_back(part * h);
+  book_moves(1);
+}
+
+void Positions::move_back(double h) {
   for (Tree* tree : state_.trees) {
     tree->free_v = tree->state.v;
     tree->state.v = tree->push;
   }
   momentum_.note(&Tree::free_v, false);
-  end_moves(-part * h);
-  book_moves(1);
+  end_moves(-h);
 }
 
 /// The motion of a sub-step is that of a constant force. Where it is another (what presses on a limit may swing there

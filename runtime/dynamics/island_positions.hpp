@@ -18,6 +18,8 @@ class Positions {
   // none.
   void begin_moves();
   void end_moves(double h);
+  /// Takes h seconds of the last motion back from the trees.
+  void move_back(double h);
 
  private:
   void move_by_pushes(double fastest, double h);

@@ -74,6 +74,11 @@ double Rows::rate_of(const contact::ScalarRow& row) const {
       .dot(Eigen::Map<const articulated::Vector>(mover.v, mover.size));
 }
 
+double Rows::response(const contact::ScalarRow& row) const {
+  const int size = movers_[static_cast<std::size_t>(row.a)].size;
+  return Eigen::Map<const articulated::Vector>(row.ja, size).dot(Eigen::Map<const articulated::Vector>(row.ra, size));
+}
+
 void Rows::book() {
   // A contact force that is constant over the sub-step works along the mean of the velocities before and after. Each
   // tree's own ledger has what left it through the contact, even if it went into another body.

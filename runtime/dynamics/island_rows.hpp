@@ -78,6 +78,7 @@ class Rows {
   /// The same as the sub-step began: after recall_rates() or read_rates().
   const Vector3& before(std::size_t contact, bool first) const { return before_[contact][first ? 0 : 1]; }
   double rate_of(const contact::ScalarRow& row) const;
+  double response(const contact::ScalarRow& row) const;  // of that rate to a unit impulse of the row
 
   // --- a solution
   void set_biases(double h);

@@ -46,11 +46,11 @@ bool SubStep::catch_bounds(double time, double h) {
 void SubStep::advance(double time, double h) {
   // A step whose work is used up leaves loops that are dear to hold to the rows, which are swept.
   constexpr std::uint64_t kDear = 20'000;
-  const bool dear = state_.finished && state_.loop_units() > kDear;
-  const bool alone = state_.has_loops() && !contacts_.any() && !dear;
-  const bool in_stages = (!alone || loops_.in_stages()) && !dear;
+  const bool by_rows = (state_.finished && state_.loop_units() > kDear) || loops_.stand_open();
+  const bool alone = state_.has_loops() && !contacts_.any() && !by_rows;
+  const bool in_stages = (!alone || loops_.in_stages()) && !by_rows;
   for (Clustered& one : state_.clusters) one.stage->holds_loops = in_stages;
-  if (!in_stages && !dear) {
+  if (!in_stages && !by_rows) {
     state_.place();
     rows_.make(Rows::Motors::Leave);
     if (loops_.hold(time, h)) return;

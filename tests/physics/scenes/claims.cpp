@@ -1,9 +1,9 @@
 // Runs a program on a rung of the ladder of accuracy and checks what its first lines claim:
 //
-//     # rate 240                                    iterations per second; 60 unless it says so
-//     # claim 3 get-block-speed 0.98 1.02           after 3 s that method of the controller gives a number in this
-//     range # claim 3 residual 0 1e-4 on precise          energy without an account, relative to the scale; on these
-//     rungs only # claim 3 interventions 0 0                   how often the guard acted
+//     # rate 240                            iterations per second; 60 unless it says so
+//     # claim 3 get-block-speed 0.98 1.02     after 3 s that method of the controller gives a number in this range
+//     # claim 3 residual 0 1e-4 on precise    energy without an account, relative to the scale; on these rungs only
+//     # claim 3 interventions 0 0             how often the guard acted
 //
 // The scale is the most that kinetic energy and the works of motors and scripts came to together.
 #include <breve/breve.hpp>
