@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "runtime/contact/bilateral.hpp"
 #include "runtime/contact/pack.hpp"
 #include "runtime/contact/sides.hpp"
 #include "runtime/contact/sweep.hpp"
@@ -11,7 +12,8 @@ namespace breve::contact {
 
 namespace {
 
-constexpr std::size_t kMostRows = 32;  // beyond it most rows do not feel one another, and W is mostly zeros
+constexpr std::size_t kMostRows = 32;        // beyond it most rows do not feel one another, and W is mostly zeros
+constexpr std::size_t kMostEquations = 400;  // where W is solved, not swept
 
 /// Of one or three rows on both of their movers.
 struct Block {
@@ -58,7 +60,7 @@ void condense(Workspace& work) {
   std::size_t velocities = 0;
   for (const Packed& mover : work.movers)
     if (mover.source != nullptr) velocities += static_cast<std::size_t>(mover.size);
-  work.condensed = n <= std::min(velocities, kMostRows);
+  work.condensed = n <= std::min(velocities, is_bilateral(work) ? kMostEquations : kMostRows);
   if (!work.condensed) return;
   work.rates.clear();
   for (const Sides& sides : work.sides)

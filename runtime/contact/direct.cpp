@@ -43,9 +43,9 @@ double largest_change(const Workspace& work) {
   return largest;
 }
 
-namespace {
-
 double attainable(const Workspace& work, double tolerance) { return tolerance + kRelative * largest_change(work); }
+
+namespace {
 
 /// Centres from the impulses of the island: stiffer while that goes well, softer where it does not.
 /// @param most      centres

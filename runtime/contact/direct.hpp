@@ -30,6 +30,9 @@ double solve_direct(Workspace& work, double tolerance, LinearSolves& solves, boo
 /// By how much the worst row violates its law, m/s: the distance to the projected point of a step of the row alone.
 double violation(const Workspace& work);
 
+/// The violation that round-off leaves of a tolerance, m/s.
+double attainable(const Workspace& work, double tolerance);
+
 /// What the strongest impulse does to the velocity at its row, m/s: what a violation is to be compared with.
 double largest_change(const Workspace& work);
 

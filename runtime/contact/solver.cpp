@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/contact/bilateral.hpp"
 #include "runtime/contact/condensed.hpp"
 #include "runtime/contact/direct.hpp"
 #include "runtime/contact/elimination_order.hpp"
@@ -55,6 +56,11 @@ void solve_directly(Workspace& work, const SolveSettings& settings, double most,
 }
 
 void solve_once(Workspace& work, const SolveSettings& settings, SolveReport& report) {
+  if (settings.direct && work.condensed && is_bilateral(work)) {
+    report.residual = solve_bilateral(work, settings.tolerance, settings.meter, report.direct);
+    report.newton += 1;
+    if (report.direct) return;
+  }
   constexpr double kSolves = 5;  // of a direct solution that begins near the last step's
   const double most = settings.direct ? settings.direct_share * settings.iterations * sweep_operations(work) : 0;
   const double each = settings.direct ? order_elimination(work) : 1;

@@ -87,6 +87,7 @@ void Cluster::step(double time, double h) {
   for (const Tree* tree : trees_) working_ = working_ || tree->loads.reacts;
   at_.t = time;
   current_step_ = h;
+  evaluations_ = 0;
   guess_ = articulated::MotorGuess::None;  // nothing that a step remembers is in no image
   try {
     (finer_now_ ? finer_ : integrator_)->step(at_, h);
@@ -152,6 +153,7 @@ void Cluster::scatter(const Vector& q, const Vector& v) {
 
 void Cluster::acceleration(double t, const Vector& q, const Vector& v, double step, Vector& a) {
   if (meter_) meter_->add(units_);
+  ++evaluations_;
   Powers powers;
   if (forces_ && forces_->accelerate(q, v, a)) {
     int from = 0;

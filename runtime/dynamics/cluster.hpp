@@ -72,6 +72,8 @@ class Cluster final : public articulated::System, public InMemory {
   void set_next_step(double step) { at_.step = step; }
   /// How many times the tolerance step control may err by, until set anew.
   void set_slack(double slack) { at_.slack = slack; }
+  /// A step that step control would give more evaluations fails; 0: any number is taken.
+  void set_most_evaluations(int most) { most_evaluations_ = most; }
 
   // --- System
   int positions() const override { return nq_; }
@@ -82,7 +84,9 @@ class Cluster final : public articulated::System, public InMemory {
   void move(const articulated::Vector& q, const articulated::Vector& d, articulated::Vector& out) override;
   void rate_of_move(const articulated::Vector& d, const articulated::Vector& v, articulated::Vector& out) override;
   void bend_to_cayley(articulated::Vector& d) override;
-  bool over() const override { return meter_ && meter_->over(); }
+  bool over() const override {
+    return (meter_ && meter_->over()) || (most_evaluations_ > 0 && evaluations_ >= most_evaluations_);
+  }
 
  private:
   static constexpr int kWorks = 4;
@@ -122,6 +126,7 @@ class Cluster final : public articulated::System, public InMemory {
   std::array<double, kWorks> works_{};
   articulated::Instant at_;
   double current_step_ = 0;
+  int evaluations_ = 0, most_evaluations_ = 0;  // of the current step
   articulated::MotorGuess guess_ = articulated::MotorGuess::None;
   std::optional<articulated::Integrator> integrator_;
   std::optional<articulated::Integrator> finer_;  // what stands in for semi-implicit Euler

@@ -94,6 +94,18 @@ void Books::close() {
   momentum_.note_touched();
 }
 
+void Books::note_start() {
+  stored_ = stored_energy(state_);
+  ledger_ = state_.result.ledger;
+}
+
+void Books::take_gain() {
+  const double stored = stored_energy(state_);
+  const double gain = missing(stored - stored_, ledger_, state_.result.ledger);
+  const double all = momentum_.moving();
+  if (gain > kTiny * std::abs(stored) && all > 0) momentum_.undo_gain(std::min(1.0, gain / all));
+}
+
 /// What they gave all the same, however finely the step was taken.
 void Books::take_back_rest() {
   const double all = momentum_.moving();

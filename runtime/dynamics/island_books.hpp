@@ -20,6 +20,11 @@ class Books {
   void note_smooth();
   void close();
   void take_back_rest();
+  // For a sub-step whose loops are left to the rows, where it begins and when all is put right. Motion that loops do
+  // not bend, and gaps that are closed by hand, err by the square of its length: what that gained is taken from what
+  // moves.
+  void note_start();
+  void take_gain();
   double gained() const { return gained_; }  // J, that contacts and limits gave in this try of the step
 
   // Energies of the sub-step, J.
@@ -35,6 +40,8 @@ class Books {
   Rows& rows_;
   Momentum& momentum_;
   SubStepEnergy sub_start_;  // of all
+  double stored_ = 0;        // J, where note_start() was called
+  Energy ledger_;            // likewise
   bool kept_ = false;
   double gained_ = 0;
 };

@@ -77,6 +77,20 @@ bool Loops::stand_open() const {
   return false;
 }
 
+bool Loops::left_to_rows() const {
+  return std::any_of(state_.trees.begin(), state_.trees.end(), [](const Tree* tree) { return tree->unheld > 0; }) ||
+         stand_open();
+}
+
+void Loops::leave_to_rows() {
+  for (Tree* tree : state_.trees)
+    if (!tree->loops.empty()) tree->unheld = kMostUnheld;
+}
+
+void Loops::note_left() {
+  for (Tree* tree : state_.trees) tree->unheld = std::max(tree->unheld - 1, 0);
+}
+
 /// Positions first, then velocities along the loops.
 void Loops::close() {
   if (!state_.has_loops()) return;

@@ -20,6 +20,13 @@ class Loops {
   /// Some loop stands open, by more than an integrator errs: it is still to be closed, or cannot be. Stages and hold()
   /// begin from closed loops; such loops are left to the rows.
   bool stand_open() const;
+  /// They stand open, or stages took too long for them lately.
+  bool left_to_rows() const;
+  /// Some stages take too long for them, as near a position in which loops can hardly move: they are left to the rows
+  /// for some sub-steps.
+  void leave_to_rows();
+  /// Such a sub-step is over.
+  void note_left();
   /// Closes them by hand, as far as they can be closed.
   void close();
 

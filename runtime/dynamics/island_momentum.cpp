@@ -134,14 +134,27 @@ double Momentum::moving() const {
 void Momentum::take_from_all(double part) {
   if (!(part > 0)) return;
   const bool held = touched_from_outside();
-  for (Clustered& one : state_.clusters) {
-    const std::span trees = one.entry->system->trees();
-    const Common common = common_of(trees, held);
-    shorten_inner(trees, common, std::sqrt(1 - part));
-    state_.result.ledger.contact_loss += part * common.inner;
-    if (one.alone()) trees.front()->ledger.contact_loss += part * common.inner;
+  for (const Clustered& one : state_.clusters) {
+    const double taken = shorten(one, part, held);
+    state_.result.ledger.contact_loss += taken;
+    if (one.alone()) one.entry->system->trees().front()->ledger.contact_loss += taken;
   }
   state_.placed = state_.booked = false;
+}
+
+/// Takes a part of moving() that nothing gave: the books know neither of it nor of this.
+void Momentum::undo_gain(double part) {
+  const bool held = touched_from_outside();
+  for (const Clustered& one : state_.clusters) shorten(one, part, held);
+  state_.placed = state_.booked = false;
+}
+
+/// @return  J, that this took
+double Momentum::shorten(const Clustered& one, double part, bool held) {
+  const std::span trees = one.entry->system->trees();
+  const Common common = common_of(trees, held);
+  shorten_inner(trees, common, std::sqrt(1 - part));
+  return part * common.inner;
 }
 
 /// Ends the motion of a cluster's links among one another, and all of it if something may hold the cluster from

@@ -31,6 +31,7 @@ class Momentum {
 
   double moving() const;
   void take_from_all(double part);
+  void undo_gain(double part);
   double stop(Clustered& one, Momenta momenta, double h);
   void coast(double h);
 
@@ -40,6 +41,7 @@ class Momentum {
     Vector3 linear = Vector3::Zero(), angular = Vector3::Zero();
   };
   enum class Velocities : bool { Stay, Change };
+  double shorten(const Clustered& one, double part, bool held);
   template <class Impulse>
   void sum_outer(const Impulse& impulse_of);
   void give(std::size_t tree, double moved_h, Velocities velocities);

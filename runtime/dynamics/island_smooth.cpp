@@ -135,7 +135,9 @@ void SmoothMotion::move_fast(Clustered& one, double time, double h) {
     try {
       gain = gain_of(one, time, h, parts);
     } catch (const Error& error) {
-      if (error.code() != ErrorCode::Numeric || (last && implicit)) throw;
+      // Stages that took too many evaluations to hold loops take as many in parts.
+      const bool too_long = one.stage->holds_loops && system.over();
+      if (error.code() != ErrorCode::Numeric || (last && implicit) || too_long) throw;
     }
     if ((implicit && gain <= 0) || std::abs(gain) <= still || take_back(one, gain)) break;
     if (last && (implicit || std::isfinite(gain))) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "runtime/base/error.hpp"
+
 namespace breve::island {
 
 void SubStep::look(double h, bool spent) {
@@ -21,6 +23,17 @@ void SubStep::open(double h) {
   state_.remember();
   books_.open();
   prediction_.make(h);
+  // A step whose work is used up leaves loops that are dear to hold to the rows, which are swept.
+  constexpr std::uint64_t kDear = 20'000;
+  by_rows_ = false;
+  if ((state_.finished && state_.loop_units() > kDear) || loops_.left_to_rows()) leave_to_rows();
+}
+
+/// From the state that was noted.
+void SubStep::leave_to_rows() {
+  by_rows_ = true;
+  books_.note_start();
+  for (Clustered& one : state_.clusters) one.stage->holds_loops = false;
 }
 
 /// Limits that smooth motion of h seconds has passed and that are not located also become rows. The books of the
@@ -39,18 +52,43 @@ bool SubStep::catch_bounds(double time, double h) {
   if (!any || books_.kept()) return any;
   state_.restore();
   books_.open();
-  smooth_.move(time, h);
+  move(time, h);
   return true;
 }
 
+/// Smooth motion of h seconds from the state that was noted. Stages that take too long to hold loops do not hold them.
+/// @return  false if they did not hold what they were to hold
+bool SubStep::move(double time, double h) {
+  // Ordinary motion takes some ten.
+  constexpr int kMostEvaluations = 400, kMostOfReference = 1500;
+  const bool held = std::any_of(state_.clusters.begin(), state_.clusters.end(),
+                                [](const Clustered& one) { return one.stage->holds_loops; });
+  const bool bounded = held && state_.has_loops();
+  const int most = state_.accuracy.rung == Rung::Reference ? kMostOfReference : kMostEvaluations;
+  const auto allow = [this](int evaluations) {
+    for (Clustered& one : state_.clusters) one.entry->system->set_most_evaluations(evaluations);
+  };
+  allow(bounded ? most : 0);
+  try {
+    smooth_.move(time, h);
+    allow(0);
+    return true;
+  } catch (const Error& error) {
+    allow(0);
+    if (error.code() != ErrorCode::Numeric || !bounded || state_.meter.over()) throw;
+  }
+  loops_.leave_to_rows();
+  state_.restore();
+  leave_to_rows();
+  smooth_.move(time, h);
+  return false;
+}
+
 void SubStep::advance(double time, double h) {
-  // A step whose work is used up leaves loops that are dear to hold to the rows, which are swept.
-  constexpr std::uint64_t kDear = 20'000;
-  const bool by_rows = (state_.finished && state_.loop_units() > kDear) || loops_.stand_open();
-  const bool alone = state_.has_loops() && !contacts_.any() && !by_rows;
-  const bool in_stages = (!alone || loops_.in_stages()) && !by_rows;
+  const bool alone = state_.has_loops() && !contacts_.any() && !by_rows_;
+  const bool in_stages = (!alone || loops_.in_stages()) && !by_rows_;
   for (Clustered& one : state_.clusters) one.stage->holds_loops = in_stages;
-  if (!in_stages && !by_rows) {
+  if (!in_stages && !by_rows_) {
     state_.place();
     rows_.make(Rows::Motors::Leave);
     if (loops_.hold(time, h)) return;
@@ -58,14 +96,14 @@ void SubStep::advance(double time, double h) {
     state_.restore();
     for (Clustered& one : state_.clusters) one.stage->holds_loops = true;
   }
-  smooth_.move(time, h);
-  if (!catch_bounds(time, h) && alone) return;
+  const bool held = move(time, h);
+  if (!catch_bounds(time, h) && alone && held) return;
   books_.note_smooth();
   state_.place(h);
   if (prediction_.misled(h)) {
     prediction_.forget();
     state_.restore();
-    smooth_.move(time, h);
+    move(time, h);
     books_.note_smooth();
     state_.place(h);
   }
@@ -79,6 +117,7 @@ void SubStep::advance(double time, double h) {
 }
 
 void SubStep::keep(double part, double took) {
+  loops_.note_left();
   smooth_.commit();
   rows_.book();
   books_.close();
@@ -93,6 +132,7 @@ void SubStep::keep(double part, double took) {
 void SubStep::put_right(double h) {
   positions_.push_apart(h);
   loops_.close();
+  if (by_rows_) books_.take_gain();
 }
 
 }  // namespace breve::island

@@ -39,7 +39,11 @@ class SubStep {
   void put_right(double h);
 
  private:
+  void leave_to_rows();
+  bool move(double time, double h);
   bool catch_bounds(double time, double h);
+
+  bool by_rows_ = false;  // the stages of this sub-step do not hold the loops: rows do
 
   State& state_;
   Contacts& contacts_;

@@ -162,6 +162,7 @@ void Dynamics::Core::put_unsettled(ByteWriter& out) const {
 
 void Dynamics::Core::save_tree(ByteWriter& out, const Tree& tree) const {
   out.put(tree.step);
+  out.put(tree.unheld);
   out.put(tree.booked);
   out.put(tree.changed);
   each(Writer{out}, tree.ledger);
@@ -250,6 +251,7 @@ void Dynamics::Core::load_trees(ByteReader& in) {
 
 void Dynamics::Core::load_tree(ByteReader& in, Tree& tree) {
   tree.step = in.get<double>();
+  tree.unheld = std::clamp(in.get<int>(), 0, kMostUnheld);
   tree.booked = in.get<double>();
   tree.changed = in.get_bool();
   each(Reader{in}, tree.ledger);
@@ -286,6 +288,7 @@ void Dynamics::Core::hash(Hasher& hasher) const {
     if (stale[index] != 0) continue;
     const Tree& tree = *trees[index];
     add(tree.step);
+    add(tree.unheld);
     for (const double x : tree.state.q) add(x);
     for (const double x : tree.state.v) add(x);
     for (const double x : tree.mean) add(x);

@@ -7,6 +7,7 @@
 
 #include "runtime/articulated/impulse.hpp"
 #include "runtime/articulated/kinematics.hpp"
+#include "runtime/contact/semidefinite.hpp"
 #include "runtime/dynamics/core.hpp"
 #include "runtime/dynamics/jacobians.hpp"
 
@@ -30,44 +31,6 @@ double curvature(const Tree& tree, const LoopRows& loop, const LoopRow& row) {
   const Vector3 speed = articulated::point_velocity(tree.data, loop.child, row.on_child) -
                         articulated::point_velocity(tree.data, loop.parent, row.on_parent);
   return row.axis.dot(at(loop.child, row.on_child, c) - at(loop.parent, row.on_parent, p) - 2 * p.spin.cross(speed));
-}
-
-/// Solves the symmetric, positive semidefinite A x = b by Cholesky's method with the largest pivot next. Rows that
-/// depend on others (a plane loop holds its plane several times over) get nothing. A is m x m and is overwritten.
-void solve_semidefinite(const WorkBound& bound, int m, double* a, double* b, double* scale, int* order) {
-  constexpr double kDependent = 1e-11;  // of a pivot, rows being scaled to 1
-  for (int i = 0; i < m; ++i) {
-    order[i] = i;
-    scale[i] = a[i * m + i] > 0 ? 1 / std::sqrt(a[i * m + i]) : 0;
-  }
-  for (int i = 0; i < m; ++i) {
-    b[i] *= scale[i];
-    for (int k = 0; k < m; ++k) a[i * m + k] *= scale[i] * scale[k];
-  }
-  const auto at = [&](int i, int k) -> double& { return a[order[i] * m + order[k]]; };
-  int rank = 0;
-  for (; rank < m; ++rank) {
-    bound.poll();
-    int best = rank;
-    for (int i = rank + 1; i < m; ++i)
-      if (at(i, i) > at(best, best)) best = i;
-    std::swap(order[rank], order[best]);
-    if (!(at(rank, rank) > kDependent)) break;
-    at(rank, rank) = std::sqrt(at(rank, rank));
-    for (int i = rank + 1; i < m; ++i) at(i, rank) /= at(rank, rank);
-    for (int i = rank + 1; i < m; ++i)
-      for (int k = rank + 1; k <= i; ++k) at(i, k) = at(k, i) = at(i, k) - at(i, rank) * at(k, rank);
-  }
-  for (int i = 0; i < rank; ++i) {
-    for (int k = 0; k < i; ++k) b[order[i]] -= at(i, k) * b[order[k]];
-    b[order[i]] /= at(i, i);
-  }
-  for (int i = rank - 1; i >= 0; --i) {
-    for (int k = i + 1; k < rank; ++k) b[order[i]] -= at(k, i) * b[order[k]];
-    b[order[i]] /= at(i, i);
-  }
-  for (int i = rank; i < m; ++i) b[order[i]] = 0;
-  for (int i = 0; i < m; ++i) b[i] *= scale[i];
 }
 
 /// Rows of loops, then of limits, in a tree's row_numbers.
@@ -106,7 +69,9 @@ int solve_pushing(const HeldRows& rows, Tree& tree) {
       force[i] = holds(i) ? rows.wanted[i] : 0;
       for (int k = 0; k < m; ++k) rows.part[i * m + k] = holds(i) && holds(k) ? rows.responses[i * m + k] : 0;
     }
-    solve_semidefinite(rows.bound, m, rows.part, force, rows.scale, tree.row_order.data());
+    contact::Semidefinite equations(m, rows.part, rows.scale, tree.row_order.data());
+    equations.factorize(rows.bound);
+    equations.solve(force);
     const double least_force = kRoundOff * largest(force), most_lack = kRoundOff * largest(rows.wanted);
     int row = first;
     while (row < m && !wrong(row, least_force, most_lack)) ++row;

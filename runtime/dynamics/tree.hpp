@@ -58,6 +58,7 @@ class Reservation {
 };
 
 inline constexpr int kMostLoopRows = 6;  // of one joint
+inline constexpr int kMostUnheld = 50;   // sub-steps, see Tree::unheld
 
 /// A limit that its joint is near, as it acts inside the stages of a sub-step.
 struct HeldLimit {
@@ -92,6 +93,7 @@ struct Tree : InMemory {
   std::pmr::vector<TreeAnchor> anchors;
   std::pmr::vector<BodyIndex> loop_holders;  // bodies that do not move by themselves, at which loops end
   double step = 0;                           // s, that step control would try next
+  int unheld = 0;  // sub-steps for which the loops are still left to the rows: the stages took too long for them
   articulated::Vector mean;     // (nv) acceleration in the last smooth motion: there the next one's search begins
   int slot = -1;                // in its island
   bool driven = false;          // some joint has a motor, a damper or a force

@@ -1,0 +1,29 @@
+// Symmetric, positive semidefinite equations, as of rows that may depend on one another.
+#pragma once
+
+#include "runtime/base/meter.hpp"
+
+namespace breve::contact {
+
+/// A = A^T of m x m numbers, row by row, factorised in place by Cholesky's method with the largest pivot next. Rows
+/// that depend on others get nothing.
+class Semidefinite {
+ public:
+  /// @param a      is overwritten, and outlives this, as do the other two
+  /// @param scale  room for m numbers
+  /// @param order  likewise
+  Semidefinite(int m, double* a, double* scale, int* order) : m_(m), a_(a), scale_(scale), order_(order) {}
+
+  void factorize(const WorkBound& bound);
+  /// b becomes the solution of A x = b; of rows that depend on others, 0.
+  void solve(double* b) const;
+
+ private:
+  double& at(int i, int k) const { return a_[order_[i] * m_ + order_[k]]; }
+
+  int m_, rank_ = 0;
+  double *a_, *scale_;
+  int* order_;
+};
+
+}  // namespace breve::contact
