@@ -123,7 +123,7 @@ static void classes_of_a_file_are_added_for_programs_in_steve(void) {
   const double expected[] = {42, 53};
   stage s;
   stage_begin(&s);
-  /* A later file replaces a class of that name. What is wrong replaces nothing. */
+  /* A later file replaces a class of that name. A wrong file replaces nothing. */
   for (int i = 0; i < 2; ++i) {
     CHECK_STATUS(BREVE_OK, breve_lua_add(s.runtime, NULL, "bird.lua", birds[i], strlen(birds[i]), NULL, NULL));
     not_added(&s, "function (", 10, "wrong.lua:1");
