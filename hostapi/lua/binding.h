@@ -179,6 +179,8 @@ breve_object bl_need_object(lua_State* L, int index); /* raises an error */
 void bl_forget_classes(lua_State* L, bl_world* w);    /* metatables are made anew, for a new program */
 void bl_object_gone(void* user, breve_object object);
 void bl_switch_program(lua_State* L, bl_world* w); /* the staged program takes over */
+/* Why a world does not run the classes of two files. */
+void bl_two_files(char* text, size_t room, const bl_program* one, const bl_program* other);
 /* Table of the methods of a class, on top: what it has besides those of breve. */
 void bl_add_object_methods(lua_State* L, bl_world* w);
 

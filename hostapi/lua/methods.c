@@ -88,7 +88,13 @@ static breve_status fail(lua_State* L, bl_world* w, const breve_call* call, int 
 
 static int enter(lua_State* L) {
   const arguments* a = (const arguments*)lua_touserdata(L, 1);
-  if (a->w->staged == a->method->owner->program) bl_switch_program(L, a->w);
+  const bl_program* program = a->method->owner->program;
+  if (a->w->staged == program) bl_switch_program(L, a->w);
+  if (a->w->program != program) { /* after a reload */
+    char why[600];
+    bl_two_files(why, sizeof why, a->w->program, program);
+    return luaL_error(L, "%s", why);
+  }
   lua_settop(L, 0);
   luaL_checkstack(L, BL_PARAMETERS + 8, NULL);
   lua_rawgeti(L, LUA_REGISTRYINDEX, a->w->functions);

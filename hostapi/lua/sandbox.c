@@ -137,6 +137,14 @@ static int set_metatable(lua_State* L) {
   return 1;
 }
 
+/* Push the function that a file is, with its chunk's name below it. Lua names no file where it refuses bytecode. */
+static void push_chunk(lua_State* L, const bl_text* text) {
+  if (text->size != 0 && text->bytes[0] == LUA_SIGNATURE[0])
+    luaL_error(L, "%s: this is bytecode of Lua, which is refused: give the source", text->name);
+  lua_pushfstring(L, "@%s", text->name);
+  if (luaL_loadbufferx(L, text->bytes, text->size, lua_tostring(L, -1), "t") != LUA_OK) lua_error(L);
+}
+
 static int require_module(lua_State* L) {
   bl_lib* lib = lib_of(L);
   const char* name = luaL_checkstring(L, 1);
@@ -162,8 +170,7 @@ static int require_module(lua_State* L) {
     if (config->release_module) config->release_module(config->user, &module);
   }
   if (!text) return luaL_error(L, "there is no module '%s'", name);
-  lua_pushfstring(L, "@%s", file);
-  if (luaL_loadbufferx(L, text->bytes, text->size, lua_tostring(L, -1), "t") != LUA_OK) return lua_error(L);
+  push_chunk(L, text);
   lua_pushvalue(L, lua_upvalueindex(3)); /* the globals of the file that asks */
   if (!lua_setupvalue(L, -2, 1)) lua_pop(L, 1);
   lua_call(L, 0, 1);
@@ -182,8 +189,7 @@ static int require_module(lua_State* L) {
 void bl_run_program(lua_State* L, bl_lib* lib, bl_program* program) {
   const bl_text* text = &program->texts[0];
   luaL_checkstack(L, 12, NULL);
-  lua_pushfstring(L, "@%s", text->name);
-  if (luaL_loadbufferx(L, text->bytes, text->size, lua_tostring(L, -1), "t") != LUA_OK) lua_error(L);
+  push_chunk(L, text);
   lua_newtable(L);
   lua_pushglobaltable(L);
   for (lua_pushnil(L); lua_next(L, -2);) {

@@ -1,5 +1,6 @@
 /* The Lua side of a world: its state, whose memory is the world's and whose loops count in its budget, and the file of
    its program, run in it. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -327,6 +328,13 @@ static int stage(lua_State* L) {
   return 0;
 }
 
+void bl_two_files(char* text, size_t room, const bl_program* one, const bl_program* other) {
+  snprintf(text, room,
+           "a world runs the classes of one Lua file, and this program has some of %.200s and of %.200s: let one "
+           "file require the other",
+           one->texts ? one->texts[0].name : "an interpreter", other->texts ? other->texts[0].name : "an interpreter");
+}
+
 void bl_switch_program(lua_State* L, bl_world* w) {
   bl_program* old = w->program;
   if (w->pool && w->lib->classes != w->staged_classes) luaL_unref(L, LUA_REGISTRYINDEX, w->lib->classes);
@@ -419,6 +427,13 @@ breve_status bl_bind(void* user, breve_world* world, void** binding, breve_write
   if (status != BREVE_OK) return status;
   *binding = w;
   if (w->program == program || w->staged == program) return BREVE_OK;
+  /* While a world is made it has no controller yet; a program that is staged later takes the place of another. */
+  if (w->staged && breve_world_controller(world).generation == 0) {
+    char why[600];
+    bl_two_files(why, sizeof why, w->staged, program);
+    reason(sink, why, strlen(why));
+    return BREVE_ERROR_UNSUPPORTED;
+  }
   if (w->pool == NULL && w->L != program->config.state) {
     const char* why = "a world runs its agents in one state of Lua, and this program has another one";
     reason(sink, why, strlen(why));

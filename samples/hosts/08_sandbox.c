@@ -8,11 +8,17 @@ static const char* const strangers[][2] = {
     {"runs for ever", "Control : Main { + to iterate: while 1: 1. }\n"},
     {"calls itself", "Control : Main { + to fall: self fall. + to iterate: self fall. }\n"},
     {"takes all memory",
-     "Control : Main { + variables: hoard (list). + to iterate: while 1: push \"a long text $hoard\" onto hoard. }\n"},
+     "Control : Main { + variables: hoard (list). + to iterate: while 1: push { 1, 2, 3, 4, 5, 6, 7 } onto hoard. }\n"},
     {"reads a file",
      "@use File.\nControl : Main { + to iterate: print ((new File) open-for-reading with-file \"/etc/passwd\"). }\n"},
     {"runs a command", "Control : Main { + to iterate: print (self execute command \"ls\"). }\n"},
 };
+
+/* What a stranger prints. */
+static void say(void* user, breve_world* world, breve_channel channel, const char* line, size_t size) {
+  (void)user, (void)world;
+  if (channel == BREVE_CHANNEL_PRINT) printf("  it prints %.*s", (int)size, line);
+}
 
 static void try_one(breve_runtime* runtime, const char* what, const char* body) {
   char text[512];
@@ -35,7 +41,9 @@ static void try_one(breve_runtime* runtime, const char* what, const char* body) 
 int main(void) {
   breve_runtime* runtime = NULL;
   /* The defaults give nothing: no files, no commands, no clock. docs/sandbox.md says how to give some. */
-  if (breve_runtime_create(NULL, &runtime) != BREVE_OK) return 1;
+  breve_runtime_config config = breve_runtime_config_default();
+  config.print = say;
+  if (breve_runtime_create(&config, &runtime) != BREVE_OK) return 1;
   for (size_t i = 0; i < sizeof strangers / sizeof *strangers; ++i) try_one(runtime, strangers[i][0], strangers[i][1]);
   return breve_runtime_destroy(runtime) != BREVE_OK;
 }

@@ -94,7 +94,7 @@ struct VectorLit {
   ExprPtr x, y, z;
 };
 struct MatrixLit {
-  ExprPtr elements[9];
+  std::array<ExprPtr, 9> elements;
 };  // row by row
 struct ListLit {
   std::vector<ExprPtr> elements;

@@ -45,5 +45,8 @@ lacks format clang-format -- g++ libgtest-dev
 lacks lint g++ clang-tidy -- libgtest-dev lua5.4
 lacks tests g++ libstb-dev libgtest-dev clang clang-tidy clang-format
 
-run no-such-word
-(($? == 2)) || fail "exit status of wrong usage is not 2"
+for words in no-such-word "tests --some" "tests 60" "tests --all 0" "tests --all ten" "tests --all 60 60" "fuzz walk" "fuzz run 0"; do
+  # shellcheck disable=SC2086  # words, as they say
+  run $words
+  (($? == 2)) || fail "./run $words: exit status of wrong usage is not 2"
+done

@@ -1,4 +1,4 @@
-/* Pushes: forces of one iteration, impulses, at points, and waking. */
+/* Pushes: forces of one iteration, impulses, at points, waking, and platforms that reach a target. */
 #include <math.h>
 
 #include "bodies.h"
@@ -99,6 +99,93 @@ static void a_pushed_joint_answers_with_both_bodies(void) {
   scene_close(&s);
 }
 
+/* Where a body stands on the platform: the slab is 1 high, and so is the box. */
+static double lag(scene* s, breve_object platform, breve_object body) {
+  return pose_of(s, body).location[0] - pose_of(s, platform).location[0];
+}
+
+static bool is_moving(scene* s, breve_object platform, breve_pose* target) {
+  bool moves = false;
+  CHECK_STATUS(BREVE_OK, breve_object_target(s->world, platform, &moves, target));
+  return moves;
+}
+
+/* Moves a platform by targets, one for each iteration; each is reached exactly. */
+static void drive(scene* s, breve_object platform, double x, double y, int times) {
+  for (int i = 0; i < times; ++i) {
+    breve_pose target = pose_of(s, platform), read = {{0}, {1, 0, 0, 0}};
+    target.location[0] += x;
+    target.location[1] += y;
+    CHECK(!is_moving(s, platform, NULL));
+    CHECK_STATUS(BREVE_OK, breve_object_set_target(s->world, platform, &target));
+    CHECK(is_moving(s, platform, &read));
+    CHECK(memcmp(&read, &target, sizeof read) == 0);
+    step_times(s, 1);
+    CHECK_NEAR(target.location[0], pose_of(s, platform).location[0], 1e-12);
+    CHECK_NEAR(target.location[1], pose_of(s, platform).location[1], 1e-12);
+  }
+  CHECK(!is_moving(s, platform, NULL));
+}
+
+static void a_platform_carries_what_stands_on_it(bool flat) {
+  scene s;
+  if (!open_bodies(&s, flat)) return;
+  const breve_geometry slab = box_of_size(6, 1, 6), box = box_of_size(1, 1, 1);
+  const breve_object platform = add_body(&s, "Stationary", &slab, 0, 0, 0),
+                     body = add_body(&s, "Mobile", &box, 0, 1, 0);
+  CHECK_STATUS(BREVE_OK, breve_object_set_physics(s.world, body, true));
+  step_times(&s, 20);
+  const double h = breve_world_iteration_step(s.world), before = lag(&s, platform, body);
+  /* 0.5 units per second, reached from rest by friction: what stands there slides less than v^2 / (2 mu g). */
+  drive(&s, platform, 0.5 * h, 0, 40);
+  CHECK_NEAR(20 * h, pose_of(&s, platform).location[0], 1e-9);
+  CHECK_NEAR(before, lag(&s, platform, body), 0.05);
+  double velocity[3] = {0, 0, 0};
+  CHECK_STATUS(BREVE_OK, breve_object_velocity(s.world, body, velocity));
+  CHECK_NEAR(0.5, velocity[0], 1e-3);
+  /* It stops, and so does what stands on it; then both go up. */
+  step_times(&s, 40);
+  CHECK_NEAR(20 * h, pose_of(&s, platform).location[0], 1e-9);
+  CHECK_STATUS(BREVE_OK, breve_object_velocity(s.world, body, velocity));
+  CHECK_NEAR(0, velocity[0], 1e-3);
+  drive(&s, platform, 0, 0.5 * h, 40);
+  CHECK_NEAR(1, pose_of(&s, body).location[1] - pose_of(&s, platform).location[1], 0.01);
+  scene_close(&s);
+}
+static void platforms_carry_what_stands_on_them(void) {
+  a_platform_carries_what_stands_on_it(false), a_platform_carries_what_stands_on_it(true);
+}
+
+static void targets_are_in_images_and_bad_ones_are_refused(void) {
+  scene s;
+  if (!open_bodies(&s, true)) return;
+  const breve_geometry box = box_of_size(1, 1, 1);
+  const breve_object platform = add_body(&s, "Stationary", &box, 0, 0, 0), body = add_body(&s, "Mobile", &box, 0, 9, 0);
+  CHECK_STATUS(BREVE_OK, breve_object_set_physics(s.world, body, true));
+  const breve_pose there = {{1, 2, 0}, {1, 0, 0, 0}}, out = {{1, 2, 3}, {1, 0, 0, 0}},
+                   wrong = {{NAN, 0, 0}, {1, 0, 0, 0}}, empty = {{0}, {0}};
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_target(s.world, body, &there)); /* it has physics */
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_target(s.world, platform, &out));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_target(s.world, platform, &wrong));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_object_set_target(s.world, platform, &empty));
+  CHECK_STATUS(BREVE_ERROR_NO_BODY, breve_object_set_target(s.world, breve_world_controller(s.world), &there));
+  CHECK(!is_moving(&s, platform, NULL) && !is_moving(&s, body, NULL));
+  CHECK_STATUS(BREVE_OK, breve_object_set_target(s.world, platform, &there));
+  static char image[1 << 20];
+  size_t size = 0;
+  CHECK_STATUS(BREVE_OK, breve_world_snapshot(s.world, image, sizeof image, &size));
+  step_times(&s, 1);
+  const uint64_t reached = hash_of_world(&s);
+  CHECK_STATUS(BREVE_OK, breve_world_restore(s.world, image, size));
+  breve_pose read = {{0}, {1, 0, 0, 0}};
+  CHECK(is_moving(&s, platform, &read));
+  CHECK(memcmp(&read, &there, sizeof read) == 0);
+  step_times(&s, 1);
+  CHECK(hash_of_world(&s) == reached);
+  CHECK_NEAR(2, pose_of(&s, platform).location[1], 1e-12);
+  scene_close(&s);
+}
+
 static void bad_pushes_are_refused(void) {
   scene s;
   if (!open_bodies(&s, true)) return;
@@ -137,5 +224,7 @@ void forces_suite(void) {
   RUN(impulses_change_velocity_at_once);
   RUN(forces_act_for_one_iteration);
   RUN(a_pushed_joint_answers_with_both_bodies);
+  RUN(platforms_carry_what_stands_on_them);
+  RUN(targets_are_in_images_and_bad_ones_are_refused);
   RUN(bad_pushes_are_refused);
 }

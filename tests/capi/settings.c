@@ -55,6 +55,43 @@ static void what_is_set_is_read_back(void) {
   scene_close(&s);
 }
 
+static void time_gravity_and_what_is_watched_are_read_back(void) {
+  scene s;
+  if (!open_bodies(&s, false)) return;
+  breve_world* const w = s.world;
+  double gravity[3];
+  const double moon[3] = {0, -1.62, 0}, wrong[3] = {0, INFINITY, 0};
+  CHECK_STATUS(BREVE_OK, breve_world_gravity(w, gravity));
+  CHECK(gravity[0] == 0 && gravity[1] == -9.8 && gravity[2] == 0); /* as PhysicalControl sets it */
+  CHECK_STATUS(BREVE_OK, breve_world_set_gravity(w, moon));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_gravity(w, wrong));
+  CHECK_STATUS(BREVE_OK, breve_world_gravity(w, gravity));
+  CHECK(memcmp(gravity, moon, sizeof gravity) == 0);
+  const double refused[] = {-1, NAN, INFINITY};
+  CHECK(breve_world_time_scale(w) == 1 && !breve_world_interpolated(w));
+  CHECK_STATUS(BREVE_OK, breve_world_set_time_scale(w, 0.25));
+  CHECK_STATUS(BREVE_OK, breve_world_set_integration_step(w, 0.125));
+  CHECK_STATUS(BREVE_OK, breve_world_set_interpolated(w, true));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_integration_step(w, 0));
+  for (size_t i = 0; i < sizeof refused / sizeof *refused; ++i) {
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_time_scale(w, refused[i]));
+    CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_world_set_integration_step(w, refused[i]));
+  }
+  CHECK(breve_world_time_scale(w) == 0.25 && breve_world_integration_step(w) == 0.125 && breve_world_interpolated(w));
+  const breve_geometry ball = ball_of_radius(1);
+  const breve_object one = add_body(&s, "Mobile", &ball, 0, 0, 0), two = add_body(&s, "Mobile", &ball, 5, 0, 0);
+  bool watched[2] = {true, true};
+  CHECK_STATUS(BREVE_OK, breve_object_watch_contacts(w, one, true));
+  CHECK_STATUS(BREVE_OK, breve_object_contacts_watched(w, one, &watched[0]));
+  CHECK_STATUS(BREVE_OK, breve_object_contacts_watched(w, two, &watched[1]));
+  CHECK(watched[0] && !watched[1]);
+  CHECK_STATUS(BREVE_OK, breve_world_watch_contacts(w, "Mobile", true)); /* by its class */
+  CHECK_STATUS(BREVE_OK, breve_object_contacts_watched(w, two, &watched[1]));
+  CHECK(watched[1]);
+  CHECK_STATUS(BREVE_ERROR_NO_BODY, breve_object_contacts_watched(w, breve_world_controller(w), &watched[0]));
+  scene_close(&s);
+}
+
 static void a_click_goes_to_what_a_ray_meets(void) {
   scene s;
   if (!scene_open(&s)) return;
@@ -71,5 +108,6 @@ static void a_click_goes_to_what_a_ray_meets(void) {
 
 void settings_suite(void) {
   RUN(what_is_set_is_read_back);
+  RUN(time_gravity_and_what_is_watched_are_read_back);
   RUN(a_click_goes_to_what_a_ray_meets);
 }

@@ -97,6 +97,94 @@ static void languages_derive_from_each_other(void) {
   stage_end(&s);
 }
 
+static void note_reason(void* sink, const char* text, size_t size) {
+  char* const why = sink;
+  const size_t length = strlen(why), room = 511 - length;
+  strncat(why, text, size < room ? size : room);
+}
+
+/* The reason for which a file cannot be added; the classes of the runtime stay as they are. */
+static void not_added(stage* s, const char* text, size_t size, const char* part) {
+  char why[512] = "";
+  CHECK_STATUS(BREVE_ERROR_COMPILE, breve_lua_add(s->runtime, NULL, "wrong.lua", text, size, note_reason, why));
+  if (!CHECK(strstr(why, part) != NULL)) printf("%s\n", why);
+}
+
+/* A program in steve has the classes of a file in Lua that was added before. */
+static void classes_of_a_file_are_added_for_programs_in_steve(void) {
+  static const char* const birds[] = {
+      "local Bird = breve.class('Bird', 'Mobile')\nfunction Bird:legs() return 2 end\n",
+      "local Bird = breve.class('Bird', 'Mobile')\nfunction Bird:legs() return 3 end\n"};
+  static const char* const broken = "breve.class('Bird', 'Mobile')\nerror('broken')";
+  static const char* const text =
+      "@use Control.\n@use Bird.\nController Field.\n"
+      "Bird : Griffin { + to legs: return (super legs) + 2. }\n"
+      "Control : Field { + to count: return ((new Griffin) legs) * 10 + ((new Bird) legs). }\n";
+  const double expected[] = {42, 53};
+  stage s;
+  stage_begin(&s);
+  /* A later file replaces a class of that name. A wrong file replaces nothing. */
+  for (int i = 0; i < 2; ++i) {
+    CHECK_STATUS(BREVE_OK, breve_lua_add(s.runtime, NULL, "bird.lua", birds[i], strlen(birds[i]), NULL, NULL));
+    not_added(&s, "function (", 10, "wrong.lua:1");
+    not_added(&s, "\033Lua", 4, "wrong.lua: this is bytecode");
+    not_added(&s, broken, strlen(broken), "broken");
+    if (!CHECK_STATUS(BREVE_OK, breve_program_compile(s.runtime, "field.tz", text, strlen(text), &s.program))) break;
+    if (!CHECK_STATUS(BREVE_OK, breve_world_create(s.runtime, s.program, NULL, &s.world))) break;
+    CHECK_NEAR(expected[i], stage_number(&s, "count"), 0);
+    CHECK_STATUS(BREVE_OK, breve_world_destroy(s.world));
+    breve_program_destroy(s.program);
+    s.world = NULL;
+    s.program = NULL;
+  }
+  breve_lua_config config = breve_lua_config_default();
+  config.allow = 1u << 9;
+  const char* const bird = birds[0];
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_lua_add(s.runtime, &config, "bird.lua", bird, strlen(bird), NULL, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_lua_add(NULL, NULL, "bird.lua", bird, strlen(bird), NULL, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_lua_add(s.runtime, NULL, NULL, bird, strlen(bird), NULL, NULL));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_lua_add(s.runtime, NULL, "bird.lua", NULL, 1, NULL, NULL));
+  CHECK_STATUS(BREVE_OK, breve_lua_add(s.runtime, NULL, "empty.lua", NULL, 0, NULL, NULL));
+  stage_end(&s);
+}
+
+/* Classes of two files in one program are refused; after a reload, calls of the earlier one's are errors. */
+static void a_world_runs_the_classes_of_one_file(void) {
+  static const char* const files[] = {
+      "breve.class('Bird', 'Mobile')\nlocal Bird = breve.class('Hen', 'Bird')\n"
+      "function Bird:legs() return 2 end\n",
+      "local Spider = breve.class('Spider', 'Mobile')\n"
+      "function Spider:legs() return 8 end\n"};
+  static const char* const one =
+      "@use Control.\n@use Hen.\nController Field.\n"
+      "Control : Field { + to count: return ((new Hen) legs). }\n";
+  static const char* const both =
+      "@use Control.\n@use Hen.\n@use Spider.\nController Field.\n"
+      "Control : Field { + to count: return ((new Hen) legs) + ((new Spider) legs). }\n";
+  stage s;
+  breve_program* program = NULL;
+  stage_begin(&s);
+  CHECK_STATUS(BREVE_OK, breve_lua_add(s.runtime, NULL, "hen.lua", files[0], strlen(files[0]), NULL, NULL));
+  CHECK_STATUS(BREVE_OK, breve_lua_add(s.runtime, NULL, "spider.lua", files[1], strlen(files[1]), NULL, NULL));
+  CHECK_STATUS(BREVE_OK, breve_program_compile(s.runtime, "both.tz", both, strlen(both), &program));
+  CHECK_STATUS(BREVE_ERROR_UNSUPPORTED, breve_world_create(s.runtime, program, NULL, &s.world));
+  const char* why = breve_runtime_last_error(s.runtime)->message;
+  if (!CHECK(strstr(why, "hen.lua") && strstr(why, "spider.lua") && strstr(why, "require"))) printf("%s\n", why);
+  CHECK_STATUS(BREVE_OK, breve_program_compile(s.runtime, "one.tz", one, strlen(one), &s.program));
+  if (CHECK_STATUS(BREVE_OK, breve_world_create(s.runtime, s.program, NULL, &s.world))) {
+    CHECK_NEAR(2, stage_number(&s, "count"), 0);
+    CHECK_STATUS(BREVE_OK, breve_world_reload(s.world, program));
+    /* The Spider's file takes over at its first call, as a changed file does; then the Hen has no methods any more. */
+    CHECK_NEAR(10, stage_number(&s, "count"), 0);
+    breve_value result;
+    CHECK_STATUS(BREVE_ERROR_SCRIPT, stage_call(&s, "count", &result));
+    why = breve_world_last_error(s.world)->message;
+    if (!CHECK(strstr(why, "require the other") != NULL)) printf("%s\n", why);
+  }
+  breve_program_destroy(program);
+  stage_end(&s);
+}
+
 static void values_of_each_type_go_both_ways(void) {
   stage s;
   stage_begin(&s);
@@ -430,6 +518,8 @@ int main(void) {
   RUN(classes_in_lua_derive_from_the_library);
   RUN(selectors_map_by_one_rule);
   RUN(languages_derive_from_each_other);
+  RUN(classes_of_a_file_are_added_for_programs_in_steve);
+  RUN(a_world_runs_the_classes_of_one_file);
   RUN(values_of_each_type_go_both_ways);
   RUN(vectors_have_operators);
   RUN(errors_have_one_chain_of_both_languages);

@@ -57,7 +57,9 @@ static inline breve_lua_config breve_lua_config_default(void) {
 }
 
 /* Runs a Lua file once, without a world, and adds the classes that it defines to the runtime: programs that are compiled
-   from now on can use them. A class replaces one of the same name from an earlier file.
+   from now on can use them. A class replaces one of the same name from an earlier file. A program can use the classes of
+   one file and of the modules that it requires; with those of two files breve_world_create returns
+   BREVE_ERROR_UNSUPPORTED.
    @param config  copied; NULL: the defaults
    @param name    of the file, for messages
    @param text    `size` bytes, copied; NULL only if size is 0
