@@ -103,7 +103,7 @@ void Books::take_gain() {
   const double stored = stored_energy(state_);
   const double gain = missing(stored - stored_, ledger_, state_.result.ledger);
   const double all = momentum_.moving();
-  if (gain > kTiny * std::abs(stored) && all > 0) momentum_.undo_gain(std::min(1.0, gain / all));
+  if (gain > kTiny * std::abs(stored) && all > 0) momentum_.undo_gain(std::min(1.0, gain / all), false);
 }
 
 /// What they gave all the same, however finely the step was taken.

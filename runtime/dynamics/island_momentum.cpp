@@ -142,10 +142,16 @@ void Momentum::take_from_all(double part) {
   state_.placed = state_.booked = false;
 }
 
-/// Takes a part of moving() that nothing gave: the books know neither of it nor of this.
-void Momentum::undo_gain(double part) {
+/// Takes a part of moving() that nothing gave.
+/// @param told  the balance was closed: it is in the residual
+void Momentum::undo_gain(double part, bool told) {
   const bool held = touched_from_outside();
-  for (const Clustered& one : state_.clusters) shorten(one, part, held);
+  for (const Clustered& one : state_.clusters) {
+    const double taken = shorten(one, part, held);
+    if (!told) continue;
+    state_.result.ledger.residual -= taken;
+    if (one.alone()) one.entry->system->trees().front()->ledger.residual -= taken;
+  }
   state_.placed = state_.booked = false;
 }
 

@@ -31,7 +31,7 @@ class Momentum {
 
   double moving() const;
   void take_from_all(double part);
-  void undo_gain(double part);
+  void undo_gain(double part, bool told);
   double stop(Clustered& one, Momenta momenta, double h);
   void coast(double h);
 
