@@ -23,6 +23,10 @@ constexpr double kOrder = 5;  // of the estimate's local error
 // judged.
 constexpr double kShareOfStep = 1e-3;
 constexpr double kFinest = 1e-15;
+// The forces of a closed loop whose links come to lie in one line have a pole there: round-off in what holds it closed
+// is divided by the square of the distance, and no step is short enough beside it. The whole step in a few equal parts
+// leaps over the pole. Few steps do, so that each may err by the tolerance of a run, or else by this many times that.
+constexpr double kMostLeap = 1e3;
 
 // Both members swing a pendulum or a spring up: of z = i y their stability functions have |R|^2 = 1 + c y^6 with c > 0.
 // As far beyond the higher member as it lies from the lower, times this, c is below 0 and the next term is, too:
@@ -67,7 +71,11 @@ class Adaptive final : public Integrator::Method {
       if (attempts == kMostAttempts || system_.over()) refuse_cost(at, t, next, attempts);
       // Two like steps at the end, rather than a whole one and a sliver.
       const double size = next >= left * (1 - 1e-12) ? left : std::min(next, std::max(0.5 * left, 0.5 * next));
-      if (size < std::min(settings_.tolerance.smallest_step, h) || t + size == t) refuse(at, t, size);
+      if (size < std::min(settings_.tolerance.smallest_step, h) || t + size == t) {
+        if (!leap(at, h)) refuse(at, t, size);
+        next = h;
+        break;
+      }
       const double error = attempt(t, size) / at.slack;
       double growth = error > 0 ? kSafety * std::pow(error, -1 / kOrder) : kMostGrowth;
       growth = std::clamp(growth, kMostShrinking, rejected ? 1.0 : kMostGrowth);
@@ -113,6 +121,26 @@ class Adaptive final : public Integrator::Method {
       dv5_ += beyond_ * (dv5_ - dv4_);
     }
     return worst;
+  }
+
+  /// The whole step in as few equal parts as err little enough.
+  /// @return  whether there is such a number
+  bool leap(const Instant& at, double h) {
+    for (const double most : {1 / kShareOfStep, kMostLeap / kShareOfStep})
+      for (const int parts : {1, 2, 3, 5, 8, 13}) {
+        q_ = at.q;
+        v_ = at.v;
+        const double size = h / parts;
+        int done = 0;
+        while (done < parts && attempt(at.t + done * size, size) / at.slack <= most) {
+          system_.move(q_, d5_, q_);
+          v_ += dv5_;
+          ++done;
+        }
+        ++count.rejected;
+        if (done == parts) return true;
+      }
+    return false;
   }
 
   double ratio_of(int i) const {

@@ -1,10 +1,11 @@
-// Forces of contacts and limits that go on.
+// Forces of contacts, limits and motors that go on.
 #include "runtime/dynamics/island_predict.hpp"
 
 #include <algorithm>
 
 #include "runtime/articulated/energy.hpp"
 #include "runtime/articulated/impulse.hpp"
+#include "runtime/articulated/joints.hpp"
 #include "runtime/dynamics/jacobians.hpp"
 
 namespace breve::island {
@@ -47,7 +48,28 @@ void Prediction::make(double h) {
     fill_limit_row(tree, joint, bound.axis, bound.sign, tree.work_v.data());
     add(tree, tree.work_v, force);
   }
+  for (Tree* tree : state_.trees)
+    if (!tree->loops.empty()) add_motors(*tree);
   if (overpressed(h)) forget();
+}
+
+/// Motors of a tree with closed loops have no drives in the stages: there the force of the last sub-step goes on, so
+/// that the loop's forces answer it along the way.
+void Prediction::add_motors(Tree& tree) {
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    const TreeLink& link = tree.links[i];
+    if (!link.motor) continue;
+    const articulated::Body& body = tree.model.body(static_cast<int>(i));
+    const JointEntry& joint = state_.core.joints[link.joint];
+    const double most = joint.drive.strength_limit;
+    for (int k = 0; k < articulated::velocity_count(body.type); ++k) {
+      const double force = std::clamp(joint.motor[k], -most, most);
+      if (force == 0) continue;
+      tree.work_v.setZero();
+      tree.work_v[body.v + k] = 1;
+      add(tree, tree.work_v, force);
+    }
+  }
 }
 
 /// The prediction is far beyond all that moves and falls in h seconds: contacts on several sides of a link press

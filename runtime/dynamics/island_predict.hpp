@@ -1,6 +1,7 @@
-// Forces of contacts and limits that go on. Those that held something in the last two sub-steps act on trees inside the
-// stages of smooth motion, as joint forces that do not change on the way: a limb that is pressed on its limit would
-// otherwise leave it and come back in each sub-step. The solver, after it, corrects the prediction.
+// Forces of contacts, limits and motors that go on. Contacts and limits that held something in the last two sub-steps,
+// and the motors of closed loops, act on trees inside the stages of smooth motion, as joint forces that do not change
+// on the way: a limb that is pressed on its limit would otherwise leave it and come back in each sub-step. The solver,
+// after it, corrects the prediction.
 #pragma once
 
 #include "runtime/dynamics/island_books.hpp"
@@ -21,6 +22,7 @@ class Prediction {
  private:
   bool overpressed(double h) const;
   void add_contact(const Touch& touch);
+  void add_motors(Tree& tree);
 
   State& state_;
   Contacts& contacts_;

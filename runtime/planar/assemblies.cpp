@@ -81,6 +81,23 @@ void Planar::Core::move_rigidly(std::span<const BodyIndex> some, const Pose& fro
   }
 }
 
+/// Moves what is beyond a joint with its child, from one pose of that to another. The rates of all joints stay as they
+/// are: what moves against the parent does so in directions that rotate with it.
+void Planar::Core::place_beyond(std::span<const BodyIndex> some, BodyIndex parent, const Pose& from, const Pose& to) {
+  if (from.location == to.location && from.orientation.coeffs() == to.orientation.coeffs()) return;
+  const bool moves = parent != kNoBody && bodies->dynamic(parent);
+  const auto carried = [&](BodyIndex body) -> Vector3 {
+    if (!moves) return Vector3::Zero();
+    return bodies->velocity(parent) +
+           bodies->rotational_velocity(parent).cross(bodies->location(body) - bodies->location(parent));
+  };
+  for (const BodyIndex body : some) bodies->set_velocity(body, bodies->velocity(body) - carried(body));
+  move_rigidly(some, from, to);
+  const Quaternion rotation = (to.orientation * from.orientation.conjugate()).normalized();
+  for (const BodyIndex body : some) bodies->set_velocity(body, rotation * bodies->velocity(body) + carried(body));
+  if (b2) give_velocities(some);
+}
+
 /// `leader` was moved from there to where it is: all that joints connect with it goes along, points of the world that
 /// it hangs on too.
 void Planar::Core::follow(BodyIndex leader, const Pose& from) {

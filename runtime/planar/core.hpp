@@ -255,6 +255,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   bool jointed(BodyIndex a, BodyIndex b) const;
   bool held_by_world(BodyIndex body) const;
   void move_rigidly(std::span<const BodyIndex> some, const Pose& from, const Pose& to);
+  void place_beyond(std::span<const BodyIndex> some, BodyIndex parent, const Pose& from, const Pose& to);
   void follow(BodyIndex leader, const Pose& from);
   void number_assemblies();
   const AssemblySettings* settings_of(BodyIndex body, bool (*wanted)(const AssemblySettings&)) const;

@@ -55,7 +55,7 @@ void Planar::set_position(JointIndex joint, const JointVector& position) {
   if (is.kind == JointKind::Prismatic) to.location -= position[0] * (parent.orientation * is.normal);
   std::pmr::vector<BodyIndex> all(memory_);
   c.collect_beyond(joint, all);
-  c.move_rigidly(all, from, to);
+  c.place_beyond(all, is.parent, from, to);
   entry.position = position[0];
   // Box2D counts turns by the bodies' angles.
   if (entry.b2) {

@@ -135,6 +135,18 @@ TEST(Linkages, AParallelogramGainsNothingWhereItMayFoldEitherWay) {
   }
 }
 
+/// `reference` steps up to the pose in which the forces that hold the loop have a pole, and leaps over it.
+TEST(Linkages, ReferencePassesThePoseInWhichALoopMayFoldEitherWay) {
+  for (const double lean : {0.05, 0.1, 0.2, 0.3}) {
+    Parallelogram linkage(BREVE_RUNG_REFERENCE, kPi / 2 - lean);
+    const Followed seen = follow_linkage(linkage, 10);
+    EXPECT_EQ(linkage.toll().interventions, 0U);
+    EXPECT_LE(std::max(seen.gained, seen.lost), 1e-4 * seen.moving);
+    EXPECT_GT(seen.moving, 35);
+    EXPECT_GT(seen.spread, kPi);
+  }
+}
+
 /// Four bars of 1 m, 1 kg and 5 cm in a rhombus that hangs on nothing.
 struct Loop : World {
   std::array<breve_object, 4> bars{};

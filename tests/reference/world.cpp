@@ -38,21 +38,22 @@ Solid shell(double radius, double mass) {
   return out;
 }
 
-World::World(double step, breve_rung rung) {
+World::World(double step, breve_rung rung, std::uint32_t dimension) {
   must(breve_runtime_create(nullptr, &runtime_));
   must(breve_program_create_library(runtime_, nullptr, &program_));
-  open_world(step, rung);
+  open_world(step, rung, dimension);
 }
 
 World::World(double step, breve_rung rung, const std::string& program) {
   must(breve_runtime_create(nullptr, &runtime_));
   must(breve_program_compile(runtime_, "test.tz", program.c_str(), program.size(), &program_));
-  open_world(step, rung);
+  open_world(step, rung, 0);
 }
 
-void World::open_world(double step, breve_rung rung) {
+void World::open_world(double step, breve_rung rung, std::uint32_t dimension) {
   breve_world_config config = breve_world_config_default();
   config.iteration_step = config.integration_step = step;
+  config.dimension = dimension;
   must(breve_world_create(runtime_, program_, &config, &world_));
   set_gravity(Vector3(0, -9.81, 0));  // the class library starts with 9.8
   set_rung(rung);

@@ -51,7 +51,7 @@ struct Toll {
 /// Every call throws std::runtime_error with the library's own text where the library refuses.
 class World {
  public:
-  explicit World(double step, breve_rung rung = BREVE_RUNG_BALANCED);
+  explicit World(double step, breve_rung rung = BREVE_RUNG_BALANCED, std::uint32_t dimension = 3);
   /// A program of steve, in the place of the class library alone.
   World(double step, breve_rung rung, const std::string& program);
   ~World();
@@ -112,7 +112,7 @@ class World {
   std::uint64_t hash() const;
 
  private:
-  void open_world(double step, breve_rung rung);
+  void open_world(double step, breve_rung rung, std::uint32_t dimension);
   breve_object shape(const Solid& solid);
 
   breve_runtime* runtime_ = nullptr;

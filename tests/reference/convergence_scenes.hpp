@@ -1,0 +1,34 @@
+// Small scenes whose solution is smooth, or smooth but for a change from sliding to sticking: what the rungs converge
+// to can be said of them, and how fast.
+#pragma once
+
+#include "world.hpp"
+
+namespace breve::reference {
+
+/// What is read of a world at the end: lengths in m or angles in rad, of the order of 1.
+using Read = std::function<std::vector<double>(const World&)>;
+
+/// What moves, as far as the order of the rungs depends on it. KEEP IN STEP: docs/accuracy.md, "How fast the rungs
+/// converge".
+enum class Motion {
+  Joints,    // trees and closed loops, and nothing else
+  Rotation,  // of a free body
+  Straight,  // contacts whose normals and points do not rotate, motors and limits; sliding that ends
+  Curved,    // contacts whose normals or arms rotate; sliding that reverses
+  Flat
+};
+
+struct Scene {
+  const char* name = "";
+  double seconds = 0;
+  Motion motion = Motion::Joints;
+  /// Where sliding ends, the error depends on where in a sub-step that is: the largest of some variants does not.
+  int variants = 1;
+  std::function<Read(World&, int variant)> build{};
+  std::function<std::vector<double>(double t, int variant)> exact{};  // empty: `reference` at a short step in its place
+};
+
+std::vector<Scene> smooth_scenes();
+
+}  // namespace breve::reference
