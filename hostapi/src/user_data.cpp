@@ -7,8 +7,10 @@
 namespace breve::host {
 
 void end_data(breve_world& world, ObjectId id) {
-  for (const NamedState& s : world.states)
+  for (const NamedState& s : world.states) {
+    const StateScope scope(world);
     if (s.state.gone) s.state.gone(s.state.user, handle_of(world, id));
+  }
   if (id.index >= world.object_data.size()) return;
   world.object_data[id.index] = {};
 }
@@ -64,9 +66,13 @@ breve_status breve_world_set_state(breve_world* world, const char* name, const b
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     need(name, "name");
+    if (world->in_state)
+      fail(BREVE_ERROR_BUSY, "breve_world_set_state may not be called by a callback of a state of this world");
     const auto old = state_named(world->states, name);
     if (!state) {
-      if (old != world->states.end()) world->states.erase(old);
+      if (old == world->states.end()) return;
+      const NamedState ended = std::move(*old);
+      world->states.erase(old);
       return;
     }
     const auto given = read_config(state, breve_state_default(), "breve_state");
@@ -75,8 +81,8 @@ breve_status breve_world_set_state(breve_world* world, const char* name, const b
       world->states.push_back({name, given, UserData(nullptr, nullptr)});
       world->states.back().user = UserData(given.user, given.destroy);
     } else {
-      old->user = UserData(given.user, given.destroy);
       old->state = given;
+      old->user = UserData(given.user, given.destroy);
     }
   });
 }
