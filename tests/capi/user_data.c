@@ -179,7 +179,7 @@ static void the_end_of_data_may_attach_and_replace_data(void) {
   CHECK(h.ended == 4); /* with the data that it replaced itself */
   CHECK_STATUS(BREVE_OK, breve_world_set_user(g.world, &h, destroy_again));
   guest_close(&g);
-  /* What was attached to the object that was being freed has ended with the world. */
+  /* The data attached to the object that was being freed has ended with the world. */
   CHECK(h.ended == 6 + others && h.destroyed == BREVE_ERROR_BUSY);
 }
 
