@@ -140,7 +140,7 @@ class UserData {
       : data_(std::exchange(other.data_, nullptr)), destroy_(std::exchange(other.destroy_, nullptr)) {}
   UserData& operator=(UserData&& other) noexcept {
     if (this == &other) return *this;
-    end();
+    const UserData old(std::move(*this));  // its destroy may replace or move what is here
     data_ = std::exchange(other.data_, nullptr);
     destroy_ = std::exchange(other.destroy_, nullptr);
     return *this;
@@ -320,6 +320,7 @@ struct breve_world : breve::InMemory {
   std::vector<breve::steve::ForeignPlace> failed_places;
   double remainder = 0;   // s, kept by breve_world_advance; in [0, iteration step)
   int running = 0;        // calls of the host that run script, one inside the other
+  bool in_state = false;  // a callback of a breve_state runs
   bool in_batch = false;  // breve_batch_run destroys it, and its callbacks may not
   std::uint64_t errors = 0, warnings = 0;
 
@@ -397,6 +398,19 @@ class CallbackScope {
  private:
   breve_world& world_;
   bool holds_;  // no script runs: it is this callback that makes the world busy
+};
+
+/// A callback of a state of the host runs while this stands, and the states must stay as they are.
+class StateScope {
+ public:
+  explicit StateScope(breve_world& world) : world_(world), before_(std::exchange(world.in_state, true)) {}
+  ~StateScope() { world_.in_state = before_; }
+  StateScope(const StateScope&) = delete;
+  StateScope& operator=(const StateScope&) = delete;
+
+ private:
+  breve_world& world_;
+  const bool before_;
 };
 
 /// Bind what of the program's classes of the host the world has not bound yet, before anything of them runs.

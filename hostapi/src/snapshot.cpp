@@ -14,6 +14,7 @@ constexpr std::uint64_t kMark = 0x746174732e747368;  // at the end of an image w
 std::string state_of(breve_world& world, const breve_state& state) {
   Answer bytes, reason;
   const CallbackScope busy(world);
+  const StateScope scope(world);
   if (!state.save(state.user, &world, &Answer::add, &bytes, &Answer::add, &reason)) {
     const std::string text = without_zeros(reason.text());
     fail(BREVE_ERROR_UNSUPPORTED, text.empty() ? "the host cannot save its state" : text);
@@ -103,6 +104,7 @@ bool load_states(breve_world& world, const std::vector<std::string_view>& states
   for (const NamedState& s : world.states) {
     if (!s.state.save) continue;
     const CallbackScope busy(world);
+    const StateScope scope(world);
     if (!s.state.load(s.state.user, &world, bytes->data(), bytes->size(), commit)) return false;
     ++bytes;
   }

@@ -6,16 +6,36 @@
 
 namespace breve::host {
 
+namespace {
+
+/// Callbacks by which data of the host ends find the world busy while this stands.
+class EndScope {
+ public:
+  explicit EndScope(breve_world& world) : world_(world) { ++world_.running; }
+  ~EndScope() { --world_.running; }
+  EndScope(const EndScope&) = delete;
+  EndScope& operator=(const EndScope&) = delete;
+
+ private:
+  breve_world& world_;
+};
+
+}  // namespace
+
 void end_data(breve_world& world, ObjectId id) {
-  for (const NamedState& s : world.states)
+  const EndScope busy(world);
+  for (const NamedState& s : world.states) {
+    const StateScope scope(world);
     if (s.state.gone) s.state.gone(s.state.user, handle_of(world, id));
+  }
   if (id.index >= world.object_data.size()) return;
   world.object_data[id.index] = {};
 }
 
 void forget_data(breve_world& world) {
+  const EndScope busy(world);
   for (std::size_t i = 0; i < world.object_data.size(); ++i) {
-    auto& data = world.object_data[i];
+    ObjectData& data = world.object_data[i];
     if (data.ticket == 0 || world.world->holder(static_cast<std::uint32_t>(i), data.ticket)) continue;
     data = {};
   }
@@ -36,6 +56,7 @@ using namespace breve::host;
 
 breve_status breve_world_set_user(breve_world* world, void* user, void (*destroy)(void* user)) {
   if (!world) return BREVE_ERROR_ARGUMENT;
+  const EndScope busy(*world);
   world->user = UserData(user, destroy);
   return BREVE_OK;
 }
@@ -44,6 +65,7 @@ breve_status breve_object_set_user(breve_world* world, breve_object object, void
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     const auto id = live_id(*world, object);
+    const EndScope busy(*world);
     auto& all = world->object_data;
     if (id.index >= all.size()) all.resize(id.index + 1);
     all[id.index].ticket = ticket_of(*world, object);
@@ -64,9 +86,14 @@ breve_status breve_world_set_state(breve_world* world, const char* name, const b
   if (!world) return BREVE_ERROR_ARGUMENT;
   return guard(world->error, [&] {
     need(name, "name");
+    if (world->in_state)
+      fail(BREVE_ERROR_BUSY, "breve_world_set_state may not be called by a callback of a state of this world");
+    const EndScope busy(*world);
     const auto old = state_named(world->states, name);
     if (!state) {
-      if (old != world->states.end()) world->states.erase(old);
+      if (old == world->states.end()) return;
+      const NamedState ended = std::move(*old);
+      world->states.erase(old);
       return;
     }
     const auto given = read_config(state, breve_state_default(), "breve_state");
@@ -75,8 +102,8 @@ breve_status breve_world_set_state(breve_world* world, const char* name, const b
       world->states.push_back({name, given, UserData(nullptr, nullptr)});
       world->states.back().user = UserData(given.user, given.destroy);
     } else {
-      old->user = UserData(given.user, given.destroy);
       old->state = given;
+      old->user = UserData(given.user, given.destroy);
     }
   });
 }

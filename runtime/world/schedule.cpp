@@ -51,7 +51,25 @@ bool Schedule::take_due(ObjectTable& objects, double until, Entry& entry) {
   return false;
 }
 
-std::size_t Schedule::remove(ObjectTable& objects, ObjectId target, NameId method, double when) {
+namespace {
+
+/// Counts entries of the index that are made or looked for.
+class Progress {
+ public:
+  explicit Progress(const Schedule::Work& work) : work_(work) {}
+  void count() {
+    if (++entries_ % kPiece == 0) work_(kPiece * kOfEntry);
+  }
+
+ private:
+  static constexpr std::uint64_t kPiece = 1024, kOfEntry = 6;  // some 300 ns
+  const Schedule::Work& work_;
+  std::uint64_t entries_ = 0;
+};
+
+}  // namespace
+
+std::size_t Schedule::remove(ObjectTable& objects, ObjectId target, NameId method, double when, const Work& work) {
   constexpr std::size_t kFew = 64;  // entries that are looked through without an index
   ObjectTable::Slot& slot = objects.at(target);
   if (slot.events == 0) return 0;
@@ -62,25 +80,28 @@ std::size_t Schedule::remove(ObjectTable& objects, ObjectId target, NameId metho
   if (!indexed_ && heap_.size() <= kFew) {
     removed = std::erase_if(heap_, [&](const Entry& e) { return e.target == target && meant(e.method, e.when); });
     if (removed != 0) std::make_heap(heap_.begin(), heap_.end(), Later{stable_});
-  } else {
-    if (!indexed_) build_index(objects);
-    constexpr double kFirst = -std::numeric_limits<double>::infinity();
-    auto at = method == kNoName ? index_.lower_bound({target.index, NameId{0}, kFirst, 0})
-                                : index_.lower_bound({target.index, method, when == 0 ? kFirst : when, 0});
-    while (at != index_.end() && std::get<0>(*at) == target.index) {
-      if (meant(std::get<1>(*at), std::get<2>(*at))) {
-        at = index_.erase(at);
-        ++removed;
-      } else if (method == kNoName) {
-        ++at;
-      } else {
-        break;  // those of one method and time stand together
-      }
-    }
-    dead_ += removed;
-    if (dead_ * 2 > heap_.size()) drop_dead(objects);
+    slot.events -= static_cast<std::uint32_t>(removed);
+    return removed;
   }
-  slot.events -= static_cast<std::uint32_t>(removed);
+  if (!indexed_) build_index(objects, work);
+  Progress progress(work);
+  constexpr double kFirst = -std::numeric_limits<double>::infinity();
+  auto at = method == kNoName ? index_.lower_bound({target.index, NameId{0}, kFirst, 0})
+                              : index_.lower_bound({target.index, method, when == 0 ? kFirst : when, 0});
+  while (at != index_.end() && std::get<0>(*at) == target.index) {
+    if (meant(std::get<1>(*at), std::get<2>(*at))) {
+      at = index_.erase(at);
+      ++removed;
+      ++dead_;
+      --slot.events;
+    } else if (method == kNoName) {
+      ++at;
+    } else {
+      break;  // those of one method and time stand together
+    }
+    progress.count();
+  }
+  if (dead_ * 2 > heap_.size()) drop_dead(objects, work);
   return removed;
 }
 
@@ -98,16 +119,27 @@ void Schedule::forget(ObjectTable& objects, ObjectId target) {
   dead_ = 0;
 }
 
-void Schedule::build_index(const ObjectTable& objects) {
+void Schedule::build_index(const ObjectTable& objects, const Work& work) {
   std::pmr::set<Key> index(index_.get_allocator());
-  for (const Entry& entry : heap_)
+  Progress progress(work);
+  for (const Entry& entry : heap_) {
     if (objects.alive(entry.target)) index.insert(key(entry));
+    progress.count();
+  }
   index_.swap(index);
   indexed_ = true;
 }
 
-void Schedule::drop_dead(const ObjectTable& objects) {
-  std::erase_if(heap_, [&](const Entry& entry) { return !counts(entry, objects); });
+/// Those that are dead stay where they are if `work` ends this.
+void Schedule::drop_dead(const ObjectTable& objects, const Work& work) {
+  std::pmr::vector<Entry> kept(heap_.get_allocator());
+  kept.reserve(size());
+  Progress progress(work);
+  for (const Entry& entry : heap_) {
+    if (counts(entry, objects)) kept.push_back(entry);
+    progress.count();
+  }
+  heap_.swap(kept);
   std::make_heap(heap_.begin(), heap_.end(), Later{stable_});
   dead_ = 0;
   if (heap_.empty()) indexed_ = false;

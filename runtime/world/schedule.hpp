@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory_resource>
 #include <set>
 #include <tuple>
@@ -32,8 +33,11 @@ class Schedule {
   /// The next entry due at `until` whose target lives, taken out; a repeating one is queued again at once.
   /// @return false if none is due
   bool take_due(ObjectTable& objects, double until, Entry& entry);
-  /// Remove entries of a target: those of `method` (kNoName: any) at `when` (0: any). Returns how many.
-  std::size_t remove(ObjectTable& objects, ObjectId target, NameId method, double when);
+  /// Hears of work that has been done, in units of about a loop iteration; it may throw to end the rest.
+  using Work = std::function<void(std::uint64_t units)>;
+  /// Remove entries of a target: those of `method` (kNoName: any) at `when` (0: any). Returns how many. If `work` ends
+  /// it, some of them are removed.
+  std::size_t remove(ObjectTable& objects, ObjectId target, NameId method, double when, const Work& work);
   /// A target with waiting entries is going: they are dropped when met, or together once they are the majority.
   void forget(ObjectTable& objects, ObjectId target);
 
@@ -63,11 +67,11 @@ class Schedule {
 
   void push(const Entry& entry);
   Entry pop();
-  void build_index(const ObjectTable& objects);
+  void build_index(const ObjectTable& objects, const Work& work);
   bool counts(const Entry& entry, const ObjectTable& objects) const {
     return objects.alive(entry.target) && (!indexed_ || index_.count(key(entry)) != 0);
   }
-  void drop_dead(const ObjectTable& objects);
+  void drop_dead(const ObjectTable& objects, const Work& work);
   /// What counts, in the order in which it comes due: the same however the heap came about.
   std::pmr::vector<Entry> in_order(const ObjectTable& objects) const;
 

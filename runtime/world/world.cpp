@@ -218,7 +218,8 @@ bool World::schedule(ObjectId target, std::string_view method, double when, doub
 std::size_t World::unschedule(ObjectId target, std::string_view method, double when) {
   const NameId name = method.empty() ? kNoName : parts_->names.find(method);
   if (!method.empty() && name == kNoName) return 0;
-  return parts_->schedule.remove(parts_->objects, target, name, when);
+  return parts_->schedule.remove(parts_->objects, target, name, when,
+                                 [this](std::uint64_t units) { parts_->work(units); });
 }
 
 void World::set_stable_schedule(bool stable) { parts_->schedule.set_stable(stable); }

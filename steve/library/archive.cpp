@@ -258,8 +258,7 @@ class Reader {
       fill_objects();
       announce_objects();
     } catch (...) {
-      for (const auto& [id, object] : objects_)
-        if (object->live()) machine_.free_instance(*object);
+      discard_objects();
       throw;
     }
     Instance* const root = objects_.at(archive_.attribute("root").as_int());
@@ -277,15 +276,37 @@ class Reader {
     return object;
   }
 
+  /// Frees what was made. Once the budget is used up, or the host wants the end, the collector frees the rest later.
+  void discard_objects() {
+    bool goes_on = true;
+    for (const auto& [object, element] : elements_) {
+      if (!object || !object->live()) continue;
+      if (goes_on) {
+        try {
+          machine_.poll();
+          machine_.free_instance(*object);
+        } catch (...) {  // it comes again at the next call or iteration of a loop
+          goes_on = false;
+        }
+      }
+      if (object->live() && !object->auto_free) {
+        object->auto_free = true;
+        machine_.heap().release(object);
+      }
+    }
+  }
+
   void make_objects() {
     for (const pugi::xml_node element : archive_.children("object")) {
       machine_.poll();
       const int id = element.attribute("id").as_int();
       if (id <= 0 || objects_.contains(id))
         refuse("the archive is damaged: two objects have the same number, or one has none");
-      objects_.emplace(id, make(class_of(machine_, element)));
-      pins_.emplace_back(machine_, Value::of(Tag::Object, objects_.at(id)));
-      elements_.emplace_back(objects_.at(id), element);
+      const ClassInfo& cls = class_of(machine_, element);
+      elements_.emplace_back(nullptr, element);
+      Instance* const object = elements_.back().first = make(cls);
+      pins_.emplace_back(machine_, Value::of(Tag::Object, object));
+      objects_.emplace(id, object);
     }
   }
 

@@ -334,6 +334,57 @@ static void a_cut_falls_at_the_same_iteration_in_every_build(void) {
   }
 }
 
+/* Boxes that depend on each other in a row; the first one that is read wants the end. */
+static const char* const boxes_text =
+    "@use Control. Controller Keeper.\n"
+    "Object : Box (aka Boxes) {\n"
+    "  + to dearchive:\n"
+    "    i (int).\n"
+    "    print \"read\".\n"
+    "    for i = 0, i < 1000000, i++: {}\n"
+    "    return 1.\n"
+    "  + to destroy: (getController()) count.\n"
+    "}\n"
+    "Control : Keeper {\n"
+    "  + variables: xml (string). destroyed (int).\n"
+    "  + to count: destroyed++.\n"
+    "  + to write:\n"
+    "    i (int). first, box, last (object).\n"
+    "    first = new Box. last = first.\n"
+    "    for i = 1, i < 100, i++: { box = new Box. last add-dependency on box. last = box. }\n"
+    "    xml = (first archive-as-xml-string).\n"
+    "    free (all Boxes).\n"
+    "    destroyed = 0.\n"
+    "  + to read: self parse-xml-network-request from-string xml.\n"
+    "}\n";
+
+static void interrupt_it(breve_world* world, void* context) {
+  (void)context;
+  breve_world_interrupt(world);
+}
+
+static void an_archive_that_is_interrupted_leaves_none_of_its_objects(void) {
+  scene s;
+  size_t count = 0;
+  memset(&s, 0, sizeof s);
+  breve_runtime_config config = breve_runtime_config_default();
+  config.user = &s.said;
+  config.print = remember;
+  CHECK_STATUS(BREVE_OK, breve_runtime_create(&config, &s.runtime));
+  CHECK_STATUS(BREVE_OK, breve_program_compile(s.runtime, "boxes.tz", boxes_text, strlen(boxes_text), &s.program));
+  CHECK_STATUS(BREVE_OK, breve_world_create(s.runtime, s.program, NULL, &s.world));
+  CHECK_STATUS(BREVE_OK, call(&s, "write"));
+  CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+  s.said.on_print = interrupt_it;
+  CHECK_STATUS(BREVE_ERROR_INTERRUPTED, call(&s, "read"));
+  CHECK(s.said.prints == 1);
+  CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+  CHECK_STATUS(BREVE_OK, breve_world_objects(s.world, "Box", NULL, 0, &count));
+  CHECK(count == 0);
+  CHECK(int_of(&s, "destroyed") == 99); /* that of the first one was cut short */
+  scene_close(&s);
+}
+
 void budget_suite(void) {
   RUN(whatever_does_not_end_is_cut_and_the_world_goes_on);
   RUN(objects_that_describe_themselves_without_end_are_printed_all_the_same);
@@ -343,5 +394,6 @@ void budget_suite(void) {
   RUN(what_a_callback_calls_counts_to_the_call_it_is_in);
   RUN(what_the_warning_of_lost_patience_calls_has_the_same_budget);
   RUN(every_function_that_runs_script_has_a_budget_of_its_own);
+  RUN(an_archive_that_is_interrupted_leaves_none_of_its_objects);
   RUN(a_cut_falls_at_the_same_iteration_in_every_build);
 }

@@ -137,6 +137,98 @@ static void state_of_the_host_is_part_of_snapshots_and_hash(void) {
   CHECK(c.ended == 1);
 }
 
+/* Data whose end attaches data to other objects, so that the world's table of them moves, and replaces itself. */
+typedef struct herd {
+  breve_world* world;
+  breve_object others[200], own;
+  size_t used;
+  int ended;
+  breve_status destroyed;
+} herd;
+
+static void end_of_later_data(void* user) { ++((herd*)user)->ended; }
+static void attach_to_others(void* user) {
+  herd* h = user;
+  ++h->ended;
+  while (h->used < sizeof h->others / sizeof *h->others)
+    breve_object_set_user(h->world, h->others[h->used++], h, end_of_later_data);
+  breve_object_set_user(h->world, h->own, h, end_of_later_data);
+  h->destroyed = breve_world_destroy(h->world);
+}
+static void destroy_again(void* user) {
+  herd* h = user;
+  ++h->ended;
+  h->destroyed = breve_world_destroy(h->world);
+}
+
+static void the_end_of_data_may_attach_and_replace_data(void) {
+  const int others = sizeof((herd*)0)->others / sizeof(breve_object);
+  guest g;
+  herd h = {0};
+  if (!guest_begin(&g, NULL)) return;
+  h.world = g.world;
+  CHECK_STATUS(BREVE_OK, breve_object_create(g.world, "Mobile", &h.own));
+  for (int i = 0; i < others; ++i) CHECK_STATUS(BREVE_OK, breve_object_create(g.world, "Mobile", &h.others[i]));
+  CHECK_STATUS(BREVE_OK, breve_object_set_user(g.world, h.own, &h, attach_to_others));
+  CHECK_STATUS(BREVE_OK, breve_object_free(g.world, h.own));
+  CHECK(h.ended == 1 && h.destroyed == BREVE_ERROR_BUSY); /* a script's `free` was going on */
+  CHECK_STATUS(BREVE_OK, breve_object_set_user(g.world, h.others[0], &h, attach_to_others));
+  h.own = h.others[0];
+  CHECK_STATUS(BREVE_OK,
+               breve_object_set_user(g.world, h.own, &h, end_of_later_data)); /* after what the first one attached */
+  CHECK(h.ended == 4); /* with the data that it replaced itself */
+  CHECK_STATUS(BREVE_OK, breve_world_set_user(g.world, &h, destroy_again));
+  guest_close(&g);
+  /* The data attached to the object that was being freed has ended with the world. */
+  CHECK(h.ended == 6 + others && h.destroyed == BREVE_ERROR_BUSY);
+}
+
+/* A state whose callbacks replace it. */
+typedef struct meddler {
+  breve_world* world;
+  breve_status saved, loaded, gone;
+} meddler;
+
+static bool save_meddler(void* user, breve_world* world, breve_write_fn write, void* sink, breve_write_fn reason,
+                         void* reason_sink) {
+  (void)reason, (void)reason_sink;
+  write(sink, "x", 1);
+  ((meddler*)user)->saved = breve_world_set_state(world, "meddler", NULL);
+  return true;
+}
+static bool load_meddler(void* user, breve_world* world, const char* bytes, size_t size, bool commit) {
+  (void)commit;
+  ((meddler*)user)->loaded = breve_world_set_state(world, "meddler", NULL);
+  return size == 1 && bytes[0] == 'x';
+}
+static void meddler_gone(void* user, breve_object object) {
+  meddler* m = user;
+  (void)object;
+  m->gone = breve_world_set_state(m->world, "meddler", NULL);
+}
+
+static void a_state_may_not_be_replaced_by_its_own_callbacks(void) {
+  static char image[400000];
+  guest g;
+  size_t size = 0;
+  breve_object object;
+  breve_state state = breve_state_default();
+  if (!guest_begin(&g, NULL)) return;
+  meddler m = {g.world, BREVE_OK, BREVE_OK, BREVE_OK};
+  state.user = &m;
+  state.save = save_meddler;
+  state.load = load_meddler;
+  state.gone = meddler_gone;
+  CHECK_STATUS(BREVE_OK, breve_world_set_state(g.world, "meddler", &state));
+  CHECK_STATUS(BREVE_OK, breve_world_snapshot(g.world, image, sizeof image, &size));
+  CHECK_STATUS(BREVE_OK, breve_object_create(g.world, "Mobile", &object));
+  CHECK_STATUS(BREVE_OK, breve_object_free(g.world, object));
+  CHECK_STATUS(BREVE_OK, breve_world_restore(g.world, image, size));
+  CHECK(m.saved == BREVE_ERROR_BUSY && m.loaded == BREVE_ERROR_BUSY && m.gone == BREVE_ERROR_BUSY);
+  CHECK_STATUS(BREVE_OK, breve_world_set_state(g.world, "meddler", NULL));
+  guest_close(&g);
+}
+
 static void memory_of_the_host_counts_against_the_limit(void) {
   guest g;
   breve_stats stats = breve_stats_default();
@@ -177,6 +269,8 @@ void user_data_suite(void) {
   RUN(data_of_worlds_and_objects_ends_with_them);
   RUN(data_of_many_objects_takes_little_memory);
   RUN(state_of_the_host_is_part_of_snapshots_and_hash);
+  RUN(the_end_of_data_may_attach_and_replace_data);
+  RUN(a_state_may_not_be_replaced_by_its_own_callbacks);
   RUN(memory_of_the_host_counts_against_the_limit);
   RUN(hosts_print_and_draw_as_scripts_do);
 }

@@ -374,7 +374,7 @@ constexpr Function kFunctions[] = {
     {"breve_world_set_user", world_set_user},
     {"breve_object_set_user", object_set_user, kStale},
     {"breve_object_user", object_user, kStale},
-    {"breve_world_set_state", world_set_state},
+    {"breve_world_set_state", world_set_state, kBusy},
     {"breve_world_state", world_state, kPlain},
     {"breve_world_allocate", world_memory, kPlain},
     {"breve_world_release", world_memory, kPlain},

@@ -1,6 +1,6 @@
 // The fuzzers' targets without libFuzzer: on files, or on bytes made from seeds. Usage:
 //   replay TARGET FILE-OR-FOLDER…        each file (a finding: the word about it, and an abort)
-//   replay TARGET --seeds FIRST COUNT    what bytes_of_seed, or calls_of_seed, makes
+//   replay TARGET --seeds FIRST COUNT    what the functions of seeds.hpp make
 //   replay --program FILE                print the program that fuzz_run generates of a file
 //   replay --program-of-seed SEED        the same of a seed
 //   replay --selectors-of-seed SEED      print the program that fuzz_select generates of a seed
@@ -41,6 +41,12 @@ void (*target_named(std::string_view name))(Bytes) {
   if (name == "text") return breve::fuzz::fuzz_text;
   if (name == "image") return breve::fuzz::fuzz_image;
   return nullptr;
+}
+
+std::vector<std::uint8_t> bytes_for(void (*target)(Bytes), std::uint64_t seed) {
+  if (target == breve::fuzz::fuzz_call) return breve::fuzz::calls_of_seed(seed);
+  const bool has_courses = target == breve::fuzz::fuzz_select || target == breve::fuzz::fuzz_restore;
+  return has_courses ? breve::fuzz::courses_of_seed(seed) : breve::fuzz::bytes_of_seed(seed);
 }
 
 std::string program_of(Bytes bytes) {
@@ -99,7 +105,7 @@ int main(int argc, char** argv) {
   if (arguments.size() == 2 && arguments[0] == "--program-of-seed")
     return show(breve::fuzz::bytes_of_seed(number(arguments[1])));
   if (arguments.size() == 2 && arguments[0] == "--selectors-of-seed") {
-    std::fputs(breve::fuzz::select_program_of(breve::fuzz::bytes_of_seed(number(arguments[1]))).c_str(), stdout);
+    std::fputs(breve::fuzz::select_program_of(breve::fuzz::courses_of_seed(number(arguments[1]))).c_str(), stdout);
     return 0;
   }
   if (arguments.size() == 2 && arguments[0] == "--keep") {
@@ -121,8 +127,7 @@ int main(int argc, char** argv) {
     const auto count = number(arguments[3]);
     for (; done < count; ++done) {
       std::fprintf(stderr, "seed %llu\n", static_cast<unsigned long long>(first + done));
-      target(target == breve::fuzz::fuzz_call ? breve::fuzz::calls_of_seed(first + done)
-                                              : breve::fuzz::bytes_of_seed(first + done));
+      target(bytes_for(target, first + done));
     }
   } else {
     for (std::size_t i = 1; i < arguments.size(); ++i)
@@ -135,6 +140,8 @@ int main(int argc, char** argv) {
   std::size_t calls = 0;
   for (const breve::fuzz::Tally& tally : breve::fuzz::tallies()) calls += tally.calls;
   if (calls != 0) std::printf("%zu calls\n", calls);
+  const std::size_t programs = breve::fuzz::selected_programs();
+  if (programs != 0) std::printf("%zu programs\n", programs);
   std::printf("%zu inputs, no finding\n", done);
   return done != 0 ? 0 : 1;
 }

@@ -21,5 +21,7 @@ inline std::vector<std::uint8_t> bytes_of_seed(std::uint64_t seed, std::uint64_t
 
 /// For fuzz_call: a program and its worlds take longer to make than many calls.
 inline std::vector<std::uint8_t> calls_of_seed(std::uint64_t seed) { return bytes_of_seed(seed, 12'000); }
+/// For fuzz_select and fuzz_restore: to compile the class library takes longer than to run many courses of a program.
+inline std::vector<std::uint8_t> courses_of_seed(std::uint64_t seed) { return bytes_of_seed(seed, 8'000); }
 
 }  // namespace breve::fuzz

@@ -55,13 +55,16 @@ std::string told(const breve_world* world) {
 
 /// Each iteration in `one` and, from an image taken before it, in `other`.
 void run(breve_world* one, breve_world* other, std::size_t iterations, const std::string& text) {
+  std::size_t size = 0;
+  std::uint64_t before = hash_of(one, text);
   for (std::size_t i = 0; i < iterations; ++i) {
-    const std::string image = image_of(one, text);
+    const std::string image = image_of(one, text, 2 * size);
     if (image.empty()) return;
+    size = image.size();
     const breve_status restored = breve_world_restore(other, image.data(), image.size());
     if (restored == BREVE_ERROR_MEMORY) return;
     if (restored != BREVE_OK) finding(breve_world_last_error(other)->text, text);
-    const std::uint64_t before = hash_of(one, text), same = hash_of(other, text);
+    const std::uint64_t same = hash_of(other, text);
     if (before != 0 && same != 0) require(before == same, "a restored world has another hash", text);
     const breve_status status = step(one, text), again = step(other, text);
     // A world that is short of memory may get by with other amounts after a restore.
@@ -72,37 +75,50 @@ void run(breve_world* one, breve_world* other, std::size_t iterations, const std
             "a restored world goes on differently in iteration " + std::to_string(i + 1) + ": " + told(one) + " and " +
                 told(other),
             text);
+    before = after;
   }
 }
+
+std::size_t programs = 0;
 
 /// @param change  what is not to be as the plan says
 void run_selected(Bytes bytes, void (*change)(SelectPlan&)) {
   Choices choices(bytes);
   SelectPlan plan(choices);
   change(plan);
-  const std::string text = selector_program(choices);
+  const SelectorProgram generated = selector_program(choices);
+  const std::string& text = generated.text;
   const Runtime runtime = make_runtime(breve_runtime_config_default());
   breve_program* compiled = nullptr;
   const breve_status status = breve_program_compile(runtime.get(), "generated.tz", text.data(), text.size(), &compiled);
   if (status == BREVE_ERROR_COMPILE) return;
   if (status != BREVE_OK) finding(breve_runtime_last_error(runtime.get())->text, text);
   const Program program(compiled);
-  const auto create = [&] {
-    breve_world* made = nullptr;
-    const breve_status created = breve_world_create(runtime.get(), compiled, &plan.config, &made);
-    if (!documented(created)) finding(breve_runtime_last_error(runtime.get())->text, text);
-    return World(made);
-  };
-  const World one = create(), other = create();
-  if (one && other) run(one.get(), other.get(), plan.iterations, text);
+  for (std::size_t course = 0; course < generated.courses; ++course) {
+    const std::string number = std::to_string(course);
+    const breve_setting setting = {"course", number.c_str()};
+    plan.config.settings = &setting;
+    plan.config.setting_count = 1;
+    const auto create = [&] {
+      breve_world* made = nullptr;
+      const breve_status created = breve_world_create(runtime.get(), compiled, &plan.config, &made);
+      if (!documented(created)) finding(breve_runtime_last_error(runtime.get())->text, text);
+      return World(made);
+    };
+    const World one = create(), other = create();
+    ++programs;
+    if (one && other) run(one.get(), other.get(), plan.iterations, "# course " + number + "\n" + text);
+  }
 }
 
 }  // namespace
 
+std::size_t selected_programs() { return programs; }
+
 std::string select_program_of(Bytes bytes) {
   Choices choices(bytes);
   const SelectPlan plan(choices);
-  return selector_program(choices);
+  return selector_program(choices).text;
 }
 
 void fuzz_select(Bytes bytes) {

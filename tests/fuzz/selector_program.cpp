@@ -1,5 +1,6 @@
 // The controller has variables for objects of some library classes, and actions: methods of random statements. Every
 // hook that native code calls in the middle of its work, such as `init` of a patch or `archive`, runs an action.
+// What the actions are depends on the course that a world takes: to compile the classes takes longer than to run them.
 #include "selector_program.hpp"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace {
 
 using Texts = std::initializer_list<const char*>;
 
-constexpr std::size_t kActions = 10;
+constexpr std::size_t kActions = 10, kMostCourses = 8;
 
 /// Classes that have something to do with one another.
 constexpr std::array<std::array<const char*, 8>, 6> kThemes = {{
@@ -61,16 +62,16 @@ std::string lowered(std::string text) {
   return text;
 }
 
-class SelectorProgram {
+class SelectorWriter {
  public:
-  explicit SelectorProgram(Choices& choices) : choose_(choices), library_(ClassLibrary::get()) {}
+  explicit SelectorWriter(Choices& choices) : choose_(choices), library_(ClassLibrary::get()) {}
 
-  std::string text() {
+  SelectorProgram program() {
     choose_classes();
     line("Controller Main.");
     for (const std::string& cls : classes_) write_class(cls);
-    write_controller();
-    return uses() + out_;
+    const std::size_t courses = write_controller();
+    return {uses() + out_, courses};
   }
 
  private:
@@ -396,11 +397,27 @@ class SelectorProgram {
       line("    callMethodNamed(self, \"" + action() + "\", {}).");
   }
 
-  void write_controller() {
+  /// What a world does on one of its courses.
+  void write_course(const std::string& course) {
+    line("  + to before-" + course + ":");
+    write_actions(4);
+    line("  + to after-" + course + ":");
+    write_actions(2);
+    for (std::size_t i = 0; i < kActions; ++i) {
+      line("  + to act" + std::to_string(i) + "-" + course + ":");
+      for (std::size_t k = 1 + choose_.below(5); k > 0; --k)
+        if (const std::string text = statement(); !text.empty()) line("    " + text);
+      line("    return 0.");
+    }
+  }
+
+  /// @return  how many courses there are
+  std::size_t write_controller() {
     line(base_ + " : Main {");
     line("  + variables:");
     for (const Object& object : objects_) line("    " + object.variable + " (object).");
-    line("    me, other, gone, got (object).\n    number, i, depth (int).\n    real (float).\n    place (vector).");
+    line("    me, other, gone, got (object).\n    number, i, depth, course (int).\n    real (float).");
+    line("    place (vector).");
     line("    turn (matrix).\n    text (string).\n    items, ring (list).\n    table (hash).\n    bytes (data).");
     line("  + to run of x (object) with y (object) action m (string):\n    if depth > 4: return 0.\n    depth++.");
     line("    me = x.\n    other = y.\n    callMethodNamed(self, m, {}).\n    depth--.\n    return 0.");
@@ -414,17 +431,17 @@ class SelectorProgram {
     line("    ring = { 1, 2 }.\n    push ring onto ring.\n    gone = new TObject.\n    free gone.");
     for (std::size_t i = 0; i < objects_.size(); ++i)
       line("    callMethodNamed(self, \"make" + std::to_string(i) + "\", {}).");
-    line("  + to iterate:\n    depth = 0.");
-    write_actions(4);
-    line("    super iterate.");
-    write_actions(2);
+    line("  + to iterate:\n    depth = 0.\n    callMethodNamed(self, \"before-$course\", {}).\n    super iterate.");
+    line("    callMethodNamed(self, \"after-$course\", {}).");
     for (std::size_t i = 0; i < kActions; ++i) {
-      line("  + to act" + std::to_string(i) + ":");
-      for (std::size_t k = 1 + choose_.below(5); k > 0; --k)
-        if (const std::string text = statement(); !text.empty()) line("    " + text);
-      line("    return 0.");
+      const std::string action = "act" + std::to_string(i);
+      line("  + to " + action + ":\n    return (callMethodNamed(self, \"" + action + "-$course\", {})).");
     }
+    std::size_t courses = 0;
+    do write_course(std::to_string(courses++));
+    while (courses < kMostCourses && !choose_.empty());
     line("}");
+    return courses;
   }
 
   Choices& choose_;
@@ -436,6 +453,6 @@ class SelectorProgram {
 
 }  // namespace
 
-std::string selector_program(Choices& choices) { return SelectorProgram(choices).text(); }
+SelectorProgram selector_program(Choices& choices) { return SelectorWriter(choices).program(); }
 
 }  // namespace breve::fuzz

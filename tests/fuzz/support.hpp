@@ -33,14 +33,16 @@ inline void require(bool condition, std::string_view what, std::string_view abou
 }
 
 /// The image of a world; nothing if the memory limit leaves no room for it.
-inline std::string image_of(const breve_world* world, std::string_view program) {
+/// @param guess  bytes that it probably has; an image that is larger is taken twice
+inline std::string image_of(const breve_world* world, std::string_view program, std::size_t guess = 0) {
   std::size_t size = 0;
-  std::string image;
-  breve_status status = breve_world_snapshot(world, nullptr, 0, &size);
-  if (status == BREVE_OK) {
+  std::string image(guess, '\0');
+  breve_status status = breve_world_snapshot(world, guess == 0 ? nullptr : image.data(), guess, &size);
+  if (status == BREVE_OK && size > guess) {
     image.resize(size);
     status = breve_world_snapshot(world, image.data(), size, &size);
   }
+  image.resize(size);
   if (status == BREVE_ERROR_MEMORY) return "";
   if (status != BREVE_OK) finding(breve_world_last_error(world)->text, program);
   return image;

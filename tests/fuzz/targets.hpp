@@ -29,6 +29,8 @@ void fuzz_feed(Bytes bytes);
 void fuzz_select(Bytes bytes);
 /// The same, each world for 50 iterations and after each restored into another.
 void fuzz_restore(Bytes bytes);
+/// How many programs the two have run.
+std::size_t selected_programs();
 /// The program that fuzz_select makes of them.
 std::string select_program_of(Bytes bytes);
 

@@ -5,6 +5,7 @@
 //   limits_extremes interrupt  each that has no budget ends within 50 ms after breve_world_interrupt
 //   limits_extremes table      the table of docs/limits.md
 //   limits_extremes refused    what refuses each call that is made of it: its work is not measured
+//   limits_extremes all        `budget`, the table and what is refused, of one pass
 // A second argument runs the programs about that class alone ("Image", "functions", "language").
 #include <unistd.h>
 
@@ -138,19 +139,18 @@ void print_table(const Extremes& extremes) {
   std::printf("| %zu others | < %.0f | |\n", others, 1e3 * kShown);
 }
 
+void print_refused(const Extremes& extremes) {
+  for (const auto& [name, worst] : extremes.worst())
+    if (!worst.works) std::printf("%s\n", name.c_str());
+}
+
 int run(std::string_view mode, std::string only) {
   const bool interrupts = mode == "interrupt";
   Extremes extremes(interrupts, std::move(only));
   extremes.run();
-  if (mode == "table") {
-    print_table(extremes);
-    return 0;
-  }
-  if (mode == "refused") {
-    for (const auto& [name, worst] : extremes.worst())
-      if (!worst.works) std::printf("%s\n", name.c_str());
-    return 0;
-  }
+  if (mode == "table" || mode == "all") print_table(extremes);
+  if (mode == "refused" || mode == "all") print_refused(extremes);
+  if (mode == "table" || mode == "refused") return 0;
   const double bound = interrupts ? kLongestAfter : kLongest;
   int failed = 0;
   for (const auto& [name, worst] : slowest_first(extremes.worst())) {
@@ -168,8 +168,8 @@ int run(std::string_view mode, std::string only) {
 
 int main(int count, char** arguments) {
   const std::string_view mode = count > 1 ? arguments[1] : "";
-  if (mode != "budget" && mode != "interrupt" && mode != "table" && mode != "refused") {
-    std::fprintf(stderr, "limits_extremes budget|interrupt|table|refused [CLASS]\n");
+  if (mode != "budget" && mode != "interrupt" && mode != "table" && mode != "refused" && mode != "all") {
+    std::fprintf(stderr, "limits_extremes budget|interrupt|table|refused|all [CLASS]\n");
     return 2;
   }
   return breve::limits::run(mode, count > 2 ? arguments[2] : "");

@@ -26,7 +26,7 @@ constexpr std::size_t kMemory = std::size_t{256} << 20;
 constexpr double kLongest = 0.2;           // s of processor time of an idle machine, under that budget
 constexpr double kLongestAfter = 0.05;     // the same from an interrupt to the end of the call
 constexpr double kBeforeInterrupt = 0.01;  // s
-constexpr double kHangs = 60;              // s: the process ends with a message
+constexpr double kHangs = 60;              // s of processor time: the process ends with a message
 constexpr int kTries = 3;                  // the least of so many counts: the machine may be busy
 constexpr int kMostTries = 30;             // with those that say nothing
 
@@ -65,6 +65,7 @@ class Watch {
     pthread_getcpuclockid(pthread_self(), &processor_);
     name_ = name;
     began_ = Clock::now();
+    used_before_ = processor_time(processor_);
     interrupted_ = Clock::time_point();
     changed_.notify_all();
   }
@@ -98,7 +99,7 @@ class Watch {
         breve_world_interrupt(world_);
         if (first) after_ = processor_time(processor_);
       }
-      if (taken > kHangs) {
+      if ((waits_ ? taken : processor_time(processor_) - used_before_) > kHangs) {
         std::fprintf(stderr, "hangs: %s\n", name_.c_str());
         std::_Exit(1);
       }
@@ -112,6 +113,7 @@ class Watch {
   breve_world* world_ = nullptr;
   std::string name_;
   Clock::time_point began_, interrupted_;
+  double used_before_ = 0;                         // s of the processor, at the beginning
   clockid_t processor_ = CLOCK_THREAD_CPUTIME_ID;  // of the thread that calls
   double before_ = 0, after_ = 0;                  // of it, around the interrupt
   bool waits_ = false;

@@ -1794,10 +1794,11 @@ static inline breve_state breve_state_default(void) {
 }
 
 /* Makes state of the host a part of the world. Images that were taken with it can be restored only in worlds that have a
-   state with this name, and the other way round: otherwise BREVE_ERROR_IMAGE. The callbacks of a state must not call it.
+   state with this name, and the other way round: otherwise BREVE_ERROR_IMAGE.
    @param name   copied
    @param state  copied; NULL: removes the state with this name
-   BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, or `save` without `load`. */
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size, or `save` without `load`; BREVE_ERROR_BUSY from a callback of a
+   state of this world. */
 BREVE_API breve_status breve_world_set_state(breve_world* world, const char* name, const breve_state* state);
 
 /* breve_state.user of the state with this name; NULL if there is none. */
