@@ -1,4 +1,4 @@
-// Letters of DejaVu Sans as an image: for the window and for plots.
+// Letters of DejaVu Sans as an image: for the window.
 #pragma once
 
 #include <array>

@@ -109,6 +109,11 @@ void describe_pictures(CLI::App& app, RunOptions& o) {
       ->type_name("N")
       ->check(CLI::Range(0.001, 1000.0));
   app.add_flag("--plain", o.record.plain, "Draw nothing but the colours and lights that the program sets");
+  app.add_option("--arrows", o.record.arrows,
+                 "Draw arrows for contacts, forces or velocities, several with commas between")
+      ->type_name("KIND")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   app.add_flag("--live", o.live, "Show the world from above on the terminal, and the plotted values");
   auto* plot = several(app, "--plot", "METHOD", o.plot.names,
                        "What a method or variable of the controller says after each iteration: a number or a vector");
@@ -189,6 +194,11 @@ void describe_view(CLI::App& app, ViewOptions& o) {
       ->check(CLI::Range(0.001, 1000.0));
   app.add_flag("--paused", o.paused, "Begin paused");
   app.add_flag("--plain", o.run.record.plain, "Draw nothing but the colours and lights that the program sets");
+  app.add_option("--arrows", o.run.record.arrows,
+                 "Draw arrows for contacts, forces or velocities, several with commas between")
+      ->type_name("KIND")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   app.add_flag("--strict", o.run.strict, "Treat warnings as errors");
   app.add_flag("--quiet", o.run.quiet, "Show no warnings");
   app.add_flag("--verbose", o.run.verbose, "Report each use of an obsolete method and each action of the guard");

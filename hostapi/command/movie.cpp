@@ -1,64 +1,46 @@
-// Movies without a codec: animated GIF, and numbered PNGs for any program that makes movies of them. The others are in
-// movie_codec.cpp.
+// Movies of the command: by breve_movie, and numbered PNGs for any program that makes movies of them.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cerrno>
-#include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <stdexcept>
 
-#include "gif.hpp"
-#include "movie_codec.hpp"
 #include "record.hpp"
 
 namespace breve::command {
 
 namespace {
 
-class GifMovie final : public MovieWriter {
+class PackedMovie final : public MovieWriter {
  public:
-  GifMovie(std::string path, double fps) : path_(std::move(path)), file_(std::fopen(path_.c_str(), "wb")) {
-    if (!file_) fail();
-    // The unit is a hundredth of a second, and what is shorter than two of them is shown slowly.
-    delay_ = static_cast<std::uint16_t>(std::clamp(std::lround(100 / fps), 2L, 60000L));
+  PackedMovie(breve_runtime* runtime, std::string path, double fps, std::uint32_t width, std::uint32_t height)
+      : runtime_(runtime) {
+    breve_movie_config config = breve_movie_config_default();
+    config.width = width;
+    config.height = height;
+    config.fps = fps;
+    config.path = path.c_str();
+    status_ = breve_movie_create(runtime, &config, &movie_);
   }
-  ~GifMovie() override {
-    if (file_) std::fclose(file_);
-  }
-  GifMovie(const GifMovie&) = delete;
-  GifMovie& operator=(const GifMovie&) = delete;
+  ~PackedMovie() override { breve_movie_destroy(movie_); }
+  PackedMovie(const PackedMovie&) = delete;
+  PackedMovie& operator=(const PackedMovie&) = delete;
 
-  void add(const Frame& frame) override {
-    bytes_.clear();
-    if (!gif_) gif_.emplace(frame.width, frame.height, delay_, bytes_);
-    gif_->add(frame.rgba, bytes_);
-    write();
+  breve_status status() const { return status_; }
+  std::string why() const {
+    const breve_error* const error = breve_runtime_last_error(runtime_);
+    return error ? error->message : breve_status_name(status_);
   }
-  void finish() override {
-    bytes_.clear();
-    if (gif_) gif_->end(bytes_);
-    write();
-    std::FILE* file = file_;
-    file_ = nullptr;
-    if (std::fclose(file) != 0) fail();
-  }
+  void add(const Frame& frame) override { need(breve_movie_add(movie_, frame.rgba.data(), 0)); }
+  void finish() override { need(breve_movie_finish(movie_)); }
 
  private:
-  void write() {
-    if (std::fwrite(bytes_.data(), 1, bytes_.size(), file_) != bytes_.size()) fail();
+  void need(breve_status status) {
+    status_ = status;
+    if (status != BREVE_OK) throw std::runtime_error(why());
   }
-  [[noreturn]] void fail() const {
-    throw std::runtime_error(fmt::format("cannot write {}: {}", path_, std::strerror(errno)));
-  }
-
-  std::string path_;
-  std::FILE* file_;
-  std::uint16_t delay_ = 4;
-  std::optional<GifEncoder> gif_;
-  std::vector<std::uint8_t> bytes_;
+  breve_runtime* runtime_;
+  breve_movie* movie_ = nullptr;
+  breve_status status_;
 };
 
 class Frames final : public MovieWriter {
@@ -78,16 +60,19 @@ class Frames final : public MovieWriter {
 
 }  // namespace
 
-std::unique_ptr<MovieWriter> open_movie(const std::string& path, double fps, Output& output) {
-  if (path.ends_with(".gif")) return std::make_unique<GifMovie>(path, fps);
+std::unique_ptr<MovieWriter> open_movie(breve_runtime* runtime, const std::string& path, const MovieSize& size,
+                                        Output& output) {
   if (path.ends_with("/")) return std::make_unique<Frames>(path.substr(0, path.size() - 1));
-  std::string why;
-  if (auto movie = open_codec_movie(path, fps, why)) return movie;
+  auto movie = std::make_unique<PackedMovie>(runtime, path, size.fps, size.width, size.height);
+  if (movie->status() == BREVE_OK) return movie;
+  if (movie->status() != BREVE_ERROR_UNSUPPORTED)
+    throw std::runtime_error(movie->status() == BREVE_ERROR_ARGUMENT ? fmt::format("--movie {}: {}", path, movie->why())
+                                                                     : movie->why());
   const std::string directory = path + ".frames";
   output.complain(
       fmt::format("breve: {3}, so the frames go to {0} as numbered pictures.\n"
                   "       To pack them: ffmpeg -framerate {1} -i {0}/frame_%05d.png {2}\n",
-                  directory, fps, path, why));
+                  directory, size.fps, path, movie->why()));
   return std::make_unique<Frames>(directory);
 }
 

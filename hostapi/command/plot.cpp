@@ -1,12 +1,14 @@
-// Asking the controller, and tables.
+// Asking the controller, and the files of what it says.
 #include "plot.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 
@@ -27,17 +29,18 @@ breve_value value_of(breve_world* world, const std::string& name) {
   throw std::runtime_error(fmt::format("--plot {}: {}", name, error ? error->message : breve_status_name(status)));
 }
 
-void write_text(const std::string& path, const std::string& text) {
+void write_bytes(const std::string& path, const std::vector<std::uint8_t>& bytes) {
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (!file) throw std::runtime_error(fmt::format("cannot write {}: {}", path, std::strerror(errno)));
-  const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
   if (std::fclose(file) != 0 || !written)
     throw std::runtime_error(fmt::format("cannot write {}: {}", path, std::strerror(errno)));
 }
 
-std::string quoted(const std::string& name) {
-  return name.find_first_of(",\"\n") == std::string::npos ? name : '"' + name + '"';
-}
+/// Colours that people of all kinds of vision tell apart (Okabe and Ito 2008).
+constexpr float kInks[][3] = {{0.00F, 0.45F, 0.70F}, {0.84F, 0.37F, 0.00F}, {0.00F, 0.62F, 0.45F},
+                              {0.80F, 0.47F, 0.65F}, {0.90F, 0.62F, 0.00F}, {0.34F, 0.71F, 0.91F},
+                              {0.20F, 0.20F, 0.20F}};
 
 }  // namespace
 
@@ -63,33 +66,44 @@ void Plotter::look(breve_world* world) {
   for (const std::string& name : options_.names) add(name, value_of(world, name), column);
 }
 
-void Plotter::finish() const {
-  if (!options_.log.empty()) write_text(options_.log, series_csv(series_));
-  if (options_.plot.empty()) return;
+std::vector<std::uint8_t> Plotter::file(breve_plot_format format, const char* x_axis) const {
   std::string title;
   for (const std::string& name : options_.names) title += (title.empty() ? "" : ", ") + name;
-  constexpr const char* kAxis = "simulated time, s";
-  const bool png = options_.plot.ends_with(".png");
-  if (png)
-    write_png(series_picture(series_, kAxis), options_.plot);
-  else
-    write_text(options_.plot, series_svg(series_, kAxis, title));
-  if (!options_.log.empty()) return;
-  const bool named = png || options_.plot.ends_with(".svg");
-  const std::size_t dot = named ? options_.plot.size() - 4 : options_.plot.size();
-  write_text(options_.plot.substr(0, dot) + ".csv", series_csv(series_));
+  std::vector<breve_plot_line> lines(series_.columns.size());
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    lines[i].name = series_.names[i].c_str();
+    lines[i].values = series_.columns[i].data();
+    lines[i].count = series_.columns[i].size();
+    std::copy_n(kInks[i % std::size(kInks)], 3, lines[i].color);
+  }
+  breve_plot_config config = breve_plot_config_default();
+  config.title = title.c_str();
+  config.x_axis = x_axis;
+  config.xs = series_.times.data();
+  config.x_count = series_.times.size();
+  config.lines = lines.data();
+  config.line_count = lines.size();
+  std::size_t size = 0;
+  std::vector<std::uint8_t> bytes;
+  breve_status status = breve_plot_file(&config, format, nullptr, 0, &size);
+  if (status == BREVE_OK) {
+    bytes.resize(size);
+    status = breve_plot_file(&config, format, bytes.data(), size, &size);
+  }
+  if (status != BREVE_OK)
+    throw std::runtime_error(fmt::format("the plot cannot be drawn: {}", breve_status_name(status)));
+  return bytes;
 }
 
-std::string series_csv(const Series& series) {
-  std::string text = "time";
-  for (const std::string& name : series.names) text += ',' + quoted(name);
-  text += '\n';
-  for (std::size_t row = 0; row < series.times.size(); ++row) {
-    text += fmt::format("{}", series.times[row]);
-    for (const auto& column : series.columns) text += std::isnan(column[row]) ? "," : fmt::format(",{}", column[row]);
-    text += '\n';
-  }
-  return text;
+void Plotter::finish() const {
+  constexpr const char* kAxis = "simulated time, s";
+  const bool png = options_.plot.ends_with(".png"), named = png || options_.plot.ends_with(".svg");
+  if (!options_.plot.empty())
+    write_bytes(options_.plot, file(png ? BREVE_PLOT_FORMAT_PNG : BREVE_PLOT_FORMAT_SVG, kAxis));
+  std::string log = options_.log;
+  if (log.empty() && !options_.plot.empty())
+    log = options_.plot.substr(0, named ? options_.plot.size() - 4 : options_.plot.size()) + ".csv";
+  if (!log.empty()) write_bytes(log, file(BREVE_PLOT_FORMAT_CSV, "time"));
 }
 
 }  // namespace breve::command

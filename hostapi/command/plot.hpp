@@ -34,18 +34,9 @@ class Plotter {
  private:
   void add(const std::string& name, const breve_value& value, std::size_t& column);
   void put(const std::string& name, double number, std::size_t column);
+  std::vector<std::uint8_t> file(breve_plot_format format, const char* x_axis) const;
   PlotOptions options_;
   Series series_;
 };
-
-std::string series_csv(const Series& series);
-/// A picture in SVG, legible at half its size.
-std::string series_svg(const Series& series, const std::string& x_axis, const std::string& title);
-
-/// The same as pixels. @throws std::runtime_error if the font is not installed
-Frame series_picture(const Series& series, const std::string& x_axis);
-
-/// Marks of an axis: a step of 1, 2 or 5 times a power of ten, so that there are about `count`.
-std::vector<double> axis_marks(double low, double high, int count);
 
 }  // namespace breve::command

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <stdexcept>
 
 namespace breve::command {
@@ -46,8 +47,24 @@ void write_png(const Frame& frame, const std::string& path) {
   const int why = errno;
   if (std::fclose(file) == 0 && written) return;
   const int reason = written ? errno : why;
-  std::remove(path.c_str());
+  std::error_code nothing;  // a device stays
+  if (std::filesystem::is_regular_file(path, nothing)) std::filesystem::remove(path, nothing);
   throw std::runtime_error(fmt::format("cannot write {}: {}", path, std::strerror(reason)));
+}
+
+std::uint32_t arrows_of(const std::vector<std::string>& names) {
+  std::uint32_t arrows = BREVE_ARROWS_NONE;
+  for (const std::string& name : names) {
+    if (name == "contacts")
+      arrows |= BREVE_ARROWS_CONTACTS;
+    else if (name == "forces")
+      arrows |= BREVE_ARROWS_FORCES;
+    else if (name == "velocities")
+      arrows |= BREVE_ARROWS_VELOCITIES;
+    else
+      throw std::runtime_error(fmt::format("--arrows: '{}' is not one of contacts, forces, velocities", name));
+  }
+  return arrows;
 }
 
 Recorder::Recorder(breve_runtime* runtime, const RecordOptions& options, Output& output) : options_(options) {
@@ -55,7 +72,7 @@ Recorder::Recorder(breve_runtime* runtime, const RecordOptions& options, Output&
   if (options.fps) fps_ = *options.fps;
   if (!options.snapshot.empty() || !options.movie.empty()) view_ = make_view(runtime, width_, height_);
   if (!options.contact_sheet.empty()) small_ = make_view(runtime, std::max(1U, width_ / 3), std::max(1U, height_ / 3));
-  if (!options.movie.empty()) movie_ = open_movie(options.movie, fps_, output);
+  if (!options.movie.empty()) movie_ = open_movie(runtime, options.movie, {width_, height_, fps_}, output);
 }
 
 Recorder::~Recorder() = default;
@@ -67,6 +84,7 @@ Recorder::View Recorder::make_view(breve_runtime* runtime, std::uint32_t width, 
   config.look = options_.plain ? BREVE_LOOK_PLAIN : BREVE_LOOK_FULL;
   breve_view* view = nullptr;
   if (breve_view_create(runtime, &config, &view) != BREVE_OK) fail(breve_runtime_last_error(runtime));
+  breve_view_set_arrows(view, arrows_of(options_.arrows), 1);
   return View(view);
 }
 

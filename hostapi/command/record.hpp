@@ -19,6 +19,7 @@ struct RecordOptions {
   std::string size;                            // "WIDTHxHEIGHT", "" for the default
   std::optional<double> fps;
   bool plain = false;
+  std::vector<std::string> arrows;  // "contacts", "forces", "velocities"
   bool any() const { return !snapshot.empty() || !contact_sheet.empty() || !movie.empty(); }
 };
 
@@ -37,8 +38,16 @@ class MovieWriter {
   virtual void add(const Frame& frame) = 0;  // std::runtime_error
   virtual void finish() = 0;                 // std::runtime_error
 };
+struct MovieSize {
+  std::uint32_t width, height;  // pixels
+  double fps;
+};
 /// A movie of the format that its name ends with, or numbered PNGs in a directory. @throws std::runtime_error
-std::unique_ptr<MovieWriter> open_movie(const std::string& path, double fps, Output& output);
+std::unique_ptr<MovieWriter> open_movie(breve_runtime* runtime, const std::string& path, const MovieSize& size,
+                                        Output& output);
+
+/// What breve_view_set_arrows takes. @throws std::runtime_error for any other name
+std::uint32_t arrows_of(const std::vector<std::string>& names);
 
 class Recorder {
  public:

@@ -107,9 +107,11 @@ void Viewer::make_view() {
     throw std::runtime_error(error ? error->message : "nothing can be drawn");
   }
   view_.reset(view);
+  breve_view_set_arrows(view, arrows_, 1);
   picture_ = {config.width, config.height, std::vector<std::uint8_t>(std::size_t{4} * config.width * config.height)};
   if (camera_.moved()) breve_view_set_camera(view, &camera_.camera());
   changed_ = true;
+  since_drawn_ = 1;  // there is no picture to wait with
 }
 
 /// A program that switched drawing of every frame off has two pictures in a second while it runs.
@@ -141,7 +143,7 @@ void Viewer::record_frame() {
   if (!movie_ || breve_world_time(world_.get()) < next_movie_frame_) return;
   render();
   constexpr double kFps = 25;
-  movie_->add(picture_);
+  if (!try_to_write([&] { movie_->add(picture_); })) movie_.reset();
   next_movie_frame_ = std::max(next_movie_frame_ + 1 / kFps, breve_world_time(world_.get()) - 1 / kFps);
   changed_ = true;
 }
@@ -180,15 +182,28 @@ void Viewer::frame(double seconds, int number) {
   window_->show(picture_);
   measure();
   draw_panels();
+  act(actions);
+  window_->present();
+  output_.flush_sometimes();
+}
+
+/// Played actions that are not input.
+void Viewer::act(const std::vector<PlayedAction>& actions) {
   for (const PlayedAction& one : actions) {
     if (one.action == "shot") write_png(window_->pixels(), one.arguments[0]);
     if (one.action == "say")
       output_.print(fmt::format("{}: {}{}\n", fmt::join(one.arguments, " "), status_line(),
                                 breve_object_alive(world_.get(), selected_) ? "  selected" : ""));
+    if (one.action == "read") {
+      const breve_camera& camera = camera_.camera();
+      output_.print(fmt::format("camera: {:.3f} {:.3f} {:.3f} from ({:.3f}, {:.3f}, {:.3f})\n", camera.target[0],
+                                camera.target[1], camera.target[2], camera.offset[0], camera.offset[1],
+                                camera.offset[2]));
+      for (const std::string& text : window_->texts()) output_.print("window: " + text + "\n");
+    }
+    if (one.action == "resize") window_->ask_for(std::stoi(one.arguments[0]), std::stoi(one.arguments[1]));
     if (one.action == "quit") left_ = true;
   }
-  window_->present();
-  output_.flush_sometimes();
 }
 
 int Viewer::run() {
@@ -196,6 +211,7 @@ int Viewer::run() {
   int width = kWidth, height = kHeight;
   if (!options_.run.record.size.empty()) read_size(options_.run.record.size, width, height);
   window_ = std::make_unique<Window>("breve: " + options_.run.file, width, height);
+  arrows_ = arrows_of(options_.run.record.arrows);
   auto last = Clock::now();
   constexpr auto kFrame = std::chrono::microseconds(16'667);  // a screen shows no more
   for (int number = 0; !left_ && output_.open(); ++number) {
@@ -204,7 +220,7 @@ int Viewer::run() {
     last = now;
     std::this_thread::sleep_until(now + kFrame);
   }
-  if (movie_) movie_->finish();
+  end_movie();
   if (!options_.run.quiet) output_.complain(guard_.summary());
   output_.flush();
   return failed_ ? kFailed : kEndedWell;

@@ -35,7 +35,7 @@ void Viewer::handle(const SDL_Event& event) {
     case SDL_QUIT: left_ = true; break;
     case SDL_WINDOWEVENT:
       if (event.window.event != SDL_WINDOWEVENT_SIZE_CHANGED) break;
-      if (movie_) toggle_record();  // its pictures are all of one size
+      end_movie();  // its pictures are all of one size
       window_->resize(std::max(1, event.window.data1), std::max(1, event.window.data2));
       view_.reset();
       break;
@@ -86,13 +86,9 @@ bool Viewer::press_own(SDL_Keycode key) {
       break;
     case SDLK_F7: speed_ /= 2; break;
     case SDLK_F8: speed_ *= 2; break;
-    case SDLK_F9: {
-      const std::string name = free_name(".png");
-      write_png(picture_, name);
-      say("written: " + name);
-      break;
-    }
+    case SDLK_F9: take_picture(); break;
     case SDLK_F10: toggle_record(); break;
+    case SDLK_F11: next_arrows(); break;
     case SDLK_HOME:
       camera_.let_go();
       if (view_) breve_view_set_camera(view_.get(), nullptr);
@@ -111,17 +107,49 @@ std::string Viewer::free_name(const std::string& ending) const {
   return name;
 }
 
+void Viewer::take_picture() {
+  const std::string name = free_name(".png");
+  const bool written = try_to_write([&] { write_png(picture_, name); });
+  if (written) say("written: " + name);
+}
+
 void Viewer::toggle_record() {
-  if (movie_) {
-    movie_->finish();
-    movie_.reset();
-    return say("written: " + movie_name_);
-  }
+  if (movie_) return end_movie();
   constexpr double kFps = 25;
   movie_name_ = free_name(".mp4");
-  movie_ = open_movie(movie_name_, kFps, output_);
+  const MovieSize size{picture_.width, picture_.height, kFps};
+  if (!try_to_write([&] { movie_ = open_movie(session_.runtime(), movie_name_, size, output_); })) return;
   next_movie_frame_ = breve_world_time(world_.get());
   record_frame();
+}
+
+void Viewer::end_movie() {
+  if (!movie_) return;
+  const auto movie = std::move(movie_);
+  if (try_to_write([&] { movie->finish(); })) say("written: " + movie_name_);
+}
+
+/// A disk that is full ends no run: the window says so.
+bool Viewer::try_to_write(const std::function<void()>& write) {
+  try {
+    write();
+    return true;
+  } catch (const std::runtime_error& error) {
+    output_.complain(fmt::format("breve: {}\n", error.what()));
+    return false;
+  }
+}
+
+/// Contacts, then forces with them, then velocities with both, then none.
+void Viewer::next_arrows() {
+  constexpr std::uint32_t kAll = BREVE_ARROWS_CONTACTS | BREVE_ARROWS_FORCES | BREVE_ARROWS_VELOCITIES;
+  arrows_ = arrows_ == kAll ? std::uint32_t{BREVE_ARROWS_NONE} : (2 * arrows_ + 1) & kAll;
+  if (view_) breve_view_set_arrows(view_.get(), arrows_, 1);
+  say(arrows_ == 0   ? "no arrows"
+      : arrows_ == 1 ? "arrows: contacts"
+      : arrows_ == 3 ? "arrows: contacts, forces"
+                     : "arrows: contacts, forces, velocities");
+  changed_ = true;
 }
 
 void Viewer::button(const SDL_MouseButtonEvent& event) {

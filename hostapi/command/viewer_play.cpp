@@ -50,8 +50,8 @@ void push_wheel(int steps) {
 }
 
 // How many arguments each action has; -1: any number.
-const std::map<std::string, int> kActions{{"key", 1},  {"click", 2}, {"drag", 5}, {"wheel", 1},
-                                          {"shot", 1}, {"say", -1},  {"quit", 0}};
+const std::map<std::string, int> kActions{{"key", 1},  {"click", 2}, {"drag", 5}, {"wheel", 1}, {"shot", 1},
+                                          {"say", -1}, {"quit", 0},  {"read", 0}, {"resize", 2}};
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <deque>
+#include <functional>
 
 #include "interventions.hpp"
 #include "repl_names.hpp"
@@ -37,6 +38,7 @@ class Viewer {
   void make_view();
   void record_frame();
   void frame(double seconds, int number);
+  void act(const std::vector<PlayedAction>& actions);
   void measure();
   void say(std::string_view text);
   std::string status_line() const;
@@ -48,7 +50,11 @@ class Viewer {
   void button(const SDL_MouseButtonEvent& event);
   void click(int x, int y);
   bool choose(int x, int y);
+  void take_picture();
   void toggle_record();
+  void end_movie();
+  bool try_to_write(const std::function<void()>& write);
+  void next_arrows();
   std::string free_name(const std::string& ending) const;
 
   // viewer_panels.cpp
@@ -89,6 +95,7 @@ class Viewer {
   std::unique_ptr<MovieWriter> movie_;
   std::string movie_name_;
   double next_movie_frame_ = 0;  // simulated s
+  std::uint32_t arrows_ = BREVE_ARROWS_NONE;
 
   bool paused_ = false, failed_ = false, left_ = false, changed_ = true;
   double speed_ = 1, due_ = 0;  // simulated seconds that are still to be computed

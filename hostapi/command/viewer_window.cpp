@@ -48,6 +48,7 @@ void Window::resize(int width, int height) {
 }
 
 void Window::show(const Frame& picture) {
+  texts_.clear();
   const auto width = static_cast<int>(picture.width), height = static_cast<int>(picture.height);
   if (!picture_)
     picture_.reset(
@@ -63,6 +64,7 @@ void Window::rectangle(int x, int y, int width, int height, Ink ink) {
 }
 
 void Window::text(int x, int y, std::string_view words, Ink ink) {
+  texts_.emplace_back(words);
   SDL_SetTextureColorMod(letters_.get(), ink.red, ink.green, ink.blue);
   SDL_SetTextureAlphaMod(letters_.get(), ink.alpha);
   auto at = static_cast<float>(x);

@@ -28,6 +28,7 @@ class Window {
   int width() const { return width_; }
   int height() const { return height_; }
   void resize(int width, int height);
+  void ask_for(int width, int height) { SDL_SetWindowSize(window_.get(), width, height); }  // an event follows
   void title(const std::string& text) { SDL_SetWindowTitle(window_.get(), text.c_str()); }
 
   void show(const Frame& picture);  // over the whole window
@@ -37,6 +38,8 @@ class Window {
   int width_of(std::string_view words) const;
   static constexpr int kLine = 18;  // pixels from one line of text to the next
   void present() { SDL_RenderPresent(renderer_.get()); }
+  /// The lines of text over the picture, in the order in which they were drawn.
+  const std::vector<std::string>& texts() const { return texts_; }
   /// What the window shows now, before it is presented.
   Frame pixels() const;
 
@@ -58,6 +61,7 @@ class Window {
   std::unique_ptr<SDL_Texture, Destroy> picture_, letters_;
   Letters font_;
   int width_, height_;
+  std::vector<std::string> texts_;
 };
 
 }  // namespace breve::command

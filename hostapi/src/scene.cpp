@@ -127,6 +127,23 @@ breve_light row_of(const breve_world&, const SceneLight& one) {
   return row;
 }
 
+/// The plots, and the lines of all of them.
+void fill_plots(const breve_world& world, const Scene& scene, std::vector<breve_plot>& plots,
+                std::vector<breve_plot_line>& lines) {
+  plots.clear();
+  lines.clear();
+  for (const ScenePlot& plot : scene.plots) {
+    const auto first = static_cast<std::uint32_t>(lines.size()), number = static_cast<std::uint32_t>(plots.size());
+    plots.push_back({handle_of(world, plot.object), plot.title.c_str(), plot.x_axis.c_str(), plot.y_axis.c_str(), first,
+                     static_cast<std::uint32_t>(plot.lines.size())});
+    for (const ScenePlot::Line& line : plot.lines) {
+      breve_plot_line row{line.name.c_str(), line.values.data(), line.values.size(), {}, number};
+      put(row.color, line.color);
+      lines.push_back(row);
+    }
+  }
+}
+
 template <class Row, class All>
 void fill(std::vector<Row>& rows, const breve_world& world, const All& all) {
   rows.clear();
@@ -185,6 +202,8 @@ struct breve_scene {
   std::vector<breve_overlay_text> texts;
   std::vector<breve_camera> cameras;
   std::vector<breve_light> lights;
+  std::vector<breve_plot> plots;
+  std::vector<breve_plot_line> plot_lines;
 
   void read(breve_world& world) {
     const breve::Scene& scene = builder.scene();
@@ -200,6 +219,7 @@ struct breve_scene {
     fill(texts, world, scene.texts);
     fill(cameras, world, scene.cameras);
     fill(lights, world, scene.lights);
+    fill_plots(world, scene, plots, plot_lines);
   }
   void clear() {
     instances.clear();
@@ -213,6 +233,8 @@ struct breve_scene {
     texts.clear();
     cameras.clear();
     lights.clear();
+    plots.clear();
+    plot_lines.clear();
   }
 };
 
@@ -254,6 +276,8 @@ breve_status breve_scene_rows(const breve_scene* scene, uint32_t part, breve_row
       case BREVE_SCENE_TEXTS: *rows = rows_of(scene->texts); break;
       case BREVE_SCENE_CAMERAS: *rows = rows_of(scene->cameras); break;
       case BREVE_SCENE_LIGHTS: *rows = rows_of(scene->lights); break;
+      case BREVE_SCENE_PLOTS: *rows = rows_of(scene->plots); break;
+      case BREVE_SCENE_PLOT_LINES: *rows = rows_of(scene->plot_lines); break;
       default: fail(BREVE_ERROR_ARGUMENT, "part is " + std::to_string(part) + ", which is not a breve_scene_kind");
     }
   });

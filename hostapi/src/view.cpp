@@ -1,5 +1,6 @@
 // Pictures of worlds.
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -58,6 +59,7 @@ struct breve_view {
   breve::render::Renderer renderer;
   breve::SceneBuilder scene;
   breve::Picture picture;
+  breve::steve::Arrows arrows;
   bool drawn = false;
 
   breve_view(const breve_view_config& given, const breve::render::Settings& settings)
@@ -116,7 +118,7 @@ breve_status breve_view_render(breve_view* view, breve_world* world, uint8_t* rg
     need(rgba, "rgba");
     const std::size_t row = 4 * std::size_t{view->config.width};
     const std::size_t step = stride_of(stride, row);
-    breve::steve::show(*world->machine, view->scene);
+    breve::steve::show(*world->machine, view->scene, view->arrows);
     view->renderer.paint(view->scene.scene(), static_cast<int>(view->config.width),
                          static_cast<int>(view->config.height), view->picture);
     view->drawn = true;
@@ -142,6 +144,29 @@ breve_status breve_view_set_camera(breve_view* view, const breve_camera* camera)
   return guard([&] {
     need(view, "view");
     view->renderer.set_camera(camera ? std::optional(from_host(*camera)) : std::nullopt);
+  });
+}
+
+breve_status breve_view_set_arrows(breve_view* view, uint32_t arrows, double scale) {
+  return guard([&] {
+    need(view, "view");
+    constexpr std::uint32_t kAll = BREVE_ARROWS_CONTACTS | BREVE_ARROWS_FORCES | BREVE_ARROWS_VELOCITIES;
+    if ((arrows & ~kAll) != 0) fail(BREVE_ERROR_ARGUMENT, "arrows has bits that are not a breve_arrows");
+    if (!std::isfinite(scale) || !(scale > 0)) fail(BREVE_ERROR_ARGUMENT, "the scale of the arrows is not above 0");
+    view->arrows = {(arrows & BREVE_ARROWS_CONTACTS) != 0, (arrows & BREVE_ARROWS_FORCES) != 0,
+                    (arrows & BREVE_ARROWS_VELOCITIES) != 0, scale};
+  });
+}
+
+breve_status breve_view_arrows(const breve_view* view, uint32_t* arrows, double* scale) {
+  return guard([&] {
+    need(view, "view");
+    need(arrows, "arrows");
+    need(scale, "scale");
+    *arrows = (view->arrows.contacts ? std::uint32_t{BREVE_ARROWS_CONTACTS} : 0) |
+              (view->arrows.forces ? std::uint32_t{BREVE_ARROWS_FORCES} : 0) |
+              (view->arrows.velocities ? std::uint32_t{BREVE_ARROWS_VELOCITIES} : 0);
+    *scale = view->arrows.scale;
   });
 }
 
@@ -180,6 +205,8 @@ void breve_view_destroy(breve_view*) {}
 breve_status breve_view_render(breve_view*, breve_world*, uint8_t*, size_t) { return BREVE_ERROR_ARGUMENT; }
 breve_status breve_view_depth(const breve_view*, float*, size_t) { return BREVE_ERROR_ARGUMENT; }
 breve_status breve_view_set_camera(breve_view*, const breve_camera*) { return BREVE_ERROR_ARGUMENT; }
+breve_status breve_view_set_arrows(breve_view*, uint32_t, double) { return BREVE_ERROR_ARGUMENT; }
+breve_status breve_view_arrows(const breve_view*, uint32_t*, double*) { return BREVE_ERROR_ARGUMENT; }
 breve_status breve_view_camera(const breve_view*, breve_camera*) { return BREVE_ERROR_ARGUMENT; }
 breve_status breve_view_counts(const breve_view*, breve_view_counters*) { return BREVE_ERROR_ARGUMENT; }
 

@@ -121,7 +121,9 @@ void Renderer::Work::set_body_uniforms(const Pass& pass, const Program& program)
   program.set("shadow_matrix", pass.shadow.matrix);
   program.set("shadow_texel_slope", pass.shadow.texel_slope);
   program.set("shadow_bias", 6e-5F);
-  program.set("shadow_texel", shadow ? 1.0F / static_cast<float>(shadow->side()) : 0.0F);
+  program.set("shadow_clear", pass.shadow.clear);
+  program.set("shadow_ring", shadow ? pass.shadow.ring / static_cast<float>(shadow->side()) : 0.0F);
+  program.set("shadow_samples", 8);
   program.set("shadow_map", static_cast<int>(kShadowUnit));
   if (pass.shadow.on) shadow->bind_texture(kShadowUnit);
   program.set("image", static_cast<int>(kImageUnit));

@@ -17,6 +17,9 @@ struct Canvas {
   std::uint64_t* draw_calls = nullptr;
 };
 
+/// A camera whose world is the picture: pixels from the left and from the top.
+Lens pixel_lens(const Canvas& canvas);
+
 class Marks {
  public:
   Marks(const Gl& gl, const std::string& font);
@@ -29,7 +32,8 @@ class Marks {
                     Bind bind_texture);
   void draw_labels(const Shaders& shaders, const Scene& scene, const Canvas& canvas);
   void draw_texts(const Shaders& shaders, const Scene& scene, const Canvas& canvas);
-  void draw_plots(const Shaders& shaders, const Scene& scene, const Canvas& canvas);  // plots.cpp
+  void draw_arrows(const Shaders& shaders, const std::vector<SceneArrow>& arrows, const Canvas& canvas);  // arrows.cpp
+  void draw_plots(const Shaders& shaders, const Scene& scene, const Canvas& canvas);                      // plots.cpp
 
  private:
   struct Row {

@@ -13,17 +13,6 @@ namespace {
 const Vector4f kPlate(0.07F, 0.09F, 0.12F, 0.80F), kInk(0.92F, 0.94F, 0.96F, 1), kAxis(0.55F, 0.60F, 0.66F, 1);
 constexpr float kGap = 8;  // pixels about a plot
 
-/// A camera whose world is the picture: pixels from the left and from the top.
-Lens pixel_lens(const Canvas& canvas) {
-  Lens lens;
-  lens.orthographic = true;
-  lens.projection(0, 0) = 2 / static_cast<float>(canvas.width);
-  lens.projection(1, 1) = -2 / static_cast<float>(canvas.height);
-  lens.projection(0, 3) = -1;
-  lens.projection(1, 3) = 1;
-  return lens;
-}
-
 struct Area {
   float left, top, right, bottom;
 };
@@ -38,7 +27,8 @@ Range range_of(const ScenePlot& plot) {
   bool any = false;
   for (const ScenePlot::Line& line : plot.lines) {
     range.points = std::max(range.points, line.values.size());
-    for (const float value : line.values) {
+    for (const double number : line.values) {
+      const auto value = static_cast<float>(number);
       if (!std::isfinite(value)) continue;
       range.low = any ? std::min(range.low, value) : value;
       range.high = any ? std::max(range.high, value) : value;
@@ -58,18 +48,28 @@ void add_line(const ScenePlot::Line& line, const Range& range, const Area& area,
   const auto points = static_cast<float>(std::max<std::size_t>(range.points, 2) - 1);
   const std::size_t step = 1 + line.values.size() / static_cast<std::size_t>(std::max(1.0F, area.right - area.left));
   const auto at = [&](std::size_t i) {
-    const float up = (line.values[i] - range.low) / (range.high - range.low);
+    const float up = (static_cast<float>(line.values[i]) - range.low) / (range.high - range.low);
     return Vector3f(area.left + static_cast<float>(i) / points * (area.right - area.left),
                     area.bottom - up * (area.bottom - area.top), 0);
   };
   Vector4f color(0, 0, 0, 1);
   color.head<3>() = line.color;
   for (std::size_t i = step; i < line.values.size(); i += step)
-    if (std::isfinite(line.values[i - step]) && std::isfinite(line.values[i]))
+    if (std::isfinite(static_cast<float>(line.values[i - step])) && std::isfinite(static_cast<float>(line.values[i])))
       to.push_back({at(i - step), at(i), color, 2});
 }
 
 }  // namespace
+
+Lens pixel_lens(const Canvas& canvas) {
+  Lens lens;
+  lens.orthographic = true;
+  lens.projection(0, 0) = 2 / static_cast<float>(canvas.width);
+  lens.projection(1, 1) = -2 / static_cast<float>(canvas.height);
+  lens.projection(0, 3) = -1;
+  lens.projection(1, 3) = 1;
+  return lens;
+}
 
 /// @param align  0: from x on, 0.5: about x, 1: up to x
 void Marks::add_words(const std::string& words, int size, float x, float y, float align, std::vector<Row>& rows) {

@@ -95,7 +95,7 @@ void Renderer::Work::paint_camera(const Scene& scene, const SceneCamera& camera,
   const Window cut = common({left, bottom, width, height}, needed);
   if (cut.empty()) return;
   const Lens lens = lens_of(camera, static_cast<double>(width) / height);
-  Pass pass{&scene, &camera, &lens, width, height, ground_of(scene) != nullptr, draw_shadows(scene), mirror_of(scene)};
+  Pass pass{&scene, &camera, &lens, width, height, ground_of(scene) != nullptr, shadows, mirror_of(scene)};
   if (window || left != 0 || bottom != 0) pass.mirror.on = false;  // its image is as large as the whole picture
   if (pass.mirror.on) paint_reflection(pass);
   target->bind();
@@ -116,6 +116,7 @@ void Renderer::Work::paint_camera(const Scene& scene, const SceneCamera& camera,
   marks.draw_lines(shaders, scene.lines, canvas);
   marks.draw_sprites(shaders, scene.sprites, canvas, [&](std::uint32_t number) { bind_texture(scene, number, 0); });
   gl.Disable(GL_DEPTH_TEST);
+  marks.draw_arrows(shaders, scene.arrows, canvas);
   marks.draw_labels(shaders, scene, canvas);
   if (scene.flags.text && camera.text) marks.draw_texts(shaders, scene, canvas);
   if (scene.flags.text && camera.text && !window) marks.draw_plots(shaders, scene, canvas);
@@ -158,6 +159,7 @@ void Renderer::Work::paint(const Scene& scene, int width, int height, Picture& p
   const double aspect = static_cast<double>(width) / height;
   if (scene.cameras.empty()) throw Error(ErrorCode::Argument, "the scene has no camera");
   last_camera = own_camera ? *own_camera : framed(scene, scene.cameras[0], aspect, framing);
+  shadows = draw_shadows(scene, lens_of(last_camera, aspect), height);
   paint_camera(scene, last_camera, width, height);
   for (std::size_t i = 1; i < scene.cameras.size(); ++i)
     if (scene.cameras[i].width >= 1 && scene.cameras[i].height >= 1)

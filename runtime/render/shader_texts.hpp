@@ -11,7 +11,7 @@ inline constexpr const char* kBodyVertex = R"(
 in vec3 position, normal, tint;
 in vec4 row0, row1, row2, color, extra;
 uniform mat4 view, projection, shadow_matrix;
-uniform float outline, layers, tinted, shadow_texel_slope;
+uniform float outline, layers, tinted, shadow_texel_slope, shadow_clear;
 uniform vec3 right, up;
 uniform vec4 clip_plane;
 out vec2 corner;
@@ -40,9 +40,9 @@ void main() {
   lit = extra.z;
   tile = extra.xy;
   shadow_place = shadow_matrix * vec4(world, 1);
-  // Three texels along the normal, more than the soft edge reaches, lie clear of the face itself: a face that the light
+  // Some texels along the normal, more than the soft edge reaches, lie clear of the face itself: a face that the light
   // grazes does not shade itself in stripes.
-  float off = disc > 0.5 ? 0.0 : 3.0 * shadow_texel_slope * shadow_place.w;
+  float off = disc > 0.5 ? 0.0 : shadow_clear * shadow_texel_slope * shadow_place.w;
   shadow_place = shadow_matrix * vec4(world + off * normalize(world_normal), 1);
   gl_ClipDistance[0] = dot(vec4(world, 1), clip_plane);
   gl_Position = projection * (view * vec4(world, 1));
@@ -61,7 +61,8 @@ uniform vec3 light_place[8], light_ambient[8], light_diffuse[8], light_specular[
 uniform int lights;
 uniform float outline, fill, haze_start, haze_end, fog_start, fog_end, fog_power, mirror_height;
 in vec2 corner;
-uniform float shadow_texel, shadow_bias;
+uniform float shadow_ring, shadow_bias;  // ring: a part of the map
+uniform int shadow_samples;
 uniform vec3 right, up;
 uniform vec2 picture;
 uniform sampler2D image, reflection;
@@ -86,13 +87,17 @@ float lit_part(vec3 n) {
   p.z = min(p.z, 0.999999) - shadow_bias;  // what is behind the frustum is shaded by what is in it
   // A turned ring of places: soft edges with few samples.
   float turn = 6.2831853 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
-  float sum = 0.0;
-  for (int i = 0; i < 8; ++i) {
+  // From the outside in. Where half of them agree, the rest would as well: most of the picture is lit or shaded wholly.
+  // The number is a uniform: a loop of known length would be unrolled, and all of it computed.
+  float sum = 0.0, count = float(shadow_samples), seen = 0.0;
+  for (int i = shadow_samples - 1; i >= 0; --i) {
     float a = turn + 2.3999632 * float(i);
-    vec2 way = sqrt((float(i) + 0.5) / 8.0) * 2.6 * shadow_texel * vec2(cos(a), sin(a));
+    vec2 way = sqrt((float(i) + 0.5) / count) * shadow_ring * vec2(cos(a), sin(a));
     sum += texture(shadow_map, vec3(p.xy + way, p.z));
+    seen += 1.0;
+    if (2 * i == shadow_samples && (sum == 0.0 || sum == seen)) break;
   }
-  return sum / 8.0;
+  return sum / seen;
 }
 
 void main() {

@@ -8,7 +8,8 @@ namespace breve::render {
 
 namespace {
 
-constexpr int kSide = 2048;
+// Texels along each side. A map that is finer than the picture shows no more, and takes longer.
+constexpr int kFine = 2048, kCoarse = 1024;
 
 /// Large fixed things receive shadows; what they would cast falls outside.
 bool casts(const SceneInstance& instance) { return instance.shadow && instance.color.w() > 0.3F; }
@@ -34,8 +35,15 @@ Matrix4f perspective(float slope, float near, float far) {
   return p;
 }
 
-/// A lens at the light that holds the box.
-ShadowLens lens_at(const Vector3f& eye, const Eigen::AlignedBox3f& box) {
+/// Pixels of a length unit in the picture, where the box is nearest.
+float finest_scale(const Lens& lens, const Eigen::AlignedBox3f& box, float picture_height) {
+  if (lens.orthographic) return lens.scale_at(box.center(), picture_height);
+  const Vector3f nearest = lens.eye.cwiseMax(box.min()).cwiseMin(box.max());
+  return picture_height / (2 * lens.slope * std::max((lens.eye - nearest).norm(), 1e-3F));
+}
+
+/// A lens at the light that holds the box. @param finest  pixels of a length unit in the picture, where it shows most
+ShadowLens lens_at(const Vector3f& eye, const Eigen::AlignedBox3f& box, float finest, int& side) {
   const float radius = std::max(box.sizes().norm() / 2, 1e-3F);
   const float away = (eye - box.center()).norm();
   // A light among the bodies sees those on one side of it.
@@ -45,12 +53,17 @@ ShadowLens lens_at(const Vector3f& eye, const Eigen::AlignedBox3f& box) {
   const float near = std::max(away - radius, 0.02F * radius), far = away + 8 * radius;
   const Vector3f at = away > 1e-6F ? Vector3f(box.center()) : Vector3f(eye - Vector3f::UnitY());
   const float width = std::min(slope, kWidest);
-  return {true, perspective(width, near, far) * looking(eye, at), 2 * width / static_cast<float>(kSide)};
+  constexpr float kMostPixels = 1.5F;  // that a texel may be wide: its edge is soft
+  side = finest * 2 * width * away > kMostPixels * static_cast<float>(kCoarse) ? kFine : kCoarse;
+  // The edge is as soft in both: texels that are twice as wide are smoothed over half as many.
+  const bool fine = side == kFine;
+  return {true, perspective(width, near, far) * looking(eye, at), 2 * width / static_cast<float>(side),
+          fine ? 2.6F : 1.3F, fine ? 3.0F : 2.0F};
 }
 
 }  // namespace
 
-ShadowLens Renderer::Work::draw_shadows(const Scene& scene) {
+ShadowLens Renderer::Work::draw_shadows(const Scene& scene, const Lens& seen_by, int height) {
   if (!scene.flags.shadows || !scene.flags.lighting || scene.lights.empty() || scene.dimension == 2) return {};
   const SceneInstance* ground = ground_of(scene);
   Eigen::AlignedBox3f box;
@@ -62,11 +75,13 @@ ShadowLens Renderer::Work::draw_shadows(const Scene& scene) {
     box.extend(center + Vector3f::Constant(radius));
   }
   if (box.isEmpty()) return {};
-  const ShadowLens lens = lens_at(scene.lights[0].position.cast<float>(), box);
+  int side = 0;
+  const float finest = finest_scale(seen_by, box, static_cast<float>(height));
+  const ShadowLens lens = lens_at(scene.lights[0].position.cast<float>(), box, finest, side);
   const Gl& gl = context.gl();
-  if (!shadow) shadow = std::make_unique<ShadowTarget>(gl, kSide);
+  if (!shadow || shadow->side() != side) shadow = std::make_unique<ShadowTarget>(gl, side);
   shadow->bind();
-  gl.Viewport(0, 0, kSide, kSide);
+  gl.Viewport(0, 0, side, side);
   gl.Disable(GL_SCISSOR_TEST);
   gl.Enable(GL_DEPTH_TEST);
   gl.Clear(GL_DEPTH_BUFFER_BIT);
@@ -78,8 +93,8 @@ ShadowLens Renderer::Work::draw_shadows(const Scene& scene) {
   Lens sight;
   sight.eye = eye;
   sight.back = (eye - box.center()).normalized();
-  sight.slope = lens.texel_slope * kSide / 2;
-  const Batches all = batch(scene, {&sight, kSide, true, false}, casts, ground);
+  sight.slope = lens.texel_slope * static_cast<float>(side) / 2;
+  const Batches all = batch(scene, {&sight, static_cast<float>(side), true, false}, casts, ground);
   instances.fill(GL_ARRAY_BUFFER, all.instances.data(), all.instances.size() * sizeof(GpuInstance), GL_STREAM_DRAW);
   shaders.depth.use();
   shaders.depth.set("shadow_matrix", lens.matrix);

@@ -14,6 +14,8 @@ struct ShadowLens {
   bool on = false;
   Matrix4f matrix = Matrix4f::Identity();
   float texel_slope = 0;  // width of a texel, divided by its distance from the light
+  float ring = 0;         // texels: the radius of the soft edge
+  float clear = 0;        // texels by which what is shaded is moved along its normal
 };
 
 /// The flat top that reflects: that of the largest fixed box.
@@ -70,7 +72,8 @@ struct Renderer::Work {
   const MeshBuffer& mesh(const Scene& scene, std::uint32_t number);
   void bind_texture(const Scene& scene, std::uint32_t number, unsigned unit);
   // shadow.cpp
-  ShadowLens draw_shadows(const Scene& scene);
+  ShadowLens draw_shadows(const Scene& scene, const Lens& seen_by, int height);
+  ShadowLens shadows;  // of this picture: all of its cameras see the same
 
   Settings settings;
   Context context;

@@ -11,6 +11,7 @@
 
 #include "runtime/base/ids.hpp"
 #include "runtime/base/math.hpp"
+#include "runtime/scene/plot.hpp"
 
 namespace breve {
 
@@ -57,6 +58,12 @@ struct SceneLine {
   std::uint16_t pattern = 0xffff;  // bit i: two pixels of it are drawn
 };
 
+/// Drawn over all else, with a head at `to`.
+struct SceneArrow {
+  Vector3f from = Vector3f::Zero(), to = Vector3f::Zero();
+  Vector4f color = Vector4f::Zero();
+};
+
 /// A picture that faces the camera, or a point.
 struct SceneSprite {
   ObjectId object;
@@ -96,17 +103,6 @@ struct SceneText {
   std::string text;
   float x = 0, y = 0;  // -1 to 1, of the baseline's begin
   Vector3f color = Vector3f::Zero();
-};
-
-/// Lines of numbers over the picture. A point of a line is one further along x than the one before it.
-struct ScenePlot {
-  struct Line {
-    Vector3f color = Vector3f::Zero();
-    std::vector<float> values;
-  };
-  ObjectId object;
-  std::string title, x_axis, y_axis;
-  std::vector<Line> lines;
 };
 
 struct SceneCamera {
@@ -163,7 +159,8 @@ struct Scene {
   std::vector<SceneSheet> sheets;
   std::vector<SceneLabel> labels;
   std::vector<SceneText> texts;
-  std::vector<ScenePlot> plots;
+  std::vector<ScenePlot> plots;  // drawn over the picture
+  std::vector<SceneArrow> arrows;
   std::vector<SceneCamera> cameras;  // the main one first
   std::vector<SceneLight> lights;
   SceneFog fog;

@@ -30,6 +30,7 @@ void SceneBuilder::begin() {
   scene_.labels.clear();
   scene_.texts.clear();
   scene_.plots.clear();
+  scene_.arrows.clear();
   scene_.cameras.clear();
   scene_.lights.clear();
   scene_.backdrop = SceneBackdrop();

@@ -183,26 +183,27 @@ std::string text_variable(Machine& machine, Instance& self, std::string_view nam
   return slot && slot->ref ? std::string(view(static_cast<const StringCell*>(slot->ref))) : std::string();
 }
 
-ListCell* list_variable(Machine& machine, Instance& self, std::string_view name) {
+const ListCell* list_variable(Machine& machine, Instance& self, std::string_view name) {
   const Slot* slot = library_slot(machine, self, "Graph", name);
-  return slot ? static_cast<ListCell*>(slot->ref) : nullptr;
+  return slot ? static_cast<const ListCell*>(slot->ref) : nullptr;
 }
 
-float number_of(const Value& value) {
-  if (value.tag == Tag::Int) return static_cast<float>(value.i);
-  return value.tag == Tag::Double ? static_cast<float>(value.d) : std::numeric_limits<float>::quiet_NaN();
+double number_of(const Value& value) {
+  if (value.tag == Tag::Int) return value.i;
+  return value.tag == Tag::Double ? value.d : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// A Graph object that has lines is a plot over the picture.
-void show_graph(Machine& machine, Instance& self, SceneBuilder& to) {
-  const ListCell* colors = list_variable(machine, self, "lineColors");
-  const ListCell* values = list_variable(machine, self, "lineValues");
-  if (!colors || !values || values->size == 0) return;
+}  // namespace
+
+ScenePlot plot_of(Machine& machine, Instance& graph) {
   ScenePlot plot;
-  plot.object = self.id;
-  plot.title = text_variable(machine, self, "graphTitle");
-  plot.x_axis = text_variable(machine, self, "xAxisName");
-  plot.y_axis = text_variable(machine, self, "yAxisName");
+  plot.object = graph.id;
+  plot.title = text_variable(machine, graph, "graphTitle");
+  plot.x_axis = text_variable(machine, graph, "xAxisName");
+  plot.y_axis = text_variable(machine, graph, "yAxisName");
+  const ListCell* colors = list_variable(machine, graph, "lineColors");
+  const ListCell* values = list_variable(machine, graph, "lineValues");
+  if (!colors || !values) return plot;
   for (std::uint32_t i = 0; i < std::min(colors->size, values->size); ++i) {
     const Value color = (*colors)[i], list = (*values)[i];
     ScenePlot::Line line;
@@ -211,22 +212,23 @@ void show_graph(Machine& machine, Instance& self, SceneBuilder& to) {
       for (const Value& value : *static_cast<const ListCell*>(list.ref)) line.values.push_back(number_of(value));
     plot.lines.push_back(std::move(line));
   }
-  to.scene().plots.push_back(std::move(plot));
+  return plot;
 }
 
-}  // namespace
-
-void show(Machine& machine, SceneBuilder& scene) {
+void show(Machine& machine, SceneBuilder& scene, const Arrows& arrows) {
   scene.begin();
   World& world = machine.world();
   breve::show(world, scene);
   for (const ObjectId id : world.objects()) {
     Instance* instance = machine.instance(id);
-    if (instance && is_library_kind(*instance, "Graph")) show_graph(machine, *instance, scene);
+    if (instance && is_library_kind(*instance, "Graph"))
+      if (ScenePlot plot = plot_of(machine, *instance); !plot.lines.empty())
+        scene.scene().plots.push_back(std::move(plot));
     if (const auto* grid = resource_of<GridResource>(machine, instance)) show_grid(machine, id, *grid, scene);
     if (const auto* spring = resource_of<SpringResource>(machine, instance)) show_spring(machine, *spring, scene);
   }
   show_terrains(machine, scene);
+  show_arrows(machine, arrows, scene);
   scene.end();
 }
 

@@ -2,12 +2,29 @@
 // springs, colours of terrains.
 #pragma once
 
+#include <string>
+
 #include "runtime/scene/scene_builder.hpp"
 #include "steve/machine/machine.hpp"
 
 namespace breve::steve {
 
+/// What arrows show.
+struct Arrows {
+  bool contacts = false, forces = false, velocities = false;
+  double scale = 1;  // of all their lengths
+  bool any() const { return contacts || forces || velocities; }
+};
+
 /// The whole moment: begins and ends the scene.
-void show(Machine& machine, SceneBuilder& scene);
+void show(Machine& machine, SceneBuilder& scene, const Arrows& arrows = {});
+/// A plot as a PNG file.
+std::string png_of(const ScenePlot& plot);
+
+/// What a Graph object holds.
+ScenePlot plot_of(Machine& machine, Instance& graph);
+
+/// Its arrows. (show_arrows.cpp)
+void show_arrows(Machine& machine, const Arrows& arrows, SceneBuilder& scene);
 
 }  // namespace breve::steve

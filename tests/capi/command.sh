@@ -418,6 +418,29 @@ END
   program b.tz '' 'self save-snapshot to "none/b.png".'
   expect 0 run b.tz --iterations 2 --hash && has err "none/b.png' not written" && has out hash
   ;;
+movies_without_ffmpeg)
+  program a.tz 'bug = new Mobile. bug set-velocity to (9, 0, 0).' ''
+  # A library of ffmpeg that cannot be loaded is one that is not there.
+  mkdir hidden
+  for library in avutil avcodec avformat swscale; do
+    for file in /usr/lib/*/lib$library.so.*; do : >"hidden/$(basename "$file" | sed 's/\(so\.[0-9]*\).*/\1/')"; done
+  done
+  LD_LIBRARY_PATH=$PWD/hidden expect 0 run a.tz --iterations 10 --quiet --size 64x48 --fps 20 --movie none.mp4
+  has err 'libav[a-z]*.so.[0-9]* is not installed, so the frames go to none.mp4.frames as numbered pictures' && [ ! -e none.mp4 ]
+  [ "$(ls none.mp4.frames | wc -l)" = 13 ] || fail "numbered pictures in place of none.mp4"
+  LD_LIBRARY_PATH=$PWD/hidden expect 0 run a.tz --iterations 2 --quiet --size 64x48 --movie none.gif && [ -s none.gif ]
+  # The same for the class Movie.
+  program m.tz 'bug = new Movie. bug record to "walk.mpeg".' ''
+  sed -i '2i @use Movie.' m.tz
+  mkdir packed numbered
+  cd packed
+  expect 0 run ../m.tz --iterations 3 --quiet && [ -s walk.mpeg ] && [ ! -e walk_00000.png ] || fail "a Movie is not packed"
+  cd ../numbered
+  LD_LIBRARY_PATH=$PWD/../hidden expect 0 run ../m.tz --iterations 3
+  has err "is not installed, so 'walk.mpeg' becomes numbered pictures"
+  [ -s walk_00002.png ] && [ ! -e walk.mpeg ] || fail "no numbered pictures"
+  cd ..
+  ;;
 plot_png)
   program a.tz '' ''
   expect 0 run a.tz --iterations 20 --quiet --plot turns --plot-to a.png && has a.csv '^time,turns'

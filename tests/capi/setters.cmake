@@ -11,7 +11,8 @@ set(without_parts
 set(elsewhere
   breve_grid_set_concentrations  # grids.c
   breve_world_set_state          # user_data.c
-  breve_view_set_camera)         # view.c
+  breve_view_set_camera          # view.c
+  breve_view_set_arrows)         # tests/seeing/arrows_tests.cpp
 include(${CMAKE_CURRENT_LIST_DIR}/declared.cmake)
 declared_functions(names ${HEADERS})
 file(READ ${TEST} test)

@@ -10,7 +10,7 @@ enum { kWidth = 640, kHeight = 480, kPixels = kWidth * kHeight };
 static const double kPercent = 0.01;
 
 static const char* const start =
-    "@use Control.\n@use Mobile.\n@use Stationary.\n@use Shape.\n@use Image.\n@use Camera.\n"
+    "@use Control.\n@use Mobile.\n@use Stationary.\n@use Shape.\n@use Image.\n@use Camera.\n@use Graph.\n"
     "Mobile : Thing {\n"
     "\t+ to become from shape (object) at place (vector) in color (vector):\n"
     "\t\tself set-shape to shape. self move to place. self set-color to color. return self.\n"
@@ -163,7 +163,7 @@ static void lines_texts_and_lights_are_rows(void) {
   CHECK(backdrop.color[2] == 0.75F && backdrop.dimension == 3 && backdrop.texture == BREVE_NO_TEXTURE);
   CHECK(backdrop.skybox[0] == BREVE_NO_TEXTURE && backdrop.every_frame == 1);
   breve_rows rows;
-  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_scene_rows(scene, 11, &rows));
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_scene_rows(scene, 13, &rows));
   breve_scene_destroy(scene);
   scene_close(&s);
 }
@@ -437,6 +437,108 @@ static void what_cannot_be_drawn_is_refused(void) {
   scene_close(&s);
 }
 
+/* --- plots and movies ----------------------------------------------------------------------------------------------- */
+
+static void a_graph_is_rows_that_a_host_can_draw(void) {
+  scene s;
+  breve_scene* seen = NULL;
+  if (!open_show(&s,
+                 "\t\tthing = new Graph. thing set-title to \"waves\". thing set-x-axis-name to \"step\".\n"
+                 "\t\tthing add-line with-color (1, .5, 0). thing add-line with-color (0, 0, 1).\n"
+                 "\t\tfor count = 0, count < 3, count++: thing add-point on-line 1 with-value count * .5.\n"))
+    return;
+  CHECK_STATUS(BREVE_OK, breve_scene_create(&seen));
+  CHECK_STATUS(BREVE_OK, breve_scene_read(seen, s.world));
+  const breve_rows plots = rows_of(seen, BREVE_SCENE_PLOTS), lines = rows_of(seen, BREVE_SCENE_PLOT_LINES);
+  CHECK(plots.count == 1 && lines.count == 2);
+  const breve_plot* plot = row(&plots, 0);
+  CHECK_TEXT("waves", plot->title);
+  CHECK_TEXT("step", plot->x_axis);
+  CHECK_TEXT("", plot->y_axis);
+  CHECK(plot->first_line == 0 && plot->line_count == 2 && breve_object_alive(s.world, plot->object));
+  const breve_plot_line *first = row(&lines, 0), *second = row(&lines, 1);
+  CHECK(first->count == 0 && first->color[1] == 0.5F && second->count == 3 && second->plot == 0);
+  CHECK(second->values[2] == 1.0);
+  breve_scene_destroy(seen);
+  scene_close(&s);
+}
+
+/* The plot as a file, which is freed by the caller. */
+static char* plot_text(const breve_plot_config* config, uint32_t format, size_t* size) {
+  CHECK_STATUS(BREVE_OK, breve_plot_file(config, format, NULL, 0, size));
+  char* text = calloc(*size + 1, 1);
+  CHECK_STATUS(BREVE_OK, breve_plot_file(config, format, (uint8_t*)text, *size, size));
+  return text;
+}
+
+static void a_plot_is_a_table_and_pictures(void) {
+  const double xs[] = {0, 2, 4}, ups[] = {1, 2, 3}, holes[] = {5, NAN, 1e300};
+  const breve_plot_line lines[] = {{"a,b", ups, 3, {1, 0, 0}, 0}, {NULL, holes, 3, {0, 0, 1}, 0}};
+  breve_plot_config config = breve_plot_config_default();
+  config.title = "<title>";
+  config.x_axis = "time, s";
+  config.xs = xs;
+  config.x_count = 3;
+  config.lines = lines;
+  config.line_count = 2;
+  size_t size = 0;
+  char* csv = plot_text(&config, BREVE_PLOT_FORMAT_CSV, &size);
+  CHECK_TEXT("\"time, s\",\"a,b\",line 1\n0,1,5\n2,2,\n4,3,1e+300\n", csv);
+  char* svg = plot_text(&config, BREVE_PLOT_FORMAT_SVG, &size);
+  CHECK(strstr(svg, "&lt;title&gt;") && strstr(svg, "time, s") && strstr(svg, "a,b") && strstr(svg, "#ff0000"));
+  CHECK(!strstr(svg, "nan") && !strstr(svg, "inf") && strstr(svg, "</svg>"));
+  char* png = plot_text(&config, BREVE_PLOT_FORMAT_PNG, &size);
+  CHECK(size > 1000 && memcmp(png, "\x89PNG", 4) == 0);
+  free(csv);
+  free(svg);
+  free(png);
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_plot_file(&config, 3, NULL, 0, &size));
+  config.lines = NULL;
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_plot_file(&config, BREVE_PLOT_FORMAT_SVG, NULL, 0, &size));
+  config = breve_plot_config_default();
+  CHECK_STATUS(BREVE_OK, breve_plot_file(&config, BREVE_PLOT_FORMAT_SVG, NULL, 0, &size));
+}
+
+static bool keep(void* user, const void* bytes, size_t size) {
+  *(size_t*)user = memcmp(bytes, "GIF89a", 6) == 0 ? size : 0;
+  return true;
+}
+
+static void a_movie_of_a_world_is_a_file(void) {
+  scene s;
+  breve_view* view = NULL;
+  breve_movie* movie = NULL;
+  size_t size = 0;
+  uint8_t rgba[32 * 24 * 4];
+  if (!open_show(
+          &s,
+          "\t\tthing = ((new Thing) become from ball at (0, 0, 0) in (1, .5, 0)). thing set-velocity to (9, 0, 0).\n"))
+    return;
+  breve_view_config look = breve_view_config_default();
+  look.width = 32;
+  look.height = 24;
+  breve_movie_config config = breve_movie_config_default();
+  config.width = 32;
+  config.height = 24;
+  config.format = "gif";
+  config.user = &size;
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, breve_movie_create(s.runtime, &config, &movie));
+  config.write = keep;
+  CHECK_STATUS(BREVE_OK, breve_movie_create(s.runtime, &config, &movie));
+  CHECK_STATUS(BREVE_OK, breve_view_create(s.runtime, &look, &view));
+  CHECK_STATUS(BREVE_OK, breve_view_set_arrows(view, BREVE_ARROWS_VELOCITIES, 1));
+  for (int i = 0; i < 4; ++i) {
+    CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+    CHECK_STATUS(BREVE_OK, breve_view_render(view, s.world, rgba, 0));
+    CHECK_STATUS(BREVE_OK, breve_movie_add(movie, rgba, 0));
+  }
+  CHECK_STATUS(BREVE_OK, breve_movie_finish(movie));
+  CHECK(size > 3000); /* each picture has a palette */
+  breve_movie_destroy(movie);
+  breve_view_destroy(view);
+  scene_close(&s);
+}
+
 void view_suite(void) {
   RUN(bodies_that_look_alike_share_a_mesh);
   RUN(triangles_of_every_shape_face_outward);
@@ -453,4 +555,7 @@ void view_suite(void) {
   RUN(draw_calls_do_not_grow_with_bodies);
   RUN(a_picture_changes_nothing);
   RUN(what_cannot_be_drawn_is_refused);
+  RUN(a_graph_is_rows_that_a_host_can_draw);
+  RUN(a_plot_is_a_table_and_pictures);
+  RUN(a_movie_of_a_world_is_a_file);
 }

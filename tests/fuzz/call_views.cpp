@@ -89,8 +89,8 @@ void read_rows(const breve_rows& rows, std::uint32_t kind) {
 
 breve_status scene_rows(Caller& c) {
   const SceneHolder holder(c, c.worlds().empty() ? nullptr : c.worlds().front());
-  const std::uint32_t kind = c.word() % 12;
-  if (kind > BREVE_SCENE_LIGHTS) c.expect_refusal();
+  const std::uint32_t kind = c.word() % 14;
+  if (kind > BREVE_SCENE_PLOT_LINES) c.expect_refusal();
   Out<breve_rows> rows(c);
   const breve_status status = rows.after(breve_scene_rows(holder.scene, kind, rows.to()));
   if (rows) read_rows(*rows, kind);
@@ -171,6 +171,85 @@ breve_status png(Caller& c) {
   return breve_png(width, kSide, rgba, c.chance(50) ? 0 : 4 * kSide, nullptr, 0, &size);
 }
 
+// --- arrows, plots and movies ----------------------------------------------------------------------------------------
+
+breve_status view_set_arrows(Caller& c) {
+  const ViewHolder holder(c);
+  const double scale = c.chance(80) ? 1.5 : c.number();
+  return breve_view_set_arrows(holder.view, c.word() % 10, scale);
+}
+
+breve_status view_arrows(Caller& c) {
+  const ViewHolder holder(c);
+  Out<std::uint32_t> arrows(c);
+  double scale = 0;
+  return arrows.after(breve_view_arrows(holder.view, arrows.to(), &scale));
+}
+
+breve_status plot_file(Caller& c) {
+  double xs[kSide], values[kSide];
+  for (double& x : xs) x = c.number();
+  for (double& value : values) value = c.number();
+  breve_plot_line line{};
+  line.name = c.chance(50) ? nullptr : "<a&b, \"c\"";
+  line.values = values;
+  line.count = c.word() % (kSide + 1);
+  for (float& part : line.color) part = static_cast<float>(c.number());
+  breve_plot_config config = breve_plot_config_default();
+  config.struct_size = c.struct_size(sizeof config);
+  config.title = c.chance(50) ? nullptr : "title";
+  config.xs = c.chance(50) ? nullptr : xs;
+  config.x_count = config.xs ? c.word() % (kSide + 1) : 0;
+  config.lines = &line;
+  config.line_count = c.word() % 2;
+  const std::uint32_t format = c.chance(90) ? 2 * (c.word() % 2) : c.word();  // a PNG file takes long
+  std::size_t size = 0;
+  return breve_plot_file(&config, format, nullptr, 0, &size);
+}
+
+struct MovieHolder {
+  breve_movie* movie = nullptr;
+  std::uint8_t rgba[4 * kSide * kSide] = {};
+  explicit MovieHolder(Caller& c) {
+    breve_runtime* runtime = c.runtimes()[0];
+    breve_movie_config config = breve_movie_config_default();
+    config.width = config.height = kSide;
+    config.format = "gif";
+    config.write = [](void*, const void*, std::size_t) { return true; };
+    if (!runtime || c.chance(10) || breve_movie_create(runtime, &config, &movie) != BREVE_OK) c.expect_refusal();
+  }
+  ~MovieHolder() { breve_movie_destroy(movie); }
+  MovieHolder(const MovieHolder&) = delete;
+  MovieHolder& operator=(const MovieHolder&) = delete;
+};
+
+breve_status movie_create(Caller& c) {
+  breve_runtime* runtime = c.runtime();
+  breve_movie_config config = breve_movie_config_default();
+  config.struct_size = c.struct_size(sizeof config);
+  config.width = c.chance(90) ? kSide : c.word();
+  config.height = c.chance(90) ? kSide : c.word();
+  config.fps = c.chance(80) ? 25 : c.number();
+  config.format = c.chance(80) ? "gif" : c.chance(50) ? "xyz" : nullptr;
+  if (c.chance(90)) config.write = [](void*, const void*, std::size_t) { return true; };
+  breve_movie* movie = nullptr;
+  const breve_status status = breve_movie_create(runtime, &config, &movie);
+  breve_movie_destroy(movie);
+  return status;
+}
+breve_status movie_destroy(Caller&) { return breve_movie_destroy(nullptr), BREVE_OK; }
+
+breve_status movie_add(Caller& c) {
+  const MovieHolder holder(c);
+  return breve_movie_add(holder.movie, holder.rgba, c.chance(50) ? 0 : 4 * kSide);
+}
+
+breve_status movie_finish(Caller& c) {
+  const MovieHolder holder(c);
+  if (holder.movie && c.chance(50)) (void)breve_movie_add(holder.movie, holder.rgba, 0);
+  return breve_movie_finish(holder.movie);
+}
+
 constexpr Function kFunctions[] = {
     {"breve_scene_create", scene_create},
     {"breve_scene_destroy", scene_destroy},
@@ -187,6 +266,13 @@ constexpr Function kFunctions[] = {
     {"breve_view_camera", view_camera, kNotFound},
     {"breve_view_counts", view_counts},
     {"breve_png", png},
+    {"breve_view_set_arrows", view_set_arrows},
+    {"breve_view_arrows", view_arrows},
+    {"breve_plot_file", plot_file},
+    {"breve_movie_create", movie_create, kUnsupported | kFile},
+    {"breve_movie_destroy", movie_destroy},
+    {"breve_movie_add", movie_add, kNotFound | kFile},
+    {"breve_movie_finish", movie_finish, kNotFound | kFile},
 };
 
 }  // namespace call_views

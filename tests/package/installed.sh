@@ -142,7 +142,7 @@ case $case in
     [[ $(LD_LIBRARY_PATH=$libdir "$scratch/root/usr/bin/breve" --version) == *"$(cmake_version)"* ]] || fail "the command does not run"
     ;;
   without_parts)
-    build_shared -DBREVE_WITH_COMMAND=OFF -DBREVE_WITH_PLANAR=OFF -DBREVE_WITH_MESHES=OFF \
+    build_shared -DBREVE_WITH_COMMAND=OFF -DBREVE_WITH_PLANAR=OFF -DBREVE_WITH_MESHES=OFF -DBREVE_WITH_MOVIES=OFF \
       -DCMAKE_DISABLE_FIND_PACKAGE_box2d=ON -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON
     ! ldd "$scratch/build/hostapi/libbreve.so" | grep -E 'box2d|assimp' >"$scratch/said" || fail "links what was left out"
     quietly cmake --install "$scratch/build" --prefix "$scratch/usr"

@@ -1,6 +1,8 @@
 // One scene for every shape, material, light, camera and overlay feature.
 #include "golden_scenes.hpp"
 
+#include <breve/view.h>
+
 namespace breve::seeing {
 
 namespace {
@@ -10,10 +12,17 @@ namespace {
 #define BALL LIT "thing = ((new Thing) become from ball). "
 #define CUBE LIT "thing = ((new Thing) become from box). thing rotate around-axis (1, 2, 0) by .6. "
 #define SHAPE(shape) LIT "thing = ((new Thing) become from (" shape ")). thing rotate around-axis (1, 0, .5) by .5. "
+#define MESH(file, size)                                                        \
+  LIT "shape = (new MeshShape load-from-obj file \"" file "\" with-size " #size \
+      "). thing = ((new Thing) become from shape). "
 #define GROUND BALL "self floor. land catch-shadows. self move-light to (8, 20, 2). "
 #define PAIR                                                                                                        \
   LIT "thing = ((new Thing) become from ball at (-3, 0, 0)). other = ((new Thing) become from box at (3, 1, 0) in " \
       "(.2, .6, 1)). "
+#define PILE                                                                                                          \
+  LIT "self floor. for n = 0, n < 3, n++: { thing = ((new Thing) become from box at (n * 3.2 - 3.2, -.5, 0)). thing " \
+      "enable-physics. } thing = ((new Thing) become from ball at (-1.6, 2.6, 0) in (.2, .6, 1)). thing "             \
+      "enable-physics. "
 #define PEN CAMERA "pen = new Drawing. pen set-line-width to 3. "
 #define HILLS                                                                                                          \
   LIT "land = new Terrain. land generate with-height 9. land move to (0, -4, 0). self point-camera at (0, 0, 0) from " \
@@ -42,6 +51,25 @@ constexpr GoldenScene kScenes[] = {
          "other add-face with-vertex-list {(0, 3, 0), (0, -1, -3), (3, -1, 0)}. "
          "other add-face with-vertex-list {(3, -1, 0), (0, -1, 3), (-3, -1, 0), (0, -1, -3)}. "
          "other finish-shape with-density 1. (new Thing) become from other. "},
+    {"mesh", MESH("ring.obj", 6) "thing rotate around-axis (1, .4, 0) by .7. "},
+    {"mesh_surface_of_two_sides",
+     MESH("bowl.obj", 5) "thing move to (-3, 0, 0). thing rotate around-axis (1, 0, 0) by .5. "
+                         "other = ((new Thing) become from shape at (4, 0, 0) in (.2, .6, 1)). other rotate "
+                         "around-axis (1, 0, 0) by 3.6. "},
+    {"mesh_hull",
+     LIT "shape = (new MeshShape load-hull file \"ring.obj\" with-size 6). thing = ((new Thing) become from "
+         "shape). thing rotate around-axis (1, .4, 0) by .7. "},
+    {"mesh_texture",
+     MESH("ring.obj", 6) "thing rotate around-axis (1, .4, 0) by .7. thing set-color to (1, 1, 1). thing "
+                         "set-texture-image to (self picture of \"checker\"). thing set-texture-scale to 2. "},
+    {"mesh_shadow",
+     GROUND "shape = (new MeshShape load-from-obj file \"ring.obj\" with-size 5). thing set-shape to shape. "
+            "thing move to (0, 2, 0). self enable-shadows. "},
+    {"mesh_transparent",
+     MESH("ring.obj", 6) "thing set-transparency to .5. (new Thing) become from ball at (0, 0, -5) in "
+                         "(.2, .6, 1). "},
+    {"mesh_studio_light", MESH("ring.obj", 6) "self disable-lighting. thing rotate around-axis (1, .4, 0) by .7. ", 3,
+     true},
     {"scaled_box", CUBE "box scale by (2, .4, 1). "},
     {"terrain", HILLS},
     {"terrain_wireframe", HILLS "land draw-wireframe. "},
@@ -116,6 +144,12 @@ constexpr GoldenScene kScenes[] = {
     {"spring", PAIR
      "thing enable-physics. other enable-physics. tie = ((new Spring) connect from thing to other). tie set-pattern to "
      "\"----    ----    \". "},
+    {"arrows_contacts", PILE, 3, false, 40, BREVE_ARROWS_CONTACTS, "PhysicalControl"},
+    {"arrows_forces", PILE, 3, true, 40, BREVE_ARROWS_FORCES, "PhysicalControl"},
+    {"arrows_of_springs_and_velocities",
+     PAIR "thing enable-physics. other enable-physics. tie = ((new Spring) connect from thing to other with-length 3 "
+          "with-strength 200). thing set-velocity to (0, 4, 0). ",
+     3, false, 1, BREVE_ARROWS_FORCES | BREVE_ARROWS_VELOCITIES},
     {"drawn_lines", PEN "for n = 1, n < 6, n++: { pen set-color to (1, n / 6.0, .1) with-transparency (1 - n / 8.0). "
                         "pen set-line-width to n. pen "
                         "draw-line from (-6, n * 2 - 6, 0) to (6, n * 2 - 5, 0). } pen set-line-style to \"-  -  \". "

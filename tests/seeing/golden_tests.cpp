@@ -20,7 +20,8 @@ constexpr double kMean = 0.1, kMost = 4;  // CIE L*a*b*
 
 Pixels draw(const GoldenScene& scene) {
   Stage stage(scene.full ? BREVE_LOOK_FULL : BREVE_LOOK_PLAIN);
-  breve_world* world = stage.open(stage.compile(scene.setup, "", scene.dimension));
+  breve_world* world = stage.open(stage.compile(scene.setup, "", scene.dimension, scene.parent));
+  stage.show_arrows(scene.arrows);
   Pixels pixels = stage.draw(world);
   for (int step = 0; step < scene.steps; ++step) {
     stage.step(world, 1);

@@ -28,7 +28,7 @@ Controller Show.
 
 constexpr const char* kController = R"( : Show {
   + variables:
-    ball, box, thing, other, picture, eye, pen, land, cells, tie, body, graph, field, chemical (object).
+    ball, box, thing, other, picture, eye, pen, land, cells, shape, tie, body, graph, field, chemical (object).
     n (int).
   + to picture of name (string): return ((new Image) load from "images/$name.png").
   + to floor:
@@ -52,7 +52,9 @@ Stage::Stage(std::uint32_t look, int width, int height) : config_(breve_view_con
   config.print = [](void*, breve_world*, breve_channel channel, const char* text, std::size_t) {
     if (channel != BREVE_CHANNEL_PRINT) ADD_FAILURE() << text;
   };
+  EXPECT_EQ(breve_files_add_directory(BREVE_MESHES, false, 0, &config.files), BREVE_OK);
   EXPECT_EQ(breve_runtime_create(&config, &runtime_), BREVE_OK);
+  breve_files_release(&config.files);
 }
 
 Stage::~Stage() {
@@ -66,10 +68,10 @@ void Stage::fail(const breve_error* error, const char* what) const {
   ADD_FAILURE() << what << ": " << (error ? error->text : "no reason");
 }
 
-breve_program* Stage::compile(const std::string& setup, const std::string& later, int dimension) {
-  const std::string text = std::string(kPrologue) + (dimension == 2 ? "PlanarControl" : "Control") + kController +
-                           "  + to setup:\n    n = 0.\n    " + setup + "\n  + to later:\n    n = 0.\n    " + later +
-                           "\n}\n";
+breve_program* Stage::compile(const std::string& setup, const std::string& later, int dimension, const char* parent) {
+  const std::string controller = parent ? parent : dimension == 2 ? "PlanarControl" : "Control";
+  const std::string text = std::string(kPrologue) + controller + kController + "  + to setup:\n    n = 0.\n    " +
+                           setup + "\n  + to later:\n    n = 0.\n    " + later + "\n}\n";
   breve_program* program = nullptr;
   if (breve_program_compile(runtime_, "show.tz", text.data(), text.size(), &program) == BREVE_OK) {
     programs_.push_back(program);
@@ -98,6 +100,7 @@ Pixels Stage::draw(breve_world* world) {
   if (!world) return pixels;
   if (!view_ && breve_view_create(runtime_, &config_, &view_) != BREVE_OK)
     fail(breve_runtime_last_error(runtime_), "view");
+  if (view_ && breve_view_set_arrows(view_, arrows_, 1) != BREVE_OK) ADD_FAILURE() << "arrows";
   if (view_ && breve_view_render(view_, world, pixels.rgba.data(), 0) != BREVE_OK)
     fail(breve_world_last_error(world), "render");
   return pixels;

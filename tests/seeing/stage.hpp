@@ -27,8 +27,10 @@ class Stage {
 
   /// A controller with the method `setup`, which its init runs, and the method `later`. The statements may use the
   /// variables and the class Thing of `kPrologue` (stage.cpp).
-  breve_program* compile(const std::string& setup, const std::string& later = "", int dimension = 3);
+  breve_program* compile(const std::string& setup, const std::string& later = "", int dimension = 3,
+                         const char* parent = nullptr);
   breve_world* open(breve_program* program);
+  void show_arrows(std::uint32_t arrows) { arrows_ = arrows; }  // of breve_arrows
   Pixels draw(breve_world* world);
   void call(breve_world* world, const char* method);
   void step(breve_world* world, int iterations);
@@ -39,6 +41,7 @@ class Stage {
   breve_view_config config_;
   breve_runtime* runtime_ = nullptr;
   breve_view* view_ = nullptr;
+  std::uint32_t arrows_ = 0;
   std::vector<breve_program*> programs_;
   std::vector<breve_world*> worlds_;
 };

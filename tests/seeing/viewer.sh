@@ -110,6 +110,93 @@ for pair in first:selected selected:painted painted:moved moved:home home:panels
 done
 [[ -s breve-0001.mp4 || -d breve-0001.mp4.frames ]] || fail "no movie was recorded"
 
+# The mouse moves the camera, keys open panels, and the panels say what they are for.
+cat >drop.tz <<'END'
+@use PhysicalControl.
+@use Mobile.
+@use Shape.
+@use Stationary.
+Controller Drop.
+PhysicalControl : Drop {
+  + variables:
+    ball, floor (object).
+    count (int).
+  + to init:
+    self point-camera at (0, 0, 0) from (0, 4, 20).
+    floor = new Floor.
+    ball = new Ball.
+    ball move to (0, 3, 0).
+    ball enable-physics.
+    self add-menu named "Count" for-method "count-up".
+  + to count-up: count += 1. print "counted $count".
+}
+Mobile : Ball {
+  + variables:
+    mood (string).
+    wishes (list).
+  + to init:
+    mood = "calm". wishes = { 1, 2 }.
+    self set-shape to ((new Sphere) init-with radius 2).
+}
+END
+cat >play.txt <<'END'
+2 read
+3 drag 240 160 300 160 left
+5 read
+6 drag 240 160 240 190 right
+8 read
+9 wheel 4
+11 read
+12 wheel -4
+14 read
+15 key Home
+17 read
+18 key F5
+19 click 240 130
+21 read
+22 key F2
+22 key F1
+24 read
+25 key F1
+25 key F3
+# The sixth row of the menu is a line, and what the program added is below it.
+27 read
+28 key F11
+30 read
+31 shot arrows.png
+32 key F11
+34 shot forces.png
+35 resize 600 400
+40 shot resized.png
+41 key F7
+42 key F7
+44 say slow
+45 quit
+END
+show 0 drop.tz --seed 1 --play play.txt
+mapfile -t cameras < <(grep '^camera: ' output.txt)
+at() { sed 's/camera: \(.*\) from .*/\1/' <<<"${cameras[$1]}"; }
+away() { sed 's/.* from (\(.*\), \(.*\), \(.*\))/\1 \2 \3/' <<<"${cameras[$1]}" | awk '{ printf "%.2f", sqrt($1*$1 + $2*$2 + $3*$3) }'; }
+[[ $(at 0) == "$(at 1)" && ${cameras[0]} != "${cameras[1]}" && $(away 0) == "$(away 1)" ]] || fail "orbit: ${cameras[0]} to ${cameras[1]}"
+[[ $(at 1) != "$(at 2)" && $(away 1) == "$(away 2)" ]] || fail "pan: ${cameras[1]} to ${cameras[2]}"
+[[ $(at 2) == "$(at 3)" && $(awk "BEGIN { print $(away 3) < .7 * $(away 2) }") == 1 ]] || fail "zoom: ${cameras[2]} to ${cameras[3]}"
+[[ $(away 4) == "$(away 2)" ]] || fail "zoom back: ${cameras[4]}"
+[[ ${cameras[5]} == "${cameras[0]}" ]] || fail "Home: ${cameras[5]}"
+for text in 'Ball' 'at (0.000, ' 'mood = calm' 'wishes = { 1, 2 }' 'iteration' 'frames/s' 'x real time' 'F5  pause, go on' 'contact: ' \
+  'effects together: .* us an iteration' 'picture: .* draw calls' 'Count' 'arrows: contacts'; do
+  grep -q "^window: .*$text" output.txt || fail "the window does not show '$text'"
+done
+cmp -s arrows.png forces.png && fail "arrows of contacts and of forces are the same"
+[[ $(od -An -tx1 -j16 -N8 resized.png | tr -d ' \n') == 0000025800000190 ]] || fail "the window is not resized"
+has '^slow: .*speed 0.25'
+
+# What the guard did, and the error of a handler with its line, are in the window.
+sed 's/    ball enable-physics./&\n    ball set-shape to ((new Cube) init-with size (1, 2, 3)). ball set-rotational-velocity to (1, 4000, 2). self set-accuracy to "fast"./; s/  + to count-up:/  + to catch-key-x-down: die "no such key".\n&/' drop.tz >wild.tz
+printf '1 key F2\n20 read\n21 key x\n25 read\n26 quit\n' >play.txt
+show 0 wild.tz --seed 1 --play play.txt  # an error of a handler ends no run
+grep -q '^window: .*refined' output.txt || fail "the window does not show what the guard did"
+grep -q '^window: .*no such key' output.txt && grep -q '^window: .*wild.tz:[0-9]*' output.txt || fail "the window does not show the error and its line"
+
 # An error shows its line, and the window stays; with --watch the program goes on once it is mended.
 sed 's/mood = "calm"/mood = "calm". self schedule method-call "burst" at-time .3/; s/^  + to paint:/  + to burst: die "burst".\n&/' toy.tz >bad.tz
 printf '30 shot error.png\n30 say failed\n40 quit\n' >play.txt

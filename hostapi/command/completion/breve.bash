@@ -22,11 +22,11 @@ _breve() {
     run)
       options="--iterations --seconds --seed --set --budget --physics-budget --memory --depth --path --allow-read
         --allow-write --no-files --allow-network --network-address --allow-system --allow-plugins --record --accuracy --watch --coarse-random --strict --quiet --verbose --stats
-        --effects --hash --positions --profile --trace --trace-limit --snapshot --contact-sheet --movie --sound --size --fps --plain --live
+        --effects --hash --positions --profile --trace --trace-limit --snapshot --contact-sheet --movie --sound --size --fps --plain --arrows --live
         --plot --plot-to --log --help" ;;
     view)
       options="--seed --set --path --allow-read --allow-write --no-files --allow-network --network-address --allow-system --allow-plugins
-        --accuracy --watch --size --speed --paused --plain --strict --quiet --verbose --play --help" ;;
+        --accuracy --watch --size --speed --paused --plain --arrows --strict --quiet --verbose --play --help" ;;
     repl)
       options="--seed --path --allow-read --allow-write --no-files --allow-network --network-address --allow-system --allow-plugins --strict --quiet --help" ;;
     replay) options="--allow-plugins --hash --quiet --help" ;;

@@ -1010,6 +1010,37 @@ inline Result<std::vector<std::uint8_t>> png(std::uint32_t width, std::uint32_t 
   return {{s, nullptr}, std::move(bytes)};
 }
 
+/// A plot as the bytes of a file; see breve_plot_config_default().
+inline Result<std::vector<std::uint8_t>> plot_file(const breve_plot_config& config, breve_plot_format format) {
+  std::vector<std::uint8_t> bytes;
+  std::size_t size = 0;
+  breve_status s = breve_plot_file(&config, format, nullptr, 0, &size);
+  if (s == BREVE_OK) {
+    bytes.resize(size);
+    s = breve_plot_file(&config, format, bytes.data(), bytes.size(), &size);
+  }
+  return {{s, nullptr}, std::move(bytes)};
+}
+
+/// Packs pictures into a movie file; see breve/view.h. Created by Runtime::movie.
+class Movie {
+ public:
+  Movie() = default;
+  explicit Movie(breve_movie* handle) : handle_(handle) {}  // takes it over
+  breve_movie* get() const { return handle_.get(); }
+  /// @param rgba  rows from the top; see breve_movie_add
+  Status add(const std::uint8_t* rgba, std::size_t stride = 0) {
+    return {breve_movie_add(get(), rgba, stride), nullptr};
+  }
+  Status finish() { return {breve_movie_finish(get()), nullptr}; }
+
+ private:
+  struct Destroy {
+    void operator()(breve_movie* m) const { breve_movie_destroy(m); }
+  };
+  std::unique_ptr<breve_movie, Destroy> handle_;
+};
+
 /// Draws worlds; see breve/view.h. Created by Runtime::view.
 class View {
  public:
@@ -1025,6 +1056,16 @@ class View {
   Status set_camera(const breve_camera& camera) { return {breve_view_set_camera(get(), &camera), nullptr}; }
   /// Uses the program's camera again.
   Status reset_camera() { return {breve_view_set_camera(get(), nullptr), nullptr}; }
+  /// Shows arrows in the following pictures. @param arrows  sum of breve_arrows
+  Status set_arrows(std::uint32_t arrows, double scale = 1) {
+    return {breve_view_set_arrows(get(), arrows, scale), nullptr};
+  }
+  /// The sum of breve_arrows, and their scale.
+  Result<std::pair<std::uint32_t, double>> arrows() const {
+    std::pair<std::uint32_t, double> found{};
+    const breve_status s = breve_view_arrows(get(), &found.first, &found.second);
+    return {{s, nullptr}, found};
+  }
   Result<breve_camera> camera() const {
     breve_camera found{};
     const breve_status s = breve_view_camera(get(), &found);
@@ -1136,6 +1177,12 @@ class Runtime {
     breve_view* made = nullptr;
     const breve_status s = breve_view_create(get(), &config, &made);
     return {status(s), View(made)};
+  }
+  /// Begins a movie; see breve_movie_config_default(). Use it in the thread that uses the runtime.
+  Result<Movie> movie(const breve_movie_config& config) {
+    breve_movie* made = nullptr;
+    const breve_status s = breve_movie_create(get(), &config, &made);
+    return {status(s), Movie(made)};
   }
   /// Runs many worlds of a program; see breve_batch_default(). The outcome of each, by index.
   Result<std::vector<breve_outcome>> run(const Program& program, const breve_batch& batch) {

@@ -48,7 +48,9 @@ typedef enum breve_scene_kind {
   BREVE_SCENE_LABELS = 7,    /* breve_label */
   BREVE_SCENE_TEXTS = 8,     /* breve_overlay_text */
   BREVE_SCENE_CAMERAS = 9,   /* breve_camera, the main one first */
-  BREVE_SCENE_LIGHTS = 10    /* breve_light, the main one first */
+  BREVE_SCENE_LIGHTS = 10,   /* breve_light, the main one first */
+  BREVE_SCENE_PLOTS = 11,    /* breve_plot: Graph objects, drawn over the picture from the lower right corner up */
+  BREVE_SCENE_PLOT_LINES = 12 /* breve_plot_line, those of one plot after those of another */
 } breve_scene_kind;
 
 #define BREVE_NO_TEXTURE UINT32_MAX
@@ -125,6 +127,22 @@ typedef struct breve_overlay_text {
   float x, y; /* the start of its baseline in the picture, -1 to 1 */
   float color[3];
 } breve_overlay_text;
+
+/* Lines of numbers over the picture. */
+typedef struct breve_plot {
+  breve_object object;
+  const char *title, *x_axis, *y_axis;   /* "" for none */
+  uint32_t first_line, line_count;       /* rows of BREVE_SCENE_PLOT_LINES */
+} breve_plot;
+
+/* A line of a plot. */
+typedef struct breve_plot_line {
+  const char* name;     /* for the key; NULL or "" for none. Those of a Graph have none */
+  const double* values; /* value i is at x = i, unless the plot says otherwise. Where one is not finite, the line breaks */
+  size_t count;
+  float color[3];
+  uint32_t plot;        /* row of BREVE_SCENE_PLOTS; breve_plot_file ignores it */
+} breve_plot_line;
 
 /* A camera stands at target + offset. Without rotation it looks along -z; it is pitched about x, then rotated about y. */
 typedef struct breve_camera {
@@ -248,6 +266,15 @@ static inline breve_view_counters breve_view_counters_default(void) {
   return counters;
 }
 
+/* What arrows show in pictures, to be added. */
+typedef enum breve_arrows {
+  BREVE_ARROWS_NONE = 0,
+  BREVE_ARROWS_CONTACTS = 1,  /* blue: the normal at each contact of a body with physics, as long as the smaller radius */
+  BREVE_ARROWS_FORCES = 2,    /* what contacts (red) and springs (orange) exerted in the last sub-step, and what scripts set
+                                 (violet). A force of 10 m/s^2 times the mass is as long as the body is wide */
+  BREVE_ARROWS_VELOCITIES = 4 /* green: from the centre of each body to where it would be after one second */
+} breve_arrows;
+
 /* Creates a view. The first one loads the graphics library.
    @param config  copied; NULL: the defaults
    @param view    destroy it with breve_view_destroy
@@ -275,6 +302,16 @@ BREVE_API breve_status breve_view_depth(const breve_view* view, float* depth, si
    BREVE_OK; BREVE_ERROR_ARGUMENT: a number is not finite. */
 BREVE_API breve_status breve_view_set_camera(breve_view* view, const breve_camera* camera);
 
+/* Chooses the arrows in the following pictures, which are drawn over everything else. At first there are none.
+   @param arrows  sum of breve_arrows
+   @param scale   factor for all lengths; usually 1
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a bit that is not a breve_arrows, or a scale that is not finite and above 0. */
+BREVE_API breve_status breve_view_set_arrows(breve_view* view, uint32_t arrows, double scale);
+
+/* Reads what breve_view_set_arrows has set.
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a NULL pointer. */
+BREVE_API breve_status breve_view_arrows(const breve_view* view, uint32_t* arrows, double* scale);
+
 /* The camera of the last picture, with its actual position.
    BREVE_OK; BREVE_ERROR_NOT_FOUND: nothing has been drawn yet. */
 BREVE_API breve_status breve_view_camera(const breve_view* view, breve_camera* camera);
@@ -288,6 +325,95 @@ BREVE_API breve_status breve_view_counts(const breve_view* view, breve_view_coun
    BREVE_OK; BREVE_ERROR_ARGUMENT: a side is not from 1 to 32768, or `stride` is too small. */
 BREVE_API breve_status breve_png(uint32_t width, uint32_t height, const uint8_t* rgba, size_t stride, uint8_t* bytes,
                                  size_t capacity, size_t* size);
+
+/* ---- plots ------------------------------------------------------------------------------------------------------- */
+
+typedef enum breve_plot_format {
+  BREVE_PLOT_FORMAT_SVG = 0, /* a picture of 900 x 520 units */
+  BREVE_PLOT_FORMAT_PNG = 1, /* the same as pixels */
+  BREVE_PLOT_FORMAT_CSV = 2  /* a table with a column for x and one for each line */
+} breve_plot_format;
+
+typedef struct breve_plot_config {
+  size_t struct_size;     /* set by breve_plot_config_default */
+  const char* title;      /* NULL for none; drawn if no line has a name. Default NULL */
+  const char* x_axis;     /* name of the axis with its unit. Default NULL */
+  const char* y_axis;     /* Default NULL */
+  const double* xs;       /* of the values of all lines. NULL: 0, 1, 2 ... Default NULL */
+  size_t x_count;         /* values beyond it are left out. Default 0 */
+  const breve_plot_line* lines;
+  size_t line_count;      /* Default 0 */
+} breve_plot_config;
+
+/* The defaults named above. */
+static inline breve_plot_config breve_plot_config_default(void) {
+  breve_plot_config config;
+  breve_clear(&config, sizeof config);
+  config.struct_size = sizeof config;
+  return config;
+}
+
+/* Writes a plot as a file.
+   @param format  breve_plot_format
+   @param bytes   room for `capacity` bytes; NULL only if capacity is 0
+   @param size    the size of the file. If it exceeds capacity, nothing is written to bytes
+   BREVE_OK; BREVE_ERROR_ARGUMENT: not a breve_plot_format, or an array that is NULL though it has a count;
+   BREVE_ERROR_MEMORY. */
+BREVE_API breve_status breve_plot_file(const breve_plot_config* config, uint32_t format, uint8_t* bytes, size_t capacity,
+                                       size_t* size);
+
+/* ---- movies ------------------------------------------------------------------------------------------------------ */
+
+/* Packs pictures into a movie file: animated GIF, and what ffmpeg's libraries write, which are loaded for the first such
+   movie. A movie is used by one thread at a time, which also uses its runtime. */
+typedef struct breve_movie breve_movie;
+
+typedef struct breve_movie_config {
+  size_t struct_size;     /* set by breve_movie_config_default */
+  uint32_t width, height; /* pixels, 1 to 16384; codecs round them down to even numbers. Default 640 x 480 */
+  double fps;         /* pictures in a second, 0.01 to 1000; a format that has a few rates only (.mpeg) repeats pictures or leaves
+                         out some. Default 25 */
+  const char* path;   /* the file that is written; it is removed if the movie is not finished. NULL: `write` receives it.
+                         Default NULL */
+  const char* format; /* "mp4", "mkv", "webm", "avi", "mpeg", "gif" ...; NULL: the ending of `path`. Default NULL */
+  void* user;         /* passed to `write`. Default NULL */
+  /* Receives the whole file, once, from breve_movie_finish, and returns false if it cannot keep it. It must not call the
+     library. Ignored if there is a path. Default NULL */
+  bool (*write)(void* user, const void* bytes, size_t size);
+} breve_movie_config;
+
+/* The defaults named above. */
+static inline breve_movie_config breve_movie_config_default(void) {
+  breve_movie_config config;
+  breve_clear(&config, sizeof config);
+  config.struct_size = sizeof config;
+  config.width = 640;
+  config.height = 480;
+  config.fps = 25;
+  return config;
+}
+
+/* Begins a movie.
+   @param config  copied
+   @param movie   destroy it with breve_movie_destroy
+   BREVE_OK; BREVE_ERROR_ARGUMENT: a size, a rate or a format that does not exist, or neither a path nor `write`;
+   BREVE_ERROR_FILE: the file cannot be written; BREVE_ERROR_UNSUPPORTED: ffmpeg's libraries or the codec are not installed,
+   or the library was built without BREVE_WITH_MOVIES (GIF works); BREVE_ERROR_MEMORY. The text is in
+   breve_runtime_last_error, also that of the following functions. */
+BREVE_API breve_status breve_movie_create(breve_runtime* runtime, const breve_movie_config* config, breve_movie** movie);
+
+/* Does nothing for NULL. */
+BREVE_API void breve_movie_destroy(breve_movie* movie);
+
+/* Adds a picture. Parameters are those of breve_view_render.
+   BREVE_OK; BREVE_ERROR_ARGUMENT: `stride` is too small; BREVE_ERROR_FILE: it cannot be written, for example because the
+   disk is full, and the movie has ended; BREVE_ERROR_NOT_FOUND: the movie has ended; BREVE_ERROR_MEMORY. */
+BREVE_API breve_status breve_movie_add(breve_movie* movie, const uint8_t* rgba, size_t stride);
+
+/* Writes what is left, and closes the file. Then the movie can only be destroyed.
+   BREVE_OK; BREVE_ERROR_FILE: it cannot be written, or nothing was added; BREVE_ERROR_NOT_FOUND: the movie has ended;
+   BREVE_ERROR_MEMORY. */
+BREVE_API breve_status breve_movie_finish(breve_movie* movie);
 
 #ifdef __cplusplus
 }

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace breve::command {
+namespace breve::movie {
 
 class GifEncoder {
  public:
@@ -22,4 +22,4 @@ class GifEncoder {
   std::vector<std::uint8_t> last_;  // the frame before
 };
 
-}  // namespace breve::command
+}  // namespace breve::movie

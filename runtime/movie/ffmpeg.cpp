@@ -1,26 +1,27 @@
 // ffmpeg's libraries, found at run time. They stay loaded until the process ends: encoders have threads of their own.
-#include "ffmpeg.hpp"
+#include "runtime/movie/ffmpeg.hpp"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <stdexcept>
 #include <string>
 
-namespace breve::command {
+#include "runtime/base/error.hpp"
+
+namespace breve::movie {
 
 namespace {
 
 void* open_library(const char* name, int version) {
   const std::string file = fmt::format("lib{}.so.{}", name, version);
   void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!library) throw std::runtime_error(fmt::format("{} is not installed", file));
+  if (!library) throw Error(ErrorCode::Unsupported, fmt::format("{} is not installed", file));
   return library;
 }
 
 void* symbol(void* library, const char* name) {
   void* found = dlsym(library, name);
-  if (!found) throw std::runtime_error(fmt::format("ffmpeg's libraries have no function {}", name));
+  if (!found) throw Error(ErrorCode::Unsupported, fmt::format("ffmpeg's libraries have no function {}", name));
   return found;
 }
 
@@ -36,4 +37,4 @@ Ffmpeg::Ffmpeg() {
 #undef BREVE_FFMPEG_LOAD
 }
 
-}  // namespace breve::command
+}  // namespace breve::movie

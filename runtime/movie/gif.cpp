@@ -1,10 +1,10 @@
 // Colours by median cut (Heckbert 1982, Color image quantization), codes by LZW (Welch 1984).
-#include "gif.hpp"
+#include "runtime/movie/gif.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace breve::command {
+namespace breve::movie {
 
 namespace {
 
@@ -217,4 +217,4 @@ void GifEncoder::add(std::span<const std::uint8_t> rgba, Bytes& out) {
   compress(indices, out);
 }
 
-}  // namespace breve::command
+}  // namespace breve::movie

@@ -1,5 +1,5 @@
 // The functions of ffmpeg's libraries that movies need. They are loaded when the first movie is made: linked, they and
-// the forty libraries below them would be loaded each time that the command starts.
+// the forty libraries below them would be loaded into each process that links breve.
 #pragma once
 
 extern "C" {
@@ -9,7 +9,7 @@ extern "C" {
 #include <libswscale/swscale.h>
 }
 
-namespace breve::command {
+namespace breve::movie {
 
 // X(library, function)
 #define BREVE_FFMPEG_FUNCTIONS(X)             \
@@ -18,6 +18,8 @@ namespace breve::command {
   X(avutil, av_frame_free)                    \
   X(avutil, av_frame_get_buffer)              \
   X(avutil, av_frame_make_writable)           \
+  X(avutil, av_free)                          \
+  X(avutil, av_malloc)                        \
   X(avutil, av_log_set_level)                 \
   X(avutil, av_opt_set)                       \
   X(avutil, av_strerror)                      \
@@ -39,8 +41,9 @@ namespace breve::command {
   X(avformat, avformat_free_context)          \
   X(avformat, avformat_new_stream)            \
   X(avformat, avformat_write_header)          \
-  X(avformat, avio_closep)                    \
-  X(avformat, avio_open)                      \
+  X(avformat, avio_alloc_context)             \
+  X(avformat, avio_context_free)              \
+  X(avformat, avio_flush)                     \
   X(swscale, sws_freeContext)                 \
   X(swscale, sws_getCoefficients)             \
   X(swscale, sws_getContext)                  \
@@ -49,11 +52,11 @@ namespace breve::command {
 
 struct Ffmpeg {
   /// Loads the libraries of the versions whose headers this file was compiled with.
-  /// @throws std::runtime_error naming the library or function that is missing
+  /// @throws Error{Unsupported} naming the library or function that is missing
   Ffmpeg();
 #define BREVE_FFMPEG_MEMBER(library, function) decltype(&::function) function = nullptr;
   BREVE_FFMPEG_FUNCTIONS(BREVE_FFMPEG_MEMBER)
 #undef BREVE_FFMPEG_MEMBER
 };
 
-}  // namespace breve::command
+}  // namespace breve::movie

@@ -1,0 +1,32 @@
+// Plots: lines of numbers with axes, as data, as a table, and as a picture in SVG.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runtime/base/ids.hpp"
+#include "runtime/base/math.hpp"
+
+namespace breve {
+
+struct ScenePlot {
+  struct Line {
+    Eigen::Vector3f color = Eigen::Vector3f::Zero();
+    std::string name;            // "" for none
+    std::vector<double> values;  // where one is not finite, the line breaks
+  };
+  ObjectId object;
+  std::string title, x_axis, y_axis;
+  std::vector<double> xs;  // of all lines; empty: 0, 1, 2 ...
+  std::vector<Line> lines;
+};
+
+/// A table with a column for x and one for each line.
+std::string plot_csv(const ScenePlot& plot);
+/// A picture in SVG, legible at half its size.
+std::string plot_svg(const ScenePlot& plot);
+
+/// Marks of an axis: a step of 1, 2 or 5 times a power of ten, so that there are about `count`.
+std::vector<double> axis_marks(double low, double high, int count);
+
+}  // namespace breve

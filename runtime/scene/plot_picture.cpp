@@ -1,0 +1,114 @@
+// Lines by their distance from each pixel, letters from the font's image.
+#include "runtime/scene/plot_picture.hpp"
+
+#include "runtime/scene/letters.hpp"
+#include "runtime/scene/plot_layout.hpp"
+
+namespace breve {
+
+using namespace plot_layout;
+
+namespace {
+
+struct Rgb {
+  double red, green, blue;  // 0 to 255
+};
+constexpr Rgb kFaint{227, 230, 234}, kLine{154, 163, 173}, kSmall{91, 101, 112}, kText{43, 49, 56};
+
+Rgb rgb_of(const Eigen::Vector3f& color) {
+  const auto part = [&](int i) { return 255.0 * std::clamp(color[i], 0.0F, 1.0F); };
+  return {part(0), part(1), part(2)};
+}
+
+class Paper {
+ public:
+  Paper() {
+    picture_.width = static_cast<int>(kWidth);
+    picture_.height = static_cast<int>(kHeight);
+    picture_.rgba.assign(std::size_t{4} * static_cast<std::size_t>(kWidth) * static_cast<std::size_t>(kHeight), 255);
+  }
+  Picture& picture() { return picture_; }
+
+  /// Pixels are mixed with the ink as far as the line covers them.
+  void line(double x0, double y0, double x1, double y1, double width, const Rgb& ink) {
+    const double half = width / 2, long2 = std::max(1e-9, (x1 - x0) * (x1 - x0) + (y1 - y0) * (y1 - y0));
+    for (int y = first(std::min(y0, y1) - half); y <= std::max(y0, y1) + half + 1; ++y)
+      for (int x = first(std::min(x0, x1) - half); x <= std::max(x0, x1) + half + 1; ++x) {
+        const double u = x + 0.5 - x0, v = y + 0.5 - y0;
+        const double t = std::clamp((u * (x1 - x0) + v * (y1 - y0)) / long2, 0.0, 1.0);
+        mix(x, y, half + 0.5 - std::hypot(u - t * (x1 - x0), v - t * (y1 - y0)), ink);
+      }
+  }
+  /// @param align  0: from x on, 0.5: about x, 1: up to x
+  void text(double x, double y, double align, const Letters& letters, std::string_view words, const Rgb& ink) {
+    double at = x - align * letters.width_of(words);
+    while (!words.empty()) {
+      const Letters::Glyph& one = letters.glyph(next_character(words));
+      for (int j = 0; j < one.height; ++j)
+        for (int i = 0; i < one.width; ++i) {
+          const auto from = static_cast<std::size_t>((one.y + j) * Letters::kWidth + one.x + i);
+          mix(static_cast<int>(std::lround(at + one.left)) + i, static_cast<int>(std::lround(y + one.top)) + j,
+              letters.cover()[from] / 255.0, ink);
+        }
+      at += one.advance;
+    }
+  }
+  const Letters small{17}, large{19};
+
+ private:
+  static int first(double place) { return static_cast<int>(std::floor(place)) - 1; }
+  void mix(int x, int y, double cover, const Rgb& ink) {
+    if (x < 0 || y < 0 || x >= picture_.width || y >= picture_.height || !(cover > 0)) return;
+    std::uint8_t* pixel =
+        picture_.rgba.data() +
+        4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture_.width) + static_cast<std::size_t>(x));
+    const double part = std::min(cover, 1.0), inks[] = {ink.red, ink.green, ink.blue};
+    for (int k = 0; k < 3; ++k)
+      pixel[k] = static_cast<std::uint8_t>(std::lround(pixel[k] + part * (inks[k] - pixel[k])));
+  }
+
+  Picture picture_;
+};
+
+void draw_axes(Paper& paper, const ScenePlot& plot, const Axis& x, const Axis& y) {
+  for (const auto& [mark, text] : y.marks) {
+    const double at = y_at(y.range, mark);
+    paper.line(kLeft, at, kWidth - kRight, at, 1, kFaint);
+    paper.text(kLeft - 10, at + 6, 1, paper.small, text, kSmall);
+  }
+  for (const auto& [mark, text] : x.marks) {
+    const double at = x_at(x.range, mark);
+    paper.line(at, kHeight - kBottom, at, kHeight - kBottom + 6, 1, kLine);
+    paper.text(at, kHeight - kBottom + 26, 0.5, paper.small, text, kSmall);
+  }
+  paper.line(kLeft, kHeight - kBottom, kWidth - kRight, kHeight - kBottom, 1, kLine);
+  paper.text((kLeft + kWidth - kRight) / 2, kXAxis, 0.5, paper.large, plot.x_axis, kText);
+  paper.text(14, kYAxis, 0, paper.small, plot.y_axis, kSmall);
+}
+
+void draw_line(Paper& paper, const ScenePlot& plot, const ScenePlot::Line& line, const Axis& x, const Axis& y) {
+  const std::size_t points = points_of(plot, line), step = points / kMostPoints + 1;
+  for (std::size_t i = step; i < points; i += step)
+    if (is_point(plot, line, i - step) && is_point(plot, line, i))
+      paper.line(x_at(x.range, x_of(plot, i - step)), y_at(y.range, line.values[i - step]),
+                 x_at(x.range, x_of(plot, i)), y_at(y.range, line.values[i]), 2.6, rgb_of(line.color));
+}
+
+}  // namespace
+
+Picture plot_picture(const ScenePlot& plot) {
+  Paper paper;
+  const Axis x = x_axis_of(plot), y = y_axis_of(plot);
+  draw_axes(paper, plot, x, y);
+  for (const ScenePlot::Line& line : plot.lines) draw_line(paper, plot, line, x, y);
+  const std::vector<KeyEntry> key = key_of(plot);
+  for (const KeyEntry& entry : key) {
+    const ScenePlot::Line& line = plot.lines[entry.line];
+    paper.line(entry.x + 2, 28.5, entry.x + 24, 28.5, 5, rgb_of(line.color));
+    paper.text(entry.x + 34, kKey, 0, paper.large, line.name, kText);
+  }
+  if (key.empty()) paper.text((kLeft + kWidth - kRight) / 2, kKey, 0.5, paper.large, plot.title, kText);
+  return std::move(paper.picture());
+}
+
+}  // namespace breve
