@@ -262,7 +262,7 @@ breve_status breve_world_destroy(breve_world* world) {
   });
   if (status != BREVE_OK) return status;
   const auto memory_outlives_it = world->runtime;
-  ++world->running;  // for the callbacks that destroy what the host keeps with it
+  ++world->running;        // for the callbacks that destroy what the host keeps with it
   world->machine.reset();  // closes files that scripts have open, while the rest is still there
   delete world;
   return status;

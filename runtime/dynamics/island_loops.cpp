@@ -155,7 +155,7 @@ void Loops::close_velocities() {
   settings.direct = true;
   settings.iterations = state_.accuracy.iterations;
   settings.meter = &state_.meter;
-  // What is left of them is divided by the distance from a pose in which a loop may fold either way: `reference`, which
+  // Their remainder is divided by the distance from a pose in which a loop may fold either way: `reference`, which
   // steps up to it, leaves round-off only.
   constexpr double kExact = 1e-14;
   if (state_.accuracy.rung == Rung::Reference) settings.tolerance = kExact;

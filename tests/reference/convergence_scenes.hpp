@@ -6,11 +6,11 @@
 
 namespace breve::reference {
 
-/// What is read of a world at the end: lengths in m or angles in rad, of the order of 1.
+/// Reads the end of a run from a world: lengths in m or angles in rad, of the order of 1.
 using Read = std::function<std::vector<double>(const World&)>;
 
-/// What moves, as far as the order of the rungs depends on it. KEEP IN STEP: docs/accuracy.md, "How fast the rungs
-/// converge".
+/// The kind of a scene's motion, as far as the order of the rungs depends on it. KEEP IN STEP: docs/accuracy.md, "How
+/// fast the rungs converge".
 enum class Motion {
   Joints,    // trees and closed loops, and nothing else
   Rotation,  // of a free body

@@ -13,8 +13,7 @@ namespace breve::reference {
 namespace {
 
 constexpr std::size_t kHalvings = 4;
-// Of an order that is fitted to four steps: what changes in a sub-step, such as sliding that ends, does so at another
-// part of it at each step.
+// An order that is fitted to four steps errs: sliding that ends within a sub-step does so at another part of each step.
 constexpr double kTolerance = 0.3;
 // m or rad. A motor gives way by a millionth of what it moves; where there are contacts, places are looked at to a
 // millionth of the radius; positions in a flat world are numbers of single precision.
