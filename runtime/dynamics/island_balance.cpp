@@ -70,6 +70,7 @@ double Balance::close(double& turnover) {
   const double after = measure(kinetic, false);
   const double in = works(state_.result.ledger, start_.ledger), out = losses(state_.result.ledger, start_.ledger);
   const double residual = unexplained(after);
+  risen_ = residual - out;
   state_.result.ledger.residual += residual;
   turnover = kinetic + std::abs(in) + std::abs(out);
   for (const Clustered& one : state_.clusters) {

@@ -21,6 +21,8 @@ class Balance {
   /// @param turnover  set to the energy, J, of which the residual is to be a small part
   /// @return          the residual, J
   double close(double& turnover);
+  /// After close(): by how much the energy rose beyond works, whatever losses the ledger has besides, J.
+  double risen() const { return risen_; }
   const Energy& start_ledger() const { return start_.ledger; }
 
  private:
@@ -37,6 +39,7 @@ class Balance {
   std::pmr::vector<NearPair> pair_start_;
   double stored_start_ = 0;  // J
   double handled_ = 0;       // J
+  double risen_ = 0;         // J
 };
 
 /// What left by contacts, friction, drag and limits between two states of a ledger, J.

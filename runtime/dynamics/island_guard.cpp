@@ -71,17 +71,17 @@ void Guard::step(MechanicsClient* client, double start, double h) {
   if (unpaid) trouble = {true, GuardReason::Residual, gained, state_.any_body()};
   if (refines && !handlers_.dissolved()) {
     books_.take_back_rest();
-    if (!trouble.found && asked.rung == Rung::Fast) undo_gain();
+    if (!trouble.found && asked.rung == Rung::Fast) undo_rise();
   }
   if (attempt > 0 || state_.finished || followed.step != asked.step) state_.use_accuracy(asked);
   if (trouble.found) give_in(trouble, unpaid && !state_.calls_out() && !state_.worn(), start, h);
 }
 
-/// The error of order 1 that contacts have on `fast` may have the same sign in each step of a body that rotates on its
-/// edge: gains too small to try the step again are taken back.
-void Guard::undo_gain() {
-  const double all = momentum_.moving();
-  if (residual_ > kStill * weight(state_) && residual_ <= kFew * all) momentum_.undo_gain(residual_ / all, true);
+/// The error of order 1 that contacts have on `fast` may have the same sign in each step, as of a body that rotates on
+/// its edge: rises too small to try the step again are taken back.
+void Guard::undo_rise() {
+  const double all = momentum_.moving(), risen = balance_.risen();
+  if (risen > kStill * weight(state_) && risen <= kFew * all) momentum_.undo_gain(risen / all, true);
 }
 
 /// A step of articulated bodies whose energy does not add up is taken again in 2, 4, 8, ... parts: what rotates far in
@@ -120,7 +120,7 @@ Trouble Guard::take(MechanicsClient* client, double start, double h) {
   overlaps_.begin_try();
   momentum_.begin_try();
   books_.begin_try();
-  residual_ = unexplained_ = allowed_ = 0;
+  unexplained_ = allowed_ = 0;
   const double before = balance_.open();
   try {
     step_.once(client, start, h);
@@ -131,12 +131,12 @@ Trouble Guard::take(MechanicsClient* client, double start, double h) {
   if (handlers_.dissolved()) return {};
   if (const BodyIndex body = watch_.not_finite(); body != kNoBody) return {!off, GuardReason::NotFinite, 0, body};
   double turnover = 0;
-  residual_ = balance_.close(turnover);
-  unexplained_ = std::abs(residual_) + books_.gained();
+  const double residual = balance_.close(turnover);
+  unexplained_ = std::abs(residual) + books_.gained();
   allowed_ = watch_.tolerated(turnover, h) + kTiny * std::abs(before) + kStill * weight(state_);
   if (off) return {};
   if (const Trouble deeper = overlaps_.measure(); deeper.found) return deeper;
-  return watch_.judge(residual_, turnover, before);
+  return watch_.judge(residual, turnover, before);
 }
 
 /// Refining did not help: reports the trouble, and puts the island to rest if the settings say so.

@@ -27,7 +27,7 @@ class Guard {
  private:
   Trouble take(MechanicsClient* client, double start, double h);
   Trouble take_in_parts(MechanicsClient* client, double start, double h);
-  void undo_gain();
+  void undo_rise();
   void give_in(const Trouble& trouble, bool unpaid, double start, double h);
 
   State& state_;
@@ -38,7 +38,7 @@ class Guard {
   Handlers& handlers_;
   Step& step_;
   Watch watch_;
-  double residual_ = 0, unexplained_ = 0, allowed_ = 0;  // J, of the last try of a step
+  double unexplained_ = 0, allowed_ = 0;  // J, of the last try of a step
 };
 
 }  // namespace breve::island

@@ -29,9 +29,8 @@ class Movie {
   virtual void finish() = 0;
 };
 
-/// @throws Error{Argument} for a size, a rate or a format that there is not; Error{Unsupported} if ffmpeg's libraries
-/// or
-///         the codec are missing here
+/// @throws Error{Argument} for a size, a rate or a format that does not exist; Error{Unsupported} if the libraries of
+/// ffmpeg, or the codec, are missing here
 std::unique_ptr<Movie> open(const Settings& settings, Output& output);
 
 /// Whether a movie of this format can be made at all, wherever it goes. @param why  says why not
