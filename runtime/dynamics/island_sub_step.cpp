@@ -60,7 +60,7 @@ bool SubStep::catch_bounds(double time, double h) {
 /// @return  false if they did not hold what they were to hold
 bool SubStep::move(double time, double h) {
   // Ordinary motion takes some ten.
-  constexpr int kMostEvaluations = 400, kMostOfReference = 1500;
+  constexpr int kMostEvaluations = 400, kMostOfReference = 6000;
   const bool held = std::any_of(state_.clusters.begin(), state_.clusters.end(),
                                 [](const Clustered& one) { return one.stage->holds_loops; });
   const bool bounded = held && state_.has_loops();
