@@ -201,7 +201,8 @@ class FontOfAView : public testing::Test {
   }
   std::string why() const { return breve_runtime_last_error(runtime_)->message; }
 
-  const std::string path_ = testing::TempDir() + "font.ttf";
+  const std::string path_ =
+      testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() + ".ttf";  // of each its own
   breve_runtime* runtime_ = nullptr;
   breve_program* program_ = nullptr;
   breve_world* world_ = nullptr;
