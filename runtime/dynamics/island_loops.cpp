@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/dynamics/island_energy.hpp"
+
 namespace breve::island {
 
 bool Loops::in_stages() const {
@@ -112,7 +114,8 @@ void Loops::close() {
 
 /// One step of Newton's method towards closed loops, for rows that were made where the trees stand. Rows of loops that
 /// stand open may contradict one another: they yield a little, so that there is a step at all, and it is shortened
-/// until the sum of the squares of their errors falls.
+/// until the sum of the squares of their errors falls. A body that spins is not drawn together: that would give it
+/// energy.
 ///
 /// Source: Nocedal and Wright 2006, 10.3 (Levenberg-Marquardt).
 /// @return  false if nothing was gained: the trees stand where they stood
@@ -125,7 +128,8 @@ bool Loops::approach(bool open) {
   exact.iterations = state_.accuracy.iterations;
   exact.tolerance = 1e-14;  // a length here: loops are closed to round-off
   exact.meter = &state_.meter;
-  const double before = errors_squared();
+  const double before = errors_squared(), moved = open ? kinetic() : 0;
+  if (open) positions_.book_moves(-1);
   for (std::size_t k = 0; k < rows_.loops(); ++k) {
     contact::ScalarRow& row = rows_.loop(k);
     row.bias = -rows_.loop_error(k);
@@ -138,12 +142,18 @@ bool Loops::approach(bool open) {
   double length = 1;
   for (;;) {
     state_.place_links();
-    if (errors_squared() < before) return true;
-    if (length < kShortest) break;
+    const bool nearer = errors_squared() < before;
+    if (nearer && kinetic() - moved <= positions_.payable_by_motion()) break;
+    if (length < kShortest) {
+      positions_.move_back(length);
+      length = 0;
+      break;
+    }
     positions_.move_back((1 - kShorter) * length);
     length *= kShorter;
   }
-  positions_.move_back(length);
+  positions_.book_moves(1);
+  if (length > 0) return true;
   state_.place();
   rows_.make(Rows::Motors::Leave);
   return false;
@@ -178,6 +188,16 @@ double Loops::read_errors() {
       }
     }
   return worst;
+}
+
+double Loops::kinetic() {
+  double sum = 0;
+  for (const Clustered& one : state_.clusters) {
+    double moving = 0;
+    stored_energy(state_, one, moving);
+    sum += moving;
+  }
+  return sum;
 }
 
 /// The sum of the squares of what read_errors() finds.

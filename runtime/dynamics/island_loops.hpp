@@ -33,6 +33,7 @@ class Loops {
  private:
   double read_errors();
   double errors_squared();
+  double kinetic();  // J
   bool approach(bool open);
   void close_velocities();
 

@@ -92,8 +92,10 @@ double Positions::payable(double h) const {
   if (state_.trees.empty()) return JointDrive::kNoLimit;
   const bool falls = !momentum_.touched_from_outside() && std::all_of(state_.clusters.begin(), state_.clusters.end(),
                                                                       [](const Clustered& one) { return one.loose; });
-  return kFew * momentum_.moving() + (falls ? 0 : kLift * h * weight(state_));
+  return payable_by_motion() + (falls ? 0 : kLift * h * weight(state_));
 }
+
+double Positions::payable_by_motion() const { return kFew * momentum_.moving(); }
 
 /// Takes back of what move_by_pushes() has just moved what gives more than is payable: energy is not linear in the
 /// distance, so that this takes some tries, and the last one takes back all.
