@@ -20,11 +20,10 @@ class Books {
   void note_smooth();
   void close();
   void take_back_rest();
-  // For a sub-step whose loops are left to the rows, where it begins and when all is put right. Motion that loops do
-  // not bend, and gaps that are closed by hand, err by the square of its length: what that gained is taken from what
-  // moves.
-  void note_start();
-  void take_gain();
+  // For a sub-step whose loops are left to the rows. Motion that loops do not bend, and gaps that are closed by hand,
+  // err by the square of the sub-step's length: the energy gained by that is taken from what moves.
+  void note_start();                         // where the sub-step begins
+  void take_gain();                          // after positions were put right
   double gained() const { return gained_; }  // J, that contacts and limits gave in this try of the step
 
   // Energies of the sub-step, J.

@@ -22,8 +22,8 @@ class Loops {
   bool stand_open() const;
   /// They stand open, or stages took too long for them lately.
   bool left_to_rows() const;
-  /// Some stages take too long for them, as near a position in which loops can hardly move: they are left to the rows
-  /// for some sub-steps.
+  /// The stages take too long to hold them, as near a position in which loops can hardly move: they are left to the
+  /// rows for some sub-steps.
   void leave_to_rows();
   /// Such a sub-step is over.
   void note_left();

@@ -201,8 +201,8 @@ class FontOfAView : public testing::Test {
   }
   std::string why() const { return breve_runtime_last_error(runtime_)->message; }
 
-  const std::string path_ =
-      testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() + ".ttf";  // of each its own
+  // Each test has its own file: tests run at the same time.
+  const std::string path_ = testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() + ".ttf";
   breve_runtime* runtime_ = nullptr;
   breve_program* program_ = nullptr;
   breve_world* world_ = nullptr;
