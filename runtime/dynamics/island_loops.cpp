@@ -114,8 +114,9 @@ void Loops::close() {
 
 /// One step of Newton's method towards closed loops, for rows that were made where the trees stand. Rows of loops that
 /// stand open may contradict one another: they yield a little, so that there is a step at all, and it is shortened
-/// until the sum of the squares of their errors falls. A body that spins is not drawn together: that would give it
-/// energy.
+/// until the sum of the squares of their errors falls. A body that spins is drawn together no more than motion pays
+/// for, and what that gives is booked against what the contacts that part it took. The rest, as what lifts it, is
+/// energy from nowhere, which the guard tells.
 ///
 /// Source: Nocedal and Wright 2006, 10.3 (Levenberg-Marquardt).
 /// @return  false if nothing was gained: the trees stand where they stood
@@ -129,7 +130,6 @@ bool Loops::approach(bool open) {
   exact.tolerance = 1e-14;  // a length here: loops are closed to round-off
   exact.meter = &state_.meter;
   const double before = errors_squared(), moved = open ? kinetic() : 0;
-  if (open) positions_.book_moves(-1);
   for (std::size_t k = 0; k < rows_.loops(); ++k) {
     contact::ScalarRow& row = rows_.loop(k);
     row.bias = -rows_.loop_error(k);
@@ -143,17 +143,17 @@ bool Loops::approach(bool open) {
   for (;;) {
     state_.place_links();
     const bool nearer = errors_squared() < before;
-    if (nearer && kinetic() - moved <= positions_.payable_by_motion()) break;
-    if (length < kShortest) {
-      positions_.move_back(length);
-      length = 0;
-      break;
+    const double given = kinetic() - moved;
+    if (nearer && given <= positions_.payable_by_motion()) {
+      double& taken = state_.result.ledger.contact_loss;
+      taken -= std::clamp(given, 0.0, std::max(taken, 0.0));
+      return true;
     }
+    if (length < kShortest) break;
     positions_.move_back((1 - kShorter) * length);
     length *= kShorter;
   }
-  positions_.book_moves(1);
-  if (length > 0) return true;
+  positions_.move_back(length);
   state_.place();
   rows_.make(Rows::Motors::Leave);
   return false;

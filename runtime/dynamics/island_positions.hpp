@@ -20,8 +20,6 @@ class Positions {
   void end_moves(double h);
   /// Takes h seconds of the last motion back from the trees.
   void move_back(double h);
-  /// With -1 before a motion and 1 after it: its energy is booked as taken by contacts.
-  void book_moves(double sign);
   /// The energy, J, that a motion may give because motion pays for it.
   double payable_by_motion() const;
 
@@ -31,6 +29,7 @@ class Positions {
   void shorten_pushes(double before, double h);
   void take_back_pushes(double part, double h);
   bool find_struck(double h);
+  void book_moves(double sign);
   void book_way(double work, Tree* tree);
   void pay_for_moves(double given);
   double softness(const NearPair& pair) const;
