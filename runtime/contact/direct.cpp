@@ -156,6 +156,7 @@ double solve_direct(Workspace& work, double tolerance, LinearSolves& solves, boo
     if (solved || solves.spent()) break;
   }
   equations.take(start);
+  solved = best <= attainable(work, tolerance);  // impulses that were thrown far are known too badly to be one
   return best;
 }
 

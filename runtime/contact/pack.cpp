@@ -154,7 +154,11 @@ void pack(std::span<const Mover> movers, std::span<const Row> rows, std::span<co
   work.condensed = false;
   work.movers.clear();
   work.movers.push_back(world());
-  for (const Mover& mover : movers) work.movers.push_back(packed(mover));
+  work.began.clear();
+  for (const Mover& mover : movers) {
+    const Packed& now = work.movers.emplace_back(packed(mover));
+    if (!now.free && now.source != nullptr) work.began.insert(work.began.end(), now.source, now.source + now.size);
+  }
   work.has_plain = false;
   work.answers.clear();
   work.points.resize(rows.size());
@@ -171,6 +175,25 @@ void pack(std::span<const Mover> movers, std::span<const Row> rows, std::span<co
   for (const ScalarRow& row : scalars) {
     work.scalars.push_back(packed(row, work.movers));
     work.scalars.back().free_velocity = velocity(work, work.scalars.back());
+  }
+}
+
+void restore_velocities(Workspace& work) {
+  if (work.condensed) {
+    double* rate = work.rates.data();
+    for (const Sides& sides : work.sides) rate = std::copy_n(sides.free_velocity, 3, rate);
+    for (const PackedScalar& row : work.scalars) *rate++ = row.free_velocity;
+    return;
+  }
+  const double* tree = work.began.data();
+  for (Packed& mover : work.movers) {
+    if (mover.source == nullptr) continue;
+    if (mover.free) {
+      std::copy_n(mover.source, 6, mover.v);
+    } else {
+      std::copy_n(tree, mover.size, mover.source);
+      tree += mover.size;
+    }
   }
 }
 

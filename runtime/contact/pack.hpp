@@ -11,6 +11,9 @@ namespace breve::contact {
 void pack(std::span<const Mover> movers, std::span<const Row> rows, std::span<const ScalarRow> scalars,
           Workspace& work);
 
+/// Velocities as they were before any impulse.
+void restore_velocities(Workspace& work);
+
 /// The packed problem as if it were at rest, without friction and impulses, and with other biases. Velocities of trees
 /// are zero.
 void start_over(std::span<const Push> rows, std::span<const double> scalar_biases, Workspace& work);

@@ -11,6 +11,7 @@
 #include "runtime/contact/friction.hpp"
 #include "runtime/contact/pack.hpp"
 #include "runtime/contact/sweep.hpp"
+#include "runtime/contact/wedge.hpp"
 
 namespace breve::contact {
 
@@ -70,6 +71,29 @@ void solve_once(Workspace& work, const SolveSettings& settings, SolveReport& rep
     run_sweeps(work, settings.iterations, std::max(settings.tolerance, settings.swept), settings.meter, report);
 }
 
+/// Nothing is to bounce: rest is then possible for all rows at once.
+void make_plastic(Workspace& work) {
+  for (Point& c : work.points) c.bias = std::min(c.bias, 0.0);
+  for (PackedScalar& row : work.scalars) {
+    if (row.lo == 0) row.bias = std::min(row.bias, 0.0);
+    if (row.hi == 0) row.bias = std::max(row.bias, 0.0);
+  }
+}
+
+/// Where impulses were thrown ever farther, what is wedged does not bounce; and where friction throws them all the
+/// same, it is found in turns with what presses.
+void solve_wedged(std::span<const Row> rows, Workspace& work, const SolveSettings& settings, SolveReport& report) {
+  forget_impulses(work);
+  make_plastic(work);
+  solve_once(work, settings, report);
+  if (report.direct && !thrown(work)) return;
+  forget_impulses(work);
+  for (std::size_t i = 0; i < rows.size(); ++i) work.points[i].friction = rows[i].dynamic_friction;
+  report.iterations += solve_staggered(work, settings.tolerance);
+  report.direct = false;
+  report.residual = violation(work);
+}
+
 }  // namespace
 
 SolveReport solve_island(std::span<const Mover> movers, std::span<Row> rows, std::span<ScalarRow> scalars,
@@ -80,6 +104,10 @@ SolveReport solve_island(std::span<const Mover> movers, std::span<Row> rows, std
   push_all(work);
   for (int round = 0; round < kRounds; ++round) {
     solve_once(work, settings, report);
+    if (thrown(work)) {
+      solve_wedged(rows, work, settings, report);
+      break;
+    }
     if (round + 1 == kRounds || !settle_friction(rows, settings.tolerance, work)) break;
   }
   hold_energy(work);

@@ -72,6 +72,7 @@ struct Slope {
 struct Workspace {
   explicit Workspace(std::pmr::memory_resource* memory)
       : movers(memory),
+        began(memory),
         points(memory),
         plain(memory),
         sides(memory),
@@ -89,6 +90,7 @@ struct Workspace {
         answers(memory),
         rates(memory) {}
   std::pmr::vector<Packed> movers;
+  std::pmr::vector<double> began;  // velocities of the trees without any impulse
   std::pmr::vector<Point> points;
   std::pmr::vector<PlainPoint> plain;  // the same for sweeps, where they were asked for
   std::pmr::vector<Sides> sides;

@@ -114,9 +114,9 @@ void Loops::close() {
 
 /// One step of Newton's method towards closed loops, for rows that were made where the trees stand. Rows of loops that
 /// stand open may contradict one another: they yield a little, so that there is a step at all, and it is shortened
-/// until the sum of the squares of their errors falls. A body that spins is drawn together no more than motion pays
-/// for, and what that gives is booked against what the contacts that part it took. The rest, as what lifts it, is
-/// energy from nowhere, which the guard tells.
+/// until the sum of the squares of their errors falls. A body that spins or has springs is drawn together no more than
+/// its motion pays for. Contacts part what loops draw together and take the energy that it gains, so that it is booked
+/// with theirs; in a body that touches nothing it is unexplained energy, which the guard tells.
 ///
 /// Source: Nocedal and Wright 2006, 10.3 (Levenberg-Marquardt).
 /// @return  false if nothing was gained: the trees stand where they stood
@@ -129,7 +129,8 @@ bool Loops::approach(bool open) {
   exact.iterations = state_.accuracy.iterations;
   exact.tolerance = 1e-14;  // a length here: loops are closed to round-off
   exact.meter = &state_.meter;
-  const double before = errors_squared(), moved = open ? kinetic() : 0;
+  const double before = errors_squared();
+  const Stored held = open ? read_stored() : Stored{};
   for (std::size_t k = 0; k < rows_.loops(); ++k) {
     contact::ScalarRow& row = rows_.loop(k);
     row.bias = -rows_.loop_error(k);
@@ -143,10 +144,9 @@ bool Loops::approach(bool open) {
   for (;;) {
     state_.place_links();
     const bool nearer = errors_squared() < before;
-    const double given = kinetic() - moved;
-    if (nearer && given <= positions_.payable_by_motion()) {
-      double& taken = state_.result.ledger.contact_loss;
-      taken -= std::clamp(given, 0.0, std::max(taken, 0.0));
+    const Stored now = read_stored();
+    if (nearer && now.inner - held.inner <= positions_.payable_by_motion()) {
+      if (touches()) state_.result.ledger.contact_loss -= now.all - held.all;
       return true;
     }
     if (length < kShortest) break;
@@ -190,13 +190,21 @@ double Loops::read_errors() {
   return worst;
 }
 
-double Loops::kinetic() {
-  double sum = 0;
+bool Loops::touches() const {
+  return std::any_of(state_.pairs.begin(), state_.pairs.end(), [](const NearPair* pair) { return pair->touching; });
+}
+
+Loops::Stored Loops::read_stored() {
+  Stored sum;
   for (const Clustered& one : state_.clusters) {
-    double moving = 0;
-    stored_energy(state_, one, moving);
-    sum += moving;
+    sum.inner += spring_energy(state_, one);
+    for (const std::uint32_t index : one.entry->trees) {
+      const Energy energy = state_.core.energy_of(*state_.core.trees[index]);
+      sum.inner += energy.kinetic + energy.springs;
+      sum.all += energy.potential;
+    }
   }
+  sum.all += sum.inner;
   return sum;
 }
 

@@ -33,7 +33,12 @@ class Loops {
  private:
   double read_errors();
   double errors_squared();
-  double kinetic();  // J
+  /// Energy, J. The inner part of a body could grow by drawing it together even where nothing outside touches it.
+  struct Stored {
+    double inner = 0, all = 0;  // motion and springs; gravity, too
+  };
+  Stored read_stored();
+  bool touches() const;
   bool approach(bool open);
   void close_velocities();
 

@@ -377,6 +377,30 @@ struct Rod : Scene {
   }
 };
 
+/// A box between two jaws that both want to throw it to the other: no velocity does that.
+TEST_P(BothWays, OpposedBouncesThrowNoImpulses) {
+  for (const double mu : {0.0, 0.3, 1.2}) {
+    for (const double tilt : {0.0, 0.2, 0.6}) {
+      Scene scene;
+      scene.add_box(1, Vector3(0, 0, 0.5), Vector3::Ones());
+      scene.bodies[0].v << 0.3, 0, -1, 0, 0.5, 0;
+      scene.rest_on(0, -1, Vector3::Ones(), mu);
+      for (const double side : {-1.0, 1.0})
+        scene.touch(0, -1, Vector3(0.5 * side, 0, 1), Vector3(-side * std::sin(tilt), 0, -std::cos(tilt)), mu);
+      for (Row& row : scene.rows) row.bias = 0.8;
+      use(scene);
+      const double before = scene.kinetic();
+      const SolveReport report = scene.solve();
+      EXPECT_TRUE(std::isfinite(report.residual));
+      EXPECT_LE(scene.kinetic(), before + 1e-12);
+      for (const Row& row : scene.rows) {
+        EXPECT_LT(row.impulse.norm(), 1000) << mu << ' ' << tilt;         // N*s, of a box that brings 1
+        EXPECT_GE(scene.velocity_of(row)[0], -0.5) << mu << ' ' << tilt;  // it came with -1
+      }
+    }
+  }
+}
+
 TEST_P(BothWays, ThePainleveRodIsAnsweredWhateverItsClass) {
   int classes = 0;
   for (const reference::Row& row : reference::read("painleve_rod")) {
