@@ -86,7 +86,7 @@ void solve_wedged(std::span<const Row> rows, Workspace& work, const SolveSetting
   forget_impulses(work);
   make_plastic(work);
   solve_once(work, settings, report);
-  if (report.direct && !thrown(work)) return;
+  if (report.direct && !thrown(work, true)) return;
   forget_impulses(work);
   for (std::size_t i = 0; i < rows.size(); ++i) work.points[i].friction = rows[i].dynamic_friction;
   report.iterations += solve_staggered(work, settings.tolerance);
@@ -104,7 +104,7 @@ SolveReport solve_island(std::span<const Mover> movers, std::span<Row> rows, std
   push_all(work);
   for (int round = 0; round < kRounds; ++round) {
     solve_once(work, settings, report);
-    if (thrown(work)) {
+    if (thrown(work, report.direct)) {
       solve_wedged(rows, work, settings, report);
       break;
     }

@@ -1,4 +1,4 @@
-// Works of rows, and friction for normals that are known.
+// Works of rows against one another, and sweeps over what presses and over friction, in turns.
 #include "runtime/contact/wedge.hpp"
 
 #include <algorithm>
@@ -19,10 +19,24 @@ double energy_alone(double before, double wanted, double response) {
   return response > 0 ? 0.5 * change * change / response : 0;
 }
 
+/// Some impulse changes its own velocity by far more than any row has to stop: a heavy load, or thrown. This is quick.
+bool any_great(const Workspace& work) {
+  constexpr double kGreat = 100;
+  double most = 0, stopped = 0;
+  for (std::size_t i = 0; i < work.points.size(); ++i) {
+    const Point& c = work.points[i];
+    most = std::max(most, c.impulse[0] * c.response.nn);
+    stopped = std::max(stopped, std::abs(work.sides[i].free_velocity[0] - c.bias));
+  }
+  for (const PackedScalar& row : work.scalars) stopped = std::max(stopped, std::abs(row.free_velocity - row.bias));
+  return !(most <= kGreat * stopped);
+}
+
 }  // namespace
 
-bool thrown(const Workspace& work) {
-  constexpr double kThrown = 1000;
+bool thrown(const Workspace& work, bool converged) {
+  if (!any_great(work)) return false;
+  const double most = converged ? 1000 : 100;
   double sum = 0, gross = 0, alone = 0;
   for (std::size_t i = 0; i < work.points.size(); ++i) {
     const Point& c = work.points[i];
@@ -40,7 +54,7 @@ bool thrown(const Workspace& work) {
     alone += energy_alone(row.free_velocity, row.bias, row.response);
     if (row.impulse != 0) sum += work_of(row.impulse, row.free_velocity, velocity(work, row));
   }
-  return gross > kThrown * (std::abs(sum) + alone) || !std::isfinite(gross);
+  return gross > most * (std::abs(sum) + alone) || !std::isfinite(gross);
 }
 
 void forget_impulses(Workspace& work) {

@@ -5,8 +5,9 @@
 
 namespace breve::contact {
 
-/// Whether impulses of contacts and friction work against one another a thousand times as much as they change in all.
-bool thrown(const Workspace& work);
+/// Whether impulses of contacts and friction work against one another a hundred times as much as they change in all; a
+/// thousand times, if they are a solution.
+bool thrown(const Workspace& work, bool converged);
 
 /// No impulses, and the velocities without them.
 void forget_impulses(Workspace& work);

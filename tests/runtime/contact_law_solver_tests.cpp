@@ -394,7 +394,7 @@ TEST_P(BothWays, OpposedBouncesThrowNoImpulses) {
       EXPECT_TRUE(std::isfinite(report.residual));
       EXPECT_LE(scene.kinetic(), before + 1e-12);
       for (const Row& row : scene.rows) {
-        EXPECT_LT(row.impulse.norm(), 1000) << mu << ' ' << tilt;         // N*s, of a box that brings 1
+        EXPECT_LT(row.impulse.norm(), 200) << mu << ' ' << tilt;          // N*s, of a box that brings 1
         EXPECT_GE(scene.velocity_of(row)[0], -0.5) << mu << ' ' << tilt;  // it came with -1
       }
     }
