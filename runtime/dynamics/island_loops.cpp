@@ -145,8 +145,11 @@ bool Loops::approach(bool open) {
     state_.place_links();
     const bool nearer = errors_squared() < before;
     const Stored now = read_stored();
-    if (nearer && now.inner - held.inner <= positions_.payable_by_motion()) {
-      if (touches()) state_.result.ledger.contact_loss -= now.all - held.all;
+    const double given = now.inner - held.inner;
+    if (nearer && given <= positions_.payable_by_motion()) {
+      const bool by_contacts = touches();
+      if (by_contacts) state_.result.ledger.contact_loss -= now.all - held.all;
+      positions_.pay_for_moves(given, by_contacts);
       return true;
     }
     if (length < kShortest) break;

@@ -61,7 +61,7 @@ void Positions::push_apart(double h) {
   const double before = state_.result.ledger.contact_loss;
   move_by_pushes(fastest, h);
   shorten_pushes(before, h);
-  pay_for_moves(before - state_.result.ledger.contact_loss);
+  pay_for_moves(before - state_.result.ledger.contact_loss, true);
 }
 
 /// Moves everything for h seconds by the velocities that pushes_ and scalar_pushes_ ask for. The solver solves the rows
@@ -258,11 +258,15 @@ void Positions::book_moves(double sign) {
   state_.result.ledger.contact_loss -= sign * sum;
 }
 
-/// What pushing apart gave, J, is taken from what moves, as far as that is little of it.
-void Positions::pay_for_moves(double given) {
+void Positions::pay_for_moves(double given, bool by_contacts) {
   if (state_.trees.empty() || !(given > 0)) return;
   const double all = momentum_.moving();
-  if (all > 0) momentum_.take_from_all(std::min(kFew, given / all));
+  if (!(all > 0)) return;
+  const double part = std::min(kFew, given / all);
+  if (by_contacts)
+    momentum_.take_from_all(part);
+  else
+    momentum_.undo_gain(part, false);
 }
 
 /// Scripts' forces work, J, where contacts and limits move positions: these provide it.

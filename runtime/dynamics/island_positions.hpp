@@ -22,6 +22,9 @@ class Positions {
   void move_back(double h);
   /// The energy, J, that a motion may give because motion pays for it.
   double payable_by_motion() const;
+  /// What moving positions gave, J, is taken from what moves, as far as that is little of it.
+  /// @param by_contacts  it was booked as given by contacts, and so is what is taken
+  void pay_for_moves(double given, bool by_contacts);
 
  private:
   void move_by_pushes(double fastest, double h);
@@ -31,7 +34,6 @@ class Positions {
   bool find_struck(double h);
   void book_moves(double sign);
   void book_way(double work, Tree* tree);
-  void pay_for_moves(double given);
   double softness(const NearPair& pair) const;
 
   State& state_;
