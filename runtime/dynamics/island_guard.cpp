@@ -15,7 +15,7 @@ namespace {
 constexpr int kFinest = 2;  // attempts after the first
 // Sub-steps of a step whose energy does not balance, times the bodies that it moves: a crowd's step stays bounded.
 constexpr std::size_t kMostInParts = 40;
-constexpr double kMended = 0.6;  // of the energy that a step of twice the length left unexplained
+constexpr double kMuch = 10;  // times what a step may leave unexplained
 
 Accuracy finer_settings(const Accuracy& from, int attempt, double h) {
   Accuracy to = from;
@@ -64,24 +64,26 @@ void Guard::step(MechanicsClient* client, double start, double h) {
     trouble = take(client, start, h);
   }
   // More than all that moves: whatever was solved there is wrong, and positions hold what cannot be paid for.
-  constexpr double kMuch = 10;  // times what a step may leave unexplained
   const double gained = books_.gained();
   const bool unpaid = refines && !handlers_.dissolved() && !trouble.found && gained > energy_of_stillness(state_) &&
                       gained > kMuch * allowed_ && gained > momentum_.moving();
   if (unpaid) trouble = {true, GuardReason::Residual, gained, state_.any_body()};
   if (refines && !handlers_.dissolved()) {
     books_.take_back_rest();
-    if (!trouble.found && asked.rung == Rung::Fast) undo_rise();
+    if (!trouble.found) undo_rise(asked.rung);
   }
   if (attempt > 0 || state_.finished || followed.step != asked.step) state_.use_accuracy(asked);
   if (trouble.found) give_in(trouble, unpaid && !state_.calls_out() && !state_.worn(), start, h);
 }
 
-/// The error of order 1 that contacts have on `fast` may have the same sign in each step, as of a body that rotates on
-/// its edge: rises too small to try the step again are taken back.
-void Guard::undo_rise() {
+/// Rises of energy that no finer sub-steps mended are taken back from what moves on `balanced`. On `fast`, whose
+/// contacts have an error of order 1 that may have the same sign in each step, as of a body that rotates on its edge,
+/// so are all that are too small to try the step again.
+void Guard::undo_rise(Rung rung) {
   const double all = momentum_.moving(), risen = balance_.risen();
-  if (risen > kStill * weight(state_) && risen <= kFew * all) momentum_.undo_gain(risen / all, true);
+  const bool little = rung == Rung::Fast && risen > kStill * weight(state_) && risen <= kFew * all;
+  const bool unmended = rung == Rung::Balanced && risen > allowed_ && all > 0;
+  if (little || unmended) momentum_.undo_gain(std::min(1.0, risen / all), true);
 }
 
 /// A step of articulated bodies whose energy does not add up is taken again in 2, 4, 8, ... parts: what rotates far in
@@ -100,16 +102,26 @@ Trouble Guard::take_in_parts(MechanicsClient* client, double start, double h) {
   const int most = bodies > kMostInParts || state_.calls_out()
                        ? 1
                        : static_cast<int>(std::max<std::size_t>(4, kMostInParts / bodies));
+  // Of the energy that a step of twice the length left unexplained. `balanced` is of order 1 where motors meet
+  // contacts.
+  const bool balanced = asked.rung == Rung::Balanced;
+  const double mended = balanced ? 0.75 : 0.6;
   double last = std::numeric_limits<double>::infinity();
-  for (int parts = 2; parts <= most && unexplained_ > allowed_ && !state_.worn(); parts *= 2) {
-    // What finer steps do not mend is not theirs to mend.
-    if (!(unexplained_ < kMended * last)) break;
-    last = unexplained_;
+  const auto take_again = [&](int parts) {
     balance_.back_to_start();
     ++state_.result.counters.rejected;
     state_.accuracy.step = (asked.step > 0 ? std::min(asked.step, h) : h) / parts;
     if (asked.contact_step > 0) state_.accuracy.contact_step = std::min(asked.contact_step, h) / parts;
     trouble = take(client, start, h);
+  };
+  for (int parts = 2; parts <= most && unexplained_ > allowed_ && !state_.worn(); parts *= 2) {
+    // What finer steps do not mend is not theirs to mend, and what gains more on them is left as it was.
+    if (!(unexplained_ < mended * last)) break;
+    last = unexplained_;
+    take_again(parts);
+    if (!balanced || residual_ <= std::max(last, kMuch * allowed_)) continue;
+    take_again(parts / 2);
+    break;
   }
   state_.accuracy = asked;
   return trouble;
@@ -120,7 +132,7 @@ Trouble Guard::take(MechanicsClient* client, double start, double h) {
   overlaps_.begin_try();
   momentum_.begin_try();
   books_.begin_try();
-  unexplained_ = allowed_ = 0;
+  residual_ = unexplained_ = allowed_ = 0;
   const double before = balance_.open();
   try {
     step_.once(client, start, h);
@@ -133,6 +145,7 @@ Trouble Guard::take(MechanicsClient* client, double start, double h) {
   double turnover = 0;
   const double residual = balance_.close(turnover);
   unexplained_ = std::abs(residual) + books_.gained();
+  residual_ = residual;
   allowed_ = watch_.tolerated(turnover, h) + kTiny * std::abs(before) + kStill * weight(state_);
   if (off) return {};
   if (const Trouble deeper = overlaps_.measure(); deeper.found) return deeper;

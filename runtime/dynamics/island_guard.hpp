@@ -27,7 +27,7 @@ class Guard {
  private:
   Trouble take(MechanicsClient* client, double start, double h);
   Trouble take_in_parts(MechanicsClient* client, double start, double h);
-  void undo_rise();
+  void undo_rise(Rung rung);
   void give_in(const Trouble& trouble, bool unpaid, double start, double h);
 
   State& state_;
@@ -38,7 +38,8 @@ class Guard {
   Handlers& handlers_;
   Step& step_;
   Watch watch_;
-  double unexplained_ = 0, allowed_ = 0;  // J, of the last try of a step
+  // J, of the last try of a step; what is unexplained also has what rows gained, which is taken back.
+  double residual_ = 0, unexplained_ = 0, allowed_ = 0;
 };
 
 }  // namespace breve::island
