@@ -102,8 +102,8 @@ Trouble Guard::take_in_parts(MechanicsClient* client, double start, double h) {
   const int most = bodies > kMostInParts || state_.calls_out()
                        ? 1
                        : static_cast<int>(std::max<std::size_t>(4, kMostInParts / bodies));
-  // This part of the energy that a step of twice the length left unexplained is no progress. `balanced` is of order 1
-  // where motors meet contacts.
+  // Finer steps go on while they leave less than this part of what the coarser one left unexplained. `balanced` is of
+  // order 1 where motors meet contacts.
   const bool balanced = asked.rung == Rung::Balanced;
   const double mended = balanced ? 0.75 : 0.6;
   double last = std::numeric_limits<double>::infinity();
