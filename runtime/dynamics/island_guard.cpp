@@ -76,13 +76,13 @@ void Guard::step(MechanicsClient* client, double start, double h) {
   if (trouble.found) give_in(trouble, unpaid && !state_.calls_out() && !state_.worn(), start, h);
 }
 
-/// Rises of energy that no finer sub-steps mended are taken back from what moves on `balanced`. On `fast`, whose
-/// contacts have an error of order 1 that may have the same sign in each step, as of a body that rotates on its edge,
-/// so are all that are too small to try the step again.
+/// On `balanced`, rises of energy of articulated bodies that no finer sub-steps mended are taken back from what moves.
+/// On `fast`, whose contacts have an error of order 1 that may have the same sign in each step, as of a body that
+/// rotates on its edge, so are all that are too small to try the step again.
 void Guard::undo_rise(Rung rung) {
   const double all = momentum_.moving(), risen = balance_.risen();
   const bool little = rung == Rung::Fast && risen > kStill * weight(state_) && risen <= kFew * all;
-  const bool unmended = rung == Rung::Balanced && risen > allowed_ && all > 0;
+  const bool unmended = rung == Rung::Balanced && tried_finer_ && risen > allowed_ && all > 0;
   if (little || unmended) momentum_.undo_gain(std::min(1.0, risen / all), true);
 }
 
@@ -90,6 +90,7 @@ void Guard::undo_rise(Rung rung) {
 /// a sub-step while a joint meets its limit or a foot the floor is not known well enough. Nothing of that is trouble.
 Trouble Guard::take_in_parts(MechanicsClient* client, double start, double h) {
   const Accuracy asked = state_.accuracy;
+  tried_finer_ = false;
   Trouble trouble = take(client, start, h);
   const bool coarse = state_.accuracy.rung == Rung::Fast || state_.accuracy.rung == Rung::Balanced;
   // Bodies without joints gain little, and a row of dominoes would cost four times as much.
@@ -108,6 +109,7 @@ Trouble Guard::take_in_parts(MechanicsClient* client, double start, double h) {
   const double mended = balanced ? 0.75 : 0.6;
   double last = std::numeric_limits<double>::infinity();
   const auto take_again = [&](int parts) {
+    tried_finer_ = true;
     balance_.back_to_start();
     ++state_.result.counters.rejected;
     state_.accuracy.step = (asked.step > 0 ? std::min(asked.step, h) : h) / parts;

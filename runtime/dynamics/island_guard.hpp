@@ -40,6 +40,7 @@ class Guard {
   Watch watch_;
   // J, of the last try of a step; what is unexplained also has what rows gained, which is taken back.
   double residual_ = 0, unexplained_ = 0, allowed_ = 0;
+  bool tried_finer_ = false;  // in this step
 };
 
 }  // namespace breve::island
