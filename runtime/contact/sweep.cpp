@@ -155,16 +155,11 @@ void parts_of_gain(const Workspace& work, double& linear, double& quadratic) {
 
 }  // namespace
 
-double payable_share(const Workspace& work) {
+void hold_energy(Workspace& work) {
   double linear = 0, quadratic = 0;
   parts_of_gain(work, linear, quadratic);
-  if (!(linear + quadratic > 0)) return 1;
-  return quadratic > 0 ? std::clamp(-0.5 * linear / quadratic, 0.0, 1.0) : 0.0;
-}
-
-void hold_energy(Workspace& work) {
-  const double keep = payable_share(work);
-  if (keep == 1) return;
+  if (!(linear + quadratic > 0)) return;
+  const double keep = quadratic > 0 ? std::clamp(-0.5 * linear / quadratic, 0.0, 1.0) : 0.0;
   for (std::size_t i = 0; i < work.points.size(); ++i) {
     double* p = work.points[i].impulse;
     const double change[3] = {(keep - 1) * p[0], (keep - 1) * p[1], (keep - 1) * p[2]};

@@ -41,14 +41,10 @@ class Sweeps {
 /// One contact of a sweep. @return the largest change of its velocity, m/s
 double visit_point(Workspace& work, std::size_t point);
 
-/// By how much impulses are to be shortened so that they add no energy; 1: they add none. The gain is what they do to
-/// the kinetic energy, less what the biases demand, J: with p the impulses, u the velocities, half of p.(u without + u
-/// with)
-/// - p.bias + softness p^2 / 2. It is not positive for any exact solution. If it is positive, one factor makes it
-/// least.
-double payable_share(const Workspace& work);
-/// Shortens them by it; cones and bounds contain what is shorter. So even a solve that was stopped early adds no
-/// energy.
+/// The gain is what the impulses do to the kinetic energy, less what the biases demand, J: with p the impulses, u the
+/// velocities, half of p.(u without + u with) - p.bias + softness p^2 / 2. It is not positive for any exact solution.
+/// If it is positive, shorten all impulses by the one factor that makes it least; cones and bounds contain what is
+/// shorter. So even a solve that was stopped early adds no energy.
 void hold_energy(Workspace& work);
 
 }  // namespace breve::contact
