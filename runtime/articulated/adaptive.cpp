@@ -34,9 +34,9 @@ constexpr double kMostLeap = 1e3;
 constexpr double kBeyond = 0.6;
 constexpr double kCoarse = 1e-3;
 
-// In one step. Hard scenes need some 1,000, ten seconds of an oscillator to 1e-13 some 30,000; what needs far more,
-// such as a body that rotates a billion times a second, is trouble for the guard, not hours of work.
-constexpr int kMostAttempts = 100'000;
+// Since the caller began to count. Hard scenes need some 1,000, ten seconds of an oscillator to 1e-13 some 30,000; what
+// needs far more, such as a link without inertia on a spring, is to be told, not to be followed.
+constexpr double kMostAttempts = 5'000, kMostASecond = 10'000;
 
 class Adaptive final : public Integrator::Method {
  public:
@@ -66,9 +66,10 @@ class Adaptive final : public Integrator::Method {
     // The stored step size may come from a step that an event cut to a sliver.
     double next = at.step > 0 ? std::max(at.step, settings_.tolerance.smallest_step) : h;
     bool rejected = false;
-    for (int attempts = 0; t < end; ++attempts) {
+    const double most = kMostAttempts + kMostASecond * h;
+    for (; t < end; ++at.attempts) {
       const double left = end - t;
-      if (attempts == kMostAttempts || system_.over()) refuse_cost(at, t, next, attempts);
+      if (at.attempts > most || system_.over()) refuse_cost(at, t, next);
       // Two like steps at the end, rather than a whole one and a sliver.
       const double size = next >= left * (1 - 1e-12) ? left : std::min(next, std::max(0.5 * left, 0.5 * next));
       if (size < std::min(settings_.tolerance.smallest_step, h) || t + size == t) {
@@ -161,11 +162,13 @@ class Adaptive final : public Integrator::Method {
                     t, size, settings_.tolerance.relative));
   }
 
-  [[noreturn]] void refuse_cost(Instant& at, double t, double size, int attempts) const {
+  [[noreturn]] void refuse_cost(Instant& at, double t, double size) const {
     at.step = size;
-    throw Error(ErrorCode::Numeric, fmt::format("at {} s the step size is {} s after {} attempts: the motion is too "
-                                                "fast for the tolerance {}",
-                                                t, size, attempts, settings_.tolerance.relative));
+    const std::string what =
+        fmt::format("at {} s the step size is {} s after {} attempts: the motion is too fast for the tolerance {}", t,
+                    size, at.attempts, settings_.tolerance.relative);
+    if (system_.over()) throw Error(ErrorCode::Numeric, what);
+    throw TooFast(ErrorCode::Numeric, what);
   }
 
   const double relative_;  // error allowed in one step, per unit

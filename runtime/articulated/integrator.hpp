@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "runtime/articulated/system.hpp"
+#include "runtime/base/error.hpp"
 
 namespace breve::articulated {
 
@@ -42,6 +43,11 @@ struct Settings {
   /// is more than the tolerance of the velocity; and where its stages lie on different pieces of the forces.
   /// ImplicitMidpoint is composed of five steps to order 4. Off: the textbook's schemes.
   bool refine = false;
+};
+
+/// Step control gave up, since the motion needs more steps than it takes. The state is as it was.
+struct TooFast : Error {
+  using Error::Error;
 };
 
 /// What the last step took.

@@ -48,8 +48,9 @@ class System {
 struct Instant {
   double t = 0;  // s
   Vector q, v;
-  double step = 0;  // s, the next step that step control would try; 0: none yet
-  Vector mean{};    // (nv) the last step's mean acceleration, where the midpoint rule begins; other sizes: none
+  double step = 0;   // s, the next step that step control would try; 0: none yet
+  int attempts = 0;  // of step control, since the caller last set it
+  Vector mean{};     // (nv) the last step's mean acceleration, where the midpoint rule begins; other sizes: none
   /// How many times its tolerance step control may err by. Above 1 it first tries the implicit midpoint rule.
   double slack = 1;
 };

@@ -73,6 +73,7 @@ void Cluster::set_accuracy(const Accuracy& accuracy) {
 void Cluster::set_finer(bool on) { finer_now_ = on && finer_.has_value(); }
 
 void Cluster::begin(StageForces* forces, Meter& meter) {
+  at_.attempts = 0;
   forces_ = forces;
   meter_ = &meter;
   working_ = forces != nullptr;

@@ -146,7 +146,11 @@ struct State {
   BodyIndex any_body() const;
   /// No further sub-step is to begin: the work is used up, or would be by closing the loops once.
   bool unaffordable() const { return meter.over(loop_units()); }
-  bool worn() const { return finished || meter.over(); }  // nothing is to be tried again
+  /// Nothing is to be tried again.
+  bool worn() const {
+    constexpr std::uint64_t kMostEvaluations = 100'000;
+    return finished || meter.over() || result.counters.evaluations > kMostEvaluations;
+  }
   void intervene(const Trouble& trouble, GuardAction action, double time);
 
   Dynamics::Core& core;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/articulated/impulse.hpp"
+#include "runtime/articulated/kinematics.hpp"
 #include "runtime/base/error.hpp"
 
 namespace breve::island {
@@ -31,16 +33,13 @@ void Step::once(MechanicsClient* client, double start, double h) {
       located(client, start, h);
     else
       fast(start, h);
+  } catch (const articulated::TooFast&) {
+    if (state_.finished) throw;
+    finish_there(fastest_motion());
   } catch (const Error& error) {
     // Step control gave up since the work is used up.
     if (error.code() != ErrorCode::Numeric || !state_.meter.over() || state_.finished) throw;
-    if (alone) {
-      balance_.back_to_start();
-      gone_ = 0;
-    } else {
-      state_.restore();
-    }
-    finish(start + gone_, h - gone_);
+    finish_there(used_up());
   }
 }
 
@@ -69,19 +68,46 @@ void Step::undisturbed(double start, double h) {
   const auto parts = static_cast<int>(std::llround(h / part));
   for (int i = 0; i < parts; ++i) {
     gone_ = i * part;
-    if (state_.unaffordable()) return finish(start + gone_, h - gone_);
+    if (state_.unaffordable()) return finish(used_up(), start + gone_, h - gone_);
     smooth_.move(start + gone_, part);
     smooth_.commit();
   }
 }
 
-/// The rest of a step whose work is used up, in one sub-step as coarse as there is. If the host interrupts the step,
+/// The link whose rotation, spring or damper in its joint is the fastest, 1/s.
+Trouble Step::fastest_motion() const {
+  Trouble worst{true, GuardReason::FastMotion, 0, state_.any_body()};
+  const auto look = [&worst](double rate, BodyIndex body) {
+    if (rate > worst.value) worst.value = rate, worst.body = body;
+  };
+  for (const Free& one : state_.loose_bodies()) look(one.now.spin.norm(), one.body);
+  for (const Clustered& one : state_.clusters)
+    for (Tree* tree : one.entry->system->trees()) {
+      articulated::forward_kinematics(tree->model, tree->data, tree->state);
+      const articulated::Vector yields = articulated::inverse_mass_diagonal(tree->model, tree->data);
+      for (std::size_t i = 0; i < tree->links.size(); ++i) {
+        const TreeLink& link = tree->links[i];
+        look(articulated::spin(tree->data, static_cast<int>(i)).norm(), link.body);
+        if (link.joint == kNoJoint) continue;
+        const JointDrive& drive = state_.core.joints[link.joint].drive;
+        const articulated::Body& body = tree->model.body(static_cast<int>(i));
+        for (int k = body.v; k < body.v + articulated::velocity_count(body.type); ++k)
+          look(std::max(std::sqrt(drive.stiffness * yields[k]), drive.damping * yields[k]), link.body);
+      }
+    }
+  return worst;
+}
+
+Trouble Step::used_up() const {
+  return {true, GuardReason::Work, static_cast<double>(state_.meter.done()), state_.any_body()};
+}
+
+/// The rest of a step that is too much work, in one sub-step as coarse as there is. If the host interrupts the step,
 /// the rest is left out: the bodies stay where they are.
-void Step::finish(double time, double left) {
+void Step::finish(const Trouble& why, double time, double left) {
   constexpr int kFew = 8;
   state_.finished = true;
-  const Trouble work{true, GuardReason::Work, static_cast<double>(state_.meter.done()), state_.any_body()};
-  state_.intervene(work, GuardAction::Finished, time);
+  state_.intervene(why, GuardAction::Finished, time);
   if (state_.meter.ended()) return;
   Accuracy coarse = breve::accuracy_of(Rung::Fast);
   coarse.iterations = std::min(coarse.iterations, kFew);
@@ -97,7 +123,7 @@ void Step::fast(double start, double h) {
   const double part = h / parts;
   for (int i = 0; i < parts; ++i) {
     gone_ = i * part;
-    if (state_.unaffordable()) return finish(start + gone_, h - gone_);
+    if (state_.unaffordable()) return finish(used_up(), start + gone_, h - gone_);
     take_fast(start + gone_, part);
   }
 }
@@ -159,7 +185,7 @@ void Step::located(MechanicsClient* client, double start, double h) {
   bool whole = lies(h);
   for (double now = 0; now < h * (1 - kSliver);) {
     gone_ = now;
-    if (state_.unaffordable()) return finish(start + now, h - now);
+    if (state_.unaffordable()) return finish(used_up(), start + now, h - now);
     spent_ = met_ >= most || stalls > kMostStalls;
     if (!look(start + now, contact_part(h - now, whole))) continue;
     const double part = longest(h - now, whole);

@@ -28,7 +28,9 @@ class Step {
   void take_fast(double time, double h);
   void located(MechanicsClient* client, double start, double h);
   bool look(double time, double sub);
-  void finish(double time, double left);
+  Trouble fastest_motion() const;
+  Trouble used_up() const;
+  void finish(const Trouble& why, double time, double left);
   double longest(double left, bool lies) const;
   double contact_part(double left, bool lies) const;
   bool lies(double h) const;

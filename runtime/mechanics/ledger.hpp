@@ -41,7 +41,8 @@ enum class GuardReason : std::uint8_t {
   FastDamping,
   Impacts,
   NoSolution,
-  Work
+  Work,
+  FastMotion
 };
 /// In words: "a number is not finite".
 std::string_view words_for(GuardReason reason);

@@ -26,7 +26,8 @@ constexpr std::array<Words, 8> kReasons{"a number is not finite",
                                         "a damper is too strong for the sub-step",
                                         "more impacts in one sub-step than can be located",
                                         "no solution was found for an equation of the step",
-                                        "the work budget of the step is used up"};
+                                        "the work budget of the step is used up",
+                                        "a link moves too fast for step control"};
 
 template <class Enum, std::size_t N>
 Enum named(const std::array<Words, N>& names, Words name, Words what) {

@@ -132,6 +132,42 @@ TEST(DynamicsBudget, StepsThatAreFarTooManyAreTakenAtOnce) {
   }
 }
 
+TEST(DynamicsBudget, ALinkWithoutInertiaOnASpringIsToldAndNotFollowed) {
+  for (const Rung rung : {Rung::Balanced, Rung::Precise, Rung::Reference}) {
+    Physics s;
+    s.mechanics().set_accuracy(rung);
+    const ObjectId rod = s.rigid(Shape::box(Vector3(1, 0.2, 0.2)), Vector3::Zero());
+    const ObjectId speck =
+        s.rigid(solid(1e-3, 1e-12 * Matrix3::Identity(), Vector3(0.3, 0.2, 0.2)), Vector3(0.65, 0, 0));
+    JointDescription is;
+    is.kind = JointKind::Ball;
+    is.parent = s.index(rod);
+    is.child = s.index(speck);
+    is.parent_point = Vector3(0.5, 0, 0);
+    is.child_point = Vector3(-0.15, 0, 0);
+    const JointIndex joint = s.mechanics().link(is, speck);
+    JointDrive drive;
+    drive.stiffness = 1;
+    drive.damping = 0.01;
+    s.mechanics().set_drive(joint, drive);
+    s.world.bodies().set_rotational_velocity(s.index(rod), Vector3(1, 2, 3));
+    int told = 0;
+    for (int i = 0; i < 10; ++i) {
+      s.world.step();
+      EXPECT_LE(s.mechanics().counters().evaluations, 100'000U);
+      for (const Intervention& one : s.mechanics().interventions()) {
+        if (one.reason != GuardReason::FastMotion) continue;
+        ++told;
+        EXPECT_EQ(one.body, speck);
+        EXPECT_EQ(one.action, GuardAction::Finished);
+        EXPECT_NEAR(one.value, 1e10, 1e8);  // 1/s: the damper's, 0.01 / 1e-12
+      }
+    }
+    EXPECT_GT(told, 0) << name_of(rung);
+    EXPECT_LT(s.at(speck).norm(), 10);
+  }
+}
+
 TEST(DynamicsBudget, WhereTheEndIsAskedForTheStepThrowsAndBodiesStay) {
   for (const Rung rung : kRungs) {
     Heap heap(rung);
