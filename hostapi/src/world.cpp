@@ -156,8 +156,6 @@ void check_world_config(const breve_world_config& config) {
     fail(BREVE_ERROR_ARGUMENT, "patience must be finite and >= 0");
   if (!std::isfinite(config.length_unit) || config.length_unit < 0)
     fail(BREVE_ERROR_ARGUMENT, "length_unit must be finite and >= 0");
-  if (config.length_unit > 0 && config.length_unit != 1 && config.dimension == 3)
-    fail(BREVE_ERROR_ARGUMENT, "length_unit is for flat worlds, but dimension is 3");
   if (config.accuracy) rung_named(config.accuracy);  // an error that names the rungs
 }
 

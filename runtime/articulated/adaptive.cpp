@@ -146,11 +146,11 @@ class Adaptive final : public Integrator::Method {
 
   double ratio_of(int i) const {
     const Tolerance& allowed = settings_.tolerance;
-    const bool length = system_.kind(i) != Kind::Angle;
-    const double way = relative_ * (length ? allowed.length : allowed.angle);
-    const double speed = relative_ * ((length ? allowed.velocity : allowed.angular_velocity) +
-                                      std::max(std::abs(v_[i]), std::abs(v_[i] + dv5_[i])));
-    return std::max(std::abs(d5_[i] - d4_[i]) / way, std::abs(dv5_[i] - dv4_[i]) / speed);
+    double way = allowed.length, speed = allowed.velocity;
+    if (system_.kind(i) == Kind::Angle) way = allowed.angle, speed = allowed.angular_velocity;
+    if (system_.kind(i) == Kind::Ledger) way *= allowed.length, speed *= allowed.length;  // of energy per kg
+    speed += std::max(std::abs(v_[i]), std::abs(v_[i] + dv5_[i]));
+    return std::max(std::abs(d5_[i] - d4_[i]) / (relative_ * way), std::abs(dv5_[i] - dv4_[i]) / (relative_ * speed));
   }
 
   [[noreturn]] void refuse(Instant& at, double t, double size) const {

@@ -29,6 +29,10 @@ constexpr int velocity_count(JointType type) {
   constexpr int kCounts[] = {1, 1, 2, 3, 6, 0};
   return kCounts[static_cast<int>(type)];
 }
+/// Whether the k-th velocity of a joint is of a length, m/s, not of an angle, rad/s.
+constexpr bool is_length(JointType type, int k) {
+  return type == JointType::Prismatic || (type == JointType::Free && k < 3);
+}
 
 /// A link and its inboard joint, as described by whoever builds a model. The body frame coincides with the joint frame
 /// when the joint is at zero: its origin lies on the joint.

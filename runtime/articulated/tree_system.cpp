@@ -8,10 +8,8 @@ namespace breve::articulated {
 TreeSystem::TreeSystem(const Model& model, std::pmr::memory_resource* memory)
     : model_(model), data_(model, memory), state_(neutral_state(model)) {
   for (const Body& body : model.bodies())
-    for (int k = 0; k < velocity_count(body.type); ++k) {
-      const bool length = body.type == JointType::Prismatic || (body.type == JointType::Free && k < 3);
-      kinds_.push_back(length ? Kind::Length : Kind::Angle);
-    }
+    for (int k = 0; k < velocity_count(body.type); ++k)
+      kinds_.push_back(is_length(body.type, k) ? Kind::Length : Kind::Angle);
 }
 
 void TreeSystem::acceleration(double t, const Vector& q, const Vector& v, double step, Vector& a) {

@@ -14,7 +14,7 @@ double geometric_mean(double a, double b) { return std::sqrt(std::min(a * b, std
 
 }  // namespace
 
-Law combine(const Material& a, const Material& b) {
+Law combine(const Material& a, const Material& b, double unit) {
   Law law;
   const bool exact_friction =
       a.static_friction >= 0 && b.static_friction >= 0 && a.dynamic_friction >= 0 && b.dynamic_friction >= 0;
@@ -33,7 +33,7 @@ Law combine(const Material& a, const Material& b) {
     law.restitution_threshold = std::max(a.restitution_threshold, b.restitution_threshold);
   } else {
     law.restitution = (a.restitution + b.restitution) / 2;
-    law.restitution_threshold = kRestingApproach;
+    law.restitution_threshold = kRestingApproach * unit;
   }
   law.restitution = std::clamp(law.restitution, 0.0, 1.0);
   law.tangential_restitution = std::clamp(law.tangential_restitution, -1.0, 1.0);

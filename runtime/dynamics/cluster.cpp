@@ -13,9 +13,10 @@ constexpr std::uint64_t kUnits = 16;  // of work, of a link's part in an evaluat
 using articulated::Kind;
 using articulated::Vector;
 
-articulated::Settings settings_of(const Accuracy& accuracy) {
+articulated::Settings settings_of(const Accuracy& accuracy, double unit) {
   articulated::Settings settings;
   settings.tolerance.relative = accuracy.tolerance;
+  settings.tolerance.length = settings.tolerance.velocity = unit;
   settings.implicit_joints = accuracy.implicit_joints;
   // A plain scheme must not blow up on a light chain with a heavy load. A midpoint rule that was set is there to be
   // studied.
@@ -25,8 +26,8 @@ articulated::Settings settings_of(const Accuracy& accuracy) {
 
 }  // namespace
 
-Cluster::Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees, const Accuracy& accuracy)
-    : trees_(trees.begin(), trees.end(), memory), accuracy_(accuracy), kinds_(memory), motors_(memory) {
+Cluster::Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees, const Accuracy& accuracy, double unit)
+    : trees_(trees.begin(), trees.end(), memory), accuracy_(accuracy), unit_(unit), kinds_(memory), motors_(memory) {
   for (std::size_t t = 0; t < trees_.size(); ++t) {
     const Tree* tree = trees_[t];
     for (int i = 0; i < tree->model.size(); ++i) {
@@ -39,11 +40,8 @@ Cluster::Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees
     mass_ += tree->model.mass();
     units_ += kUnits * static_cast<std::uint64_t>(tree->model.size());
     for (const articulated::Body& body : tree->model.bodies())
-      for (int k = 0; k < articulated::velocity_count(body.type); ++k) {
-        const bool length =
-            body.type == articulated::JointType::Prismatic || (body.type == articulated::JointType::Free && k < 3);
-        kinds_.push_back(length ? Kind::Length : Kind::Angle);
-      }
+      for (int k = 0; k < articulated::velocity_count(body.type); ++k)
+        kinds_.push_back(articulated::is_length(body.type, k) ? Kind::Length : Kind::Angle);
   }
   kinds_.insert(kinds_.end(), kWorks + motors_.size(), Kind::Ledger);
   at_.q.setZero(nq_);
@@ -56,10 +54,10 @@ Cluster::Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees
 
 // Both at once: a step allocates nothing.
 void Cluster::make_integrators() {
-  integrator_.emplace(*this, accuracy_.scheme, settings_of(accuracy_));
+  integrator_.emplace(*this, accuracy_.scheme, settings_of(accuracy_, unit_));
   finer_.reset();
   if (accuracy_.rung != Rung::Fast || accuracy_.scheme != articulated::Scheme::SemiImplicitEuler) return;
-  articulated::Settings finer = settings_of(accuracy_);
+  articulated::Settings finer = settings_of(accuracy_, unit_);
   finer.implicit_joints = false;
   finer_.emplace(*this, articulated::Scheme::RungeKutta4, finer);
 }

@@ -42,7 +42,8 @@ class StageForces {
 class Cluster final : public articulated::System, public InMemory {
  public:
   /// `trees` outlive the cluster. It takes its state from them and gives it back.
-  Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees, const Accuracy& accuracy);
+  /// @param unit  the world's length unit, m: errors of lengths are measured by it
+  Cluster(std::pmr::memory_resource* memory, std::span<Tree* const> trees, const Accuracy& accuracy, double unit);
 
   std::span<Tree* const> trees() const { return trees_; }
   const Accuracy& accuracy() const { return accuracy_; }
@@ -112,6 +113,7 @@ class Cluster final : public articulated::System, public InMemory {
 
   std::pmr::vector<Tree*> trees_;
   Accuracy accuracy_;
+  double unit_;  // m
   bool finer_now_ = false;
   int nq_ = 0, nv_ = 0;
   double mass_ = 0;       // kg: works are kept per kg, so that step control sees numbers of ordinary size

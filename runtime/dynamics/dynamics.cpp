@@ -95,13 +95,6 @@ void Dynamics::set_ball(JointIndex joint, const Quaternion& rotation, const Vect
 
 // --- settings -------------------------------------------------------------------------------------------------------
 
-void Dynamics::set_length_unit(double metres) {
-  if (metres != 1)
-    throw Error(
-        ErrorCode::Argument,
-        fmt::format("the length unit is {}, but only a flat world has one (its controller a PlanarControl)", metres));
-}
-
 void Dynamics::set_gravity(const Vector3& gravity) {
   if (!gravity.allFinite()) throw Error(ErrorCode::Argument, "gravity must be finite");
   if (gravity == core().settings.gravity) return;
@@ -115,6 +108,10 @@ void Dynamics::set_gravity(const Vector3& gravity) {
 }
 void Dynamics::accuracy_changed() { core_->integrators_changed = true; }
 void Dynamics::sleeping_ended() { core_->near.wake_all(); }
+void Dynamics::length_unit_changed() {
+  core_->near.wake_all();
+  accuracy_changed();
+}
 
 void Dynamics::set_force_method(BodyIndex body, bool on) {
   if (!core_ && !on) return;

@@ -49,7 +49,6 @@ class Dynamics final : public Mechanics {
 
   // --- settings of the world ----------------------------------------------------------------------------------------
   int dimension() const override { return 3; }
-  void set_length_unit(double metres) override;
   void set_gravity(const Vector3& gravity) override;
   std::string describe_accuracy() const override { return describe(accuracy()); }
   void set_force_method(BodyIndex body, bool on) override;
@@ -84,6 +83,7 @@ class Dynamics final : public Mechanics {
   void settings_begin(BodyIndex body) override;
   void accuracy_changed() override;
   void sleeping_ended() override;
+  void length_unit_changed() override;
   std::pmr::memory_resource* memory_;
   Bodies* bodies_;
   std::unique_ptr<Core> core_;

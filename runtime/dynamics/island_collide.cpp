@@ -36,7 +36,7 @@ void Impacts::rebound(std::size_t index, double time) {
   const double rate = j.dot(tree.state.v), yields = j.dot(r);
   if (!(rate < 0) || !(yields > 0)) return;
   Rebound& last = contacts_.rebound_of(index);
-  last.stays = 0.5 * last.rate * (time - last.time) <= kLimitSkin;
+  last.stays = 0.5 * last.rate * (time - last.time) <= kLimitSkin * bound.unit;
   const double e = last.stays ? 0 : joint.drive.limit_restitution;
   last.time = time;
   last.rate = -e * rate;
@@ -53,15 +53,15 @@ void Impacts::find_met(double time) {
   const double met = contacts_.met_limit();
   for (std::size_t i = 0; i < contacts_.bounds().size(); ++i) {
     Bound& bound = contacts_.bounds()[i];
-    bound.rests = bound.gap <= met;
-    if (bound.rests && bound.rate < -contacts_.resting()) rebound_later_.push_back(i);
+    bound.rests = bound.gap <= met * bound.unit;
+    if (bound.rests && bound.rate < -contacts_.resting() * bound.unit / state_.unit()) rebound_later_.push_back(i);
   }
   if (rebound_later_.empty()) return;
   for (const std::size_t bound : rebound_later_) rebound(bound, time);
   rebound_later_.clear();
   contacts_.find_touches_now();
   contacts_.find_bounds();
-  for (Bound& bound : contacts_.bounds()) bound.rests = bound.gap <= met;
+  for (Bound& bound : contacts_.bounds()) bound.rests = bound.gap <= met * bound.unit;
 }
 
 void Impacts::collide(double time) {
@@ -89,10 +89,10 @@ void Impacts::collide(double time) {
 void Impacts::resolve() {
   constexpr int kLeast = 50;  // sweeps
   contact::ImpactSettings settings;
-  settings.rest.iterations = std::max(kLeast, state_.accuracy.iterations);
+  settings.rest = state_.solve_settings();
+  settings.rest.iterations = std::max(kLeast, settings.rest.iterations);
   settings.rest.direct = true;
   settings.rest.direct_share = solver_.direct_share();
-  settings.rest.meter = &state_.meter;
   for (contact::Row& row : rows_.rows()) row.bias = 0, row.impulse = Vector3::Zero();
   for (contact::ScalarRow& row : rows_.scalars()) row.bias = 0, row.impulse = 0;
   contact::resolve_impacts(rows_.movers(), rows_.rows(), rows_.laws(), rows_.scalars(), settings, rows_.workspace());

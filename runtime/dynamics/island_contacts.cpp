@@ -56,7 +56,7 @@ void Contacts::find_touches(double h, bool speculative) {
   NarrowCounters narrow;
   narrow.stop = state_.meter.end();
   const double fall = state_.core.settings.gravity.norm() * h;
-  resting_ = 1e-3 * fall + 1e-12;
+  resting_ = 1e-3 * fall + 1e-12 * state_.unit();
   looked_h_ = h;
   // A row catches a body before it touches, if it comes as slowly as a body at rest falls in a sub-step.
   constexpr double kMostRoom = 0.05;  // of the size
@@ -115,7 +115,7 @@ bool Contacts::strikes(double h) const {
     if (touch.gap <= kMetSkin * size && touch.approach < -speeds_of(pair.law, size, h).strike) return true;
   }
   for (const Bound& bound : bounds_)
-    if (!bound.held && bound.gap <= met_limit() && bound.rate < -bound.slow) return true;
+    if (!bound.held && bound.gap <= met_limit() * bound.unit && bound.rate < -bound.slow) return true;
   return false;
 }
 
@@ -174,7 +174,7 @@ double Contacts::falling(const JointEntry& joint) const {
 }
 
 void Contacts::find_bounds() {
-  constexpr double kMostRoom = 1e-3;  // rad or m
+  constexpr double kMostRoom = 1e-3;  // rad or length units
   bounds_.clear();
   for (Tree* tree : state_.trees) {
     for (const TreeLink& link : tree->links) {
@@ -182,20 +182,22 @@ void Contacts::find_bounds() {
       const JointEntry& joint = state_.core.joints[link.joint];
       if (!Dynamics::Core::has_limits(joint)) continue;
       const JointVector position = state_.core.read_position(joint), velocity = state_.core.read_velocity(joint);
+      const double unit = joint.is.kind == JointKind::Prismatic ? state_.unit() : 1;
+      const double slow = resting_ * unit / state_.unit();
       for (int k = 0; k < axis_count(joint.is.kind); ++k) {
         for (const double sign : {1.0, -1.0}) {
           const double limit = sign > 0 ? joint.drive.low[k] : joint.drive.high[k];
           if (!std::isfinite(limit)) continue;
-          Bound bound{link.joint, k, sign, limit, sign * (position[k] - limit), sign * velocity[k], resting_, false};
+          Bound bound{link.joint, k, sign, limit, sign * (position[k] - limit), sign * velocity[k], unit, slow, false};
           const bool stays = bounds_.size() < rebounds_.size() && rebounds_[bounds_.size()].stays;
           // Inelastic limits may be met by a row; others are located. A row catches a joint before it is there, if it
           // comes as slowly as a body at rest falls in a sub-step and is not driven.
           if (joint.drive.limit_restitution > 0) {
-            bound.rests = bound.gap <= kLimitSkin && (stays || std::abs(bound.rate) <= resting_);
+            bound.rests = bound.gap <= kLimitSkin * unit && (stays || std::abs(bound.rate) <= slow);
           } else {
             if (!link.motor) bound.slow += falling(joint);
-            const bool caught = bound.gap <= std::min(bound.slow * looked_h_, kMostRoom);
-            bound.rests = bound.gap <= kLimitSkin || (caught && std::abs(bound.rate) <= bound.slow);
+            const bool caught = bound.gap <= std::min(bound.slow * looked_h_, kMostRoom * unit);
+            bound.rests = bound.gap <= kLimitSkin * unit || (caught && std::abs(bound.rate) <= bound.slow);
           }
           bounds_.push_back(bound);
         }
@@ -205,7 +207,8 @@ void Contacts::find_bounds() {
   rebounds_.resize(bounds_.size());
 }
 
-/// How far from its limit a joint is taken to have met it, rad or m: as exactly as the moments of events are found.
+/// How far from its limit a joint is taken to have met it, rad or length units: as exactly as the moments of events are
+/// found.
 double Contacts::met_limit() const {
   constexpr double kFound = 1e-12;
   return state_.accuracy.tolerance >= kCoarse ? kSeen : kFound;

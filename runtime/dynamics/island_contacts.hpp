@@ -35,6 +35,7 @@ struct Bound {
   double limit;       // the position, m or rad
   double gap;         // m or rad
   double rate;        // of the gap when the sub-step began
+  double unit;        // of the gap: 1 rad, or the world's length unit
   double slow;        // slower than this it is caught by a row, and does not strike
   bool rests;         // it is a row; else it is to be located
   bool held = false;  // it acts inside the stages, and is not located

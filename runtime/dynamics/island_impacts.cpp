@@ -99,7 +99,7 @@ void Impacts::seek_bounds(double h) {
     event.depth = std::max(-bound.gap, 0.0);
     const double gap = gap_of(event, rate);
     if (!(gap < -event.depth)) continue;
-    const bool leaves = bound.gap <= contacts_.met_limit() && bound.rate >= 0;  // and comes back
+    const bool leaves = bound.gap <= contacts_.met_limit() * bound.unit && bound.rate >= 0;  // and comes back
     event.time = leaves || bound.gap <= 0 ? h : h * bound.gap / (bound.gap - gap);
     found_.push_back(event);
   }
@@ -163,11 +163,10 @@ void Impacts::check_light_touches(double time, double h, Event& first) {
 
 double Impacts::gap_of(const Event& event, double& rate) {
   if (event.point >= 0) return springs_.gap_of(static_cast<std::size_t>(event.point), rate);
-  if (event.bound >= 0) {
-    const Bound& bound = contacts_.bounds()[static_cast<std::size_t>(event.bound)];
-    const JointEntry& joint = state_.core.joints[bound.joint];
-    rate = bound.sign * state_.core.read_velocity(joint)[bound.axis];
-    return bound.sign * (state_.core.read_position(joint)[bound.axis] - bound.limit);
+  if (const Bound* bound = bound_of(event)) {
+    const JointEntry& joint = state_.core.joints[bound->joint];
+    rate = bound->sign * state_.core.read_velocity(joint)[bound->axis];
+    return bound->sign * (state_.core.read_position(joint)[bound->axis] - bound->limit);
   }
   const NearPair& pair = *state_.pairs[static_cast<std::size_t>(event.pair)];
   const Shape &a = state_.shape(pair.a), &b = state_.shape(pair.b);
@@ -175,6 +174,10 @@ double Impacts::gap_of(const Event& event, double& rate) {
   rate =
       contact.normal.dot(state_.point_velocity(pair.a, contact.point) - state_.point_velocity(pair.b, contact.point));
   return contact.distance;
+}
+
+const Bound* Impacts::bound_of(const Event& event) const {
+  return event.bound >= 0 ? &contacts_.bounds()[static_cast<std::size_t>(event.bound)] : nullptr;
 }
 
 const NearPair& Impacts::pair_of(const Event& event) const {
@@ -185,8 +188,9 @@ const NearPair& Impacts::pair_of(const Event& event) const {
 /// How far from zero the gap may be at the moment of an event, m or rad.
 double Impacts::closeness(const Event& event) const {
   constexpr double kRoundOff = 1e-13;
-  if (!contacts_.coarse()) return kRoundOff;
-  return event.bound >= 0 ? kSeen : kSeen * state_.size_of_pair(pair_of(event));
+  const Bound* bound = bound_of(event);
+  if (!contacts_.coarse()) return kRoundOff * (bound ? bound->unit : state_.unit());
+  return kSeen * (bound ? bound->unit : state_.size_of_pair(pair_of(event)));
 }
 
 namespace {
@@ -252,8 +256,7 @@ void Impacts::locate(double time, Event& event, double h) {
 /// The gap was open when the sub-step began, and it is closed where the island stands.
 bool Impacts::is_past(const Event& event) {
   double rate = 0;
-  if (event.bound >= 0)
-    return contacts_.bounds()[static_cast<std::size_t>(event.bound)].gap > 0 && gap_of(event, rate) < -kMetSkin;
+  if (const Bound* bound = bound_of(event)) return bound->gap > 0 && gap_of(event, rate) < -kMetSkin * bound->unit;
   return gap_of(event, rate) + event.depth < -kMetSkin * state_.size_of_pair(pair_of(event));
 }
 

@@ -38,6 +38,7 @@ class Impacts {
   void seek_closing(double h);
   bool touches_lightly(std::size_t pair, const Pose& a, const Pose& b, double h, Event& event) const;
   void check_light_touches(double time, double h, Event& first);
+  const Bound* bound_of(const Event& event) const;  // null: not a joint's limit
   const NearPair& pair_of(const Event& event) const;
   double closeness(const Event& event) const;
   void refine(double time, Event& event, double h);

@@ -23,15 +23,13 @@ bool Loops::in_stages() const {
 /// forward and backward in time and moves nothing by hand, so that it neither gains nor loses energy in the long run.
 /// Source: Andersen 1983 (RATTLE).
 bool Loops::hold(double time, double h) {
-  constexpr int kMost = 8;  // each makes the gap smaller by the square of the angle by which a link rotates
-  constexpr double kClosed = 1e-13;
-  constexpr double kFound = 1e-9;  // what is left of so little is put right by hand
+  constexpr int kMost = 8;           // each makes the gap smaller by the square of the angle by which a link rotates
+  constexpr double kClosed = 1e-13;  // rad or length units
+  constexpr double kFound = 1e-9;    // what is left of so little is put right by hand
   for (Tree* tree : state_.trees) tree->kick.setZero();
-  contact::SolveSettings settings;
+  contact::SolveSettings settings = state_.solve_settings();
   settings.direct = true;
-  settings.iterations = state_.accuracy.iterations;
-  settings.tolerance = kClosed;
-  settings.meter = &state_.meter;
+  settings.tolerance = kClosed * state_.unit();
   double last = JointDrive::kNoLimit;
   for (int i = 0; i < kMost; ++i) {
     state_.restore();
@@ -43,7 +41,7 @@ bool Loops::hold(double time, double h) {
     if (!(worst < last)) return last < kFound;
     last = worst;
     for (std::size_t k = 0; k < rows_.loops(); ++k) {
-      rows_.loop(k).bias = -rows_.loop_error(k) / h;
+      rows_.loop(k).bias = -rows_.loop_error(k).open / h;
       rows_.loop(k).impulse = 0;
     }
     for (Free& one : state_.free_bodies) std::fill(one.v, one.v + 6, 0.0);
@@ -106,7 +104,7 @@ void Loops::close() {
     state_.load_velocities();
     if (i == 0) open = stand_open();
     double worst = 0;
-    for (std::size_t k = 0; k < rows_.loops(); ++k) worst = std::max(worst, std::abs(rows_.loop_error(k)));
+    for (std::size_t k = 0; k < rows_.loops(); ++k) worst = std::max(worst, std::abs(rows_.loop_error(k).units()));
     if (worst < kClosed || i == kMost || !approach(open)) break;
   }
   close_velocities();
@@ -124,16 +122,14 @@ bool Loops::approach(bool open) {
   constexpr double kYield = 1e-6;    // of a row's own response
   constexpr double kShorter = 0.25;  // of a step that leads away
   constexpr double kShortest = 0.01;
-  contact::SolveSettings exact;
+  contact::SolveSettings exact = state_.solve_settings();
   exact.direct = true;
-  exact.iterations = state_.accuracy.iterations;
-  exact.tolerance = 1e-14;  // a length here: loops are closed to round-off
-  exact.meter = &state_.meter;
+  exact.tolerance = 1e-14 * state_.unit();  // a length here: loops are closed to round-off
   const double before = errors_squared();
   const Stored held = open ? read_stored() : Stored{};
   for (std::size_t k = 0; k < rows_.loops(); ++k) {
     contact::ScalarRow& row = rows_.loop(k);
-    row.bias = -rows_.loop_error(k);
+    row.bias = -rows_.loop_error(k).open;
     if (open) row.softness = kYield * rows_.response(row);
   }
   positions_.begin_moves();
@@ -164,21 +160,19 @@ bool Loops::approach(bool open) {
 
 /// Velocities along the loops where they stand now.
 void Loops::close_velocities() {
-  contact::SolveSettings settings;
+  contact::SolveSettings settings = state_.solve_settings();
   settings.direct = true;
-  settings.iterations = state_.accuracy.iterations;
-  settings.meter = &state_.meter;
   // Their remainder is divided by the distance from a pose in which a loop may fold either way: `reference`, which
   // steps up to it, leaves round-off only.
   constexpr double kExact = 1e-14;
-  if (state_.accuracy.rung == Rung::Reference) settings.tolerance = kExact;
+  if (state_.accuracy.rung == Rung::Reference) settings.tolerance = kExact * state_.unit();
   for (contact::ScalarRow& row : rows_.scalars()) row.bias = 0, row.impulse = 0;
   state_.load_velocities();
   contact::solve_island(rows_.movers(), {}, rows_.scalars(), settings, rows_.workspace());
   state_.store_velocities();
 }
 
-/// How far the loops are open where the trees stand, m or rad; returns the largest.
+/// How far the loops are open where the trees stand; returns the largest, in rad or length units.
 double Loops::read_errors() {
   std::size_t k = 0;
   double worst = 0;
@@ -186,8 +180,8 @@ double Loops::read_errors() {
     for (const JointIndex index : tree->loops) {
       const LoopRows loop = state_.core.loop_rows(*tree, state_.core.joints[index].is);
       for (int i = 0; i < loop.count; ++i, ++k) {
-        rows_.loop_error(k) = loop.rows[static_cast<std::size_t>(i)].error;
-        worst = std::max(worst, std::abs(rows_.loop_error(k)));
+        rows_.loop_error(k).open = loop.rows[static_cast<std::size_t>(i)].error;
+        worst = std::max(worst, std::abs(rows_.loop_error(k).units()));
       }
     }
   return worst;
@@ -215,7 +209,7 @@ Loops::Stored Loops::read_stored() {
 double Loops::errors_squared() {
   read_errors();
   double sum = 0;
-  for (std::size_t k = 0; k < rows_.loops(); ++k) sum += rows_.loop_error(k) * rows_.loop_error(k);
+  for (std::size_t k = 0; k < rows_.loops(); ++k) sum += rows_.loop_error(k).units() * rows_.loop_error(k).units();
   return sum;
 }
 

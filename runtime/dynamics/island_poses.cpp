@@ -119,11 +119,23 @@ bool State::calls_out() const {
   return false;
 }
 
+namespace {
+
+/// Whether some velocity of the tree is above `slow` rad/s or `slow` length units/s.
+bool moves(const Tree& tree, double slow, double unit) {
+  for (const articulated::Body& body : tree.model.bodies())
+    for (int k = 0; k < articulated::velocity_count(body.type); ++k)
+      if (std::abs(tree.state.v[body.v + k]) > slow * (articulated::is_length(body.type, k) ? unit : 1)) return true;
+  return false;
+}
+
+}  // namespace
+
 bool State::still() const {
   for (const Free& one : loose_bodies())
-    if (one.now.velocity.norm() > kSlow || one.now.spin.norm() > kSlow) return false;
+    if (one.now.velocity.norm() > kSlow * unit() || one.now.spin.norm() > kSlow) return false;
   for (Tree* tree : trees) {
-    if (tree->state.v.size() > 0 && tree->state.v.cwiseAbs().maxCoeff() > kSlow) return false;
+    if (moves(*tree, kSlow, unit())) return false;
     // A motor that is to rotate does not rest, however slowly it does.
     const articulated::Vector& wanted = tree->loads.motor_speed;
     if (wanted.size() > 0 && (wanted.array() != 0).any()) return false;

@@ -36,7 +36,8 @@ double Positions::softness(const NearPair& pair) const {
 void Positions::push_apart(double h) {
   // The part of the overlap for one sub-step. Sweeps leave an uneven rest: pushed apart faster, stacks begin to sway.
   const double share = state_.accuracy.direct ? 0.2 : 0.1;
-  constexpr double kFastestPush = 3;  // m/s or rad/s, along which nothing is moved faster
+  constexpr double kFastestPush = 3;  // rad/s or length units/s, along which nothing is moved faster
+  const double quickest = kFastestPush * state_.unit();
   bool any = false;
   double fastest = 0;
   pushes_.clear();
@@ -45,16 +46,16 @@ void Positions::push_apart(double h) {
     const NearPair& pair = contacts_.pair_of(touch);
     const double deep = -touch.gap - 0.1 * kSkin * state_.size_of_pair(pair);
     // A contact that is not too deep may come nearer by the room that there is.
-    const double rate = deep > 0 ? std::min(share * deep / h, kFastestPush) : std::min(0.0, -touch.gap / h);
+    const double rate = deep > 0 ? std::min(share * deep / h, quickest) : std::min(0.0, -touch.gap / h);
     pushes_.push_back({rate, softness(pair), 0});
     fastest = std::max(fastest, rate);
     any = any || deep > 0;
   }
   for (std::size_t i = 0; i < rows_.limits(); ++i) {
     const Bound& bound = rows_.limit(i).bound;
-    scalar_pushes_.push_back(std::min(-share * std::min(bound.gap, 0.0) / h, kFastestPush));
+    scalar_pushes_.push_back(std::min(-share * std::min(bound.gap, 0.0) / h, kFastestPush * bound.unit));
     fastest = std::max(fastest, scalar_pushes_.back());
-    any = any || bound.gap < -kLimitSkin;
+    any = any || bound.gap < -kLimitSkin * bound.unit;
   }
   scalar_pushes_.resize(rows_.scalars().size(), 0.0);
   if (!any) return;
@@ -68,14 +69,12 @@ void Positions::push_apart(double h) {
 /// again that it solved last: those that the island has now.
 /// @param fastest  of these velocities, m/s or rad/s
 void Positions::move_by_pushes(double fastest, double h) {
-  contact::SolveSettings settings;
+  contact::SolveSettings settings = state_.solve_settings();
   // Only a part of an overlap is put right: how exactly does not matter, least where velocities are not exact either.
-  settings.iterations =
-      state_.accuracy.direct ? state_.accuracy.iterations : std::max(4, state_.accuracy.iterations / 4);
+  if (!state_.accuracy.direct) settings.iterations = std::max(4, settings.iterations / 4);
   settings.direct = rows_.contacts() == 0;
   settings.tolerance = std::max(settings.tolerance, 1e-3 * fastest);
-  settings.meter = &state_.meter;
-  if (settings.direct) settings.tolerance = 1e-14;
+  if (settings.direct) settings.tolerance = 1e-14 * state_.unit();
   book_moves(-1);
   begin_moves();
   contact::solve_again(pushes_, scalar_pushes_, settings, rows_.workspace());
@@ -200,7 +199,7 @@ bool Positions::find_struck(double h) {
     const auto& [bound, row] = rows_.limit(i);
     if (row.impulse == 0 || !all) continue;
     const double reached = bound.gap + 0.5 * h * (bound.rate + rows_.rate_of(row));
-    if (reached >= std::min(bound.gap, 0.0) - kLimitSkin) continue;
+    if (reached >= std::min(bound.gap, 0.0) - kLimitSkin * bound.unit) continue;
     any = true;
     struck_[static_cast<std::size_t>(row.a)] = 1;
   }

@@ -240,7 +240,7 @@ void Rows::add_loops(Tree& tree) {
       row.lo = -JointDrive::kNoLimit;
       row.hi = JointDrive::kNoLimit;
       scalars_.push_back(row);
-      loop_errors_.push_back(wanted.error);
+      loop_errors_.push_back({wanted.error, wanted.angular ? 1 : state_.unit()});
     }
   }
 }

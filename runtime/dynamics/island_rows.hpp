@@ -39,6 +39,12 @@ class Rows {
     contact::Row& row;
     const contact::Law& law;
   };
+  /// How far a loop stands open along a row, and in what.
+  struct LoopError {
+    double open;  // rad or m
+    double unit;  // 1 rad, or the world's length unit
+    double units() const { return open / unit; }
+  };
   struct LimitRow {
     Bound& bound;
     contact::ScalarRow& row;
@@ -55,7 +61,7 @@ class Rows {
   LimitRow limit(std::size_t i) { return {contacts_.bounds()[limits_[i]], scalars_[i]}; }
   DrivenRow motor(std::size_t i) { return {motors_[i], scalars_[limits_.size() + i]}; }
   contact::ScalarRow& loop(std::size_t i) { return scalars_[limits_.size() + motors_.size() + i]; }
-  double& loop_error(std::size_t i) { return loop_errors_[i]; }  // m or rad, by which it is open
+  LoopError& loop_error(std::size_t i) { return loop_errors_[i]; }
   NearPair& pair_of(const contact::Row& row) const { return *state_.pairs[static_cast<std::size_t>(row.pair)]; }
 
   // --- as the solver takes them: scalar rows are those of limits, then of motors, then of loops
@@ -112,7 +118,7 @@ class Rows {
   std::pmr::vector<std::array<Vector3, 2>> before_;  // of rows_, once rates were read
   std::pmr::vector<std::size_t> limits_;             // bounds that have a row
   std::pmr::vector<MotorRow> motors_;
-  std::pmr::vector<double> loop_errors_;
+  std::pmr::vector<LoopError> loop_errors_;
   std::pmr::vector<double> scalars_before_;  // of scalars_
   std::pmr::vector<double> numbers_;         // of Jacobians
   std::pmr::vector<double> before_force_;    // of rows_: N along the normal, in the last sub-step

@@ -46,13 +46,12 @@ void Solver::solve_rebounding() {
 }
 
 void Solver::solve_rows() {
-  contact::SolveSettings settings;
+  contact::SolveSettings settings = state_.solve_settings();
   const int fast = state_.core.settings.fast_contacts;
-  settings.iterations = fast > 0 ? fast : state_.accuracy.iterations;
+  if (fast > 0) settings.iterations = fast;
   constexpr double kSwept = 0.1;  // of the speed that is rest
   settings.direct = fast == 0;
   settings.direct_share = direct_share();
-  settings.meter = &state_.meter;
   // Where `fast` solves directly, no digit that cannot be seen in a step is worth a linear solve.
   constexpr double kUnseen = 1e-3;  // of the speed that is rest
   if (!state_.accuracy.direct) settings.tolerance = std::max(settings.tolerance, kUnseen * contacts_.resting());

@@ -131,11 +131,11 @@ void ContactSprings::take() {
 /// stopped it at the end of each sub-step would shake what stands on springs.
 /// @param h  s, of the sub-step
 void ContactSprings::hold_limits(double h) {
-  constexpr double kNear = 1e-4, kSlow = 0.05;  // rad or m; rad/s or m/s
+  constexpr double kNear = 1e-4, kSlow = 0.05;  // rad or length units; per second
   for (Tree* tree : state_.trees) tree->held.clear();
   if (!move()) return;
   for (Bound& bound : contacts_.bounds()) {
-    if (bound.gap > kNear || std::abs(bound.rate) > kSlow) continue;
+    if (bound.gap > kNear * bound.unit || std::abs(bound.rate) > kSlow * bound.unit) continue;
     Tree& tree = *state_.core.trees[state_.core.joints[bound.joint].tree];
     tree.held.push_back({bound.joint, bound.axis, bound.sign, bound.limit});
     bound.held = true;

@@ -164,6 +164,14 @@ void State::begin(MechanicsClient* client, double h) {
   }
 }
 
+contact::SolveSettings State::solve_settings() {
+  contact::SolveSettings settings;
+  settings.iterations = accuracy.iterations;
+  settings.tolerance *= unit();
+  settings.meter = &meter;
+  return settings;
+}
+
 void State::use_accuracy(const Accuracy& other) {
   accuracy = other;
   for (Clustered& one : clusters) one.entry->system->set_accuracy(other);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runtime/base/meter.hpp"
+#include "runtime/contact/solver.hpp"
 #include "runtime/dynamics/island_result.hpp"
 #include "runtime/dynamics/motion.hpp"
 #include "runtime/dynamics/near_pairs.hpp"
@@ -18,11 +19,11 @@ namespace breve::island {
 /// Parts of the smaller body's radius. Within the first, slow bodies rest on one another; within the second they touch;
 /// within the third they have met: what approaches collides there, not before.
 inline constexpr double kSkin = 1e-3, kTouchSkin = 1e-4, kMetSkin = 1e-9;
-inline constexpr double kLimitSkin = 1e-6;  // rad or m: a joint that is nearer to its limit rests there
+inline constexpr double kLimitSkin = 1e-6;  // rad or length units: a joint that is nearer to its limit rests there
 inline constexpr double kTiny = 1e-9;       // of stored energy: round-off of sums
 inline constexpr double kStill = 1e-6;      // of weight(): what a step of bodies that hardly move may leave unexplained
 inline constexpr double kFew = 0.01;        // of the energy in motion: what may be taken from it without trying again
-inline constexpr double kSlow = 0.02;       // m/s and rad/s: slower is still
+inline constexpr double kSlow = 0.02;       // rad/s and length units/s: slower is still
 
 /// A body without joints, or one that a script moves.
 struct Free {
@@ -119,6 +120,10 @@ struct State {
   }
   Vector3 spin_of(BodyIndex body) const;
   Vector3 point_velocity(BodyIndex body, const Vector3& point) const;
+  /// The world's length unit, m: what thresholds of lengths and speeds are multiples of.
+  double unit() const { return core.settings.unit; }
+  /// For the solver of rows: the accuracy's sweeps, a tolerance of speed in the world's unit, and the meter.
+  contact::SolveSettings solve_settings();
   double size_of_pair(const NearPair& pair) const;
   double natural_response(BodyIndex body) const;
   // Positions in free_bodies: the bodies of networks stand together.

@@ -26,6 +26,15 @@ void Step::once(MechanicsClient* client, double start, double h) {
   rows_.clear();
   contacts_.begin(client && client->locates());
   const bool alone = state_.pairs.empty() && !bounded();
+  const auto finish_there = [&](const Trouble& why) {
+    if (alone) {
+      balance_.back_to_start();
+      gone_ = 0;
+    } else {
+      state_.restore();
+    }
+    finish(why, start + gone_, h - gone_);
+  };
   try {
     if (alone)
       undisturbed(start, h);
@@ -131,7 +140,8 @@ void Step::fast(double start, double h) {
 void Step::take_fast(double time, double h) {
   sub_step_.look(h, true);
   if (state_.meter.ended()) return;  // what touches was not looked for to the end
-  for (Bound& bound : contacts_.bounds()) bound.rests = bound.gap + h * std::min(0.0, 2 * bound.rate) <= kLimitSkin;
+  for (Bound& bound : contacts_.bounds())
+    bound.rests = bound.gap + h * std::min(0.0, 2 * bound.rate) <= kLimitSkin * bound.unit;
   sub_step_.open(h);
   sub_step_.advance(time, h);
   sub_step_.keep(h, h);

@@ -46,7 +46,7 @@ bool SubStep::catch_bounds(double time, double h) {
     if (bound.rests || bound.held) continue;
     const double gap =
         bound.sign * (state_.core.read_position(state_.core.joints[bound.joint])[bound.axis] - bound.limit);
-    bound.rests = gap < std::min(bound.gap, 0.0) - kLimitSkin;
+    bound.rests = gap < std::min(bound.gap, 0.0) - kLimitSkin * bound.unit;
     any = any || bound.rests;
   }
   if (!any || books_.kept()) return any;

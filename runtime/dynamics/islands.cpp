@@ -154,9 +154,9 @@ bool Dynamics::Core::locates() const {
 
 namespace {
 
-void combine_laws(NearPairs& near, const Bodies& bodies) {
-  near.each([&bodies](const PairKey& key, NearPair& pair) {
-    pair.law = contact::combine(bodies.material(key.a), bodies.material(key.b));
+void combine_laws(NearPairs& near, const Bodies& bodies, double unit) {
+  near.each([&bodies, unit](const PairKey& key, NearPair& pair) {
+    pair.law = contact::combine(bodies.material(key.a), bodies.material(key.b), unit);
     pair.law_known = true;
   });
 }
@@ -167,13 +167,13 @@ void Dynamics::Core::run(MechanicsClient& client, double start, double h, int de
   take_changes();
   settle_books(true);
   if (clusters_changed || integrators_changed) build_clusters();
-  if (settings.sleeping) near.wake_disturbed(*bodies);
+  if (settings.sleeping) near.wake_disturbed(*bodies, settings.unit);
   const auto wanted = [&](PairKey& key) {
     key.pushes = pushes(key.a, key.b, client);
     key.handled = client.handled(key.a, key.b);
   };
   near.update(*bodies, client, settings.gravity, h, rules + client.rules(), locates(), most_pairs(), bound, wanted);
-  combine_laws(near, *bodies);
+  combine_laws(near, *bodies, settings.unit);
   enter_books();
   find_islands();
   counters.work += near.movers().size() + island_pairs.size() + near.others();

@@ -86,7 +86,7 @@ void Dynamics::Core::build_clusters() {
       const Accuracy& one = accuracy_of(tree->links.front().body);
       if (!finest || finer(one.rung, finest->rung)) finest = &one;
     }
-    entry->system = make_in<Cluster>(memory, memory, members, *finest);
+    entry->system = make_in<Cluster>(memory, memory, members, *finest, settings.unit);
     if (!entry->springs.empty() && SpringNetwork::are(members)) make_network(*this, *entry, members);
   }
   // Not before: what memory cut short is made anew.

@@ -130,13 +130,13 @@ class NearPairs {
   void wake(BodyIndex body);
   void wake_all();
   /// Wakes what touches a body that was woken, moved or scaled since the last update, or made of another material.
-  void wake_disturbed(Bodies& bodies);
+  void wake_disturbed(Bodies& bodies, double unit);  // m, the world's length unit
   std::size_t bytes() const;
   std::uint64_t boxes() const { return boxes_; }  // of bodies, looked at so far
   /// Pairs whose boxes meet in this step and that do not push each other: links of a chain, bodies that ignore another.
   std::size_t others() const { return others_; }
   void save(ByteWriter& out, const Bodies& bodies) const;
-  void load(ByteReader& in, const Bodies& bodies);
+  void load(ByteReader& in, const Bodies& bodies, double unit);
   void hash(Hasher& hasher, const Bodies& bodies) const;
 
  private:
@@ -251,7 +251,7 @@ class NearPairs {
   static NearPair load_pair(ByteReader& in);
   void save_standing(ByteWriter& out, const Bodies& bodies) const;
   Proxy& known(BodyIndex body, std::uint64_t serial, const Bodies& bodies);
-  void load_pairs(ByteReader& in, const Bodies& bodies);
+  void load_pairs(ByteReader& in, const Bodies& bodies, double unit);
   void load_rests(ByteReader& in, const Bodies& bodies);
   void load_standing(ByteReader& in, const Bodies& bodies);
 

@@ -102,9 +102,9 @@ NearPairs::Proxy& NearPairs::known(BodyIndex body, std::uint64_t serial, const B
   return proxy;
 }
 
-void NearPairs::load(ByteReader& in, const Bodies& bodies) {
+void NearPairs::load(ByteReader& in, const Bodies& bodies, double unit) {
   proxy_of_.resize(bodies.index_end(), kNoProxy);
-  load_pairs(in, bodies);
+  load_pairs(in, bodies, unit);
   load_rests(in, bodies);
   load_standing(in, bodies);
   incomplete_ = true;  // boxes are to be found again
@@ -132,7 +132,7 @@ NearPair NearPairs::load_pair(ByteReader& in) {
   return pair;
 }
 
-void NearPairs::load_pairs(ByteReader& in, const Bodies& bodies) {
+void NearPairs::load_pairs(ByteReader& in, const Bodies& bodies, double unit) {
   const std::size_t count = in.get_count(2 * sizeof(BodyIndex));
   for (std::size_t i = 0; i < count; ++i) {
     PairKey key;
@@ -147,7 +147,7 @@ void NearPairs::load_pairs(ByteReader& in, const Bodies& bodies) {
       NearPair pair = load_pair(in);
       pair.a = key.a;
       pair.b = key.b;
-      pair.law = contact::combine(bodies.material(key.a), bodies.material(key.b));
+      pair.law = contact::combine(bodies.material(key.a), bodies.material(key.b), unit);
       pair.law_known = true;  // who touches what was made of another material is awake in the image
       key.at = static_cast<std::uint32_t>(pairs_.size());
       pairs_.push_back(pair);

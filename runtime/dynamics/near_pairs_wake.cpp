@@ -49,7 +49,7 @@ void NearPairs::wake_met(const Bodies& bodies, const Proxy& proxy) {
     if (proxies_[other].moves && bodies.bounds(proxies_[other].body).intersects(box)) wake(proxies_[other].body);
 }
 
-void NearPairs::wake_disturbed(Bodies& bodies) {
+void NearPairs::wake_disturbed(Bodies& bodies, double unit) {
   for (const PairKey& key : keys_) {
     if (!remembers(key) || !bodies.used(key.a) || !bodies.used(key.b)) continue;
     const NearPair& pair = pairs_[key.at];
@@ -57,7 +57,7 @@ void NearPairs::wake_disturbed(Bodies& bodies) {
     const Bodies& all = bodies;
     const bool changed =
         !holds(all, a) || !holds(all, b) || a.woken || b.woken || displaced(all, a) || displaced(all, b) ||
-        (pair.law_known && !same(pair.law, contact::combine(all.material(key.a), all.material(key.b))));
+        (pair.law_known && !same(pair.law, contact::combine(all.material(key.a), all.material(key.b), unit)));
     if (!changed) continue;
     for (const BodyIndex body : {key.a, key.b}) proxies_[proxy_of_[body]].rest = {};
   }

@@ -93,7 +93,7 @@ void Dynamics::save(ByteWriter& out) const {
   out.put(core_ != nullptr);
   if (!core_) return;
   // Bodies that wake up in the next step are awake in the image.
-  if (core_->settings.sleeping) core_->near.wake_disturbed(*bodies_);
+  if (core_->settings.sleeping) core_->near.wake_disturbed(*bodies_, core_->settings.unit);
   core_->save(out);
 }
 
@@ -110,6 +110,7 @@ void Dynamics::Core::save(ByteWriter& out) const {
   std::pmr::vector<double> books = books_of_all(*this);
   const Energy kept_ledger = ledger_kept(*this, stale, books);
   each(Writer{out}, settings);
+  out.put(settings.unit);
   each(Writer{out}, kept_ledger);
   out.put(next_serial);
   out.put(sub_step);
@@ -176,6 +177,7 @@ void Dynamics::Core::save_tree(ByteWriter& out, const Tree& tree) const {
 
 void Dynamics::Core::load(ByteReader& in) {
   each(Reader{in}, settings);
+  settings.unit = in.get<double>();
   check_loaded(settings);
   each(Reader{in}, ledger);
   next_serial = in.get<std::uint64_t>();
@@ -214,7 +216,7 @@ void Dynamics::Core::load(ByteReader& in) {
     if (joints[i].tree == kNone) joints[i].loop = loops[i] != 0;  // what a tree that was not there made of it
   loading = false;
   graph_changed = pending;
-  near.load(in, *bodies);
+  near.load(in, *bodies, settings.unit);
 }
 
 void Dynamics::Core::join_loaded() {
@@ -272,6 +274,7 @@ void Dynamics::Core::hash(Hasher& hasher) const {
   std::pmr::vector<double> books = books_of_all(*this);
   const Energy kept_ledger = ledger_kept(*this, stale, books);
   each(add, settings);
+  if (settings.unit != 1) add(settings.unit);
   each(add, kept_ledger);
   for (const JointEntry& joint : joints) {
     if (!joint.used) continue;

@@ -74,6 +74,7 @@ void SprungMotion::lay_out() {
   start_.v.setZero(nv_);
   articulated::Settings settings;
   settings.tolerance.relative = tolerance_ = tolerance;
+  settings.tolerance.length = settings.tolerance.velocity = state_.unit();
   settings.implicit_joints = accuracy.implicit_joints;
   settings.refine = true;
   integrator_.emplace(*this, scheme_ = accuracy.scheme, settings);

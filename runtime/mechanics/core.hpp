@@ -44,7 +44,7 @@ struct WorldSettings {
   int fast_contacts = 0;
   double erp = 0.1, cfm = 1e-6;
   int workers = 1;
-  double unit = 1;  // m that a flat world computes with as 1; in space always 1
+  double unit = 1;  // m, about the size of bodies; a flat world computes with it as 1
 };
 
 struct MechanicsCore : InMemory {

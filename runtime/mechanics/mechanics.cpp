@@ -13,6 +13,7 @@ namespace breve {
 namespace {
 
 const WorldSettings kSettings{};
+constexpr double kLeastUnit = 1e-9, kMostUnit = 1e9;  // m
 const DynamicsCounters kNoCounters{};
 
 void need_range(std::string_view property, double value, double low, double high) {
@@ -100,6 +101,14 @@ const Accuracy& Mechanics::accuracy(BodyIndex body) const {
 const WorldSettings& Mechanics::settings() const { return shared_ ? shared_->settings : kSettings; }
 
 double Mechanics::length_unit() const { return settings().unit; }
+void Mechanics::set_length_unit(double metres) {
+  if (!(metres >= kLeastUnit && metres <= kMostUnit))
+    throw Error(ErrorCode::Argument, fmt::format("the length unit must be from 1e-9 to 1e9, but is {}", metres));
+  if (metres == length_unit()) return;
+  inside().settings.unit = metres;
+  length_unit_changed();
+}
+
 const Vector3& Mechanics::gravity() const { return settings().gravity; }
 
 void Mechanics::set_accuracy(Rung rung) { set_accuracy(accuracy_of(rung)); }
@@ -202,6 +211,7 @@ void check_loaded(const WorldSettings& s) {
   check(s.accuracy);
   if (s.fast_contacts < 0 || s.fast_contacts > kMostIterations) ByteReader::fail();
   if (!(s.erp >= 0 && s.erp <= 1) || !(s.cfm >= 0)) ByteReader::fail();
+  if (!(s.unit >= kLeastUnit && s.unit <= kMostUnit)) ByteReader::fail();
   if (static_cast<int>(s.guard) > static_cast<int>(GuardMode::Rest) || !s.gravity.allFinite()) ByteReader::fail();
 }
 

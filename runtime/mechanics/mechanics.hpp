@@ -149,10 +149,11 @@ class Mechanics : public InMemory {
 
   // --- settings of the world ----------------------------------------------------------------------------------------
   virtual int dimension() const = 0;  // 3, or 2 in a flat world
-  /// Metres of what a flat world computes with as 1: sizes from 0.1 to 10 of it are best. In space always 1.
+  /// m: about the size of the bodies, 1 unless set. Thresholds of lengths and speeds (rest, rebound, errors of motion)
+  /// are multiples of it; a flat world computes with it as 1, so that sizes from 0.1 to 10 of it are best.
   double length_unit() const;
-  /// Error{Argument} if it is not finite and > 0, and in space if it is not 1.
-  virtual void set_length_unit(double metres) = 0;
+  /// Error{Argument} if it is not from 1e-9 to 1e9.
+  void set_length_unit(double metres);
   virtual void set_gravity(const Vector3& gravity) = 0;  // m/s^2; Error{Argument} if not finite
   const Vector3& gravity() const;
   void set_accuracy(Rung rung);
@@ -232,6 +233,7 @@ class Mechanics : public InMemory {
   virtual void settings_begin(BodyIndex) {}  // the body gets settings of its own
   virtual void accuracy_changed() {}         // of the world, or of some assembly
   virtual void sleeping_ended() {}
+  virtual void length_unit_changed() {}
 
  private:
   MechanicsCore* shared_ = nullptr;  // null: there is no inside yet

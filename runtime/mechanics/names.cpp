@@ -19,7 +19,7 @@ constexpr std::array<Words, 5> kKinds{"revolute", "prismatic", "fixed", "univers
 constexpr std::array<Words, 5> kRungs{"fast", "balanced", "precise", "reference", "conserving"};
 constexpr std::array<Words, 4> kModes{"off", "report", "refine", "rest"};
 constexpr std::array<Words, 4> kActions{"reported", "refined", "put to rest", "finished coarsely"};
-constexpr std::array<Words, 8> kReasons{"a number is not finite",
+constexpr std::array<Words, 9> kReasons{"a number is not finite",
                                         "unexplained energy gain",
                                         "an overlap grows",
                                         "a body rotates too far in one sub-step",

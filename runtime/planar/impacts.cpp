@@ -146,7 +146,7 @@ bool Planar::Core::approach_fast(const FlatBody& a, const FlatBody& b, double dt
   const b2Vec2 v = a.b2->GetLinearVelocity() - b.b2->GetLinearVelocity();
   const double spin = std::abs(a.b2->GetAngularVelocity()) + std::abs(b.b2->GetAngularVelocity());
   const double fall = settings.gravity.norm() * dt;
-  return v.Length() * settings.unit + spin * settings.unit > std::max(contact::kRestingApproach, fall);
+  return v.Length() * settings.unit + spin * settings.unit > std::max(contact::kRestingApproach * settings.unit, fall);
 }
 
 /// What Box2D does not know yet to be near: it looks at the way of the last step.

@@ -104,11 +104,7 @@ JointReaction Planar::reaction(JointIndex joint) const {
 
 // --- settings -------------------------------------------------------------------------------------------------------
 
-void Planar::set_length_unit(double metres) {
-  if (!std::isfinite(metres) || !(metres >= 1e-9 && metres <= 1e9))
-    throw Error(ErrorCode::Argument, fmt::format("the length unit must be from 1e-9 to 1e9, but is {}", metres));
-  if (metres == core_->settings.unit) return;
-  core_->settings.unit = metres;
+void Planar::length_unit_changed() {
   core_->drop_world();
   core_->frozen.reset();
 }

@@ -53,7 +53,6 @@ class Planar final : public Mechanics {
 
   // --- settings of the world ----------------------------------------------------------------------------------------
   int dimension() const override { return 2; }
-  void set_length_unit(double metres) override;
   void set_gravity(const Vector3& gravity) override;
   std::string describe_accuracy() const override;
   void set_force_method(BodyIndex body, bool on) override;
@@ -83,6 +82,7 @@ class Planar final : public Mechanics {
   const JointRecord* joint_record(JointIndex joint) const override;
   const SpringRecord* spring_record(SpringIndex spring) const override;
   const AssemblySettings* settings_of(BodyIndex body, bool (*wanted)(const AssemblySettings&)) const override;
+  void length_unit_changed() override;
   std::pmr::memory_resource* memory_;
   std::unique_ptr<Core> core_;  // never null
 };

@@ -293,7 +293,6 @@ void Planar::Core::load(ByteReader& in) {
   settings.unit = in.get<double>();
   check_loaded(settings);
   if (settings.gravity.z() != 0) ByteReader::fail();
-  if (!(settings.unit >= 1e-9 && settings.unit <= 1e9)) ByteReader::fail();
   each(Reader{in}, ledger);
   base = in.get<double>();
   springs_known = in.get<double>();

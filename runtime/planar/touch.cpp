@@ -21,7 +21,7 @@ bool two_frictions(float known) { return known >= kTwoFrictions; }
 }  // namespace
 
 contact::Law Planar::Core::law_of(const FlatBody& a, const FlatBody& b) const {
-  return contact::combine(a.material, b.material);
+  return contact::combine(a.material, b.material, settings.unit);
 }
 
 void Planar::Core::refresh(b2Contact* contact) {
@@ -98,8 +98,8 @@ void Planar::Core::before_solving(b2Contact* contact) {
   const b2Vec2 slip =
       b.b2->GetLinearVelocityFromWorldPoint(where.points[0]) - a.b2->GetLinearVelocityFromWorldPoint(where.points[0]);
   // Slower than this it rests: what gravity would add along a surface in a sub-step is stopped by friction each time.
-  constexpr double kRest = 1e-3;  // m/s
-  const bool rests = std::abs(b2Cross(slip, where.normal)) * settings.unit < kRest;
+  constexpr double kRest = 1e-3;  // length units/s
+  const bool rests = std::abs(b2Cross(slip, where.normal)) < kRest;
   contact->SetFriction(static_cast<float>(rests ? law.static_friction : law.dynamic_friction));
 }
 

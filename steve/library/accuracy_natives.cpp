@@ -242,8 +242,8 @@ constexpr Native kAccuracyNatives[] = {
     native<set_erp>("physical-control.set-erp"),
     native<set_cfm>("physical-control.set-cfm"),
     native<flatten>("planar-control.flatten"),
-    native<set_length_unit>("planar-control.set-length-unit"),
-    native<get_length_unit>("planar-control.get-length-unit"),
+    native<set_length_unit>("physical-control.set-length-unit"),
+    native<get_length_unit>("physical-control.get-length-unit"),
 };
 
 }  // namespace

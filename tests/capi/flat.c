@@ -62,6 +62,17 @@ static void dimension_and_length_unit_are_checked(void) {
   config.length_unit = -1;
   CHECK_STATUS(BREVE_ERROR_ARGUMENT, open_world(&s, "PlanarControl", &config));
   scene_close(&s);
+  config.length_unit = 1e-12;
+  CHECK_STATUS(BREVE_ERROR_ARGUMENT, open_world(&s, "PlanarControl", &config));
+  scene_close(&s);
+  config.dimension = 3;
+  config.length_unit = 0.001;
+  CHECK_STATUS(BREVE_OK, open_world(&s, "PhysicalControl", &config));
+  breve_value unit;
+  CHECK_STATUS(BREVE_OK,
+               breve_object_call(s.world, breve_world_controller(s.world), "get-length-unit", NULL, 0, &unit));
+  CHECK(unit.type == BREVE_TYPE_DOUBLE && unit.as.number == 0.001);
+  scene_close(&s);
 }
 
 /* A setter takes all of its input, or nothing of it. */

@@ -81,6 +81,8 @@ TEST_P(MechanicsTest, GivesBackTheSettingsThatItGot) {
   m.set_sleeping(true);
   m.set_softness(0.25, 1e-3);
   m.set_workers(3);
+  m.set_length_unit(0.25);
+  EXPECT_EQ(m.length_unit(), 0.25);
   EXPECT_EQ(m.gravity(), Vector3(1, -2, 0));
   EXPECT_EQ(m.accuracy().rung, Rung::Precise);
   EXPECT_EQ(m.guard(), GuardMode::Report);
@@ -96,6 +98,9 @@ TEST_P(MechanicsTest, RefusesBadSettingsInTheSameWordsAndKeepsTheOld) {
   EXPECT_EQ(refusal([&] { m.set_softness(0.5, -1); }), "cfm must be finite and >= 0, but is -1");
   EXPECT_EQ(refusal([&] { m.set_workers(0); }), "the number of workers must be from 1 to 1024, but is 0");
   EXPECT_EQ(refusal([&] { m.set_gravity({kNaN, 0, 0}); }), "gravity must be finite");
+  EXPECT_EQ(refusal([&] { m.set_length_unit(0); }), "the length unit must be from 1e-9 to 1e9, but is 0");
+  EXPECT_NE(refusal([&] { m.set_length_unit(kNaN); }), "");
+  EXPECT_EQ(m.length_unit(), 1);
   EXPECT_EQ(refusal([&] { m.set_self_collision_parameters(cube(0), 2, 0); }),
             "self collision erp must be from 0 to 1, but is 2");
   EXPECT_NE(refusal([&] { m.set_fast_contacts(-1); }), "");

@@ -587,8 +587,9 @@ typedef struct breve_world_config {
   void* trace_user;             /* Default NULL */
   const char* accuracy;         /* rung of the accuracy ladder, a name for breve_rung_find, set after the controller's
                                    init; copied; NULL: as the script sets it. Default NULL */
-  double length_unit;           /* m, the internal length unit of a flat world, set after the controller's init: sizes
-                                   of 0.1 to 10 units are best; 0: as the script sets it. Default 0 */
+  double length_unit;           /* m, about the size of the bodies, set after the controller's init: thresholds of lengths
+                                   and speeds are multiples of it, and in a flat world sizes of 0.1 to 10 units are best;
+                                   from 1e-9 to 1e9; 0: as the script sets it. Default 0 */
   const breve_setting* settings; /* copied; NULL: none. BREVE_ERROR_ARGUMENT if the controller has no variable of that
                                     name, or if the text is not a value of its type. Default NULL */
   size_t setting_count;          /* 0 if settings is NULL. Default 0 */
