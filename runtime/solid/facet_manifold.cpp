@@ -96,6 +96,7 @@ bool facet_manifold(const ConvexPair& pair, const Facet& facet, bool& near, Mani
   const Gap gap = triangle_gap(pair.a, pair.b, pair.margin);
   if (gap.distance >= pair.margin) return false;
   near = true;
+  if (gap.back != 0) return false;
   Vector3 normal = pair.b.rotation * facet.normal;
   const bool flipped = !pair.b.outer && normal.dot(pair.a.location - pair.b.vertex(0)) < 0;
   if (flipped) normal = -normal;

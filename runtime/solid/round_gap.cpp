@@ -224,7 +224,11 @@ Gap round_triangle_gap(const Placed& a, const Placed& b, double enough) {
     // The way out leads to the side of the normal.
     if (!apart || gap.distance < kTold * a.radius || gap.normal.dot(normal) < 0) gap.normal = normal;
     climb(a, b, gap);
-    if (gap.normal.dot(normal) < 0) take_face(normal, height, low, gap);
+    if (gap.normal.dot(normal) < 0) {
+      const double back = gap.distance;
+      take_face(normal, height, low, gap);
+      if (b.outer && back > kFarShorter * gap.distance) gap.back = back;
+    }
   }
   note_lines(a, b, gap);
   return gap;

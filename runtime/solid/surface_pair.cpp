@@ -17,19 +17,22 @@ namespace {
 // Normals within 2.5 degrees are one patch: a body that rests on a gentle curve has one manifold.
 constexpr double kOnePatch = 0.999;
 
+constexpr double kSunk = 1e-3;  // of the convex solid's radius: less deep, a facet that is left backward does not count
+
 Eigen::AlignedBox3d grown(const Eigen::AlignedBox3d& box, double by) {
   return {box.min() - Vector3::Constant(by), box.max() + Vector3::Constant(by)};
 }
 
 Clearance clearance_of(const SurfacePair& pair) { return {pair.convex, pair.frame, pair.surface->bounds()}; }
 
-/// The narrowest gap of all facets; of equals that of the first.
+/// The narrowest gap of all facets; of equals that of the first. Of a facet that is left backward by a far shorter way
+/// only if no other touches.
 class Narrowest final : public FacetVisitor {
  public:
   /// @param outer  out of an overlap to the outer side only
   Narrowest(const SurfacePair& pair, bool outer, const NarrowCounters* asked)
       : pair_(pair), clearance_(clearance_of(pair)), asked_(asked), outer_(outer) {
-    gap.distance = kFar;
+    gap.distance = behind_.distance = kFar;
   }
   /// All facets whose gap is at most `reach`, and perhaps some that are farther.
   void search(double reach) {
@@ -43,10 +46,16 @@ class Narrowest final : public FacetVisitor {
     if (clearance_.of_plane(facet) > farthest()) return;
     triangle_.set(facet);
     const Gap here = triangle_gap(pair_.convex, triangle_.placed(pair_.frame, outer_), farthest());
+    if (here.back != 0) {
+      if (here.back < -kSunk * pair_.convex.radius && here.distance < behind_.distance) behind_ = here;
+      return;
+    }
     if (here.distance >= gap.distance || here.distance > reach_) return;
     gap = here;
     nearest = facet;
   }
+  /// Overlaps are with facets of that kind alone, of which this is the deepest; null: they are not.
+  const Gap* only_behind() const { return gap.distance > 0 && behind_.distance < 0 ? &behind_ : nullptr; }
   const Clearance& clearance() const { return clearance_; }
 
   Gap gap;
@@ -61,6 +70,7 @@ class Narrowest final : public FacetVisitor {
   const NarrowCounters* asked_;
   bool outer_;
   double reach_ = 0;
+  Gap behind_;
   TriangleSolid triangle_;
 };
 
@@ -97,6 +107,10 @@ Gap narrowest_gap(const SurfacePair& pair, double limit, NarrowCounters* counter
   const double least = 1e-3 * size;
   double reach = std::min(least, std::max(limit, 0.0));
   narrowest.search(reach);
+  if (const Gap* deep = narrowest.only_behind()) {
+    if (counters != nullptr) counters->add(narrowest.counters);
+    return *deep;
+  }
   const bool inside = sunk || (narrowest.gap.distance > 0 && center_inside(pair));
   const double all = narrowest.clearance().bounds().merged(pair.surface->bounds()).diagonal().norm();
   const double farthest = inside ? all : std::min(all, limit);

@@ -11,6 +11,7 @@ namespace breve {
 namespace {
 
 constexpr double kParallel = 1e-9;  // sine below which two edges give no axis
+constexpr double kShallow = 1e-4;   // of the sizes: so short a way out is never the wrong one
 constexpr double kSideways = 1e-9;  // of a direction that still counts as not going backward
 
 /// The point of a triangle nearest to p. Source: Ericson 2005, "Real-Time Collision Detection", 5.1.5.
@@ -41,6 +42,13 @@ struct Side {
 struct Local {
   std::array<Vector3, 3> corner;
   Side side;
+
+  /// With the other side.
+  Local turned() const {
+    Local other = *this;
+    other.side = {-side.normal, -side.offset};
+    return other;
+  }
 
   Local(const Placed& a, const Placed& b) {
     const Matrix3 rotation = a.rotation.transpose() * b.rotation;
@@ -169,6 +177,14 @@ Gap triangle_gap(const Placed& a, const Placed& b, double enough) {
   Gap out;
   out.normal = a.rotation * axis.normal;
   out.distance = axis.distance;
+  if (b.outer && axis.distance < -kShallow * std::min(a.radius, b.radius)) {
+    // A side of a solid that stands on `a` with its lower edge: the face beyond that edge has the contact.
+    Axis back;
+    const Local turned = local.turned();
+    try_faces(*a.solid, a.last, turned, back);
+    try_edges(*a.solid, turned, 1e-4 * size, back);
+    if (back.distance > kFarShorter * axis.distance) out.back = back.distance;
+  }
   if (axis.edge_a >= 0) {
     const Edge& edge = a.solid->edges[at(axis.edge_a)];
     out.start_a = a.vertex(edge.a);
