@@ -34,10 +34,6 @@ constexpr double kMostLeap = 1e3;
 constexpr double kBeyond = 0.6;
 constexpr double kCoarse = 1e-3;
 
-// Since the caller began to count. Hard scenes need some 1,000, ten seconds of an oscillator to 1e-13 some 30,000; what
-// needs far more, such as a link without inertia on a spring, is to be told, not to be followed.
-constexpr double kMostAttempts = 5'000, kMostASecond = 10'000;
-
 class Adaptive final : public Integrator::Method {
  public:
   Adaptive(System& system, const Settings& settings)
@@ -66,10 +62,9 @@ class Adaptive final : public Integrator::Method {
     // The stored step size may come from a step that an event cut to a sliver.
     double next = at.step > 0 ? std::max(at.step, settings_.tolerance.smallest_step) : h;
     bool rejected = false;
-    const double most = kMostAttempts + kMostASecond * h;
-    for (; t < end; ++at.attempts) {
+    for (at.attempts = 0; t < end; ++at.attempts) {
       const double left = end - t;
-      if (at.attempts > most || system_.over()) refuse_cost(at, t, next);
+      if (at.spent + at.attempts >= settings_.most_attempts || system_.over()) refuse_cost(at, t, next);
       // Two like steps at the end, rather than a whole one and a sliver.
       const double size = next >= left * (1 - 1e-12) ? left : std::min(next, std::max(0.5 * left, 0.5 * next));
       if (size < std::min(settings_.tolerance.smallest_step, h) || t + size == t) {
@@ -166,7 +161,7 @@ class Adaptive final : public Integrator::Method {
     at.step = size;
     const std::string what =
         fmt::format("at {} s the step size is {} s after {} attempts: the motion is too fast for the tolerance {}", t,
-                    size, at.attempts, settings_.tolerance.relative);
+                    size, at.spent + at.attempts, settings_.tolerance.relative);
     if (system_.over()) throw Error(ErrorCode::Numeric, what);
     throw TooFast(ErrorCode::Numeric, what);
   }

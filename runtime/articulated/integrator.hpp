@@ -35,6 +35,7 @@ struct Tolerance {
 
 struct Settings {
   Tolerance tolerance;
+  int most_attempts = 100'000;  // of step control; more are an error: TooFast
   /// Euler's two explicit schemes treat stiff internal forces (joint springs, dampers, motors) as linearly implicit,
   /// which keeps them stable at any stiffness. Off: the textbook's schemes.
   bool implicit_joints = false;
@@ -45,7 +46,7 @@ struct Settings {
   bool refine = false;
 };
 
-/// Step control gave up, since the motion needs more steps than it takes. The state is as it was.
+/// Step control gave up, since the motion needs more attempts than it may make. The state is as it was.
 struct TooFast : Error {
   using Error::Error;
 };

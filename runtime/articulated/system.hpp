@@ -49,7 +49,8 @@ struct Instant {
   double t = 0;  // s
   Vector q, v;
   double step = 0;   // s, the next step that step control would try; 0: none yet
-  int attempts = 0;  // of step control, since the caller last set it
+  int attempts = 0;  // of step control in the last step
+  int spent = 0;     // that count as made before the next
   Vector mean{};     // (nv) the last step's mean acceleration, where the midpoint rule begins; other sizes: none
   /// How many times its tolerance step control may err by. Above 1 it first tries the implicit midpoint rule.
   double slack = 1;

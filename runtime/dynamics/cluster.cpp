@@ -8,6 +8,7 @@ namespace breve {
 
 namespace {
 
+constexpr double kCoarse = 1e-3;      // tolerances of step control that ask for few digits
 constexpr std::uint64_t kUnits = 16;  // of work, of a link's part in an evaluation
 
 using articulated::Kind;
@@ -18,6 +19,10 @@ articulated::Settings settings_of(const Accuracy& accuracy, double unit) {
   settings.tolerance.relative = accuracy.tolerance;
   settings.tolerance.length = settings.tolerance.velocity = unit;
   settings.implicit_joints = accuracy.implicit_joints;
+  // Of all sub-steps of a step. Hard scenes need some 1,000 at coarse tolerances; what needs far more, such as a link
+  // without inertia on a spring, is to be reported, not to be followed.
+  constexpr int kMostAttempts = 5'000, kMostFine = 50'000;
+  settings.most_attempts = accuracy.tolerance >= kCoarse ? kMostAttempts : kMostFine;
   // A plain scheme must not blow up on a light chain with a heavy load. A midpoint rule that was set is there to be
   // studied.
   settings.refine = accuracy.scheme != articulated::Scheme::ImplicitMidpoint || accuracy.rung == Rung::Conserving;
@@ -71,7 +76,7 @@ void Cluster::set_accuracy(const Accuracy& accuracy) {
 void Cluster::set_finer(bool on) { finer_now_ = on && finer_.has_value(); }
 
 void Cluster::begin(StageForces* forces, Meter& meter) {
-  at_.attempts = 0;
+  at_.spent = 0;
   forces_ = forces;
   meter_ = &meter;
   working_ = forces != nullptr;
@@ -88,9 +93,12 @@ void Cluster::step(double time, double h) {
   current_step_ = h;
   evaluations_ = 0;
   guess_ = articulated::MotorGuess::None;  // nothing that a step remembers is in no image
+  at_.attempts = 0;
   try {
     (finer_now_ ? finer_ : integrator_)->step(at_, h);
+    at_.spent += at_.attempts;
   } catch (...) {
+    at_.spent += at_.attempts;
     scatter(at_.q, at_.v);  // the step leaves `at_` as it was; the trees' states are the last stage's
     throw;
   }

@@ -89,6 +89,7 @@ void Impacts::collide(double time) {
 void Impacts::resolve() {
   constexpr int kLeast = 50;  // sweeps
   contact::ImpactSettings settings;
+  settings.tolerance *= state_.unit();
   settings.rest = state_.solve_settings();
   settings.rest.iterations = std::max(kLeast, settings.rest.iterations);
   settings.rest.direct = true;

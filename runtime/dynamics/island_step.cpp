@@ -43,7 +43,7 @@ void Step::once(MechanicsClient* client, double start, double h) {
     else
       fast(start, h);
   } catch (const articulated::TooFast&) {
-    if (state_.finished) throw;
+    if (state_.finished || state_.core.settings.guard == GuardMode::Off) throw;
     finish_there(fastest_motion());
   } catch (const Error& error) {
     // Step control gave up since the work is used up.

@@ -23,7 +23,7 @@
 
 namespace {
 
-constexpr std::array kScenes{"pendulum", "whip", "spin", "ball", "stack", "vehicle"};
+constexpr std::array kScenes{"pendulum", "whip", "spin", "ball", "stack", "vehicle", "walker"};
 constexpr std::array kRungs{BREVE_RUNG_FAST, BREVE_RUNG_BALANCED, BREVE_RUNG_PRECISE, BREVE_RUNG_CONSERVING,
                             BREVE_RUNG_REFERENCE};
 constexpr std::array kNames{"fast", "balanced", "precise", "conserving", "reference"};

@@ -1,5 +1,5 @@
-// A scene and the same scene with all lengths multiplied by a number, its length unit and gravity too, move alike: no
-// threshold is hidden that knows metres.
+// A scene moves as the same scene does with its lengths, its length unit and its gravity multiplied by a number: no
+// hidden threshold knows metres.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -147,7 +147,7 @@ std::vector<Case> cases() {
   for (const Rung rung : {Rung::Fast, Rung::Balanced, Rung::Precise, Rung::Reference}) {
     all.push_back({"pour", pour, 1e9, 1e-7, rung});
     all.push_back({"swing", swing, 1e9, 1e-9, rung});
-    // The solver ends where rad/s, too, are small enough in m/s, so that joints are solved to other digits.
+    // The solver compares rad/s as well as m/s with one tolerance, so that joints are solved to other digits.
     all.push_back({"walk", walk, 1, rung == Rung::Fast ? 0.05 : 1e-3, rung});
   }
   return all;
