@@ -68,6 +68,30 @@ static void sixty_frames_of_a_sixtieth_are_one_second(void) {
   }
 }
 
+/* Neither the controller nor its own sub-steps, of which an iteration is no whole number, change how long one is. */
+static void an_iteration_is_as_long_as_it_was_configured(void) {
+  static const char* const controllers[] = {"Control", "PhysicalControl", "PlanarControl"};
+  const double steps[] = {1.0 / 60, 1.0 / 30, 0.03};
+  for (int c = 0; c < 3; ++c)
+    for (int k = 0; k < 3; ++k) {
+      scene s;
+      char text[200];
+      breve_world_config config = breve_world_config_default();
+      config.iteration_step = steps[k];
+      snprintf(text, sizeof text, "@use %s.\nController C.\n%s : C {\n  + to iterate: super iterate.\n}\n",
+               controllers[c], controllers[c]);
+      if (!scene_open_text(&s, text, &config)) return;
+      CHECK_NEAR(steps[k], breve_world_iteration_step(s.world), 0);
+      for (int i = 0; i < 60; ++i) CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+      CHECK_NEAR(60 * steps[k], breve_world_time(s.world), 1e-9);
+      for (int i = 0; i < 60; ++i) CHECK_STATUS(BREVE_OK, breve_world_advance(s.world, 1.0 / 60, NULL));
+      /* What does not fill an iteration is left. */
+      const double advanced = breve_world_time(s.world) - 60 * steps[k];
+      CHECK(advanced > 1 - steps[k] && advanced < 1 + 1e-9);
+      scene_close(&s);
+    }
+}
+
 static void the_advance_limit_drops_time_that_cannot_be_caught_up(void) {
   scene s;
   breve_world_config config = breve_world_config_default();
@@ -328,6 +352,7 @@ void stepping_suite(void) {
   RUN(configured_steps_replace_the_scripts_own);
   RUN(advance_runs_whole_iterations_and_keeps_the_rest);
   RUN(sixty_frames_of_a_sixtieth_are_one_second);
+  RUN(an_iteration_is_as_long_as_it_was_configured);
   RUN(the_advance_limit_drops_time_that_cannot_be_caught_up);
   RUN(nothing_passes_while_paused);
   RUN(a_program_can_end_the_simulation);
