@@ -46,12 +46,10 @@ struct Gap {
   double distance = 0;
   Vector3 edge_a = Vector3::Zero(), edge_b = Vector3::Zero();
   Vector3 start_a = Vector3::Zero(), start_b = Vector3::Zero();
-  // Of a triangle (Placed::outer) that is left backward by a far shorter way, so that another has the contact: the
-  // distance of that way, which is negative. Else 0.
+  // Of a triangle (Placed::outer) that is left backward, so that another has the contact: the distance of that way,
+  // which is negative. Else 0.
   double back = 0;
 };
-
-constexpr double kFarShorter = 0.1;  // of the way out
 
 /// Distance of two polyhedra or cylinders that are apart, or of the axes of capsules. False if they touch or overlap:
 /// `gap` is then not written.

@@ -104,6 +104,31 @@ bool cap_decides(const Placed& a, const Placed& b, Gap& gap) {
   return true;
 }
 
+/// Does a cap of the cylinder a decide, over or under which the lowest corner of the triangle b is? As cap_decides().
+bool cap_takes(const Placed& a, const Placed& b, Gap& gap) {
+  if (!a.round.is_cylinder()) return false;
+  Vector3 cap = a.axis();
+  if (cap.dot((b.vertex(0) + b.vertex(1) + b.vertex(2)) / 3 - a.location) < 0) cap = -cap;
+  Vector3 corner = b.vertex(0);
+  for (const int i : {1, 2})
+    if (cap.dot(b.vertex(i) - corner) < 0) corner = b.vertex(i);
+  const Vector3 from = corner - a.location;
+  const double height = cap.dot(from) - a.round.half;
+  const double beside = (from - cap.dot(from) * cap).norm() - a.round.radius;
+  if (beside > std::min(height, 0.0) || -height > a.round.half) return false;
+  take_face(-cap, height, corner - height * cap, gap);
+  return true;
+}
+
+/// Is a point in a cylinder or capsule?
+bool holds(const Placed& solid, const Vector3& point) {
+  const Vector3 from = point - solid.location;
+  const double along = solid.axis().dot(from), half = solid.round.half;
+  if (solid.round.is_cylinder())
+    return std::abs(along) <= half && (from - along * solid.axis()).norm() <= solid.round.radius;
+  return (from - std::clamp(along, -half, half) * solid.axis()).norm() <= solid.round.radius;
+}
+
 Placed moved(const Placed& solid, const Vector3& by) {
   Placed there = solid;
   there.location += by;
@@ -212,7 +237,22 @@ Gap round_triangle_gap(const Placed& a, const Placed& b, double enough) {
     return (b.rotation * b.solid->planes[0].normal).dot(along.cross(low - from)) >= 0;
   };
   Gap gap;
-  if (over_edge(0) && over_edge(1) && over_edge(2)) {
+  // Behind the plane it overlaps for certain only where it also reaches to the other side.
+  const bool over = over_edge(0) && over_edge(1) && over_edge(2);
+  if (over && height >= 0) {
+    take_face(normal, height, low, gap);
+    return gap;
+  }
+  if (cap_takes(a, b, gap)) {
+    const double back = gap.distance;
+    if (back >= 0 || gap.normal.dot(normal) >= 0) return gap;
+    take_face(normal, height, low, gap);
+    if (b.outer && backward(gap.distance, back, std::min(a.radius, b.radius))) {
+      gap.back = back;
+      return gap;
+    }
+  }
+  if (over && holds(a, low - height * normal)) {
     take_face(normal, height, low, gap);
     return gap;
   }
@@ -227,7 +267,7 @@ Gap round_triangle_gap(const Placed& a, const Placed& b, double enough) {
     if (gap.normal.dot(normal) < 0) {
       const double back = gap.distance;
       take_face(normal, height, low, gap);
-      if (b.outer && back > kFarShorter * gap.distance) gap.back = back;
+      if (b.outer && backward(gap.distance, back, std::min(a.radius, b.radius))) gap.back = back;
     }
   }
   note_lines(a, b, gap);

@@ -17,7 +17,8 @@ namespace {
 // Normals within 2.5 degrees are one patch: a body that rests on a gentle curve has one manifold.
 constexpr double kOnePatch = 0.999;
 
-constexpr double kSunk = 1e-3;  // of the convex solid's radius: less deep, a facet that is left backward does not count
+constexpr double kSunk =
+    1e-3;  // of the smaller solid's radius: less deep, a facet that is left backward does not count
 
 Eigen::AlignedBox3d grown(const Eigen::AlignedBox3d& box, double by) {
   return {box.min() - Vector3::Constant(by), box.max() + Vector3::Constant(by)};
@@ -47,7 +48,8 @@ class Narrowest final : public FacetVisitor {
     triangle_.set(facet);
     const Gap here = triangle_gap(pair_.convex, triangle_.placed(pair_.frame, outer_), farthest());
     if (here.back != 0) {
-      if (here.back < -kSunk * pair_.convex.radius && here.distance < behind_.distance) behind_ = here;
+      const double size = std::min(pair_.convex.radius, 0.5 * pair_.surface->bounds().diagonal().norm());
+      if (here.back < -kSunk * size && here.distance < behind_.distance) behind_ = here;
       return;
     }
     if (here.distance >= gap.distance || here.distance > reach_) return;

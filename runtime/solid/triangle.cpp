@@ -11,7 +11,6 @@ namespace breve {
 namespace {
 
 constexpr double kParallel = 1e-9;  // sine below which two edges give no axis
-constexpr double kShallow = 1e-4;   // of the sizes: so short a way out is never the wrong one
 constexpr double kSideways = 1e-9;  // of a direction that still counts as not going backward
 
 /// The point of a triangle nearest to p. Source: Ericson 2005, "Real-Time Collision Detection", 5.1.5.
@@ -162,6 +161,11 @@ void TriangleSolid::set(const Facet& facet) {
   solid_.planes[1] = {-facet.normal, -solid_.planes[0].offset};
 }
 
+bool backward(double out, double back, double size) {
+  constexpr double kShallow = 1e-3, kFarShorter = 0.1;
+  return back > kFarShorter * out || (back > -kShallow * size && back > out * (1 - 1e-9));
+}
+
 Gap triangle_gap(const Placed& a, const Placed& b, double enough) {
   if (a.solid == nullptr) return ball_triangle(a, b);
   if (a.round.is_round()) return round_triangle_gap(a, b, enough);
@@ -177,13 +181,14 @@ Gap triangle_gap(const Placed& a, const Placed& b, double enough) {
   Gap out;
   out.normal = a.rotation * axis.normal;
   out.distance = axis.distance;
-  if (b.outer && axis.distance < -kShallow * std::min(a.radius, b.radius)) {
+  constexpr double kStraight = 0.9;  // cosine from which the way leads out through the face
+  if (b.outer && axis.distance < 0 && axis.normal.dot(local.side.normal) < kStraight) {
     // A side of a solid that stands on `a` with its lower edge: the face beyond that edge has the contact.
     Axis back;
     const Local turned = local.turned();
     try_faces(*a.solid, a.last, turned, back);
     try_edges(*a.solid, turned, 1e-4 * size, back);
-    if (back.distance > kFarShorter * axis.distance) out.back = back.distance;
+    if (backward(axis.distance, back.distance, std::min(a.radius, b.radius))) out.back = back.distance;
   }
   if (axis.edge_a >= 0) {
     const Edge& edge = a.solid->edges[at(axis.edge_a)];

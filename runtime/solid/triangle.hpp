@@ -35,6 +35,11 @@ class TriangleSolid {
 /// @param enough  what is farther apart than this has no more than a distance, a lower bound beyond it
 Gap triangle_gap(const Placed& a, const Placed& b, double enough = std::numeric_limits<double>::infinity());
 
+/// Whether a triangle that bounds a solid is left backward: the way back is far shorter than the way out, or shorter
+/// and shallow. Distances are negative.
+/// @param size  of the smaller solid, m
+bool backward(double out, double back, double size);
+
 /// The manifold of a convex solid (pair.a) and the triangle pair.b, which is `facet` placed; false if there is none.
 /// At edges that do not stand out the contact is the face's, or its neighbour's. `near` becomes true if they are within
 /// the margin, manifold or not.

@@ -10,7 +10,7 @@ namespace {
 
 using namespace mesh_solids;
 
-enum class Floor { Box, Mesh, Field };
+enum class Floor { Box, Mesh, Field, Cylinder };
 
 struct Ground : Physics {
   explicit Ground(Floor floor) {
@@ -19,6 +19,7 @@ struct Ground : Physics {
   }
   static std::shared_ptr<Shape> of(Floor floor) {
     if (floor == Floor::Box) return Shape::box(Vector3(40, 1, 40));
+    if (floor == Floor::Cylinder) return Shape::cylinder(1, 20);
     if (floor == Floor::Mesh) return block(Vector3(40, 1, 40)).shape();
     return Shape::height_field(41, 41, 1, std::vector<double>(41 * 41, 0.0));
   }
@@ -55,7 +56,7 @@ TEST(ConcaveBodies, FallAndComeToRestOnFloorsOfAllKindsWithoutGainingEnergy) {
                                                                    {"cup", split(cup(0.7, 1.4, 0.15, 16))},
                                                                    {"bowl", split(bowl(1, 0.2, 20, 5))}};
   for (const auto& [name, shape] : solids) {
-    for (const Floor floor : {Floor::Box, Floor::Mesh, Floor::Field}) {
+    for (const Floor floor : {Floor::Box, Floor::Mesh, Floor::Field, Floor::Cylinder}) {
       Ground s(floor);
       const Quaternion tilted(Eigen::AngleAxisd(0.7, Vector3(1, 0.2, 0.5).normalized()));
       const ObjectId id = s.rigid(shape, Vector3(0.3, 2.5, 0.2), tilted);

@@ -12,6 +12,7 @@
 #include "runtime/solid/manifold.hpp"
 #include "runtime/solid/polygons.hpp"
 #include "runtime/solid/triangle_mesh.hpp"
+#include "tests/runtime/mesh_solids.hpp"
 #include "tests/runtime/solid_oracle.hpp"
 
 namespace breve::surface_tests {
@@ -488,6 +489,45 @@ TEST(SurfaceManifold, PointsAreOnBothSurfacesAndWithinTheMargin) {
     }
   }
   EXPECT_GT(found, 400);
+}
+
+// A closed mesh whose lowest corner is a little over the flat top of a large solid, or in it: that corner decides, and
+// no side of the mesh, however it leans.
+TEST(SurfaceGap, AMeshOnALargeSolidIsAsFarAsItsLowestCorner) {
+  namespace solids = mesh_solids;
+  const std::pair<const char*, std::shared_ptr<Shape>> floors[] = {{"box", Shape::box(Vector3(40, 1, 40))},
+                                                                   {"cylinder", Shape::cylinder(1, 20)},
+                                                                   {"prism", Shape::prism(12, 1, 20)}};
+  const std::pair<const char*, solids::Mesh> meshes[] = {{"ell", solids::ell()},
+                                                         {"torus", solids::torus(1, 0.3, 24, 12)},
+                                                         {"cup", solids::cup(0.7, 1.4, 0.15, 16)},
+                                                         {"bowl", solids::bowl(1, 0.2, 20, 5)}};
+  oracle::Dice dice(5);
+  for (const auto& [floor_name, floor] : floors) {
+    for (const auto& [mesh_name, mesh] : meshes) {
+      const std::shared_ptr<Shape> solid = mesh.centered().shape();
+      for (int i = 0; i < 60; ++i) {
+        const double gap = std::array{0.01, 1e-6, -1e-6, -1e-4}[static_cast<std::size_t>(i) % 4];
+        Pose at{dice.vector(5), dice.rotation()};
+        double low = std::numeric_limits<double>::infinity();
+        for (const Vector3& p : mesh.centered().corners) low = std::min(low, (at.orientation * p).y());
+        at.location.y() = gap - low;
+        const Pose under{Vector3(0, -0.5, 0), kLevel};
+        const std::string what = std::string(mesh_name) + " on " + floor_name + ", pose " + std::to_string(i);
+        const Contact found = closest(*solid, at, *floor, under);
+        ASSERT_NEAR(found.distance, gap, 1e-9) << what;
+        ASSERT_NEAR(found.normal.y(), 1, 1e-6) << what;
+        std::pmr::vector<Manifold> manifolds;
+        find_manifolds(*solid, at, *floor, under, 0.02, manifolds);
+        ASSERT_FALSE(manifolds.empty()) << what;
+        for (const Manifold& one : manifolds) {
+          EXPECT_GT(one.normal.y(), 0.9) << what;
+          for (int k = 0; k < one.count; ++k)
+            EXPECT_GT(one.points[static_cast<std::size_t>(k)].distance, gap - 0.002) << what;
+        }
+      }
+    }
+  }
 }
 
 }  // namespace
