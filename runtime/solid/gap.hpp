@@ -46,8 +46,8 @@ struct Gap {
   double distance = 0;
   Vector3 edge_a = Vector3::Zero(), edge_b = Vector3::Zero();
   Vector3 start_a = Vector3::Zero(), start_b = Vector3::Zero();
-  // Of a triangle (Placed::outer) that is left backward, so that another has the contact: the distance of that way,
-  // which is negative. Else 0.
+  // If b is a triangle (Placed::outer) that is left backward, so that another has the contact: the distance of that
+  // way, which is negative. Else 0.
   double back = 0;
 };
 

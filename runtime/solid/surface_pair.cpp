@@ -26,8 +26,8 @@ Eigen::AlignedBox3d grown(const Eigen::AlignedBox3d& box, double by) {
 
 Clearance clearance_of(const SurfacePair& pair) { return {pair.convex, pair.frame, pair.surface->bounds()}; }
 
-/// The narrowest gap of all facets; of equals that of the first. Of a facet that is left backward by a far shorter way
-/// only if no other touches.
+/// The narrowest gap of all facets; of equals that of the first. Facets that are left backward
+/// (triangle.hpp) count only if no other touches.
 class Narrowest final : public FacetVisitor {
  public:
   /// @param outer  out of an overlap to the outer side only

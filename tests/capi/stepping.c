@@ -68,7 +68,7 @@ static void sixty_frames_of_a_sixtieth_are_one_second(void) {
   }
 }
 
-/* Neither the controller nor its own sub-steps, of which an iteration is no whole number, change how long one is. */
+/* Neither the controller nor its sub-steps, into which an iteration may not divide, change how long an iteration is. */
 static void an_iteration_is_as_long_as_it_was_configured(void) {
   static const char* const controllers[] = {"Control", "PhysicalControl", "PlanarControl"};
   const double steps[] = {1.0 / 60, 1.0 / 30, 0.03};
@@ -85,7 +85,7 @@ static void an_iteration_is_as_long_as_it_was_configured(void) {
       for (int i = 0; i < 60; ++i) CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
       CHECK_NEAR(60 * steps[k], breve_world_time(s.world), 1e-9);
       for (int i = 0; i < 60; ++i) CHECK_STATUS(BREVE_OK, breve_world_advance(s.world, 1.0 / 60, NULL));
-      /* What does not fill an iteration is left. */
+      /* The rest, which does not fill an iteration, is left. */
       const double advanced = breve_world_time(s.world) - 60 * steps[k];
       CHECK(advanced > 1 - steps[k] && advanced < 1 + 1e-9);
       scene_close(&s);
