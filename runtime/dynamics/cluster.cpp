@@ -19,8 +19,8 @@ articulated::Settings settings_of(const Accuracy& accuracy, double unit) {
   settings.tolerance.relative = accuracy.tolerance;
   settings.tolerance.length = settings.tolerance.velocity = unit;
   settings.implicit_joints = accuracy.implicit_joints;
-  // In all sub-steps of a step together. Hard scenes need some 1,000 at coarse tolerances; what needs far more, such as a link
-  // without inertia on a spring, is to be reported, not to be followed.
+  // In all sub-steps of a step together. Hard scenes need some 1,000 at coarse tolerances; what needs far more, such as
+  // a link without inertia on a spring, is to be reported, not to be followed.
   constexpr int kMostAttempts = 5'000, kMostFine = 50'000;
   settings.most_attempts = accuracy.tolerance >= kCoarse ? kMostAttempts : kMostFine;
   // A plain scheme must not blow up on a light chain with a heavy load. A midpoint rule that was set is there to be

@@ -59,6 +59,11 @@ double Mechanics::spring_length(SpringIndex spring) const {
   return (b - a).norm();
 }
 
+void Mechanics::share(MechanicsCore& core) {
+  shared_ = &core;
+  core.settings.workers = workers_;
+}
+
 // --- settings of an assembly ----------------------------------------------------------------------------------------
 
 void Mechanics::set_self_collisions(BodyIndex body, bool on) {
@@ -146,9 +151,10 @@ double Mechanics::cfm() const { return settings().cfm; }
 
 void Mechanics::set_workers(int workers) {
   need_range("the number of workers", workers, 1, 1024);
-  inside().settings.workers = workers;
+  workers_ = workers;
+  if (shared_) shared_->settings.workers = workers;
 }
-int Mechanics::workers() const { return settings().workers; }
+int Mechanics::workers() const { return workers_; }
 
 // --- what happened --------------------------------------------------------------------------------------------------
 

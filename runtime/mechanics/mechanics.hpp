@@ -221,7 +221,7 @@ class Mechanics : public InMemory {
   virtual void hash(Hasher& hasher) const = 0;
 
  protected:
-  void share(MechanicsCore& core) { shared_ = &core; }
+  void share(MechanicsCore& core);
   const WorldSettings& settings() const;
   const WorkBound& bound() const { return bound_; }
   /// The inside, which is made if there is none yet.
@@ -238,6 +238,7 @@ class Mechanics : public InMemory {
  private:
   MechanicsCore* shared_ = nullptr;  // null: there is no inside yet
   WorkBound bound_;                  // of the iteration
+  int workers_ = 1;                  // a world that has no inside yet has none for their sake: hashes do not know them
 };
 
 }  // namespace breve

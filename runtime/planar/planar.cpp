@@ -31,7 +31,8 @@ void Planar::take_settings(const Mechanics& other) {
   s.sleeping = other.sleeping();
   s.erp = other.erp();
   s.cfm = other.cfm();
-  s.workers = other.workers();
+  s.unit = other.length_unit();
+  set_workers(other.workers());
 }
 
 // --- positions of joints --------------------------------------------------------------------------------------------
