@@ -1260,8 +1260,8 @@ typedef struct breve_intervention {
   double time;        /* s */
   breve_object body;  /* the body where it was found; it may no longer exist */
   const char* reason; /* in words: "a number is not finite"; lives as long as the library */
-  const char* action; /* "reported", "refined" or "put to rest"; lives as long as the library */
-  double value;       /* the measured value: J, m, or a ratio */
+  const char* action; /* "reported", "refined", "put to rest" or "finished coarsely"; as long-lived */
+  double value;       /* the measured value: J, m, rad, 1/s, a count or a ratio */
 } breve_intervention;
 
 /* The interventions of the last iteration, in order.
