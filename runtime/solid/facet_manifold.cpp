@@ -79,8 +79,10 @@ bool solid_on_facet(const ConvexPair& pair, const Facet& facet, const Gap& gap, 
     place_facing(pair.a, -normal, incident);
     const bool clipped = clip_faces(reference, incident, Owner::B, pair.margin, pair.slack.rim, out);
     // Much deeper than the shortest way out, which leads over a seam: the facet beyond has the contact. A solid that is
-    // larger than the surface reaches far behind the plane of a facet that leans.
-    const bool leans = pair.a.radius > pair.b.radius && height < gap.distance - 2 * pair.slack.preference;
+    // larger than the surface reaches far behind the plane of a facet that leans much.
+    constexpr double kMuch = 0.9;  // cosine
+    const bool leans = pair.a.radius > pair.b.radius && normal.dot(gap.normal) < kMuch &&
+                       height < gap.distance - 2 * pair.slack.preference;
     const bool face = clipped && !leans && out.points[0].distance >= gap.distance - 2 * pair.slack.preference;
     if (face || !out_standing) return face;
   }
