@@ -15,13 +15,11 @@ using namespace hull_sets;
 // Faces that are flat to 1e-8 of the extent are one face (make_hull), so that a point may be so far over it.
 constexpr double kOneFace = 1.01e-8;
 // A box keeps 16 digits less those that its offset takes. A point 1e-12 of the extent over a face is on it (make_hull):
-// that is 1e-6 of the thickness of a sliver, and so on either side of a needle. Faces of a needle that are one, which
-// is rare, are flat to a thousandth of its thickness.
-constexpr double kExact = 1e-12, kOfSliver = 2e-6, kOfNeedle = 1e-3, kOfFar = 1e-8;
+// that is 1e-6 of the thickness of a sliver, and so on either side of a needle.
+constexpr double kExact = 1e-12, kOfSliver = 2e-6, kOfFar = 1e-8;
 
 double tolerance(const Set& set) {
-  if (set.cloud == Cloud::Sliver) return kOfSliver;
-  if (set.cloud == Cloud::Needle) return kOfNeedle;
+  if (set.cloud == Cloud::Sliver || set.cloud == Cloud::Needle) return kOfSliver;
   if (set.cloud == Cloud::Far) return kOfFar;
   return kExact;
 }

@@ -211,10 +211,10 @@ TEST(RoundGap, DistanceIsThatOfTheBestSeparatingDirection) {
     if (wanted.distance < 1e-6) continue;
     const Contact found = closest(*a, pa, *b, pb);
     EXPECT_NEAR(apart_along(*a, pa, *b, pb, found.normal), found.distance, 1e-11) << i;
-    EXPECT_NEAR(found.distance, wanted.distance, 1e-3) << i;  // as near as samples come to the best direction
+    EXPECT_NEAR(found.distance, wanted.distance, 1e-4) << i;
     EXPECT_GE(found.distance, wanted.distance - 1e-12) << i;
     const Contact other = closest(*b, pb, *a, pa);
-    EXPECT_NEAR(other.distance, found.distance, 1e-9) << i;
+    EXPECT_NEAR(other.distance, found.distance, 1e-11) << i;
     expect_near(other.normal, -found.normal, 1e-5);
   }
 }
