@@ -80,7 +80,7 @@ inline Set make_set(int number) {
       ball(false);
       for (Vector3& p : set.points) p = (3 * p).array().round().matrix();
       break;
-    case Cloud::Box: box(Vector3(dice.between(0.2, 2), dice.between(0.2, 2), dice.between(0.2, 2))); break;
+    case Cloud::Box: box(dice.edges(0.2, 2)); break;
     case Cloud::Doubled:
       box(Vector3(1, 2, 3));
       for (int i = 0; i < more; ++i) set.points.push_back(set.points[static_cast<std::size_t>(i) % 8]);

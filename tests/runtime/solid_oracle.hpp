@@ -88,18 +88,31 @@ class Dice {
   explicit Dice(std::uint64_t seed) : engine_(seed) {}
   double between(double low, double high) { return low + (high - low) * unit_(engine_); }
   Vector3 vector(double size) { return {between(-size, size), between(-size, size), between(-size, size)}; }
+  // Compilers differ in the order of arguments: one number a declaration, so that all draw the same samples.
   Quaternion rotation() {
-    return Quaternion(between(-1, 1), between(-1, 1), between(-1, 1), between(-1, 1)).normalized();
+    const double z = between(-1, 1), y = between(-1, 1), x = between(-1, 1), w = between(-1, 1);
+    return Quaternion(w, x, y, z).normalized();
+  }
+  Vector3 edges(double low, double high) {
+    const double z = between(low, high), y = between(low, high), x = between(low, high);
+    return {x, y, z};
   }
   Vector3 direction() { return rotation() * Vector3::UnitX(); }
   std::shared_ptr<Shape> polyhedron(int which) {
     switch (which % 4) {
-      case 0: return Shape::box(Vector3(between(0.2, 2), between(0.2, 2), between(0.2, 2)));
-      case 1: return Shape::prism(3 + which % 7, between(0.2, 2), between(0.3, 1.2));
-      case 2: return Shape::cone(3 + which % 5, between(0.3, 2), between(0.3, 1.2));
+      case 0: return Shape::box(edges(0.2, 2));
+      case 1: {
+        const double radius = between(0.3, 1.2), height = between(0.2, 2);
+        return Shape::prism(3 + which % 7, height, radius);
+      }
+      case 2: {
+        const double radius = between(0.3, 1.2), height = between(0.3, 2);
+        return Shape::cone(3 + which % 5, height, radius);
+      }
       default: {
+        const double z = between(0.5, 2), y = between(0.5, 2), x = between(0.02, 0.1);
         const auto shape = Shape::box(Vector3(1, 1, 1));
-        shape->set_scale(Vector3(between(0.02, 0.1), between(0.5, 2), between(0.5, 2)));  // a plate
+        shape->set_scale(Vector3(x, y, z));  // a plate
         return shape;
       }
     }

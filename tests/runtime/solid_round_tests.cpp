@@ -87,8 +87,8 @@ Sampled sampled(const Shape& a, const Pose& pa, const Shape& b, const Pose& pb, 
 }
 
 std::shared_ptr<Shape> some_round(Dice& dice, int which) {
-  if (which % 2 == 0) return Shape::cylinder(dice.between(0.1, 2), dice.between(0.1, 1));
-  return Shape::capsule(dice.between(0.1, 2), dice.between(0.1, 0.6));
+  const double radius = dice.between(0.1, which % 2 == 0 ? 1 : 0.6), length = dice.between(0.1, 2);
+  return which % 2 == 0 ? Shape::cylinder(length, radius) : Shape::capsule(length, radius);
 }
 
 std::shared_ptr<Shape> some_solid(Dice& dice, int which) {
@@ -205,8 +205,9 @@ TEST(RoundGap, DistanceIsThatOfTheBestSeparatingDirection) {
   Dice dice(1);
   for (int i = 0; i < 150; ++i) {
     const auto a = some_round(dice, i), b = some_solid(dice, i / 2);
-    const Pose pa{dice.vector(1), dice.rotation()},
-        pb{pa.location + dice.between(1, 3) * dice.direction(), dice.rotation()};
+    const Pose pa{dice.vector(1), dice.rotation()};
+    const Vector3 to = dice.direction();
+    const Pose pb{pa.location + dice.between(1, 3) * to, dice.rotation()};
     const Sampled wanted = sampled(*a, pa, *b, pb, dice);
     if (wanted.distance < 1e-6) continue;
     const Contact found = closest(*a, pa, *b, pb);
