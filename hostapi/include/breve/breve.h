@@ -1260,7 +1260,7 @@ typedef struct breve_intervention {
   double time;        /* s */
   breve_object body;  /* the body where it was found; it may no longer exist */
   const char* reason; /* in words: "a number is not finite"; lives as long as the library */
-  const char* action; /* "reported", "refined", "put to rest" or "finished coarsely"; as long-lived */
+  const char* action; /* "reported", "refined", "put to rest" or "finished coarsely"; lives as long as the library */
   double value;       /* the measured value: J, m, rad, 1/s, a count or a ratio */
 } breve_intervention;
 
