@@ -74,6 +74,7 @@ class Dynamics final : public Mechanics {
   struct Core;  // the inside
 
  private:
+  void wake_disturbed() const;
   // Made with the first joint, spring or physics-enabled body.
   Core& core();
   MechanicsCore& inside() override;

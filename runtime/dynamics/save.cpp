@@ -92,8 +92,7 @@ bool is_one_of(Enum value, Enum last) {
 void Dynamics::save(ByteWriter& out) const {
   out.put(core_ != nullptr);
   if (!core_) return;
-  // Bodies that wake up in the next step are awake in the image.
-  if (core_->settings.sleeping) core_->near.wake_disturbed(*bodies_, core_->settings.unit);
+  wake_disturbed();
   core_->save(out);
 }
 
@@ -102,7 +101,14 @@ void Dynamics::load(ByteReader& in) {
 }
 
 void Dynamics::hash(Hasher& hasher) const {
-  if (core_) core_->hash(hasher);
+  if (!core_) return;
+  wake_disturbed();
+  core_->hash(hasher);
+}
+
+/// Bodies that wake up in the next step are awake in an image, and so in the hash.
+void Dynamics::wake_disturbed() const {
+  if (core_->settings.sleeping) core_->near.wake_disturbed(*bodies_, core_->settings.unit);
 }
 
 void Dynamics::Core::save(ByteWriter& out) const {

@@ -46,40 +46,49 @@ void write(Joint* b, const WarmJoint& warm) {
 
 }  // namespace
 
+/// With its angle now as its position with all full rotations, whatever the two bodies have made.
 void Planar::Core::make_b2(FlatJoint& joint) {
+  const JointDescription& is = joint.is;
+  const double parent = is.parent == kNoBody ? 0 : double{find(is.parent)->b2->GetAngle()};
+  const double at_zero = double{find(is.child)->b2->GetAngle()} - parent, wanted = angle_of(is.relative_rotation);
+  double reference = at_zero;
+  if (is.kind == JointKind::Revolute)
+    reference = at_zero + sense(is) * joint.position;
+  else if (!is.keep_rotation)
+    reference = at_zero - std::remainder(at_zero - wanted, 2 * M_PI);
+  make_b2(joint, static_cast<float>(reference));
+}
+
+float Planar::Core::reference_of(const FlatJoint& joint) {
+  if (joint.is.kind == JointKind::Revolute) return static_cast<b2RevoluteJoint*>(joint.b2)->GetReferenceAngle();
+  if (joint.is.kind == JointKind::Prismatic) return static_cast<b2PrismaticJoint*>(joint.b2)->GetReferenceAngle();
+  return static_cast<b2WeldJoint*>(joint.b2)->GetReferenceAngle();
+}
+
+/// @param reference  rad, the angle of the child in the parent where the joint's position is zero
+void Planar::Core::make_b2(FlatJoint& joint, float reference) {
   const JointDescription& is = joint.is;
   b2Body* child = find(is.child)->b2;
   b2Body* parent = is.parent == kNoBody ? ground : find(is.parent)->b2;
-  const auto set_ends = [&](auto& def) {
+  const auto make = [&](auto def) {
     def.bodyA = parent;
     def.bodyB = child;
     def.localAnchorA = to_b2(is.parent_point);
     def.localAnchorB = to_b2(is.child_point);
     def.collideConnected = false;
+    def.referenceAngle = reference;
+    def.userData.pointer = static_cast<std::uintptr_t>(&joint - joints.data());
+    if constexpr (requires { def.localAxisA; })
+      def.localAxisA = b2Vec2(static_cast<float>(is.normal.x()), static_cast<float>(is.normal.y()));
+    joint.b2 = b2->CreateJoint(&def);
   };
-  // Its angle now is the position with all full rotations, whatever the two bodies have made.
-  const double at_zero = double{child->GetAngle()} - parent->GetAngle();
-  if (is.kind == JointKind::Revolute) {
-    b2RevoluteJointDef def;
-    set_ends(def);
-    def.referenceAngle = static_cast<float>(at_zero + sense(is) * joint.position);
-    joint.b2 = b2->CreateJoint(&def);
-  } else if (is.kind == JointKind::Prismatic) {
-    b2PrismaticJointDef def;
-    set_ends(def);
-    const double wanted = angle_of(is.relative_rotation);
-    def.localAxisA = b2Vec2(static_cast<float>(is.normal.x()), static_cast<float>(is.normal.y()));
-    def.referenceAngle =
-        static_cast<float>(is.keep_rotation ? at_zero : at_zero - std::remainder(at_zero - wanted, 2 * M_PI));
-    joint.b2 = b2->CreateJoint(&def);
-  } else {
-    b2WeldJointDef def;
-    set_ends(def);
-    const double wanted = angle_of(is.relative_rotation);
-    def.referenceAngle =
-        static_cast<float>(is.keep_rotation ? at_zero : at_zero - std::remainder(at_zero - wanted, 2 * M_PI));
-    joint.b2 = b2->CreateJoint(&def);
-  }
+  if (is.kind == JointKind::Revolute)
+    make(b2RevoluteJointDef());
+  else if (is.kind == JointKind::Prismatic)
+    make(b2PrismaticJointDef());
+  else
+    make(b2WeldJointDef());
+  joints_made = true;
   joint.loose = false;
   put_drive(joint);
   child->SetAwake(true);

@@ -11,6 +11,7 @@
 
 #include "runtime/contact/law.hpp"
 #include "runtime/mechanics/core.hpp"
+#include "runtime/planar/frozen.hpp"
 #include "runtime/planar/held.hpp"
 #include "runtime/planar/outline.hpp"
 #include "runtime/planar/planar.hpp"
@@ -18,11 +19,6 @@
 namespace breve {
 
 inline constexpr std::uint32_t kNoSlot = 0xffffffffU;
-
-/// Impulses that Box2D starts the next step from.
-struct WarmJoint {
-  float x = 0, y = 0, angular = 0, motor = 0, lower = 0, upper = 0;
-};
 
 struct FlatJoint : JointRecord {
   double position = 0;  // rad or m, as last known: full rotations are counted from here
@@ -39,24 +35,30 @@ using FlatSpring = SpringRecord;
 struct FlatBody {
   // What every sub-step looks at comes first: it is read body after body.
   BodyIndex body = kNoBody;
-  bool fixed = false;      // does not move by itself
-  bool driven = false;     // fixed, but is moved by a script in this step
-  bool solid = true;       // others touch it
-  bool jointed = false;    // some joint holds it
-  bool kicked = false;     // half of this sub-step's acceleration was taken off
-  bool pulled = false;     // a spring or force method acts on it
-  bool has_force = false;  // set by scripts
-  bool drowsy = false;     // may sleep, touches and is slow
-  bool gathered = false;   // for a solution of what touches and is joined
-  bool placed = true;      // stands elsewhere, or has other fixtures, than when Box2D last paired
-  int touching = 0;        // contacts that touch
+  bool fixed = false;        // does not move by itself
+  bool driven = false;       // fixed, but is moved by a script in this step
+  bool solid = true;         // others touch it
+  bool jointed = false;      // some joint holds it
+  bool kicked = false;       // half of this sub-step's acceleration was taken off
+  bool pulled = false;       // a spring or force method acts on it
+  bool has_force = false;    // set by scripts
+  bool drowsy = false;       // may sleep, touches and is slow
+  bool gathered = false;     // for a solution of what touches and is joined
+  bool placed = false;       // stands elsewhere, or has other fixtures, than when Box2D last paired
+  bool set_apart = false;    // takes no part in the steps of Box2D that are taken now
+  bool steps_later = false;  // but it does, unless it is set apart
+  bool missed = false;       // what steps came near it while it was set apart: it is to have a contact yet
+  bool fresh = false;        // it has contacts that are in no order yet
+  int touching = 0;          // contacts that touch
   b2Body* b2 = nullptr;
   b2Vec2 at{0, 0}, before{0, 0};             // the centre of mass and its velocity at the start of the sub-step
   b2Vec2 kick{0, 0}, kicked_velocity{0, 0};  // what was taken off, and what was left
   float before_spin = 0;
   b2Vec2 given{0, 0};  // velocity that collisions within Box2D's step have changed it by
   float given_spin = 0;
-  std::uint32_t part = kNoSlot;  // of what is solved
+  std::uint32_t group = kNoSlot;  // the slot that stands for all that it may meet in a sub-step
+  int pieces = 1;                 // sub-steps that it needs for one of the others
+  std::uint32_t part = kNoSlot;   // of what is solved
   std::uint32_t assembly = kNoSlot;
   double thickness = 0;             // half its narrowest width, length units
   double twist = 0;                 // N*m, with `pull`
@@ -91,49 +93,6 @@ struct EnergyWatch {
   double slack = 0;     // the most in it
 };
 
-/// Which two shapes meet: indices of bodies, of their fixtures, and of a profile's edge. The first one has the
-/// lower numbers.
-struct ContactKey {
-  BodyIndex a = kNoBody, b = kNoBody;
-  std::uint32_t fixture_a = 0, fixture_b = 0, child_a = 0, child_b = 0;
-  friend auto operator<=>(const ContactKey&, const ContactKey&) = default;
-};
-struct ContactImpulse {
-  std::uint32_t id = 0;
-  float normal = 0, tangent = 0;
-};
-struct WarmContact {
-  ContactKey key;
-  int count = 0;
-  ContactImpulse points[2];
-};
-struct FrozenBody {
-  BodyIndex body = kNoBody;
-  float x = 0, y = 0, angle = 0, vx = 0, vy = 0, spin = 0;
-  float still = 0;  // s, since when it has been slow enough to sleep
-  bool awake = true;
-  Vector3 location = Vector3::Zero(), velocity = Vector3::Zero(), rotational_velocity = Vector3::Zero();
-  Quaternion orientation{1, 0, 0, 0};
-};
-struct FrozenJoint {
-  JointIndex joint = kNoJoint;
-  WarmJoint warm;
-};
-/// Impulses of a step of some length.
-struct Warm {
-  float step = 0;                          // s
-  std::pmr::vector<WarmContact> contacts;  // by key
-  std::pmr::vector<FrozenJoint> joints;    // by index
-  explicit Warm(std::pmr::memory_resource* memory) : contacts(memory), joints(memory) {}
-};
-/// Box2D's world as data: what an image holds. Live worlds are made of it anew after an image was taken, so that going
-/// on after saving is the same as going on after loading.
-struct Frozen {
-  std::pmr::vector<FrozenBody> bodies;  // by body
-  Warm warm;
-  explicit Frozen(std::pmr::memory_resource* memory) : bodies(memory), warm(memory) {}
-};
-
 /// What a script set on a body that joints hold.
 struct Strike {
   BodyIndex body = kNoBody;
@@ -154,14 +113,15 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   std::unique_ptr<b2World> b2;
   b2Body* ground = nullptr;          // what joints to the world hang on
   Held held;                         // memory for what Box2D takes
-  std::size_t placed = 0;            // how often a body was since it last paired
+  std::size_t placed = 0;            // bodies that were since Box2D last paired
   std::pmr::vector<FlatBody> slots;  // those in use have a body
   std::pmr::vector<std::uint32_t> free_slots;
   std::pmr::vector<std::uint32_t> slot_of;  // by body
   std::optional<Frozen> frozen;             // what b2 is to be made of
   float last_step = 0;                      // s
-  std::optional<Warm> kept;                 // while steps are cut: impulses of the last one that was not
-  bool muted = false;                       // contacts are being made again: no handler is called
+  std::optional<Warm> kept;                 // while a sub-step is cut: impulses of the last one that was not
+  bool muted = false;                       // Box2D's world is being dropped: its contacts are not reported
+  bool thawing = false;                     // contacts that an image has are made again, whatever the rules are now
 
   std::uint64_t seen_revision = 0, seen_rules = 0, seen_scalings = 0;
   bool rules_seen = false, members_changed = true, materials_changed = true;
@@ -173,14 +133,18 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   EnergyWatch watched;
   double pushed = 0;                  // J, by which positions that were put right have lifted things in this step
   int refined = 0;                    // the guard's doublings of the sub-steps
-  int awake = 0;                      // bodies, when the sub-step was planned or its rest began
+  int awake = 0;                      // bodies that step, when their sub-step was planned or its rest began
+  std::uint64_t looks = 0;            // at bodies, by steps of some alone in this sub-step
   double step_length = 0;             // s, of the sub-step that is being taken, uncut
   double lightest = 0, heaviest = 0;  // kg, of bodies that move by themselves, in this sub-step
+  bool any_missed = false;            // some body has missed contacts
+  bool joints_made = false;           // since they were last put in order
+  std::size_t fresh_contacts = 0;     // at most so many are in no order yet
   std::exception_ptr failure;         // what went wrong in a callback of Box2D, which must come to its end all the same
   bool stepping = false;              // inside b2World::Step
   double friction = 0;                // J, lost in sliding contacts in this sub-step
   double driven_work = 0;             // J, of bodies moved by scripts on what they touch in this sub-step
-  int located = 0;                    // impacts of pairs without handler in this sub-step
+  int located = 0;                    // impacts of pairs without handler in this sub-step of what steps
   std::uint64_t work_most = Meter::kNoBound;  // of the sub-step: what counters.work may become
   bool finishing = false;                     // it is that: the rest is taken coarsely
   double base = 0;           // J: total energy when the ledger began, plus what came and went with bodies
@@ -206,10 +170,13 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   void remove_member(std::uint32_t slot);
   void fit(FlatBody& flat);  // shape and mass
   void push_shapes();
+  void take_shapes();
   void push_changes();
 
   // waking.cpp
   void wake(BodyIndex body);
+  void wake_all();
+  FrozenBody* find_frozen(BodyIndex body);
   void wake_ends(const FlatSpring& spring);
   static void wake_touching(FlatBody& flat);
   void wake_met(const FlatBody& flat);
@@ -232,6 +199,8 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
 
   // box_joints.cpp
   void make_b2(FlatJoint& joint);
+  void make_b2(FlatJoint& joint, float reference);
+  static float reference_of(const FlatJoint& joint);
   void drop_b2(FlatJoint& joint);
   void put_drive(FlatJoint& joint);
 
@@ -267,6 +236,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   std::size_t expected_bytes() const;
   void note_placed(FlatBody& flat);
   void expect_pairs(const WorkBound& most);
+  void all_paired();
 
   // assemblies.cpp
   bool pushes(BodyIndex a, BodyIndex b, const MechanicsClient& asked) const;
@@ -296,13 +266,47 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   int count_awake() const;
   int iterations_now() const;
   int position_iterations() const;
-  void run(double dt);
-  double plan_parts(double dt, int count);
+  void run(double dt, bool handled);
+  void take_sub_step(double dt, int count, double left);
+  double plan_pieces(double dt, int count);
+  void rush(double left);
   void step(double dt, bool bounce = true);
+  void end_cuts(double dt);
+  void end_cut_short();
   void start_warm(double dt);
   void kick(double dt);
   void resist_rolling(double dt);
   void report_lasting(double moment);
+
+  // groups.cpp: bodies that step apart from all others
+  class Apart;
+  bool steps(const b2Contact& contact) const;
+  bool steps(BodyIndex a, BodyIndex b) const;
+  bool steps(const FlatJoint& joint) const { return steps(joint.is.parent, joint.is.child); }
+  bool steps(const FlatSpring& spring) const { return steps(spring.is.a, spring.is.b); }
+  void number_groups(double dt);
+  void step_pieces(double dt);
+  void step_meeting(double dt);
+  void make_missed_contacts();
+
+  // order.cpp: of what Box2D solves
+  ContactKey key_of(const b2Contact& contact) const;
+  /// @param swapped  the second body is the one with the lower index
+  ContactKey key_of(const b2Contact& contact, bool& swapped) const;
+  struct Place {
+    BodyIndex first = kNoBody;
+    ContactKey key;
+    friend auto operator<=>(const Place&, const Place&) = default;
+  };
+  Place place_of(const b2Contact& contact) const;
+  b2Contact* contact_before(const Place& place) const;
+  void order_bodies();
+  void order_slots();
+  void order_joints();
+  void make_room(double dt);
+  void make_contacts();
+  void order_contacts();
+  void order_edges();
 
   // landings.cpp: what Box2D's sweeps solve badly
   class Island;
@@ -314,9 +318,19 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
     int child_a = 0, child_b = 0;
     double t = 0;
     bool handled = false;
-    JointIndex stop = kNoJoint;  // that a joint reaches, instead of two shapes
+    JointIndex stop = kNoJoint;       // that a joint reaches, instead of two shapes
+    BodyPair pair{kNoBody, kNoBody};  // the lower index first: of what meets at one moment, the lowest comes first
   };
-  bool find_hit(double dt, Hit& best);
+  /// Which first touches are looked for.
+  struct Sought {
+    bool handled = false, bounces = false;
+  };
+  bool handlers() const;
+  bool few() const;
+  bool find_hit(double dt, const Sought& sought, Hit& best);
+  std::pmr::vector<BodyIndex> meeting(double dt);
+  template <class F>
+  void each_approach(double dt, const Sought& sought, const F& f);
   void consider(b2Fixture* a, int child_a, b2Fixture* b, int child_b, bool handled, double dt, Hit& best, bool& found);
   void look_around(FlatBody& flat, double dt, Hit& best, bool& found);
   void deliver(const Hit& hit, double moment);
@@ -343,6 +357,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   // stops.cpp: limits that bounce
   void set_stops(bool bounce);
   bool find_stop(double dt, bool found, Hit& best) const;
+  bool stops_within(const FlatJoint& joint, double dt, double& t) const;
   void rebound(JointIndex joint);
   double slowest_rebound(const FlatJoint& joint) const;
 
@@ -373,9 +388,13 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   void forget_impulses(const FlatBody& flat);
 
   // save.cpp
-  Frozen freeze();
-  void thaw();  // bodies and joints
+  Frozen freeze() const;
+  void freeze(const FlatBody& flat, Frozen& made) const;
+  void thaw();
+  void thaw_bodies();
+  void thaw_joints();
   void thaw_contacts();
+  b2Fixture* fixture_of(BodyIndex body, std::uint32_t number, std::uint32_t child) const;
 
   // touch.cpp
   void rethrow();
@@ -385,7 +404,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   Warm warm() const;
   void set_contacts(const Warm& from, double factor);
   void set_joints(const Warm& from, double factor);
-  void save(ByteWriter& out);
+  void save(ByteWriter& out) const;
   void load(ByteReader& in);
   void join_loaded();
   void hash(Hasher& hasher) const;

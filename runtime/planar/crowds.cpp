@@ -46,18 +46,15 @@ std::size_t Planar::Core::expected_bytes() const {
 }
 
 void Planar::Core::note_placed(FlatBody& flat) {
+  placed += flat.placed ? 0 : 1;
   flat.placed = true;
-  ++placed;
 }
 
 /// Holds the memory that the next step of Box2D takes for new pairs, and counts their work before it is done.
 /// Error{Memory}: more pairs than Box2D can count. Error{Budget}: more work than the step may take, if it is bounded.
 void Planar::Core::expect_pairs(const WorkBound& most) {
   constexpr std::size_t kFew = 64;  // placed bodies: what they take is held for each body anyway
-  if (placed <= kFew) {
-    placed = 0;
-    return;
-  }
+  if (placed <= kFew) return all_paired();
   std::size_t pairs = 0, contacts = 0;
   double looks = 0;  // at contacts that a body has already, one by one for each new one
   for (FlatBody& flat : slots) {
@@ -86,6 +83,11 @@ void Planar::Core::expect_pairs(const WorkBound& most) {
                     "the bodies apart",
                     pairs, may));
   counters.work += static_cast<std::uint64_t>(work);
+  all_paired();
+}
+
+void Planar::Core::all_paired() {
+  if (placed == 0) return;
   placed = 0;
   for (FlatBody& flat : slots) flat.placed = false;
 }

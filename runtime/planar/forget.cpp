@@ -28,9 +28,11 @@ void Planar::Core::forget(BodyIndex body) {
   if (!frozen) return;
   const auto gone = [body](const FrozenBody& one) { return one.body == body; };
   if (!known && std::any_of(frozen->bodies.begin(), frozen->bodies.end(), gone)) base -= energy_of(body);
-  std::erase_if(frozen->bodies, [body](const FrozenBody& one) { return one.body == body; });
-  std::erase_if(frozen->warm.contacts,
-                [body](const WarmContact& one) { return one.key.a == body || one.key.b == body; });
+  for (const FrozenContact& one : frozen->contacts)
+    if (one.touching && (one.key.a == body || one.key.b == body)) wake(one.key.a == body ? one.key.b : one.key.a);
+  std::erase_if(frozen->bodies, gone);
+  std::erase_if(frozen->boxes, [body](const FrozenBox& one) { return one.body == body; });
+  std::erase_if(frozen->contacts, [body](const FrozenContact& one) { return one.key.a == body || one.key.b == body; });
 }
 
 }  // namespace breve

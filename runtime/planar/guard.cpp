@@ -22,7 +22,6 @@ void Planar::Core::intervene(BodyIndex body, GuardReason reason, double value, d
 
 /// Those of its contacts and joints in the last step may be no numbers, or are what threw it.
 void Planar::Core::forget_impulses(const FlatBody& flat) {
-  kept.reset();
   for (b2ContactEdge* edge = flat.b2->GetContactList(); edge; edge = edge->next)
     for (b2ManifoldPoint& point : edge->contact->GetManifold()->points) point.normalImpulse = point.tangentImpulse = 0;
   for (FlatJoint& joint : joints)

@@ -112,32 +112,65 @@ void Planar::Core::consider(b2Fixture* a, int child_a, b2Fixture* b, int child_b
   }
   const double moves_on = gap_at(std::min(dt, t + little)) - gap_at(t);
   if (t == 0 && !(moves_on < 0)) return;  // they part
-  if (found && best.t <= t) return;
-  best = {a, b, child_a, child_b, t, handled};
+  if (found && (best.t < t || (best.t == t && best.pair <= pair))) return;
+  best = {a, b, child_a, child_b, t, handled, kNoJoint, pair};
   found = true;
 }
 
-bool Planar::Core::find_hit(double dt, Hit& best) {
-  const bool handlers = client->locates() && client->any_handled();
-  // A cut is a step of the whole world: where there are many bodies, impacts that nobody waits for are met late.
+/// Whether anybody waits for first touches at their moments.
+bool Planar::Core::handlers() const { return client->locates() && client->any_handled(); }
+
+/// Whether what bounces is met at its moment: each impact is a step of all that steps, so where there are many bodies,
+/// impacts that nobody waits for are met late.
+bool Planar::Core::few() const {
   constexpr int kShare = 256;
-  const bool few = settings.accuracy.locate_impacts && awake > 0 && located < kShare / awake;
-  if (!handlers && !few) return false;
-  bool found = false;
+  return settings.accuracy.locate_impacts && awake > 0 && located < kShare / awake;
+}
+
+/// f(a, child of a, b, child of b, whether somebody waits for it) for pairs of shapes that may touch within dt.
+template <class F>
+void Planar::Core::each_approach(double dt, const Sought& sought, const F& f) {
   for (b2Contact* contact = b2->GetContactList(); contact; contact = contact->GetNext()) {
     if (contact->IsTouching()) continue;
-    refresh(contact);
-    const float known = contact->GetRestitution();
-    const bool handled = handlers && known >= 2, bounces = few && std::fmod(known, 2.0F) > 0;
-    if (!handled && !bounces) continue;
     b2Fixture *a = contact->GetFixtureA(), *b = contact->GetFixtureB();
     if (!a->GetBody()->IsAwake() && !b->GetBody()->IsAwake()) continue;
+    refresh(contact);
+    const float known = contact->GetRestitution();
+    const bool handled = sought.handled && known >= 2, bounces = sought.bounces && std::fmod(known, 2.0F) > 0;
+    if (!handled && !bounces) continue;
     if (!handled && !approach_fast(of(a->GetBody()), of(b->GetBody()), dt)) continue;
-    consider(a, contact->GetChildIndexA(), b, contact->GetChildIndexB(), handled, dt, best, found);
+    f(a, contact->GetChildIndexA(), b, contact->GetChildIndexB(), handled);
   }
-  if (handlers)
+}
+
+bool Planar::Core::find_hit(double dt, const Sought& sought, Hit& best) {
+  if (!sought.handled && !sought.bounces) return false;
+  bool found = false;
+  each_approach(dt, sought, [&](b2Fixture* a, int child_a, b2Fixture* b, int child_b, bool handled) {
+    consider(a, child_a, b, child_b, handled, dt, best, found);
+  });
+  if (sought.handled)
     for (FlatBody& flat : slots)
       if (flat.body != kNoBody && !flat.fixed && flat.b2->IsAwake()) look_around(flat, dt, best, found);
+  return found;
+}
+
+/// Bodies that bounce within dt, one of two, and children of joints that reach their limits.
+std::pmr::vector<BodyIndex> Planar::Core::meeting(double dt) {
+  std::pmr::vector<BodyIndex> found(memory);
+  if (few())
+    each_approach(dt, {false, true}, [&](b2Fixture* a, int child_a, b2Fixture* b, int child_b, bool) {
+      const FlatBody &x = of(a->GetBody()), &y = of(b->GetBody());
+      Hit hit;
+      bool hits = false;
+      consider(a, child_a, b, child_b, false, dt, hit, hits);
+      if (hits) found.push_back(x.fixed ? y.body : x.body);
+    });
+  for (const FlatJoint& joint : joints) {
+    double t = 0;
+    if (joint.used && joint.b2 && stops_within(joint, dt, t)) found.push_back(joint.is.child);
+  }
+  std::sort(found.begin(), found.end());
   return found;
 }
 
@@ -207,12 +240,6 @@ namespace {
 int rank(const b2Fixture& fixture) {
   const b2Shape::Type type = fixture.GetType();
   return type == b2Shape::e_chain ? 0 : type == b2Shape::e_polygon ? 1 : 2;
-}
-
-b2Fixture* fixture_of(const FlatBody& flat, std::uint32_t number) {
-  for (b2Fixture* fixture = flat.b2->GetFixtureList(); fixture; fixture = fixture->GetNext())
-    if (number_of(fixture) == number) return fixture;
-  return nullptr;
 }
 
 /// Contact points of two shapes, in Box2D's order, up to a little apart; its own manifolds know only what overlaps.
@@ -287,9 +314,9 @@ void Planar::Core::deliver(const Hit& hit, double moment) {
     sync();
     // The handler may have freed them, or given them other shapes.
     if (!b2 || !find(x) || !find(y) || !pushes(x, y, *client)) return;
-    a = fixture_of(*find(x), number_a);
-    b = fixture_of(*find(y), number_b);
-    if (!a || !b || child_a >= a->GetShape()->GetChildCount()) return;
+    a = fixture_of(x, number_a, static_cast<std::uint32_t>(child_a));
+    b = fixture_of(y, number_b, static_cast<std::uint32_t>(hit.child_b));
+    if (!a || !b) return;
   }
   if (rank(*b) < rank(*a)) {
     std::swap(a, b);

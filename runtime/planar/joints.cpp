@@ -144,9 +144,9 @@ void Planar::Core::detach(JointIndex index) {
     if (end == kNoBody || found == joints_at.end()) continue;
     std::erase(found->second, index);
     if (found->second.empty()) joints_at.erase(found);
-    if (FlatBody* flat = find(end); flat && !flat->fixed) flat->b2->SetAwake(true);
+    wake(end);
   }
-  if (frozen) std::erase_if(frozen->warm.joints, [&](const FrozenJoint& one) { return one.joint == index; });
+  if (frozen) std::erase_if(frozen->joints, [&](const FrozenJoint& one) { return one.joint == index; });
   members_changed = true;
   ++rules;
 }

@@ -123,7 +123,7 @@ void Planar::Core::end_ledger(double dt) {
   double held_back = 0;  // work of all that joins and touches
   const b2Vec2 down = b2->GetGravity();
   for (FlatBody& flat : slots) {
-    if (flat.body == kNoBody || flat.fixed) continue;
+    if (flat.body == kNoBody || flat.fixed || flat.set_apart) continue;
     const b2Vec2 moved_by = flat.b2->GetLinearVelocity();
     if (flat.kicked && flat.b2->IsAwake()) flat.b2->SetLinearVelocity(flat.b2->GetLinearVelocity() + flat.kick);
     flat.kicked = false;
@@ -145,7 +145,8 @@ void Planar::Core::end_ledger(double dt) {
       ledger.script_work += dt * (force.dot(sum) + flat.torque * spins) / 2;
   }
   double motors = 0;
-  for (const FlatJoint& joint : joints) motors += motor_work(joint, dt);
+  for (const FlatJoint& joint : joints)
+    if (steps(joint)) motors += motor_work(joint, dt);
   ledger.motor_work += motors;
   ledger.script_work += driven_work;
   // The rest is lost where bodies touch; if it came in, nothing explains it, and it shows in the residual.

@@ -131,7 +131,7 @@ void Planar::Core::apply_spring(FlatSpring& spring, double dt) {
 void Planar::Core::ask_forces() {
   for (std::size_t i = 0; i < force_methods.size(); ++i) {
     FlatBody* flat = find(force_methods[i]);
-    if (!flat || flat->fixed) continue;
+    if (!flat || flat->fixed || flat->set_apart) continue;
     write_back(*flat);
     flat->asked = client->stage_force(flat->body, now, sub_step).head<2>();
     flat->pulled = true;
@@ -144,17 +144,18 @@ void Planar::Core::apply_forces(double dt) {
   const bool pulls = !joints.empty() || !springs.empty() || !force_methods.empty();
   if (pulls)
     for (FlatBody& flat : slots) {
+      if (flat.set_apart) continue;
       flat.pulled = false;
       flat.asked = flat.pull = Vector2::Zero();
       flat.twist = 0;
     }
   if (!force_methods.empty()) ask_forces();
   for (FlatJoint& joint : joints)
-    if (joint.used) apply_joint(joint, dt);
+    if (joint.used && steps(joint)) apply_joint(joint, dt);
   for (FlatSpring& spring : springs)
-    if (spring.used) apply_spring(spring, dt);
+    if (spring.used && steps(spring)) apply_spring(spring, dt);
   for (FlatBody& flat : slots) {
-    if ((!pulls && !flat.has_force) || flat.body == kNoBody || flat.fixed) continue;
+    if ((!pulls && !flat.has_force) || flat.body == kNoBody || flat.fixed || flat.set_apart) continue;
     const Vector2 force = flat.force + flat.asked + flat.pull;
     const double torque = flat.torque + flat.twist;
     if (force == Vector2::Zero() && torque == 0) continue;

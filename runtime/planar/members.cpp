@@ -59,8 +59,6 @@ void Planar::Core::make_world() {
   b2 = std::make_unique<b2World>(b2Vec2(0, 0));
   b2->SetContactListener(this);
   b2->SetContactFilter(this);
-  // A step without bodies tells Box2D how long the last one was: impulses of it are scaled to the next one's length.
-  if (last_step > 0) b2->Step(last_step, 1, 1);
   b2BodyDef def;
   ground = b2->CreateBody(&def);
   members_changed = true;
@@ -74,6 +72,7 @@ void Planar::Core::drop_world() {
   muted = false;
   ground = nullptr;
   slots.clear();
+  placed = 0;
   free_slots.clear();
   std::fill(slot_of.begin(), slot_of.end(), kNoSlot);
   for (FlatJoint& joint : joints) joint.b2 = nullptr;
@@ -96,9 +95,7 @@ void Planar::Core::sync() {
   push_changes();
   refresh_rules();
   held.hold(expected_bytes());
-  if (!frozen) return;
-  expect_pairs({});
-  thaw_contacts();
+  order_joints();
 }
 
 void Planar::Core::update_members() {
@@ -113,6 +110,7 @@ void Planar::Core::update_members() {
     if (flat && !right) remove_member(slot_of[body]);
     if (!right && (moves || fixed || anchor)) add_member(body);
   }
+  order_bodies();
   for (FlatJoint& joint : joints)
     if (joint.used && !joint.b2) make_b2(joint);
   number_assemblies();
@@ -189,6 +187,7 @@ void Planar::Core::add_member(BodyIndex body) {
 
 void Planar::Core::remove_member(std::uint32_t slot) {
   FlatBody& flat = slots[slot];
+  placed -= flat.placed ? 1 : 0;
   for (FlatJoint& joint : joints)
     if (joint.used && joint.b2 && (joint.b2->GetBodyA() == flat.b2 || joint.b2->GetBodyB() == flat.b2)) drop_b2(joint);
   if (!flat.fixed) base -= kinetic_of(flat);
@@ -388,6 +387,18 @@ void Planar::Core::push_shapes() {
       flat.b2->SetAwake(true);
       wake_touching(flat);
     }
+  }
+}
+
+/// An image holds shapes as the bodies have them now: so Box2D's world takes bodies and shapes that came or changed
+/// since the last step before it is saved, as it would in the next one.
+void Planar::Core::take_shapes() {
+  if (!b2) return;
+  try {
+    ensure_world();
+    push_shapes();
+  } catch (const Error&) {
+    return;  // the next step reports a shape that cannot be
   }
 }
 

@@ -120,8 +120,7 @@ void Planar::set_gravity(const Vector3& gravity) {
   const double before = c.stored().total();
   c.settings.gravity = gravity;
   if (c.b2 || c.frozen) c.ledger.script_work += c.stored().total() - before;  // else no body has been counted yet
-  for (FlatBody& flat : c.slots)
-    if (flat.body != kNoBody && !flat.fixed) flat.b2->SetAwake(true);
+  c.wake_all();
 }
 std::string Planar::describe_accuracy() const {
   const Accuracy& a = accuracy();
@@ -156,6 +155,7 @@ bool Planar::force_method(BodyIndex body) const {
 // --- questions ------------------------------------------------------------------------------------------------------
 
 bool Planar::asleep(BodyIndex body) const {
+  if (const FrozenBody* one = core_->find_frozen(body)) return !one->awake && core_->bodies->dynamic(body);
   const FlatBody* flat = core_->find(body);
   return flat && !flat->fixed && !flat->b2->IsAwake();
 }
@@ -222,8 +222,14 @@ bool Planar::pushes(BodyIndex a, BodyIndex b, const MechanicsClient& client) con
   return core_->pushes(a, b, client);
 }
 void Planar::forget(BodyIndex body) { core_->forget(body); }
-void Planar::save(ByteWriter& out) const { core_->save(out); }
+void Planar::save(ByteWriter& out) const {
+  core_->take_shapes();
+  core_->save(out);
+}
 void Planar::load(ByteReader& in) { core_->load(in); }
-void Planar::hash(Hasher& hasher) const { core_->hash(hasher); }
+void Planar::hash(Hasher& hasher) const {
+  core_->take_shapes();
+  core_->hash(hasher);
+}
 
 }  // namespace breve

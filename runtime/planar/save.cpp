@@ -1,6 +1,6 @@
-// A flat world in a snapshot and in the hash. An image holds Box2D's world as data: bodies, impulses of contacts by
-// what touches, impulses of joints. Once an image was taken the live world is made anew from the same data when it next
-// moves, so that going on after saving is the same as going on after loading, bit for bit.
+// A flat world in a snapshot and in the hash. An image holds Box2D's world as data: bodies and their roomy boxes, what
+// touches and where, impulses. That is all that Box2D goes on from, as what it solves has the order of bodies and
+// joints (order.cpp): a restored world goes on as the saved one, bit for bit.
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
@@ -8,17 +8,9 @@
 #include "runtime/base/error.hpp"
 #include "runtime/mechanics/members.hpp"
 #include "runtime/planar/core.hpp"
+#include "runtime/planar/doors.hpp"
 
 namespace breve {
-
-// How long a body has been slow, which Box2D shows to nobody: where a template is instantiated by name, private members
-// may be named.
-float& sleep_time(b2Body& body);
-template <auto Member>
-struct SleepDoor {
-  friend float& sleep_time(b2Body& body) { return body.*Member; }
-};
-template struct SleepDoor<&b2Body::m_sleepTime>;
 
 namespace {
 
@@ -40,17 +32,27 @@ void each(const F& f, J& j) {
 }
 template <class F, Is<FrozenBody> B>
 void each(const F& f, B& b) {
-  f(b.body), f(b.x), f(b.y), f(b.angle), f(b.vx), f(b.vy), f(b.spin), f(b.still), f(b.awake);
+  f(b.body), f(b.x), f(b.y), f(b.angle), f(b.center_x), f(b.center_y), f(b.before_x), f(b.before_y), f(b.angle_before),
+      f(b.vx), f(b.vy), f(b.spin), f(b.still);
+  f(b.awake), f(b.kinematic), f(b.driven), f(b.pulled), f(b.placed);
   f(b.location), f(b.velocity), f(b.rotational_velocity), f(b.orientation);
 }
-template <class F, Is<WarmContact> C>
+template <class F, Is<FrozenBox> B>
+void each(const F& f, B& b) {
+  f(b.body), f(b.fixture), f(b.child), f(b.low_x), f(b.low_y), f(b.high_x), f(b.high_y);
+}
+template <class F, Is<FrozenContact> C>
 void each(const F& f, C& c) {
-  f(c.key.a), f(c.key.b), f(c.key.fixture_a), f(c.key.fixture_b), f(c.key.child_a), f(c.key.child_b), f(c.count);
-  for (auto& p : c.points) f(p.id), f(p.normal), f(p.tangent);
+  f(c.key.a), f(c.key.b), f(c.key.fixture_a), f(c.key.fixture_b), f(c.key.child_a), f(c.key.child_b);
+  auto& m = c.manifold;
+  f(c.touching), f(c.friction), f(c.type), f(m.pointCount), f(m.localNormal.x), f(m.localNormal.y), f(m.localPoint.x),
+      f(m.localPoint.y);
+  for (auto& p : m.points) f(p.localPoint.x), f(p.localPoint.y), f(p.normalImpulse), f(p.tangentImpulse), f(p.id.key);
 }
 template <class F, Is<FrozenJoint> J>
 void each(const F& f, J& j) {
-  f(j.joint), f(j.warm.x), f(j.warm.y), f(j.warm.angular), f(j.warm.motor), f(j.warm.lower), f(j.warm.upper);
+  f(j.joint), f(j.reference), f(j.loose);
+  f(j.warm.x), f(j.warm.y), f(j.warm.angular), f(j.warm.motor), f(j.warm.lower), f(j.warm.upper);
 }
 
 template <class F, Is<EnergyWatch> W>
@@ -90,51 +92,66 @@ void check_frozen(const Frozen& frozen, const Bodies& bodies, std::size_t joints
   BodyIndex next = 0;
   for (const FrozenBody& one : frozen.bodies) {
     if (one.body < next || !bodies.used(one.body)) ByteReader::fail();
-    if (!all_finite({one.x, one.y, one.angle, one.vx, one.vy, one.spin, one.still})) ByteReader::fail();
+    if (!all_finite({one.x, one.y, one.angle, one.center_x, one.center_y, one.before_x, one.before_y, one.angle_before,
+                     one.vx, one.vy, one.spin, one.still}))
+      ByteReader::fail();
     next = one.body + 1;
   }
-  if (!std::isfinite(frozen.warm.step)) ByteReader::fail();
-  for (const FrozenJoint& one : frozen.warm.joints) {
+  if (!std::isfinite(frozen.step)) ByteReader::fail();
+  for (const FrozenBox& one : frozen.boxes)
+    if (!all_finite({one.low_x, one.low_y, one.high_x, one.high_y}) || one.low_x > one.high_x || one.low_y > one.high_y)
+      ByteReader::fail();
+  for (const FrozenJoint& one : frozen.joints) {
     const WarmJoint& w = one.warm;
-    if (one.joint >= joints || !all_finite({w.x, w.y, w.angular, w.motor, w.lower, w.upper})) ByteReader::fail();
+    if (one.joint >= joints || !all_finite({one.reference, w.x, w.y, w.angular, w.motor, w.lower, w.upper}))
+      ByteReader::fail();
   }
-  for (const WarmContact& one : frozen.warm.contacts) {
-    if (one.count < 0 || one.count > b2_maxManifoldPoints) ByteReader::fail();
-    for (const ContactImpulse& point : one.points)
-      if (!all_finite({point.normal, point.tangent})) ByteReader::fail();
+  for (const FrozenContact& one : frozen.contacts) {
+    const b2Manifold& m = one.manifold;
+    if (m.pointCount < (one.touching ? 1 : 0) || m.pointCount > b2_maxManifoldPoints ||
+        one.type > b2Manifold::e_faceB ||
+        !all_finite({one.friction, m.localNormal.x, m.localNormal.y, m.localPoint.x, m.localPoint.y}))
+      ByteReader::fail();
+    for (const b2ManifoldPoint& p : m.points)
+      if (!all_finite({p.localPoint.x, p.localPoint.y, p.normalImpulse, p.tangentImpulse})) ByteReader::fail();
   }
-}
-
-/// Which shapes a contact is of, and whether its order is the other way.
-ContactKey key_of(Planar::Core& core, b2Contact* contact, bool& swapped) {
-  b2Fixture *a = contact->GetFixtureA(), *b = contact->GetFixtureB();
-  ContactKey key{core.of(a->GetBody()).body,
-                 core.of(b->GetBody()).body,
-                 number_of(a),
-                 number_of(b),
-                 static_cast<std::uint32_t>(contact->GetChildIndexA()),
-                 static_cast<std::uint32_t>(contact->GetChildIndexB())};
-  swapped = key.b < key.a;
-  if (swapped) {
-    std::swap(key.a, key.b);
-    std::swap(key.fixture_a, key.fixture_b);
-    std::swap(key.child_a, key.child_b);
-  }
-  return key;
 }
 
 }  // namespace
 
-/// What the last step left for the next.
+namespace {
+
+/// Without what Box2D has never written: points that are not used, and all of it where nothing touches.
+void freeze_manifold(const b2Contact& contact, FrozenContact& to) {
+  const b2Vec2 zero(0, 0);
+  const b2Manifold& manifold = *contact.GetManifold();
+  const bool touches = contact.IsTouching();
+  to.type = static_cast<std::uint8_t>(touches ? manifold.type : b2Manifold::e_circles);
+  b2Manifold& known = to.manifold;
+  known.type = b2Manifold::e_circles;
+  known.localNormal = touches && manifold.type != b2Manifold::e_circles ? manifold.localNormal : zero;
+  known.localPoint = touches ? manifold.localPoint : zero;
+  known.pointCount = touches ? manifold.pointCount : 0;
+  for (int i = 0; i < b2_maxManifoldPoints; ++i) {
+    b2ManifoldPoint& point = known.points[i];
+    point.localPoint = zero;
+    point.normalImpulse = point.tangentImpulse = 0;
+    point.id.key = 0;
+    if (i < known.pointCount) point = manifold.points[i];
+  }
+}
+
+}  // namespace
+
+/// What the last step left for the next, in what steps now.
 Warm Planar::Core::warm() const {
   Warm made(memory);
   made.step = last_step;
   for (b2Contact* contact = b2->GetContactList(); contact; contact = contact->GetNext()) {
     const b2Manifold& manifold = *contact->GetManifold();
-    if (!contact->IsTouching() || manifold.pointCount == 0) continue;
+    if (!contact->IsTouching() || manifold.pointCount == 0 || !steps(*contact)) continue;
     WarmContact one;
-    bool swapped = false;
-    one.key = key_of(const_cast<Core&>(*this), contact, swapped);
+    one.key = key_of(*contact);
     one.count = manifold.pointCount;
     for (int i = 0; i < one.count; ++i)
       one.points[i] = {manifold.points[i].id.key, manifold.points[i].normalImpulse, manifold.points[i].tangentImpulse};
@@ -143,7 +160,7 @@ Warm Planar::Core::warm() const {
   std::sort(made.contacts.begin(), made.contacts.end(),
             [](const WarmContact& p, const WarmContact& q) { return p.key < q.key; });
   for (JointIndex i = 0; i < joints.size(); ++i)
-    if (joints[i].used && joints[i].b2) made.joints.push_back({i, warm_of(joints[i])});
+    if (joints[i].used && joints[i].b2 && steps(joints[i])) made.joints.push_back({i, warm_of(joints[i])});
   return made;
 }
 
@@ -152,9 +169,8 @@ void Planar::Core::set_contacts(const Warm& from, double factor) {
   const auto scaled = [factor](float impulse) { return static_cast<float>(factor * impulse); };
   for (b2Contact* contact = b2->GetContactList(); contact; contact = contact->GetNext()) {
     b2Manifold& manifold = *contact->GetManifold();
-    if (manifold.pointCount == 0) continue;
-    bool swapped = false;
-    const ContactKey key = key_of(*this, contact, swapped);
+    if (manifold.pointCount == 0 || !steps(*contact)) continue;
+    const ContactKey key = key_of(*contact);
     const auto found = std::lower_bound(from.contacts.begin(), from.contacts.end(), key,
                                         [](const WarmContact& p, const ContactKey& k) { return p.key < k; });
     const int known = found != from.contacts.end() && found->key == key ? found->count : 0;
@@ -171,52 +187,106 @@ void Planar::Core::set_contacts(const Warm& from, double factor) {
 
 void Planar::Core::set_joints(const Warm& from, double factor) {
   const auto f = static_cast<float>(factor);
-  for (const FrozenJoint& one : from.joints) {
-    if (one.joint >= joints.size() || !joints[one.joint].used || !joints[one.joint].b2) continue;
-    const WarmJoint& w = one.warm;
-    set_warm(joints[one.joint], {f * w.x, f * w.y, f * w.angular, f * w.motor, f * w.lower, f * w.upper});
+  for (const auto& [index, w] : from.joints) {
+    if (!joints[index].used || !joints[index].b2) continue;
+    set_warm(joints[index], {f * w.x, f * w.y, f * w.angular, f * w.motor, f * w.lower, f * w.upper});
   }
 }
 
-Frozen Planar::Core::freeze() {
+Frozen Planar::Core::freeze() const {
   Frozen made(memory);
-  for (BodyIndex body = 0; body < slot_of.size(); ++body) {
-    const FlatBody* flat = find(body);
-    if (!flat) continue;
-    FrozenBody one;
-    one.body = body;
-    one.x = flat->b2->GetPosition().x;
-    one.y = flat->b2->GetPosition().y;
-    one.angle = flat->b2->GetAngle();
-    one.vx = flat->b2->GetLinearVelocity().x;
-    one.vy = flat->b2->GetLinearVelocity().y;
-    one.spin = flat->b2->GetAngularVelocity();
-    one.awake = flat->b2->IsAwake();
-    one.still = sleep_time(*flat->b2);
-    one.location = flat->location;
-    one.velocity = flat->velocity;
-    one.rotational_velocity = flat->spin;
-    one.orientation = flat->orientation;
-    made.bodies.push_back(one);
+  made.step = last_step;
+  for (BodyIndex body = 0; body < slot_of.size(); ++body)
+    if (const FlatBody* flat = find(body)) freeze(*flat, made);
+  for (const b2Contact* contact = b2->GetContactList(); contact; contact = contact->GetNext()) {
+    FrozenContact& one = made.contacts.emplace_back();
+    one.key = key_of(*contact);
+    one.touching = contact->IsTouching();
+    one.friction = contact->GetFriction();
+    freeze_manifold(*contact, one);
   }
-  made.warm = kept ? *kept : warm();
+  std::sort(made.contacts.begin(), made.contacts.end(),
+            [](const FrozenContact& p, const FrozenContact& q) { return p.key < q.key; });
+  for (JointIndex i = 0; i < joints.size(); ++i)
+    if (joints[i].used && joints[i].b2)
+      made.joints.push_back({i, reference_of(joints[i]), joints[i].loose, warm_of(joints[i])});
   return made;
 }
 
+void Planar::Core::freeze(const FlatBody& flat, Frozen& made) const {
+  b2Body& b = *flat.b2;
+  FrozenBody one;
+  one.body = flat.body;
+  one.x = b.GetPosition().x;
+  one.y = b.GetPosition().y;
+  one.angle = b.GetAngle();
+  one.center_x = b.GetWorldCenter().x;
+  one.center_y = b.GetWorldCenter().y;
+  one.before_x = sweep_of(b).c0.x;
+  one.before_y = sweep_of(b).c0.y;
+  one.angle_before = sweep_of(b).a0;
+  one.vx = b.GetLinearVelocity().x;
+  one.vy = b.GetLinearVelocity().y;
+  one.spin = b.GetAngularVelocity();
+  one.awake = b.IsAwake();
+  one.still = sleep_time(b);
+  one.kinematic = b.GetType() == b2_kinematicBody;
+  one.driven = flat.driven;
+  one.pulled = flat.pulled;
+  one.placed = flat.placed;
+  one.location = flat.location;
+  one.velocity = flat.velocity;
+  one.rotational_velocity = flat.spin;
+  one.orientation = flat.orientation;
+  made.bodies.push_back(one);
+  for (const b2Fixture* fixture = b.GetFixtureList(); fixture; fixture = fixture->GetNext())
+    for (int child = 0; child < fixture->GetShape()->GetChildCount(); ++child) {
+      const b2AABB& box = roomy_box(*b2, *fixture, child);
+      made.boxes.push_back({flat.body, number_of(fixture), static_cast<std::uint32_t>(child), box.lowerBound.x,
+                            box.lowerBound.y, box.upperBound.x, box.upperBound.y});
+    }
+}
+
+/// Box2D's world as it was when the image was taken. What scripts have set since is found by comparing, as ever.
 void Planar::Core::thaw() {
-  const double kept = base;
+  const double kept_base = base;
   update_members();
-  base = kept;
+  base = kept_base;
   for (const FlatBody& flat : slots) {
     const auto position = std::lower_bound(frozen->bodies.begin(), frozen->bodies.end(), flat.body,
                                            [](const FrozenBody& one, BodyIndex body) { return one.body < body; });
     const bool counted = position != frozen->bodies.end() && position->body == flat.body;
     if (flat.body != kNoBody && !flat.fixed && !counted) base += energy_of(flat.body);
   }
+  held.hold(expected_bytes() + frozen->contacts.size() * kPerContact);
+  thaw_bodies();
+  thaw_joints();
+  thaw_contacts();
+  for (const FrozenBody& one : frozen->bodies) {
+    FlatBody* flat = find(one.body);
+    if (!flat || flat->b2->GetType() == b2_staticBody) continue;
+    flat->b2->SetAwake(one.awake);
+    sleep_time(*flat->b2) = one.still;
+  }
+  // What a script linked since the image was loaded.
+  for (FlatJoint& joint : joints)
+    if (joint.used && !joint.b2) make_b2(joint);
+  frozen.reset();
+  bodies->touch_rigid();
+}
+
+void Planar::Core::thaw_bodies() {
   for (const FrozenBody& one : frozen->bodies) {
     FlatBody* flat = find(one.body);
     if (!flat) continue;
+    if (flat->fixed && one.kinematic) flat->b2->SetType(b2_kinematicBody);
+    flat->driven = flat->fixed && one.driven;
+    flat->pulled = one.pulled;
+    placed -= flat->placed ? 1 : 0;
+    flat->placed = one.placed;
+    placed += flat->placed ? 1 : 0;
     flat->b2->SetTransform(b2Vec2(one.x, one.y), one.angle);
+    set_sweep(*flat->b2, b2Vec2(one.center_x, one.center_y), b2Vec2(one.before_x, one.before_y), one.angle_before);
     flat->b2->SetLinearVelocity(b2Vec2(one.vx, one.vy));
     flat->b2->SetAngularVelocity(one.spin);
     flat->location = one.location;
@@ -224,40 +294,67 @@ void Planar::Core::thaw() {
     flat->spin = one.rotational_velocity;
     flat->orientation = one.orientation;
   }
-  // Their reference angles follow from the bodies' angles, full rotations included.
-  for (FlatJoint& joint : joints) {
-    if (!joint.used) continue;
-    drop_b2(joint);
-    make_b2(joint);
+  for (const FrozenBox& one : frozen->boxes) {
+    b2Fixture* fixture = fixture_of(one.body, one.fixture, one.child);
+    if (!fixture) continue;
+    b2AABB box, tight;
+    box.lowerBound = {one.low_x, one.low_y};
+    box.upperBound = {one.high_x, one.high_y};
+    const auto child = static_cast<int>(one.child);
+    fixture->GetShape()->ComputeAABB(&tight, fixture->GetBody()->GetTransform(), child);
+    b2AABB widest = tight;
+    constexpr float kWidest = 6 * b2_maxTranslation;  // Box2D looks ahead by four ways of a step, and has moved one
+    widest.lowerBound -= b2Vec2(kWidest, kWidest);
+    widest.upperBound += b2Vec2(kWidest, kWidest);
+    // One that does not hold its shape, or much more, is no box of this world.
+    if (box.Contains(tight) && widest.Contains(box)) set_roomy_box(*b2, *fixture, child, box);
   }
-  set_joints(frozen->warm, 1);
-  bodies->touch_rigid();  // what was set in the arrays and not taken yet is found by comparing
+}
+
+void Planar::Core::thaw_joints() {
+  for (FlatJoint& joint : joints)
+    if (joint.used) drop_b2(joint);
+  for (const FrozenJoint& one : frozen->joints) {
+    FlatJoint& joint = joints[one.joint];
+    if (!joint.used || joint.b2) continue;
+    make_b2(joint, one.reference);
+    joint.loose = one.loose;
+    put_drive(joint);
+    set_warm(joint, one.warm);
+  }
 }
 
 void Planar::Core::thaw_contacts() {
-  muted = true;
   b2->SetContinuousPhysics(true);
-  b2->Step(0, 1, 1);  // contacts are found and their points computed; nothing moves
-  muted = false;
-  rethrow();
-  set_contacts(frozen->warm, 1);
-  for (const FrozenBody& one : frozen->bodies) {
-    FlatBody* flat = find(one.body);
-    if (!flat || flat->fixed || flat->location != bodies->location(one.body)) continue;
-    if (one.awake)
-      sleep_time(*flat->b2) = one.still;
-    else
-      flat->b2->SetAwake(false);
+  thawing = true;
+  for (const FrozenContact& one : frozen->contacts) {
+    b2Fixture* a = fixture_of(one.key.a, one.key.fixture_a, one.key.child_a);
+    b2Fixture* b = fixture_of(one.key.b, one.key.fixture_b, one.key.child_b);
+    if (!a || !b) continue;
+    b2Contact* contact = add_contact(*b2, *a, static_cast<int>(one.key.child_a), *b, static_cast<int>(one.key.child_b));
+    if (!contact) continue;
+    contact->SetFriction(one.friction);
+    if (!one.touching) continue;
+    b2Manifold manifold = one.manifold;
+    manifold.type = static_cast<b2Manifold::Type>(one.type);
+    set_touching(*contact, manifold);
+    for (const b2Fixture* fixture : {a, b}) ++of(fixture->GetBody()).touching;
   }
-  frozen.reset();
+  order_contacts();
+  thawing = false;
 }
 
-void Planar::Core::save(ByteWriter& out) {
-  if (b2 && !frozen) {
-    frozen.emplace(freeze());
-    last_step = frozen->warm.step;
-  }
-  if (b2) drop_world();
+/// A shape of a body; null if there is none of this number, or if it has no such edge.
+b2Fixture* Planar::Core::fixture_of(BodyIndex body, std::uint32_t number, std::uint32_t child) const {
+  const FlatBody* flat = find(body);
+  if (!flat) return nullptr;
+  for (b2Fixture* fixture = flat->b2->GetFixtureList(); fixture; fixture = fixture->GetNext())
+    if (number_of(fixture) == number)
+      return child < static_cast<std::uint32_t>(fixture->GetShape()->GetChildCount()) ? fixture : nullptr;
+  return nullptr;
+}
+
+void Planar::Core::save(ByteWriter& out) const {
   each(Writer{out}, settings);
   out.put(settings.unit);
   each(Writer{out}, ledger);
@@ -280,12 +377,15 @@ void Planar::Core::save(ByteWriter& out) {
   put_free(out, force_methods);
   out.put(static_cast<std::uint64_t>(met.size()));
   for (const auto& [pair, told] : met) out.put(pair.first), out.put(pair.second);
-  out.put(frozen.has_value());
-  if (!frozen) return;
-  out.put(frozen->warm.step);
-  put_list(out, frozen->bodies);
-  put_list(out, frozen->warm.contacts);
-  put_list(out, frozen->warm.joints);
+  out.put(b2 || frozen);
+  if (!b2 && !frozen) return;
+  std::optional<Frozen> live;
+  const Frozen& as_data = frozen ? *frozen : live.emplace(freeze());
+  out.put(as_data.step);
+  put_list(out, as_data.bodies);
+  put_list(out, as_data.boxes);
+  put_list(out, as_data.contacts);
+  put_list(out, as_data.joints);
 }
 
 void Planar::Core::load(ByteReader& in) {
@@ -327,10 +427,11 @@ void Planar::Core::load(ByteReader& in) {
   }
   if (!in.get_bool()) return;
   frozen.emplace(memory);
-  frozen->warm.step = last_step = in.get<float>();
+  frozen->step = last_step = in.get<float>();
   get_list(in, frozen->bodies);
-  get_list(in, frozen->warm.contacts);
-  get_list(in, frozen->warm.joints);
+  get_list(in, frozen->boxes);
+  get_list(in, frozen->contacts);
+  get_list(in, frozen->joints);
   check_frozen(*frozen, *bodies, joints.size());
 }
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "runtime/planar/core.hpp"
+#include "runtime/planar/doors.hpp"
 
 namespace breve {
 
@@ -101,7 +102,10 @@ void Planar::Core::advance(MechanicsClient& asked, double start, double h, doubl
   struct Asking {
     Core& core;
     Asking(Core& c, MechanicsClient& who) : core(c) { core.client = &who; }
-    ~Asking() { core.client = nullptr; }
+    ~Asking() {
+      core.client = nullptr;
+      core.end_cut_short();
+    }
   } asking(*this, asked);
   now = start;
   sync();
@@ -111,6 +115,8 @@ void Planar::Core::advance(MechanicsClient& asked, double start, double h, doubl
   b2->SetGravity(to_b2(settings.gravity));
   place_drivers(h);
   expect_pairs(bound);
+  make_missed_contacts();
+  make_contacts();
   // Springs that scripts tied, changed or stretched meanwhile.
   ledger.script_work += springs_energy() - springs_known;
   int count = sub_steps() << refined;
@@ -118,8 +124,8 @@ void Planar::Core::advance(MechanicsClient& asked, double start, double h, doubl
     count = std::max(count, static_cast<int>(std::min(std::ceil(h / longest - 1e-9), kMostSteps)));
   const Balance before = balance();
   pushed = 0;
+  const std::size_t impacts_before = impacts.size();
   for (int i = 0; i < count && b2; ++i) {
-    // Box2D moves nothing further than two units or a right angle in one step: what is faster needs more of them.
     const double dt = h / count;
     if (finishing) break;
     if (worn()) {
@@ -127,17 +133,13 @@ void Planar::Core::advance(MechanicsClient& asked, double start, double h, doubl
       finish((count - i) * dt);
       break;
     }
-    const auto parts = static_cast<int>(plan_parts(dt, count));
-    for (int k = 0; k < parts && b2; ++k) {
-      now = start + (i + static_cast<double>(k) / parts) * dt;
-      if (worn()) {
-        finish((count - i - static_cast<double>(k) / parts) * dt);
-        break;
-      }
-      run(dt / parts);
-    }
+    now = start + i * dt;
+    take_sub_step(dt, count, (count - i) * dt);
   }
   if (!b2) return;  // a handler set another length unit
+  // Each group of bodies has reported its own in turn.
+  std::stable_sort(impacts.begin() + static_cast<std::ptrdiff_t>(std::min(impacts_before, impacts.size())),
+                   impacts.end(), [](const Impact& p, const Impact& q) { return p.time < q.time; });
   write_back_all();
   springs_known = springs_energy();
   const bool wrong = watch_energy(before, start + h);
@@ -149,41 +151,83 @@ void Planar::Core::advance(MechanicsClient& asked, double start, double h, doubl
   counters.interventions = interventions.size();
 }
 
+/// Takes the rest of a sub-step at once, without impacts at their moments; does nothing if somebody wants the end now.
+void Planar::Core::rush(double left) {
+  if (bound.ended && bound.ended->load(std::memory_order_relaxed)) return;
+  step(left, false);
+}
+
+/// @param left  s, to the end of the step, from the start of this sub-step
+void Planar::Core::take_sub_step(double dt, int count, double left) {
+  // Box2D moves nothing further than two units or a right angle in one step: what is faster needs more of them.
+  const double pieces = plan_pieces(dt, count), start = now;
+  located = 0;
+  looks = 0;
+  if (Hit hit; handlers() && find_hit(dt, {true, false}, hit)) {
+    for (int k = 0; k < pieces && b2; ++k) {
+      now = start + k * (dt / pieces);
+      if (worn()) return finish(left - k * (dt / pieces));
+      run(dt / pieces, true);
+    }
+    return;
+  }
+  if (pieces > 1)
+    step_pieces(dt);
+  else
+    step_meeting(dt);
+  make_missed_contacts();
+}
+
+namespace {
+
+/// Up to eight as they are, more of them rounded up by a quarter at most: what needs as many is stepped together.
+int rounded_up(int pieces) {
+  int unit = 1;
+  while (pieces > 8 * unit) unit *= 2;
+  return (pieces + unit - 1) / unit * unit;
+}
+
+}  // namespace
+
+/// How many pieces each body needs of a sub-step. Returns the most, if all were stepped at once.
 /// @param count  of such sub-steps in the step: what is beyond all numbers is not to be cut into as many on the dearest
 ///               rung as there may be
-double Planar::Core::plan_parts(double dt, int count) {
+double Planar::Core::plan_pieces(double dt, int count) {
   constexpr double kTravel = 0.9 * b2_maxTranslation, kRotation = 0.9 * b2_maxRotation;
   const double most = std::clamp(std::floor(4096.0 / count), 64.0, 1024.0);
   const double fall = b2->GetGravity().Length();
   // Ten times the speed at which Box2D lets a body sleep.
   constexpr float kDrowsy = 10 * b2_linearSleepTolerance, kDrowsySpin = 10 * b2_angularSleepTolerance;
-  double parts = 1;
+  double pieces = 1;
   awake = count_awake();
   for (FlatBody& flat : slots) {
+    flat.pieces = 1;
+    flat.drowsy = false;
     if (flat.body == kNoBody || flat.fixed || !flat.b2->IsAwake()) continue;
     const double pull = flat.has_force ? flat.force.norm() / (flat.mass.mass * settings.unit) : 0;
     const double way = (flat.b2->GetLinearVelocity().Length() + (fall + pull) * dt) * dt;
     const double rotation = std::abs(flat.b2->GetAngularVelocity()) * dt;
     // Beyond single precision no number of sub-steps helps: the guard sees what becomes of it.
     if (!std::isfinite(static_cast<float>(way + rotation))) continue;
-    parts = std::max({parts, std::ceil(way / kTravel), std::ceil(rotation / kRotation)});
+    const double needed = std::max({1.0, std::ceil(way / kTravel), std::ceil(rotation / kRotation)});
+    flat.pieces = rounded_up(static_cast<int>(std::min(needed, most)));
+    pieces = std::max(pieces, needed);
     if (settings.sleeping)
       flat.drowsy = flat.touching > 0 && !flat.jointed && flat.b2->GetLinearVelocity().Length() < kDrowsy &&
                     std::abs(flat.b2->GetAngularVelocity()) < kDrowsySpin;
     // A body that moves more than half its width must also meet moving bodies.
     flat.b2->SetBullet(way > flat.thickness);
   }
-  if (!(parts <= most)) {
-    for (const FlatBody& flat : slots)
-      if (flat.body != kNoBody && !flat.fixed && !(flat.b2->GetLinearVelocity().Length() * dt <= most * kTravel))
-        intervene(flat.body, GuardReason::FastRotation, flat.b2->GetLinearVelocity().Length() * settings.unit, now,
-                  GuardAction::Reported);
-    return most;
-  }
-  return parts;
+  if (pieces <= most) return pieces;
+  for (const FlatBody& flat : slots)
+    if (flat.body != kNoBody && !flat.fixed && !(flat.b2->GetLinearVelocity().Length() * dt <= most * kTravel))
+      intervene(flat.body, GuardReason::FastRotation, flat.b2->GetLinearVelocity().Length() * settings.unit, now,
+                GuardAction::Reported);
+  return most;
 }
 
-void Planar::Core::run(double dt) {
+/// A sub-step of what steps, cut at each impact.
+void Planar::Core::run(double dt, bool handled) {
   located = 0;
   step_length = dt;
   double left = dt;
@@ -191,7 +235,7 @@ void Planar::Core::run(double dt) {
   bool bounce = true;
   while (left > 0 && b2 && !worn()) {
     Hit hit;
-    bool found = find_hit(left, hit);
+    bool found = find_hit(left, {handled && handlers(), few()}, hit);
     found = find_stop(left, found, hit);
     if (!found) break;
     const bool stop = hit.stop != kNoJoint;
@@ -213,6 +257,7 @@ void Planar::Core::run(double dt) {
   }
   if (left > 0 && b2) step(left, bounce);
   now += left;
+  end_cuts(dt);
 }
 
 /// Notes the velocities at the start of a sub-step, and takes off half of the acceleration where it is known.
@@ -221,12 +266,12 @@ void Planar::Core::kick(double dt) {
   lightest = std::numeric_limits<double>::infinity();
   heaviest = 0;
   for (FlatJoint& joint : joints)
-    if (joint.used && (joint.drive.strength_limit > 0 || joint.drive.limit_restitution > 0))
+    if (joint.used && (joint.drive.strength_limit > 0 || joint.drive.limit_restitution > 0) && steps(joint))
       joint.rate = joint_rate(joint);
   const b2Vec2 gravity = b2->GetGravity();
   for (FlatBody& flat : slots) {
+    if (flat.body == kNoBody || flat.fixed || flat.set_apart) continue;
     flat.kicked = false;
-    if (flat.body == kNoBody || flat.fixed) continue;
     flat.at = flat.b2->GetWorldCenter();
     flat.before = flat.b2->GetLinearVelocity();
     flat.before_spin = flat.b2->GetAngularVelocity();
@@ -255,23 +300,32 @@ void Planar::Core::resist_rolling(double dt) {
   if (!settings.sleeping) return;
   constexpr double kRate = 2;  // 1/s
   const double part = -std::expm1(-kRate * dt), u = settings.unit;
-  for (b2Contact* contact = b2->GetContactList(); contact; contact = contact->GetNext()) {
-    if (!contact->IsTouching() || !(contact->GetFriction() > 0)) continue;
-    FlatBody &a = of(contact->GetFixtureA()->GetBody()), &b = of(contact->GetFixtureB()->GetBody());
-    if (a.fixed || b.fixed || !a.drowsy || !b.drowsy || !a.b2->IsAwake() || !b.b2->IsAwake()) continue;
-    const double ia = a.mass.inertia(2, 2), ib = b.mass.inertia(2, 2);
-    const double spin = double{b.b2->GetAngularVelocity()} - a.b2->GetAngularVelocity();
-    const double impulse = part * spin / (1 / ia + 1 / ib);
-    a.b2->ApplyAngularImpulse(static_cast<float>(impulse / (u * u)), false);
-    b.b2->ApplyAngularImpulse(static_cast<float>(-impulse / (u * u)), false);
-    ledger.friction_loss += impulse * spin * (1 - part / 2);
+  for (FlatBody& a : slots) {
+    if (a.body == kNoBody || a.fixed || !a.drowsy || !a.b2->IsAwake()) continue;
+    for (b2ContactEdge* edge = a.b2->GetContactList(); edge; edge = edge->next) {
+      FlatBody& b = of(edge->other);
+      if (!edge->contact->IsTouching() || !(edge->contact->GetFriction() > 0)) continue;
+      if (b.fixed || b.body < a.body || !b.drowsy || !b.b2->IsAwake()) continue;
+      const double ia = a.mass.inertia(2, 2), ib = b.mass.inertia(2, 2);
+      const double spin = double{b.b2->GetAngularVelocity()} - a.b2->GetAngularVelocity();
+      const double impulse = part * spin / (1 / ia + 1 / ib);
+      a.b2->ApplyAngularImpulse(static_cast<float>(impulse / (u * u)), false);
+      b.b2->ApplyAngularImpulse(static_cast<float>(-impulse / (u * u)), false);
+      ledger.friction_loss += impulse * spin * (1 - part / 2);
+    }
   }
 }
 
+namespace {
+
+constexpr double kWhole = 0.75;  // of a sub-step: what is shorter was cut
+
+}  // namespace
+
 /// Box2D starts from the impulses of the last step, times the ratio of their lengths. What stops an approach in a short
-/// step would be multiplied by much in the next: while steps are cut, each starts from the last that was not.
+/// step would be multiplied by much in the next: while a sub-step is cut, each of its steps starts from the last that
+/// was not.
 void Planar::Core::start_warm(double dt) {
-  constexpr double kWhole = 0.75;
   const bool whole = dt >= kWhole * step_length;
   if (!kept && !whole && last_step > 0) kept.emplace(warm());
   if (!kept) return;
@@ -281,21 +335,50 @@ void Planar::Core::start_warm(double dt) {
   if (whole) kept.reset();
 }
 
+/// An error may have ended a step within a sub-step that was cut: nothing is left of that but what an image would hold.
+void Planar::Core::end_cut_short() {
+  if (!b2) return;
+  b2->ClearForces();
+  if (!kept) return;
+  const double factor = double{last_step} / kept->step;
+  set_contacts(*kept, factor);
+  set_joints(*kept, factor);
+  kept.reset();
+}
+
+/// What a sub-step leaves for the next is that of one which was not cut.
+void Planar::Core::end_cuts(double dt) {
+  const auto whole = static_cast<float>(dt);
+  if (!b2 || (!kept && last_step == whole)) return;
+  if (!kept) {
+    kept.emplace(warm());
+    if (last_step < kWhole * dt) kept->contacts.clear();
+  }
+  const double factor = dt / kept->step;
+  set_contacts(*kept, factor);
+  set_joints(*kept, factor);
+  kept.reset();
+  last_step = whole;
+}
+
 void Planar::Core::step(double dt, bool bounce) {
   start_warm(dt);
   apply_forces(dt);
   set_stops(bounce);
   resist_rolling(dt);
   kick(dt);
+  make_room(dt);
+  make_contacts();
   stepping = true;
   const int iterations = iterations_now();
+  set_length_of_last_step(*b2, last_step);
   b2->Step(static_cast<float>(dt), iterations, position_iterations());
   stepping = false;
   settle_landings(dt);
   end_ledger(dt);
   constexpr double kTooShort = 0.1;  // of a sub-step: single precision tells nothing of what changed in it
   for (FlatJoint& joint : joints)
-    if (joint.used && joint.drive.limit_restitution > 0 && dt >= kTooShort * step_length)
+    if (joint.used && joint.drive.limit_restitution > 0 && dt >= kTooShort * step_length && steps(joint))
       joint.bend = (joint_rate(joint) - joint.rate) / dt;
   last_step = static_cast<float>(dt);
   ++sub_step;

@@ -64,6 +64,7 @@ double Planar::Core::slowest_rebound(const FlatJoint& joint) const {
 /// Limits that are to bounce what comes now are off; `bounce` false: none.
 void Planar::Core::set_stops(bool bounce) {
   for (FlatJoint& joint : joints) {
+    if (!steps(joint)) continue;
     End end;
     const double rate = joint.used && joint.b2 && joint.drive.limit_restitution > 0 ? joint_rate(joint) : 0;
     const bool loose = bounce && end_ahead(joint, rate, end) && -end.rate > slowest_rebound(joint);
@@ -74,23 +75,28 @@ void Planar::Core::set_stops(bool bounce) {
   }
 }
 
+/// Whether a joint reaches a limit, at which it bounces, t seconds from now and before dt is over.
+bool Planar::Core::stops_within(const FlatJoint& joint, double dt, double& t) const {
+  if (!(joint.drive.limit_restitution > 0) || !joint.b2->GetBodyB()->IsAwake()) return false;
+  End end;
+  if (!end_ahead(joint, joint_rate(joint), end) || !(-end.rate > slowest_rebound(joint))) return false;
+  t = 0;
+  if (end.gap > kThere) {
+    if (!settings.accuracy.locate_impacts) return false;
+    // Box2D moves by the velocity at the end of a step: gap + rate t + bend t^2.
+    const double root = end.rate * end.rate - 4 * end.bend * end.gap;
+    if (!(root >= 0)) return false;
+    t = 2 * end.gap / (std::sqrt(root) - end.rate);
+  }
+  return t < dt;
+}
+
 /// The joint that reaches its limit first within dt, if it does so before what was found already.
 bool Planar::Core::find_stop(double dt, bool found, Hit& best) const {
   for (JointIndex index = 0; index < joints.size(); ++index) {
     const FlatJoint& joint = joints[index];
-    if (!joint.used || !joint.b2 || !(joint.drive.limit_restitution > 0)) continue;
-    if (!joint.b2->GetBodyB()->IsAwake()) continue;
-    End end;
-    if (!end_ahead(joint, joint_rate(joint), end) || !(-end.rate > slowest_rebound(joint))) continue;
     double t = 0;
-    if (end.gap > kThere) {
-      if (!settings.accuracy.locate_impacts) continue;
-      // Box2D moves by the velocity at the end of a step: gap + rate t + bend t^2.
-      const double root = end.rate * end.rate - 4 * end.bend * end.gap;
-      if (!(root >= 0)) continue;
-      t = 2 * end.gap / (std::sqrt(root) - end.rate);
-    }
-    if (!(t < dt) || (found && best.t <= t)) continue;
+    if (!joint.used || !joint.b2 || !stops_within(joint, dt, t) || (found && best.t <= t)) continue;
     best = Hit{};
     best.t = t;
     best.stop = index;

@@ -37,13 +37,22 @@ void Planar::Core::refresh(b2Contact* contact) {
 
 bool Planar::Core::ShouldCollide(b2Fixture* a, b2Fixture* b) {
   const b2Body *x = a->GetBody(), *y = b->GetBody();
-  if (!is_body(x) || !is_body(y) || !client) return false;
+  if (!is_body(x) || !is_body(y) || !(client || thawing)) return false;
+  FlatBody &first = of(x), &second = of(y);
+  // A body that comes near another which steps at another time meets it when both have stepped.
+  if (first.set_apart != second.set_apart && x->GetType() != b2_staticBody && y->GetType() != b2_staticBody) {
+    first.missed = any_missed = true;
+    return false;
+  }
   try {
-    return pushes(of(x).body, of(y).body, *client);
+    if (!thawing && !pushes(first.body, second.body, *client)) return false;
   } catch (...) {
     failure = std::current_exception();
     return false;
   }
+  first.fresh = second.fresh = true;
+  ++fresh_contacts;
+  return true;
 }
 
 void Planar::Core::BeginContact(b2Contact* contact) {
@@ -131,15 +140,16 @@ Vector3 Planar::contact_force(BodyIndex body, BodyIndex other) const {
     return (a == body && (other == kNoBody || b == other)) || (b == body && (other == kNoBody || a == other));
   };
   if (core.frozen) {
-    for (const WarmContact& one : core.frozen->warm.contacts) {
+    for (const FrozenContact& one : core.frozen->contacts) {
       if (!meant(one.key.a, one.key.b)) continue;
       const BodyIndex from = one.key.a == body ? one.key.b : one.key.a;
       const Bodies& bodies = *core.bodies;
       const Contact found =
           closest(*bodies.collision_shape(body), core.pose(body), *bodies.collision_shape(from), core.pose(from));
       const Vector2 normal = found.normal.head<2>().stableNormalized();
-      for (int i = 0; i < one.count; ++i)
-        add(normal, static_cast<double>(one.points[i].normal), static_cast<double>(one.points[i].tangent));
+      for (int i = 0; i < one.manifold.pointCount; ++i)
+        add(normal, static_cast<double>(one.manifold.points[i].normalImpulse),
+            static_cast<double>(one.manifold.points[i].tangentImpulse));
     }
   } else if (core.b2) {
     for (b2Contact* contact = core.b2->GetContactList(); contact; contact = contact->GetNext()) {

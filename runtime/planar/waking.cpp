@@ -1,4 +1,5 @@
 // Bodies that move without forces in a flat world, and the waking of sleeping bodies.
+#include <algorithm>
 #include <cmath>
 
 #include "runtime/planar/core.hpp"
@@ -35,8 +36,27 @@ void Planar::Core::place_drivers(double h) {
   }
 }
 
+/// Also one that an image holds and that has not stepped since.
 void Planar::Core::wake(BodyIndex body) {
+  if (FrozenBody* one = find_frozen(body)) {
+    one->awake = true;
+    one->still = 0;
+  }
   if (FlatBody* flat = find(body); flat && !flat->fixed) flat->b2->SetAwake(true);
+}
+
+FrozenBody* Planar::Core::find_frozen(BodyIndex body) {
+  if (!frozen) return nullptr;
+  const auto found = std::lower_bound(frozen->bodies.begin(), frozen->bodies.end(), body,
+                                      [](const FrozenBody& one, BodyIndex index) { return one.body < index; });
+  return found != frozen->bodies.end() && found->body == body ? &*found : nullptr;
+}
+
+void Planar::Core::wake_all() {
+  for (FlatBody& flat : slots)
+    if (flat.body != kNoBody) wake(flat.body);
+  if (!frozen) return;
+  for (FrozenBody& one : frozen->bodies) wake(one.body);
 }
 
 void Planar::Core::wake_ends(const FlatSpring& spring) {

@@ -280,6 +280,22 @@ TEST(DynamicsState, TheCounterOfSleepersIsTheirNumber) {
   EXPECT_EQ(s.mechanics().counters().sleeping, 2U);
 }
 
+TEST(DynamicsState, AnImageLeavesTheHashOfWhatIsAboutToWakeAsItIs) {
+  Physics s;
+  s.mechanics().set_sleeping(true);
+  const ObjectId floor = s.body(2, Vector3(0, -0.5, 0), BodyKind::Stationary, Shape::box(Vector3(10, 1, 10)));
+  s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3(0, 0.5, 0));
+  s.run(2);
+  ASSERT_EQ(s.mechanics().counters().sleeping, 1U);
+  s.world.bodies().set_collision_shape(s.index(floor), Shape::box(Vector3(8, 1, 8)));
+  const std::uint64_t before = s.world.hash();
+  const auto image = s.world.save(1);
+  EXPECT_EQ(s.world.hash(), before);
+  Scene other;
+  other.world.load(image.data(), image.size(), 1);
+  EXPECT_EQ(other.world.hash(), before);
+}
+
 TEST(DynamicsState, ALinkThatIsRotatedBeforeTheFirstStepTakesItsAssemblyAlong) {
   Physics s;
   const ObjectId a = s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3::Zero());

@@ -1852,9 +1852,8 @@ BREVE_API breve_status breve_world_hash(const breve_world* world, uint64_t* hash
    @param image  room for `capacity` bytes; NULL only if capacity is 0
    @param size   the image's size. If it exceeds capacity, nothing is written to image: call again with more room
    BREVE_OK, also for that size query; BREVE_ERROR_BUSY while a script of it runs; BREVE_ERROR_UNSUPPORTED: the host
-   could not save a state of its own. Does not change the world, except that a flat world with physics continues from its
-   image like a restored one, which may differ in the last bits from continuing without a snapshot. The time that
-   breve_world_advance carries over belongs to the host's loop and is not part of the image. */
+   could not save a state of its own. Does not change the world. The time that breve_world_advance carries over belongs to
+   the host's loop and is not part of the image. */
 BREVE_API breve_status breve_world_snapshot(const breve_world* world, void* image, size_t capacity, size_t* size);
 
 /* Restores a snapshot's state in a world of the same program. In the world that the snapshot is from, the ids of that
