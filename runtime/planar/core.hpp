@@ -170,7 +170,6 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   void remove_member(std::uint32_t slot);
   void fit(FlatBody& flat);  // shape and mass
   void push_shapes();
-  void take_shapes();
   void push_changes();
 
   // waking.cpp
@@ -388,6 +387,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   void forget_impulses(const FlatBody& flat);
 
   // save.cpp
+  void take_shapes();
   Frozen freeze() const;
   void freeze(const FlatBody& flat, Frozen& made) const;
   void thaw();
@@ -402,6 +402,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
 
   // save.cpp
   Warm warm() const;
+  void set_impulses(const Warm& from, double length);
   void set_contacts(const Warm& from, double factor);
   void set_joints(const Warm& from, double factor);
   void save(ByteWriter& out) const;

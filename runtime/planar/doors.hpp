@@ -39,7 +39,7 @@ b2Contact* add_contact(b2World& world, b2Fixture& a, int child_a, b2Fixture& b, 
 /// Makes a contact anew with its two shapes in the other order. Returns it; null if it may not be any more.
 b2Contact* swap_shapes(b2World& world, b2Contact* contact);
 
-/// Of one that was made and has not been in a step.
+/// Makes a new contact one that touches, as if a step had found it so.
 void set_touching(b2Contact& contact, const b2Manifold& manifold);
 
 /// Takes the first contacts of a world off its list.

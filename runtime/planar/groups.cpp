@@ -1,6 +1,6 @@
 // Bodies that cannot meet within a sub-step are stepped apart where some of them need more than one step of Box2D:
-// what bounces far away, or moves fast there, changes nothing of the rest, bit for bit. What calls a handler is an
-// exception: the whole world stands at that moment then.
+// what bounces far away, or moves fast there, changes nothing of the rest, bit for bit. Impacts that call a handler are
+// the exception: all bodies are stepped to that moment, since the handler sees them all.
 #include <algorithm>
 #include <utility>
 
@@ -14,6 +14,7 @@ class Planar::Core::Apart {
  public:
   template <class Chosen>
   Apart(Core& core, const Chosen& chosen) : core_(core), aside_(core.memory), awake_(core.awake) {
+    aside_.reserve(core.slots.size());  // a body that is set apart must come back
     for (std::uint32_t slot = 0; slot < core.slots.size(); ++slot) {
       FlatBody& flat = core.slots[slot];
       if (flat.body == kNoBody || flat.set_apart || flat.b2->GetType() == b2_staticBody) continue;
@@ -72,12 +73,13 @@ struct Finder : b2QueryCallback {
   }
 };
 
-/// Where a body may come in dt, whatever turns it round, and what is slow and comes toward it.
+/// What a body may reach in dt, in whatever direction it rebounds, with room for slow bodies that come toward it.
 b2AABB reach_of(const b2World& world, const b2Body& body, double dt) {
   const float way = body.GetLinearVelocity().Length() * static_cast<float>(dt) + b2_maxTranslation;
-  const b2Fixture* fixture = body.GetFixtureList();
-  b2AABB box = roomy_box(world, *fixture, 0);
-  for (; fixture; fixture = fixture->GetNext()) box.Combine(roomy_box(world, *fixture, 0));
+  b2AABB box;
+  box.lowerBound = box.upperBound = body.GetWorldCenter();
+  for (const b2Fixture* fixture = body.GetFixtureList(); fixture; fixture = fixture->GetNext())
+    box.Combine(roomy_box(world, *fixture, 0));
   box.lowerBound -= b2Vec2(way, way);
   box.upperBound += b2Vec2(way, way);
   return box;
@@ -128,11 +130,13 @@ void Planar::Core::step_pieces(double dt) {
   needed.resize(slots.size(), 0);
   for (const FlatBody& flat : slots)
     if (flat.body != kNoBody) needed[flat.group] = std::max(needed[flat.group], flat.pieces);
-  std::pmr::vector<int> lengths(needed, memory);
+  std::pmr::vector<int> own(memory), lengths(memory);  // by slot: groups are numbered anew while they step
+  for (const FlatBody& flat : slots) {
+    own.push_back(flat.body == kNoBody ? 0 : needed[flat.group]);
+    if (flat.body != kNoBody) lengths.push_back(own.back());
+  }
   std::sort(lengths.begin(), lengths.end());
   lengths.erase(std::unique(lengths.begin(), lengths.end()), lengths.end());
-  std::pmr::vector<int> own(memory);  // by slot: groups are numbered anew while they step
-  for (const FlatBody& flat : slots) own.push_back(flat.body == kNoBody ? 0 : needed[flat.group]);
   const float before = last_step;
   const double start = now;
   for (const int pieces : lengths) {

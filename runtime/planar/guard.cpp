@@ -1,5 +1,5 @@
 // The guard of a flat world: what has gone wrong by the end of a step, and what is done about it. More sub-steps are
-// for the whole world, since Box2D steps it as one; they go back when nothing has been wrong for a while.
+// for the whole world; they go back when nothing has been wrong for a while.
 #include <algorithm>
 #include <cmath>
 

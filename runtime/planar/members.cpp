@@ -71,6 +71,7 @@ void Planar::Core::drop_world() {
   b2.reset();
   muted = false;
   ground = nullptr;
+  thawing = false;
   slots.clear();
   placed = 0;
   free_slots.clear();
@@ -83,7 +84,14 @@ void Planar::Core::ensure_world() {
   if (!b2) {
     if (bodies->rigid() == 0) return;
     make_world();
-    if (frozen) thaw();
+    if (frozen) {
+      try {
+        thaw();
+      } catch (...) {
+        drop_world();  // half of it would be another world than the image's
+        throw;
+      }
+    }
   }
   if (seen_revision != bodies->revision()) members_changed = true;
   if (members_changed) update_members();
@@ -387,18 +395,6 @@ void Planar::Core::push_shapes() {
       flat.b2->SetAwake(true);
       wake_touching(flat);
     }
-  }
-}
-
-/// An image holds shapes as the bodies have them now: so Box2D's world takes bodies and shapes that came or changed
-/// since the last step before it is saved, as it would in the next one.
-void Planar::Core::take_shapes() {
-  if (!b2) return;
-  try {
-    ensure_world();
-    push_shapes();
-  } catch (const Error&) {
-    return;  // the next step reports a shape that cannot be
   }
 }
 

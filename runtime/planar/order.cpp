@@ -1,6 +1,7 @@
-// The order in which Box2D solves. By itself it is that in which things were made, and contacts are found in the order
-// of a tree that all bodies share. Here it is that of bodies and joints, whatever happened before and elsewhere: so a
-// world that was restored, or that has something far away, goes on as it would without.
+// The order in which Box2D solves. Left alone, it solves bodies and joints in the order in which they were made, and
+// contacts in that in which its tree, which all bodies share, has found them. Here the order is that of the indices of
+// bodies and of the serial numbers of joints, whatever happened before or elsewhere: so a world that was restored, or
+// that has something far away, goes on as it would without.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -120,7 +121,7 @@ void Planar::Core::make_contacts() {
 
 /// Puts contacts that are new where they belong.
 void Planar::Core::order_contacts() {
-  // New ones are first in the list. There may be less of them than were asked for.
+  // New ones are first in the list. There may be fewer than its filter was asked about.
   struct Fresh {
     Place place;
     b2Contact* contact;

@@ -185,11 +185,29 @@ void Planar::Core::set_contacts(const Warm& from, double factor) {
   }
 }
 
+/// Impulses as of a step of this length, s.
+void Planar::Core::set_impulses(const Warm& from, double length) {
+  set_contacts(from, length / from.step);
+  set_joints(from, length / from.step);
+}
+
 void Planar::Core::set_joints(const Warm& from, double factor) {
   const auto f = static_cast<float>(factor);
   for (const auto& [index, w] : from.joints) {
     if (!joints[index].used || !joints[index].b2) continue;
     set_warm(joints[index], {f * w.x, f * w.y, f * w.angular, f * w.motor, f * w.lower, f * w.upper});
+  }
+}
+
+/// An image holds shapes as the bodies have them now: so Box2D's world takes bodies and shapes that came or changed
+/// since the last step before it is saved, as it would in the next one.
+void Planar::Core::take_shapes() {
+  if (!b2) return;
+  try {
+    ensure_world();
+    push_shapes();
+  } catch (const Error&) {
+    return;  // the next step reports a shape that cannot be
   }
 }
 

@@ -329,9 +329,7 @@ void Planar::Core::start_warm(double dt) {
   const bool whole = dt >= kWhole * step_length;
   if (!kept && !whole && last_step > 0) kept.emplace(warm());
   if (!kept) return;
-  const double factor = double{last_step} / kept->step;
-  set_contacts(*kept, factor);
-  set_joints(*kept, factor);
+  set_impulses(*kept, double{last_step});
   if (whole) kept.reset();
 }
 
@@ -340,9 +338,7 @@ void Planar::Core::end_cut_short() {
   if (!b2) return;
   b2->ClearForces();
   if (!kept) return;
-  const double factor = double{last_step} / kept->step;
-  set_contacts(*kept, factor);
-  set_joints(*kept, factor);
+  set_impulses(*kept, double{last_step});
   kept.reset();
 }
 
@@ -354,9 +350,7 @@ void Planar::Core::end_cuts(double dt) {
     kept.emplace(warm());
     if (last_step < kWhole * dt) kept->contacts.clear();
   }
-  const double factor = dt / kept->step;
-  set_contacts(*kept, factor);
-  set_joints(*kept, factor);
+  set_impulses(*kept, dt);
   kept.reset();
   last_step = whole;
 }

@@ -181,7 +181,9 @@ void connect(Flat& scene, ObjectId a, ObjectId b, Random& random) {
     scene.physics().add_spring(spring, a);
     return;
   }
-  const JointIndex joint = scene.hinge(a, b, {random.between(-0.4, 0.4), 0, 0}, {random.between(-0.4, 0.4), 0, 0});
+  // One after the other: the order of arguments is the compiler's.
+  const double on_a = random.between(-0.4, 0.4), on_b = random.between(-0.4, 0.4);
+  const JointIndex joint = scene.hinge(a, b, {on_a, 0, 0}, {on_b, 0, 0});
   JointDrive drive = scene.physics().drive(joint);
   drive.motor_speed[0] = random.between(-5, 5);
   drive.strength_limit = random.once_in(2) ? random.between(1, 20) : 0;
