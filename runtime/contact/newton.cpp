@@ -29,6 +29,9 @@ void Newton::begin() {
 
 bool Newton::settle(double stiffness, double tolerance, LinearSolves& solves) {
   stiffness_ = stiffness;
+  // Steps of length 0 are taken along these: what an earlier solve or one that failed left there may not be finite.
+  std::fill_n(dq_, rows_, 0.0);
+  std::fill_n(du_, rows_, 0.0);
   equations_.read_rows(u_);
   double before = 0, first = 0;
   for (int i = 0; i < kNewtonSteps; ++i) {

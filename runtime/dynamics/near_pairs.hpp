@@ -51,7 +51,7 @@ struct NearPair {
   std::array<WarmPoint, 2 * kMostPoints> warm;
 
   /// What of it an image keeps: which pairs are near without is another matter after a restore.
-  bool remembers() const { return touching || warm_count > 0 || cache.axis != Vector3::Zero(); }
+  bool remembers() const { return touching || warm_count > 0 || !cache.cold(); }
 };
 
 class NearPairs {

@@ -30,9 +30,12 @@ struct Manifold {
 /// What a pair remembers from one step to the next, so that the next look starts warm. Plain data: it may stand in a
 /// snapshot, and belongs there, since a warm start may change the last bit of a result. A new one is cold.
 struct PairCache {
-  Vector3 axis = Vector3::Zero();  // unit, in a's frame, from b toward a: the last normal or separating axis; 0: cold
+  Vector3 axis = Vector3::Zero();  // unit, in a's frame, from b toward a: the last normal or separating axis; 0: none,
+                                   // or so far away that its square is not a number
   std::uint32_t feature = 0;       // the reference feature that the axis comes from; 0: none
   std::uint32_t apart = 0;         // 1 if the pair was apart: the axis is tried first
+
+  bool cold() const { return feature == 0 && apart == 0 && axis == Vector3::Zero(); }
 };
 
 /// All manifolds of a pair whose gap is below `margin` (m, finite, >= 0), appended to `out`. Two convex solids give

@@ -131,8 +131,8 @@ double longest_safe_time(const Scene& s, const Gap& gap, double target, double s
   return longest;
 }
 
-/// When two balls moving apart by `x` at relative velocity `v` are `reach` apart for the first time; infinity: never.
-/// The discriminant is taken from the cross product, which keeps its digits for balls that graze.
+/// When two balls that are `x` apart and move at relative velocity `v` are `reach` apart for the first time; infinity:
+/// never. The discriminant is taken from the cross product, which keeps its digits for balls that graze.
 double balls_meet(const Vector3& x, const Vector3& v, double reach) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const double c = (x.norm() - reach) * (x.norm() + reach);
@@ -141,6 +141,15 @@ double balls_meet(const Vector3& x, const Vector3& v, double reach) {
   const double discriminant = v.squaredNorm() * reach * reach - x.cross(v).squaredNorm();
   if (approach <= 0 || discriminant < 0) return kNever;
   return c / (approach + std::sqrt(discriminant));
+}
+
+/// The same where products of lengths and speeds are no longer numbers: in other units of both.
+/// @return  0 where even these do not tell
+double far_balls_meet(const Vector3& x, const Vector3& v, double reach) {
+  const double length = std::max(x.cwiseAbs().maxCoeff(), reach), speed = v.cwiseAbs().maxCoeff();
+  if (!std::isfinite(length) || !std::isfinite(speed)) return 0;
+  const double time = balls_meet(x / length, v / speed, reach / length) * (length / speed);
+  return std::isnan(time) ? 0 : time;
 }
 
 /// A moving solid, as seen from its own position, and its motion. Only the solid itself is read of `body`.
@@ -212,6 +221,7 @@ bool Advancement::run(double& t) {
   const Scene start = scene(0);
   const double reach = a_.body.radius + b_.body.radius;
   double now = balls_meet(start.b.location, start.velocity, reach);
+  if (std::isnan(now)) now = far_balls_meet(start.b.location, start.velocity, reach);
   if (both_balls() && now <= h_) {
     t = now;
     return true;

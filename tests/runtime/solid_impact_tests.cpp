@@ -61,6 +61,29 @@ TEST(TimeOfImpact, AGrazeHitsAndANearMissMisses) {
   EXPECT_FALSE(time_of_impact(*ball, a, *ball, still(Vector3(10, 1.0000001, 0)), 2, t, contact));
 }
 
+TEST(TimeOfImpact, IsANumberWhereSquaresOfDistancesAreNone) {
+  const auto ball = Shape::sphere(0.5);
+  const auto box = Shape::box(Vector3(1, 1, 1));
+  double t = 0;
+  Contact contact;
+  ASSERT_TRUE(time_of_impact(*ball, moving(Vector3::Zero(), Vector3(4e200, 0, 0)), *ball, still(Vector3(1e200, 0, 0)),
+                             1, t, contact));
+  EXPECT_NEAR(t, 0.25, 1e-12);
+  EXPECT_FALSE(time_of_impact(*ball, moving(Vector3::Zero(), Vector3(4e200, 0, 0)), *ball,
+                              still(Vector3(1e200, 1e190, 0)), 1, t, contact));
+  const double speeds[] = {1, 1e160, 1e301, 1.5e308}, places[] = {1e160, 1e300, 1.5e308};
+  for (const Shape* shape : {ball.get(), box.get()})
+    for (const double speed : speeds)
+      for (const double place : places)
+        for (const double aside : {0.0, 0.3, 1e155, 1e300}) {
+          t = 0.5;
+          const Motion a = moving(Vector3(-place, 0, 0), Vector3(speed, -aside, 0));
+          const Motion b = moving(Vector3(place, aside, 0), Vector3(-speed, 0, aside));
+          time_of_impact(*shape, a, *ball, b, 1, t, contact);
+          EXPECT_TRUE(t >= 0 && t <= 1) << t << ' ' << speed << ' ' << place << ' ' << aside;
+        }
+}
+
 TEST(TimeOfImpact, ABulletMeetsAThinWall) {
   double t = 0;
   Contact contact;
