@@ -290,20 +290,23 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
 
   // order.cpp: of what Box2D solves
   ContactKey key_of(const b2Contact& contact) const;
-  /// @param swapped  the second body is the one with the lower index
   ContactKey key_of(const b2Contact& contact, bool& swapped) const;
+  ContactKey key_of(const b2Fixture& a, int child_a, const b2Fixture& b, int child_b, bool& swapped) const;
   struct Place {
     BodyIndex first = kNoBody;
     ContactKey key;
     friend auto operator<=>(const Place&, const Place&) = default;
   };
   Place place_of(const b2Contact& contact) const;
+  Place place_of(const ContactKey& key) const;
   b2Contact* contact_before(const Place& place) const;
+  b2Contact* last_before(b2Contact* from, const Place& place) const;
   void order_bodies();
   void order_slots();
   void order_joints();
   void make_room(double dt);
   void make_contacts();
+  void list_places(BodyIndex body, std::pmr::vector<Place>& places) const;
   void order_contacts();
   void order_edges();
 

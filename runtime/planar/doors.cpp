@@ -2,6 +2,7 @@
 #include "runtime/planar/doors.hpp"
 
 #include <cstdint>
+#include <utility>
 
 namespace breve {
 
@@ -131,13 +132,38 @@ void move_roomy_box(b2World& world, b2Fixture& fixture, const b2AABB& box, const
   manager_of(world).m_broadPhase.MoveProxy(proxies(fixture)[0].proxyId, box, way);
 }
 
-void find_contacts(b2World& world) { manager_of(world).FindNewContacts(); }
+void find_near(b2World& world, std::pmr::vector<NearShapes>& found) {
+  struct Collector {
+    std::pmr::vector<NearShapes>& found;
+    void AddPair(void* a, void* b) {
+      const NearShapes near{static_cast<b2FixtureProxy*>(a), static_cast<b2FixtureProxy*>(b)};
+      const b2Body &of_a = *near.a->fixture->GetBody(), &of_b = *near.b->fixture->GetBody();
+      if (&of_a == &of_b || (of_a.GetType() != b2_dynamicBody && of_b.GetType() != b2_dynamicBody)) return;
+      found.push_back(near);
+    }
+  } collector{found};
+  manager_of(world).m_broadPhase.UpdatePairs(&collector);
+}
 
 b2Contact* add_contact(b2World& world, b2Fixture& a, int child_a, b2Fixture& b, int child_b) {
   b2ContactManager& manager = manager_of(world);
   const int count = manager.m_contactCount;
   manager.AddPair(proxies(a) + child_a, proxies(b) + child_b);
   return manager.m_contactCount > count ? manager.m_contactList : nullptr;
+}
+
+b2Contact* add_new_contact(b2World& world, b2Fixture& a, int child_a, b2Fixture& b, int child_b) {
+  b2ContactEdge*& first = first_contact_of(*b.GetBody());
+  b2ContactEdge* const rest = std::exchange(first, nullptr);
+  b2Contact* const contact = add_contact(world, a, child_a, b, child_b);
+  if (!rest) return contact;
+  if (first) {
+    first->next = rest;
+    rest->prev = first;
+  } else {
+    first = rest;
+  }
+  return contact;
 }
 
 b2Contact* swap_shapes(b2World& world, b2Contact* contact) {

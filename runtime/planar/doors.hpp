@@ -4,7 +4,9 @@
 
 #include <box2d/box2d.h>
 
+#include <memory_resource>
 #include <span>
+#include <vector>
 
 namespace breve {
 
@@ -30,11 +32,20 @@ void set_roomy_box(b2World& world, b2Fixture& fixture, int child, const b2AABB& 
 /// Moves the roomy box of a shape to where the shape is about to be, as a step does at its end.
 void move_roomy_box(b2World& world, b2Fixture& fixture, const b2AABB& box, const b2Vec2& way);
 
-/// Makes contacts of what has come near each other, as a step does at its end.
-void find_contacts(b2World& world);
+/// Two shapes, or edges of profiles, whose roomy boxes meet.
+struct NearShapes {
+  b2FixtureProxy *a, *b;
+};
+
+/// Shapes that have come near each other since this was asked last, of which at least one is moved by forces. In no
+/// order, and some pairs twice; a pair may have a contact already.
+void find_near(b2World& world, std::pmr::vector<NearShapes>& found);
 
 /// Makes a contact of two shapes, or of one edge of one that is a profile. Returns it; null if there may be none.
 b2Contact* add_contact(b2World& world, b2Fixture& a, int child_a, b2Fixture& b, int child_b);
+
+/// The same of two shapes that have none yet. Box2D would look for it among all contacts of b's body.
+b2Contact* add_new_contact(b2World& world, b2Fixture& a, int child_a, b2Fixture& b, int child_b);
 
 /// Makes a contact anew with its two shapes in the other order. Returns it; null if it may not be any more.
 b2Contact* swap_shapes(b2World& world, b2Contact* contact);

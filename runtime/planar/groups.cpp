@@ -206,8 +206,7 @@ void Planar::Core::make_missed_contacts() {
     if (!std::exchange(flat.missed, false) || flat.body == kNoBody) continue;
     for (b2Fixture* fixture = flat.b2->GetFixtureList(); fixture; fixture = fixture->GetNext()) fixture->Refilter();
   }
-  find_contacts(*b2);
-  rethrow();
+  make_contacts();
 }
 
 }  // namespace breve

@@ -11,14 +11,14 @@
 
 namespace breve {
 
-ContactKey Planar::Core::key_of(const b2Contact& contact, bool& swapped) const {
-  const b2Fixture *a = contact.GetFixtureA(), *b = contact.GetFixtureB();
-  ContactKey key{of(a->GetBody()).body,
-                 of(b->GetBody()).body,
-                 number_of(a),
-                 number_of(b),
-                 static_cast<std::uint32_t>(contact.GetChildIndexA()),
-                 static_cast<std::uint32_t>(contact.GetChildIndexB())};
+/// @param swapped  the second body is the one with the lower index
+ContactKey Planar::Core::key_of(const b2Fixture& a, int child_a, const b2Fixture& b, int child_b, bool& swapped) const {
+  ContactKey key{of(const_cast<b2Fixture&>(a).GetBody()).body,
+                 of(const_cast<b2Fixture&>(b).GetBody()).body,
+                 number_of(&a),
+                 number_of(&b),
+                 static_cast<std::uint32_t>(child_a),
+                 static_cast<std::uint32_t>(child_b)};
   swapped = key.b < key.a;
   if (swapped) {
     std::swap(key.a, key.b);
@@ -26,6 +26,11 @@ ContactKey Planar::Core::key_of(const b2Contact& contact, bool& swapped) const {
     std::swap(key.child_a, key.child_b);
   }
   return key;
+}
+
+ContactKey Planar::Core::key_of(const b2Contact& contact, bool& swapped) const {
+  return key_of(*contact.GetFixtureA(), contact.GetChildIndexA(), *contact.GetFixtureB(), contact.GetChildIndexB(),
+                swapped);
 }
 
 ContactKey Planar::Core::key_of(const b2Contact& contact) const {
@@ -112,11 +117,43 @@ void Planar::Core::make_room(double dt) {
   }
 }
 
-/// Makes the contacts of what has come near.
+/// Makes the contacts of what has come near. Of many the last first: so they are in their order in Box2D's list, which
+/// begins with the newest, and in its memory.
 void Planar::Core::make_contacts() {
-  find_contacts(*b2);
+  struct Near {
+    Place place;
+    NearShapes shapes;
+  };
+  std::pmr::vector<NearShapes> found(memory);
+  std::pmr::vector<Near> all(memory);
+  find_near(*b2, found);
+  for (NearShapes& shapes : found) {
+    if (!is_body(shapes.a->fixture->GetBody()) || !is_body(shapes.b->fixture->GetBody())) continue;
+    bool swapped = false;
+    const ContactKey key =
+        key_of(*shapes.a->fixture, shapes.a->childIndex, *shapes.b->fixture, shapes.b->childIndex, swapped);
+    if (swapped) std::swap(shapes.a, shapes.b);
+    all.push_back({place_of(key), shapes});
+  }
+  std::sort(all.begin(), all.end(), [](const Near& p, const Near& q) { return p.place > q.place; });
+  std::pmr::vector<Place> known(memory);  // contacts of the first body
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto& [place, shapes] = all[i];
+    if (i > 0 && place == all[i - 1].place) continue;
+    if (i == 0 || place.first != all[i - 1].place.first) list_places(place.first, known);
+    if (!std::binary_search(known.begin(), known.end(), place))
+      add_new_contact(*b2, *shapes.a->fixture, shapes.a->childIndex, *shapes.b->fixture, shapes.b->childIndex);
+  }
   rethrow();
   if (fresh_contacts > 0) order_contacts();
+}
+
+/// Places of the contacts that a body has.
+void Planar::Core::list_places(BodyIndex body, std::pmr::vector<Place>& places) const {
+  places.clear();
+  for (const b2ContactEdge* edge = find(body)->b2->GetContactList(); edge; edge = edge->next)
+    places.push_back(place_of(*edge->contact));
+  std::sort(places.begin(), places.end());
 }
 
 /// Puts contacts that are new where they belong.
@@ -144,14 +181,28 @@ void Planar::Core::order_contacts() {
   take_first_contacts(*b2, fresh.size());
   for (Fresh& one : fresh) one.place = place_of(*one.contact);
   std::sort(fresh.begin(), fresh.end(), [](const Fresh& p, const Fresh& q) { return p.place < q.place; });
-  for (const Fresh& one : fresh) insert_contact(*b2, contact_before(one.place), *one.contact);
+  b2Contact* last = nullptr;
+  for (std::size_t i = 0; i < fresh.size(); ++i) {
+    // Of one body many may be new: the next is a little after the last.
+    const bool goes_on = last && fresh[i - 1].place.first == fresh[i].place.first;
+    b2Contact* before = goes_on ? last_before(last, fresh[i].place) : contact_before(fresh[i].place);
+    insert_contact(*b2, before, *fresh[i].contact);
+    last = fresh[i].contact;
+  }
 }
 
 /// Where a contact stands in the list: that of its body that moves, or of the first of both, then by the other.
-Planar::Core::Place Planar::Core::place_of(const b2Contact& contact) const {
-  const ContactKey key = key_of(contact);
+Planar::Core::Place Planar::Core::place_of(const ContactKey& key) const {
   const bool second = find(key.a)->b2->GetType() == b2_staticBody;
   return {second ? key.b : key.a, key};
+}
+
+Planar::Core::Place Planar::Core::place_of(const b2Contact& contact) const { return place_of(key_of(contact)); }
+
+/// The last contact before a place, of which `from` is one.
+b2Contact* Planar::Core::last_before(b2Contact* from, const Place& place) const {
+  while (from->GetNext() && place_of(*from->GetNext()) < place) from = from->GetNext();
+  return from;
 }
 
 /// The contact after which a place is, of which all before it are in the list; null if it is the first.
@@ -168,9 +219,8 @@ b2Contact* Planar::Core::contact_before(const Place& place) const {
         if (const Place at = place_of(*edge->contact); at.first == flat.body && at < place) last = edge->contact;
     if (last || slot == 0) return last;
   }
-  b2Contact* before = nullptr;
-  for (b2Contact* next = b2->GetContactList(); next && place_of(*next) < place; next = next->GetNext()) before = next;
-  return before;
+  b2Contact* const head = b2->GetContactList();
+  return head && place_of(*head) < place ? last_before(head, place) : nullptr;
 }
 
 /// Contacts of each body that has new ones.

@@ -48,7 +48,7 @@ void check_inertia(const Matrix3& inertia) {
   const double size = inertia.cwiseAbs().maxCoeff();
   if ((inertia - inertia.transpose()).cwiseAbs().maxCoeff() > kSymmetryTolerance * size) refuse("must be symmetric");
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia, Eigen::EigenvaluesOnly);
-  const Vector3 moments = solver.eigenvalues();  // rising
+  const Vector3& moments = solver.eigenvalues();  // rising
   if (!(moments[0] > 0)) refuse("must be positive definite");
   if (moments[2] > (moments[0] + moments[1]) * (1 + kSymmetryTolerance)) {
     refuse("no principal moment may exceed the sum of the other two");

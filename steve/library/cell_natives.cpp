@@ -128,9 +128,10 @@ void grid_apply_rule(Machine& machine, Instance& self, std::int32_t born, std::i
   refuse_updating(resource, "apply-rule");
   resource.states.make(*resource.grid);
   const TotalisticRule rule{static_cast<std::uint32_t>(born), static_cast<std::uint32_t>(survive)};
-  constexpr std::size_t kCellsPerIteration = 32;  // what takes about as long as an iteration of a script's loop
+  // What takes about as long as an iteration of a script's loop, or as some where the grid is small.
+  constexpr std::size_t kOfStep = 2, kCellsPerIteration = 32;
   for (std::int32_t i = 0; i < times; ++i) {
-    machine.charge(1 + resource.grid->cells() / kCellsPerIteration);
+    machine.charge(kOfStep + resource.grid->cells() / kCellsPerIteration);
     const StageScope timed = machine.world().work(EffectId::Patches, self.id, resource.grid->cells());
     resource.states.step(*resource.grid, resource.neighborhood, rule, resource.order, machine.world().random(),
                          machine.poller());

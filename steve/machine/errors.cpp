@@ -93,7 +93,7 @@ void Machine::print(std::string_view text) {
   refuse_in_stage("print");
   if (!host_.print) return;
   constexpr std::uint64_t kBytesPerIteration = 16;
-  charge(text.size() / kBytesPerIteration);
+  charge(1 + text.size() / kBytesPerIteration);
   reporter_.print(text);
 }
 
