@@ -77,15 +77,15 @@ Vector3 shape_get_last_scale(Machine& machine, Instance& self) {
 
 // --- builders --------------------------------------------------------------------------------------------------------
 
-constexpr std::uint64_t kOfSolid = 12;  // iterations: to make any shape, and to free the one before
+constexpr std::uint64_t kOfSphere = 12, kOfBox = 24;  // iterations: to make one, and to free the shape before
 
 Instance* build_sphere(Machine& machine, Instance& self, double radius) {
-  machine.charge(kOfSolid);
+  machine.charge(kOfSphere);
   return build(machine, self, Shape::sphere(radius, machine.heap().memory()));
 }
 
 Instance* build_cube(Machine& machine, Instance& self, Vector3 size) {
-  machine.charge(kOfSolid);
+  machine.charge(kOfBox);
   return build(machine, self, Shape::box(size, machine.heap().memory()));
 }
 

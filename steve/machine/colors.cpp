@@ -46,9 +46,10 @@ Vector3 unique_color(std::int32_t n) {
   if (n <= 0) return {0, 0, 0};
   if (n == 1) return {1, 1, 1};
   const std::int32_t k = n - 2, m = k % 96;
-  const double hue = 40.0 * (k % 8) + 20.0 * (k / 96);
+  const std::int32_t round = k / 96, shade = m % 32 / 8;
+  const double hue = 40.0 * (k % 8) + 20.0 * round;
   const double saturation = m < 32 ? 1.0 : m < 64 ? 0.4 : 0.2;
-  const double value = 1 - 0.2 * ((m % 32) / 8);
+  const double value = 1 - 0.2 * shade;
   return hsv_to_rgb({hue, saturation, value});
 }
 
