@@ -29,6 +29,7 @@ class OwnView {
     constexpr int kWidth = 640, kHeight = 480;
     steve::show(machine, scene_);
     const PicturePart needed{part.left, part.top, part.width, part.height};
+    renderer_.set_meter([&machine](std::uint64_t units) { machine.charge(units); });
     renderer_.set_part(part.width != 0 ? std::optional(needed) : std::nullopt);
     renderer_.paint(scene_.scene(), kWidth, kHeight, picture_);
     drawn_ = {picture_.width, picture_.height, picture_.rgba, picture_.depth};
@@ -48,7 +49,12 @@ void let_draw(breve_world& world, steve::MachineHost& host) {
   const auto view = std::make_shared<std::optional<OwnView>>();
   host.draw = [&world, view](const steve::ViewPart& part) -> const steve::DrawnView& {
     if (!*view) view->emplace();
-    return (*view)->draw(*world.machine, part);
+    try {
+      return (*view)->draw(*world.machine, part);
+    } catch (...) {
+      view->reset();  // a picture that was begun is not gone on with
+      throw;
+    }
   };
 }
 

@@ -13,6 +13,7 @@ struct Item {
   std::uint32_t mesh, texture;
   std::uint32_t number;  // of the instance
   float away;
+  float pixels;
 };
 
 std::uint32_t mesh_for(const SceneInstance& instance, const SceneMesh& mesh, const BatchView& view) {
@@ -36,12 +37,31 @@ GpuInstance packed(const SceneInstance& instance, std::size_t layer) {
            static_cast<float>(layer)}};
 }
 
-void collect(const Scene& scene, const std::vector<Item>& items, std::vector<GpuInstance>& instances,
+/// The area that an instance covers at most.
+float pixels_of(const SceneInstance& instance, const SceneMesh& mesh, const BatchView& view) {
+  if (!view.lens) return 0;
+  constexpr float kCircle = 3.1416F, kWidest = 2;  // pictures are hardly more than twice as wide as high
+  const float radius = radius_of(instance, mesh) * view.lens->scale_at(instance.transform.col(3), view.height);
+  const float area = kCircle * radius * radius, most = kWidest * view.height * view.height;
+  return area < most ? area : most;
+}
+
+/// One that stands exactly where another is drawn after it shows nothing.
+bool is_hidden(const SceneInstance& instance, const SceneInstance& after) {
+  return instance.mesh == after.mesh && instance.transform == after.transform;
+}
+
+/// @param solid  they hide each other
+void collect(const Scene& scene, const std::vector<Item>& items, bool solid, std::vector<GpuInstance>& instances,
              std::vector<Batch>& batches) {
-  for (const Item& item : items) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const Item& item = items[i];
+    if (solid && i + 1 < items.size() && is_hidden(scene.instances[item.number], scene.instances[items[i + 1].number]))
+      continue;
     if (batches.empty() || batches.back().mesh != item.mesh || batches.back().texture != item.texture)
       batches.push_back({item.mesh, item.texture, instances.size(), 0});
     ++batches.back().count;
+    batches.back().pixels += static_cast<double>(item.pixels);
     instances.push_back(packed(scene.instances[item.number], item.number));
   }
 }
@@ -57,7 +77,7 @@ Batches batch(const Scene& scene, const BatchView& view, Wanted wanted, const Sc
     if (mesh.indices.empty()) continue;
     const Vector3f center = instance.transform.col(3);
     const float away = view.lens ? (view.lens->eye - center).dot(view.lens->back) : 0;
-    const Item item{mesh_for(instance, mesh, view), instance.texture, i, away};
+    const Item item{mesh_for(instance, mesh, view), instance.texture, i, away, pixels_of(instance, mesh, view)};
     (instance.color.w() < kOpaque ? transparent : opaque).push_back(item);
   }
   // The nearest first: what is behind them need not be shaded.
@@ -71,8 +91,8 @@ Batches batch(const Scene& scene, const BatchView& view, Wanted wanted, const Sc
                      [](const Item& a, const Item& b) { return a.away > b.away; });
   Batches batches;
   batches.instances.reserve(opaque.size() + transparent.size());
-  collect(scene, opaque, batches.instances, batches.opaque);
-  collect(scene, transparent, batches.instances, batches.transparent);
+  collect(scene, opaque, view.by_distance, batches.instances, batches.opaque);
+  collect(scene, transparent, false, batches.instances, batches.transparent);
   return batches;
 }
 

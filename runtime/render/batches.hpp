@@ -18,6 +18,7 @@ inline constexpr std::uint32_t kDiscMesh = 0xffffffefU;
 struct Batch {
   std::uint32_t mesh = 0, texture = kNoTexture;
   std::size_t first = 0, count = 0;
+  double pixels = 0;  // that its instances cover together at most
 };
 
 struct Batches {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "runtime/base/error.hpp"
 #include "runtime/render/work.hpp"
@@ -176,6 +177,8 @@ Renderer::~Renderer() = default;
 void Renderer::paint(const Scene& scene, int width, int height, Picture& picture) {
   work_->paint(scene, width, height, picture);
 }
+
+void Renderer::set_meter(std::function<void(std::uint64_t units)> meter) { work_->meter = std::move(meter); }
 
 void Renderer::set_camera(const std::optional<SceneCamera>& camera) { work_->own_camera = camera; }
 void Renderer::set_part(const std::optional<PicturePart>& part) { work_->part = part; }

@@ -104,7 +104,7 @@ ShadowLens Renderer::Work::draw_shadows(const Scene& scene, const Lens& seen_by,
       shaders.depth.set("disc", one.mesh == kDiscMesh ? 1.0F : 0.0F);
       // A coarse sphere lies within the one that is seen, which so does not shade itself.
       const MeshBuffer& buffer = mesh(scene, one.mesh > kSphereMesh + 1 ? kSphereMesh + 1 : one.mesh);
-      buffer.draw(instances, one.first, one.count);
+      draw_pieces(buffer, one, false);
       ++counters.draw_calls;
     }
   gl.Disable(GL_POLYGON_OFFSET_FILL);

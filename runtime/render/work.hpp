@@ -62,7 +62,8 @@ struct Renderer::Work {
   // bodies.cpp
   void draw_backdrop(const Pass& pass);
   void draw_bodies(const Pass& pass, bool (*wanted)(const SceneInstance&) = nullptr);
-  void draw_batches(const Pass& pass, const std::vector<Batch>& batches, float outline = 0);
+  void draw_batches(const Pass& pass, const std::vector<Batch>& batches, bool blended, float outline = 0);
+  void draw_pieces(const MeshBuffer& buffer, const Batch& batch, bool blended);
   const Program& body_program(const Pass& pass, const Batch& batch);
   void draw_sheets(const Pass& pass);
   void set_body_uniforms(const Pass& pass, const Program& program);
@@ -92,6 +93,7 @@ struct Renderer::Work {
   Window needed;                    // the same in the picture that is being drawn
   SceneCamera last_camera;
   Framing framing;
+  std::function<void(std::uint64_t units)> meter;
   Counters counters;
   std::vector<const Program*> ready;       // those for bodies that have the uniforms of this pass
   std::vector<std::uint8_t> last_picture;  // that motion blur mixes with

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -59,16 +61,23 @@ void finish(Polyhedron& solid) {
 
 }  // namespace
 
-Polyhedron make_box(const Vector3& size) {
+Polyhedron make_box(const Vector3& size, std::pmr::memory_resource* memory) {
   static constexpr const char* kWhat[] = {"a box's size along x", "a box's size along y", "a box's size along z"};
   for (int i = 0; i < 3; ++i) check_length(kWhat[i], size[i]);
-  Polyhedron box;
+  Polyhedron box(memory);
+  box.vertices.reserve(8);
   for (int i = 0; i < 8; ++i) {
     const Vector3 corner((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1);
     box.vertices.emplace_back(corner.cwiseProduct(size) * 0.5);
   }
-  box.faces = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-  finish(box);
+  static constexpr std::array<int, 4> kFaces[] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                                  {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+  box.faces.reserve(std::size(kFaces));
+  for (const auto& face : kFaces) box.faces.emplace_back(face.begin(), face.end());
+  // As connect() finds them, which would take half of the time that it takes to make a box.
+  box.edges = {{0, 4, 0, 2}, {4, 6, 0, 5}, {6, 2, 0, 3}, {2, 0, 0, 4}, {1, 3, 1, 4}, {3, 7, 1, 3},
+               {7, 5, 1, 5}, {5, 1, 1, 2}, {0, 1, 2, 4}, {5, 4, 2, 5}, {6, 7, 3, 5}, {3, 2, 3, 4}};
+  update_planes(box);
   return box;
 }
 
@@ -187,6 +196,7 @@ int Polyhedron::farthest(const Vector3& direction, int from) const {
 
 void update_planes(Polyhedron& solid) {
   solid.planes.clear();
+  solid.planes.reserve(solid.faces.size());
   for (const auto& face : solid.faces) {
     const Vector3 normal = doubled_area(solid, face).stableNormalized();
     double offset = normal.dot(solid.vertices[static_cast<std::size_t>(face[0])]);

@@ -58,7 +58,7 @@ struct Moments {
 };
 
 /// The builders give the origin as centre. Error{Argument} names the value that is not finite and > 0.
-Polyhedron make_box(const Vector3& size);
+Polyhedron make_box(const Vector3& size, std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 Polyhedron make_prism(int sides, double height, double radius);
 Polyhedron make_cone(int sides, double height, double radius);
 

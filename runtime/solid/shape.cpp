@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "runtime/base/error.hpp"
 #include "runtime/solid/shape_geometry.hpp"
@@ -116,12 +117,12 @@ std::shared_ptr<Shape> Shape::sphere(double radius, Memory memory) {
   return shared(std::move(g));
 }
 
-std::shared_ptr<Shape> Shape::of(ShapeKind kind, const Polyhedron& solid, double density, Memory memory) {
+std::shared_ptr<Shape> Shape::of(ShapeKind kind, Polyhedron solid, double density, Memory memory) {
   auto g = make_in<Geometry>(memory, memory);
   g->kind = kind;
   g->original = moments(solid);
   g->original_vertices = solid.vertices;
-  g->solid = solid;
+  g->solid = std::move(solid);
   g->density = density;
   return shared(std::move(g));
 }
@@ -148,7 +149,7 @@ std::shared_ptr<Shape> Shape::capsule(double length, double radius, int axis, Me
 }
 
 std::shared_ptr<Shape> Shape::box(const Vector3& size, Memory memory) {
-  return of(ShapeKind::Box, make_box(size), 1, memory);
+  return of(ShapeKind::Box, make_box(size, memory), 1, memory);
 }
 
 std::shared_ptr<Shape> Shape::prism(int sides, double height, double radius, Memory memory) {

@@ -125,7 +125,7 @@ class Shape : public InMemory {
   struct Geometry;
   explicit Shape(std::unique_ptr<Geometry> geometry);
   static std::shared_ptr<Shape> of(const Round& round, Memory memory);
-  static std::shared_ptr<Shape> of(ShapeKind kind, const Polyhedron& solid, double density, Memory memory);
+  static std::shared_ptr<Shape> of(ShapeKind kind, Polyhedron solid, double density, Memory memory);
   static std::shared_ptr<Shape> mesh(std::shared_ptr<TriangleMesh> surface, const Polyhedron* hull, Memory memory);
   static std::shared_ptr<Shape> height_field(std::shared_ptr<HeightGrid> grid, Memory memory);
   static std::shared_ptr<Shape> shared(std::unique_ptr<Geometry> geometry);

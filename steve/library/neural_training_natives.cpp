@@ -32,11 +32,13 @@ void read_samples(Machine& machine, ListCell* list, Eigen::Index width, Numbers&
   if (steps == 0) steps = sequences ? static_cast<Eigen::Index>(all[0].list()->size) : 1;
   const auto size = static_cast<std::uint64_t>(width * steps);
   machine.charge_for(size);
-  numbers.resize(0);
   const std::string one = std::string(what) + ": a sample";
   // Sample by sample: a list may hold the same sample many times, and each is charged before it takes memory.
-  for (std::uint32_t s = 0; s < all.size; ++s) machine.charge_for(size);
-  numbers.resize(size * all.size);
+  for (std::uint32_t s = 0; s < all.size; ++s) {
+    list_of(all[s], one);
+    machine.charge_for(size);
+  }
+  numbers.clear(size * all.size, [&machine] { machine.poll(); });
   double* next = numbers.data();
   for (std::uint32_t s = 0; s < all.size; ++s) {
     const ListCell& sample = list_of(all[s], one);

@@ -77,15 +77,15 @@ Vector3 shape_get_last_scale(Machine& machine, Instance& self) {
 
 // --- builders --------------------------------------------------------------------------------------------------------
 
-constexpr std::uint64_t kOfSphere = 12, kOfBox = 24;  // iterations: to make one, and to free the shape before
+constexpr std::uint64_t kOfSolid = 6;  // iterations: to make any shape, and to free the one before
 
 Instance* build_sphere(Machine& machine, Instance& self, double radius) {
-  machine.charge(kOfSphere);
+  machine.charge(kOfSolid);
   return build(machine, self, Shape::sphere(radius, machine.heap().memory()));
 }
 
 Instance* build_cube(Machine& machine, Instance& self, Vector3 size) {
-  machine.charge(kOfBox);
+  machine.charge(kOfSolid);
   return build(machine, self, Shape::box(size, machine.heap().memory()));
 }
 

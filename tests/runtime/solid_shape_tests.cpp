@@ -5,8 +5,10 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <tuple>
 
 #include "runtime/base/error.hpp"
+#include "runtime/solid/polyhedron.hpp"
 #include "runtime/solid/shape.hpp"
 #include "tests/runtime/solid_oracle.hpp"
 
@@ -166,6 +168,17 @@ TEST(Shape, EveryFaceLooksOutward) {
     }
     // Euler: V - E + F = 2.
     EXPECT_EQ(solid.vertices.size() + solid.faces.size(), solid.edges.size() + 2);
+  }
+}
+
+TEST(Shape, TheEdgesOfABoxAreThoseThatItsFacesShare) {
+  const Polyhedron box = make_box({1, 2, 3});
+  Polyhedron connected = box;
+  connect(connected);
+  ASSERT_EQ(box.edges.size(), connected.edges.size());
+  for (std::size_t i = 0; i < box.edges.size(); ++i) {
+    const Edge &given = box.edges[i], &found = connected.edges[i];
+    EXPECT_EQ(std::tie(given.a, given.b, given.left, given.right), std::tie(found.a, found.b, found.left, found.right));
   }
 }
 

@@ -106,6 +106,12 @@ Pixels Stage::draw(breve_world* world) {
   return pixels;
 }
 
+breve_view_counters Stage::counts() const {
+  breve_view_counters counters = breve_view_counters_default();
+  if (!view_ || breve_view_counts(view_, &counters) != BREVE_OK) ADD_FAILURE() << "counts";
+  return counters;
+}
+
 void Stage::call(breve_world* world, const char* method) {
   if (world && breve_object_call(world, breve_world_controller(world), method, nullptr, 0, nullptr) != BREVE_OK)
     fail(breve_world_last_error(world), method);

@@ -32,6 +32,7 @@ class Stage {
   breve_world* open(breve_program* program);
   void show_arrows(std::uint32_t arrows) { arrows_ = arrows; }  // of breve_arrows
   Pixels draw(breve_world* world);
+  breve_view_counters counts() const;  // of the last picture
   void call(breve_world* world, const char* method);
   void step(breve_world* world, int iterations);
   breve_runtime* runtime() const { return runtime_; }

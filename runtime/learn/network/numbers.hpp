@@ -52,6 +52,21 @@ class Numbers {
     data_ = data;
     size_ = size;
   }
+  /// So many zeros in place of what there is. `poll` is called in between and may throw: then some are left undefined.
+  template <class Poll>
+  void clear(std::size_t size, const Poll& poll) {
+    constexpr std::size_t kPiece = 1 << 17;  // numbers: pages of memory that are touched first take time
+    release();
+    data_ = nullptr;
+    size_ = 0;
+    if (size == 0) return;
+    data_ = static_cast<double*>(memory_->allocate(size * sizeof(double), kAlignment));
+    size_ = size;
+    for (std::size_t at = 0; at < size; at += kPiece) {
+      std::fill_n(data_ + at, std::min(kPiece, size - at), 0.0);
+      poll();
+    }
+  }
   void fill(double value) { std::fill_n(data_, size_, value); }
 
   std::pmr::memory_resource* memory() const { return memory_; }
