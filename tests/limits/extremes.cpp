@@ -24,7 +24,7 @@
 namespace breve::limits {
 namespace {
 
-constexpr double kShown = 0.025;  // s, in the table
+constexpr double kShown = 0.1;  // s, in the table
 
 /// The worst that was seen of each name.
 struct Worst {

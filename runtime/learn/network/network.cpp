@@ -72,10 +72,6 @@ void Network::randomize(Random& random) {
   }
 }
 
-bool Network::recurrent() const {
-  return std::any_of(layers_.begin(), layers_.end(), [](const Layer& layer) { return layer.recurrent(); });
-}
-
 bool Network::same_shape(const Network& other) const {
   return std::equal(layers_.begin(), layers_.end(), other.layers_.begin(), other.layers_.end(),
                     [](const Layer& a, const Layer& b) {

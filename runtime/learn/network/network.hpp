@@ -68,7 +68,6 @@ class Network {
   const std::pmr::vector<Layer>& layers() const { return layers_; }
   Eigen::Index inputs() const { return layers_.empty() ? 0 : layers_.front().neurons; }
   Eigen::Index outputs() const { return layers_.empty() ? 0 : layers_.back().neurons; }
-  bool recurrent() const;
   /// Do both have the same layers?
   bool same_shape(const Network& other) const;
   const Numbers& parameters() const { return parameters_; }
