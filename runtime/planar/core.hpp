@@ -390,9 +390,11 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   void forget_impulses(const FlatBody& flat);
 
   // save.cpp
-  void take_shapes();
+  bool take_shapes();
+  void prepare_image();
   Frozen freeze() const;
   void freeze(const FlatBody& flat, Frozen& made) const;
+  void thaw_world();
   void thaw();
   void thaw_bodies();
   void thaw_joints();

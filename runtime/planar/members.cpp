@@ -83,15 +83,7 @@ void Planar::Core::drop_world() {
 void Planar::Core::ensure_world() {
   if (!b2) {
     if (bodies->rigid() == 0) return;
-    make_world();
-    if (frozen) {
-      try {
-        thaw();
-      } catch (...) {
-        drop_world();  // half of it would be another world than the image's
-        throw;
-      }
-    }
+    frozen ? thaw_world() : make_world();
   }
   if (seen_revision != bodies->revision()) members_changed = true;
   if (members_changed) update_members();
@@ -178,10 +170,12 @@ void Planar::Core::add_member(BodyIndex body) {
   def.angle = static_cast<float>(angle_of(bodies->orientation(body)));
   def.userData.pointer = slot + 1;
   flat.b2 = b2->CreateBody(&def);
+  const double kept_base = base;
   try {
     fit(flat);
   } catch (...) {
     remove_member(slot);
+    base = kept_base;  // it has no mass yet
     throw;
   }
   note_placed(flat);
@@ -274,6 +268,22 @@ void add_profile(FlatBody& flat, const std::pmr::vector<Vector2>& points, double
   add_fixture(flat, chain, number);
 }
 
+/// @throws Error{Argument} where Box2D cannot have such a body
+b2MassData mass_data(const MassProperties& mass, double unit) {
+  const Vector3& c = mass.center_of_mass;
+  b2MassData data;
+  data.mass = static_cast<float>(mass.mass);
+  data.center = b2Vec2(static_cast<float>(c.x() / unit), static_cast<float>(c.y() / unit));
+  data.I = static_cast<float>((mass.inertia(2, 2) + mass.mass * c.head<2>().squaredNorm()) / (unit * unit));
+  // Box2D takes the centre's part off again in single precision, and ends the process if nothing is left.
+  const float own = data.I - data.mass * b2Dot(data.center, data.center);
+  if (!(data.mass > 0) || !std::isfinite(data.mass) || !(own > 1e-6F * data.I) || !std::isfinite(data.I))
+    throw Error(ErrorCode::Argument, fmt::format("a body's mass of {}, inertia of {} or centre of mass is out of the "
+                                                 "range of single precision",
+                                                 mass.mass, mass.inertia(2, 2)));
+  return data;
+}
+
 }  // namespace
 
 void Planar::Core::fit(FlatBody& flat) {
@@ -290,6 +300,13 @@ void Planar::Core::fit(FlatBody& flat) {
                 fmt::format("a body is only {} wide, which is too thin at a length unit of {}; set the world's length "
                             "unit to about the size of its bodies (set-length-unit, breve_world_config.length_unit)",
                             2 * outline.thickness, settings.unit));
+  // All is refused before anything is changed, so that the next step refuses it as well.
+  MassProperties mass;
+  b2MassData data;
+  if (!flat.fixed) {
+    mass = bodies->mass_properties(flat.body);
+    data = mass_data(mass, settings.unit);
+  }
   while (b2Fixture* fixture = flat.b2->GetFixtureList()) flat.b2->DestroyFixture(fixture);
   flat.shape = shape;
   flat.scale = shape->scale();
@@ -310,19 +327,7 @@ void Planar::Core::fit(FlatBody& flat) {
       ++number;
     }
   if (flat.fixed) return;
-  flat.mass = bodies->mass_properties(flat.body);
-  const Vector3& c = flat.mass.center_of_mass;
-  const double u = settings.unit;
-  b2MassData data;
-  data.mass = static_cast<float>(flat.mass.mass);
-  data.center = b2Vec2(static_cast<float>(c.x() / u), static_cast<float>(c.y() / u));
-  data.I = static_cast<float>((flat.mass.inertia(2, 2) + flat.mass.mass * c.head<2>().squaredNorm()) / (u * u));
-  // Box2D takes the centre's part off again in single precision, and ends the process if nothing is left.
-  const float own = data.I - data.mass * b2Dot(data.center, data.center);
-  if (!(data.mass > 0) || !std::isfinite(data.mass) || !(own > 1e-6F * data.I) || !std::isfinite(data.I))
-    throw Error(ErrorCode::Argument, fmt::format("a body's mass of {}, inertia of {} or centre of mass is out of the "
-                                                 "range of single precision",
-                                                 flat.mass.mass, flat.mass.inertia(2, 2)));
+  flat.mass = mass;
   flat.b2->SetMassData(&data);
 }
 

@@ -223,10 +223,19 @@ bool Planar::pushes(BodyIndex a, BodyIndex b, const MechanicsClient& client) con
 }
 void Planar::forget(BodyIndex body) { core_->forget(body); }
 void Planar::save(ByteWriter& out) const {
-  core_->take_shapes();
+  core_->prepare_image();
   core_->save(out);
 }
-void Planar::load(ByteReader& in) { core_->load(in); }
+void Planar::load(ByteReader& in) {
+  core_->load(in);
+  if (!core_->frozen || core_->bodies->rigid() == 0) return;
+  // At once: what a script sets before the next step is then seen as a change, as in the world that was saved.
+  try {
+    core_->thaw_world();
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::Memory) throw;  // others are those of the next step
+  }
+}
 void Planar::hash(Hasher& hasher) const {
   core_->take_shapes();
   core_->hash(hasher);

@@ -201,14 +201,24 @@ void Planar::Core::set_joints(const Warm& from, double factor) {
 
 /// An image holds shapes as the bodies have them now: so Box2D's world takes bodies and shapes that came or changed
 /// since the last step before it is saved, as it would in the next one.
-void Planar::Core::take_shapes() {
-  if (!b2) return;
+/// @return  false if there is a shape that cannot be, which the next step reports
+bool Planar::Core::take_shapes() {
+  if (!b2) return true;
   try {
     ensure_world();
     push_shapes();
+    return true;
   } catch (const Error&) {
-    return;  // the next step reports a shape that cannot be
+    return false;
   }
+}
+
+/// Before an image is taken. Box2D's world cannot be made anew where a shape cannot be: then this world goes on from
+/// the image's data as well.
+void Planar::Core::prepare_image() {
+  if (take_shapes()) return;
+  frozen.emplace(freeze());
+  drop_world();
 }
 
 Frozen Planar::Core::freeze() const {
@@ -265,17 +275,25 @@ void Planar::Core::freeze(const FlatBody& flat, Frozen& made) const {
     }
 }
 
-/// Box2D's world as it was when the image was taken. What scripts have set since is found by comparing, as ever.
+/// Box2D's world as it was when the image was taken, with the bodies and joints that it knew. Others it gets to know in
+/// the next step, as in the world that was saved.
+void Planar::Core::thaw_world() {
+  make_world();
+  try {
+    thaw();
+  } catch (...) {
+    drop_world();  // half of it would be another world than the image's
+    throw;
+  }
+}
+
 void Planar::Core::thaw() {
   const double kept_base = base;
-  update_members();
+  if (slot_of.size() < bodies->index_end()) slot_of.resize(bodies->index_end(), kNoSlot);
+  for (const FrozenBody& one : frozen->bodies)
+    if (bodies->dynamic(one.body) || bodies->driver(one.body) || joints_at.count(one.body) != 0) add_member(one.body);
+  order_bodies();
   base = kept_base;
-  for (const FlatBody& flat : slots) {
-    const auto position = std::lower_bound(frozen->bodies.begin(), frozen->bodies.end(), flat.body,
-                                           [](const FrozenBody& one, BodyIndex body) { return one.body < body; });
-    const bool counted = position != frozen->bodies.end() && position->body == flat.body;
-    if (flat.body != kNoBody && !flat.fixed && !counted) base += energy_of(flat.body);
-  }
   held.hold(expected_bytes() + frozen->contacts.size() * kPerContact);
   thaw_bodies();
   thaw_joints();
@@ -286,9 +304,6 @@ void Planar::Core::thaw() {
     flat->b2->SetAwake(one.awake);
     sleep_time(*flat->b2) = one.still;
   }
-  // What a script linked since the image was loaded.
-  for (FlatJoint& joint : joints)
-    if (joint.used && !joint.b2) make_b2(joint);
   frozen.reset();
   bodies->touch_rigid();
 }
@@ -330,11 +345,10 @@ void Planar::Core::thaw_bodies() {
 }
 
 void Planar::Core::thaw_joints() {
-  for (FlatJoint& joint : joints)
-    if (joint.used) drop_b2(joint);
   for (const FrozenJoint& one : frozen->joints) {
     FlatJoint& joint = joints[one.joint];
-    if (!joint.used || joint.b2) continue;
+    const bool held = find(joint.is.child) && (joint.is.parent == kNoBody || find(joint.is.parent));
+    if (!joint.used || joint.b2 || !held) continue;
     make_b2(joint, one.reference);
     joint.loose = one.loose;
     put_drive(joint);
