@@ -394,6 +394,8 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   void prepare_image();
   Frozen freeze() const;
   void freeze(const FlatBody& flat, Frozen& made) const;
+
+  // thaw.cpp
   void thaw_world();
   void thaw();
   void thaw_bodies();

@@ -300,7 +300,7 @@ void Planar::Core::fit(FlatBody& flat) {
                 fmt::format("a body is only {} wide, which is too thin at a length unit of {}; set the world's length "
                             "unit to about the size of its bodies (set-length-unit, breve_world_config.length_unit)",
                             2 * outline.thickness, settings.unit));
-  // All is refused before anything is changed, so that the next step refuses it as well.
+  // All is refused before anything is changed, so that the next step also refuses it.
   MassProperties mass;
   b2MassData data;
   if (!flat.fixed) {
