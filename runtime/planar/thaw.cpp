@@ -9,22 +9,23 @@ namespace breve {
 /// Box2D's world as it was when the image was taken, with the bodies and joints that it knew. Others it gets to know in
 /// the next step, as in the world that was saved.
 void Planar::Core::thaw_world() {
+  const double kept_base = base;  // the image has it
   make_world();
   try {
     thaw();
   } catch (...) {
     drop_world();  // half of it would be another world than the image's
+    base = kept_base;
     throw;
   }
+  base = kept_base;
 }
 
 void Planar::Core::thaw() {
-  const double kept_base = base;
   if (slot_of.size() < bodies->index_end()) slot_of.resize(bodies->index_end(), kNoSlot);
   for (const FrozenBody& one : frozen->bodies)
     if (bodies->dynamic(one.body) || bodies->driver(one.body) || joints_at.count(one.body) != 0) add_member(one.body);
   order_bodies();
-  base = kept_base;
   held.hold(expected_bytes() + frozen->contacts.size() * kPerContact);
   thaw_bodies();
   thaw_joints();

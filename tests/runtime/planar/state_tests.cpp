@@ -112,14 +112,14 @@ TEST(PlanarState, AnImageOfAShapeThatCannotBeGoesOnAlikeOnceItCan) {
   Resting live, other;
   live.run(0.2);
   const auto huge = Shape::sphere(1e12);
-  live.bodies().set_collision_shape(live.index(live.ball), huge);
+  live.bodies().set_collision_shape(live.index(live.box), huge);
   for (int i = 0; i < 2; ++i) EXPECT_THROW(live.world.step(), Error) << i;
   const auto image = live.world.save(1);
   other.world.load(image.data(), image.size(), 1);
   EXPECT_THROW(live.world.step(), Error);
   EXPECT_THROW(other.world.step(), Error);
   for (Resting* world : {&live, &other})
-    world->bodies().set_collision_shape(world->index(world->ball), Shape::sphere(0.4));
+    world->bodies().set_collision_shape(world->index(world->box), Shape::sphere(0.4));
   for (int i = 0; i < 100; ++i) {
     live.world.step();
     other.world.step();
