@@ -168,9 +168,11 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   b2Vec2 position_of(BodyIndex body) const;
   void add_member(BodyIndex body);
   void remove_member(std::uint32_t slot);
-  void fit(FlatBody& flat);  // shape and mass
   void push_shapes();
   void push_changes();
+
+  // fit.cpp
+  void fit(FlatBody& flat);
 
   // waking.cpp
   void wake(BodyIndex body);

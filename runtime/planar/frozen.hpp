@@ -73,7 +73,7 @@ struct Warm {
   std::pmr::vector<std::pair<JointIndex, WarmJoint>> joints;  // by index
   explicit Warm(std::pmr::memory_resource* memory) : contacts(memory), joints(memory) {}
 };
-/// Box2D's world as data: what an image holds, and what a world is made of when a restored one first moves.
+/// Box2D's world as data: what an image holds, and what a world is made of when it is loaded.
 struct Frozen {
   float step = 0;                            // s, the length of the last one
   std::pmr::vector<FrozenBody> bodies;       // by body

@@ -233,7 +233,7 @@ void Planar::load(ByteReader& in) {
   try {
     core_->thaw_world();
   } catch (const Error& error) {
-    if (error.code() == ErrorCode::Memory) throw;  // others are those of the next step
+    if (error.code() == ErrorCode::Memory) throw;  // any other is reported by the next step
   }
 }
 void Planar::hash(Hasher& hasher) const {

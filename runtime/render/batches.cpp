@@ -2,6 +2,7 @@
 #include "runtime/render/batches.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 namespace breve::render {
 
@@ -37,18 +38,18 @@ GpuInstance packed(const SceneInstance& instance, std::size_t layer) {
            static_cast<float>(layer)}};
 }
 
-/// The area that an instance covers at most.
+/// The area that an instance covers at most; where that is not a number, a picture's.
 float pixels_of(const SceneInstance& instance, const SceneMesh& mesh, const BatchView& view) {
   if (!view.lens) return 0;
-  constexpr float kCircle = 3.1416F, kWidest = 2;  // pictures are hardly more than twice as wide as high
+  constexpr float kWidest = 2;  // pictures are hardly more than twice as wide as high
   const float radius = radius_of(instance, mesh) * view.lens->scale_at(instance.transform.col(3), view.height);
-  const float area = kCircle * radius * radius, most = kWidest * view.height * view.height;
+  const float area = std::numbers::pi_v<float> * radius * radius, most = kWidest * view.height * view.height;
   return area < most ? area : most;
 }
 
-/// One that stands exactly where another is drawn after it shows nothing.
+/// One that stands exactly where another is drawn after it shows nothing, unless a texture lets it through.
 bool is_hidden(const SceneInstance& instance, const SceneInstance& after) {
-  return instance.mesh == after.mesh && instance.transform == after.transform;
+  return instance.mesh == after.mesh && instance.transform == after.transform && after.texture == kNoTexture;
 }
 
 /// @param solid  they hide each other

@@ -38,7 +38,7 @@ void read_samples(Machine& machine, ListCell* list, Eigen::Index width, Numbers&
     list_of(all[s], one);
     machine.charge_for(size);
   }
-  numbers.clear(size * all.size, [&machine] { machine.poll(); });
+  numbers.assign_zeros(size * all.size, [&machine] { machine.poll(); });
   double* next = numbers.data();
   for (std::uint32_t s = 0; s < all.size; ++s) {
     const ListCell& sample = list_of(all[s], one);

@@ -344,24 +344,37 @@ TEST(Softness, LetsAContactGiveWay) {
   }
 }
 
+/// Two islands that are the same.
+struct Twins {
+  Scene first, second;
+
+  explicit Twins(Random& random) {
+    Random again = random;
+    torture(first, again, 1, 2);
+    torture(second, random, 1, 2);
+  }
+  void expect_equal_solutions() {
+    first.solve();
+    second.solve();
+    for (std::size_t k = 0; k < first.bodies.size(); ++k) EXPECT_EQ(first.bodies[k].v, second.bodies[k].v);
+  }
+};
+
 TEST(Order, TheSameIslandGivesTheSameBits) {
   Random random(24);
   for (int i = 0; i < 100; ++i) {
-    const Random start = random;
-    Scene first, second;
-    torture(first, random, 1, 2);
-    Random again = start;
-    torture(second, again, 1, 2);
-    first.settings.direct = second.settings.direct = i % 2 == 0;
-    first.settings.iterations = second.settings.iterations = 8;
+    Twins twins(random);
+    for (Scene* scene : {&twins.first, &twins.second}) {
+      scene->settings.direct = i % 2 == 0;
+      scene->settings.iterations = 8;
+    }
     if (i % 3 == 0) {
       Scene other;  // what a workspace was used for before leaves no trace
-      torture(other, again, 1, 2);
-      solve_island(other.movers(), other.rows, other.scalars, other.settings, second.work);
+      Random ahead = random;
+      torture(other, ahead, 1, 2);
+      solve_island(other.movers(), other.rows, other.scalars, other.settings, twins.second.work);
     }
-    first.solve();
-    second.solve();
-    for (std::size_t k = 0; k < first.bodies.size(); ++k) ASSERT_EQ(first.bodies[k].v, second.bodies[k].v) << i;
+    twins.expect_equal_solutions();
   }
 }
 
@@ -370,19 +383,13 @@ TEST(Order, WhateverNumbersAWorkspaceHoldsLeaveNoTrace) {
   constexpr double kLost[] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()};
   Random random(25);
   for (int i = 0; i < 100; ++i) {
-    const Random start = random;
-    Scene first, second;
-    torture(first, random, 1, 2);
-    Random again = start;
-    torture(second, again, 1, 2);
-    first.settings = second.settings = {10, true, 1e-9};
-    Workspace& work = second.work;
+    Twins twins(random);
+    twins.first.settings = twins.second.settings = {10, true, 1e-9};
+    Workspace& work = twins.second.work;
     for (std::pmr::vector<double>* some :
          {&work.began, &work.numbers, &work.saved, &work.earlier, &work.biases, &work.answers, &work.rates})
       some->assign(100'000, kLost[i % 2]);
-    first.solve();
-    second.solve();
-    for (std::size_t k = 0; k < first.bodies.size(); ++k) ASSERT_EQ(first.bodies[k].v, second.bodies[k].v) << i;
+    twins.expect_equal_solutions();
   }
 }
 

@@ -54,7 +54,7 @@ class Numbers {
   }
   /// So many zeros in place of what there is. `poll` is called in between and may throw: then some are left undefined.
   template <class Poll>
-  void clear(std::size_t size, const Poll& poll) {
+  void assign_zeros(std::size_t size, const Poll& poll) {
     constexpr std::size_t kPiece = 1 << 17;  // numbers: pages of memory that are touched first take time
     release();
     data_ = nullptr;
