@@ -127,10 +127,11 @@ void Positions::move_back(double h) {
   end_moves(-h);
 }
 
-/// The motion of a sub-step is that of a constant force. Where it is another (what presses on a limit may swing there
-/// and back meanwhile) a joint that was stopped would stand beyond its limit: it is put where it began, or to the
-/// limit.
-void Positions::hold_bounds(double h) {
+/// The motion of a sub-step is that of a constant force along its rows. Where it is another, a joint that was stopped
+/// would stand beyond its limit (what presses on a limit may swing there and back meanwhile), and a body that contacts
+/// struck, nearer than it may be (it rotates): both are put where they began, or to the limit, at once.
+/// @param struck  contacts struck something in these h seconds
+void Positions::put_back(double h, bool struck) {
   scalar_pushes_.clear();
   double fastest = 0;
   for (std::size_t i = 0; i < rows_.limits(); ++i) {
@@ -140,11 +141,23 @@ void Positions::hold_bounds(double h) {
     scalar_pushes_.push_back((std::min(bound.gap, 0.0) - gap) / h);
     fastest = std::max(fastest, scalar_pushes_.back());
   }
-  if (!(fastest * h > kLimitSkin)) return;
-  scalar_pushes_.resize(rows_.scalars().size(), 0.0);
+  bool any = fastest * h > kLimitSkin;
+  if (struck) state_.place_links();
+  if (!struck && !any) return;
   pushes_.clear();
-  for (const Touch& touch : contacts_.touches())
-    pushes_.push_back({std::min(0.0, -touch.gap / h), softness(contacts_.pair_of(touch)), 0});
+  for (const Touch& touch : contacts_.touches()) {
+    const NearPair& pair = contacts_.pair_of(touch);
+    double rate = std::min(0.0, -touch.gap / h);
+    if (struck) {
+      const double deeper = std::min(touch.gap, 0.0) - rows_.gap_now(touch);
+      any = any || deeper > kTouchSkin * state_.size_of_pair(pair);
+      rate = deeper / h;
+      fastest = std::max(fastest, rate);
+    }
+    pushes_.push_back({rate, softness(pair), 0});
+  }
+  if (!any) return;
+  scalar_pushes_.resize(rows_.scalars().size(), 0.0);
   move_by_pushes(fastest, h);
 }
 
@@ -208,8 +221,9 @@ bool Positions::find_struck(double h) {
 
 /// Contacts that are solved only at the end of a sub-step of h seconds must not come nearer than they are: a body that
 /// contacts struck has moved, in the end, with the velocity that they left it, not with the mean.
-void Positions::hold_off(double h) {
-  if (!find_struck(h)) return;
+/// @return  whether there was one
+bool Positions::hold_off(double h) {
+  if (!find_struck(h)) return false;
   book_moves(-1);
   momentum_.note(&Tree::smooth_v, true);
   // Semi-implicit Euler has moved them with the velocity after, but for the rows' part.
@@ -235,6 +249,7 @@ void Positions::hold_off(double h) {
     }
   momentum_.give_positions(0.5 * h, struck_);
   book_moves(1);
+  return true;
 }
 
 /// What pushing apart gave or took, as height, in motion or in springs, is booked as what contacts did: with a sign

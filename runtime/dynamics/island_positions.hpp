@@ -11,8 +11,8 @@ class Positions {
   Positions(State& state, Contacts& contacts, Rows& rows, Momentum& momentum);
 
   void push_apart(double h);
-  void hold_off(double h);
-  void hold_bounds(double h);
+  bool hold_off(double h);
+  void put_back(double h, bool struck);
 
   // The rows' solution is taken as a velocity that lasts h seconds and then is gone. Between these two the movers have
   // none.

@@ -121,26 +121,53 @@ Vector3 carried_by(const Shape& shape, const Vector3& point, const Vector3& on, 
 
 }  // namespace
 
+/// Whether a side's body carries the point where it touches: a round one does, and what touches no round one.
+bool Rows::carries(const NearPair& pair, bool first) const {
+  const BodyIndex body = first ? pair.a : pair.b, other = first ? pair.b : pair.a;
+  if (state_.slot_of(body).mover < 0) return false;
+  return is_round(state_.shape(body)) || !is_round(state_.shape(other));
+}
+
+/// Where one side's body has taken the point that was at `point` as the sub-step began.
+Vector3 Rows::taken(const Touch& touch, const Vector3& point, bool first) const {
+  const NearPair& pair = contacts_.pair_of(touch);
+  const BodyIndex body = first ? pair.a : pair.b;
+  return carried_by(state_.shape(body), point, first ? touch.on_a : touch.on_b, first ? touch.from_a : touch.from_b,
+                    first ? touch.orientation_a : touch.orientation_b, state_.pose_of(body));
+}
+
 /// Where two bodies touch once they have moved: a round body's point goes with its centre, a corner's with its body;
 /// where both are alike and both move, in the middle.
 Vector3 Rows::carried(const Touch& touch) const {
   const NearPair& pair = contacts_.pair_of(touch);
-  const Shape &a = state_.shape(pair.a), &b = state_.shape(pair.b);
-  const auto with_a = [&] {
-    return carried_by(a, touch.point, touch.on_a, touch.from_a, touch.orientation_a, state_.pose_of(pair.a));
-  };
-  const auto with_b = [&] {
-    return carried_by(b, touch.point, touch.on_b, touch.from_b, touch.orientation_b, state_.pose_of(pair.b));
-  };
+  const bool by_a = carries(pair, true), by_b = carries(pair, false);
+  if (by_a && by_b) return 0.5 * (taken(touch, touch.point, true) + taken(touch, touch.point, false));
+  if (by_a || by_b) return taken(touch, touch.point, by_a);
+  return touch.point;
+}
+
+/// m, in the last h seconds, of the arm of a free body's point by the body's rotation. One that is a small part of what
+/// falls meanwhile counts as none: in a stack that sways, sweeps leave forces that are as wrong.
+Vector3 Rows::arm_change(const Touch& touch, bool first, const Free& body, double h) const {
+  constexpr double kSlow = 0.1;  // of g h^2
+  if (!carries(contacts_.pair_of(touch), first)) return Vector3::Zero();
+  const Vector3 change = taken(touch, touch.start, first) - touch.start - (body.now.center - body.before.center);
+  const double least = kSlow * h * h * state_.core.settings.gravity.norm();
+  return change.squaredNorm() > least * least ? change : Vector3(Vector3::Zero());
+}
+
+/// m, after positions were moved, along the normal as it was; links are placed.
+double Rows::gap_now(const Touch& touch) const {
+  const NearPair& pair = contacts_.pair_of(touch);
   const bool a_moves = state_.slot_of(pair.a).mover >= 0, b_moves = state_.slot_of(pair.b).mover >= 0;
-  const bool by_a = a_moves && (is_round(a) || !is_round(b)), by_b = b_moves && (is_round(b) || !is_round(a));
-  if (by_a && by_b) return 0.5 * (with_a() + with_b());
-  if (by_a) return with_a();
-  return by_b ? with_b() : touch.point;
+  const Vector3 a = a_moves ? taken(touch, touch.start, true) : touch.start;
+  const Vector3 b = b_moves ? taken(touch, touch.start, false) : touch.start;
+  return touch.gap + touch.normal.dot(a - b);
 }
 
 void Rows::add_touch(Touch& touch) {
   const NearPair& pair = contacts_.pair_of(touch);
+  touch.start = touch.point;
   touch.point = carried(touch);
   contact::Row row;
   Vector3 t1, t2;

@@ -76,6 +76,9 @@ class Rows {
   /// Holds what was solved last, to be solved again with other biases: by Positions, for the rows as they are.
   contact::Workspace& workspace() { return workspace_; }
 
+  Vector3 arm_change(const Touch& touch, bool first, const Free& body, double h) const;
+  double gap_now(const Touch& touch) const;
+
   // --- velocities at the rows
   void recall_rates();
   void read_rates();
@@ -102,6 +105,8 @@ class Rows {
  private:
   double* numbers_of(const Tree& tree, int count);
   void respond(Tree& tree, const double* j, double* r) const;
+  bool carries(const NearPair& pair, bool first) const;
+  Vector3 taken(const Touch& touch, const Vector3& point, bool first) const;
   Vector3 carried(const Touch& touch) const;
   contact::ScalarRow tree_row(const Tree& tree, const double* j, const double* r) const;
   void add_touch(Touch& touch);

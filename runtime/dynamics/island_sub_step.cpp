@@ -112,8 +112,7 @@ void SubStep::advance(double time, double h) {
   smooth_.correct_works(h);
   state_.store_velocities();
   solver_.move_by_impulses(0.5 * h);
-  positions_.hold_off(h);
-  positions_.hold_bounds(h);
+  positions_.put_back(h, positions_.hold_off(h));
 }
 
 void SubStep::keep(double part, double took) {
