@@ -203,13 +203,15 @@ breve_status breve_object_set_pose(breve_world* world, breve_object object, cons
     const BodyIndex body = live_body(*world, object);
     const breve::Quaternion rotation = rotation_of(*pose);
     Bodies& bodies = world->world->bodies();
-    const Vector3 location(pose->location[0], pose->location[1], pose->location[2]);
-    bodies.allowed_orientation(rotation);  // all or nothing
-    world->previous.forget(body);
+    const Vector3 given(pose->location[0], pose->location[1], pose->location[2]);
+    // All or nothing: both halves are checked before anything is written.
+    const Vector3 location = bodies.allowed_location(world->world->space().inside(given));
+    bodies.allowed_orientation(rotation);
     world->world->leave(body);
-    bodies.set_location(body, world->world->space().inside(location));
+    bodies.set_location(body, location);
     bodies.set_orientation(body, rotation);
     world->world->mechanics().moved(body);
+    world->previous.forget(body);
   });
 }
 

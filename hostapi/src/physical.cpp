@@ -169,15 +169,12 @@ breve_status breve_object_set_force(breve_world* world, breve_object object, con
   return guard(world->error, [&] {
     const BodyIndex body = live_body(*world, object);
     breve::Bodies& bodies = world->world->bodies();
-    const breve::Vector3 before = bodies.force(body);
-    if (force) bodies.set_force(body, vector_of(force, "force"));
-    if (!torque) return;
-    try {
-      bodies.set_torque(body, vector_of(torque, "torque"));
-    } catch (...) {
-      if (force) bodies.set_force(body, before);  // all or nothing
-      throw;
-    }
+    // All or nothing: both vectors are checked before either is written.
+    const breve::Vector3 newtons = force ? bodies.allowed_force(vector_of(force, "force")) : bodies.force(body);
+    const breve::Vector3 newton_metres =
+        torque ? bodies.allowed_torque(vector_of(torque, "torque")) : bodies.torque(body);
+    if (force) bodies.set_force(body, newtons);
+    if (torque) bodies.set_torque(body, newton_metres);
   });
 }
 
@@ -238,8 +235,8 @@ breve_status breve_object_set_assembly_pose(breve_world* world, breve_object obj
     const auto location = vector_of(pose->location, "pose.location");
     const auto rotation = rotation_of(pose->rotation, "pose.rotation");
     world->machine->refuse_in_stage("move a body");
+    world->world->mechanics().move_assembly(body, location, rotation);  // which may refuse, and then changes nothing
     for (const BodyIndex link : world->world->mechanics().links_of(body)) world->previous.forget(link);
-    world->world->mechanics().move_assembly(body, location, rotation);
   });
 }
 

@@ -421,47 +421,27 @@ const Vector3& Bodies::torque(BodyIndex body) const {
   return row == kNoRow ? kZero : arrays_->rigid_rows[row].torque;
 }
 
-void Bodies::set_force(BodyIndex body, const Vector3& newtons) {
+Vector3 Bodies::allowed_force(const Vector3& newtons) const {
   require_finite("force", newtons);
-  arrays_->make_rigid(body).force = in_plane("force", newtons, flat_);
+  return in_plane("force", newtons, flat_);
+}
+
+Vector3 Bodies::allowed_torque(const Vector3& newton_metres) const {
+  require_finite("torque", newton_metres);
+  return about_z("torque", newton_metres, flat_);
+}
+
+void Bodies::set_force(BodyIndex body, const Vector3& newtons) {
+  const Vector3 force = allowed_force(newtons);
+  arrays_->make_rigid(body).force = force;
   arrays_->note(body);
 }
 
 void Bodies::set_torque(BodyIndex body, const Vector3& newton_metres) {
-  require_finite("torque", newton_metres);
-  const Vector3 about = about_z("torque", newton_metres, flat_);
-  arrays_->make_rigid(body).torque = about;
+  const Vector3 torque = allowed_torque(newton_metres);
+  arrays_->make_rigid(body).torque = torque;
   if (newton_metres != kZero) arrays_->rotation(body);
   arrays_->note(body);
-}
-
-const std::shared_ptr<Shape>& Bodies::collision_shape(BodyIndex body) const { return arrays_->collision_shape[body]; }
-const std::shared_ptr<Shape>& Bodies::display_shape(BodyIndex body) const { return arrays_->display_shape[body]; }
-
-void Bodies::set_collision_shape(BodyIndex body, std::shared_ptr<Shape> shape) {
-  if (!shape) throw Error(ErrorCode::Argument, "a body needs a shape: the one given is null");
-  shape->report_changes_to(arrays_->shape_changes);
-  arrays_->collision_shape[body] = std::move(shape);
-  arrays_->note_put(body);
-  if (arrays_->rigid_row[body] != kNoRow) arrays_->copy_mass(body);
-  arrays_->note(body);
-}
-
-void Bodies::set_display_shape(BodyIndex body, std::shared_ptr<Shape> shape) {
-  if (!shape) throw Error(ErrorCode::Argument, "a body needs a shape: the one given is null");
-  arrays_->display_shape[body] = std::move(shape);
-}
-
-Eigen::AlignedBox3d Bodies::bounds(BodyIndex body) const {
-  Eigen::AlignedBox3d box = arrays_->collision_shape[body]->bounds(rotation(body));
-  return box.translate(arrays_->location[body]);
-}
-
-double Bodies::mass(BodyIndex body) const { return arrays_->collision_shape[body]->mass(); }
-
-const MassProperties& Bodies::mass_properties(BodyIndex body) const {
-  if (arrays_->rigid_row[body] == kNoRow) throw std::logic_error("mass of a body that never had physics");
-  return arrays_->rigid_rows[arrays_->rigid_row[body]].solid;
 }
 
 double Bodies::neighborhood_size(BodyIndex body) const { return arrays_->neighborhood[body]; }

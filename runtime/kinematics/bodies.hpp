@@ -122,6 +122,8 @@ class Bodies : public InMemory {
   Quaternion allowed_orientation(const Quaternion& orientation) const;
   Vector3 allowed_velocity(const Vector3& value) const;
   Vector3 allowed_spin(const Vector3& value) const;  // rotational velocity
+  Vector3 allowed_force(const Vector3& newtons) const;
+  Vector3 allowed_torque(const Vector3& newton_metres) const;
 
   // Motion, world frame; the rotational velocity of a kinematic body is in its own frame.
   const Vector3& velocity(BodyIndex body) const;

@@ -98,8 +98,8 @@ void Planar::Core::place_beyond(std::span<const BodyIndex> some, BodyIndex paren
   if (b2) give_velocities(some);
 }
 
-/// `leader` was moved from there to where it is: all that joints connect with it goes along, points of the world that
-/// it hangs on too.
+/// `leader` was moved from there to where it is: all that joints connect with it goes along, including points of the
+/// world that it hangs on.
 void Planar::Core::follow(BodyIndex leader, const Pose& from) {
   std::pmr::vector<BodyIndex> all(memory);
   collect(leader, all);
@@ -194,6 +194,7 @@ void Planar::move_assembly(BodyIndex body, const Vector3& location, const Quater
   Core& c = *core_;
   take_changes();
   const Pose from = c.pose(body);
+  c.bodies->allowed_orientation(orientation);  // all or nothing
   c.bodies->set_location(body, location);
   c.bodies->set_orientation(body, orientation);
   if (c.joints_at.count(body) == 0) return;
@@ -203,8 +204,10 @@ void Planar::move_assembly(BodyIndex body, const Vector3& location, const Quater
 
 void Planar::set_assembly_velocity(BodyIndex body, const Vector3& velocity, const Vector3& spin) {
   check_motion(velocity, spin);
-  take_changes();
   Core& c = *core_;
+  c.bodies->allowed_velocity(velocity);  // all or nothing, of all links
+  c.bodies->allowed_spin(spin);
+  take_changes();
   const Vector3 center = c.bodies->location(body);
   const std::pmr::vector<BodyIndex> links = links_of(body);
   for (const BodyIndex link : links) {

@@ -21,11 +21,15 @@ void World::set_target(BodyIndex body, const Vector3* new_location, const Quater
   if (new_orientation) orientation = *new_orientation;
   if (!location.allFinite() || !orientation.coeffs().allFinite() || !(orientation.norm() > 0))
     throw Error(ErrorCode::Argument, "a target's location and rotation must be finite");
+  bodies_->allowed_location(location);  // what the body cannot have at the end is refused now
+  bodies_->allowed_orientation(orientation);
   const Quaternion now = bodies_->orientation(body);
   const Eigen::AngleAxisd rotation(now.conjugate() * orientation.normalized());
   const double seconds = clock_.iteration_step;
-  bodies_->set_velocity(body, (location - bodies_->location(body)) / seconds);
-  bodies_->set_rotational_velocity(body, rotation.angle() / seconds * rotation.axis());
+  const Vector3 velocity = bodies_->allowed_velocity((location - bodies_->location(body)) / seconds);
+  const Vector3 spin = bodies_->allowed_spin(rotation.angle() / seconds * rotation.axis());
+  bodies_->set_velocity(body, velocity);
+  bodies_->set_rotational_velocity(body, spin);
   const Parts::Target target{bodies_->owner(body), location, orientation.normalized()};
   if (known)
     *known = target;
