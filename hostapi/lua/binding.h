@@ -194,7 +194,7 @@ void bl_push_selector(lua_State* L, bl_world* w, const char* name, const char* s
 breve_status bl_call_method(void* user, const breve_call* call, breve_value* result);
 size_t bl_places(void* user, const breve_call* call, breve_place* places, size_t capacity);
 int bl_handle_error(lua_State* L); /* message handler: keeps where an error was raised */
-/* Push the methods that a class has in Lua, by name: what classes of breve.class define, ancestors too. */
+/* Push the methods that a class has in Lua, by name: what classes of breve.class and their ancestors define. */
 void bl_push_lua_method(lua_State* L, bl_world* w, const bl_class* owner, const bl_method* method);
 
 /* ---- profiles (profile.c) ---- */
@@ -224,7 +224,7 @@ void bl_open_safe_libraries(lua_State* L, bl_lib* lib, uint32_t allow);
 void bl_open_order(lua_State* L);                 /* pairs and next */
 void bl_open_patterns(lua_State* L, bl_lib* lib); /* find, match, gmatch, gsub of string */
 void bl_open_metered(lua_State* L, bl_lib* lib);  /* what else works on much at once */
-/* Count work, in turns of a loop in steve; an error if the budget is used up, or a host interrupts. */
+/* Count work, in loop iterations of steve; an error if the budget is used up, or a host interrupts. */
 void bl_charge(lua_State* L, bl_lib* lib, uint64_t turns);
 int bl_ordered_pairs(lua_State* L);
 int bl_sorted_keys(lua_State* L);                  /* a function of Lua: the keys of a table, in order */

@@ -7,7 +7,7 @@
 
 static bl_lib* lib_of(lua_State* L, int upvalue) { return (bl_lib*)lua_touserdata(L, lua_upvalueindex(upvalue)); }
 
-/* How many so many elements are as turns of a loop in steve. */
+/* How many elements count as one loop iteration in steve. */
 enum { MOVED = 4, READ = 8, BYTES = 64 };
 
 static uint64_t turns(lua_Integer from, lua_Integer to, unsigned share) {

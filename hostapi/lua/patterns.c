@@ -12,7 +12,7 @@ enum {
   CAPTURES = 32,
   DEEPEST = 200, /* matches within matches */
   PIECE = 4096,  /* steps between two looks at the budget */
-  STEPS = 8      /* so many take as long as one turn of a loop in steve */
+  STEPS = 8      /* so many take as long as one loop iteration in steve */
 };
 
 typedef struct capture {

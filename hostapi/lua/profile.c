@@ -18,7 +18,7 @@ typedef struct code {
   breve_place place;
 } code;
 
-/* A function that runs, in C too. */
+/* A function that runs, in Lua or in C. */
 typedef struct frame {
   const lua_State* thread;
   const void* call;

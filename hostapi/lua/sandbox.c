@@ -112,7 +112,7 @@ static int load_text(lua_State* L) {
   const char* text = lua_tolstring(L, 1, &size);
   const char* name = luaL_optstring(L, 2, text);
   const bool has_env = !lua_isnone(L, 4);
-  bl_charge(L, lib_of(L), size); /* reading a byte of a program takes about as long as a turn of a loop */
+  bl_charge(L, lib_of(L), size); /* reading a byte of a program takes about as long as a loop iteration */
   if (luaL_loadbufferx(L, text, size, name, "t") != LUA_OK) {
     lua_pushnil(L);
     lua_insert(L, -2);

@@ -11,7 +11,7 @@
 enum { STEP = 16, LARGEST = 512, CLASSES = LARGEST / STEP, CHUNK = 32768 };
 enum {
   MUCH = 1 << 20,         /* bytes: so much is counted at once */
-  BYTES = 128,            /* so many count as one turn of a loop in steve */
+  BYTES = 128,            /* so many count as one loop iteration in steve */
   LONGEST_TEXT = 4 << 20, /* bytes, where a budget bounds work: one instruction compares two texts */
 };
 
