@@ -8,7 +8,9 @@
  *
  * A runtime is what the host provides: memory, callbacks, modules. A program is a set of compiled classes; it never
  * changes. A world is one running simulation of a program. An object is one instance in a world. There is no global
- * initialisation and no state outside these: two runtimes in one process share nothing.
+ * initialisation, and no state outside these that a result could depend on. Two runtimes in one process share nothing
+ * but the worker threads of oneTBB, which are started when a world first asks for them (breve_world_set_workers) and
+ * belong to the process; how they are distributed among worlds belongs to the runtime.
  *
  * Rules that hold for every function, unless its comment says otherwise:
  * - Errors are values. A function that can fail returns a breve_status. Results go through out-parameters, which are
@@ -18,8 +20,9 @@
  *   directly returns 0, false or NULL. Numbers that are NaN or infinite where a finite one is needed give
  *   BREVE_ERROR_ARGUMENT.
  * - An id of an object that no longer exists gives BREVE_ERROR_STALE; it never names another object, whatever is
- *   restored. An id of another world of the same runtime gives BREVE_ERROR_STALE too. The null object, where a live one
- *   is needed, gives BREVE_ERROR_ARGUMENT.
+ *   restored. So does an id of another world of the same runtime. An id of a world of another runtime is not
+ *   recognised: two runtimes may use the same ids, and such an id may name an object of this world. The null object,
+ *   where a live one is needed, gives BREVE_ERROR_ARGUMENT.
  * - Any function may run out of memory and return BREVE_ERROR_MEMORY. Any function that reads or changes joints,
  *   springs or the energy of bodies may return BREVE_ERROR_SCRIPT if their state cannot be computed because numbers
  *   overflow.
@@ -40,9 +43,15 @@
  *   breve_runtime_create compares it.
  * - Names: the thing comes first, then what is done to it. breve_THING_PROPERTY reads a property and
  *   breve_THING_set_PROPERTY writes it; a plural denotes a list, and _count belongs to functions that take an index.
- *   _get, _set and _size are for items that are accessed by name, key or index: variables, lists, hashes. _create and
+ *   _get, _set and _size are for items that are accessed by name, key or index: variables, lists, hashes. _read copies
+ *   many items at once to memory of the host, or into a handle of it (breve_list_read, breve_scene_read). _create and
  *   _destroy are for handles; objects are also created by _create, but freed by _free, as `free` does in scripts.
- *   _queue_ is for input, which waits for the next iteration.
+ *   _queue_ is for input, which waits for the next iteration. A struct that describes an object to be created is called
+ *   breve_THING_description if other structs say more about a THING (joints: breve_drive, breve_joint_info), else
+ *   breve_THING, as breve_spring and breve_geometry. A struct of settings ends in _config.
+ * - Functions that return a breve_value take a `world` that is not const even if they change nothing of the simulation:
+ *   the world keeps the table of the lists and hashes that a host refers to (breve_ref), and puts a zero byte behind
+ *   strings.
  * - Units: lengths, masses and angles are the program's own (length units, kg, rad); times are simulated seconds.
  */
 #ifndef BREVE_BREVE_H
@@ -601,8 +610,8 @@ typedef struct breve_world_config {
 } breve_world_config;
 
 /* Budgets. Each loop iteration, each call of a method or function and each new object counts 1, no matter who makes the
-   call: sort, broadcasts, announcements, init and destroy, calls by name; an integration step of the world counts 1
-   too. An operation on much data counts as many loop iterations as take about the same time (docs/limits.md). Neither
+   call: sort, broadcasts, announcements, init and destroy, calls by name. An integration step of the world also counts
+   1. An operation on much data counts as many loop iterations as take about the same time (docs/limits.md). Neither
    time nor instructions are counted, so that a call is cut off at the same place in every run, on every machine and in
    every build. The call that uses the last unit of the budget is still made; the next one is the error.
    - `budget` applies to a whole iteration, and to each function of this header that runs script outside of one. When it
@@ -1050,6 +1059,7 @@ typedef enum breve_spring_mode {
   BREVE_SPRING_CONTRACT_ONLY = 2 /* pulls, and is slack below its length */
 } breve_spring_mode;
 
+/* The whole description of a spring; the current state is two numbers, which breve_spring_state returns. */
 typedef struct breve_spring {
   size_t struct_size;                /* set by breve_spring_default */
   uint32_t mode;                     /* breve_spring_mode. Default BREVE_SPRING_BOTH */
@@ -1231,7 +1241,9 @@ BREVE_API breve_status breve_grid_set_concentrations(breve_world* world, breve_o
 /* Sets the number of threads that may compute the physics of a world, including the caller's, 1 to 256; initially 1.
    The result does not depend on it. Islands (bodies that touch or are connected, and what they touch) are distributed
    among the threads; islands with a collision handler or a force method are left to the caller's thread. The threads
-   are shared by the process, which has no more of them than cores. Only the caller's thread computes a flat world.
+   are oneTBB's: all runtimes of the process share them, also with a host that uses oneTBB itself. The process
+   has no more of them than cores. oneTBB decides when they end; breve_runtime_destroy does not wait for it. Only the
+   caller's thread computes a flat world.
    BREVE_OK; BREVE_ERROR_ARGUMENT: out of this range. */
 BREVE_API breve_status breve_world_set_workers(breve_world* world, uint32_t workers);
 
@@ -1406,10 +1418,11 @@ BREVE_API breve_status breve_list_create(breve_world* world, breve_value* list);
 /* BREVE_OK; BREVE_ERROR_TYPE: `list` is not a list; BREVE_ERROR_STALE. The same for the functions below. */
 BREVE_API breve_status breve_list_size(const breve_world* world, const breve_value* list, size_t* size);
 
-/* The element at `index`, from 0. BREVE_ERROR_NOT_FOUND if index is not below the size. */
+/* The element at `index`, from 0. `world` is not const because an element that is a list or hash is entered in the table
+   of references. BREVE_ERROR_NOT_FOUND if index is not below the size. */
 BREVE_API breve_status breve_list_get(breve_world* world, const breve_value* list, size_t index, breve_value* element);
 
-/* Reads `count` elements from `first` on, in one call. BREVE_ERROR_NOT_FOUND if the list has fewer.
+/* Reads `count` elements from `first` on, in one call, as breve_list_get. BREVE_ERROR_NOT_FOUND if the list has fewer.
    @param elements  NULL only if count is 0 */
 BREVE_API breve_status breve_list_read(breve_world* world, const breve_value* list, size_t first, breve_value* elements,
                                        size_t count);
@@ -1423,7 +1436,8 @@ BREVE_API breve_status breve_hash_create(breve_world* world, breve_value* hash);
 /* The number of keys. BREVE_OK; BREVE_ERROR_TYPE: `hash` is not a hash; BREVE_ERROR_STALE. The same below. */
 BREVE_API breve_status breve_hash_size(const breve_world* world, const breve_value* hash, size_t* size);
 
-/* The value of a key; keys of different types differ. BREVE_ERROR_NOT_FOUND if there is no such key. */
+/* The value of a key; keys of different types differ. `world` is not const for the reason given at breve_list_get.
+   BREVE_ERROR_NOT_FOUND if there is no such key. */
 BREVE_API breve_status breve_hash_get(breve_world* world, const breve_value* hash, const breve_value* key,
                                       breve_value* element);
 
@@ -1436,7 +1450,8 @@ BREVE_API breve_status breve_hash_keys(breve_world* world, const breve_value* ha
 
 /* ---- variables and calls ----------------------------------------------------------------------------------------- */
 
-/* Reads an instance variable, declared in the object's class or inherited.
+/* Reads an instance variable, declared in the object's class or inherited. `world` is not const for the reason given at
+   breve_list_get.
    BREVE_OK; BREVE_ERROR_NOT_FOUND: no such variable; BREVE_ERROR_UNSUPPORTED: an array. */
 BREVE_API breve_status breve_object_get(breve_world* world, breve_object object, const char* name, breve_value* value);
 

@@ -6,7 +6,7 @@
 //     auto world = runtime.world(program).or_throw();
 //     while (!world.ended() && world.step()) draw(world);
 //
-// Everything that the C headers say about units, threads, callbacks and lifetimes of values applies here too. A handle
+// Everything that the C headers say about units, threads, callbacks and lifetimes of values also applies here. A handle
 // that was moved from, or is empty, gives BREVE_ERROR_ARGUMENT.
 // - Errors are values: a Status, or a Result that contains one. Nothing throws unless you ask for it: or_throw() turns
 //   a failure into breve::Failure. Without exceptions (-fno-exceptions) everything except or_throw() and Failure is
