@@ -33,7 +33,7 @@ class FileAccess {
   void add_if_there(const std::filesystem::path& directory);
   /// To be searched as well, if it lies below one that may be read.
   void add_below(const std::filesystem::path& directory);
-  /// While this object lives. Directories that are added later are allowed, too.
+  /// While this object lives. Directories that are added later are also allowed.
   breve_files files();
 
  private:

@@ -10,7 +10,7 @@ namespace breve::command {
 
 struct DocOptions {
   std::vector<std::string> files, paths;
-  bool library = false;  // the class library's classes too
+  bool library = false;  // also the class library's classes
   std::string out = "reference";
   std::string format = "both";  // markdown, html, both
 };

@@ -26,7 +26,7 @@ void Interventions::take(const breve_world* world, Output* output) {
     const What what{one.action, one.reason, who(world, one.body)};
     Seen& seen = seen_[what];
     if (seen.times++ == 0) seen.first = one.time;
-    if (!(std::abs(one.value) <= std::abs(seen.worst))) seen.worst = one.value;  // NaN too
+    if (!(std::abs(one.value) <= std::abs(seen.worst))) seen.worst = one.value;  // also if it is NaN
     ++count_;
     if (output)
       output->complain(fmt::format("breve: guard: {:.6g} s: {}, {}: {} ({:.3g})\n", one.time, what.who, what.action,

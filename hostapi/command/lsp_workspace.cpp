@@ -23,7 +23,7 @@ std::string canonical_path(const std::string& path) {
   return error ? path : found.string();
 }
 
-/// Does a line begin with the word? Text that does not compile yet counts too.
+/// Does a line begin with the word? Text that does not compile yet also counts.
 bool names_controller(std::string_view text) {
   constexpr std::string_view kWord = "Controller";
   for (std::size_t at = text.find(kWord); at != std::string_view::npos; at = text.find(kWord, at + 1)) {

@@ -60,7 +60,7 @@ bool Reloader::reload(breve_world* world) {
   const ExitStatus status = session_.load_again(file_, program);
   auto files = session_.files();
   if (status != kEndedWell) {
-    // What the running program is made of is watched too: the mistake may be there.
+    // The files of the running program are also watched: the mistake may be there.
     for (auto& path : before)
       if (std::find(files.begin(), files.end(), path) == files.end()) files.push_back(path);
     output_.complain(fmt::format("breve: {} is not reloaded: {}\n", file_, kGoesOn));

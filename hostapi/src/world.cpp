@@ -44,7 +44,7 @@ std::string run_command(breve_world& world, std::string_view command) {
   return output;
 }
 
-/// Physics is as untrusted as the script that asks for it; but scripts that run in a small budget have bodies, too.
+/// Physics is as untrusted as the script that asks for it; but scripts that run in a small budget also have bodies.
 std::uint64_t physics_budget(const breve_world_config& config) {
   constexpr std::uint64_t kLeast = 1'000'000;  // some 0.05 s
   if (config.physics_budget != 0 || config.budget == 0) return config.physics_budget;

@@ -29,7 +29,7 @@ constexpr double kFinest = 1e-15;
 constexpr double kMostLeap = 1e3;
 
 // Both members swing a pendulum or a spring up: of z = i y their stability functions have |R|^2 = 1 + c y^6 with c > 0.
-// As far beyond the higher member as it lies from the lower, times this, c is below 0 and the next term is, too:
+// As far beyond the higher member as it lies from the lower, times this, c and the next term are both below 0:
 // swings lose a little and never gain. The order is then 4, so only where the tolerance is too coarse for the fifth.
 constexpr double kBeyond = 0.6;
 constexpr double kCoarse = 1e-3;

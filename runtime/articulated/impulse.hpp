@@ -8,7 +8,7 @@
 namespace breve::articulated {
 
 // All of these stand on the factors that forward_dynamics or factorize left in `data`, and those with points on
-// forward_kinematics as well, for the same q. A `step` that these were given holds here too: M then includes what the
+// forward_kinematics as well, for the same q. A `step` that these were given also holds here: M then includes what the
 // implicit treatment of drives adds. They overwrite alpha, acc, couple and force of data.work. No allocation.
 
 /// An impulse on a link.
@@ -27,7 +27,7 @@ void apply_inverse_mass(const Model& model, Data& data, const Vector& f, Vector&
 
 /// The diagonal of M^-1 (nv): how each joint answers its own force, the other joints being free. Each link's answer to
 /// forces on itself follows from its parent's. Source: the operational space inertia of Kreutz-Delgado, Jain, Rodriguez
-/// 1992. Cost O(links). Allocates; overwrites what is left of the joints' forces in `data`, too.
+/// 1992. Cost O(links). Allocates; also overwrites what is left of the joints' forces in `data`.
 Vector inverse_mass_diagonal(const Model& model, Data& data);
 
 /// W with dv = W P: the change of the velocity of b's point relative to a's, by an impulse P on b and -P on a.

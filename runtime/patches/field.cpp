@@ -143,7 +143,7 @@ void Field::laplacian(const Field& other, double factor, int dimensions, bool ad
   scratch.reserve(values_.size());
   Eigen::Map<Eigen::ArrayXd> sum(scratch.data(), length());
   in_pieces(poll, [&](auto begin, auto count) {
-    scratch.resize(static_cast<std::size_t>(begin + count));  // new memory, a piece at a time as well
+    scratch.resize(static_cast<std::size_t>(begin + count));  // new memory, also a piece at a time
     sum.segment(begin, count) = (-2.0 * dimensions) * from.segment(begin, count);
   });
   // Along each axis the grid is a stack of slabs of `slab` elements that touch the next along the axis.

@@ -117,7 +117,7 @@ void Planar::Core::advance(MechanicsClient& asked, double start, double h, doubl
   expect_pairs(bound);
   make_missed_contacts();
   make_contacts();
-  // Springs that scripts tied, changed or stretched meanwhile.
+  // Springs that scripts connected, changed or stretched meanwhile.
   ledger.script_work += springs_energy() - springs_known;
   int count = sub_steps() << refined;
   if (const double longest = longest_step(); longest > 0)

@@ -87,7 +87,7 @@ float lit_part(vec3 n) {
   p.z = min(p.z, 0.999999) - shadow_bias;  // what is behind the frustum is shaded by what is in it
   // A turned ring of places: soft edges with few samples.
   float turn = 6.2831853 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
-  // From the outside in. Where half of them agree, the rest would as well: most of the picture is lit or shaded wholly.
+  // From the outside in. Where half of them agree, the rest would agree: most of the picture is lit or shaded wholly.
   // The number is a uniform: a loop of known length would be unrolled, and all of it computed.
   float sum = 0.0, count = float(shadow_samples), seen = 0.0;
   for (int i = shadow_samples - 1; i >= 0; --i) {

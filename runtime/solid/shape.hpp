@@ -54,8 +54,8 @@ class Shape : public InMemory {
   /// The convex hull of a cloud of points; a Convex shape like any other. The points keep their places: see make_hull.
   static std::shared_ptr<Shape> hull(std::span<const Vector3> points, double density,
                                      Memory memory = std::pmr::get_default_resource());
-  /// Triangles, counter-clockwise seen from outside. If they close a solid, that is the shape, its mass too; else they
-  /// are a surface of two sides with the mass of its hull (a flat one: a thousandth of its extent thick).
+  /// Triangles, counter-clockwise seen from outside. If they close a solid, that is the shape and gives the mass; else
+  /// they are a surface of two sides with the mass of its hull (a flat one: a thousandth of its extent thick).
   /// Error{Argument}: see TriangleMesh and make_hull.
   static std::shared_ptr<Shape> mesh(std::span<const Vector3> corners,
                                      std::span<const std::array<std::int32_t, 3>> triangles,

@@ -19,7 +19,7 @@ inline Pose pose_of(const Bodies& bodies, BodyIndex body) { return {bodies.locat
 struct QueryFilter {
   std::uint32_t mask = 0xffffffffU;  // those whose category has one of these bits
   ObjectId except;                   // not this one; null: nobody is left out
-  bool sensors = true;               // sensors too
+  bool sensors = true;               // also sensors
   /// If not null: those of objects for which this is true.
   bool (*wants)(const void* context, ObjectId object) = nullptr;
   const void* context = nullptr;

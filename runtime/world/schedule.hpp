@@ -1,5 +1,5 @@
 // Calls that wait for their time: a binary heap, so that a million of them cost n log n; and, once one of many is
-// cancelled, an index by target and method, so that cancelling a million of them costs n log n too.
+// cancelled, an index by target and method, so that cancelling a million of them also costs n log n.
 #pragma once
 
 #include <cstdint>

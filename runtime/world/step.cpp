@@ -110,7 +110,7 @@ void World::step() {
 void World::deliver_input() {
   if (parts_->input.empty()) return;
   const StageScope stage(parts_->effects[EffectId::Input], observer_);
-  // What arrives from inside a handler waits for the next step; what an error leaves behind, too.
+  // Input that arrives from inside a handler, or that an error leaves behind, waits for the next step.
   for (std::size_t left = parts_->input.size(); left > 0; --left) {
     InputEvent event = std::move(parts_->input.front());
     parts_->input.pop_front();

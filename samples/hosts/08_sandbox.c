@@ -25,7 +25,7 @@ static void try_one(breve_runtime* runtime, const char* what, const char* body) 
   breve_program* program = NULL;
   breve_world* world = NULL;
   breve_world_config config = breve_world_config_default();
-  config.budget = 100000;         /* turns of loops and calls in one iteration */
+  config.budget = 100000;         /* loop iterations and calls in one iteration */
   config.memory_limit = 8u << 20; /* bytes */
   config.depth_limit = 200;       /* nested calls */
   snprintf(text, sizeof text, "@use Control.\nController Main.\n%s", body);

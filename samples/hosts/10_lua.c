@@ -34,7 +34,7 @@ static int walk(breve_world* world) {
   size_t count;
   for (int i = 0; i < 10; ++i)
     if (breve_world_step(world) != BREVE_OK) return 1;
-  /* The classes of the file are classes like any other, and their methods too: step_count is `step-count`. */
+  /* The classes of the file are classes like any other, and so are their methods: step_count is `step-count`. */
   if (breve_world_objects(world, "Walker", &walker, 1, &count) != BREVE_OK ||
       breve_object_call(world, walker, "step-count", NULL, 0, &steps) != BREVE_OK ||
       breve_object_pose(world, walker, &pose) != BREVE_OK)

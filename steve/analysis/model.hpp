@@ -1,5 +1,5 @@
 // The parts of an analysed program: texts, tokens, trees, classes and symbols. Trees are those of a parser that goes on
-// after errors, so that a program that is being written has them too. Private to this folder.
+// after errors, so that a program that is being written also has them. Private to this folder.
 #pragma once
 
 #include <cstddef>
@@ -59,7 +59,7 @@ struct Model {
   std::vector<SymbolInfo> symbols;
   std::vector<KnownType> types;  // of the symbols that are variables, parameters, keywords
   std::vector<ClassModel> classes;
-  std::map<std::string, std::size_t, std::less<>> class_names;  // aliases too; the program's classes before others
+  std::map<std::string, std::size_t, std::less<>> class_names;  // and aliases; the program's classes before others
   std::multimap<std::string, MethodIndex, std::less<>> selectors;
   std::map<std::string, std::size_t, std::less<>> constants;       // to symbols
   std::multimap<std::string, std::size_t, std::less<>> functions;  // to symbols
@@ -71,7 +71,7 @@ struct Model {
   std::vector<std::size_t> line(std::size_t cls) const;
   /// The symbol of a variable as a method sees it: parameter, local, instance variable; kNoIndex if there is none.
   std::size_t find_variable(std::size_t cls, const MethodModel* method, std::string_view name) const;
-  /// The symbol of an instance variable, inherited ones too.
+  /// The symbol of an instance variable, which may be inherited.
   std::size_t find_member(std::size_t cls, std::string_view name) const;
   const MethodModel& method(const MethodIndex& index) const { return classes[index.cls].methods[index.method]; }
 };

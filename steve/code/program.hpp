@@ -105,7 +105,7 @@ struct ClassInfo {
   std::vector<std::uint16_t> reference_slots;        // with ancestors: slots that hold a Cell*
   std::vector<std::unique_ptr<MethodInfo>> methods;  // its own; add_method
   std::vector<const MethodInfo*> init_chain, delete_chain;  // root first
-  const MethodInfo* iterate = nullptr;                      // inherited ones too; null if there is none
+  const MethodInfo* iterate = nullptr;                      // may be inherited; null if there is none
   const MethodInfo* post_iterate = nullptr;
   const MethodInfo* destroy = nullptr;
   const MethodInfo* get_description = nullptr;
@@ -163,7 +163,7 @@ class Program {
   std::vector<Diagnostic> diagnostics_;
   std::uint64_t fingerprint_ = 0;
   const LibrarySource* library_;
-  ForeignFunctions foreign_;  // the methods of foreign_classes_ too
+  ForeignFunctions foreign_;  // and the methods of foreign_classes_
   ForeignClasses foreign_classes_;
   std::vector<std::shared_ptr<MethodInfo>> fragment_methods_;  // outlive their code: profiles name them
 };

@@ -10,7 +10,7 @@ namespace breve::steve {
 
 namespace {
 
-/// The names that a statement mentions, those in strings too; and the texts of its strings.
+/// The names that a statement mentions, also in strings; and the texts of its strings.
 void collect(const ast::Stmt& statement, std::set<std::string>& used) {
   walk_statements(statement, [&](const ast::Stmt& inner) {
     if (const auto* loop = std::get_if<ast::Foreach>(&inner.node)) used.insert(loop->variable);

@@ -168,7 +168,7 @@ ListCell* pareto_order(Machine& machine, Instance&, ListCell* fitness) {
   std::pmr::vector<double> values = read_rows(machine, rows, objectives, "selection: individual");
   if (rows.size != 0 && objectives == 0) refuse_argument("selection: an individual has no fitness values");
   for (double& value : values) value = std::isnan(value) ? learn::comparable(value) : learn::comparable(-value);
-  constexpr std::uint64_t kOfOrder = 8;  // turns: of the order of a few
+  constexpr std::uint64_t kOfOrder = 8;  // loop iterations: of the order of a few
   machine.charge(kOfOrder);
   machine.charge_for(std::uint64_t{rows.size} * values.size());
   need_room_to_sort(machine, rows.size);

@@ -60,7 +60,7 @@ void object_schedule(Machine& machine, Instance& self, Text method, double when)
 void object_schedule_repeating(Machine& machine, Instance& self, Text method, double interval) {
   World& world = machine.world();
   if (!(interval > 0) || !std::isfinite(interval)) {
-    constexpr std::uint64_t kOfWarning = 32;  // turns
+    constexpr std::uint64_t kOfWarning = 32;  // loop iterations
     machine.charge(kOfWarning);
     machine.warn("schedule-repeating: interval " + fmt::to_string(interval) + " is not more than 0; '" +
                  std::string(view(method)) + "' will not be called");
@@ -72,7 +72,7 @@ void object_schedule_repeating(Machine& machine, Instance& self, Text method, do
 }
 
 void object_unschedule(Machine& machine, Instance& self, Text method, double when) {
-  constexpr std::uint64_t kOfSearch = 4;  // turns
+  constexpr std::uint64_t kOfSearch = 4;  // loop iterations
   machine.charge(kOfSearch);
   // Without the name of a method each of the object's calls is looked at.
   if (view(method).empty()) machine.charge(machine.world().scheduled_count());

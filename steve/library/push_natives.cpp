@@ -156,7 +156,7 @@ void interpreter_reset_effort(Machine& machine, Instance& self) { own_interprete
 // --- settings --------------------------------------------------------------------------------------------------------
 
 void interpreter_configure(Machine& machine, Instance& self, StringCell* text) {
-  constexpr std::uint64_t kOfSettings = 32;  // turns
+  constexpr std::uint64_t kOfSettings = 32;  // loop iterations
   machine.charge(kOfSettings);
   machine.charge_for(view(text).size());
   std::pmr::string unknown(machine.heap().memory());

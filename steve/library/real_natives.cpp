@@ -135,7 +135,7 @@ void real_set_display_shape(Machine& machine, Instance& self, Instance* shape) {
 }
 
 Instance* real_set_shape(Machine& machine, Instance& self, Instance* shape) {
-  constexpr std::uint64_t kOfShape = 4;  // turns: boxes, masses and two variables are set anew
+  constexpr std::uint64_t kOfShape = 4;  // loop iterations: boxes, masses and two variables are set anew
   machine.charge(kOfShape);
   const std::shared_ptr<Shape>& geometry = geometry_of(machine, shape, "set-shape");
   const BodyIndex body = body_of(machine, self);

@@ -153,7 +153,7 @@ void terrain_generate(Machine& machine, Instance& self, double ruggedness, doubl
 void terrain_set_height(Machine& machine, Instance& self, std::int32_t column, std::int32_t row, double height) {
   finite(height, "set-height: the height");
   if (!in(grid_of(machine, self), column, row)) return;
-  constexpr std::uint64_t kOfHeight = 64;  // turns: the bounds of the squares around it, and of those that hold them
+  constexpr std::uint64_t kOfHeight = 64;  // loop iterations: the bounds of the squares around it, and of those above
   machine.charge(kOfHeight);
   const std::shared_ptr<Shape>& shape = shape_of(machine, self);
   shape->set_height(column, row, height);
@@ -206,7 +206,7 @@ double brightness(const Image& picture, double x, double y) {
 }
 
 /// Heights out of a table of columns x rows that is stretched over the whole terrain.
-/// @param height_at  (column, row), between the places of the table too
+/// @param height_at  (column, row), also between the cells of the table
 template <class HeightAt>
 void set_heights_from(Machine& machine, Instance& self, int columns, int rows, HeightAt&& height_at) {
   const HeightGrid& grid = grid_of(machine, self);

@@ -98,7 +98,7 @@ void Machine::print(std::string_view text) {
 }
 
 namespace {
-constexpr std::uint64_t kOfError = 500;  // turns: what it takes to leave the calls of one, and to say what is wrong
+constexpr std::uint64_t kOfError = 500;  // loop iterations: to leave the calls of one, and to say what is wrong
 }
 
 void Machine::survive(const RunError& error) {

@@ -26,7 +26,7 @@ constexpr std::uint64_t kOfOpening = 4000;  // iterations: what operating system
 }  // namespace
 
 std::unique_ptr<FileReader> open_for_reading(Machine& machine, std::string_view name) {
-  machine.charge(kOfOpening);  // before a refusal, which takes longer than a turn as well
+  machine.charge(kOfOpening);  // before a refusal, which also takes longer than a loop iteration
   check_name("read", name);
   if (!machine.host().open_for_reading) refuse("read", name, "the host does not let scripts read files");
   std::string why;

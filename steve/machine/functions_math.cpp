@@ -123,7 +123,7 @@ void random_seed(Machine& machine, Instance&, std::int32_t seed) {
 std::int32_t random_seed_from_device(Machine& machine, Instance& self) {
   if (!machine.host().may_draw_entropy)
     refuse_right("randomSeedFromDevRandom", "draw a seed from the operating system", "BREVE_RIGHT_ENTROPY");
-  constexpr std::uint64_t kOfDevice = 4000;  // turns: it is opened, read and closed
+  constexpr std::uint64_t kOfDevice = 4000;  // loop iterations: it is opened, read and closed
   machine.charge(kOfDevice);
   try {
     auto seed = static_cast<std::int32_t>(std::random_device{}() & 0x7fffffffU);
@@ -137,7 +137,7 @@ std::int32_t random_seed_from_device(Machine& machine, Instance& self) {
 
 Vector3 color_to_hsv(Machine&, Instance&, Vector3 rgb) { return rgb_to_hsv(rgb); }
 Vector3 color_to_rgb(Machine& machine, Instance&, Vector3 hsv) {
-  constexpr std::uint64_t kOfRemainder = 4;  // turns: that of a hue of 1e308, bit by bit
+  constexpr std::uint64_t kOfRemainder = 4;  // loop iterations: that of a hue of 1e308, bit by bit
   machine.charge(kOfRemainder);
   return hsv_to_rgb(hsv);
 }

@@ -424,7 +424,8 @@ bool Heap::reclaim_round() {
   return free_doomed();
 }
 
-// A destroy method may leave new garbage, and auto-free instances too. The limit is for one that makes its successor.
+// A destroy method may leave new garbage, and so may auto-free instances. The limit is for one that makes its
+// successor.
 void Heap::reclaim_all() {
   constexpr int kRounds = 1000;
   for (int round = 0; round < kRounds && reclaim_round() && !ended(); ++round) {

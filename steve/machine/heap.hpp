@@ -166,7 +166,7 @@ class Heap : public InMemory {
   /// @param ended  true: no more garbage is to be freed now than is begun; the rest waits for the next safe point. It
   ///               outlives the heap
   void set_ended(const std::atomic<bool>* ended) { ended_ = ended; }
-  /// In the middle of long work, where memory may run out as well: count so many bytes, and settle when they are many.
+  /// In the middle of long work, where memory may also run out: count so many bytes, and settle when they are many.
   void work_on(std::size_t bytes) {
     constexpr std::uint64_t kMany = 1 << 20;
     moved_ += bytes;

@@ -92,7 +92,7 @@ inline std::uint32_t list_position(const ListCell& list, std::int32_t i) {
 /// "an int", "a vector", "no value (NULL)": for messages.
 std::string a_type(Tag tag);
 
-/// The text of a value as `print` shows it (9). No recursion limit is reached by deep lists: nesting beyond 1,000 is
+/// The text of a value as `print` shows it. No recursion limit is reached by deep lists: nesting beyond 1,000 is
 /// shown as "{ ... }".
 /// @param describe  asked for the text behind an object's address (its get-description); may be empty
 /// @param heap      needed if `describe` may run script: keeps nested lists alive across it

@@ -150,7 +150,7 @@ std::uint32_t Profiler::active(const Callee& callee) const {
 }
 
 bool Profiler::renew(Node& node, const Callee& callee) const {
-  // A method of a program that was replaced goes on in its node if the new program has it too.
+  // A method of a program that was replaced goes on in its node if the new program also has it.
   const Callee& before = node.callee;
   const auto& now = *programs_.back();
   if (before.kind != callee.kind || node.program == &now) return false;

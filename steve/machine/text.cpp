@@ -1,4 +1,4 @@
-// The text of values (9): the same bytes as the C library's printf in the "C" locale, without its cost. A number that
+// The text of values: the same bytes as the C library's printf in the "C" locale, without its cost. A number that
 // six decimals would show as another one, such as 1e-9 as 0.000000, is the shortest text that reads back.
 #include <algorithm>
 #include <charconv>

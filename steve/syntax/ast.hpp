@@ -70,7 +70,7 @@ enum class UnaryOp : std::uint8_t { Not, Negate };
 
 struct IntLit {
   std::int32_t value;
-};  // character literals too
+};  // and character literals
 struct DoubleLit {
   double value;
 };

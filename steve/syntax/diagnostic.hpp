@@ -25,7 +25,7 @@ class Diagnostics {
  public:
   void error(const Span& span, std::string code, std::string message, std::string help = {});
   void warning(const Span& span, std::string code, std::string message, std::string help = {});
-  /// Of errors a thousand are kept, and of the rest too; one of each kind says that there are more.
+  /// A thousand errors are kept, and a thousand of the rest; one of each kind says that there are more.
   void add(Diagnostic diagnostic);
   /// Will no more errors be kept? What would help with them need not be looked for.
   bool full() const { return errors_ >= kMost; }

@@ -196,7 +196,7 @@ void Scanner::string() {
   push(TokenKind::String, begin, text_.substr(std::min(inner, end), end - std::min(inner, end)));
 }
 
-// 'c': the code of one byte. '\'' and the escapes of strings are taken too; '\' alone is the backslash.
+// 'c': the code of one byte. '\'' and the escapes of strings are also taken; '\' alone is the backslash.
 void Scanner::character() {
   const std::size_t begin = pos_;
   const char c = at(pos_ + 1), after = at(pos_ + 2);

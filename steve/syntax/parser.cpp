@@ -127,7 +127,7 @@ void Parser::find_braces() {
 }
 
 // Is the period at `i`, in the braces that open at `open`, part of a number of a list: `{1., (2., 0, 0), 3.}`? Of the
-// statements without a colon only those that print have commas, too.
+// statements without a colon only those that print also have commas.
 bool Parser::inside_list(std::size_t i, std::size_t open) const {
   if (items_[i - 1].token->kind != TokenKind::Int || items_[i].token->space_before || i + 1 >= items_.size())
     return false;

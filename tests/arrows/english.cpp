@@ -26,7 +26,7 @@ struct Rule {
   std::string_view reason;
 };
 
-constexpr std::array<Rule, 22> kRules{{
+constexpr std::array<Rule, 23> kRules{{
     {"is no", " no ", R"((^|[\w']+ )(is|are|was|were) no \w+)",
      R"(^([Tt]|[Ww])?here |no (longer|more|less|later|earlier|better|worse|matter|farther|smaller|larger|such)$)",
      "write 'is not a'"},
@@ -36,8 +36,8 @@ constexpr std::array<Rule, 22> kRules{{
     {"is told", " told", R"(\b(is|are|was|were|be) told( \w+)?)", R"(told (to|apart)$)",
      "write 'is reported', or name the call"},
     {"Nothing if", "Nothing if", R"((^|[.:;] )Nothing if\b)", "", "write 'Does nothing if'"},
-    {"too,", " too, ", R"(\w+,? too, )", "", "write 'also' or 'including' before what is added"},
-    {"as well.", " as well.", R"(\bas well\.)", "", "write 'also' before what is added"},
+    {"too,", " too", R"(\w+,? too, |\w+,? too([.;:)]|$))", "", "write 'also' or 'including' before what is added"},
+    {"as well.", " as well", R"(\bas well([.;:)]|$))", "", "write 'also' before what is added"},
     {"free relative: who", "ho ", R"((^|[.;] )Who [a-z]+s\b[^?]*?[.;]|\b(for|to|by|that) who\b)", "",
      "name the person: 'the reader', 'a host that'"},
     {"free relative: what", "What ",
@@ -68,8 +68,8 @@ constexpr std::array<Rule, 22> kRules{{
      R"(|\b(whole|full|quarter|half|all its) turns?\b|\bplace and turn\b|\bturn and (place|spin)\b)"
      R"(|\b(bodies|body|links?|joints?|wheels?|limbs?|spin|shapes?) (that )?turns?\b)",
      "", "the field's terms: rotation, orientation; a body rotates"},
-    {"term: turns", "turns", R"(\b(many|some|[0-9]+|million|thousand) turns\b|// turns\b)", "",
-     "a loop has iterations, a joint full rotations"},
+    {"term: turns", "turn", R"(^turns\b|\b(many|some|more|[0-9]+|million|thousand) turns\b|\bturns? of (a|the) loop\b)",
+     "", "a loop has iterations, a joint full rotations"},
     {"term: quiet", "uiet",
      R"(\b[Qq]uiet (bod|island|pair|contact|stack|pile)\w*)"
      R"(|\b(bod(y|ies)|islands?|stacks?|piles?) (is|are|gets?|becomes?|lies?|stands?) quiet\b)",
@@ -81,6 +81,8 @@ constexpr std::array<Rule, 22> kRules{{
     {"citation", "",
      R"(\bDESIGN [0-9]|\bCLASSES [0-9]|\bSTYLE\.md|\b[Ll]anguage(,| document,?) (section )?[0-9]|[(; ]F[0-9]{1,2}\b[,;)])",
      "", "give the reason in place, or cite a paper or book"},
+    {"dangling number", " (", R"((^expect: .*)?[a-z]{3,} \([0-9]{1,2}\)[.,:;])", R"(^expect: )",
+     "say what the number is, or name the section that it cites"},
 }};
 
 /// Not ours to reword: fuzz inputs, pages that `breve doc` makes of checked comments, and what tests this test.
@@ -103,7 +105,7 @@ class English {
   }
 
   void read() {
-    for (const char* page : {"README.md", "CHANGES.md"})
+    for (const char* page : {"README.md", "CHANGES.md", "CMakeLists.txt", "run"})
       if (fs::exists(root_ / page)) read_file(root_ / page);
     for (const char* top : {"cmake", "docs", "hostapi", "runtime", "samples", "steve", "tests"})
       if (fs::exists(root_ / top))

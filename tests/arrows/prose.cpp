@@ -175,7 +175,8 @@ std::vector<Paragraph> prose_of(const std::filesystem::path& file) {
   std::ifstream in(file);
   if (kind == ".md") return of_page(in);
   if (kind == ".tz") return of_script(in, "%#");
-  if (kind == ".sh" || kind == ".cmake" || file.filename() == "CMakeLists.txt") return of_script(in, "#");
+  if (kind == ".sh" || kind == ".cmake" || file.filename() == "CMakeLists.txt" || file.filename() == "run")
+    return of_script(in, "#");
   if (kind != ".h" && kind != ".hpp" && kind != ".c" && kind != ".cpp") return {};
   std::ostringstream all;
   all << in.rdbuf();

@@ -40,7 +40,7 @@ Names words_with(std::string_view text, std::string_view prefix) {
 
 struct Documented {
   std::string file;
-  Names statuses, referred;  // referred: functions whose statuses it has as well
+  Names statuses, referred;  // referred: functions whose statuses it also has
 };
 
 class Headers {

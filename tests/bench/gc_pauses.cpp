@@ -1,9 +1,9 @@
 // How long garbage stops a host. A world of a million objects is stepped at 60 iterations a second. Before each step
 // the host has a program link 2,000 of the objects anew and give them two new lists each, replace 200, and drop 100
-// pairs of objects, lists and hashes in cycles, in each 30th iteration a ring of 5,000 lists too; with a longer one the
-// collector of the whole heap runs. In the step itself the program does nothing, so that its time is that of the
+// pairs of objects, lists and hashes in cycles, in each 30th iteration also a ring of 5,000 lists; with a longer one
+// the collector of the whole heap runs. In the step itself the program does nothing, so that its time is that of the
 // garbage: claim: 99.9 % of the steps take at most 2 ms of processor time. What the calls before take, with the garbage
-// that is given back in them, is printed too. Exits 1 if the claim does not hold.
+// that is given back in them, is also printed. Exits 1 if the claim does not hold.
 //
 // Usage: bench_gc_pauses [OBJECTS [FRAMES [RING [plain]]]]; "plain": the objects have no lists of their own
 #include <algorithm>

@@ -24,7 +24,7 @@ struct Row {
   const char* file;
   const char* what;
   double required;  // steve's time over Lua's, at most
-  bool plain;       // counts in the mean of what Lua has built in too: no vectors, no world
+  bool plain;       // counts in the mean of what Lua also has built in: no vectors, no world
 };
 
 constexpr Row kRows[] = {

@@ -1,4 +1,4 @@
-// What pictures cost. Claims: 10,000 spheres at 640 x 480 take at most 150 ms, with lights and shadows as well; draw
+// What pictures cost. Claims: 10,000 spheres at 640 x 480 take at most 150 ms, even with lights and shadows; draw
 // calls do not grow with the number of bodies; a hundred agents that look through cameras of 64 x 48 pixels take at
 // most 1 s a frame together; and a world beside a view that draws nothing steps as fast as one without (ratio at
 // most 1.1). Times are of all threads (CPU), in milliseconds, the fastest of several rounds; exits 1 if a claim does

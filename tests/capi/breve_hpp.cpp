@@ -1,4 +1,4 @@
-// breve.hpp: what it adds to breve.h, by the C++ standard that it promises (17).
+// breve.hpp: what it adds to breve.h, by the standard that it promises, C++17.
 #include "breve/breve.hpp"
 
 #include <gtest/gtest.h>

@@ -229,7 +229,7 @@ static void what_a_callback_calls_counts_to_the_call_it_is_in(void) {
   scene_close(&s);
 }
 
-/* The warning comes between two pieces of the budget: what the host calls there has a piece, too. */
+/* The warning comes between two pieces of the budget: what the host calls there also has a piece. */
 static void what_the_warning_of_lost_patience_calls_has_the_same_budget(void) {
   scene s;
   breve_world_config config = breve_world_config_default();

@@ -62,7 +62,7 @@ static void who_bounds_the_script_bounds_its_physics(void) {
   scene_close(&s);
 }
 
-/* Late enough for the step to have begun its physics on a busy machine, too. */
+/* Late enough for the step to have begun its physics, even on a busy machine. */
 static void* interrupt_later(void* world) {
   for (int i = 0; i < 10; ++i) {
     const struct timespec pause = {0, 100000000};

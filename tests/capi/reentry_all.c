@@ -780,7 +780,7 @@ static void every_function_works_or_is_busy_inside_callbacks_of_a_script(void) {
   CHECK_STATUS(BREVE_OK, breve_object_call(p->world, p->controller, "be-loud", NULL, 0, NULL));
   CHECK(v.in_channel[BREVE_CHANNEL_PRINT] > 0 && v.in_channel[BREVE_CHANNEL_WARNING] > 0);
   CHECK(v.files == 2 && v.commands == 1);
-  /* A handler that fails: its report is a callback, too. */
+  /* A handler that fails: its report is also a callback. */
   const char* fails =
       "self observe instance self for-notification \"x\" with-method \"fail-now\". self announce message \"x\".";
   CHECK_STATUS(BREVE_OK, breve_world_evaluate(p->world, p->controller, fails, strlen(fails), NULL));

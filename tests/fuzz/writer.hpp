@@ -34,7 +34,7 @@ class Writer {
   struct Scope {
     int cls = 0;
     const Method* method = nullptr;
-    std::vector<Variable> locals;  // parameters too
+    std::vector<Variable> locals;  // and parameters
     int loops = 0, depth = 0;      // nested loops; nested expressions
   };
 

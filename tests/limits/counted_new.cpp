@@ -10,7 +10,7 @@ namespace limits {
 
 namespace {
 
-// Atomic, since workers allocate too; the n-th allocation is the same one only without them.
+// Atomic, since workers also allocate; the n-th allocation is the same one only without them.
 struct Counts {
   std::atomic<std::size_t> blocks = 0, bytes = 0;
 };

@@ -1,6 +1,6 @@
 // The programs whose allocations are failed, as modules of a runtime.
 //
-// - everything.tz: what a world can do. Its loops are short: more turns allocate at the same places again.
+// - everything.tz: what a world can do. Its loops are short: more iterations allocate at the same places again.
 // - grammar.tz: what the compiler can meet, with little of the class library.
 // - little.tz: the least that shows that a runtime still works.
 #pragma once

@@ -251,7 +251,7 @@ TEST(TrueBytes, ALimitCutsAWorldWithWorkersAnywhere) {
     EXPECT_LE(stats.memory_peak, stats.memory_limit);
     (islands.status == BREVE_OK ? through : cut) += 1;
     std::uint64_t hash = 0;
-    const breve_status hashed = breve_world_hash(islands.world, &hash);  // which may need more, too
+    const breve_status hashed = breve_world_hash(islands.world, &hash);  // which may also need more
     EXPECT_TRUE(hashed == BREVE_OK || hashed == BREVE_ERROR_MEMORY) << breve_status_name(hashed);
     // Where it took more than there is, whichever thread asked said so; what went through has missed nothing.
     if (stats.memory_limit < most - most / 20) {

@@ -114,7 +114,7 @@ TEST_F(Suspects, AHashWhoseKeyLeadsBackGoes) {
   EXPECT_EQ(roots_.collections, 0);
 }
 
-// The short look at new cells goes three levels down: longer rings, and such as close beyond it, must be found too.
+// The short look at new cells goes three levels down: longer rings, and such as close beyond it, must also be found.
 TEST_F(Suspects, CyclesOfEveryLengthGo) {
   for (int length = 1; length <= 40; ++length) {
     cycle(length);

@@ -1,4 +1,4 @@
-// The print format (9), against printf where the C library defines it.
+// The print format, against printf where the C library defines it.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # breve as an installed package: what a build installs, and programs outside the tree that are built against it.
 # Usage: installed.sh REPOSITORY BUILD CXX-COMPILER CASE
-# Case static uses BUILD as it is; bullet too; the others build in a folder of their own and take long.
+# Cases static and bullet use BUILD as it is; the others build in a folder of their own and take long.
 set -euo pipefail
 
 repository=$(realpath "$1")

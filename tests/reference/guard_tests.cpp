@@ -200,7 +200,7 @@ TEST(Guard, SeesMoreImpactsThanAreLocated) {
   }
 }
 
-/// What the guard takes is in the ledger, too.
+/// The ledger also has what the guard takes.
 TEST(Guard, RestIsInTheLedger) {
   Watched world(BREVE_GUARD_REST);
   const breve_object ball = world.body(sphere(0.5, 1e-3), Vector3::Zero());

@@ -16,7 +16,7 @@ namespace {
 std::atomic<long> allocations{0};
 }
 
-// Eigen calls malloc and not operator new, which ends in malloc too: here both pass.
+// Eigen calls malloc and not operator new, which also ends in malloc: here both pass.
 extern "C" void* __libc_malloc(std::size_t size);
 extern "C" void* malloc(std::size_t size) {
   ++allocations;

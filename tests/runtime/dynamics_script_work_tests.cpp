@@ -139,7 +139,7 @@ TEST_P(ScriptWorkInSpace, OfARotationIsThatOfWhatHangsOnTheBody) {
   s.bodies().set_orientation(s.index(body), Quaternion(Eigen::AngleAxisd(std::numbers::pi / 2, Vector3::UnitZ())));
   physics().moved(s.index(body));
   EXPECT_NEAR(s.at(weight).y() - fallen, 2, 1e-5);
-  // The velocity of the body stays, and what turns with it keeps it, too.
+  // The body keeps its velocity, and so does what turns with it.
   expect(3 * kGravity * 2, 3 * kGravity * 2);
 }
 
@@ -279,7 +279,7 @@ TEST(ScriptWorkOfJoints, ThatCloseOnMovingBodiesIsWhatStops) {
   EXPECT_NEAR(e.residual, 0, 1e-9);
 }
 
-/// A handler's changes in the middle of a step are the script's work, too.
+/// A handler's changes in the middle of a step are also the script's work.
 TEST(ScriptWorkOfHandlers, IsInTheBooks) {
   Books s(3);
   s.world.handle_collisions(1, 2, "hit", s.controller);

@@ -152,7 +152,7 @@ void read_expectation(const std::string& line, int number, Expectations& to) {
 Expectations read_expectations(const fs::path& file) {
   Expectations expectations;
   int number = 0;
-  // A lone CR ends a line of steve too.
+  // A lone CR also ends a line of steve.
   for (const std::string& line : split_lines(replace_all(replace_all(read_file(file), "\r\n", "\n"), "\r", "\n")))
     read_expectation(line, ++number, expectations);
   return expectations;

@@ -27,7 +27,7 @@ struct Settings {
   std::int32_t min_integer = -10, max_integer = 10;
   double min_float = -1, max_float = 1;    // and of each component of a vector
   double new_name_probability = 0.001;     // NEW-ERC-NAME-PROBABILITY: that a random name is a new one
-  bool push_code = true;                   // TOP-LEVEL-PUSH-CODE: a program that is run is on the CODE stack, too
+  bool push_code = true;                   // TOP-LEVEL-PUSH-CODE: a program that is run is also on the CODE stack
   bool pop_code = false;                   // TOP-LEVEL-POP-CODE: the CODE stack is popped when it ends
   std::pmr::vector<std::uint16_t> active;  // numbers of instructions, ascending: what random code is made of
   std::pmr::vector<Constant> constants;    // ascending: likewise

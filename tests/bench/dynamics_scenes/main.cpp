@@ -1,6 +1,6 @@
 // What scenes of bodies cost beside Bullet and ODE, at the same step of 1/60 s in one run. Claims, as ratios of CPU
 // time: `fast` costs at most 0.8 times the faster peer, `balanced` at most 2 times; the slowest of 1,000 iterations
-// takes at most 10 times the median one. Flat scenes have Box2D beside them as well; breve's flat worlds are made with
+// takes at most 10 times the median one. Flat scenes also have Box2D beside them; breve's flat worlds are made with
 // it, so that it is shown and no peer of the claims (bench_planar has one for it). Exits 1 if a claim does not hold.
 //   --scene NAME   only that one, or all that begin so; may be repeated
 //   --rung NAME    fast or balanced alone

@@ -18,7 +18,7 @@ constexpr const char* kNames[kMeasures] = {"energy", "momentum", "spin",   "cent
 class Books {
  public:
   Books(Creature& creature, const Case& one) : creature_(creature), one_(one) {
-    ledger0_ = ledger_ = creature.world().energy().or_throw();  // takes up what was set, too
+    ledger0_ = ledger_ = creature.world().energy().or_throw();  // also takes up what was set
     start_ = now_ = measure(creature);
     for (const Joint& joint : creature.joints()) last_.push_back(positions_of(creature, joint));
     for (const Joint& joint : creature.joints()) rates_.push_back(rates(joint));
