@@ -1,6 +1,6 @@
 #!/bin/bash
-# breve.h as it was before each struct with struct_size got its last field, or as it may be when each has got one more.
-# header.sh older|newer breve.h HEADER
+# A public header as it was before each struct with struct_size got its last field, or as it may be when each has got one
+# more: header.sh older|newer breve/breve.h HEADER
 set -eu
 awk -v how="$1" '
 function end_of_struct(    i) {
@@ -32,6 +32,10 @@ inside {
     name = $0
     sub(/(\[[0-9]+\])?;.*/, "", name)
     sub(/.*[ *]/, "", name)
+  } else if (match($0, /^  [a-z][A-Za-z0-9_* ]* \(\*[a-z_]+\)\(/)) {  # a function
+    last = count
+    name = substr($0, 1, RLENGTH - 2)
+    sub(/.*\*/, "", name)
   }
   next
 }
