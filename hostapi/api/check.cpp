@@ -39,7 +39,7 @@ void check_fields(const std::string& path, const std::vector<Parameter>& fields,
 
 void write_check(const Interface& interface, std::ostream& out) {
   out << "/* Made from the description of the headers. */\n#include <breve/analysis.h>\n#include <breve/breve.h>\n"
-         "#include <breve/sound.h>\n#include <breve/view.h>\n\n";
+         "#include <breve/breve_lua.h>\n#include <breve/sound.h>\n#include <breve/view.h>\n\n";
   std::size_t number = 0;
   for (const Enumeration& one : interface.enumerations)
     for (const Value& value : one.values)

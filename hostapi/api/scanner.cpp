@@ -221,7 +221,7 @@ class Scanner {
   }
 
   void function(const std::string& text, bool in_header) {
-    static const std::regex shape(R"(([^(]+[ *])(breve_\w+)\(([^]*)\);)");
+    static const std::regex shape(R"(([^(]+[ *])(breve_\w+|luaopen_breve)\(([^]*)\);)");
     const std::string line = in_one_line(text);
     std::smatch match;
     if (!std::regex_match(line, match, shape)) fail(header_, line);

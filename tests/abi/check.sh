@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The binary interface that breve.h, with its parts, sound.h, analysis.h and view.h declare is the one that is described in breve.abi: functions, the sizes
-# and fields of structs, the numbers of enumerators. The description is of a library of empty functions, made from the
-# headers alone; that the real one has all of them is seen by whoever links it.
+# The binary interface that breve.h, with its parts, sound.h, analysis.h, view.h and breve_lua.h declare is the one that is
+# described in breve.abi: functions, the sizes and fields of structs, the numbers of enumerators. The description is of a
+# library of empty functions, made from the headers alone; hosts that link the real ones see that these have them all.
 # Usage: check.sh [--renew]     --renew writes breve.abi anew
 set -euo pipefail
 
@@ -18,7 +18,8 @@ trap 'rm -rf "$work"' EXIT
   echo '#include "breve/analysis.h"'
   echo '#include "breve/view.h"'
   echo '#include "breve/sound.h"'
-  cat "$include"/breve/{breve,batch,debug_draw,events,plugin,record,sound,space,step,analysis,view}.h |
+  echo '#include "breve/breve_lua.h"'
+  cat "$include"/breve/{breve,batch,debug_draw,events,plugin,record,sound,space,step,analysis,view,breve_lua}.h |
     awk '/^BREVE_API / { on = 1 } on { print } /;/ { on = 0 }' | sed -e 's@/\*.*\*/@@' -e 's/^BREVE_API //' -e 's/;.*/ { __builtin_trap(); }/'
 } >"$work/functions.c"
 (cd "$work" && gcc -std=c11 -g -O0 -fPIC -shared -w -I "$include" functions.c -o libbreve.so)

@@ -1,8 +1,7 @@
 # Fails if a struct of the headers in HEADERS has a field of an enumeration, whose size is the compiler's, or if an enumerator does not
 # begin with the name of its type: cmake -DHEADERS=folder -P enumerations.cmake
-# "_kind" and "_mode" are left out of the names; a status is BREVE_OK or an error.
+# "_kind", "_mode" and the "_right" of Lua are left out of the names; a status is BREVE_OK or an error.
 file(GLOB files ${HEADERS}/*.h)
-list(FILTER files EXCLUDE REGEX "breve_lua.h$")  # tests/lua has its functions
 set(header)
 foreach(file IN LISTS files)
   file(READ ${file} text)
@@ -16,7 +15,7 @@ if(count EQUAL 0)
 endif()
 foreach(enumeration IN LISTS enumerations)
   string(REGEX REPLACE "typedef enum breve_([a-z_]+) {.*" "\\1" type "${enumeration}")
-  string(REGEX REPLACE "_(kind|mode)$" "" prefix "${type}")
+  string(REGEX REPLACE "_(kind|mode|right)$" "" prefix "${type}")
   string(TOUPPER "BREVE_${prefix}_" prefix)
   if(type STREQUAL "status")
     set(prefix "BREVE_(OK|ERROR_)")
