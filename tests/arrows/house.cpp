@@ -123,6 +123,7 @@ const std::map<std::string_view, std::vector<std::string_view>> kLibraries = {
     {"LinearMath/", {}},
     {"assimp/", {"runtime/store"}},
     {"sndfile", {"runtime/store"}},
+    {"gdal", {"runtime/store"}},
     {"httplib", {"hostapi/src"}},
     {"tbb/", {"runtime/base"}},
     {"box2d/", {"runtime/planar"}},
@@ -135,6 +136,10 @@ const std::map<std::string_view, std::vector<std::string_view>> kLibraries = {
     {"lua", {"hostapi/lua"}},
     {"CLI/", {"hostapi/command"}},
     {"readline/", {"hostapi/command"}},
+    {"SDL", {"hostapi/command", "samples/hosts"}},
+    {"nlohmann/", {"hostapi/command", "hostapi/api"}},
+    {"stb/", {"runtime/store", "runtime/scene", "hostapi/command"}},
+    {"zlib", {"runtime/store", "hostapi/command"}},
     {"breve/", {"hostapi/include", "hostapi/src", "hostapi/lua", "hostapi/command", "samples/hosts"}},
 };
 

@@ -1,1 +1,2 @@
 #include <lua.h>
+#include <SDL.h>
