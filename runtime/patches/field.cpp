@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "runtime/base/error.hpp"
-#include "runtime/base/pieces.hpp"
+#include "runtime/base/in_pieces.hpp"
 
 namespace breve {
 

@@ -151,7 +151,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   double springs_known = 0;  // J: of springs, at the end of the last step; what differs since then scripts did
   std::pmr::vector<BodyIndex> scratch;
 
-  // members.cpp: which bodies Box2D knows
+  // known_bodies.cpp: which bodies Box2D knows
   FlatBody* find(BodyIndex body);
   const FlatBody* find(BodyIndex body) const { return const_cast<Core*>(this)->find(body); }
   const FlatBody& of(const b2Body* b) const { return const_cast<Core*>(this)->of(b); }
@@ -182,7 +182,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   static void wake_touching(FlatBody& flat);
   void wake_met(const FlatBody& flat);
 
-  // members.cpp
+  // known_bodies.cpp
   void note_known(FlatBody& flat);
   void push_pose(FlatBody& flat);
   void push_velocity(FlatBody& flat);
@@ -375,7 +375,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   double springs_energy() const;
   double joint_rate(const FlatJoint& joint) const;
   double motor_work(const FlatJoint& joint, double dt) const;
-  // guard.cpp
+  // step_guard.cpp
   void watch(double moment, bool wrong);
   struct Balance {
     double kinetic = 0, stored = 0, works = 0, losses = 0;  // J

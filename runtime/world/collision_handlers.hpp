@@ -12,7 +12,7 @@
 #include "runtime/base/hasher.hpp"
 #include "runtime/base/ids.hpp"
 #include "runtime/world/behaviour.hpp"
-#include "runtime/world/names.hpp"
+#include "runtime/world/name_table.hpp"
 
 namespace breve {
 

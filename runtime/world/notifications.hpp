@@ -10,7 +10,7 @@
 #include "runtime/base/bytes.hpp"
 #include "runtime/base/hasher.hpp"
 #include "runtime/base/ids.hpp"
-#include "runtime/world/names.hpp"
+#include "runtime/world/name_table.hpp"
 #include "runtime/world/objects.hpp"
 
 namespace breve {

@@ -9,7 +9,7 @@
 
 #include "runtime/contact/collision_stage.hpp"
 #include "runtime/world/collision_handlers.hpp"
-#include "runtime/world/names.hpp"
+#include "runtime/world/name_table.hpp"
 #include "runtime/world/neighbor_record.hpp"
 #include "runtime/world/notifications.hpp"
 #include "runtime/world/objects.hpp"

@@ -1,4 +1,4 @@
-// World: objects, bodies and the registries around them. The step is in step.cpp, images are in image.cpp.
+// World: objects, bodies and the registries around them. The step is in step.cpp, images are in world_image.cpp.
 #include "runtime/world/world.hpp"
 
 #include <fmt/format.h>

@@ -241,7 +241,7 @@ class World : public InMemory {
   void gather_events();
   void tell_events();
   void look_again();
-  // image.cpp
+  // world_image.cpp
   void write_image(ByteWriter& out) const;
   void read_image(ByteReader& in, World& fresh) const;
   void swap_state(World& other);

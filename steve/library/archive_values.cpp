@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "runtime/base/pieces.hpp"
+#include "runtime/base/in_pieces.hpp"
 
 namespace breve::steve {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "runtime/store/patterns.hpp"
+#include "runtime/store/painted_pictures.hpp"
 #include "steve/library/image_access.hpp"
 #include "steve/library/pictures.hpp"
 #include "steve/library/tables.hpp"

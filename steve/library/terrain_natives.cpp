@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "runtime/base/pieces.hpp"
+#include "runtime/base/in_pieces.hpp"
 #include "runtime/solid/height_grid.hpp"
 #include "runtime/store/height_raster.hpp"
 #include "steve/library/image_access.hpp"

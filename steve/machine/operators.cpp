@@ -1,4 +1,4 @@
-// Operators on values whose types are known only when they run (5.4 to 5.7, 6.4).
+// Operators on values whose types are known only when they run.
 #include "steve/machine/operators.hpp"
 
 #include "steve/machine/brief.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "runtime/base/pieces.hpp"
+#include "runtime/base/in_pieces.hpp"
 #include "steve/machine/machine.hpp"
 #include "steve/machine/operators.hpp"
 #include "steve/machine/profiler.hpp"

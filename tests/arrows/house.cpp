@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "inside.hpp"
+#include "twins.hpp"
 
 namespace fs = std::filesystem;
 
@@ -169,6 +170,7 @@ class House {
     for (const breve::house::Offence& found : inside_.offences()) offend(found.file, found.line, found.what);
     check_readmes();
     check_effects();
+    check_names();
     for (const std::string& offence : offences_) std::cout << offence << '\n';
     std::cout << files_ << " files, " << includes_ << " includes, " << offences_.size() << " offences\n";
     if (files_ == 0) std::cout << "no sources under " << root_ << ": wrong folder?\n";
@@ -201,6 +203,7 @@ class House {
     const bool code = path.extension() != ".tz";
     ++files_;
     if (code) inside_.add(file);
+    if (code) note_name(path, file);
     std::ifstream in(path);
     std::string line;
     std::size_t number = 0;
@@ -300,6 +303,32 @@ class House {
         offend(table, number, page + " does not list the effect '" + found[1].str() + "'");
   }
 
+  /// A header that is installed has the name of the file that implements it.
+  void note_name(const fs::path& path, const std::string& file) {
+    const Part* part = part_of(file);
+    if (!part || part->folder == "hostapi/include" || part->folder == "samples/hosts") return;
+    rooms_[path.stem().string()].emplace(part->folder, file);
+  }
+
+  /// A name is of one file, in one room, unless it is in the table of twins.
+  void check_names() {
+    for (const auto& [name, files] : rooms_) {
+      std::string rooms;
+      for (const auto& [room, file] : files) rooms += (rooms.empty() ? "" : " ") + std::string(room);
+      const auto* twins = std::find_if(std::begin(breve::house::kTwins), std::end(breve::house::kTwins),
+                                       [&name](const auto& known) { return known.name == name; });
+      const bool known = twins != std::end(breve::house::kTwins);
+      if (files.size() > 1 && (!known || twins->rooms != rooms))
+        offend(files.begin()->second, 0,
+               "files of this name are in " + rooms + ": rename one, or give the reason in twins.hpp");
+    }
+    const std::string table = "tests/arrows/twins.hpp";
+    if (!fs::exists(root_ / table)) return;
+    for (const auto& twins : breve::house::kTwins)
+      if (const auto at = rooms_.find(std::string(twins.name)); at == rooms_.end() || at->second.size() < 2)
+        offend(table, 0, "'" + std::string(twins.name) + "' is not the name of files in several rooms any more");
+  }
+
   /// A folder that only a compiler looks into (hostapi/include) may be described by its parent's page.
   bool has_readme(std::string_view folder) const {
     return fs::exists(root_ / folder / "README.md") ||
@@ -315,6 +344,7 @@ class House {
   fs::path root_;
   breve::house::Inside inside_;
   std::set<std::string> offences_;
+  std::map<std::string, std::map<std::string_view, std::string>> rooms_;  // of a file's name: the rooms, a file in each
   std::size_t files_ = 0, includes_ = 0;
 };
 

@@ -1,6 +1,6 @@
 // Patterns from a hash of the place, not from the world's random numbers. Only operations that are exact everywhere are
 // used, so that pixels, which a world's hash covers, are the same on every machine.
-#include "runtime/store/patterns.hpp"
+#include "runtime/store/painted_pictures.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,2 @@
+// Another file of a name that the house has already.
+#pragma once

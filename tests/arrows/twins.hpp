@@ -1,0 +1,102 @@
+// Files of equal names in several rooms, each with its reason: they are twins, or so far apart that nobody takes one
+// for the other. Any other file gets a name of its own.
+#pragma once
+
+#include <string_view>
+
+namespace breve::house {
+
+struct Twins {
+  std::string_view name, rooms, reason;  // rooms in alphabetical order, without hostapi/include
+};
+
+inline constexpr std::string_view
+    kDoor = "hostapi has the C functions, the commands or the binding of what the other room does",
+    kLua = "hostapi/lua does for agents in Lua what hostapi/src does for hosts in C",
+    kBackends = "the same part of both backends, or what the two have in common",
+    kStages = "the same part of the language at several stages: described, parsed, compiled, run";
+
+inline constexpr Twins kTwins[] = {
+    {"accuracy", "hostapi/src runtime/mechanics", kDoor},
+    {"analysis", "hostapi/src steve/analysis", kDoor},
+    {"assemblies", "runtime/dynamics runtime/planar", kBackends},
+    {"bodies", "runtime/dynamics runtime/kinematics runtime/render",
+     "the bodies of `kinematics`; their entries in dynamics; the passes that draw them"},
+    {"calls", "hostapi/lua hostapi/src steve/machine steve/syntax",
+     "calls as they are parsed and run, and as hosts make them"},
+    {"check", "hostapi/api hostapi/command", "`breve check`; `breve_describe --check`"},
+    {"classes", "hostapi/lua hostapi/src", kLua},
+    {"context", "runtime/render steve/analysis",
+     "OpenGL's own word for what it draws in; where in a text a position is"},
+    {"core", "runtime/dynamics runtime/mechanics runtime/planar", kBackends},
+    {"effects", "hostapi/src runtime/world", kDoor},
+    {"elimination", "runtime/articulated runtime/contact", "Gaussian elimination, of joints and of rows of contacts"},
+    {"errors", "hostapi/src steve/machine", "run-time errors, and how hosts get them"},
+    {"evaluate", "hostapi/src steve/compile steve/machine", kStages},
+    {"events", "hostapi/src runtime/world", kDoor},
+    {"expressions", "steve/compile steve/syntax", kStages},
+    {"files", "hostapi/src steve/machine", kDoor},
+    {"foreign", "steve/code steve/machine", kStages},
+    {"forget", "runtime/dynamics runtime/planar", kBackends},
+    {"functions", "hostapi/lua hostapi/src steve/machine",
+     "functions for scripts: of the language, of hosts in C, of the table `breve` in Lua"},
+    {"grids", "hostapi/src steve/library", kDoor},
+    {"impacts", "runtime/contact runtime/planar", "when and where bodies first touch, in space and in a flat world"},
+    {"impulse", "runtime/articulated runtime/planar",
+     "impulses on bodies that joints connect, in space and in a flat world"},
+    {"interpreter", "runtime/learn steve/machine", "each runs its language: Push, steve"},
+    {"island", "runtime/dynamics runtime/planar", kBackends},
+    {"joints", "hostapi/src runtime/articulated runtime/dynamics runtime/planar steve/library",
+     "joints: their mathematics, the tables of both backends, the objects, the C functions"},
+    {"ledger", "runtime/dynamics runtime/mechanics runtime/planar", kBackends},
+    {"letters", "hostapi/command runtime/scene",
+     "the same letters, for the window and for plots: the command sees only breve.h"},
+    {"lints", "hostapi/src steve/compile", kDoor},
+    {"loads", "runtime/articulated runtime/dynamics runtime/planar",
+     "forces: on joints, and what each backend gathers before a sub-step"},
+    {"methods", "hostapi/lua steve/syntax", "methods as they are parsed, and as breve calls them in Lua"},
+    {"model", "runtime/articulated steve/analysis", "of an articulation, as its literature has it; of a program"},
+    {"motion", "runtime/dynamics runtime/kinematics", "smooth motion, with forces and without"},
+    {"motors", "runtime/articulated steve/library",
+     "motors of joints: their limits, and the reports to programs about them"},
+    {"movie", "hostapi/command hostapi/src runtime/movie", kDoor},
+    {"native", "steve/code steve/machine", kStages},
+    {"network", "hostapi/src runtime/learn steve/machine",
+     "networks of neurons; the network that scripts reach through their host"},
+    {"numbers", "runtime/learn steve/code", "numbers in memory; numbers in text"},
+    {"objects", "hostapi/lua hostapi/src runtime/world", kDoor},
+    {"operators", "steve/compile steve/machine", kStages},
+    {"order", "hostapi/lua runtime/planar",
+     "an order that does not change from run to run: of keys, and of what Box2D solves"},
+    {"output", "hostapi/command runtime/movie", "where bytes go: of the command, of a movie"},
+    {"plot", "hostapi/command hostapi/src runtime/scene", kDoor},
+    {"plugins", "hostapi/src steve/compile", kDoor},
+    {"profile", "hostapi/command hostapi/lua hostapi/src", kDoor},
+    {"program", "hostapi/lua hostapi/src steve/code", kDoor},
+    {"queries", "hostapi/src runtime/world", kDoor},
+    {"record", "hostapi/command hostapi/src", "what is kept of a run: its pictures; its input, to be replayed"},
+    {"reload", "hostapi/src steve/machine", kDoor},
+    {"replay", "hostapi/command hostapi/src", kDoor},
+    {"report", "hostapi/command steve/machine", "what people read: of a run, of an error"},
+    {"save", "runtime/dynamics runtime/kinematics runtime/planar", kBackends},
+    {"scanner", "hostapi/api steve/syntax", "each reads the tokens of its texts: headers, programs"},
+    {"scene", "hostapi/src runtime/scene", kDoor},
+    {"settings", "runtime/learn steve/machine", "of a Push interpreter; of a controller"},
+    {"show", "runtime/world steve/library", "parts of a scene: of the world, of natives"},
+    {"snapshot", "hostapi/lua hostapi/src steve/machine", "what each adds to the image of a world"},
+    {"sound", "hostapi/command hostapi/src runtime/store", kDoor},
+    {"springs", "runtime/contact runtime/dynamics runtime/planar",
+     "springs in contacts; the tables of springs of both backends"},
+    {"state", "hostapi/lua runtime/articulated", "lua_State, as Lua calls it; the state of an articulation"},
+    {"statements", "steve/compile steve/syntax", kStages},
+    {"step", "runtime/planar runtime/world", "the step of a world, and of its flat bodies"},
+    {"text", "runtime/learn runtime/render steve/machine",
+     "programs of Push as text; text in pictures; values as text"},
+    {"trace", "hostapi/command steve/machine", "the run as a trace for browsers; the calls that led to an error"},
+    {"types", "steve/analysis steve/code", "types that a program declares; types that its text suggests"},
+    {"values", "hostapi/lua hostapi/src", kLua},
+    {"view", "hostapi/src runtime/world", "what a world lets be seen, and who draws it"},
+    {"world", "hostapi/src runtime/world", kDoor},
+};
+
+}  // namespace breve::house
