@@ -1,4 +1,5 @@
 // Joints in a flat world against closed forms: limits that bounce, and links whose velocity is set.
+#include "runtime/base/error.hpp"
 #include "scene.hpp"
 
 namespace breve::testing {
@@ -338,6 +339,19 @@ TEST(PlanarStrikes, AnAssemblyThatIsGivenAVelocityMovesAsOneSolid) {
   EXPECT_EQ(s.velocity(s.b), Vector3(1, 2, 0));
   EXPECT_NEAR((s.velocity(s.a) - Vector3(1, 2 - 3 * s.l, 0)).norm(), 0, 5 * kSingle);
   EXPECT_NEAR(s.spin(s.a), 3, 3 * kSingle);
+}
+
+TEST(PlanarStrikes, AnAssemblyThatIsRefusedAMotionOrAPoseKeepsItsOwn) {
+  Rods s;
+  s.physics().set_assembly_velocity(s.index(s.b), {1, 2, 0}, {0, 0, 3});
+  const Vector3 velocity = s.velocity(s.a), location = s.bodies().location(s.index(s.b));
+  EXPECT_THROW(s.physics().set_assembly_velocity(s.index(s.b), {4, 5, 0}, {0, 6, 3}), Error);
+  EXPECT_THROW(s.physics().set_assembly_velocity(s.index(s.b), {4, 5, 6}, {0, 0, 3}), Error);
+  const Quaternion tilted(0.8, 0.6, 0, 0);
+  EXPECT_THROW(s.physics().move_assembly(s.index(s.b), location + Vector3(1, 1, 0), tilted), Error);
+  EXPECT_EQ(s.velocity(s.b), Vector3(1, 2, 0));
+  EXPECT_EQ(s.velocity(s.a), velocity);
+  EXPECT_EQ(s.bodies().location(s.index(s.b)), location);
 }
 
 }  // namespace
