@@ -38,7 +38,7 @@ function Bird:iterate()
 
   -- The loop gives each neighbour with its place and velocity, as numbers: they cost nothing to compute with.
   for mate, px, py, pz, vx, vy, vz in self:neighbors() do
-    -- Everything with a place is a neighbour, the floor too; only birds make a flock.
+    -- Everything with a position is a neighbour, even the floor; only birds make a flock.
     if mate.landed ~= nil then
       local dx, dy, dz = px - x, py - y, pz - z
       local distance = math.sqrt(dx * dx + dy * dy + dz * dz)
