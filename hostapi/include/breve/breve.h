@@ -10,7 +10,7 @@
  * changes. A world is one running simulation of a program. An object is one instance in a world. There is no global
  * initialisation, and no state outside these that a result could depend on. Two runtimes in one process share nothing
  * but the worker threads of oneTBB, which are started when a world first asks for them (breve_world_set_workers) and
- * belong to the process; how they are distributed among worlds belongs to the runtime.
+ * belong to the process; the arenas that hand them tasks belong to the runtime.
  *
  * Rules that hold for every function, unless its comment says otherwise:
  * - Errors are values. A function that can fail returns a breve_status. Results go through out-parameters, which are
@@ -48,7 +48,7 @@
  *   _destroy are for handles; objects are also created by _create, but freed by _free, as `free` does in scripts.
  *   _queue_ is for input, which waits for the next iteration. A struct that describes an object to be created is called
  *   breve_THING_description if other structs say more about a THING (joints: breve_drive, breve_joint_info), else
- *   breve_THING, as breve_spring and breve_geometry. A struct of settings ends in _config.
+ *   breve_THING, as breve_spring and breve_geometry.
  * - Functions that return a breve_value take a `world` that is not const even if they change nothing of the simulation:
  *   the world keeps the table of the lists and hashes that a host refers to (breve_ref), and puts a zero byte behind
  *   strings.
@@ -1241,9 +1241,9 @@ BREVE_API breve_status breve_grid_set_concentrations(breve_world* world, breve_o
 /* Sets the number of threads that may compute the physics of a world, including the caller's, 1 to 256; initially 1.
    The result does not depend on it. Islands (bodies that touch or are connected, and what they touch) are distributed
    among the threads; islands with a collision handler or a force method are left to the caller's thread. The threads
-   are oneTBB's: all runtimes of the process share them, also with a host that uses oneTBB itself. The process
-   has no more of them than cores. oneTBB decides when they end; breve_runtime_destroy does not wait for it. Only the
-   caller's thread computes a flat world.
+   are oneTBB's: all runtimes of the process share them, also with a host that uses oneTBB itself. The process has no
+   more of them than cores. oneTBB decides when they end; breve_runtime_destroy does not wait for it. Only the caller's
+   thread computes a flat world.
    BREVE_OK; BREVE_ERROR_ARGUMENT: out of this range. */
 BREVE_API breve_status breve_world_set_workers(breve_world* world, uint32_t workers);
 
@@ -1418,8 +1418,8 @@ BREVE_API breve_status breve_list_create(breve_world* world, breve_value* list);
 /* BREVE_OK; BREVE_ERROR_TYPE: `list` is not a list; BREVE_ERROR_STALE. The same for the functions below. */
 BREVE_API breve_status breve_list_size(const breve_world* world, const breve_value* list, size_t* size);
 
-/* The element at `index`, from 0. `world` is not const because an element that is a list or hash is entered in the table
-   of references. BREVE_ERROR_NOT_FOUND if index is not below the size. */
+/* The element at `index`, from 0. `world` is not const because an element that is a list or hash is entered in the
+   table of references. BREVE_ERROR_NOT_FOUND if index is not below the size. */
 BREVE_API breve_status breve_list_get(breve_world* world, const breve_value* list, size_t index, breve_value* element);
 
 /* Reads `count` elements from `first` on, in one call, as breve_list_get. BREVE_ERROR_NOT_FOUND if the list has fewer.
