@@ -76,7 +76,7 @@ void condense(Workspace& work) {
   each_up_to(n, [&](const Block& from, std::size_t at_from) {
     each_up_to(at_from, [&](const Block& to, std::size_t at_to) { couple(from, at_from, to, at_to, n, W); });
   });
-  // A block on the diagonal has both halves: its upper one is dropped here, too.
+  // A block on the diagonal has both halves: its upper one is also dropped here.
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t k = 0; k < i; ++k) W[k * n + i] = W[i * n + k];
 }

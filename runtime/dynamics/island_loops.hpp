@@ -35,7 +35,7 @@ class Loops {
   double errors_squared();
   /// Energy, J. The inner part of a body could grow by drawing it together even where nothing outside touches it.
   struct Stored {
-    double inner = 0, all = 0;  // motion and springs; gravity, too
+    double inner = 0, all = 0;  // motion and springs; also gravity
   };
   Stored read_stored();
   bool touches() const;

@@ -127,7 +127,7 @@ void ContactSprings::take() {
     if (sprung(*state_.pairs[i]) && !followed_[i]) end_spring(*state_.pairs[i]);
 }
 
-/// Where springs act, limits that joints are near and slow act inside the stages, too: one that let the joint go and
+/// Where springs act, limits that joints are near and slow also act inside the stages: one that let the joint go and
 /// stopped it at the end of each sub-step would shake what stands on springs.
 /// @param h  s, of the sub-step
 void ContactSprings::hold_limits(double h) {

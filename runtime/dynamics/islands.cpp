@@ -214,7 +214,7 @@ void Dynamics::Core::run(MechanicsClient& client, double start, double h, int de
     }
     take_result(*calling[i]);
     if (!calling[i]->dissolved()) continue;
-    // The other islands refer to what was, too.
+    // The other islands also refer to what was.
     const double left = calling[i]->unfinished();
     if (depth < kDeepest) {
       if (left > 0) run_only(client, start + (h - left), left, depth + 1, mine);
