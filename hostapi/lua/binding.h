@@ -184,7 +184,7 @@ void bl_two_files(char* text, size_t room, const bl_program* one, const bl_progr
 /* Table of the methods of a class, on top: what it has besides those of breve. */
 void bl_add_object_methods(lua_State* L, bl_world* w);
 
-/* ---- calls (calls.c, methods.c) ---- */
+/* ---- calls (calls.c, methods.c, keywords.c) ---- */
 
 /* Raise an error for a status of breve.h. */
 int bl_fail(lua_State* L, bl_world* w, breve_status status);
@@ -194,8 +194,9 @@ void bl_push_selector(lua_State* L, bl_world* w, const char* name, const char* s
 breve_status bl_call_method(void* user, const breve_call* call, breve_value* result);
 size_t bl_places(void* user, const breve_call* call, breve_place* places, size_t capacity);
 int bl_handle_error(lua_State* L); /* message handler: keeps where an error was raised */
-/* Push the methods that a class has in Lua, by name: what classes of breve.class and their ancestors define. */
-void bl_push_lua_method(lua_State* L, bl_world* w, const bl_class* owner, const bl_method* method);
+/* Push the function of a method in Lua, which also takes a table of arguments by keyword if it has several parameters.
+   @param known  the same method, as breve knows it */
+void bl_push_lua_method(lua_State* L, bl_world* w, const bl_method* method, const breve_method_info* known);
 
 /* ---- profiles (profile.c) ---- */
 

@@ -66,6 +66,17 @@ static overload* named_overload(lua_State* L, selector* s) {
   return NULL;
 }
 
+/* A table of which only some keys are keywords is a call by keyword with a slip, and not a value. */
+static bool has_a_keyword(lua_State* L, const overload* o) {
+  if (!lua_istable(L, 2) || bl_is_object(L, 2)) return false;
+  for (lua_pushnil(L); lua_next(L, 2); lua_pop(L, 1)) {
+    if (lua_type(L, -2) != LUA_TSTRING || !has_keyword(o, lua_tostring(L, -2))) continue;
+    lua_pop(L, 2);
+    return true;
+  }
+  return false;
+}
+
 /* "point{at = ..., from = ...}" of each overload, for a message. */
 static const char* push_forms(lua_State* L, const selector* s) {
   luaL_Buffer text;
@@ -180,7 +191,8 @@ static int call_single(lua_State* L, selector* s) {
   }
   for (size_t i = 0; i < s->count && !o; ++i)
     if (s->overloads[i].required <= 1 && s->overloads[i].count > 0) o = &s->overloads[i];
-  if (!o || s->super_of) return luaL_error(L, "'%s' takes other arguments: %s", s->name, push_forms(L, s));
+  if (!o || s->super_of || has_a_keyword(L, o))
+    return luaL_error(L, "'%s' takes other arguments: %s", s->name, push_forms(L, s));
   size_t keyword = 0;
   for (size_t i = o->count; i-- > 0;)
     if (!o->optional[i]) keyword = i;

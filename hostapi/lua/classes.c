@@ -40,22 +40,35 @@ static const char* class_name(lua_State* L, int index) {
 
 /* ---- super -------------------------------------------------------------------------------------------------------- */
 
-/* Those methods of a class that have a name, to call them as `super` does. Pushes a function, or nil. */
-static void push_super_selector(lua_State* L, bl_world* w, const bl_class* cls, const char* name) {
-  size_t count = 0, found = 0;
-  breve_status status = breve_world_methods(w->world, cls->parent, NULL, 0, &count);
+/* The methods of a class that have a name, as breve knows them. They stand on top of the stack. */
+static breve_method_info* push_methods(lua_State* L, bl_world* w, const char* of_class, const char* name,
+                                       size_t* found) {
+  size_t count = 0;
+  breve_status status = breve_world_methods(w->world, of_class, NULL, 0, &count);
   if (status != BREVE_OK) bl_fail(L, w, status);
   breve_method_info* all = (breve_method_info*)lua_newuserdatauv(L, (count + 1) * sizeof *all, 0);
-  status = breve_world_methods(w->world, cls->parent, all, count, &count);
+  status = breve_world_methods(w->world, of_class, all, count, &count);
   if (status != BREVE_OK) bl_fail(L, w, status);
+  *found = 0;
   for (size_t i = 0; i < count; ++i) {
     const char *a = all[i].name, *b = name;
     for (; *a && *b && (*a == *b || (*a == '-' && *b == '_')); ++a, ++b) {
     }
-    if (*a == *b) all[found++] = all[i];
+    if (*a == *b) all[(*found)++] = all[i];
   }
+  return all;
+}
+
+/* Those methods that `super` of a class calls by a name. Pushes a function, or nil.
+   @param method  the one in Lua of its parent; NULL: it has none */
+static void push_super_method(lua_State* L, bl_world* w, const bl_class* cls, const char* name,
+                              const bl_method* method) {
+  size_t found = 0;
+  const breve_method_info* all = push_methods(L, w, cls->parent, name, &found);
   if (found == 0)
     lua_pushnil(L);
+  else if (method)
+    bl_push_lua_method(L, w, method, &all[0]);
   else
     bl_push_selector(L, w, all[0].name, cls->name, all, found);
   lua_remove(L, -2);
@@ -67,18 +80,21 @@ static int super_index(lua_State* L) {
   bl_world* w = bl_current(L, lib);
   const char* name = luaL_checkstring(L, 2);
   const bl_class* cls = bl_program_class(w->program, lua_tostring(L, lua_upvalueindex(2)));
+  const bl_method* method = NULL;
   if (!cls) return luaL_error(L, "the class of this 'super' is not part of the world");
-  for (const bl_class* parent; (parent = bl_program_class(w->program, cls->parent)); cls = parent) {
+  for (const bl_class* parent; !method && (parent = bl_program_class(w->program, cls->parent));) {
     bl_push_own(L, lib, parent->name, name);
-    if (!lua_isnil(L, -1)) return 1;
+    method = lua_isnil(L, -1) ? NULL : bl_class_method(parent, name);
+    if (!lua_isnil(L, -1) && (!method || method->count < 2)) return 1;
     lua_pop(L, 1);
+    if (!method) cls = parent;
   }
   lua_rawgeti(L, LUA_REGISTRYINDEX, w->metas);
   lua_pushfstring(L, "super %s %s", cls->name, name);
   lua_pushvalue(L, -1);
   if (lua_rawget(L, -3) != LUA_TNIL) return 1;
   lua_pop(L, 1);
-  push_super_selector(L, w, cls, name);
+  push_super_method(L, w, cls, name, method);
   lua_pushvalue(L, -2);
   lua_pushvalue(L, -2);
   lua_rawset(L, -5);

@@ -164,36 +164,3 @@ breve_status bl_call_method(void* user, const breve_call* call, breve_value* res
   w->running = L;
   return status;
 }
-
-/* ---- methods as values of Lua ------------------------------------------------------------------------------------- */
-
-/* A method of several parameters takes them in their order, or in a table by name, as methods in steve do. Upvalues:
-   the function, then the names. */
-static int call_by_name(lua_State* L) {
-  if (lua_gettop(L) == 2 && lua_istable(L, 2) && !bl_is_object(L, 2)) {
-    int names = 0, found = 0;
-    while (lua_type(L, lua_upvalueindex(names + 2)) == LUA_TSTRING) ++names;
-    luaL_checkstack(L, names, NULL);
-    for (int i = 0; i < names; ++i) {
-      lua_pushvalue(L, lua_upvalueindex(i + 2));
-      if (lua_rawget(L, 2) != LUA_TNIL) ++found;
-    }
-    if (found > 0)
-      lua_remove(L, 2);
-    else
-      lua_settop(L, 2);
-  }
-  lua_pushvalue(L, lua_upvalueindex(1));
-  lua_insert(L, 1);
-  lua_call(L, lua_gettop(L) - 1, LUA_MULTRET);
-  return lua_gettop(L);
-}
-
-void bl_push_lua_method(lua_State* L, bl_world* w, const bl_class* owner, const bl_method* method) {
-  bl_push_own(L, w->lib, owner->name, method->name);
-  if (method->count < 2 || lua_isnil(L, -1)) return;
-  luaL_checkstack(L, BL_PARAMETERS + 2, NULL);
-  for (size_t i = 0; i < method->count; ++i) lua_pushstring(L, method->parameters[i]);
-  lua_pushnil(L); /* the end of the names */
-  lua_pushcclosure(L, call_by_name, (int)method->count + 2);
-}

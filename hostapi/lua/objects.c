@@ -86,7 +86,7 @@ static void add_methods(lua_State* L, bl_world* w, const char* class_name) {
     push_name(L, all[i].name);
     const bl_method* method = owner ? bl_class_method(owner, lua_tostring(L, -1)) : NULL;
     if (method)
-      bl_push_lua_method(L, w, owner, method);
+      bl_push_lua_method(L, w, method, &all[i]);
     else
       bl_push_selector(L, w, all[i].name, NULL, &all[i], end - i);
     lua_rawset(L, -4);
