@@ -36,6 +36,7 @@ typedef struct bl_class {
   char *name, *parent;
   bl_method** methods;
   size_t method_count;
+  bool settled; /* in a draft: a program had it, and a class of that name replaces it */
 } bl_class;
 
 /* The text of a file or module. */
@@ -59,6 +60,9 @@ typedef struct bl_program {
 } bl_program;
 
 bl_program* bl_program_new(const breve_lua_config* config, const char* name, const char* text, size_t size);
+/* A program of the classes of a draft, whose methods are not described yet. NULL: there is no memory. The classes of the
+   draft are settled. */
+bl_program* bl_program_of_draft(bl_program* draft);
 void bl_program_hold(bl_program* program);
 void bl_program_drop(void* program);
 /* NULL if there is none, or no memory. */
@@ -79,6 +83,8 @@ typedef struct bl_lib {
   struct bl_world* current;           /* whose code runs, or ran last; NULL: none yet */
   bl_program* loading;                /* its file is being run to be described; NULL: none is */
   bl_program* draft;                  /* in an interpreter: what breve.class adds to outside of files; NULL: nothing */
+  breve_program* compiled;            /* ... the program of the draft; NULL: none yet, or the draft has changed */
+  uint64_t changes;                   /* ... of the draft */
   bool running_file;                  /* a world's file is being run: its classes are not the world's yet */
   int vectors, matrices;              /* references of their metatables */
   int classes;                        /* ... of a table: name -> class table */
@@ -194,9 +200,17 @@ void bl_push_selector(lua_State* L, bl_world* w, const char* name, const char* s
 breve_status bl_call_method(void* user, const breve_call* call, breve_value* result);
 size_t bl_places(void* user, const breve_call* call, breve_place* places, size_t capacity);
 int bl_handle_error(lua_State* L); /* message handler: keeps where an error was raised */
+/* One letter too many, one too few, another one, or two that have changed places. */
+bool bl_is_one_slip_apart(const char* a, const char* b);
 /* Push the function of a method in Lua, which also takes a table of arguments by keyword if it has several parameters.
    @param known  the same method, as breve knows it */
 void bl_push_lua_method(lua_State* L, bl_world* w, const bl_method* method, const breve_method_info* known);
+
+/* ---- worlds in an interpreter (config.c) ---- */
+
+/* The table at index 1, which becomes the only value on the stack but for one at index 2 that holds what the config points
+   to. Raises an error. */
+breve_world_config bl_read_config(lua_State* L);
 
 /* ---- profiles (profile.c) ---- */
 
@@ -212,6 +226,8 @@ void bl_profile_line(lua_State* L, bl_world* w);
 
 void bl_open_classes(lua_State* L, bl_lib* lib); /* into the library's table, which is on top */
 int bl_describe_methods(lua_State* L);           /* a function of Lua, with the library as its upvalue */
+/* The draft is not what its program was made of any more. */
+void bl_draft_changed(bl_lib* lib);
 /* Push the class table of that name, or nil. */
 void bl_push_class(lua_State* L, bl_lib* lib, const char* name);
 /* Push the function that a class table has itself under a name, or nil. */

@@ -10,6 +10,12 @@ static bl_lib* lib_of(lua_State* L) { return (bl_lib*)lua_touserdata(L, lua_upva
 /* The program that gets the classes that are defined now. */
 static bl_program* being_defined(const bl_lib* lib) { return lib->loading ? lib->loading : lib->draft; }
 
+void bl_draft_changed(bl_lib* lib) {
+  breve_program_destroy(lib->compiled);
+  lib->compiled = NULL;
+  ++lib->changes;
+}
+
 void bl_push_class(lua_State* L, bl_lib* lib, const char* name) {
   lua_rawgeti(L, LUA_REGISTRYINDEX, lib->classes);
   lua_getfield(L, -1, name);
@@ -135,6 +141,9 @@ static int class_assign(lua_State* L) {
   bl_world* w = lib->loading || lib->running_file ? NULL : lib->current;
   lua_settop(L, 3);
   lua_pushvalue(L, 2);
+  if (lua_rawget(L, lua_upvalueindex(3)) == LUA_TFUNCTION || lua_isfunction(L, 3)) bl_draft_changed(lib);
+  lua_settop(L, 3);
+  lua_pushvalue(L, 2);
   lua_pushvalue(L, 3);
   lua_rawset(L, lua_upvalueindex(3));
   if (!w || lua_type(L, 2) != LUA_TSTRING) return 0;
@@ -202,7 +211,9 @@ static int define_class(lua_State* L) {
   const char* parent = lua_isnoneornil(L, 2) ? "Object" : class_name(L, 2);
   bl_program* program = being_defined(lib);
   if (program) {
-    if (bl_program_class(program, name)) return luaL_error(L, "class %s is defined twice", name);
+    const bl_class* known = bl_program_class(program, name);
+    if (known && !known->settled) return luaL_error(L, "class %s is defined twice", name);
+    bl_draft_changed(lib);
     if (!bl_program_add_class(program, name, parent)) return luaL_error(L, "there is no memory for a class");
   } else {
     bl_world* w = bl_current(L, lib);
@@ -227,6 +238,7 @@ static int choose_controller(lua_State* L) {
   char* copy = bl_copy(name, 0, 0);
   if (!copy) return luaL_error(L, "there is no memory for a name");
   char* old = program->controller;
+  if (!old || strcmp(old, copy) != 0) bl_draft_changed(lib);
   program->controller = copy;
   free(old);
   return 0;
@@ -234,8 +246,10 @@ static int choose_controller(lua_State* L) {
 
 /* breve.use("Prey.tz", "Floor"): modules in steve, and classes of the library, that the program is to have. */
 static int use_modules(lua_State* L) {
-  bl_program* program = being_defined(lib_of(L));
+  bl_lib* lib = lib_of(L);
+  bl_program* program = being_defined(lib);
   const int count = lua_gettop(L);
+  bl_draft_changed(lib);
   for (int i = 1; i <= count; ++i) {
     const char* name = luaL_checkstring(L, i);
     if (program && !bl_program_add_use(program, name)) return luaL_error(L, "there is no memory for a name");

@@ -16,7 +16,7 @@ static int position_of(lua_State* L, int key, int count) {
 }
 
 /* One letter too many, one too few, another one, or two that have changed places. */
-static bool is_one_slip_apart(const char* a, const char* b) {
+bool bl_is_one_slip_apart(const char* a, const char* b) {
   while (*a && *a == *b) ++a, ++b;
   if (*a == 0 && *b == 0) return false;
   if (*a && *b && a[0] == b[1] && a[1] == b[0] && strcmp(a + 2, b + 2) == 0) return true;
@@ -27,7 +27,7 @@ static bool is_one_slip_apart(const char* a, const char* b) {
 static const char* meant_by(lua_State* L, const char* key, int count) {
   for (int i = 0; i < 2 * count; ++i) {
     const char* name = lua_tostring(L, lua_upvalueindex(NAMES + i));
-    if (strlen(name) > 2 && is_one_slip_apart(key, name)) return name;
+    if (strlen(name) > 2 && bl_is_one_slip_apart(key, name)) return name;
   }
   return NULL;
 }

@@ -1,5 +1,5 @@
 /* `require "breve"` in a Lua interpreter: the library, and worlds as values of Lua. Classes that a script defines make
-   the program of the next world; agents run in the interpreter's own state. */
+   the program of the worlds that are made from then on; agents run in the interpreter's own state. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -87,48 +87,26 @@ static int fail_runtime(lua_State* L, breve_runtime* runtime, breve_status statu
   return luaL_error(L, "%s", error && error->status == (uint32_t)status ? error->text : breve_status_name(status));
 }
 
-static double number_field(lua_State* L, const char* name, double otherwise) {
-  lua_getfield(L, 1, name);
-  const double number = luaL_optnumber(L, -1, otherwise);
-  lua_pop(L, 1);
-  return number;
-}
-
-static breve_world_config read_config(lua_State* L) {
-  breve_world_config config = breve_world_config_default();
-  config.seed = (uint64_t)number_field(L, "seed", 1);
-  config.memory_limit = (size_t)number_field(L, "memory_limit", 0);
-  config.dimension = (uint32_t)number_field(L, "dimension", 0);
-  config.iteration_step = number_field(L, "iteration_step", 0);
-  config.integration_step = number_field(L, "integration_step", 0);
-  return config;
-}
-
-/* The draft becomes a program, and the next class begins another one. */
+/* The program of all classes that are defined now. It is kept for further worlds until a class or method is new. */
 static breve_program* compile(lua_State* L, bl_lib* lib, breve_runtime* runtime) {
-  bl_program* program = lib->draft;
-  breve_program* compiled = NULL;
+  if (lib->compiled) return lib->compiled;
+  bl_program* program = bl_program_of_draft(lib->draft);
+  if (!program) luaL_error(L, "there is no memory for a program");
   const int top = lua_gettop(L);
-  breve_lua_config config = breve_lua_config_default();
-  config.state = lib->main;
   breve_status status = bl_describe(L, lib, program, note, L);
   if (status == BREVE_OK) status = bl_register(runtime, program);
-  if (status == BREVE_OK) status = bl_compile(runtime, program, note, L, &compiled);
-  if (status != BREVE_OK) {
-    if (lua_gettop(L) > top) luaL_error(L, "%s", lua_tostring(L, -1));
-    fail_runtime(L, runtime, status);
-  }
-  lib->draft = bl_program_new(&config, NULL, NULL, 0);
-  bl_program_drop(program);
-  return compiled;
+  if (status == BREVE_OK) status = bl_compile(runtime, program, note, L, &lib->compiled);
+  bl_program_drop(program); /* its classes hold it */
+  if (status == BREVE_OK) return lib->compiled;
+  if (lua_gettop(L) > top) luaL_error(L, "%s", lua_tostring(L, -1));
+  fail_runtime(L, runtime, status);
+  return NULL;
 }
 
 static int make_world(lua_State* L) {
   bl_lib* lib = (bl_lib*)lua_touserdata(L, lua_upvalueindex(1));
-  luaL_checktype(L, 1, LUA_TTABLE);
-  lua_settop(L, 1);
+  const breve_world_config config = bl_read_config(L);
   breve_runtime* runtime = runtime_of(L);
-  const breve_world_config config = read_config(L);
   lua_getfield(L, LUA_REGISTRYINDEX, "breve.library");
   if (!lib->draft) return luaL_error(L, "there is no memory for a program");
   if (lua_getfield(L, 1, "controller") != LUA_TNIL) {
@@ -136,13 +114,19 @@ static int make_world(lua_State* L) {
     lua_insert(L, -2);
     lua_call(L, 1, 0);
   }
-  lua_settop(L, 1);
+  lua_settop(L, 2);
   handle* h = (handle*)lua_newuserdatauv(L, sizeof *h, 0);
   h->world = NULL;
   luaL_setmetatable(L, WORLD);
+  /* The controller's init may define classes: the program stays until it is done. */
   breve_program* program = compile(L, lib, runtime);
+  const uint64_t changes = lib->changes;
+  lib->compiled = NULL;
   const breve_status status = breve_world_create(runtime, program, &config, &h->world);
-  breve_program_destroy(program);
+  if (lib->changes == changes && !lib->compiled)
+    lib->compiled = program;
+  else
+    breve_program_destroy(program);
   if (status != BREVE_OK) return fail_runtime(L, runtime, status);
   return 1;
 }

@@ -86,7 +86,19 @@ bool bl_program_add_use(bl_program* program, const char* name) {
   return copy != NULL;
 }
 
+/* A settled class of a draft takes another parent. */
+static bool settle_anew(bl_class* known, const char* parent) {
+  char* copy = bl_copy(parent, 0, 0);
+  if (!copy) return false;
+  free(known->parent);
+  known->parent = copy;
+  known->settled = false;
+  return true;
+}
+
 bl_class* bl_program_add_class(bl_program* program, const char* name, const char* parent) {
+  bl_class* known = bl_program_class(program, name);
+  if (known) return settle_anew(known, parent) ? known : NULL;
   if (!grow((void**)&program->classes, program->class_count, sizeof *program->classes)) return NULL;
   bl_class* made = (bl_class*)calloc(1, sizeof *made);
   if (!made) return NULL;
@@ -112,5 +124,18 @@ bl_method* bl_class_add_method(bl_program* program, bl_class* owner, const char*
 bl_method* bl_class_method(const bl_class* owner, const char* name) {
   for (size_t i = 0; i < owner->method_count; ++i)
     if (strcmp(owner->methods[i]->name, name) == 0) return owner->methods[i];
+  return NULL;
+}
+
+bl_program* bl_program_of_draft(bl_program* draft) {
+  bl_program* made = bl_program_new(&draft->config, NULL, NULL, 0);
+  bool good = made != NULL;
+  for (size_t i = 0; good && i < draft->use_count; ++i) good = bl_program_add_use(made, draft->uses[i]);
+  for (size_t i = 0; good && i < draft->class_count; ++i)
+    good = bl_program_add_class(made, draft->classes[i]->name, draft->classes[i]->parent) != NULL;
+  if (good && draft->controller) good = (made->controller = bl_copy(draft->controller, 0, 0)) != NULL;
+  for (size_t i = 0; good && i < draft->class_count; ++i) draft->classes[i]->settled = true;
+  if (good) return made;
+  bl_program_drop(made);
   return NULL;
 }

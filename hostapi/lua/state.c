@@ -228,9 +228,10 @@ bl_lib* bl_lib_of(lua_State* L) {
   return lib;
 }
 
-/* Frees the draft when the interpreter is closed. */
+/* Frees the draft and its program when the interpreter is closed. */
 static int drop_draft(lua_State* L) {
   bl_lib* lib = (bl_lib*)lua_touserdata(L, 1);
+  bl_draft_changed(lib);
   bl_program_drop(lib->draft);
   lib->draft = NULL;
   return 0;
