@@ -5,6 +5,19 @@
 namespace breve::host {
 namespace {
 
+/// The errors in classes of the host, and the first one of the program. A class of the host that is wrong causes errors
+/// where it is used, and those stand in files that were loaded before.
+std::string cause(const std::vector<DiagnosticText>& diagnostics) {
+  std::string of_host, first;
+  for (const auto& d : diagnostics) {
+    if (d.severity != BREVE_SEVERITY_ERROR) continue;
+    const bool in_host = d.file.rfind("host:", 0) == 0;
+    std::string& text = in_host ? of_host : first;
+    if (in_host || first.empty()) text += "\n" + d.text.substr(0, d.text.find_last_not_of('\n') + 1);
+  }
+  return of_host + first;
+}
+
 std::unique_ptr<breve_program> compile_module(breve_runtime& runtime, steve::ModuleSource main, HostModules& modules) {
   auto result = steve::compile(std::move(main), modules, steve::library_source(), runtime.allowed, runtime.functions,
                                runtime.classes);
@@ -13,15 +26,8 @@ std::unique_ptr<breve_program> compile_module(breve_runtime& runtime, steve::Mod
   for (const auto& d : result.diagnostics.all()) runtime.diagnostics.push_back(text_of(d, sources));
   if (!result.program) {
     const auto errors = result.diagnostics.error_count();
-    std::string message =
-        "the program does not compile: " + std::to_string(errors) + (errors == 1 ? " error" : " errors");
-    for (const auto& d : runtime.diagnostics)
-      if (d.severity == BREVE_SEVERITY_ERROR) {
-        message += "\n" + d.text;
-        if (message.back() == '\n') message.pop_back();
-        break;
-      }
-    fail(BREVE_ERROR_COMPILE, message);
+    fail(BREVE_ERROR_COMPILE, "the program does not compile: " + std::to_string(errors) +
+                                  (errors == 1 ? " error" : " errors") + cause(runtime.diagnostics));
   }
   auto handle = std::make_unique<breve_program>();
   handle->program = std::move(result.program);

@@ -39,8 +39,12 @@ const ClassInfo* ProgramBuilder::parent_of(ast::Class& tree) {
     return known;
   }
   const auto near = near_class(tree.parent);
-  diagnostics_.error(tree.parent_span, "unknown-class", "unknown parent class '" + tree.parent + "'",
-                     near.empty() ? "a parent must be defined before its children" : "did you mean '" + near + "'?");
+  const bool of_host = program_->sources().file(tree.parent_span.file).name == "host:" + tree.name;
+  const std::string help =
+      !near.empty() ? "did you mean '" + near + "'?"
+      : of_host ? "add '" + tree.parent + "' to the runtime, or name the file that defines it in breve_class.modules"
+                : "a parent must be defined before its children";
+  diagnostics_.error(tree.parent_span, "unknown-class", "unknown parent class '" + tree.parent + "'", help);
   return class_named("Object");
 }
 

@@ -409,6 +409,30 @@ static void an_unknown_parent_is_an_error_of_the_program(void) {
   guest_close(&g);
 }
 
+/* A class of the host without its parent makes its uses errors, too: the cause comes before them. */
+static void a_missing_parent_comes_before_the_errors_that_it_causes(void) {
+  static const char* const text =
+      "@use Control.\nController Town.\n"
+      "Shed : Barn { + to grow: hp = hp + 1. }\n"
+      "Control : Town { + to init: new Barn. }\n";
+  guest g;
+  breve_diagnostic d;
+  guest_begin(&g);
+  breve_class shed = breve_class_default();
+  shed.name = "Shed";
+  shed.parent = "Building";
+  CHECK_STATUS(BREVE_OK, breve_runtime_add_class(g.runtime, &shed));
+  CHECK_STATUS(BREVE_ERROR_COMPILE, breve_program_compile(g.runtime, "town.tz", text, strlen(text), &g.program));
+  CHECK_STATUS(BREVE_OK, breve_runtime_diagnostic(g.runtime, 0, &d));
+  CHECK_TEXT("town.tz", d.file); /* diagnostics are in order of the files */
+  const char* said = breve_runtime_last_error(g.runtime)->text;
+  const char* cause = strstr(said, "unknown parent class 'Building'");
+  const char* result = strstr(said, "unknown variable 'hp'");
+  if (!CHECK(cause && result && cause < result && strstr(cause, "breve_class.modules"))) printf("%s\n", said);
+  CHECK(strstr(said, "2 errors") != NULL);
+  guest_close(&g);
+}
+
 void classes_suite(void) {
   RUN(scripts_derive_from_classes_of_the_host_and_call_them);
   RUN(values_of_any_type_pass_through_untyped_parameters);
@@ -419,4 +443,5 @@ void classes_suite(void) {
   RUN(each_world_is_bound_and_may_be_refused);
   RUN(descriptions_that_no_program_could_use_are_refused);
   RUN(an_unknown_parent_is_an_error_of_the_program);
+  RUN(a_missing_parent_comes_before_the_errors_that_it_causes);
 }
