@@ -36,6 +36,8 @@ typedef struct bl_class {
   char *name, *parent;
   bl_method** methods;
   size_t method_count;
+  char* file; /* where breve.class defines it; "": not known */
+  uint32_t line;
   bool settled; /* in a draft: a program had it, and a class of that name replaces it */
 } bl_class;
 
@@ -71,6 +73,7 @@ bl_text* bl_program_text(bl_program* program, const char* name);
 bl_text* bl_program_add_text(bl_program* program, const char* name, const char* bytes, size_t size);
 bool bl_program_add_use(bl_program* program, const char* name);
 bl_class* bl_program_add_class(bl_program* program, const char* name, const char* parent);
+bool bl_class_place(bl_class* owner, const char* file, uint32_t line);
 bl_method* bl_class_add_method(bl_program* program, bl_class* owner, const char* name);
 bl_method* bl_class_method(const bl_class* owner, const char* name);
 /* A copy, with `from` replaced by `to`. */
@@ -206,6 +209,14 @@ bool bl_is_one_slip_apart(const char* a, const char* b);
    @param known  the same method, as breve knows it */
 void bl_push_lua_method(lua_State* L, bl_world* w, const bl_method* method, const breve_method_info* known);
 
+/* ---- reasons (reasons.c) ---- */
+
+/* Call `reason` once, if it is not NULL: with a text; with the error that a runtime has just kept; with the errors of the
+   compilation of a program, at their places in Lua. */
+void bl_tell(breve_write_fn reason, void* sink, const char* text);
+void bl_tell_last(const breve_runtime* runtime, breve_status status, breve_write_fn reason, void* sink);
+void bl_tell_errors(const breve_runtime* runtime, const bl_program* program, breve_write_fn reason, void* sink);
+
 /* ---- worlds in an interpreter (config.c) ---- */
 
 /* The table at index 1, which becomes the only value on the stack but for one at index 2 that holds what the config points
@@ -260,8 +271,8 @@ bl_pool* bl_pool_new(breve_world* world);
 void bl_pool_destroy(bl_pool* pool);
 /* Run the file of a program that is being described in a state. As breve_lua_add. */
 breve_status bl_describe(lua_State* L, bl_lib* lib, bl_program* program, breve_write_fn reason, void* sink);
-/* Give the classes of a program to a runtime, and compile a program of it if one is asked for. */
-breve_status bl_register(breve_runtime* runtime, bl_program* program);
+/* Give the classes of a program to a runtime, and compile a program of it if one is asked for. As breve_lua_compile. */
+breve_status bl_register(breve_runtime* runtime, bl_program* program, breve_write_fn reason, void* sink);
 breve_status bl_compile(breve_runtime* runtime, bl_program* program, breve_write_fn reason, void* sink,
                         breve_program** compiled);
 

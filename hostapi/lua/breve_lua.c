@@ -4,10 +4,6 @@
 
 #include "binding.h"
 
-static void tell(breve_write_fn reason, void* sink, const char* text) {
-  if (reason) reason(sink, text, strlen(text));
-}
-
 /* ---- describing a file ------------------------------------------------------------------------------------------------ */
 
 static int run_program(lua_State* L) {
@@ -36,7 +32,7 @@ static breve_status describe_with(lua_State* L, bl_lib* lib, bl_program* program
   const int code = lua_pcall(L, 1, 0, 0);
   lib->loading = outer;
   if (code == LUA_OK) return BREVE_OK;
-  tell(reason, sink, lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "the file failed without a text");
+  bl_tell(reason, sink, lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "the file failed without a text");
   lua_pop(L, 1);
   return code == LUA_ERRMEM ? BREVE_ERROR_MEMORY : BREVE_ERROR_COMPILE;
 }
@@ -115,10 +111,12 @@ static breve_status add_class(breve_runtime* runtime, bl_program* program, bl_cl
   return status;
 }
 
-breve_status bl_register(breve_runtime* runtime, bl_program* program) {
+breve_status bl_register(breve_runtime* runtime, bl_program* program, breve_write_fn reason, void* sink) {
   for (size_t i = 0; i < program->class_count; ++i) {
     const breve_status status = add_class(runtime, program, program->classes[i]);
-    if (status != BREVE_OK) return status;
+    if (status == BREVE_OK) continue;
+    bl_tell_last(runtime, status, reason, sink);
+    return status;
   }
   return BREVE_OK;
 }
@@ -139,8 +137,8 @@ static char* main_text(const bl_program* program) {
 breve_status bl_compile(breve_runtime* runtime, bl_program* program, breve_write_fn reason, void* sink,
                         breve_program** compiled) {
   if (!program->controller) {
-    tell(reason, sink,
-         "the file names no controller: end it with breve.main(Class), for a class that derives from Control");
+    bl_tell(reason, sink,
+            "the file names no controller: end it with breve.main(Class), for a class that derives from Control");
     return BREVE_ERROR_COMPILE;
   }
   char* text = main_text(program);
@@ -148,6 +146,10 @@ breve_status bl_compile(breve_runtime* runtime, bl_program* program, breve_write
   const breve_status status =
       breve_program_compile(runtime, program->texts ? program->texts[0].name : "lua", text, strlen(text), compiled);
   free(text);
+  if (status == BREVE_ERROR_COMPILE)
+    bl_tell_errors(runtime, program, reason, sink);
+  else if (status != BREVE_OK)
+    bl_tell_last(runtime, status, reason, sink);
   return status;
 }
 
@@ -171,12 +173,8 @@ static breve_status load(breve_runtime* runtime, const breve_lua_config* given, 
   bl_program* program = bl_program_new(&config, name, text, size);
   if (!program) return BREVE_ERROR_MEMORY;
   breve_status status = describe(program, reason, sink);
-  if (status == BREVE_OK) {
-    status = bl_register(runtime, program);
-    if (status == BREVE_OK && compiled) status = bl_compile(runtime, program, reason, sink, compiled);
-    const breve_error* error = status == BREVE_OK ? NULL : breve_runtime_last_error(runtime);
-    if (error && error->status == (uint32_t)status) tell(reason, sink, error->message);
-  }
+  if (status == BREVE_OK) status = bl_register(runtime, program, reason, sink);
+  if (status == BREVE_OK && compiled) status = bl_compile(runtime, program, reason, sink, compiled);
   bl_program_drop(program);
   return status;
 }

@@ -214,7 +214,13 @@ static int define_class(lua_State* L) {
     const bl_class* known = bl_program_class(program, name);
     if (known && !known->settled) return luaL_error(L, "class %s is defined twice", name);
     bl_draft_changed(lib);
-    if (!bl_program_add_class(program, name, parent)) return luaL_error(L, "there is no memory for a class");
+    lua_Debug caller;
+    bl_class* made = bl_program_add_class(program, name, parent);
+    const bool known_place = lua_getstack(L, 1, &caller) && lua_getinfo(L, "Sl", &caller);
+    const bool has_line = known_place && caller.currentline > 0;
+    const char* file = !has_line ? "" : caller.source[0] == '@' ? caller.source + 1 : caller.short_src;
+    if (!made || !bl_class_place(made, file, has_line ? (uint32_t)caller.currentline : 0))
+      return luaL_error(L, "there is no memory for a class");
   } else {
     bl_world* w = bl_current(L, lib);
     if (!bl_program_class(w->staged ? w->staged : w->program, name))

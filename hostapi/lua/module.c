@@ -94,7 +94,7 @@ static breve_program* compile(lua_State* L, bl_lib* lib, breve_runtime* runtime)
   if (!program) luaL_error(L, "there is no memory for a program");
   const int top = lua_gettop(L);
   breve_status status = bl_describe(L, lib, program, note, L);
-  if (status == BREVE_OK) status = bl_register(runtime, program);
+  if (status == BREVE_OK) status = bl_register(runtime, program, note, L);
   if (status == BREVE_OK) status = bl_compile(runtime, program, note, L, &lib->compiled);
   bl_program_drop(program); /* its classes hold it */
   if (status == BREVE_OK) return lib->compiled;

@@ -41,7 +41,7 @@ static void drop_class(bl_class* owner) {
     for (size_t k = 0; k < m->count; ++k) free(m->keywords[k]), free(m->parameters[k]);
     free(m->name), free(m->selector), free(m->file), free(m);
   }
-  free(owner->methods), free(owner->name), free(owner->parent), free(owner);
+  free(owner->methods), free(owner->name), free(owner->parent), free(owner->file), free(owner);
 }
 
 /* Worlds of several threads may hold one program. */
@@ -109,6 +109,15 @@ bl_class* bl_program_add_class(bl_program* program, const char* name, const char
   return made->name && made->parent ? made : NULL;
 }
 
+bool bl_class_place(bl_class* owner, const char* file, uint32_t line) {
+  char* copy = bl_copy(file, 0, 0);
+  if (!copy) return false;
+  free(owner->file);
+  owner->file = copy;
+  owner->line = line;
+  return true;
+}
+
 bl_method* bl_class_add_method(bl_program* program, bl_class* owner, const char* name) {
   if (!grow((void**)&owner->methods, owner->method_count, sizeof *owner->methods)) return NULL;
   bl_method* made = (bl_method*)calloc(1, sizeof *made);
@@ -131,8 +140,11 @@ bl_program* bl_program_of_draft(bl_program* draft) {
   bl_program* made = bl_program_new(&draft->config, NULL, NULL, 0);
   bool good = made != NULL;
   for (size_t i = 0; good && i < draft->use_count; ++i) good = bl_program_add_use(made, draft->uses[i]);
-  for (size_t i = 0; good && i < draft->class_count; ++i)
-    good = bl_program_add_class(made, draft->classes[i]->name, draft->classes[i]->parent) != NULL;
+  for (size_t i = 0; good && i < draft->class_count; ++i) {
+    const bl_class* drafted = draft->classes[i];
+    bl_class* copy = bl_program_add_class(made, drafted->name, drafted->parent);
+    good = copy && bl_class_place(copy, drafted->file, drafted->line);
+  }
   if (good && draft->controller) good = (made->controller = bl_copy(draft->controller, 0, 0)) != NULL;
   for (size_t i = 0; good && i < draft->class_count; ++i) draft->classes[i]->settled = true;
   if (good) return made;

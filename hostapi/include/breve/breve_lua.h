@@ -9,7 +9,9 @@
  * state, whose memory counts against the world's limit and whose loops count against its budget. When a world is created,
  * the state is created and the file is run in it. docs/lua.md explains how to write agents.
  *
- * The rules of breve.h about errors, threads and texts also hold here. Link C++ programs with Lua's C++ build
+ * The rules of breve.h about errors, threads and texts also hold here, except that breve_lua_add and breve_lua_compile
+ * describe their errors to `reason` alone. This library has no access to breve_runtime_last_error: after one of them has
+ * failed, that may still be the error of an earlier call, or have positions in texts that the file does not contain. Link C++ programs with Lua's C++ build
  * (lua5.4-c++), and C programs with either build; this library does not raise C++ exceptions and does not hold anything
  * that an exception would have to clean up.
  */
@@ -63,7 +65,8 @@ static inline breve_lua_config breve_lua_config_default(void) {
    @param config  copied; NULL: the defaults
    @param name    of the file, for messages
    @param text    `size` bytes, copied; NULL only if size is 0
-   @param reason  called with `sink` and a description of the error, if there is one; may be NULL
+   @param reason  called once with `sink` and a description of the error. It is not called for a wrong argument of this
+                  function, and may not be called if memory runs out. May be NULL
    BREVE_OK; BREVE_ERROR_ARGUMENT: a wrong struct_size or right; BREVE_ERROR_COMPILE: the file is not Lua, is bytecode,
    or its run failed; otherwise as breve_runtime_add_class. */
 BREVE_API breve_status breve_lua_add(breve_runtime* runtime, const breve_lua_config* config, const char* name,
