@@ -1,4 +1,5 @@
-# `cpack` in a build of the shared library: the Debian packages libbreve1, libbreve-dev and breve.
+# `cpack` in a build of the shared library: the Debian packages libbreve and the number of the ABI,
+# libbreve-dev and breve.
 if(NOT breve_type STREQUAL "SHARED_LIBRARY")
   return()
 endif()
