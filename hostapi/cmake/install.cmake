@@ -85,6 +85,8 @@ install(FILES ${made}/breve.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COM
 
 if(BREVE_WITH_LUA)
   install(TARGETS breve_lua ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+  configure_file(cmake/breve-lua.pc.in ${made}/breve-lua.pc @ONLY)
+  install(FILES ${made}/breve-lua.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
   # Where interpreters of Debian and those below /usr/local look.
   install(TARGETS breve_lua_module LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/lua/5.4 COMPONENT command)
 endif()

@@ -74,6 +74,12 @@ case $case in
     configures subproject -DBREVE_WITH_COMMAND=ON
     has_target breve_command || fail "does not build the command"
     ;;
+  lua_if_asked_for)
+    configures subproject
+    ! has_target game_lua || fail "builds what runs agents in Lua"
+    configures subproject -DBREVE_WITH_LUA=ON
+    has_target game_lua || fail "has no breve::lua"
+    ;;
   only_c)
     refused only_c
     says 'project(game LANGUAGES C CXX)'
@@ -108,9 +114,10 @@ case $case in
     [[ $minimum == "${first[$version]}" ]] || fail "presets of version $version need ${first[$version]}, not $minimum"
     ;;
   built)
-    configures subproject
-    cmake --build "$scratch/build" --target game >"$scratch/said" 2>&1 || fail "does not build"
+    configures subproject -DBREVE_WITH_LUA=ON
+    cmake --build "$scratch/build" --target game game_lua >"$scratch/said" 2>&1 || fail "does not build"
     [[ $("$scratch/build/game") == stepped ]] || fail "does not step"
+    [[ $("$scratch/build/game_lua") == stepped ]] || fail "does not step with agents in Lua"
     ;;
   *) fail "no case $case" ;;
 esac

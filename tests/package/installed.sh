@@ -48,6 +48,12 @@ by_pkg_config() {
   quietly "$cxx" -std=c++17 -Wall -Wextra -Wpedantic -Werror "$repository/tests/package/hosts/game.cpp" "${flags[@]}" -o "$scratch/game_cpp"
   LD_LIBRARY_PATH=$2 stepped "$scratch/game_c"
   LD_LIBRARY_PATH=$2 stepped "$scratch/game_cpp"
+  # Agents in Lua, with the build of Lua for C.
+  [[ -n $(find "$1" -name libbreve_lua.a) ]] || return 0
+  [[ $(pkg-config --modversion breve-lua) == "$(cmake_version)" ]] || fail "pkg-config has another version of breve-lua"
+  read -ra flags <<<"$(pkg-config --cflags --libs "${@:3}" breve-lua lua5.4)"
+  quietly "$cc" -std=c11 -Wall -Wextra -Wpedantic -Werror "$repository/tests/package/hosts/game_lua.c" "${flags[@]}" -o "$scratch/game_lua"
+  LD_LIBRARY_PATH=$2 stepped "$scratch/game_lua"
 }
 
 cmake_version() { sed -n 's/^project(breve VERSION \([0-9.]*\).*/\1/p' "$repository/CMakeLists.txt"; }
