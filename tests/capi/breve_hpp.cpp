@@ -101,6 +101,66 @@ TEST(BreveHpp, ManyObjectsAreOneCall) {
   EXPECT_FALSE(w.get_all(two, 2, "title", breve::Array(pose, 1)));
 }
 
+TEST(BreveHpp, ManyObjectsAreGivenAsListsThatKnowTheirSizes) {
+  Stage stage;
+  breve::World& w = stage.world;
+  for (int i = 0; i < 2; ++i) (void)w.create("Mobile").or_throw();
+  const std::vector<breve::Object> balls = w.objects("Mobile").or_throw();
+  ASSERT_EQ(balls.size(), 3U);
+  const std::vector<breve::Vector> places = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
+  EXPECT_TRUE(w.set_all(balls, BREVE_PROPERTY_LOCATION, places));
+  float poses[21];
+  EXPECT_TRUE(w.get_all(balls, BREVE_PROPERTY_POSE, poses));
+  EXPECT_EQ(poses[14], 7);
+  std::vector<double> flat(9);
+  EXPECT_TRUE(w.get_all(w.objects("Mobile").or_throw(), BREVE_PROPERTY_LOCATION, flat));
+  EXPECT_EQ(flat[5], 6);
+  std::vector<breve::Vector> between(3);
+  w.set_interpolated(true).or_throw();
+  EXPECT_TRUE(w.interpolate_all(balls, 1, BREVE_PROPERTY_LOCATION, between));
+  EXPECT_EQ(between[2], places[2]);
+  const breve::Object stages[] = {stage.controller};
+  EXPECT_TRUE(w.set_all(stages, "count", std::array<double, 1>{7}));
+  std::array<double, 1> count{};
+  EXPECT_TRUE(w.get_all(stages, "count", count));
+  EXPECT_EQ(count[0], 7);
+  std::vector<double> none;
+  EXPECT_TRUE(w.get_all(std::vector<breve::Object>(), BREVE_PROPERTY_LOCATION, none));
+}
+
+/// A list that is too short is refused, and nothing beyond it is written.
+TEST(BreveHpp, ListsOfAnotherSizeAreRefused) {
+  Stage stage;
+  breve::World& w = stage.world;
+  const breve::Object two[] = {w.create("Mobile").or_throw(), w.create("Mobile").or_throw()};
+  std::vector<double> numbers(5);
+  EXPECT_EQ(w.get_all(two, BREVE_PROPERTY_LOCATION, numbers).code(), BREVE_ERROR_ARGUMENT);
+  numbers.resize(4);
+  EXPECT_EQ(w.get_all(two, BREVE_PROPERTY_LOCATION, numbers).code(), BREVE_ERROR_ARGUMENT);
+  EXPECT_EQ(w.set_all(two, BREVE_PROPERTY_POSE, numbers).code(), BREVE_ERROR_ARGUMENT);
+  std::vector<breve::Vector> places(1);
+  EXPECT_EQ(w.get_all(two, BREVE_PROPERTY_VELOCITY, places).code(), BREVE_ERROR_ARGUMENT);
+  EXPECT_EQ(w.interpolate_all(two, 0, BREVE_PROPERTY_LOCATION, places).code(), BREVE_ERROR_ARGUMENT);
+  numbers.clear();
+  EXPECT_EQ(w.get_all(two, "count", numbers).code(), BREVE_ERROR_NOT_FOUND);
+  EXPECT_EQ(breve::World().get_all(std::vector<breve::Object>(), BREVE_PROPERTY_LOCATION, numbers).code(),
+            BREVE_ERROR_ARGUMENT);
+}
+
+TEST(BreveHpp, ValuesTellWhetherTheyBorrow) {
+  Stage stage;
+  auto& w = stage.world;
+  EXPECT_TRUE(w.get(stage.controller, "title").or_throw().borrows());
+  EXPECT_TRUE(w.get(stage.controller, "things").or_throw().borrows());
+  EXPECT_TRUE(w.create_hash().or_throw().borrows());
+  EXPECT_TRUE(breve::Value("text").borrows());
+  EXPECT_FALSE(w.get(stage.controller, "count").or_throw().borrows());
+  EXPECT_FALSE(w.get(stage.controller, "mover").or_throw().borrows());
+  EXPECT_FALSE(breve::Value().borrows() || breve::Value(0.5).borrows());
+  EXPECT_FALSE(breve::Value(breve::Vector{1, 2, 3}).borrows());
+  EXPECT_FALSE(breve::Value::matrix({1, 0, 0, 0, 1, 0, 0, 0, 1}).borrows());
+}
+
 TEST(BreveHpp, ValuesAreMadeOfAnyNumberAndText) {
   const auto same = [](const breve::Value& value, int number) {
     return value.type == std::uint32_t{BREVE_TYPE_INT} && value.integer() == number;

@@ -14,8 +14,8 @@
 // - Borrowed data: texts (const char*, std::string_view) belong to the library. Texts of a Status are valid until the
 //   next call on its world or runtime, texts of a Value until script runs in its world again, texts returned by
 //   World::text() until its next call, and texts that describe a program, a class or a profile as long as that exists.
-//   Copy what you need longer. A Value that is made from a text refers to it: the text must live until the call is
-//   made.
+//   Copy what you need longer; Value::borrows() tells whether a value has to be. A Value that is made from a text
+//   refers to it: the text must live until the call is made.
 // - Memory: nothing here allocates except functions that return a std::vector, and or_throw() when it throws. List
 //   functions have a second form that fills a Room of the host and returns the total number of elements, even if it
 //   exceeds the room.
@@ -25,6 +25,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <string_view>
@@ -110,15 +111,16 @@ class [[nodiscard]] Result {
 using Vector = std::array<double, 3>;
 using Object = breve_object;
 
-/// Memory for a list: the first elements are written, as many as fit.
+/// Memory for a list: the first elements are written, as many as fit. A Room<const T> is a list that is read. Either is
+/// made of an array, a std::array, a std::vector, a std::span or anything else whose elements lie in one piece.
 template <class T>
 struct Room {
   Room(T* first, std::size_t size) : data(first), capacity(size) {}
-  template <std::size_t N>
-  Room(T (&array)[N]) : data(array), capacity(N) {}
-  template <std::size_t N>
-  Room(std::array<T, N>& array) : data(array.data()), capacity(N) {}
-  Room(std::vector<T>& list) : data(list.data()), capacity(list.size()) {}
+  template <class List,
+            std::enable_if_t<
+                std::is_convertible_v<std::remove_pointer_t<decltype(std::data(std::declval<List&>()))> (*)[], T (*)[]>,
+                int> = 0>
+  Room(List&& list) : data(std::data(list)), capacity(std::size(list)) {}
 
   T* data;
   std::size_t capacity;
@@ -131,6 +133,29 @@ struct Array : breve_array {
       : breve_array{numbers, stride, BREVE_NUMBER_FLOAT, width} {}
   Array(double* numbers, std::uint32_t width, std::size_t stride = 0)
       : breve_array{numbers, stride, BREVE_NUMBER_DOUBLE, width} {}
+  /// All elements of a list whose elements lie in one piece, as the rows of `count` objects: floats or doubles, the
+  /// same number for each object, or one std::array for each, such as Vector. The width of a list of another size is 0,
+  /// which the library refuses.
+  template <class List>
+  static Array of(List&& list, std::size_t count) {
+    return rows(std::data(list), std::size(list), count);
+  }
+  /// Whether the elements of such a list may be written.
+  template <class List>
+  static constexpr bool writes = !std::is_const_v<std::remove_pointer_t<decltype(std::data(std::declval<List&>()))>>;
+
+ private:
+  template <class T>
+  static Array rows(T* first, std::size_t size, std::size_t count) {
+    using Element = std::remove_const_t<T>;
+    auto* const elements = const_cast<Element*>(first);  // whoever reads the rows does not write them
+    if constexpr (std::is_floating_point_v<Element>) {
+      return Array(elements, count != 0 && size % count == 0 ? static_cast<std::uint32_t>(size / count) : 0U);
+    } else {
+      typename Element::value_type* const numbers = size != 0 ? elements->data() : nullptr;
+      return Array(numbers, size == count ? static_cast<std::uint32_t>(std::tuple_size_v<Element>) : 0U);
+    }
+  }
 };
 
 /// An argument of a call: any of these types converts to a script value. Texts are referenced, not copied.
@@ -170,6 +195,13 @@ class Value : public breve_value {
     return bytes ? std::string_view(as.string.bytes, as.string.size) : std::string_view();
   }
   Object object() const { return type == BREVE_TYPE_OBJECT ? as.object : Object{}; }
+
+  /// Whether the value refers to something that it does not contain and that may end before it: the bytes of a text or
+  /// of data, a list, a hash or a pointer. Numbers, vectors, matrices and objects are contained.
+  bool borrows() const {
+    return type == BREVE_TYPE_STRING || type == BREVE_TYPE_DATA || type == BREVE_TYPE_LIST || type == BREVE_TYPE_HASH ||
+           type == BREVE_TYPE_POINTER;
+  }
 
  private:
   template <class T>
@@ -689,6 +721,36 @@ class World {
   Status set_all(const Object* objects, std::size_t count, const char* variable, const Array& rows) {
     return status(breve_objects_set(get(), objects, count, variable, &rows));
   }
+  // The same with lists that know their sizes: objects in one piece, and numbers for Array::of.
+  template <class Numbers>
+  Status get_all(Room<const Object> objects, breve_property property, Numbers&& numbers) const {
+    static_assert(Array::writes<Numbers>, "the numbers are const");
+    if (nothing(objects, numbers)) return {};
+    return get_all(objects.data, objects.capacity, property, Array::of(numbers, objects.capacity));
+  }
+  template <class Numbers>
+  Status set_all(Room<const Object> objects, breve_property property, const Numbers& numbers) {
+    if (nothing(objects, numbers)) return {};
+    return set_all(objects.data, objects.capacity, property, Array::of(numbers, objects.capacity));
+  }
+  template <class Numbers>
+  Status interpolate_all(Room<const Object> objects, double fraction, breve_property property,
+                         Numbers&& numbers) const {
+    static_assert(Array::writes<Numbers>, "the numbers are const");
+    if (nothing(objects, numbers)) return {};
+    return interpolate_all(objects.data, objects.capacity, fraction, property, Array::of(numbers, objects.capacity));
+  }
+  template <class Numbers>
+  Status get_all(Room<const Object> objects, const char* variable, Numbers&& numbers) const {
+    static_assert(Array::writes<Numbers>, "the numbers are const");
+    if (nothing(objects, numbers)) return {};
+    return get_all(objects.data, objects.capacity, variable, Array::of(numbers, objects.capacity));
+  }
+  template <class Numbers>
+  Status set_all(Room<const Object> objects, const char* variable, const Numbers& numbers) {
+    if (nothing(objects, numbers)) return {};
+    return set_all(objects.data, objects.capacity, variable, Array::of(numbers, objects.capacity));
+  }
   /// The same call for each object; `results` has room for one result each, or is null.
   Status call_all(const Object* objects, std::size_t count, breve_selector selector, breve_value* results = nullptr) {
     return status(breve_objects_call_prepared(get(), objects, count, selector, nullptr, 0, results));
@@ -814,6 +876,11 @@ class World {
     T value{};
     const breve_status s = function(get(), arguments..., &value);
     return {status(s), value};
+  }
+  /// No objects and no numbers: their width does not matter.
+  template <class Numbers>
+  bool nothing(Room<const Object> objects, const Numbers& numbers) const {
+    return get() && objects.capacity == 0 && std::size(numbers) == 0;
   }
   template <class T, class F, class... A>
   Result<T> read_struct(T value, F function, A... arguments) const {
