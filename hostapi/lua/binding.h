@@ -62,8 +62,8 @@ typedef struct bl_program {
 } bl_program;
 
 bl_program* bl_program_new(const breve_lua_config* config, const char* name, const char* text, size_t size);
-/* A program of the classes of a draft, whose methods are not described yet. NULL: there is no memory. The classes of the
-   draft are settled. */
+/* A program of the classes of a draft, whose methods are not described yet. NULL: there is no memory. The classes of
+   the draft are settled. */
 bl_program* bl_program_of_draft(bl_program* draft);
 void bl_program_hold(bl_program* program);
 void bl_program_drop(void* program);
@@ -211,16 +211,16 @@ void bl_push_lua_method(lua_State* L, bl_world* w, const bl_method* method, cons
 
 /* ---- reasons (reasons.c) ---- */
 
-/* Call `reason` once, if it is not NULL: with a text; with the error that a runtime has just kept; with the errors of the
-   compilation of a program, at their places in Lua. */
+/* Call `reason` once, if it is not NULL: with a text; with the error that a runtime has just kept; with the errors of
+   the compilation of a program, at their places in Lua. */
 void bl_tell(breve_write_fn reason, void* sink, const char* text);
 void bl_tell_last(const breve_runtime* runtime, breve_status status, breve_write_fn reason, void* sink);
 void bl_tell_errors(const breve_runtime* runtime, const bl_program* program, breve_write_fn reason, void* sink);
 
 /* ---- worlds in an interpreter (config.c) ---- */
 
-/* The table at index 1, which becomes the only value on the stack but for one at index 2 that holds what the config points
-   to. Raises an error. */
+/* The table at index 1, which becomes the only value on the stack but for one at index 2 that holds what the config
+   points to. Raises an error. */
 breve_world_config bl_read_config(lua_State* L);
 
 /* ---- profiles (profile.c) ---- */

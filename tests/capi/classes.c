@@ -409,7 +409,7 @@ static void an_unknown_parent_is_an_error_of_the_program(void) {
   guest_close(&g);
 }
 
-/* A class of the host without its parent makes its uses errors, too: the cause comes before them. */
+/* A class of the host without its parent also makes errors of all its uses: the cause comes before them. */
 static void a_missing_parent_comes_before_the_errors_that_it_causes(void) {
   static const char* const text =
       "@use Control.\nController Town.\n"
