@@ -15,6 +15,14 @@ typedef struct arguments {
 
 static void keep_text(char* to, size_t room, const char* text) { snprintf(to, room, "%s", text ? text : ""); }
 
+/* A method as steve knows it, however Lua has called it. */
+static void name_function(char* to, size_t room, const bl_method* method, const char* name) {
+  if (method)
+    snprintf(to, room, "%s.%s", method->owner->name, method->selector);
+  else
+    keep_text(to, room, name ? name : "a function");
+}
+
 /* The functions of Lua that are active in a call, innermost first. */
 static size_t walk(const bl_world* w, const bl_entry* entry, bl_place* places, size_t capacity) {
   lua_State* L = entry->thread;
@@ -26,9 +34,9 @@ static size_t walk(const bl_world* w, const bl_entry* entry, bl_place* places, s
   bool begun = inner == NULL;
   for (int level = 0; lua_getstack(L, level, &call) && (const void*)call.i_ci != entry->below; ++level) {
     if (!begun) begun = (const void*)call.i_ci == inner->below;
-    if (!begun || !lua_getinfo(L, "Sln", &call) || call.currentline < 0) continue;
+    if (!begun || !lua_getinfo(L, "Slnu", &call) || call.currentline < 0) continue;
     if (count == capacity) break;
-    keep_text(places[count].function, sizeof places[count].function, call.name ? call.name : "a function");
+    name_function(places[count].function, sizeof places[count].function, bl_method_at(w->program, &call), call.name);
     keep_text(places[count].file, sizeof places[count].file, call.source[0] == '@' ? call.source + 1 : call.short_src);
     places[count++].line = (uint32_t)call.currentline;
   }

@@ -42,9 +42,10 @@ static const char* file_of(const lua_Debug* function) {
   return function->source[0] == '@' ? function->source + 1 : function->short_src;
 }
 
-/* Is the function a method of the program? A method keeps the name that steve knows. */
-static const bl_method* method_at(const bl_program* program, const char* file, const lua_Debug* function) {
-  for (size_t i = 0; i < program->class_count; ++i)
+/* A method keeps the name that steve knows. */
+const bl_method* bl_method_at(const bl_program* program, const lua_Debug* function) {
+  const char* file = file_of(function);
+  for (size_t i = 0; program && i < program->class_count; ++i)
     for (size_t k = 0; k < program->classes[i]->method_count; ++k) {
       const bl_method* m = program->classes[i]->methods[k];
       if (m->line == (uint32_t)function->linedefined && m->count + 1 == function->nparams && strcmp(m->file, file) == 0)
@@ -57,7 +58,7 @@ static code* make_code(lua_State* L, bl_world* w, lua_Debug* function) {
   code* c = (code*)breve_world_allocate(w->world, sizeof *c);
   if (!c) return NULL;
   lua_getinfo(L, "n", function);
-  const bl_method* m = method_at(w->program, file_of(function), function);
+  const bl_method* m = bl_method_at(w->program, function);
   c->source = function->source;
   c->line = function->linedefined;
   c->parameters = function->nparams;
