@@ -4,14 +4,25 @@
 
 namespace breve::render {
 
+// Where the shadow map is asked about a point. Some texels along the normal, more than the soft edge reaches, lie clear
+// of the face itself: a face that the light grazes does not shade itself in stripes.
+inline constexpr const char* kShadowed = R"(
+uniform mat4 shadow_matrix;
+uniform float shadow_texel_slope, shadow_clear;
+vec4 shadowed(vec3 at, vec3 n) {
+  vec4 place = shadow_matrix * vec4(at, 1);
+  return place + shadow_matrix * vec4(shadow_clear * shadow_texel_slope * place.w * n, 0);
+}
+)";
+
 // Bodies have a program for each combination of `disc`, `textured`, `shadows`, `mirror` (0.0 or 1.0) and `mode` (0:
 // plain colours, 1: lights, 2: studio), which are macros: a renderer in software computes both sides of every `if`
 // whose condition is a uniform.
 inline constexpr const char* kBodyVertex = R"(
 in vec3 position, normal, tint;
 in vec4 row0, row1, row2, color, extra;
-uniform mat4 view, projection, shadow_matrix;
-uniform float outline, layers, tinted, shadow_texel_slope, shadow_clear;
+uniform mat4 view, projection;
+uniform float outline, layers, tinted;
 uniform vec3 right, up;
 uniform vec4 clip_plane;
 out vec2 corner;
@@ -19,6 +30,7 @@ out vec3 world, world_normal, own, own_normal;
 out vec4 surface, shadow_place;
 flat out float lit;
 flat out vec2 tile;
+flat out vec4 ball;
 void main() {
   vec3 x = vec3(row0.x, row1.x, row2.x), y = vec3(row0.y, row1.y, row2.y), z = vec3(row0.z, row1.z, row2.z);
   vec3 scale = vec3(length(x), length(y), length(z));
@@ -39,11 +51,8 @@ void main() {
   surface = vec4(tinted > 0.5 ? tint : color.rgb, color.a);
   lit = extra.z;
   tile = extra.xy;
-  shadow_place = shadow_matrix * vec4(world, 1);
-  // Some texels along the normal, more than the soft edge reaches, lie clear of the face itself: a face that the light
-  // grazes does not shade itself in stripes.
-  float off = disc > 0.5 ? 0.0 : shadow_clear * shadow_texel_slope * shadow_place.w;
-  shadow_place = shadow_matrix * vec4(world + off * normalize(world_normal), 1);
+  ball = vec4(row0.w, row1.w, row2.w, scale.x);
+  shadow_place = disc > 0.5 ? vec4(0) : shadowed(world, normalize(world_normal));
   gl_ClipDistance[0] = dot(vec4(world, 1), clip_plane);
   gl_Position = projection * (view * vec4(world, 1));
   // In a flat world what was made later lies on top, and an outline below its own body.
@@ -56,6 +65,7 @@ in vec3 world, world_normal, own, own_normal;
 in vec4 surface, shadow_place;
 flat in float lit;
 flat in vec2 tile;
+flat in vec4 ball;
 uniform vec3 eye, sight, sky, ground, horizon, fog_color, key;
 uniform vec3 light_place[8], light_ambient[8], light_diffuse[8], light_specular[8];
 uniform int lights;
@@ -80,10 +90,11 @@ vec4 tiles() {
          w.z * texture(image, vec2(p.x, -own.y / max(tile.y, 1e-6)));
 }
 
-float lit_part(vec3 n) {
+float lit_part(vec3 at, vec3 n) {
   if (shadows < 0.5) return 1.0;
-  vec3 p = shadow_place.xyz / shadow_place.w * 0.5 + 0.5;
-  if (shadow_place.w <= 0.0 || any(lessThan(p.xy, vec2(0))) || any(greaterThan(p.xy, vec2(1)))) return 1.0;
+  vec4 place = disc > 0.5 ? shadowed(at, n) : shadow_place;
+  vec3 p = place.xyz / place.w * 0.5 + 0.5;
+  if (place.w <= 0.0 || any(lessThan(p.xy, vec2(0))) || any(greaterThan(p.xy, vec2(1)))) return 1.0;
   p.z = min(p.z, 0.999999) - shadow_bias;  // what is behind the frustum is shaded by what is in it
   // A turned ring of places: soft edges with few samples.
   float turn = 6.2831853 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
@@ -101,7 +112,7 @@ float lit_part(vec3 n) {
 }
 
 void main() {
-  vec3 n = normalize(world_normal);
+  vec3 n = normalize(world_normal), at = world;
   float cover = 1.0;
   if (disc > 0.5) {
     float away_from_center = length(corner);
@@ -109,6 +120,7 @@ void main() {
     if (cover < 0.125) discard;
     n = right * corner.x + up * corner.y + cross(right, up) * sqrt(max(0.0, 1.0 - away_from_center * away_from_center));
     n = normalize(n);
+    at = ball.xyz + ball.w * n;  // on the sphere that the square stands for
   }
   vec3 to_eye = normalize(eye - world);
   if (sight != vec3(0)) to_eye = -sight;
@@ -126,8 +138,8 @@ void main() {
   if (lit > 0.5 && outline == 0.0 && mode == 1) {
     vec3 irradiance = vec3(0), shine = vec3(0);
     for (int i = 0; i < lights; ++i) {
-      vec3 to_light = normalize(light_place[i] - world);
-      float seen = i == 0 ? lit_part(n) : 1.0;
+      vec3 to_light = normalize(light_place[i] - at);
+      float seen = i == 0 ? lit_part(at, n) : 1.0;
       float facing = max(0.0, dot(n, to_light));
       irradiance += light_ambient[i] + light_diffuse[i] * facing * seen;
       vec3 halfway = normalize(to_light + to_eye);

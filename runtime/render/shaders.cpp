@@ -73,6 +73,7 @@ const Program& Shaders::body(const BodyKind& kind) {
         {"disc", kind.disc}, {"textured", kind.textured}, {"shadows", kind.shadows}, {"mirror", kind.mirror}};
     for (const auto& [name, on] : switches) macros += std::string("#define ") + name + (on ? " 1.0\n" : " 0.0\n");
     macros += "#define mode " + std::to_string(kind.mode) + "\n";
+    macros += kShadowed;
     kept = std::make_unique<Program>(gl_, kBodyVertex, kBodyFragment, macros);
   }
   return *kept;

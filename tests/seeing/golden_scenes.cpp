@@ -97,6 +97,10 @@ constexpr GoldenScene kScenes[] = {
     {"ambient_light", BALL "self set-light-ambient-color to (.5, .4, .1). self set-light-diffuse-color to (0, 0, 0). "},
     {"specular_light", BALL "self set-light-specular-color to (1, 1, 1). "},
     {"shadow", GROUND "self enable-shadows. "},
+    {"shadows_on_small_balls",  // their radii are 3 to 20 pixels
+     LIT "self floor. land catch-shadows. self move-light to (8, 20, 30). self enable-shadows. for n = 0, n < 8, n++: "
+         "(new Thing) become from ((new Sphere) init-with radius (n * .31 + .38)) at (2.2 * n - 8.2, n * .31 - 1.62 + "
+         "n % 2 * 4, 0). "},
     {"shadow_volumes", GROUND "self enable-shadow-volumes. (new Thing) become from box at (4, 4, -3). "},
     {"no_shadow_of_one", GROUND "self enable-shadows. ((new Thing) become from box at (4, 0, 0)) disable-shadows. "},
     {"reflection", GROUND "self enable-reflections. "},
