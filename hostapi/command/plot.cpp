@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
@@ -33,8 +34,12 @@ void write_bytes(const std::string& path, const std::vector<std::uint8_t>& bytes
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (!file) throw std::runtime_error(fmt::format("cannot write {}: {}", path, std::strerror(errno)));
   const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  if (std::fclose(file) != 0 || !written)
-    throw std::runtime_error(fmt::format("cannot write {}: {}", path, std::strerror(errno)));
+  const int why = errno;
+  if (std::fclose(file) == 0 && written) return;
+  const int reason = written ? errno : why;
+  std::error_code nothing;  // a device stays
+  if (std::filesystem::is_regular_file(path, nothing)) std::filesystem::remove(path, nothing);
+  throw std::runtime_error(fmt::format("cannot write {}: {}", path, std::strerror(reason)));
 }
 
 /// Colours that people of all kinds of vision tell apart (Okabe and Ito 2008).

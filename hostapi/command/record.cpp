@@ -52,6 +52,14 @@ void write_png(const Frame& frame, const std::string& path) {
   throw std::runtime_error(fmt::format("cannot write {}: {}", path, std::strerror(reason)));
 }
 
+/// A picture is a PNG whatever its name says.
+void need_png(const char* option, const std::string& path) {
+  const std::filesystem::path name(path);
+  if (name.extension().empty() || name.extension() == ".png" || name.extension() == ".PNG") return;
+  throw std::runtime_error(fmt::format("{}: pictures are written as PNG; name it '{}' instead of '{}'", option,
+                                       std::filesystem::path(name).replace_extension(".png").string(), path));
+}
+
 std::uint32_t arrows_of(const std::vector<std::string>& names) {
   std::uint32_t arrows = BREVE_ARROWS_NONE;
   for (const std::string& name : names) {
@@ -68,6 +76,8 @@ std::uint32_t arrows_of(const std::vector<std::string>& names) {
 }
 
 Recorder::Recorder(breve_runtime* runtime, const RecordOptions& options, Output& output) : options_(options) {
+  need_png("--snapshot", options.snapshot);
+  need_png("--contact-sheet", options.contact_sheet);
   if (!options.size.empty()) read_size(options.size, width_, height_);
   if (options.fps) fps_ = *options.fps;
   if (!options.snapshot.empty() || !options.movie.empty()) view_ = make_view(runtime, width_, height_);

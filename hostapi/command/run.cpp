@@ -116,6 +116,8 @@ struct Lookers {
   Lookers(breve_runtime* runtime, const RunOptions& options, Output& output) {
     if (options.record.any()) recorder.emplace(runtime, options.record, output);
     if (!options.sound.empty()) sound.emplace(options.sound);
+    if (!options.plot.names.empty() && options.plot.plot.empty() && options.plot.log.empty() && !options.live)
+      throw std::runtime_error("--plot: nothing shows these values; add --plot-to OUT.svg, --log OUT.csv or --live");
     if (!options.plot.names.empty()) plotter.emplace(options.plot);
     if (!options.live) return;
     if (!output.shows_progress())

@@ -470,6 +470,11 @@ assert low[0] < 110 and low[1] > 430 and high[0] > 860 and high[1] < 80
 END
   ln -s /dev/full full.png
   expect 1 run a.tz --iterations 2 --quiet --plot turns --plot-to full.png && has err 'No space left on device'
+  (ulimit -f 1; trap '' XFSZ; "$breve" run a.tz --iterations 20 --quiet --plot turns --plot-to large.png 2>err)
+  [ $? = 1 ] && [ ! -e large.png ] || fail "half a plot is left"
+  expect 1 run a.tz --iterations 2 --quiet --plot turns && has err 'add --plot-to OUT.svg, --log OUT.csv or --live'
+  expect 1 run a.tz --iterations 2 --quiet --snapshot a.jpg && has err "name it 'a.png' instead of 'a.jpg'"
+  [ ! -e a.jpg ] || fail "a PNG is called JPEG"
   ;;
 damaged_pictures)
   python3 - <<'END'
