@@ -30,8 +30,29 @@ namespace breve {
 
 namespace {
 
-[[noreturn]] void refuse_picture(const std::string& name, const char* why) {
+[[noreturn]] void refuse_picture(const std::string& name, const std::string& why) {
   throw Error(ErrorCode::File, fmt::format("cannot read image file '{}': {}", name, why));
+}
+
+/// The decoder's own reason is that of the last format it tried. The first bytes tell which format the file has.
+std::string why_not(std::string_view bytes) {
+  if (std::string_view(stbi_failure_reason()) == "too large") return "it is too large";
+  if (bytes.empty()) return "it is empty";
+  struct Format {
+    std::string_view begin, name;
+    bool read;
+  };
+  constexpr Format kFormats[] = {{"\x89PNG", "PNG", true},      {"\xff\xd8\xff", "JPEG", true},
+                                 {"GIF8", "GIF", false},        {"BM", "BMP", false},
+                                 {"RIFF", "WebP", false},       {{"II*\0", 4}, "TIFF", false},
+                                 {{"MM\0*", 4}, "TIFF", false}, {"8BPS", "Photoshop", false}};
+  for (const Format& format : kFormats) {
+    if (!bytes.starts_with(format.begin)) continue;
+    if (format.read)
+      return fmt::format("it is a {} file that is damaged, cut off, or of a rare kind; save it anew", format.name);
+    return fmt::format("it is a {} file; save it as PNG, JPEG or TGA", format.name);
+  }
+  return "it is not a PNG, JPEG or TGA file, or it is damaged";
 }
 
 }  // namespace
@@ -43,12 +64,12 @@ Image Image::parse(std::string_view bytes, const std::string& name, std::pmr::me
   if (bytes.size() > kMostFileBytes) refuse_picture(name, "it is too large");
   const int size = static_cast<int>(bytes.size());
   int width = 0, height = 0, channels = 0;
-  if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) refuse_picture(name, stbi_failure_reason());
+  if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) refuse_picture(name, why_not(bytes));
   if (before) before(width, height);
   Image image(width, height, memory);
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(data, size, &width, &height, &channels, 4), &stbi_image_free);
-  if (!pixels) refuse_picture(name, stbi_failure_reason());
+  if (!pixels) refuse_picture(name, why_not(bytes));
   image.set_bytes({pixels.get(), image.pixels_.size()});
   return image;
 }

@@ -112,6 +112,10 @@ TEST(ImageFile, FailuresNameTheFile) {
   };
   EXPECT_EQ(refusal("this is not a picture").find("cannot read image file 'a.png': "), 0U);
   EXPECT_EQ(refusal(sample().png().substr(0, 40)).find("cannot read image file 'a.png': "), 0U);
+  EXPECT_NE(refusal(sample().png().substr(0, 40)).find("a PNG file that is damaged"), std::string::npos);
+  EXPECT_NE(refusal("\xff\xd8\xff\xe0 and no more").find("a JPEG file that is damaged"), std::string::npos);
+  EXPECT_NE(refusal("GIF89a").find("a GIF file; save it as PNG"), std::string::npos);
+  EXPECT_NE(refusal("").find("it is empty"), std::string::npos);
   EXPECT_NE(refusal(""), "");
   EXPECT_EQ(message(ErrorCode::Argument, [] { (void)Image().png(); }), "the image is empty");
 }
