@@ -218,7 +218,7 @@ void show_backdrop(const World& world, SceneBuilder& to) {
 void show_flags(const ViewState& view, SceneBuilder& to) {
   const DrawingFlags& flags = view.flags;
   to.scene().flags = {flags.lighting,
-                      flags.shadows || flags.shadow_volumes,
+                      (flags.shadows && flags.shadow_catcher) || flags.shadow_volumes,
                       flags.reflections && flags.shadow_catcher,
                       flags.outline,
                       flags.text,

@@ -58,7 +58,7 @@ struct DrawingFlags {
   bool shadow_volumes = false;
   bool shadows = false;
   bool reflections = false;
-  bool shadow_catcher = false;  // some Stationary catches shadows: `shadows` and `reflections` may be switched on
+  bool shadow_catcher = false;  // some Stationary catches shadows: else `shadows` and `reflections` show nothing
   bool blur = false;
   bool outline = false;
   bool text = true;

@@ -32,7 +32,7 @@ bool is_archived(const ClassInfo& cls, std::string_view name, const VariableInfo
   if (cls.name == "Object") return name == "birthTime" || name == "archiveDependencies";
   if (cls.name == "Real") return name != "realLines" && name != "realMenus";
   if (cls.name == "Control") return name == "accuracyRung";
-  if (cls.name == "Spring") return name != "springLine";
+  if (cls.name == "Spring") return true;
   if (cls.name == "MultiBody") return name != "bodyMenus";
   return variable.type != StaticType::Pointer;
 }

@@ -25,18 +25,6 @@ void toggle(Machine& machine, Instance&) {
   view_of(machine).flags.*Flag = !(view_of(machine).flags.*Flag);
 }
 
-/// Shadows and reflections need something that catches them: ignored until there is one.
-template <bool DrawingFlags::*Flag>
-void enable_caught(Machine& machine, Instance&) {
-  DrawingFlags& flags = view_of(machine).flags;
-  if (flags.shadow_catcher) flags.*Flag = true;
-}
-template <bool DrawingFlags::*Flag>
-void toggle_caught(Machine& machine, Instance&) {
-  DrawingFlags& flags = view_of(machine).flags;
-  flags.*Flag = flags.shadow_catcher && !(flags.*Flag);
-}
-
 template <bool On>
 void fog(Machine& machine, Instance&) {
   view_of(machine).fog.enabled = On;
@@ -202,15 +190,15 @@ constexpr Native kViewNatives[] = {
     native<light_exposure<&LightExposureState::drawing, false>>("control.disable-light-exposure-drawing"),
     native<set_light_exposure_source>("control.set-light-exposure-source"),
     native<enable<&Flags::shadow_catcher>>("control.set-shadow-catcher"),
-    native<enable_caught<&Flags::shadows>>("control.enable-shadows"),
+    native<enable<&Flags::shadows>>("control.enable-shadows"),
     native<disable<&Flags::shadows>>("control.disable-shadows"),
-    native<toggle_caught<&Flags::shadows>>("control.toggle-shadows"),
+    native<toggle<&Flags::shadows>>("control.toggle-shadows"),
     native<enable<&Flags::shadow_volumes>>("control.enable-shadow-volumes"),
     native<disable<&Flags::shadow_volumes>>("control.disable-shadow-volumes"),
     native<toggle<&Flags::shadow_volumes>>("control.toggle-shadow-volumes"),
-    native<enable_caught<&Flags::reflections>>("control.enable-reflections"),
+    native<enable<&Flags::reflections>>("control.enable-reflections"),
     native<disable<&Flags::reflections>>("control.disable-reflections"),
-    native<toggle_caught<&Flags::reflections>>("control.toggle-reflections"),
+    native<toggle<&Flags::reflections>>("control.toggle-reflections"),
     native<enable<&Flags::every_frame>>("control.enable-draw-every-frame"),
     native<disable<&Flags::every_frame>>("control.disable-draw-every-frame"),
     native<enable<&Flags::outline>>("control.enable-outline"),
