@@ -70,6 +70,7 @@ void Marks::draw_arrows(const Shaders& shaders, const std::vector<SceneArrow>& a
   const Lens lens = pixel_lens(canvas);
   Canvas pixels = canvas;
   pixels.lens = &lens;
+  pixels.fog = nullptr;
   for (const Painted* painted : {&edges, &inks}) {
     draw_lines(shaders, painted->lines, pixels);
     draw_polygons(shaders, painted->triangles, pixels);

@@ -8,8 +8,6 @@ namespace breve::render {
 
 namespace {
 
-float linear(float c) { return c <= 0.04045F ? c / 12.92F : std::pow((c + 0.055F) / 1.055F, 2.4F); }
-Vector3f linear(const Vector3f& c) { return {linear(c.x()), linear(c.y()), linear(c.z())}; }
 Vector3f mix(const Vector3f& a, const Vector3f& b, float part) { return a + part * (b - a); }
 
 // KEEP IN STEP: units of textures, with the names of samplers in shader_texts.hpp.
@@ -57,7 +55,7 @@ void Renderer::Work::draw_backdrop(const Pass& pass) {
   const Program& program = shaders.backdrop;
   program.use();
   program.set("kind", kind);
-  program.set("flat_view", pass.has_ground ? 0.0F : 1.0F);
+  program.set("flat_view", pass.ground ? 0.0F : 1.0F);
   program.set("right", pass.lens->right);
   program.set("up", pass.lens->up);
   program.set("back", pass.lens->back);
@@ -131,11 +129,8 @@ void Renderer::Work::set_body_uniforms(const Pass& pass, const Program& program)
   program.set("mirror_height", pass.mirror.height);
   if (pass.mirror.on && !pass.reflected) reflection->bind_color(kReflectionUnit);
   program.set("clip_plane", pass.reflected ? Vector4f(0, 1, 0, -pass.mirror.height) : Vector4f(0, 0, 0, 1));
-  program.set("fog_power", scene.fog.enabled ? 10 * std::max(scene.fog.intensity, 0.0F) : 0.0F);
-  program.set("fog_start", scene.fog.start);
-  program.set("fog_end", scene.fog.end);
-  program.set("fog_color", scene.fog.color);
-  const bool haze = full && pass.has_ground && !scene.fog.enabled && !lens.orthographic;
+  set_fog(program, &scene.fog, lens);
+  const bool haze = full && pass.ground && !scene.fog.enabled && !lens.orthographic;
   const auto away = static_cast<float>(pass.camera->offset.norm());
   program.set("haze_start", std::max(0.22F * lens.far, 1.3F * away));
   program.set("haze_end", haze ? std::max(0.92F * lens.far, 3 * away) : 0.0F);
@@ -147,6 +142,7 @@ const Program& Renderer::Work::body_program(const Pass& pass, const Batch& batch
   BodyKind kind;
   kind.disc = batch.mesh == kDiscMesh;
   kind.textured = batch.texture != kNoTexture;
+  kind.holes = kind.textured && scene.textures[batch.texture].clear;
   kind.shadows = pass.shadow.on;
   kind.mirror = pass.mirror.on && !pass.reflected;
   kind.mode = scene.dimension == 2 ? 0 : scene.flags.lighting ? 1 : settings.look == Look::Full ? 2 : 0;
@@ -175,72 +171,68 @@ void Renderer::Work::draw_pieces(const MeshBuffer& buffer, const Batch& batch, b
   }
 }
 
-void Renderer::Work::draw_batches(const Pass& pass, const std::vector<Batch>& batches, bool blended, float outline) {
+void Renderer::Work::draw_batch(const Pass& pass, const Batch& one, bool blended, float outline) {
   const Gl& gl = context.gl();
-  for (const Batch& one : batches) {
-    const MeshBuffer& buffer = mesh(*pass.scene, one.mesh);
-    const Program& program = body_program(pass, one);
-    program.set("outline", outline);
-    program.set("tinted", buffer.tinted() ? 1.0F : 0.0F);
-    bind_texture(*pass.scene, one.texture, kImageUnit);
-    (buffer.two_sided() ? gl.Disable : gl.Enable)(GL_CULL_FACE);
-    const bool disc = one.mesh == kDiscMesh;
-    // Coverage is what its edge is made of; blending would count it twice.
-    if (disc) gl.Disable(GL_BLEND);
-    if (disc && settings.samples > 1) gl.Enable(GL_SAMPLE_ALPHA_TO_COVERAGE);
-    draw_pieces(buffer, one, blended);
-    gl.Disable(GL_SAMPLE_ALPHA_TO_COVERAGE);
-    gl.Enable(GL_BLEND);
-    ++counters.draw_calls;
-    counters.instances += one.count;
-    counters.triangles += one.count * buffer.triangles();
-  }
+  const MeshBuffer& buffer = mesh(*pass.scene, one.mesh);
+  const Program& program = body_program(pass, one);
+  program.set("outline", outline);
+  program.set("tinted", buffer.tinted() ? 1.0F : 0.0F);
+  bind_texture(*pass.scene, one.texture, kImageUnit);
+  (buffer.two_sided() ? gl.Disable : gl.Enable)(GL_CULL_FACE);
+  const bool disc = one.mesh == kDiscMesh;
+  // Coverage is what its edge is made of; blending would count it twice.
+  if (disc) gl.Disable(GL_BLEND);
+  if (disc && settings.samples > 1) gl.Enable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+  draw_pieces(buffer, one, blended);
+  gl.Disable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+  gl.Enable(GL_BLEND);
+  ++counters.draw_calls;
+  counters.instances += one.count;
+  counters.triangles += one.count * buffer.triangles();
 }
 
-void Renderer::Work::draw_bodies(const Pass& pass, bool (*wanted)(const SceneInstance&)) {
-  const Gl& gl = context.gl();
+Batches Renderer::Work::upload_bodies(const Pass& pass, const std::vector<Place>& others, Wanted wanted) {
   const Scene& scene = *pass.scene;
   const bool flat = scene.dimension == 2;
-  const bool discs = !flat && !pass.reflected && !scene.flags.outline;
-  const Batches all = batch(scene, {pass.lens, static_cast<float>(pass.height), discs, !flat}, wanted);
-  if (all.instances.empty()) return;
+  BatchView view{pass.lens, static_cast<float>(pass.height)};
+  view.discs = !flat && !pass.reflected && !scene.flags.outline;
+  view.by_distance = !flat;
+  view.ground = pass.ground;
+  view.sheets = &pass.clear_sheets;
+  view.others = &others;
+  Batches all = batch(scene, view, wanted);
   instances.fill(GL_ARRAY_BUFFER, all.instances.data(), all.instances.size() * sizeof(GpuInstance), GL_STREAM_DRAW);
   ready.clear();
+  return all;
+}
+
+void Renderer::Work::draw_opaque(const Pass& pass, const Batches& all) {
+  const Gl& gl = context.gl();
+  const Scene& scene = *pass.scene;
   gl.PolygonMode(GL_FRONT_AND_BACK, scene.flags.outline ? GL_LINE : GL_FILL);
-  draw_batches(pass, all.opaque, false);
-  if (flat && settings.look == Look::Full)
-    draw_batches(pass, all.opaque, false,
-                 kOutlinePixels / pass.lens->scale_at({0, 0, 0}, static_cast<float>(pass.height)));
-  gl.DepthMask(GL_FALSE);
-  draw_batches(pass, all.transparent, true);
+  for (const Batch& one : all.opaque) draw_batch(pass, one, false);
+  if (scene.dimension == 2 && settings.look == Look::Full)
+    for (const Batch& one : all.opaque)
+      draw_batch(pass, one, false, kOutlinePixels / pass.lens->scale_at({0, 0, 0}, static_cast<float>(pass.height)));
+  gl.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+  gl.Disable(GL_CULL_FACE);
+}
+
+void Renderer::Work::draw_transparent(const Pass& pass, const Batch& one) {
+  const Gl& gl = context.gl();
+  gl.PolygonMode(GL_FRONT_AND_BACK, pass.scene->flags.outline ? GL_LINE : GL_FILL);
+  // What a texture with holes leaves of an opaque body hides what is behind it.
+  gl.DepthMask(one.solid ? GL_TRUE : GL_FALSE);
+  draw_batch(pass, one, true);
   gl.DepthMask(GL_TRUE);
   gl.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   gl.Disable(GL_CULL_FACE);
 }
 
-void Renderer::Work::draw_sheets(const Pass& pass) {
-  const Gl& gl = context.gl();
-  const Program& program = shaders.sheet;
-  for (std::size_t i = 0; i < pass.scene->sheets.size(); ++i) {
-    const SceneSheet& sheet = pass.scene->sheets[i];
-    std::unique_ptr<TextureBuffer>& kept = sheets[i];
-    if (!kept || kept->revision() != sheet.revision) {
-      kept = std::make_unique<TextureBuffer>(gl, TextureBuffer::Kind::Cells, sheet.columns, sheet.rows,
-                                             sheet.rgba.data(), sheet.revision);
-      ++counters.uploads;
-    }
-    kept->bind(kImageUnit);
-    program.use();
-    program.set("view", pass.lens->view);
-    program.set("projection", pass.lens->projection);
-    program.set("corner", sheet.corner);
-    program.set("across", sheet.across);
-    program.set("along", sheet.along);
-    program.set("image", static_cast<int>(kImageUnit));
-    nothing.bind();
-    gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-    ++counters.draw_calls;
-  }
+void Renderer::Work::draw_bodies(const Pass& pass, Wanted wanted) {
+  const Batches all = upload_bodies(pass, {}, wanted);
+  draw_opaque(pass, all);
+  for (const Batch& one : all.transparent) draw_transparent(pass, one);
 }
 
 }  // namespace breve::render

@@ -51,6 +51,7 @@ void Marks::draw_lines(const Shaders& shaders, const std::vector<SceneLine>& lin
   shaders.line.set("projection", canvas.lens->projection);
   shaders.line.set("near", canvas.lens->orthographic ? -1.0F : canvas.lens->near);
   shaders.line.set("picture", static_cast<float>(canvas.width), static_cast<float>(canvas.height));
+  set_fog(shaders.line, canvas.fog, *canvas.lens);
   draw(rows, 0, rows.size(), canvas);
 }
 
@@ -59,6 +60,7 @@ void Marks::draw_polygons(const Shaders& shaders, const std::vector<SceneVertex>
   shaders.plain.use();
   shaders.plain.set("view", canvas.lens->view);
   shaders.plain.set("projection", canvas.lens->projection);
+  set_fog(shaders.plain, canvas.fog, *canvas.lens);
   polygon_array_.bind();
   buffer_.fill(GL_ARRAY_BUFFER, triangles.data(), triangles.size() * sizeof(SceneVertex), GL_STREAM_DRAW);
   // KEEP IN STEP: position and color are attributes 0 and 7 (shaders.cpp).
@@ -73,16 +75,6 @@ void Marks::draw_polygons(const Shaders& shaders, const std::vector<SceneVertex>
 
 // --- sprites ---------------------------------------------------------------------------------------------------------
 
-std::vector<const SceneSprite*> Marks::sorted(const std::vector<SceneSprite>& sprites, const Lens& lens) {
-  std::vector<const SceneSprite*> order;
-  order.reserve(sprites.size());
-  for (const SceneSprite& sprite : sprites) order.push_back(&sprite);
-  std::stable_sort(order.begin(), order.end(), [&](const SceneSprite* a, const SceneSprite* b) {
-    return (lens.eye - a->center).dot(lens.back) > (lens.eye - b->center).dot(lens.back);
-  });
-  return order;
-}
-
 Marks::Row Marks::row_of(const SceneSprite& s) {
   return {{s.center.x(), s.center.y(), s.center.z(), s.size}, {s.heading, s.point ? 1.0F : 0.0F, 0, 0}, s.color};
 }
@@ -93,6 +85,7 @@ void Marks::begin_sprites(const Shaders& shaders, const Canvas& canvas) {
   shaders.sprite.set("projection", canvas.lens->projection);
   shaders.sprite.set("picture", static_cast<float>(canvas.width), static_cast<float>(canvas.height));
   shaders.sprite.set("image", 0);
+  set_fog(shaders.sprite, canvas.fog, *canvas.lens);
 }
 
 // --- text ------------------------------------------------------------------------------------------------------------

@@ -15,6 +15,7 @@ struct Canvas {
   const Lens* lens = nullptr;
   int width = 0, height = 0;  // pixels
   std::uint64_t* draw_calls = nullptr;
+  const SceneFog* fog = nullptr;  // null: none
 };
 
 /// A camera whose world is the picture: pixels from the left and from the top.
@@ -26,9 +27,9 @@ class Marks {
 
   void draw_lines(const Shaders& shaders, const std::vector<SceneLine>& lines, const Canvas& canvas);
   void draw_polygons(const Shaders& shaders, const std::vector<SceneVertex>& triangles, const Canvas& canvas);
-  /// From back to front. @param bind_texture  binds the scene's texture of that number to unit 0
+  /// In this order. @param bind_texture  binds the scene's texture of that number to unit 0
   template <class Bind>
-  void draw_sprites(const Shaders& shaders, const std::vector<SceneSprite>& sprites, const Canvas& canvas,
+  void draw_sprites(const Shaders& shaders, const std::vector<const SceneSprite*>& sprites, const Canvas& canvas,
                     Bind bind_texture);
   void draw_labels(const Shaders& shaders, const Scene& scene, const Canvas& canvas);
   void draw_texts(const Shaders& shaders, const Scene& scene, const Canvas& canvas);
@@ -41,8 +42,17 @@ class Marks {
   };
   void draw(const std::vector<Row>& rows, std::size_t first, std::size_t count, const Canvas& canvas);
   void draw_rows(const Shaders& shaders, const std::vector<Row>& rows, const Canvas& canvas);
+  /// Where a plot stands, and how high its letters are; pixels.
+  struct PlotCell {
+    float left, top, width, height;
+    int letters;
+  };
+  struct PlotParts {
+    std::vector<Row> plates, letters;
+    std::vector<SceneLine> lines;
+  };
+  void add_plot(const ScenePlot& plot, const PlotCell& cell, PlotParts& parts);
   void add_words(const std::string& words, int size, float x, float y, float align, std::vector<Row>& rows);
-  static std::vector<const SceneSprite*> sorted(const std::vector<SceneSprite>& sprites, const Lens& lens);
   static Row row_of(const SceneSprite& sprite);
   void begin_sprites(const Shaders& shaders, const Canvas& canvas);
 
@@ -54,17 +64,18 @@ class Marks {
 };
 
 template <class Bind>
-void Marks::draw_sprites(const Shaders& shaders, const std::vector<SceneSprite>& sprites, const Canvas& canvas,
+void Marks::draw_sprites(const Shaders& shaders, const std::vector<const SceneSprite*>& sprites, const Canvas& canvas,
                          Bind bind_texture) {
   if (sprites.empty()) return;
   begin_sprites(shaders, canvas);
-  const auto order = sorted(sprites, *canvas.lens);
   std::vector<Row> rows;
-  for (const SceneSprite* sprite : order) rows.push_back(row_of(*sprite));
-  for (std::size_t first = 0, next = 0; first < order.size(); first = next) {
-    const SceneSprite& one = *order[first];
-    while (next < order.size() && order[next]->texture == one.texture && order[next]->glow == one.glow) ++next;
+  rows.reserve(sprites.size());
+  for (const SceneSprite* sprite : sprites) rows.push_back(row_of(*sprite));
+  for (std::size_t first = 0, next = 0; first < sprites.size(); first = next) {
+    const SceneSprite& one = *sprites[first];
+    while (next < sprites.size() && sprites[next]->texture == one.texture && sprites[next]->glow == one.glow) ++next;
     gl_.BlendFunc(GL_SRC_ALPHA, one.glow ? GL_ONE : GL_ONE_MINUS_SRC_ALPHA);
+    shaders.sprite.set("glow", one.glow ? 1.0F : 0.0F);
     bind_texture(one.texture);
     draw(rows, first, next - first, canvas);
   }

@@ -43,10 +43,9 @@ Range range_of(const ScenePlot& plot) {
   return range;
 }
 
-/// A line breaks where there is no number. Of many points only as many are drawn as there are pixels.
+/// A line breaks where there is no number.
 void add_line(const ScenePlot::Line& line, const Range& range, const Area& area, std::vector<SceneLine>& to) {
   const auto points = static_cast<float>(std::max<std::size_t>(range.points, 2) - 1);
-  const std::size_t step = 1 + line.values.size() / static_cast<std::size_t>(std::max(1.0F, area.right - area.left));
   const auto at = [&](std::size_t i) {
     const float up = (static_cast<float>(line.values[i]) - range.low) / (range.high - range.low);
     return Vector3f(area.left + static_cast<float>(i) / points * (area.right - area.left),
@@ -54,9 +53,13 @@ void add_line(const ScenePlot::Line& line, const Range& range, const Area& area,
   };
   Vector4f color(0, 0, 0, 1);
   color.head<3>() = line.color;
-  for (std::size_t i = step; i < line.values.size(); i += step)
-    if (std::isfinite(static_cast<float>(line.values[i - step])) && std::isfinite(static_cast<float>(line.values[i])))
-      to.push_back({at(i - step), at(i), color, 2});
+  const auto columns = static_cast<std::size_t>(std::max(1.0F, area.right - area.left));
+  const std::vector<std::size_t> drawn = points_to_draw(line.values, line.values.size(), columns);
+  for (std::size_t k = 1; k < drawn.size(); ++k) {
+    const std::size_t i = drawn[k - 1], next = drawn[k];
+    if (std::isfinite(static_cast<float>(line.values[i])) && std::isfinite(static_cast<float>(line.values[next])))
+      to.push_back({at(i), at(next), color, 2});
+  }
 }
 
 }  // namespace
@@ -81,43 +84,70 @@ void Marks::add_words(const std::string& words, int size, float x, float y, floa
                     kInk});
 }
 
-/// From the lower right corner up.
+void Marks::add_plot(const ScenePlot& plot, const PlotCell& cell, PlotParts& parts) {
+  const int size = cell.letters;
+  const auto em = static_cast<float>(size);
+  const float left = cell.left, top = cell.top, right = left + cell.width, bottom = top + cell.height;
+  parts.plates.push_back({{left, top, cell.width, cell.height}, Vector4f::Zero(), kPlate});
+  const Range range = range_of(plot);
+  const Area area{left + 5 * em, top + 2.2F * em, right - em, bottom - 2.6F * em};
+  const auto words = [&](const std::string& text, float x, float y, float align) {
+    add_words(text, size, x, y, align, parts.letters);
+  };
+  words(plot.title, (left + right) / 2, top + 1.4F * em, 0.5F);
+  words(plot.y_axis, left + 0.6F * em, area.top - 0.4F * em, 0);
+  words(plot.x_axis, (area.left + area.right) / 2, bottom - 0.7F * em, 0.5F);
+  words(fmt::format("{:.3g}", range.high), area.left - 0.4F * em, area.top + 0.8F * em, 1);
+  words(fmt::format("{:.3g}", range.low), area.left - 0.4F * em, area.bottom, 1);
+  words("0", area.left, area.bottom + 1.2F * em, 0);
+  if (range.points > 1) words(fmt::format("{}", range.points - 1), area.right, area.bottom + 1.2F * em, 1);
+  parts.lines.push_back({{area.left, area.top, 0}, {area.left, area.bottom, 0}, kAxis, 1});
+  parts.lines.push_back({{area.left, area.bottom, 0}, {area.right, area.bottom, 0}, kAxis, 1});
+  for (const ScenePlot::Line& line : plot.lines) add_line(line, range, area, parts.lines);
+}
+
+/// From the lower right corner up, then in the column to the left. Where there is no room for all they are smaller.
 void Marks::draw_plots(const Shaders& shaders, const Scene& scene, const Canvas& canvas) {
   if (scene.plots.empty()) return;
+  const auto picture_width = static_cast<float>(canvas.width), picture_height = static_cast<float>(canvas.height);
   // A part of the picture; of a small one most of it, or nothing could be read.
-  const auto side = [](int picture, float part, float least) {
-    return std::max(part * static_cast<float>(picture), std::min(least, static_cast<float>(picture) - 2 * kGap));
+  const auto side = [](float picture, float part, float least) {
+    return std::max(part * picture, std::min(least, picture - 2 * kGap));
   };
-  const float width = side(canvas.width, 0.42F, 240), height = side(canvas.height, 0.36F, 130);
-  const int size = std::clamp(canvas.height / 40, 9, 22);
-  const auto em = static_cast<float>(size);
+  const float usual_width = side(picture_width, 0.42F, 240), usual_height = side(picture_height, 0.36F, 130);
+  const auto fits = [](float picture, float one) {
+    return static_cast<std::size_t>(std::max(1.0F, (picture - kGap) / (one + kGap)));
+  };
+  std::size_t columns = fits(picture_width, usual_width), rows = fits(picture_height, usual_height);
+  // One more where a plot then stays larger.
+  while (columns * rows < scene.plots.size())
+    ++(picture_width / usual_width * static_cast<float>(rows + 1) <
+               picture_height / usual_height * static_cast<float>(columns + 1)
+           ? rows
+           : columns);
+  const auto shrunk = [](float picture, float usual, std::size_t count) {
+    const float share = (picture - kGap) / static_cast<float>(count);
+    return std::max(1.0F, std::min(usual, share - std::min(kGap, 0.2F * share)));
+  };
+  const float width = shrunk(picture_width, usual_width, columns), height = shrunk(picture_height, usual_height, rows);
+  const float smaller = std::min(width / usual_width, height / usual_height);
+  const int size = std::max(4, static_cast<int>(smaller * static_cast<float>(std::clamp(canvas.height / 40, 9, 22))));
   const Lens lens = pixel_lens(canvas);
   Canvas pixels = canvas;
   pixels.lens = &lens;
-  std::vector<Row> plates, letters;
-  std::vector<SceneLine> lines;
-  float bottom = static_cast<float>(canvas.height) - kGap;
-  for (const ScenePlot& plot : scene.plots) {
-    const float left = static_cast<float>(canvas.width) - kGap - width, top = bottom - height;
-    if (top < 0) break;
-    plates.push_back({{left, top, width, height}, Vector4f::Zero(), kPlate});
-    const Range range = range_of(plot);
-    const Area area{left + 5 * em, top + 2.2F * em, left + width - em, bottom - 2.6F * em};
-    add_words(plot.title, size, (left + left + width) / 2, top + 1.4F * em, 0.5F, letters);
-    add_words(plot.y_axis, size, left + 0.6F * em, area.top - 0.4F * em, 0, letters);
-    add_words(plot.x_axis, size, (area.left + area.right) / 2, bottom - 0.7F * em, 0.5F, letters);
-    add_words(fmt::format("{:.3g}", range.high), size, area.left - 0.4F * em, area.top + 0.8F * em, 1, letters);
-    add_words(fmt::format("{:.3g}", range.low), size, area.left - 0.4F * em, area.bottom, 1, letters);
-    add_words("0", size, area.left, area.bottom + 1.2F * em, 0, letters);
-    add_words(fmt::format("{}", range.points), size, area.right, area.bottom + 1.2F * em, 1, letters);
-    lines.push_back({{area.left, area.top, 0}, {area.left, area.bottom, 0}, kAxis, 1});
-    lines.push_back({{area.left, area.bottom, 0}, {area.right, area.bottom, 0}, kAxis, 1});
-    for (const ScenePlot::Line& line : plot.lines) add_line(line, range, area, lines);
-    bottom = top - kGap;
+  pixels.fog = nullptr;
+  PlotParts parts;
+  for (std::size_t i = 0; i < scene.plots.size(); ++i) {
+    const auto column = static_cast<float>(i / rows), row = static_cast<float>(i % rows);
+    const float gap_across = std::min(kGap, 0.25F * width), gap_down = std::min(kGap, 0.25F * height);
+    add_plot(scene.plots[i],
+             {picture_width - kGap - width - column * (width + gap_across),
+              picture_height - kGap - height - row * (height + gap_down), width, height, size},
+             parts);
   }
-  draw_rows(shaders, plates, pixels);
-  draw_lines(shaders, lines, pixels);
-  draw_rows(shaders, letters, pixels);
+  draw_rows(shaders, parts.plates, pixels);
+  draw_lines(shaders, parts.lines, pixels);
+  draw_rows(shaders, parts.letters, pixels);
 }
 
 }  // namespace breve::render

@@ -21,6 +21,12 @@ Mirror mirror_of(const Scene& scene) {
 
 bool moves(const SceneInstance& instance) { return !instance.fixed; }
 
+/// A number of a window. No picture is as large as a million pixels: numbers beyond that are as far outside.
+int pixel_of(double number) {
+  constexpr double kFar = 1e6;
+  return number > -kFar ? static_cast<int>(std::min(number, kFar)) : static_cast<int>(-kFar);
+}
+
 Window common(const Window& a, const Window& b) {
   const int left = std::max(a.left, b.left), bottom = std::max(a.bottom, b.bottom);
   return {left, bottom, std::min(a.left + a.width, b.left + b.width) - left,
@@ -88,15 +94,18 @@ void Renderer::Work::paint_reflection(Pass pass) {
 void Renderer::Work::paint_camera(const Scene& scene, const SceneCamera& camera, int width, int height) {
   const Gl& gl = context.gl();
   const bool window = camera.width > 0 && camera.height > 0;
-  const int left = window ? static_cast<int>(camera.x) : 0, bottom = window ? static_cast<int>(camera.y) : 0;
+  const int left = window ? pixel_of(camera.x) : 0, bottom = window ? pixel_of(camera.y) : 0;
   if (window) {
-    width = static_cast<int>(camera.width);
-    height = static_cast<int>(camera.height);
+    width = pixel_of(camera.width);
+    height = pixel_of(camera.height);
   }
   const Window cut = common({left, bottom, width, height}, needed);
   if (cut.empty()) return;
   const Lens lens = lens_of(camera, static_cast<double>(width) / height);
-  Pass pass{&scene, &camera, &lens, width, height, ground_of(scene) != nullptr, shadows, mirror_of(scene)};
+  Pass pass{&scene, &camera, &lens, width, height, ground_of(scene), shadows, mirror_of(scene)};
+  for (const SceneSheet& sheet : scene.sheets)
+    if (sheet.clear) pass.clear_sheets.push_back(sheet.corner.z());
+  std::sort(pass.clear_sheets.begin(), pass.clear_sheets.end());
   if (window || left != 0 || bottom != 0) pass.mirror.on = false;  // its image is as large as the whole picture
   if (pass.mirror.on) paint_reflection(pass);
   target->bind();
@@ -105,23 +114,44 @@ void Renderer::Work::paint_camera(const Scene& scene, const SceneCamera& camera,
   gl.Scissor(cut.left, cut.bottom, cut.width, cut.height);
   gl.ClearColor(0, 0, 0, 1);
   gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  const Canvas canvas{&lens, width, height, &counters.draw_calls};
+  const Canvas canvas{&lens, width, height, &counters.draw_calls, &scene.fog};
   draw_backdrop(pass);
-  if (scene.dimension == 2) gl.Disable(GL_DEPTH_TEST);
-  draw_sheets(pass);
-  gl.Enable(GL_DEPTH_TEST);
-  draw_bodies(pass);
-  if (scene.dimension == 2) gl.Disable(GL_DEPTH_TEST);
-  marks.draw_polygons(shaders, scene.triangles, canvas);
+  (scene.dimension == 2) ? draw_flat_layers(pass, canvas) : draw_layers(pass, canvas);
   gl.DepthMask(GL_FALSE);
-  marks.draw_lines(shaders, scene.lines, canvas);
-  marks.draw_sprites(shaders, scene.sprites, canvas, [&](std::uint32_t number) { bind_texture(scene, number, 0); });
   gl.Disable(GL_DEPTH_TEST);
   marks.draw_arrows(shaders, scene.arrows, canvas);
-  marks.draw_labels(shaders, scene, canvas);
-  if (scene.flags.text && camera.text) marks.draw_texts(shaders, scene, canvas);
-  if (scene.flags.text && camera.text && !window) marks.draw_plots(shaders, scene, canvas);
+  constexpr int kLeastForWords = 64;  // pixels: in a lower picture letters would cover what is to be seen
+  const bool words = height >= kLeastForWords, overlay = words && scene.flags.text && camera.text && !window;
+  if (words) marks.draw_labels(shaders, scene, canvas);
+  if (overlay) marks.draw_texts(shaders, scene, canvas);
+  if (overlay) marks.draw_plots(shaders, scene, canvas);
   gl.DepthMask(GL_TRUE);
+  gl.Enable(GL_DEPTH_TEST);
+}
+
+/// Outside of the windows: scripts read the pixels inside. Windows that are drawn afterwards cover those of others.
+void Renderer::Work::frame_windows(const Scene& scene, int width, int height) {
+  const Gl& gl = context.gl();
+  const Vector4f color(0.55F, 0.60F, 0.66F, 1);
+  std::vector<SceneLine> edges;
+  for (std::size_t i = 1; i < scene.cameras.size(); ++i) {
+    const SceneCamera& camera = scene.cameras[i];
+    if (camera.width < 1 || camera.height < 1) continue;
+    const auto left = static_cast<float>(pixel_of(camera.x)) - 0.5F,
+               right = left + static_cast<float>(pixel_of(camera.width)) + 1,
+               low = static_cast<float>(height - pixel_of(camera.y)) + 0.5F,
+               high = low - static_cast<float>(pixel_of(camera.height)) - 1;
+    const Vector3f corners[] = {{left, low, 0}, {right, low, 0}, {right, high, 0}, {left, high, 0}};
+    for (std::size_t k = 0; k < 4; ++k) edges.push_back({corners[k], corners[(k + 1) % 4], color, 1});
+  }
+  if (edges.empty()) return;
+  gl.Viewport(0, 0, width, height);
+  gl.Scissor(needed.left, needed.bottom, std::max(0, needed.width), std::max(0, needed.height));
+  gl.Disable(GL_DEPTH_TEST);
+  Canvas canvas{nullptr, width, height, &counters.draw_calls};
+  const Lens lens = pixel_lens(canvas);
+  canvas.lens = &lens;
+  marks.draw_lines(shaders, edges, canvas);
   gl.Enable(GL_DEPTH_TEST);
 }
 
@@ -162,6 +192,7 @@ void Renderer::Work::paint(const Scene& scene, int width, int height, Picture& p
   last_camera = own_camera ? *own_camera : framed(scene, scene.cameras[0], aspect, framing);
   shadows = draw_shadows(scene, lens_of(last_camera, aspect), height);
   paint_camera(scene, last_camera, width, height);
+  if (settings.look == Look::Full) frame_windows(scene, width, height);
   for (std::size_t i = 1; i < scene.cameras.size(); ++i)
     if (scene.cameras[i].width >= 1 && scene.cameras[i].height >= 1)
       paint_camera(scene, scene.cameras[i], width, height);

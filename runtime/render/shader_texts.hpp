@@ -1,5 +1,6 @@
 // GLSL. Attributes: a vertex has position, normal, uv, tint; an instance has the rows of its place, its color and
-// `extra` (texture scale x and y, lit, layer); lit is 2 for what is fixed.
+// `extra` (texture scale x and y, lit, layer); lit is 2 for a ground whose texture no program has chosen, 3 if its
+// colour neither.
 #pragma once
 
 namespace breve::render {
@@ -15,9 +16,37 @@ vec4 shadowed(vec3 at, vec3 n) {
 }
 )";
 
-// Bodies have a program for each combination of `disc`, `textured`, `shadows`, `mirror` (0.0 or 1.0) and `mode` (0:
-// plain colours, 1: lights, 2: studio), which are macros: a renderer in software computes both sides of every `if`
-// whose condition is a uniform.
+// A texture, projected along the axes of a shape.
+inline constexpr const char* kTiles = R"(
+vec4 tiles(sampler2D image, vec3 own, vec3 own_normal, vec2 tile) {
+  vec3 w = pow(abs(normalize(own_normal)), vec3(6));
+  w /= w.x + w.y + w.z;
+  vec3 p = own / vec3(max(tile.x, 1e-6), max(tile.y, 1e-6), max(tile.x, 1e-6));
+  return w.x * texture(image, vec2(p.z, -own.y / max(tile.y, 1e-6))) +
+         w.y * texture(image, vec2(p.x, own.z / max(tile.y, 1e-6))) +
+         w.z * texture(image, vec2(p.x, -own.y / max(tile.y, 1e-6)));
+}
+)";
+
+// Colours that are written, as numbers of light.
+inline constexpr const char* kLinear = R"(
+vec3 linear(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(0.04045, c)); }
+)";
+
+// Fog hides by distance from the eye; where there is no eye, by depth.
+inline constexpr const char* kFog = R"(
+uniform vec3 eye, sight, fog_color;  // sight: of an orthographic view, else 0; the colour is linear
+uniform float fog_start, fog_end, fog_power;
+float away_of(vec3 at) { return sight == vec3(0) ? length(eye - at) : dot(at - eye, sight); }
+float fog_of(float away) {
+  if (fog_power <= 0.0) return 0.0;
+  return 1.0 - pow(1.0 - clamp((away - fog_start) / max(fog_end - fog_start, 1e-6), 0.0, 1.0), fog_power);
+}
+)";
+
+// Bodies have a program for each combination of `disc`, `textured`, `holes` (of the texture), `shadows`, `mirror` (0.0
+// or 1.0) and `mode` (0: plain colours, 1: lights, 2: studio), which are macros: a renderer in software computes both
+// sides of every `if` whose condition is a uniform.
 inline constexpr const char* kBodyVertex = R"(
 in vec3 position, normal, tint;
 in vec4 row0, row1, row2, color, extra;
@@ -66,10 +95,10 @@ in vec4 surface, shadow_place;
 flat in float lit;
 flat in vec2 tile;
 flat in vec4 ball;
-uniform vec3 eye, sight, sky, ground, horizon, fog_color, key;
+uniform vec3 sky, ground, horizon, key;
 uniform vec3 light_place[8], light_ambient[8], light_diffuse[8], light_specular[8];
 uniform int lights;
-uniform float outline, fill, haze_start, haze_end, fog_start, fog_end, fog_power, mirror_height;
+uniform float outline, fill, haze_start, haze_end, mirror_height;
 in vec2 corner;
 uniform float shadow_ring, shadow_bias;  // ring: a part of the map
 uniform int shadow_samples;
@@ -78,17 +107,6 @@ uniform vec2 picture;
 uniform sampler2D image, reflection;
 uniform sampler2DShadow shadow_map;
 out vec4 result;
-
-vec3 linear(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(0.04045, c)); }
-
-vec4 tiles() {
-  vec3 w = pow(abs(normalize(own_normal)), vec3(6));
-  w /= w.x + w.y + w.z;
-  vec3 p = own / vec3(max(tile.x, 1e-6), max(tile.y, 1e-6), max(tile.x, 1e-6));
-  return w.x * texture(image, vec2(p.z, -own.y / max(tile.y, 1e-6))) +
-         w.y * texture(image, vec2(p.x, own.z / max(tile.y, 1e-6))) +
-         w.z * texture(image, vec2(p.x, -own.y / max(tile.y, 1e-6)));
-}
 
 float lit_part(vec3 at, vec3 n) {
   if (shadows < 0.5) return 1.0;
@@ -127,12 +145,13 @@ void main() {
   if (disc < 0.5 && dot(n, to_eye) < 0.0 && !gl_FrontFacing) n = -n;
   vec4 c = vec4(linear(surface.rgb), surface.a);
   if (textured > 0.5) {
-    // Fixed things, the ground above all, get a faint pattern and colour, so that moving bodies stand out.
-    vec4 pattern = tiles();
+    // The ground has a faint pattern and colour where no program has chosen them, so that moving bodies stand out.
+    vec4 pattern = tiles(image, own, own_normal, tile);
     bool quiet = lit > 1.5 && fill > 0.5;
     c *= quiet ? mix(vec4(1), pattern, vec4(vec3(0.38), 1)) : pattern;
+    if (holes > 0.5 && c.a < 0.01) discard;
   }
-  if (lit > 1.5 && fill > 0.5) c.rgb = mix(vec3(dot(c.rgb, vec3(0.21, 0.72, 0.07))), c.rgb, 0.62);
+  if (lit > 2.5 && fill > 0.5) c.rgb = mix(vec3(dot(c.rgb, vec3(0.21, 0.72, 0.07))), c.rgb, 0.62);
   if (outline > 0.0) c.rgb *= 0.16;
   vec3 color = c.rgb;
   if (lit > 0.5 && outline == 0.0 && mode == 1) {
@@ -154,16 +173,13 @@ void main() {
     color = c.rgb * (0.14 + 1.0 * wrap * wrap + 0.16 * mix(ground, sky, 0.5 + 0.5 * n.y)) + 0.10 * rim * sky +
             0.16 * pow(max(0.0, dot(n, halfway)), 40.0);
   }
-  float away = length(eye - world);
   if (mirror > 0.0 && n.y > 0.9 && abs(world.y - mirror_height) < 1e-2) {
     vec4 seen = texture(reflection, gl_FragCoord.xy / picture);
     float slant = mix(0.22, 0.75, pow(1.0 - max(0.0, dot(n, to_eye)), 4.0));
     color = mix(color, seen.rgb, mirror * slant * seen.a);
   }
-  if (fog_power > 0.0) {
-    float deep = clamp((away - fog_start) / max(fog_end - fog_start, 1e-6), 0.0, 1.0);
-    color = mix(color, linear(fog_color), 1.0 - pow(1.0 - deep, fog_power));
-  }
+  float away = away_of(world);
+  color = mix(color, fog_color, fog_of(away));
   if (haze_end > 0.0) color = mix(color, horizon, smoothstep(haze_start, haze_end, away));
   result = vec4(color, disc > 0.5 ? cover : c.a);
 }
@@ -193,6 +209,36 @@ in vec2 corner;
 uniform float disc;
 void main() {
   if (disc > 0.5 && dot(corner, corner) > 1.0) discard;
+}
+)";
+
+// What a texture with holes leaves of a body.
+inline constexpr const char* kHolesVertex = R"(
+in vec3 position, normal;
+in vec4 row0, row1, row2, color, extra;
+uniform mat4 shadow_matrix;
+out vec3 own, own_normal;
+flat out vec2 tile;
+flat out float alpha;
+void main() {
+  vec4 p = vec4(position, 1);
+  vec3 scale = vec3(length(vec3(row0.x, row1.x, row2.x)), length(vec3(row0.y, row1.y, row2.y)),
+                    length(vec3(row0.z, row1.z, row2.z)));
+  own = position * scale;
+  own_normal = normal / max(scale, vec3(1e-12));
+  tile = extra.xy;
+  alpha = color.a;
+  gl_Position = shadow_matrix * vec4(dot(row0, p), dot(row1, p), dot(row2, p), 1);
+}
+)";
+inline constexpr const char* kHolesFragment = R"(
+in vec3 own, own_normal;
+flat in vec2 tile;
+flat in float alpha;
+uniform sampler2D image;
+void main() {
+  // KEEP IN STEP: what `casts` in shadow.cpp says of bodies without a texture.
+  if (alpha * tiles(image, own, own_normal, tile).a <= 0.3) discard;
 }
 )";
 
@@ -277,14 +323,24 @@ uniform mat4 view, projection;
 uniform vec2 picture;
 uniform float near;
 out float along, across;
+out vec3 at;
 flat out float pattern, half_width;
 flat out vec4 paint;
 void main() {
+  vec3 from = row0.xyz, to = row1.xyz;
   vec4 a = projection * (view * vec4(row0.xyz, 1)), b = projection * (view * vec4(row1.xyz, 1));
   // The part behind the camera is cut off.
   if (a.w < near && b.w < near) { gl_Position = vec4(2, 2, 2, 1); return; }
-  if (a.w < near) a = mix(a, b, (near - a.w) / (b.w - a.w));
-  if (b.w < near) b = mix(b, a, (near - b.w) / (a.w - b.w));
+  if (a.w < near) {
+    float part = (near - a.w) / (b.w - a.w);
+    a = mix(a, b, part);
+    from = mix(from, to, part);
+  }
+  if (b.w < near) {
+    float part = (near - b.w) / (a.w - b.w);
+    b = mix(b, a, part);
+    to = mix(to, from, part);
+  }
   vec2 pa = a.xy / a.w * picture * 0.5, pb = b.xy / b.w * picture * 0.5;
   float size = length(pb - pa);
   vec2 way = size > 1e-4 ? (pb - pa) / size : vec2(1, 0);
@@ -293,6 +349,7 @@ void main() {
   bool last = gl_VertexID % 2 == 1;
   across = (gl_VertexID / 2 == 1 ? 1.0 : -1.0) * (half_width + 0.5);
   along = last ? size : 0.0;
+  at = last ? to : from;
   vec4 p = last ? b : a;
   gl_Position = p + vec4(side * across / picture * 2.0 * p.w, -2e-5 * p.w, 0);
   pattern = row1.w;
@@ -302,14 +359,15 @@ void main() {
 
 inline constexpr const char* kLineFragment = R"(
 in float along, across;
+in vec3 at;
 flat in float pattern, half_width;
 flat in vec4 paint;
 out vec4 result;
-vec3 linear(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(0.04045, c)); }
 void main() {
   int bit = int(mod(along * 0.5, 16.0));
   if ((int(pattern) >> bit & 1) == 0) discard;
-  result = vec4(linear(paint.rgb), paint.a * clamp(half_width + 0.5 - abs(across), 0.0, 1.0));
+  vec3 color = mix(linear(paint.rgb), fog_color, fog_of(away_of(at)));
+  result = vec4(color, paint.a * clamp(half_width + 0.5 - abs(across), 0.0, 1.0));
 }
 )";
 
@@ -319,8 +377,10 @@ uniform mat4 view, projection;
 uniform vec2 picture;
 out vec2 corner;
 flat out vec4 paint;
+flat out vec3 at;
 flat out float point;
 void main() {
+  at = row0.xyz;
   corner = vec2(gl_VertexID % 2, gl_VertexID / 2) * 2.0 - 1.0;
   float c = cos(row1.x), s = sin(row1.x);
   vec2 turned = vec2(c * corner.x - s * corner.y, s * corner.x + c * corner.y);
@@ -340,10 +400,11 @@ void main() {
 inline constexpr const char* kSpriteFragment = R"(
 in vec2 corner;
 flat in vec4 paint;
+flat in vec3 at;
 flat in float point;
 uniform sampler2D image;
+uniform float glow;
 out vec4 result;
-vec3 linear(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(0.04045, c)); }
 void main() {
   vec4 c = vec4(linear(paint.rgb), paint.a);
   if (point > 0.5) {
@@ -351,7 +412,9 @@ void main() {
   } else {
     c *= texture(image, vec2(corner.x, -corner.y) * 0.5 + 0.5);
   }
-  result = c;
+  // Fog dims a light map, which is added to the picture; other sprites take its colour.
+  float fog = fog_of(away_of(at));
+  result = glow > 0.5 ? vec4(c.rgb, c.a * (1.0 - fog)) : vec4(mix(c.rgb, fog_color, fog), c.a);
 }
 )";
 
@@ -360,32 +423,42 @@ in vec3 position;
 in vec4 color;
 uniform mat4 view, projection;
 out vec4 paint;
+out vec3 at;
 void main() {
   paint = color;
+  at = position;
   gl_Position = projection * (view * vec4(position, 1));
 }
 )";
 inline constexpr const char* kPlainFragment = R"(
 in vec4 paint;
+in vec3 at;
 out vec4 result;
-vec3 linear(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(0.04045, c)); }
-void main() { result = vec4(linear(paint.rgb), paint.a); }
+void main() { result = vec4(mix(linear(paint.rgb), fog_color, fog_of(away_of(at))), paint.a); }
 )";
 
 inline constexpr const char* kSheetVertex = R"(
 uniform mat4 view, projection;
 uniform vec3 corner, across, along;
 out vec2 place;
+out vec3 at;
 void main() {
   place = vec2(gl_VertexID % 2, gl_VertexID / 2);
-  gl_Position = projection * (view * vec4(corner + across * place.x + along * place.y, 1));
+  at = corner + across * place.x + along * place.y;
+  gl_Position = projection * (view * vec4(at, 1));
 }
 )";
 inline constexpr const char* kSheetFragment = R"(
 in vec2 place;
+in vec3 at;
 uniform sampler2D image;
+uniform float least, most;  // alpha of the cells that are drawn
 out vec4 result;
-void main() { result = texture(image, place); }
+void main() {
+  vec4 c = texture(image, place);
+  if (c.a < least || c.a >= most) discard;
+  result = vec4(mix(c.rgb, fog_color, fog_of(away_of(at))), c.a);
+}
 )";
 
 inline constexpr const char* kTextVertex = R"(
@@ -410,7 +483,6 @@ flat in vec4 paint;
 flat in vec3 plate;
 uniform sampler2D image;
 out vec4 result;
-vec3 linear(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(0.04045, c)); }
 void main() {
   float cover = texture(image, place).r;
   if (plate.z > 0.5) {

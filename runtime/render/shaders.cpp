@@ -1,6 +1,9 @@
 // The shaders. All light is computed in linear space; what is written becomes sRGB in the frame buffer.
 #include "runtime/render/shaders.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "runtime/base/error.hpp"
 #include "runtime/render/shader_texts.hpp"
 
@@ -55,25 +58,45 @@ int Program::at(const char* name) const {
   return locations_[name] = gl_.GetUniformLocation(program_, name);
 }
 
+Vector3f linear(const Vector3f& color) {
+  const auto part = [](float c) { return c <= 0.04045F ? c / 12.92F : std::pow((c + 0.055F) / 1.055F, 2.4F); };
+  return {part(color.x()), part(color.y()), part(color.z())};
+}
+
+void set_fog(const Program& program, const SceneFog* fog, const Lens& lens) {
+  const bool on = fog && fog->enabled;
+  program.set("fog_power", on ? 10 * std::max(fog->intensity, 0.0F) : 0.0F);
+  if (!on) return;
+  program.set("fog_start", fog->start);
+  program.set("fog_end", fog->end);
+  program.set("fog_color", linear(fog->color));
+  program.set("eye", lens.eye);
+  program.set("sight", lens.orthographic ? Vector3f(-lens.back) : Vector3f(0, 0, 0));
+}
+
 Shaders::Shaders(const Gl& gl)
     : depth(gl, kDepthVertex, kDepthFragment),
+      holes(gl, kHolesVertex, kHolesFragment, kTiles),
       backdrop(gl, kBackdropVertex, kBackdropFragment),
-      line(gl, kLineVertex, kLineFragment),
-      sprite(gl, kSpriteVertex, kSpriteFragment),
-      plain(gl, kPlainVertex, kPlainFragment),
-      sheet(gl, kSheetVertex, kSheetFragment),
-      text(gl, kTextVertex, kTextFragment),
+      line(gl, kLineVertex, kLineFragment, std::string(kLinear) + kFog),
+      sprite(gl, kSpriteVertex, kSpriteFragment, std::string(kLinear) + kFog),
+      plain(gl, kPlainVertex, kPlainFragment, std::string(kLinear) + kFog),
+      sheet(gl, kSheetVertex, kSheetFragment, kFog),
+      text(gl, kTextVertex, kTextFragment, kLinear),
       gl_(gl) {}
 
 const Program& Shaders::body(const BodyKind& kind) {
   std::unique_ptr<Program>& kept = bodies_[kind];
   if (!kept) {
     std::string macros;
-    const std::pair<const char*, bool> switches[] = {
-        {"disc", kind.disc}, {"textured", kind.textured}, {"shadows", kind.shadows}, {"mirror", kind.mirror}};
+    const std::pair<const char*, bool> switches[] = {{"disc", kind.disc},
+                                                     {"textured", kind.textured},
+                                                     {"holes", kind.holes},
+                                                     {"shadows", kind.shadows},
+                                                     {"mirror", kind.mirror}};
     for (const auto& [name, on] : switches) macros += std::string("#define ") + name + (on ? " 1.0\n" : " 0.0\n");
     macros += "#define mode " + std::to_string(kind.mode) + "\n";
-    macros += kShadowed;
+    for (const char* part : {kShadowed, kTiles, kLinear, kFog}) macros += part;
     kept = std::make_unique<Program>(gl_, kBodyVertex, kBodyFragment, macros);
   }
   return *kept;

@@ -15,7 +15,7 @@ namespace breve::render {
 /// A linked program. Uniforms that it does not use are ignored.
 class Program {
  public:
-  /// @param macros  lines of `#define` for both
+  /// @param macros  lines of `#define`, and functions, for both
   /// @throws Error{Internal} with the compiler's words
   Program(const Gl& gl, const char* vertex, const char* fragment, const std::string& macros = {});
   ~Program();
@@ -40,16 +40,22 @@ class Program {
 /// What one program for bodies computes.
 struct BodyKind {
   bool disc = false;  // small spheres, as squares
-  bool textured = false, shadows = false, mirror = false;
+  bool textured = false, holes = false, shadows = false, mirror = false;
   int mode = 0;  // 0: plain colours, 1: lights, 2: studio
   auto operator<=>(const BodyKind&) const = default;
 };
+
+/// A colour of a script as a number of light.
+Vector3f linear(const Vector3f& color);
+
+/// @param fog  null: none
+void set_fog(const Program& program, const SceneFog* fog, const Lens& lens);
 
 struct Shaders {
   explicit Shaders(const Gl& gl);
   /// Made when it is used first.
   const Program& body(const BodyKind& kind);
-  Program depth, backdrop, line, sprite, plain, sheet, text;
+  Program depth, holes, backdrop, line, sprite, plain, sheet, text;
 
  private:
   const Gl& gl_;

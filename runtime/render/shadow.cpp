@@ -96,12 +96,18 @@ ShadowLens Renderer::Work::draw_shadows(const Scene& scene, const Lens& seen_by,
   sight.slope = lens.texel_slope * static_cast<float>(side) / 2;
   const Batches all = batch(scene, {&sight, static_cast<float>(side), true, false}, casts, ground);
   instances.fill(GL_ARRAY_BUFFER, all.instances.data(), all.instances.size() * sizeof(GpuInstance), GL_STREAM_DRAW);
+  shaders.holes.use();
+  shaders.holes.set("shadow_matrix", lens.matrix);
+  shaders.holes.set("image", 0);
   shaders.depth.use();
   shaders.depth.set("shadow_matrix", lens.matrix);
   shaders.depth.set("eye", eye);
   for (const auto* batches : {&all.opaque, &all.transparent})
     for (const Batch& one : *batches) {
-      shaders.depth.set("disc", one.mesh == kDiscMesh ? 1.0F : 0.0F);
+      const bool holes = one.texture != kNoTexture && scene.textures[one.texture].clear;
+      (holes ? shaders.holes : shaders.depth).use();
+      if (holes) bind_texture(scene, one.texture, 0);
+      if (!holes) shaders.depth.set("disc", one.mesh == kDiscMesh ? 1.0F : 0.0F);
       // A coarse sphere lies within the one that is seen, which so does not shade itself.
       const MeshBuffer& buffer = mesh(scene, one.mesh > kSphereMesh + 1 ? kSphereMesh + 1 : one.mesh);
       draw_pieces(buffer, one, false);

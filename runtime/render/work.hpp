@@ -30,10 +30,11 @@ struct Pass {
   const SceneCamera* camera = nullptr;
   const Lens* lens = nullptr;
   int width = 0, height = 0;
-  bool has_ground = false;
+  const SceneInstance* ground = nullptr;  // null: none
   ShadowLens shadow;
-  Mirror mirror;           // what it shows is in the reflection's target
-  bool reflected = false;  // this pass draws the reflection
+  Mirror mirror;                      // what it shows is in the reflection's target
+  bool reflected = false;             // this pass draws the reflection
+  std::vector<float> clear_sheets{};  // z of the sheets that let through what is behind them, in order
 };
 
 /// Colours of sky and haze, linear.
@@ -47,6 +48,9 @@ struct Window {
   bool empty() const { return width <= 0 || height <= 0; }
 };
 
+/// Cells of a sheet.
+enum class Cells : std::uint8_t { Opaque, Clear, All };
+
 struct Renderer::Work {
   explicit Work(const Settings& given);
   ~Work();
@@ -57,18 +61,27 @@ struct Renderer::Work {
   void paint(const Scene& scene, int width, int height, Picture& picture);
   void paint_camera(const Scene& scene, const SceneCamera& camera, int width, int height);
   void paint_reflection(Pass pass);
+  void frame_windows(const Scene& scene, int width, int height);
   void read(const Lens& lens, Picture& picture);
   void blur(const Scene& scene, Picture& picture);
   // bodies.cpp
   void draw_backdrop(const Pass& pass);
-  void draw_bodies(const Pass& pass, bool (*wanted)(const SceneInstance&) = nullptr);
-  void draw_batches(const Pass& pass, const std::vector<Batch>& batches, bool blended, float outline = 0);
+  void draw_bodies(const Pass& pass, Wanted wanted = nullptr);
+  /// Sorted, and in the buffer of instances. @param others  what is drawn among the transparent ones
+  Batches upload_bodies(const Pass& pass, const std::vector<Place>& others, Wanted wanted = nullptr);
+  void draw_opaque(const Pass& pass, const Batches& all);
+  void draw_transparent(const Pass& pass, const Batch& one);
+  void draw_batch(const Pass& pass, const Batch& batch, bool blended, float outline = 0);
   void draw_pieces(const MeshBuffer& buffer, const Batch& batch, bool blended);
   const Program& body_program(const Pass& pass, const Batch& batch);
-  void draw_sheets(const Pass& pass);
   void set_body_uniforms(const Pass& pass, const Program& program);
   void set_lights(const Pass& pass, const Program& program);
   Air air_of(const Scene& scene) const;
+  // layers.cpp
+  void draw_layers(const Pass& pass, const Canvas& canvas);
+  void draw_flat_layers(const Pass& pass, const Canvas& canvas);
+  void draw_sheet(const Pass& pass, std::size_t number, Cells cells);
+  void draw_sprites(const Pass& pass, const std::vector<const SceneSprite*>& sprites, const Canvas& canvas);
   // uploads.cpp
   const MeshBuffer& mesh(const Scene& scene, std::uint32_t number);
   void bind_texture(const Scene& scene, std::uint32_t number, unsigned unit);

@@ -86,6 +86,30 @@ std::vector<Ball> without_outliers(std::vector<Ball> balls) {
   return balls;
 }
 
+std::vector<Ball> balls_to_see(const Scene& scene) {
+  std::vector<Ball> balls = balls_of(scene, false);
+  if (balls.empty()) balls = balls_of(scene, true);
+  return balls.empty() ? balls : without_outliers(std::move(balls));
+}
+
+/// From so far each ball is between the planes through the eye that bound the picture.
+double least_distance(const std::vector<Ball>& balls, const Vector3& center, double slope, double aspect,
+                      bool orthographic) {
+  const Eigen::Matrix3d rotation = rotation_of(kPitch, kYaw);
+  double distance = orthographic ? 1e-6 / slope : 0;
+  for (const Ball& b : balls) {
+    const Vector3 away = b.center - center, seen = rotation.transpose() * away;
+    if (orthographic) {
+      distance = std::max(
+          {distance, (std::abs(away.y()) + b.radius) / slope, (std::abs(away.x()) + b.radius) / slope / aspect});
+      continue;
+    }
+    for (const auto& [way, half] : {std::pair{std::abs(seen.x()), slope * aspect}, {std::abs(seen.y()), slope}})
+      distance = std::max(distance, seen.z() + way / half + b.radius * std::hypot(1.0, half) / half);
+  }
+  return distance;
+}
+
 }  // namespace
 
 float Lens::distance(float depth) const {
@@ -136,32 +160,14 @@ float radius_of(const SceneInstance& instance, const SceneMesh& mesh) {
 }
 
 Framing frame_of(const Scene& scene, double slope, double aspect, bool orthographic) {
-  std::vector<Ball> balls = balls_of(scene, false);
-  if (balls.empty()) balls = balls_of(scene, true);
+  const std::vector<Ball> balls = balls_to_see(scene);
   if (balls.empty()) return {};
-  balls = without_outliers(std::move(balls));
   Eigen::AlignedBox3d box;
   for (const Ball& b : balls) {
     box.extend(b.center - Vector3::Constant(b.radius));
     box.extend(b.center + Vector3::Constant(b.radius));
   }
-  Framing frame;
-  frame.center = box.center();
-  const double half_height = std::max({box.sizes().y() / 2, box.sizes().x() / 2 / aspect, 1e-6});
-  if (orthographic) {
-    frame.distance = kMargin * half_height / slope;
-    return frame;
-  }
-  // From there each ball is between the planes through the eye that bound the picture.
-  const Eigen::Matrix3d rotation = rotation_of(kPitch, kYaw);
-  for (const Ball& b : balls) {
-    const Vector3 seen = rotation.transpose() * (b.center - frame.center);
-    for (const auto& [way, half] : {std::pair{std::abs(seen.x()), slope * aspect}, {std::abs(seen.y()), slope}}) {
-      const double needed = seen.z() + way / half + b.radius * std::hypot(1.0, half) / half;
-      frame.distance = std::max(frame.distance, kMargin * needed);
-    }
-  }
-  return frame;
+  return {box.center(), kMargin * least_distance(balls, box.center(), slope, aspect, orthographic)};
 }
 
 SceneCamera framed(const Scene& scene, SceneCamera camera, double aspect, Framing& kept) {
@@ -181,6 +187,9 @@ SceneCamera framed(const Scene& scene, SceneCamera camera, double aspect, Framin
     kept.center += kGlide * (now.center - kept.center);
     kept.distance += kGlide * (now.distance - kept.distance);
   }
+  // However fast things spread, and however many pictures were left out: none of them is cut off.
+  kept.distance = std::max(
+      kept.distance, least_distance(balls_to_see(scene), kept.center, slope, aspect, flat || camera.orthographic));
   camera.target = kept.center;
   camera.pitch = pitch;
   camera.yaw = yaw;

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+
 #include "runtime/scene/plot_layout.hpp"
 
 namespace breve {
@@ -26,6 +29,32 @@ std::vector<double> axis_marks(double low, double high, int count) {
   std::vector<double> marks;
   for (double i = std::ceil(low / step - 1e-9); i * step <= high + step * 1e-9; ++i) marks.push_back(i * step);
   return marks;
+}
+
+std::vector<std::size_t> points_to_draw(const std::vector<double>& values, std::size_t points, std::size_t columns) {
+  constexpr std::size_t kOfColumn = 5;
+  std::vector<std::size_t> chosen;
+  points = std::min(points, values.size());
+  columns = std::max<std::size_t>(columns, 1);
+  const bool all = points <= kOfColumn * columns;
+  for (std::size_t column = 0, first = 0; first < points; ++column) {
+    const std::size_t end = all ? first + 1 : std::min(points, (column + 1) * points / columns);
+    std::size_t low = first, high = first, gap = first;
+    for (std::size_t i = first; i < end; ++i) {
+      if (!std::isfinite(values[i])) {
+        gap = i;
+      } else {
+        if (!(values[i] >= values[low])) low = i;
+        if (!(values[i] <= values[high])) high = i;
+      }
+    }
+    std::array<std::size_t, kOfColumn> some{first, low, high, gap, end - 1};
+    std::sort(some.begin(), some.end());
+    for (const std::size_t i : some)
+      if (chosen.empty() || chosen.back() != i) chosen.push_back(i);
+    first = end;
+  }
+  return chosen;
 }
 
 std::string plot_csv(const ScenePlot& plot) {
@@ -78,13 +107,22 @@ Axis y_axis_of(const ScenePlot& plot) {
   return axis_of(range, 6);
 }
 
-std::vector<KeyEntry> key_of(const ScenePlot& plot) {
-  std::vector<KeyEntry> key;
+Key key_of(const ScenePlot& plot) {
+  constexpr double kLetter = 11.5, kRoom = 64;  // about how wide a letter is, and what stands before and after a name
+  constexpr auto kMost = static_cast<std::size_t>((kWidth - kLeft - kRight - kRoom) / kLetter);
+  Key key;
   double x = kLeft;
   for (std::size_t i = 0; i < plot.lines.size(); ++i) {
-    if (plot.lines[i].name.empty()) continue;
-    key.push_back({x, i});
-    x += 64 + 11.5 * static_cast<double>(plot.lines[i].name.size());
+    std::string name = plot.lines[i].name;
+    if (name.empty()) continue;
+    if (name.size() > kMost) name = name.substr(0, kMost - 3) + "...";
+    const double width = kRoom + kLetter * static_cast<double>(name.size());
+    if (x > kLeft && x + width - kRoom / 2 > kWidth - kRight) {
+      x = kLeft;
+      key.height += kKeyRow;
+    }
+    key.entries.push_back({x, key.height, i, std::move(name)});
+    x += width;
   }
   return key;
 }

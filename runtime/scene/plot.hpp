@@ -26,6 +26,11 @@ std::string plot_csv(const ScenePlot& plot);
 /// A picture in SVG, legible at half its size.
 std::string plot_svg(const ScenePlot& plot);
 
+/// Which of the first `points` values have to be drawn for a line to look as if all were, in so many columns of pixels:
+/// of each column the first, lowest, highest and last, and one that is not finite, where the line breaks. In order.
+/// Source: Jugel, Jerzak, Hackenbroich and Markl 2014, "M4: a visualization-oriented time series data aggregation".
+std::vector<std::size_t> points_to_draw(const std::vector<double>& values, std::size_t points, std::size_t columns);
+
 /// Marks of an axis: a step of 1, 2 or 5 times a power of ten, so that there are about `count`.
 std::vector<double> axis_marks(double low, double high, int count);
 

@@ -13,7 +13,8 @@ namespace breve::plot_layout {
 // Units of SVG, and pixels.
 inline constexpr double kWidth = 900, kHeight = 520, kLeft = 92, kRight = 24, kTop = 64, kBottom = 74;
 inline constexpr double kKey = 35, kXAxis = kHeight - 18, kYAxis = kTop - 12;  // baselines of texts
-inline constexpr std::size_t kMostPoints = 2000;                               // of a line: more are not seen
+inline constexpr double kKeyRow = 26;                                          // of the key at the top
+inline constexpr std::size_t kColumns = 800;                                   // of pixels in which lines are drawn
 
 struct Range {
   double low = 0, high = 1;
@@ -70,9 +71,14 @@ inline bool is_point(const ScenePlot& plot, const ScenePlot::Line& line, std::si
 
 /// A line's name in the key at the top, and where it stands. Without names the title stands there.
 struct KeyEntry {
-  double x;
+  double x, below;  // below: the first row
   std::size_t line;
+  std::string name;  // as far as there is room
 };
-std::vector<KeyEntry> key_of(const ScenePlot& plot);
+struct Key {
+  std::vector<KeyEntry> entries;
+  double height = 0;  // of the rows but the first: all else is as far below
+};
+Key key_of(const ScenePlot& plot);
 
 }  // namespace breve::plot_layout

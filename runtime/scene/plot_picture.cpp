@@ -22,15 +22,19 @@ Rgb rgb_of(const Eigen::Vector3f& color) {
 
 class Paper {
  public:
-  Paper() {
+  /// @param shift  added to the height, and to all y until it is set to another
+  explicit Paper(double shift) : shift(shift) {
     picture_.width = static_cast<int>(kWidth);
-    picture_.height = static_cast<int>(kHeight);
-    picture_.rgba.assign(std::size_t{4} * static_cast<std::size_t>(kWidth) * static_cast<std::size_t>(kHeight), 255);
+    picture_.height = static_cast<int>(kHeight + shift);
+    picture_.rgba.assign(
+        std::size_t{4} * static_cast<std::size_t>(picture_.width) * static_cast<std::size_t>(picture_.height), 255);
   }
   Picture& picture() { return picture_; }
 
   /// Pixels are mixed with the ink as far as the line covers them.
   void line(double x0, double y0, double x1, double y1, double width, const Rgb& ink) {
+    y0 += shift;
+    y1 += shift;
     const double half = width / 2, long2 = std::max(1e-9, (x1 - x0) * (x1 - x0) + (y1 - y0) * (y1 - y0));
     for (int y = first(std::min(y0, y1) - half); y <= std::max(y0, y1) + half + 1; ++y)
       for (int x = first(std::min(x0, x1) - half); x <= std::max(x0, x1) + half + 1; ++x) {
@@ -41,6 +45,7 @@ class Paper {
   }
   /// @param align  0: from x on, 0.5: about x, 1: up to x
   void text(double x, double y, double align, const Letters& letters, std::string_view words, const Rgb& ink) {
+    y += shift;
     double at = x - align * letters.width_of(words);
     while (!words.empty()) {
       const Letters::Glyph& one = letters.glyph(next_character(words));
@@ -54,6 +59,7 @@ class Paper {
     }
   }
   const Letters small{17}, large{19};
+  double shift = 0;
 
  private:
   static int first(double place) { return static_cast<int>(std::floor(place)) - 1; }
@@ -87,27 +93,29 @@ void draw_axes(Paper& paper, const ScenePlot& plot, const Axis& x, const Axis& y
 }
 
 void draw_line(Paper& paper, const ScenePlot& plot, const ScenePlot::Line& line, const Axis& x, const Axis& y) {
-  const std::size_t points = points_of(plot, line), step = points / kMostPoints + 1;
-  for (std::size_t i = step; i < points; i += step)
-    if (is_point(plot, line, i - step) && is_point(plot, line, i))
-      paper.line(x_at(x.range, x_of(plot, i - step)), y_at(y.range, line.values[i - step]),
-                 x_at(x.range, x_of(plot, i)), y_at(y.range, line.values[i]), 2.6, rgb_of(line.color));
+  const std::vector<std::size_t> drawn = points_to_draw(line.values, points_of(plot, line), kColumns);
+  for (std::size_t k = 1; k < drawn.size(); ++k) {
+    const std::size_t i = drawn[k - 1], next = drawn[k];
+    if (is_point(plot, line, i) && is_point(plot, line, next))
+      paper.line(x_at(x.range, x_of(plot, i)), y_at(y.range, line.values[i]), x_at(x.range, x_of(plot, next)),
+                 y_at(y.range, line.values[next]), 2.6, rgb_of(line.color));
+  }
 }
 
 }  // namespace
 
 Picture plot_picture(const ScenePlot& plot) {
-  Paper paper;
+  const Key key = key_of(plot);
+  Paper paper(key.height);
   const Axis x = x_axis_of(plot), y = y_axis_of(plot);
   draw_axes(paper, plot, x, y);
   for (const ScenePlot::Line& line : plot.lines) draw_line(paper, plot, line, x, y);
-  const std::vector<KeyEntry> key = key_of(plot);
-  for (const KeyEntry& entry : key) {
-    const ScenePlot::Line& line = plot.lines[entry.line];
-    paper.line(entry.x + 2, 28.5, entry.x + 24, 28.5, 5, rgb_of(line.color));
-    paper.text(entry.x + 34, kKey, 0, paper.large, line.name, kText);
+  for (const KeyEntry& entry : key.entries) {
+    paper.shift = entry.below;
+    paper.line(entry.x + 2, 28.5, entry.x + 24, 28.5, 5, rgb_of(plot.lines[entry.line].color));
+    paper.text(entry.x + 34, kKey, 0, paper.large, entry.name, kText);
   }
-  if (key.empty()) paper.text((kLeft + kWidth - kRight) / 2, kKey, 0.5, paper.large, plot.title, kText);
+  if (key.entries.empty()) paper.text((kLeft + kWidth - kRight) / 2, kKey, 0.5, paper.large, plot.title, kText);
   return std::move(paper.picture());
 }
 

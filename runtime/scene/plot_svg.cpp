@@ -59,8 +59,7 @@ std::string axes(const ScenePlot& plot, const Axis& x, const Axis& y) {
 std::string path_of(const ScenePlot& plot, const ScenePlot::Line& line, const Axis& x, const Axis& y) {
   std::string path;
   bool drawing = false;
-  const std::size_t points = points_of(plot, line), step = points / kMostPoints + 1;
-  for (std::size_t i = 0; i < points; i += step) {
+  for (const std::size_t i : points_to_draw(line.values, points_of(plot, line), kColumns)) {
     const bool point = is_point(plot, line, i);
     if (point)
       path += fmt::format("{}{:.1f},{:.1f} ", drawing ? "L" : "M", x_at(x.range, x_of(plot, i)),
@@ -75,22 +74,22 @@ std::string path_of(const ScenePlot& plot, const ScenePlot::Line& line, const Ax
 
 std::string plot_svg(const ScenePlot& plot) {
   const Axis x = x_axis_of(plot), y = y_axis_of(plot);
+  const Key key = key_of(plot);
   std::string svg = fmt::format(
       "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {0} {1}' width='{0}' height='{1}' "
       "font-family='DejaVu Sans, Helvetica, Arial, sans-serif' font-size='19' fill='#2b3138'>\n"
       "<style>.m{{font-size:17px;fill:#5b6570}}</style>\n<title>{2}</title>\n"
       "<rect width='{0}' height='{1}' fill='#ffffff'/>\n",
-      kWidth, kHeight, escaped(plot.title));
+      kWidth, kHeight + key.height, escaped(plot.title));
+  if (key.height > 0) svg += fmt::format("<g transform='translate(0,{})'>\n", key.height);
   svg += axes(plot, x, y);
   for (const ScenePlot::Line& line : plot.lines) svg += path_of(plot, line, x, y);
-  const std::vector<KeyEntry> key = key_of(plot);
-  for (const KeyEntry& entry : key) {
-    const ScenePlot::Line& line = plot.lines[entry.line];
+  if (key.height > 0) svg += "</g>\n";
+  for (const KeyEntry& entry : key.entries)
     svg += fmt::format(
-        "<rect x='{0}' y='26' width='26' height='5' rx='2.5' fill='{1}'/><text x='{2}' y='{3}'>{4}</text>\n", entry.x,
-        ink_of(line), entry.x + 34, kKey, escaped(line.name));
-  }
-  if (key.empty())
+        "<rect x='{0}' y='{1}' width='26' height='5' rx='2.5' fill='{2}'/><text x='{3}' y='{4}'>{5}</text>\n", entry.x,
+        26 + entry.below, ink_of(plot.lines[entry.line]), entry.x + 34, kKey + entry.below, escaped(entry.name));
+  if (key.entries.empty())
     svg += fmt::format("<text x='{}' y='{}' text-anchor='middle'>{}</text>\n", (kLeft + kWidth - kRight) / 2, kKey,
                        escaped(plot.title));
   return svg + "</svg>\n";

@@ -38,7 +38,11 @@ struct SceneTexture {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgba;  // rows from the top
   std::uint64_t revision = 0;      // another number when the pixels are others
+  bool clear = false;              // some pixels let through what is behind them
 };
+
+/// What of a look no program has chosen: a renderer may draw it quieter, so that moving bodies stand out.
+enum class Unchosen : std::uint8_t { Nothing, Texture, TextureAndColor };
 
 struct SceneInstance {
   ObjectId object{};
@@ -49,6 +53,7 @@ struct SceneInstance {
   bool shadow = true;                         // it casts one
   bool fixed = false;  // a Stationary or Terrain: it catches shadows, and does not decide what is framed
   bool lit = true;
+  Unchosen unchosen = Unchosen::Nothing;
 };
 
 struct SceneLine {
@@ -84,6 +89,7 @@ struct SceneSheet {
   int columns = 0, rows = 0;
   std::vector<std::uint8_t> rgba;  // row after row from the corner, along `across` first
   std::uint64_t revision = 0;
+  bool clear = false;  // some cells let through what is behind them
 };
 
 struct SceneVertex {

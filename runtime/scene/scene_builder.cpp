@@ -71,15 +71,26 @@ std::uint32_t SceneBuilder::texture(ObjectId image, int width, int height, std::
   }
   texture_used_[number] = true;
   SceneTexture& texture = scene_.textures[number];
-  const std::uint64_t revision = revision_of(rgba) ^ (static_cast<std::uint64_t>(width) << 40);
+  const std::uint64_t revision = texture_revision(width, rgba);
   if (texture.revision != revision || texture.width != width || texture.height != height) {
     texture.rgba.assign(rgba.begin(), rgba.end());
     texture.width = width;
     texture.height = height;
     texture.revision = revision;
+    texture.clear = is_clear(rgba);
   }
   texture.image = image;
   return number;
+}
+
+std::uint64_t SceneBuilder::texture_revision(int width, std::span<const std::uint8_t> rgba) const {
+  return revision_of(rgba) ^ (static_cast<std::uint64_t>(width) << 40);
+}
+
+bool SceneBuilder::is_clear(std::span<const std::uint8_t> rgba) {
+  for (std::size_t i = 3; i < rgba.size(); i += 4)
+    if (rgba[i] != 255) return true;
+  return false;
 }
 
 void SceneBuilder::add_box(const Vector3f& low, const Vector3f& high, const Vector4f& color) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 
 #include "runtime/scene/mesh_cache.hpp"
@@ -28,8 +29,14 @@ class SceneBuilder {
   SceneMesh& mesh_data(std::uint32_t mesh) { return scene_.meshes[mesh]; }
   /// A picture's number; its pixels are copied if they are others than before.
   std::uint32_t texture(ObjectId image, int width, int height, std::span<const std::uint8_t> rgba);
+  /// The revision that a texture of these pixels has.
+  std::uint64_t texture_revision(int width, std::span<const std::uint8_t> rgba) const;
+  /// That of the pattern which floors have, once whoever fills the scene has needed it.
+  std::optional<std::uint64_t> ground_pattern;
   /// Pixels of cells likewise get another revision when they are others.
   std::uint64_t revision_of(std::span<const std::uint8_t> bytes) const;
+  /// Is one of these pixels not opaque?
+  static bool is_clear(std::span<const std::uint8_t> rgba);
   /// The edges of a box.
   void add_box(const Vector3f& low, const Vector3f& high, const Vector4f& color);
 

@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "runtime/scene/mesh.hpp"
+#include "runtime/store/patterns.hpp"
+#include "runtime/world/drawing.hpp"
 #include "runtime/world/show.hpp"
 #include "steve/library/grids.hpp"
 #include "steve/library/joints.hpp"
@@ -73,6 +75,7 @@ void show_sheet(const World& world, ObjectId id, const GridResource& resource, b
     for (int part = 0; part < 4; ++part) sheet.rgba[4 * pixel + static_cast<std::size_t>(part)] = byte_of(color[part]);
   }
   sheet.revision = to.revision_of(sheet.rgba);
+  sheet.clear = SceneBuilder::is_clear(sheet.rgba);
   to.scene().sheets.push_back(std::move(sheet));
 }
 
@@ -117,7 +120,7 @@ void show_grid(Machine& machine, ObjectId id, const GridResource& resource, Scen
     show_volume(world, id, resource, colored, is_set(machine, machine.instance(id), "PatchGrid", "drawsSurface"), to);
 }
 
-void show_spring(Machine& machine, const SpringResource& resource, SceneBuilder& to) {
+void show_spring(Machine& machine, Instance& self, const SpringResource& resource, SceneBuilder& to) {
   const Mechanics& dynamics = dynamics_of(machine);
   if (resource.index == kNoSpring || !dynamics.has_spring(resource.index)) return;
   const SpringDescription& spring = dynamics.spring(resource.index);
@@ -125,8 +128,10 @@ void show_spring(Machine& machine, const SpringResource& resource, SceneBuilder&
   const auto end = [&](BodyIndex body, const Vector3& point) {
     return drawable(Vector3(bodies.location(body) + bodies.rotation(body) * point));
   };
+  const Slot* slot = library_slot(machine, self, "Spring", "springPattern");
+  const std::string_view pattern = slot && slot->ref ? view(static_cast<const StringCell*>(slot->ref)) : "";
   to.scene().lines.push_back(
-      {end(spring.a, spring.point_a), end(spring.b, spring.point_b), {0.15F, 0.15F, 0.18F, 1}, 2, 0x3333});
+      {end(spring.a, spring.point_a), end(spring.b, spring.point_b), {0.15F, 0.15F, 0.18F, 1}, 2, line_style(pattern)});
 }
 
 Vector3f color_variable(Machine& machine, Instance& self, std::string_view name) {
@@ -171,11 +176,34 @@ void show_terrains(Machine& machine, SceneBuilder& to) {
     if (!self || !is_library_kind(*self, "Terrain")) continue;
     const Vector3f valley = color_variable(machine, *self, "valleyColor");
     const Vector3f peak = color_variable(machine, *self, "peakColor");
+    // KEEP IN STEP: the colours in Terrain.tz.
+    if (instance.texture == kNoTexture && valley == Vector3f(0, 0.8F, 0.1F) && peak == Vector3f(1, 1, 1))
+      instance.unchosen = Unchosen::TextureAndColor;
     const std::vector<Vector3f> old = mesh.colors;
     color_by_height(mesh, valley, peak);
     if (old != mesh.colors) mesh.revision += std::uint64_t{1} << 32;
   }
   instances.erase(std::remove_if(instances.begin(), instances.end(), shown_as_lines), instances.end());
+}
+
+/// The checker of stationary bodies and the pattern of floors are the library's, unless the program loads them.
+void mark_unchosen(Machine& machine, SceneBuilder& to) {
+  Instance* controller = machine.controller();
+  const Instance* checker = controller ? library_object(machine, *controller, "Control", "checkerTexture") : nullptr;
+  for (SceneInstance& instance : to.scene().instances) {
+    if (!instance.fixed || instance.texture == kNoTexture) continue;
+    const SceneTexture& texture = to.scene().textures[instance.texture];
+    const bool checkered = checker && texture.image == checker->id;
+    if (!checkered && !to.ground_pattern) {
+      const Image ground = paint_pattern("ground");
+      to.ground_pattern = to.texture_revision(ground.width(), ground.bytes());
+    }
+    if (!checkered && texture.revision != *to.ground_pattern) continue;
+    // KEEP IN STEP: the colours of Stationary and of Floor in Stationary.tz.
+    const Vector4f first = checkered ? Vector4f(1, 1, 1, 1) : color_of(Vector3(0.35, 0.8, 0.45), 1);
+    const bool same = instance.color.head<3>() == first.head<3>();
+    instance.unchosen = same ? Unchosen::TextureAndColor : Unchosen::Texture;
+  }
 }
 
 std::string text_variable(Machine& machine, Instance& self, std::string_view name) {
@@ -225,9 +253,11 @@ void show(Machine& machine, SceneBuilder& scene, const Arrows& arrows) {
       if (ScenePlot plot = plot_of(machine, *instance); !plot.lines.empty())
         scene.scene().plots.push_back(std::move(plot));
     if (const auto* grid = resource_of<GridResource>(machine, instance)) show_grid(machine, id, *grid, scene);
-    if (const auto* spring = resource_of<SpringResource>(machine, instance)) show_spring(machine, *spring, scene);
+    if (const auto* spring = resource_of<SpringResource>(machine, instance))
+      show_spring(machine, *instance, *spring, scene);
   }
   show_terrains(machine, scene);
+  mark_unchosen(machine, scene);
   show_arrows(machine, arrows, scene);
   scene.end();
 }

@@ -79,6 +79,10 @@ constexpr GoldenScene kScenes[] = {
     {"texture_of_two_scales",
      CUBE "thing set-texture-image to (self picture of \"checker\"). thing set-texture-scale-x to 6. thing "
           "set-texture-scale-y to 2. "},
+    {"texture_with_holes", GROUND
+     "self enable-shadows. self move-light to (3, 20, 9). thing move to (-2, 0, -4). other = ((new Thing) become "
+     "from box at (1, .5, 2) in (1, .9, .3)). other set-texture-image to (self picture of \"star\"). other "
+     "set-texture-scale to 1.5. "},
     {"patterns", LIT
      "for n = 0, n < 6, n++: { thing = ((new Thing) become from box at (4.2 * (n % 3) - 4.2, 4 * (n / 3) - 2, 0) in "
      "(1, 1, 1)). thing set-texture-image to (self picture of ({\"checker\", \"ground\", \"noise\", \"clouds\", "
@@ -86,6 +90,12 @@ constexpr GoldenScene kScenes[] = {
      "\"star\"}{n})). thing set-texture-scale to 3. } "},
     {"transparency", PAIR "thing set-transparency to .4. (new Thing) become from ball at (-2, 0, -5) in (0, .8, .3). "
                           "((new Thing) become from ball at (-4, 0, 4) in (.9, .9, .2)) set-transparency to .4. "},
+    {"transparency_of_all_kinds", CAMERA
+     "for n = 0, n < 2, n++: { thing = ((new Thing) become from box at (n * 5 - 2.5, 0, n * 10 - 5) in (.2, .6, 1)). "
+     "thing set-transparency to .6. other = ((new Thing) become from ball at (2.5 - n * 5, -1, n * 6 - 3)). other "
+     "set-bitmap-image to (self picture of \"clouds\"). } cells = ((new PatchGrid) init-with x-count 8 y-count 3 "
+     "z-count 1 patch-size (1.5, 1.5, 1)). foreach other in (cells get-patches): { other set-color to (1, .6, "
+     ".1). other set-transparency to .5. } "},
     {"bitmap", BALL "thing set-bitmap-image to (self picture of \"star\"). thing set-bitmap-heading to .5. "},
     {"light_map", PAIR "thing set-lightmap-image to (self picture of \"star\"). thing move to (2, 1, 3). "},
     {"points", LIT "for n = 0, n < 9, n++: ((new Thing) become from ball at (2 * n - 8, n % 3, 0)) draw-as-point. "},
@@ -105,9 +115,17 @@ constexpr GoldenScene kScenes[] = {
     {"no_shadow_of_one", GROUND "self enable-shadows. ((new Thing) become from box at (4, 0, 0)) disable-shadows. "},
     {"reflection", GROUND "self enable-reflections. "},
     {"ground_and_sky", GROUND "self enable-shadows. self set-background-color to (.5, .7, 1). ", 3, true},
+    {"floor_of_the_library", LIT "new Floor. (new Thing) become from ball at (0, 2, 0). ", 3, true},
     {"fog", LIT "for n = 0, n < 6, n++: (new Thing) become from ball at (n * 3 - 6, 0, -6 * n). self enable-fog. self "
                 "set-fog-limits "
                 "with-start 15 with-end 50. self set-fog-intensity to .2. "},
+    {"fog_of_all_kinds", PEN
+     "self enable-fog. self set-fog-limits with-start 15 with-end 60. self set-fog-intensity to .2. self "
+     "set-fog-color to (.7, .7, .75). for n = 0, n < 5, n++: { ((new Thing) become from ball at (n * 3 - 8, 0, -8 * "
+     "n)) set-bitmap-image to (self picture of \"checker\"). pen set-color to (1, .6, .1). pen draw-line from (n * 3 "
+     "- 8, 2, -8 * n) to (n * 3 - 4, 5, -8 * n - 8). pen add-polygon-point at (n * 3 - 8, -2, "
+     "-8 * n). pen add-polygon-point at (n * 3 - 6, -2, -8 * n). pen add-polygon-point at (n * 3 - 7, -4, -8 * n). "
+     "pen end-polygon. } "},
     {"blur", BALL "thing set-velocity to (40, 0, 0). self enable-blur. self set-blur-factor to .5. ", 3, false, 3},
     {"outline", PAIR "self enable-outline. "},
     {"automatic_camera",
