@@ -120,11 +120,12 @@ void Renderer::Work::paint_camera(const Scene& scene, const SceneCamera& camera,
   gl.DepthMask(GL_FALSE);
   gl.Disable(GL_DEPTH_TEST);
   marks.draw_arrows(shaders, scene.arrows, canvas);
-  constexpr int kLeastForWords = 64;  // pixels: in a lower picture letters would cover what is to be seen
-  const bool words = height >= kLeastForWords, overlay = words && scene.flags.text && camera.text && !window;
+  // In a lower picture letters would cover what is to be seen. The program decides about its windows.
+  constexpr int kLeastForWords = 64;  // pixels
+  const bool words = window || height >= kLeastForWords, overlay = words && scene.flags.text && camera.text;
   if (words) marks.draw_labels(shaders, scene, canvas);
   if (overlay) marks.draw_texts(shaders, scene, canvas);
-  if (overlay) marks.draw_plots(shaders, scene, canvas);
+  if (overlay && !window) marks.draw_plots(shaders, scene, canvas);
   gl.DepthMask(GL_TRUE);
   gl.Enable(GL_DEPTH_TEST);
 }
