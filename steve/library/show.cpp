@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "runtime/scene/mesh.hpp"
-#include "runtime/store/patterns.hpp"
+#include "runtime/store/painted_pictures.hpp"
 #include "runtime/world/drawing.hpp"
 #include "runtime/world/show.hpp"
 #include "steve/library/grids.hpp"
