@@ -5,17 +5,6 @@
 
 namespace breve::render {
 
-// Where the shadow map is asked about a point. Some texels along the normal, more than the soft edge reaches, lie clear
-// of the face itself: a face that the light grazes does not shade itself in stripes.
-inline constexpr const char* kShadowed = R"(
-uniform mat4 shadow_matrix;
-uniform float shadow_texel_slope, shadow_clear;
-vec4 shadowed(vec3 at, vec3 n) {
-  vec4 place = shadow_matrix * vec4(at, 1);
-  return place + shadow_matrix * vec4(shadow_clear * shadow_texel_slope * place.w * n, 0);
-}
-)";
-
 // A texture, projected along the axes of a shape.
 inline constexpr const char* kTiles = R"(
 vec4 tiles(sampler2D image, vec3 own, vec3 own_normal, vec2 tile) {
@@ -50,8 +39,8 @@ float fog_of(float away) {
 inline constexpr const char* kBodyVertex = R"(
 in vec3 position, normal, tint;
 in vec4 row0, row1, row2, color, extra;
-uniform mat4 view, projection;
-uniform float outline, layers, tinted;
+uniform mat4 view, projection, shadow_matrix;
+uniform float outline, layers, tinted, shadow_texel_slope, shadow_clear;
 uniform vec3 right, up;
 uniform vec4 clip_plane;
 out vec2 corner;
@@ -59,7 +48,7 @@ out vec3 world, world_normal, own, own_normal;
 out vec4 surface, shadow_place;
 flat out float lit;
 flat out vec2 tile;
-flat out vec4 ball;
+flat out vec2 reach;
 void main() {
   vec3 x = vec3(row0.x, row1.x, row2.x), y = vec3(row0.y, row1.y, row2.y), z = vec3(row0.z, row1.z, row2.z);
   vec3 scale = vec3(length(x), length(y), length(z));
@@ -80,8 +69,14 @@ void main() {
   surface = vec4(tinted > 0.5 ? tint : color.rgb, color.a);
   lit = extra.z;
   tile = extra.xy;
-  ball = vec4(row0.w, row1.w, row2.w, scale.x);
-  shadow_place = disc > 0.5 ? vec4(0) : shadowed(world, normalize(world_normal));
+  // Some texels along the normal, more than the soft edge reaches, lie clear of the face itself: a face that the light
+  // grazes does not shade itself in stripes. A square has the place of the sphere's middle, from which each pixel goes along
+  // its own normal.
+  vec3 middle = vec3(row0.w, row1.w, row2.w);
+  shadow_place = shadow_matrix * vec4(disc > 0.5 ? middle : world, 1);
+  float off = shadow_clear * shadow_texel_slope * shadow_place.w;
+  reach = vec2(scale.x, scale.x + off);
+  if (disc < 0.5) shadow_place = shadow_matrix * vec4(world + off * normalize(world_normal), 1);
   gl_ClipDistance[0] = dot(vec4(world, 1), clip_plane);
   gl_Position = projection * (view * vec4(world, 1));
   // In a flat world what was made later lies on top, and an outline below its own body.
@@ -94,12 +89,13 @@ in vec3 world, world_normal, own, own_normal;
 in vec4 surface, shadow_place;
 flat in float lit;
 flat in vec2 tile;
-flat in vec4 ball;
+flat in vec2 reach;  // of a square: the sphere's radius, and the same with the distance that clears its shadow
 uniform vec3 sky, ground, horizon, key;
 uniform vec3 light_place[8], light_ambient[8], light_diffuse[8], light_specular[8];
 uniform int lights;
 uniform float outline, fill, haze_start, haze_end, mirror_height;
 in vec2 corner;
+uniform mat4 shadow_matrix;
 uniform float shadow_ring, shadow_bias;  // ring: a part of the map
 uniform int shadow_samples;
 uniform vec3 right, up;
@@ -108,9 +104,9 @@ uniform sampler2D image, reflection;
 uniform sampler2DShadow shadow_map;
 out vec4 result;
 
-float lit_part(vec3 at, vec3 n) {
+float lit_part(vec3 n) {
   if (shadows < 0.5) return 1.0;
-  vec4 place = disc > 0.5 ? shadowed(at, n) : shadow_place;
+  vec4 place = disc > 0.5 ? shadow_place + shadow_matrix * vec4(reach.y * n, 0) : shadow_place;
   vec3 p = place.xyz / place.w * 0.5 + 0.5;
   if (place.w <= 0.0 || any(lessThan(p.xy, vec2(0))) || any(greaterThan(p.xy, vec2(1)))) return 1.0;
   p.z = min(p.z, 0.999999) - shadow_bias;  // what is behind the frustum is shaded by what is in it
@@ -136,9 +132,10 @@ void main() {
     float away_from_center = length(corner);
     cover = clamp((1.0 - away_from_center) / max(fwidth(away_from_center), 1e-5) + 0.5, 0.0, 1.0);
     if (cover < 0.125) discard;
-    n = right * corner.x + up * corner.y + cross(right, up) * sqrt(max(0.0, 1.0 - away_from_center * away_from_center));
-    n = normalize(n);
-    at = ball.xyz + ball.w * n;  // on the sphere that the square stands for
+    float out_of_it = sqrt(max(0.0, 1.0 - away_from_center * away_from_center));
+    vec3 out_way = cross(right, up);
+    n = normalize(right * corner.x + up * corner.y + out_way * out_of_it);
+    at = world + reach.x * out_of_it * out_way;  // on the sphere that the square stands for
   }
   vec3 to_eye = normalize(eye - world);
   if (sight != vec3(0)) to_eye = -sight;
@@ -158,8 +155,8 @@ void main() {
     vec3 irradiance = vec3(0), shine = vec3(0);
     for (int i = 0; i < lights; ++i) {
       vec3 to_light = normalize(light_place[i] - at);
-      float seen = i == 0 ? lit_part(at, n) : 1.0;
       float facing = max(0.0, dot(n, to_light));
+      float seen = i == 0 && facing > 0.0 ? lit_part(n) : 1.0;
       irradiance += light_ambient[i] + light_diffuse[i] * facing * seen;
       vec3 halfway = normalize(to_light + to_eye);
       shine += (light_specular[i] + fill * 0.18) * seen * step(0.0001, facing) * pow(max(0.0, dot(n, halfway)), 60.0);

@@ -96,7 +96,7 @@ const Program& Shaders::body(const BodyKind& kind) {
                                                      {"mirror", kind.mirror}};
     for (const auto& [name, on] : switches) macros += std::string("#define ") + name + (on ? " 1.0\n" : " 0.0\n");
     macros += "#define mode " + std::to_string(kind.mode) + "\n";
-    for (const char* part : {kShadowed, kTiles, kLinear, kFog}) macros += part;
+    for (const char* part : {kTiles, kLinear, kFog}) macros += part;
     kept = std::make_unique<Program>(gl_, kBodyVertex, kBodyFragment, macros);
   }
   return *kept;
