@@ -17,16 +17,18 @@ constexpr std::size_t kMostServers = 16;
 /// Closes the server once.
 class OpenServer {
  public:
-  explicit OpenServer(const breve_server& server) : server_(server) { server_.url = nullptr; }
+  OpenServer(const breve_server& server, ObjectId owner) : server_(server), owner_(owner) { server_.url = nullptr; }
   ~OpenServer() {
     if (server_.close) server_.close(server_.handle);
   }
   OpenServer(const OpenServer&) = delete;
   OpenServer& operator=(const OpenServer&) = delete;
   const breve_server& functions() const { return server_; }
+  ObjectId owner() const { return owner_; }  // the object that opened it
 
  private:
   breve_server server_;
+  ObjectId owner_;
 };
 
 std::string packed(const NetworkRequest& request) {
@@ -67,19 +69,19 @@ class HostNetwork final : public steve::Network {
     return std::nullopt;
   }
 
-  std::optional<std::string> listen(std::uint16_t port, std::string& why) override {
+  std::optional<std::string> listen(std::uint16_t port, ObjectId owner, std::string& why) override {
     if (is_replay()) return replayed(Opened, NotOpened, why);
-    std::optional<std::string> url = open(port, why);
+    std::optional<std::string> url = open(port, owner, why);
     note(url ? Opened : NotOpened, url ? *url : why);
     return url;
   }
 
-  std::optional<NetworkRequest> next_request(const std::string& server) override {
+  std::optional<NetworkRequest> next_request(const std::string& server, ObjectId owner) override {
     if (is_replay()) {
       const auto recorded = world_.inputs->next(Request);
       return recorded ? std::optional(unpacked(*recorded)) : std::nullopt;
     }
-    std::optional<NetworkRequest> request = take(server);
+    std::optional<NetworkRequest> request = take(server, owner);
     note(request ? Request : Failed, request ? packed(*request) : std::string());
     return request;
   }
@@ -95,8 +97,10 @@ class HostNetwork final : public steve::Network {
     functions.answer(functions.handle, &response);
   }
 
-  void close(const std::string& server) override {
-    if (!is_replay()) servers_.erase(server);
+  void close(const std::string& server, ObjectId owner) override {
+    if (is_replay()) return;
+    const auto open = servers_.find(server);
+    if (open != servers_.end() && open->second->owner() == owner) servers_.erase(open);
   }
 
  private:
@@ -113,7 +117,7 @@ class HostNetwork final : public steve::Network {
     return std::nullopt;
   }
 
-  std::optional<std::string> open(std::uint16_t port, std::string& why) {
+  std::optional<std::string> open(std::uint16_t port, ObjectId owner, std::string& why) {
     if (servers_.size() >= kMostServers) {
       why = "16 servers are open, and a world may have no more: close those that are not needed";
       return std::nullopt;
@@ -133,7 +137,7 @@ class HostNetwork final : public steve::Network {
       return std::nullopt;
     }
     std::string url = server.url ? server.url : "";
-    auto whole = std::make_unique<OpenServer>(server);
+    auto whole = std::make_unique<OpenServer>(server, owner);
     if (url.empty() || !server.next) {
       why = "the host opened it without the required function or address";
       return std::nullopt;
@@ -142,9 +146,9 @@ class HostNetwork final : public steve::Network {
     return url;
   }
 
-  std::optional<NetworkRequest> take(const std::string& server) {
+  std::optional<NetworkRequest> take(const std::string& server, ObjectId owner) {
     const auto open = servers_.find(server);
-    if (open == servers_.end()) return std::nullopt;
+    if (open == servers_.end() || open->second->owner() != owner) return std::nullopt;
     const breve_server& functions = open->second->functions();
     breve_request asked{};
     const CallbackScope busy(world_);

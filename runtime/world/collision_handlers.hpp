@@ -25,6 +25,12 @@ class CollisionHandlers {
   void ignore(ClassId owner, ClassId other);
   /// The method that `owner` wants called when it touches `other`; kNoName if none.
   NameId method(ClassId owner, ClassId other) const;
+  /// What `owner` asked for, by the other class: visit(other, method, ignored). The method is kNoName if there is none.
+  template <class Visit>
+  void for_each_of(ClassId owner, Visit visit) const {
+    for (auto pair = pairs_.lower_bound({owner, 0}); pair != pairs_.end() && pair->first.first == owner; ++pair)
+      visit(pair->first.second, pair->second.method, pair->second.ignored);
+  }
   /// True if either side asked not to be pushed apart.
   bool ignored(ClassId a, ClassId b) const;
   /// True if a contact between the two has a handler on either side.

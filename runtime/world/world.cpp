@@ -268,6 +268,13 @@ void World::handle_collisions(ClassId owner, ClassId other, std::string_view met
 }
 
 void World::ignore_collisions(ClassId owner, ClassId other) { parts_->handlers.ignore(owner, other); }
+std::vector<World::CollisionRule> World::collision_rules(ClassId owner) const {
+  std::vector<CollisionRule> rules;
+  parts_->handlers.for_each_of(owner, [&](ClassId other, NameId method, bool ignored) {
+    rules.push_back({other, method == kNoName ? std::string_view() : parts_->names.text(method), ignored});
+  });
+  return rules;
+}
 void World::set_impact_timing(bool at_impact) { parts_->at_impact = at_impact; }
 
 void World::set_gravity(const Vector3& gravity) { parts_->dynamics->set_gravity(gravity); }

@@ -182,6 +182,12 @@ class World : public InMemory {
   // --- collision handlers, by exact class on both sides --------------------------------------------------------------
   void handle_collisions(ClassId owner, ClassId other, std::string_view method, ObjectId asked_by);
   void ignore_collisions(ClassId owner, ClassId other);
+  struct CollisionRule {
+    ClassId other;
+    std::string_view method;  // empty: no handler
+    bool ignored;
+  };
+  std::vector<CollisionRule> collision_rules(ClassId owner) const;  // by the number of the other class
   /// "impact" (first touch at its time of impact, the default) or "step" (calls at the end of the sub-step).
   void set_impact_timing(bool at_impact);
 

@@ -30,10 +30,13 @@ constexpr int kVersion = 1;
 bool is_archived(const ClassInfo& cls, std::string_view name, const VariableInfo& variable) {
   if (variable.array_size >= 0 && variable.type == StaticType::Pointer) return false;
   if (cls.name == "Object") return name == "birthTime" || name == "archiveDependencies";
-  if (cls.name == "Real") return name != "realLines" && name != "realMenus";
+  if (cls.name == "Real") return name != "realLines" && name != "realMenus" && name != "realWorldPointer";
   if (cls.name == "Control") return name == "accuracyRung";
   if (cls.name == "Spring") return true;
   if (cls.name == "MultiBody") return name != "bodyMenus";
+  // A server or a movie that is open belongs to the object that opened it.
+  if (cls.name == "NetworkServer") return name != "serverURL";
+  if (cls.name == "Movie") return name == "frameCount";
   return variable.type != StaticType::Pointer;
 }
 
@@ -218,6 +221,16 @@ const ClassInfo& class_of(Machine& machine, pugi::xml_node object) {
   return *cls;
 }
 
+/// Classes whose objects act outside of the world as soon as they are there: on a network, on files or on the run
+/// itself.
+bool reaches_outside(const Program& program, const ClassInfo& cls) {
+  for (const char* name : {"Control", "File", "GeneticAlgorithm", "Movie", "NetworkServer", "PushClusterGP", "URL"}) {
+    const ClassInfo* const outside = program.find_class(name);
+    if (outside && cls.derives_from(*outside)) return true;
+  }
+  return false;
+}
+
 /// A value of another type than the variable's is damage, not an error of the program.
 void set_from_archive(Machine& machine, Instance& object, const VariableInfo& variable, const Value& value,
                       const std::string& name) {
@@ -229,27 +242,61 @@ void set_from_archive(Machine& machine, Instance& object, const VariableInfo& va
   }
 }
 
-void read_variables(Machine& machine, Instance& object, pugi::xml_node element, ValueReader& values) {
+/// Calls `visit(class, variable, name, value)` for each variable, or element of an array, that an element has a value
+/// for.
+template <class Visit>
+void read_variables(Machine& machine, const ClassInfo& concrete, pugi::xml_node element, ValueReader& values,
+                    Visit visit) {
   std::map<std::pair<std::string, std::string>, pugi::xml_node> written;
   for (const pugi::xml_node variable : element.children("variable")) {
     machine.poll();
     written[{variable.attribute("class").value(), variable.attribute("name").value()}] = variable;
   }
   // A variable that the archive does not have keeps its default: the class may have grown since.
-  for_each_variable(machine, *object.cls, [&](const ClassInfo& cls, const std::string& name, const VariableInfo& v) {
+  for_each_variable(machine, concrete, [&](const ClassInfo& cls, const std::string& name, const VariableInfo& v) {
     const auto found = written.find({cls.name, name});
     if (found == written.end()) return;
     int i = 0;
     for (const pugi::xml_node value : found->second.children()) {
       if (value.type() != pugi::node_element || i >= elements_of(v)) continue;
-      set_from_archive(machine, object, element_of(v, i++), values.read(value), name);
+      visit(cls, element_of(v, i++), name, values.read(value));
     }
   });
 }
 
+/// A variable, or an element of an array, that an archive has a value for.
+struct ArchivedVariable {
+  VariableInfo variable;
+  std::string name;
+};
+
+/// Sets variables to the elements of `values`, or leaves the object as it was.
+void set_all_or_none(Machine& machine, Instance& object, const std::vector<ArchivedVariable>& variables,
+                     const ListCell& values) {
+  ListCell* const before = machine.heap().list();
+  const Pin pin(machine, Value::of(Tag::List, before));
+  for (const ArchivedVariable& one : variables)
+    machine.heap().push(*before, machine.get_variable(object, one.variable));
+  try {
+    auto value = values.begin();
+    for (const ArchivedVariable& one : variables) {
+      set_from_archive(machine, object, one.variable, *value, one.name);
+      ++value;
+    }
+  } catch (...) {
+    auto value = before->begin();
+    for (const ArchivedVariable& one : variables) {
+      if (object.live()) machine.set_variable(object, one.variable, *value);
+      ++value;
+    }
+    throw;
+  }
+}
+
 class Reader {
  public:
-  Reader(Machine& machine, pugi::xml_node archive) : machine_(machine), archive_(archive) {}
+  Reader(Machine& machine, pugi::xml_node archive, Origin origin)
+      : machine_(machine), archive_(archive), origin_(origin) {}
 
   Instance* read() {
     try {
@@ -257,6 +304,8 @@ class Reader {
       if (!objects_.contains(archive_.attribute("root").as_int())) refuse("the archive is damaged: it has no root");
       fill_objects();
       announce_objects();
+      for (const auto& [object, rules] : rules_)
+        if (object->live()) set_rules(machine_, *object, rules);
     } catch (...) {
       discard_objects();
       throw;
@@ -276,7 +325,8 @@ class Reader {
     return object;
   }
 
-  /// Frees what was made. Once the budget is used up, or the host wants the end, the collector frees the rest later.
+  /// Frees what was made. An object that was not announced yet has never lived for the program: it goes without
+  /// `destroy`. Once the budget is used up, or the host wants the end, the collector frees the rest later.
   void discard_objects() {
     bool goes_on = true;
     for (const auto& [object, element] : elements_) {
@@ -284,7 +334,10 @@ class Reader {
       if (goes_on) {
         try {
           machine_.poll();
-          machine_.free_instance(*object);
+          if (announced_.contains(object))
+            machine_.free_instance(*object);
+          else
+            machine_.discard_instance(*object);
         } catch (...) {  // it comes again at the next call or iteration of a loop
           goes_on = false;
         }
@@ -303,6 +356,8 @@ class Reader {
       if (id <= 0 || objects_.contains(id))
         refuse("the archive is damaged: two objects have the same number, or one has none");
       const ClassInfo& cls = class_of(machine_, element);
+      if (origin_ == Origin::Network && reaches_outside(machine_.program(), cls))
+        refuse("an object of class '" + cls.name + "' cannot come over the network: it reaches outside of the world");
       elements_.emplace_back(nullptr, element);
       Instance* const object = elements_.back().first = make(cls);
       pins_.emplace_back(machine_, Value::of(Tag::Object, object));
@@ -323,10 +378,15 @@ class Reader {
           refuse("the archive is damaged: the data of " + name_of(*object) + " cannot be");
         }
       }
-      read_variables(machine_, *object, element, values);
-      if (const pugi::xml_node body = element.child("body"))
+      read_variables(machine_, *object->cls, element, values,
+                     [&](const ClassInfo&, const VariableInfo& variable, const std::string& name, const Value& value) {
+                       set_from_archive(machine_, *object, variable, value, name);
+                     });
+      if (const pugi::xml_node body = element.child("body")) {
         read_body(machine_, *object, body);
-      else if (always_has_body(machine_, *object->cls))
+        // A peer does not decide what a class of this world does.
+        if (origin_ == Origin::File) rules_.emplace_back(object, read_rules(machine_, *object->cls, body));
+      } else if (always_has_body(machine_, *object->cls))
         refuse("the archive is damaged: an object has no body");
     }
   }
@@ -334,6 +394,7 @@ class Reader {
   void announce_objects() {
     for (const auto& [object, element] : elements_) {
       if (!object->live()) continue;  // freed by a method of an earlier one
+      announced_.insert(object);
       if (const MethodInfo* hook = machine_.find_method(*object->cls, "post-dearchive-set-controller", 0))
         machine_.call(*object, *hook);
       const MethodInfo* hook = object->live() ? machine_.find_method(*object->cls, "dearchive", 0) : nullptr;
@@ -345,6 +406,9 @@ class Reader {
 
   Machine& machine_;
   pugi::xml_node archive_;
+  Origin origin_;
+  std::set<const Instance*> announced_;
+  std::vector<std::pair<const Instance*, std::vector<ArchivedRule>>> rules_;
   std::map<int, Instance*> objects_;
   std::vector<std::pair<Instance*, pugi::xml_node>> elements_;
   std::deque<Pin> pins_;  // methods of the objects, and hosts that hear warnings, may free any of them
@@ -354,9 +418,19 @@ class Reader {
 
 std::string to_archive(Machine& machine, Instance& root) { return Writer(machine).write(root); }
 
-Instance* from_archive(Machine& machine, std::string_view xml) {
+Instance* from_archive(Machine& machine, std::string_view xml, Origin origin) {
   pugi::xml_document document;
-  return Reader(machine, parse(machine, document, xml)).read();
+  return Reader(machine, parse(machine, document, xml), origin).read();
+}
+
+std::string class_refused_from_network(Machine& machine, std::string_view xml) {
+  pugi::xml_document document;
+  for (const pugi::xml_node element : parse(machine, document, xml).children("object")) {
+    machine.poll();
+    const ClassInfo* cls = machine.program().find_class(element.attribute("class").value());
+    if (cls && reaches_outside(machine.program(), *cls)) return cls->name;
+  }
+  return {};
 }
 
 void variables_from_archive(Machine& machine, std::string_view xml, Instance& target) {
@@ -367,9 +441,18 @@ void variables_from_archive(Machine& machine, std::string_view xml, Instance& ta
   if (!element) refuse("the archive is damaged: it has no root");
   const std::string name = element.attribute("class").value();
   if (name != target.cls->name) refuse("the archive holds an object of class '" + name + "', not " + target.cls->name);
+  std::vector<ArchivedVariable> variables;
+  ListCell* const values = machine.heap().list();
+  const Pin pin(machine, Value::of(Tag::List, values));
   const std::map<int, Instance*> none;
-  ValueReader values(machine, none);
-  read_variables(machine, target, element, values);
+  ValueReader reader(machine, none);
+  read_variables(machine, *target.cls, element, reader,
+                 [&](const ClassInfo& cls, const VariableInfo& variable, const std::string& name, const Value& value) {
+                   if (cls.name == "Object") return;  // it keeps its age and its dependencies
+                   variables.push_back({variable, name});
+                   machine.heap().push(*values, value);
+                 });
+  set_all_or_none(machine, target, variables, *values);
 }
 
 }  // namespace breve::steve

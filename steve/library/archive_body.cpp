@@ -74,6 +74,44 @@ void write_body(Machine& machine, const Instance& object, pugi::xml_node element
   element.append_attribute("kind") = kKinds[static_cast<std::size_t>(bodies.kind(body))];
   const auto bytes = out.take();
   element.text() = to_hex({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, machine.poller()).c_str();
+  for (const World::CollisionRule& rule : machine.world().collision_rules(object.cls->id)) {
+    machine.poll();
+    const std::string& other = machine.program().cls(rule.other).name;
+    if (!rule.method.empty()) {
+      pugi::xml_node handler = element.append_child("handler");
+      handler.append_attribute("type") = other.c_str();
+      handler.append_attribute("method") = std::string(rule.method).c_str();
+    }
+    if (rule.ignored) element.append_child("ignore").append_attribute("type") = other.c_str();
+  }
+}
+
+std::vector<ArchivedRule> read_rules(Machine& machine, const ClassInfo& owner, pugi::xml_node element) {
+  std::vector<ArchivedRule> rules;
+  for (const pugi::xml_node rule : element.children()) {
+    machine.poll();
+    const std::string_view kind = rule.name();
+    if (kind != "handler" && kind != "ignore") continue;
+    const std::string other = rule.attribute("type").value(), method = rule.attribute("method").value();
+    const ClassInfo* const cls = machine.program().find_class(other);
+    if (!cls)
+      throw Error(ErrorCode::File, "the archive holds a collision rule of " + owner.name + " for class '" + other +
+                                       "', which this program does not have");
+    if (kind == "handler" && !machine.responds(owner, method))
+      throw Error(ErrorCode::File, "the archive holds a collision handler of " + owner.name + ", '" + method +
+                                       "', which is not a method of that class in this program");
+    rules.push_back({cls, kind == "handler" ? method : std::string()});
+  }
+  return rules;
+}
+
+void set_rules(Machine& machine, const Instance& owner, const std::vector<ArchivedRule>& rules) {
+  for (const ArchivedRule& rule : rules) {
+    if (rule.method.empty())
+      machine.world().ignore_collisions(owner.cls->id, rule.other->id);
+    else
+      machine.world().handle_collisions(owner.cls->id, rule.other->id, rule.method, owner.id);
+  }
 }
 
 void read_body(Machine& machine, Instance& object, pugi::xml_node element) {

@@ -40,7 +40,7 @@ Instance* dearchive_xml(Machine& machine, Instance&, Text file) {
   const std::string name(view(file));
   Instance* object = nullptr;
   try_archive(machine, "archive '" + name + "' not read",
-              [&] { object = from_archive(machine, read_file(machine, name)); });
+              [&] { object = from_archive(machine, read_file(machine, name), Origin::File); });
   return object;
 }
 
@@ -48,7 +48,7 @@ Instance* parse_request(Machine& machine, Instance&, Text xml) {
   constexpr std::uint64_t kOfRequest = 128;  // iterations: one that is refused at once takes as long
   machine.charge(kOfRequest);
   Instance* object = nullptr;
-  try_archive(machine, "request not understood", [&] { object = from_archive(machine, view(xml)); });
+  try_archive(machine, "request not understood", [&] { object = from_archive(machine, view(xml), Origin::Network); });
   return object;
 }
 

@@ -128,6 +128,17 @@ NetworkAnswer list_of_methods(const Service& service) {
 
 // --- objects ---------------------------------------------------------------------------------------------------------
 
+/// Why a peer's text is not an object.
+NetworkAnswer refusal(Machine& machine, std::string_view xml) {
+  try {
+    if (const std::string cls = class_refused_from_network(machine, xml); !cls.empty())
+      return failure(403, fmt::format("objects of class {} cannot be sent: they reach outside of the world\n", cls));
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::File) throw;
+  }
+  return failure(400, "this is not an object of this program\n");
+}
+
 /// An object that a peer has sent: through the controller's hook, to accept-upload, and what that yields back.
 NetworkAnswer accept(const Service& service, const NetworkRequest& request) {
   Machine& machine = service.machine;
@@ -141,7 +152,7 @@ NetworkAnswer accept(const Service& service, const NetworkRequest& request) {
   Value sent, answered;
   const Value text[] = {text_value(machine, request.body)};
   if (!call_hook(*controller, "parse-xml-network-request", text, sent) || sent.tag != Tag::Object || !sent.ref)
-    return failure(400, "this is not an object of this program\n");
+    return refusal(machine, request.body);
   const Pin received(machine, sent);
   Instance* const recipient = service.recipient && service.recipient->live() ? service.recipient : controller;
   const Value arguments[] = {sent, text_value(machine, request.from)};
@@ -170,27 +181,28 @@ NetworkAnswer answer_to(const Service& service, const NetworkRequest& request) {
 
 // --- natives ---------------------------------------------------------------------------------------------------------
 
-Text server_open(Machine& machine, Instance&, std::int32_t port) {
+Text server_open(Machine& machine, Instance& self, std::int32_t port) {
   if (port < 0 || port > 65535)
     throw Error(ErrorCode::Argument, fmt::format("listen: there is no port {} (must be 0 to 65535)", port));
   std::string why(kNotAllowed);
   Network* const network = network_of(machine);
-  const auto url = network ? network->listen(static_cast<std::uint16_t>(port), why) : std::nullopt;
+  const auto url = network ? network->listen(static_cast<std::uint16_t>(port), self.id, why) : std::nullopt;
   if (!url) machine.warn(fmt::format("listen: no server on port {}: {}", port, why));
   return machine.heap().string(url.value_or(""));
 }
 
 std::int32_t server_is_allowed(Machine& machine, Instance&) { return network_of(machine) ? 1 : 0; }
 
-void server_close(Machine& machine, Instance&, Text url) {
-  if (const auto& network = machine.host().network) network->close(std::string(view(url)));
+void server_close(Machine& machine, Instance& self, Text url) {
+  if (const auto& network = machine.host().network) network->close(std::string(view(url)), self.id);
 }
 
-void server_answer(Machine& machine, Instance&, Text url, Text index_page, Text folder, ListCell* exposed,
+void server_answer(Machine& machine, Instance& self, Text url, Text index_page, Text folder, ListCell* exposed,
                    Instance* recipient) {
   if (!machine.host().network) return;
   Network& network = *machine.host().network;
   const std::string server(view(url));
+  const ObjectId owner = self.id;
   // Copies: a method that is called may give the server other ones.
   const std::string start(view(index_page)), pages(view(folder));
   // It may also free the server, and these with it.
@@ -198,7 +210,7 @@ void server_answer(Machine& machine, Instance&, Text url, Text index_page, Text 
   const Pin receiver(machine, recipient ? Value::of(Tag::Object, recipient) : Value());
   const Service service{machine, start, pages, exposed, recipient};
   for (std::size_t i = 0; i < kMostAtOnce; ++i) {
-    const auto request = network.next_request(server);
+    const auto request = network.next_request(server, owner);
     if (!request) return;
     try {
       network.answer(server, answer_to(service, *request));
@@ -244,7 +256,7 @@ Instance* send_object(Machine& machine, Instance& self, Text host, std::int32_t 
   machine.charge(answer->size());
   if (answer->empty()) return nullptr;
   try {
-    return from_archive(machine, *answer);
+    return from_archive(machine, *answer, Origin::Network);
   } catch (const Error& error) {
     const ErrorCode code = error.code();
     if (code != ErrorCode::File && code != ErrorCode::Argument && code != ErrorCode::Image) throw;

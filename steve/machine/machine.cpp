@@ -184,6 +184,14 @@ void Machine::free_instance(Instance& instance) {
   forget(instance);
 }
 
+void Machine::discard_instance(Instance& instance) {
+  if (instance.state != Instance::State::Live) return;
+  const Pin pin(*this, Value::of(Tag::Object, &instance));
+  instance.state = Instance::State::BeingFreed;
+  end_native(instance);
+  forget(instance);
+}
+
 /// An object that goes without its `delete` methods: those that are native take no arguments and run no script, and
 /// undo what native code keeps of it elsewhere (a cell that it stands on).
 void Machine::end_native(Instance& instance) noexcept {

@@ -79,6 +79,8 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   Instance* create(const ClassInfo& cls);
   /// What `free` does. A null, freed or being-freed instance: nothing.
   void free_instance(Instance& instance);
+  /// The same without script: of an instance that the program has never met.
+  void discard_instance(Instance& instance);
   Instance* instance(ObjectId id) const;  // null if the id is null or stale
   ObjectId id_of(const Instance* instance) const { return instance && instance->live() ? instance->id : ObjectId{}; }
 

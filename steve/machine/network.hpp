@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "runtime/base/ids.hpp"
+
 namespace breve::steve {
 
 /// What a peer asks of a server.
@@ -24,7 +26,8 @@ struct NetworkAnswer {
   std::string body;
 };
 
-/// The network, as the host gives it to a world. A server is named by its address, "http://127.0.0.1:8080".
+/// The network, as the host gives it to a world. A server is named by its address, "http://127.0.0.1:8080". It is of
+/// use only to the object that opened it: an address is not a secret, and others can have it in a variable.
 class Network {
  public:
   virtual ~Network() = default;
@@ -34,11 +37,13 @@ class Network {
   virtual std::optional<std::string> fetch(const std::string& method, const std::string& url, std::string_view body,
                                            std::string& why) = 0;
   /// Requests to this port, or to any free one if it is 0, wait from now on. The server's address; none with a reason.
-  virtual std::optional<std::string> listen(std::uint16_t port, std::string& why) = 0;
-  /// The first request that waits; none if there is none, or no such server. Each one is answered before the next.
-  virtual std::optional<NetworkRequest> next_request(const std::string& server) = 0;
+  virtual std::optional<std::string> listen(std::uint16_t port, ObjectId owner, std::string& why) = 0;
+  /// The first request that waits; none if there is none, or `owner` has no such server. Each one is answered before
+  /// the next.
+  virtual std::optional<NetworkRequest> next_request(const std::string& server, ObjectId owner) = 0;
   virtual void answer(const std::string& server, const NetworkAnswer& answer) = 0;
-  virtual void close(const std::string& server) = 0;
+  /// Does nothing if `owner` has no such server.
+  virtual void close(const std::string& server, ObjectId owner) = 0;
 };
 
 }  // namespace breve::steve

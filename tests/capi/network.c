@@ -202,6 +202,69 @@ static void an_object_that_is_sent_reaches_accept_upload(void) {
   scene_close(&s);
 }
 
+/* A peer that sends a NetworkServer with the address of the real one would answer in its place, or close it. */
+static void an_uploaded_server_neither_takes_nor_closes_the_real_one(void) {
+  static const char* const impostor =
+      "<breve-archive version=\"1\" root=\"1\"><object id=\"1\" class=\"NetworkServer\"><variable "
+      "class=\"NetworkServer\" "
+      "name=\"serverURL\"><string>http://there:80</string></variable></object></breve-archive>";
+  static const char* const damaged =
+      "<breve-archive version=\"1\" root=\"1\"><object id=\"1\" class=\"NetworkServer\"><variable "
+      "class=\"NetworkServer\" "
+      "name=\"serverURL\"><string>http://there:80</string></variable></object><object id=\"2\" "
+      "class=\"Parcel\"><variable "
+      "class=\"Parcel\" name=\"weight\"><vector>1 2 3</vector></variable></object></breve-archive>";
+  static const char* const controller =
+      "<breve-archive version=\"1\" root=\"1\"><object id=\"1\" class=\"Host\"/></breve-archive>";
+  scene s;
+  if (!open_there(&s)) return;
+  CHECK_STATUS(BREVE_OK, call(&s, "only", "method-named", breve_value_string("show")));
+  ask("POST", "/", impostor);
+  ask("POST", "/", damaged);
+  ask("POST", "/", controller);
+  CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+  CHECK(closed == 0 && int_of(&s, "total") == 0);
+  CHECK(strncmp(answers, "403 ", 4) == 0 && strstr(answers, "NetworkServer") != NULL);
+  CHECK(strstr(answers, "|403 objects of class Host") != NULL);
+  CHECK(strstr(answers, "200") == NULL && strstr(answers, "400") == NULL);
+
+  /* Nor is there anything left that answers with a list of its own, which is empty and exposes all. */
+  answers[0] = 0;
+  ask("GET", "/add_3_0.5", "");
+  ask("GET", "/show", "");
+  CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+  CHECK(strncmp(answers, "404 ", 4) == 0 && strstr(answers, "|200 <b>0</b>|") != NULL);
+  scene_close(&s);
+  CHECK(closed == 1);
+}
+
+/* An address is not a secret: an object of the program that has it in a variable is not the one that opened it. */
+static void a_server_is_of_use_only_to_the_object_that_opened_it(void) {
+  static const char* const two =
+      "@use Control.\n@use NetworkServer.\nController Host.\n"
+      "Control : Host {\n  + variables: server, other (object). total (int).\n"
+      "  + to init:\n    other = new NetworkServer.\n    server = new NetworkServer.\n    server listen on-port 0.\n"
+      "    server expose method \"show\".\n    other::serverURL = (server get-url).\n"
+      "  + to show:\n    return \"shown\".\n  + to hide:\n    total++.\n    return \"hidden\".\n"
+      "  + to end-other now n (int):\n    free other.\n}\n";
+  const breve_network network = {NULL, listen_there, fetch, retain, release};
+  scene s;
+  forget();
+  if (!open_program(&s, &network, two)) return;
+  ask("GET", "/hide", "");
+  ask("GET", "/show", "");
+  CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+  CHECK(strncmp(answers, "404 ", 4) == 0 && strstr(answers, "|200 shown|") != NULL && int_of(&s, "total") == 0);
+  CHECK_STATUS(BREVE_OK, call(&s, "end-other", "now", breve_value_int(1)));
+  CHECK(closed == 0);
+  answers[0] = 0;
+  ask("GET", "/show", "");
+  CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+  CHECK(strcmp(answers, "200 shown|") == 0);
+  scene_close(&s);
+  CHECK(closed == 1);
+}
+
 static void urls_are_fetched_and_failures_are_errors(void) {
   scene s;
   if (!open_there(&s)) return;
@@ -501,6 +564,8 @@ void network_suite(void) {
   RUN(requests_call_methods_of_the_program_between_iterations);
   RUN(what_is_not_exposed_is_not_called);
   RUN(an_object_that_is_sent_reaches_accept_upload);
+  RUN(an_uploaded_server_neither_takes_nor_closes_the_real_one);
+  RUN(a_server_is_of_use_only_to_the_object_that_opened_it);
   RUN(urls_are_fetched_and_failures_are_errors);
   RUN(migrants_travel);
   RUN(a_recorded_run_replays_equal);
