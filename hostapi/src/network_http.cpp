@@ -2,7 +2,6 @@
 // waits in a queue until the world takes it between two iterations, and its thread waits for the answer.
 #include <arpa/inet.h>
 #include <fmt/format.h>
-#include <httplib.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -10,13 +9,17 @@
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
+#include <cstdint>
 #include <deque>
+#include <functional>
 #include <future>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
 
+#include "http_connection.hpp"
 #undef _res  // of <resolv.h>, which cpp-httplib includes: Eigen has parameters of that name
 #include "internal.hpp"
 
@@ -47,13 +50,85 @@ struct Exchange {
   bool answered = false;
 };
 
+using Clock = Connection::Clock;
+
+/// The threads of a server. A connection's time begins when it is accepted, not when a thread is free for it.
+class Workers final : public httplib::TaskQueue {
+ public:
+  /// @param begin  is called in the thread that runs a task, before it
+  explicit Workers(std::function<void(Clock::time_point)> begin) : pool_(kMostThreads), begin_(std::move(begin)) {}
+  void enqueue(std::function<void()> task) override {
+    // One too many is closed at once, here: its time is over.
+    if (waiting_ >= kMostWaiting) {
+      begin_(Clock::time_point::min());
+      return task();
+    }
+    ++waiting_;
+    pool_.enqueue([this, task = std::move(task), accepted = Clock::now()] {
+      --waiting_;
+      begin_(accepted);
+      task();
+    });
+  }
+  void shutdown() override { pool_.shutdown(); }
+
+ private:
+  httplib::ThreadPool pool_;
+  std::function<void(Clock::time_point)> begin_;
+  std::atomic<std::size_t> waiting_{0};
+};
+
+/// cpp-httplib's server with a deadline for each connection as a whole, of one request.
+class TimedServer final : public httplib::Server {
+ public:
+  TimedServer(std::chrono::microseconds timeout, std::size_t most_bytes) : timeout_(timeout), most_bytes_(most_bytes) {
+    new_task_queue = [this] { return new Workers([this](Clock::time_point accepted) { begin(accepted); }); };
+    set_payload_max_length(most_bytes);
+  }
+  ~TimedServer() override = default;
+  TimedServer(const TimedServer&) = delete;
+  TimedServer& operator=(const TimedServer&) = delete;
+  void close() {
+    closing_ = true;
+    stop();
+  }
+  /// When the request that this thread serves must have its answer: the last tenth of the time is for sending it.
+  Clock::time_point deadline() const {
+    const std::lock_guard lock(mutex_);
+    const auto accepted = accepted_.find(std::this_thread::get_id());
+    const bool over = accepted == accepted_.end() || accepted->second == Clock::time_point::min();
+    return over ? Clock::time_point::min() : accepted->second + timeout_ - timeout_ / 10;
+  }
+
+ private:
+  void begin(Clock::time_point accepted) {
+    const std::lock_guard lock(mutex_);
+    accepted_[std::this_thread::get_id()] = accepted;
+  }
+  bool process_and_close_socket(socket_t socket) override {
+    constexpr std::size_t kMostAround = 65536;  // bytes: the header
+    const Clock::time_point end = deadline();
+    // A body that is too large is read to its end, or to twice the size, so that the peer gets to see the answer.
+    const std::size_t most = std::min(most_bytes_, SIZE_MAX / 4) * 2 + kMostAround;
+    if (end == Clock::time_point::min()) {
+      const Connection closed(socket, end, 0, closing_);
+      return false;
+    }
+    Connection connection(socket, end + timeout_ / 10, most, closing_);
+    bool closed = false;
+    return process_request(connection, true, closed, nullptr);
+  }
+
+  const std::chrono::microseconds timeout_;
+  const std::size_t most_bytes_;
+  std::atomic<bool> closing_{false};
+  mutable std::mutex mutex_;                               // of what follows
+  std::map<std::thread::id, Clock::time_point> accepted_;  // when the connection that a thread serves was
+};
+
 class HttpServer {
  public:
-  explicit HttpServer(const Settings& settings) : timeout_(settings.timeout) {
-    server_.new_task_queue = [] { return new httplib::ThreadPool(kMostThreads); };
-    server_.set_payload_max_length(settings.most_bytes);
-    server_.set_read_timeout(settings.timeout);
-    server_.set_write_timeout(settings.timeout);
+  explicit HttpServer(const Settings& settings) : server_(settings.timeout, settings.most_bytes) {
     // Unlike its default, a port is not shared with another process.
     server_.set_socket_options([](socket_t socket) {
       const int yes = 1;
@@ -70,7 +145,7 @@ class HttpServer {
       closing_ = true;
     }
     changed_.notify_all();
-    server_.stop();
+    server_.close();
     if (thread_.joinable()) thread_.join();
   }
   HttpServer(const HttpServer&) = delete;
@@ -122,18 +197,18 @@ class HttpServer {
     exchange->target = request.target;
     exchange->from = request.remote_addr;
     exchange->body = request.body;
+    const Clock::time_point deadline = server_.deadline();
     std::unique_lock lock(mutex_);
     if (waiting_.size() < kMostWaiting && !closing_) {
       waiting_.push_back(exchange);
-      changed_.wait_for(lock, timeout_, [&] { return exchange->answered || closing_; });
+      changed_.wait_until(lock, deadline, [&] { return exchange->answered || closing_; });
       if (!exchange->answered) std::erase(waiting_, exchange);
     }
     response.status = exchange->answered ? exchange->status : 503;
     if (exchange->answered) response.set_content(exchange->answer, exchange->type);
   }
 
-  httplib::Server server_;
-  const std::chrono::microseconds timeout_;
+  TimedServer server_;
   std::thread thread_;
   std::string url_;
   std::mutex mutex_;  // of all below

@@ -44,6 +44,7 @@ void recording_suite(void);
 void debug_draw_suite(void);
 void sound_suite(void);
 void network_suite(void);
+void network_peers_suite(void);
 void learning_suite(void);
 void listener_suite(void);
 void contact_force_suite(void);
@@ -92,6 +93,7 @@ static const struct {
     {"debug_draw", debug_draw_suite},
     {"sound", sound_suite},
     {"network", network_suite},
+    {"network_peers", network_peers_suite},
     {"learning", learning_suite},
     {"listener", listener_suite},
     {"contact_force", contact_force_suite},
