@@ -31,12 +31,21 @@ SineTone& tone(Machine& machine, Instance& self) { return resource_made<ToneReso
 
 Instance* sound_load(Machine& machine, Instance& self, Text file) {
   const std::string name(view(file));
-  const std::pmr::string bytes = read_file(machine, name);
-  machine.charge(bytes.size());  // a loop iteration for each byte
-  Samples samples = Samples::parse(bytes, name, machine.heap().memory(), machine.poller());
   PlayedSound& own = sound(machine, self);
-  own.stop();
-  own.samples = std::move(samples);
+  try {
+    const std::pmr::string bytes = read_file(machine, name);
+    machine.charge(bytes.size());  // a loop iteration for each byte
+    Samples samples = Samples::parse(bytes, name, machine.heap().memory(), machine.poller());
+    own.stop();
+    own.samples = std::move(samples);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::File && error.code() != ErrorCode::Unsupported) throw;
+    // A world without one of its sounds goes on as where nobody listens: with a moment of silence.
+    constexpr std::uint32_t kRate = 44100;
+    own.stop();
+    own.samples = Samples(std::pmr::vector<float>(1, 0.0F, machine.heap().memory()), 1, kRate);
+    machine.warn_once("sound:" + name, "sound '" + name + "' not loaded, silence in its place: " + error.what());
+  }
   return &self;
 }
 
