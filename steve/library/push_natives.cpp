@@ -160,7 +160,11 @@ void interpreter_configure(Machine& machine, Instance& self, StringCell* text) {
   machine.charge(kOfSettings);
   machine.charge_for(view(text).size());
   std::pmr::string unknown(machine.heap().memory());
-  own_interpreter(machine, self).settings.read(view(text), unknown, machine.poller());
+  push::Interpreter& interpreter = own_interpreter(machine, self);
+  interpreter.settings.read(view(text), unknown, machine.poller(), [&](std::string_view name) {
+    const push::Word* word = interpreter.find_word(name);
+    return word && word->kind != push::Word::Kind::Defined;
+  });
   if (!unknown.empty()) {
     unknown.pop_back();
     machine.warn("read-config: " + std::string(unknown));

@@ -239,6 +239,12 @@ std::int32_t get_light_exposure(Machine& machine, Instance& self) {
   return count;
 }
 
+/// A method of that name with other keywords cannot be given a message.
+std::int32_t sensor_is_receiver(Machine& machine, Instance&, Instance* agent) {
+  const MethodInfo* method = agent && agent->live() ? machine.find_method(*agent->cls, "receive", 1) : nullptr;
+  return method && machine.program().symbols().name(method->parameters[0].keyword) == "message";
+}
+
 constexpr Native kQueryNatives[] = {
     native<control_cast_ray>("control.cast-ray"),
     native<control_find_on_ray>("control.find-on-ray"),
@@ -249,6 +255,7 @@ constexpr Native kQueryNatives[] = {
     native<control_find_closest>("control.find-closest"),
     native<control_find_near>("control.find-near"),
     native<sensor_cast_ray>("ir-sensor.cast-ray-among"),
+    native<sensor_is_receiver>("ir-sensor.is-receiver"),
     native<get_light_exposure>("real.get-light-exposure"),
 };
 

@@ -138,7 +138,8 @@ void Settings::activate_all() {
   for (std::uint8_t i = 0; i < kConstants; ++i) constants.push_back(static_cast<Constant>(i));
 }
 
-void Settings::read(std::string_view text, std::pmr::string& unknown, const Poll& poll) {
+void Settings::read(std::string_view text, std::pmr::string& unknown, const Poll& poll,
+                    const std::function<bool(std::string_view)>& is_word) {
   constexpr std::size_t kLinesPerPoll = 256, kToldNames = 20;
   Settings made(active.get_allocator().resource());
   made = *this;
@@ -161,6 +162,7 @@ void Settings::read(std::string_view text, std::pmr::string& unknown, const Poll
       names_any = true;
       const std::string name = in_capitals(value);
       known = keyword == "TYPE" ? activate_type(made, name) : activate(made, name);
+      if (!known && keyword == "INSTRUCTION") known = is_word && is_word(value);
     } else {
       known = set(made, keyword, value, line);
     }

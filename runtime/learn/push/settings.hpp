@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory_resource>
 #include <string>
 #include <string_view>
@@ -35,8 +36,10 @@ struct Settings {
   /// Read a configuration: a setting, `instruction NAME` or `type NAME` a line; `#` begins a comment. If it names
   /// instructions or types, these are the active ones, else all stay as they are.
   /// @param unknown  gets a line for each of the first names that are not known; such lines are left out
+  /// @param is_word  whether a name stands for a callback or a macro: those are always active
   /// @throws Error{Argument} that names the line, and nothing is changed
-  void read(std::string_view text, std::pmr::string& unknown, const Poll& poll = {});
+  void read(std::string_view text, std::pmr::string& unknown, const Poll& poll = {},
+            const std::function<bool(std::string_view)>& is_word = {});
   void print(std::pmr::string& out) const;
 
   void save(ByteWriter& out) const;
