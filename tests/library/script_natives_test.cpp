@@ -141,7 +141,7 @@ class Sources {
 /// From the first lines of the programs: "# natives: object.announce notify", where "# natives: " is the mark.
 std::map<std::string, std::string> programs(std::string_view mark) {
   std::map<std::string, std::string> found;
-  for (const auto& entry : fs::directory_iterator(fs::path(BREVE_STEVE_TESTS) / "running_script")) {
+  for (const auto& entry : fs::directory_iterator(fs::path(BREVE_STEVE_TESTS) / "library" / "running_script")) {
     std::istringstream lines(read(entry.path()));
     for (std::string line; std::getline(lines, line) && line.starts_with('#');) {
       if (!line.starts_with(mark)) continue;
