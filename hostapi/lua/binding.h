@@ -229,7 +229,8 @@ breve_world_config bl_read_config(lua_State* L);
 void bl_profile_call(lua_State* L, bl_world* w, bl_entry* entry);
 void bl_profile_return(bl_world* w, const bl_entry* entry);
 void bl_profile_event(lua_State* L, lua_Debug* call); /* part of the hook */
-/* The method of the program that a function of Lua is; NULL if it is not a method. Needs what lua_getinfo tells for "Su". */
+/* The method of the program that a function of Lua is; NULL if it is not a method. Needs what lua_getinfo tells for
+ * "Su". */
 const bl_method* bl_method_at(const bl_program* program, const lua_Debug* function);
 void bl_profile_destroy(bl_world* w);
 /* A function in C calls breve for the Lua function that called it: tell its line, if a profile is taken. */
