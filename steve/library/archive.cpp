@@ -378,10 +378,10 @@ class Reader {
           refuse("the archive is damaged: the data of " + name_of(*object) + " cannot be");
         }
       }
-      read_variables(machine_, *object->cls, element, values,
-                     [&](const ClassInfo&, const VariableInfo& variable, const std::string& name, const Value& value) {
-                       set_from_archive(machine_, *object, variable, value, name);
-                     });
+      read_variables(
+          machine_, *object->cls, element, values,
+          [this, target = object](const ClassInfo&, const VariableInfo& variable, const std::string& name,
+                                  const Value& value) { set_from_archive(machine_, *target, variable, value, name); });
       if (const pugi::xml_node body = element.child("body")) {
         read_body(machine_, *object, body);
         // A peer does not decide what a class of this world does.
