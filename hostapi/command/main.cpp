@@ -110,7 +110,7 @@ void describe_pictures(CLI::App& app, RunOptions& o) {
       ->check(CLI::Range(0.001, 1000.0));
   app.add_flag("--plain", o.record.plain, "Draw nothing but the colours and lights that the program sets");
   app.add_option("--arrows", o.record.arrows,
-                 "Draw arrows for contacts, forces or velocities, several with commas between")
+                 "Draw arrows for contacts, forces, velocities or joints, several with commas between")
       ->type_name("KIND")
       ->delimiter(',')
       ->allow_extra_args(false);
@@ -195,10 +195,12 @@ void describe_view(CLI::App& app, ViewOptions& o) {
   app.add_flag("--paused", o.paused, "Begin paused");
   app.add_flag("--plain", o.run.record.plain, "Draw nothing but the colours and lights that the program sets");
   app.add_option("--arrows", o.run.record.arrows,
-                 "Draw arrows for contacts, forces or velocities, several with commas between")
+                 "Draw arrows for contacts, forces, velocities or joints, several with commas between")
       ->type_name("KIND")
       ->delimiter(',')
       ->allow_extra_args(false);
+  app.add_flag("--software", o.software,
+               "Draw in main memory, as `breve run` does, and not with this machine's OpenGL");
   app.add_flag("--strict", o.run.strict, "Treat warnings as errors");
   app.add_flag("--quiet", o.run.quiet, "Show no warnings");
   app.add_flag("--verbose", o.run.verbose, "Report each use of an obsolete method and each action of the guard");

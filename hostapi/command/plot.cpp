@@ -4,14 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
-#include <filesystem>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
+
+#include "write_file.hpp"
 
 namespace breve::command {
 
@@ -28,18 +26,6 @@ breve_value value_of(breve_world* world, const std::string& name) {
     throw std::runtime_error(fmt::format("--plot: the controller has no method or variable '{}'", name));
   const breve_error* error = breve_world_last_error(world);
   throw std::runtime_error(fmt::format("--plot {}: {}", name, error ? error->message : breve_status_name(status)));
-}
-
-void write_bytes(const std::string& path, const std::vector<std::uint8_t>& bytes) {
-  std::FILE* file = std::fopen(path.c_str(), "wb");
-  if (!file) throw std::runtime_error(fmt::format("cannot write {}: {}", path, std::strerror(errno)));
-  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  const int why = errno;
-  if (std::fclose(file) == 0 && written) return;
-  const int reason = written ? errno : why;
-  std::error_code nothing;  // a device stays
-  if (std::filesystem::is_regular_file(path, nothing)) std::filesystem::remove(path, nothing);
-  throw std::runtime_error(fmt::format("cannot write {}: {}", path, std::strerror(reason)));
 }
 
 /// Colours that people of all kinds of vision tell apart (Okabe and Ito 2008).
@@ -104,11 +90,11 @@ void Plotter::finish() const {
   constexpr const char* kAxis = "simulated time, s";
   const bool png = options_.plot.ends_with(".png"), named = png || options_.plot.ends_with(".svg");
   if (!options_.plot.empty())
-    write_bytes(options_.plot, file(png ? BREVE_PLOT_FORMAT_PNG : BREVE_PLOT_FORMAT_SVG, kAxis));
+    write_file(options_.plot, file(png ? BREVE_PLOT_FORMAT_PNG : BREVE_PLOT_FORMAT_SVG, kAxis));
   std::string log = options_.log;
   if (log.empty() && !options_.plot.empty())
     log = options_.plot.substr(0, named ? options_.plot.size() - 4 : options_.plot.size()) + ".csv";
-  if (!log.empty()) write_bytes(log, file(BREVE_PLOT_FORMAT_CSV, "time"));
+  if (!log.empty()) write_file(log, file(BREVE_PLOT_FORMAT_CSV, "time"));
 }
 
 }  // namespace breve::command

@@ -4,12 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <stdexcept>
+
+#include "write_file.hpp"
 
 namespace breve::command {
 
@@ -41,15 +40,7 @@ void write_png(const Frame& frame, const std::string& path) {
   bytes.resize(size);
   if (breve_png(frame.width, frame.height, frame.rgba.data(), 0, bytes.data(), bytes.size(), &size) != BREVE_OK)
     throw std::runtime_error(fmt::format("{}: the picture cannot be packed", path));
-  std::FILE* file = std::fopen(path.c_str(), "wb");
-  if (!file) throw std::runtime_error(fmt::format("cannot write {}: {}", path, std::strerror(errno)));
-  const bool written = std::fwrite(bytes.data(), 1, size, file) == size;
-  const int why = errno;
-  if (std::fclose(file) == 0 && written) return;
-  const int reason = written ? errno : why;
-  std::error_code nothing;  // a device stays
-  if (std::filesystem::is_regular_file(path, nothing)) std::filesystem::remove(path, nothing);
-  throw std::runtime_error(fmt::format("cannot write {}: {}", path, std::strerror(reason)));
+  write_file(path, bytes);
 }
 
 /// A picture is a PNG whatever its name says.
@@ -69,8 +60,10 @@ std::uint32_t arrows_of(const std::vector<std::string>& names) {
       arrows |= BREVE_ARROWS_FORCES;
     else if (name == "velocities")
       arrows |= BREVE_ARROWS_VELOCITIES;
+    else if (name == "joints")
+      arrows |= BREVE_ARROWS_JOINTS;
     else
-      throw std::runtime_error(fmt::format("--arrows: '{}' is not one of contacts, forces, velocities", name));
+      throw std::runtime_error(fmt::format("--arrows: '{}' is not one of contacts, forces, velocities, joints", name));
   }
   return arrows;
 }

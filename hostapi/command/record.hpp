@@ -19,7 +19,7 @@ struct RecordOptions {
   std::string size;                            // "WIDTHxHEIGHT", "" for the default
   std::optional<double> fps;
   bool plain = false;
-  std::vector<std::string> arrows;  // "contacts", "forces", "velocities"
+  std::vector<std::string> arrows;  // "contacts", "forces", "velocities", "joints"
   bool any() const { return !snapshot.empty() || !contact_sheet.empty() || !movie.empty(); }
 };
 

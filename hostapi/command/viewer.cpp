@@ -96,20 +96,34 @@ void Viewer::watch_files() {
   changed_ = true;
 }
 
+breve_status Viewer::create_view(const breve_view_config& config) {
+  breve_view_config with = config;
+  if (gl_) with.gl = gl_->functions();
+  breve_view* view = nullptr;
+  const breve_status status = breve_view_create(session_.runtime(), &with, &view);
+  view_.reset(view);
+  return status;
+}
+
 void Viewer::make_view() {
   breve_view_config config = breve_view_config_default();
   config.width = static_cast<std::uint32_t>(window_->width());
   config.height = static_cast<std::uint32_t>(window_->height());
   config.look = options_.run.record.plain ? BREVE_LOOK_PLAIN : BREVE_LOOK_FULL;
-  breve_view* view = nullptr;
-  if (breve_view_create(session_.runtime(), &config, &view) != BREVE_OK) {
+  breve_status created = create_view(config);
+  const auto reason = [&] {
     const breve_error* error = breve_runtime_last_error(session_.runtime());
-    throw std::runtime_error(error ? error->message : "nothing can be drawn");
+    return std::string(error ? error->message : "nothing can be drawn");
+  };
+  if (created != BREVE_OK && gl_) {
+    output_.complain(fmt::format("breve: drawing in main memory, without this machine's OpenGL: {}\n", reason()));
+    gl_.reset();
+    created = create_view(config);
   }
-  view_.reset(view);
-  breve_view_set_arrows(view, arrows_, 1);
+  if (created != BREVE_OK) throw std::runtime_error(reason());
+  breve_view_set_arrows(view_.get(), arrows_, 1);
   picture_ = {config.width, config.height, std::vector<std::uint8_t>(std::size_t{4} * config.width * config.height)};
-  if (camera_.moved()) breve_view_set_camera(view, &camera_.camera());
+  if (camera_.moved()) breve_view_set_camera(view_.get(), &camera_.camera());
   changed_ = true;
   since_drawn_ = 1;  // there is no picture to wait with
 }
@@ -211,6 +225,7 @@ int Viewer::run() {
   int width = kWidth, height = kHeight;
   if (!options_.run.record.size.empty()) read_size(options_.run.record.size, width, height);
   window_ = std::make_unique<Window>("breve: " + options_.run.file, width, height);
+  if (!options_.software) gl_ = MachineGl::open();
   arrows_ = arrows_of(options_.run.record.arrows);
   auto last = Clock::now();
   constexpr auto kFrame = std::chrono::microseconds(16'667);  // a screen shows no more

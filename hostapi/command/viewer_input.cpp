@@ -34,7 +34,9 @@ void Viewer::handle(const SDL_Event& event) {
   switch (event.type) {
     case SDL_QUIT: left_ = true; break;
     case SDL_WINDOWEVENT:
-      if (event.window.event != SDL_WINDOWEVENT_SIZE_CHANGED) break;
+      // With a hidden window beside it, the last visible one ends the program itself.
+      if (event.window.event == SDL_WINDOWEVENT_CLOSE) left_ = true;
+      if (event.window.event != SDL_WINDOWEVENT_SIZE_CHANGED || !window_->is(event.window.windowID)) break;
       end_movie();  // its pictures are all of one size
       window_->resize(std::max(1, event.window.data1), std::max(1, event.window.data2));
       view_.reset();
@@ -140,15 +142,17 @@ bool Viewer::try_to_write(const std::function<void()>& write) {
   }
 }
 
-/// Contacts, then forces with them, then velocities with both, then none.
+/// Contacts, then forces with them, then velocities with both, then joints with all, then none.
 void Viewer::next_arrows() {
-  constexpr std::uint32_t kAll = BREVE_ARROWS_CONTACTS | BREVE_ARROWS_FORCES | BREVE_ARROWS_VELOCITIES;
+  constexpr std::uint32_t kAll =
+      BREVE_ARROWS_CONTACTS | BREVE_ARROWS_FORCES | BREVE_ARROWS_VELOCITIES | BREVE_ARROWS_JOINTS;
   arrows_ = arrows_ == kAll ? std::uint32_t{BREVE_ARROWS_NONE} : (2 * arrows_ + 1) & kAll;
   if (view_) breve_view_set_arrows(view_.get(), arrows_, 1);
   say(arrows_ == 0   ? "no arrows"
       : arrows_ == 1 ? "arrows: contacts"
       : arrows_ == 3 ? "arrows: contacts, forces"
-                     : "arrows: contacts, forces, velocities");
+      : arrows_ == 7 ? "arrows: contacts, forces, velocities"
+                     : "arrows: contacts, forces, velocities, joints");
   changed_ = true;
 }
 

@@ -24,7 +24,7 @@ const std::vector<std::string> kHelp{"F1  these keys",
                                      "F6  one iteration",
                                      "F7  half the speed       F8  twice the speed",
                                      "F9  screenshot           F10  record a movie",
-                                     "F11 arrows for contacts, forces, velocities",
+                                     "F11 arrows for contacts, forces, velocities, joints",
                                      "Home  the program's camera",
                                      "Esc  leave",
                                      "left button: rotate; right button: move; wheel: zoom",
@@ -130,7 +130,8 @@ std::vector<std::string> Viewer::effect_lines() const {
   lines.push_back(fmt::format("effects together: {:.0f} us an iteration", sum * 1e6));
   breve_view_counters counters = breve_view_counters_default();
   if (breve_view_counts(view_.get(), &counters) == BREVE_OK)
-    lines.push_back(fmt::format("picture: {} draw calls, {} triangles", counters.draw_calls, counters.triangles));
+    lines.push_back(fmt::format("picture: {} draw calls, {} triangles, drawn {}", counters.draw_calls,
+                                counters.triangles, gl_ ? "by this machine's OpenGL" : "in main memory"));
   std::istringstream guard(guard_.count() == 0 ? "the guard did not act\n" : guard_.summary());
   for (std::string line; std::getline(guard, line);) lines.push_back(line);
   return lines;

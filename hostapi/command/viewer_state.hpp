@@ -11,6 +11,7 @@
 #include "repl_names.hpp"
 #include "viewer.hpp"
 #include "viewer_camera.hpp"
+#include "viewer_gl.hpp"
 #include "viewer_play.hpp"
 #include "viewer_window.hpp"
 #include "watch.hpp"
@@ -36,6 +37,7 @@ class Viewer {
   bool may_wait();
   void render();
   void make_view();
+  breve_status create_view(const breve_view_config& config);
   void record_frame();
   void frame(double seconds, int number);
   void act(const std::vector<PlayedAction>& actions);
@@ -87,6 +89,7 @@ class Viewer {
   std::optional<Reloader> reloader_;
   Interventions guard_;
   std::unique_ptr<Window> window_;
+  std::unique_ptr<MachineGl> gl_;  // null: pictures are drawn in main memory
   std::unique_ptr<breve_view, ViewDeleter> view_;
   std::unique_ptr<breve_scene, SceneDeleter> scene_;  // read for what the program wants of the window
   double since_drawn_ = 0;                            // s

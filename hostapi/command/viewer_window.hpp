@@ -25,6 +25,7 @@ class Window {
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
+  bool is(std::uint32_t id) const { return SDL_GetWindowID(window_.get()) == id; }
   int width() const { return width_; }
   int height() const { return height_; }
   void resize(int width, int height);

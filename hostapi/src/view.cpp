@@ -76,6 +76,12 @@ namespace {
 
 constexpr std::uint32_t kMostSide = 16384;
 
+breve::render::ForeignContext context_of(const breve_gl& gl) {
+  if (!gl.make_current || !gl.address) fail(BREVE_ERROR_ARGUMENT, "breve_gl.make_current and .address must be given");
+  return {[gl](bool current) { return gl.make_current(gl.user, current); },
+          [gl](const char* name) { return gl.address(gl.user, name); }};
+}
+
 breve::render::Settings settings_of(const breve_view_config& config) {
   if (config.width == 0 || config.height == 0 || config.width > kMostSide || config.height > kMostSide)
     fail(BREVE_ERROR_ARGUMENT, "a picture of " + std::to_string(config.width) + " x " + std::to_string(config.height) +
@@ -88,6 +94,7 @@ breve::render::Settings settings_of(const breve_view_config& config) {
   settings.samples = static_cast<int>(config.samples);
   settings.look = config.look == BREVE_LOOK_PLAIN ? breve::render::Look::Plain : breve::render::Look::Full;
   if (config.font) settings.font = config.font;
+  if (config.gl) settings.context = context_of(*config.gl);
   return settings;
 }
 
@@ -110,7 +117,8 @@ breve_status breve_view_create(breve_runtime* runtime, const breve_view_config* 
     need(view, "view");
     const breve_view_config all = read_config(config, breve_view_config_default(), "breve_view_config");
     auto made = std::make_unique<breve_view>(all, settings_of(all));
-    made->config.font = nullptr;  // the host's
+    made->config.font = nullptr;  // the host's, as is the next
+    made->config.gl = nullptr;
     *view = made.release();
   });
 }
@@ -156,11 +164,12 @@ breve_status breve_view_set_camera(breve_view* view, const breve_camera* camera)
 breve_status breve_view_set_arrows(breve_view* view, uint32_t arrows, double scale) {
   return guard([&] {
     need(view, "view");
-    constexpr std::uint32_t kAll = BREVE_ARROWS_CONTACTS | BREVE_ARROWS_FORCES | BREVE_ARROWS_VELOCITIES;
+    constexpr std::uint32_t kAll =
+        BREVE_ARROWS_CONTACTS | BREVE_ARROWS_FORCES | BREVE_ARROWS_VELOCITIES | BREVE_ARROWS_JOINTS;
     if ((arrows & ~kAll) != 0) fail(BREVE_ERROR_ARGUMENT, "arrows has bits that are not a breve_arrows");
     if (!std::isfinite(scale) || !(scale > 0)) fail(BREVE_ERROR_ARGUMENT, "the scale of the arrows is not above 0");
     view->arrows = {(arrows & BREVE_ARROWS_CONTACTS) != 0, (arrows & BREVE_ARROWS_FORCES) != 0,
-                    (arrows & BREVE_ARROWS_VELOCITIES) != 0, scale};
+                    (arrows & BREVE_ARROWS_VELOCITIES) != 0, (arrows & BREVE_ARROWS_JOINTS) != 0, scale};
   });
 }
 
@@ -171,7 +180,8 @@ breve_status breve_view_arrows(const breve_view* view, uint32_t* arrows, double*
     need(scale, "scale");
     *arrows = (view->arrows.contacts ? std::uint32_t{BREVE_ARROWS_CONTACTS} : 0) |
               (view->arrows.forces ? std::uint32_t{BREVE_ARROWS_FORCES} : 0) |
-              (view->arrows.velocities ? std::uint32_t{BREVE_ARROWS_VELOCITIES} : 0);
+              (view->arrows.velocities ? std::uint32_t{BREVE_ARROWS_VELOCITIES} : 0) |
+              (view->arrows.joints ? std::uint32_t{BREVE_ARROWS_JOINTS} : 0);
     *scale = view->arrows.scale;
   });
 }

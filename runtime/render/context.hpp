@@ -1,5 +1,5 @@
-// An OpenGL context in main memory. The library that has it is loaded with the first one: a program that draws nothing
-// loads nothing.
+// The OpenGL context of a renderer: one in main memory, or a given one. The library for the first is loaded when it is
+// needed: a program that draws nothing loads nothing.
 #pragma once
 
 #include <memory>
@@ -8,15 +8,20 @@
 
 namespace breve::render {
 
+struct ForeignContext;
+
 class Context {
  public:
-  /// @throws Error{Unsupported} where OSMesa is not installed, or has no OpenGL 3.3
-  Context();
+  /// @param given  draw with it; null: with OSMesa
+  /// @throws Error{Unsupported} where OSMesa is not installed, or where there is no OpenGL 3.3
+  explicit Context(const ForeignContext* given);
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
   const Gl& gl() const { return gl_; }
+  /// The context cannot be made current any more: deleting what was made in it does nothing from now on.
+  void abandon();
 
   /// While it stands the calling thread draws with this context; before and after, any other may.
   class Use {
@@ -30,12 +35,12 @@ class Context {
     Context& context_;
   };
 
+  /// Where a context comes from.
+  class Source;
+
  private:
-  struct Library;
-  std::unique_ptr<Library> library_;
-  void* context_ = nullptr;
+  std::unique_ptr<Source> source_;
   Gl gl_;
-  unsigned char corner_[16 * 16 * 4] = {};  // what OSMesa wants to draw into; pictures go elsewhere
 };
 
 }  // namespace breve::render

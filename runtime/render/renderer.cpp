@@ -52,6 +52,7 @@ Lens mirrored(Lens lens, float height) {
 
 Renderer::Work::Work(const Settings& given)
     : settings(given),
+      context(settings.context ? &*settings.context : nullptr),
       use(std::in_place, context),
       shaders(context.gl()),
       marks(context.gl(), settings.font),
@@ -66,7 +67,13 @@ Renderer::Work::Work(const Settings& given)
   use.reset();
 }
 
-Renderer::Work::~Work() { use.emplace(context); }
+Renderer::Work::~Work() {
+  try {
+    use.emplace(context);
+  } catch (const Error&) {
+    context.abandon();  // the host's is gone, and everything in it
+  }
+}
 
 void Renderer::Work::paint_reflection(Pass pass) {
   const Gl& gl = context.gl();

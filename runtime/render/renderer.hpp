@@ -19,10 +19,21 @@ enum class Look : std::uint8_t {
   Plain  // nothing but what the program says: its colours and its lights
 };
 
+using GlFunction = void (*)();
+
+/// An OpenGL context that somebody else has made: 3.3 or later, core profile. Nothing else draws with it.
+struct ForeignContext {
+  /// Makes it current in the calling thread, or, for false, releases it there. False: this failed.
+  std::function<bool(bool current)> make_current;
+  /// The function of this name ("glClear"), or null. Called while the context is current.
+  std::function<GlFunction(const char* name)> address;
+};
+
 struct Settings {
   int samples = 4;  // of a pixel: 1, 2 or 4
   Look look = Look::Full;
-  std::string font;  // a file; empty: DejaVu Sans
+  std::string font;                       // a file; empty: DejaVu Sans
+  std::optional<ForeignContext> context;  // none: OSMesa
 };
 
 /// Of one picture.
@@ -32,7 +43,9 @@ struct Counters {
 
 class Renderer {
  public:
-  /// @throws Error{Unsupported} if OSMesa is missing, Error{File} if the font file is not a font
+  /// @throws Error{Unsupported} if OSMesa is missing or the given context is not OpenGL 3.3, Error{File} if the font
+  /// file
+  ///         is not a font
   explicit Renderer(const Settings& settings = {});
   ~Renderer();
   Renderer(const Renderer&) = delete;

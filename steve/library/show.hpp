@@ -11,9 +11,9 @@ namespace breve::steve {
 
 /// What arrows show.
 struct Arrows {
-  bool contacts = false, forces = false, velocities = false;
+  bool contacts = false, forces = false, velocities = false, joints = false;
   double scale = 1;  // of all their lengths
-  bool any() const { return contacts || forces || velocities; }
+  bool any() const { return contacts || forces || velocities || joints; }
 };
 
 /// The whole moment: begins and ends the scene.

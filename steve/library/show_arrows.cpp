@@ -12,7 +12,8 @@ namespace breve::steve {
 namespace {
 
 const Vector4f kNormal(0.20F, 0.75F, 0.95F, 1), kContactForce(0.95F, 0.30F, 0.20F, 1),
-    kSetForce(0.75F, 0.45F, 0.95F, 1), kSpringForce(1.00F, 0.65F, 0.15F, 1), kVelocity(0.25F, 0.80F, 0.40F, 1);
+    kSetForce(0.75F, 0.45F, 0.95F, 1), kSpringForce(1.00F, 0.65F, 0.15F, 1), kVelocity(0.25F, 0.80F, 0.40F, 1),
+    kJoint(1.00F, 0.85F, 0.20F, 1);
 
 class ArrowPainter {
  public:
@@ -23,8 +24,10 @@ class ArrowPainter {
       for (const BodyIndex body : bodies_.rigid_bodies()) find_contacts(body);
     for (const ObjectId id : world_.objects()) {
       if (world_.has_body(id)) paint_body(world_.body(id));
+      const Instance* object = machine_.instance(id);
       if (arrows_.forces)
-        if (const auto* spring = resource_of<SpringResource>(machine_, machine_.instance(id))) paint_spring(*spring);
+        if (const auto* spring = resource_of<SpringResource>(machine_, object)) paint_spring(*spring);
+      if (arrows_.joints && object && is_library_kind(*object, "Joint")) paint_joint(joint_of(machine_, *object));
     }
   }
 
@@ -84,13 +87,26 @@ class ArrowPainter {
     const Mechanics& mechanics = world_.mechanics();
     if (resource.index == kNoSpring || !mechanics.has_spring(resource.index)) return;
     const SpringDescription& spring = mechanics.spring(resource.index);
-    const auto end = [&](BodyIndex body, const Vector3& point) {
-      return Vector3(bodies_.location(body) + bodies_.rotation(body) * point);
-    };
-    const Vector3 at_a = end(spring.a, spring.point_a), at_b = end(spring.b, spring.point_b);
+    const Vector3 at_a = on_body(spring.a, spring.point_a), at_b = on_body(spring.b, spring.point_b);
     const Vector3 pull = mechanics.spring_force(resource.index) * (at_b - at_a).normalized();
     force(spring.a, at_a, pull, kSpringForce);
     force(spring.b, at_b, -pull, kSpringForce);
+  }
+
+  /// Along the first axis; a dot if the joint has no axis.
+  void paint_joint(JointIndex index) {
+    if (index == kNoJoint) return;
+    const JointDescription& joint = world_.mechanics().joint(index);
+    const Vector3 pivot = on_body(joint.child, joint.child_point);
+    const Vector3 axis =
+        joint.parent == kNoBody ? joint.normal : Vector3(bodies_.orientation(joint.parent) * joint.normal);
+    const double length = axis_count(joint.kind) != 0 ? arrows_.scale * radius(joint.child) : 0;
+    const Vector3 end = pivot + length * axis.normalized();
+    if (end.allFinite()) to_.scene().arrows.push_back({drawable(pivot), drawable(end), kJoint});
+  }
+
+  Vector3 on_body(BodyIndex body, const Vector3& point) const {
+    return bodies_.location(body) + bodies_.rotation(body) * point;
   }
 
   Machine& machine_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "stage.hpp"
 
@@ -84,6 +85,52 @@ TEST_F(Arrows, OfAVelocityGoesWhereTheBodyWillBe) {
   EXPECT_NEAR(box.left, kWidth / 2.0, 4);
 }
 
+bool is_yellow(const std::uint8_t* p) { return p[0] > 200 && p[1] > 160 && p[2] < 120; }
+
+/// A ball of radius 1 at (0, 3, 0) that hangs from the world at (0, 4, 0).
+/// @param keywords  that the class of the joint has besides the others
+std::string hangs_by(const std::string& joint, const std::string& keywords) {
+  return "self set-background-color to (0, 0, 0). self point-camera at (0, 0, 0) from (0, 0, 20). body = (new Link). "
+         "body set-shape to ((new Sphere) init-with radius 1). body set-color to (0, 0, .2). (new MultiBody) set-root "
+         "to "
+         "body. (new " +
+         joint + ") link " + keywords + " with-parent-point (0, 4, 0) with-child-point (0, 1, 0) to-child body. ";
+}
+
+TEST_F(Arrows, OfAJointIsFromItsPivotAlongItsAxis) {
+  breve_world* world =
+      stage_.open(stage_.compile(hangs_by("RevoluteJoint", "with-normal (1, 0, 0)"), "", 3, "PhysicalControl"));
+  stage_.show_arrows(BREVE_ARROWS_JOINTS);
+  const Box box = box_of(stage_.draw(world), is_yellow);
+  ASSERT_GT(box.count, 30);
+  EXPECT_NEAR(box.right, kWidth / 2.0 + kUnit, kTolerance);  // the child's radius
+  EXPECT_NEAR(box.left, kWidth / 2.0, 4);                    // the dot at the pivot
+  EXPECT_NEAR((box.top + box.bottom) / 2.0, kHeight / 2.0 - 4 * kUnit, 1.5);
+}
+
+TEST_F(Arrows, OfAJointWithoutAnAxisIsADot) {
+  breve_world* world = stage_.open(stage_.compile(hangs_by("FixedJoint", ""), "", 3, "PhysicalControl"));
+  stage_.show_arrows(BREVE_ARROWS_JOINTS);
+  const Box box = box_of(stage_.draw(world), is_yellow);
+  ASSERT_GT(box.count, 4);
+  EXPECT_NEAR((box.left + box.right) / 2.0, kWidth / 2.0, 1.5);
+  EXPECT_LT(box.right - box.left, 8);
+  EXPECT_NEAR((box.top + box.bottom) / 2.0, kHeight / 2.0 - 4 * kUnit, 1.5);
+}
+
+TEST_F(Arrows, OfAJointOfAFlatWorldIsADot) {
+  breve_world* world = stage_.open(stage_.compile(
+      "self set-background-color to (0, 0, 0). body = (new Link). body set-shape to ((new Sphere) init-with radius 1). "
+      "body set-color to (0, 0, .2). (new MultiBody) set-root to body. (new RevoluteJoint) link with-normal (0, 0, 1) "
+      "with-parent-point (0, 0, 0) with-child-point (1, 0, 0) to-child body. ",
+      "", 2));
+  stage_.show_arrows(BREVE_ARROWS_JOINTS);
+  const Box box = box_of(stage_.draw(world), is_yellow);
+  ASSERT_GT(box.count, 4);
+  EXPECT_LT(box.right - box.left, 8);
+  EXPECT_LT(box.bottom - box.top, 8);
+}
+
 TEST_F(Arrows, AreNotThereUnlessTheyAreAskedFor) {
   breve_world* world = rest();
   const Pixels without = stage_.draw(world);
@@ -101,15 +148,15 @@ TEST_F(Arrows, AreNotThereUnlessTheyAreAskedFor) {
 TEST_F(Arrows, ThatThereAreNotAreRefused) {
   breve_view* view = nullptr;
   ASSERT_EQ(breve_view_create(stage_.runtime(), nullptr, &view), BREVE_OK);
-  EXPECT_EQ(breve_view_set_arrows(view, 8, 1), BREVE_ERROR_ARGUMENT);
+  EXPECT_EQ(breve_view_set_arrows(view, 16, 1), BREVE_ERROR_ARGUMENT);
   for (const double scale : {0.0, -1.0, std::nan(""), HUGE_VAL})
     EXPECT_EQ(breve_view_set_arrows(view, 0, scale), BREVE_ERROR_ARGUMENT);
-  EXPECT_EQ(breve_view_set_arrows(view, 7, 3), BREVE_OK);
+  EXPECT_EQ(breve_view_set_arrows(view, 15, 3), BREVE_OK);
   EXPECT_EQ(breve_view_set_arrows(view, 1, 0), BREVE_ERROR_ARGUMENT);
   std::uint32_t arrows = 0;
   double scale = 0;
   EXPECT_EQ(breve_view_arrows(view, &arrows, &scale), BREVE_OK);
-  EXPECT_EQ(arrows, 7U);
+  EXPECT_EQ(arrows, 15U);
   EXPECT_EQ(scale, 3.0);
   breve_view_destroy(view);
 }

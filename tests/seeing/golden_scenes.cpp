@@ -172,6 +172,15 @@ constexpr GoldenScene kScenes[] = {
      PAIR "thing enable-physics. other enable-physics. tie = ((new Spring) connect from thing to other with-length 3 "
           "with-strength 200). thing set-velocity to (0, 4, 0). ",
      3, false, 1, BREVE_ARROWS_FORCES | BREVE_ARROWS_VELOCITIES},
+    {"arrows_joints",
+     CAMERA
+     "body = (new Link). body set-shape to ((new Cube) init-with size (6, 1, 2)). body set-color to (.3, .5, .8). "
+     "(new MultiBody) set-root to body. other = (new Link). other set-shape to ((new Cube) init-with size (1, 4, "
+     "1)). other set-color to (.8, .6, .3). (new RevoluteJoint) link with-normal (1, 0, 0) with-parent-point (2, "
+     "-.5, 0) with-child-point (0, 2, 0) to-child other parent body. thing = (new Link). thing set-shape to "
+     "((new Sphere) init-with radius 1). (new FixedJoint) link with-parent-point (-2, .5, 0) with-child-point "
+     "(0, -1, 0) to-child thing parent body. ",
+     3, false, 0, BREVE_ARROWS_JOINTS, "PhysicalControl"},
     {"drawn_lines", PEN "for n = 1, n < 6, n++: { pen set-color to (1, n / 6.0, .1) with-transparency (1 - n / 8.0). "
                         "pen set-line-width to n. pen "
                         "draw-line from (-6, n * 2 - 6, 0) to (6, n * 2 - 5, 0). } pen set-line-style to \"-  -  \". "

@@ -183,7 +183,7 @@ away() { sed 's/.* from (\(.*\), \(.*\), \(.*\))/\1 \2 \3/' <<<"${cameras[$1]}" 
 [[ $(away 4) == "$(away 2)" ]] || fail "zoom back: ${cameras[4]}"
 [[ ${cameras[5]} == "${cameras[0]}" ]] || fail "Home: ${cameras[5]}"
 for text in 'Ball' 'at (0.000, ' 'mood = calm' 'wishes = { 1, 2 }' 'iteration' 'frames/s' 'x real time' 'F5  pause, go on' 'contact: ' \
-  'effects together: .* us an iteration' 'picture: .* draw calls' 'Count' 'arrows: contacts'; do
+  'effects together: .* us an iteration' 'picture: .* draw calls.*drawn by this machine' 'Count' 'arrows: contacts'; do
   grep -q "^window: .*$text" output.txt || fail "the window does not show '$text'"
 done
 cmp -s arrows.png forces.png && fail "arrows of contacts and of forces are the same"
@@ -214,6 +214,13 @@ show 0 mended.tz --watch --play play.txt
 wait
 has 'mended.tz reloaded'
 grep -q '^mended: .*stopped' output.txt && fail "does not go on after an edit"
+
+# Without OpenGL of the machine, or without its use, pictures are drawn in main memory.
+printf '2 key F2\n4 read\n5 shot software.png\n6 quit\n' >play.txt
+show 0 drop.tz --software --play play.txt
+has '^window: picture: .*drawn in main memory'
+SDL_OPENGL_LIBRARY=nowhere.so show 0 drop.tz --play play.txt
+has '^window: picture: .*drawn in main memory'
 
 # Without drawing of every frame most frames show the picture of the one before.
 sed 's/    ball add-menu/    ball set-velocity to (4, 0, 0). self set-iteration-step to .02. self set-integration-step to .02.\n&/' toy.tz >on.tz

@@ -26,7 +26,7 @@ _breve() {
         --plot --plot-to --log --help" ;;
     view)
       options="--seed --set --path --allow-read --allow-write --no-files --allow-network --network-address --allow-system --allow-plugins
-        --accuracy --watch --size --speed --paused --plain --arrows --strict --quiet --verbose --play --help" ;;
+        --accuracy --watch --size --speed --paused --plain --arrows --software --strict --quiet --verbose --play --help" ;;
     repl)
       options="--seed --path --allow-read --allow-write --no-files --allow-network --network-address --allow-system --allow-plugins --strict --quiet --help" ;;
     replay) options="--allow-plugins --hash --quiet --help" ;;

@@ -10,10 +10,11 @@
  * the state is created and the file is run in it. docs/lua.md explains how to write agents.
  *
  * The rules of breve.h about errors, threads and texts also hold here, except that breve_lua_add and breve_lua_compile
- * describe their errors to `reason` alone. This library has no access to breve_runtime_last_error: after one of them has
- * failed, that may still be the error of an earlier call, or have positions in texts that the file does not contain. Link C++ programs with Lua's C++ build
- * (lua5.4-c++), and C programs with either build; this library does not raise C++ exceptions and does not hold anything
- * that an exception would have to clean up.
+ * describe their errors to `reason` alone. After one of them has failed, breve_runtime_last_error may still return the
+ * error of an earlier call, or one with positions in texts that the file does not contain.
+ *
+ * Link C++ programs with Lua's C++ build (lua5.4-c++), and C programs with either build; this library does not raise C++
+ * exceptions and does not hold anything that an exception would have to clean up.
  */
 #ifndef BREVE_BREVE_LUA_H
 #define BREVE_BREVE_LUA_H
@@ -82,6 +83,24 @@ BREVE_API breve_status breve_lua_compile(breve_runtime* runtime, const breve_lua
 /* The Lua state that runs the agents of a world, for functions of the host; NULL if the world does not have a class written
    in Lua. It belongs to the world. */
 BREVE_API struct lua_State* breve_lua_state(const breve_world* world);
+
+/* A field of each agent, as breve_objects_get has a variable of each object: a number is 1 number per row, a vector 3.
+   Variables that agents in Lua inherit from steve classes are read by breve_objects_get.
+   @param field   its name in Lua: "energy" for self.energy
+   @param array   its width, 1 or 3, says what all the fields must be
+   @param reason  called once with `sink` and a description of the error, unless an argument is NULL. May be NULL
+   BREVE_OK; BREVE_ERROR_STALE: an object has been freed; BREVE_ERROR_NOT_FOUND: the world has no class written in Lua, or a
+   field is nil; BREVE_ERROR_TYPE: a field is something else; BREVE_ERROR_ARGUMENT: a NULL pointer, or a wrong array;
+   BREVE_ERROR_MEMORY. After an error `array` is as it was. */
+BREVE_API breve_status breve_lua_objects_get(const breve_world* world, const breve_object* objects, size_t count,
+                                             const char* field, const breve_array* array, breve_write_fn reason,
+                                             void* sink);
+
+/* Sets a field that each agent has, as breve_lua_objects_get reads it. Where it was an integer of Lua, a whole number remains
+   one. As breve_lua_objects_get; if memory runs out during the call, the first fields are set. */
+BREVE_API breve_status breve_lua_objects_set(breve_world* world, const breve_object* objects, size_t count,
+                                             const char* field, const breve_array* array, breve_write_fn reason,
+                                             void* sink);
 
 /* Opens the library; `require "breve"` calls it in a Lua interpreter. Pushes the table of the library on the stack. */
 BREVE_API int luaopen_breve(struct lua_State* L);

@@ -222,13 +222,26 @@ BREVE_API breve_status breve_camera_project(const breve_camera* camera, uint32_t
 
 /* ---- pictures ---------------------------------------------------------------------------------------------------- */
 
-/* Draws scenes in main memory (OpenGL on OSMesa). */
+/* Draws scenes by OpenGL: in main memory (OSMesa), or with a context of the host. */
 typedef struct breve_view breve_view;
 
 typedef enum breve_look {
   BREVE_LOOK_FULL = 0, /* soft light, sky and haze where the program does not set anything else */
   BREVE_LOOK_PLAIN = 1 /* only the colours and lights that the program sets */
 } breve_look;
+
+/* A function of OpenGL, to be cast to its type. */
+typedef void (*breve_gl_function)(void);
+
+/* An OpenGL context of the host, for breve_view_config.gl: 3.3 or later, core profile. It belongs to one view, which changes
+   its state as it likes and draws into frame buffers of its own. Frozen. */
+typedef struct breve_gl {
+  void* user; /* passed to the functions, which must not call the library */
+  /* Makes the context current in the calling thread, or, for false, releases it there. Returns false if this fails. */
+  bool (*make_current)(void* user, bool current);
+  /* The function called `name` ("glClear"); NULL: there is none. Called while the context is current. */
+  breve_gl_function (*address)(void* user, const char* name);
+} breve_gl;
 
 typedef struct breve_view_config {
   size_t struct_size; /* set by breve_view_config_default */
@@ -237,6 +250,8 @@ typedef struct breve_view_config {
   uint32_t look;      /* breve_look. Default BREVE_LOOK_FULL */
   const char* font;   /* a TrueType or OpenType file, read by breve_view_create. NULL: DejaVu Sans; if that is not installed,
                          no text is drawn. Default NULL */
+  const breve_gl* gl; /* draw with this context, which outlives the view; copied. NULL: in main memory, with OSMesa.
+                         Default NULL */
 } breve_view_config;
 
 /* The defaults named above. */
@@ -272,15 +287,17 @@ typedef enum breve_arrows {
   BREVE_ARROWS_CONTACTS = 1,  /* blue: the normal at each contact of a body with physics, as long as the smaller radius */
   BREVE_ARROWS_FORCES = 2,    /* what contacts (red) and springs (orange) exerted in the last sub-step, and what scripts set
                                  (violet). A force of 10 m/s^2 times the mass is as long as the body is wide */
-  BREVE_ARROWS_VELOCITIES = 4 /* green: from the centre of each body to where it would be after one second */
+  BREVE_ARROWS_VELOCITIES = 4, /* green: from the centre of each body to where it would be after one second */
+  BREVE_ARROWS_JOINTS = 8     /* yellow: from the pivot of each joint along its first axis, as long as the child's radius;
+                                 only a dot where a joint has no axis, or points at the camera */
 } breve_arrows;
 
-/* Creates a view. The first one loads the graphics library.
+/* Creates a view. The first one without a context of the host loads OSMesa.
    @param config  copied; NULL: the defaults
    @param view    destroy it with breve_view_destroy
-   BREVE_OK; BREVE_ERROR_ARGUMENT: an invalid size, number of samples or look; BREVE_ERROR_FILE: the font cannot be read;
-   BREVE_ERROR_UNSUPPORTED: OSMesa is not installed, or the library was built without BREVE_WITH_RENDER. The text is in
-   breve_runtime_last_error. */
+   BREVE_OK; BREVE_ERROR_ARGUMENT: an invalid size, number of samples or look, or `gl` lacks a function; BREVE_ERROR_FILE: the
+   font cannot be read; BREVE_ERROR_UNSUPPORTED: OSMesa is not installed, the context of the host cannot be made current or
+   has no OpenGL 3.3, or the library was built without BREVE_WITH_RENDER. The text is in breve_runtime_last_error. */
 BREVE_API breve_status breve_view_create(breve_runtime* runtime, const breve_view_config* config, breve_view** view);
 
 /* Does nothing for NULL. */
