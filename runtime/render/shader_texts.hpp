@@ -193,10 +193,12 @@ void main() {
   vec4 p = vec4(position, 1);
   vec3 world = vec3(dot(row0, p), dot(row1, p), dot(row2, p));
   corner = position.xy;
-  if (disc > 0.5) {  // a small sphere: a square through its middle, towards the light, of which the shader keeps a circle
-    vec3 center = vec3(row0.w, row1.w, row2.w), way = normalize(center - eye);
-    vec3 right = normalize(cross(abs(way.y) > 0.9 ? vec3(1, 0, 0) : vec3(0, 1, 0), way));
-    world = center + length(vec3(row0.x, row1.x, row2.x)) * (right * corner.x + cross(way, right) * corner.y);
+  if (disc > 0.5) {  // a sphere: a square through its middle, towards the light, of which the shader keeps a circle
+    vec3 center = vec3(row0.w, row1.w, row2.w), way = center - eye;
+    vec3 right = normalize(cross(abs(way.y) > 0.9 * length(way) ? vec3(1, 0, 0) : vec3(0, 1, 0), way));
+    // The cone from the light that touches the sphere is a little wider there than the sphere.
+    float radius = length(vec3(row0.x, row1.x, row2.x)), sine = radius / max(length(way), 1.01 * radius);
+    world = center + radius * inversesqrt(1.0 - sine * sine) * (right * corner.x + normalize(cross(way, right)) * corner.y);
   }
   gl_Position = shadow_matrix * vec4(world, 1);
 }

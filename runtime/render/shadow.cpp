@@ -105,12 +105,13 @@ ShadowLens Renderer::Work::draw_shadows(const Scene& scene, const Lens& seen_by,
   for (const auto* batches : {&all.opaque, &all.transparent})
     for (const Batch& one : *batches) {
       const bool holes = one.texture != kNoTexture && scene.textures[one.texture].clear;
+      const bool disc = !holes && one.mesh >= kDiscMesh;  // whatever is lit of a sphere is in front of its disc
       (holes ? shaders.holes : shaders.depth).use();
       if (holes) bind_texture(scene, one.texture, 0);
-      if (!holes) shaders.depth.set("disc", one.mesh == kDiscMesh ? 1.0F : 0.0F);
+      if (!holes) shaders.depth.set("disc", disc ? 1.0F : 0.0F);
       // A coarse sphere lies within the one that is seen, which so does not shade itself.
-      const MeshBuffer& buffer = mesh(scene, one.mesh > kSphereMesh + 1 ? kSphereMesh + 1 : one.mesh);
-      draw_pieces(buffer, one, false);
+      const std::uint32_t kind = disc ? kDiscMesh : std::min(one.mesh, kSphereMesh + 1);
+      draw_pieces(mesh(scene, kind), one, false);
       ++counters.draw_calls;
     }
   gl.Disable(GL_POLYGON_OFFSET_FILL);

@@ -57,6 +57,12 @@ static double slope(void) { return tan(20 * acos(-1) / 180); }
 
 static double encoded(double c) { return 255 * (c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1 / 2.4) - 0.055); }
 
+/* The light of a pixel: the edges of shadows are mixed as light, not as encoded colours. */
+static double light_of(const uint8_t* p) {
+  const double c = p[0] / 255.0;
+  return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
+}
+
 /* --- scenes --------------------------------------------------------------------------------------------------------- */
 
 static breve_rows rows_of(breve_scene* scene, uint32_t kind) {
@@ -326,19 +332,28 @@ static void a_shadow_lies_where_the_light_throws_it(void) {
                  "\t\t(new Thing) become from ((new Sphere) init-with radius 1) at (6, 12, 0) in (1, 1, 1).\n"))
     return;
   if (take(&s, &p)) {
-    /* The cone about the sphere meets the floor at x = 10 - 20 tan(a +- b). */
+    /* The cone about the sphere meets the floor in an ellipse, from x = 10 - 20 tan(a + b) to 10 - 20 tan(a - b). */
     const double a = atan(0.5), b = asin(1 / sqrt(80)), unit = 240 / slope() / 40;
-    const double low = 320 + unit * (10 - 20 * tan(a + b)), high = 320 + unit * (10 - 20 * tan(a - b));
-    double dark = 0, middle = 0;
-    const double lit = pixel(&p, 320, 60)[0], shade = pixel(&p, (int)((low + high) / 2), 240)[0];
+    const double low = 10 - 20 * tan(a + b), high = 10 - 20 * tan(a - b), middle = (low + high) / 2;
+    const double along = (200 - 4 * middle) / sqrt(80) / cos(b); /* from the light to the ellipse's widest place */
+    const double width = sqrt(along * along - (middle - 10) * (middle - 10) - 400);
+    const double area = acos(-1) * (high - low) / 2 * width;
+    const double lit = light_of(pixel(&p, 320, 60)), shade = light_of(pixel(&p, 320 + (int)(unit * middle), 240));
+    double dark = 0, sum = 0, longest = 0;
     CHECK(lit > 2 * shade);
-    for (int x = (int)low - 12; x < (int)high + 12; ++x) {
-      const double part = fmin(1, fmax(0, (lit - pixel(&p, x, 240)[0]) / (lit - shade)));
-      dark += part;
-      middle += part * (x + 0.5);
+    for (int y = 240 - 60; y < 240 + 60; ++y) {
+      double row_dark = 0;
+      for (int x = 320 + (int)(unit * low) - 12; x < 320 + (int)(unit * high) + 12; ++x) {
+        const double part = fmin(1, fmax(0, (lit - light_of(pixel(&p, x, y))) / (lit - shade)));
+        row_dark += part;
+        sum += part * (x + 0.5 - 320);
+      }
+      dark += row_dark;
+      longest = fmax(longest, row_dark);
     }
-    CHECK_NEAR((low + high) / 2, middle / dark, 2 * kPercent * (high - low));
-    CHECK_NEAR(high - low, dark, 4 * kPercent * (high - low));
+    CHECK_NEAR(area, dark / unit / unit, kPercent * area);
+    CHECK_NEAR(middle, sum / dark / unit, kPercent * (high - low));
+    CHECK_NEAR(high - low, longest / unit, kPercent * (high - low));
   }
   drop(&p);
   scene_close(&s);
