@@ -154,6 +154,37 @@ static void requests_call_methods_of_the_program_between_iterations(void) {
   CHECK(closed == 1 && retained == 0);
 }
 
+/* A page is asked for, a number sent and an object uploaded every tenth iteration, of two thousand. */
+static void a_world_serves_for_a_long_time(void) {
+  enum { kIterations = 2000, kEach = 10 };
+  static char xml[4096];
+  const char* text = NULL;
+  breve_value value;
+  scene s;
+  if (!open_there(&s)) return;
+  CHECK_STATUS(BREVE_OK, breve_object_call(s.world, breve_world_controller(s.world), "parcel-text", NULL, 0, &value));
+  CHECK_STATUS(BREVE_OK, breve_value_text(s.world, &value, &text));
+  snprintf(xml, sizeof xml, "%s", text);
+  for (int i = 0; i < kIterations; ++i) {
+    forget();
+    if (i % kEach == 0) {
+      ask("GET", "/add_3_0.5", "");
+      ask("POST", "/", xml); /* of weight 7 */
+      ask("GET", "/show", "");
+      ask("GET", "/fly", "");
+    }
+    if (!CHECK_STATUS(BREVE_OK, breve_world_step(s.world))) break;
+    char page[64];
+    snprintf(page, sizeof page, "|200 <b>%d</b>|404 ", 10 * (i / kEach + 1));
+    if (i % kEach == 0 && !CHECK(strstr(answers, page) != NULL)) break;
+    if (i % kEach != 0 && !CHECK(answers[0] == 0)) break;
+  }
+  CHECK(int_of(&s, "total") == 10 * kIterations / kEach);
+  CHECK(s.said.errors == 0);
+  scene_close(&s);
+  CHECK(closed == 1 && retained == 0);
+}
+
 static void what_is_not_exposed_is_not_called(void) {
   scene s;
   if (!open_there(&s)) return;
@@ -562,6 +593,7 @@ static void bad_limits_are_refused(void) {
 
 void network_suite(void) {
   RUN(requests_call_methods_of_the_program_between_iterations);
+  RUN(a_world_serves_for_a_long_time);
   RUN(what_is_not_exposed_is_not_called);
   RUN(an_object_that_is_sent_reaches_accept_upload);
   RUN(an_uploaded_server_neither_takes_nor_closes_the_real_one);
