@@ -35,7 +35,7 @@ static const char* meant_by(lua_State* L, const char* key, int count) {
 /* Is the only argument meant as a table of arguments? One of its keys names an argument then, or was meant to. */
 static bool is_by_keyword(lua_State* L, int count) {
   if (lua_gettop(L) != 2 || !lua_istable(L, 2) || bl_is_object(L, 2)) return false;
-  luaL_checkstack(L, count + 4, NULL);
+  luaL_checkstack(L, 2 * count + 10, NULL); /* the arguments, and the parts of an error */
   for (lua_pushnil(L); lua_next(L, 2); lua_pop(L, 1)) {
     if (lua_type(L, -2) != LUA_TSTRING) continue;
     if (position_of(L, -2, count) < 0 && !meant_by(L, lua_tostring(L, -2), count)) continue;

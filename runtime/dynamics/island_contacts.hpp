@@ -19,7 +19,7 @@ struct Touch {
   Vector3 point, normal;                                               // world; the normal from b toward a
   Vector3 on_a, on_b;                                                  // the point, in the axes of each body
   Vector3 from_a, from_b;                                              // where the bodies' origins were
-  Vector3 start = Vector3::Zero();                                     // the point then
+  Vector3 start = Vector3::Zero();                                     // the point, as the sub-step began
   Quaternion orientation_a, orientation_b;                             // of the bodies then
   Vector3 velocity_a = Vector3::Zero(), velocity_b = Vector3::Zero();  // of the bodies there, as the sub-step began
   double gap = 0;                                                      // m, at the start of the sub-step

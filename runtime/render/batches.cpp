@@ -9,8 +9,6 @@ namespace breve::render {
 
 namespace {
 
-constexpr float kOpaque = 0.999F;
-
 struct Item {
   std::uint32_t mesh, texture;
   std::uint32_t number;  // of the instance

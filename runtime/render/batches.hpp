@@ -16,6 +16,9 @@ inline constexpr std::uint32_t kSphereMesh = 0xfffffff0U;  // of level i: kSpher
 /// Small spheres without a texture are a square that the shader shades as one.
 inline constexpr std::uint32_t kDiscMesh = 0xffffffefU;
 
+/// A less opaque body lets through what is behind it.
+inline constexpr float kOpaque = 0.999F;
+
 /// How far back something is. A sheet that is between two things decides, wherever their middles are: sheets lie in
 /// planes of z, and what is on the eye's side of such a plane is never behind what is on the other side.
 struct Place {

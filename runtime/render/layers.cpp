@@ -8,8 +8,6 @@ namespace breve::render {
 
 namespace {
 
-constexpr float kOpaque = 0.999F;
-
 /// Something transparent that is not a body.
 struct Other {
   enum class Kind : std::uint8_t { Sheet, Sprite, Triangle } kind = Kind::Sprite;

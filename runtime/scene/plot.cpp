@@ -91,6 +91,12 @@ Axis axis_of(Range range, int count) {
   return axis;
 }
 
+/// Not more than so many bytes of a name in UTF-8: none of its characters is cut in two.
+std::string shortened(const std::string& name, std::size_t most) {
+  while (most > 0 && (static_cast<unsigned char>(name[most]) & 0xC0U) == 0x80U) --most;
+  return name.substr(0, most);
+}
+
 }  // namespace
 
 Axis x_axis_of(const ScenePlot& plot) {
@@ -115,7 +121,7 @@ Key key_of(const ScenePlot& plot) {
   for (std::size_t i = 0; i < plot.lines.size(); ++i) {
     std::string name = plot.lines[i].name;
     if (name.empty()) continue;
-    if (name.size() > kMost) name = name.substr(0, kMost - 3) + "...";
+    if (name.size() > kMost) name = shortened(name, kMost - 3) + "...";
     const double width = kRoom + kLetter * static_cast<double>(name.size());
     if (x > kLeft && x + width - kRoom / 2 > kWidth - kRight) {
       x = kLeft;

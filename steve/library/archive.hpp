@@ -32,8 +32,8 @@ enum class Origin : std::uint8_t { File, Network };
 /// New objects out of an archive, made without `init`: variables, native data and bodies are set, then each object gets
 /// `post-dearchive-set-controller` and `dearchive`, dependencies first. Yields the root.
 /// @throws Error{File} for text that is not an archive, a class or variable that the program does not have, a
-/// `dearchive`
-///         that yields 0, or a class that may not come from that origin; no object of the archive is left then
+///         `dearchive` that yields 0, or a class that may not come from that origin; no object of the archive is left
+///         then
 Instance* from_archive(Machine& machine, std::string_view xml, Origin origin);
 
 /// The first class in an archive whose objects cannot come over the network, because they reach outside of the world:

@@ -52,27 +52,36 @@ static void no_keyword_is_lost_in_silence(void) {
   s.steve =
       "@use Control.\n"
       "Control : Base { + to shout text t (hash) with-volume v = 1 (int): return 1. }\n";
-  if (!stage_open(&s,
-                  "breve.use 'Steve.tz'\n"
-                  "local Main = breve.class('Main', 'Base')\nbreve.main(Main)\n"
-                  "function Main:set_goal(to, weight) return weight and to + weight or #to end\n"
-                  "function Main:choose(options) return options.weight end\n"
-                  "function Main:plan(options, extra) return options.color * 10 + (extra or 2) end\n"
-                  "function Main:misspelt() return self:set_goal{to = 1, wieght = 2} end\n"
-                  "function Main:alone() return self:set_goal{wieght = 2} end\n"
-                  "function Main:strange() return self:set_goal{to = 1, weight = 2, zeal = 1, angle = 2} end\n"
-                  "function Main:numbered() return self:set_goal{1, weight = 2} end\n"
-                  "function Main:steve() return self:shout{text = 'boo', volume = 2} end\n"
-                  "function Main:row() return self:set_goal{5, 6, 7} end\n"
-                  "function Main:empty() return self:set_goal{} end\n"
-                  "function Main:single() return self:choose{weight = 4} end\n"
-                  "function Main:table_first() return self:plan{color = 4} end\n"
-                  "function Main:table_and_nil() return self:plan({color = 4, extra = 9}, nil) end\n",
-                  NULL))
+  if (!stage_open(
+          &s,
+          "breve.use 'Steve.tz'\n"
+          "local Main = breve.class('Main', 'Base')\nbreve.main(Main)\n"
+          "function Main:set_goal(to, weight) return weight and to + weight or #to end\n"
+          "function Main:choose(options) return options.weight end\n"
+          "function Main:plan(options, extra) return options.color * 10 + (extra or 2) end\n"
+          "function Main:misspelt() return self:set_goal{to = 1, wieght = 2} end\n"
+          "function Main:alone() return self:set_goal{wieght = 2} end\n"
+          "function Main:strange() return self:set_goal{to = 1, weight = 2, zeal = 1, angle = 2} end\n"
+          "function Main:long(a1, b1, c1, d1, e1, f1, g1, h1) return h1 end\n"
+          "function Main:whole() return self:long{a1 = 1, b1 = 2, c1 = 3, d1 = 4, e1 = 5, f1 = 6, g1 = 7, h1 = 8} end\n"
+          "function Main:one_more() return self:long{a1 = 1, h1 = 8, other = 9} end\n"
+          "function Main:numbered() return self:set_goal{1, weight = 2} end\n"
+          "function Main:steve() return self:shout{text = 'boo', volume = 2} end\n"
+          "function Main:row() return self:set_goal{5, 6, 7} end\n"
+          "function Main:empty() return self:set_goal{} end\n"
+          "function Main:single() return self:choose{weight = 4} end\n"
+          "function Main:table_first() return self:plan{color = 4} end\n"
+          "function Main:table_and_nil() return self:plan({color = 4, extra = 9}, nil) end\n",
+          NULL))
     return;
   refused_with(&s, "misspelt", "method 'set_goal' has no keyword 'wieght'; did you mean 'weight'? (set_goal{to = ...");
   refused_with(&s, "alone", "no keyword 'wieght'");
   refused_with(&s, "strange", "no keyword 'angle' (set_goal{to = ..., weight = ...}");
+  /* As many parameters as a method may have. */
+  CHECK_NEAR(8, stage_number(&s, "whole"), 0);
+  refused_with(
+      &s, "one-more",
+      "no keyword 'other' (long{a1 = ..., b1 = ..., c1 = ..., d1 = ..., e1 = ..., f1 = ..., g1 = ..., h1 = ...}");
   refused_with(&s, "numbered", "a key that is not a text");
   refused_with(&s, "steve", "shout{text = ..., with_volume = ...}");
   CHECK_NEAR(3, stage_number(&s, "row"), 0);

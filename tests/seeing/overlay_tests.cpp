@@ -88,6 +88,24 @@ TEST(PlotFile, ItsKeyHasRowsThatFitThePage) {
   EXPECT_LT(most, 600);  // of 900, and a name is 250 wide
 }
 
+TEST(PlotFile, ANameThatIsTooLongIsCutBetweenCharacters) {
+  const std::string name = "\u00e4\u00f6\u20ac";  // of two, two and three bytes
+  for (int before = 0; before < 7; ++before) {
+    ScenePlot plot;
+    std::string words(static_cast<std::size_t>(before), 'x');
+    while (words.size() < 120) words += name;
+    plot.lines.push_back({{0, 0, 0}, words, {0, 1}});
+    const std::string svg = plot_svg(plot);
+    const std::size_t end = svg.find("...</text>");
+    ASSERT_NE(end, std::string::npos);
+    const std::size_t begin = svg.rfind('>', end) + 1;
+    const std::string kept = svg.substr(begin, end - begin);
+    EXPECT_EQ(words.compare(0, kept.size(), kept), 0);
+    EXPECT_GT(kept.size(), 50U);
+    EXPECT_NE(static_cast<unsigned char>(words[kept.size()]) & 0xC0U, 0x80U) << "before " << before;
+  }
+}
+
 TEST(WordsOfAView, AreLeftOutWhereTheyWouldCoverAll) {
   Stage stage(BREVE_LOOK_FULL, 80, 48);
   const std::string world = kDark + "thing = ((new Thing) become from box). ";
