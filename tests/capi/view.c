@@ -359,6 +359,41 @@ static void a_shadow_lies_where_the_light_throws_it(void) {
   scene_close(&s);
 }
 
+/* Is a shared library in this process whose name has this part? */
+static bool has_loaded(const char* part) {
+  char line[512];
+  bool found = false;
+  FILE* maps = fopen("/proc/self/maps", "r");
+  if (!CHECK(maps != NULL)) return false;
+  while (fgets(line, sizeof line, maps)) found = found || strstr(line, part) != NULL;
+  fclose(maps);
+  return found;
+}
+
+/* It goes first: libraries stay loaded. Scenes are made of meshes and textures, which nobody has asked for either. */
+static void a_world_that_nobody_looks_at_loads_no_graphics(void) {
+  scene s;
+  shot p;
+  breve_view_counters counters = breve_view_counters_default();
+  if (!open_show(&s,
+                 "\t\tthing = new Stationary.\n"
+                 "\t\tthing register with-shape ((new Cube) init-with size (60, 2, 60)) at-location (0, -1, 0) "
+                 "with-rotation [(1, 0, 0), (0, 1, 0), (0, 0, 1)].\n"
+                 "\t\tself enable-lighting. self enable-shadows. self set-display-text to \"text\" at-x 0 at-y 0.\n"
+                 "\t\teye = new Camera. eye set-size with-height 60 with-width 80.\n"
+                 "\t\t(new Thing) become from ball at (0, 5, 0) in (1, 1, 1).\n"))
+    return;
+  for (int i = 0; i < 5; ++i) CHECK_STATUS(BREVE_OK, breve_world_step(s.world));
+  CHECK(!has_loaded("OSMesa") && !has_loaded("LLVM"));
+  if (take(&s, &p)) {
+    CHECK(has_loaded("OSMesa"));
+    CHECK_STATUS(BREVE_OK, breve_view_counts(p.view, &counters));
+    CHECK(counters.uploads >= 3); /* a box, a sphere, the texture of the box: the first time they are needed */
+  }
+  drop(&p);
+  scene_close(&s);
+}
+
 static void a_window_leaves_the_rest_of_the_picture(void) {
   scene s;
   shot p;
@@ -555,6 +590,7 @@ static void a_movie_of_a_world_is_a_file(void) {
 }
 
 void view_suite(void) {
+  RUN(a_world_that_nobody_looks_at_loads_no_graphics);
   RUN(bodies_that_look_alike_share_a_mesh);
   RUN(triangles_of_every_shape_face_outward);
   RUN(lines_texts_and_lights_are_rows);
