@@ -97,12 +97,23 @@ typedef struct bl_lib {
   struct bl_description* description; /* a file runs without a world, in a state of its own; NULL: none does */
 } bl_lib;
 
+/* Texts and stacks of a state, by the binary logarithms of their sizes, from a size on that takes time. */
+#define BL_LOGARITHMS 48
+typedef struct bl_weights {
+  uint32_t counts[2][BL_LOGARITHMS];
+  size_t most;          /* bytes that one instruction may go through */
+  bool after_thread;    /* the next block is the stack of a thread */
+  union bl_head* fresh; /* the block that was taken last, if nothing was given back since; NULL: none */
+  size_t fresh_size;
+} bl_weights;
+
 /* What bounds a file that is run to be described, where no world does. */
 typedef struct bl_description {
   lua_State* L;
   size_t used;    /* bytes */
   uint64_t turns; /* as in a world's budget */
   bool exhausted;
+  bl_weights weights;
 } bl_description;
 
 /* ---- what belongs to one world ---- */
@@ -247,6 +258,18 @@ void bl_push_class(lua_State* L, bl_lib* lib, const char* name);
 /* Push the function that a class table has itself under a name, or nil. */
 void bl_push_own(lua_State* L, bl_lib* lib, const char* class_name, const char* name);
 
+/* ---- memory (pools.c) ---- */
+
+#define BL_MUCH (1 << 20) /* bytes: so much is counted at once */
+
+void* bl_allocate(void* pool, void* block, size_t old_size, size_t new_size);                  /* lua_Alloc */
+void* bl_allocate_described(void* description, void* block, size_t old_size, size_t new_size); /* likewise */
+bl_pool* bl_pool_new(breve_world* world);
+void bl_pool_destroy(bl_pool* pool);
+void bl_pool_serve(bl_pool* pool, bl_world* w); /* the world that hears about large blocks; at first none */
+uint64_t bl_pool_owed(bl_pool* pool);           /* bytes of large blocks, if they are many, and forgets them */
+size_t bl_pool_weight(const bl_pool* pool);     /* bytes that one instruction may go through */
+
 /* ---- state, libraries, snapshots ---- */
 
 bl_lib* bl_open(lua_State* L); /* makes the library's table and leaves it on the stack */
@@ -266,12 +289,11 @@ bool bl_save(void* user, breve_world* world, breve_write_fn write, void* sink, b
              void* reason_sink);
 bool bl_load(void* user, breve_world* world, const char* bytes, size_t size, bool commit);
 breve_status bl_bind(void* user, breve_world* world, void** binding, breve_write_fn reason, void* sink);
-void* bl_allocate(void* pool, void* block, size_t old_size, size_t new_size); /* lua_Alloc */
-lua_State* bl_description_open(bl_description* description);                  /* NULL: no memory */
-void bl_count_anew(bl_world* w);                                              /* a new call has a budget again */
+lua_State* bl_description_open(bl_description* description); /* NULL: no memory */
+void bl_count_anew(bl_world* w);                             /* a new call has a budget again */
 void bl_set_hook(lua_State* L, bl_world* w, bool profiled);
-bl_pool* bl_pool_new(breve_world* world);
-void bl_pool_destroy(bl_pool* pool);
+/* Large blocks were taken: the next instruction counts them, and not the one that ends a piece. */
+void bl_look_soon(bl_world* w);
 /* Run the file of a program that is being described in a state. As breve_lua_add. */
 breve_status bl_describe(lua_State* L, bl_lib* lib, bl_program* program, breve_write_fn reason, void* sink);
 /* Give the classes of a program to a runtime, and compile a program of it if one is asked for. As breve_lua_compile. */

@@ -1,121 +1,29 @@
-/* The Lua side of a world: its state, whose memory is the world's and whose loops count in its budget, and the file of
-   its program, run in it. */
+/* The Lua side of a world: its state, whose loops count in its budget, and the file of its program, run in it. */
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "binding.h"
 
-/* ---- memory: small blocks of a few sizes, kept for the next one of that size --------------------------------------- */
-
-enum { STEP = 16, LARGEST = 512, CLASSES = LARGEST / STEP, CHUNK = 32768 };
-enum {
-  MUCH = 1 << 20,         /* bytes: so much is counted at once */
-  BYTES = 128,            /* so many count as one loop iteration in steve */
-  LONGEST_TEXT = 4 << 20, /* bytes, where a budget bounds work: one instruction compares two texts */
-};
-
-typedef union chunk {
-  union chunk* next;
-  double alignment[2];
-} chunk;
-
-struct bl_pool {
-  breve_world* world;
-  chunk* chunks;
-  char* room; /* not given out yet, in the last chunk */
-  size_t left;
-  void* kept[CLASSES];
-  bl_world* w;
-  uint64_t owed; /* bytes of large blocks that were taken since they were counted last */
-};
-
-bl_pool* bl_pool_new(breve_world* world) {
-  bl_pool* pool = (bl_pool*)breve_world_allocate(world, sizeof *pool);
-  if (!pool) return NULL;
-  memset(pool, 0, sizeof *pool);
-  pool->world = world;
-  return pool;
-}
-
-void bl_pool_destroy(bl_pool* pool) {
-  for (chunk* c = pool->chunks; c;) {
-    chunk* next = c->next;
-    breve_world_release(pool->world, c, CHUNK);
-    c = next;
-  }
-  breve_world_release(pool->world, pool, sizeof *pool);
-}
-
-static void look_soon(bl_world* w);
-
-static void* take(bl_pool* pool, size_t size) {
-  if (size > LARGEST) {
-    void* large = breve_world_allocate(pool->world, size);
-    if (!large) return NULL;
-    pool->owed += size;
-    if (pool->owed >= MUCH && pool->w) look_soon(pool->w);
-    return large;
-  }
-  const size_t number = (size - 1) / STEP, rounded = (number + 1) * STEP;
-  void* block = pool->kept[number];
-  if (block) {
-    memcpy(&pool->kept[number], block, sizeof(void*));
-    return block;
-  }
-  if (pool->left < rounded) {
-    chunk* c = (chunk*)breve_world_allocate(pool->world, CHUNK);
-    if (!c) return NULL;
-    c->next = pool->chunks;
-    pool->chunks = c;
-    pool->room = (char*)(c + 1);
-    pool->left = CHUNK - sizeof *c;
-  }
-  block = pool->room;
-  pool->room += rounded;
-  pool->left -= rounded;
-  return block;
-}
-
-static void give_back(bl_pool* pool, void* block, size_t size) {
-  if (size > LARGEST) {
-    breve_world_release(pool->world, block, size);
-    return;
-  }
-  void** kept = &pool->kept[(size - 1) / STEP];
-  memcpy(block, kept, sizeof(void*));
-  *kept = block;
-}
-
-void* bl_allocate(void* user, void* block, size_t old_size, size_t new_size) {
-  bl_pool* pool = (bl_pool*)user;
-  if (!block) { /* the old size is what the block is for */
-    const bool too_long = old_size == LUA_TSTRING && new_size > LONGEST_TEXT;
-    if (new_size == 0 || (too_long && breve_world_has_budget(pool->world))) return NULL;
-    return take(pool, new_size);
-  }
-  if (new_size == 0) {
-    give_back(pool, block, old_size);
-    return NULL;
-  }
-  if (old_size <= LARGEST && new_size <= LARGEST && (old_size - 1) / STEP == (new_size - 1) / STEP) return block;
-  void* moved = take(pool, new_size);
-  if (!moved) return NULL;
-  memcpy(moved, block, old_size < new_size ? old_size : new_size);
-  give_back(pool, block, old_size);
-  return moved;
-}
-
 /* ---- the budget ---------------------------------------------------------------------------------------------------- */
 
 enum {
-  INSTRUCTIONS = 200,
-  TURNS = 50,            /* so many instructions take about as long as so many iterations of a loop in steve */
+  INSTRUCTIONS = 200,    /* from one count to the next */
+  FEWEST = 4,            /* ... where each may take long */
+  BYTES = 128,           /* so many of large blocks that are taken count as one loop iteration in steve */
+  WEIGHT = 4096,         /* with so many that one instruction may go through, an instruction counts as two, and so on */
   MOST_TURNS = 25000000, /* of a file that is described: a second or two */
-  MOST_BYTES = 256 << 20 /* of the same */
 };
 
 static void hook(lua_State* L, lua_Debug* event);
+
+/* Four instructions take about as long as an iteration of a loop in steve. */
+static uint64_t turns_of(int instructions, size_t weight) { return (uint64_t)instructions / 4 * (1 + weight / WEIGHT); }
+
+/* The instructions up to the next count, which an interrupt waits for. */
+static int piece_of(size_t weight) {
+  const size_t share = INSTRUCTIONS / (1 + weight / BL_MUCH);
+  return share < FEWEST ? FEWEST : (int)share;
+}
 
 /* Once the budget is used up every instruction is an error, so that no pcall in a loop can go on. */
 static void fail_at_once(lua_State* L, bl_world* w, breve_status status) {
@@ -130,8 +38,7 @@ static void charge_world(lua_State* L, bl_world* w, uint64_t turns) {
   if (status != BREVE_OK) fail_at_once(L, w, status);
 }
 
-/* Large blocks were taken: the next instruction counts them, and not the one that ends a piece. */
-static void look_soon(bl_world* w) {
+void bl_look_soon(bl_world* w) {
   lua_State* const threads[] = {w->L, w->running};
   for (size_t i = 0; i < 2; ++i)
     if (threads[i] && lua_gethook(threads[i]) == hook && (lua_gethookmask(threads[i]) & LUA_MASKCOUNT) != 0)
@@ -140,13 +47,12 @@ static void look_soon(bl_world* w) {
 
 static void count_instructions(lua_State* L) {
   bl_world* w = *(bl_world**)lua_getextraspace(L);
-  uint64_t turns = w->exhausted ? 1 : TURNS;
-  if (w->pool->owed >= MUCH) {
-    turns += w->pool->owed / BYTES;
-    w->pool->owed = 0;
-  }
-  if (!w->exhausted && lua_gethookcount(L) != INSTRUCTIONS) lua_sethook(L, hook, lua_gethookmask(L), INSTRUCTIONS);
-  charge_world(L, w, turns);
+  const size_t weight = bl_pool_weight(w->pool);
+  const int counted = lua_gethookcount(L) >= FEWEST ? lua_gethookcount(L) : INSTRUCTIONS; /* 1: it looks soon */
+  const uint64_t turns = w->exhausted ? 1 : turns_of(counted, weight);
+  if (!w->exhausted && lua_gethookcount(L) != piece_of(weight))
+    lua_sethook(L, hook, lua_gethookmask(L), piece_of(weight));
+  charge_world(L, w, turns + bl_pool_owed(w->pool) / BYTES);
 }
 
 static void hook(lua_State* L, lua_Debug* event) {
@@ -175,28 +81,14 @@ static void charge_description(lua_State* L, bl_description* d, uint64_t turns) 
 }
 
 static void count_described(lua_State* L, lua_Debug* event) {
+  bl_description* d = *(bl_description**)lua_getextraspace(L);
   (void)event;
-  charge_description(L, *(bl_description**)lua_getextraspace(L), TURNS);
-}
-
-static void* allocate_described(void* user, void* block, size_t old_size, size_t new_size) {
-  bl_description* d = (bl_description*)user;
-  const size_t before = block ? old_size : 0;
-  if (new_size == 0) {
-    free(block);
-    d->used -= before;
-    return NULL;
-  }
-  if (new_size > before && (new_size > MOST_BYTES || d->used - before > MOST_BYTES - new_size)) return NULL;
-  void* moved = realloc(block, new_size);
-  if (!moved) return NULL;
-  d->used = d->used - before + new_size;
-  return moved;
+  charge_description(L, d, turns_of(INSTRUCTIONS, d->weights.most));
 }
 
 lua_State* bl_description_open(bl_description* d) {
   memset(d, 0, sizeof *d);
-  d->L = lua_newstate(allocate_described, d);
+  d->L = lua_newstate(bl_allocate_described, d);
   if (!d->L) return NULL;
   *(bl_description**)lua_getextraspace(d->L) = d;
   lua_sethook(d->L, count_described, LUA_MASKCOUNT, INSTRUCTIONS);
@@ -398,7 +290,7 @@ static breve_status make_world(breve_world* world, bl_program* program, breve_wr
       return BREVE_ERROR_MEMORY;
     }
     *(bl_world**)lua_getextraspace(w->L) = w;
-    w->pool->w = w;
+    bl_pool_serve(w->pool, w);
     if (breve_world_has_budget(world)) bl_count_anew(w);
   }
   w->running = w->L;

@@ -63,6 +63,43 @@ static void functions_of_libraries_count_in_the_budget(void) {
   }
 }
 
+/* One instruction may go through megabytes. Uncounted, the first loop would run 200,000 times, and for a minute. */
+static void instructions_that_go_through_much_count_it(void) {
+  static const struct {
+    const char* work;
+    double most;
+  } works[] = {
+      {"local a, b = ('x'):rep(1000000), ('x'):rep(999999) .. 'x' while true do self.n = self.n + 1 self.b = a == b "
+       "end",
+       6000},
+      {"local a = ('x'):rep(1000000) while true do self.n = self.n + 1 self.b = a < a end", 6000},
+      {"local t = {} for i = 1, 100000 do t[i] = i end local function f(...) self.n = self.n + 1 return f(...) end "
+       "f(table.unpack(t))",
+       3000},
+      {"local t = {} for i = 1, 100000 do t[i] = i end local function f(...) while true do self.n = self.n + 1 "
+       "coroutine.wrap(function(...) return ... end)(...) end end f(table.unpack(t))",
+       3000},
+      /* Once they are gone, instructions count as before. */
+      {"do local a = ('x'):rep(1000000) end for i = 1, 600 do local b = ('y'):rep(5000) end "
+       "for i = 1, 100000 do self.n = self.n + 1 end",
+       1e9},
+  };
+  for (size_t i = 0; i < sizeof works / sizeof *works; ++i) {
+    char text[512];
+    stage s;
+    breve_world_config config = breve_world_config_default();
+    stage_begin(&s);
+    config.budget = 1000000;
+    snprintf(text, sizeof text, MAIN "function Main:work() self.n = 0 %s end function Main:count() return self.n end\n",
+             works[i].work);
+    if (!stage_open(&s, text, &config)) return;
+    CHECK_STATUS(works[i].most < 1e9 ? BREVE_ERROR_BUDGET : BREVE_OK, stage_call(&s, "work", NULL));
+    const double count = stage_number(&s, "count");
+    if (!CHECK(count >= 5 && count < works[i].most)) printf("  %g times: %s\n", count, works[i].work);
+    stage_end(&s);
+  }
+}
+
 /* A file is run once without a world, and once more for each: neither goes on for ever, whatever it catches. */
 static void a_file_that_never_ends_is_refused(void) {
   static const char* const texts[] = {
@@ -72,6 +109,7 @@ static void a_file_that_never_ends_is_refused(void) {
       "('a'):rep(30000):find(('.-'):rep(30) .. 'b')",
       "local t = {} for i = 1, 1e9 do t[i] = {} end",
       "local s = 'x' while true do s = s .. s end",
+      "local a, b = ('x'):rep(1000000), ('x'):rep(999999) .. 'x' while true do local c = a == b end",
   };
   for (size_t i = 0; i < sizeof texts / sizeof *texts; ++i) {
     char text[512];
@@ -315,6 +353,7 @@ static void two_worlds_of_one_seed_are_equal(void) {
 int main(void) {
   RUN(loops_count_in_the_budget);
   RUN(functions_of_libraries_count_in_the_budget);
+  RUN(instructions_that_go_through_much_count_it);
   RUN(a_file_that_never_ends_is_refused);
   RUN(sorting_is_stable_and_tables_move_as_in_lua);
   RUN(memory_counts_against_the_limit);
