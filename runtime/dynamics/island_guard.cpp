@@ -68,20 +68,24 @@ void Guard::step(MechanicsClient* client, double start, double h) {
   const bool unpaid = refines && !handlers_.dissolved() && !trouble.found && gained > energy_of_stillness(state_) &&
                       gained > kMuch * allowed_ && gained > momentum_.moving();
   if (unpaid) trouble = {true, GuardReason::Residual, gained, state_.any_body()};
+  // The same of what appeared in a step that was finished coarsely, and not where a loop had to be closed.
+  const bool coarse =
+      state_.finished && trouble.found && trouble.reason == GuardReason::Residual && trouble.value > momentum_.moving();
   if (refines && !handlers_.dissolved()) {
     books_.take_back_rest();
     if (!trouble.found) undo_rise(asked.rung);
   }
   if (attempt > 0 || state_.finished || followed.step != asked.step) state_.use_accuracy(asked);
-  if (trouble.found) give_in(trouble, unpaid && !state_.calls_out() && !state_.worn(), start, h);
+  if (trouble.found) give_in(trouble, ((unpaid && !state_.worn()) || coarse) && !state_.calls_out(), start, h);
 }
 
-/// On `balanced`, rises of energy of articulated bodies that no finer sub-steps mended are taken back from what moves.
-/// On `fast`, whose contacts have an error of order 1 that may have the same sign in each step, as of a body that
-/// rotates on its edge, so are all that are too small to try the step again.
+/// Contacts have an error that may have the same sign in each step, as of a body that rotates on its edge. A rise of
+/// energy that is too small to try the step again is taken back from what moves: on `fast` any, on the other rungs that
+/// of articulated bodies which something outside touches. On `balanced` so is one that no finer sub-steps mended.
 void Guard::undo_rise(Rung rung) {
   const double all = momentum_.moving(), risen = balance_.risen();
-  const bool little = rung == Rung::Fast && risen > kStill * weight(state_) && risen <= kFew * all;
+  const bool drifts = rung == Rung::Fast || (!state_.trees.empty() && momentum_.touched_from_outside());
+  const bool little = drifts && risen > kStill * weight(state_) && risen <= kFew * all;
   const bool unmended = rung == Rung::Balanced && tried_finer_ && risen > allowed_ && all > 0;
   if (little || unmended) momentum_.undo_gain(std::min(1.0, risen / all), true);
 }

@@ -111,25 +111,32 @@ TEST(PlanarState, WhatIsSetBetweenAnImageAndTheNextStepIsAChangeInBothWorlds) {
 TEST(PlanarState, AShapeThatCannotBeIsRefusedInEachStepAndAnImageOfItGoesOnAlikeOnceItCan) {
   struct Wrong {
     ObjectId Resting::*body;
-    std::shared_ptr<Shape> shape, later;
+    std::shared_ptr<Shape> (*shape)();
+    std::shared_ptr<Shape> (*later)();
   };
   // A mass and a corner that single precision does not hold.
-  const Wrong all[] = {{&Resting::box, Shape::sphere(1e12), Shape::sphere(0.4)},
-                       {&Resting::plate, Shape::height_field(3, 2, 10, std::vector<double>{0, 1e39, 0, 0, 1e39, 0}),
-                        Shape::box({20, 1, 1})}};
+  const Wrong all[] = {{&Resting::box, [] { return Shape::sphere(1e12); }, [] { return Shape::sphere(0.4); }},
+                       {&Resting::plate,
+                        [] {
+                          return Shape::height_field(3, 2, 10, std::vector<double>{0, 1e39, 0, 0, 1e39, 0});
+                        },
+                        [] {
+                          return Shape::box({20, 1, 1});
+                        }}};
   for (const Wrong& wrong : all) {
     Resting live, other;
+    const std::shared_ptr<Shape> shape = wrong.shape(), later = wrong.later();  // end before the worlds do
     live.run(0.2);
     const auto set = [&wrong](Resting& world, const std::shared_ptr<Shape>& shape) {
       world.bodies().set_collision_shape(world.index(world.*wrong.body), shape);
     };
-    set(live, wrong.shape);
+    set(live, shape);
     for (int i = 0; i < 2; ++i) EXPECT_THROW(live.world.step(), Error) << i;
     const auto image = live.world.save(1);
     other.world.load(image.data(), image.size(), 1);
     for (Resting* world : {&live, &other}) {
       EXPECT_THROW(world->world.step(), Error);
-      set(*world, wrong.later);
+      set(*world, later);
     }
     for (int i = 0; i < 100; ++i) {
       live.world.step();
