@@ -106,11 +106,22 @@ void Books::take_gain() {
   if (gain > kTiny * std::abs(stored) && all > 0) momentum_.undo_gain(std::min(1.0, gain / all), false);
 }
 
-/// What they gave all the same, however finely the step was taken.
-void Books::take_back_rest() {
-  const double all = momentum_.moving();
-  if (gained_ > 0 && all > 0) momentum_.take_from_all(std::min(1.0, gained_ / all));
+double Books::owed() const {
+  double sum = gained_;
+  for (const Tree* tree : state_.trees) sum += tree->owed;
+  return sum;
+}
+
+/// What they gave all the same, however finely the step was taken. Links that move too little among one another owe it.
+/// @param undone  the step will be: it gave nothing
+void Books::take_back_rest(bool undone) {
+  const double sum = undone ? owed() - gained_ : owed();
   gained_ = 0;
+  for (Tree* tree : state_.trees) tree->owed = 0;
+  if (!(sum > 0)) return;
+  const double all = undone ? 0 : momentum_.moving(), taken = std::min(sum, all);
+  if (taken > 0) momentum_.take_from_all(taken / all);
+  state_.trees.front()->owed = sum - taken;
 }
 
 }  // namespace breve::island

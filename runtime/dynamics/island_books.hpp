@@ -19,7 +19,9 @@ class Books {
   bool kept() const { return kept_; }  // open() found rows to come
   void note_smooth();
   void close();
-  void take_back_rest();
+  /// J, that contacts and limits gave and no motion has repaid yet.
+  double owed() const;
+  void take_back_rest(bool undone);
   // For a sub-step whose loops are left to the rows. Motion that loops do not bend, and gaps that are closed by hand,
   // err by the square of the sub-step's length: the energy gained by that is taken from what moves.
   void note_start();                         // where the sub-step begins

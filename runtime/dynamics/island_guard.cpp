@@ -16,6 +16,7 @@ constexpr int kFinest = 2;  // attempts after the first
 // Sub-steps of a step whose energy does not balance, times the bodies that it moves: a crowd's step stays bounded.
 constexpr std::size_t kMostInParts = 40;
 constexpr double kMuch = 10;  // times what a step may leave unexplained
+constexpr double kDebt = 2;   // likewise, that contacts gave and that motion may repay later
 
 Accuracy finer_settings(const Accuracy& from, int attempt, double h) {
   Accuracy to = from;
@@ -64,19 +65,19 @@ void Guard::step(MechanicsClient* client, double start, double h) {
     trouble = take(client, start, h);
   }
   // More than all that moves: whatever was solved there is wrong, and positions hold what cannot be paid for.
-  const double gained = books_.gained();
-  const bool unpaid = refines && !handlers_.dissolved() && !trouble.found && gained > energy_of_stillness(state_) &&
-                      gained > kMuch * allowed_ && gained > momentum_.moving();
-  if (unpaid) trouble = {true, GuardReason::Residual, gained, state_.any_body()};
+  const double owed = refines && !handlers_.dissolved() && !trouble.found ? books_.owed() : 0;
+  const bool unpaid = owed > energy_of_stillness(state_) && owed - momentum_.moving() > kDebt * allowed_;
+  if (unpaid) trouble = {true, GuardReason::Residual, owed, state_.any_body()};
   // The same of what appeared in a step that was finished coarsely, and not where a loop had to be closed.
   const bool coarse =
       state_.finished && trouble.found && trouble.reason == GuardReason::Residual && trouble.value > momentum_.moving();
+  const bool undone = ((unpaid && !state_.worn()) || coarse) && !state_.calls_out();
   if (refines && !handlers_.dissolved()) {
-    books_.take_back_rest();
+    books_.take_back_rest(undone);
     if (!trouble.found) undo_rise(asked.rung);
   }
   if (attempt > 0 || state_.finished || followed.step != asked.step) state_.use_accuracy(asked);
-  if (trouble.found) give_in(trouble, ((unpaid && !state_.worn()) || coarse) && !state_.calls_out(), start, h);
+  if (trouble.found) give_in(trouble, undone, start, h);
 }
 
 /// Contacts have an error that may have the same sign in each step, as of a body that rotates on its edge. A rise of
@@ -96,6 +97,7 @@ Trouble Guard::take_in_parts(MechanicsClient* client, double start, double h) {
   const Accuracy asked = state_.accuracy;
   tried_finer_ = false;
   Trouble trouble = take(client, start, h);
+  const double debt = books_.owed() - books_.gained();  // from earlier steps: links that owe are followed more finely
   const bool coarse = state_.accuracy.rung == Rung::Fast || state_.accuracy.rung == Rung::Balanced;
   // Bodies without joints gain little, and a row of dominoes would cost four times as much.
   constexpr std::size_t kFewFree = 2;
@@ -120,7 +122,7 @@ Trouble Guard::take_in_parts(MechanicsClient* client, double start, double h) {
     if (asked.contact_step > 0) state_.accuracy.contact_step = std::min(asked.contact_step, h) / parts;
     trouble = take(client, start, h);
   };
-  for (int parts = 2; parts <= most && unexplained_ > allowed_ && !state_.worn(); parts *= 2) {
+  for (int parts = 2; parts <= most && unexplained_ + debt > allowed_ && !state_.worn(); parts *= 2) {
     // What finer steps do not mend is not theirs to mend, and what gains more on them is left as it was.
     if (!(unexplained_ < mended * last)) break;
     last = unexplained_;
@@ -159,7 +161,7 @@ Trouble Guard::take(MechanicsClient* client, double start, double h) {
 }
 
 /// Refining did not help: reports the trouble, and puts the island to rest if the settings say so.
-/// @param unpaid  springs or heights hold energy that ending all motion does not pay for
+/// @param unpaid  springs or heights hold energy that ending all motion does not pay for: the step is undone
 void Guard::give_in(const Trouble& trouble, bool unpaid, double start, double h) {
   const bool rest = state_.core.settings.guard == GuardMode::Rest;
   const bool unusable = trouble.reason == GuardReason::NotFinite || trouble.reason == GuardReason::NoSolution;

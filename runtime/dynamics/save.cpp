@@ -171,6 +171,7 @@ void Dynamics::Core::save_tree(ByteWriter& out, const Tree& tree) const {
   out.put(tree.step);
   out.put(tree.unheld);
   out.put(tree.booked);
+  out.put(tree.owed);
   out.put(tree.changed);
   each(Writer{out}, tree.ledger);
   put_numbers(out, tree.state.q);
@@ -261,6 +262,7 @@ void Dynamics::Core::load_tree(ByteReader& in, Tree& tree) {
   tree.step = in.get<double>();
   tree.unheld = std::clamp(in.get<int>(), 0, kMostUnheld);
   tree.booked = in.get<double>();
+  tree.owed = std::max(0.0, in.get<double>());
   tree.changed = in.get_bool();
   each(Reader{in}, tree.ledger);
   for (double& x : tree.state.q) x = in.get<double>();
@@ -298,6 +300,7 @@ void Dynamics::Core::hash(Hasher& hasher) const {
     const Tree& tree = *trees[index];
     add(tree.step);
     add(tree.unheld);
+    add(tree.owed);
     for (const double x : tree.state.q) add(x);
     for (const double x : tree.state.v) add(x);
     for (const double x : tree.mean) add(x);

@@ -122,6 +122,7 @@ struct Tree : InMemory {
   double step_kinetic = 0;                   // J, likewise
   double booked = std::numeric_limits<double>::quiet_NaN();  // J, that it has by the books
   bool changed = true;                                       // by scripts since
+  double owed = 0;  // J, that contacts and limits of its island gave and no motion of links has repaid yet
 
   BodyIndex first_body() const {  // of the lowest index
     BodyIndex first = kNoBody;

@@ -125,18 +125,17 @@ TEST(PlanarState, AShapeThatCannotBeIsRefusedInEachStepAndAnImageOfItGoesOnAlike
                         }}};
   for (const Wrong& wrong : all) {
     Resting live, other;
-    const std::shared_ptr<Shape> shape = wrong.shape(), later = wrong.later();  // end before the worlds do
     live.run(0.2);
     const auto set = [&wrong](Resting& world, const std::shared_ptr<Shape>& shape) {
       world.bodies().set_collision_shape(world.index(world.*wrong.body), shape);
     };
-    set(live, shape);
+    set(live, wrong.shape());
     for (int i = 0; i < 2; ++i) EXPECT_THROW(live.world.step(), Error) << i;
     const auto image = live.world.save(1);
     other.world.load(image.data(), image.size(), 1);
     for (Resting* world : {&live, &other}) {
       EXPECT_THROW(world->world.step(), Error);
-      set(*world, later);
+      set(*world, wrong.later());  // a shape of its own: it ends with its world
     }
     for (int i = 0; i < 100; ++i) {
       live.world.step();
