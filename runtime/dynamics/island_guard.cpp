@@ -66,7 +66,7 @@ void Guard::step(MechanicsClient* client, double start, double h) {
   }
   // More than all that moves: whatever was solved there is wrong, and positions hold what cannot be paid for.
   const double owed = refines && !handlers_.dissolved() && !trouble.found ? books_.owed() : 0;
-  const bool unpaid = owed > energy_of_stillness(state_) && owed - momentum_.moving() > kDebt * allowed_;
+  const bool unpaid = owed > 0 && owed > energy_of_stillness(state_) && owed - momentum_.moving() > kDebt * allowed_;
   if (unpaid) trouble = {true, GuardReason::Residual, owed, state_.any_body()};
   // The same of what appeared in a step that was finished coarsely, and not where a loop had to be closed.
   const bool coarse =
@@ -97,12 +97,12 @@ Trouble Guard::take_in_parts(MechanicsClient* client, double start, double h) {
   const Accuracy asked = state_.accuracy;
   tried_finer_ = false;
   Trouble trouble = take(client, start, h);
-  const double debt = books_.owed() - books_.gained();  // from earlier steps: links that owe are followed more finely
   const bool coarse = state_.accuracy.rung == Rung::Fast || state_.accuracy.rung == Rung::Balanced;
   // Bodies without joints gain little, and a row of dominoes would cost four times as much.
   constexpr std::size_t kFewFree = 2;
   if (handlers_.dissolved() || (state_.trees.empty() && (coarse || state_.free_bodies.size() > kFewFree)))
     return trouble;
+  const double debt = books_.owed() - books_.gained();  // from earlier steps: links that owe are followed more finely
   std::size_t links = 0;
   for (const Tree* tree : state_.trees) links += tree->links.size();
   const std::size_t bodies = links + state_.free_bodies.size();
