@@ -106,11 +106,14 @@ static int run_transfer(lua_State* L) {
   return 0;
 }
 
+static size_t row_size(const breve_array* array) {
+  return array->width * (array->number == BREVE_NUMBER_FLOAT ? sizeof(float) : sizeof(double));
+}
+
 static const char* wrong_array(const breve_array* array) {
   if (array->number > BREVE_NUMBER_DOUBLE) return "array.number is not a breve_number";
   if (array->width != 1 && array->width != 3) return "array.width must be 1 for numbers, 3 for vectors";
-  const size_t row_size = array->width * (array->number == BREVE_NUMBER_FLOAT ? sizeof(float) : sizeof(double));
-  if (array->stride != 0 && array->stride < row_size) return "array.stride is less than a row";
+  if (array->stride != 0 && array->stride < row_size(array)) return "array.stride is less than a row";
   return array->numbers ? NULL : "array.numbers is NULL";
 }
 
@@ -129,8 +132,7 @@ static breve_status transfer_all(const breve_world* world, const breve_object* o
     return BREVE_ERROR_NOT_FOUND;
   }
   transfer t = {w, objects, count, field, *array, writes, BREVE_ERROR_MEMORY};
-  if (t.array.stride == 0)
-    t.array.stride = array->width * (array->number == BREVE_NUMBER_FLOAT ? sizeof(float) : sizeof(double));
+  if (t.array.stride == 0) t.array.stride = row_size(array);
   lua_State* L = w->running;
   if (!lua_checkstack(L, 4)) return BREVE_ERROR_MEMORY;
   lua_pushcfunction(L, run_transfer);

@@ -64,14 +64,14 @@ void Guard::step(MechanicsClient* client, double start, double h) {
     refine_from();
     trouble = take(client, start, h);
   }
-  // More than all that moves: whatever was solved there is wrong, and positions hold what cannot be paid for.
+  // A debt that motion cannot repay is in the positions. A small one may be repaid later; a larger one undoes the step.
   const double owed = refines && !handlers_.dissolved() && !trouble.found ? books_.owed() : 0;
   const bool unpaid = owed > 0 && owed > energy_of_stillness(state_) && owed - momentum_.moving() > kDebt * allowed_;
   if (unpaid) trouble = {true, GuardReason::Residual, owed, state_.any_body()};
-  // The same of what appeared in a step that was finished coarsely, and not where a loop had to be closed.
-  const bool coarse =
+  // So is the gain of a step that was finished coarsely; but a loop that had to be closed stays closed.
+  const bool coarse_gain =
       state_.finished && trouble.found && trouble.reason == GuardReason::Residual && trouble.value > momentum_.moving();
-  const bool undone = ((unpaid && !state_.worn()) || coarse) && !state_.calls_out();
+  const bool undone = ((unpaid && !state_.worn()) || coarse_gain) && !state_.calls_out();
   if (refines && !handlers_.dissolved()) {
     books_.take_back_rest(undone);
     if (!trouble.found) undo_rise(asked.rung);
@@ -161,12 +161,12 @@ Trouble Guard::take(MechanicsClient* client, double start, double h) {
 }
 
 /// Refining did not help: reports the trouble, and puts the island to rest if the settings say so.
-/// @param unpaid  springs or heights hold energy that ending all motion does not pay for: the step is undone
-void Guard::give_in(const Trouble& trouble, bool unpaid, double start, double h) {
+/// @param undone  springs or heights hold energy that ending all motion does not pay for: the step is undone
+void Guard::give_in(const Trouble& trouble, bool undone, double start, double h) {
   const bool rest = state_.core.settings.guard == GuardMode::Rest;
   const bool unusable = trouble.reason == GuardReason::NotFinite || trouble.reason == GuardReason::NoSolution;
   // Unexplained energy ends with the speeds; positions, corrected meanwhile, are as good as any.
-  const bool back = unusable || (rest && (unpaid || trouble.reason == GuardReason::Penetration));
+  const bool back = unusable || (rest && (undone || trouble.reason == GuardReason::Penetration));
   if (back) balance_.back_to_start();
   // An island that is slow enough to sleep and cannot be solved is resting: its velocities do not move it.
   const bool lies = trouble.reason == GuardReason::NoSolution && state_.still();

@@ -28,7 +28,7 @@ class Guard {
   Trouble take(MechanicsClient* client, double start, double h);
   Trouble take_in_parts(MechanicsClient* client, double start, double h);
   void undo_rise(Rung rung);
-  void give_in(const Trouble& trouble, bool unpaid, double start, double h);
+  void give_in(const Trouble& trouble, bool undone, double start, double h);
 
   State& state_;
   Balance& balance_;

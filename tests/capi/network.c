@@ -139,6 +139,17 @@ static bool is_said(scene* s, const char* text) {
   return breve_value_text(s->world, &value, &said) == BREVE_OK && said && strcmp(said, text) == 0;
 }
 
+/* An object of weight 7, as a peer sends it. */
+static const char* parcel_of(scene* s) {
+  static char xml[4096];
+  const char* text = NULL;
+  breve_value value;
+  CHECK_STATUS(BREVE_OK, breve_object_call(s->world, breve_world_controller(s->world), "parcel-text", NULL, 0, &value));
+  CHECK_STATUS(BREVE_OK, breve_value_text(s->world, &value, &text));
+  snprintf(xml, sizeof xml, "%s", text);
+  return xml;
+}
+
 /* --- answers ------------------------------------------------------------------------------------------------------ */
 
 static void requests_call_methods_of_the_program_between_iterations(void) {
@@ -157,19 +168,14 @@ static void requests_call_methods_of_the_program_between_iterations(void) {
 /* A page is asked for, a number sent and an object uploaded every tenth iteration, of two thousand. */
 static void a_world_serves_for_a_long_time(void) {
   enum { kIterations = 2000, kEach = 10 };
-  static char xml[4096];
-  const char* text = NULL;
-  breve_value value;
   scene s;
   if (!open_there(&s)) return;
-  CHECK_STATUS(BREVE_OK, breve_object_call(s.world, breve_world_controller(s.world), "parcel-text", NULL, 0, &value));
-  CHECK_STATUS(BREVE_OK, breve_value_text(s.world, &value, &text));
-  snprintf(xml, sizeof xml, "%s", text);
+  const char* const parcel = parcel_of(&s);
   for (int i = 0; i < kIterations; ++i) {
     forget();
     if (i % kEach == 0) {
       ask("GET", "/add_3_0.5", "");
-      ask("POST", "/", xml); /* of weight 7 */
+      ask("POST", "/", parcel); /* of weight 7 */
       ask("GET", "/show", "");
       ask("GET", "/fly", "");
     }
@@ -214,15 +220,9 @@ static void what_is_not_exposed_is_not_called(void) {
 }
 
 static void an_object_that_is_sent_reaches_accept_upload(void) {
-  static char xml[4096];
-  const char* text = NULL;
-  breve_value value;
   scene s;
   if (!open_there(&s)) return;
-  CHECK_STATUS(BREVE_OK, breve_object_call(s.world, breve_world_controller(s.world), "parcel-text", NULL, 0, &value));
-  CHECK_STATUS(BREVE_OK, breve_value_text(s.world, &value, &text));
-  snprintf(xml, sizeof xml, "%s", text);
-  ask("POST", "/", xml);
+  ask("POST", "/", parcel_of(&s));
   ask("POST", "/", "<archive"); /* damaged */
   ask("PUT", "/", "");
   CHECK_STATUS(BREVE_OK, breve_world_step(s.world));

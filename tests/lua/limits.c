@@ -5,17 +5,21 @@
 
 #define MAIN "local Main = breve.class('Main', 'Control')\nbreve.main(Main)\n"
 
+static bool open_bounded(stage* s, const char* text, uint64_t budget) {
+  breve_world_config config = breve_world_config_default();
+  stage_begin(s);
+  config.budget = budget;
+  return stage_open(s, text, &config);
+}
+
 static void loops_count_in_the_budget(void) {
   stage s;
-  breve_world_config config = breve_world_config_default();
-  stage_begin(&s);
-  config.budget = 100000;
-  if (!stage_open(&s,
-                  MAIN "function Main:endless() while true do end end\n"
-                       "function Main:caught() while true do pcall(function() while true do end end) end end\n"
-                       "function Main:threads() local f = coroutine.wrap(function() while true do end end) f() end\n"
-                       "function Main:short() for i = 1, 1000 do end return 1 end\n",
-                  &config))
+  if (!open_bounded(&s,
+                    MAIN "function Main:endless() while true do end end\n"
+                         "function Main:caught() while true do pcall(function() while true do end end) end end\n"
+                         "function Main:threads() local f = coroutine.wrap(function() while true do end end) f() end\n"
+                         "function Main:short() for i = 1, 1000 do end return 1 end\n",
+                    100000))
     return;
   CHECK_STATUS(BREVE_ERROR_BUDGET, stage_call(&s, "endless", NULL));
   CHECK_STATUS(BREVE_ERROR_BUDGET, stage_call(&s, "caught", NULL));
@@ -53,11 +57,8 @@ static void functions_of_libraries_count_in_the_budget(void) {
   for (size_t i = 0; i < sizeof works / sizeof *works; ++i) {
     char text[512];
     stage s;
-    breve_world_config config = breve_world_config_default();
-    stage_begin(&s);
-    config.budget = 300000;
     snprintf(text, sizeof text, MAIN "function Main:work() %s end\n", works[i]);
-    if (!stage_open(&s, text, &config)) return;
+    if (!open_bounded(&s, text, 300000)) return;
     if (!CHECK_STATUS(BREVE_ERROR_BUDGET, stage_call(&s, "work", NULL))) printf("  %s\n", works[i]);
     stage_end(&s);
   }
@@ -87,12 +88,9 @@ static void instructions_that_go_through_much_count_it(void) {
   for (size_t i = 0; i < sizeof works / sizeof *works; ++i) {
     char text[512];
     stage s;
-    breve_world_config config = breve_world_config_default();
-    stage_begin(&s);
-    config.budget = 1000000;
     snprintf(text, sizeof text, MAIN "function Main:work() self.n = 0 %s end function Main:count() return self.n end\n",
              works[i].work);
-    if (!stage_open(&s, text, &config)) return;
+    if (!open_bounded(&s, text, 1000000)) return;
     CHECK_STATUS(works[i].most < 1e9 ? BREVE_ERROR_BUDGET : BREVE_OK, stage_call(&s, "work", NULL));
     const double count = stage_number(&s, "count");
     if (!CHECK(count >= 5 && count < works[i].most)) printf("  %g times: %s\n", count, works[i].work);

@@ -84,20 +84,21 @@ BREVE_API breve_status breve_lua_compile(breve_runtime* runtime, const breve_lua
    in Lua. It belongs to the world. */
 BREVE_API struct lua_State* breve_lua_state(const breve_world* world);
 
-/* A field of each agent, as breve_objects_get has a variable of each object: a number is 1 number per row, a vector 3.
-   Variables that agents in Lua inherit from steve classes are read by breve_objects_get.
+/* Reads a field of each agent, as breve_objects_get reads a variable of each object. A number takes 1 number per row, and a
+   vector 3. Use breve_objects_get for variables that agents in Lua inherit from steve classes.
+   @param objects NULL only if count is 0; nothing is checked then
    @param field   its name in Lua: "energy" for self.energy
-   @param array   its width, 1 or 3, says what all the fields must be
+   @param array   if its width is 1, all the fields must be numbers; if it is 3, vectors
    @param reason  called once with `sink` and a description of the error, unless an argument is NULL. May be NULL
    BREVE_OK; BREVE_ERROR_STALE: an object has been freed; BREVE_ERROR_NOT_FOUND: the world has no class written in Lua, or a
-   field is nil; BREVE_ERROR_TYPE: a field is something else; BREVE_ERROR_ARGUMENT: a NULL pointer, or a wrong array;
-   BREVE_ERROR_MEMORY. After an error `array` is as it was. */
+   field is nil; BREVE_ERROR_TYPE: a field is of another type; BREVE_ERROR_ARGUMENT: a NULL pointer or an invalid array;
+   BREVE_ERROR_MEMORY. An error leaves the array as it was. */
 BREVE_API breve_status breve_lua_objects_get(const breve_world* world, const breve_object* objects, size_t count,
                                              const char* field, const breve_array* array, breve_write_fn reason,
                                              void* sink);
 
-/* Sets a field that each agent has, as breve_lua_objects_get reads it. Where it was an integer of Lua, a whole number remains
-   one. As breve_lua_objects_get; if memory runs out during the call, the first fields are set. */
+/* Sets a field that each agent already has. A whole number stays an integer of Lua if the field was one.
+   As breve_lua_objects_get; if memory runs out during the call, the first fields are set. */
 BREVE_API breve_status breve_lua_objects_set(breve_world* world, const breve_object* objects, size_t count,
                                              const char* field, const breve_array* array, breve_write_fn reason,
                                              void* sink);
