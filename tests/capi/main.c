@@ -38,6 +38,7 @@ void user_data_suite(void);
 void values_suite(void);
 void settings_suite(void);
 void setters_suite(void);
+void scene_rows_suite(void);
 void view_suite(void);
 void plugins_suite(void);
 void recording_suite(void);
@@ -100,6 +101,7 @@ static const struct {
     {"values", values_suite},
     {"settings", settings_suite},
     {"setters", setters_suite},
+    {"scene_rows", scene_rows_suite},
     {"view", view_suite},
     /* clang-format on */
 };
