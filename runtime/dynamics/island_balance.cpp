@@ -54,10 +54,9 @@ double losses(const Energy& now, const Energy& then) {
 }
 
 double Balance::open() {
-  double kinetic = 0;
   handled_ = 0;
   state_.booked = false;
-  return stored_start_ = measure(kinetic, true);
+  return stored_start_ = measure(kinetic_start_, true);
 }
 
 double Balance::unexplained(double after) const {
@@ -71,6 +70,7 @@ double Balance::close(double& turnover) {
   const double in = works(state_.result.ledger, start_.ledger), out = losses(state_.result.ledger, start_.ledger);
   const double residual = unexplained(after);
   risen_ = residual - out;
+  works_ = in;
   state_.result.ledger.residual += residual;
   turnover = kinetic + std::abs(in) + std::abs(out);
   for (const Clustered& one : state_.clusters) {

@@ -1,6 +1,8 @@
 // The state as a step began, to which a step that went wrong returns, and the balance of energy since then.
 #pragma once
 
+#include <cmath>
+
 #include "runtime/dynamics/island_state.hpp"
 
 namespace breve::island {
@@ -23,6 +25,8 @@ class Balance {
   double close(double& turnover);
   /// After close(): by how much the energy rose beyond works, whatever losses the ledger has besides, J.
   double risen() const { return risen_; }
+  /// After close(): the energy of motion as the step began, and what motors and scripts gave or took since, J.
+  double supplied() const { return kinetic_start_ + std::abs(works_); }
   const Energy& start_ledger() const { return start_.ledger; }
 
  private:
@@ -37,9 +41,11 @@ class Balance {
   ResultStart start_;
   std::pmr::vector<FreeBody> free_start_;
   std::pmr::vector<NearPair> pair_start_;
-  double stored_start_ = 0;  // J
-  double handled_ = 0;       // J
-  double risen_ = 0;         // J
+  double stored_start_ = 0;   // J
+  double kinetic_start_ = 0;  // J
+  double handled_ = 0;        // J
+  double risen_ = 0;          // J
+  double works_ = 0;          // J
 };
 
 /// What left by contacts, friction, drag and limits between two states of a ledger, J.

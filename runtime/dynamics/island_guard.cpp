@@ -64,20 +64,29 @@ void Guard::step(MechanicsClient* client, double start, double h) {
     refine_from();
     trouble = take(client, start, h);
   }
-  // A debt that motion cannot repay is in the positions. A small one may be repaid later; a larger one undoes the step.
   const double owed = refines && !handlers_.dissolved() && !trouble.found ? books_.owed() : 0;
-  const bool unpaid = owed > 0 && owed > energy_of_stillness(state_) && owed - momentum_.moving() > kDebt * allowed_;
+  const bool unpaid = owed > energy_of_stillness(state_) && (astray() || unpayable(owed));
   if (unpaid) trouble = {true, GuardReason::Residual, owed, state_.any_body()};
   // So is the gain of a step that was finished coarsely; but a loop that had to be closed stays closed.
   const bool coarse_gain =
       state_.finished && trouble.found && trouble.reason == GuardReason::Residual && trouble.value > momentum_.moving();
   const bool undone = ((unpaid && !state_.worn()) || coarse_gain) && !state_.calls_out();
   if (refines && !handlers_.dissolved()) {
-    books_.take_back_rest(undone);
+    books_.take_back_rest(trouble.found && goes_back(trouble, undone));
     if (!trouble.found) undo_rise(asked.rung);
   }
   if (attempt > 0 || state_.finished || followed.step != asked.step) state_.use_accuracy(asked);
   if (trouble.found) give_in(trouble, undone, start, h);
+}
+
+/// Contacts gave more than all that moved and worked, and than links may fall: positions are as wrong as velocities.
+bool Guard::astray() const { return books_.gained() > balance_.supplied() + weight(state_); }
+
+/// A debt that motion cannot repay is in the positions. A small one may be repaid later; a larger one undoes the step,
+/// unless it only has what earlier steps left, and less of it.
+/// @param owed  J
+bool Guard::unpayable(double owed) const {
+  return books_.gained() > momentum_.moving() && owed - momentum_.moving() > kDebt * allowed_;
 }
 
 /// Contacts have an error that may have the same sign in each step, as of a body that rotates on its edge. A rise of
@@ -152,7 +161,7 @@ Trouble Guard::take(MechanicsClient* client, double start, double h) {
   if (const BodyIndex body = watch_.not_finite(); body != kNoBody) return {!off, GuardReason::NotFinite, 0, body};
   double turnover = 0;
   const double residual = balance_.close(turnover);
-  unexplained_ = std::abs(residual) + books_.gained();
+  unexplained_ = std::abs(residual + books_.rotated()) + books_.gained();
   residual_ = residual;
   allowed_ = watch_.tolerated(turnover, h) + kTiny * std::abs(before) + kStill * weight(state_);
   if (off) return {};
@@ -160,19 +169,40 @@ Trouble Guard::take(MechanicsClient* client, double start, double h) {
   return watch_.judge(residual, turnover, before);
 }
 
+/// Unexplained energy ends with the speeds; positions, corrected meanwhile, are as good as any.
+/// @param undone  springs or heights hold energy that ending all motion does not pay for
+/// @return        whether the bodies stand in the end where they stood as the step began
+bool Guard::goes_back(const Trouble& trouble, bool undone) const {
+  const bool unusable = trouble.reason == GuardReason::NotFinite || trouble.reason == GuardReason::NoSolution;
+  const bool rest = state_.core.settings.guard == GuardMode::Rest;
+  return unusable || (rest && (undone || trouble.reason == GuardReason::Penetration));
+}
+
 /// Refining did not help: reports the trouble, and puts the island to rest if the settings say so.
-/// @param undone  springs or heights hold energy that ending all motion does not pay for: the step is undone
 void Guard::give_in(const Trouble& trouble, bool undone, double start, double h) {
   const bool rest = state_.core.settings.guard == GuardMode::Rest;
-  const bool unusable = trouble.reason == GuardReason::NotFinite || trouble.reason == GuardReason::NoSolution;
-  // Unexplained energy ends with the speeds; positions, corrected meanwhile, are as good as any.
-  const bool back = unusable || (rest && (undone || trouble.reason == GuardReason::Penetration));
-  if (back) balance_.back_to_start();
+  const bool back = goes_back(trouble, undone);
+  if (back) {
+    balance_.back_to_start();
+    forget_forces();
+  }
   // An island that is slow enough to sleep and cannot be solved is resting: its velocities do not move it.
   const bool lies = trouble.reason == GuardReason::NoSolution && state_.still();
   if (rest || lies) put_to_rest(Momenta::Keep, back ? 0 : h);
   if (rest && back) momentum_.coast(h);
   state_.intervene(trouble, rest ? GuardAction::Rested : GuardAction::Reported, start);
+}
+
+/// The next step does not begin from the forces of contacts and limits that failed: else it would be the same step.
+void Guard::forget_forces() {
+  for (NearPair* pair : state_.pairs)
+    if (!(pair->spring.stiffness > 0)) pair->warm_count = 0;
+  for (const Tree* tree : state_.trees)
+    for (const TreeLink& link : tree->links) {
+      if (link.joint == kNoJoint) continue;
+      JointEntry& joint = state_.core.joints[link.joint];
+      joint.limit = joint.limit_before = Vector3::Zero();
+    }
 }
 
 /// Takes velocities, and writes down that their energy is gone: first as what contacts and limits gave in the step.

@@ -27,8 +27,12 @@ class Guard {
  private:
   Trouble take(MechanicsClient* client, double start, double h);
   Trouble take_in_parts(MechanicsClient* client, double start, double h);
+  bool astray() const;
+  bool unpayable(double owed) const;
   void undo_rise(Rung rung);
+  bool goes_back(const Trouble& trouble, bool undone) const;
   void give_in(const Trouble& trouble, bool undone, double start, double h);
+  void forget_forces();
 
   State& state_;
   Balance& balance_;

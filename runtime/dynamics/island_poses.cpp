@@ -80,12 +80,17 @@ void State::restore() {
   for (Clustered& one : clusters) one.entry->system->set_next_step(one.next_before);
 }
 
+void Free::load_velocity() {
+  for (int k = 0; k < 3; ++k) {
+    v[k] = now.velocity[k];
+    v[3 + k] = now.spin[k];
+  }
+}
+
 void State::load_velocities() {
   for (Free& one : free_bodies) {
-    for (int k = 0; k < 3; ++k) {
-      one.v[k] = one.free_v[k] = one.now.velocity[k];
-      one.v[3 + k] = one.free_v[3 + k] = one.now.spin[k];
-    }
+    one.load_velocity();
+    std::copy_n(one.v, 6, one.free_v);
   }
   for (Tree* tree : trees) tree->free_v = tree->smooth_v = tree->state.v;
 }

@@ -119,6 +119,7 @@ void Positions::take_back_pushes(double part, double h) {
 }
 
 void Positions::move_back(double h) {
+  for (Free& one : state_.free_bodies) std::copy_n(one.push, 6, one.v);
   for (Tree* tree : state_.trees) {
     tree->free_v = tree->state.v;
     tree->state.v = tree->push;
@@ -172,10 +173,12 @@ void Positions::begin_moves() {
 
 void Positions::end_moves(double h) {
   for (Free& one : state_.free_bodies) {
-    const Vector3 way = h * Vector3(one.v[0], one.v[1], one.v[2]);
+    std::copy_n(one.v, 6, one.push);
+    one.load_velocity();  // books are made by it
+    const Vector3 way = h * Vector3(one.push[0], one.push[1], one.push[2]);
     one.now.center += way;
     book_way(one.now.force.dot(way), nullptr);
-    const Vector3 rotation = h * Vector3(one.v[3], one.v[4], one.v[5]);
+    const Vector3 rotation = h * Vector3(one.push[3], one.push[4], one.push[5]);
     if (rotation != Vector3::Zero()) one.now.orientation = (rotation_by(rotation) * one.now.orientation).normalized();
   }
   for (Tree* tree : state_.trees) {

@@ -6,6 +6,7 @@
 #include "runtime/articulated/energy.hpp"
 #include "runtime/articulated/impulse.hpp"
 #include "runtime/articulated/joints.hpp"
+#include "runtime/articulated/kinematics.hpp"
 #include "runtime/dynamics/jacobians.hpp"
 
 namespace breve::island {
@@ -104,6 +105,23 @@ void Prediction::add_contact(const Touch& touch) {
   }
 }
 
+/// After place(): whether links on which forces were predicted rotate so far in h seconds that the forces do not act
+/// along the rows that are solved as the sub-step ends.
+bool Prediction::rotated_away(double h) const {
+  constexpr double kFar = 0.25;  // rad
+  return std::any_of(contacts_.touches().begin(), contacts_.touches().end(), [this, h](const Touch& touch) {
+    if (touch.predicted == Vector3::Zero()) return false;
+    const NearPair& pair = contacts_.pair_of(touch);
+    return rotates(pair.a, kFar / h) || rotates(pair.b, kFar / h);
+  });
+}
+
+/// A link that rotates faster than that, rad/s.
+bool Prediction::rotates(BodyIndex body, double rate) const {
+  const BodySlot side = state_.slot_of(body);
+  return side.tree && side.mover >= 0 && articulated::spin(side.tree->data, side.link).squaredNorm() > rate * rate;
+}
+
 /// After place(): whether smooth motion of h seconds made of what was predicted motion, or heat in dampers, more than
 /// there was, where it should have balanced other forces. What stops something in two sub-steps may be taken for a
 /// force that lasts.
@@ -116,7 +134,9 @@ bool Prediction::misled(double h) {
     alone += 0.5 * h * h * tree->loads.reaction.dot(tree->reacted);
   }
   books_.set_predicted(alone);
-  if (!books_.kept() || !(alone > books_.kinetic())) return false;
+  if (!books_.kept()) return false;
+  if (rotated_away(h)) return true;
+  if (!(alone > books_.kinetic())) return false;
   double heat = 0;
   for (const Clustered& one : state_.clusters) heat += std::min(one.held_work, one.pending.drag_loss);
   return std::max(heat, books_.smooth_kinetic() - books_.kinetic()) > kUnbalanced * alone;

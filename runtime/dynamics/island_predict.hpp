@@ -21,6 +21,8 @@ class Prediction {
 
  private:
   bool overpressed(double h) const;
+  bool rotated_away(double h) const;
+  bool rotates(BodyIndex body, double rate) const;
   void add_contact(const Touch& touch);
   void add_motors(Tree& tree);
 

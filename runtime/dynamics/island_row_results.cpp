@@ -1,6 +1,7 @@
 // Velocities at an island's rows, and what follows from their impulses: works and losses, forces in joints, and where
 // the next solution begins.
 #include <algorithm>
+#include <utility>
 
 #include "runtime/dynamics/island_rows.hpp"
 
@@ -35,6 +36,32 @@ void Rows::read_rates() {
     row.slip[1] = a[2] - b[2];
   }
   for (const contact::ScalarRow& row : scalars_) scalars_before_.push_back(rate_of(row));
+  started_ = before_;
+  given_ = 0;
+}
+
+/// Velocities when a sub-step of h seconds began, at the points of free bodies that impulses push as it ends: the work
+/// of an impulse is along these, but for what gravity and scripts' forces did meanwhile, which have their own books.
+/// @param given  J, by the couples that make up for the forces' arms
+void Rows::note_starts(double h, double given) {
+  started_ = before_;
+  given_ = given;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const contact::Row& row = rows_[i];
+    for (const bool first : {true, false}) {
+      const int index = first ? row.a : row.b;
+      if (index < 0 || (first ? row.ja : row.jb)) continue;
+      const Free& one = state_.free_bodies[static_cast<std::size_t>(index)];
+      Vector3& start = started_[i][first ? 0 : 1];
+      if (one.driver) {
+        start = rate_of(row, first);
+        continue;
+      }
+      const Matrix3& inverse = movers_[static_cast<std::size_t>(index)].inverse_inertia;
+      const Vector3 spin = Vector3(one.free_v[3], one.free_v[4], one.free_v[5]) - h * (inverse * one.now.torque);
+      start = row.axes * (one.before.velocity + spin.cross(first ? row.arm_a : row.arm_b));
+    }
+  }
 }
 
 void Rows::set_biases(double h) {
@@ -80,6 +107,8 @@ double Rows::response(const contact::ScalarRow& row) const {
 }
 
 void Rows::book() {
+  state_.result.ledger.contact_loss -= given_;
+  rotated_ += std::exchange(given_, 0.0);
   // A contact force that is constant over the sub-step works along the mean of the velocities before and after. Each
   // tree's own ledger has what left it through the contact, even if it went into another body.
   for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -92,7 +121,8 @@ void Rows::book() {
         state_.result.ledger.script_work += (first ? -1 : 1) * row.impulse.dot(rate_of(row, first));
     }
     for (const bool first : {true, false}) {
-      const Vector3 mean = (first ? 0.5 : -0.5) * (rate_of(row, first) + before(i, first));
+      const Vector3 &start = started_[i][first ? 0 : 1], mean = (first ? 0.5 : -0.5) * (rate_of(row, first) + start);
+      rotated_ += (first ? 0.5 : -0.5) * row.impulse.dot(start - before(i, first));
       const double along = row.impulse[0] * mean[0], across = row.impulse[1] * mean[1] + row.impulse[2] * mean[2];
       state_.result.ledger.contact_loss -= along;
       state_.result.ledger.friction_loss -= across;

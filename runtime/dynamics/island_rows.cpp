@@ -20,6 +20,7 @@ Rows::Rows(State& state, Contacts& contacts)
       scalars_(state.memory),
       laws_(state.memory),
       before_(state.memory),
+      started_(state.memory),
       limits_(state.memory),
       motors_(state.memory),
       loop_errors_(state.memory),
@@ -29,6 +30,7 @@ Rows::Rows(State& state, Contacts& contacts)
       workspace_(state.memory) {}
 
 void Rows::begin() {
+  rotated_ = 0;
   movers_.clear();
   for (Free& one : state_.free_bodies) {
     contact::Mover mover;

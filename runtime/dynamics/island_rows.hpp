@@ -82,6 +82,7 @@ class Rows {
   // --- velocities at the rows
   void recall_rates();
   void read_rates();
+  void note_starts(double h, double given);
   /// Of one side's point along the row's axes, from the movers' v as they are. A tree that touches itself is one side.
   Vector3 rate_of(const contact::Row& row, bool first) const;
   /// The same as the sub-step began: after recall_rates() or read_rates().
@@ -96,6 +97,9 @@ class Rows {
   void begin_cold();                           // contacts begin without
   double length() const { return solved_h_; }  // s, of the sub-step that was solved last
   void book();
+  /// J, in this try of a step, by which the work of impulses is another along the velocities before(): bodies rotate
+  /// meanwhile, by an angle that finer sub-steps make smaller.
+  double rotated() const { return rotated_; }
   void note_contact_forces(double h);
   void note_limit_forces(double h);
   /// The next solution begins with these impulses.
@@ -117,11 +121,14 @@ class Rows {
   State& state_;
   Contacts& contacts_;
   std::pmr::vector<contact::Mover> movers_;
-  std::pmr::vector<contact::Row> rows_;              // of touches, in their order
-  std::pmr::vector<contact::ScalarRow> scalars_;     // of limits_, then of motors_, then of loop_errors_
-  std::pmr::vector<contact::Law> laws_;              // of rows_
-  std::pmr::vector<std::array<Vector3, 2>> before_;  // of rows_, once rates were read
-  std::pmr::vector<std::size_t> limits_;             // bounds that have a row
+  std::pmr::vector<contact::Row> rows_;               // of touches, in their order
+  std::pmr::vector<contact::ScalarRow> scalars_;      // of limits_, then of motors_, then of loop_errors_
+  std::pmr::vector<contact::Law> laws_;               // of rows_
+  std::pmr::vector<std::array<Vector3, 2>> before_;   // of rows_, once rates were read
+  std::pmr::vector<std::array<Vector3, 2>> started_;  // likewise, at the points that impulses push
+  double given_ = 0;                                  // J, by couples that rows gave before they were solved
+  double rotated_ = 0;
+  std::pmr::vector<std::size_t> limits_;  // bounds that have a row
   std::pmr::vector<MotorRow> motors_;
   std::pmr::vector<LoopError> loop_errors_;
   std::pmr::vector<double> scalars_before_;  // of scalars_

@@ -31,10 +31,12 @@ void Solver::begin(double h) {
     if (tree->loads.reacts) tree->free_v -= h * tree->reacted;
   }
   rows_.set_length(h);
+  double given = 0;
   if (prediction_.strained())
     rows_.begin_cold();
   else
-    follow_arms(h);
+    given = follow_arms(h);
+  rows_.note_starts(h, given);
   for (Tree* tree : state_.trees) tree->state.v = tree->free_v;
   rows_.set_biases(h);
   bound_motors(h);
@@ -43,7 +45,9 @@ void Solver::begin(double h) {
 /// Rows push free bodies along the arms that end the sub-step. A force that lasts works along the mean of those at its
 /// start and at its end: the couple that is the difference is given here. Without it a body that rotates about an edge
 /// on the floor would gain energy in proportion to the sub-step.
-void Solver::follow_arms(double h) {
+/// @return  J, that the couples gave
+double Solver::follow_arms(double h) {
+  double given = 0;
   for (std::size_t i = 0; i < rows_.contacts(); ++i) {
     const auto& [touch, pair, row, law] = rows_.contact(i);
     if (touch.predicted == Vector3::Zero()) continue;
@@ -53,9 +57,12 @@ void Solver::follow_arms(double h) {
       Free& one = state_.free_bodies[static_cast<std::size_t>(index)];
       const Vector3 couple = (first ? -0.5 : 0.5) * rows_.arm_change(touch, first, one, h).cross(touch.predicted);
       const Vector3 spin = h * (rows_.movers()[static_cast<std::size_t>(index)].inverse_inertia * couple);
+      const Vector3 before(one.v[3], one.v[4], one.v[5]);
+      given += h * couple.dot(before + 0.5 * spin);
       for (int k = 0; k < 3; ++k) one.v[3 + k] = one.free_v[3 + k] += spin[k];
     }
   }
+  return given;
 }
 
 /// Without rebound, then with it.

@@ -24,7 +24,7 @@ class Solver {
 
  private:
   void begin(double h);
-  void follow_arms(double h);
+  double follow_arms(double h);
   void bound_motors(double h);
   bool shorten_couples(double h);
   void solve_rows();

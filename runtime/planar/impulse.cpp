@@ -139,8 +139,19 @@ bool Planar::Core::collide(FlatBody& a, FlatBody& b, const b2WorldManifold& wher
     middle += p.where / used;
   }
   if (sum == Vector2::Zero()) return false;
+  double driven = 0;  // what scripts' bodies give
+  for (int i = 0; i < used; ++i) {
+    const Point& p = points[static_cast<std::size_t>(i)];
+    if (a.driven) driven += p.impulse.dot(speed_at(a, p.arm_a)) * u * u;
+    if (b.driven) driven -= p.impulse.dot(speed_at(b, p.arm_b)) * u * u;
+  }
   response.give(change);
-  if (!stepping) ledger.contact_loss += (before - response.kinetic()) * u * u;
+  if (stepping) {
+    driven_work += driven;
+  } else {
+    ledger.script_work += driven;
+    ledger.contact_loss += driven + (before - response.kinetic()) * u * u;
+  }
   Impact impact;
   impact.a = bodies->owner(b.body);
   impact.b = bodies->owner(a.body);
