@@ -64,8 +64,9 @@ void Guard::step(MechanicsClient* client, double start, double h) {
     refine_from();
     trouble = take(client, start, h);
   }
+  // Once a handler has dissolved the island there are no trees to read.
   const double owed = refines && !handlers_.dissolved() && !trouble.found ? books_.owed() : 0;
-  const bool unpaid = owed > energy_of_stillness(state_) && (astray() || unpayable(owed));
+  const bool unpaid = owed > 0 && owed > energy_of_stillness(state_) && (astray() || unpayable(owed));
   if (unpaid) trouble = {true, GuardReason::Residual, owed, state_.any_body()};
   // So is the gain of a step that was finished coarsely; but a loop that had to be closed stays closed.
   const bool coarse_gain =
