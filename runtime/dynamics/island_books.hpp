@@ -19,7 +19,8 @@ class Books {
   bool kept() const { return kept_; }  // open() found rows to come
   void note_smooth();
   void close();
-  /// J, of order 1 of the sub-step, that free bodies' contacts did since the bodies rotated: to be refined, and booked.
+  /// J, that contacts of free bodies did because the bodies rotated: of order 1 of the sub-step. It is in the ledger,
+  /// and finer sub-steps make it smaller.
   double rotated() const { return state_.trees.empty() ? rows_.rotated() : 0; }
   /// J, that contacts and limits gave and no motion has repaid yet.
   double owed() const;

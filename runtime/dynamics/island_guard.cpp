@@ -68,7 +68,7 @@ void Guard::step(MechanicsClient* client, double start, double h) {
   const double owed = refines && !handlers_.dissolved() && !trouble.found ? books_.owed() : 0;
   const bool unpaid = owed > 0 && owed > energy_of_stillness(state_) && (astray() || unpayable(owed));
   if (unpaid) trouble = {true, GuardReason::Residual, owed, state_.any_body()};
-  // So is the gain of a step that was finished coarsely; but a loop that had to be closed stays closed.
+  // A gain of a step that was finished coarsely also undoes it; but a loop that had to be closed stays closed.
   const bool coarse_gain =
       state_.finished && trouble.found && trouble.reason == GuardReason::Residual && trouble.value > momentum_.moving();
   const bool undone = ((unpaid && !state_.worn()) || coarse_gain) && !state_.calls_out();

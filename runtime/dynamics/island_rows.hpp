@@ -127,8 +127,8 @@ class Rows {
   std::pmr::vector<std::array<Vector3, 2>> before_;   // of rows_, once rates were read
   std::pmr::vector<std::array<Vector3, 2>> started_;  // likewise, at the points that impulses push
   double given_ = 0;                                  // J, by couples that rows gave before they were solved
-  double rotated_ = 0;
-  std::pmr::vector<std::size_t> limits_;  // bounds that have a row
+  double rotated_ = 0;                                // J, what rotated() gives
+  std::pmr::vector<std::size_t> limits_;              // bounds that have a row
   std::pmr::vector<MotorRow> motors_;
   std::pmr::vector<LoopError> loop_errors_;
   std::pmr::vector<double> scalars_before_;  // of scalars_
