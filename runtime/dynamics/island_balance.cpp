@@ -1,6 +1,7 @@
 // The state as a step began, and the balance of energy since then.
 #include "runtime/dynamics/island_balance.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "runtime/articulated/energy.hpp"
@@ -56,23 +57,26 @@ double losses(const Energy& now, const Energy& then) {
 double Balance::open() {
   handled_ = 0;
   state_.booked = false;
-  return stored_start_ = measure(kinetic_start_, true);
+  opened_ = measure(true);
+  return opened_.total();
 }
 
 double Balance::unexplained(double after) const {
-  return after - stored_start_ - works(state_.result.ledger, start_.ledger) +
+  return after - opened_.total() - works(state_.result.ledger, start_.ledger) +
          losses(state_.result.ledger, start_.ledger) - handled_;
 }
 
 double Balance::close(double& turnover) {
-  double kinetic = 0;
-  const double after = measure(kinetic, false);
+  const Stored after = measure(false);
   const double in = works(state_.result.ledger, start_.ledger), out = losses(state_.result.ledger, start_.ledger);
-  const double residual = unexplained(after);
+  const double residual = unexplained(after.total());
   risen_ = residual - out;
   works_ = in;
   state_.result.ledger.residual += residual;
-  turnover = kinetic + std::abs(in) + std::abs(out);
+  // No more moves and is lost than there was: a step that claims so has gone astray, and is measured by what there was.
+  const double fallen = std::max(0.0, opened_.height - after.height);
+  const double most = 3 * (supplied() + opened_.springs + fallen + std::abs(handled_));
+  turnover = std::min(after.kinetic + std::abs(in) + std::abs(out), most);
   for (const Clustered& one : state_.clusters) {
     if (!one.alone()) continue;
     Tree& tree = *state_.core.trees[one.entry->trees.front()];
@@ -82,28 +86,28 @@ double Balance::close(double& turnover) {
   return residual;
 }
 
-/// Kinetic, potential and in springs, J. Notes for each tree its own: at the start of a step as it is, later as change.
-double Balance::measure(double& kinetic, bool start) {
-  double sum = 0, moving = 0;
+/// Notes for each tree its own energy: at the start of a step as it is, later as change.
+Balance::Stored Balance::measure(bool start) {
+  Stored all;
   for (const Free& one : state_.loose_bodies()) {
-    moving += one.now.kinetic();
-    sum -= one.now.solid->mass * state_.core.settings.gravity.dot(one.now.center);
+    all.kinetic += one.now.kinetic();
+    all.height -= one.now.solid->mass * state_.core.settings.gravity.dot(one.now.center);
   }
   for (Tree* tree : state_.trees) {
     const Energy energy = state_.core.energy_of(*tree);
-    moving += energy.kinetic;
-    sum += energy.potential + energy.springs;
+    all.kinetic += energy.kinetic;
+    all.height += energy.potential;
+    all.springs += energy.springs;
     tree->step_stored = start ? energy.total() : energy.total() - tree->step_stored;
     if (start) tree->step_kinetic = energy.kinetic;
     if (!start) tree->booked = energy.total();
   }
-  sum += network_energy(state_);
-  for (const Clustered& one : state_.clusters) sum += spring_energy(state_, one);
-  for (const NearPair* pair : state_.pairs) sum += pair->stored;
-  kinetic = moving;
+  all.springs += network_energy(state_);
+  for (const Clustered& one : state_.clusters) all.springs += spring_energy(state_, one);
+  for (const NearPair* pair : state_.pairs) all.springs += pair->stored;
   state_.placed = true;
   state_.booked = !start;
-  return sum + moving;
+  return all;
 }
 
 }  // namespace breve::island

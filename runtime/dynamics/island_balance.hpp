@@ -26,7 +26,7 @@ class Balance {
   /// After close(): by how much the energy rose beyond works, whatever losses the ledger has besides, J.
   double risen() const { return risen_; }
   /// After close(): the energy of motion as the step began, and what motors and scripts gave or took since, J.
-  double supplied() const { return kinetic_start_ + std::abs(works_); }
+  double supplied() const { return opened_.kinetic + std::abs(works_); }
   const Energy& start_ledger() const { return start_.ledger; }
 
  private:
@@ -35,17 +35,20 @@ class Balance {
     Energy ledger;
     std::size_t impacts = 0;
   };
-  double measure(double& kinetic, bool start);
+  struct Stored {  // J
+    double kinetic = 0, height = 0, springs = 0;
+    double total() const { return kinetic + height + springs; }
+  };
+  Stored measure(bool start);
 
   State& state_;
   ResultStart start_;
   std::pmr::vector<FreeBody> free_start_;
   std::pmr::vector<NearPair> pair_start_;
-  double stored_start_ = 0;   // J
-  double kinetic_start_ = 0;  // J
-  double handled_ = 0;        // J
-  double risen_ = 0;          // J
-  double works_ = 0;          // J
+  Stored opened_;
+  double handled_ = 0;  // J
+  double risen_ = 0;    // J
+  double works_ = 0;    // J
 };
 
 /// What left by contacts, friction, drag and limits between two states of a ledger, J.

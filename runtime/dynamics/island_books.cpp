@@ -66,10 +66,11 @@ void Books::note_smooth() {
 void Books::close() {
   if (!kept_ || rows_.empty()) return;
   const bool only_motors = rows_.contacts() == 0 && rows_.limits() == 0;
-  const auto close = [only_motors](const SubStepEnergy& start, double stored, Energy& ledger) {
+  const auto close = [this, only_motors](const SubStepEnergy& start, double stored, const Tree* tree, Energy& ledger) {
     const double more = missing(stored - start.stored - start.unexplained, start.ledger, ledger);
-    if (only_motors)
-      ledger.motor_work += more;
+    const double doubt = rows_.motor_doubt(tree);
+    if (only_motors)  // the rest is the error of the motion that they changed
+      ledger.motor_work += std::clamp(more, -doubt, doubt);
     else
       ledger.contact_loss -= more;
     settle_rows(start.ledger, -start.unexplained, ledger);
@@ -79,10 +80,11 @@ void Books::close() {
     // An implicit step and its rows are one: what it lost on the way to them is not the motion's error.
     if (one.semi && !only_motors) one.sub_start.unexplained = std::max(0.0, one.sub_start.unexplained);
     sub_start_.unexplained += one.sub_start.unexplained;
-    if (one.alone())
-      close(one.sub_start, stored_energy(state_, one, kinetic), state_.core.trees[one.entry->trees.front()]->ledger);
+    if (!one.alone()) continue;
+    Tree& tree = *state_.core.trees[one.entry->trees.front()];
+    close(one.sub_start, stored_energy(state_, one, kinetic), &tree, tree.ledger);
   }
-  close(sub_start_, stored_energy(state_), state_.result.ledger);
+  close(sub_start_, stored_energy(state_), nullptr, state_.result.ledger);
   const double gained = rows_took(sub_start_.ledger) - rows_took(state_.result.ledger);
   if (!(gained > kTiny * std::abs(sub_start_.stored))) return;
   const double all = momentum_.moving();

@@ -1,6 +1,7 @@
 // Velocities at an island's rows, and what follows from their impulses: works and losses, forces in joints, and where
 // the next solution begins.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "runtime/dynamics/island_rows.hpp"
@@ -144,6 +145,16 @@ void Rows::book() {
       tree.ledger.motor_work += work;
     }
   }
+}
+
+double Rows::motor_doubt(const Tree* tree) const {
+  double sum = 0;
+  for (std::size_t i = limits(); i < limits() + motors(); ++i) {
+    const contact::ScalarRow& row = scalars_[i];
+    if (!tree || state_.tree_of(row.a) == tree)
+      sum += 0.5 * std::abs(row.impulse * (rate_of(row) - scalars_before_[i]));
+  }
+  return sum;
 }
 
 /// Notes the impulses of contacts and limits on trees as forces that last the h seconds of a sub-step: the reaction of
