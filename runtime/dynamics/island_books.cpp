@@ -96,6 +96,48 @@ void Books::close() {
   momentum_.note_touched();
 }
 
+namespace {
+
+/// The work that a motor can do in a sub-step of h seconds at most, J: its strength for the way of its joint, there and
+/// back.
+/// @param moved  the tangent by which its tree moved
+double most_work(const MotorRow& motor, const articulated::Vector& moved, double h) {
+  if (motor.shared == 0) return 0;  // counted with the first of its numbers
+  const auto length = [&motor](const articulated::Vector& v) { return v.segment(motor.velocity, motor.shared).norm(); };
+  const double way = std::max({length(moved), h * length(motor.tree->sub_state.v), h * length(motor.tree->state.v)});
+  return way > 0 ? motor.strength * way : 0;  // a strength may be infinite
+}
+
+/// Motors cannot have given more than `most`, J: contacts and limits did not take that from them.
+void give_back(const Energy& start, double most, Energy& now) {
+  const double beyond = now.motor_work - start.motor_work - most;
+  const double given = std::clamp(beyond, 0.0, std::max(0.0, rows_took(now) - rows_took(start)));
+  now.motor_work -= given;
+  now.contact_loss -= given;
+}
+
+}  // namespace
+
+/// Once positions were put right after a sub-step of h seconds. Motors work at most by their strength along the way on
+/// which their joints end: where one pressed on into a contact, and was pushed back, neither gave nor took.
+void Books::settle_motors(double h) {
+  if (!kept_ || rows_.motors() == 0) return;
+  double all = 0;
+  std::size_t next = 0;
+  for (Clustered& one : state_.clusters) {
+    double most = 0;
+    for (const std::uint32_t index : one.entry->trees) {
+      Tree* tree = state_.core.trees[index].get();
+      articulated::difference(tree->model, tree->sub_state.q, tree->state.q, tree->work_v);
+      for (; next < rows_.motors() && rows_.motor(next).motor.tree == tree; ++next)
+        most += most_work(rows_.motor(next).motor, tree->work_v, h);
+    }
+    all += most;
+    if (one.alone()) give_back(one.sub_start.ledger, most, state_.core.trees[one.entry->trees.front()]->ledger);
+  }
+  give_back(sub_start_.ledger, all, state_.result.ledger);
+}
+
 void Books::note_start() {
   stored_ = stored_energy(state_);
   ledger_ = state_.result.ledger;

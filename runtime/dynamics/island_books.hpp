@@ -19,6 +19,7 @@ class Books {
   bool kept() const { return kept_; }  // open() found rows to come
   void note_smooth();
   void close();
+  void settle_motors(double h);
   /// J, that contacts of free bodies did because the bodies rotated: of order 1 of the sub-step. It is in the ledger,
   /// and finer sub-steps make it smaller.
   double rotated() const { return state_.trees.empty() ? rows_.rotated() : 0; }

@@ -71,7 +71,10 @@ void Positions::push_apart(double h) {
 void Positions::move_by_pushes(double fastest, double h) {
   contact::SolveSettings settings = state_.solve_settings();
   // Only a part of an overlap is put right: how exactly does not matter, least where velocities are not exact either.
-  if (!state_.accuracy.direct) settings.iterations = std::max(4, settings.iterations / 4);
+  // But joints pass on what pushes one link apart, and a few sweeps would press another in.
+  constexpr int kFree = 4, kJointed = 40;
+  const int least = state_.trees.empty() ? kFree : kJointed;
+  if (!state_.accuracy.direct) settings.iterations = std::max(least, settings.iterations / 4);
   settings.direct = rows_.contacts() == 0;
   settings.tolerance = std::max(settings.tolerance, 1e-3 * fastest);
   if (settings.direct) settings.tolerance = 1e-14 * state_.unit();

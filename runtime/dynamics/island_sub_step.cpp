@@ -132,6 +132,7 @@ void SubStep::put_right(double h) {
   positions_.push_apart(h);
   loops_.close();
   if (by_rows_) books_.take_gain();
+  books_.settle_motors(h);
 }
 
 }  // namespace breve::island

@@ -12,7 +12,7 @@ namespace breve::island {
 namespace {
 
 // The unexplained gain that a step may have, as a part of the energy in motion. `fast` is not meant to keep energy.
-constexpr double kResidual = 0.1, kResidualFast = 10;
+constexpr double kResidual = 0.1, kResidualFast = 0.5;
 
 // The unexplained gain that resting bodies may have, as a part of the energy that lifts each by its own size.
 constexpr double kLying = 1e-5;
