@@ -136,18 +136,26 @@ void Positions::move_back(double h) {
 /// struck, nearer than it may be (it rotates): both are put where they began, or to the limit, at once.
 /// @param struck  contacts struck something in these h seconds
 void Positions::put_back(double h, bool struck) {
+  constexpr int kTries = 2;
+  constexpr double kFar = 0.02;  // rad, or the world's length unit: put back so far, links do not move along their rows
+  for (int i = 0; i < kTries && put_back_once(h, struck || i > 0) > kFar; ++i) continue;
+}
+
+/// @return  how far a joint was put back, rad or of the world's length unit
+double Positions::put_back_once(double h, bool struck) {
   scalar_pushes_.clear();
-  double fastest = 0;
+  double fastest = 0, farthest = 0;
   for (std::size_t i = 0; i < rows_.limits(); ++i) {
     const Bound& bound = rows_.limit(i).bound;
     const double gap =
         bound.sign * (state_.core.read_position(state_.core.joints[bound.joint])[bound.axis] - bound.limit);
     scalar_pushes_.push_back((std::min(bound.gap, 0.0) - gap) / h);
     fastest = std::max(fastest, scalar_pushes_.back());
+    farthest = std::max(farthest, scalar_pushes_.back() * h / bound.unit);
   }
   bool any = fastest * h > kLimitSkin;
   if (struck) state_.place_links();
-  if (!struck && !any) return;
+  if (!struck && !any) return 0;
   pushes_.clear();
   for (const Touch& touch : contacts_.touches()) {
     const NearPair& pair = contacts_.pair_of(touch);
@@ -160,9 +168,10 @@ void Positions::put_back(double h, bool struck) {
     }
     pushes_.push_back({rate, softness(pair), 0});
   }
-  if (!any) return;
+  if (!any) return 0;
   scalar_pushes_.resize(rows_.scalars().size(), 0.0);
   move_by_pushes(fastest, h);
+  return farthest;
 }
 
 void Positions::begin_moves() {

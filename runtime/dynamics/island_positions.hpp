@@ -27,6 +27,7 @@ class Positions {
   void pay_for_moves(double given, bool by_contacts);
 
  private:
+  double put_back_once(double h, bool struck);
   void move_by_pushes(double fastest, double h);
   double payable(double h) const;
   void shorten_pushes(double before, double h);

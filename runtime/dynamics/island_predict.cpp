@@ -27,18 +27,28 @@ void add(Tree& tree, const articulated::Vector& j, double force) {
 }  // namespace
 
 void Prediction::make(double h) {
-  for (Tree* tree : state_.trees) {
-    tree->loads.reacts = false;
-    tree->outer_force.setZero();
-    tree->outer_couple.setZero();
-    tree->row_center = articulated::centre_of_mass(tree->model, tree->data);
-  }
+  clear();
+  for (Tree* tree : state_.trees) tree->row_center = articulated::centre_of_mass(tree->model, tree->data);
   for (Touch& touch : contacts_.touches()) {
     const WarmPoint* warm = contacts_.warm_of(touch);
     const double share = warm ? steady(warm->force.dot(touch.normal), warm->before) : 0;
     touch.predicted = share > 0 ? Vector3(share * warm->force) : Vector3::Zero();
     if (share > 0) add_contact(touch);
   }
+  add_joints();
+  if (overpressed(h)) forget();
+}
+
+void Prediction::clear() {
+  for (Tree* tree : state_.trees) {
+    tree->loads.reacts = false;
+    tree->outer_force.setZero();
+    tree->outer_couple.setZero();
+  }
+}
+
+/// Limits and motors.
+void Prediction::add_joints() {
   for (const Bound& bound : contacts_.bounds()) {
     if (!bound.rests) continue;
     const JointEntry& joint = state_.core.joints[bound.joint];
@@ -51,7 +61,6 @@ void Prediction::make(double h) {
   }
   for (Tree* tree : state_.trees)
     if (!tree->loops.empty()) add_motors(*tree);
-  if (overpressed(h)) forget();
 }
 
 /// Motors of a tree with closed loops have no drives in the stages: there the force of the last sub-step goes on, so
@@ -158,11 +167,13 @@ bool Prediction::strained() const {
 void Prediction::forget() {
   for (Touch& touch : contacts_.touches()) touch.predicted = Vector3::Zero();
   books_.set_predicted(0);
-  for (Tree* tree : state_.trees) {
-    tree->loads.reacts = false;
-    tree->outer_force.setZero();
-    tree->outer_couple.setZero();
-  }
+  clear();
+}
+
+/// All but limits and motors: a joint that a spring presses on its limit would swing far beyond it without.
+void Prediction::forget_contacts() {
+  forget();
+  add_joints();
 }
 
 }  // namespace breve::island

@@ -17,13 +17,16 @@ class Prediction {
   void make(double h);
   bool misled(double h);
   void forget();
+  void forget_contacts();
   bool strained() const;
 
  private:
   bool overpressed(double h) const;
   bool rotated_away(double h) const;
   bool rotates(BodyIndex body, double rate) const;
+  void clear();
   void add_contact(const Touch& touch);
+  void add_joints();
   void add_motors(Tree& tree);
 
   State& state_;

@@ -177,7 +177,7 @@ void SmoothMotion::correct_works(double h) {
           (one.now.force[k] * (one.v[k] - one.free_v[k]) + one.now.torque[k] * (one.v[3 + k] - one.free_v[3 + k]));
   }
   networks_.correct_drag();
-  for (Clustered& clustered : state_.clusters)
+  for (Clustered& clustered : state_.clusters) {
     for (const std::uint32_t index : clustered.entry->trees) {
       Tree& tree = *state_.core.trees[index];
       if (!tree.driven) continue;
@@ -200,6 +200,8 @@ void SmoothMotion::correct_works(double h) {
         }
       }
     }
+    clustered.pending.drag_loss = std::max(0.0, clustered.pending.drag_loss);  // dampers give nothing
+  }
 }
 
 void SmoothMotion::commit() {

@@ -100,8 +100,9 @@ void SubStep::advance(double time, double h) {
   if (!catch_bounds(time, h) && alone && held) return;
   books_.note_smooth();
   state_.place(h);
-  if (prediction_.misled(h)) {
-    prediction_.forget();
+  for (const bool all : {false, true}) {
+    if (!prediction_.misled(h)) break;
+    all ? prediction_.forget() : prediction_.forget_contacts();
     state_.restore();
     move(time, h);
     books_.note_smooth();
