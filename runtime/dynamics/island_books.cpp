@@ -20,6 +20,15 @@ double missing(double change, const Energy& start, const Energy& now) {
   return change - works_of(now) + works_of(start) + rows_took(now) + now.drag_loss - rows_took(start) - start.drag_loss;
 }
 
+/// Contacts and limits are solved together, and what a limit took may be booked as given by contacts, or the reverse:
+/// as much as both have of it, neither did.
+void settle_limits(const Energy& start, Energy& now) {
+  const double contact = now.contact_loss - start.contact_loss, limit = now.limit_loss - start.limit_loss;
+  const double passed = contact < 0 ? std::clamp(limit, 0.0, -contact) : -std::clamp(-limit, 0.0, contact);
+  now.contact_loss += passed;
+  now.limit_loss -= passed;
+}
+
 /// Contacts and limits give nothing. Where motors press against them the mean of velocities may say that they did and
 /// that the motors took it, to and fro within the sub-step: then neither did. Likewise what they gave, and smooth
 /// motion lost by its error, are one.
@@ -66,13 +75,15 @@ void Books::note_smooth() {
 void Books::close() {
   if (!kept_ || rows_.empty()) return;
   const bool only_motors = rows_.contacts() == 0 && rows_.limits() == 0;
-  const auto close = [this, only_motors](const SubStepEnergy& start, double stored, const Tree* tree, Energy& ledger) {
+  double erred = 0;  // J, by the motion that motors changed
+  const auto close = [&](const SubStepEnergy& start, double stored, const Tree* tree, Energy& ledger) {
     const double more = missing(stored - start.stored - start.unexplained, start.ledger, ledger);
-    const double doubt = rows_.motor_doubt(tree);
-    if (only_motors)  // the rest is the error of the motion that they changed
-      ledger.motor_work += std::clamp(more, -doubt, doubt);
+    const double doubt = rows_.motor_doubt(tree), by_motors = std::clamp(more, -doubt, doubt);
+    if (only_motors)
+      ledger.motor_work += by_motors, erred = more - by_motors;
     else
       ledger.contact_loss -= more;
+    settle_limits(start.ledger, ledger);
     settle_rows(start.ledger, -start.unexplained, ledger);
   };
   double kinetic = 0;
@@ -86,8 +97,10 @@ void Books::close() {
   }
   close(sub_start_, stored_energy(state_), nullptr, state_.result.ledger);
   const double gained = rows_took(sub_start_.ledger) - rows_took(state_.result.ledger);
-  if (!(gained > kTiny * std::abs(sub_start_.stored))) return;
-  const double all = momentum_.moving();
+  const double all = momentum_.moving(), tiny = kTiny * std::abs(sub_start_.stored);
+  constexpr double kErred = 0.1;  // of the energy in motion: what is taken back at once
+  if (erred > tiny && erred <= kErred * all) momentum_.undo_gain(erred / all, false);
+  if (!(gained > tiny)) return;
   if (gained <= kFew * all) {
     momentum_.take_from_all(gained / all);
     return;
