@@ -20,6 +20,12 @@ double missing(double change, const Energy& start, const Energy& now) {
   return change - works_of(now) + works_of(start) + rows_took(now) + now.drag_loss - rows_took(start) - start.drag_loss;
 }
 
+/// What motors changed by rows, and smooth motion erred by before in the other direction, are one: what is left of the
+/// first, J.
+double left_of(double by_rows, double erred) {
+  return by_rows < 0 ? std::min(0.0, by_rows + std::max(0.0, erred)) : std::max(0.0, by_rows + std::min(0.0, erred));
+}
+
 /// Contacts and limits are solved together, and what a limit took may be booked as given by contacts, or the reverse:
 /// as much as both have of it, neither did.
 void settle_limits(const Energy& start, Energy& now) {
@@ -78,11 +84,14 @@ void Books::close() {
   double erred = 0;  // J, by the motion that motors changed
   const auto close = [&](const SubStepEnergy& start, double stored, const Tree* tree, Energy& ledger) {
     const double more = missing(stored - start.stored - start.unexplained, start.ledger, ledger);
-    const double doubt = rows_.motor_doubt(tree), by_motors = std::clamp(more, -doubt, doubt);
-    if (only_motors)
-      ledger.motor_work += by_motors, erred = more - by_motors;
-    else
+    if (only_motors) {
+      const double doubt = rows_.motor_doubt(tree), left = left_of(more, start.unexplained);
+      const double by_motors = std::clamp(left, -doubt, doubt);
+      ledger.motor_work += by_motors;
+      erred = left - by_motors;
+    } else {
       ledger.contact_loss -= more;
+    }
     settle_limits(start.ledger, ledger);
     settle_rows(start.ledger, -start.unexplained, ledger);
   };

@@ -92,12 +92,13 @@ bool Guard::unpayable(double owed) const {
 
 /// Contacts have an error that may have the same sign in each step, as of a body that rotates on its edge. A rise of
 /// energy that is too small to try the step again is taken back from what moves: on `fast` any, on the other rungs that
-/// of articulated bodies which something outside touches. On `balanced` so is one that no finer sub-steps mended.
+/// of articulated bodies which something outside touches. On these two rungs so is one that no finer sub-steps mended.
 void Guard::undo_rise(Rung rung) {
   const double all = momentum_.moving(), risen = balance_.risen();
   const bool drifts = rung == Rung::Fast || (!state_.trees.empty() && momentum_.touched_from_outside());
   const bool little = drifts && risen > kStill * weight(state_) && risen <= kFew * all;
-  const bool unmended = rung == Rung::Balanced && tried_finer_ && risen > allowed_ && all > 0;
+  const bool coarse = rung == Rung::Fast || rung == Rung::Balanced;
+  const bool unmended = coarse && tried_finer_ && risen > allowed_ && all > 0;
   if (little || unmended) momentum_.undo_gain(std::min(1.0, risen / all), true);
 }
 

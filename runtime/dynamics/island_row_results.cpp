@@ -149,10 +149,12 @@ void Rows::book() {
 
 double Rows::motor_doubt(const Tree* tree) const {
   double sum = 0;
-  for (std::size_t i = limits(); i < limits() + motors(); ++i) {
-    const contact::ScalarRow& row = scalars_[i];
-    if (!tree || state_.tree_of(row.a) == tree)
-      sum += 0.5 * std::abs(row.impulse * (rate_of(row) - scalars_before_[i]));
+  for (std::size_t i = 0; i < motors(); ++i) {
+    const contact::ScalarRow& row = scalars_[limits() + i];
+    const MotorRow& motor = motors_[i];
+    if (tree && motor.tree != tree) continue;
+    const double impulse = std::abs(row.impulse) + std::abs(motor.tree->motor_impulse[motor.velocity]);
+    sum += 0.5 * impulse * std::abs(rate_of(row) - scalars_before_[limits() + i]);
   }
   return sum;
 }
