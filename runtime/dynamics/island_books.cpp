@@ -22,7 +22,7 @@ double missing(double change, const Energy& start, const Energy& now) {
 
 /// What motors changed by rows, and smooth motion erred by before in the other direction, are one: what is left of the
 /// first, J.
-double left_of(double by_rows, double erred) {
+double uncancelled(double by_rows, double erred) {
   return by_rows < 0 ? std::min(0.0, by_rows + std::max(0.0, erred)) : std::max(0.0, by_rows + std::min(0.0, erred));
 }
 
@@ -45,6 +45,24 @@ void settle_rows(const Energy& start, double lost, Energy& now) {
   const double by_motors = std::clamp(start.motor_work - now.motor_work, 0.0, gave);
   now.motor_work += by_motors;
   now.contact_loss += by_motors + std::clamp(lost, 0.0, gave - by_motors);
+}
+
+/// The work that a motor can do in a sub-step of h seconds at most, J: its strength for the way of its joint, there and
+/// back.
+/// @param moved  the tangent by which its tree moved
+double most_work(const MotorRow& motor, const articulated::Vector& moved, double h) {
+  if (motor.shared == 0) return 0;  // counted with the first of its numbers
+  const auto length = [&motor](const articulated::Vector& v) { return v.segment(motor.velocity, motor.shared).norm(); };
+  const double way = std::max({length(moved), h * length(motor.tree->sub_state.v), h * length(motor.tree->state.v)});
+  return way > 0 ? motor.strength * way : 0;  // a strength may be infinite
+}
+
+/// Motors cannot have given more than `most`, J: contacts and limits did not take that from them.
+void give_back(const Energy& start, double most, Energy& now) {
+  const double beyond = now.motor_work - start.motor_work - most;
+  const double given = std::clamp(beyond, 0.0, std::max(0.0, rows_took(now) - rows_took(start)));
+  now.motor_work -= given;
+  now.contact_loss -= given;
 }
 
 }  // namespace
@@ -85,7 +103,7 @@ void Books::close() {
   const auto close = [&](const SubStepEnergy& start, double stored, const Tree* tree, Energy& ledger) {
     const double more = missing(stored - start.stored - start.unexplained, start.ledger, ledger);
     if (only_motors) {
-      const double doubt = rows_.motor_doubt(tree), left = left_of(more, start.unexplained);
+      const double doubt = rows_.motor_doubt(tree), left = uncancelled(more, start.unexplained);
       const double by_motors = std::clamp(left, -doubt, doubt);
       ledger.motor_work += by_motors;
       erred = left - by_motors;
@@ -118,34 +136,12 @@ void Books::close() {
   momentum_.note_touched();
 }
 
-namespace {
-
-/// The work that a motor can do in a sub-step of h seconds at most, J: its strength for the way of its joint, there and
-/// back.
-/// @param moved  the tangent by which its tree moved
-double most_work(const MotorRow& motor, const articulated::Vector& moved, double h) {
-  if (motor.shared == 0) return 0;  // counted with the first of its numbers
-  const auto length = [&motor](const articulated::Vector& v) { return v.segment(motor.velocity, motor.shared).norm(); };
-  const double way = std::max({length(moved), h * length(motor.tree->sub_state.v), h * length(motor.tree->state.v)});
-  return way > 0 ? motor.strength * way : 0;  // a strength may be infinite
-}
-
-/// Motors cannot have given more than `most`, J: contacts and limits did not take that from them.
-void give_back(const Energy& start, double most, Energy& now) {
-  const double beyond = now.motor_work - start.motor_work - most;
-  const double given = std::clamp(beyond, 0.0, std::max(0.0, rows_took(now) - rows_took(start)));
-  now.motor_work -= given;
-  now.contact_loss -= given;
-}
-
-}  // namespace
-
 /// Once positions were put right after a sub-step of h seconds. Motors work at most by their strength along the way on
 /// which their joints end: where one pressed on into a contact, and was pushed back, neither gave nor took.
 void Books::settle_motors(double h) {
   if (!kept_ || rows_.motors() == 0) return;
   double all = 0;
-  std::size_t next = 0;
+  std::size_t next = 0;  // rows of motors are in the order of the clusters' trees
   for (Clustered& one : state_.clusters) {
     double most = 0;
     for (const std::uint32_t index : one.entry->trees) {
