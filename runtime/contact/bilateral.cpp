@@ -29,37 +29,49 @@ void add(Workspace& work, const double* step, double share) {
 
 }  // namespace
 
-double solve_bilateral(Workspace& work, double tolerance, Meter* meter, bool& solved) {
+BilateralSolution solve_bilateral(Workspace& work, double tolerance, Meter* meter) {
   constexpr int kRefinements = 3;            // of what round-off leaves
   constexpr std::uint64_t kOperations = 64;  // in a unit of work
   const std::size_t m = work.scalars.size();
-  double left = violation(work);
-  solved = left <= attainable(work, tolerance);
-  if (solved) return left;
+  BilateralSolution found{violation(work), false, false};
+  const auto attained = [&] { return found.left <= attainable(work, tolerance); };
+  found.solved = attained();
+  if (found.solved) return found;
   if (meter) meter->add(m * m * m / (3 * kOperations) + 1);
-  work.numbers.resize(m * m + 2 * m);
+  work.numbers.resize(2 * m * m + 3 * m);
   work.indices.resize(m);
   double *const matrix = work.numbers.data(), *const scale = matrix + m * m, *const step = scale + m;
   std::copy(work.answers.begin(), work.answers.end(), matrix);
   for (std::size_t i = 0; i < m; ++i) matrix[i * m + i] += work.scalars[i].softness;
   Semidefinite equations(static_cast<int>(m), matrix, scale, work.indices.data());
   equations.factorize({0, meter ? meter->end() : nullptr});
-  for (int i = 0; i <= kRefinements && !solved; ++i) {
+  const auto errors = [&] {
     for (std::size_t k = 0; k < m; ++k) {
       const PackedScalar& row = work.scalars[k];
       step[k] = row.bias - velocity(work, row) - row.softness * row.impulse;
     }
+  };
+  for (int i = 0; i <= kRefinements && !found.solved; ++i) {
+    errors();
     equations.solve(step);
     add(work, step, 1);
     const double now = violation(work);
-    if (!(now < left)) {
+    if (!(now < found.left)) {
       add(work, step, -1);
       break;
     }
-    left = now;
-    solved = left <= attainable(work, tolerance);
+    found.left = now;
+    found.solved = attained();
   }
-  return left;
+  if (found.solved || !equations.dependent()) return found;
+  // Whoever went on would press one row against another ever more.
+  errors();
+  equations.solve_least(step, step + m);
+  add(work, step, 1);
+  found.left = violation(work);
+  found.solved = attained();
+  found.contradictory = !found.solved;
+  return found;
 }
 
 }  // namespace breve::contact

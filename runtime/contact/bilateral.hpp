@@ -8,9 +8,13 @@ namespace breve::contact {
 
 /// No row has a bound, and there is no contact.
 bool is_bilateral(const Workspace& work);
+struct BilateralSolution {
+  double left;         // m/s, the violation
+  bool solved;         // that is within the tolerance, or as near to it as round-off allows
+  bool contradictory;  // rows depend on one another and ask for different things: as little as possible is left
+};
+
 /// Solves such rows of a condensed island, from the impulses that it has. They are those of the best iterate.
-/// @param solved  whether the violation is within the tolerance, or as near to it as round-off allows
-/// @return        the violation left, m/s
-double solve_bilateral(Workspace& work, double tolerance, Meter* meter, bool& solved);
+BilateralSolution solve_bilateral(Workspace& work, double tolerance, Meter* meter);
 
 }  // namespace breve::contact

@@ -1,6 +1,8 @@
 // Cholesky's method with complete pivoting.
 #include "runtime/contact/semidefinite.hpp"
 
+#include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -39,6 +41,31 @@ void Semidefinite::solve(double* b) const {
     b[order_[i]] /= at(i, i);
   }
   for (int i = rank_; i < m_; ++i) b[order_[i]] = 0;
+  for (int i = 0; i < m_; ++i) b[i] *= scale_[i];
+}
+
+/// A = L L^T with as many columns as A has rank: x = L (L^T L)^-2 L^T b.
+/// Source: Courrieu 2005 (the pseudoinverse by a Cholesky factor of full rank).
+void Semidefinite::solve_least(double* b, double* room) const {
+  double *const gram = room, *const y = room + rank_ * rank_;
+  for (int i = 0; i < m_; ++i) b[i] *= scale_[i];
+  for (int k = 0; k < rank_; ++k) {
+    y[k] = 0;
+    for (int i = k; i < m_; ++i) y[k] += at(i, k) * b[order_[i]];
+    for (int l = 0; l <= k; ++l) {
+      gram[k * rank_ + l] = 0;
+      for (int i = k; i < m_; ++i) gram[k * rank_ + l] += at(i, k) * at(i, l);
+    }
+  }
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Eigen::Map<Square> lower(gram, rank_, rank_);
+  Eigen::Map<Eigen::VectorXd> shares(y, rank_);
+  const Eigen::LLT<Eigen::Ref<Square>, Eigen::Lower> factor(lower);
+  for (int i = 0; i < 2; ++i) factor.solveInPlace(shares);
+  for (int i = 0; i < m_; ++i) {
+    b[order_[i]] = 0;
+    for (int k = 0; k < std::min(i + 1, rank_); ++k) b[order_[i]] += at(i, k) * y[k];
+  }
   for (int i = 0; i < m_; ++i) b[i] *= scale_[i];
 }
 

@@ -58,9 +58,11 @@ void solve_directly(Workspace& work, const SolveSettings& settings, double most,
 
 void solve_once(Workspace& work, const SolveSettings& settings, SolveReport& report) {
   if (settings.direct && work.condensed && is_bilateral(work)) {
-    report.residual = solve_bilateral(work, settings.tolerance, settings.meter, report.direct);
+    const BilateralSolution found = solve_bilateral(work, settings.tolerance, settings.meter);
+    report.residual = found.left;
+    report.direct = found.solved;
     report.newton += 1;
-    if (report.direct) return;
+    if (found.solved || found.contradictory) return;
   }
   constexpr double kSolves = 5;  // of a direct solution that begins near the last step's
   const double most = settings.direct ? settings.direct_share * settings.iterations * sweep_operations(work) : 0;

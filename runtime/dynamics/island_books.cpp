@@ -27,8 +27,12 @@ double uncancelled(double by_rows, double erred) {
 }
 
 /// Contacts and limits are solved together, and what a limit took may be booked as given by contacts, or the reverse:
-/// as much as both have of it, neither did.
-void settle_limits(const Energy& start, Energy& now) {
+/// as much as both have of it, neither did. Friction gives nothing: what it seems to give, contacts did not take.
+void settle_exchange(const Energy& start, Energy& now) {
+  const double rubbed =
+      std::clamp(start.friction_loss - now.friction_loss, 0.0, std::max(0.0, now.contact_loss - start.contact_loss));
+  now.friction_loss += rubbed;
+  now.contact_loss -= rubbed;
   const double contact = now.contact_loss - start.contact_loss, limit = now.limit_loss - start.limit_loss;
   const double passed = contact < 0 ? std::clamp(limit, 0.0, -contact) : -std::clamp(-limit, 0.0, contact);
   now.contact_loss += passed;
@@ -110,7 +114,7 @@ void Books::close() {
     } else {
       ledger.contact_loss -= more;
     }
-    settle_limits(start.ledger, ledger);
+    settle_exchange(start.ledger, ledger);
     settle_rows(start.ledger, -start.unexplained, ledger);
   };
   double kinetic = 0;

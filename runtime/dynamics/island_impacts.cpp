@@ -253,11 +253,11 @@ void Impacts::locate(double time, Event& event, double h) {
   }
 }
 
-/// The gap was open when the sub-step began, and it is closed where the island stands.
+/// The gap is closed where the island stands, or it is deeper than when the sub-step began.
 bool Impacts::is_past(const Event& event) {
   double rate = 0;
-  if (const Bound* bound = bound_of(event)) return bound->gap > 0 && gap_of(event, rate) < -kMetSkin * bound->unit;
-  return gap_of(event, rate) + event.depth < -kMetSkin * state_.size_of_pair(pair_of(event));
+  const Bound* bound = bound_of(event);
+  return gap_of(event, rate) + event.depth < -kMetSkin * (bound ? bound->unit : state_.size_of_pair(pair_of(event)));
 }
 
 }  // namespace breve::island

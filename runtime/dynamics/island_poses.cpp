@@ -67,8 +67,12 @@ void State::remember() {
     one.before = one.now;
     one.next_before = one.next;
   }
-  for (Tree* tree : trees) tree->sub_state = tree->state;
+  for (Tree* tree : trees) {
+    tree->sub_state = tree->state;
+    tree->sub_ledger = tree->ledger;
+  }
   for (Clustered& one : clusters) one.next_before = one.entry->system->next_step();
+  sub_ledger_ = result.ledger;
 }
 
 void State::restore() {
@@ -76,8 +80,12 @@ void State::restore() {
     one.now = one.before;
     one.next = one.next_before;
   }
-  for (Tree* tree : trees) tree->state = tree->sub_state;
+  for (Tree* tree : trees) {
+    tree->state = tree->sub_state;
+    tree->ledger = tree->sub_ledger;
+  }
   for (Clustered& one : clusters) one.entry->system->set_next_step(one.next_before);
+  result.ledger = sub_ledger_;  // positions that were put right in a try that counts no more
 }
 
 void Free::load_velocity() {

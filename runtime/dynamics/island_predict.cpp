@@ -53,12 +53,20 @@ void Prediction::add_joints() {
     if (!bound.rests) continue;
     const JointEntry& joint = state_.core.joints[bound.joint];
     const double last = std::max(0.0, bound.sign * joint.limit[bound.axis]);
-    const double force = last * steady(last, bound.sign * joint.limit_before[bound.axis]);
-    if (force == 0) continue;
-    Tree& tree = *state_.core.trees[joint.tree];
-    fill_limit_row(tree, joint, bound.axis, bound.sign, tree.work_v.data());
-    add(tree, tree.work_v, force);
+    add_limit(bound, last * steady(last, bound.sign * joint.limit_before[bound.axis]));
   }
+  add_motors();
+}
+
+void Prediction::add_limit(const Bound& bound, double force) {
+  if (force == 0) return;
+  const JointEntry& joint = state_.core.joints[bound.joint];
+  Tree& tree = *state_.core.trees[joint.tree];
+  fill_limit_row(tree, joint, bound.axis, bound.sign, tree.work_v.data());
+  add(tree, tree.work_v, force);
+}
+
+void Prediction::add_motors() {
   for (Tree* tree : state_.trees)
     if (!tree->loops.empty()) add_motors(*tree);
 }
@@ -149,6 +157,30 @@ bool Prediction::misled(double h) {
   double heat = 0;
   for (const Clustered& one : state_.clusters) heat += std::min(one.held_work, one.pending.drag_loss);
   return std::max(heat, books_.smooth_kinetic() - books_.kinetic()) > kUnbalanced * alone;
+}
+
+/// After smooth motion: whether a joint that stands at its limit swung so far beyond it that what was predicted there
+/// is not the force that holds it: nothing is, when the joint has just come to stand there.
+bool Prediction::swings() const {
+  constexpr double kFar = 0.02;  // rad, or the world's length unit
+  return std::any_of(contacts_.bounds().begin(), contacts_.bounds().end(), [this](const Bound& bound) {
+    if (!bound.rests || bound.held) return false;
+    const double position = state_.core.read_position(state_.core.joints[bound.joint])[bound.axis];
+    return bound.sign * (position - bound.limit) < std::min(bound.gap, 0.0) - kFar * bound.unit;
+  });
+}
+
+/// After the rows of a try of the sub-step of h seconds, back where it began: limits push in the next try as they did
+/// in this one.
+void Prediction::learn(double h) {
+  clear();
+  for (const Touch& touch : contacts_.touches())
+    if (touch.predicted != Vector3::Zero()) add_contact(touch);
+  for (std::size_t i = 0; i < rows_.limits(); ++i) {
+    const auto& [bound, row] = rows_.limit(i);
+    add_limit(bound, row.impulse / h);
+  }
+  add_motors();
 }
 
 /// Contacts on several sides of a link may press against one another as much as they like: no velocity tells. Impulses

@@ -16,6 +16,8 @@ class Prediction {
   /// After a look at what is near and Books::open(), for the smooth motion of h seconds that follows.
   void make(double h);
   bool misled(double h);
+  bool swings() const;
+  void learn(double h);
   void forget();
   void forget_contacts();
   bool strained() const;
@@ -27,6 +29,8 @@ class Prediction {
   void clear();
   void add_contact(const Touch& touch);
   void add_joints();
+  void add_limit(const Bound& bound, double force);
+  void add_motors();
   void add_motors(Tree& tree);
 
   State& state_;

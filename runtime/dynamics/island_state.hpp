@@ -185,6 +185,7 @@ struct State {
   bool loose(const Clustered& one) const;
   void take_accuracy(const Accuracy& other);
 
+  Energy sub_ledger_;  // as the sub-step began
   bool accuracy_set_ = false;
 };
 

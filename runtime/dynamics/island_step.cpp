@@ -199,14 +199,12 @@ void Step::located(MechanicsClient* client, double start, double h) {
     spent_ = met_ >= most || stalls > kMostStalls;
     if (!look(start + now, contact_part(h - now, whole))) continue;
     const double part = longest(h - now, whole);
-    const Energy ledger = state_.result.ledger;
     impacts_.note_start();
     sub_step_.open(part);
     sub_step_.advance(start + now, part);
     Event event = spent_ ? Event() : impacts_.seek(start + now, part);
     if (whole && (event.found() || !lies(part))) {
       state_.restore();
-      state_.result.ledger = ledger;
       whole = false;
       continue;
     }

@@ -98,22 +98,34 @@ void SubStep::advance(double time, double h) {
   }
   const bool held = move(time, h);
   if (!catch_bounds(time, h) && alone && held) return;
+  check_prediction(time, h);
+  solver_.solve_after(h);
+  if (prediction_.swings()) {
+    state_.restore();
+    prediction_.learn(h);
+    move(time, h);
+    check_prediction(time, h);
+    solver_.solve_after(h);
+  }
+  // A force that is constant over the step moves by half of what its change of velocity would.
+  smooth_.correct_works(h);
+  state_.store_velocities();
+  solver_.move_by_impulses(0.5 * h);
+  positions_.put_back(h, positions_.hold_off(h));
+}
+
+/// After smooth motion of h seconds: its books, and those of a motion without what was predicted if that misled it.
+void SubStep::check_prediction(double time, double h) {
   books_.note_smooth();
   state_.place(h);
   for (const bool all : {false, true}) {
-    if (!prediction_.misled(h)) break;
+    if (!prediction_.misled(h)) return;
     all ? prediction_.forget() : prediction_.forget_contacts();
     state_.restore();
     move(time, h);
     books_.note_smooth();
     state_.place(h);
   }
-  solver_.solve_after(h);
-  // A force that is constant over the step moves by half of what its change of velocity would.
-  smooth_.correct_works(h);
-  state_.store_velocities();
-  solver_.move_by_impulses(0.5 * h);
-  positions_.put_back(h, positions_.hold_off(h));
 }
 
 void SubStep::keep(double part, double took) {

@@ -117,7 +117,7 @@ struct Tree : InMemory {
   articulated::Vector motor_impulse;         // likewise, in all of it
   articulated::Whole whole;                  // without the impulses of the rows
   Vector3 row_center = Vector3::Zero();      // centre of mass where the rows were made
-  Energy step_ledger;                        // as the step began
+  Energy step_ledger, sub_ledger;            // as the step, the sub-step began
   double step_stored = 0;                    // J, likewise
   double step_kinetic = 0;                   // J, likewise
   double booked = std::numeric_limits<double>::quiet_NaN();  // J, that it has by the books

@@ -1,6 +1,7 @@
 // The contact solver as a velocity problem: forces act for a step, and the impulses that answer them are looked at.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -330,6 +331,28 @@ TEST(ScalarRows, KeepTheirBoundsAndBiases) {
     EXPECT_NEAR(rows[0].impulse, -1, 1e-12);
     EXPECT_NEAR(rows[1].impulse, 5, 1e-8);
   }
+}
+
+TEST(ScalarRows, ThatContradictOneAnotherLeaveTheLeastErrorWithoutThrowingImpulses) {
+  double v[3] = {0, 0, 0};
+  const Mover mover{v, 3};
+  const double part = std::sqrt(0.5), without_bound = std::numeric_limits<double>::infinity();
+  const double j[3][3] = {{1, 0, 0}, {0, 1, 0}, {part, part, 0}};  // the third is made of the others
+  ScalarRow rows[3];
+  for (int i = 0; i < 3; ++i) {
+    rows[i].a = 0;
+    rows[i].ja = rows[i].ra = j[i];
+    rows[i].lo = -without_bound;
+    rows[i].hi = without_bound;
+    rows[i].bias = i < 2 ? 1 : 0;
+  }
+  Workspace work(std::pmr::get_default_resource());
+  const SolveReport report = solve_island({&mover, 1}, {}, rows, {100, true, 1e-12}, work);
+  EXPECT_FALSE(report.direct);
+  EXPECT_NEAR(report.residual, part, 1e-12);
+  EXPECT_NEAR(v[0], 0.5, 1e-12);
+  EXPECT_NEAR(v[1], 0.5, 1e-12);
+  for (const ScalarRow& row : rows) EXPECT_LT(std::abs(row.impulse), 1);
 }
 
 TEST(Softness, LetsAContactGiveWay) {
