@@ -141,7 +141,7 @@ bool Loops::approach(bool open) {
     state_.place_links();
     const bool nearer = errors_squared() < before;
     const Stored now = read_stored();
-    const double given = now.inner - held.inner;
+    const double given = now.inner - held.inner - (now.script - held.script);
     if (nearer && given <= positions_.payable_by_motion()) {
       const bool by_contacts = touches();
       if (by_contacts) state_.result.ledger.contact_loss -= now.all - held.all;
@@ -193,6 +193,7 @@ bool Loops::touches() const {
 
 Loops::Stored Loops::read_stored() {
   Stored sum;
+  sum.script = state_.result.ledger.script_work;
   for (const Clustered& one : state_.clusters) {
     sum.inner += spring_energy(state_, one);
     for (const std::uint32_t index : one.entry->trees) {

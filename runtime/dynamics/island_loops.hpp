@@ -36,6 +36,7 @@ class Loops {
   /// Energy, J. The inner part of a body could grow by drawing it together even where nothing outside touches it.
   struct Stored {
     double inner = 0, all = 0;  // motion and springs; also gravity
+    double script = 0;          // the work of scripts' forces so far
   };
   Stored read_stored();
   bool touches() const;

@@ -2,6 +2,7 @@
 #include "runtime/dynamics/island_predict.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "runtime/articulated/energy.hpp"
 #include "runtime/articulated/impulse.hpp"
@@ -17,7 +18,8 @@ namespace {
 /// in one of them only is no more.
 double steady(double last, double before) { return last > 0 ? std::clamp(before / last, 0.0, 1.0) : 0; }
 
-void add(Tree& tree, const articulated::Vector& j, double force) {
+template <class Row>
+void add(Tree& tree, const Row& j, double force) {
   articulated::Loads& loads = tree.loads;
   if (!loads.reacts) loads.reaction.setZero();
   loads.reacts = true;
@@ -161,7 +163,7 @@ bool Prediction::misled(double h) {
 
 /// After smooth motion: whether a joint that stands at its limit swung so far beyond it that what was predicted there
 /// is not the force that holds it: nothing is, when the joint has just come to stand there.
-bool Prediction::swings() const {
+bool Prediction::limits_swing() const {
   constexpr double kFar = 0.02;  // rad, or the world's length unit
   return std::any_of(contacts_.bounds().begin(), contacts_.bounds().end(), [this](const Bound& bound) {
     if (!bound.rests || bound.held) return false;
@@ -170,9 +172,21 @@ bool Prediction::swings() const {
   });
 }
 
+/// After the rows: whether links of a loop that no stage holds swung apart, at the rate that the rows stopped. Where
+/// they hardly do, near a pose in which the loop may fold either way, a force that does not change would cost energy.
+bool Prediction::loops_swing(double h) const {
+  constexpr double kFar = 0.02;  // rad, or the world's length unit
+  for (std::size_t k = 0; k < rows_.loops(); ++k) {
+    const contact::ScalarRow& row = rows_.loop(k);
+    if (0.5 * h * std::abs(row.impulse) * rows_.response(row) > kFar * rows_.loop_error(k).unit) return true;
+  }
+  return false;
+}
+
 /// After the rows of a try of the sub-step of h seconds, back where it began: limits push in the next try as they did
 /// in this one.
-void Prediction::learn(double h) {
+/// @param loops  likewise, which no stage holds: their links would swing apart and be drawn together in each sub-step
+void Prediction::learn(double h, bool loops) {
   clear();
   for (const Touch& touch : contacts_.touches())
     if (touch.predicted != Vector3::Zero()) add_contact(touch);
@@ -180,7 +194,17 @@ void Prediction::learn(double h) {
     const auto& [bound, row] = rows_.limit(i);
     add_limit(bound, row.impulse / h);
   }
+  for (std::size_t k = 0; loops && k < rows_.loops(); ++k) add_loop(rows_.loop(k), h);
   add_motors();
+}
+
+void Prediction::add_loop(const contact::ScalarRow& row, double h) {
+  for (const bool first : {true, false}) {
+    Tree* tree = state_.tree_of(first ? row.a : row.b);
+    if (!tree) continue;
+    add(*tree, Eigen::Map<const articulated::Vector>(first ? row.ja : row.jb, tree->model.velocities()),
+        row.impulse / h);
+  }
 }
 
 /// Contacts on several sides of a link may press against one another as much as they like: no velocity tells. Impulses

@@ -16,8 +16,9 @@ class Prediction {
   /// After a look at what is near and Books::open(), for the smooth motion of h seconds that follows.
   void make(double h);
   bool misled(double h);
-  bool swings() const;
-  void learn(double h);
+  bool limits_swing() const;
+  bool loops_swing(double h) const;
+  void learn(double h, bool loops);
   void forget();
   void forget_contacts();
   bool strained() const;
@@ -30,6 +31,7 @@ class Prediction {
   void add_contact(const Touch& touch);
   void add_joints();
   void add_limit(const Bound& bound, double force);
+  void add_loop(const contact::ScalarRow& row, double h);
   void add_motors();
   void add_motors(Tree& tree);
 

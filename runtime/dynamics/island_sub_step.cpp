@@ -100,9 +100,10 @@ void SubStep::advance(double time, double h) {
   if (!catch_bounds(time, h) && alone && held) return;
   check_prediction(time, h);
   solver_.solve_after(h);
-  if (prediction_.swings()) {
+  const bool loops = by_rows_ && prediction_.loops_swing(h);
+  if (loops || prediction_.limits_swing()) {
     state_.restore();
-    prediction_.learn(h);
+    prediction_.learn(h, loops);
     move(time, h);
     check_prediction(time, h);
     solver_.solve_after(h);
