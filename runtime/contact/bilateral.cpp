@@ -64,7 +64,7 @@ BilateralSolution solve_bilateral(Workspace& work, double tolerance, Meter* mete
     found.solved = attained();
   }
   if (found.solved || !equations.dependent()) return found;
-  // Whoever went on would press one row against another ever more.
+  // A solver that goes on from here presses one row against another ever more.
   errors();
   equations.solve_least(step, step + m);
   add(work, step, 1);

@@ -8,6 +8,7 @@ namespace breve::contact {
 
 /// No row has a bound, and there is no contact.
 bool is_bilateral(const Workspace& work);
+
 struct BilateralSolution {
   double left;         // m/s, the violation
   bool solved;         // that is within the tolerance, or as near to it as round-off allows

@@ -17,8 +17,8 @@ class Semidefinite {
   void factorize(const WorkBound& bound);
   /// b becomes the solution of A x = b; of rows that depend on others, 0.
   void solve(double* b) const;
-  /// b becomes what leaves the least of A x = b, rows being scaled to 1, if rows that depend on others contradict them:
-  /// of these the shortest x. O(m^3).
+  /// If rows that depend on others contradict them: b becomes the x that leaves the least of A x - b, rows being scaled
+  /// to 1, and the shortest such x. O(m^3).
   /// @param room  for m (m + 1) numbers
   void solve_least(double* b, double* room) const;
   bool dependent() const { return rank_ < m_; }

@@ -85,7 +85,7 @@ void State::restore() {
     tree->ledger = tree->sub_ledger;
   }
   for (Clustered& one : clusters) one.entry->system->set_next_step(one.next_before);
-  result.ledger = sub_ledger_;  // positions that were put right in a try that counts no more
+  result.ledger = sub_ledger_;  // without what the try booked where it put positions right
 }
 
 void Free::load_velocity() {

@@ -185,7 +185,7 @@ bool Prediction::loops_swing(double h) const {
 
 /// After the rows of a try of the sub-step of h seconds, back where it began: limits push in the next try as they did
 /// in this one.
-/// @param loops  likewise, which no stage holds: their links would swing apart and be drawn together in each sub-step
+/// @param loops  so do loops, which no stage holds; else their links would swing apart and be drawn together each time
 void Prediction::learn(double h, bool loops) {
   clear();
   for (const Touch& touch : contacts_.touches())
@@ -199,12 +199,8 @@ void Prediction::learn(double h, bool loops) {
 }
 
 void Prediction::add_loop(const contact::ScalarRow& row, double h) {
-  for (const bool first : {true, false}) {
-    Tree* tree = state_.tree_of(first ? row.a : row.b);
-    if (!tree) continue;
-    add(*tree, Eigen::Map<const articulated::Vector>(first ? row.ja : row.jb, tree->model.velocities()),
-        row.impulse / h);
-  }
+  Tree& tree = *state_.tree_of(row.a);  // a loop is within one tree
+  add(tree, Eigen::Map<const articulated::Vector>(row.ja, tree.model.velocities()), row.impulse / h);
 }
 
 /// Contacts on several sides of a link may press against one another as much as they like: no velocity tells. Impulses
