@@ -36,7 +36,7 @@ Touch touch_at(std::size_t pair, const Pose& a, const Pose& b, const Manifold& m
   Touch touch;
   touch.pair = static_cast<std::uint32_t>(pair);
   touch.feature = point.feature;
-  touch.point = 0.5 * (point.on_a + point.on_b);
+  touch.point = touch.start = 0.5 * (point.on_a + point.on_b);
   touch.on_a = a.orientation.conjugate() * (touch.point - a.location);
   touch.on_b = b.orientation.conjugate() * (touch.point - b.location);
   touch.from_a = a.location;
@@ -67,13 +67,15 @@ void Contacts::find_touches(double h, bool speculative) {
     const Pose pa = state_.pose_of(pair.a), pb = state_.pose_of(pair.b);
     const double size = state_.size_of_pair(pair);
     const double near = std::max(kSkin * size, std::min(2 * fall * h, kMostRoom * size));
-    double margin = near;
+    // What rotates comes down on points that lie farther off.
+    const double swing = h * (state_.spin_of(pair.a) - state_.spin_of(pair.b)).norm() * size;
+    double sure = near;  // what is no farther off is seen, however it moves
+    double margin = near + 2 * swing;
     if (speculative) {
       const Vector3 rate = state_.point_velocity(pair.a, pa.location) - state_.point_velocity(pair.b, pb.location);
-      margin += h * (rate.norm() + fall) + kRotationRoom * size;
-    } else {
-      // What rests on an edge and tips comes down on points that lie farther off.
-      margin += 2 * h * (state_.spin_of(pair.a) - state_.spin_of(pair.b)).norm() * size;
+      const double way = h * (rate.norm() + fall);
+      sure += way + kRotationRoom * size;
+      margin = std::max(sure, near + way + swing);
     }
     manifolds_.clear();
     find_manifolds(a, pa, b, pb, margin, manifolds_, pair.cache, narrow);
@@ -84,11 +86,10 @@ void Contacts::find_touches(double h, bool speculative) {
         Touch touch = touch_at(i, pa, pb, manifold, point);
         touch.velocity_a = state_.point_velocity(pair.a, touch.point);
         touch.velocity_b = state_.point_velocity(pair.b, touch.point);
-        if (!speculative) {
-          touch.approach = manifold.normal.dot(touch.velocity_a - touch.velocity_b);
-          touch.far = touch.gap > near;
-          if (touch.far && touch.gap + kHastens * h * touch.approach > near) continue;
-        }
+        touch.approach = manifold.normal.dot(touch.velocity_a - touch.velocity_b);
+        const bool beyond = touch.gap > sure;
+        if (beyond && touch.gap + kHastens * h * touch.approach > near) continue;
+        touch.far = beyond && !speculative;
         touches_.push_back(touch);
       }
     }

@@ -16,10 +16,10 @@ enum class Role : std::uint8_t { Far, Leaves, Rests, Springs };
 struct Touch {
   std::uint32_t pair = 0;
   std::uint32_t feature = 0;
-  Vector3 point, normal;                                               // world; the normal from b toward a
+  Vector3 point, normal;                                               // world, of its row; the normal from b toward a
   Vector3 on_a, on_b;                                                  // the point, in the axes of each body
   Vector3 from_a, from_b;                                              // where the bodies' origins were
-  Vector3 start = Vector3::Zero();                                     // the point, as the sub-step began
+  Vector3 start;                                                       // the point, as the sub-step began
   Quaternion orientation_a, orientation_b;                             // of the bodies then
   Vector3 velocity_a = Vector3::Zero(), velocity_b = Vector3::Zero();  // of the bodies there, as the sub-step began
   double gap = 0;                                                      // m, at the start of the sub-step

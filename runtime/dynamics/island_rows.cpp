@@ -143,9 +143,9 @@ Vector3 Rows::taken(const Touch& touch, const Vector3& point, bool first) const 
 Vector3 Rows::carried(const Touch& touch) const {
   const NearPair& pair = contacts_.pair_of(touch);
   const bool by_a = carries(pair, true), by_b = carries(pair, false);
-  if (by_a && by_b) return 0.5 * (taken(touch, touch.point, true) + taken(touch, touch.point, false));
-  if (by_a || by_b) return taken(touch, touch.point, by_a);
-  return touch.point;
+  if (by_a && by_b) return 0.5 * (taken(touch, touch.start, true) + taken(touch, touch.start, false));
+  if (by_a || by_b) return taken(touch, touch.start, by_a);
+  return touch.start;
 }
 
 /// m, in the last h seconds, of the arm of a free body's point by the body's rotation. One that is a small part of what
@@ -169,7 +169,6 @@ double Rows::gap_now(const Touch& touch) const {
 
 void Rows::add_touch(Touch& touch) {
   const NearPair& pair = contacts_.pair_of(touch);
-  touch.start = touch.point;
   touch.point = carried(touch);
   contact::Row row;
   Vector3 t1, t2;
