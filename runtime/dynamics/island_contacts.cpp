@@ -13,7 +13,8 @@ Contacts::Contacts(State& state)
       rebounds_(state.memory),
       roles_(state.memory),
       depths_(state.memory),
-      manifolds_(state.memory) {}
+      manifolds_(state.memory),
+      seen_(state.memory) {}
 
 void Contacts::begin(bool awaited) {
   awaited_ = awaited;
@@ -30,6 +31,7 @@ void Contacts::clear() {
 namespace {
 
 constexpr double kRotationRoom = 0.02;  // of the radius, which rotation may bring nearer in a sub-step
+constexpr double kMissed = 0.005;       // of the size: an overlap that is seen only after the sub-step that made it
 constexpr double kCoarse = 1e-3;        // tolerances of step control from which contacts are seen less exactly
 
 Touch touch_at(std::size_t pair, const Pose& a, const Pose& b, const Manifold& manifold, const ContactPoint& point) {
@@ -37,18 +39,24 @@ Touch touch_at(std::size_t pair, const Pose& a, const Pose& b, const Manifold& m
   touch.pair = static_cast<std::uint32_t>(pair);
   touch.feature = point.feature;
   touch.point = touch.start = 0.5 * (point.on_a + point.on_b);
-  touch.on_a = a.orientation.conjugate() * (touch.point - a.location);
-  touch.on_b = b.orientation.conjugate() * (touch.point - b.location);
-  touch.from_a = a.location;
-  touch.from_b = b.location;
-  touch.orientation_a = a.orientation;
-  touch.orientation_b = b.orientation;
+  touch.from_a = a;
+  touch.from_b = b;
   touch.normal = manifold.normal;
   touch.gap = point.distance;
   return touch;
 }
 
 }  // namespace
+
+bool is_round(const Shape& shape) { return shape.kind() == ShapeKind::Sphere || shape.round().is_round(); }
+
+Vector3 carried_by(const Shape& shape, const Vector3& point, const Pose& from, const Pose& to) {
+  const Vector3 arm = point - from.location;
+  if (!is_round(shape)) return to.location + to.orientation * (from.orientation.conjugate() * arm);
+  if (shape.kind() == ShapeKind::Sphere) return point + to.location - from.location;
+  const Vector3 axis = Vector3::Unit(shape.round().axis);
+  return to.location + Quaternion::FromTwoVectors(from.orientation * axis, to.orientation * axis) * arm;
+}
 
 void Contacts::find_touches(double h, bool speculative) {
   spent_ = speculative;
@@ -58,6 +66,7 @@ void Contacts::find_touches(double h, bool speculative) {
   const double fall = state_.core.settings.gravity.norm() * h;
   resting_ = 1e-3 * fall + 1e-12 * state_.unit();
   looked_h_ = h;
+  note_seen(speculative);
   // A row catches a body before it touches, if it comes as slowly as a body at rest falls in a sub-step.
   constexpr double kMostRoom = 0.05;  // of the size
   constexpr double kHastens = 1.5;    // of its speed, within a sub-step, of a point that comes nearer by rotation
@@ -86,8 +95,8 @@ void Contacts::find_touches(double h, bool speculative) {
         Touch touch = touch_at(i, pa, pb, manifold, point);
         touch.velocity_a = state_.point_velocity(pair.a, touch.point);
         touch.velocity_b = state_.point_velocity(pair.b, touch.point);
-        touch.approach = manifold.normal.dot(touch.velocity_a - touch.velocity_b);
         const bool beyond = touch.gap > sure;
+        if (beyond || !speculative) touch.approach = manifold.normal.dot(touch.velocity_a - touch.velocity_b);
         if (beyond && touch.gap + kHastens * h * touch.approach > near) continue;
         touch.far = beyond && !speculative;
         touches_.push_back(touch);
@@ -97,6 +106,73 @@ void Contacts::find_touches(double h, bool speculative) {
   state_.result.counters.pairs += narrow.pairs;
   constexpr std::uint64_t kUnits = 10;  // of work, a pair
   state_.meter.add(kUnits * (state_.pairs.size() + narrow.pairs) + narrow.facets + narrow.boxes + touches_.size());
+}
+
+/// How the bodies of each pair move, for find_missed(). One without joints that is struck is not thrown down elsewhere
+/// as hard, and what overlaps then is pushed apart freely.
+void Contacts::note_seen(bool speculative) {
+  seen_.clear();
+  if (!speculative || state_.trees.empty()) return;
+  for (const NearPair* pair : state_.pairs) seen_.push_back({seen(pair->a), seen(pair->b)});
+}
+
+Contacts::Seen Contacts::seen(BodyIndex body) const {
+  const Pose pose = state_.pose_of(body);
+  return {pose, state_.point_velocity(body, pose.location), state_.spin_of(body)};
+}
+
+/// The pair moves otherwise than it did, by more than a speculative look leaves room for in h seconds.
+bool Contacts::deflected(const std::array<Seen, 2>& before, const NearPair& pair, double h) const {
+  const Seen a = seen(pair.a), b = seen(pair.b);
+  const double size = state_.size_of_pair(pair);
+  const Vector3 velocity = a.velocity - b.velocity - (before[0].velocity - before[1].velocity);
+  const Vector3 spin = a.spin - b.spin - (before[0].spin - before[1].spin);
+  return h * (velocity.norm() + size * spin.norm()) > kRotationRoom * size;
+}
+
+bool Contacts::find_missed(double h) {
+  NarrowCounters narrow;
+  narrow.stop = state_.meter.end();
+  bool any = false;
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    const NearPair& pair = *state_.pairs[i];
+    // What a script or the host moves is put where it will be only when the step is over.
+    const bool left = pair.spring.stiffness > 0 || state_.pair_drivers[i] >= 0;
+    if (left || !deflected(seen_[i], pair, h)) continue;
+    PairCache cache = pair.cache;  // the next look is to begin as the last one did
+    manifolds_.clear();
+    find_manifolds(state_.shape(pair.a), state_.pose_of(pair.a), state_.shape(pair.b), state_.pose_of(pair.b), 0,
+                   manifolds_, cache, narrow);
+    for (const Manifold& manifold : manifolds_)
+      for (int k = 0; k < manifold.count; ++k)
+        any = add_missed(i, manifold, manifold.points[static_cast<std::size_t>(k)]) || any;
+  }
+  state_.result.counters.pairs += narrow.pairs;
+  state_.meter.add(narrow.facets + narrow.boxes);
+  return any;
+}
+
+/// Where the sub-step began. What overlapped then was seen, or is pushed apart.
+bool Contacts::add_missed(std::size_t pair, const Manifold& manifold, const ContactPoint& point) {
+  const NearPair& is = *state_.pairs[pair];
+  const double least = kMissed * state_.size_of_pair(is);
+  if (point.distance > -least) return false;
+  const auto after = std::upper_bound(touches_.begin(), touches_.end(), pair,
+                                      [](std::size_t index, const Touch& touch) { return index < touch.pair; });
+  for (auto other = after; other != touches_.begin() && std::prev(other)->pair == pair; --other)
+    if (std::prev(other)->feature == point.feature) return false;
+  const auto& [a, b] = seen_[pair];
+  ContactPoint before = point;
+  before.on_a = carried_by(state_.shape(is.a), point.on_a, state_.pose_of(is.a), a.pose);
+  before.on_b = carried_by(state_.shape(is.b), point.on_b, state_.pose_of(is.b), b.pose);
+  before.distance = manifold.normal.dot(before.on_a - before.on_b);
+  if (before.distance < -least) return false;
+  Touch touch = touch_at(pair, a.pose, b.pose, manifold, before);
+  touch.velocity_a = a.velocity_at(touch.point);
+  touch.velocity_b = b.velocity_at(touch.point);
+  touch.approach = manifold.normal.dot(touch.velocity_a - touch.velocity_b);
+  touches_.insert(after, touch);
+  return true;
 }
 
 Contacts::Speeds Contacts::speeds_of(const contact::Law& law, double size, double h) const {
@@ -206,6 +282,18 @@ void Contacts::find_bounds() {
     }
   }
   rebounds_.resize(bounds_.size());
+}
+
+bool Contacts::find_passed(double far) {
+  bool any = false;
+  for (Bound& bound : bounds_) {
+    if (bound.rests || bound.held) continue;
+    const double gap =
+        bound.sign * (state_.core.read_position(state_.core.joints[bound.joint])[bound.axis] - bound.limit);
+    bound.rests = gap < std::min(bound.gap, 0.0) - far * bound.unit;
+    any = any || bound.rests;
+  }
+  return any;
 }
 
 /// How far from its limit a joint is taken to have met it, rad or length units: as exactly as the moments of events are

@@ -2,6 +2,8 @@
 // that rests, so that it becomes a row, or is an impact to be located.
 #pragma once
 
+#include <array>
+
 #include "runtime/dynamics/island_state.hpp"
 
 namespace breve::island {
@@ -17,16 +19,19 @@ struct Touch {
   std::uint32_t pair = 0;
   std::uint32_t feature = 0;
   Vector3 point, normal;                                               // world, of its row; the normal from b toward a
-  Vector3 on_a, on_b;                                                  // the point, in the axes of each body
-  Vector3 from_a, from_b;                                              // where the bodies' origins were
   Vector3 start;                                                       // the point, as the sub-step began
-  Quaternion orientation_a, orientation_b;                             // of the bodies then
+  Pose from_a, from_b;                                                 // of the bodies then
   Vector3 velocity_a = Vector3::Zero(), velocity_b = Vector3::Zero();  // of the bodies there, as the sub-step began
   double gap = 0;                                                      // m, at the start of the sub-step
   double approach = 0;  // m/s, v_n when the sub-step began; unknown where nothing is located
   bool far = false;     // touches only if the bodies rotate toward it, and says nothing of whether the pair rests
   Vector3 predicted = Vector3::Zero();  // N, world axes: a force that is taken to go on and acts inside the stages
 };
+
+bool is_round(const Shape& shape);
+/// The point of a body that stood at `from`, once it is at `to`. A body that is round about an axis rotates about it
+/// without taking its point along, so that only the shortest rotation of the axis counts; a ball has no axis to rotate.
+Vector3 carried_by(const Shape& shape, const Vector3& point, const Pose& from, const Pose& to);
 
 /// A joint's limit that is near, or was passed.
 struct Bound {
@@ -60,7 +65,14 @@ class Contacts {
   /// @param speculative  no impact is located any more: rows are to stop whatever comes within h seconds
   void find_touches(double h, bool speculative);
   void find_touches_now();
+  /// After a sub-step of h seconds that was looked at speculatively, with the links placed: makes contacts of points
+  /// that overlap and that no row held apart. A body that is struck may come down elsewhere, where nothing approached.
+  /// @return  whether there are some
+  bool find_missed(double h);
   void find_bounds();
+  /// Limits without a row that joints have passed, by more than `far` units, become rows.
+  /// @return  whether there are some
+  bool find_passed(double far);
   /// @param struck  what touches has collided already: what still approaches then is stopped by rows
   void find_roles(double h, bool struck);
   void forget_rebounds() { rebounds_.clear(); }
@@ -94,6 +106,17 @@ class Contacts {
     double strike;  // what touches and approaches faster collides at once
   };
   Speeds speeds_of(const contact::Law& law, double size, double h) const;
+  /// A body as a speculative look found it.
+  struct Seen {
+    Pose pose;
+    Vector3 velocity, spin;  // m/s, at the pose's location, and rad/s
+
+    Vector3 velocity_at(const Vector3& point) const { return velocity + spin.cross(point - pose.location); }
+  };
+  void note_seen(bool speculative);
+  Seen seen(BodyIndex body) const;
+  bool deflected(const std::array<Seen, 2>& before, const NearPair& pair, double h) const;
+  bool add_missed(std::size_t pair, const Manifold& manifold, const ContactPoint& point);
   double falling(const JointEntry& joint) const;
 
   State& state_;
@@ -103,8 +126,9 @@ class Contacts {
   std::pmr::vector<Role> roles_;        // of pairs
   std::pmr::vector<double> depths_;     // of pairs
   std::pmr::vector<Manifold> manifolds_;
-  double resting_ = 0;   // m/s
-  double looked_h_ = 0;  // s, of the sub-step that was looked at last
+  std::pmr::vector<std::array<Seen, 2>> seen_;  // of pairs, at a speculative look at trees
+  double resting_ = 0;                          // m/s
+  double looked_h_ = 0;                         // s, of the sub-step that was looked at last
   bool awaited_ = false;
   bool spent_ = false;
 };

@@ -106,23 +106,6 @@ void Rows::make_only(std::size_t bound) {
   add_limit(bound);
 }
 
-namespace {
-
-bool is_round(const Shape& shape) { return shape.kind() == ShapeKind::Sphere || shape.round().is_round(); }
-
-/// The point of a body that stood at `from` with `rotation`, once it is at `now`. A body that is round about an axis
-/// rotates about it without taking its point along, so that only the shortest rotation of the axis counts; a ball has
-/// no axis to rotate.
-Vector3 carried_by(const Shape& shape, const Vector3& point, const Vector3& on, const Vector3& from,
-                   const Quaternion& rotation, const Pose& now) {
-  if (!is_round(shape)) return now.location + now.orientation * on;
-  if (shape.kind() == ShapeKind::Sphere) return point + now.location - from;
-  const Vector3 axis = Vector3::Unit(shape.round().axis);
-  return now.location + Quaternion::FromTwoVectors(rotation * axis, now.orientation * axis) * (point - from);
-}
-
-}  // namespace
-
 /// Whether a side's body carries the point where it touches: a round one does, and what touches no round one.
 bool Rows::carries(const NearPair& pair, bool first) const {
   const BodyIndex body = first ? pair.a : pair.b, other = first ? pair.b : pair.a;
@@ -134,8 +117,7 @@ bool Rows::carries(const NearPair& pair, bool first) const {
 Vector3 Rows::taken(const Touch& touch, const Vector3& point, bool first) const {
   const NearPair& pair = contacts_.pair_of(touch);
   const BodyIndex body = first ? pair.a : pair.b;
-  return carried_by(state_.shape(body), point, first ? touch.on_a : touch.on_b, first ? touch.from_a : touch.from_b,
-                    first ? touch.orientation_a : touch.orientation_b, state_.pose_of(body));
+  return carried_by(state_.shape(body), point, first ? touch.from_a : touch.from_b, state_.pose_of(body));
 }
 
 /// Where two bodies touch once they have moved: a round body's point goes with its centre, a corner's with its body;

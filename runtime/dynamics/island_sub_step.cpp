@@ -41,14 +41,7 @@ void SubStep::leave_to_rows() {
 /// @return  whether there are some
 bool SubStep::catch_bounds(double time, double h) {
   if (!contacts_.spent()) return false;
-  bool any = false;
-  for (Bound& bound : contacts_.bounds()) {
-    if (bound.rests || bound.held) continue;
-    const double gap =
-        bound.sign * (state_.core.read_position(state_.core.joints[bound.joint])[bound.axis] - bound.limit);
-    bound.rests = gap < std::min(bound.gap, 0.0) - kLimitSkin * bound.unit;
-    any = any || bound.rests;
-  }
+  const bool any = contacts_.find_passed(kLimitSkin);
   if (!any || books_.kept()) return any;
   state_.restore();
   books_.open();
@@ -104,15 +97,43 @@ void SubStep::advance(double time, double h) {
   if (loops || prediction_.limits_swing()) {
     state_.restore();
     prediction_.learn(h, loops);
-    move(time, h);
-    check_prediction(time, h);
-    solver_.solve_after(h);
+    solve(time, h);
   }
-  // A force that is constant over the step moves by half of what its change of velocity would.
+  move_by_rows(h);
+  // What the rows stop may come down, or meet a limit, elsewhere.
+  if (missed(h)) {
+    state_.restore();
+    solve(time, h);
+    move_by_rows(h);
+  }
+}
+
+/// Smooth motion of h seconds from the state that was noted, and the rows' solution.
+void SubStep::solve(double time, double h) {
+  move(time, h);
+  check_prediction(time, h);
+  solver_.solve_after(h);
+}
+
+/// What the rows gave in h seconds moves the island. A force that is constant over the step moves by half of what its
+/// change of velocity would.
+void SubStep::move_by_rows(double h) {
   smooth_.correct_works(h);
   state_.store_velocities();
   solver_.move_by_impulses(0.5 * h);
   positions_.put_back(h, positions_.hold_off(h));
+}
+
+/// After the rows of h seconds: contacts and limits of articulated bodies that no row was made for, and that they have
+/// passed. They become rows. Where impacts are located, they end the sub-step; where work is used up, there is no
+/// second one.
+/// @return  whether there are some
+bool SubStep::missed(double h) {
+  constexpr double kPassed = 0.01;  // rad, or the world's length unit
+  if (state_.trees.empty() || state_.accuracy.locate_impacts || state_.finished) return false;
+  state_.place_links();
+  const bool points = contacts_.find_missed(h), bounds = contacts_.find_passed(kPassed);
+  return points || bounds;
 }
 
 /// After smooth motion of h seconds: its books, and those of a motion without what was predicted if that misled it.

@@ -41,8 +41,11 @@ class SubStep {
  private:
   void leave_to_rows();
   bool move(double time, double h);
+  void solve(double time, double h);
   void check_prediction(double time, double h);
   bool catch_bounds(double time, double h);
+  void move_by_rows(double h);
+  bool missed(double h);
 
   bool by_rows_ = false;  // the stages of this sub-step do not hold the loops: rows do
 
