@@ -193,7 +193,27 @@ void Guard::give_in(const Trouble& trouble, bool undone, double start, double h)
   const bool lies = trouble.reason == GuardReason::NoSolution && state_.still();
   if (rest || lies) put_to_rest(Momenta::Keep, back ? 0 : h);
   if (rest && back) momentum_.coast(h);
+  if (watch_.not_finite() != kNoBody) stand_still();
   state_.intervene(trouble, rest ? GuardAction::Rested : GuardAction::Reported, start);
+}
+
+/// Where even the motion of the whole has no finite numbers, as under a gravity of 1e200, nothing moves at all.
+void Guard::stand_still() {
+  balance_.back_to_start();
+  state_.place_links();
+  double lost = 0;
+  for (Free& one : state_.loose_bodies()) {
+    lost += one.now.kinetic();
+    one.now.velocity = one.now.spin = Vector3::Zero();
+  }
+  for (Clustered& one : state_.clusters) {
+    double kinetic = 0;
+    stored_energy(state_, one, kinetic);
+    lost += kinetic;
+    for (Tree* tree : one.entry->system->trees()) tree->state.v.setZero();
+  }
+  if (std::isfinite(lost)) state_.result.ledger.residual -= lost;
+  state_.placed = state_.booked = false;
 }
 
 /// The next step does not begin from the forces of contacts and limits that failed: else it would be the same step.

@@ -32,6 +32,7 @@ class Guard {
   void undo_rise(Rung rung);
   bool goes_back(const Trouble& trouble, bool undone) const;
   void give_in(const Trouble& trouble, bool undone, double start, double h);
+  void stand_still();
   void forget_forces();
 
   State& state_;

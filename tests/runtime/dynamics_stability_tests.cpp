@@ -278,6 +278,35 @@ TEST(DynamicsStability, OnFastAStackOfBoxesStaysFinite) {
   }
 }
 
+TEST(DynamicsStability, WhatHasNoFiniteMotionStandsStill) {
+  for (const Rung rung : {Rung::Fast, Rung::Balanced, Rung::Precise, Rung::Reference, Rung::Conserving})
+    for (const GuardMode guard : {GuardMode::Report, GuardMode::Refine, GuardMode::Rest})
+      for (const double pull : {1e100, 1e200, 1e300})
+        for (const int links : {1, 2, 3}) {
+          Hard s(rung);
+          s.mechanics().set_guard(guard);
+          s.mechanics().set_gravity(Vector3(0, -pull, 0));
+          std::vector<ObjectId> bodies;
+          for (int i = 0; i < links; ++i) {
+            bodies.push_back(s.rigid(Shape::box(Vector3(1, 0.2, 0.2)), Vector3(1.2 * i, 0, 0)));
+            if (i == 0) continue;
+            JointDescription is;
+            is.kind = i == 1 ? JointKind::Revolute : JointKind::Ball;
+            is.parent = s.index(bodies[static_cast<std::size_t>(i - 1)]);
+            is.child = s.index(bodies.back());
+            is.normal = Vector3::UnitZ();
+            is.parent_point = Vector3(0.6, 0, 0);
+            is.child_point = Vector3(-0.6, 0, 0);
+            s.mechanics().link(is, bodies.back());
+          }
+          for (int step = 0; step < 3; ++step) s.world.step();
+          for (const ObjectId body : bodies) {
+            EXPECT_TRUE(s.at(body).allFinite()) << links << " links under " << pull;
+            EXPECT_TRUE(s.velocity(body).allFinite()) << links << " links under " << pull;
+          }
+        }
+}
+
 TEST(DynamicsStability, OnFastTwentyBoxesStandWhereSmallIslandsAreSolvedDirectly) {
   Hard s(Rung::Fast);
   Accuracy accuracy = accuracy_of(Rung::Fast);
