@@ -210,6 +210,7 @@ void Guard::stand_still() {
     double kinetic = 0;
     stored_energy(state_, one, kinetic);
     lost += kinetic;
+    if (one.alone() && std::isfinite(kinetic)) one.entry->system->trees().front()->ledger.residual -= kinetic;
     for (Tree* tree : one.entry->system->trees()) tree->state.v.setZero();
   }
   if (std::isfinite(lost)) state_.result.ledger.residual -= lost;

@@ -114,10 +114,10 @@ bool Rows::carries(const NearPair& pair, bool first) const {
 }
 
 /// Where one side's body has taken the point that was at `point` as the sub-step began.
-Vector3 Rows::taken(const Touch& touch, const Vector3& point, bool first) const {
+Vector3 Rows::taken(const Touch& touch, bool first) const {
   const NearPair& pair = contacts_.pair_of(touch);
   const BodyIndex body = first ? pair.a : pair.b;
-  return carried_by(state_.shape(body), point, first ? touch.from_a : touch.from_b, state_.pose_of(body));
+  return carried_by(state_.shape(body), touch.start, first ? touch.from_a : touch.from_b, state_.pose_of(body));
 }
 
 /// Where two bodies touch once they have moved: a round body's point goes with its centre, a corner's with its body;
@@ -125,8 +125,8 @@ Vector3 Rows::taken(const Touch& touch, const Vector3& point, bool first) const 
 Vector3 Rows::carried(const Touch& touch) const {
   const NearPair& pair = contacts_.pair_of(touch);
   const bool by_a = carries(pair, true), by_b = carries(pair, false);
-  if (by_a && by_b) return 0.5 * (taken(touch, touch.start, true) + taken(touch, touch.start, false));
-  if (by_a || by_b) return taken(touch, touch.start, by_a);
+  if (by_a && by_b) return 0.5 * (taken(touch, true) + taken(touch, false));
+  if (by_a || by_b) return taken(touch, by_a);
   return touch.start;
 }
 
@@ -135,7 +135,7 @@ Vector3 Rows::carried(const Touch& touch) const {
 Vector3 Rows::arm_change(const Touch& touch, bool first, const Free& body, double h) const {
   constexpr double kSlow = 0.1;  // of g h^2
   if (!carries(contacts_.pair_of(touch), first)) return Vector3::Zero();
-  const Vector3 change = taken(touch, touch.start, first) - touch.start - (body.now.center - body.before.center);
+  const Vector3 change = taken(touch, first) - touch.start - (body.now.center - body.before.center);
   const double least = kSlow * h * h * state_.core.settings.gravity.norm();
   return change.squaredNorm() > least * least ? change : Vector3(Vector3::Zero());
 }
@@ -144,8 +144,8 @@ Vector3 Rows::arm_change(const Touch& touch, bool first, const Free& body, doubl
 double Rows::gap_now(const Touch& touch) const {
   const NearPair& pair = contacts_.pair_of(touch);
   const bool a_moves = state_.slot_of(pair.a).mover >= 0, b_moves = state_.slot_of(pair.b).mover >= 0;
-  const Vector3 a = a_moves ? taken(touch, touch.start, true) : touch.start;
-  const Vector3 b = b_moves ? taken(touch, touch.start, false) : touch.start;
+  const Vector3 a = a_moves ? taken(touch, true) : touch.start;
+  const Vector3 b = b_moves ? taken(touch, false) : touch.start;
   return touch.gap + touch.normal.dot(a - b);
 }
 

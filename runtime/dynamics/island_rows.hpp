@@ -113,7 +113,7 @@ class Rows {
   double* numbers_of(const Tree& tree, int count);
   void respond(Tree& tree, const double* j, double* r) const;
   bool carries(const NearPair& pair, bool first) const;
-  Vector3 taken(const Touch& touch, const Vector3& point, bool first) const;
+  Vector3 taken(const Touch& touch, bool first) const;
   Vector3 carried(const Touch& touch) const;
   contact::ScalarRow tree_row(const Tree& tree, const double* j, const double* r) const;
   void add_touch(Touch& touch);

@@ -103,6 +103,7 @@ void SubStep::advance(double time, double h) {
   // What the rows stop may come down, or meet a limit, elsewhere.
   if (missed(h)) {
     state_.restore();
+    if (!books_.kept()) books_.open();
     solve(time, h);
     move_by_rows(h);
   }
@@ -125,8 +126,8 @@ void SubStep::move_by_rows(double h) {
 }
 
 /// After the rows of h seconds: contacts and limits of articulated bodies that no row was made for, and that they have
-/// passed. They become rows. Where impacts are located, they end the sub-step; where work is used up, there is no
-/// second one.
+/// passed. They become rows. Where impacts are located, what is passed ends the sub-step instead; where work is used
+/// up, no sub-step is repeated.
 /// @return  whether there are some
 bool SubStep::missed(double h) {
   constexpr double kPassed = 0.01;  // rad, or the world's length unit
