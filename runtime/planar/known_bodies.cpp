@@ -246,7 +246,8 @@ void Planar::Core::push_shapes() {
     FlatBody& flat = slots[i];
     if (flat.body == kNoBody) continue;
     const Shape* shape = bodies->collision_shape(flat.body).get();
-    if (flat.shape.get() != shape || (scaled && flat.scale != shape->scale())) {
+    const bool weighs_other = !flat.fixed && !(bodies->mass_properties(flat.body) == flat.mass);
+    if (flat.shape.get() != shape || weighs_other || (scaled && flat.scale != shape->scale())) {
       const double before = flat.fixed ? 0 : kinetic_of(flat);
       wake_touching(flat);
       fit(flat);

@@ -108,6 +108,28 @@ TEST(PlanarState, WhatIsSetBetweenAnImageAndTheNextStepIsAChangeInBothWorlds) {
     }
 }
 
+TEST(PlanarState, ABodyThatIsGivenItsShapeAgainHasItsNewDensity) {
+  Flat live, other;
+  const std::shared_ptr<Shape> shape = Shape::box({1, 1, 1});
+  const ObjectId box = live.rigid(shape, 0, 100);
+  other.rigid(Shape::box({1, 1, 1}), 0, 100);
+  live.world.step();
+  const double before = live.velocity(box).x();
+  shape->set_density(3);
+  live.bodies().set_collision_shape(live.index(box), shape);
+  live.bodies().set_force(live.index(box), {6, 0, 0});
+  const auto image = live.world.save(1);
+  other.world.load(image.data(), image.size(), 1);
+  double seconds = 0;
+  for (int i = 0; i < 60; ++i) {
+    live.world.step();
+    other.world.step();
+    seconds += live.world.iteration_step();
+    ASSERT_EQ(live.world.hash(), other.world.hash()) << "step " << i;
+  }
+  EXPECT_NEAR(live.velocity(box).x() - before, 6 / 3.0 * seconds, 1e-5);
+}
+
 TEST(PlanarState, AShapeThatCannotBeIsRefusedInEachStepAndAnImageOfItGoesOnAlikeOnceItCan) {
   struct Wrong {
     ObjectId Resting::*body;
