@@ -101,6 +101,7 @@ void Dynamics::Core::touch_tree(BodyIndex body) {
 JointIndex Dynamics::link(const JointDescription& description, ObjectId owner) {
   Core& c = core();
   check(description, *c.bodies);
+  check_reach(description);
   c.sync_changes();
   reserve_free(c.joints, c.free_joints);
   JointEntry made;
@@ -165,6 +166,7 @@ void Dynamics::relink(JointIndex joint, const JointDescription& description) {
   Core& c = core();
   c.at(joint);
   check(description, *c.bodies);
+  check_reach(description);
   c.sync_changes();
   c.detach(joint);
   JointEntry changed = c.joints[joint];

@@ -70,12 +70,6 @@ void check(const JointDescription& is, const Bodies& bodies) {
   if (is.parent == is.child) refuse(fmt::format("{} joint: parent and child are the same body", kind));
   need_finite(is.parent_point, fmt::format("{} joint: the parent's point", kind));
   need_finite(is.child_point, fmt::format("{} joint: the child's point", kind));
-  // Moments of inertia about a joint have products of such lengths: farther away they are no longer finite.
-  constexpr double kFarthest = 1e15;  // m
-  for (const auto& [point, owner] : {std::pair{&is.parent_point, "parent"}, {&is.child_point, "child"}})
-    if (!(point->cwiseAbs().maxCoeff() <= kFarthest))
-      refuse(fmt::format("{} joint: the {}'s point is ({}, {}, {}), which is farther away than {:g} m", kind, owner,
-                         point->x(), point->y(), point->z(), kFarthest));
   const double norm = is.relative_rotation.norm();
   if (!std::isfinite(norm) || !(norm > 0))
     refuse(fmt::format("{} joint: the relative rotation must be a finite quaternion that is not zero", kind));
@@ -86,6 +80,14 @@ void check(const JointDescription& is, const Bodies& bodies) {
   if (!(length > 0) || !std::isfinite(length))
     refuse(fmt::format("{} joint: the normal ({}, {}, {}) has no direction", kind, is.normal.x(), is.normal.y(),
                        is.normal.z()));
+}
+
+void check_reach(const JointDescription& is) {
+  constexpr double kFarthest = 1e15;  // m
+  for (const auto& [point, owner] : {std::pair{&is.parent_point, "parent"}, {&is.child_point, "child"}})
+    if (!(point->cwiseAbs().maxCoeff() <= kFarthest))
+      refuse(fmt::format("{} joint: the {}'s point is ({}, {}, {}), which is farther away than {:g} m",
+                         name_of(is.kind), owner, point->x(), point->y(), point->z(), kFarthest));
 }
 
 void check(const JointDrive& drive, JointKind kind) {

@@ -72,6 +72,10 @@ struct JointDrive {
 /// Error{Argument} naming the property: a child that is not a body or is Stationary, parent and child the same, a
 /// point, rotation or normal that is not finite or has no direction.
 void check(const JointDescription& is, const Bodies& bodies);
+/// Error{Argument} if a point is farther away than 1e15 m: moments of inertia about a joint have products of such
+/// lengths, which farther away are no longer finite. Asked where bodies are linked; the point of a joint to the world
+/// then goes wherever its child is moved.
+void check_reach(const JointDescription& is);
 /// Error{Argument} naming the number that is not finite, negative where it must not be, or a low limit above a high
 /// one.
 void check(const JointDrive& drive, JointKind kind);

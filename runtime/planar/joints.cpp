@@ -107,6 +107,7 @@ void attach(Planar::Core& core, JointIndex joint) {
 JointIndex Planar::link(const JointDescription& description, ObjectId owner) {
   Core& c = *core_;
   c.check_flat(description);
+  check_reach(description);
   take_changes();
   reserve_free(c.joints, c.free_joints);
   FlatJoint made;
@@ -163,6 +164,7 @@ void Planar::relink(JointIndex joint, const JointDescription& description) {
   Core& c = *core_;
   c.at(joint);
   c.check_flat(description);
+  check_reach(description);
   take_changes();
   c.detach(joint);
   FlatJoint& changed = c.joints[joint];

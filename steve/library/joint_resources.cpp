@@ -13,14 +13,13 @@ Enum get_enum(ByteReader& in, int end) {
   return static_cast<Enum>(number);
 }
 
-/// What no program can give a joint comes from a damaged archive or image.
+/// What no program can give a joint comes from a damaged archive or image. A point may be anywhere: that of a joint to
+/// the world goes where its child is moved, and only linking again asks how far that is.
 void need_linkable(const JointResource& joint) {
   const JointDescription& is = joint.is;
-  constexpr double kFarthest = 1e15;  // m, of a link point: as where joints are linked
-  bool good = joint.position.allFinite() && joint.velocity.allFinite() && is.normal.allFinite() &&
-              is.relative_rotation.coeffs().allFinite() && is.relative_rotation.norm() > 0;
-  for (const Vector3* point : {&is.parent_point, &is.child_point})
-    good = good && point->allFinite() && point->cwiseAbs().maxCoeff() <= kFarthest;
+  bool good = is.relative_rotation.coeffs().allFinite() && is.relative_rotation.norm() > 0;
+  for (const Vector3* vector : {&is.parent_point, &is.child_point, &is.normal, &joint.position, &joint.velocity})
+    good = good && vector->allFinite();
   if (!good || (is.kind != JointKind::Fixed && !(is.normal.stableNorm() > 0))) ByteReader::fail();
   try {
     check(joint.drive, is.kind);

@@ -109,6 +109,31 @@ TEST_P(MechanicsTest, RefusesBadSettingsInTheSameWordsAndKeepsTheOld) {
   EXPECT_EQ(m.gravity(), Vector3(0, -9.81, 0));
 }
 
+TEST_P(MechanicsTest, AJointIsLinkedNearbyAndGoesWhereverItsChildIsMoved) {
+  Mechanics& m = mechanics();
+  JointDescription is;
+  is.child = cube(0);
+  is.normal = {0, 0, 1};
+  is.child_point = {1, 0, 0};
+  is.parent_point = {2e18, 0, 0};
+  EXPECT_EQ(refusal([&] { m.link(is, ObjectId{}); }),
+            "revolute joint: the parent's point is (2e+18, 0, 0), which is farther away than 1e+15 m");
+  is.parent_point = {1, 0, 0};
+  const JointIndex hinge = m.link(is, ObjectId{});
+  scene.world.bodies().set_location(is.child, {0, 1e20, 0});
+  scene.world.step();
+  EXPECT_GT(m.joint(hinge).parent_point.y(), 1e19);
+  const auto image = scene.world.save(1);
+  Scene other;
+  other.script.recording = false;
+  other.world.load(image.data(), image.size(), 1);
+  for (int i = 0; i < 10; ++i) {
+    scene.world.step();
+    other.world.step();
+    ASSERT_EQ(other.world.hash(), scene.world.hash()) << "step " << i;
+  }
+}
+
 TEST_P(MechanicsTest, NamesJointsAndSpringsThatAreNotThere) {
   Mechanics& m = mechanics();
   for (int made = 0; made < 2; ++made) {  // before and after there has been one
