@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "runtime/base/error.hpp"
@@ -223,13 +224,17 @@ void Planar::Core::push_velocity(FlatBody& flat) {
   push_velocity(flat, bodies->velocity(flat.body), bodies->rotational_velocity(flat.body).z());
 }
 
-/// The velocity of its origin, m/s and rad/s.
+/// The velocity of its origin, m/s and rad/s; as fast as single precision can tell, which the guard then stops.
 void Planar::Core::push_velocity(FlatBody& flat, const Vector3& velocity, double spin) {
   if (flat.fixed) return;
+  const auto nearest = [](double x) {
+    constexpr double kFastest = std::numeric_limits<float>::max();
+    return static_cast<float>(std::clamp(x, -kFastest, kFastest));
+  };
   const Vector3 arm = bodies->orientation(flat.body) * flat.mass.center_of_mass;
-  const Vector3 center = velocity + spin * Vector3(-arm.y(), arm.x(), 0);
-  flat.b2->SetLinearVelocity(to_b2(center));
-  flat.b2->SetAngularVelocity(static_cast<float>(spin));
+  const Vector3 center = (velocity + spin * Vector3(-arm.y(), arm.x(), 0)) / settings.unit;
+  flat.b2->SetLinearVelocity(b2Vec2(nearest(center.x()), nearest(center.y())));
+  flat.b2->SetAngularVelocity(nearest(spin));
 }
 
 /// The properties of any body that may change: its shape, its material, and where it is if it is fixed.
