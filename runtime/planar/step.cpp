@@ -372,8 +372,10 @@ void Planar::Core::step(double dt, bool bounce) {
   end_ledger(dt);
   constexpr double kTooShort = 0.1;  // of a sub-step: single precision tells nothing of what changed in it
   for (FlatJoint& joint : joints)
-    if (joint.used && joint.drive.limit_restitution > 0 && dt >= kTooShort * step_length && steps(joint))
-      joint.bend = (joint_rate(joint) - joint.rate) / dt;
+    if (joint.used && joint.drive.limit_restitution > 0 && dt >= kTooShort * step_length && steps(joint)) {
+      const double bend = (joint_rate(joint) - joint.rate) / dt;
+      joint.bend = std::isfinite(bend) ? bend : 0;  // the guard is about to stop what has no numbers
+    }
   last_step = static_cast<float>(dt);
   ++sub_step;
   ++counters.sub_steps;
