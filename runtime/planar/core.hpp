@@ -189,7 +189,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   void push_velocity(FlatBody& flat, const Vector3& velocity, double spin);
   void write_back(FlatBody& flat);
   void write_back_all();
-  static bool is_finite(const FlatBody& flat);
+  static bool is_finite(const b2Body& body);
   void refresh_rules();
 
   // joints.cpp

@@ -337,9 +337,9 @@ void Planar::Core::write_back(FlatBody& flat) {
   flat.spin = {0, 0, spin};
 }
 
-bool Planar::Core::is_finite(const FlatBody& flat) {
-  const b2Vec2 at = flat.b2->GetPosition(), v = flat.b2->GetLinearVelocity();
-  return std::isfinite(at.x + at.y + v.x + v.y + flat.b2->GetAngle() + flat.b2->GetAngularVelocity());
+bool Planar::Core::is_finite(const b2Body& body) {
+  const b2Vec2 at = body.GetPosition(), v = body.GetLinearVelocity();
+  return std::isfinite(at.x + at.y + v.x + v.y + body.GetAngle() + body.GetAngularVelocity());
 }
 
 void Planar::Core::write_back_all() {
@@ -348,7 +348,7 @@ void Planar::Core::write_back_all() {
     if (flat.body == kNoBody || flat.fixed) continue;
     // What fell asleep in this step is written once more.
     if (!flat.b2->IsAwake() && flat.velocity == Vector3::Zero() && flat.spin == Vector3::Zero()) continue;
-    if (!is_finite(flat)) continue;  // the guard puts it where it was
+    if (!is_finite(*flat.b2)) continue;  // the guard puts it where it was
     if (!flat.jointed && std::abs(flat.b2->GetAngle()) > kMostAngle)
       flat.b2->SetTransform(flat.b2->GetPosition(), std::remainder(flat.b2->GetAngle(), 2 * b2_pi));
     write_back(flat);

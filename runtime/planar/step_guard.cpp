@@ -29,6 +29,21 @@ void Planar::Core::forget_impulses(const FlatBody& flat) {
       set_warm(joint, {});
 }
 
+namespace {
+
+void hold_at(b2Body& b, const b2Vec2& position, float angle) {
+  b.SetTransform(position, angle);
+  if (b.GetType() == b2_staticBody) {
+    // Its velocities cannot be set; a change of type makes them zero.
+    b.SetType(b2_kinematicBody);
+    b.SetType(b2_staticBody);
+  }
+  b.SetLinearVelocity(b2Vec2(0, 0));
+  b.SetAngularVelocity(0);
+}
+
+}  // namespace
+
 void Planar::Core::rest(FlatBody& flat) {
   // Where it was when its numbers were numbers.
   bodies->set_motion(flat.body, flat.location, flat.orientation, Vector3::Zero(), Vector3::Zero());
@@ -38,14 +53,7 @@ void Planar::Core::rest(FlatBody& flat) {
 
 /// In Box2D, where the arrays have it.
 void Planar::Core::hold_still(FlatBody& flat) {
-  flat.b2->SetTransform(position_of(flat.body), static_cast<float>(angle_of(flat.orientation)));
-  if (flat.b2->GetType() == b2_staticBody) {
-    // Its velocities cannot be set; a change of type makes them zero.
-    flat.b2->SetType(b2_kinematicBody);
-    flat.b2->SetType(b2_staticBody);
-  }
-  flat.b2->SetLinearVelocity(b2Vec2(0, 0));
-  flat.b2->SetAngularVelocity(0);
+  hold_at(*flat.b2, position_of(flat.body), static_cast<float>(angle_of(flat.orientation)));
   forget_impulses(flat);
 }
 
@@ -137,15 +145,17 @@ void Planar::Core::watch(double moment, bool wrong) {
   BodyIndex lost = kNoBody;
   for (FlatBody& flat : slots) {
     if (flat.body == kNoBody || flat.fixed || !flat.b2->IsAwake()) continue;
-    if (is_finite(flat)) continue;
+    if (is_finite(*flat.b2)) continue;
     intervene(flat.body, GuardReason::NotFinite, 0, moment, GuardAction::Rested);
     rest(flat);
     lost = flat.body;
   }
-  // A number that is not finite spreads to all that such a body touches.
-  if (lost != kNoBody)
+  // A number that is not finite spreads to all that such a body touches, and to what its joints hang on.
+  if (lost != kNoBody) {
     for (FlatBody& flat : slots)
-      if (flat.body != kNoBody && flat.fixed && !is_finite(flat)) hold_still(flat);
+      if (flat.body != kNoBody && flat.fixed && !is_finite(*flat.b2)) hold_still(flat);
+    if (!is_finite(*ground)) hold_at(*ground, b2Vec2(0, 0), 0);
+  }
   if (lost != kNoBody && settings.guard == GuardMode::Off)
     throw Error(
         ErrorCode::Numeric,

@@ -94,6 +94,22 @@ TEST(PlanarGuard, ABodyWhoseNumbersAreNoneRestsWhereItWas) {
   }
 }
 
+TEST(PlanarGuard, AJointToTheWorldHoldsAgainAfterNumbersThatWereNone) {
+  Guarded flat(GuardMode::Rest);
+  const ObjectId bob = flat.ball(0.5, 0, 0);
+  const JointIndex hinge = flat.hinge({}, bob, {0, 1, 0}, {0, 1, 0});
+  flat.bodies().set_force(flat.index(bob), {1e300, 0, 0});
+  flat.watch(2);
+  EXPECT_GT(flat.count(GuardReason::NotFinite, GuardAction::Rested), 0);
+  flat.bodies().set_force(flat.index(bob), {0, 0, 0});
+  flat.all.clear();
+  flat.set_velocity(bob, {1, 0, 0});
+  flat.watch(60);
+  EXPECT_TRUE(flat.all.empty());
+  EXPECT_NEAR((flat.at(bob) - Vector3(0, 1, 0)).norm(), 1, 0.01);
+  EXPECT_GT(std::abs(flat.physics().position(hinge)[0]), 0.05);
+}
+
 TEST(PlanarGuard, AVelocityBeyondSinglePrecisionIsStoppedInARestoredWorldAlike) {
   Guarded flat(GuardMode::Rest);
   const ObjectId ball = flat.ball(0.5, 1, 2);
