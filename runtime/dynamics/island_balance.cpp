@@ -57,6 +57,7 @@ double losses(const Energy& now, const Energy& then) {
 double Balance::open() {
   handled_ = 0;
   state_.booked = false;
+  state_.read_springs();
   opened_ = measure(true);
   return opened_.total();
 }

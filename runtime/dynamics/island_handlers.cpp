@@ -3,7 +3,6 @@
 
 #include "runtime/dynamics/island_energy.hpp"
 #include "runtime/dynamics/network_motion.hpp"
-#include "runtime/dynamics/spring_network.hpp"
 
 namespace breve::island {
 
@@ -39,8 +38,7 @@ bool Handlers::call(MechanicsClient& client, NearPair& pair, double moment, doub
     unfinished_ = left;
     return false;
   }
-  for (const Clustered& one : state_.clusters)
-    if (one.entry->network) one.entry->network->begin(state_.core);
+  state_.read_springs();
   balance_.add_handled(held_energy(state_) - held);
   for (Free& one : state_.loose_bodies()) one.now = read_free(*state_.core.bodies, one.body);
   state_.place_links();

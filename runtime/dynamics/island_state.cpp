@@ -5,6 +5,7 @@
 
 #include "runtime/base/rotation_vector.hpp"
 #include "runtime/dynamics/network_motion.hpp"
+#include "runtime/dynamics/spring_network.hpp"
 
 namespace breve::island {
 
@@ -112,6 +113,12 @@ std::size_t State::networks_end() const {
 bool State::begin_networks(double h) {
   return std::all_of(networks.begin(), networks.end(),
                      [&](const NetworkCluster& one) { return one.entry->points->begin(core, accuracy.rung, h); });
+}
+
+/// Those of clusters, as scripts have set them: their energy is asked before they move.
+void State::read_springs() {
+  for (const Clustered& one : clusters)
+    if (one.entry->network) one.entry->network->begin(core);
 }
 
 void State::add_cluster(ClusterEntry& cluster) {

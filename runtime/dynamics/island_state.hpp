@@ -93,6 +93,7 @@ struct State {
   /// Loads and integrators for steps of h seconds.
   void begin(MechanicsClient* client, double h);
   bool begin_networks(double h);
+  void read_springs();
   void use_accuracy(const Accuracy& other);
 
   // --- where bodies are

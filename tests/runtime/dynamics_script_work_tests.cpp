@@ -191,6 +191,30 @@ TEST_P(ScriptWork, OfASpringIsWhatItHoldsMore) {
   expect(0, 10);
 }
 
+TEST_P(ScriptWork, OfASpringThatIsSetWhileItPullsIsAllThatComesOfIt) {
+  const ObjectId a = s.rigid(1, Vector3::Zero()), b = s.rigid(1, Vector3(3, 0, 0));
+  SpringDescription is;
+  is.a = s.index(a), is.b = s.index(b);
+  is.point_a = Vector3(0.2, 0.3, 0), is.point_b = Vector3(-0.1, 0.2, 0);
+  is.length = 2;
+  is.strength = 10;
+  is.damping = 0;
+  const SpringIndex spring = physics().add_spring(is, a);
+  s.start();
+  const double residual = physics().energy().residual, held = work();
+  const double stretch = physics().spring_length(spring) - is.length;
+  is.strength = 20;
+  physics().set_spring(spring, is);
+  EXPECT_NEAR(work() - held, 0.5 * 10 * stretch * stretch, 1e-5);
+  const auto image = s.world.save(1);
+  s.run(0.01);
+  EXPECT_NEAR(physics().energy().residual, residual, 0.01 * (work() - held));
+  const std::uint64_t hash = s.world.hash();
+  s.world.load(image.data(), image.size(), 1);
+  s.run(0.01);
+  EXPECT_EQ(s.world.hash(), hash);
+}
+
 TEST_P(ScriptWork, OfAFreedJointIsWhatItsSpringHeld) {
   const ObjectId body = s.rigid(1, Vector3(1, 0, 0));
   const JointIndex joint = s.join(JointKind::Revolute, {}, body, Vector3(-1, 0, 0));
