@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "runtime/planar/core.hpp"
+#include "runtime/planar/doors.hpp"
 
 namespace breve {
 
@@ -89,6 +90,12 @@ void Planar::Core::make_b2(FlatJoint& joint, float reference) {
   else
     make(b2WeldJointDef());
   joints_made = true;
+  // Box2D would end them in its next step; until then impacts would be looked for in them.
+  for (b2ContactEdge* edge = child->GetContactList(); edge != nullptr;) {
+    b2ContactEdge* const next = edge->next;
+    if (edge->other == parent) end_contact(*b2, *edge->contact);
+    edge = next;
+  }
   joint.loose = false;
   put_drive(joint);
   child->SetAwake(true);

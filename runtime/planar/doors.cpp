@@ -173,6 +173,8 @@ b2Contact* swap_shapes(b2World& world, b2Contact* contact) {
   return add_contact(world, *b, child_b, *a, child_a);
 }
 
+void end_contact(b2World& world, b2Contact& contact) { manager_of(world).Destroy(&contact); }
+
 void set_touching(b2Contact& contact, const b2Manifold& manifold) {
   *contact.GetManifold() = manifold;
   flags(contact) |= touching_flag();

@@ -50,6 +50,9 @@ b2Contact* add_new_contact(b2World& world, b2Fixture& a, int child_a, b2Fixture&
 /// Makes a contact anew with its two shapes in the other order. Returns it; null if it may not be any more.
 b2Contact* swap_shapes(b2World& world, b2Contact* contact);
 
+/// Ends a contact, as a step does with one that is filtered.
+void end_contact(b2World& world, b2Contact& contact);
+
 /// Makes a new contact one that touches, as if a step had found it so.
 void set_touching(b2Contact& contact, const b2Manifold& manifold);
 

@@ -38,6 +38,29 @@ struct Limited : Flat {
   double spin(ObjectId id) { return bodies().rotational_velocity(index(id)).z(); }
 };
 
+TEST(PlanarJoints, WhatTouchedDoesNotMeetAnyMoreOnceAJointConnectsIt) {
+  for (const Rung rung : {Rung::Balanced, Rung::Precise}) {
+    Flat flat(rung), restored(rung);
+    flat.physics().set_gravity(Vector3::Zero());
+    const ObjectId a = flat.box(1, 1, 0, 0), b = flat.box(1, 1, 1.002, 0);
+    flat.set_velocity(a, {0.5, 0, 0});
+    flat.run(0.1);
+    flat.hinge(a, b, {0.5, 0.5, 0}, {-0.5, 0.5, 0});
+    flat.set_velocity(a, {0, 1, 0});
+    flat.set_velocity(b, {-3, -1, 0});
+    const auto image = flat.world.save(1);
+    restored.world.load(image.data(), image.size(), 1);
+    const double lost = flat.physics().energy().contact_loss;
+    for (int i = 0; i < 30; ++i) {
+      flat.world.step();
+      restored.world.step();
+      ASSERT_EQ(flat.world.hash(), restored.world.hash()) << name_of(rung) << " step " << i;
+    }
+    EXPECT_EQ(flat.physics().energy().friction_loss, 0);
+    EXPECT_GE(flat.physics().energy().contact_loss, lost);
+  }
+}
+
 TEST(PlanarStops, AHingeAndASliderRunBetweenElasticLimitsForEver) {
   for (const Rung rung : kRungs) {
     Limited flat(rung);
