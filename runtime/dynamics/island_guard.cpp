@@ -41,6 +41,7 @@ Accuracy finer_settings(const Accuracy& from, int attempt, double h) {
 void Guard::step(MechanicsClient* client, double start, double h) {
   const GuardMode mode = state_.core.settings.guard;
   const Accuracy asked = state_.accuracy;
+  state_.read_drives(h);
   watch_.follow_rotations(h);
   const Accuracy followed = state_.accuracy;
   Trouble trouble;

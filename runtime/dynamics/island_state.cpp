@@ -121,6 +121,13 @@ void State::read_springs() {
     if (one.entry->network) one.entry->network->begin(core);
 }
 
+/// What joints are set to, where it decides how long a sub-step may be before a step of h seconds begins.
+void State::read_drives(double h) {
+  for (const Clustered& one : clusters)
+    if (one.entry->system->can_be_finer())
+      for (const std::uint32_t index : one.entry->trees) core.set_loads(*core.trees[index], accuracy, h);
+}
+
 void State::add_cluster(ClusterEntry& cluster) {
   if (is_network(cluster)) return;
   clusters.push_back({&cluster, std::nullopt, 0, false, false, {}, 0, {}});

@@ -94,6 +94,7 @@ struct State {
   void begin(MechanicsClient* client, double h);
   bool begin_networks(double h);
   void read_springs();
+  void read_drives(double h);
   void use_accuracy(const Accuracy& other);
 
   // --- where bodies are
