@@ -23,9 +23,8 @@ struct Touch {
   Pose from_a, from_b;                                                 // of the bodies then
   Vector3 velocity_a = Vector3::Zero(), velocity_b = Vector3::Zero();  // of the bodies there, as the sub-step began
   double gap = 0;                                                      // m, at the start of the sub-step
-  double approach =
-      0;             // m/s, v_n when the sub-step began; unknown where a speculative look takes the point at any speed
-  bool far = false;  // touches only if the bodies rotate toward it, and says nothing of whether the pair rests
+  double approach = 0;  // m/s, v_n when the sub-step began; unknown where a look takes the point at any speed
+  bool far = false;     // touches only if the bodies rotate toward it, and says nothing of whether the pair rests
   Vector3 predicted = Vector3::Zero();  // N, world axes: a force that is taken to go on and acts inside the stages
 };
 

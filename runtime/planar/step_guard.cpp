@@ -31,6 +31,7 @@ void Planar::Core::forget_impulses(const FlatBody& flat) {
 
 namespace {
 
+/// At rest there, also where Box2D has made its numbers infinite.
 void hold_at(b2Body& b, const b2Vec2& position, float angle) {
   b.SetTransform(position, angle);
   if (b.GetType() == b2_staticBody) {

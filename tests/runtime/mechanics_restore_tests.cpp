@@ -2,7 +2,8 @@
 // world: a world that is restored from an image taken before a step goes on bit for bit as the saved one.
 #include <gtest/gtest.h>
 
-#include <functional>
+#include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 

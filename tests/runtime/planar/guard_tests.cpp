@@ -94,7 +94,7 @@ TEST(PlanarGuard, ABodyWhoseNumbersAreNoneRestsWhereItWas) {
   }
 }
 
-TEST(PlanarGuard, AJointToTheWorldHoldsAgainAfterNumbersThatWereNone) {
+TEST(PlanarGuard, AJointToTheWorldHoldsAgainAfterNumbersThatWereNotFinite) {
   Guarded flat(GuardMode::Rest);
   const ObjectId bob = flat.ball(0.5, 0, 0);
   const JointIndex hinge = flat.hinge({}, bob, {0, 1, 0}, {0, 1, 0});

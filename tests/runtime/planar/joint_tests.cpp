@@ -50,14 +50,12 @@ TEST(PlanarJoints, WhatTouchedDoesNotMeetAnyMoreOnceAJointConnectsIt) {
     flat.set_velocity(b, {-3, -1, 0});
     const auto image = flat.world.save(1);
     restored.world.load(image.data(), image.size(), 1);
-    const double lost = flat.physics().energy().contact_loss;
     for (int i = 0; i < 30; ++i) {
       flat.world.step();
       restored.world.step();
       ASSERT_EQ(flat.world.hash(), restored.world.hash()) << name_of(rung) << " step " << i;
     }
     EXPECT_EQ(flat.physics().energy().friction_loss, 0);
-    EXPECT_GE(flat.physics().energy().contact_loss, lost);
   }
 }
 
