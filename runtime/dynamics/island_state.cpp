@@ -161,7 +161,8 @@ bool State::loose(const Clustered& one) const {
   return true;
 }
 
-/// Contact springs may press on links of whatever is near: they act inside the stages.
+/// What contacts gave in the last step is none of this one's: a script may have moved links away from them. Contact
+/// springs may press on links of whatever is near: they act inside the stages.
 void State::begin(MechanicsClient* client, double h) {
   const bool pressed = has_contact_springs() && !pairs.empty();
   for (Clustered& one : clusters) {
@@ -169,6 +170,7 @@ void State::begin(MechanicsClient* client, double h) {
       Tree& tree = *core.trees[index];
       core.set_loads(tree, accuracy, h);
       for (TreeLink& link : tree.links) link.contact = {};
+      tree.outer_force = tree.outer_couple = Vector3::Zero();
       tree.limit_force.setZero();
       tree.held.clear();
     }

@@ -90,6 +90,28 @@ TEST(DynamicsContact, StackedBoxesStand) {
   }
 }
 
+TEST(DynamicsContact, AFloorPushesNoLongerWhatAScriptHasMovedAway) {
+  for (const Rung rung : {Rung::Fast, Rung::Balanced, Rung::Precise, Rung::Reference}) {
+    Ground s(rung);
+    const ObjectId a = s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3(0, 0.5, 0)),
+                   b = s.rigid(Shape::box(Vector3(1, 1, 1)), Vector3(1, 0.5, 0));
+    JointDescription is;
+    is.kind = JointKind::Fixed;
+    is.parent = s.index(a);
+    is.child = s.index(b);
+    is.parent_point = Vector3(0.5, 0, 0);
+    is.child_point = Vector3(-0.5, 0, 0);
+    s.mechanics().link(is, b);
+    s.run(1);
+    s.mechanics().move_assembly(s.index(a), Vector3(0, 10, 0), Quaternion::Identity());
+    const double before = s.velocity(a).y();
+    s.run(0.5);
+    const double fall = s.mechanics().gravity().y() * 0.5;
+    EXPECT_NEAR(s.velocity(a).y() - before, fall, 1e-9) << name_of(rung);
+    EXPECT_NEAR(s.at(a).y() - 10, 0.5 * 0.5 * fall, 1e-2) << name_of(rung);
+  }
+}
+
 TEST(DynamicsContact, JointLimitsGiveBackWhatTheyShould) {
   Physics s;
   const ObjectId rod = s.rigid(Shape::box(Vector3(0.1, 1, 0.1)), Vector3::Zero());
