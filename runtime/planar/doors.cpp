@@ -166,13 +166,6 @@ b2Contact* add_new_contact(b2World& world, b2Fixture& a, int child_a, b2Fixture&
   return contact;
 }
 
-b2Contact* swap_shapes(b2World& world, b2Contact* contact) {
-  b2Fixture *a = contact->GetFixtureA(), *b = contact->GetFixtureB();
-  const int child_a = contact->GetChildIndexA(), child_b = contact->GetChildIndexB();
-  manager_of(world).Destroy(contact);
-  return add_contact(world, *b, child_b, *a, child_a);
-}
-
 void end_contact(b2World& world, b2Contact& contact) { manager_of(world).Destroy(&contact); }
 
 void set_touching(b2Contact& contact, const b2Manifold& manifold) {

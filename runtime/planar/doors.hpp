@@ -47,9 +47,6 @@ b2Contact* add_contact(b2World& world, b2Fixture& a, int child_a, b2Fixture& b, 
 /// The same of two shapes that have none yet. Box2D would look for it among all contacts of b's body.
 b2Contact* add_new_contact(b2World& world, b2Fixture& a, int child_a, b2Fixture& b, int child_b);
 
-/// Makes a contact anew with its two shapes in the other order. Returns it; null if it may not be any more.
-b2Contact* swap_shapes(b2World& world, b2Contact* contact);
-
 /// Ends a contact, as a step does with one that is filtered.
 void end_contact(b2World& world, b2Contact& contact);
 

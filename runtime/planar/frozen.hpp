@@ -45,6 +45,7 @@ struct FrozenBody {
   bool placed = false;                     // since Box2D last paired
   Vector3 location = Vector3::Zero(), velocity = Vector3::Zero(), rotational_velocity = Vector3::Zero();
   Quaternion orientation{1, 0, 0, 0};
+  double force_x = 0, force_y = 0, torque = 0;  // set by scripts, N and N*m, as the last step knew them
 };
 /// The roomy box of a fixture, or of an edge of one that is a profile.
 struct FrozenBox {

@@ -167,15 +167,6 @@ void Planar::Core::order_contacts() {
   const std::size_t count = std::min(fresh_contacts, static_cast<std::size_t>(b2->GetContactCount()));
   for (b2Contact* contact = b2->GetContactList(); fresh.size() < count; contact = contact->GetNext())
     fresh.push_back({{}, contact});
-  for (Fresh& one : fresh) {
-    bool swapped = false;
-    key_of(*one.contact, swapped);
-    const auto type = [](const b2Fixture* fixture) { return fixture->GetType(); };
-    if (swapped && type(one.contact->GetFixtureA()) == type(one.contact->GetFixtureB()))
-      one.contact = swap_shapes(*b2, one.contact);
-  }
-  fresh.erase(std::remove_if(fresh.begin(), fresh.end(), [](const Fresh& one) { return !one.contact; }), fresh.end());
-  rethrow();
   fresh_contacts = 0;
   order_edges();
   take_first_contacts(*b2, fresh.size());

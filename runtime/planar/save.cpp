@@ -36,6 +36,7 @@ void each(const F& f, B& b) {
       f(b.vx), f(b.vy), f(b.spin), f(b.still);
   f(b.awake), f(b.kinematic), f(b.driven), f(b.pulled), f(b.placed);
   f(b.location), f(b.velocity), f(b.rotational_velocity), f(b.orientation);
+  f(b.force_x), f(b.force_y), f(b.torque);
 }
 template <class F, Is<FrozenBox> B>
 void each(const F& f, B& b) {
@@ -266,6 +267,9 @@ void Planar::Core::freeze(const FlatBody& flat, Frozen& made) const {
   one.velocity = flat.velocity;
   one.rotational_velocity = flat.spin;
   one.orientation = flat.orientation;
+  one.force_x = flat.force.x();
+  one.force_y = flat.force.y();
+  one.torque = flat.torque;
   made.bodies.push_back(one);
   for (const b2Fixture* fixture = b.GetFixtureList(); fixture; fixture = fixture->GetNext())
     for (int child = 0; child < fixture->GetShape()->GetChildCount(); ++child) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "runtime/planar/core.hpp"
+#include "runtime/planar/doors.hpp"
 
 namespace breve {
 
@@ -42,6 +43,14 @@ bool Planar::Core::ShouldCollide(b2Fixture* a, b2Fixture* b) {
   // A body that comes near another which steps at another time meets it when both have stepped.
   if (first.set_apart != second.set_apart && x->GetType() != b2_staticBody && y->GetType() != b2_staticBody) {
     first.missed = any_missed = true;
+    return false;
+  }
+  // In a step Box2D takes first which shape has the lower number in its tree; that depends on what there was before.
+  // Shapes of one type that collide have one part each, and of two types the type decides.
+  bool swapped = false;
+  if (stepping && a->GetType() == b->GetType()) key_of(*a, 0, *b, 0, swapped);
+  if (swapped) {
+    add_contact(*b2, *b, 0, *a, 0);
     return false;
   }
   try {
