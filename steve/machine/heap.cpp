@@ -315,17 +315,17 @@ void Heap::release_children(Container& cell) {
   if (cell.tag == Tag::List) {
     auto& list = static_cast<ListCell&>(cell);
     if (list.narrow() && list.holds_references()) {
-      for (std::uint32_t i = 0; i < list.size; ++i) release(list.store[list.first + i].ref);
+      for (std::uint32_t i = 0; i < list.size; ++i) release_of_garbage(list.store[list.first + i].ref);
     } else if (!list.narrow()) {
-      for (std::uint32_t i = 0; i < list.size; ++i) release(list.values()[list.first + i]);
+      for (std::uint32_t i = 0; i < list.size; ++i) release_of_garbage(list.values()[list.first + i]);
     }
     list.size = 0;
     return;
   }
   auto& hash = static_cast<HashCell&>(cell);
   for (std::uint32_t i = 0; i < hash.used; ++i) {
-    release(hash.entries[i].key);
-    release(hash.entries[i].value);
+    release_of_garbage(hash.entries[i].key);
+    release_of_garbage(hash.entries[i].value);
   }
   hash.used = hash.count_live = 0;
   if (hash.index != nullptr) std::memset(hash.index, 0, hash.index_capacity * sizeof(std::uint32_t));
@@ -408,6 +408,8 @@ bool Heap::reclaim_round() {
         cell->listed = false;
         if (cell->count == 0) {
           destroy(cell);
+        } else if (is_lonely(*cell)) {
+          release_children(*static_cast<Container*>(cell));  // it goes with the others of its kind, below
         } else if (is_container(cell->tag) && !cell->suspected && may_close_cycle(*static_cast<Container*>(cell))) {
           suspect(*static_cast<Container*>(cell));
         }

@@ -270,6 +270,19 @@ class Heap : public InMemory {
   }
   void destroy(Cell* cell);
   void release_children(Container& cell);
+  // A list or hash that only the table of suspects and no frame refers to; its elements can go before it does.
+  static bool is_lonely(const Cell& cell) {
+    return cell.suspected && cell.count == 1 && cell.mark == 0 && (cell.tag == Tag::List || cell.tag == Tag::Hash);
+  }
+  // What garbage refers to is looked at in the same round, also where it is held as a suspect: a chain of suspects, each
+  // of which holds the next one, would cost a look at all of them for each.
+  void release_of_garbage(Cell* cell) {
+    release(cell);
+    if (cell && !cell->listed && is_lonely(*cell)) enlist(cell);
+  }
+  void release_of_garbage(const Value& value) {
+    if (value.is_reference()) release_of_garbage(value.ref);
+  }
   void free_arrays(Container& cell);
   bool reclaim_round();  // true if a destroy method may have run
   void reclaim_all();
