@@ -194,6 +194,8 @@ struct Ranged {
       : lowest(size, low, machine.heap().memory()), highest(size, high, machine.heap().memory()) {}
   learn::Box box() const { return {lowest, highest}; }
   std::pmr::vector<double> read(Machine& machine, const ListCell& list) const {
+    constexpr std::uint64_t kOfVariation = 2;  // iterations
+    machine.charge(kOfVariation);
     machine.charge_for(list.size);
     std::pmr::vector<double> numbers(lowest.size(), machine.heap().memory());
     read_numbers(list, numbers.size(), numbers.data(), "variation: the genes");

@@ -17,9 +17,9 @@ inline Image& image_of(Machine& machine, Instance* object, std::string_view what
 }
 
 inline void warn_of_missing_image(Machine& machine, const std::string& name) {
-  machine.warn_once("image:" + name, "image '" + name +
-                                         "' not found; check its name, and the directories that the host lets scripts "
-                                         "read");
+  machine.warn_once("image:" + name, [&] {
+    return "image '" + name + "' not found; check its name, and the directories that the host lets scripts read";
+  });
 }
 
 }  // namespace breve::steve

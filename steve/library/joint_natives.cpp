@@ -16,8 +16,9 @@ template <class Change>
 void change_drive(Machine& machine, Instance& self, std::string_view selector, Change change) {
   const JointIndex joint = joint_of(machine, self);
   if (joint == kNoJoint) {
-    machine.warn_once("joint:" + std::string(selector), std::string(selector) + ": " + name_of(self) +
-                                                            " is not linked; the call has no effect (link it first)");
+    machine.warn_once("joint:" + std::string(selector), [&] {
+      return std::string(selector) + ": " + name_of(self) + " is not linked; the call has no effect (link it first)";
+    });
     return;
   }
   JointDrive drive = dynamics_of(machine).drive(joint);
@@ -69,11 +70,8 @@ Instance* link_ball(Machine& machine, Instance& self, Vector3 parent_point, Vect
 }
 
 void joint_break(Machine& machine, Instance& self) {
-  // What asks for the assembly next builds it anew. KEEP IN STEP: joints.cpp, where a linked joint is linked again.
-  constexpr std::size_t kOfLink = 32;  // units of work
   const JointIndex joint = joint_of(machine, self);
-  if (joint != kNoJoint)
-    machine.charge(kOfLink * dynamics_of(machine).links_of(dynamics_of(machine).joint(joint).child).size());
+  if (joint != kNoJoint) charge_for_break(machine, joint);
   break_joint(machine, self);
 }
 void joint_archive(Machine& machine, Instance& self) { prepare_joint(machine, self); }
@@ -97,7 +95,7 @@ void change_description(Machine& machine, Instance& self, Change change) {
   const JointIndex joint = joint_of(machine, self);
   if (joint == kNoJoint) return change(own.is);
   JointDescription description = dynamics_of(machine).joint(joint);
-  constexpr std::size_t kOfLink = 64;  // units of work: the assembly is built anew
+  constexpr std::size_t kOfLink = 128;  // units of work: the assembly is built anew
   machine.charge(kOfLink * dynamics_of(machine).links_of(description.child).size());
   change(description);
   dynamics_of(machine).relink(joint, description);

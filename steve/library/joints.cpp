@@ -51,14 +51,13 @@ BodyIndex end_of(Machine& machine, Instance* end, std::string_view what) {
   return end ? body_of(machine, must_live(end, what)) : kNoBody;
 }
 
-/// What asks for the assembly next builds it anew. KEEP IN STEP: joint_natives.cpp, where a script breaks a joint.
+}  // namespace
+
 void charge_for_break(Machine& machine, JointIndex joint) {
-  constexpr std::size_t kOfLink = 32;  // units of work
+  constexpr std::size_t kOfLink = 64;  // iterations
   const Mechanics& dynamics = machine.world().mechanics();
   machine.charge(kOfLink * dynamics.links_of(dynamics.joint(joint).child).size());
 }
-
-}  // namespace
 
 bool is_library_kind(const Instance& object, std::string_view library_class) {
   for (const ClassInfo* cls = object.cls; cls; cls = cls->parent)
@@ -157,11 +156,12 @@ void drive_joint(Machine& machine, Instance& joint, JointIndex index, const Join
   if (Slot* had = library_slot(machine, joint, "Joint", "hadStrength")) had->i = 1;
   const double most = dynamics.strength_hard_limit(index);
   if (drive.strength_limit <= most) return;
-  machine.warn_once(
-      "joint:strength-cut",
-      fmt::format("the strength limit {:g} of {} is clamped to {:g}, 500 times the mass of its child, {:g} kg "
-                  "(a body weighs 1 kg per cubic length unit unless its shape has another mass)",
-                  drive.strength_limit, name_of(joint), most, most / 500));
+  machine.warn_once("joint:strength-cut", [&] {
+    return fmt::format(
+        "the strength limit {:g} of {} is clamped to {:g}, 500 times the mass of its child, {:g} kg "
+        "(a body weighs 1 kg per cubic length unit unless its shape has another mass)",
+        drive.strength_limit, name_of(joint), most, most / 500);
+  });
 }
 
 void check_motors(Machine& machine) {
@@ -179,18 +179,20 @@ void check_motors(Machine& machine) {
     if (drive.strength_limit == 0) {
       const Slot* had = library_slot(machine, *joint, "Joint", "hadStrength");
       if (had && had->i == 0)
-        machine.warn_once("joint:no-strength", "the motor of " + name_of(*joint) +
-                                                   " has a target speed, but no strength: it does not move "
-                                                   "(set one with set-strength-limit)");
+        machine.warn_once("joint:no-strength", [&] {
+          return "the motor of " + name_of(*joint) +
+                 " has a target speed, but no strength: it does not move (set one with set-strength-limit)";
+        });
       continue;
     }
     for (const BodyIndex body : {dynamics.joint(i).child, dynamics.joint(i).parent}) {
       if (body == kNoBody || !bodies.dynamic(body) || !(bodies.mass(body) < kLight * drive.strength_limit)) continue;
-      machine.warn_once("joint:light-body",
-                        fmt::format("a motor of strength {:g} drives a body of {:g} kg, less than a gram per unit of "
-                                    "strength (a body weighs 1 kg per cubic length unit unless its shape has another "
-                                    "mass: set-mass, set-density)",
-                                    drive.strength_limit, bodies.mass(body)));
+      machine.warn_once("joint:light-body", [&] {
+        return fmt::format(
+            "a motor of strength {:g} drives a body of {:g} kg, less than a gram per unit of strength "
+            "(a body weighs 1 kg per cubic length unit unless its shape has another mass: set-mass, set-density)",
+            drive.strength_limit, bodies.mass(body));
+      });
     }
   }
 }

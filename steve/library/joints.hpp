@@ -63,6 +63,8 @@ JointIndex joint_of(Machine& machine, const Instance& joint);
 ///         parent or child that is freed, and for no child
 void link_joint(Machine& machine, Instance& joint, JointDescription description, Instance* parent, Instance* child);
 void break_joint(Machine& machine, Instance& joint);
+/// The work of a break by a script: what asks for the assembly next builds it anew. RunError{Budget} if it is used up.
+void charge_for_break(Machine& machine, JointIndex joint);
 /// Before and after an archive. The second links the joint again where the bodies stand.
 void prepare_joint(Machine& machine, Instance& joint);
 void relink_joint(Machine& machine, Instance& joint);

@@ -22,7 +22,7 @@ template <Selector S, class R = void, class... Arguments>
 R obsolete(Machine& machine, Instance&, Arguments...) {
   if (machine.host().verbose)
     machine.warn_once("obsolete:" + std::string(S.view()),
-                      "'" + std::string(S.view()) + "' is obsolete: it does nothing");
+                      [] { return "'" + std::string(S.view()) + "' is obsolete: it does nothing"; });
   if constexpr (!std::is_void_v<R>) return R{};
 }
 

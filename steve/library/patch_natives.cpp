@@ -40,9 +40,10 @@ void patch_set_state(Machine& machine, Instance& self, std::int32_t state) {
 PatchCell hinted(Machine& machine, Instance& self, const char* selector) {
   const PatchCell at = cell_of(machine, self);
   if (!at.resource)
-    machine.warn_once("patch." + std::string(selector) + ":" + self.cls->name,
-                      std::string(selector) + ": " + name_of(self) +
-                          " does not belong to a grid yet; the call has no effect (use init-patch instead of init)");
+    machine.warn_once("patch." + std::string(selector) + ":" + self.cls->name, [&] {
+      return std::string(selector) + ": " + name_of(self) +
+             " does not belong to a grid yet; the call has no effect (use init-patch instead of init)";
+    });
   return at;
 }
 

@@ -19,7 +19,8 @@ constexpr std::uint64_t kOfObject = 16384;  // of an object that may have to be 
 constexpr double kNear = 0.1;
 
 void no_renderer(Machine& machine, std::string_view selector, std::string_view why) {
-  machine.warn_once("renderer:" + std::string(selector), std::string(selector) + ": " + std::string(why));
+  machine.warn_once("renderer:" + std::string(selector),
+                    [&] { return std::string(selector) + ": " + std::string(why); });
 }
 
 }  // namespace

@@ -123,7 +123,7 @@ void program_set_from(Machine& machine, Instance& self, ListCell* elements) {
 void program_make_random(Machine& machine, Instance& self, Instance* interpreter, std::int32_t most) {
   push::Interpreter& from = interpreter_of(machine, interpreter, "make-random-code: the interpreter");
   const std::int32_t bound = most < 0 ? from.settings.random_points : most;
-  constexpr std::uint64_t kOfPoint = 2;
+  constexpr std::uint64_t kOfPoint = 8;
   machine.charge_for(kOfPoint * static_cast<std::uint64_t>(std::min(bound, from.settings.list_limit)));
   code_of(machine, self) = push::CodeSource(from, random_of(machine)).random_code(static_cast<std::uint32_t>(bound));
 }

@@ -227,7 +227,8 @@ ListCell* real_get_neighbors(Machine& machine, Instance& self) {
     machine.warn_once("get-neighbors",
                       "get-neighbors finds no neighbors before 'update-neighbors' of the controller is called");
   const std::span<const std::uint64_t> neighbors = machine.world().neighbor_users(self.id);
-  machine.charge_for(neighbors.size());
+  constexpr std::uint64_t kOfNeighbor = 4;  // elements: to find it, and to list it
+  machine.charge_for(kOfNeighbor * neighbors.size());
   ListCell* list = machine.heap().list(static_cast<std::uint32_t>(neighbors.size()));
   for (const std::uint64_t neighbor : neighbors)
     machine.heap().push(*list, Value::of(Tag::Object, reinterpret_cast<Instance*>(neighbor)));

@@ -77,7 +77,7 @@ Vector3 shape_get_last_scale(Machine& machine, Instance& self) {
 
 // --- builders --------------------------------------------------------------------------------------------------------
 
-constexpr std::uint64_t kOfSolid = 6;  // iterations: to make any shape, and to free the one before
+constexpr std::uint64_t kOfSolid = 12;  // iterations: to make any shape, and to free the one before
 
 Instance* build_sphere(Machine& machine, Instance& self, double radius) {
   machine.charge(kOfSolid);

@@ -145,8 +145,4 @@ void Machine::report_unknown_method(Severity severity, const Instance& self, std
   });
 }
 
-void Machine::warn_once(std::string_view key, std::string_view text) {
-  if (reporter_.is_first(key)) warn(text);
-}
-
 }  // namespace breve::steve

@@ -158,7 +158,7 @@ ListCell* read_words(Machine& machine, Instance&, PointerCell* pointer) {
 }
 
 void write_string(Machine& machine, Instance&, PointerCell* pointer, StringCell* text) {
-  constexpr std::uint64_t kOfWriting = 16;  // iterations
+  constexpr std::uint64_t kOfWriting = 48;  // iterations
   FileWriter& file = file_of(pointer).writer();
   machine.charge(kOfWriting);
   try {

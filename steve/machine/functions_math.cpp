@@ -24,8 +24,8 @@ std::string shown(double number) {
 
 /// A result that is not a number gives a warning, once per function.
 double checked(Machine& machine, std::string_view name, double argument, double result) {
-  if (!std::isfinite(result) && machine.warns_first(name)) [[unlikely]]
-    machine.warn(fmt::format("{}({}) is {}", name, shown(argument), shown(result)));
+  if (!std::isfinite(result)) [[unlikely]]
+    machine.warn_once(name, [&] { return fmt::format("{}({}) is {}", name, shown(argument), shown(result)); });
   return result;
 }
 
@@ -47,8 +47,8 @@ double rounded_up(Machine& m, Instance&, double x) { return checked(m, "ceil", x
 double rounded(Machine& m, Instance&, double x) { return checked(m, "round", x, std::round(x)); }
 double raised(Machine& m, Instance&, double x, double y) {
   const double result = std::pow(x, y);
-  if (!std::isfinite(result) && m.warns_first("pow")) [[unlikely]]
-    m.warn(fmt::format("pow({}, {}) is {}", shown(x), shown(y), shown(result)));
+  if (!std::isfinite(result)) [[unlikely]]
+    m.warn_once("pow", [&] { return fmt::format("pow({}, {}) is {}", shown(x), shown(y), shown(result)); });
   return result;
 }
 double arc_tangent_of_two(Machine&, Instance&, double y, double x) { return std::atan2(y, x); }

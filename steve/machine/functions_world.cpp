@@ -108,7 +108,11 @@ StringCell* path_of_file(Machine& machine, Instance&, StringCell* name) {
   return machine.heap().string(find_file(machine, view(name)));
 }
 
-void show_stack_trace(Machine& machine, Instance&) { machine.warn("stacktrace\n" + machine.stack_trace()); }
+void show_stack_trace(Machine& machine, Instance&) {
+  constexpr std::uint64_t kOfCall = 8;  // iterations, for each active method
+  machine.charge(kOfCall * machine.depth());
+  machine.warn("stacktrace\n" + machine.stack_trace());
+}
 
 // Without a view there is no mouse, no keyboard, no bell and nobody to ask.
 std::int32_t no_mouse(Machine&, Instance&) { return 0; }

@@ -115,9 +115,16 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   /// first thousand of an iteration, or of a call by the host, are reported.
   void warn(std::string_view text);
   /// The same, at most once per world for each `key`.
-  void warn_once(std::string_view key, std::string_view text);
-  /// Is this the first time? For a warning whose text takes long to make.
-  bool warns_first(std::string_view key) { return reporter_.is_first(key); }
+  /// @param text  the text, or a function that makes it: called only where it is reported, since programs do what they
+  ///              are warned of in each iteration
+  template <class Text>
+  void warn_once(std::string_view key, const Text& text) {
+    if (!reporter_.is_first(key)) return;
+    if constexpr (std::is_invocable_v<Text>)
+      warn(text());
+    else
+      warn(text);
+  }
   /// Say, at the place of the running statement, that `self` has no such method and which may be meant. An error
   /// is reported each time, a warning once for each class.
   /// @param consequence  "nothing is registered"

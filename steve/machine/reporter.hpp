@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory_resource>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -43,7 +45,11 @@ class Reporter {
     to({});
   }
   /// True the first time that a world asks with this key, or with this place in its code.
-  bool is_first(std::string_view key) { return warned_keys_.emplace(key).second; }
+  bool is_first(std::string_view key) {
+    if (warned_keys_.contains(key)) return false;
+    warned_keys_.emplace(key);
+    return true;
+  }
   bool is_first(const Instruction* location) { return warned_locations_.insert(location).second; }
   /// The code is going: other code may come to stand at its addresses.
   void forget_locations(std::span<const Instruction> code);
@@ -55,7 +61,7 @@ class Reporter {
 
   const MachineHost& host_;
   std::pmr::unordered_set<const Instruction*> warned_locations_;
-  std::pmr::unordered_set<std::pmr::string> warned_keys_;
+  std::pmr::set<std::pmr::string, std::less<>> warned_keys_;
   std::uint64_t printed_ = 0;  // bytes, in this iteration or call by the host
   std::uint64_t told_ = 0;     // reports, likewise
 };

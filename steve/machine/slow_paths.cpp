@@ -219,7 +219,7 @@ void Machine::make_cells_of(const ClassInfo& cls) {
 
 ListCell* Machine::all_of(const ClassInfo& cls) {
   make_cells_of(cls);
-  constexpr std::uint64_t kOfObject = 2;
+  constexpr std::uint64_t kOfObject = 4;
   charge_for(kOfObject * world_.object_count());
   auto* list = heap_->list();
   for (const auto id : world_.objects()) {
