@@ -161,7 +161,7 @@ bool State::loose(const Clustered& one) const {
   return true;
 }
 
-/// What contacts gave in the last step is none of this one's: a script may have moved links away from them. Contact
+/// What contacts gave in the last step does not act in this one: a script may have moved links away from them. Contact
 /// springs may press on links of whatever is near: they act inside the stages.
 void State::begin(MechanicsClient* client, double h) {
   const bool pressed = has_contact_springs() && !pairs.empty();
