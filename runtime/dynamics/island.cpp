@@ -58,7 +58,7 @@ void Island::step(MechanicsClient* client, double start, double h) {
   } catch (...) {
     // A failed step leaves a state from which nothing can continue.
     if (state_.core.structure() == structure) {
-      state_.use_accuracy(asked);
+      state_.end_use(asked);
       balance_.back_to_start();
       state_.place_links();
       if (state_.calls_out()) arrays_.write();  // a handler has seen more of the step

@@ -77,7 +77,7 @@ void Guard::step(MechanicsClient* client, double start, double h) {
     books_.take_back_rest(trouble.found && goes_back(trouble, undone));
     if (!trouble.found) undo_rise(asked.rung);
   }
-  if (attempt > 0 || state_.finished || followed.step != asked.step) state_.use_accuracy(asked);
+  if (attempt > 0 || state_.finished || followed.step != asked.step) state_.end_use(asked);
   if (trouble.found) give_in(trouble, undone, start, h);
 }
 

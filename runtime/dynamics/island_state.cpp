@@ -130,7 +130,7 @@ void State::read_drives(double h) {
 
 void State::add_cluster(ClusterEntry& cluster) {
   if (is_network(cluster)) return;
-  clusters.push_back({&cluster, std::nullopt, 0, false, false, {}, 0, {}});
+  clusters.push_back({&cluster, cluster.system->accuracy(), std::nullopt, 0, false, false, {}, 0, {}});
   for (const std::uint32_t index : cluster.trees) {
     Tree* tree = core.trees[index].get();
     tree->slot = static_cast<int>(trees.size());
@@ -191,6 +191,11 @@ contact::SolveSettings State::solve_settings() {
 void State::use_accuracy(const Accuracy& other) {
   accuracy = other;
   for (Clustered& one : clusters) one.entry->system->set_accuracy(other);
+}
+
+void State::end_use(const Accuracy& asked) {
+  accuracy = asked;
+  for (Clustered& one : clusters) one.entry->system->set_accuracy(one.own);
 }
 
 void Clustered::forget_parts() {

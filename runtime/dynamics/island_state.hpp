@@ -52,6 +52,7 @@ struct SubStepEnergy {
 /// Trees that one integrator moves.
 struct Clustered {
   ClusterEntry* entry;
+  Accuracy own;  // of its integrator, where the island's step sets no other
   std::optional<Stage> stage;
   double next_before = 0;
   bool semi = false;        // its last smooth motion was semi-implicit Euler's
@@ -96,6 +97,8 @@ struct State {
   void read_springs();
   void read_drives(double h);
   void use_accuracy(const Accuracy& other);
+  /// The island's as it was asked for, and that of each cluster again.
+  void end_use(const Accuracy& asked);
 
   // --- where bodies are
   BodySlot slot_of(BodyIndex body) const {
