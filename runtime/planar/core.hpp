@@ -147,6 +147,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   int located = 0;                    // impacts of pairs without handler in this sub-step of what steps
   std::uint64_t work_most = Meter::kNoBound;  // of the sub-step: what counters.work may become
   bool finishing = false;                     // it is that: the rest is taken coarsely
+  bool spoiled = false;      // a number is not finite: the rest of the sub-step is left out, before it spreads
   double base = 0;           // J: total energy when the ledger began, plus what came and went with bodies
   double springs_known = 0;  // J: of springs, at the end of the last step; what differs since then scripts did
   std::pmr::vector<BodyIndex> scratch;
@@ -376,6 +377,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   double joint_rate(const FlatJoint& joint) const;
   double motor_work(const FlatJoint& joint, double dt) const;
   // step_guard.cpp
+  bool rest_spoiled(double moment);
   void watch(double moment, bool wrong);
   struct Balance {
     double kinetic = 0, stored = 0, works = 0, losses = 0;  // J

@@ -146,7 +146,7 @@ void Planar::Core::step_pieces(double dt) {
     });
     if (!apart.any()) continue;
     last_step = before;
-    for (int k = 0; k < pieces; ++k) {
+    for (int k = 0; k < pieces && !spoiled; ++k) {
       now = start + k * (dt / pieces);
       if (k > 0 && worn()) {
         rush((pieces - k) * (dt / pieces));

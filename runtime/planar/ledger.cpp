@@ -144,6 +144,7 @@ void Planar::Core::end_ledger(double dt) {
     if (flat.has_force || flat.asked != Vector2::Zero())
       ledger.script_work += dt * (force.dot(sum) + flat.torque * spins) / 2;
   }
+  if (!std::isfinite(held_back)) spoiled = true;
   double motors = 0;
   for (const FlatJoint& joint : joints)
     if (steps(joint)) motors += motor_work(joint, dt);

@@ -98,7 +98,7 @@ void Planar::Core::finish(double left) {
 void Planar::Core::advance(MechanicsClient& asked, double start, double h, double share) {
   const double work_left = bound.most > counters.work ? static_cast<double>(bound.most - counters.work) : 0;
   work_most = bound.most == 0 ? Meter::kNoBound : counters.work + static_cast<std::uint64_t>(share * work_left);
-  finishing = false;
+  finishing = spoiled = false;
   struct Asking {
     Core& core;
     Asking(Core& c, MechanicsClient& who) : core(c) { core.client = &who; }
@@ -127,7 +127,7 @@ void Planar::Core::advance(MechanicsClient& asked, double start, double h, doubl
   const std::size_t impacts_before = impacts.size();
   for (int i = 0; i < count && b2; ++i) {
     const double dt = h / count;
-    if (finishing) break;
+    if (finishing || spoiled) break;
     if (worn()) {
       now = start + i * dt;
       finish((count - i) * dt);
@@ -135,6 +135,9 @@ void Planar::Core::advance(MechanicsClient& asked, double start, double h, doubl
     }
     now = start + i * dt;
     take_sub_step(dt, count, (count - i) * dt);
+    if (!spoiled || settings.guard == GuardMode::Off) continue;
+    rest_spoiled(now);
+    spoiled = false;
   }
   if (!b2) return;  // a handler set another length unit
   // Each group of bodies has reported its own in turn.
@@ -164,7 +167,7 @@ void Planar::Core::take_sub_step(double dt, int count, double left) {
   located = 0;
   looks = 0;
   if (Hit hit; handlers() && find_hit(dt, {true, false}, hit)) {
-    for (int k = 0; k < pieces && b2; ++k) {
+    for (int k = 0; k < pieces && b2 && !spoiled; ++k) {
       now = start + k * (dt / pieces);
       if (worn()) return finish(left - k * (dt / pieces));
       run(dt / pieces, true);
@@ -233,7 +236,7 @@ void Planar::Core::run(double dt, bool handled) {
   double left = dt;
   int waited = 0;  // met for handlers and stops
   bool bounce = true;
-  while (left > 0 && b2 && !worn()) {
+  while (left > 0 && b2 && !worn() && !spoiled) {
     Hit hit;
     bool found = find_hit(left, {handled && handlers(), few()}, hit);
     found = find_stop(left, found, hit);
@@ -255,7 +258,7 @@ void Planar::Core::run(double dt, bool handled) {
     else
       deliver(hit, now);
   }
-  if (left > 0 && b2) step(left, bounce);
+  if (left > 0 && b2 && !spoiled) step(left, bounce);
   now += left;
   end_cuts(dt);
 }

@@ -140,9 +140,8 @@ bool Planar::Core::tell_overlaps(double moment, GuardAction action) {
   return !deepest.empty();
 }
 
-void Planar::Core::watch(double moment, bool wrong) {
-  constexpr double kGap = 0.02;  // of the smaller body's width: further than this a joint has opened
-  const GuardAction action = remedy();
+/// Puts bodies whose numbers are not finite where they were. Whether there were any.
+bool Planar::Core::rest_spoiled(double moment) {
   BodyIndex lost = kNoBody;
   for (FlatBody& flat : slots) {
     if (flat.body == kNoBody || flat.fixed || !flat.b2->IsAwake()) continue;
@@ -151,13 +150,18 @@ void Planar::Core::watch(double moment, bool wrong) {
     rest(flat);
     lost = flat.body;
   }
+  if (lost == kNoBody) return false;
   // A number that is not finite spreads to all that such a body touches, and to what its joints hang on.
-  if (lost != kNoBody) {
-    for (FlatBody& flat : slots)
-      if (flat.body != kNoBody && flat.fixed && !is_finite(*flat.b2)) hold_still(flat);
-    if (!is_finite(*ground)) hold_at(*ground, b2Vec2(0, 0), 0);
-  }
-  if (lost != kNoBody && settings.guard == GuardMode::Off)
+  for (FlatBody& flat : slots)
+    if (flat.body != kNoBody && flat.fixed && !is_finite(*flat.b2)) hold_still(flat);
+  if (!is_finite(*ground)) hold_at(*ground, b2Vec2(0, 0), 0);
+  return true;
+}
+
+void Planar::Core::watch(double moment, bool wrong) {
+  constexpr double kGap = 0.02;  // of the smaller body's width: further than this a joint has opened
+  const GuardAction action = remedy();
+  if (rest_spoiled(moment) && settings.guard == GuardMode::Off)
     throw Error(
         ErrorCode::Numeric,
         "a position or velocity in a flat world is no longer finite; the body was put back to where it was, at rest. "

@@ -94,6 +94,19 @@ TEST(PlanarGuard, ABodyWhoseNumbersAreNoneRestsWhereItWas) {
   }
 }
 
+TEST(PlanarGuard, OthersMoveOnWhileTheNumbersOfABodyAreNone) {
+  Guarded flat(GuardMode::Rest);
+  flat.physics().set_gravity(Vector3::Zero());
+  const ObjectId ball = flat.ball(0.5, 1, 2), near = flat.ball(0.5, 2.2, 2), far = flat.ball(0.5, 0, 20);
+  for (const ObjectId other : {near, far}) flat.set_velocity(other, {1, 0, 0});
+  flat.bodies().set_force(flat.index(ball), {1e300, 0, 0});
+  flat.watch(60);
+  EXPECT_GT(flat.count(GuardReason::NotFinite, GuardAction::Rested), 0);
+  EXPECT_EQ(flat.at(ball), Vector3(1, 2, 0));
+  EXPECT_NEAR(flat.at(near).x(), 3.2, 1e-3);
+  EXPECT_NEAR(flat.at(far).x(), 1, 1e-3);
+}
+
 TEST(PlanarGuard, AJointToTheWorldHoldsAgainAfterNumbersThatWereNotFinite) {
   Guarded flat(GuardMode::Rest);
   const ObjectId bob = flat.ball(0.5, 0, 0);
