@@ -120,7 +120,8 @@ double Planar::Core::motor_work(const FlatJoint& joint, double dt) const {
 void Planar::Core::end_ledger(double dt) {
   const double u = settings.unit;
   const Vector2 gravity = settings.gravity.head<2>();
-  double held_back = 0;  // work of all that joins and touches
+  double held_back = 0;              // work of all that joins and touches
+  double forced = 0, put_right = 0;  // that of forces that scripts set, and of what Box2D moved apart or together
   const b2Vec2 down = b2->GetGravity();
   for (FlatBody& flat : slots) {
     if (flat.body == kNoBody || flat.fixed || flat.set_apart) continue;
@@ -130,7 +131,7 @@ void Planar::Core::end_ledger(double dt) {
     const b2Vec2 v = flat.b2->GetLinearVelocity();
     // Box2D moves by the velocity at the end; what else was moved are overlaps and gaps that it put right.
     const b2Vec2 path = flat.b2->GetWorldCenter() - flat.at - static_cast<float>(dt) * moved_by;
-    pushed -= flat.mass.mass * u * u * double{b2Dot(down, path)};
+    put_right -= flat.mass.mass * u * u * double{b2Dot(down, path)};
     const double w = flat.b2->GetAngularVelocity();
     const Vector2 sum(u * (double{v.x} + flat.before.x), u * (double{v.y} + flat.before.y));
     const double spins = w + double{flat.before_spin};
@@ -141,10 +142,14 @@ void Planar::Core::end_ledger(double dt) {
     // Gravity works along the way that the body was moved, which is not the mean velocity's where something struck.
     held_back += (m * change - dt * (force + flat.pull)).dot(sum) / 2 - dt * u * m * gravity.dot(vector_of(moved_by)) +
                  (flat.mass.inertia(2, 2) * (w - flat.before_spin) - dt * (flat.torque + flat.twist)) * spins / 2;
-    if (flat.has_force || flat.asked != Vector2::Zero())
-      ledger.script_work += dt * (force.dot(sum) + flat.torque * spins) / 2;
+    if (flat.has_force || flat.asked != Vector2::Zero()) forced += dt * (force.dot(sum) + flat.torque * spins) / 2;
   }
-  if (!std::isfinite(held_back)) spoiled = true;
+  if (!std::isfinite(held_back)) {  // nor is any other work of this sub-step
+    spoiled = true;
+    return;
+  }
+  pushed += put_right;
+  ledger.script_work += forced;
   double motors = 0;
   for (const FlatJoint& joint : joints)
     if (steps(joint)) motors += motor_work(joint, dt);

@@ -275,11 +275,13 @@ TEST(MechanicsRestoreFlat, WhatAStepFindsAndHowFastBodiesWereDoesNotMatter) {
   for (const std::uint64_t seed : {56U, 258U, 278U, 415U}) EXPECT_EQ(differs_at(2, seed), -1) << "seed " << seed;
 }
 
-/// The same: forces that scripts changed wake what sleeps, and contacts pushed what a script had moved away from them.
+/// The same: forces that scripts had changed did not wake what sleeps.
 TEST(MechanicsRestoreFlat, ForcesWakeAlike) {
   for (const std::uint64_t seed : {109U, 186U, 277U, 316U, 840U, 1006U, 2041U, 2274U})
     EXPECT_EQ(differs_at(2, seed, Changes::More), -1) << "seed " << seed;
 }
+
+/// The same: contacts went on pushing what a script had moved away from them.
 TEST(MechanicsRestoreInSpace, WhatContactsGaveEndsWithThem) {
   for (const std::uint64_t seed : {900U, 1791U}) EXPECT_EQ(differs_at(3, seed, Changes::More), -1) << "seed " << seed;
 }
