@@ -274,8 +274,8 @@ class Heap : public InMemory {
   static bool is_lonely(const Cell& cell) {
     return cell.suspected && cell.count == 1 && cell.mark == 0 && (cell.tag == Tag::List || cell.tag == Tag::Hash);
   }
-  // What garbage refers to is looked at in the same round, also where it is held as a suspect: a chain of suspects, each
-  // of which holds the next one, would cost a look at all of them for each.
+  // What garbage refers to is looked at in the same round, also where it is held as a suspect: a chain of suspects,
+  // each of which holds the next one, would cost a look at all of them for each.
   void release_of_garbage(Cell* cell) {
     release(cell);
     if (cell && !cell->listed && is_lonely(*cell)) enlist(cell);
