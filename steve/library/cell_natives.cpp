@@ -129,7 +129,7 @@ void grid_apply_rule(Machine& machine, Instance& self, std::int32_t born, std::i
   resource.states.make(*resource.grid);
   const TotalisticRule rule{static_cast<std::uint32_t>(born), static_cast<std::uint32_t>(survive)};
   // What takes about as long as an iteration of a script's loop, or as some where the grid is small.
-  constexpr std::size_t kOfStep = 4, kCellsPerIteration = 32;
+  constexpr std::size_t kOfStep = 6, kCellsPerIteration = 32;
   for (std::int32_t i = 0; i < times; ++i) {
     machine.charge(kOfStep + resource.grid->cells() / kCellsPerIteration);
     const StageScope timed = machine.world().work(EffectId::Patches, self.id, resource.grid->cells());

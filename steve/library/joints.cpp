@@ -314,7 +314,7 @@ std::vector<Instance*> joints_of(Machine& machine, Instance& multibody) {
 }
 
 void charge_for_assembly(Machine& machine, BodyIndex body) {
-  constexpr std::size_t kOfLink = 4;  // units of work
+  constexpr std::size_t kOfLink = 8;  // units of work
   const Mechanics& dynamics = machine.world().mechanics();
   if (dynamics.joint_count() == 0) return;
   const std::size_t links = dynamics.links_of(body).size();

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kLeastIndex = 8;
 constexpr std::uint32_t kMostEntries = 0x40000000U;
-constexpr std::size_t kOfNewKey = 128;  // bytes: what a key moves until the hash has its size, whatever size that is
+constexpr std::size_t kOfNewKey = 256;  // bytes: what a key moves until the hash has its size, whatever size that is
 
 /// The entry that holds `key`, or null. Ends because the index is never full.
 HashCell::Entry* look_up(const HashCell& hash, const Value& key, std::uint32_t code) {
