@@ -64,13 +64,42 @@ void Impacts::find_met(double time) {
   for (Bound& bound : contacts_.bounds()) bound.rests = bound.gap <= met * bound.unit;
 }
 
+/// A pair that since its last rebound did not get apart by more than the error of the moments of impacts stays, as a
+/// joint does at its limit: what falls on by that much gains as much motion as a rebound loses. One that comes back
+/// faster was struck meanwhile.
+void Impacts::find_returned(double time) {
+  constexpr double kMany = 10;  // times that error: what loses little of its speed also comes to rest
+  constexpr double kFaster = 2;
+  for (const Touch& touch : contacts_.touches()) {
+    const NearPair& pair = contacts_.pair_of(touch);
+    Rebound& last = contacts_.rebound_of(touch);
+    const double far = 0.5 * last.rate * (time - last.time);
+    if (!(far <= kMany * contacts_.closeness(pair))) continue;
+    const Vector3 rate = state_.point_velocity(pair.a, touch.point) - state_.point_velocity(pair.b, touch.point);
+    if (-pair.law.restitution * touch.normal.dot(rate) <= kFaster * last.rate) last.stays = true;
+  }
+}
+
+void Impacts::note_rebounds(double time) {
+  for (std::size_t i = 0; i < rows_.contacts(); ++i) {
+    const auto& [touch, pair, row, law] = rows_.contact(i);
+    if (row.impulse == Vector3::Zero()) continue;
+    Rebound& last = contacts_.rebound_of(touch);
+    const double rate = std::max(0.0, rows_.rate_of(row, true)[0] - rows_.rate_of(row, false)[0]);
+    last.rate = last.time == time ? std::max(last.rate, rate) : rate;
+    last.time = time;
+  }
+}
+
 void Impacts::collide(double time) {
   state_.place();
   find_met(time);
+  find_returned(time);
   rows_.make(Rows::Motors::Leave);
   state_.load_velocities();
   rows_.read_rates();
   resolve();
+  note_rebounds(time);
   rows_.book();
   state_.store_velocities();
   if (momentum_.pushes_itself()) {

@@ -11,6 +11,7 @@ Contacts::Contacts(State& state)
       touches_(state.memory),
       bounds_(state.memory),
       rebounds_(state.memory),
+      pair_rebounds_(state.memory),
       roles_(state.memory),
       depths_(state.memory),
       manifolds_(state.memory),
@@ -21,6 +22,11 @@ void Contacts::begin(bool awaited) {
   clear();
   forget_rebounds();
   spent_ = false;
+}
+
+void Contacts::forget_rebounds() {
+  rebounds_.clear();
+  pair_rebounds_.assign(state_.pairs.size(), Rebound());
 }
 
 void Contacts::clear() {
@@ -213,7 +219,7 @@ void Contacts::find_roles(double h, bool struck) {
     depths_[touch.pair] = std::max(depths_[touch.pair], -touch.gap);
     // A first touch that a handler waits for is met, however slow.
     if (awaited_ && pair.handled && !pair.touching && touch.gap > kMetSkin * size && touch.approach < 0) continue;
-    const bool slow = std::abs(touch.approach) <= speeds.slow;
+    const bool slow = std::abs(touch.approach) <= speeds.slow || (touching && rebound_of(touch).stays);
     if (!springs && (slow || (struck && touching && touch.approach < 0)))
       role = Role::Rests;
     else if (touching && touch.approach > 0 && role == Role::Far)

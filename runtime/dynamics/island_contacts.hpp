@@ -8,7 +8,8 @@
 
 namespace breve::island {
 
-inline constexpr double kSeen = 1e-6;  // rad, or of the radius: closer is not looked at where contacts act
+inline constexpr double kSeen = 1e-6;       // rad, or of the radius: closer is not looked at where contacts act
+inline constexpr double kRoundOff = 1e-13;  // likewise, else; of the length unit
 
 /// What a pair is in this sub-step: its impact is looked for on the whole path; or only whether it comes back; or it
 /// has rows; or it is a spring.
@@ -47,7 +48,7 @@ struct Bound {
   bool held = false;  // it acts inside the stages, and is not located
 };
 
-/// When a joint left its limit, s, and how fast.
+/// When a joint left its limit, or one body another, s, and how fast.
 struct Rebound {
   double time = 0, rate = JointDrive::kNoLimit;
   bool stays = false;  // it was back at once: for the remainder of the step it rests where it is near
@@ -57,7 +58,7 @@ class Contacts {
  public:
   explicit Contacts(State& state);
 
-  /// Begins a step: nothing is known to be near, no joint has rebounded.
+  /// Begins a step: nothing is known to be near, nothing has rebounded.
   /// @param awaited  handlers are called at the moment of impact
   void begin(bool awaited);
   /// Forgets what touches; roles of pairs and rebounds stay.
@@ -75,7 +76,7 @@ class Contacts {
   bool find_passed(double far);
   /// @param struck  what touches has collided already: what still approaches then is stopped by rows
   void find_roles(double h, bool struck);
-  void forget_rebounds() { rebounds_.clear(); }
+  void forget_rebounds();
 
   /// Something touches that approaches so fast that it collides at once.
   bool strikes(double h) const;
@@ -83,6 +84,11 @@ class Contacts {
   bool any() const;
   /// Impulses of contacts are taken as constant over a sub-step: where some act, more digits are not seen.
   bool coarse() const;
+  /// How far from zero the gap may be at the moment of an impact: m of a pair, or units of a joint.
+  double closeness() const { return coarse() ? kSeen : kRoundOff; }
+  double closeness(const NearPair& pair) const {
+    return coarse() ? kSeen * state_.size_of_pair(pair) : kRoundOff * state_.unit();
+  }
   double met_limit() const;
   const WarmPoint* warm_of(const Touch& touch) const;
 
@@ -94,6 +100,8 @@ class Contacts {
   Role role(std::size_t pair) const { return roles_[pair]; }
   double depth(std::size_t pair) const { return depths_[pair]; }  // m, of overlap when the sub-step began
   Rebound& rebound_of(std::size_t bound) { return rebounds_[bound]; }
+  Rebound& rebound_of(const Touch& touch) { return pair_rebounds_[touch.pair]; }
+  const Rebound& rebound_of(const Touch& touch) const { return pair_rebounds_[touch.pair]; }
   /// m/s: slower than this is at rest, in a sub-step of this length.
   double resting() const { return resting_; }
   /// No impact is located any more: the last look was speculative.
@@ -121,10 +129,11 @@ class Contacts {
 
   State& state_;
   std::pmr::vector<Touch> touches_;
-  std::pmr::vector<Bound> bounds_;      // in the order of trees, links, axes and ends
-  std::pmr::vector<Rebound> rebounds_;  // of bounds_: the last of each in this step
-  std::pmr::vector<Role> roles_;        // of pairs
-  std::pmr::vector<double> depths_;     // of pairs
+  std::pmr::vector<Bound> bounds_;           // in the order of trees, links, axes and ends
+  std::pmr::vector<Rebound> rebounds_;       // of bounds_: the last of each in this step
+  std::pmr::vector<Rebound> pair_rebounds_;  // likewise, of pairs
+  std::pmr::vector<Role> roles_;             // of pairs
+  std::pmr::vector<double> depths_;          // of pairs
   std::pmr::vector<Manifold> manifolds_;
   std::pmr::vector<std::array<Seen, 2>> seen_;  // of pairs, at a speculative look at trees
   double resting_ = 0;                          // m/s

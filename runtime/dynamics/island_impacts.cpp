@@ -187,10 +187,8 @@ const NearPair& Impacts::pair_of(const Event& event) const {
 
 /// How far from zero the gap may be at the moment of an event, m or rad.
 double Impacts::closeness(const Event& event) const {
-  constexpr double kRoundOff = 1e-13;
   const Bound* bound = bound_of(event);
-  if (!contacts_.coarse()) return kRoundOff * (bound ? bound->unit : state_.unit());
-  return kSeen * (bound ? bound->unit : state_.size_of_pair(pair_of(event)));
+  return bound ? contacts_.closeness() * bound->unit : contacts_.closeness(pair_of(event));
 }
 
 namespace {

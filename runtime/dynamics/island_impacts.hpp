@@ -46,6 +46,8 @@ class Impacts {
   double gap_of(const Event& event, double& rate);
   // island_collide.cpp
   void find_met(double time);
+  void find_returned(double time);
+  void note_rebounds(double time);
   void rebound(std::size_t bound, double time);
   void resolve();
 

@@ -189,6 +189,7 @@ void Rows::add_touch(Touch& touch) {
   ++state_.result.counters.contacts;
   rows_.push_back(row);
   laws_.push_back(pair.law);
+  if (contacts_.rebound_of(touch).stays) laws_.back().restitution = laws_.back().tangential_restitution = 0;
 }
 
 /// A row of one number of a tree's motion.

@@ -57,16 +57,20 @@ void creature(World& world, std::mt19937& random, const Vector3& at, const Habit
   world.must(breve_object_set_assembly_pose(world.get(), body, &pose));
 }
 
-}  // namespace
-
-std::uint64_t drop_creatures(breve_rung rung, int count, double seconds, const Habits& habits) {
-  World world(1.0 / 60, rung);
+void creatures_above_a_plane(World& world, int count, const Habits& habits) {
   world.set_guard(BREVE_GUARD_REPORT);
   const breve_object floor = world.fixed(box(Vector3(200, 10, 200), 1), Vector3(0, -5, 0));
   world.set_material(floor, 0.7, 0.3);
   std::mt19937 random(7);
   for (int i = 0; i < count; ++i)
     creature(world, random, Vector3(5.0 * (i % 15) - 35, 2.5, 5.0 * (i / 15) - 35), habits);
+}
+
+}  // namespace
+
+std::uint64_t drop_creatures(breve_rung rung, int count, double seconds, const Habits& habits) {
+  World world(1.0 / 60, rung);
+  creatures_above_a_plane(world, count, habits);
   const double begin = world.mechanical();
   double most = begin;
   world.run(seconds, [&] { most = std::max(most, world.mechanical()); });
@@ -74,6 +78,18 @@ std::uint64_t drop_creatures(breve_rung rung, int count, double seconds, const H
               begin, most, world.mechanical(), world.toll().per_iteration(), world.toll().interventions);
   EXPECT_LE(most - begin, 0.01 * begin);
   return world.toll().interventions;
+}
+
+Lying drop_and_lie(breve_rung rung, int count, double seconds) {
+  World world(1.0 / 60, rung);
+  creatures_above_a_plane(world, count, {});
+  world.run(seconds);
+  const double before = world.mechanical();
+  const std::uint64_t impacts = world.toll().impacts;
+  world.run(1);
+  const Lying lying{world.toll().impacts - impacts, before - world.mechanical()};
+  std::printf("  %lu impacts in a second, %.3f J of %.0f lost\n", lying.impacts, lying.lost, before);
+  return lying;
 }
 
 }  // namespace breve::reference

@@ -15,4 +15,11 @@ struct Habits {
 /// expected. Prints what was; returns the interventions.
 std::uint64_t drop_creatures(breve_rung rung, int count, double seconds, const Habits& habits = {});
 
+/// The same, until most lie on the plane. Prints and returns what one second more is like.
+struct Lying {
+  std::uint64_t impacts = 0;
+  double lost = 0;  // J
+};
+Lying drop_and_lie(breve_rung rung, int count, double seconds);
+
 }  // namespace breve::reference

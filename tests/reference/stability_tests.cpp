@@ -210,5 +210,12 @@ TEST(Stability, CreaturesWithLimitsHaveNoStormsOfRebounds) {
     }
 }
 
+/// Rebounds that are lower than the error of their moments do not go on for ever, and what rebounds does not sink.
+TEST(Stability, CreaturesThatReboundComeToRest) {
+  const Lying lying = drop_and_lie(BREVE_RUNG_BALANCED, 20, 8);
+  EXPECT_LE(lying.impacts, 60U);
+  EXPECT_LE(lying.lost, 0.05);
+}
+
 }  // namespace
 }  // namespace breve::reference
