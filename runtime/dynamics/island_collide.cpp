@@ -66,17 +66,19 @@ void Impacts::find_met(double time) {
 
 /// A pair that since its last rebound did not get apart by more than the error of the moments of impacts stays, as a
 /// joint does at its limit: what falls on by that much gains as much motion as a rebound loses. One that comes back
-/// faster was struck meanwhile.
+/// faster than by such a fall was struck meanwhile.
 void Impacts::find_returned(double time) {
   constexpr double kMany = 10;  // times that error: what loses little of its speed also comes to rest
   constexpr double kFaster = 2;
   for (const Touch& touch : contacts_.touches()) {
     const NearPair& pair = contacts_.pair_of(touch);
     Rebound& last = contacts_.rebound_of(touch);
-    const double far = 0.5 * last.rate * (time - last.time);
-    if (!(far <= kMany * contacts_.closeness(pair))) continue;
-    const Vector3 rate = state_.point_velocity(pair.a, touch.point) - state_.point_velocity(pair.b, touch.point);
-    if (-pair.law.restitution * touch.normal.dot(rate) <= kFaster * last.rate) last.stays = true;
+    const double past = time - last.time, error = contacts_.closeness(pair);
+    if (!(0.5 * last.rate * past <= kMany * error)) continue;
+    const Vector3 motion = state_.point_velocity(pair.a, touch.point) - state_.point_velocity(pair.b, touch.point);
+    const double rate = touch.normal.dot(motion);
+    // It left at last.rate, and fell by the error beyond where it was.
+    if (rate < 0 && -rate * past <= kFaster * (last.rate * past + 2 * error)) last.stays = true;
   }
 }
 
