@@ -101,6 +101,7 @@ void Books::note_smooth() {
 
 /// After the works of smooth motion and of the rows went to the ledger.
 void Books::close() {
+  if (state_.trees.empty()) momentum_.note_touched();
   if (!kept_ || rows_.empty()) return;
   const bool only_motors = rows_.contacts() == 0 && rows_.limits() == 0;
   double erred = 0;  // J, by the motion that motors changed

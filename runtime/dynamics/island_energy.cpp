@@ -58,6 +58,12 @@ double weight(const State& state) {
   return sum * state.core.settings.gravity.norm();
 }
 
+double free_weight(const State& state) {
+  double sum = 0;
+  for (const Free& one : state.loose_bodies()) sum += one.now.solid->mass * state.shape(one.body).bounding_radius();
+  return sum * state.core.settings.gravity.norm();
+}
+
 double energy_of_stillness(const State& state) {
   double mass = 0;
   for (const Tree* tree : state.trees)

@@ -17,6 +17,8 @@ double stored_energy(State& state, const Clustered& one, double& kinetic);
 double stored_energy(State& state);
 /// What it takes to lift all links by their own size: of that, what lies still may err by round-off of its solution.
 double weight(const State& state);
+/// The same of bodies without joints.
+double free_weight(const State& state);
 /// What trees have at most that are still.
 double energy_of_stillness(const State& state);
 /// The state in the world's arrays, while a handler may change it.

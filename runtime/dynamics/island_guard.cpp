@@ -95,12 +95,26 @@ bool Guard::unpayable(double owed) const {
 /// energy that is too small to try the step again is taken back from what moves: on `fast` any, on the other rungs that
 /// of articulated bodies which something outside touches. On these two rungs so is one that no finer sub-steps mended.
 void Guard::undo_rise(Rung rung) {
+  if (state_.trees.empty()) return undo_rise_of_free_bodies(rung);
   const double all = momentum_.moving(), risen = balance_.risen();
-  const bool drifts = rung == Rung::Fast || (!state_.trees.empty() && momentum_.touched_from_outside());
+  const bool drifts = rung == Rung::Fast || momentum_.touched_from_outside();
   const bool little = drifts && risen > kStill * weight(state_) && risen <= kFew * all;
   const bool coarse = rung == Rung::Fast || rung == Rung::Balanced;
   const bool unmended = coarse && tried_finer_ && risen > allowed_ && all > 0;
   if (little || unmended) momentum_.undo_gain(std::min(1.0, risen / all), true);
+}
+
+/// The same on `fast` and `balanced` for bodies without joints, which may rotate far in a sub-step while they touch.
+/// What flies or rolls pays for all of it; what lies has hardly any motion, and was put right where it overlapped.
+/// Springs store, and what scripts move gives energy.
+void Guard::undo_rise_of_free_bodies(Rung rung) {
+  constexpr double kFlies = 4;  // times the rise
+  if (rung != Rung::Fast && rung != Rung::Balanced) return;
+  const double risen = balance_.risen();
+  if (state_.drivers > 0 || !state_.networks.empty() || !(risen > kStill * free_weight(state_))) return;
+  const Common common = momentum_.common_of_free_bodies();
+  const double taken = common.inner > kFlies * risen ? risen : std::min(risen, kFew * common.inner);
+  if (taken > 0) momentum_.slow_free_bodies(common, taken);
 }
 
 /// A step of articulated bodies whose energy does not add up is taken again in 2, 4, 8, ... parts: what rotates far in

@@ -155,6 +155,46 @@ void Momentum::undo_gain(double part, bool told) {
   state_.placed = state_.booked = false;
 }
 
+/// What bodies without joints have in common, if nothing outside touches them: they keep their momenta.
+Common Momentum::common_of_free_bodies() const {
+  Common common;
+  for (const Free& one : state_.loose_bodies()) common.inner += one.now.kinetic();
+  if (touched_from_outside()) return common;
+  double mass = 0;
+  Vector3 momentum = Vector3::Zero(), spin = Vector3::Zero();
+  for (const Free& one : state_.loose_bodies()) {
+    mass += one.now.solid->mass;
+    common.center += one.now.solid->mass * one.now.center;
+    momentum += one.now.solid->mass * one.now.velocity;
+  }
+  common.center /= mass;
+  Matrix3 inertia = Matrix3::Zero();
+  for (const Free& one : state_.loose_bodies()) {
+    const Vector3 arm = one.now.center - common.center;
+    const Matrix3 own = one.now.inertia();
+    spin += own * one.now.spin + one.now.solid->mass * arm.cross(one.now.velocity);
+    inertia += own + one.now.solid->mass * (arm.squaredNorm() * Matrix3::Identity() - arm * arm.transpose());
+  }
+  common.velocity = momentum / mass;
+  common.spin = inertia.ldlt().solve(spin);
+  common.energy = 0.5 * (momentum.dot(common.velocity) + spin.dot(common.spin));
+  common.inner -= common.energy;
+  return common;
+}
+
+/// Takes so much of the inner motion of bodies without joints, J, that nothing gave, when the balance of the step is
+/// closed.
+void Momentum::slow_free_bodies(const Common& common, double taken) {
+  state_.result.ledger.residual -= taken;
+  const double left = std::sqrt(1 - taken / common.inner);
+  for (Free& one : state_.loose_bodies()) {
+    const Vector3 whole = common.velocity + common.spin.cross(one.now.center - common.center);
+    one.now.velocity = whole + left * (one.now.velocity - whole);
+    one.now.spin = common.spin + left * (one.now.spin - common.spin);
+  }
+  state_.placed = state_.booked = false;
+}
+
 /// @return  J, that this took
 double Momentum::shorten(const Clustered& one, double part, bool held) {
   const std::span trees = one.entry->system->trees();

@@ -4,6 +4,7 @@
 // gravity give it.
 #pragma once
 
+#include "runtime/dynamics/common_motion.hpp"
 #include "runtime/dynamics/island_rows.hpp"
 
 namespace breve::island {
@@ -32,6 +33,8 @@ class Momentum {
   double moving() const;
   void take_from_all(double part);
   void undo_gain(double part, bool told);
+  Common common_of_free_bodies() const;
+  void slow_free_bodies(const Common& common, double taken);
   double stop(Clustered& one, Momenta momenta, double h);
   void coast(double h);
 

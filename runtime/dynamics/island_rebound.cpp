@@ -75,9 +75,22 @@ void Rebounds::ask() {
   state_.reset_velocities();
 }
 
+/// The height that impulses between the two solutions give free bodies, J: as a constant force over h seconds does.
+/// What links and drivers push, they may lift.
+double Rebounds::lifted(double share, double h) const {
+  Vector3 momentum = Vector3::Zero();
+  if (!state_.trees.empty() || state_.drivers > 0) return 0;
+  for (const Free& one : state_.free_bodies) {
+    for (int k = 0; k < 3; ++k)
+      momentum[k] += one.now.solid->mass * (one.plain_v[k] + share * (one.v[k] - one.plain_v[k]) - one.free_v[k]);
+  }
+  return -0.5 * h * state_.core.settings.gravity.dot(momentum);
+}
+
 /// Goes from the solution without rebound toward the one with it as far as contacts, limits and loops together give no
-/// energy: with several at once, Newton's law may.
-void Rebounds::settle() {
+/// energy: with several at once, Newton's law may, and what rotates comes to the row at another speed than the one that
+/// it had as the sub-step began.
+void Rebounds::settle(double h) {
   read_rates(rates_);
   read_impulses(impulses_);
   const auto gained = [&](double share) {
@@ -87,7 +100,7 @@ void Rebounds::settle() {
       const double rate = plain_rates_[i] + share * (rates_[i] - plain_rates_[i]);
       sum += 0.5 * impulse * (free_rates_[i] + rate);
     }
-    return sum;
+    return sum + lifted(share, h);
   };
   const double least = gained(0), full = gained(1);
   if (!(full > std::max(least, 0.0))) return;

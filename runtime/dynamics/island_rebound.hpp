@@ -14,12 +14,13 @@ class Rebounds {
   void note_free() { read_rates(free_rates_); }
   /// After the rows were solved without rebound: asks for it, from the velocities before.
   void ask();
-  /// After they were solved with it.
-  void settle();
+  /// After they were solved with it, for a sub-step of h seconds.
+  void settle(double h);
 
  private:
   void read_rates(std::pmr::vector<double>& rates) const;
   void read_impulses(std::pmr::vector<double>& impulses) const;
+  double lifted(double share, double h) const;
   void mix(double share);
 
   State& state_;

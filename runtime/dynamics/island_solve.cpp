@@ -15,11 +15,11 @@ void Solver::solve_after(double h) {
   if (rows_.empty()) return;
   const bool rebounds = contacts_.spent() && rebounds_.find(h);
   if (rebounds) rebounds_.note_free();
-  rebounds ? solve_rebounding() : solve_rows();
+  rebounds ? solve_rebounding(h) : solve_rows();
   if (!shorten_couples(h)) return;
   state_.reset_velocities();
   rows_.set_biases(h);
-  rebounds ? solve_rebounding() : solve_rows();
+  rebounds ? solve_rebounding(h) : solve_rows();
 }
 
 /// Velocities as they were without what was predicted, and the impulses at which the solution begins.
@@ -66,11 +66,11 @@ double Solver::follow_arms(double h) {
 }
 
 /// Without rebound, then with it.
-void Solver::solve_rebounding() {
+void Solver::solve_rebounding(double h) {
   solve_rows();
   rebounds_.ask();
   solve_rows();
-  rebounds_.settle();
+  rebounds_.settle(h);
 }
 
 void Solver::solve_rows() {

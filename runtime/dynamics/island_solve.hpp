@@ -28,7 +28,7 @@ class Solver {
   void bound_motors(double h);
   bool shorten_couples(double h);
   void solve_rows();
-  void solve_rebounding();
+  void solve_rebounding(double h);
 
   State& state_;
   Contacts& contacts_;

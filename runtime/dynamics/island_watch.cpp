@@ -47,9 +47,7 @@ BodyIndex Watch::not_finite() const {
 Trouble Watch::judge(double residual, double turnover, double before) const {
   const double most = state_.accuracy.rung == Rung::Fast ? kResidualFast : kResidual;
   // What lies still is put right by round-off of its solution, and no other energy is converted.
-  double still = weight(state_);
-  for (const Free& one : state_.loose_bodies())
-    still += one.now.solid->mass * state_.shape(one.body).bounding_radius() * state_.core.settings.gravity.norm();
+  const double still = weight(state_) + free_weight(state_);
   if (!(residual > most * turnover + kTiny * std::abs(before) + kLying * still)) return {};
   return {true, GuardReason::Residual, residual, state_.any_body()};
 }

@@ -372,6 +372,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   double motion_of(const FlatBody& flat) const;
   double energy_of(BodyIndex body) const;
   void end_ledger(double dt);
+  double take_back(FlatBody& flat, double given);
   Energy energy() const;
   double springs_energy() const;
   double joint_rate(const FlatJoint& joint) const;

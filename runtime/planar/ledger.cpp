@@ -116,6 +116,23 @@ double Planar::Core::motor_work(const FlatJoint& joint, double dt) const {
   return strength * dt * (joint.rate + joint_rate(joint)) / 2 * settings.unit * settings.unit;
 }
 
+/// A body that flies and meets only what does not move may rotate far in the sub-step in which it does, and rebounds
+/// from where it was as that began: energy that contacts gave it is taken from its motion.
+/// @param given  J
+/// @return       J, that this took
+double Planar::Core::take_back(FlatBody& flat, double given) {
+  constexpr double kFlies = 4;  // times that energy: what lies has hardly any
+  if (!(given > 0) || flat.jointed || flat.pulled || flat.driven || !flat.b2->IsAwake()) return 0;
+  const double has = motion_of(flat);
+  if (!(has > kFlies * given)) return 0;
+  for (const b2ContactEdge* edge = flat.b2->GetContactList(); edge; edge = edge->next)
+    if (edge->contact->IsTouching() && !(of(edge->other).fixed && !of(edge->other).driven)) return 0;
+  const auto left = static_cast<float>(std::sqrt(1 - given / has));
+  flat.b2->SetLinearVelocity(left * flat.b2->GetLinearVelocity());
+  flat.b2->SetAngularVelocity(left * flat.b2->GetAngularVelocity());
+  return given;
+}
+
 /// Gives back what was taken off, and writes down what the sub-step did.
 void Planar::Core::end_ledger(double dt) {
   const double u = settings.unit;
@@ -140,8 +157,10 @@ void Planar::Core::end_ledger(double dt) {
     const Vector2 change(u * (double{v.x} - flat.before.x), u * (double{v.y} - flat.before.y));
     const Vector2 force = flat.force + flat.asked;
     // Gravity works along the way that the body was moved, which is not the mean velocity's where something struck.
-    held_back += (m * change - dt * (force + flat.pull)).dot(sum) / 2 - dt * u * m * gravity.dot(vector_of(moved_by)) +
-                 (flat.mass.inertia(2, 2) * (w - flat.before_spin) - dt * (flat.torque + flat.twist)) * spins / 2;
+    const double held =
+        (m * change - dt * (force + flat.pull)).dot(sum) / 2 - dt * u * m * gravity.dot(vector_of(moved_by)) +
+        (flat.mass.inertia(2, 2) * (w - flat.before_spin) - dt * (flat.torque + flat.twist)) * spins / 2;
+    held_back += held - take_back(flat, held);
     if (flat.has_force || flat.asked != Vector2::Zero()) forced += dt * (force.dot(sum) + flat.torque * spins) / 2;
   }
   if (!std::isfinite(held_back)) {  // nor is any other work of this sub-step
