@@ -113,8 +113,8 @@ void Guard::undo_rise_of_free_bodies(Rung rung) {
   const double risen = balance_.risen();
   if (state_.drivers > 0 || !state_.networks.empty() || !(risen > kStill * free_weight(state_))) return;
   const Common common = momentum_.common_of_free_bodies();
-  const double taken = common.inner > kFlies * risen ? risen : std::min(risen, kFew * common.inner);
-  if (taken > 0) momentum_.slow_free_bodies(common, taken);
+  if (!(common.inner > 0) || !std::isfinite(common.inner)) return;
+  momentum_.slow_free_bodies(common, common.inner > kFlies * risen ? risen : std::min(risen, kFew * common.inner));
 }
 
 /// A step of articulated bodies whose energy does not add up is taken again in 2, 4, 8, ... parts: what rotates far in

@@ -178,7 +178,8 @@ Common Momentum::common_of_free_bodies() const {
   common.velocity = momentum / mass;
   common.spin = inertia.ldlt().solve(spin);
   common.energy = 0.5 * (momentum.dot(common.velocity) + spin.dot(common.spin));
-  common.inner -= common.energy;
+  // Bodies of the largest numbers have nothing that could be taken without making others of them.
+  common.inner = std::isfinite(common.energy) ? common.inner - common.energy : 0;
   return common;
 }
 
