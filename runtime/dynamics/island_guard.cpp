@@ -106,12 +106,13 @@ void Guard::undo_rise(Rung rung) {
 
 /// The same on `fast` and `balanced` for bodies without joints, which may rotate far in a sub-step while they touch.
 /// What flies or rolls pays for all of it; what lies has hardly any motion, and was put right where it overlapped.
-/// Springs store, and what scripts move gives energy.
+/// What scripts move gives energy, and springs whose bodies nothing touches err on their own.
 void Guard::undo_rise_of_free_bodies(Rung rung) {
   constexpr double kFlies = 4;  // times the rise
   if (rung != Rung::Fast && rung != Rung::Balanced) return;
   const double risen = balance_.risen();
-  if (state_.drivers > 0 || !state_.networks.empty() || !(risen > kStill * free_weight(state_))) return;
+  if (state_.drivers > 0 || !(risen > kStill * free_weight(state_))) return;
+  if (!state_.networks.empty() && !momentum_.touched_from_outside()) return;
   const Common common = momentum_.common_of_free_bodies();
   if (!(common.inner > 0) || !std::isfinite(common.inner)) return;
   momentum_.slow_free_bodies(common, common.inner > kFlies * risen ? risen : std::min(risen, kFew * common.inner));
