@@ -146,22 +146,30 @@ void CollisionStage::deliver_impact(const Substep& substep, const Impact& impact
   ++counters_.reports;
   log_.clear();
   bodies_->set_log(&log_);
-  substep.client.touched(proxies_[impact.a].body, proxies_[impact.b].body, impact.contact, substep.start + impact.time);
+  try {
+    substep.client.touched(proxies_[impact.a].body, proxies_[impact.b].body, impact.contact,
+                           substep.start + impact.time);
+  } catch (...) {
+    bodies_->set_log(nullptr);
+    // The step ends here, and nobody else knows that the two were elsewhere for a moment.
+    for (int i = 0; i < 2; ++i) stays_on_path(ends[i], shown[i]);
+    throw;
+  }
   bodies_->set_log(nullptr);
   for (int i = 0; i < 2; ++i) {
-    if (proxies_[ends[i]].body != kNoBody) go_on(substep, ends[i], shown[i], impact.time);
+    if (proxies_[ends[i]].body != kNoBody && !stays_on_path(ends[i], shown[i])) restart(substep, ends[i], impact.time);
   }
   changed_by_others(substep, impact.a, impact.b, impact.time);
 }
 
-void CollisionStage::go_on(const Substep& substep, ProxyIndex index, const BodyState& shown, double time) {
+/// After a handler: a body that nobody touched moves exactly as it would have, to the end of the sub-step.
+/// @param shown  as the handler saw it
+/// @return       whether it is one
+bool CollisionStage::stays_on_path(ProxyIndex index, const BodyState& shown) {
   const Proxy& proxy = proxies_[index];
-  if (same(bodies_->state(proxy.body), shown)) {
-    // Nobody touched it: its motion is exactly what it would have been.
-    if (proxy.path != kNoPath) place(proxy.body, paths_[proxy.path].to);
-    return;
-  }
-  restart(substep, index, time);
+  if (proxy.body == kNoBody || !same(bodies_->state(proxy.body), shown)) return false;
+  if (proxy.path != kNoPath) place(proxy.body, paths_[proxy.path].to);
+  return true;
 }
 
 void CollisionStage::changed_by_others(const Substep& substep, ProxyIndex a, ProxyIndex b, double time) {

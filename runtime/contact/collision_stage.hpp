@@ -137,7 +137,7 @@ class CollisionStage {
   void seek_impact(const Substep& substep, Pair& pair, double from);
   void run_impacts(const Substep& substep);
   void deliver_impact(const Substep& substep, const Impact& impact);
-  void go_on(const Substep& substep, ProxyIndex index, const BodyState& shown, double time);
+  bool stays_on_path(ProxyIndex index, const BodyState& shown);
   void changed_by_others(const Substep& substep, ProxyIndex a, ProxyIndex b, double time);
   void restart(const Substep& substep, ProxyIndex index, double time);
   void report_lasting(const Substep& substep);
