@@ -92,8 +92,9 @@ bool Guard::unpayable(double owed) const {
 }
 
 /// Contacts have an error that may have the same sign in each step, as of a body that rotates on its edge. A rise of
-/// energy that is too small to try the step again is taken back from what moves: on `fast` any, on the other rungs that
-/// of articulated bodies which something outside touches. On these two rungs so is one that no finer sub-steps mended.
+/// energy of articulated bodies that is too small to try the step again is taken back from what moves: on `fast` any,
+/// on the other rungs that of bodies which something outside touches. So is, on `fast` and `balanced`, one that no
+/// finer sub-steps mended.
 void Guard::undo_rise(Rung rung) {
   if (state_.trees.empty()) return undo_rise_of_free_bodies(rung);
   const double all = momentum_.moving(), risen = balance_.risen();

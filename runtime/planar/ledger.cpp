@@ -122,7 +122,7 @@ double Planar::Core::motor_work(const FlatJoint& joint, double dt) const {
 /// @return       J, that this took
 double Planar::Core::take_back(FlatBody& flat, double given) {
   constexpr double kFlies = 4;  // times that energy: what lies has hardly any
-  if (!(given > 0) || flat.jointed || flat.pulled || flat.driven || !flat.b2->IsAwake()) return 0;
+  if (!(given > 0) || flat.jointed || flat.pulled || !flat.b2->IsAwake()) return 0;
   const double has = motion_of(flat);
   if (!(has > kFlies * given)) return 0;
   for (const b2ContactEdge* edge = flat.b2->GetContactList(); edge; edge = edge->next)
@@ -133,7 +133,7 @@ double Planar::Core::take_back(FlatBody& flat, double given) {
   return given;
 }
 
-/// Gives back what was taken off, and writes down what the sub-step did.
+/// Gives back what was taken off, takes back what contacts gave, and writes down what the sub-step did.
 void Planar::Core::end_ledger(double dt) {
   const double u = settings.unit;
   const Vector2 gravity = settings.gravity.head<2>();

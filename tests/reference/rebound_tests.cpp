@@ -12,7 +12,7 @@
 namespace breve::reference {
 namespace {
 
-/// The largest rise of energy above what it once was.
+/// The largest rise of the energy above the lowest that it was before, J.
 struct Rise {
   double low, most = 0;
   explicit Rise(const World& world) : low(world.mechanical()) {}
@@ -23,7 +23,8 @@ struct Rise {
   }
 };
 
-/// A box dropped askew on a floor without friction: each impact makes it rotate, up to a radian in a step.
+/// A box dropped askew on a floor without friction: each impact makes it rotate, up to a radian in a step. Returns its
+/// largest rise as a part of the height that it falls from.
 double drop_askew(breve_rung rung, double rebound, double height) {
   World world(1.0 / 60, rung);
   const breve_object floor = world.fixed(box(Vector3(50, 2, 50), 1), Vector3(0, -1, 0));
@@ -77,7 +78,8 @@ void tie(World& world, Chance& chance, breve_object from, breve_object to) {
   world.must(breve_spring_create(world.get(), &spring, &made));
 }
 
-/// Up to five bodies that are thrown on a floor, or into a shaft with walls that may lean. As a part of their energy.
+/// Up to five bodies that are thrown on a floor, or into a shaft with walls that may lean. Returns their largest rise
+/// as a part of their energy at the start.
 double throw_some(breve_rung rung, std::uint32_t dimension, Springs springs, std::uint32_t seed) {
   Chance chance{std::mt19937(seed)};
   const bool flat = dimension == 2;
@@ -99,8 +101,10 @@ double throw_some(breve_rung rung, std::uint32_t dimension, Springs springs, std
   const int count = 1 + static_cast<int>(chance.random() % 5);
   breve_object last{};
   for (int i = 0; i < count; ++i) {
-    const Vector3 at(chance.between(-0.4, 0.4), 0.6 + 1.2 * i, chance.between(-0.4, 0.4));
-    const Quaternion turned(Eigen::AngleAxisd(chance.between(0, 3), axis(chance.vector(1))));
+    const double z = chance.between(-0.4, 0.4),
+                 x = chance.between(-0.4, 0.4);  // one after the other: the same everywhere
+    const Vector3 at(x, 0.6 + 1.2 * i, z), about = axis(chance.vector(1));
+    const Quaternion turned(Eigen::AngleAxisd(chance.between(0, 3), about));
     const breve_object body = world.body(any_solid(chance, flat), in_space(at), turned);
     world.set_material(body, material);
     world.set_velocity(body, in_space(chance.vector(3)));
