@@ -272,6 +272,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   void take_sub_step(double dt, int count, double left);
   double plan_pieces(double dt, int count);
   void rush(double left);
+  void step_box2d(float dt, int iterations);
   void step(double dt, bool bounce = true);
   void end_cuts(double dt);
   void end_cut_short();
@@ -307,7 +308,6 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   void order_bodies();
   void order_slots();
   void order_joints();
-  void make_room(double dt);
   void make_contacts();
   void list_places(BodyIndex body, std::pmr::vector<Place>& places) const;
   void order_contacts();

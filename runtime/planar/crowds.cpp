@@ -4,6 +4,7 @@
 
 #include "runtime/base/error.hpp"
 #include "runtime/planar/core.hpp"
+#include "runtime/planar/doors.hpp"
 
 namespace breve {
 
@@ -16,7 +17,7 @@ class Overlaps : public b2QueryCallback {
   Overlaps(Planar::Core& core, FlatBody& self) : core_(core), self_(self) {
     for (b2Fixture* fixture = self.b2->GetFixtureList(); fixture; fixture = fixture->GetNext())
       for (int32 child = 0; child < fixture->GetShape()->GetChildCount(); ++child)
-        core.b2->QueryAABB(this, fixture->GetAABB(child));
+        core.b2->QueryAABB(this, roomy_box(*core.b2, *fixture, child));
   }
   bool ReportFixture(b2Fixture* fixture) override {
     FlatBody* other = core_.find(core_.of(fixture->GetBody()).body);

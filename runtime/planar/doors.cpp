@@ -24,6 +24,8 @@ std::uint32_t& flags(b2Contact& contact);
 std::uint32_t touching_flag();
 b2Body*& first_body(b2World& world);
 float& inverse_of_last_step(b2World& world);
+bool step_is_complete(const b2World& world);
+void solve_times_of_impact(b2World& world, const b2TimeStep& step);
 b2DynamicTree& tree(b2BroadPhase& phase);
 b2TreeNode* nodes(b2DynamicTree& tree);
 void take_leaf(b2DynamicTree& tree, int leaf);
@@ -58,12 +60,14 @@ struct ContactDoor {
 };
 template struct ContactDoor<&b2Contact::m_prev, &b2Contact::m_next, &b2Contact::m_flags, b2Contact::e_touchingFlag>;
 
-template <auto Bodies, auto Step>
+template <auto Bodies, auto Step, auto Complete, auto Impacts>
 struct WorldDoor {
   friend b2Body*& first_body(b2World& world) { return world.*Bodies; }
   friend float& inverse_of_last_step(b2World& world) { return world.*Step; }
+  friend bool step_is_complete(const b2World& world) { return world.*Complete; }
+  friend void solve_times_of_impact(b2World& world, const b2TimeStep& step) { (world.*Impacts)(step); }
 };
-template struct WorldDoor<&b2World::m_bodyList, &b2World::m_inv_dt0>;
+template struct WorldDoor<&b2World::m_bodyList, &b2World::m_inv_dt0, &b2World::m_stepComplete, &b2World::SolveTOI>;
 
 template <auto Tree>
 struct PhaseDoor {
@@ -116,6 +120,14 @@ void set_length_of_last_step(b2World& world, float length) {
   inverse_of_last_step(world) = length > 0 ? 1.0F / length : 0.0F;
 }
 
+bool solve_impacts(b2World& world, float length, int iterations) {
+  b2TimeStep step{};
+  step.dt = length;
+  step.velocityIterations = iterations;
+  solve_times_of_impact(world, step);
+  return step_is_complete(world);
+}
+
 const b2AABB& roomy_box(const b2World& world, const b2Fixture& fixture, int child) {
   return world.GetContactManager().m_broadPhase.GetFatAABB(proxies(const_cast<b2Fixture&>(fixture))[child].proxyId);
 }
@@ -126,10 +138,6 @@ void set_roomy_box(b2World& world, b2Fixture& fixture, int child, const b2AABB& 
   take_leaf(all, leaf);
   nodes(all)[leaf].aabb = box;
   insert_leaf(all, leaf);
-}
-
-void move_roomy_box(b2World& world, b2Fixture& fixture, const b2AABB& box, const b2Vec2& way) {
-  manager_of(world).m_broadPhase.MoveProxy(proxies(fixture)[0].proxyId, box, way);
 }
 
 void find_near(b2World& world, std::pmr::vector<NearShapes>& found) {

@@ -25,12 +25,16 @@ void set_sweep(b2Body& body, const b2Vec2& center, const b2Vec2& center_before, 
 /// s, the length of the step that the impulses of contacts and joints are of: Box2D scales them to the next one's.
 void set_length_of_last_step(b2World& world, float length);
 
+/// The rest of a step of a world whose SetContinuousPhysics() is false: what would pass through another shape is moved
+/// back to their impact. Where SetSubStepping() is true it solves one impact; call it until none is left.
+/// @param length      s, of the step
+/// @param iterations  of velocities
+/// Returns whether no impact is left.
+bool solve_impacts(b2World& world, float length, int iterations);
+
 /// The roomy box in which Box2D looks for what is near a shape: the fixture's, or that of one edge of a profile.
 const b2AABB& roomy_box(const b2World& world, const b2Fixture& fixture, int child);
 void set_roomy_box(b2World& world, b2Fixture& fixture, int child, const b2AABB& box);
-
-/// Moves the roomy box of a shape to where the shape is about to be, as a step does at its end.
-void move_roomy_box(b2World& world, b2Fixture& fixture, const b2AABB& box, const b2Vec2& way);
 
 /// Two shapes, or edges of profiles, whose roomy boxes meet.
 struct NearShapes {

@@ -59,6 +59,8 @@ void Planar::Core::make_world() {
   b2 = std::make_unique<b2World>(b2Vec2(0, 0));
   b2->SetContactListener(this);
   b2->SetContactFilter(this);
+  b2->SetContinuousPhysics(false);  // step_box2d() solves impacts itself
+  b2->SetSubStepping(true);
   b2BodyDef def;
   ground = b2->CreateBody(&def);
   members_changed = true;

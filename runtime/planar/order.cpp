@@ -94,29 +94,6 @@ void Planar::Core::order_joints() {
   }
 }
 
-/// Makes room for the coming dt where a fast body leaves its roomy box: Box2D does so at the end of a step, and what it
-/// finds then it solves at once if it would pass through, in the order in which its tree gave it.
-void Planar::Core::make_room(double dt) {
-  constexpr float kSlow = 0.5F * b2_aabbExtension;  // has a contact before it touches
-  const auto h = static_cast<float>(dt);
-  for (const FlatBody& flat : slots) {
-    if (flat.body == kNoBody || flat.fixed || flat.set_apart || !flat.b2->IsAwake()) continue;
-    const b2Vec2 way = h * (flat.b2->GetLinearVelocity() + h * b2->GetGravity());
-    const float rotation = std::min(std::abs(h * flat.b2->GetAngularVelocity()), 2.0F);
-    if (way.LengthSquared() < kSlow * kSlow && rotation < kSlow) continue;
-    for (b2Fixture* fixture = flat.b2->GetFixtureList(); fixture; fixture = fixture->GetNext()) {
-      b2AABB box;
-      fixture->GetShape()->ComputeAABB(&box, flat.b2->GetTransform(), 0);
-      const float reach = rotation * b2Max(b2Distance(box.lowerBound, flat.b2->GetWorldCenter()),
-                                           b2Distance(box.upperBound, flat.b2->GetWorldCenter()));
-      box.lowerBound += b2Min(way, b2Vec2(0, 0)) - b2Vec2(reach, reach);
-      box.upperBound += b2Max(way, b2Vec2(0, 0)) + b2Vec2(reach, reach);
-      // The guard takes care of a body whose numbers are not finite.
-      if (box.IsValid() && !roomy_box(*b2, *fixture, 0).Contains(box)) move_roomy_box(*b2, *fixture, box, way);
-    }
-  }
-}
-
 /// Makes the contacts of what has come near. Of many the last first: so they are in their order in Box2D's list, which
 /// begins with the newest, and in its memory.
 void Planar::Core::make_contacts() {

@@ -358,19 +358,36 @@ void Planar::Core::end_cuts(double dt) {
   last_step = whole;
 }
 
+/// A step of Box2D. What came near in it, it would solve in the order in which its tree gave it, at impacts that it
+/// moves bodies back to: so these are taken one by one, and new contacts are put where they belong before each.
+void Planar::Core::step_box2d(float dt, int iterations) {
+  stepping = true;
+  b2->Step(dt, iterations, position_iterations());
+  const auto order_fresh = [this] {
+    if (fresh_contacts > 0) order_contacts();
+  };
+  try {
+    do order_fresh();
+    while (!solve_impacts(*b2, dt, iterations));
+  } catch (...) {
+    b2->SetSubStepping(false);  // it would go on with this step's impacts in the next
+    solve_impacts(*b2, dt, iterations);
+    b2->SetSubStepping(true);
+    throw;
+  }
+  stepping = false;
+}
+
 void Planar::Core::step(double dt, bool bounce) {
   start_warm(dt);
   apply_forces(dt);
   set_stops(bounce);
   resist_rolling(dt);
   kick(dt);
-  make_room(dt);
   make_contacts();
-  stepping = true;
   const int iterations = iterations_now();
   set_length_of_last_step(*b2, last_step);
-  b2->Step(static_cast<float>(dt), iterations, position_iterations());
-  stepping = false;
+  step_box2d(static_cast<float>(dt), iterations);
   settle_landings(dt);
   end_ledger(dt);
   constexpr double kTooShort = 0.1;  // of a sub-step: single precision tells nothing of what changed in it

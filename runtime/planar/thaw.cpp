@@ -97,7 +97,6 @@ void Planar::Core::thaw_joints() {
 }
 
 void Planar::Core::thaw_contacts() {
-  b2->SetContinuousPhysics(true);
   thawing = true;
   for (const FrozenContact& one : frozen->contacts) {
     b2Fixture* a = fixture_of(one.key.a, one.key.fixture_a, one.key.child_a);
