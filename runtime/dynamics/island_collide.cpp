@@ -20,7 +20,7 @@ void Impacts::meet(MechanicsClient* client, const Event& event, double moment, d
   } else {
     rebound(static_cast<std::size_t>(event.bound), moment);
   }
-  collide(moment);
+  collide(moment, event);
 }
 
 /// A joint that since it last came did not get further from its limit than what counts as resting there stays: so that
@@ -93,15 +93,27 @@ void Impacts::note_rebounds(double time) {
   }
 }
 
-void Impacts::collide(double time) {
+/// A pair that does not collide although its event came at once stays for the rest of the step: as it is seen, it
+/// approaches nowhere, and the same event would come again.
+void Impacts::end_stall(const Event& met) {
+  if (met.pair < 0 || !met.at_once) return;
+  const auto pair = static_cast<std::uint32_t>(met.pair);
+  for (std::size_t i = 0; i < rows_.contacts(); ++i)
+    if (const auto& contact = rows_.contact(i); contact.touch.pair == pair && !contact.row.impulse.isZero(0)) return;
+  contacts_.rebound_of_pair(pair).stays = true;
+}
+
+void Impacts::collide(double time, const Event& met) {
   state_.place();
   find_met(time);
+  if (met.pair >= 0) contacts_.add_nearest(static_cast<std::size_t>(met.pair));
   find_returned(time);
   rows_.make(Rows::Motors::Leave);
   state_.load_velocities();
   rows_.read_rates();
   resolve();
   note_rebounds(time);
+  end_stall(met);
   rows_.book();
   state_.store_velocities();
   if (momentum_.pushes_itself()) {

@@ -158,13 +158,18 @@ bool Contacts::find_missed(double h) {
   return any;
 }
 
+/// The end of the touches of a pair.
+std::pmr::vector<Touch>::const_iterator Contacts::end_of(std::size_t pair) const {
+  return std::upper_bound(touches_.begin(), touches_.end(), pair,
+                          [](std::size_t index, const Touch& touch) { return index < touch.pair; });
+}
+
 /// Where the sub-step began. What overlapped then was seen, or is pushed apart.
 bool Contacts::add_missed(std::size_t pair, const Manifold& manifold, const ContactPoint& point) {
   const NearPair& is = *state_.pairs[pair];
   const double least = kMissed * state_.size_of_pair(is);
   if (point.distance > -least) return false;
-  const auto after = std::upper_bound(touches_.begin(), touches_.end(), pair,
-                                      [](std::size_t index, const Touch& touch) { return index < touch.pair; });
+  const auto after = end_of(pair);
   for (auto other = after; other != touches_.begin() && std::prev(other)->pair == pair; --other)
     if (std::prev(other)->feature == point.feature) return false;
   const auto& [a, b] = seen_[pair];
@@ -247,6 +252,26 @@ void Contacts::find_touches_now() {
         touches_.push_back(touch_at(i, pa, pb, manifold, point));
       }
   }
+}
+
+void Contacts::add_nearest(std::size_t pair) {
+  const NearPair& is = *state_.pairs[pair];
+  if (is.spring.stiffness > 0) return;
+  const auto approaches = [&](const Vector3& normal, const Vector3& point) {
+    return normal.dot(state_.point_velocity(is.a, point) - state_.point_velocity(is.b, point)) < 0;
+  };
+  const auto after = end_of(pair);
+  for (auto other = after; other != touches_.begin() && std::prev(other)->pair == pair; --other)
+    if (approaches(std::prev(other)->normal, std::prev(other)->point)) return;
+  const Pose a = state_.pose_of(is.a), b = state_.pose_of(is.b);
+  const Contact nearest = closest(state_.shape(is.a), a, state_.shape(is.b), b);
+  if (!approaches(nearest.normal, nearest.point)) return;
+  Manifold manifold;
+  manifold.normal = nearest.normal;
+  ContactPoint point;
+  point.on_a = point.on_b = nearest.point;
+  point.distance = nearest.distance;
+  touches_.insert(after, touch_at(pair, a, b, manifold, point));
 }
 
 /// How fast what rests falls in a sub-step, as the rate of a joint: twice that of a free link's rim, m/s or rad/s.

@@ -66,6 +66,9 @@ class Contacts {
   /// @param speculative  no impact is located any more: rows are to stop whatever comes within h seconds
   void find_touches(double h, bool speculative);
   void find_touches_now();
+  /// Where the nearest points of a pair approach and none of its points that touch do: those of facets in one patch
+  /// have one normal, which is not that of each facet. The nearest points are then also a touch.
+  void add_nearest(std::size_t pair);
   /// After a sub-step of h seconds that was looked at speculatively, with the links placed: makes contacts of points
   /// that overlap and that no row held apart. A body that is struck may come down elsewhere, where nothing approached.
   /// @return  whether there are some
@@ -100,6 +103,7 @@ class Contacts {
   Role role(std::size_t pair) const { return roles_[pair]; }
   double depth(std::size_t pair) const { return depths_[pair]; }  // m, of overlap when the sub-step began
   Rebound& rebound_of(std::size_t bound) { return rebounds_[bound]; }
+  Rebound& rebound_of_pair(std::size_t pair) { return pair_rebounds_[pair]; }
   Rebound& rebound_of(const Touch& touch) { return pair_rebounds_[touch.pair]; }
   const Rebound& rebound_of(const Touch& touch) const { return pair_rebounds_[touch.pair]; }
   /// m/s: slower than this is at rest, in a sub-step of this length.
@@ -124,6 +128,7 @@ class Contacts {
   void note_seen(bool speculative);
   Seen seen(BodyIndex body) const;
   bool deflected(const std::array<Seen, 2>& before, const NearPair& pair, double h) const;
+  std::pmr::vector<Touch>::const_iterator end_of(std::size_t pair) const;
   bool add_missed(std::size_t pair, const Manifold& manifold, const ContactPoint& point);
   double falling(const JointEntry& joint) const;
 

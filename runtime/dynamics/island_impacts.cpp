@@ -66,8 +66,7 @@ void Impacts::seek_pairs(double h) {
     const NearPair& pair = *state_.pairs[i];
     const Shape &a = state_.shape(pair.a), &b = state_.shape(pair.b);
     const Pose a1 = state_.pose_of(pair.a), b1 = state_.pose_of(pair.b);
-    const double depth = contacts_.depth(i);
-    double moment = h;
+    double depth = contacts_.depth(i), moment = h;
     bool hit = false, apart = false;
     if (role == Role::Far) {
       Contact contact;
@@ -78,8 +77,14 @@ void Impacts::seek_pairs(double h) {
     if (!hit && !apart) {
       // It left and came back, or its path bends.
       Contact contact;
-      hit = closest_within(a, a1, b, b1, -depth, contact) && contact.distance < -depth;
+      const auto deeper = [&] { return contact.distance < -depth; };
+      hit = closest_within(a, a1, b, b1, -depth, contact) && deeper();
       moment = h;
+      if (hit) {
+        // Contact points of round solids and facets are not always as deep as the nearest points.
+        depth = std::max(depth, -closest(a, start_poses_[i].a, b, start_poses_[i].b).distance);
+        hit = deeper();
+      }
     }
     Event light;
     if (hit)
@@ -232,6 +237,7 @@ void Impacts::refine(double time, Event& event, double h) {
     now.time = next;
   }
   event.time = now.time;
+  event.at_once = low == 0;
 }
 
 void Impacts::locate(double time, Event& event, double h) {

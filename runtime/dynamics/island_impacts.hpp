@@ -10,8 +10,9 @@ namespace breve::island {
 struct Event {
   double time = 0;                        // s after the start of the sub-step
   int pair = -1, bound = -1, point = -1;  // the last of a spring
-  double depth = 0;  // m or rad, of overlap when the sub-step began: it is an event if it gets deeper
-  double until = 0;  // s, likewise, when it is deepest, if that is over before the sub-step ends; 0: it is not
+  double depth = 0;      // m or rad, of overlap when the sub-step began: it is an event if it gets deeper
+  double until = 0;      // s, likewise, when it is deepest, if that is over before the sub-step ends; 0: it is not
+  bool at_once = false;  // it had not been seen before it happened, in the sub-step
   bool found() const { return pair >= 0 || bound >= 0 || point >= 0; }
 };
 
@@ -29,7 +30,8 @@ class Impacts {
   /// The moment of an event has come: calls the handler first, then applies the impulses.
   void meet(MechanicsClient* client, const Event& event, double moment, double left);
   /// Everything that touches now collides, whatever its speed.
-  void collide(double time);
+  /// @param met  an event that has come, or none
+  void collide(double time, const Event& met = {});
 
  private:
   // island_impacts.cpp
@@ -48,6 +50,7 @@ class Impacts {
   void find_met(double time);
   void find_returned(double time);
   void note_rebounds(double time);
+  void end_stall(const Event& met);
   void rebound(std::size_t bound, double time);
   void resolve();
 

@@ -88,9 +88,13 @@ Trouble Watch::fastest_rotation(double h) const {
   const auto look = [&worst, h](double spin, BodyIndex body) {
     if (spin * h > worst.value) worst.value = spin * h, worst.body = body;
   };
-  // The rotation of a round body is exact, and a scheme with step control takes what steps it needs.
+  // The rotation of a body whose inertia is that of a ball is exact, and a scheme with step control takes what steps it
+  // needs. But contacts see where corners are only as a sub-step begins.
+  const auto exact = [this](const Free& one) {
+    return one.now.solid->round && (state_.pairs.empty() || state_.shape(one.body).kind() == ShapeKind::Sphere);
+  };
   for (const Free& one : state_.free_bodies)
-    if (!one.now.solid->round && (state_.accuracy.implicit_spin || !controlled(state_.accuracy.scheme)))
+    if (!exact(one) && (state_.accuracy.implicit_spin || !controlled(state_.accuracy.scheme)))
       look(one.now.spin.norm(), one.body);
   if (controlled(state_.accuracy.scheme)) return worst;
   for (const Clustered& one : state_.clusters) {

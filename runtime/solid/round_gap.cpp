@@ -12,11 +12,10 @@ namespace breve {
 
 namespace {
 
-constexpr double kLift = 1e-2;         // of the smaller radius: how far apart the solids are held while climbing
-constexpr double kShrink = 0.2;        // of a core: a shallower overlap shows its normal when the core is made smaller
-constexpr double kLineSlope = 1e-2;    // sine below which a side faces the other solid as a line
-constexpr double kSameNormal = 1e-14;  // change below which a normal has settled
-constexpr double kTold = 1e-10;        // of the sizes: nearest points that are closer do not tell a direction
+constexpr double kLift = 1e-2;       // of the smaller radius: how far apart the solids are held while climbing
+constexpr double kShrink = 0.2;      // of a core: a shallower overlap shows its normal when the core is made smaller
+constexpr double kLineSlope = 1e-2;  // sine below which a side faces the other solid as a line
+constexpr double kTold = 1e-10;      // of the sizes: nearest points that are closer do not tell a direction
 constexpr int kMostClimbs = 60;
 
 /// How far apart two solids are along a normal from b toward a.
@@ -161,22 +160,24 @@ Vector3 rough_normal(const Placed& a, const Placed& b) {
   return product.norm() > kLineSlope ? Vector3(product.normalized()) : Vector3(a.rotation.col((a.round.axis + 1) % 3));
 }
 
-/// Climb to the normal next to `gap.normal` along which the solids are farthest apart.
+/// Climb to the normal next to `gap.normal` along which the solids are farthest apart, until that is so but for the
+/// round-off of nearest points.
 void climb(const Placed& a, const Placed& b, Gap& gap) {
   const double lift_to = kLift * std::min(a.radius, b.radius), margin = a.round.margin() + b.round.margin();
+  gap.distance = separation(a, b, gap.normal);
   Vector3 normal = gap.normal;
+  double distance = gap.distance;
   for (int i = 0; i < kMostClimbs; ++i) {
-    const double lift = lift_to - separation(a, b, normal) - margin;
+    const double lift = lift_to - distance - margin;
     Gap apart;
     if (!separated(a, moved(b, -lift * normal), apart)) break;
+    distance = separation(a, b, apart.normal);
+    if (i > 0 && distance <= gap.distance) break;
     gap.on_a = apart.on_a - a.round.margin() * apart.normal;
     gap.on_b = apart.on_b + lift * normal + b.round.margin() * apart.normal;
-    const double change = (apart.normal - normal).norm();
-    normal = apart.normal;
-    if (change < kSameNormal) break;
+    gap.normal = normal = apart.normal;
+    gap.distance = distance;
   }
-  gap.normal = normal;
-  gap.distance = separation(a, b, normal);
 }
 
 /// The lines of sides that face the other solid; a gap has both edges or none.

@@ -5,23 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <random>
 
-#include "world.hpp"
+#include "thrown.hpp"
 
 namespace breve::reference {
 namespace {
-
-/// The largest rise of the energy above the lowest that it was before, J.
-struct Rise {
-  double low, most = 0;
-  explicit Rise(const World& world) : low(world.mechanical()) {}
-  void look(const World& world) {
-    const double now = world.mechanical();
-    low = std::min(low, now);
-    most = std::max(most, now - low);
-  }
-};
 
 /// A box dropped askew on a floor without friction: each impact makes it rotate, up to a radian in a step. Returns its
 /// largest rise as a part of the height that it falls from.
@@ -41,29 +29,6 @@ TEST(Rebounds, ABoxThatFallsAskewGainsNothing) {
     for (const double rebound : {0.5, 0.9, 0.97, 1.0})
       for (double height = 0.5; height < 8; height += 0.57)
         EXPECT_LE(drop_askew(rung, rebound, height), 1e-4) << rung << ": rebound " << rebound << " from " << height;
-}
-
-struct Chance {
-  std::mt19937 random;
-  double between(double low, double high) { return low + (high - low) * static_cast<double>(random()) / 4294967296.0; }
-  Vector3 vector(double most) { return Vector3{between(-most, most), between(-most, most), between(-most, most)}; }
-  bool one_in(std::uint32_t n) { return random() % n == 0; }
-};
-
-Solid any_solid(Chance& chance, bool flat) {
-  const double mass = std::exp(chance.between(-1.5, 1.5)), size = chance.between(0.15, 0.5);
-  const auto edge = [&] { return size * chance.between(0.3, 1); };
-  switch (chance.random() % 4) {
-    case 0: return sphere(0.5 * size, mass);
-    case 1: return box(Vector3{edge(), edge(), edge()}, mass);
-    default: break;
-  }
-  Solid solid;
-  solid.geometry.kind = flat || chance.one_in(2) ? BREVE_SHAPE_CAPSULE : BREVE_SHAPE_CYLINDER;
-  solid.geometry.radius = 0.3 * size;
-  solid.geometry.height = size;
-  solid.mass = mass;
-  return solid;
 }
 
 enum class Springs : bool { None, Some };
