@@ -139,7 +139,12 @@ void Impacts::resolve() {
   settings.rest.direct_share = solver_.direct_share();
   for (contact::Row& row : rows_.rows()) row.bias = 0, row.impulse = Vector3::Zero();
   for (contact::ScalarRow& row : rows_.scalars()) row.bias = 0, row.impulse = 0;
-  contact::resolve_impacts(rows_.movers(), rows_.rows(), rows_.laws(), rows_.scalars(), settings, rows_.workspace());
+  const auto resolve_all = [&] {
+    contact::resolve_impacts(rows_.movers(), rows_.rows(), rows_.laws(), rows_.scalars(), settings, rows_.workspace());
+  };
+  const double stopped = state_.drivers > 0 ? rows_.fastest() : 0;
+  resolve_all();
+  if (rows_.squeezed(stopped)) resolve_all();
 }
 
 }  // namespace breve::island

@@ -60,7 +60,7 @@ void Guard::step(MechanicsClient* client, double start, double h) {
   if (trouble.found) state_.intervene(trouble, GuardAction::Reported, start);
   trouble = refines ? take_in_parts(client, start, h) : take(client, start, h);
   // Where a handler may have been called there is no going back.
-  while (trouble.found && refines && !state_.calls_out() && attempt < kFinest && !state_.worn()) {
+  while (trouble.found && refines && !state_.calls_out() && attempt < finest(trouble) && !state_.worn()) {
     balance_.back_to_start();
     refine_from();
     trouble = take(client, start, h);
@@ -79,6 +79,11 @@ void Guard::step(MechanicsClient* client, double start, double h) {
   }
   if (attempt > 0 || state_.finished || followed.step != asked.step) state_.end_use(asked);
   if (trouble.found) give_in(trouble, undone, start, h);
+}
+
+/// How often a step is refined. What a script moves makes overlaps that no sub-step mends: one try tells.
+int Guard::finest(const Trouble& trouble) const {
+  return trouble.reason == GuardReason::Penetration && state_.drivers > 0 ? 1 : kFinest;
 }
 
 /// Contacts gave more than all that moved and worked, and than links may fall: positions are as wrong as velocities.
@@ -165,6 +170,7 @@ Trouble Guard::take_in_parts(MechanicsClient* client, double start, double h) {
 
 Trouble Guard::take(MechanicsClient* client, double start, double h) {
   const bool off = state_.core.settings.guard == GuardMode::Off;
+  state_.squeezed = false;
   overlaps_.begin_try();
   momentum_.begin_try();
   books_.begin_try();
@@ -185,7 +191,7 @@ Trouble Guard::take(MechanicsClient* client, double start, double h) {
   residual_ = residual;
   allowed_ = watch_.tolerated(turnover, h) + kTiny * std::abs(before) + kStill * weight(state_);
   if (off) return {};
-  if (const Trouble deeper = overlaps_.measure(); deeper.found) return deeper;
+  if (const Trouble deeper = overlaps_.measure(); deeper.found && !state_.squeezed) return deeper;
   return watch_.judge(residual, turnover, before);
 }
 

@@ -27,6 +27,7 @@ class Guard {
  private:
   Trouble take(MechanicsClient* client, double start, double h);
   Trouble take_in_parts(MechanicsClient* client, double start, double h);
+  int finest(const Trouble& trouble) const;
   bool astray() const;
   bool unpayable(double owed) const;
   void undo_rise(Rung rung);

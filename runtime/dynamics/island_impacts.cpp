@@ -219,7 +219,9 @@ void Impacts::refine(double time, Event& event, double h) {
   Sight now{event.time, 0, 0}, last{};
   const double close = closeness(event);
   constexpr int kMost = 30;
-  for (int i = 0; i < kMost; ++i) {
+  constexpr std::uint64_t kDear = 200'000;  // units of work: where bodies jam, each look may take a thousand sweeps
+  const std::uint64_t enough = state_.meter.done() + kDear;
+  for (int i = 0;; ++i) {
     state_.restore();
     sub_step_.advance(time, now.time);
     state_.place_links();
@@ -228,7 +230,7 @@ void Impacts::refine(double time, Event& event, double h) {
     (now.gap < 0 ? high : low) = now.time;
     // Bodies that are near but separating are about to come back.
     const bool close_by = now.rate <= 0 && std::abs(now.gap) <= close + 1e-15 * std::abs(now.time);
-    const bool done = close_by || high - low <= 1e-13 * h;
+    const bool done = close_by || high - low <= 1e-13 * h || i + 1 == kMost || state_.meter.done() > enough;
     const bool remembers = i > 0 && now.rate < 0 && last.rate < 0 && now.gap != last.gap;
     double next = remembers ? closed_between(last, now) : now.rate < 0 ? now.time - now.gap / now.rate : low - 1;
     if (!(next > low && next < high)) next = 0.5 * (low + high);

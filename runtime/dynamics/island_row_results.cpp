@@ -65,6 +65,28 @@ void Rows::note_starts(double h, double given) {
   }
 }
 
+double Rows::fastest() const {
+  double fastest = 0;
+  for (const contact::Row& row : rows_)
+    fastest = std::max({fastest, row.bias, (rate_of(row, true) - rate_of(row, false)).norm()});
+  return fastest;
+}
+
+bool Rows::squeezed(double stopped) {
+  constexpr double kMuch = 3e-3, kDriven = 0.1;  // of the fastest; motors may press more than anything moves
+  const double much = (motors_.empty() ? kMuch : kDriven) * stopped;
+  const auto gives_way = [much](const contact::Row& row) { return row.softness * row.impulse[0] > much; };
+  if (yield_ == 0 || std::none_of(rows_.begin(), rows_.end(), gives_way)) return false;
+  state_.squeezed = true;
+  state_.reset_velocities();
+  for (contact::ScalarRow& row : scalars_) row.impulse = 0;
+  for (contact::Row& row : rows_) {
+    row.impulse.setZero();
+    if (row.softness > 0) row.softness = 1 / state_.mass();
+  }
+  return true;
+}
+
 void Rows::set_biases(double h) {
   for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i].bias = std::min(0.0, -contacts_.touches()[i].gap / h);
   for (std::size_t i = 0; i < limits(); ++i) limit(i).row.bias = std::min(0.0, -limit(i).bound.gap / h);

@@ -75,8 +75,18 @@ void Rows::respond(Tree& tree, const double* j, double* r) const {
   Eigen::Map<articulated::Vector>(r, n) = tree.work_u;
 }
 
+/// What a script moves has no strength that would end: what it presses into a wedge would be thrown out at any speed,
+/// or there is no solution. So it gives way, by so small a part of the speed that it gives to all that it may press.
+double Rows::yield_of_drivers() const {
+  if (state_.drivers == 0) return 0;
+  constexpr double kPart = 1e-4, kExactPart = 1e-6;
+  const bool exact = state_.accuracy.rung == Rung::Precise || state_.accuracy.rung == Rung::Reference;
+  return (exact ? kExactPart : kPart) / state_.mass();
+}
+
 void Rows::make(Motors motors) {
   clear();
+  yield_ = yield_of_drivers();
   std::size_t widest = 0, loops = 0, driven = 0;
   for (Tree* tree : state_.trees) {
     widest = std::max(widest, static_cast<std::size_t>(tree->model.velocities()));
@@ -182,6 +192,7 @@ void Rows::add_touch(Touch& touch) {
     (s == 0 ? row.ja : row.jb) = j;
     (s == 0 ? row.ra : row.rb) = r;
   }
+  if (state_.is_driver(row.a) || state_.is_driver(row.b)) row.softness = yield_;
   if (const WarmPoint* warm = contacts_.warm_of(touch)) {
     row.impulse = row.axes * warm->force;  // made an impulse where the sub-step's length is known
     ++state_.result.counters.warm;

@@ -94,7 +94,12 @@ class Rows {
   void set_biases(double h);
   /// Forces at which the solution is to begin become impulses of h seconds.
   void set_length(double h);
-  void begin_cold();                           // contacts begin without
+  void begin_cold();  // contacts begin without
+  /// The fastest relative motion at a contact, or that one asks for, m/s.
+  double fastest() const;
+  /// Whether something that a script moves gave way by much of what rows had to stop, m/s. Its rows are soft then, and
+  /// all have neither impulses nor changed velocities: they are to be solved again.
+  bool squeezed(double stopped);
   double length() const { return solved_h_; }  // s, of the sub-step that was solved last
   void book();
   /// J, in this try of a step, by which the work of impulses is another along the velocities before(): bodies rotate
@@ -120,6 +125,7 @@ class Rows {
   void add_limit(std::size_t index);
   void add_motors(Tree& tree);
   void add_loops(Tree& tree);
+  double yield_of_drivers() const;
 
   State& state_;
   Contacts& contacts_;
@@ -129,6 +135,7 @@ class Rows {
   std::pmr::vector<contact::Law> laws_;               // of rows_
   std::pmr::vector<std::array<Vector3, 2>> before_;   // of rows_, once rates were read
   std::pmr::vector<std::array<Vector3, 2>> started_;  // likewise, at the points that impulses push
+  double yield_ = 0;                                  // 1/kg, softness of rows of what a script moves
   double given_ = 0;                                  // J, by couples that rows gave before they were solved
   double rotated_ = 0;                                // J, what rotated() gives
   std::pmr::vector<std::size_t> limits_;              // bounds that have a row

@@ -74,6 +74,12 @@ void Solver::solve_rebounding(double h) {
 }
 
 void Solver::solve_rows() {
+  const double stopped = state_.drivers > 0 ? rows_.fastest() : 0;
+  solve_once();
+  if (rows_.squeezed(stopped)) solve_once();
+}
+
+void Solver::solve_once() {
   contact::SolveSettings settings = state_.solve_settings();
   const int fast = state_.core.settings.fast_contacts;
   if (fast > 0) settings.iterations = fast;

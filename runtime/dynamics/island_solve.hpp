@@ -28,6 +28,7 @@ class Solver {
   void bound_motors(double h);
   bool shorten_couples(double h);
   void solve_rows();
+  void solve_once();
   void solve_rebounding(double h);
 
   State& state_;

@@ -84,6 +84,14 @@ void State::put_driver(Free& one, double h) const {
   now.orientation = (rotation_by(-h * now.spin) * core.bodies->orientation(one.body)).normalized();
 }
 
+double State::mass() const {
+  double sum = 0;
+  for (const Free& one : loose_bodies()) sum += one.now.solid->mass;
+  for (const Tree* tree : trees)
+    for (const TreeLink& link : tree->links) sum += link.solid.mass;
+  return sum;
+}
+
 void State::put_drivers(double h) {
   for (std::size_t i = free_bodies.size() - drivers; i < free_bodies.size(); ++i) put_driver(free_bodies[i], h);
 }

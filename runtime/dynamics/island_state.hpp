@@ -114,6 +114,7 @@ struct State {
   }
   /// The bodies that are free.
   std::span<Free> loose_bodies() { return {free_bodies.data(), free_bodies.size() - drivers}; }
+  double mass() const;  // kg, of all that impulses move
   std::span<const Free> loose_bodies() const { return {free_bodies.data(), free_bodies.size() - drivers}; }
   /// The tree of a mover; null if the mover is a free body or nothing.
   Tree* tree_of(int mover) const {
@@ -173,6 +174,7 @@ struct State {
   Accuracy accuracy;
   Meter meter;
   bool finished = false;  // coarsely: the accuracy is not what was asked for
+  bool squeezed = false;  // what a script moves presses where nothing can go: an overlap is not to be mended
   bool placed = false;    // links stand where stored energy was measured: nothing has moved since
   bool booked = false;    // the books have the energy that the island holds now
   // Movers are numbered: free bodies, the last ones drivers, then trees.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "runtime/articulated/impulse.hpp"
 #include "runtime/articulated/kinematics.hpp"
@@ -189,6 +190,7 @@ void Step::located(MechanicsClient* client, double start, double h) {
   constexpr double kSliver = 1e-12;  // of the step
   constexpr int kMostStalls = 8;     // impacts without progress in time
   const int most = located_impacts();
+  const std::uint64_t dear = state_.meter.done() + located_work();
   int stalls = 0;
   met_ = 0;
   // Bodies that lie still take the step as one, and as any other if they move by that.
@@ -196,7 +198,7 @@ void Step::located(MechanicsClient* client, double start, double h) {
   for (double now = 0; now < h * (1 - kSliver);) {
     gone_ = now;
     if (state_.unaffordable()) return finish(used_up(), start + now, h - now);
-    spent_ = met_ >= most || stalls > kMostStalls;
+    spent_ = met_ >= most || stalls > kMostStalls || state_.squeezed || state_.meter.done() > dear;
     if (!look(start + now, contact_part(h - now, whole))) continue;
     const double part = longest(h - now, whole);
     impacts_.note_start();
@@ -240,6 +242,17 @@ int Step::located_impacts() const {
   const double items = static_cast<double>(state_.free_bodies.size() + state_.trees.size() + state_.pairs.size());
   const int least = coarse ? 0 : 1;
   return std::clamp(static_cast<int>(looks / std::max(items, 1.0)), least, std::max(least, state_.accuracy.impacts));
+}
+
+/// Units of work of a step after which no impact is located any more: where bodies jam, each try of a moment may cost a
+/// hundred times as much as elsewhere.
+std::uint64_t Step::located_work() const {
+  constexpr std::uint64_t kCoarse = 200'000, kExact = 5'000'000;
+  switch (state_.accuracy.rung) {
+    case Rung::Reference: return std::numeric_limits<std::uint64_t>::max() / 2;
+    case Rung::Precise: return kExact;
+    default: return kCoarse;
+  }
 }
 
 void Step::report_impacts(double time) {

@@ -35,6 +35,7 @@ class Step {
   double contact_part(double left, bool lies) const;
   bool lies(double h) const;
   int located_impacts() const;
+  std::uint64_t located_work() const;
   void report_impacts(double time);
 
   State& state_;
