@@ -39,6 +39,7 @@ struct FlatBody {
   bool driven = false;       // fixed, but is moved by a script in this step
   bool solid = true;         // others touch it
   bool jointed = false;      // some joint holds it
+  int driven_back = 0;       // how often what a script moves has struck it, in this sub-step
   bool kicked = false;       // half of this sub-step's acceleration was taken off
   bool pulled = false;       // a spring or force method acts on it
   bool has_force = false;    // set by scripts
@@ -355,6 +356,7 @@ struct Planar::Core final : MechanicsCore, b2ContactListener, b2ContactFilter {
   void refresh(b2Contact* contact);
 
   // impulse.cpp
+  static bool squeezed(const FlatBody& a, const FlatBody& b);
   bool collide(FlatBody& a, FlatBody& b, const b2WorldManifold& where, int points);
   void spread(FlatBody& a, FlatBody& b);
   double slowest_bounce(const contact::Law& law) const;

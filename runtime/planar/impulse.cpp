@@ -106,7 +106,15 @@ double Planar::Core::slowest_bounce(const contact::Law& law) const {
   return std::max({law.restitution_threshold, settings.gravity.norm() * step_length, kLeast});
 }
 
+/// Between something that a script moves and a wall a body would rebound ever faster: it does so a few times, and then
+/// is pushed.
+bool Planar::Core::squeezed(const FlatBody& a, const FlatBody& b) {
+  constexpr int kFew = 3;
+  return (a.driven && b.driven_back >= kFew) || (b.driven && a.driven_back >= kFew);
+}
+
 bool Planar::Core::collide(FlatBody& a, FlatBody& b, const b2WorldManifold& where, int count) {
+  if (squeezed(a, b)) return false;
   const Vector2 n = vector_of(where.normal).normalized();
   std::array<Point, 2> points;
   double fastest = 0;
@@ -146,6 +154,8 @@ bool Planar::Core::collide(FlatBody& a, FlatBody& b, const b2WorldManifold& wher
     if (b.driven) driven -= p.impulse.dot(speed_at(b, p.arm_b)) * u * u;
   }
   response.give(change);
+  a.driven_back += b.driven ? 1 : 0;
+  b.driven_back += a.driven ? 1 : 0;
   if (stepping) {
     driven_work += driven;
   } else {
@@ -179,6 +189,7 @@ void Planar::Core::spread(FlatBody& a, FlatBody& b) {
         b2WorldManifold where;
         contact->GetWorldManifold(&where);
         const FlatBody &x = of(contact->GetFixtureA()->GetBody()), &y = of(contact->GetFixtureB()->GetBody());
+        if (squeezed(x, y)) continue;
         const b2Vec2 v = y.b2->GetLinearVelocityFromWorldPoint(where.points[0]) -
                          x.b2->GetLinearVelocityFromWorldPoint(where.points[0]);
         const double approach = -double{b2Dot(v, where.normal)} * settings.unit;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace breve {
 
@@ -161,6 +162,9 @@ void Planar::Core::Island::add_matrices(contact::Row& row, const FlatBody* a, co
 }
 
 void Planar::Core::Island::make_contact_rows() {
+  constexpr double kYields = 1e-2;  // of the speed that a body which a script moves gives to all others
+  const double mass = std::accumulate(bodies_.begin(), bodies_.end(), 0.0,
+                                      [](double sum, const FlatBody* flat) { return sum + flat->mass.mass; });
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     b2Contact* contact = contacts_[i];
     const FlatBody &a = core_.of(contact->GetFixtureA()->GetBody()), &b = core_.of(contact->GetFixtureB()->GetBody());
@@ -181,6 +185,8 @@ void Planar::Core::Island::make_contact_rows() {
       } else {
         add_side(row, true, b, where.points[k]);
         add_side(row, false, a, where.points[k]);
+        // So that bodies are not thrown out of wedges at any speed.
+        if (a.driven || b.driven) row.softness = kYields / mass;
       }
       rows_.push_back(row);
     }
