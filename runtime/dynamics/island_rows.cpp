@@ -75,8 +75,8 @@ void Rows::respond(Tree& tree, const double* j, double* r) const {
   Eigen::Map<articulated::Vector>(r, n) = tree.work_u;
 }
 
-/// What a script moves has no strength that would end: what it presses into a wedge would be thrown out at any speed,
-/// or there is no solution. So it gives way, by so small a part of the speed that it gives to all that it may press.
+/// The force of a body that a script moves has no bound: others that it presses into a wedge would be thrown out at any
+/// speed, or there is no solution. So its rows are soft, by a small part of what the mass of the island would give.
 double Rows::yield_of_drivers() const {
   if (state_.drivers == 0) return 0;
   constexpr double kPart = 1e-4, kExactPart = 1e-6;

@@ -39,7 +39,7 @@ struct FlatBody {
   bool driven = false;       // fixed, but is moved by a script in this step
   bool solid = true;         // others touch it
   bool jointed = false;      // some joint holds it
-  int driven_back = 0;       // how often what a script moves has struck it, in this sub-step
+  int driver_strikes = 0;    // how often what a script moves has struck it, in this sub-step
   bool kicked = false;       // half of this sub-step's acceleration was taken off
   bool pulled = false;       // a spring or force method acts on it
   bool has_force = false;    // set by scripts

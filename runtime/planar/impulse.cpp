@@ -110,7 +110,7 @@ double Planar::Core::slowest_bounce(const contact::Law& law) const {
 /// is pushed.
 bool Planar::Core::squeezed(const FlatBody& a, const FlatBody& b) {
   constexpr int kFew = 3;
-  return (a.driven && b.driven_back >= kFew) || (b.driven && a.driven_back >= kFew);
+  return (a.driven && b.driver_strikes >= kFew) || (b.driven && a.driver_strikes >= kFew);
 }
 
 bool Planar::Core::collide(FlatBody& a, FlatBody& b, const b2WorldManifold& where, int count) {
@@ -154,8 +154,8 @@ bool Planar::Core::collide(FlatBody& a, FlatBody& b, const b2WorldManifold& wher
     if (b.driven) driven -= p.impulse.dot(speed_at(b, p.arm_b)) * u * u;
   }
   response.give(change);
-  a.driven_back += b.driven ? 1 : 0;
-  b.driven_back += a.driven ? 1 : 0;
+  a.driver_strikes += b.driven ? 1 : 0;
+  b.driver_strikes += a.driven ? 1 : 0;
   if (stepping) {
     driven_work += driven;
   } else {

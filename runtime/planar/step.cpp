@@ -111,7 +111,7 @@ void Planar::Core::advance(MechanicsClient& asked, double start, double h, doubl
   sync();
   if (!b2) return;
   for (auto& one : met) one.second = false;  // an error may have ended the step before
-  for (FlatBody& flat : slots) flat.driven_back = 0;
+  for (FlatBody& flat : slots) flat.driver_strikes = 0;
   b2->SetAllowSleeping(settings.sleeping);
   b2->SetGravity(to_b2(settings.gravity));
   place_drivers(h);
@@ -205,7 +205,7 @@ double Planar::Core::plan_pieces(double dt, int count) {
   double pieces = 1;
   awake = count_awake();
   for (FlatBody& flat : slots) {
-    flat.driven_back = 0;
+    flat.driver_strikes = 0;
     flat.pieces = 1;
     flat.drowsy = false;
     if (flat.body == kNoBody || flat.fixed || !flat.b2->IsAwake()) continue;
@@ -375,6 +375,7 @@ void Planar::Core::step_box2d(float dt, int iterations) {
     b2->SetSubStepping(false);  // it would go on with this step's impacts in the next
     solve_impacts(*b2, dt, iterations);
     b2->SetSubStepping(true);
+    stepping = false;
     throw;
   }
   stepping = false;

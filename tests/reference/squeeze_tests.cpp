@@ -1,5 +1,6 @@
-// Pistons, mixers and presses that a host moves, in a shaft with bodies that cannot always give way. A machine has no
-// strength that would end, so a solution would throw bodies that it squeezes out at any speed, or there is none.
+// Pistons, mixers, presses and lifts that a host moves, in a shaft with bodies that cannot always escape. The force of
+// such a machine has no bound, so a solution would throw the bodies that it squeezes out at any speed, or there is
+// none.
 #include <gtest/gtest.h>
 
 #include <cstdio>
