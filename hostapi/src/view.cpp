@@ -27,6 +27,7 @@ class OwnView {
  public:
   const steve::DrawnView& draw(steve::Machine& machine, const steve::ViewPart& part) {
     constexpr int kWidth = 640, kHeight = 480;
+    scene_.poll = machine.poller();
     steve::show(machine, scene_);
     const PicturePart needed{part.left, part.top, part.width, part.height};
     renderer_.set_meter([&machine](std::uint64_t units) { machine.charge(units); });

@@ -157,18 +157,17 @@ const Program& Renderer::Work::body_program(const Pass& pass, const Batch& batch
 
 /// All at once, or in pieces where there is a meter.
 void Renderer::Work::draw_pieces(const MeshBuffer& buffer, const Batch& batch, bool blended) {
-  if (!meter) return buffer.draw(instances, batch.first, batch.count);
-  // Measured with OSMesa on spheres as large as the picture, 4 samples a pixel.
-  constexpr double kOfTriangle = 3, kOfPixel = 0.25, kOfBlended = 0.4, kPiece = 50'000;
-  const double each = kOfTriangle * static_cast<double>(buffer.triangles()) +
-                      (blended ? kOfBlended : kOfPixel) * batch.pixels / static_cast<double>(batch.count);
-  const auto most = static_cast<std::size_t>(std::clamp(kPiece / std::max(each, 1.0), 1.0, kPiece));
-  for (std::size_t done = 0; done < batch.count; done += most) {
-    const std::size_t count = std::min(most, batch.count - done);
-    meter(static_cast<std::uint64_t>(each * static_cast<double>(count)));
-    buffer.draw(instances, batch.first + done, count);
-    context.gl().Finish();
-  }
+  const double pixels = (blended ? kOfBlended : kOfPixel) * batch.pixels / static_cast<double>(batch.count);
+  const auto triangles = static_cast<double>(buffer.triangles()), each = kOfTriangle * triangles + pixels;
+  constexpr double kMany = 10'000;  // of a body that is cut in pieces itself
+  if (!meter || triangles < kMany)
+    return draw_in_pieces(
+        context.gl(), meter, batch.first, batch.count, [each](std::size_t) { return each; },
+        [&](std::size_t first, std::size_t count) { buffer.draw(instances, first, count); });
+  for (std::size_t i = 0; i < batch.count; ++i)
+    draw_in_pieces(
+        context.gl(), meter, 0, buffer.triangles(), [&](std::size_t) { return each / triangles; },
+        [&](std::size_t from, std::size_t count) { buffer.draw_part(instances, batch.first + i, 1, from, count); });
 }
 
 void Renderer::Work::draw_batch(const Pass& pass, const Batch& one, bool blended, float outline) {

@@ -56,12 +56,14 @@ MeshBuffer::MeshBuffer(const Gl& gl, const SceneMesh& mesh)
               GL_STATIC_DRAW);
 }
 
-void MeshBuffer::draw(const Buffer& instances, std::size_t first, std::size_t count) const {
+void MeshBuffer::draw_part(const Buffer& instances, std::size_t first, std::size_t count, std::size_t from,
+                           std::size_t triangles) const {
   constexpr int kRows = 5;
   array_.bind();
   gl_.BindBuffer(GL_ARRAY_BUFFER, instances.name());
   point_at_instances(gl_, first * sizeof(GpuInstance), kRows, sizeof(GpuInstance));
-  gl_.DrawElementsInstanced(GL_TRIANGLES, indices_, GL_UNSIGNED_INT, nullptr, static_cast<GLsizei>(count));
+  gl_.DrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(3 * triangles), GL_UNSIGNED_INT,
+                            bytes_from(3 * from * sizeof(std::uint32_t)), static_cast<GLsizei>(count));
 }
 
 TextureBuffer::TextureBuffer(const Gl& gl, Kind kind, int width, int height, const std::uint8_t* pixels,

@@ -49,7 +49,12 @@ class MeshBuffer {
  public:
   MeshBuffer(const Gl& gl, const SceneMesh& mesh);
   /// Draws `count` instances, from the one that stands at `first` in `instances`.
-  void draw(const Buffer& instances, std::size_t first, std::size_t count) const;
+  void draw(const Buffer& instances, std::size_t first, std::size_t count) const {
+    draw_part(instances, first, count, 0, triangles());
+  }
+  /// So many triangles of them, from number `from` on.
+  void draw_part(const Buffer& instances, std::size_t first, std::size_t count, std::size_t from,
+                 std::size_t triangles) const;
   std::uint64_t revision() const { return revision_; }
   std::size_t triangles() const { return static_cast<std::size_t>(indices_) / 3; }
   bool tinted() const { return tinted_; }

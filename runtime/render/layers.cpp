@@ -75,8 +75,13 @@ void Renderer::Work::draw_sheet(const Pass& pass, std::size_t number, Cells cell
   program.set("least", cells == Cells::Opaque ? kOpaque : 0.0F);
   program.set("most", cells == Cells::Clear ? kOpaque : 2.0F);
   set_fog(program, &pass.scene->fog, *pass.lens);
+  Extent extent(*pass.lens, pass.width, pass.height);
+  for (const float across : {0.0F, 1.0F})
+    for (const float along : {0.0F, 1.0F}) extent.add(sheet.corner + across * sheet.across + along * sheet.along);
   nothing.bind();
-  gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  draw_in_pieces(
+      gl, meter, 0, 1, [&](std::size_t) { return kOfQuad + kOfBlended * extent.area(); },
+      [&](std::size_t, std::size_t) { gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4); });
   ++counters.draw_calls;
 }
 

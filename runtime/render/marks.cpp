@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 namespace breve::render {
 
@@ -16,6 +17,15 @@ int text_size(int picture_height, float scale) {
       std::lround(scale * std::clamp(kOfHeight * static_cast<float>(picture_height), kLeast, kMost)));
 }
 
+/// A line with its soft edges.
+double line_pixels(const SceneLine& line, const Canvas& canvas) {
+  constexpr double kEdges = 2;
+  Extent extent(*canvas.lens, canvas.width, canvas.height);
+  extent.add(line.from);
+  extent.add(line.to);
+  return (extent.diagonal() + kEdges) * (static_cast<double>(line.width) + kEdges);
+}
+
 float brightness(const Vector3f& color) { return color.dot(Vector3f(0.299F, 0.587F, 0.114F)); }
 
 }  // namespace
@@ -23,8 +33,16 @@ float brightness(const Vector3f& color) { return color.dot(Vector3f(0.299F, 0.58
 Marks::Marks(const Gl& gl, const std::string& font)
     : gl_(gl), array_(gl), polygon_array_(gl), buffer_(gl), font_(font) {}
 
-void Marks::draw(const std::vector<Row>& rows, std::size_t first, std::size_t count, const Canvas& canvas) {
+void Marks::draw(const std::vector<Row>& rows, std::size_t first, std::size_t count, const Canvas& canvas,
+                 const std::function<double(std::size_t row)>& pixels_of) {
   array_.bind();
+  draw_in_pieces(
+      gl_, canvas.meter, first, count, [&](std::size_t row) { return kOfQuad + kOfBlended * pixels_of(row); },
+      [&](std::size_t from, std::size_t some) { draw_some(rows, from, some); });
+  ++*canvas.draw_calls;
+}
+
+void Marks::draw_some(const std::vector<Row>& rows, std::size_t first, std::size_t count) {
   buffer_.fill(GL_ARRAY_BUFFER, rows.data() + first, count * sizeof(Row), GL_STREAM_DRAW);
   // KEEP IN STEP: rows 0 and 1 and color are attributes 4, 5 and 7 (shaders.cpp).
   const std::pair<unsigned, std::size_t> attributes[] = {
@@ -35,7 +53,6 @@ void Marks::draw(const std::vector<Row>& rows, std::size_t first, std::size_t co
     gl_.VertexAttribDivisor(number, 1);
   }
   gl_.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(count));
-  ++*canvas.draw_calls;
 }
 
 void Marks::draw_lines(const Shaders& shaders, const std::vector<SceneLine>& lines, const Canvas& canvas) {
@@ -52,7 +69,7 @@ void Marks::draw_lines(const Shaders& shaders, const std::vector<SceneLine>& lin
   shaders.line.set("near", canvas.lens->orthographic ? -1.0F : canvas.lens->near);
   shaders.line.set("picture", static_cast<float>(canvas.width), static_cast<float>(canvas.height));
   set_fog(shaders.line, canvas.fog, *canvas.lens);
-  draw(rows, 0, rows.size(), canvas);
+  draw(rows, 0, rows.size(), canvas, [&](std::size_t row) { return line_pixels(lines[row], canvas); });
 }
 
 void Marks::draw_polygons(const Shaders& shaders, const std::vector<SceneVertex>& triangles, const Canvas& canvas) {
@@ -62,21 +79,39 @@ void Marks::draw_polygons(const Shaders& shaders, const std::vector<SceneVertex>
   shaders.plain.set("projection", canvas.lens->projection);
   set_fog(shaders.plain, canvas.fog, *canvas.lens);
   polygon_array_.bind();
-  buffer_.fill(GL_ARRAY_BUFFER, triangles.data(), triangles.size() * sizeof(SceneVertex), GL_STREAM_DRAW);
+  const auto cost_of = [&](std::size_t triangle) {
+    Extent extent(*canvas.lens, canvas.width, canvas.height);
+    for (std::size_t corner = 0; corner < 3; ++corner) extent.add(triangles[3 * triangle + corner].position);
+    return kOfTriangle + kOfBlended * extent.area();
+  };
+  draw_in_pieces(gl_, canvas.meter, 0, triangles.size() / 3, cost_of,
+                 [&](std::size_t first, std::size_t count) { draw_triangles(triangles.data() + 3 * first, count); });
+  ++*canvas.draw_calls;
+}
+
+void Marks::draw_triangles(const SceneVertex* first, std::size_t count) {
+  buffer_.fill(GL_ARRAY_BUFFER, first, 3 * count * sizeof(SceneVertex), GL_STREAM_DRAW);
   // KEEP IN STEP: position and color are attributes 0 and 7 (shaders.cpp).
   gl_.EnableVertexAttribArray(0);
   gl_.VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(SceneVertex), nullptr);
   gl_.EnableVertexAttribArray(7);
   gl_.VertexAttribPointer(7, 4, GL_FLOAT, GL_FALSE, sizeof(SceneVertex),
                           reinterpret_cast<const void*>(offsetof(SceneVertex, color)));
-  gl_.DrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(triangles.size()));
-  ++*canvas.draw_calls;
+  gl_.DrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(3 * count));
 }
 
 // --- sprites ---------------------------------------------------------------------------------------------------------
 
 Marks::Row Marks::row_of(const SceneSprite& s) {
   return {{s.center.x(), s.center.y(), s.center.z(), s.size}, {s.heading, s.point ? 1.0F : 0.0F, 0, 0}, s.color};
+}
+
+double Marks::sprite_pixels(const SceneSprite& sprite, const Canvas& canvas) {
+  const double scale = sprite.point ? 1 : canvas.lens->scale_at(sprite.center, static_cast<float>(canvas.height));
+  // A square that is rotated reaches as far as its corners.
+  Extent extent(*canvas.lens, canvas.width, canvas.height);
+  extent.add(sprite.center, std::numbers::sqrt2 / 2 * static_cast<double>(sprite.size) * scale);
+  return extent.area();
 }
 
 void Marks::begin_sprites(const Shaders& shaders, const Canvas& canvas) {
@@ -106,7 +141,12 @@ void Marks::draw_rows(const Shaders& shaders, const std::vector<Row>& rows, cons
   shaders.text.use();
   shaders.text.set("picture", static_cast<float>(canvas.width), static_cast<float>(canvas.height));
   shaders.text.set("image", 0);
-  draw(rows, 0, rows.size(), canvas);
+  draw(rows, 0, rows.size(), canvas, [&](std::size_t row) {
+    const Vector4f& at = rows[row].first;
+    Extent extent(*canvas.lens, canvas.width, canvas.height);
+    extent.add(at.x(), at.y(), at.x() + at.z(), at.y() + at.w());
+    return extent.area();
+  });
 }
 
 /// White letters on a dark plate, above the body.

@@ -1,10 +1,12 @@
-// Draws everything except bodies: lines, sprites, cells, polygons, text. Each kind takes one instanced call.
+// Draws everything except bodies: lines, sprites, cells, polygons, text. Each kind takes one instanced call, or one for
+// each piece where a meter counts them.
 #pragma once
 
 #include <memory>
 #include <vector>
 
 #include "runtime/render/buffers.hpp"
+#include "runtime/render/picture_meter.hpp"
 #include "runtime/render/shaders.hpp"
 #include "runtime/render/text.hpp"
 
@@ -16,6 +18,7 @@ struct Canvas {
   int width = 0, height = 0;  // pixels
   std::uint64_t* draw_calls = nullptr;
   const SceneFog* fog = nullptr;  // null: none
+  PieceMeter meter{};
 };
 
 /// A camera whose world is the picture: pixels from the left and from the top.
@@ -40,7 +43,11 @@ class Marks {
   struct Row {
     Vector4f first, second, color;
   };
-  void draw(const std::vector<Row>& rows, std::size_t first, std::size_t count, const Canvas& canvas);
+  /// @param pixels_of  that the row of that number covers at most
+  void draw(const std::vector<Row>& rows, std::size_t first, std::size_t count, const Canvas& canvas,
+            const std::function<double(std::size_t row)>& pixels_of);
+  void draw_some(const std::vector<Row>& rows, std::size_t first, std::size_t count);
+  void draw_triangles(const SceneVertex* first, std::size_t count);
   void draw_rows(const Shaders& shaders, const std::vector<Row>& rows, const Canvas& canvas);
   /// Where a plot stands, and how high its letters are; pixels.
   struct PlotCell {
@@ -54,6 +61,7 @@ class Marks {
   void add_plot(const ScenePlot& plot, const PlotCell& cell, PlotParts& parts);
   void add_words(const std::string& words, int size, float x, float y, float align, std::vector<Row>& rows);
   static Row row_of(const SceneSprite& sprite);
+  static double sprite_pixels(const SceneSprite& sprite, const Canvas& canvas);
   void begin_sprites(const Shaders& shaders, const Canvas& canvas);
 
   const Gl& gl_;
@@ -77,7 +85,8 @@ void Marks::draw_sprites(const Shaders& shaders, const std::vector<const SceneSp
     gl_.BlendFunc(GL_SRC_ALPHA, one.glow ? GL_ONE : GL_ONE_MINUS_SRC_ALPHA);
     shaders.sprite.set("glow", one.glow ? 1.0F : 0.0F);
     bind_texture(one.texture);
-    draw(rows, first, next - first, canvas);
+    draw(rows, first, next - first, canvas,
+         [&](std::size_t number) { return sprite_pixels(*sprites[number], canvas); });
   }
   gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
 }

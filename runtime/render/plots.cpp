@@ -106,6 +106,18 @@ void Marks::add_plot(const ScenePlot& plot, const PlotCell& cell, PlotParts& par
   for (const ScenePlot::Line& line : plot.lines) add_line(line, range, area, parts.lines);
 }
 
+namespace {
+
+/// What it takes to look at all values of a plot, twice.
+std::uint64_t units_of(const ScenePlot& plot) {
+  constexpr std::uint64_t kValues = 32, kOfLine = 4;  // values that take one unit; units of a line
+  std::uint64_t units = kOfLine * plot.lines.size();
+  for (const ScenePlot::Line& line : plot.lines) units += line.values.size() / kValues;
+  return units;
+}
+
+}  // namespace
+
 /// From the lower right corner up, then in the column to the left. Where there is no room for all they are smaller.
 void Marks::draw_plots(const Shaders& shaders, const Scene& scene, const Canvas& canvas) {
   if (scene.plots.empty()) return;
@@ -138,11 +150,12 @@ void Marks::draw_plots(const Shaders& shaders, const Scene& scene, const Canvas&
   pixels.fog = nullptr;
   PlotParts parts;
   for (std::size_t i = 0; i < scene.plots.size(); ++i) {
-    const auto column = static_cast<float>(i / rows), row = static_cast<float>(i % rows);
+    const std::size_t column = i / rows, row = i % rows;
+    if (canvas.meter) canvas.meter(units_of(scene.plots[i]));
     const float gap_across = std::min(kGap, 0.25F * width), gap_down = std::min(kGap, 0.25F * height);
     add_plot(scene.plots[i],
-             {picture_width - kGap - width - column * (width + gap_across),
-              picture_height - kGap - height - row * (height + gap_down), width, height, size},
+             {picture_width - kGap - width - static_cast<float>(column) * (width + gap_across),
+              picture_height - kGap - height - static_cast<float>(row) * (height + gap_down), width, height, size},
              parts);
   }
   draw_rows(shaders, parts.plates, pixels);

@@ -121,7 +121,7 @@ void Renderer::Work::paint_camera(const Scene& scene, const SceneCamera& camera,
   gl.Scissor(cut.left, cut.bottom, cut.width, cut.height);
   gl.ClearColor(0, 0, 0, 1);
   gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  const Canvas canvas{&lens, width, height, &counters.draw_calls, &scene.fog};
+  const Canvas canvas{&lens, width, height, &counters.draw_calls, &scene.fog, meter};
   draw_backdrop(pass);
   (scene.dimension == 2) ? draw_flat_layers(pass, canvas) : draw_layers(pass, canvas);
   gl.DepthMask(GL_FALSE);

@@ -58,7 +58,7 @@ class Renderer {
   void set_camera(const std::optional<SceneCamera>& camera);
   /// Only this part of the pictures is needed from now on: the rest of their pixels is undefined. None: all of it.
   void set_part(const std::optional<PicturePart>& part);
-  /// From now on called before each piece of the bodies of a picture is drawn, with its cost in units of some 200 ns.
+  /// From now on called before each piece of a picture is drawn, with its cost in units of some 200 ns.
   /// An exception of it ends the picture, and the renderer can then only be destroyed. Costs a little, since pieces are
   /// waited for. Null: none.
   void set_meter(std::function<void(std::uint64_t units)> meter);

@@ -106,7 +106,7 @@ struct Renderer::Work {
   Window needed;                    // the same in the picture that is being drawn
   SceneCamera last_camera;
   Framing framing;
-  std::function<void(std::uint64_t units)> meter;
+  PieceMeter meter;
   Counters counters;
   std::vector<const Program*> ready;       // those for bodies that have the uniforms of this pass
   std::vector<std::uint8_t> last_picture;  // that motion blur mixes with

@@ -79,10 +79,10 @@ std::vector<Ball> without_outliers(std::vector<Ball> balls) {
     center[axis] = median(numbers);
   }
   const auto reach = [&](const Ball& b) { return (b.center - center).norm() + b.radius; };
-  std::sort(balls.begin(), balls.end(), [&](const Ball& a, const Ball& b) { return reach(a) < reach(b); });
-  const std::size_t most = balls.size() - balls.size() / 30;
-  const double usual = reach(balls[most - 1]);
-  while (balls.size() > most && reach(balls.back()) > 3 * usual) balls.pop_back();
+  std::transform(balls.begin(), balls.end(), numbers.begin(), reach);
+  const auto last = numbers.begin() + static_cast<std::ptrdiff_t>(balls.size() - balls.size() / 30 - 1);
+  std::nth_element(numbers.begin(), last, numbers.end());
+  std::erase_if(balls, [&, usual = *last](const Ball& b) { return reach(b) > 3 * usual; });
   return balls;
 }
 

@@ -2,6 +2,7 @@
 // picture of a thousand pixels.
 #pragma once
 
+#include "runtime/base/poll.hpp"
 #include "runtime/scene/scene.hpp"
 #include "runtime/solid/shape.hpp"
 
@@ -18,9 +19,9 @@ SceneMesh make_capsule_mesh(int axis, double half, int segments = 32);
 /// A convex solid with flat faces. Sides of a solid with many faces about an axis stay flat: they are what it is.
 SceneMesh make_facet_mesh(const Shape& shape);
 /// A surface of triangles; corners at which faces meet flatly (within 40 degrees) are shaded as round.
-SceneMesh make_surface_mesh(const Shape& shape);
+SceneMesh make_surface_mesh(const Shape& shape, const Poll& poll = {});
 /// A height field, shaded as round.
-SceneMesh make_ground_mesh(const Shape& shape);
+SceneMesh make_ground_mesh(const Shape& shape, const Poll& poll = {});
 
 /// Colours of a ground: from `valley` at its lowest corner to `peak` at its highest.
 void color_by_height(SceneMesh& mesh, const Vector3f& valley, const Vector3f& peak);

@@ -70,7 +70,7 @@ std::uint32_t MeshCache::of_polygons(const Shape& shape) {
   return kept(hasher.value(), [&] { return make_facet_mesh(shape); });
 }
 
-std::uint32_t MeshCache::of_surface(const Shape& shape) {
+std::uint32_t MeshCache::of_surface(const Shape& shape, const Poll& poll) {
   Hasher hasher;
   hasher.add(static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(&shape)));
   hasher.add(shape.changes());
@@ -82,16 +82,16 @@ std::uint32_t MeshCache::of_surface(const Shape& shape) {
     for (std::size_t i = 0; i < count; i += std::max<std::size_t>(1, count / kSample))
       hasher.add(grid->height(static_cast<int>(i % static_cast<std::size_t>(grid->columns())),
                               static_cast<int>(i / static_cast<std::size_t>(grid->columns()))));
-    return kept(hasher.value(), [&] { return make_ground_mesh(shape); });
+    return kept(hasher.value(), [&] { return make_ground_mesh(shape, poll); });
   }
   const auto& corners = shape.triangles()->corners();
   hasher.add(static_cast<std::uint64_t>(corners.size()));
   for (std::size_t i = 0; i < corners.size(); i += std::max<std::size_t>(1, corners.size() / kSample))
     hasher.add(corners[i]);
-  return kept(hasher.value(), [&] { return make_surface_mesh(shape); });
+  return kept(hasher.value(), [&] { return make_surface_mesh(shape, poll); });
 }
 
-MeshUse MeshCache::find(const Shape& shape) {
+MeshUse MeshCache::find(const Shape& shape, const Poll& poll) {
   if (shape.kind() == ShapeKind::Sphere) return {kSphere, Vector3f::Constant(static_cast<float>(shape.radius()))};
   if (shape.kind() == ShapeKind::Box) return {kBox, shape.size().cast<float>()};
   const auto known = seen_.find(&shape);
@@ -111,7 +111,7 @@ MeshUse MeshCache::find(const Shape& shape) {
       use.mesh = kept(hasher.value(), [&] { return make_cylinder_mesh(round.axis); });
     }
   } else {
-    use.mesh = shape.surface() ? of_surface(shape) : of_polygons(shape);
+    use.mesh = shape.surface() ? of_surface(shape, poll) : of_polygons(shape);
   }
   seen_[&shape] = use;
   return use;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "runtime/base/poll.hpp"
 #include "runtime/scene/scene.hpp"
 #include "runtime/solid/shape.hpp"
 
@@ -23,7 +24,7 @@ class MeshCache {
 
   /// A new moment begins. What it does not use until `end` is dropped then.
   void begin();
-  MeshUse find(const Shape& shape);
+  MeshUse find(const Shape& shape, const Poll& poll);
   void end();
 
  private:
@@ -34,7 +35,7 @@ class MeshCache {
   template <class Make>
   std::uint32_t kept(std::uint64_t key, Make make);
   std::uint32_t of_polygons(const Shape& shape);
-  std::uint32_t of_surface(const Shape& shape);
+  std::uint32_t of_surface(const Shape& shape, const Poll& poll);
 
   std::deque<SceneMesh>& meshes_;
   std::vector<Entry> entries_;                     // of each mesh

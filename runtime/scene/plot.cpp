@@ -31,14 +31,17 @@ std::vector<double> axis_marks(double low, double high, int count) {
   return marks;
 }
 
-std::vector<std::size_t> points_to_draw(const std::vector<double>& values, std::size_t points, std::size_t columns) {
+std::vector<std::size_t> points_to_draw(const std::vector<double>& values, std::size_t points, std::size_t columns,
+                                        const PlotMeter& meter) {
   constexpr std::size_t kOfColumn = 5;
+  plot_layout::Counting counting(meter);
   std::vector<std::size_t> chosen;
   points = std::min(points, values.size());
   columns = std::max<std::size_t>(columns, 1);
   const bool all = points <= kOfColumn * columns;
   for (std::size_t column = 0, first = 0; first < points; ++column) {
     const std::size_t end = all ? first + 1 : std::min(points, (column + 1) * points / columns);
+    counting.add(plot_layout::kOfValue * static_cast<double>(end - first));
     std::size_t low = first, high = first, gap = first;
     for (std::size_t i = first; i < end; ++i) {
       if (!std::isfinite(values[i])) {
@@ -57,11 +60,13 @@ std::vector<std::size_t> points_to_draw(const std::vector<double>& values, std::
   return chosen;
 }
 
-std::string plot_csv(const ScenePlot& plot) {
+std::string plot_csv(const ScenePlot& plot, const PlotMeter& meter) {
+  plot_layout::Counting counting(meter);
   std::string text = plot.x_axis.empty() ? "x" : quoted(plot.x_axis);
   std::size_t rows = plot.xs.size();
   for (std::size_t i = 0; i < plot.lines.size(); ++i) {
     const std::string& name = plot.lines[i].name;
+    counting.add(plot_layout::kOfCell);
     text += ',' + (name.empty() ? fmt::format("line {}", i) : quoted(name));
     if (plot.xs.empty()) rows = std::max(rows, plot.lines[i].values.size());
   }
@@ -69,6 +74,7 @@ std::string plot_csv(const ScenePlot& plot) {
   for (std::size_t row = 0; row < rows; ++row) {
     text += fmt::format("{}", plot_layout::x_of(plot, row));
     for (const ScenePlot::Line& line : plot.lines) {
+      counting.add(plot_layout::kOfCell);
       const bool number = row < line.values.size() && !std::isnan(line.values[row]);
       text += number ? fmt::format(",{}", line.values[row]) : ",";
     }
@@ -101,15 +107,25 @@ std::string shortened(const std::string& name, std::size_t most) {
 
 Axis x_axis_of(const ScenePlot& plot) {
   Range range;
-  for (const ScenePlot::Line& line : plot.lines)
-    for (std::size_t i = 0; i < points_of(plot, line); ++i) range.take(x_of(plot, i));
+  std::size_t points = 0;
+  for (const ScenePlot::Line& line : plot.lines) points = std::max(points, points_of(plot, line));
+  if (!plot.xs.empty()) {
+    for (std::size_t i = 0; i < points; ++i) range.take(plot.xs[i]);
+  } else if (points > 0) {
+    range.take(0);
+    range.take(static_cast<double>(points - 1));
+  }
   return axis_of(range, 8);
 }
 
-Axis y_axis_of(const ScenePlot& plot) {
+Axis y_axis_of(const ScenePlot& plot, const PlotMeter& meter) {
   Range range;
+  Counting counting(meter);
   for (const ScenePlot::Line& line : plot.lines)
-    for (const double value : line.values) range.take(value);
+    for (const double value : line.values) {
+      counting.add(kOfValue);
+      range.take(value);
+    }
   return axis_of(range, 6);
 }
 

@@ -16,6 +16,29 @@ inline constexpr double kKey = 35, kXAxis = kHeight - 18, kYAxis = kTop - 12;  /
 inline constexpr double kKeyRow = 26;                                          // of the key at the top
 inline constexpr std::size_t kColumns = 800;                                   // of pixels in which lines are drawn
 
+// Units of PlotMeter.
+inline constexpr double kOfCell = 1, kOfPoint = 2, kOfValue = 0.05, kOfPixel = 0.03, kOfLetter = 0.2;
+
+/// Adds up small pieces of work for a meter.
+class Counting {
+ public:
+  explicit Counting(const PlotMeter& meter) : meter_(meter) {}
+  void add(double units) {
+    due_ += units;
+    if (due_ >= kOften) tell();
+  }
+
+ private:
+  static constexpr double kOften = 1000;
+  void tell() {
+    if (meter_) meter_(static_cast<std::uint64_t>(due_));
+    due_ = 0;
+  }
+
+  const PlotMeter& meter_;
+  double due_ = 0;
+};
+
 struct Range {
   double low = 0, high = 1;
   bool any = false;
@@ -53,7 +76,7 @@ struct Axis {
   std::vector<Mark> marks;
 };
 Axis x_axis_of(const ScenePlot& plot);
-Axis y_axis_of(const ScenePlot& plot);
+Axis y_axis_of(const ScenePlot& plot, const PlotMeter& meter);
 
 /// Where point `i` of a line is along x: its number if the plot says nothing else.
 inline double x_of(const ScenePlot& plot, std::size_t i) {

@@ -23,7 +23,7 @@ Rgb rgb_of(const Eigen::Vector3f& color) {
 class Paper {
  public:
   /// @param shift  added to the height, and to all y until it is set to another
-  explicit Paper(double shift) : shift(shift) {
+  Paper(double shift, const PlotMeter& meter) : shift(shift), counting_(meter) {
     picture_.width = static_cast<int>(kWidth);
     picture_.height = static_cast<int>(kHeight + shift);
     picture_.rgba.assign(
@@ -35,20 +35,36 @@ class Paper {
   void line(double x0, double y0, double x1, double y1, double width, const Rgb& ink) {
     y0 += shift;
     y1 += shift;
-    const double half = width / 2, long2 = std::max(1e-9, (x1 - x0) * (x1 - x0) + (y1 - y0) * (y1 - y0));
-    for (int y = first(std::min(y0, y1) - half); y <= std::max(y0, y1) + half + 1; ++y)
-      for (int x = first(std::min(x0, x1) - half); x <= std::max(x0, x1) + half + 1; ++x) {
-        const double u = x + 0.5 - x0, v = y + 0.5 - y0;
-        const double t = std::clamp((u * (x1 - x0) + v * (y1 - y0)) / long2, 0.0, 1.0);
-        mix(x, y, half + 0.5 - std::hypot(u - t * (x1 - x0), v - t * (y1 - y0)), ink);
+    const double across = x1 - x0, down = y1 - y0;
+    const double reach = width / 2 + 0.5, long2 = std::max(1e-9, across * across + down * down);
+    const int last_row = std::min(static_cast<int>(std::max(y0, y1) + reach) + 1, picture_.height - 1);
+    for (int y = std::max(first(std::min(y0, y1) - reach), 0); y <= last_row; ++y) {
+      const double v = y + 0.5 - y0;
+      // The part of the line that is near enough to this row.
+      double begin = 0, end = 1;
+      if (down != 0) {
+        const double one = (v - reach) / down, other = (v + reach) / down;
+        begin = std::clamp(std::min(one, other), 0.0, 1.0);
+        end = std::clamp(std::max(one, other), 0.0, 1.0);
       }
+      const double left = x0 + (across < 0 ? end : begin) * across, right = x0 + (across < 0 ? begin : end) * across;
+      const int last = std::min(static_cast<int>(right + reach) + 1, picture_.width - 1);
+      int x = std::max(first(left - reach), 0);
+      counting_.add(kOfPixel * (1 + last - x));
+      for (; x <= last; ++x) {
+        const double u = x + 0.5 - x0, t = std::clamp((u * across + v * down) / long2, 0.0, 1.0);
+        mix(x, y, reach - std::hypot(u - t * across, v - t * down), ink);
+      }
+    }
   }
   /// @param align  0: from x on, 0.5: about x, 1: up to x
   void text(double x, double y, double align, const Letters& letters, std::string_view words, const Rgb& ink) {
     y += shift;
+    counting_.add(kOfLetter * static_cast<double>(words.size()));
     double at = x - align * letters.width_of(words);
     while (!words.empty()) {
       const Letters::Glyph& one = letters.glyph(next_character(words));
+      counting_.add(kOfLetter + kOfPixel * one.width * one.height);
       for (int j = 0; j < one.height; ++j)
         for (int i = 0; i < one.width; ++i) {
           const auto from = static_cast<std::size_t>((one.y + j) * Letters::kWidth + one.x + i);
@@ -74,6 +90,7 @@ class Paper {
   }
 
   Picture picture_;
+  Counting counting_;
 };
 
 void draw_axes(Paper& paper, const ScenePlot& plot, const Axis& x, const Axis& y) {
@@ -92,8 +109,9 @@ void draw_axes(Paper& paper, const ScenePlot& plot, const Axis& x, const Axis& y
   paper.text(14, kYAxis, 0, paper.small, plot.y_axis, kSmall);
 }
 
-void draw_line(Paper& paper, const ScenePlot& plot, const ScenePlot::Line& line, const Axis& x, const Axis& y) {
-  const std::vector<std::size_t> drawn = points_to_draw(line.values, points_of(plot, line), kColumns);
+void draw_line(Paper& paper, const ScenePlot& plot, const ScenePlot::Line& line, const Axis& x, const Axis& y,
+               const PlotMeter& meter) {
+  const std::vector<std::size_t> drawn = points_to_draw(line.values, points_of(plot, line), kColumns, meter);
   for (std::size_t k = 1; k < drawn.size(); ++k) {
     const std::size_t i = drawn[k - 1], next = drawn[k];
     if (is_point(plot, line, i) && is_point(plot, line, next))
@@ -104,12 +122,12 @@ void draw_line(Paper& paper, const ScenePlot& plot, const ScenePlot::Line& line,
 
 }  // namespace
 
-Picture plot_picture(const ScenePlot& plot) {
+Picture plot_picture(const ScenePlot& plot, const PlotMeter& meter) {
   const Key key = key_of(plot);
-  Paper paper(key.height);
-  const Axis x = x_axis_of(plot), y = y_axis_of(plot);
+  Paper paper(key.height, meter);
+  const Axis x = x_axis_of(plot), y = y_axis_of(plot, meter);
   draw_axes(paper, plot, x, y);
-  for (const ScenePlot::Line& line : plot.lines) draw_line(paper, plot, line, x, y);
+  for (const ScenePlot::Line& line : plot.lines) draw_line(paper, plot, line, x, y, meter);
   for (const KeyEntry& entry : key.entries) {
     paper.shift = entry.below;
     paper.line(entry.x + 2, 28.5, entry.x + 24, 28.5, 5, rgb_of(plot.lines[entry.line].color));

@@ -56,10 +56,13 @@ std::string axes(const ScenePlot& plot, const Axis& x, const Axis& y) {
 }
 
 /// A line that breaks where there is no number.
-std::string path_of(const ScenePlot& plot, const ScenePlot::Line& line, const Axis& x, const Axis& y) {
+std::string path_of(const ScenePlot& plot, const ScenePlot::Line& line, const Axis& x, const Axis& y,
+                    const PlotMeter& meter, Counting& counting) {
   std::string path;
   bool drawing = false;
-  for (const std::size_t i : points_to_draw(line.values, points_of(plot, line), kColumns)) {
+  counting.add(kOfPoint);
+  for (const std::size_t i : points_to_draw(line.values, points_of(plot, line), kColumns, meter)) {
+    counting.add(kOfPoint);
     const bool point = is_point(plot, line, i);
     if (point)
       path += fmt::format("{}{:.1f},{:.1f} ", drawing ? "L" : "M", x_at(x.range, x_of(plot, i)),
@@ -72,8 +75,9 @@ std::string path_of(const ScenePlot& plot, const ScenePlot::Line& line, const Ax
 
 }  // namespace
 
-std::string plot_svg(const ScenePlot& plot) {
-  const Axis x = x_axis_of(plot), y = y_axis_of(plot);
+std::string plot_svg(const ScenePlot& plot, const PlotMeter& meter) {
+  Counting counting(meter);
+  const Axis x = x_axis_of(plot), y = y_axis_of(plot, meter);
   const Key key = key_of(plot);
   std::string svg = fmt::format(
       "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {0} {1}' width='{0}' height='{1}' "
@@ -83,7 +87,7 @@ std::string plot_svg(const ScenePlot& plot) {
       kWidth, kHeight + key.height, escaped(plot.title));
   if (key.height > 0) svg += fmt::format("<g transform='translate(0,{})'>\n", key.height);
   svg += axes(plot, x, y);
-  for (const ScenePlot::Line& line : plot.lines) svg += path_of(plot, line, x, y);
+  for (const ScenePlot::Line& line : plot.lines) svg += path_of(plot, line, x, y, meter, counting);
   if (key.height > 0) svg += "</g>\n";
   for (const KeyEntry& entry : key.entries)
     svg += fmt::format(

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "runtime/base/poll.hpp"
 #include "runtime/scene/mesh_cache.hpp"
 
 namespace breve {
@@ -20,12 +21,15 @@ class SceneBuilder {
   SceneBuilder(const SceneBuilder&) = delete;
   SceneBuilder& operator=(const SceneBuilder&) = delete;
 
+  /// Called by what fills the scene. If it throws, the builder can only be destroyed.
+  Poll poll{};
+
   const Scene& scene() const { return scene_; }
   Scene& scene() { return scene_; }
 
   void begin();
   void end();
-  MeshUse mesh(const Shape& shape) { return meshes_.find(shape); }
+  MeshUse mesh(const Shape& shape) { return meshes_.find(shape, poll); }
   SceneMesh& mesh_data(std::uint32_t mesh) { return scene_.meshes[mesh]; }
   /// A picture's number; its pixels are copied if they are others than before.
   std::uint32_t texture(ObjectId image, int width, int height, std::span<const std::uint8_t> rgba);

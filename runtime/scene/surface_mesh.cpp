@@ -31,7 +31,8 @@ Around triangles_around(std::size_t corners, const std::pmr::vector<Triangle>& t
 
 }  // namespace
 
-SceneMesh make_surface_mesh(const Shape& shape) {
+SceneMesh make_surface_mesh(const Shape& shape, const Poll& poll) {
+  EveryFew often(poll);
   const TriangleMesh& surface = *shape.triangles();
   const auto& corners = surface.corners();
   const auto& triangles = surface.triangles();
@@ -47,6 +48,7 @@ SceneMesh make_surface_mesh(const Shape& shape) {
   const Around around = triangles_around(corners.size(), triangles);
   for (std::size_t i = 0; i < triangles.size(); ++i)
     for (const std::int32_t corner : triangles[i]) {
+      often.count();
       const auto at = static_cast<std::size_t>(corner);
       Vector3f normal = Vector3f::Zero();
       for (std::uint32_t k = around.first[at]; k < around.first[at + 1]; ++k) {
@@ -61,7 +63,8 @@ SceneMesh make_surface_mesh(const Shape& shape) {
   return mesh;
 }
 
-SceneMesh make_ground_mesh(const Shape& shape) {
+SceneMesh make_ground_mesh(const Shape& shape, const Poll& poll) {
+  EveryFew often(poll);
   const HeightGrid& grid = *shape.heights();
   const int columns = grid.columns(), rows = grid.rows();
   SceneMesh mesh;
@@ -69,6 +72,7 @@ SceneMesh make_ground_mesh(const Shape& shape) {
   const auto at = [&](int column, int row) { return Vector3f(grid.corner(column, row).cast<float>()); };
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
+      often.count();
       const Vector3f across = at(std::min(column + 1, columns - 1), row) - at(std::max(column - 1, 0), row);
       const Vector3f along = at(column, std::min(row + 1, rows - 1)) - at(column, std::max(row - 1, 0));
       mesh.positions.push_back(at(column, row));
@@ -78,6 +82,7 @@ SceneMesh make_ground_mesh(const Shape& shape) {
     }
   for (int row = 0; row + 1 < rows; ++row)
     for (int column = 0; column + 1 < columns; ++column) {
+      often.count();
       // As the solid is cut: from the low corner of a cell to its high one.
       const auto low = static_cast<std::uint32_t>(row * columns + column);
       const auto right = low + 1, back = low + static_cast<std::uint32_t>(columns), high = back + 1;

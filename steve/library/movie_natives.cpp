@@ -180,19 +180,21 @@ std::int32_t movie_write_frame(Machine& machine, Instance&, Text name, std::int3
 
 // --- Graph -----------------------------------------------------------------------------------------------------------
 
-constexpr std::uint64_t kOfPoint = 64;  // work for a value that is written
+constexpr std::uint64_t kOfNumber = 16;  // work for a line or value that is copied before it is written
 
 std::int32_t graph_write(Machine& machine, Instance& self, Text file) {
   const std::string name(view(file));
-  const ScenePlot plot = plot_of(machine, self);
-  for (const ScenePlot::Line& line : plot.lines) machine.charge_for(kOfPoint * line.values.size());
-  if (name.ends_with(".csv")) return write_picture(machine, "write", name, plot_csv(plot));
-  if (name.ends_with(".svg")) return write_picture(machine, "write", name, plot_svg(plot));
-  if (!name.ends_with(".png"))
+  const bool table = name.ends_with(".csv"), scalable = name.ends_with(".svg");
+  if (!table && !scalable && !name.ends_with(".png"))
     throw Error(ErrorCode::Argument, fmt::format("write: '{}' does not end with .svg, .png or .csv", name));
+  machine.charge_for(kOfNumber * plot_size(machine, self));
+  const ScenePlot plot = plot_of(machine, self, machine.poller());
+  const PlotMeter meter = [&machine](std::uint64_t units) { machine.charge(units); };
+  if (table) return write_picture(machine, "write", name, plot_csv(plot, meter));
+  if (scalable) return write_picture(machine, "write", name, plot_svg(plot, meter));
   constexpr std::uint64_t kPixels = 900 * 520;
   machine.charge_for(kOfDeflation * kPixels);
-  return write_picture(machine, "write", name, png_of(plot));
+  return write_picture(machine, "write", name, png_of(plot, meter));
 }
 
 constexpr Native kMovieNatives[] = {
@@ -211,13 +213,14 @@ constexpr Native kMovieNatives[] = {
 
 }  // namespace
 
-std::string png_of(const ScenePlot& plot) {
-  const Picture picture = plot_picture(plot);
+std::string png_of(const ScenePlot& plot, const PlotMeter& meter) {
+  const Picture picture = plot_picture(plot, meter);
+  const Poll poll = meter ? Poll([&meter] { meter(0); }) : Poll();
   const std::size_t row = 4 * static_cast<std::size_t>(picture.width);
   return make_png(
       PngKind::Rgba8, picture.width, picture.height,
       [&](std::size_t y, std::span<std::uint8_t> to) { std::copy_n(picture.rgba.data() + y * row, row, to.begin()); },
-      {});
+      poll);
 }
 
 std::span<const Native> movie_natives() { return kMovieNatives; }

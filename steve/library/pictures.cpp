@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "runtime/store/image.hpp"
+#include "steve/library/show.hpp"
 #include "steve/library/support.hpp"
 
 namespace breve::steve {
@@ -16,6 +17,7 @@ namespace {
 // Work for each pixel of a picture, and how many it has.
 constexpr std::uint64_t kOfDrawing = 16, kPixels = 640 * 480;
 constexpr std::uint64_t kOfObject = 16384;  // of an object that may have to be drawn: its corners are passed on first
+constexpr std::uint64_t kOfNumber = 8;      // of a cell of a grid or a value of a plot that is passed on
 constexpr double kNear = 0.1;
 
 void no_renderer(Machine& machine, std::string_view selector, std::string_view why) {
@@ -32,6 +34,7 @@ const DrawnView* draw_view(Machine& machine, std::string_view selector, std::uin
     return nullptr;
   }
   machine.charge_for((kOfDrawing + more) * kPixels + kOfObject * machine.world().object_count());
+  machine.charge_for(kOfNumber * shown_numbers(machine));
   try {
     return &draw(part);
   } catch (const Error& error) {

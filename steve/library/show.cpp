@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "runtime/scene/mesh.hpp"
+#include "runtime/solid/height_grid.hpp"
 #include "runtime/store/painted_pictures.hpp"
 #include "runtime/world/drawing.hpp"
 #include "runtime/world/show.hpp"
@@ -60,7 +61,9 @@ void show_sheet(const World& world, ObjectId id, const GridResource& resource, b
   sheet.across = Vector3f(drawable(size.x() * grid.nx()), 0, 0);
   sheet.along = Vector3f(0, drawable(size.y() * grid.ny()), 0);
   sheet.rgba.resize(4 * grid.cells());
+  EveryFew often(to.poll);
   for (CellIndex cell = 0; cell < grid.cells(); ++cell) {
+    often.count();
     const Cell3 at = grid.cell(cell);
     Vector4f color = colored ? cell_color(resource, cell) : drawn_color(world, resource, cell);
     if (resource.alphas.empty()) {
@@ -87,7 +90,9 @@ void show_volume(const World& world, ObjectId id, const GridResource& resource, 
   const Grid& grid = *resource.grid;
   const float least = solid ? 0.5F : 1.0F / 255;  // below that nothing is to be seen
   const bool states = resource.states.made();
+  EveryFew often(to.poll);
   for (CellIndex cell = 0; cell < grid.cells(); ++cell) {
+    often.count();
     if (states && resource.states.get(cell) == 0) continue;
     Vector4f color = colored ? cell_color(resource, cell) : drawn_color(world, resource, cell);
     if (color.w() < least) continue;
@@ -141,18 +146,23 @@ Vector3f color_variable(Machine& machine, Instance& self, std::string_view name)
 
 /// The edges of a mesh, each once, in the colour of their first end.
 void show_edges(const SceneInstance& instance, const SceneMesh& mesh, SceneBuilder& to) {
+  EveryFew often(to.poll);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
   edges.reserve(mesh.indices.size());
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
     const std::uint32_t from = mesh.indices[i], end = mesh.indices[i % 3 == 2 ? i - 2 : i + 1];
     edges.emplace_back(std::min(from, end), std::max(from, end));
   }
-  std::sort(edges.begin(), edges.end());
+  std::sort(edges.begin(), edges.end(), [&often](const auto& a, const auto& b) {
+    often.count();
+    return a < b;
+  });
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   const auto at = [&](std::uint32_t vertex) {
     return Vector3f(instance.transform * mesh.positions[vertex].homogeneous());
   };
   for (const auto& [from, end] : edges) {
+    often.count();
     Vector4f color = instance.color;
     color.head<3>() = mesh.colors[from];
     to.scene().lines.push_back({at(from), at(end), color});
@@ -216,6 +226,16 @@ const ListCell* list_variable(Machine& machine, Instance& self, std::string_view
   return slot ? static_cast<const ListCell*>(slot->ref) : nullptr;
 }
 
+/// The heights of a terrain whose edges are drawn, each of which takes as long as some numbers.
+std::uint64_t wireframe_numbers(Machine& machine, Instance& instance) {
+  constexpr std::uint64_t kOfHeight = 30;
+  if (!is_library_kind(instance, "Terrain") || !is_set(machine, &instance, "Terrain", "drawsWireframe")) return 0;
+  const auto* resource = resource_of<ShapeResource>(machine, &instance);
+  const HeightGrid* heights = resource && resource->shape ? resource->shape->heights() : nullptr;
+  if (!heights) return 0;
+  return kOfHeight * static_cast<std::uint64_t>(heights->columns()) * static_cast<std::uint64_t>(heights->rows());
+}
+
 double number_of(const Value& value) {
   if (value.tag == Tag::Int) return value.i;
   return value.tag == Tag::Double ? value.d : std::numeric_limits<double>::quiet_NaN();
@@ -223,7 +243,17 @@ double number_of(const Value& value) {
 
 }  // namespace
 
-ScenePlot plot_of(Machine& machine, Instance& graph) {
+std::uint64_t plot_size(Machine& machine, Instance& graph) {
+  const ListCell* lines = list_variable(machine, graph, "lineValues");
+  std::uint64_t size = 0;
+  for (std::uint32_t i = 0; lines && i < lines->size; ++i) {
+    const Value list = (*lines)[i];
+    size += 1 + (list.tag == Tag::List && list.ref ? static_cast<const ListCell*>(list.ref)->size : 0);
+  }
+  return size;
+}
+
+ScenePlot plot_of(Machine& machine, Instance& graph, const Poll& poll) {
   ScenePlot plot;
   plot.object = graph.id;
   plot.title = text_variable(machine, graph, "graphTitle");
@@ -232,15 +262,33 @@ ScenePlot plot_of(Machine& machine, Instance& graph) {
   const ListCell* colors = list_variable(machine, graph, "lineColors");
   const ListCell* values = list_variable(machine, graph, "lineValues");
   if (!colors || !values) return plot;
+  EveryFew often(poll);
   for (std::uint32_t i = 0; i < std::min(colors->size, values->size); ++i) {
+    often.count();
     const Value color = (*colors)[i], list = (*values)[i];
     ScenePlot::Line line;
     if (color.tag == Tag::Vector) line.color = color_of(color.vector(), 1).head<3>();
     if (list.tag == Tag::List && list.ref)
-      for (const Value& value : *static_cast<const ListCell*>(list.ref)) line.values.push_back(number_of(value));
+      for (const Value& value : *static_cast<const ListCell*>(list.ref)) {
+        often.count();
+        line.values.push_back(number_of(value));
+      }
     plot.lines.push_back(std::move(line));
   }
   return plot;
+}
+
+std::uint64_t shown_numbers(Machine& machine) {
+  std::uint64_t numbers = 0;
+  for (const ObjectId id : machine.world().objects()) {
+    Instance* instance = machine.instance(id);
+    if (!instance) continue;
+    if (is_library_kind(*instance, "Graph")) numbers += plot_size(machine, *instance);
+    numbers += wireframe_numbers(machine, *instance);
+    const auto* grid = resource_of<GridResource>(machine, instance);
+    if (grid && grid->grid) numbers += grid->grid->cells();
+  }
+  return numbers;
 }
 
 void show(Machine& machine, SceneBuilder& scene, const Arrows& arrows) {
@@ -250,7 +298,7 @@ void show(Machine& machine, SceneBuilder& scene, const Arrows& arrows) {
   for (const ObjectId id : world.objects()) {
     Instance* instance = machine.instance(id);
     if (instance && is_library_kind(*instance, "Graph"))
-      if (ScenePlot plot = plot_of(machine, *instance); !plot.lines.empty())
+      if (ScenePlot plot = plot_of(machine, *instance, scene.poll); !plot.lines.empty())
         scene.scene().plots.push_back(std::move(plot));
     if (const auto* grid = resource_of<GridResource>(machine, instance)) show_grid(machine, id, *grid, scene);
     if (const auto* spring = resource_of<SpringResource>(machine, instance))
