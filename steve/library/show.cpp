@@ -13,6 +13,7 @@
 #include "runtime/world/show.hpp"
 #include "steve/library/grids.hpp"
 #include "steve/library/joints.hpp"
+#include "steve/library/resources.hpp"
 #include "steve/library/support.hpp"
 
 namespace breve::steve {
