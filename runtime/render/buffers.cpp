@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include "runtime/base/in_pieces.hpp"
+
 namespace breve::render {
 
 namespace {
@@ -22,6 +24,10 @@ void Buffer::fill(unsigned target, const void* bytes, std::size_t size, unsigned
   gl_.BufferData(target, static_cast<GLsizeiptr>(size), bytes, usage);
 }
 
+void Buffer::put(unsigned target, std::size_t begin, const void* bytes, std::size_t size) const {
+  gl_.BufferSubData(target, static_cast<GLintptr>(begin), static_cast<GLsizeiptr>(size), bytes);
+}
+
 void point_at_instances(const Gl& gl, std::size_t offset, int count, std::size_t stride) {
   constexpr unsigned kFirst = 4;
   for (unsigned i = 0; i < static_cast<unsigned>(count); ++i) {
@@ -32,7 +38,7 @@ void point_at_instances(const Gl& gl, std::size_t offset, int count, std::size_t
   }
 }
 
-MeshBuffer::MeshBuffer(const Gl& gl, const SceneMesh& mesh)
+MeshBuffer::MeshBuffer(const Gl& gl, const SceneMesh& mesh, const Poll& poll)
     : gl_(gl),
       array_(gl),
       vertices_(gl),
@@ -41,19 +47,26 @@ MeshBuffer::MeshBuffer(const Gl& gl, const SceneMesh& mesh)
       revision_(mesh.revision),
       tinted_(!mesh.colors.empty()),
       two_sided_(mesh.two_sided) {
-  std::vector<GpuVertex> vertices(mesh.positions.size());
-  for (std::size_t i = 0; i < vertices.size(); ++i)
-    vertices[i] = {mesh.positions[i], mesh.normals[i], mesh.uvs[i], tinted_ ? mesh.colors[i] : Vector3f(1, 1, 1)};
   array_.bind();
-  vertices_.fill(GL_ARRAY_BUFFER, vertices.data(), vertices.size() * sizeof(GpuVertex), GL_STATIC_DRAW);
+  vertices_.fill(GL_ARRAY_BUFFER, nullptr, mesh.positions.size() * sizeof(GpuVertex), GL_STATIC_DRAW);
+  std::vector<GpuVertex> piece;
+  in_pieces(mesh.positions.size(), sizeof(GpuVertex), poll, [&](std::size_t begin, std::size_t end) {
+    piece.clear();
+    for (std::size_t i = begin; i < end; ++i)
+      piece.push_back({mesh.positions[i], mesh.normals[i], mesh.uvs[i], tinted_ ? mesh.colors[i] : Vector3f(1, 1, 1)});
+    vertices_.put(GL_ARRAY_BUFFER, begin * sizeof(GpuVertex), piece.data(), piece.size() * sizeof(GpuVertex));
+  });
   const std::size_t offsets[] = {offsetof(GpuVertex, position), offsetof(GpuVertex, normal), offsetof(GpuVertex, uv),
                                  offsetof(GpuVertex, tint)};
   for (unsigned i = 0; i < 4; ++i) {
     gl.EnableVertexAttribArray(i);
     gl.VertexAttribPointer(i, i == 2 ? 2 : 3, GL_FLOAT, GL_FALSE, sizeof(GpuVertex), bytes_from(offsets[i]));
   }
-  order_.fill(GL_ELEMENT_ARRAY_BUFFER, mesh.indices.data(), mesh.indices.size() * sizeof(std::uint32_t),
-              GL_STATIC_DRAW);
+  constexpr std::size_t kIndexBytes = sizeof(std::uint32_t);
+  order_.fill(GL_ELEMENT_ARRAY_BUFFER, nullptr, mesh.indices.size() * kIndexBytes, GL_STATIC_DRAW);
+  in_pieces(mesh.indices.size(), kIndexBytes, poll, [&](std::size_t begin, std::size_t end) {
+    order_.put(GL_ELEMENT_ARRAY_BUFFER, begin * kIndexBytes, mesh.indices.data() + begin, (end - begin) * kIndexBytes);
+  });
 }
 
 void MeshBuffer::draw_part(const Buffer& instances, std::size_t first, std::size_t count, std::size_t from,

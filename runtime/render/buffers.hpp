@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "runtime/base/poll.hpp"
 #include "runtime/render/gl.hpp"
 #include "runtime/scene/scene.hpp"
 
@@ -18,8 +19,10 @@ class Buffer {
   Buffer(const Buffer&) = delete;
   Buffer& operator=(const Buffer&) = delete;
   unsigned name() const { return name_; }
-  /// Bound to `target`, with these bytes.
+  /// Bound to `target`, with these bytes; null: with so much room.
   void fill(unsigned target, const void* bytes, std::size_t size, unsigned usage) const;
+  /// Bytes of what is bound to `target`, from `begin` on.
+  void put(unsigned target, std::size_t begin, const void* bytes, std::size_t size) const;
 
  private:
   const Gl& gl_;
@@ -47,7 +50,7 @@ struct GpuInstance {
 /// A mesh with its own vertices; instances come from a buffer that all meshes share.
 class MeshBuffer {
  public:
-  MeshBuffer(const Gl& gl, const SceneMesh& mesh);
+  MeshBuffer(const Gl& gl, const SceneMesh& mesh, const Poll& poll = {});
   /// Draws `count` instances, from the one that stands at `first` in `instances`.
   void draw(const Buffer& instances, std::size_t first, std::size_t count) const {
     draw_part(instances, first, count, 0, triangles());

@@ -197,7 +197,7 @@ void Renderer::Work::paint(const Scene& scene, int width, int height, Picture& p
   needed = needed_of(part, scene, width, height);
   const double aspect = static_cast<double>(width) / height;
   if (scene.cameras.empty()) throw Error(ErrorCode::Argument, "the scene has no camera");
-  last_camera = own_camera ? *own_camera : framed(scene, scene.cameras[0], aspect, framing);
+  last_camera = own_camera ? *own_camera : framed(scene, scene.cameras[0], aspect, framing, poll());
   shadows = draw_shadows(scene, lens_of(last_camera, aspect), height);
   paint_camera(scene, last_camera, width, height);
   if (settings.look == Look::Full) frame_windows(scene, width, height);

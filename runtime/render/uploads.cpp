@@ -29,7 +29,7 @@ const MeshBuffer& Renderer::Work::mesh(const Scene& scene, std::uint32_t number)
     return *kept;
   }
   if (!kept || kept->revision() != scene.meshes[number].revision) {
-    kept = std::make_unique<MeshBuffer>(context.gl(), scene.meshes[number]);
+    kept = std::make_unique<MeshBuffer>(context.gl(), scene.meshes[number], poll());
     ++counters.uploads;
   }
   return *kept;

@@ -57,6 +57,10 @@ struct Renderer::Work {
   Work(const Work&) = delete;
   Work& operator=(const Work&) = delete;
 
+  /// Of work that is not drawing, and is not counted.
+  Poll poll() const {
+    return meter ? Poll([this] { meter(0); }) : Poll();
+  }
   // renderer.cpp
   void paint(const Scene& scene, int width, int height, Picture& picture);
   void paint_camera(const Scene& scene, const SceneCamera& camera, int width, int height);

@@ -46,21 +46,23 @@ struct Ball {
   double radius;
 };
 
-std::vector<Ball> balls_of(const Scene& scene, bool fixed) {
+std::vector<Ball> balls_of(const Scene& scene, bool fixed, const Poll& poll) {
   std::vector<Ball> balls;
+  EveryFew often(poll);
+  const auto add = [&](const Vector3f& center, double radius) {
+    often.count();
+    balls.push_back({center.cast<double>(), radius});
+  };
   for (const SceneInstance& one : scene.instances)
-    if (one.fixed == fixed)
-      balls.push_back({one.transform.col(3).cast<double>(), double{radius_of(one, scene.meshes[one.mesh])}});
+    if (one.fixed == fixed) add(one.transform.col(3), double{radius_of(one, scene.meshes[one.mesh])});
   if (fixed) return balls;
-  for (const SceneSprite& one : scene.sprites)
-    balls.push_back({one.center.cast<double>(), one.point ? 0.0 : double{one.size} / 2});
+  for (const SceneSprite& one : scene.sprites) add(one.center, one.point ? 0.0 : double{one.size} / 2);
   for (const SceneSheet& one : scene.sheets)
     for (const float across : {0.0F, 1.0F})
-      for (const float along : {0.0F, 1.0F})
-        balls.push_back({(one.corner + across * one.across + along * one.along).cast<double>(), 0});
+      for (const float along : {0.0F, 1.0F}) add(one.corner + across * one.across + along * one.along, 0);
   for (const SceneLine& one : scene.lines)
-    for (const Vector3f& end : {one.from, one.to}) balls.push_back({end.cast<double>(), 0});
-  for (const SceneVertex& one : scene.triangles) balls.push_back({one.position.cast<double>(), 0});
+    for (const Vector3f& end : {one.from, one.to}) add(end, 0);
+  for (const SceneVertex& one : scene.triangles) add(one.position, 0);
   return balls;
 }
 
@@ -71,33 +73,37 @@ double median(std::vector<double>& numbers) {
 }
 
 /// All balls but those far outside, which are at most a thirtieth of them.
-std::vector<Ball> without_outliers(std::vector<Ball> balls) {
+std::vector<Ball> without_outliers(std::vector<Ball> balls, const Poll& poll) {
   Vector3 center;
   std::vector<double> numbers(balls.size());
   for (int axis = 0; axis < 3; ++axis) {
     std::transform(balls.begin(), balls.end(), numbers.begin(), [&](const Ball& b) { return b.center[axis]; });
     center[axis] = median(numbers);
+    if (poll) poll();
   }
   const auto reach = [&](const Ball& b) { return (b.center - center).norm() + b.radius; };
   std::transform(balls.begin(), balls.end(), numbers.begin(), reach);
   const auto last = numbers.begin() + static_cast<std::ptrdiff_t>(balls.size() - balls.size() / 30 - 1);
   std::nth_element(numbers.begin(), last, numbers.end());
+  if (poll) poll();
   std::erase_if(balls, [&, usual = *last](const Ball& b) { return reach(b) > 3 * usual; });
   return balls;
 }
 
-std::vector<Ball> balls_to_see(const Scene& scene) {
-  std::vector<Ball> balls = balls_of(scene, false);
-  if (balls.empty()) balls = balls_of(scene, true);
-  return balls.empty() ? balls : without_outliers(std::move(balls));
+std::vector<Ball> balls_to_see(const Scene& scene, const Poll& poll) {
+  std::vector<Ball> balls = balls_of(scene, false, poll);
+  if (balls.empty()) balls = balls_of(scene, true, poll);
+  return balls.empty() ? balls : without_outliers(std::move(balls), poll);
 }
 
 /// From so far each ball is between the planes through the eye that bound the picture.
 double least_distance(const std::vector<Ball>& balls, const Vector3& center, double slope, double aspect,
-                      bool orthographic) {
+                      bool orthographic, const Poll& poll) {
+  EveryFew often(poll);
   const Eigen::Matrix3d rotation = rotation_of(kPitch, kYaw);
   double distance = orthographic ? 1e-6 / slope : 0;
   for (const Ball& b : balls) {
+    often.count();
     const Vector3 away = b.center - center, seen = rotation.transpose() * away;
     if (orthographic) {
       distance = std::max(
@@ -108,6 +114,17 @@ double least_distance(const std::vector<Ball>& balls, const Vector3& center, dou
       distance = std::max(distance, seen.z() + way / half + b.radius * std::hypot(1.0, half) / half);
   }
   return distance;
+}
+
+/// In a picture whose half height is `slope` at distance 1.
+Framing frame_of(const std::vector<Ball>& balls, double slope, double aspect, bool orthographic, const Poll& poll) {
+  if (balls.empty()) return {};
+  Eigen::AlignedBox3d box;
+  for (const Ball& b : balls) {
+    box.extend(b.center - Vector3::Constant(b.radius));
+    box.extend(b.center + Vector3::Constant(b.radius));
+  }
+  return {box.center(), kMargin * least_distance(balls, box.center(), slope, aspect, orthographic, poll)};
 }
 
 }  // namespace
@@ -159,24 +176,14 @@ float radius_of(const SceneInstance& instance, const SceneMesh& mesh) {
   return Vector3f(rotation.colwise().norm().transpose()).cwiseProduct(mesh.reach).norm();
 }
 
-Framing frame_of(const Scene& scene, double slope, double aspect, bool orthographic) {
-  const std::vector<Ball> balls = balls_to_see(scene);
-  if (balls.empty()) return {};
-  Eigen::AlignedBox3d box;
-  for (const Ball& b : balls) {
-    box.extend(b.center - Vector3::Constant(b.radius));
-    box.extend(b.center + Vector3::Constant(b.radius));
-  }
-  return {box.center(), kMargin * least_distance(balls, box.center(), slope, aspect, orthographic)};
-}
-
-SceneCamera framed(const Scene& scene, SceneCamera camera, double aspect, Framing& kept) {
+SceneCamera framed(const Scene& scene, SceneCamera camera, double aspect, Framing& kept, const Poll& poll) {
   if (!camera.automatic) return camera;
   // A scene that is all in planes of z is seen from straight ahead.
   const bool flat = scene.instances.empty() && !scene.sheets.empty();
   const double pitch = flat || camera.orthographic ? 0 : kPitch, yaw = flat || camera.orthographic ? 0 : kYaw;
   const double slope = std::tan(camera.field_of_view / 2);
-  const Framing now = frame_of(scene, slope, aspect, flat || camera.orthographic);
+  const std::vector<Ball> balls = balls_to_see(scene, poll);
+  const Framing now = frame_of(balls, slope, aspect, flat || camera.orthographic, poll);
   if (now.distance <= 0) return camera;
   constexpr double kTooFar = 1.5, kGlide = 0.08;
   const bool outside =
@@ -188,8 +195,8 @@ SceneCamera framed(const Scene& scene, SceneCamera camera, double aspect, Framin
     kept.distance += kGlide * (now.distance - kept.distance);
   }
   // However fast things spread, and however many pictures were left out: none of them is cut off.
-  kept.distance = std::max(
-      kept.distance, least_distance(balls_to_see(scene), kept.center, slope, aspect, flat || camera.orthographic));
+  kept.distance =
+      std::max(kept.distance, least_distance(balls, kept.center, slope, aspect, flat || camera.orthographic, poll));
   camera.target = kept.center;
   camera.pitch = pitch;
   camera.yaw = yaw;

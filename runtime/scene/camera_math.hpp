@@ -1,6 +1,7 @@
 // From the world to the picture: the matrices of a camera, where a point is seen, and the camera that shows everything.
 #pragma once
 
+#include "runtime/base/poll.hpp"
 #include "runtime/scene/scene.hpp"
 
 namespace breve {
@@ -35,13 +36,10 @@ struct Framing {
   double distance = 0;  // of the camera from there; 0: nothing yet
 };
 
-/// What of the scene is to be seen, in a picture whose half height is `slope` at distance 1: bodies, cells and
-/// drawings. A few that are far off from all others do not count.
-Framing frame_of(const Scene& scene, double slope, double aspect, bool orthographic);
-
-/// The camera, moved so that it shows the scene if it is an automatic one.
+/// The camera, moved so that it shows the scene if it is an automatic one: bodies, cells and drawings. A few that are
+/// far off from all others do not count.
 /// @param kept  the framing of the picture before; the new one is written there
-SceneCamera framed(const Scene& scene, SceneCamera camera, double aspect, Framing& kept);
+SceneCamera framed(const Scene& scene, SceneCamera camera, double aspect, Framing& kept, const Poll& poll = {});
 
 /// A sphere about an instance.
 float radius_of(const SceneInstance& instance, const SceneMesh& mesh);
