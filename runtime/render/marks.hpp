@@ -18,7 +18,7 @@ struct Canvas {
   int width = 0, height = 0;  // pixels
   std::uint64_t* draw_calls = nullptr;
   const SceneFog* fog = nullptr;  // null: none
-  PieceMeter meter{};
+  CostMeter meter{};
 };
 
 /// A camera whose world is the picture: pixels from the left and from the top.

@@ -3,17 +3,14 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <functional>
 
+#include "runtime/base/cost_meter.hpp"
 #include "runtime/render/gl.hpp"
 #include "runtime/scene/camera_math.hpp"
 
 namespace breve::render {
 
-/// Called with the cost of each piece before it is drawn, in units of some 200 ns. An exception of it ends the picture.
-using PieceMeter = std::function<void(std::uint64_t units)>;
-
-// Units. Measured with OSMesa at 4 samples a pixel: spheres as large as the picture, and lines across it.
+// Units of CostMeter. Measured with OSMesa at 4 samples a pixel: spheres as large as the picture, and lines across it.
 inline constexpr double kOfTriangle = 3, kOfPixel = 0.25, kOfBlended = 0.4;
 inline constexpr double kOfQuad = 2 * kOfTriangle;
 
@@ -21,7 +18,7 @@ inline constexpr double kOfQuad = 2 * kOfTriangle;
 /// @param cost_of  units, of the thing of that number
 /// @param draw     draws so many things from that number on
 template <class CostOf, class Draw>
-void draw_in_pieces(const Gl& gl, const PieceMeter& meter, std::size_t first, std::size_t count, CostOf&& cost_of,
+void draw_in_pieces(const Gl& gl, const CostMeter& meter, std::size_t first, std::size_t count, CostOf&& cost_of,
                     Draw&& draw) {
   if (!meter) return draw(first, count);
   constexpr double kPiece = 50'000, kMost = 1e15;

@@ -217,7 +217,7 @@ void Renderer::paint(const Scene& scene, int width, int height, Picture& picture
   work_->paint(scene, width, height, picture);
 }
 
-void Renderer::set_meter(std::function<void(std::uint64_t units)> meter) { work_->meter = std::move(meter); }
+void Renderer::set_meter(CostMeter meter) { work_->meter = std::move(meter); }
 
 void Renderer::set_camera(const std::optional<SceneCamera>& camera) { work_->own_camera = camera; }
 void Renderer::set_part(const std::optional<PicturePart>& part) { work_->part = part; }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/base/cost_meter.hpp"
 #include "runtime/scene/camera_math.hpp"
 #include "runtime/scene/picture.hpp"
 
@@ -58,10 +59,9 @@ class Renderer {
   void set_camera(const std::optional<SceneCamera>& camera);
   /// Only this part of the pictures is needed from now on: the rest of their pixels is undefined. None: all of it.
   void set_part(const std::optional<PicturePart>& part);
-  /// From now on called before each piece of a picture is drawn, with its cost in units of some 200 ns.
-  /// An exception of it ends the picture, and the renderer can then only be destroyed. Costs a little, since pieces are
-  /// waited for. Null: none.
-  void set_meter(std::function<void(std::uint64_t units)> meter);
+  /// From now on called before each piece of a picture is drawn. An exception of it ends the picture, and the renderer
+  /// can then only be destroyed. Costs a little, since pieces are waited for.
+  void set_meter(CostMeter meter);
   /// The main camera of the last picture, as it was framed.
   const SceneCamera& camera() const;
   const Counters& counters() const;

@@ -110,7 +110,7 @@ struct Renderer::Work {
   Window needed;                    // the same in the picture that is being drawn
   SceneCamera last_camera;
   Framing framing;
-  PieceMeter meter;
+  CostMeter meter;
   Counters counters;
   std::vector<const Program*> ready;       // those for bodies that have the uniforms of this pass
   std::vector<std::uint8_t> last_picture;  // that motion blur mixes with

@@ -32,7 +32,7 @@ std::vector<double> axis_marks(double low, double high, int count) {
 }
 
 std::vector<std::size_t> points_to_draw(const std::vector<double>& values, std::size_t points, std::size_t columns,
-                                        const PlotMeter& meter) {
+                                        const CostMeter& meter) {
   constexpr std::size_t kOfColumn = 5;
   plot_layout::Counting counting(meter);
   std::vector<std::size_t> chosen;
@@ -60,7 +60,7 @@ std::vector<std::size_t> points_to_draw(const std::vector<double>& values, std::
   return chosen;
 }
 
-std::string plot_csv(const ScenePlot& plot, const PlotMeter& meter) {
+std::string plot_csv(const ScenePlot& plot, const CostMeter& meter) {
   plot_layout::Counting counting(meter);
   std::string text = plot.x_axis.empty() ? "x" : quoted(plot.x_axis);
   std::size_t rows = plot.xs.size();
@@ -118,7 +118,7 @@ Axis x_axis_of(const ScenePlot& plot) {
   return axis_of(range, 8);
 }
 
-Axis y_axis_of(const ScenePlot& plot, const PlotMeter& meter) {
+Axis y_axis_of(const ScenePlot& plot, const CostMeter& meter) {
   Range range;
   Counting counting(meter);
   for (const ScenePlot::Line& line : plot.lines)

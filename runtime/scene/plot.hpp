@@ -1,11 +1,10 @@
 // Plots: lines of numbers with axes, as data, as a table, and as a picture in SVG.
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
+#include "runtime/base/cost_meter.hpp"
 #include "runtime/base/ids.hpp"
 #include "runtime/base/math.hpp"
 
@@ -23,20 +22,16 @@ struct ScenePlot {
   std::vector<Line> lines;
 };
 
-/// Called again and again with the work that was begun since, in units of some 200 ns; may throw to end it. Empty:
-/// nobody counts.
-using PlotMeter = std::function<void(std::uint64_t units)>;
-
 /// A table with a column for x and one for each line.
-std::string plot_csv(const ScenePlot& plot, const PlotMeter& meter = {});
+std::string plot_csv(const ScenePlot& plot, const CostMeter& meter = {});
 /// A picture in SVG, legible at half its size.
-std::string plot_svg(const ScenePlot& plot, const PlotMeter& meter = {});
+std::string plot_svg(const ScenePlot& plot, const CostMeter& meter = {});
 
 /// Which of the first `points` values have to be drawn for a line to look as if all were, in so many columns of pixels:
 /// of each column the first, lowest, highest and last, and one that is not finite, where the line breaks. In order.
 /// Source: Jugel, Jerzak, Hackenbroich and Markl 2014, "M4: a visualization-oriented time series data aggregation".
 std::vector<std::size_t> points_to_draw(const std::vector<double>& values, std::size_t points, std::size_t columns,
-                                        const PlotMeter& meter = {});
+                                        const CostMeter& meter = {});
 
 /// Marks of an axis: a step of 1, 2 or 5 times a power of ten, so that there are about `count`.
 std::vector<double> axis_marks(double low, double high, int count);

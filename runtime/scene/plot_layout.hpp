@@ -16,13 +16,13 @@ inline constexpr double kKey = 35, kXAxis = kHeight - 18, kYAxis = kTop - 12;  /
 inline constexpr double kKeyRow = 26;                                          // of the key at the top
 inline constexpr std::size_t kColumns = 800;                                   // of pixels in which lines are drawn
 
-// Units of PlotMeter.
+// Units of CostMeter.
 inline constexpr double kOfCell = 1, kOfPoint = 2, kOfValue = 0.05, kOfPixel = 0.03, kOfLetter = 0.2;
 
 /// Adds up small pieces of work for a meter.
 class Counting {
  public:
-  explicit Counting(const PlotMeter& meter) : meter_(meter) {}
+  explicit Counting(const CostMeter& meter) : meter_(meter) {}
   void add(double units) {
     due_ += units;
     if (due_ >= kOften) tell();
@@ -35,7 +35,7 @@ class Counting {
     due_ = 0;
   }
 
-  const PlotMeter& meter_;
+  const CostMeter& meter_;
   double due_ = 0;
 };
 
@@ -76,7 +76,7 @@ struct Axis {
   std::vector<Mark> marks;
 };
 Axis x_axis_of(const ScenePlot& plot);
-Axis y_axis_of(const ScenePlot& plot, const PlotMeter& meter);
+Axis y_axis_of(const ScenePlot& plot, const CostMeter& meter);
 
 /// Where point `i` of a line is along x: its number if the plot says nothing else.
 inline double x_of(const ScenePlot& plot, std::size_t i) {

@@ -23,7 +23,7 @@ Rgb rgb_of(const Eigen::Vector3f& color) {
 class Paper {
  public:
   /// @param shift  added to the height, and to all y until it is set to another
-  Paper(double shift, const PlotMeter& meter) : shift(shift), counting_(meter) {
+  Paper(double shift, const CostMeter& meter) : shift(shift), counting_(meter) {
     picture_.width = static_cast<int>(kWidth);
     picture_.height = static_cast<int>(kHeight + shift);
     picture_.rgba.assign(
@@ -110,7 +110,7 @@ void draw_axes(Paper& paper, const ScenePlot& plot, const Axis& x, const Axis& y
 }
 
 void draw_line(Paper& paper, const ScenePlot& plot, const ScenePlot::Line& line, const Axis& x, const Axis& y,
-               const PlotMeter& meter) {
+               const CostMeter& meter) {
   const std::vector<std::size_t> drawn = points_to_draw(line.values, points_of(plot, line), kColumns, meter);
   for (std::size_t k = 1; k < drawn.size(); ++k) {
     const std::size_t i = drawn[k - 1], next = drawn[k];
@@ -122,7 +122,7 @@ void draw_line(Paper& paper, const ScenePlot& plot, const ScenePlot::Line& line,
 
 }  // namespace
 
-Picture plot_picture(const ScenePlot& plot, const PlotMeter& meter) {
+Picture plot_picture(const ScenePlot& plot, const CostMeter& meter) {
   const Key key = key_of(plot);
   Paper paper(key.height, meter);
   const Axis x = x_axis_of(plot), y = y_axis_of(plot, meter);

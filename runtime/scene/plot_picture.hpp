@@ -7,6 +7,6 @@
 namespace breve {
 
 /// The same plot as in SVG; without depth. Where the font DejaVu Sans is not installed, it has no text.
-Picture plot_picture(const ScenePlot& plot, const PlotMeter& meter = {});
+Picture plot_picture(const ScenePlot& plot, const CostMeter& meter = {});
 
 }  // namespace breve

@@ -57,7 +57,7 @@ std::string axes(const ScenePlot& plot, const Axis& x, const Axis& y) {
 
 /// A line that breaks where there is no number.
 std::string path_of(const ScenePlot& plot, const ScenePlot::Line& line, const Axis& x, const Axis& y,
-                    const PlotMeter& meter, Counting& counting) {
+                    const CostMeter& meter, Counting& counting) {
   std::string path;
   bool drawing = false;
   counting.add(kOfPoint);
@@ -75,7 +75,7 @@ std::string path_of(const ScenePlot& plot, const ScenePlot::Line& line, const Ax
 
 }  // namespace
 
-std::string plot_svg(const ScenePlot& plot, const PlotMeter& meter) {
+std::string plot_svg(const ScenePlot& plot, const CostMeter& meter) {
   Counting counting(meter);
   const Axis x = x_axis_of(plot), y = y_axis_of(plot, meter);
   const Key key = key_of(plot);

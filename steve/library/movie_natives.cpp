@@ -189,7 +189,7 @@ std::int32_t graph_write(Machine& machine, Instance& self, Text file) {
     throw Error(ErrorCode::Argument, fmt::format("write: '{}' does not end with .svg, .png or .csv", name));
   machine.charge_for(kOfNumber * plot_size(machine, self));
   const ScenePlot plot = plot_of(machine, self, machine.poller());
-  const PlotMeter meter = [&machine](std::uint64_t units) { machine.charge(units); };
+  const CostMeter meter = [&machine](std::uint64_t units) { machine.charge(units); };
   if (table) return write_picture(machine, "write", name, plot_csv(plot, meter));
   if (scalable) return write_picture(machine, "write", name, plot_svg(plot, meter));
   constexpr std::uint64_t kPixels = 900 * 520;
@@ -213,7 +213,7 @@ constexpr Native kMovieNatives[] = {
 
 }  // namespace
 
-std::string png_of(const ScenePlot& plot, const PlotMeter& meter) {
+std::string png_of(const ScenePlot& plot, const CostMeter& meter) {
   const Picture picture = plot_picture(plot, meter);
   const Poll poll = meter ? Poll([&meter] { meter(0); }) : Poll();
   const std::size_t row = 4 * static_cast<std::size_t>(picture.width);

@@ -22,7 +22,7 @@ void show(Machine& machine, SceneBuilder& scene, const Arrows& arrows = {});
 /// How many cells of grids, and lines and values of plots, that passes on; heights of wireframes count as more of them.
 std::uint64_t shown_numbers(Machine& machine);
 /// A plot as a PNG file.
-std::string png_of(const ScenePlot& plot, const PlotMeter& meter = {});
+std::string png_of(const ScenePlot& plot, const CostMeter& meter = {});
 
 /// What a Graph object holds.
 ScenePlot plot_of(Machine& machine, Instance& graph, const Poll& poll);
