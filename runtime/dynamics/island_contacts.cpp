@@ -52,6 +52,16 @@ Touch touch_at(std::size_t pair, const Pose& a, const Pose& b, const Manifold& m
   return touch;
 }
 
+/// Units that a contact of two solids costs beyond those of a pair, if they have many corners.
+std::uint64_t work_of_corners(const Shape& a, const Shape& b, bool deep) {
+  constexpr std::size_t kMany = 128;
+  constexpr std::uint64_t kOfDepth = 10;
+  if (a.surface() != nullptr || b.surface() != nullptr) return 0;
+  const std::size_t corners = a.polyhedron().vertices.size() + b.polyhedron().vertices.size();
+  if (corners < kMany) return 0;
+  return deep ? kOfDepth * corners : corners;
+}
+
 }  // namespace
 
 bool is_round(const Shape& shape) { return shape.kind() == ShapeKind::Sphere || shape.round().is_round(); }
@@ -75,7 +85,9 @@ void Contacts::find_touches(double h, bool speculative) {
   note_seen(speculative);
   // A row catches a body before it touches, if it comes as slowly as a body at rest falls in a sub-step.
   constexpr double kMostRoom = 0.05;  // of the size
+  constexpr double kDeep = 0.05;      // likewise, of an overlap that takes long to find
   constexpr double kHastens = 1.5;    // of its speed, within a sub-step, of a point that comes nearer by rotation
+  std::uint64_t corners = 0;          // units
   for (std::size_t i = 0; i < state_.pairs.size(); ++i) {
     NearPair& pair = *state_.pairs[i];
     const Shape &a = state_.shape(pair.a), &b = state_.shape(pair.b);
@@ -93,7 +105,9 @@ void Contacts::find_touches(double h, bool speculative) {
       margin = std::max(sure, near + way + swing);
     }
     manifolds_.clear();
+    if (narrow.stopped()) break;
     find_manifolds(a, pa, b, pb, margin, manifolds_, pair.cache, narrow);
+    if (!manifolds_.empty()) corners += work_of_corners(a, b, manifolds_.front().points[0].distance < -kDeep * size);
     for (const Manifold& manifold : manifolds_) {
       ++state_.result.counters.manifolds;
       for (int k = 0; k < manifold.count; ++k) {
@@ -111,7 +125,8 @@ void Contacts::find_touches(double h, bool speculative) {
   }
   state_.result.counters.pairs += narrow.pairs;
   constexpr std::uint64_t kUnits = 10;  // of work, a pair
-  state_.meter.add(kUnits * (state_.pairs.size() + narrow.pairs) + narrow.facets + narrow.boxes + touches_.size());
+  state_.meter.add(kUnits * (state_.pairs.size() + narrow.pairs) + corners + narrow.facets + narrow.boxes +
+                   touches_.size());
 }
 
 /// How the bodies of each pair move, for find_missed(). One without joints that is struck is not thrown down elsewhere

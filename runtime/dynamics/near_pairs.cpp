@@ -313,7 +313,8 @@ void NearPairs::meet(PairKey& key, ProxyIndex other, Asking& asking) const {
   if (!reach_[other].moved || !near(key)) return;
   asking.ask(asking.wanted, key);
   if (key.pushes) {
-    if (++asking.met > asking.most) fail_by_pairs(asking.most);
+    asking.met += weight(key);
+    if (asking.met > asking.most) fail_by_pairs(asking.most);
   } else if (++asking.others > kOthers * asking.most) {
     fail_by_others(kOthers * asking.most);
   }
@@ -322,10 +323,10 @@ void NearPairs::meet(PairKey& key, ProxyIndex other, Asking& asking) const {
 /// Before anything is forgotten: the worlds that a step like this leaves behind are the same, whatever they found
 /// before.
 void NearPairs::bound_near(std::size_t most) const {
-  if (keys_.size() <= most) return;
+  if (most == kNoMost) return;
   std::size_t met = 0, others = 0;
   for (const PairKey& key : keys_)
-    if (near(key)) ++(key.pushes ? met : others);
+    if (near(key)) (key.pushes ? met : others) += key.pushes ? weight(key) : 1;
   if (met > most) fail_by_pairs(most);
   if (others > kOthers * most) fail_by_others(kOthers * most);
 }
@@ -369,6 +370,20 @@ void NearPairs::place_near() {
 /// True if the boxes of what the two may reach in this step meet.
 bool NearPairs::near(const PairKey& key) const {
   return reach_[proxy_of_[key.a]].box.intersects(reach_[proxy_of_[key.b]].box);
+}
+
+/// How many pairs it counts as: to find how deep two solids of many corners are in one another takes long.
+std::size_t NearPairs::weight(const PairKey& key) const {
+  constexpr std::size_t kManyCorners = 128, kCornersPerPair = 12;
+  constexpr double kDeep = 0.25;  // of the lesser box
+  const ProxyIndex a = proxy_of_[key.a], b = proxy_of_[key.b];
+  const Shape *one = proxies_[a].shape, *other = proxies_[b].shape;
+  if (one == nullptr || other == nullptr || one->surface() != nullptr || other->surface() != nullptr) return 1;
+  const std::size_t corners = one->polyhedron().vertices.size() + other->polyhedron().vertices.size();
+  if (corners < kManyCorners) return 1;
+  const double common = reach_[a].box.intersection(reach_[b].box).sizes().minCoeff();
+  const double least = std::min(reach_[a].box.sizes().minCoeff(), reach_[b].box.sizes().minCoeff());
+  return common > kDeep * least ? 1 + corners / kCornersPerPair : 1;
 }
 
 std::size_t NearPairs::bytes() const {

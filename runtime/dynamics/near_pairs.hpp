@@ -240,6 +240,7 @@ class NearPairs {
   }
   PairKey* find_key(std::uint64_t serial_a, std::uint64_t serial_b);
   bool near(const PairKey& key) const;
+  std::size_t weight(const PairKey& key) const;
   void release(PairKey& key);
   bool pass_on(const Bodies& bodies, double h);
   void widen(ProxyIndex index, double h);

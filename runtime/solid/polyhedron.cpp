@@ -141,6 +141,7 @@ void connect(Polyhedron& solid) {
 namespace {
 
 constexpr std::size_t kManyVertices = 32;  // fewer are looked at one by one
+constexpr std::size_t kManyEdges = 256;    // likewise, each with each of another solid
 
 /// Do the faces at each edge fold outward? Then what is higher than all its neighbors is the highest.
 bool folds_outward(const Polyhedron& solid) {
@@ -158,6 +159,7 @@ bool folds_outward(const Polyhedron& solid) {
 void find_neighbors(Polyhedron& solid) {
   solid.neighbors.clear();
   solid.first_neighbor.clear();
+  solid.arcs.clear();
   const std::size_t count = solid.vertices.size();
   if (count < kManyVertices || solid.edges.empty() || !folds_outward(solid)) return;
   std::pmr::vector<int>& first = solid.first_neighbor;
@@ -170,6 +172,12 @@ void find_neighbors(Polyhedron& solid) {
     solid.neighbors[at(next[at(edge.a)]++)] = edge.b;
     solid.neighbors[at(next[at(edge.b)]++)] = edge.a;
   }
+  if (solid.edges.size() < kManyEdges) return;
+  std::pmr::vector<ArcBall> balls(first.get_allocator());
+  balls.reserve(solid.edges.size());
+  for (const Edge& edge : solid.edges)
+    balls.push_back(ArcBall::between(solid.planes[at(edge.left)].normal, solid.planes[at(edge.right)].normal));
+  solid.arcs.build(std::move(balls));
 }
 
 }  // namespace

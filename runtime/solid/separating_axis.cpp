@@ -1,10 +1,12 @@
 // Overlap of two polyhedra by separating axes (Gottschalk 1996): the normals of faces, and the products of two edges
 // whose arcs cross on the Gauss map (Gregorius 2013), for only those are faces of the Minkowski difference.
 // Two things keep solids of hundreds of faces cheap. A face cannot win if a vertex met before lies too deep below it.
-// And the deepest points of two edges are no farther apart than the depth, so edges farther apart are passed over.
+// And the deepest points of two edges are no farther apart than the depth, so edges farther apart are passed over. Of
+// thousands of edges those whose arcs may cross are found on the Gauss map.
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "runtime/solid/gap.hpp"
 
@@ -74,19 +76,12 @@ FaceAxis best_face(const Placed& a, const Placed& b) {
   const Vector3 shift = a.rotation.transpose() * (b.location - a.location);
   Deepest deepest;
   FaceAxis best{-std::numeric_limits<double>::infinity(), 0};
+  int lowest = 0;  // vertex of b under the last face, from where the next search starts
   for (std::size_t f = 0; f < a.solid->planes.size(); ++f) {
     const Plane& plane = a.solid->planes[f];
     if (deepest.bound(plane) <= best.distance) continue;
-    const Vector3 local = rotation.transpose() * plane.normal;
-    const Vector3* low = nullptr;
-    double least = std::numeric_limits<double>::infinity();
-    for (const Vector3& v : b.solid->vertices) {
-      const double height = local.dot(v);
-      if (height >= least) continue;
-      least = height;
-      low = &v;
-    }
-    const Vector3 point = shift + rotation * *low;
+    lowest = b.solid->farthest(-(rotation.transpose() * plane.normal), lowest);
+    const Vector3 point = shift + rotation * b.solid->vertices[at(lowest)];
     deepest.add(point);
     const double distance = plane.normal.dot(point) - plane.offset;
     if (distance > best.distance) best = {distance, static_cast<int>(f)};
@@ -104,6 +99,8 @@ bool best_edges(const Placed& a, const Placed& b, double to_beat, double apart, 
   for (const Vector3& v : sa.vertices) around_a.extend(v);
   const double slack = kNear * (a.radius + b.radius);
   bool found = false;
+  std::vector<std::uint32_t> crossing;  // edges of a whose arcs may cross that of the edge of b; of many edges
+  int summit = 0;                       // vertex of a from where the next search starts
   for (std::size_t ib = 0; ib < sb.edges.size(); ++ib) {
     const Edge& eb = sb.edges[ib];
     const Vector3 start_b = shift + rotation * sb.vertices[at(eb.a)], end_b = shift + rotation * sb.vertices[at(eb.b)];
@@ -111,26 +108,37 @@ bool best_edges(const Placed& a, const Placed& b, double to_beat, double apart, 
     if (to_beat < 0 && !around_a.intersects(around_b)) continue;
     const Vector3 edge_b = end_b - start_b;
     const Vector3 b1 = rotation * sb.planes[at(eb.left)].normal, b2 = rotation * sb.planes[at(eb.right)].normal;
-    for (std::size_t ia = 0; ia < sa.edges.size(); ++ia) {
+    const auto look = [&](std::size_t ia) {
       const Edge& ea = sa.edges[ia];
       const Vector3 &start_a = sa.vertices[at(ea.a)], &end_a = sa.vertices[at(ea.b)];
-      if (to_beat < 0 && !around_b.intersects(grown(start_a, end_a, 0))) continue;
+      if (to_beat < 0 && !around_b.intersects(grown(start_a, end_a, 0))) return;
       const Vector3 edge_a = end_a - start_a;
-      if (!arcs_cross(sa.planes[at(ea.left)], sa.planes[at(ea.right)], edge_a, b1, b2, edge_b)) continue;
+      if (!arcs_cross(sa.planes[at(ea.left)], sa.planes[at(ea.right)], edge_a, b1, b2, edge_b)) return;
       Vector3 outward = edge_a.cross(edge_b);
       const double length = outward.norm(), sides = edge_a.norm() * edge_b.norm();
-      if (length <= kParallel * sides) continue;
+      if (length <= kParallel * sides) return;
       outward /= length;
       if (outward.dot(sa.planes[at(ea.left)].normal + sa.planes[at(ea.right)].normal) < 0) outward = -outward;
       double distance = outward.dot(start_b - start_a);
-      if (distance <= to_beat) continue;
+      if (distance <= to_beat) return;
       const Vector3 normal = -(a.rotation * outward);
       if (length < kNearlyParallel * sides) distance = -a.reach(-normal) - b.reach(normal);
-      if (distance <= to_beat) continue;
+      if (distance <= to_beat) return;
       to_beat = distance;
       best = {distance, static_cast<int>(ia), static_cast<int>(ib), normal};
       found = true;
+    };
+    if (sa.arcs.empty()) {
+      for (std::size_t ia = 0; ia < sa.edges.size(); ++ia) look(ia);
+      continue;
     }
+    // No axis on the arc separates better than the vertex of a that is farthest along its middle allows.
+    const ArcBall arc = ArcBall::between(-b1, -b2);
+    summit = sa.farthest(arc.middle, summit);
+    const Vector3 beyond = start_b - sa.vertices[at(summit)];
+    if (arc.middle.dot(beyond) + arc.reach * beyond.norm() + kAgree * (a.radius + b.radius) <= to_beat) continue;
+    sa.arcs.meeting(arc, crossing);
+    for (const std::uint32_t ia : crossing) look(ia);
   }
   return found;
 }

@@ -140,6 +140,44 @@ TEST(Closest, DepthIsTheShortestWayOutForAnyPolyhedra) {
   EXPECT_GT(overlaps, 500);
 }
 
+/// Corners at random on an ellipsoid: a solid of some three edges for each.
+std::shared_ptr<Shape> pebble(oracle::Dice& dice, int corners, const Vector3& half) {
+  std::vector<Vector3> points;
+  for (int i = 0; i < corners; ++i) points.push_back(half.cwiseProduct(dice.direction()));
+  const Polyhedron hull = make_hull(points);
+  std::vector<std::vector<Vector3>> faces;
+  for (const auto& face : hull.faces) {
+    std::vector<Vector3>& corner = faces.emplace_back();
+    for (const int v : face) corner.push_back(hull.vertices[at(v)]);
+  }
+  return Shape::convex(faces, 1);
+}
+
+/// Edges of such solids are looked for on their Gauss maps. What they find is also what a search by all directions
+/// finds, those next to the found one among them.
+TEST(Closest, DepthIsTheShortestWayOutForSolidsOfManyEdges) {
+  oracle::Dice dice(6);
+  int overlaps = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Vector3 half_a = dice.edges(0.4, 1), half_b = dice.edges(0.4, 1);
+    const auto a = pebble(dice, 100 + 10 * i, half_a), b = pebble(dice, 300, half_b);
+    ASSERT_FALSE(b->polyhedron().arcs.empty());
+    const Pose pa{dice.vector(1), dice.rotation()};
+    Pose pb{pa.location + dice.vector(0.5), dice.rotation()};
+    const Contact c = closest(*a, pa, *b, pb);
+    if (c.distance > 0) continue;
+    ++overlaps;
+    for (int k = 0; k < 2000; ++k) {
+      const double apart = std::pow(10, dice.between(-8, 0));
+      const Vector3 direction = (c.normal + apart * dice.direction()).normalized();
+      ASSERT_GE(oracle::shadow_overlap(*a, pa, *b, pb, direction), -c.distance - kExact) << "case " << i;
+    }
+    pb.location -= (-c.distance + 1e-6) * c.normal;
+    ASSERT_NEAR(closest(*a, pa, *b, pb).distance, 1e-6, kExact) << "case " << i;
+  }
+  EXPECT_GT(overlaps, 30);
+}
+
 TEST(Closest, ABoxInTheFloorTouchesUnderTheBox) {
   const auto box = Shape::box(Vector3(1, 1, 1)), floor = Shape::box(Vector3(1000, 2, 1000));
   const Contact c = closest(*box, {Vector3(100, 0.4, 50), Quaternion::Identity()}, *floor,
