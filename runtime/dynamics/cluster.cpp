@@ -64,6 +64,9 @@ void Cluster::make_integrators() {
   if (accuracy_.rung != Rung::Fast || accuracy_.scheme != articulated::Scheme::SemiImplicitEuler) return;
   articulated::Settings finer = settings_of(accuracy_, unit_);
   finer.implicit_joints = false;
+  // Semi-implicit Euler is always there instead: more attempts would cost a frame more than they gain.
+  constexpr int kMostAttempts = 300;
+  finer.most_attempts = kMostAttempts;
   finer_.emplace(*this, articulated::Scheme::RungeKutta4, finer);
 }
 
