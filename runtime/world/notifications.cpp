@@ -12,7 +12,9 @@ constexpr std::size_t kShort = 16;  // entries that are faster looked through th
 void Notifications::List::remove_entries(auto&& which) {
   std::erase_if(entries, which);
   removed = 0;
-  index.clear();
+  if (!indexed) return;
+  // A new one: clearing what once was large costs as much as its buckets, each time.
+  decltype(index)(index.get_allocator()).swap(index);
   indexed = false;
 }
 
