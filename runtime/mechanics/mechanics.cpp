@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "runtime/base/error.hpp"
+#include "runtime/base/meter.hpp"
 #include "runtime/mechanics/core.hpp"
 
 namespace breve {
@@ -166,6 +168,15 @@ void Mechanics::begin_iteration(std::uint64_t iteration, const WorkBound& bound)
   shared_->counters = {};
   shared_->interventions.clear();
   shared_->impacts.clear();
+}
+
+void Mechanics::begin_call(const WorkBound& bound) {
+  bound_ = bound;
+  if (!shared_) return;
+  shared_->bound = bound;
+  if (bound.most == 0) return;
+  const std::uint64_t done = shared_->counters.work;
+  shared_->bound.most += std::min(done, Meter::kNoBound - bound.most);
 }
 
 const DynamicsCounters& Mechanics::counters() const { return shared_ ? shared_->counters : kNoCounters; }

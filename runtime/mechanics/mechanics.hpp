@@ -203,6 +203,9 @@ class Mechanics : public InMemory {
   /// Counters, interventions and impacts start again.
   /// @param bound  of the work of all advance() until the next iteration
   void begin_iteration(std::uint64_t iteration, const WorkBound& bound);
+  /// A call of the host begins in which scripts may advance bodies outside an iteration: its work has the same bound.
+  /// What the last iteration counted stays.
+  void begin_call(const WorkBound& bound);
   /// Moves all physics-enabled bodies from time `start` to `start + h`. Error{Numeric} only with the guard off.
   /// @param share  of the work that is left of the bound, that this may take: what needs more is finished coarsely, and
   ///               the guard tells. In (0, 1]

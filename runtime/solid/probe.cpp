@@ -84,7 +84,8 @@ bool meet_ray(const Shape& shape, const Pose& pose, const Vector3& start, const 
   return true;
 }
 
-bool nearest_to(const Shape& shape, const Pose& pose, const Vector3& point, double limit, Contact& found) {
+bool nearest_to(const Shape& shape, const Pose& pose, const Vector3& point, double limit, Contact& found,
+                NarrowCounters* counters) {
   // A ball without a radius, at the origin: coordinates relative to the point keep digits far from it.
   const Placed ball;
   Placed solid = place(shape, pose);
@@ -92,7 +93,7 @@ bool nearest_to(const Shape& shape, const Pose& pose, const Vector3& point, doub
   const auto gap = [&] {
     if (!is_surface(shape)) return find_gap(ball, solid);
     const std::shared_ptr<Shape> stand_in = Shape::sphere(1);  // only its kind is looked at
-    return surface_gap(*stand_in, ball, shape, solid, limit, nullptr);
+    return surface_gap(*stand_in, ball, shape, solid, limit, counters);
   }();
   if (!(gap.distance <= limit)) return false;
   found = {point + gap.on_b, gap.normal, gap.distance};

@@ -18,6 +18,8 @@ bool meet_ray(const Shape& shape, const Pose& pose, const Vector3& start, const 
 /// The point of the solid's surface that is nearest to `point`, if it is not farther than `limit`, m. `found.point` is
 /// that point, `found.normal` points from it to `point` (out of the solid, if that is inside), `found.distance` is < 0
 /// inside. False if it is farther: `found` is then not written.
-bool nearest_to(const Shape& shape, const Pose& pose, const Vector3& point, double limit, Contact& found);
+/// @param counters  may be null
+bool nearest_to(const Shape& shape, const Pose& pose, const Vector3& point, double limit, Contact& found,
+                NarrowCounters* counters = nullptr);
 
 }  // namespace breve

@@ -49,6 +49,13 @@ Queries::Scene World::scene() {
           parts_.get()};
 }
 
+Queries::Scene World::scene_of_script() {
+  Queries::Scene asked = scene();
+  asked.work = [](const void* parts, std::uint64_t units) { static_cast<const Parts*>(parts)->charge(units); };
+  asked.ended = physics_bound_.ended;
+  return asked;
+}
+
 /// Neither pushed nor reported.
 bool World::Parts::denied(ObjectId a, ObjectId b) const {
   if (!pairs.any()) return false;

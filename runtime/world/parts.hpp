@@ -74,9 +74,10 @@ struct World::Parts final : CollisionClient, MechanicsClient, InMemory {
   bool reported(BodyIndex a, BodyIndex b) const override;
   std::uint64_t serial(BodyIndex body) const override;
   void touched(BodyIndex a, BodyIndex b, const Contact& contact, double moment) override;
-  void work(std::uint64_t units) override {
+  void charge(std::uint64_t units) const {
     if (world->behaviour_) world->behaviour_->charge(units);
   }
+  void work(std::uint64_t units) override { charge(units); }
   void expect(std::uint64_t units) override {
     if (world->behaviour_) world->behaviour_->expect(units);
   }

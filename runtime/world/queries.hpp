@@ -2,6 +2,7 @@
 // Answers are exact, about this moment, and in an order that nothing hidden decides: by distance, then by creation.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory_resource>
 #include <vector>
@@ -45,6 +46,10 @@ class Queries {
     std::uint64_t moved;  // grows whenever a stage of the step may have moved bodies
     std::uint64_t (*serial)(const void* world, BodyIndex body);
     const void* world;
+    /// Told what the question costs as it is answered, in units of some 200 ns, see CostMeter: as much for every world
+    /// in this state. Null: nobody counts, which is faster.
+    void (*work)(const void* world, std::uint64_t units) = nullptr;
+    const std::atomic<bool>* ended = nullptr;  // true: the answer is not wanted any more, and may be wrong
   };
 
   // Numbers must be finite: @throws Error{Argument}. In a flat world places, ways and axes are in the plane.
@@ -70,8 +75,9 @@ class Queries {
                                          const QueryFilter& filter);
   /// Bodies whose boxes meet a box, in the order of creation. Not across edges that wrap.
   const std::pmr::vector<BodyIndex>& boxes(const Scene& scene, const Eigen::AlignedBox3d& box);
+  /// Do the shapes of two bodies meet, touching counts? Not across edges that wrap.
+  bool meet(const Scene& scene, BodyIndex a, BodyIndex b);
 
-  std::uint64_t looked_at() const { return looked_at_; }  // bodies, by the last question
   std::size_t bytes() const;
 
  private:
@@ -81,7 +87,22 @@ class Queries {
   Eigen::AlignedBox3d box_of(const Bodies& bodies, BodyIndex body) const;
   template <class Visit>
   void images(const Scene& scene, const Eigen::AlignedBox3d& box, Visit&& visit);
-  bool wanted(const Scene& scene, BodyIndex body, const QueryFilter& filter) const;
+  bool looks_at(const Scene& scene, BodyIndex body, const QueryFilter& filter) const;
+  void count_facets(const Scene& scene);
+  /// A body whose box is on the way, or near a point.
+  struct Near {
+    double entry;  // of the way, or m
+    std::uint64_t serial;
+    BodyIndex body;
+  };
+  void gather(const Scene& scene, BodyIndex body, double entry);
+  template <class Ask>
+  void ask_gathered(const Scene& scene, const double& bound, Ask&& ask);
+  template <class Ask>
+  void along(const Scene& scene, const Vector3& start, const Vector3& way, const Vector3& grow, const double& bound,
+             Ask&& ask);
+  template <class Ask>
+  void around(const Scene& scene, const Vector3& point, const double& bound, Ask&& ask);
   void keep(const Scene& scene, BodyIndex body, const Contact& found);
   void put_in_order();
 
@@ -89,9 +110,10 @@ class Queries {
   std::pmr::vector<Eigen::AlignedBox3d> boxes_;  // by body
   std::pmr::vector<BodyIndex> loose_;            // came after the tree was built
   std::pmr::vector<BodyIndex> put_, found_;
+  std::pmr::vector<Near> near_;
   std::pmr::vector<QueryHit> hits_;
   std::uint64_t seen_moved_ = 0, seen_shapes_ = 0;
-  std::uint64_t looked_at_ = 0;
+  NarrowCounters narrow_;  // of the question that is being answered
   bool built_ = false;
   bool followed_ = false;  // what setters move is noted
 };

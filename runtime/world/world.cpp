@@ -126,20 +126,14 @@ BodyIndex World::body(ObjectId id) const {
   return body;
 }
 
-std::pmr::vector<ObjectId> World::touching(ObjectId id) const {
+std::pmr::vector<ObjectId> World::touching(ObjectId id) {
   const BodyIndex self = body(id);
-  const Pose pose{bodies_->location(self), bodies_->orientation(self)};
-  const Eigen::AlignedBox3d box = bodies_->bounds(self);
+  const Queries::Scene asked = scene_of_script();
+  const std::pmr::vector<BodyIndex> near(parts_->queries.boxes(asked, bodies_->bounds(self)), memory_);
   std::pmr::vector<ObjectId> found(memory_);
-  for (const ObjectId other : parts_->objects.order()) {
-    if (other == id || !has_body(other)) continue;
-    const BodyIndex b = body(other);
-    const bool solvable = bodies_->kind(b) == BodyKind::Stationary || bodies_->physics(b);
-    if (!solvable || !bodies_->bounds(b).intersects(box)) continue;
-    const Pose other_pose{bodies_->location(b), bodies_->orientation(b)};
-    Contact contact;
-    if (closest_within(*bodies_->collision_shape(self), pose, *bodies_->collision_shape(b), other_pose, 0, contact))
-      found.push_back(other);
+  for (const BodyIndex other : near) {
+    const bool solvable = bodies_->kind(other) == BodyKind::Stationary || bodies_->physics(other);
+    if (other != self && solvable && parts_->queries.meet(asked, self, other)) found.push_back(bodies_->owner(other));
   }
   return found;
 }
@@ -276,6 +270,8 @@ std::vector<World::CollisionRule> World::collision_rules(ClassId owner) const {
   return rules;
 }
 void World::set_impact_timing(bool at_impact) { parts_->at_impact = at_impact; }
+
+void World::begin_call() { parts_->dynamics->begin_call(physics_bound_); }
 
 void World::set_gravity(const Vector3& gravity) { parts_->dynamics->set_gravity(gravity); }
 const Vector3& World::gravity() const { return parts_->dynamics->gravity(); }

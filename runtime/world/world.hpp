@@ -92,7 +92,7 @@ class World : public InMemory {
   void flatten();
   int dimension() const { return bodies_->flat() ? 2 : 3; }
   /// Objects whose shapes intersect this one's now and that are solvable (physics-enabled, Stationary), creation order.
-  std::pmr::vector<ObjectId> touching(ObjectId id) const;
+  std::pmr::vector<ObjectId> touching(ObjectId id);
 
   // --- neighbours (centres only; see docs/language.md) -------------------------------------------------------------
   /// Record where everything is: neighbours are asked of this moment until the next call.
@@ -107,6 +107,8 @@ class World : public InMemory {
   /// To be asked about scene(). Count what they cost with work(EffectId::Queries, …).
   Queries& queries();
   Queries::Scene scene();
+  /// The same for a script: the work of the answer counts as its own, and the host may end it.
+  Queries::Scene scene_of_script();
 
   // --- how far space goes ------------------------------------------------------------------------------------------
   /// Along this axis space is open, wraps, or has walls. At the end of each sub-step kinematic bodies that move, and
@@ -126,6 +128,8 @@ class World : public InMemory {
   std::uint64_t substeps() const;
   /// The budget of the physics of each iteration, see Mechanics::advance.
   void bound_physics(const WorkBound& bound) { physics_bound_ = bound; }
+  /// The host calls a script: what bodies are advanced in this call have the bound of an iteration.
+  void begin_call();
   std::uint64_t iteration() const { return clock_.iteration; }
   /// One iteration: input, iterate, post-iterate, scheduled calls, the script side's own end. Errors of scripts pass
   /// through; the rest of the iteration is then not run and not counted, and the world may be stepped, saved or

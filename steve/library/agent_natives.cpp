@@ -105,6 +105,7 @@ std::int32_t agent_move_to_free_neighbor(Machine& machine, Instance& self, std::
   const Standing standing = must_stand(machine, self, "move-to-free-neighbor");
   const Occupants& occupants = standing.resource->occupants;
   const Grid& grid = *standing.resource->grid;
+  charge_for_neighborhood(machine, grid, std::max(radius, 0), grid.flat());
   // Counted first, then one of them drawn: each is equally likely, and one random number is taken.
   std::uint64_t free = 0;
   grid.moore(standing.cell(), radius, grid.flat(), [&](CellIndex cell) { free += occupants.has_room(cell) ? 1U : 0U; });
@@ -141,7 +142,10 @@ Instance* agent_get_grid(Machine& machine, Instance& self) { return standing_of(
 
 void push_agents(Machine& machine, const Occupants& occupants, CellIndex cell, const Instance* without,
                  ListCell& list) {
+  constexpr std::uint64_t kAgentsPerIteration = 4;
+  std::uint64_t count = 0;
   for (Occupants::Slot p = occupants.first(cell); p != Occupants::kNoSlot; p = occupants.next(p)) {
+    if (++count % kAgentsPerIteration == 0) machine.charge(1);
     Instance* agent = machine.instance(occupants.agent(p).id);
     if (agent && agent != without) machine.heap().push(list, Value::of(Tag::Object, agent));
   }
@@ -152,8 +156,7 @@ ListCell* agent_get_agents(Machine& machine, Instance& self, std::int32_t radius
   if (radius < 0)
     throw Error(ErrorCode::Argument, "get-agents: the radius is " + fmt::to_string(radius) + " (must be >= 0)");
   const Grid& grid = *standing.resource->grid;
-  const double side = 2.0 * radius + 1, within = side * side * (grid.flat() ? 1 : side);
-  machine.charge_for(static_cast<std::uint64_t>(std::min(within, static_cast<double>(grid.cells()))));
+  charge_for_neighborhood(machine, grid, radius, grid.flat());
   const Occupants& occupants = standing.resource->occupants;
   // Agents lie anywhere in memory: what is known of them is fetched while the list is made.
   std::uint32_t expected = 1;

@@ -198,7 +198,11 @@ Vector3 multibody_center_of_mass(Machine& machine, Instance& self) {
 template <bool Maximum>
 Vector3 multibody_bound(Machine& machine, Instance& self) {
   Eigen::AlignedBox3d box = bodies_of(machine).bounds(root_body(machine, self));
-  for (const Instance* link : links_of(machine, self)) box.extend(bodies_of(machine).bounds(body_of(machine, *link)));
+  for (const Instance* link : links_of(machine, self)) {
+    const BodyIndex body = body_of(machine, *link);
+    charge_for_bounds(machine, body);
+    box.extend(bodies_of(machine).bounds(body));
+  }
   return Maximum ? box.max() : box.min();
 }
 
@@ -217,9 +221,11 @@ void multibody_self_collision_parameters(Machine& machine, Instance& self, doubl
 
 std::int32_t multibody_check_self_penetration(Machine& machine, Instance& self) {
   const BodyIndex root = root_body(machine, self);
+  charge_for_assembly(machine, root);
   if (!dynamics_of(machine).self_collisions(root)) return 0;
   const std::uint64_t links = dynamics_of(machine).links_of(root).size();
-  machine.charge(links * links);  // pairs
+  constexpr std::uint64_t kOfPair = 32;
+  machine.charge(kOfPair * (links * links / 2));
   return dynamics_of(machine).self_penetrations(root) != 0;
 }
 
@@ -229,7 +235,9 @@ void multibody_set_accuracy(Machine& machine, Instance& self, Text rung) {
 }
 
 Text multibody_get_accuracy(Machine& machine, Instance& self) {
-  return machine.heap().string(name_of(dynamics_of(machine).accuracy(root_body(machine, self)).rung));
+  const BodyIndex root = root_body(machine, self);
+  charge_for_assembly(machine, root);
+  return machine.heap().string(name_of(dynamics_of(machine).accuracy(root).rung));
 }
 
 Energy assembly_energy(Machine& machine, Instance& self) {

@@ -128,10 +128,12 @@ void grid_apply_rule(Machine& machine, Instance& self, std::int32_t born, std::i
   refuse_updating(resource, "apply-rule");
   resource.states.make(*resource.grid);
   const TotalisticRule rule{static_cast<std::uint32_t>(born), static_cast<std::uint32_t>(survive)};
-  // What takes about as long as an iteration of a script's loop, or as some where the grid is small.
-  constexpr std::size_t kOfStep = 6, kCellsPerIteration = 32;
+  // What takes about as long as an iteration of a script's loop, or as some where the grid is small. Cells at once are
+  // taken by rows, others one by one.
+  constexpr std::size_t kOfStep = 6;
+  const std::size_t cells_per_iteration = resource.order == UpdateOrder::Synchronous ? 32 : 1;
   for (std::int32_t i = 0; i < times; ++i) {
-    machine.charge(kOfStep + resource.grid->cells() / kCellsPerIteration);
+    machine.charge(kOfStep + resource.grid->cells() / cells_per_iteration);
     const StageScope timed = machine.world().work(EffectId::Patches, self.id, resource.grid->cells());
     resource.states.step(*resource.grid, resource.neighborhood, rule, resource.order, machine.world().random(),
                          machine.poller());

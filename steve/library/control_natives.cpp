@@ -55,7 +55,13 @@ void control_iterate(Machine& machine, Instance& self) {
     machine.charge(steps);
     machine.charge_for(steps * machine.world().object_count());
     check_motors(machine);
+    Mechanics& mechanics = machine.world().mechanics();
+    const bool over = mechanics.over();
+    const std::uint64_t done = mechanics.counters().work;
     machine.world().advance_bodies();
+    // Physics that has used up its own budget goes on coarsely, and unbounded: a loop pays for that.
+    constexpr std::uint64_t kUnitsPerIteration = 2;
+    if (over) machine.charge((machine.world().mechanics().counters().work - done) / kUnitsPerIteration);
     machine.poll();  // physics ends early, and leaves it to others to say so
   }
   if (view.offset_pan.steps > 0) view.camera.set_offset(view.offset_pan.advance(view.camera.offset));

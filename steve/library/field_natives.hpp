@@ -78,6 +78,7 @@ inline void diffuse_in_place(Machine& machine, Instance& self, double factor) {
 
 inline void diffuse_periodically(Machine& machine, Instance& self, double factor) {
   Field& field = whole_field(machine, self);
+  machine.charge_for(field.size());  // as in compute_periodic_diffusion
   const StageScope timed = diffusing(machine, self, field);
   field.spread_periodic(factor, machine.poller());
 }
@@ -100,6 +101,7 @@ inline void compute_diffusion(Machine& machine, Instance& self, Instance* source
 
 inline void compute_periodic_diffusion(Machine& machine, Instance& self, Instance* source, double factor) {
   Field& field = whole_field(machine, self);
+  machine.charge_for(field.size());  // neighbours at the other ends take as long again
   const StageScope timed = diffusing(machine, self, field);
   field.diffuse_periodic(field_of(machine, source, "compute-periodic-diffusion-matrix"), factor, machine.poller());
 }

@@ -78,7 +78,8 @@ Instance* grid_get_patch(Machine& machine, Instance& self, Vector3 location) {
 
 ListCell* grid_get_patches(Machine& machine, Instance& self) {
   const auto cells = static_cast<CellIndex>(own_grid(machine, self).grid->cells());
-  machine.charge_for(cells);
+  constexpr CellIndex kCellsPerIteration = 4;
+  machine.charge(cells / kCellsPerIteration);
   ListCell* list = machine.heap().list(cells);
   const Pin pin(machine, Value::of(Tag::List, list));
   for (CellIndex cell = 0; cell < cells; ++cell)

@@ -1,6 +1,8 @@
 // Grids in snapshots and hashes, and the making of Patch objects.
 #include "steve/library/grids.hpp"
 
+#include <algorithm>
+
 #include "steve/code/program.hpp"
 #include "steve/library/joints.hpp"
 #include "steve/library/resources.hpp"
@@ -150,6 +152,12 @@ bool has_code(Machine& machine, std::string_view patch_class) {
     code = code || !cls->methods.empty() || !cls->variables.empty();
   }
   fail_patch_class(patch_class);
+}
+
+void charge_for_neighborhood(Machine& machine, const Grid& grid, std::int32_t size, bool flat) {
+  constexpr double kCellsPerIteration = 4;
+  const double side = 2.0 * size + 1, within = side * side * (flat ? 1 : side);
+  machine.charge(static_cast<std::uint64_t>(std::min(within, static_cast<double>(grid.cells())) / kCellsPerIteration));
 }
 
 Instance* patch_of(Machine& machine, Instance& grid, CellIndex cell) {

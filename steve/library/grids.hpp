@@ -54,6 +54,11 @@ CellIndex cell_in(const GridResource& resource, std::int32_t x, std::int32_t y, 
 /// The Patch object of a cell, made if this is the first time; null if it was freed.
 Instance* patch_of(Machine& machine, Instance& grid, CellIndex cell);
 
+/// Charges for so many cells around one, all of which a native is about to look at.
+/// @param size  how far they are from it along each axis, cells; >= 0
+/// @param flat  those in the plane of x and y alone
+void charge_for_neighborhood(Machine& machine, const Grid& grid, std::int32_t size, bool flat);
+
 /// The matrix of a chemical that a grid tracks; null if it does not.
 Field* chemical_field(Machine& machine, Instance& grid, Instance& chemical);
 

@@ -286,14 +286,29 @@ BodyIndex own_root(Machine& machine, Instance& multibody) {
   return multibody_of(machine, body) == &multibody ? body : kNoBody;
 }
 
+constexpr std::size_t kOfPart = 4;  // iterations, to find the object of a link or joint
+
+/// @param of_link  iterations
+std::pmr::vector<BodyIndex> charged_links(Machine& machine, BodyIndex body, std::size_t of_link) {
+  const Mechanics& dynamics = machine.world().mechanics();
+  auto links = dynamics.links_of(body);
+  if (links.size() > 1) {
+    machine.charge(of_link * links.size());
+  } else {
+    // Its joints may all lead to bodies that do not move, which were looked at.
+    constexpr std::size_t kJointsPerIteration = 4;
+    machine.charge(dynamics.joints_of(body).size() / kJointsPerIteration);
+  }
+  return links;
+}
+
 }  // namespace
 
 std::vector<Instance*> links_of(Machine& machine, Instance& multibody) {
   std::vector<Instance*> links;
   const BodyIndex root = own_root(machine, multibody);
   if (root == kNoBody) return links;
-  const auto bodies = machine.world().mechanics().links_of(root);
-  machine.charge(bodies.size());
+  const auto bodies = charged_links(machine, root, kOfPart);
   for (const BodyIndex body : bodies)
     if (Instance* link = machine.instance(machine.world().bodies().owner(body))) links.push_back(link);
   std::sort(links.begin(), links.end(), [](const Instance* a, const Instance* b) { return a->serial < b->serial; });
@@ -306,7 +321,7 @@ std::vector<Instance*> joints_of(Machine& machine, Instance& multibody) {
   if (root == kNoBody) return joints;
   const Mechanics& dynamics = machine.world().mechanics();
   const auto indices = dynamics.joints_of(root);
-  machine.charge(indices.size());
+  machine.charge(kOfPart * indices.size());
   for (const JointIndex joint : indices)
     if (Instance* owner = machine.instance(dynamics.joint_owner(joint))) joints.push_back(owner);
   std::sort(joints.begin(), joints.end(), [](const Instance* a, const Instance* b) { return a->serial < b->serial; });
@@ -315,10 +330,7 @@ std::vector<Instance*> joints_of(Machine& machine, Instance& multibody) {
 
 void charge_for_assembly(Machine& machine, BodyIndex body) {
   constexpr std::size_t kOfLink = 8;  // units of work
-  const Mechanics& dynamics = machine.world().mechanics();
-  if (dynamics.joint_count() == 0) return;
-  const std::size_t links = dynamics.links_of(body).size();
-  if (links > 1) machine.charge(kOfLink * links);
+  if (machine.world().mechanics().joint_count() != 0) charged_links(machine, body, kOfLink);
 }
 
 void follow_moved(Machine& machine, BodyIndex body) {
@@ -326,12 +338,14 @@ void follow_moved(Machine& machine, BodyIndex body) {
   machine.world().mechanics().moved(body);
 }
 
+void charge_for_bounds(Machine& machine, BodyIndex body) {
+  constexpr std::size_t kCornersPerIteration = 64;
+  machine.charge(machine.world().bodies().collision_shape(body)->polyhedron().vertices.size() / kCornersPerIteration);
+}
+
 std::pmr::vector<ObjectId> counted_touching(Machine& machine, ObjectId id) {
-  constexpr std::uint64_t kOfObject = 3, kOfPair = 512;  // that may touch
-  machine.charge_for(kOfObject * machine.world().object_count());
-  auto touching = machine.world().touching(id);
-  machine.charge_for(kOfPair * touching.size());
-  return touching;
+  charge_for_bounds(machine, machine.world().body(id));
+  return machine.world().touching(id);
 }
 
 void add_parts(Machine& machine, Instance& object, std::vector<Instance*>& parts) {

@@ -94,6 +94,8 @@ std::vector<Instance*> joints_of(Machine& machine, Instance& multibody);
 void charge_for_assembly(Machine& machine, BodyIndex body);
 /// What joints hold to a body that was moved follows at once.
 void follow_moved(Machine& machine, BodyIndex body);
+/// Charges for the box about a body.
+void charge_for_bounds(Machine& machine, BodyIndex body);
 /// Objects whose shapes touch this one's, counted.
 std::pmr::vector<ObjectId> counted_touching(Machine& machine, ObjectId id);
 /// What an archive of an object needs besides: bodies of joints and springs, parts of a MultiBody.

@@ -12,7 +12,7 @@ template <MeshUse Use>
 Instance* load(Machine& machine, Instance& self, StringCell* file, double size) {
   const std::string name(view(file));
   const std::pmr::string file_bytes = read_file(machine, name);
-  machine.charge(file_bytes.size());  // a loop iteration for each byte
+  machine.charge(file_bytes.size() + file_bytes.size() / 2);
   const std::span bytes(reinterpret_cast<const std::uint8_t*>(file_bytes.data()), file_bytes.size());
   ShapeResource& own = resource_made<ShapeResource>(machine, self);
   std::pmr::memory_resource* const memory = machine.heap().memory();

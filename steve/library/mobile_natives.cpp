@@ -131,11 +131,15 @@ Vector3 mobile_transform(Machine& machine, Instance& self, Vector3 v) {
 }
 
 Vector3 mobile_get_bound_maximum(Machine& machine, Instance& self) {
-  return bodies_of(machine).bounds(body_of(machine, self)).max();
+  const BodyIndex body = body_of(machine, self);
+  charge_for_bounds(machine, body);
+  return bodies_of(machine).bounds(body).max();
 }
 
 Vector3 mobile_get_bound_minimum(Machine& machine, Instance& self) {
-  return bodies_of(machine).bounds(body_of(machine, self)).min();
+  const BodyIndex body = body_of(machine, self);
+  charge_for_bounds(machine, body);
+  return bodies_of(machine).bounds(body).min();
 }
 
 /// Are two links of one assembly tested against each other at all?

@@ -194,23 +194,34 @@ void run_with(Machine& machine, Instance& self, ListCell* list) {
   network.step(resource.present(), inputs.matrix(0, network.inputs(), 1));
 }
 
+/// Whether the activity fits each layer is looked at.
+void charge_for_layers(Machine& machine, const NeuralNetworkResource& resource) {
+  constexpr std::size_t kLayersPerElement = 8;
+  machine.charge_for(resource.network.layers().size() / kLayersPerElement);
+}
+
 double get_output(Machine& machine, Instance& self, std::int32_t position) {
   NeuralNetworkResource& resource = layered_network(machine, self, "get-output");
   const auto count = static_cast<std::int32_t>(resource.network.outputs());
   if (position < 0 || position >= count)
     refuse_argument("get-output: node " + decimal(position) + " does not exist: the last layer has " + decimal(count));
+  charge_for_layers(machine, resource);
   return resource.present().outputs.back()[static_cast<std::size_t>(position)];
 }
 
 ListCell* get_outputs(Machine& machine, Instance& self) {
   NeuralNetworkResource& resource = own_network(machine, self);
   if (resource.network.layers().empty()) return machine.heap().list();
+  charge_for_layers(machine, resource);
   const learn::Numbers& outputs = resource.present().outputs.back();
   return make_list(machine, outputs.data(), outputs.size());
 }
 
 void reset_state(Machine& machine, Instance& self) {
   NeuralNetworkResource& resource = own_network(machine, self);
+  std::uint64_t neurons = 0;
+  for (const Layer& layer : resource.network.layers()) neurons += static_cast<std::uint64_t>(layer.neurons);
+  machine.charge_for(resource.network.layers().size() + neurons);
   resource.network.rest(resource.activity, 1);
 }
 

@@ -103,8 +103,7 @@ ListCell* patch_neighborhood(Machine& machine, Instance& self, std::int32_t size
   if (size < 0)
     throw Error(ErrorCode::Argument, "the size " + std::to_string(size) + " of a neighborhood (must be >= 0)");
   const Grid grid = *at.resource->grid;
-  const double side = 2.0 * size + 1, within = side * side * (Flat ? 1 : side);
-  machine.charge_for(static_cast<std::uint64_t>(std::min(within, static_cast<double>(grid.cells()))));
+  charge_for_neighborhood(machine, grid, size, Flat);
   ListCell* list = machine.heap().list();
   const Pin pin(machine, Value::of(Tag::List, list)), pin_grid(machine, Value::of(Tag::Object, at.grid));
   const auto add = [&](CellIndex cell) {

@@ -43,12 +43,12 @@ class Asked {
 
 /// Put a question, count it as an effect, and its work as the script's.
 template <class Ask>
-auto put(Machine& machine, const Instance& self, Ask&& ask) {
+decltype(auto) put(Machine& machine, const Instance& self, Ask&& ask) {
   World& world = machine.world();
   const StageScope stage = world.work(EffectId::Queries, self.id, 1);
-  auto&& answer = ask(world.queries(), world.scene());
-  machine.charge_for(world.queries().looked_at());
-  return std::forward<decltype(answer)>(answer);
+  Queries::Scene scene = world.scene_of_script();
+  if (!machine.bounded()) scene.work = nullptr;
+  return ask(world.queries(), scene);
 }
 
 Value object_value(Machine& machine, ObjectId id) { return Value::of(Tag::Object, machine.instance(id)); }
@@ -159,7 +159,9 @@ struct NeighborsAsked {
       : machine(&machine), neighbors(machine.world().neighbor_users(owner.id)) {
     filter.context = this;
     filter.wants = [](const void* context, ObjectId object) {
+      constexpr std::size_t kNeighborsPerIteration = 64;
       const auto& asked = *static_cast<const NeighborsAsked*>(context);
+      asked.machine->charge(asked.neighbors.size() / kNeighborsPerIteration);
       const auto user = reinterpret_cast<std::uint64_t>(asked.machine->instance(object));
       return std::find(asked.neighbors.begin(), asked.neighbors.end(), user) != asked.neighbors.end();
     };
@@ -177,11 +179,11 @@ ListCell* sensor_cast_ray(Machine& machine, Instance& self, Instance* owner, Vec
   const Instance& live = must_live(owner, "get-data: the owner of the sensor");
   body_of(machine, live);
   const NeighborsAsked asked(machine, live);
+  machine.charge_for(asked.neighbors.size());
   QueryHit hit;
   const bool found = put(machine, self, [&](Queries& queries, const Queries::Scene& scene) {
     return queries.ray_first(scene, start, way, asked.filter, hit);
   });
-  machine.charge_for(asked.neighbors.size());
   ListCell* list = machine.heap().list(found ? 2 : 0);
   if (!found) return list;
   const Pin pin(machine, Value::of(Tag::List, list));

@@ -375,6 +375,9 @@ static bool waits(const Cell& cell) {
 }
 
 void Heap::reclaim() {
+  // Each look at the suspects counts like so much text: a program that appends to a long text has one for each piece.
+  constexpr std::uint64_t kBytesOfSuspect = 32;
+  move_bytes(kBytesOfSuspect * suspects_.size());
   short_of_memory_ = false;
   reclaim_round();
   if (short_of_memory_) throw std::bad_alloc();

@@ -70,6 +70,7 @@ void Machine::start() {
 void Machine::begin_run() {
   interrupted_.store(false, std::memory_order_relaxed);
   budget_.begin_run(host_.budget);
+  world_.begin_call();
   heap_->take_moved();
   reporter_.begin_run();
   if (host_.patience > 0) run_began_ = std::chrono::steady_clock::now();

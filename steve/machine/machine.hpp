@@ -61,6 +61,8 @@ class Machine final : public Behaviour, public RootSource, public InMemory {
   /// {Interrupted} by the host.
   void charge(std::uint64_t iterations) override;
   void expect(std::uint64_t iterations) override;
+  /// Is there a budget at all?
+  bool bounded() const { return host_.budget != 0 || host_.call_budget != 0; }
   /// `poll` for the work of the runtime.
   const Poll& poller() const { return poller_; }
   /// Within long work that is charged already: RunError{Interrupted} if the host wants the end.

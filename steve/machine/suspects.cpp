@@ -67,7 +67,14 @@ void each_reference(const Container& cell, const Visit& visit) {
   }
 }
 
-// Suspects lie far apart: first the cell is fetched, then, when its head has arrived, what holds its references.
+// Suspects lie far apart: the head of one is fetched while others are looked at.
+void fetch_head(std::span<Container* const> suspects, std::size_t index) {
+  constexpr std::size_t kFar = 16;
+  if (index + kFar < suspects.size()) __builtin_prefetch(suspects[index + kFar]);
+}
+
+// The same of those that are looked into: first the cell is fetched, then, when its head has arrived, what holds its
+// references.
 void fetch_suspects(std::span<Container* const> suspects, std::size_t index) {
   constexpr std::size_t kFar = 16, kNear = 8;
   if (index + kFar < suspects.size()) {
@@ -183,7 +190,9 @@ void Heap::suspect(Container& cell) {
 
 // Those that only the table holds are in no cycle, but garbage like any other.
 bool Heap::drop_lonely_suspects() {
-  const auto dropped = std::erase_if(suspects_, [this](Container* cell) {
+  std::size_t next = 0;
+  const auto dropped = std::erase_if(suspects_, [this, &next](Container* cell) {
+    fetch_head(suspects_, next++);
     if (cell->count > 1) return false;
     cell->suspected = false;
     cell->count = 0;
