@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <string_view>
 
 #include "../fuzz/class_library.hpp"
+#include "extreme_values.hpp"
+#include "large_objects.hpp"
 
 namespace breve::limits {
 
@@ -18,127 +21,19 @@ using fuzz::LibraryClass;
 using fuzz::LibraryKeyword;
 using fuzz::LibrarySelector;
 
-constexpr std::size_t kVariants = 8;
-using Texts = std::array<const char*, kVariants>;
-
-constexpr Texts kIntegers = {"2147483647", "(-2147483647 - 1)", "0", "30000", "1000", "-1", "1000000", "1"};
-constexpr Texts kReals = {"1.0e308", "-1.0e308", "exp(1000.0)", "sqrt(-1.0)", "1.0e-308", "0.0", "1000000.0", "0.5"};
-constexpr Texts kVectors = {"(1.0e308, 1.0e308, 1.0e308)",
-                            "(-1.0e308, 0, 1.0e308)",
-                            "(0, 0, 0)",
-                            "(sqrt(-1.0), 0, 0)",
-                            "(1.0e-308, 0, 0)",
-                            "(1000000, 1000000, 1000000)",
-                            "(1, 1, 1)",
-                            "(0.5, 0.25, 0)"};
-constexpr Texts kMatrices = {"[ (1.0e308, 0, 0), (0, 1.0e308, 0), (0, 0, 1.0e308) ]",
-                             "[ (0, 0, 0), (0, 0, 0), (0, 0, 0) ]",
-                             "[ (1, 0, 0), (0, 1, 0), (0, 0, 1) ]",
-                             "[ (sqrt(-1.0), 0, 0), (0, 1, 0), (0, 0, 1) ]",
-                             "[ (1.0e-308, 0, 0), (0, 1.0e-308, 0), (0, 0, 1) ]",
-                             "[ (1000, 2, 3), (4, 5, 6), (7, 8, 9) ]",
-                             "[ (-1, 0, 0), (0, 1, 0), (0, 0, 1) ]",
-                             "[ (0, 1, 0), (-1, 0, 0), (0, 0, 1) ]"};
-constexpr Texts kStrings = {"long", "\"\"", "xml", "\"big.png\"", "\"out.png\"", "\"Object\"", "\"noise\"", "word"};
-constexpr Texts kLists = {"many", "deep", "ring", "tree", "things", "places", "{}", "fitting"};
-constexpr Texts kObjects = {"picture", "one", "field", "0", "self", "body", "shape", "peer"};
-constexpr Texts kHashes = {"table", "table", "table", "table", "table", "table", "table", "table"};
-constexpr Texts kBytes = {"bytes", "bytes", "bytes", "bytes", "bytes", "bytes", "bytes", "bytes"};
-constexpr Texts kAny = {"many", "long", "1.0e308", "tree", "one", "deep", "(1.0e308, 0, 0)", "1"};
-
-const Texts& values_of(std::string_view type) {
-  const auto is = [&](std::string_view name) { return type.substr(0, type.find(' ')) == name; };
-  if (is("int")) return kIntegers;
-  if (is("float") || is("double")) return kReals;
-  if (is("vector")) return kVectors;
-  if (is("matrix")) return kMatrices;
-  if (is("string")) return kStrings;
-  if (is("list")) return kLists;
-  if (is("hash")) return kHashes;
-  if (is("data")) return kBytes;
-  if (type.find("object") != std::string_view::npos || ClassLibrary::get().find(type)) return kObjects;
-  return kAny;
+/// Ends the simulation, or the process that is tested.
+bool is_left_out(std::string_view name) {
+  constexpr std::array kNames = {"end-simulation", "endSimulation", "die", "init"};
+  return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
 }
 
-/// How an object is made so large that a call that goes through it just fits the budget, and values that fit it.
-struct Large {
-  std::string_view cls;
-  std::string_view made;               // statements; '%' stands for the variable that takes it
-  std::string_view fitting = "";       // statements that fill the list `fitting`, an argument that it takes
-  std::string_view word = "\"move\"";  // the same for a string
-};
-constexpr Large kLarge[] = {
-    {"Image", "% = (new Image init-with width 3800 height 3800)."},
-    {"Matrix2D", "% = (new Matrix2D init-with x-size 2500 y-size 2500)."},
-    {"Matrix3D", "% = (new Matrix3D init-with x-size 180 y-size 180 z-size 180)."},
-    {"Vector", "% = (new Vector init-with size 6000000)."},
-    {"PatchGrid", "% = (new PatchGrid init-with x-count 100 y-count 100 z-count 8)."},
-    {"PolygonDisk", "% = (new PolygonDisk init-with sides 2000 height 1.0 radius 1.0)."},
-    {"PolygonCone", "% = (new PolygonCone init-with sides 2000 height 1.0 radius 1.0)."},
-    {"Terrain", "% = new Terrain. for i = 0, i < 5, i++: % generate."},
-    {"NeuralNetwork",
-     "% = new NeuralNetwork. % add-layer with-neuron-count 500. % add-elman-layer with-neuron-count 500.",
-     "row = {}. for i = 0, i < 500, i++: push 0.5 onto row. for i = 0, i < 20, i++: push row onto fitting.",
-     "\"adam\""},
-    {"FFNetwork", "% = new FFNetwork. % add-layer with-neuron-count 500. % add-layer with-neuron-count 500.",
-     "row = {}. for i = 0, i < 500, i++: push 0.5 onto row. for i = 0, i < 20, i++: push row onto fitting.",
-     "\"adam\""},
-    {"CMAEvolutionStrategy",
-     "row = {}. for i = 0, i < 150, i++: push 0.5 onto row. % = new CMAEvolutionStrategy. "
-     "% begin at row with-step 1.0 with-population 40. % ask.",
-     "for i = 0, i < 40, i++: push 1.0 * i onto fitting."},
-    {"MultiObjectiveSearch",
-     "row = {}. other = {}. for i = 0, i < 50, i++: { push 0 onto row. push 1 onto other. } "
-     "% = new MultiObjectiveSearch. % begin from row to other with-objectives 2 with-population 200. % ask.",
-     "for i = 0, i < 200, i++: push { i, 200 - i } onto fitting."},
-    {"GADirectedGraph",
-     "% = new GADirectedGraph. % randomize with-max-nodes 60 with-node-parameters 20 with-connection-parameters 20."},
-    {"PushProgram",
-     "interpreter = new PushInterpreter. interpreter set-list-limit to 100000. % = new PushProgram. "
-     "% make-random-code with-interpreter interpreter max-length 50000.",
-     "for i = 0, i < 1000, i++: push i onto fitting.", "\"( 1 ( 2 INTEGER.+ ) )\""},
-    {"PushInterpreter",
-     "program = new PushProgram. program parse program \"( 1 1000000 EXEC.DO*RANGE ( INTEGER.DUP CODE.DUP ) )\". "
-     "% = new PushInterpreter. % set-list-limit to 100000. % set-evaluation-limit to 1000000. "
-     "for i = 0, i < 20000, i++: { % push-integer value i. % push-float value i. % push-code value program. "
-     "% push-vector value (1, 2, 3). % push-boolean value 1. % push-exec value program. }",
-     "", "\"instruction INTEGER.+\""},
-    {"Drawing", "% = new Drawing. for i = 0, i < 60000, i++: % draw-line from (0, 0, 0) to (1, i, 1)."},
-    {"MultiBody",
-     "% = new MultiBody. link = new Link. % register with-link link. for i = 0, i < 60, i++: { before = link. "
-     "link = new Link. joint = new RevoluteJoint. joint link parent before to-child link with-normal (0, 0, 1) "
-     "with-parent-point (0.5, 0, 0) with-child-point (-0.5, 0, 0). }"},
-    {"Sound", "% = new Sound. % load from-file \"sound.wav\".", "", "\"sound.wav\""},
-    {"Graph",
-     "% = new Graph. % add-line with-color (1, 0, 0). for i = 0, i < 50000, i++: % add-point on-line 0 with-value i."},
-    {"MeshShape", "% = new MeshShape. % load-from-obj file \"mesh.obj\".", "", "\"mesh.obj\""},
-    {"Reaction", "% = new Reaction. % init-with fields { field }.", "push field onto fitting."},
-    {"RevoluteJoint",
-     "link = new Link. before = new Link. % = new RevoluteJoint. % link parent before to-child link with-normal (0, 0, "
-     "1)."},
-    {"PrismaticJoint",
-     "link = new Link. before = new Link. % = new PrismaticJoint. % link parent before to-child link with-normal (0, "
-     "0, 1)."},
-    {"BallJoint", "link = new Link. before = new Link. % = new BallJoint. % link parent before to-child link."},
-    {"UniversalJoint",
-     "link = new Link. before = new Link. % = new UniversalJoint. % link parent before to-child link with-normal (0, "
-     "0, 1)."},
-    {"FixedJoint", "link = new Link. before = new Link. % = new FixedJoint. % link parent before to-child link."},
-    {"Spring",
-     "link = new Mobile. before = new Mobile. % = new Spring. % connect from link to before with-length 1.0 "
-     "with-strength 1.0 with-damping 1.0."},
-};
-
-Large large(std::string_view cls) {
-  for (const Large& known : kLarge)
-    if (known.cls == cls) return known;
-  return {cls, ""};
-}
+/// How many arguments a call is tried with.
+enum class Tries { all, some, fitting };
 
 std::string filled(std::string_view statements, std::string_view variable) {
   std::string text;
   for (const char c : statements) {
-    if (c == '%')
+    if (c == '@')
       text += variable;
     else
       text += c;
@@ -146,43 +41,60 @@ std::string filled(std::string_view statements, std::string_view variable) {
   return text;
 }
 
-/// Ends the simulation, or the process that is tested.
-bool is_left_out(std::string_view name) {
-  constexpr std::array kNames = {"end-simulation", "endSimulation", "die", "init"};
-  return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
-}
-
 class Writer {
  public:
   explicit Writer(std::string about) { program_.about = std::move(about); }
 
-  void add(const std::string& name, const std::string& statement) {
-    for (const ExtremeCase& known : program_.cases)
-      if (known.statement == statement) return;
-    program_.cases.push_back({name, statement});
+  void add(const std::string& name, const std::string& statement, bool fits = false) {
+    if (written_.insert(statement).second) program_.cases.push_back({name, statement, fits});
   }
   /// `call` makes the statement of texts for the arguments.
   template <class Call>
-  void add_variants(const std::string& name, const std::vector<LibraryKeyword>& keywords, Call&& call) {
-    for (std::size_t variant = 0; variant < kVariants; ++variant)
+  void add_variants(const std::string& name, const LibrarySelector& selector, Tries tries, Call&& call) {
+    const std::vector<LibraryKeyword>& keywords = selector.keywords;
+    std::vector<std::string> fitting;
+    for (const LibraryKeyword& keyword : keywords)
+      fitting.push_back(fitting_value(selector.name, keyword.name, keyword.parameter, keyword.type));
+    add_in_loop(name, call(fitting), true);
+    if (tries == Tries::fitting) return;
+    for (std::size_t odd = tries == Tries::all ? 0 : kOddities - 2; odd < kOddities; ++odd)
       for (const std::size_t apart : {std::size_t{0}, std::size_t{1}, std::size_t{3}}) {
         std::vector<std::string> arguments;
         for (std::size_t i = 0; i < keywords.size(); ++i)
-          arguments.emplace_back(values_of(keywords[i].type)[(variant + apart * i) % kVariants]);
-        add(name, call(arguments));
-        if (apart == 0) add(name, "for number = 0, number < 2000000, number++: " + call(arguments));
+          arguments.push_back(odd_value(keywords[i].type, odd + apart * i));
+        if (apart == 0)
+          add_in_loop(name, call(arguments));
+        else if (tries == Tries::all)
+          add(name, call(arguments));
       }
   }
   ExtremeProgram program(const std::string& base, const Large& large) {
     std::string text;
     for (const std::string& module : ClassLibrary::get().modules()) text += "@use " + module + ".\n";
-    text += "Controller Main.\n" + base + R"( : Main {
+    text += "Controller Main.\n";
+    text += derived_classes();
+    text += base + kScene;
+    text += "  + to make-arguments:\n    i (int).\n    word = " + std::string(large.word) +
+            ".\n    if !fitting: { fitting = {}. " + std::string(large.fitting) + "}\n";
+    for (const std::string_view variable : {"one", "peer"})
+      text += "  + to make-" + std::string(variable) + ":\n    i (int).\n    if !" + std::string(variable) + ": { " +
+              filled(large.made, variable) + " }\n";
+    for (std::size_t i = 0; i < program_.cases.size(); ++i)
+      text += "  + to case-" + std::to_string(i) + ":\n    " + program_.cases[i].statement + "\n";
+    program_.text = text + "}\n";
+    return std::move(program_);
+  }
+
+ private:
+  /// The variables and methods of each program. `ready` may be called before each case: it makes again objects that
+  /// were freed.
+  static constexpr const char* kScene = R"tz( : Main {
   + variables:
     long, xml (string).
     many, deep, ring, tree, things, places, fitting, row, other (list).
     table (hash).
     bytes (data).
-    one, peer, picture, field, body, shape, got (object).
+    one, peer, picture, field, cube, numbers, grid, chemical, body, shape, got (object).
     program, interpreter, link, before, joint (object).
     number (int).
     copy (list).
@@ -208,20 +120,47 @@ class Writer {
     if |things| == 0: for i = 0, i < 3000, i++: push (new Mobile) onto things.
     if !picture: picture = (new Image init-with width 2000 height 2000).
     if !field: field = (new Matrix2D init-with x-size 1000 y-size 1000).
+    if !cube: cube = (new Matrix3D init-with x-size 20 y-size 20 z-size 1).
+    if !numbers: numbers = (new Vector init-with size 2500).
+    if !chemical: chemical = (new PatchChemical init-with diffusion-rate 0.1 decay-rate 0.1).
+    if !grid: {
+      grid = (new PatchGrid init-with x-count 20 y-count 20 z-count 1).
+      grid track patch-chemical chemical.
+    }
     if !shape: shape = (new Sphere init-with radius 1.0).
     if !body: body = new Mobile.
-    word = )" +
-            std::string(large.word) + ".\n    if !fitting: { fitting = {}. " + std::string(large.fitting) + "}\n";
-    for (const std::string_view variable : {"one", "peer"})
-      text += "    if !" + std::string(variable) + ": { " + filled(large.made, variable) + " }\n";
-    for (std::size_t i = 0; i < program_.cases.size(); ++i)
-      text += "  + to case-" + std::to_string(i) + ":\n    " + program_.cases[i].statement + "\n";
-    program_.text = text + "}\n";
-    return std::move(program_);
+    if !link: link = new Link.
+    if !before: before = new Link.
+    if !interpreter: interpreter = new PushInterpreter.
+    if !program: {
+      program = new PushProgram.
+      program parse program "( 1 ( 2 INTEGER.+ ) )".
+    }
+  + to settle: number += 1.
+  + to drive-link: number += 1.
+  + to identity reading x (float): return x.
+  + to next-state state s (int) neighbors n (int): return s + n.
+  + to make-faces of mesh (object):
+    % Of a body of revolution.
+    i, j, sides (int).
+    a, b (float).
+    sides = 40.
+    for i = 0, i < sides, i++: for j = 0, j < sides, j++: {
+      a = PI * i / sides.
+      b = PI * (i + 1) / sides.
+      mesh add-face with-vertex-list { (self point-at down a around j of sides), (self point-at down b around j of sides), (self point-at down b around j + 1 of sides), (self point-at down a around j + 1 of sides) }.
+    }
+  + to point-at down a (float) around j (int) of sides (int):
+    return (sin(a) * cos(2 * PI * j / sides), cos(a), sin(a) * sin(2 * PI * j / sides)).
+)tz";
+
+  void add_in_loop(const std::string& name, const std::string& statement, bool fits = false) {
+    add(name, statement, fits);
+    add(name, "for number = 0, number < 2000000, number++: " + statement);
   }
 
- private:
   ExtremeProgram program_;
+  std::set<std::string> written_;
 };
 
 std::string sent(const std::string& receiver, const LibrarySelector& selector,
@@ -231,32 +170,36 @@ std::string sent(const std::string& receiver, const LibrarySelector& selector,
   return text + ".";
 }
 
-ExtremeProgram of_class(const LibraryClass& cls) {
+/// Its own selectors, and those that it inherits if it is large.
+ExtremeProgram of_class(const LibraryClass& cls, const Large& large, bool first) {
   const ClassLibrary& library = ClassLibrary::get();
   const bool controls = library.derives(cls.name, "Control");
   Writer writer(cls.name);
-  for (const LibrarySelector& selector : cls.selectors)
-    if (!is_left_out(selector.name))
-      writer.add_variants(cls.name + " " + selector.name, selector.keywords,
-                          [&](const std::vector<std::string>& arguments) {
-                            return sent(controls ? "self" : "one", selector, arguments);
-                          });
-  Large made = large(cls.name);
-  const std::string plain = controls ? "% = self." : "% = new " + cls.name + ".";
+  std::set<std::string> seen;
+  for (const LibraryClass* from = &cls; from; from = large.made.empty() ? nullptr : library.find(from->parent))
+    for (const LibrarySelector& selector : from->selectors) {
+      if (is_left_out(selector.name) || !seen.insert(sent("", selector, {})).second) continue;
+      const Tries tries = from != &cls ? Tries::fitting : first ? Tries::all : Tries::some;
+      writer.add_variants(cls.name + " " + selector.name, selector, tries, [&](const std::vector<std::string>& texts) {
+        return sent(controls ? "self" : "one", selector, texts);
+      });
+    }
+  Large made = large;
+  const std::string plain = controls ? "@ = self." : "@ = new " + cls.name + ".";
   if (made.made.empty()) made.made = plain;
-  return writer.program(controls ? cls.name : "PhysicalControl", made);
+  return writer.program(cls.name != "Control" && controls ? cls.name : "PhysicalControl", made);
 }
 
 ExtremeProgram of_functions() {
   Writer writer("functions");
   for (const LibrarySelector& function : ClassLibrary::get().functions())
     if (!is_left_out(function.name))
-      writer.add_variants(function.name + "()", function.keywords, [&](const std::vector<std::string>& arguments) {
+      writer.add_variants(function.name + "()", function, Tries::all, [&](const std::vector<std::string>& arguments) {
         std::string text = function.name + "(";
         for (std::size_t i = 0; i < arguments.size(); ++i) text += (i == 0 ? "" : ", ") + arguments[i];
         return text + ").";
       });
-  return writer.program("PhysicalControl", {"", "% = (new Image init-with width 2000 height 2000)."});
+  return writer.program("PhysicalControl", {"", "@ = (new Image init-with width 2000 height 2000)."});
 }
 
 /// What the language does with values itself.
@@ -309,7 +252,7 @@ ExtremeProgram of_language() {
   };
   Writer writer("language");
   for (const auto& [name, statement] : kStatements) writer.add(name, statement);
-  ExtremeProgram program = writer.program("PhysicalControl", {"", "% = new Object."});
+  ExtremeProgram program = writer.program("PhysicalControl", {"", "@ = new Object."});
   program.text.resize(program.text.rfind('}'));
   program.text +=
       "  + to compare first a (int) second b (int): return b - a.\n"
@@ -321,8 +264,13 @@ ExtremeProgram of_language() {
 
 std::vector<ExtremeProgram> extreme_programs() {
   std::vector<ExtremeProgram> programs = {of_language(), of_functions()};
-  for (const LibraryClass& cls : ClassLibrary::get().classes())
-    if (ExtremeProgram program = of_class(cls); !program.cases.empty()) programs.push_back(std::move(program));
+  for (const LibraryClass& cls : ClassLibrary::get().classes()) {
+    std::vector<Large> ways = ways_to_be_large(cls.name);
+    if (ways.empty()) ways.push_back({cls.name, ""});
+    for (std::size_t way = 0; way < ways.size(); ++way)
+      if (ExtremeProgram program = of_class(cls, ways[way], way == 0); !program.cases.empty())
+        programs.push_back(std::move(program));
+  }
   return programs;
 }
 

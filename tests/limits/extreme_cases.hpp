@@ -10,6 +10,7 @@ namespace breve::limits {
 /// One statement, and what it is about: "Image write", "randomGauss()", "==".
 struct ExtremeCase {
   std::string name, statement;
+  bool fits = false;  // its arguments are those that the native takes
 };
 
 /// Cases that share a world, and the program that has each of them as a method: "case-0", "case-1", ... Before each,
