@@ -298,7 +298,7 @@ void HeightGrid::save(ByteWriter& out) const {
   out.put(static_cast<std::int32_t>(rows_));
   out.put(tile_);
   out.put(static_cast<std::uint64_t>(heights_.size()));
-  for (const double h : heights_) out.put(h);
+  out.raw(heights_.data(), heights_.size() * sizeof(double));
 }
 
 std::shared_ptr<HeightGrid> HeightGrid::load(ByteReader& in) {

@@ -144,6 +144,7 @@ std::size_t Queries::bytes() const {
 /// Is the question about this body, which is near? Counts one unit.
 bool Queries::looks_at(const Scene& scene, BodyIndex body, const QueryFilter& filter) const {
   count(scene, 1);
+  if (narrow_.stopped()) return false;
   if (!scene.bodies.used(body)) return false;
   const ObjectId owner = scene.bodies.owner(body);
   if (owner == filter.except) return false;

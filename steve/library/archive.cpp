@@ -183,7 +183,9 @@ class Writer {
       machine_.charge_for(kOfByte * bytes.size());
       pugi::xml_node native = element.append_child("native");
       native.append_attribute("kind") = std::string(resource->kind()).c_str();
-      native.text() = to_hex({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, machine_.poller()).c_str();
+      const std::string text = to_hex({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, machine_.poller());
+      machine_.poll();
+      native.text() = text.c_str();
     }
     if (world.has_body(object.id)) write_body(machine_, object, element.append_child("body"));
     for_each_variable(machine_, *object.cls, [&](const ClassInfo& cls, const std::string& name, const VariableInfo& v) {

@@ -69,9 +69,11 @@ std::int32_t image_write_16_bit(Machine& machine, Instance& self, Text file) {
   constexpr double kHighest = 65535;
   std::pmr::vector<double> greys(machine.heap().memory());
   greys.reserve(picture.bytes().size() / 4);
-  for (int y = 0; y < picture.height(); ++y)
+  for (int y = 0; y < picture.height(); ++y) {
+    machine.poll();
     for (int x = 0; x < picture.width(); ++x)
       greys.push_back((picture.byte(x, y, Channel::Red) * 256 + picture.byte(x, y, Channel::Green)) / kHighest);
+  }
   return try_to_write(machine, name, [&] {
     write_file(machine, name, gray16_png(picture.width(), picture.height(), greys, machine.poller()));
   });

@@ -133,6 +133,7 @@ void program_mutate(Machine& machine, Instance& self, Instance* interpreter, dou
   push::Interpreter& from = interpreter_of(machine, interpreter, "mutate: the interpreter");
   const push::Mutation how{finite(leaf_bias, "mutate: the leaf bias"), finite(size_scale, "mutate: the size scale")};
   push::Code& code = own_code(machine, self);
+  machine.charge_for(code.points());  // all of it is written anew
   code = push::mutated(code, how, from, random_of(machine));
 }
 

@@ -48,7 +48,9 @@ decltype(auto) put(Machine& machine, const Instance& self, Ask&& ask) {
   const StageScope stage = world.work(EffectId::Queries, self.id, 1);
   Queries::Scene scene = world.scene_of_script();
   if (!machine.bounded()) scene.work = nullptr;
-  return ask(world.queries(), scene);
+  decltype(auto) answer = ask(world.queries(), scene);
+  machine.poll();  // an answer that was cut short is not used
+  return static_cast<decltype(answer)>(answer);
 }
 
 Value object_value(Machine& machine, ObjectId id) { return Value::of(Tag::Object, machine.instance(id)); }

@@ -65,7 +65,7 @@ void shape_set_scale(Machine& machine, Instance& self, Vector3 factors) {
   Shape& shape = built(machine, self, "set-scale");
   // Its corners move, and questions about space look at all bodies anew.
   constexpr std::uint64_t kObjectsPerIteration = 4;
-  machine.charge(2 * shape.polyhedron().vertices.size() + machine.world().object_count() / kObjectsPerIteration);
+  machine.charge(3 * shape.polyhedron().vertices.size() + machine.world().object_count() / kObjectsPerIteration);
   shape.set_scale(factors);
 }
 
@@ -154,7 +154,7 @@ Instance* build_or_leave(Machine& machine, Instance& self, std::int32_t sides, d
 
 std::vector<Vector3> corners_of(Machine& machine, const Value& face) {
   constexpr std::uint32_t kFewest = 3;
-  constexpr std::uint64_t kOfCorner = 96;
+  constexpr std::uint64_t kOfCorner = 160;
   const ListCell* list = face.tag == Tag::List ? face.list() : nullptr;
   if (!list || list->size < kFewest)
     Machine::fail(RunErrorKind::Type, "add-face: a face is a list of three or more vectors");
@@ -174,7 +174,7 @@ void custom_shape_check_face(Machine& machine, Instance&, ListCell* vertices) {
 
 Instance* custom_shape_build(Machine& machine, Instance& self, ListCell* faces, double density) {
   std::vector<std::vector<Vector3>> solid;
-  machine.charge(kOfSolid);
+  machine.charge(2 * kOfSolid);
   if (faces)
     for (const Value& face : *faces) solid.push_back(corners_of(machine, face));
   resource(machine, self).shape = Shape::convex(solid, density, machine.heap().memory());

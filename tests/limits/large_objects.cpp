@@ -50,7 +50,7 @@ constexpr Large kLarge[] = {
     // Ground: square, fine and with bodies on it.
     {"Terrain", "@ = new Terrain. for i = 0, i < 5, i++: @ generate."},
     {"Terrain",
-     "@ = new Terrain. for i = 0, i < 7, i++: @ generate. for i = 0, i < 300, i++: (things{i}) set-shape to shape."},
+     "@ = new Terrain. for i = 0, i < 6, i++: @ generate. for i = 0, i < 300, i++: (things{i}) set-shape to shape."},
     // Networks of neurons: wide and deep.
     {"NeuralNetwork",
      "@ = new NeuralNetwork. @ add-layer with-neuron-count 500. @ add-elman-layer with-neuron-count 500.",
