@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/dynamics/corners.hpp"
+
 namespace breve::island {
 
 Contacts::Contacts(State& state)
@@ -52,16 +54,6 @@ Touch touch_at(std::size_t pair, const Pose& a, const Pose& b, const Manifold& m
   return touch;
 }
 
-/// Units that a contact of two solids costs beyond those of a pair, if they have many corners.
-std::uint64_t work_of_corners(const Shape& a, const Shape& b, bool deep) {
-  constexpr std::size_t kMany = 128;
-  constexpr std::uint64_t kOfDepth = 10;
-  if (a.surface() != nullptr || b.surface() != nullptr) return 0;
-  const std::size_t corners = a.polyhedron().vertices.size() + b.polyhedron().vertices.size();
-  if (corners < kMany) return 0;
-  return deep ? kOfDepth * corners : corners;
-}
-
 }  // namespace
 
 bool is_round(const Shape& shape) { return shape.kind() == ShapeKind::Sphere || shape.round().is_round(); }
@@ -87,7 +79,8 @@ void Contacts::find_touches(double h, bool speculative) {
   constexpr double kMostRoom = 0.05;  // of the size
   constexpr double kDeep = 0.05;      // likewise, of an overlap that takes long to find
   constexpr double kHastens = 1.5;    // of its speed, within a sub-step, of a point that comes nearer by rotation
-  std::uint64_t corners = 0;          // units
+  constexpr std::uint64_t kOfDeepCorner = 10;  // units; of others one
+  std::uint64_t corners = 0;                   // units
   for (std::size_t i = 0; i < state_.pairs.size(); ++i) {
     NearPair& pair = *state_.pairs[i];
     const Shape &a = state_.shape(pair.a), &b = state_.shape(pair.b);
@@ -107,7 +100,10 @@ void Contacts::find_touches(double h, bool speculative) {
     manifolds_.clear();
     if (narrow.stopped()) break;
     find_manifolds(a, pa, b, pb, margin, manifolds_, pair.cache, narrow);
-    if (!manifolds_.empty()) corners += work_of_corners(a, b, manifolds_.front().points[0].distance < -kDeep * size);
+    if (!manifolds_.empty()) {
+      const bool deep = manifolds_.front().points[0].distance < -kDeep * size;
+      corners += (deep ? kOfDeepCorner : 1) * many_corners(a, b);
+    }
     for (const Manifold& manifold : manifolds_) {
       ++state_.result.counters.manifolds;
       for (int k = 0; k < manifold.count; ++k) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "runtime/base/error.hpp"
+#include "runtime/dynamics/corners.hpp"
 
 namespace breve {
 
@@ -374,13 +375,12 @@ bool NearPairs::near(const PairKey& key) const {
 
 /// How many pairs it counts as: to find how deep two solids of many corners are in one another takes long.
 std::size_t NearPairs::weight(const PairKey& key) const {
-  constexpr std::size_t kManyCorners = 128, kCornersPerPair = 12;
+  constexpr std::size_t kCornersPerPair = 12;
   constexpr double kDeep = 0.25;  // of the lesser box
   const ProxyIndex a = proxy_of_[key.a], b = proxy_of_[key.b];
   const Shape *one = proxies_[a].shape, *other = proxies_[b].shape;
-  if (one == nullptr || other == nullptr || one->surface() != nullptr || other->surface() != nullptr) return 1;
-  const std::size_t corners = one->polyhedron().vertices.size() + other->polyhedron().vertices.size();
-  if (corners < kManyCorners) return 1;
+  const std::size_t corners = one != nullptr && other != nullptr ? many_corners(*one, *other) : 0;
+  if (corners == 0) return 1;
   const double common = reach_[a].box.intersection(reach_[b].box).sizes().minCoeff();
   const double least = std::min(reach_[a].box.sizes().minCoeff(), reach_[b].box.sizes().minCoeff());
   return common > kDeep * least ? 1 + corners / kCornersPerPair : 1;

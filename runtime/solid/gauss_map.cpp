@@ -9,8 +9,6 @@ namespace breve {
 
 namespace {
 
-constexpr double kRoundOff = 1e-9;
-
 /// The cell of a coordinate in [-1, 1] and beyond, of so many.
 int cell_of(double x, int cells) {
   return std::clamp(static_cast<int>(std::floor((std::clamp(x, -1.0, 1.0) + 1) / 2 * cells)), 0, cells - 1);
@@ -68,7 +66,7 @@ void GaussMap::meeting(const ArcBall& ball, std::vector<std::uint32_t>& out) con
     if (balls_[edge].meets(ball)) out.push_back(edge);
   };
   for (const std::uint32_t edge : wide_) look(edge);
-  const double most = most_reach_ + ball.reach + kRoundOff;
+  const double most = most_reach_ + ball.reach + ArcBall::kRoundOff;
   std::array<int, 3> low{}, high{};
   for (int axis = 0; axis < 3; ++axis) {
     low[static_cast<std::size_t>(axis)] = cell_of(ball.middle[axis] - most, kCells);

@@ -12,13 +12,14 @@ namespace breve {
 
 /// A ball around an arc: its middle direction (unit), and the largest chord from there to a point of the arc.
 struct ArcBall {
+  static constexpr double kRoundOff = 1e-9;
+
   Vector3 middle = Vector3::UnitX();
   double reach = 2;
 
   /// The ball around the shorter arc between two unit vectors.
   static ArcBall between(const Vector3& from, const Vector3& to);
   bool meets(const ArcBall& other) const {
-    constexpr double kRoundOff = 1e-9;
     const double most = reach + other.reach + kRoundOff;
     return (middle - other.middle).squaredNorm() <= most * most;
   }

@@ -169,8 +169,8 @@ void Queries::put_in_order() { std::sort(hits_.begin(), hits_.end(), nearer); }
 
 // --- bodies on the way ----------------------------------------------------------------------------------------------
 // In which order the tree gives them, and so how many are asked before `bound` is low, depends on what happened before.
-// What a question costs must not, nor must it on whether the world was restored: where that is counted, all bodies that
-// are near are gathered first, and asked from the nearest box on.
+// The cost of a question must depend neither on that nor on whether the world was restored: where it is counted, all
+// bodies that are near are gathered first, and asked from the nearest box on.
 
 void Queries::gather(const Scene& scene, BodyIndex body, double entry) {
   constexpr double kInside = 0;  // where numbers overflow
