@@ -173,39 +173,60 @@ bool Planar::Core::collide(FlatBody& a, FlatBody& b, const b2WorldManifold& wher
   return true;
 }
 
+namespace {
+
+/// A contact of a body that was struck. While an impact spreads only velocities change.
+struct Reached {
+  b2Contact* contact;
+  b2Body *a, *b;
+  b2Vec2 point, normal;
+  double slowest;  // m/s, that bounces
+
+  double approach(double unit) const {
+    const b2Vec2 v = b->GetLinearVelocityFromWorldPoint(point) - a->GetLinearVelocityFromWorldPoint(point);
+    return -double{b2Dot(v, normal)} * unit;
+  }
+};
+
+}  // namespace
+
 void Planar::Core::spread(FlatBody& a, FlatBody& b) {
-  std::pmr::vector<b2Body*> struck({a.b2, b.b2}, memory);
+  std::pmr::vector<b2Body*> struck(memory);
+  std::pmr::vector<Reached> reached(memory);
+  const auto strike = [&](b2Body* body) {
+    if (std::find(struck.begin(), struck.end(), body) != struck.end()) return;
+    struck.push_back(body);
+    if (of(body).fixed) return;
+    for (const b2ContactEdge* edge = body->GetContactList(); edge; edge = edge->next) {
+      b2Contact* contact = edge->contact;
+      if (!contact->IsTouching() || contact->GetManifold()->pointCount == 0) continue;
+      refresh(contact);
+      if (!(std::fmod(contact->GetRestitution(), 2.0F) > 0)) continue;
+      b2WorldManifold where;
+      contact->GetWorldManifold(&where);
+      b2Body *const x = contact->GetFixtureA()->GetBody(), *const y = contact->GetFixtureB()->GetBody();
+      reached.push_back({contact, x, y, where.points[0], where.normal, slowest_bounce(law_of(of(x), of(y)))});
+    }
+  };
+  strike(a.b2);
+  strike(b.b2);
   constexpr int kMost = 64;
   for (int i = 0; i < kMost; ++i) {
-    b2Contact* fastest = nullptr;
+    const Reached* fastest = nullptr;
     double speed = 0;
-    for (const b2Body* body : struck) {
-      if (of(body).fixed) continue;
-      for (const b2ContactEdge* edge = body->GetContactList(); edge; edge = edge->next) {
-        b2Contact* contact = edge->contact;
-        if (!contact->IsTouching() || contact->GetManifold()->pointCount == 0) continue;
-        refresh(contact);
-        if (!(std::fmod(contact->GetRestitution(), 2.0F) > 0)) continue;
-        b2WorldManifold where;
-        contact->GetWorldManifold(&where);
-        const FlatBody &x = of(contact->GetFixtureA()->GetBody()), &y = of(contact->GetFixtureB()->GetBody());
-        if (squeezed(x, y)) continue;
-        const b2Vec2 v = y.b2->GetLinearVelocityFromWorldPoint(where.points[0]) -
-                         x.b2->GetLinearVelocityFromWorldPoint(where.points[0]);
-        const double approach = -double{b2Dot(v, where.normal)} * settings.unit;
-        if (approach > std::max(speed, slowest_bounce(law_of(x, y)))) {
-          speed = approach;
-          fastest = contact;
-        }
-      }
+    for (const Reached& one : reached) {
+      const double approach = one.approach(settings.unit);
+      if (!(approach > std::max(speed, one.slowest)) || squeezed(of(one.a), of(one.b))) continue;
+      speed = approach;
+      fastest = &one;
     }
     if (!fastest) return;
-    FlatBody &x = of(fastest->GetFixtureA()->GetBody()), &y = of(fastest->GetFixtureB()->GetBody());
+    b2Body *const x = fastest->a, *const y = fastest->b;
     b2WorldManifold where;
-    fastest->GetWorldManifold(&where);
-    if (!collide(x, y, where, fastest->GetManifold()->pointCount)) return;
-    for (b2Body* body : {x.b2, y.b2})
-      if (std::find(struck.begin(), struck.end(), body) == struck.end()) struck.push_back(body);
+    fastest->contact->GetWorldManifold(&where);
+    if (!collide(of(x), of(y), where, fastest->contact->GetManifold()->pointCount)) return;
+    strike(x);
+    strike(y);
   }
 }
 
