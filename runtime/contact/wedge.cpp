@@ -19,23 +19,31 @@ double energy_alone(double before, double wanted, double response) {
   return response > 0 ? 0.5 * change * change / response : 0;
 }
 
-/// Some impulse changes its own velocity by far more than any row has to stop: a heavy load, or thrown. This is quick.
-bool any_great(const Workspace& work) {
-  constexpr double kGreat = 100;
+/// The largest change of a row's own velocity by its impulse, and the largest that a row has to stop.
+struct Speeds {
   double most = 0, stopped = 0;
+};
+
+Speeds read_speeds(const Workspace& work) {
+  Speeds is;
   for (std::size_t i = 0; i < work.points.size(); ++i) {
     const Point& c = work.points[i];
-    most = std::max(most, c.impulse[0] * c.response.nn);
-    stopped = std::max(stopped, std::abs(work.sides[i].free_velocity[0] - c.bias));
+    is.most = std::max(is.most, c.impulse[0] * c.response.nn);
+    is.stopped = std::max(is.stopped, std::abs(work.sides[i].free_velocity[0] - c.bias));
   }
-  for (const PackedScalar& row : work.scalars) stopped = std::max(stopped, std::abs(row.free_velocity - row.bias));
-  return !(most <= kGreat * stopped);
+  for (const PackedScalar& row : work.scalars)
+    is.stopped = std::max(is.stopped, std::abs(row.free_velocity - row.bias));
+  return is;
 }
 
 }  // namespace
 
 bool thrown(const Workspace& work, bool converged) {
-  if (!any_great(work)) return false;
+  // A heavy load, or thrown; and what leaves no more than round-off of what is to be stopped, if that is not slow.
+  constexpr double kGreat = 100, kSenseless = 1e10, kSlow = 1e-3;
+  const Speeds speeds = read_speeds(work);  // this is quick
+  if (speeds.most <= kGreat * speeds.stopped) return false;
+  if (!(speeds.most <= kSenseless * std::max(speeds.stopped, kSlow))) return true;
   const double most = converged ? 1000 : 100;
   double sum = 0, gross = 0, alone = 0;
   for (std::size_t i = 0; i < work.points.size(); ++i) {

@@ -54,6 +54,16 @@ double losses(const Energy& now, const Energy& then) {
          then.friction_loss - then.drag_loss - then.limit_loss;
 }
 
+namespace {
+
+/// Of one account, whatever others make up for, J.
+double largest_loss(const Energy& now, const Energy& then) {
+  return std::max({std::abs(now.contact_loss - then.contact_loss), std::abs(now.friction_loss - then.friction_loss),
+                   std::abs(now.drag_loss - then.drag_loss), std::abs(now.limit_loss - then.limit_loss)});
+}
+
+}  // namespace
+
 double Balance::open() {
   handled_ = 0;
   state_.booked = false;
@@ -78,6 +88,7 @@ double Balance::close(double& turnover) {
   const double fallen = std::max(0.0, opened_.height - after.height);
   const double most = 3 * (supplied() + opened_.springs + fallen + std::abs(handled_));
   turnover = std::min(after.kinetic + std::abs(in) + std::abs(out), most);
+  absurd_ = goes_astray(largest_loss(state_.result.ledger, start_.ledger), most);
   for (const Clustered& one : state_.clusters) {
     if (!one.alone()) continue;
     Tree& tree = *state_.core.trees[one.entry->trees.front()];
@@ -85,6 +96,15 @@ double Balance::close(double& turnover) {
     tree.ledger.residual += change - works(tree.ledger, tree.step_ledger) + losses(tree.ledger, tree.step_ledger);
   }
   return residual;
+}
+
+/// What an account lost is absurd, however slowly all that may move moved.
+/// @param most  J, that moved and worked
+bool Balance::goes_astray(double lost, double most) const {
+  constexpr double kAbsurd = 1e4;
+  if (!(lost > kAbsurd * most)) return false;
+  const double slow = kSlow * state_.unit();
+  return lost > kAbsurd * (most + state_.mass() * slow * slow + weight(state_) + free_weight(state_));
 }
 
 /// Notes for each tree its own energy: at the start of a step as it is, later as change.

@@ -27,6 +27,8 @@ class Balance {
   double risen() const { return risen_; }
   /// After close(): the energy of motion as the step began, and what motors and scripts gave or took since, J.
   double supplied() const { return opened_.kinetic + std::abs(works_); }
+  /// After close(): an account lost far more than there was, and others gave it back. Motion was lost in between.
+  bool absurd() const { return absurd_; }
   const Energy& start_ledger() const { return start_.ledger; }
 
  private:
@@ -40,6 +42,7 @@ class Balance {
     double total() const { return kinetic + height + springs; }
   };
   Stored measure(bool start);
+  bool goes_astray(double lost, double most) const;
 
   State& state_;
   ResultStart start_;
@@ -49,6 +52,7 @@ class Balance {
   double handled_ = 0;  // J
   double risen_ = 0;    // J
   double works_ = 0;    // J
+  bool absurd_ = false;
 };
 
 /// What left by contacts, friction, drag and limits between two states of a ledger, J.

@@ -187,6 +187,7 @@ Trouble Guard::take(MechanicsClient* client, double start, double h) {
   double turnover = 0;
   const double residual = balance_.close(turnover);
   if (!std::isfinite(residual)) return {!off, GuardReason::NotFinite, 0, state_.any_body()};
+  if (balance_.absurd() && !off) return {true, GuardReason::NoSolution, 0, state_.any_body()};
   unexplained_ = std::abs(residual + books_.rotated()) + books_.gained();
   residual_ = residual;
   allowed_ = watch_.tolerated(turnover, h) + kTiny * std::abs(before) + kStill * weight(state_);

@@ -70,17 +70,30 @@ Trouble Watch::foresee(double h) {
   return worst.value > kMostDamping ? worst : Trouble{};
 }
 
-/// Shortens the sub-steps of a step of h seconds in which a body rotates farther than the integrator can follow, so
-/// that a fast spin needs no guard. Explicit Euler is there to be studied: its step is the one that was set.
+/// Shortens the sub-steps of a step of h seconds in which a body rotates farther, or a driven spring swings farther,
+/// than the integrator can follow, so that a fast spin needs no guard. Explicit Euler is there to be studied: its step
+/// is the one that was set.
 void Watch::follow_rotations(double h) {
   if (state_.accuracy.scheme == articulated::Scheme::ExplicitEuler) return;
   constexpr double kMostParts = 16;  // of a sub-step
   const double part = state_.accuracy.step > 0 ? std::min(state_.accuracy.step, h) : h;
-  const double rotation = fastest_rotation(part).value;
+  const double rotation = std::max(fastest_rotation(part).value, driven_swing(part));
   if (!(rotation > kMostRotation)) return;
   Accuracy shorter = state_.accuracy;
   shorter.step = part / std::min(std::ceil(rotation / kMostRotation), kMostParts);
   state_.use_accuracy(shorter);
+}
+
+/// rad, the largest part of its swing that a joint's spring makes in h seconds while a motor drives the joint. The
+/// motor's row moves the joint as if nothing pulled it back within a sub-step.
+double Watch::driven_swing(double h) const {
+  if (state_.accuracy.implicit_joints) return 0;
+  double most = 0;
+  for (const Tree* tree : state_.trees)
+    for (const TreeLink& link : tree->links)
+      if (link.motor && link.gain_unit > 0)
+        most = std::max(most, h * std::sqrt(state_.core.joints[link.joint].drive.stiffness / link.gain_unit));
+  return most;
 }
 
 Trouble Watch::fastest_rotation(double h) const {

@@ -22,6 +22,7 @@ class Watch {
 
  private:
   Trouble fastest_rotation(double h) const;
+  double driven_swing(double h) const;
   Trouble strongest_damper(double h) const;
 
   State& state_;
