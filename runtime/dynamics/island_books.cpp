@@ -101,7 +101,7 @@ void Books::note_smooth() {
 
 /// After the works of smooth motion and of the rows went to the ledger.
 void Books::close() {
-  if (state_.trees.empty()) momentum_.note_touched();
+  momentum_.note_touched();
   if (!kept_ || rows_.empty()) return;
   const bool only_motors = rows_.contacts() == 0 && rows_.limits() == 0;
   double erred = 0;  // J, by the motion that motors changed
@@ -138,7 +138,6 @@ void Books::close() {
     return;
   }
   gained_ += gained;
-  momentum_.note_touched();
 }
 
 /// Once positions were put right after a sub-step of h seconds. Motors work at most by their strength along the way on

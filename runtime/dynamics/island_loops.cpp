@@ -110,11 +110,10 @@ void Loops::close() {
   close_velocities();
 }
 
-/// One step of Newton's method towards closed loops, for rows that were made where the trees stand. Rows of loops that
-/// stand open may contradict one another: they yield a little, so that there is a step at all, and it is shortened
-/// until the sum of the squares of their errors falls. A body that spins or has springs is drawn together no more than
-/// its motion pays for. Contacts part what loops draw together and take the energy that it gains, so that it is booked
-/// with theirs; in a body that touches nothing it is unexplained energy, which the guard tells.
+/// One step of Newton's method towards closed loops, for rows that were made where the trees stand. It is shortened
+/// until the sum of the squares of their errors falls: near a pose in which links may fold, round-off divided by next
+/// to nothing would take them anywhere. Rows of loops that stand open may contradict one another: they yield a little,
+/// so that there is a step at all, which is no longer than can be paid for.
 ///
 /// Source: Nocedal and Wright 2006, 10.3 (Levenberg-Marquardt).
 /// @return  false if nothing was gained: the trees stand where they stood
@@ -135,19 +134,10 @@ bool Loops::approach(bool open) {
   positions_.begin_moves();
   contact::solve_island(rows_.movers(), {}, rows_.scalars(), exact, rows_.workspace());
   positions_.end_moves(1);
-  if (!open) return true;
   double length = 1;
   for (;;) {
     state_.place_links();
-    const bool nearer = errors_squared() < before;
-    const Stored now = read_stored();
-    const double given = now.inner - held.inner - (now.script - held.script);
-    if (nearer && given <= positions_.payable_by_motion()) {
-      const bool by_contacts = touches();
-      if (by_contacts) state_.result.ledger.contact_loss -= now.all - held.all;
-      positions_.pay_for_moves(given, by_contacts);
-      return true;
-    }
+    if (errors_squared() < before && (!open || pay_for_closing(held))) return true;
     if (length < kShortest) break;
     positions_.move_back((1 - kShorter) * length);
     length *= kShorter;
@@ -156,6 +146,21 @@ bool Loops::approach(bool open) {
   state_.place();
   rows_.make(Rows::Motors::Leave);
   return false;
+}
+
+/// A body that spins or has springs is drawn together no more than its motion pays for. Contacts part what loops draw
+/// together and take the energy that it gains, so that it is booked with theirs; in a body that touches nothing it is
+/// unexplained energy, which the guard tells.
+/// @param held  before loops drew it together
+/// @return      whether it is paid for
+bool Loops::pay_for_closing(const Stored& held) {
+  const Stored now = read_stored();
+  const double given = now.inner - held.inner - (now.script - held.script);
+  if (given > positions_.payable_by_motion()) return false;
+  const bool by_contacts = touches();
+  if (by_contacts) state_.result.ledger.contact_loss -= now.all - held.all;
+  positions_.pay_for_moves(given, by_contacts);
+  return true;
 }
 
 /// Velocities along the loops where they stand now.

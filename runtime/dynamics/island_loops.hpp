@@ -41,6 +41,7 @@ class Loops {
   Stored read_stored();
   bool touches() const;
   bool approach(bool open);
+  bool pay_for_closing(const Stored& held);
   void close_velocities();
 
   State& state_;

@@ -90,7 +90,7 @@ void Positions::move_by_pushes(double fastest, double h) {
 /// that has. What falls freely need not be lifted: its centre of mass goes on as it did. Springs that press bodies into
 /// one another, or beyond limits, are not to be wound up for nothing, nor is a body that spins to be drawn out.
 double Positions::payable(double h) const {
-  constexpr double kLift = 0.06;  // of their size, 1/s
+  constexpr double kLift = 0.04;  // of their size, 1/s
   if (state_.trees.empty()) return JointDrive::kNoLimit;
   const bool falls = !momentum_.touched_from_outside() && std::all_of(state_.clusters.begin(), state_.clusters.end(),
                                                                       [](const Clustered& one) { return one.loose; });

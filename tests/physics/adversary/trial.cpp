@@ -56,7 +56,8 @@ class Books {
   }
 
   void close(Verdict& verdict) const {
-    const double scale = std::max(scale_, 1e-9);
+    // What hardly moves is measured by the round-off of the energy that it holds.
+    const double scale = std::max({scale_, 1e-9, 1e-7 * std::abs(start_.total())});
     verdict.scale = scale_;
     verdict.gained = gained_;
     auto& found = verdict.found;
