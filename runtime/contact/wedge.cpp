@@ -40,7 +40,8 @@ Speeds read_speeds(const Workspace& work) {
 
 bool thrown(const Workspace& work, bool converged) {
   // A heavy load, or thrown; and what leaves no more than round-off of what is to be stopped, if that is not slow.
-  constexpr double kGreat = 100, kSenseless = 1e10, kSlow = 1e-3;
+  constexpr double kGreat = 100, kSenseless = 1e10;
+  constexpr double kSlow = 1e-3;            // m/s
   const Speeds speeds = read_speeds(work);  // this is quick
   if (speeds.most <= kGreat * speeds.stopped) return false;
   if (!(speeds.most <= kSenseless * std::max(speeds.stopped, kSlow))) return true;

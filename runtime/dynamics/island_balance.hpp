@@ -27,7 +27,7 @@ class Balance {
   double risen() const { return risen_; }
   /// After close(): the energy of motion as the step began, and what motors and scripts gave or took since, J.
   double supplied() const { return opened_.kinetic + std::abs(works_); }
-  /// After close(): an account lost far more than there was, and others gave it back. Motion was lost in between.
+  /// After close(): one account lost far more than there was, and another gave it back.
   bool absurd() const { return absurd_; }
   const Energy& start_ledger() const { return start_.ledger; }
 

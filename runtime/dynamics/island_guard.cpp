@@ -42,7 +42,7 @@ void Guard::step(MechanicsClient* client, double start, double h) {
   const GuardMode mode = state_.core.settings.guard;
   const Accuracy asked = state_.accuracy;
   state_.read_drives(h);
-  watch_.follow_rotations(h);
+  watch_.shorten_sub_steps(h);
   const Accuracy followed = state_.accuracy;
   Trouble trouble;
   int attempt = 0;

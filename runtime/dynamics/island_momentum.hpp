@@ -52,7 +52,7 @@ class Momentum {
   State& state_;
   Rows& rows_;
   std::pmr::vector<Outer> outer_;  // of trees
-  bool touched_ = false;           // something outside was there when contacts gave energy
+  bool touched_ = false;           // something outside was, in a sub-step of this try
 };
 
 }  // namespace breve::island

@@ -73,7 +73,7 @@ Trouble Watch::foresee(double h) {
 /// Shortens the sub-steps of a step of h seconds in which a body rotates farther, or a driven spring swings farther,
 /// than the integrator can follow, so that a fast spin needs no guard. Explicit Euler is there to be studied: its step
 /// is the one that was set.
-void Watch::follow_rotations(double h) {
+void Watch::shorten_sub_steps(double h) {
   if (state_.accuracy.scheme == articulated::Scheme::ExplicitEuler) return;
   constexpr double kMostParts = 16;  // of a sub-step
   const double part = state_.accuracy.step > 0 ? std::min(state_.accuracy.step, h) : h;

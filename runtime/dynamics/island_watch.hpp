@@ -18,7 +18,7 @@ class Watch {
   /// The energy that a step of h seconds may leave unexplained, J.
   double tolerated(double turnover, double h) const;
   Trouble foresee(double h);
-  void follow_rotations(double h);
+  void shorten_sub_steps(double h);
 
  private:
   Trouble fastest_rotation(double h) const;

@@ -56,8 +56,7 @@ class Books {
   }
 
   void close(Verdict& verdict) const {
-    // What hardly moves is measured by the round-off of the energy that it holds.
-    const double scale = std::max({scale_, 1e-9, 1e-7 * std::abs(start_.total())});
+    const double scale = std::max(scale_, 1e-9);
     verdict.scale = scale_;
     verdict.gained = gained_;
     auto& found = verdict.found;
