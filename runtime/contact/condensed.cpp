@@ -5,6 +5,7 @@
 
 #include "runtime/contact/bilateral.hpp"
 #include "runtime/contact/pack.hpp"
+#include "runtime/contact/plain.hpp"
 #include "runtime/contact/sides.hpp"
 #include "runtime/contact/sweep.hpp"
 
@@ -14,6 +15,7 @@ namespace {
 
 constexpr std::size_t kMostRows = 32;        // beyond it most rows do not feel one another, and W is mostly zeros
 constexpr std::size_t kMostEquations = 400;  // where W is solved, not swept
+constexpr std::size_t kMostNormals = 64;     // beyond it a push at a row takes longer at all others than at its movers
 
 /// Of one or three rows on both of their movers.
 struct Block {
@@ -21,7 +23,8 @@ struct Block {
   SideMatrices sides[2];
   int rows;
 
-  Block(const Workspace& work, std::size_t point) : rows(3) {
+  /// @param count  3, or 1 for the normal alone
+  Block(const Workspace& work, std::size_t point, int count) : rows(count) {
     const Point& c = work.points[point];
     const Sides& own = work.sides[point];
     movers[0] = c.a;
@@ -53,10 +56,28 @@ void couple(const Block& from, std::size_t at_from, const Block& to, std::size_t
     }
 }
 
+/// W of all points, with `each` rows, and then of all scalar rows: symmetric, row by row.
+void fill(const Workspace& work, std::size_t each, std::pmr::vector<double>& out) {
+  const std::size_t points = work.points.size(), n = each * points + work.scalars.size();
+  out.assign(n * n, 0.0);
+  double* const W = out.data();
+  const auto each_up_to = [&](std::size_t end, auto&& f) {
+    for (std::size_t i = 0; i < points && each * i <= end; ++i) f(Block(work, i, static_cast<int>(each)), each * i);
+    for (std::size_t i = 0; i < work.scalars.size() && each * points + i <= end; ++i)
+      f(Block(work, work.scalars[i]), each * points + i);
+  };
+  each_up_to(n, [&](const Block& from, std::size_t at_from) {
+    each_up_to(at_from, [&](const Block& to, std::size_t at_to) { couple(from, at_from, to, at_to, n, W); });
+  });
+  // A block on the diagonal has both halves: its upper one is also dropped here.
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < i; ++k) W[k * n + i] = W[i * n + k];
+}
+
 }  // namespace
 
 void condense(Workspace& work) {
-  const std::size_t points = work.points.size(), n = 3 * points + work.scalars.size();
+  const std::size_t n = 3 * work.points.size() + work.scalars.size();
   std::size_t velocities = 0;
   for (const Packed& mover : work.movers)
     if (mover.source != nullptr) velocities += static_cast<std::size_t>(mover.size);
@@ -66,19 +87,14 @@ void condense(Workspace& work) {
   for (const Sides& sides : work.sides)
     work.rates.insert(work.rates.end(), std::begin(sides.free_velocity), std::end(sides.free_velocity));
   for (const PackedScalar& row : work.scalars) work.rates.push_back(row.free_velocity);
-  work.answers.assign(n * n, 0.0);
-  double* const W = work.answers.data();
-  const auto each_up_to = [&](std::size_t end, auto&& f) {
-    for (std::size_t i = 0; i < points && 3 * i <= end; ++i) f(Block(work, i), 3 * i);
-    for (std::size_t i = 0; i < work.scalars.size() && 3 * points + i <= end; ++i)
-      f(Block(work, work.scalars[i]), 3 * points + i);
-  };
-  each_up_to(n, [&](const Block& from, std::size_t at_from) {
-    each_up_to(at_from, [&](const Block& to, std::size_t at_to) { couple(from, at_from, to, at_to, n, W); });
-  });
-  // A block on the diagonal has both halves: its upper one is also dropped here.
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t k = 0; k < i; ++k) W[k * n + i] = W[i * n + k];
+  fill(work, 3, work.answers);
+}
+
+bool condense_normals(Workspace& work) {
+  const std::size_t n = work.points.size() + work.scalars.size();
+  if (n == 0 || n > kMostNormals || is_plain(work)) return false;
+  if (work.normal_answers.empty()) fill(work, 1, work.normal_answers);
+  return true;
 }
 
 void expand(Workspace& work) {

@@ -9,6 +9,9 @@ namespace breve::contact {
 /// Call after pack(). If it pays, velocity() and push() then work on `work.rates` by the matrix W = J R, and the movers
 /// keep the velocities they had.
 void condense(Workspace& work);
+/// W of the contacts' normals and the scalar rows, in `work.normal_answers`, for sweeps without friction: once after
+/// each pack(). @return false if it does not pay
+bool condense_normals(Workspace& work);
 /// Gives the movers what all impulses do to them. To be called before unpack().
 void expand(Workspace& work);
 

@@ -128,6 +128,10 @@ double sweep_operations(const Workspace& work) {
                    kPlain = 120;  // the answer of one contact; of one between free bodies, velocities included
   double sum = 0;
   const auto size = [&](int mover) { return static_cast<double>(work.movers[static_cast<std::size_t>(mover)].size); };
+  if (work.by_normals) {
+    const auto n = static_cast<double>(work.points.size() + work.scalars.size());
+    return 2 * n * n;
+  }
   if (work.condensed) {
     const double n = static_cast<double>(work.rates.size());
     return 2 * n * n + kCone * static_cast<double>(work.points.size());

@@ -161,6 +161,7 @@ void pack(std::span<const Mover> movers, std::span<const Row> rows, std::span<co
   }
   work.has_plain = false;
   work.answers.clear();
+  work.normal_answers.clear();
   work.points.resize(rows.size());
   work.sides.resize(rows.size());
   work.grips.resize(rows.size());

@@ -129,6 +129,11 @@ void fill_plain(const Point& own, const std::pmr::vector<Packed>& movers, PlainP
 
 }  // namespace
 
+bool is_plain(const Workspace& work) {
+  return work.scalars.empty() &&
+         std::all_of(work.points.begin(), work.points.end(), [](const Point& c) { return c.plain; });
+}
+
 void enter_plain(Workspace& work) {
   if (!std::exchange(work.has_plain, true)) {
     if (work.plain.size() < work.points.size()) work.plain.resize(work.points.size());

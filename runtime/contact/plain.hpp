@@ -27,6 +27,9 @@ struct PlainPoint {
   int a, b;        // packed movers; 0 is the world
 };
 
+/// All rows are contacts between free bodies, or such and the world.
+bool is_plain(const Workspace& work);
+
 /// As sweep.hpp has them.
 struct Moved {
   double largest = 0;  // change of a row's velocity that its own impulse made, m/s, at least

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "runtime/contact/normals.hpp"
 #include "runtime/contact/pack.hpp"
 #include "runtime/contact/plain.hpp"
 #include "runtime/contact/visit.hpp"
@@ -82,24 +83,40 @@ void go_on(Workspace& work, double share) {
   }
 }
 
-bool all_plain(const Workspace& work) {
-  return !work.condensed && work.scalars.empty() &&
-         std::all_of(work.points.begin(), work.points.end(), [](const Point& c) { return c.plain; });
-}
-
 }  // namespace
 
-Sweeps::Sweeps(Workspace& work, bool momentum) : work_(work), plain_(all_plain(work)), momentum_(momentum) {
-  if (plain_) {
-    enter_plain(work_);
-    return;
-  }
+Sweeps::Sweeps(Workspace& work, bool momentum) : work_(work), kind_(kind_of(work)), momentum_(momentum) {
+  if (kind_ == Kind::Plain) enter_plain(work_);
+  if (kind_ == Kind::Normals) enter_normals(work_);
+  if (kind_ != Kind::Any) return;
   for (Point& c : work_.points) std::fill_n(c.way, 3, 0.0);
   for (PackedScalar& row : work_.scalars) row.way = 0;
 }
 
 Sweeps::~Sweeps() {
-  if (plain_) leave_plain(work_);
+  if (kind_ == Kind::Plain) leave_plain(work_);
+  if (kind_ == Kind::Normals) leave_normals(work_);
+}
+
+Sweeps::Kind Sweeps::kind_of(const Workspace& work) {
+  if (work.by_normals) return Kind::Normals;
+  return !work.condensed && is_plain(work) ? Kind::Plain : Kind::Any;
+}
+
+void Sweeps::go_on(double share) {
+  switch (kind_) {
+    case Kind::Plain: return go_on_plain(work_, share);
+    case Kind::Normals: return go_on_normals(work_, share);
+    case Kind::Any: return contact::go_on(work_, share);
+  }
+}
+
+Moved Sweeps::sweep(bool backward) {
+  switch (kind_) {
+    case Kind::Plain: return sweep_plain(work_, backward);
+    case Kind::Normals: return sweep_normals(work_, backward);
+    default: return contact::sweep(work_, backward);
+  }
 }
 
 /// The share of the last change, for the sweep that follows.
@@ -117,14 +134,9 @@ bool Sweeps::diverge() const {
 }
 
 double Sweeps::next() {
-  if (momentum_ && count_ > 0) {
-    if (plain_)
-      go_on_plain(work_, share());
-    else
-      go_on(work_, share());
-  }
+  if (momentum_ && count_ > 0) go_on(share());
   const bool backward = count_++ % 2 == 1;
-  const Moved moved = plain_ ? sweep_plain(work_, backward) : sweep(work_, backward);
+  const Moved moved = sweep(backward);
   energy_before_ = std::exchange(energy_, moved.energy);
   if (count_ == 1) energy_first_ = energy_;
   return moved.largest;

@@ -30,10 +30,16 @@ class Sweeps {
   bool diverge() const;
 
  private:
+  enum class Kind { Any, Plain, Normals };
+  static Kind kind_of(const Workspace& work);
+
   double share() const;
+  void go_on(double share);
+  Moved sweep(bool backward);
 
   Workspace& work_;
-  const bool plain_, momentum_;
+  const Kind kind_;
+  const bool momentum_;
   int count_ = 0;
   double energy_first_ = 0, energy_before_ = 0, energy_ = 0;  // J, of the changes of the first and the last two
 };

@@ -69,6 +69,13 @@ struct Slope {
   double t11 = 0, t12 = 0, t21 = 0, t22 = 0;
 };
 
+/// A contact's normal, or a scalar row, as sweeps without friction read it.
+struct NormalRow {
+  double rate;  // its velocity
+  double impulse, bias, softness, response, lo, hi;
+  double step, way;
+};
+
 struct Workspace {
   explicit Workspace(std::pmr::memory_resource* memory)
       : movers(memory),
@@ -88,7 +95,9 @@ struct Workspace {
         earlier(memory),
         biases(memory),
         answers(memory),
-        rates(memory) {}
+        rates(memory),
+        normal_answers(memory),
+        normals(memory) {}
   std::pmr::vector<Packed> movers;
   std::pmr::vector<double> began;  // velocities of the trees without any impulse
   std::pmr::vector<Point> points;
@@ -106,6 +115,9 @@ struct Workspace {
   bool condensed = false;            // see condensed.hpp:
   std::pmr::vector<double> answers;  // W, symmetric, row by row
   std::pmr::vector<double> rates;    // velocities at the rows: three a point, then one a scalar row
+  bool by_normals = false;           // see normals.hpp:
+  std::pmr::vector<double> normal_answers;
+  std::pmr::vector<NormalRow> normals;
 };
 
 }  // namespace breve::contact

@@ -157,6 +157,78 @@ TEST(Trees, AnIslandSeenFromItsRowsMovesAsOneSeenFromItsVelocities) {
   EXPECT_GE(plain, 270);
 }
 
+/// At rest, without friction and impulses, and with biases that depend on the seed.
+std::vector<Push> lay_down(Wood& wood, std::uint64_t seed, double share) {
+  Random random(seed);
+  std::vector<Push> pushes;
+  for (Row& row : wood.scene.rows) {
+    row.static_friction = row.dynamic_friction = 0;
+    row.impulse.setZero();
+    row.bias = share * between(random, -0.1, 0.1);
+    row.softness = between(random, 0, 1e-4);
+    pushes.push_back({row.bias, row.softness, 0});
+  }
+  for (double& v : wood.scene.bodies[0].v) v = 0;
+  for (Tree& tree : wood.trees) tree.state.v.setZero();
+  return pushes;
+}
+
+/// Rows with bounds, one a tree, as motors and limits have them.
+void bound(Wood& wood, std::deque<std::vector<double>>& numbers) {
+  for (std::size_t t = 0; t < wood.trees.size(); ++t) {
+    const articulated::Model& model = wood.trees[t].model;
+    const auto n = static_cast<std::size_t>(model.velocities());
+    std::vector<double>&j = numbers.emplace_back(n, 0.0), &r = numbers.emplace_back(n, 0.0);
+    j[n - 1] = 1;
+    articulated::Vector answer(model.velocities());
+    const articulated::Vector unit = Eigen::Map<const articulated::Vector>(j.data(), model.velocities());
+    articulated::apply_inverse_mass(model, wood.trees[t].data, unit, answer);
+    std::copy_n(answer.data(), n, r.data());
+    ScalarRow row;
+    row.a = 1 + static_cast<int>(t);
+    row.ja = j.data();
+    row.ra = r.data();
+    row.lo = -0.01;
+    row.hi = 0.02;
+    wood.scene.scalars.push_back(row);
+  }
+}
+
+TEST(Trees, SolvedAgainByNormalsMoveAsInASolveFromRestWithoutFriction) {
+  int moved = 0, plain = 0;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    Random first(seed), second(seed), third(seed);
+    Wood again(first), fresh(second), off(third);  // the last one shows what round-off alone does
+    std::deque<std::vector<double>> numbers;
+    for (Wood* wood : {&again, &fresh, &off}) {
+      wood->scene.settings = {30, false, 0};
+      bound(*wood, numbers);
+    }
+    again.solve();
+    const std::vector<double> biases(again.trees.size(), 0.05);
+    for (Wood* wood : {&fresh, &off})
+      for (ScalarRow& row : wood->scene.scalars) row.bias = biases[0];
+    std::vector<Push> pushes = lay_down(again, seed, 1);
+    solve_again(pushes, biases, again.scene.settings, again.scene.work);
+    lay_down(fresh, seed, 1);
+    lay_down(off, seed, 1 + 1e-14);
+    fresh.solve();
+    off.solve();
+    double noise = 0;
+    for (std::size_t t = 0; t < fresh.trees.size(); ++t)
+      noise = std::max(noise, (off.trees[t].state.v - fresh.trees[t].state.v).norm());
+    plain += noise < 1e-10;
+    for (std::size_t t = 0; t < fresh.trees.size(); ++t) {
+      const articulated::Vector &a = again.trees[t].state.v, &b = fresh.trees[t].state.v;
+      EXPECT_LE((a - b).norm(), 1e-9 * (1 + b.norm()) + 1e3 * noise) << seed;
+      moved += b.norm() > 1e-3;
+    }
+    EXPECT_LE((again.scene.bodies[0].v - fresh.scene.bodies[0].v).norm(), 1e-9 + 1e3 * noise) << seed;
+  }
+  EXPECT_GE(moved, 250);
+  EXPECT_GE(plain, 270);
+}
+
 TEST(Trees, AFreeBodyGivenByMatricesMovesAsOneGivenByArms) {
   Random random(52);
   for (int i = 0; i < 200; ++i) {
