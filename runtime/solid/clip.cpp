@@ -220,9 +220,29 @@ void place_face(const Placed& solid, int index, PlacedFace& out) {
   }
 }
 
+namespace {
+
+constexpr double kEqual = 1e-6;  // of directions: of faces that look alike the first
+
+/// The same of a solid with a tree of faces: the first of those that come so near to the best.
+int face_along_in(const Polyhedron& solid, const Vector3& local) {
+  const auto bound = [&](const FaceTree::Node& node) { return node.along(local); };
+  double most = -2;
+  solid.looks.search(most, bound,
+                     [&](std::uint32_t face) { most = std::max(most, solid.planes[face].normal.dot(local)); });
+  const double least = most - kEqual;
+  std::size_t best = solid.planes.size();
+  solid.looks.search(least, bound, [&](std::uint32_t face) {
+    if (face < best && solid.planes[face].normal.dot(local) >= least) best = face;
+  });
+  return static_cast<int>(best);
+}
+
+}  // namespace
+
 int face_along(const Placed& solid, const Vector3& direction) {
-  constexpr double kEqual = 1e-6;
   const Vector3 local = solid.rotation.transpose() * direction;
+  if (!solid.solid->looks.empty()) return face_along_in(*solid.solid, local);
   int best = 0;
   double most = -2;
   for (std::size_t f = 0; f < solid.solid->planes.size(); ++f) {

@@ -2,6 +2,7 @@
 // neighbours are nearly coplanar or fold inward, a contact at their common edge gets the normal of the face.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "runtime/solid/triangle.hpp"
 
@@ -55,10 +56,39 @@ bool ball_on_facet(const ConvexPair& pair, const Facet& facet, const Gap& gap, c
   return true;
 }
 
+/// The face of a polyhedron that a triangle is highest over, as best_face; some other if none is as good as `worth`.
+FaceAxis best_face_under(const Placed& a, const Placed& b, double worth) {
+  const FaceTree& looks = a.solid->looks;
+  if (looks.empty()) return best_face(a, b);
+  const Matrix3 rotation = a.rotation.transpose() * b.rotation;
+  const Vector3 shift = a.rotation.transpose() * (b.location - a.location);
+  std::array<Vector3, 3> corners;
+  for (std::size_t i = 0; i < 3; ++i) corners[i] = shift + rotation * b.solid->vertices[i];
+  FaceAxis best{-std::numeric_limits<double>::infinity(), 0};
+  const double round_off = kAgree * (a.radius + b.radius + shift.norm());
+  double least = worth - round_off;
+  looks.search(
+      least, [&](const FaceTree::Node& node) { return node.height(corners); },
+      [&](std::uint32_t face) {
+        const Plane& plane = a.solid->planes[face];
+        const double distance =
+            std::min({plane.normal.dot(corners[0]), plane.normal.dot(corners[1]), plane.normal.dot(corners[2])}) -
+            plane.offset;
+        const int number = static_cast<int>(face);
+        if (!(distance > best.distance || (distance == best.distance && number < best.face))) return;
+        best = {distance, number};
+        least = std::max(distance, worth) - round_off;
+      });
+  return best;
+}
+
 /// By the face of the solid that is farthest from the triangle, if it is nearly as good an axis as the best.
-bool face_of_solid(const ConvexPair& pair, const Gap& gap, Manifold& out) {
-  const FaceAxis face = best_face(pair.a, pair.b);
-  if (face.distance < gap.distance - pair.slack.preference) return false;
+bool face_of_solid(const ConvexPair& pair, const TriangleGap& gap, Manifold& out) {
+  const double worth = gap.distance - pair.slack.preference;
+  FaceAxis face = gap.face;
+  if (face.face < 0)
+    face = pair.a.round.is_round() ? best_face(pair.a, pair.b) : best_face_under(pair.a, pair.b, worth);
+  if (face.distance < worth) return false;
   const Vector3 outward = face_normal(pair.a, face.face);
   if (outward.dot(gap.normal) > -0.99) return false;
   PlacedFace reference, incident;
@@ -67,7 +97,7 @@ bool face_of_solid(const ConvexPair& pair, const Gap& gap, Manifold& out) {
   return clip_faces(reference, incident, Owner::A, pair.margin, pair.slack.rim, out);
 }
 
-bool solid_on_facet(const ConvexPair& pair, const Facet& facet, const Gap& gap, const Vector3& normal, bool flipped,
+bool solid_on_facet(const ConvexPair& pair, const Facet& facet, TriangleGap& gap, const Vector3& normal, bool flipped,
                     Manifold& out) {
   const double plane = normal.dot(pair.b.vertex(0));
   const double height = -pair.a.reach(-normal) - plane;
@@ -87,6 +117,7 @@ bool solid_on_facet(const ConvexPair& pair, const Facet& facet, const Gap& gap, 
     if (face || !out_standing) return face;
   }
   if (face_of_solid(pair, gap, out)) return true;
+  complete(pair.a, pair.b, gap);
   out.normal = gap.normal;
   out.count = 1;
   out.points[0] = {gap.on_a, gap.on_b, gap.distance, kNearestPoint};
@@ -97,7 +128,7 @@ bool solid_on_facet(const ConvexPair& pair, const Facet& facet, const Gap& gap, 
 
 bool facet_manifold(const ConvexPair& pair, const Facet& facet, bool& near, Manifold& out) {
   constexpr double kBehind = -1e-6;
-  const Gap gap = triangle_gap(pair.a, pair.b, pair.margin);
+  TriangleGap gap = triangle_distance(pair.a, pair.b, pair.margin);
   if (gap.distance >= pair.margin) return false;
   near = true;
   if (gap.back != 0) return false;

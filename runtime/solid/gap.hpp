@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 
 #include "runtime/solid/polyhedron.hpp"
 #include "runtime/solid/round.hpp"
@@ -24,6 +25,10 @@ struct Placed {
   bool outer = false;  // a triangle of a surface that bounds a solid: the way out of an overlap is outward
   Round round{};
   mutable int last = 0;  // vertex that was found last: the next search begins there
+  // For triangles, one after the other: the direction that told the last one apart, in the own frame; and whether all
+  // faces are flat to round-off, once somebody wanted to know.
+  mutable Vector3 apart = Vector3::Zero();
+  mutable std::optional<bool> planar{};
 
   Vector3 vertex(int index) const { return location + rotation * solid->vertices[static_cast<std::size_t>(index)]; }
   /// The vertex of a polyhedron farthest along `direction` (world).
@@ -53,7 +58,9 @@ struct Gap {
 
 /// Distance of two polyhedra or cylinders that are apart, or of the axes of capsules. False if they touch or overlap:
 /// `gap` is then not written.
-/// @param enough  once they are known to be farther apart than this, `gap` has only a distance: a lower bound beyond it
+/// @param enough  once they are known to be farther apart than this, `gap` has only a distance, a lower bound beyond
+/// it,
+///                and the normal along which it is one
 bool separated(const Placed& a, const Placed& b, Gap& gap, double enough = std::numeric_limits<double>::infinity());
 
 /// The face of `a` over which `b` is highest, or least deep: a separation along its normal. Minus infinity of a

@@ -217,6 +217,7 @@ bool cores_apart(const Placed& a, const Placed& b, Gap& gap, double enough) {
       if (along > (enough + kHair * scale) * length) {
         gap = Gap{};
         gap.distance = along / length;
+        gap.normal = nearest.point / length;
         return true;
       }
       if (slack <= kRoundOff * length * (length + scale) || simplex.has(corner.a, corner.b)) break;

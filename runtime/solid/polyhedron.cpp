@@ -160,6 +160,7 @@ void find_neighbors(Polyhedron& solid) {
   solid.neighbors.clear();
   solid.first_neighbor.clear();
   solid.arcs.clear();
+  solid.looks.clear();
   const std::size_t count = solid.vertices.size();
   if (count < kManyVertices || solid.edges.empty() || !folds_outward(solid)) return;
   std::pmr::vector<int>& first = solid.first_neighbor;
@@ -172,6 +173,7 @@ void find_neighbors(Polyhedron& solid) {
     solid.neighbors[at(next[at(edge.a)]++)] = edge.b;
     solid.neighbors[at(next[at(edge.b)]++)] = edge.a;
   }
+  solid.looks.build(solid);
   if (solid.edges.size() < kManyEdges) return;
   std::pmr::vector<ArcBall> balls(first.get_allocator());
   balls.reserve(solid.edges.size());

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/base/math.hpp"
+#include "runtime/solid/face_tree.hpp"
 #include "runtime/solid/gauss_map.hpp"
 
 namespace breve {
@@ -34,7 +35,8 @@ struct Polyhedron {
   // The vertices at the other ends of each vertex' edges, and where each one's begin: of solids with many vertices that
   // are convex to round-off, else empty.
   std::pmr::vector<int> neighbors, first_neighbor;
-  GaussMap arcs;  // of the edges of such a solid, if they are many
+  GaussMap arcs;   // of the edges of such a solid, if they are many
+  FaceTree looks;  // of its faces, whenever it has neighbors
 
   explicit Polyhedron(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
       : vertices(memory),
@@ -43,7 +45,8 @@ struct Polyhedron {
         edges(memory),
         neighbors(memory),
         first_neighbor(memory),
-        arcs(memory) {}
+        arcs(memory),
+        looks(memory) {}
   /// A copy in `memory`.
   Polyhedron(const Polyhedron& other, std::pmr::memory_resource* memory)
       : vertices(other.vertices, memory),
@@ -52,7 +55,8 @@ struct Polyhedron {
         edges(other.edges, memory),
         neighbors(other.neighbors, memory),
         first_neighbor(other.first_neighbor, memory),
-        arcs(other.arcs, memory) {}
+        arcs(other.arcs, memory),
+        looks(other.looks, memory) {}
 
   /// The vertex farthest along `direction`; of equals the first, as far as edges lead there. With neighbors the search
   /// goes up from vertex `from`: a few steps where that is near.

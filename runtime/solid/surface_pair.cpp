@@ -33,7 +33,7 @@ class Narrowest final : public FacetVisitor {
   /// @param outer  out of an overlap to the outer side only
   Narrowest(const SurfacePair& pair, bool outer, const NarrowCounters* asked)
       : pair_(pair), clearance_(clearance_of(pair)), asked_(asked), outer_(outer) {
-    gap.distance = behind_.distance = kFar;
+    nearest.gap.distance = behind_.gap.distance = kFar;
   }
   /// All facets whose gap is at most `reach`, and perhaps some that are farther.
   void search(double reach) {
@@ -46,33 +46,43 @@ class Narrowest final : public FacetVisitor {
   void visit(const Facet& facet) override {
     if (clearance_.of_plane(facet) > farthest()) return;
     triangle_.set(facet);
-    const Gap here = triangle_gap(pair_.convex, triangle_.placed(pair_.frame, outer_), farthest());
+    const TriangleGap here = triangle_distance(pair_.convex, triangle_.placed(pair_.frame, outer_), farthest());
     if (here.back != 0) {
       const double size = std::min(pair_.convex.radius, 0.5 * pair_.surface->bounds().diagonal().norm());
-      if (here.back < -kSunk * size && here.distance < behind_.distance) behind_ = here;
+      if (here.back < -kSunk * size && here.distance < behind_.gap.distance) behind_ = {here, facet};
       return;
     }
-    if (here.distance >= gap.distance || here.distance > reach_) return;
-    gap = here;
-    nearest = facet;
+    if (here.distance >= nearest.gap.distance || here.distance > reach_) return;
+    nearest = {here, facet};
+  }
+  /// The gap to a facet, with its points.
+  struct Found {
+    TriangleGap gap;
+    Facet facet;
+  };
+  Gap complete(const Found& found) {
+    TriangleGap gap = found.gap;
+    if (!gap.lacks_points) return gap;
+    triangle_.set(found.facet);
+    breve::complete(pair_.convex, triangle_.placed(pair_.frame, outer_), gap);
+    return gap;
   }
   /// Overlaps are with facets of that kind alone, of which this is the deepest; null: they are not.
-  const Gap* only_behind() const { return gap.distance > 0 && behind_.distance < 0 ? &behind_ : nullptr; }
+  const Found* only_behind() const { return nearest.gap.distance > 0 && behind_.gap.distance < 0 ? &behind_ : nullptr; }
   const Clearance& clearance() const { return clearance_; }
 
-  Gap gap;
-  Facet nearest;
+  Found nearest;
 
  private:
   static constexpr double kFar = std::numeric_limits<double>::infinity();
-  double farthest() const { return std::min(reach_, std::max(gap.distance, 0.0)); }
+  double farthest() const { return std::min(reach_, std::max(nearest.gap.distance, 0.0)); }
 
   const SurfacePair& pair_;
   const Clearance clearance_;
   const NarrowCounters* asked_;
   bool outer_;
   double reach_ = 0;
-  Gap behind_;
+  Found behind_;
   TriangleSolid triangle_;
 };
 
@@ -109,21 +119,21 @@ Gap narrowest_gap(const SurfacePair& pair, double limit, NarrowCounters* counter
   const double least = 1e-3 * size;
   double reach = std::min(least, std::max(limit, 0.0));
   narrowest.search(reach);
-  if (const Gap* deep = narrowest.only_behind()) {
+  if (const Narrowest::Found* deep = narrowest.only_behind()) {
     if (counters != nullptr) counters->add(narrowest.counters);
-    return *deep;
+    return narrowest.complete(*deep);
   }
-  const bool inside = sunk || (narrowest.gap.distance > 0 && center_inside(pair));
+  const bool inside = sunk || (narrowest.nearest.gap.distance > 0 && center_inside(pair));
   const double all = narrowest.clearance().bounds().merged(pair.surface->bounds()).diagonal().norm();
   const double farthest = inside ? all : std::min(all, limit);
   const auto stopped = [counters] { return counters != nullptr && counters->stopped(); };
-  while (narrowest.gap.distance > reach && reach < farthest && !stopped()) {
+  while (narrowest.nearest.gap.distance > reach && reach < farthest && !stopped()) {
     reach = std::min(std::max(8 * reach, least), farthest);
     narrowest.search(reach);
   }
   if (counters != nullptr) counters->add(narrowest.counters);
-  Gap gap = narrowest.gap;
-  if (inside && !stopped()) push_out(pair, narrowest.nearest, gap);
+  Gap gap = narrowest.complete(narrowest.nearest);
+  if (inside && !stopped()) push_out(pair, narrowest.nearest.facet, gap);
   return gap;
 }
 

@@ -35,6 +35,15 @@ class TriangleSolid {
 /// @param enough  what is farther apart than this has no more than a distance, a lower bound beyond it
 Gap triangle_gap(const Placed& a, const Placed& b, double enough = std::numeric_limits<double>::infinity());
 
+/// The same without the points of an overlap, or of what is less than a hair apart: most who ask do not want them.
+struct TriangleGap : Gap {
+  FaceAxis face{0, -1};       // as best_face, where it was found on the way: a number below 0 if it was not
+  bool lacks_points = false;  // `on_a` and `on_b` are not known yet
+};
+TriangleGap triangle_distance(const Placed& a, const Placed& b, double enough);
+/// Fill in these points.
+void complete(const Placed& a, const Placed& b, TriangleGap& gap);
+
 /// Whether a triangle that bounds a solid is left backward: the way back is far shorter than the way out, or shorter
 /// and shallow. Distances are negative.
 /// @param size  of the smaller solid, m
