@@ -14,6 +14,12 @@ namespace breve {
 constexpr double kClose = 1e-5;
 constexpr double kAgree = 1e-14;  // round-off of either, relative to the sizes
 
+/// What earlier triangles told of a solid.
+struct TriangleHints {
+  Vector3 apart = Vector3::Zero();  // the direction that told the last one apart, in the solid's frame
+  std::optional<bool> planar{};     // are all faces flat to round-off? Once somebody wanted to know
+};
+
 /// A solid at a pose: a ball if `solid` is null, a cylinder or capsule if `round` is one (`solid` then is the polygons
 /// that show it), else a polyhedron.
 struct Placed {
@@ -24,11 +30,8 @@ struct Placed {
   bool flat = false;   // a triangle of a surface: `solid` has its two sides
   bool outer = false;  // a triangle of a surface that bounds a solid: the way out of an overlap is outward
   Round round{};
-  mutable int last = 0;  // vertex that was found last: the next search begins there
-  // For triangles, one after the other: the direction that told the last one apart, in the own frame; and whether all
-  // faces are flat to round-off, once somebody wanted to know.
-  mutable Vector3 apart = Vector3::Zero();
-  mutable std::optional<bool> planar{};
+  mutable int last = 0;            // vertex that was found last: the next search begins there
+  TriangleHints* hints = nullptr;  // of who measures triangles, one after the other; may be null
 
   Vector3 vertex(int index) const { return location + rotation * solid->vertices[static_cast<std::size_t>(index)]; }
   /// The vertex of a polyhedron farthest along `direction` (world).

@@ -141,6 +141,7 @@ void connect(Polyhedron& solid) {
 namespace {
 
 constexpr std::size_t kManyVertices = 32;  // fewer are looked at one by one
+constexpr std::size_t kManyFaces = 64;     // likewise
 constexpr std::size_t kManyEdges = 256;    // likewise, each with each of another solid
 
 /// Do the faces at each edge fold outward? Then what is higher than all its neighbors is the highest.
@@ -173,7 +174,7 @@ void find_neighbors(Polyhedron& solid) {
     solid.neighbors[at(next[at(edge.a)]++)] = edge.b;
     solid.neighbors[at(next[at(edge.b)]++)] = edge.a;
   }
-  solid.looks.build(solid);
+  if (solid.faces.size() >= kManyFaces) solid.looks.build(solid);
   if (solid.edges.size() < kManyEdges) return;
   std::pmr::vector<ArcBall> balls(first.get_allocator());
   balls.reserve(solid.edges.size());

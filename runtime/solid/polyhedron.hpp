@@ -36,7 +36,7 @@ struct Polyhedron {
   // are convex to round-off, else empty.
   std::pmr::vector<int> neighbors, first_neighbor;
   GaussMap arcs;   // of the edges of such a solid, if they are many
-  FaceTree looks;  // of its faces, whenever it has neighbors
+  FaceTree looks;  // of its faces, likewise
 
   explicit Polyhedron(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
       : vertices(memory),

@@ -32,7 +32,8 @@ class Narrowest final : public FacetVisitor {
  public:
   /// @param outer  out of an overlap to the outer side only
   Narrowest(const SurfacePair& pair, bool outer, const NarrowCounters* asked)
-      : pair_(pair), clearance_(clearance_of(pair)), asked_(asked), outer_(outer) {
+      : pair_(pair), convex_(pair.convex), clearance_(clearance_of(pair)), asked_(asked), outer_(outer) {
+    convex_.hints = &hints_;
     nearest.gap.distance = behind_.gap.distance = kFar;
   }
   /// All facets whose gap is at most `reach`, and perhaps some that are farther.
@@ -46,7 +47,7 @@ class Narrowest final : public FacetVisitor {
   void visit(const Facet& facet) override {
     if (clearance_.of_plane(facet) > farthest()) return;
     triangle_.set(facet);
-    const TriangleGap here = triangle_distance(pair_.convex, triangle_.placed(pair_.frame, outer_), farthest());
+    const TriangleGap here = triangle_distance(convex_, triangle_.placed(pair_.frame, outer_), farthest());
     if (here.back != 0) {
       const double size = std::min(pair_.convex.radius, 0.5 * pair_.surface->bounds().diagonal().norm());
       if (here.back < -kSunk * size && here.distance < behind_.gap.distance) behind_ = {here, facet};
@@ -64,7 +65,7 @@ class Narrowest final : public FacetVisitor {
     TriangleGap gap = found.gap;
     if (!gap.lacks_points) return gap;
     triangle_.set(found.facet);
-    breve::complete(pair_.convex, triangle_.placed(pair_.frame, outer_), gap);
+    breve::complete(convex_, triangle_.placed(pair_.frame, outer_), gap);
     return gap;
   }
   /// Overlaps are with facets of that kind alone, of which this is the deepest; null: they are not.
@@ -78,6 +79,8 @@ class Narrowest final : public FacetVisitor {
   double farthest() const { return std::min(reach_, std::max(nearest.gap.distance, 0.0)); }
 
   const SurfacePair& pair_;
+  Placed convex_;
+  TriangleHints hints_;
   const Clearance clearance_;
   const NarrowCounters* asked_;
   bool outer_;
@@ -144,6 +147,7 @@ class Patches final : public FacetVisitor {
           std::pmr::vector<Manifold>& out, const NarrowCounters* asked)
       : pair_(pair), clearance_(clearance_of(pair)), slack_(slack), out_(out), asked_(asked), first_(first) {
     convex_.a = pair.convex;
+    convex_.a.hints = &hints_;
     convex_.margin = margin;
     convex_.slack = slack;
   }
@@ -180,6 +184,7 @@ class Patches final : public FacetVisitor {
   const NarrowCounters* asked_;
   std::size_t first_;
   ConvexPair convex_;
+  TriangleHints hints_;
   TriangleSolid triangle_;
 };
 

@@ -233,13 +233,13 @@ struct OverFace {
 
 /// A warped face of a script is lower than its plane.
 bool is_planar(const Placed& a, double hair) {
-  if (a.planar) return *a.planar;
+  if (a.hints != nullptr && a.hints->planar) return *a.hints->planar;
   const Polyhedron& solid = *a.solid;
   bool planar = true;
   for (std::size_t f = 0; f < solid.faces.size(); ++f)
     for (const int v : solid.faces[f])
       planar = planar && solid.planes[f].normal.dot(solid.vertices[at(v)]) >= solid.planes[f].offset - hair;
-  a.planar = planar;
+  if (a.hints != nullptr) a.hints->planar = planar;
   return planar;
 }
 
@@ -278,8 +278,8 @@ void take_corner(const Placed& a, const Placed& b, const OverFace& over, Gap& ga
 
 /// How far apart they are along the direction that told the last triangle apart, which is often next to this one.
 double along_last(const Placed& a, const Local& t) {
-  const Vector3& n = a.apart;
-  if (n.isZero(0)) return -kFar;
+  if (a.hints == nullptr || a.hints->apart.isZero(0)) return -kFar;
+  const Vector3& n = a.hints->apart;
   const double high = n.dot(a.solid->vertices[at(a.last = a.solid->farthest(n, a.last))]);
   return std::min({n.dot(t.corner[0]), n.dot(t.corner[1]), n.dot(t.corner[2])}) - high;
 }
@@ -312,7 +312,7 @@ Told measure(const Placed& a, const Placed& b, const Local& local, double far, d
   if (least <= 0 && has_corner_within(*a.solid, local, hair)) return Told::Overlap;
   if (!separated(a, b, gap, far)) return Told::Overlap;
   if (gap.distance <= far) return Told::Nothing;
-  a.apart = -(a.rotation.transpose() * gap.normal);
+  if (a.hints != nullptr) a.hints->apart = -(a.rotation.transpose() * gap.normal);
   return Told::Beyond;
 }
 
