@@ -61,9 +61,8 @@ struct Gap {
 
 /// Distance of two polyhedra or cylinders that are apart, or of the axes of capsules. False if they touch or overlap:
 /// `gap` is then not written.
-/// @param enough  once they are known to be farther apart than this, `gap` has only a distance, a lower bound beyond
-/// it,
-///                and the normal along which it is one
+/// @param enough  once they are known to be farther apart than this, `gap` has only a distance, which is a lower bound
+///                beyond it, and the normal along which it is one
 bool separated(const Placed& a, const Placed& b, Gap& gap, double enough = std::numeric_limits<double>::infinity());
 
 /// The face of `a` over which `b` is highest, or least deep: a separation along its normal. Minus infinity of a
