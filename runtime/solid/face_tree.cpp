@@ -16,7 +16,7 @@ void FaceTree::clear() {
   first_edge_.clear();
 }
 
-/// Of the faces order_[begin, end).
+/// A node for the faces order_[begin, end).
 FaceTree::Node FaceTree::node_of(const Polyhedron& solid, std::uint32_t begin, std::uint32_t end) const {
   constexpr double kRoundOff = 1e-14;  // of directions
   constexpr double kOpposite = 1e-6;   // faces that look away from one another have no arc between them

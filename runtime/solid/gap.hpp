@@ -14,7 +14,7 @@ namespace breve {
 constexpr double kClose = 1e-5;
 constexpr double kAgree = 1e-14;  // round-off of either, relative to the sizes
 
-/// What earlier triangles told of a solid.
+/// What earlier triangles showed about a solid.
 struct TriangleHints {
   Vector3 apart = Vector3::Zero();  // the direction that told the last one apart, in the solid's frame
   std::optional<bool> planar{};     // are all faces flat to round-off? Once somebody wanted to know

@@ -149,7 +149,7 @@ void try_faces(const Polyhedron& a, int from, const Local& t, double round_off, 
       });
 }
 
-/// No axis at an edge between two normals that may be taken separates better than `to_beat`, for one corner is no
+/// No axis at an edge between two normals that may be taken separates better than `to_beat`, for one corner is not
 /// higher along any of them: its height over the planes that roll about the edge is largest at an end of the way,
 /// unless it lies between.
 bool edge_cannot_beat(const Vector3& left, const Vector3& right, const Vector3& start, const Local& t, double to_beat) {
@@ -222,7 +222,7 @@ void try_edges(const Polyhedron& a, const Local& t, double slack, const Few& see
   for (std::size_t e = 0; e < a.edges.size(); ++e) try_edge(a, e, t, around, slack, best);
 }
 
-/// What the planes of a solid of few faces tell of a triangle before the nearest points are sought.
+/// What the planes of a solid of few faces say about a triangle before the nearest points are sought.
 enum class Told { Nothing, Overlap, Distance, Beyond };  // Distance: exact, at a corner over the inside of a face
 
 /// The face that the triangle is highest over, how high its lowest corner is there, and which corner that is.
@@ -341,7 +341,7 @@ void TriangleSolid::set(const Facet& facet) {
 
 namespace {
 
-/// A way back that is no shorter is not backward.
+/// Not backward is a way back that has at least this length.
 double least_backward(double out, double size) {
   constexpr double kShallow = 1e-3, kFarShorter = 0.1;
   return std::min(kFarShorter * out, std::max(-kShallow * size, out * (1 - 1e-9)));
