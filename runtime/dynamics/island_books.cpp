@@ -129,12 +129,13 @@ void Books::close() {
   }
   close(sub_start_, stored_energy(state_), nullptr, state_.result.ledger);
   const double gained = rows_took(sub_start_.ledger) - rows_took(state_.result.ledger);
-  const double all = momentum_.moving(), tiny = kTiny * std::abs(sub_start_.stored);
+  const double tiny = kTiny * std::abs(sub_start_.stored), links = momentum_.moving(Payers::Trees);
   constexpr double kErred = 0.1;  // of the energy in motion: what is taken back at once
-  if (erred > tiny && erred <= kErred * all) momentum_.undo_gain(erred / all, false);
+  if (erred > tiny && erred <= kErred * links) momentum_.undo_gain(erred / links, false, Payers::Trees);
   if (!(gained > tiny)) return;
+  const double all = momentum_.moving(Payers::All);
   if (gained <= kFew * all) {
-    momentum_.take_from_all(gained / all);
+    momentum_.take_from_all(gained / all, Payers::All);
     return;
   }
   gained_ += gained;
@@ -168,8 +169,8 @@ void Books::note_start() {
 void Books::take_gain() {
   const double stored = stored_energy(state_);
   const double gain = missing(stored - stored_, ledger_, state_.result.ledger);
-  const double all = momentum_.moving();
-  if (gain > kTiny * std::abs(stored) && all > 0) momentum_.undo_gain(std::min(1.0, gain / all), false);
+  const double all = momentum_.moving(Payers::Trees);
+  if (gain > kTiny * std::abs(stored) && all > 0) momentum_.undo_gain(std::min(1.0, gain / all), false, Payers::Trees);
 }
 
 double Books::owed() const {
@@ -185,8 +186,8 @@ void Books::take_back_rest(bool undone) {
   gained_ = 0;
   for (Tree* tree : state_.trees) tree->owed = 0;
   if (!(sum > 0)) return;
-  const double all = undone ? 0 : momentum_.moving(), taken = std::min(sum, all);
-  if (taken > 0) momentum_.take_from_all(taken / all);
+  const double all = undone ? 0 : momentum_.moving(Payers::All), taken = std::min(sum, all);
+  if (taken > 0) momentum_.take_from_all(taken / all, Payers::All);
   state_.trees.front()->owed = sum - taken;
 }
 

@@ -70,8 +70,8 @@ void Guard::step(MechanicsClient* client, double start, double h) {
   const bool unpaid = owed > 0 && owed > energy_of_stillness(state_) && (astray() || unpayable(owed));
   if (unpaid) trouble = {true, GuardReason::Residual, owed, state_.any_body()};
   // A gain of a step that was finished coarsely also undoes it; but a loop that had to be closed stays closed.
-  const bool coarse_gain =
-      state_.finished && trouble.found && trouble.reason == GuardReason::Residual && trouble.value > momentum_.moving();
+  const bool coarse_gain = state_.finished && trouble.found && trouble.reason == GuardReason::Residual &&
+                           trouble.value > momentum_.moving(Payers::Trees);
   const bool undone = ((unpaid && !state_.worn()) || coarse_gain) && !state_.calls_out();
   if (refines && !handlers_.dissolved()) {
     books_.take_back_rest(trouble.found && goes_back(trouble, undone));
@@ -93,7 +93,8 @@ bool Guard::astray() const { return books_.gained() > balance_.supplied() + weig
 /// unless it only has what earlier steps left, and less of it.
 /// @param owed  J
 bool Guard::unpayable(double owed) const {
-  return books_.gained() > momentum_.moving() && owed - momentum_.moving() > kDebt * allowed_;
+  const double all = momentum_.moving(Payers::All);
+  return books_.gained() > all && owed - all > kDebt * allowed_;
 }
 
 /// Contacts have an error that may have the same sign in each step, as of a body that rotates on its edge. A rise of
@@ -102,12 +103,12 @@ bool Guard::unpayable(double owed) const {
 /// finer sub-steps mended.
 void Guard::undo_rise(Rung rung) {
   if (state_.trees.empty()) return undo_rise_of_free_bodies(rung);
-  const double all = momentum_.moving(), risen = balance_.risen();
+  const double all = momentum_.moving(Payers::All), risen = balance_.risen();
   const bool drifts = rung == Rung::Fast || momentum_.touched_from_outside();
   const bool little = drifts && risen > kStill * weight(state_) && risen <= kFew * all;
   const bool coarse = rung == Rung::Fast || rung == Rung::Balanced;
   const bool unmended = coarse && tried_finer_ && risen > allowed_ && all > 0;
-  if (little || unmended) momentum_.undo_gain(std::min(1.0, risen / all), true);
+  if (little || unmended) momentum_.undo_gain(std::min(1.0, risen / all), true, Payers::All);
 }
 
 /// The same on `fast` and `balanced` for bodies without joints, which may rotate far in a sub-step while they touch.
@@ -121,7 +122,9 @@ void Guard::undo_rise_of_free_bodies(Rung rung) {
   if (!state_.networks.empty() && !momentum_.touched_from_outside()) return;
   const Common common = momentum_.common_of_free_bodies();
   if (!(common.inner > 0) || !std::isfinite(common.inner)) return;
-  momentum_.slow_free_bodies(common, common.inner > kFlies * risen ? risen : std::min(risen, kFew * common.inner));
+  const double taken = common.inner > kFlies * risen ? risen : std::min(risen, kFew * common.inner);
+  momentum_.slow_free_bodies(common, taken);
+  state_.result.ledger.residual -= taken;
 }
 
 /// A step of articulated bodies whose energy does not add up is taken again in 2, 4, 8, ... parts: what rotates far in

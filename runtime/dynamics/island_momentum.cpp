@@ -121,19 +121,30 @@ bool Momentum::pushes_itself() const {
 }
 
 /// Energy that take_from_all() may take, J: of links among one another; where something outside touches, momenta are
-/// not kept, and it is all that trees have.
-double Momentum::moving() const {
+/// not kept, and it is all that they have.
+double Momentum::moving(Payers payers) const {
   const bool held = touched_from_outside();
-  double sum = 0;
+  double sum = paying_free_bodies(payers).inner;
   for (const Clustered& one : state_.clusters) sum += common_of(one.entry->system->trees(), held).inner;
   return std::max(sum, 0.0);  // links that stand still among one another may have less than nothing, by round-off
 }
 
+/// What bodies without joints may pay in an island of trees. A box that tips over a link that stands still, or slides
+/// down it, gains by contacts as links do, and the link has no motion to pay with.
+Common Momentum::paying_free_bodies(Payers payers) const {
+  return payers == Payers::All && !state_.trees.empty() ? common_of_free_bodies() : Common();
+}
+
 /// Takes a part of moving(), which contacts and limits gave: it is booked as taken by them. Bodies at rest stay at
 /// rest.
-void Momentum::take_from_all(double part) {
+void Momentum::take_from_all(double part, Payers payers) {
   if (!(part > 0)) return;
   const bool held = touched_from_outside();
+  const Common free = paying_free_bodies(payers);
+  if (free.inner > 0) {
+    slow_free_bodies(free, part * free.inner);
+    state_.result.ledger.contact_loss += part * free.inner;
+  }
   for (const Clustered& one : state_.clusters) {
     const double taken = shorten(one, part, held);
     state_.result.ledger.contact_loss += taken;
@@ -144,8 +155,13 @@ void Momentum::take_from_all(double part) {
 
 /// Takes a part of moving() that nothing gave.
 /// @param told  the balance was closed: it is in the residual
-void Momentum::undo_gain(double part, bool told) {
+void Momentum::undo_gain(double part, bool told, Payers payers) {
   const bool held = touched_from_outside();
+  const Common free = paying_free_bodies(payers);
+  if (free.inner > 0) {
+    slow_free_bodies(free, part * free.inner);
+    if (told) state_.result.ledger.residual -= part * free.inner;
+  }
   for (const Clustered& one : state_.clusters) {
     const double taken = shorten(one, part, held);
     if (!told) continue;
@@ -183,11 +199,9 @@ Common Momentum::common_of_free_bodies() const {
   return common;
 }
 
-/// Takes so much of the inner motion of bodies without joints, J, that nothing gave, when the balance of the step is
-/// closed.
+/// Takes so much of the inner motion of bodies without joints, J; who asks books it.
 void Momentum::slow_free_bodies(const Common& common, double taken) {
-  state_.result.ledger.residual -= taken;
-  const double left = std::sqrt(1 - taken / common.inner);
+  const double left = std::sqrt(std::max(0.0, 1 - taken / common.inner));
   for (Free& one : state_.loose_bodies()) {
     const Vector3 whole = common.velocity + common.spin.cross(one.now.center - common.center);
     one.now.velocity = whole + left * (one.now.velocity - whole);

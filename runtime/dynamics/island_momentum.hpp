@@ -12,6 +12,9 @@ namespace breve::island {
 /// Whether a tree that nothing outside touches keeps its momenta when it is stopped.
 enum class Momenta : bool { Take, Keep };
 
+/// Whose motion pays for what contacts gave: trees' alone, or also that of the bodies without joints in their island.
+enum class Payers : bool { Trees, All };
+
 class Momentum {
  public:
   Momentum(State& state, Rows& rows);
@@ -30,9 +33,9 @@ class Momentum {
   void give_pushes(double moved_h, std::span<const contact::Push> pushes);    // those that push overlap apart, likewise
   bool pushes_itself() const;
 
-  double moving() const;
-  void take_from_all(double part);
-  void undo_gain(double part, bool told);
+  double moving(Payers payers) const;
+  void take_from_all(double part, Payers payers);
+  void undo_gain(double part, bool told, Payers payers);
   Common common_of_free_bodies() const;
   void slow_free_bodies(const Common& common, double taken);
   double stop(Clustered& one, Momenta momenta, double h);
@@ -45,6 +48,7 @@ class Momentum {
   };
   enum class Velocities : bool { Stay, Change };
   double shorten(const Clustered& one, double part, bool held);
+  Common paying_free_bodies(Payers payers) const;
   template <class Impulse>
   void sum_outer(const Impulse& impulse_of);
   void give(std::size_t tree, double moved_h, Velocities velocities);

@@ -97,7 +97,7 @@ double Positions::payable(double h) const {
   return payable_by_motion() + (falls ? 0 : kLift * h * weight(state_));
 }
 
-double Positions::payable_by_motion() const { return kFew * momentum_.moving(); }
+double Positions::payable_by_motion() const { return kFew * momentum_.moving(Payers::Trees); }
 
 /// Takes back of what move_by_pushes() has just moved what gives more than is payable: energy is not linear in the
 /// distance, so that this takes some tries, and the last one takes back all.
@@ -289,13 +289,13 @@ void Positions::book_moves(double sign) {
 
 void Positions::pay_for_moves(double given, bool by_contacts) {
   if (state_.trees.empty() || !(given > 0)) return;
-  const double all = momentum_.moving();
+  const double all = momentum_.moving(Payers::Trees);
   if (!(all > 0)) return;
   const double part = std::min(kFew, given / all);
   if (by_contacts)
-    momentum_.take_from_all(part);
+    momentum_.take_from_all(part, Payers::Trees);
   else
-    momentum_.undo_gain(part, false);
+    momentum_.undo_gain(part, false, Payers::Trees);
 }
 
 /// Scripts' forces work, J, where contacts and limits move positions: these provide it.
