@@ -1,6 +1,11 @@
 // Energies of what an island holds.
 #include "runtime/dynamics/island_energy.hpp"
 
+#include <algorithm>
+
+#include "runtime/articulated/energy.hpp"
+#include "runtime/articulated/joints.hpp"
+#include "runtime/articulated/kinematics.hpp"
 #include "runtime/dynamics/network_motion.hpp"
 #include "runtime/dynamics/spring_network.hpp"
 
@@ -92,6 +97,46 @@ double held_energy(const State& state) {
   for (const Clustered& one : state.clusters)
     for (const SpringIndex spring : one.entry->springs) sum += state.core.spring_energy(state.core.springs[spring].is);
   return sum;
+}
+
+namespace {
+
+/// The farthest that a joint rotates in a motion of its tree, rad.
+double farthest_rotation(const articulated::Model& model, const articulated::Vector& way) {
+  double farthest = 0;
+  for (int i = 0; i < model.size(); ++i) {
+    const articulated::Body& body = model.body(i);
+    using Type = articulated::JointType;
+    if (body.type != Type::Revolute && body.type != Type::Universal && body.type != Type::Ball) continue;
+    farthest = std::max(farthest, way.segment(body.v, articulated::velocity_count(body.type)).norm());
+  }
+  return farthest;
+}
+
+double kinetic(Tree& tree) {
+  articulated::forward_kinematics(tree.model, tree.data, tree.state);
+  return articulated::kinetic_energy(tree.model, tree.data);
+}
+
+}  // namespace
+
+double share_without_gain(Tree& tree, const articulated::Vector& way) {
+  constexpr double kNear = 0.05;  // rad: it gains little by that
+  constexpr double kShorter = 0.25;
+  constexpr int kTries = 3;
+  if (!(farthest_rotation(tree.model, way) > kNear)) return 1;
+  tree.work_q = tree.state.q;
+  const double before = kinetic(tree);
+  double share = 1;
+  for (int i = 1; i <= kTries; ++i) {
+    tree.work_w = share * way;
+    articulated::move(tree.model, tree.work_q, tree.work_w, tree.state.q);
+    if (kinetic(tree) <= (1 + kFew) * before) break;
+    share = i < kTries ? kShorter * share : 0;
+  }
+  tree.state.q = tree.work_q;
+  articulated::forward_kinematics(tree.model, tree.data, tree.state);
+  return share;
 }
 
 }  // namespace breve::island

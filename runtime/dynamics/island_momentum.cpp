@@ -77,7 +77,7 @@ void Momentum::give_impulses(double moved_h) {
     return Vector3(row.axes.transpose() * row.impulse - rows_.length() * touch.predicted);
   });
   for (std::size_t i = 0; i < state_.trees.size(); ++i)
-    if (state_.trees[i]->loose) give(i, moved_h, Velocities::Change);
+    if (state_.trees[i]->loose) give(i, state_.trees[i]->row_share * moved_h, Velocities::Change);
 }
 
 void Momentum::give_impacts() {

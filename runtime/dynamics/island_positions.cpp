@@ -259,6 +259,7 @@ bool Positions::hold_off(double h) {
     for (Tree* tree : one.entry->system->trees()) {
       if (one.semi || !struck_[static_cast<std::size_t>(state_.mover_of(*tree))]) continue;
       tree->way = 0.5 * h * (tree->state.v - tree->sub_state.v);
+      tree->way *= share_without_gain(*tree, tree->way);
       articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
       if (tree->driven) book_way(tree->set_tau.dot(tree->way), tree);
     }

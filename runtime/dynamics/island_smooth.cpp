@@ -189,7 +189,7 @@ void SmoothMotion::correct_works(double h) {
         const articulated::Body& body = tree.model.body(i);
         const double damping = state_.core.joints[link.joint].drive.damping;
         for (int k = body.v; k < body.v + articulated::velocity_count(body.type); ++k) {
-          const double change = after[k] - free[k], mean = 0.5 * (before[k] + free[k]);
+          const double change = tree.row_share * (after[k] - free[k]), mean = 0.5 * (before[k] + free[k]);
           clustered.pending.motor_work += 0.5 * change * tree.motor_impulse[k];
           clustered.pending.script_work += (semi ? 1 : 0.5) * change * h * tree.set_tau[k];
           // An implicit damper pushes against the velocity that comes of it.

@@ -5,6 +5,7 @@
 
 #include "runtime/articulated/kinematics.hpp"
 #include "runtime/base/rotation_vector.hpp"
+#include "runtime/dynamics/island_energy.hpp"
 
 namespace breve::island {
 
@@ -149,6 +150,17 @@ bool Solver::shorten_couples(double h) {
   return any;
 }
 
+/// An impulse changes velocities where the sub-step ends, and by half of that the way to there, as if it had acted all
+/// along. Links that it throws would rotate far by that, with rates that belong to where they were, and gain energy: it
+/// acts the later the more they would gain.
+void Solver::limit_moves(double moved_h) {
+  for (const Clustered& one : state_.clusters)
+    for (Tree* tree : one.entry->system->trees()) {
+      tree->way = (one.semi ? 2 : 1) * moved_h * (tree->state.v - tree->smooth_v);
+      tree->row_share = share_without_gain(*tree, tree->way);
+    }
+}
+
 void Solver::move_by_impulses(double moved_h) {
   for (Free& one : state_.free_bodies) {
     const Vector3 change(one.v[0] - one.free_v[0], one.v[1] - one.free_v[1], one.v[2] - one.free_v[2]);
@@ -161,7 +173,7 @@ void Solver::move_by_impulses(double moved_h) {
   // Semi-implicit Euler moves with the velocity after.
   for (const Clustered& one : state_.clusters)
     for (Tree* tree : one.entry->system->trees()) {
-      tree->way = (one.semi ? 2 : 1) * moved_h * (tree->state.v - tree->smooth_v);
+      tree->way = (one.semi ? 2 : 1) * tree->row_share * moved_h * (tree->state.v - tree->smooth_v);
       articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
     }
   momentum_.give_impulses(moved_h);

@@ -18,7 +18,8 @@ class Solver {
 
   /// Makes rows where smooth motion of h seconds has led to, where the trees are placed, and solves them.
   void solve_after(double h);
-  /// Positions follow what the impulses changed, for so many seconds.
+  /// Positions follow what the impulses changed, for so many seconds; before it, how much of that way trees may go.
+  void limit_moves(double moved_h);
   void move_by_impulses(double moved_h);
   double direct_share() const;
 

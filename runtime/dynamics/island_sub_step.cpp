@@ -119,6 +119,7 @@ void SubStep::solve(double time, double h) {
 /// What the rows gave in h seconds moves the island. A force that is constant over the step moves by half of what its
 /// change of velocity would.
 void SubStep::move_by_rows(double h) {
+  solver_.limit_moves(0.5 * h);
   smooth_.correct_works(h);
   state_.store_velocities();
   solver_.move_by_impulses(0.5 * h);
