@@ -124,7 +124,8 @@ double share_without_gain(Tree& tree, const articulated::Vector& way) {
   constexpr double kNear = 0.05;  // rad: it gains little by that
   constexpr double kShorter = 0.25;
   constexpr int kTries = 3;
-  if (!(farthest_rotation(tree.model, way) > kNear)) return 1;
+  // Loops are closed by the whole way.
+  if (!tree.loops.empty() || !(farthest_rotation(tree.model, way) > kNear)) return 1;
   tree.work_q = tree.state.q;
   const double before = kinetic(tree);
   double share = 1;
