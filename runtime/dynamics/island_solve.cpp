@@ -151,13 +151,13 @@ bool Solver::shorten_couples(double h) {
 }
 
 /// An impulse changes velocities where the sub-step ends, and by half of that the way to there, as if it had acted all
-/// along. Links that it throws would rotate far by that, with rates that belong to where they were, and gain energy: it
-/// acts the later the more they would gain.
+/// along. Links that a blow throws would rotate far by that, with rates that belong to where they were, and gain
+/// energy: it acts the later the more they would gain. Motors alone push all along.
 void Solver::limit_moves(double moved_h) {
   for (const Clustered& one : state_.clusters)
     for (Tree* tree : one.entry->system->trees()) {
       tree->way = (one.semi ? 2 : 1) * moved_h * (tree->state.v - tree->smooth_v);
-      tree->row_share = share_without_gain(*tree, tree->way);
+      tree->row_share = rows_.contacts() > 0 ? share_without_gain(*tree, tree->way) : 1;
     }
 }
 
