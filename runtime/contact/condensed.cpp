@@ -98,8 +98,8 @@ bool condense_normals(Workspace& work) {
 }
 
 void expand(Workspace& work) {
-  if (!work.condensed) return;
-  work.condensed = false;
+  if (!work.condensed && !work.by_normals) return;
+  work.condensed = work.by_normals = false;
   push_all(work);
 }
 

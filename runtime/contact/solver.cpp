@@ -124,10 +124,6 @@ SolveReport solve_again(std::span<Push> rows, std::span<const double> scalar_bia
   start_over(rows, scalar_biases, work);
   work.by_normals = !settings.direct && condense_normals(work);
   solve_once(work, settings, report);
-  if (work.by_normals) {
-    work.by_normals = work.condensed = false;
-    push_all(work);
-  }
   expand(work);
   unpack_velocities(work);
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].impulse = work.points[i].impulse[0];
