@@ -30,6 +30,9 @@ constexpr double kNear[] = {1e-4, 1e-6, 0};
 // its load only at 1e6.
 constexpr double kFirstStiffness = 1e3, kLeastStiffness = 0.1, kMostStiffness = 1e8;
 constexpr double kRoundOff = 1e-15;  // of velocities at rows, per unit
+// How near Newton's method has to begin, of the largest change, times the cube of the number of points: from farther
+// it failed in 95 of 100 islands of 30 to 500 points that move, whatever they were made of. Small ones reach farther.
+constexpr double kReach = 0.5;
 
 /// Impulses that stop fast or heavy bodies are not known better than to this share of what they change.
 constexpr double kRelative = 2e-12;
@@ -108,6 +111,16 @@ double violation(const Workspace& work) {
   return worst;
 }
 
+bool within_reach(const Workspace& work, double left) {
+  const double points = std::max(1.0, static_cast<double>(work.points.size()));
+  return left * points * points * points <= kReach * largest_change(work);
+}
+
+bool enough_from_far(const Workspace& work, const LinearSolves& solves) {
+  constexpr int kInterior = 12, kPoints = 8;
+  return solves.left() >= kInterior + static_cast<int>(work.points.size()) / kPoints;
+}
+
 namespace {
 
 /// Sweeps from the last step's impulses. Feet far apart hardly feel one another: some sweeps solve them, or come so
@@ -139,9 +152,7 @@ double solve_direct(Workspace& work, double tolerance, LinearSolves& solves, boo
   Newton newton(work, equations, room);
   if (largest_change(work) > 0)
     solved = approach(newton, work, kFirstStiffness, kFirstCentres, 0, tolerance, solves, best);
-  // It begins from far: fewer lead nowhere, and large islands take more.
-  constexpr int kInterior = 12, kPoints = 8;
-  if (solved || solves.left() < kInterior + static_cast<int>(work.points.size()) / kPoints) return best;
+  if (solved || !enough_from_far(work, solves)) return best;
   equations.get_impulses(start);
   Interior interior(work, equations, room + Newton::numbers(rows));
   for (const double part : kNear) {

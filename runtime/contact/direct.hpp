@@ -27,6 +27,13 @@ struct LinearSolves {
 /// @return        the violation left, m/s
 double solve_direct(Workspace& work, double tolerance, LinearSolves& solves, bool& solved);
 
+/// Whether there are enough solves for the interior-point method. It begins from far: fewer lead nowhere, and large
+/// islands take more.
+bool enough_from_far(const Workspace& work, const LinearSolves& solves);
+
+/// Whether Newton's method may converge from the island's impulses, whose violation is `left`.
+bool within_reach(const Workspace& work, double left);
+
 /// By how much the worst row violates its law, m/s: the distance to the projected point of a step of the row alone.
 double violation(const Workspace& work);
 
