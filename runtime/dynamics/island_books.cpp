@@ -133,12 +133,15 @@ void Books::close() {
   constexpr double kErred = 0.1;  // of the energy in motion: what is taken back at once
   if (erred > tiny && erred <= kErred * links) momentum_.undo_gain(erred / links, false, Payers::Trees);
   if (!(gained > tiny)) return;
+  // Where the step will not be tried more finely, it is paid at once: as the step ends, motion may be less than the
+  // sum.
   const double all = momentum_.moving(Payers::All);
-  if (gained <= kFew * all) {
-    momentum_.take_from_all(gained / all, Payers::All);
-    return;
-  }
+  const bool little = gained <= kFew * all;
+  const double taken = little || state_.bodies() > kMostInParts ? std::min(gained, all) : 0;
+  if (taken > 0) momentum_.take_from_all(taken / all, Payers::All);
+  if (little) return;
   gained_ += gained;
+  unpaid_ += gained - taken;
 }
 
 /// Once positions were put right after a sub-step of h seconds. Motors work at most by their strength along the way on
@@ -173,8 +176,8 @@ void Books::take_gain() {
   if (gain > kTiny * std::abs(stored) && all > 0) momentum_.undo_gain(std::min(1.0, gain / all), false, Payers::Trees);
 }
 
-double Books::owed() const {
-  double sum = gained_;
+double Books::debt() const {
+  double sum = 0;
   for (const Tree* tree : state_.trees) sum += tree->owed;
   return sum;
 }
@@ -182,8 +185,8 @@ double Books::owed() const {
 /// What they gave all the same, however finely the step was taken. Links that move too little among one another owe it.
 /// @param undone  the step will be: it gave nothing
 void Books::take_back_rest(bool undone) {
-  const double sum = undone ? owed() - gained_ : owed();
-  gained_ = 0;
+  const double sum = undone ? debt() : owed();
+  gained_ = unpaid_ = 0;
   for (Tree* tree : state_.trees) tree->owed = 0;
   if (!(sum > 0)) return;
   const double all = undone ? 0 : momentum_.moving(Payers::All), taken = std::min(sum, all);

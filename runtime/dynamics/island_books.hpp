@@ -14,7 +14,7 @@ class Books {
   Books(State& state, Contacts& contacts, ContactSprings& springs, Rows& rows, Momentum& momentum)
       : state_(state), contacts_(contacts), springs_(springs), rows_(rows), momentum_(momentum) {}
 
-  void begin_try() { gained_ = 0; }
+  void begin_try() { gained_ = unpaid_ = 0; }
   void open();
   bool kept() const { return kept_; }  // open() found rows to come
   void note_smooth();
@@ -24,13 +24,14 @@ class Books {
   /// and finer sub-steps make it smaller.
   double rotated() const { return state_.trees.empty() ? rows_.rotated() : 0; }
   /// J, that contacts and limits gave and no motion has repaid yet.
-  double owed() const;
+  double owed() const { return debt() + unpaid_; }
+  double debt() const;  // of that, from earlier steps
   void take_back_rest(bool undone);
   // For a sub-step whose loops are left to the rows. Motion that loops do not bend, and gaps that are closed by hand,
   // err by the square of the sub-step's length: the energy gained by that is taken from what moves.
   void note_start();                         // where the sub-step begins
   void take_gain();                          // after positions were put right
-  double gained() const { return gained_; }  // J, that contacts and limits gave in this try of the step
+  double gained() const { return gained_; }  // J, that contacts and limits gave in this try of the step, but for little
 
   // Energies of the sub-step, J.
   double kinetic() const { return sub_start_.kinetic; }
@@ -48,7 +49,7 @@ class Books {
   double stored_ = 0;        // J, where note_start() was called
   Energy ledger_;            // likewise
   bool kept_ = false;
-  double gained_ = 0;
+  double gained_ = 0, unpaid_ = 0;
 };
 
 }  // namespace breve::island

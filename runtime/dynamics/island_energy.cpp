@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "runtime/articulated/carried.hpp"
 #include "runtime/articulated/energy.hpp"
 #include "runtime/articulated/joints.hpp"
 #include "runtime/articulated/kinematics.hpp"
@@ -138,6 +139,14 @@ double share_without_gain(Tree& tree, const articulated::Vector& way) {
   tree.state.q = tree.work_q;
   articulated::forward_kinematics(tree.model, tree.data, tree.state);
   return share;
+}
+
+void move_without_gain(State& state, Tree& tree, const articulated::Vector& way) {
+  // The motion of links that a loop holds would not be that of the loop.
+  if (tree.loops.empty())
+    articulated::move_carried(tree.model, tree.data, tree.state, way, kFew, state.momenta);
+  else
+    articulated::move(tree.model, tree.state.q, way, tree.state.q);
 }
 
 }  // namespace breve::island

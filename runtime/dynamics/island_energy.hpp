@@ -28,4 +28,8 @@ double held_energy(const State& state);
 /// would gain more than a little by standing elsewhere, as that of light links that an impulse throws does.
 double share_without_gain(Tree& tree, const articulated::Vector& way);
 
+/// Moves a tree along the whole of a way. Where its motion would gain more than a little by that, links keep their
+/// momenta instead of the rates of their joints. For trees that something outside touches: others keep what they have.
+void move_without_gain(State& state, Tree& tree, const articulated::Vector& way);
+
 }  // namespace breve::island

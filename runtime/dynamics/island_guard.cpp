@@ -12,13 +12,12 @@ namespace breve::island {
 
 namespace {
 
-constexpr int kFinest = 2;  // attempts after the first
-// Sub-steps of a step whose energy does not balance, times the bodies that it moves: a crowd's step stays bounded.
-constexpr std::size_t kMostInParts = 40;
+constexpr int kFinest = 2;    // attempts after the first
 constexpr double kMuch = 10;  // times what a step may leave unexplained
 constexpr double kDebt = 2;   // likewise, that contacts gave and that motion may repay later
 
-Accuracy finer_settings(const Accuracy& from, int attempt, double h) {
+/// @param crowd  so many bodies that the step has to stay bounded
+Accuracy finer_settings(const Accuracy& from, int attempt, double h, bool crowd) {
   Accuracy to = from;
   if (attempt == 1) {
     to.step = (from.step > 0 ? std::min(from.step, h) : h) / 4;
@@ -29,10 +28,10 @@ Accuracy finer_settings(const Accuracy& from, int attempt, double h) {
   to.scheme = articulated::Scheme::RungeKutta4;
   to.implicit_joints = false;
   to.implicit_spin = false;
-  to.step = h / 64;
+  to.step = h / (crowd ? 16 : 64);
   to.contact_step = 0;
   to.direct = true;
-  to.iterations = std::max(from.iterations, kManyIterations);
+  if (!crowd) to.iterations = std::max(from.iterations, kManyIterations);
   return to;
 }
 
@@ -48,7 +47,7 @@ void Guard::step(MechanicsClient* client, double start, double h) {
   int attempt = 0;
   const auto refine_from = [&] {
     state_.intervene(trouble, GuardAction::Refined, start);
-    state_.use_accuracy(finer_settings(followed, ++attempt, h));
+    state_.use_accuracy(finer_settings(followed, ++attempt, h, state_.bodies() > kMostInParts));
   };
   const bool refines = mode == GuardMode::Refine || mode == GuardMode::Rest;
   // Motion that is too fast for the sub-steps is found before anything has moved.
@@ -138,10 +137,8 @@ Trouble Guard::take_in_parts(MechanicsClient* client, double start, double h) {
   constexpr std::size_t kFewFree = 2;
   if (handlers_.dissolved() || (state_.trees.empty() && (coarse || state_.free_bodies.size() > kFewFree)))
     return trouble;
-  const double debt = books_.owed() - books_.gained();  // from earlier steps: links that owe are followed more finely
-  std::size_t links = 0;
-  for (const Tree* tree : state_.trees) links += tree->links.size();
-  const std::size_t bodies = links + state_.free_bodies.size();
+  const double debt = books_.debt();  // links that owe are followed more finely
+  const std::size_t bodies = state_.bodies();
   const int most = bodies > kMostInParts || state_.calls_out()
                        ? 1
                        : static_cast<int>(std::max<std::size_t>(4, kMostInParts / bodies));

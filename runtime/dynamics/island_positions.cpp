@@ -60,7 +60,7 @@ void Positions::push_apart(double h) {
   scalar_pushes_.resize(rows_.scalars().size(), 0.0);
   if (!any) return;
   const double before = state_.result.ledger.contact_loss;
-  move_by_pushes(fastest, h);
+  move_by_pushes(fastest, h, Rates::Stay);
   shorten_pushes(before, h);
   pay_for_moves(before - state_.result.ledger.contact_loss, true);
 }
@@ -68,7 +68,7 @@ void Positions::push_apart(double h) {
 /// Moves everything for h seconds by the velocities that pushes_ and scalar_pushes_ ask for. The solver solves the rows
 /// again that it solved last: those that the island has now.
 /// @param fastest  of these velocities, m/s or rad/s
-void Positions::move_by_pushes(double fastest, double h) {
+void Positions::move_by_pushes(double fastest, double h, Rates rates) {
   contact::SolveSettings settings = state_.solve_settings();
   // Only a part of an overlap is put right: how exactly does not matter, least where velocities are not exact either.
   // But joints pass on what pushes one link apart, and a few sweeps would press another in.
@@ -81,7 +81,7 @@ void Positions::move_by_pushes(double fastest, double h) {
   book_moves(-1);
   begin_moves();
   contact::solve_again(pushes_, scalar_pushes_, settings, rows_.workspace());
-  end_moves(h);
+  end_moves(h, rates);
   book_moves(1);
 }
 
@@ -170,7 +170,7 @@ double Positions::put_back_once(double h, bool struck) {
   }
   if (!any) return 0;
   scalar_pushes_.resize(rows_.scalars().size(), 0.0);
-  move_by_pushes(fastest, h);
+  move_by_pushes(fastest, h, Rates::Carried);
   return farthest;
 }
 
@@ -183,7 +183,7 @@ void Positions::begin_moves() {
   momentum_.note(&Tree::free_v, false);
 }
 
-void Positions::end_moves(double h) {
+void Positions::end_moves(double h, Rates rates) {
   for (Free& one : state_.free_bodies) {
     std::copy_n(one.v, 6, one.push);
     one.load_velocity();  // books are made by it
@@ -193,11 +193,15 @@ void Positions::end_moves(double h) {
     const Vector3 rotation = h * Vector3(one.push[3], one.push[4], one.push[5]);
     if (rotation != Vector3::Zero()) one.now.orientation = (rotation_by(rotation) * one.now.orientation).normalized();
   }
+  const bool carried = rates == Rates::Carried && momentum_.touched_from_outside();
   for (Tree* tree : state_.trees) {
     tree->push = tree->state.v;
     tree->way = h * tree->push;
     tree->state.v = tree->free_v;
-    articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
+    if (carried)
+      move_without_gain(state_, *tree, tree->way);
+    else
+      articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
     if (tree->driven) book_way(tree->set_tau.dot(tree->way), tree);
   }
   momentum_.give_pushes(h, pushes_);
@@ -255,12 +259,17 @@ bool Positions::hold_off(double h) {
     const Vector3 rotation = 0.5 * h * (body.spin - spin);
     if (rotation != Vector3::Zero()) body.orientation = (rotation_by(rotation) * body.orientation).normalized();
   }
+  const bool carried = state_.accuracy.locate_impacts && momentum_.touched_from_outside();
   for (const Clustered& one : state_.clusters)
     for (Tree* tree : one.entry->system->trees()) {
       if (one.semi || !struck_[static_cast<std::size_t>(state_.mover_of(*tree))]) continue;
       tree->way = 0.5 * h * (tree->state.v - tree->sub_state.v);
-      tree->way *= share_without_gain(*tree, tree->way);
-      articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
+      if (carried) {
+        move_without_gain(state_, *tree, tree->way);
+      } else {
+        tree->way *= share_without_gain(*tree, tree->way);
+        articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
+      }
       if (tree->driven) book_way(tree->set_tau.dot(tree->way), tree);
     }
   momentum_.give_positions(0.5 * h, struck_);

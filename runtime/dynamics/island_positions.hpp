@@ -6,6 +6,9 @@
 
 namespace breve::island {
 
+/// Of joints where positions are moved: they stay, or links keep their momenta where rates would gain by that.
+enum class Rates { Stay, Carried };
+
 class Positions {
  public:
   Positions(State& state, Contacts& contacts, Rows& rows, Momentum& momentum);
@@ -17,7 +20,7 @@ class Positions {
   // The rows' solution is taken as a velocity that lasts h seconds and then is gone. Between these two the movers have
   // none.
   void begin_moves();
-  void end_moves(double h);
+  void end_moves(double h, Rates rates = Rates::Stay);
   /// Takes h seconds of the last motion back from the trees.
   void move_back(double h);
   /// The energy, J, that a motion may give because motion pays for it.
@@ -28,7 +31,7 @@ class Positions {
 
  private:
   double put_back_once(double h, bool struck);
-  void move_by_pushes(double fastest, double h);
+  void move_by_pushes(double fastest, double h, Rates rates);
   double payable(double h) const;
   void shorten_pushes(double before, double h);
   void take_back_pushes(double part, double h);

@@ -161,6 +161,29 @@ bool Prediction::misled(double h) {
   return std::max(heat, books_.smooth_kinetic() - books_.kinetic()) > kUnbalanced * alone;
 }
 
+/// After the rows: whether the solution moves trees far more than before, although the prediction was to balance what
+/// acts on them. The rows begin without the effect of the prediction, and cannot take away what it did along the way of
+/// links that have moved far from where it was made. Motors may do what they do, and a contact that opens frees what
+/// scripts' forces pressed against it.
+bool Prediction::threw() const {
+  constexpr double kThrown = 0.02, kDriven = 0.25;  // of the energy that the prediction gives by itself
+  if (!books_.kept() || !(books_.predicted() > books_.kinetic())) return false;
+  double moved = 0;
+  bool faster = false, driven = false;
+  for (Tree* tree : state_.trees) {
+    const double now = tree->state.v.squaredNorm();
+    driven = driven || tree->driven || tree->pushed;
+    faster = faster || now > std::max(tree->sub_state.v.squaredNorm(), tree->smooth_v.squaredNorm());
+  }
+  if (!faster) return false;
+  for (Tree* tree : state_.trees) moved += state_.core.energy_of(*tree).kinetic;
+  for (std::size_t i = 0; i < rows_.motors(); ++i) {
+    const auto& [motor, row] = rows_.motor(i);
+    moved -= std::abs(row.impulse) * (std::abs(rows_.rate_of(row)) + std::abs(motor.tree->sub_state.v[motor.velocity]));
+  }
+  return moved > books_.smooth_kinetic() + (driven ? kDriven : kThrown) * books_.predicted();
+}
+
 /// After smooth motion: whether a joint that stands at its limit swung so far beyond it that what was predicted there
 /// is not the force that holds it: nothing is, when the joint has just come to stand there.
 bool Prediction::limits_swing() const {

@@ -16,6 +16,7 @@ class Prediction {
   /// After a look at what is near and Books::open(), for the smooth motion of h seconds that follows.
   void make(double h);
   bool misled(double h);
+  bool threw() const;
   bool limits_swing() const;
   bool loops_swing(double h) const;
   void learn(double h, bool loops);

@@ -152,12 +152,15 @@ bool Solver::shorten_couples(double h) {
 
 /// An impulse changes velocities where the sub-step ends, and by half of that the way to there, as if it had acted all
 /// along. Links that a blow throws would rotate far by that, with rates that belong to where they were, and gain
-/// energy: it acts the later the more they would gain. Motors alone push all along.
+/// energy: it acts the later the more they would gain, or, where impacts are located and something outside touches,
+/// links keep their momenta all the way. Motors alone push all along.
 void Solver::limit_moves(double moved_h) {
+  const bool struck = rows_.contacts() > 0;
+  carried_ = struck && state_.accuracy.locate_impacts && momentum_.touched_from_outside();
   for (const Clustered& one : state_.clusters)
     for (Tree* tree : one.entry->system->trees()) {
       tree->way = (one.semi ? 2 : 1) * moved_h * (tree->state.v - tree->smooth_v);
-      tree->row_share = rows_.contacts() > 0 ? share_without_gain(*tree, tree->way) : 1;
+      tree->row_share = struck && !carried_ ? share_without_gain(*tree, tree->way) : 1;
     }
 }
 
@@ -174,7 +177,10 @@ void Solver::move_by_impulses(double moved_h) {
   for (const Clustered& one : state_.clusters)
     for (Tree* tree : one.entry->system->trees()) {
       tree->way = (one.semi ? 2 : 1) * tree->row_share * moved_h * (tree->state.v - tree->smooth_v);
-      articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
+      if (carried_)
+        move_without_gain(state_, *tree, tree->way);
+      else
+        articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
     }
   momentum_.give_impulses(moved_h);
 }

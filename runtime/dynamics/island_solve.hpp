@@ -36,6 +36,7 @@ class Solver {
   Contacts& contacts_;
   Rows& rows_;
   Momentum& momentum_;
+  bool carried_ = false;  // links keep their momenta where impulses move them
   Prediction& prediction_;
   Rebounds rebounds_;
 };

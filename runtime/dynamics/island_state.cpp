@@ -18,7 +18,8 @@ State::State(Dynamics::Core& world, std::pmr::memory_resource* resource)
       networks(resource),
       clusters(resource),
       pairs(resource),
-      pair_drivers(resource) {}
+      pair_drivers(resource),
+      momenta(resource) {}
 
 void State::clear() {
   free_bodies.clear();
@@ -90,6 +91,12 @@ double State::mass() const {
   for (const Tree* tree : trees)
     for (const TreeLink& link : tree->links) sum += link.solid.mass;
   return sum;
+}
+
+std::size_t State::bodies() const {
+  std::size_t links = 0;
+  for (const Tree* tree : trees) links += tree->links.size();
+  return links + free_bodies.size();
 }
 
 void State::put_drivers(double h) {

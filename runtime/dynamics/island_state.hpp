@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "runtime/articulated/impulse.hpp"
 #include "runtime/base/meter.hpp"
 #include "runtime/contact/solver.hpp"
 #include "runtime/dynamics/island_result.hpp"
@@ -24,6 +25,8 @@ inline constexpr double kTiny = 1e-9;       // of stored energy: round-off of su
 inline constexpr double kStill = 1e-6;      // of weight(): what a step of bodies that hardly move may leave unexplained
 inline constexpr double kFew = 0.01;        // of the energy in motion: what may be taken from it without trying again
 inline constexpr double kSlow = 0.02;       // rad/s and length units/s: slower is still
+// Sub-steps of a step whose energy does not balance, times the bodies that it moves: a crowd's step stays bounded.
+inline constexpr std::size_t kMostInParts = 40;
 
 /// A body without joints, or one that a script moves.
 struct Free {
@@ -116,6 +119,7 @@ struct State {
   std::span<Free> loose_bodies() { return {free_bodies.data(), free_bodies.size() - drivers}; }
   std::span<const Free> loose_bodies() const { return {free_bodies.data(), free_bodies.size() - drivers}; }
   double mass() const;  // kg, of all that impulses move
+  std::size_t bodies() const;
   /// The tree of a mover; null if the mover is a free body or nothing.
   Tree* tree_of(int mover) const {
     const int first = static_cast<int>(free_bodies.size());
@@ -184,7 +188,8 @@ struct State {
   std::pmr::vector<NetworkCluster> networks;
   std::pmr::vector<Clustered> clusters;
   std::pmr::vector<NearPair*> pairs;
-  std::pmr::vector<int> pair_drivers;  // of pairs: the driver's position in free_bodies, or -1
+  std::pmr::vector<int> pair_drivers;              // of pairs: the driver's position in free_bodies, or -1
+  std::pmr::vector<articulated::Impulse> momenta;  // room for a tree's that is moved
 
  private:
   bool is_network(const ClusterEntry& cluster) const;

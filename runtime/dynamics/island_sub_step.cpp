@@ -91,8 +91,7 @@ void SubStep::advance(double time, double h) {
   }
   const bool held = move(time, h);
   if (!catch_bounds(time, h) && alone && held) return;
-  check_prediction(time, h);
-  solver_.solve_after(h);
+  solve_moved(time, h);
   const bool loops = by_rows_ && prediction_.loops_swing(h);
   if (loops || prediction_.limits_swing()) {
     state_.restore();
@@ -112,8 +111,21 @@ void SubStep::advance(double time, double h) {
 /// Smooth motion of h seconds from the state that was noted, and the rows' solution.
 void SubStep::solve(double time, double h) {
   move(time, h);
+  solve_moved(time, h);
+}
+
+/// The rows' solution after smooth motion of h seconds; without what was predicted if that threw something.
+void SubStep::solve_moved(double time, double h) {
   check_prediction(time, h);
   solver_.solve_after(h);
+  for (const bool all : {false, true}) {
+    if (!prediction_.threw()) return;
+    all ? prediction_.forget() : prediction_.forget_contacts();
+    state_.restore();
+    move(time, h);
+    check_prediction(time, h);
+    solver_.solve_after(h);
+  }
 }
 
 /// What the rows gave in h seconds moves the island. A force that is constant over the step moves by half of what its

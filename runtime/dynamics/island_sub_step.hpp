@@ -42,6 +42,7 @@ class SubStep {
   void leave_to_rows();
   bool move(double time, double h);
   void solve(double time, double h);
+  void solve_moved(double time, double h);
   void check_prediction(double time, double h);
   bool catch_bounds(double time, double h);
   void move_by_rows(double h);

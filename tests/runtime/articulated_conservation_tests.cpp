@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "articulated_random.hpp"
+#include "runtime/articulated/carried.hpp"
 #include "runtime/articulated/energy.hpp"
 #include "runtime/articulated/integrator.hpp"
 #include "runtime/articulated/kinematics.hpp"
@@ -247,6 +248,42 @@ TEST(StiffJoints, StayCalmAtAnyStiffnessIfImplicit) {
     EXPECT_LE(at.v.cwiseAbs().maxCoeff(), 3) << ratio;
     EXPECT_TRUE(at.q.allFinite());
   }
+}
+
+TEST(Carried, LinksKeepTheirMomentaWhereRatesOfJointsWouldGain) {
+  constexpr double kMost = 0.01;
+  Random random(11);
+  std::pmr::vector<Impulse> momenta;
+  int changed = 0;
+  for (int i = 0; i < 200; ++i) {
+    const bool floating = i % 2 == 0;
+    const Model model(random_tree(random, 2 + i % 9, floating));
+    Data data(model);
+    State state = random_state(random, model, 3);
+    forward_kinematics(model, data, state);
+    const double before = kinetic_energy(model, data);
+    const Vector3 momentum = linear_momentum(model, data);
+    const Vector rates = state.v, way = 0.2 * random_forces(random, model.velocities());
+    Vector there = state.q;
+    move(model, state.q, way, there);
+    const bool other = move_carried(model, data, state, way, kMost, momenta);
+    forward_kinematics(model, data, state);
+    EXPECT_LE(kinetic_energy(model, data), (1 + (other ? 1e-12 : kMost)) * before);
+    EXPECT_EQ(state.q, there);
+    changed += other;
+    if (!other) {
+      EXPECT_EQ(state.v, rates);
+    }
+    if (!other || !floating) continue;
+    // All of it, or what is left of it along the same direction where a link's inertia rotates with the link.
+    const Vector3 now = linear_momentum(model, data);
+    const double kept = now.dot(momentum) / momentum.squaredNorm();
+    EXPECT_LE(kept, 1 + 1e-12);
+    EXPECT_GT(kept, 0.5);
+    EXPECT_LT((now - kept * momentum).norm(), 1e-12 * momentum.norm());
+  }
+  EXPECT_GT(changed, 50);
+  EXPECT_LT(changed, 150);
 }
 
 }  // namespace
