@@ -57,6 +57,12 @@ double stored_energy(State& state) {
   return sum;
 }
 
+double motion_of_trees(State& state) {
+  double sum = 0;
+  for (Tree* tree : state.trees) sum += state.core.energy_of(*tree).kinetic;
+  return sum;
+}
+
 double weight(const State& state) {
   double sum = 0;
   for (const Tree* tree : state.trees)
@@ -142,11 +148,7 @@ double share_without_gain(Tree& tree, const articulated::Vector& way) {
 }
 
 void move_without_gain(State& state, Tree& tree, const articulated::Vector& way) {
-  // The motion of links that a loop holds would not be that of the loop.
-  if (tree.loops.empty())
-    articulated::move_carried(tree.model, tree.data, tree.state, way, kFew, state.momenta);
-  else
-    articulated::move(tree.model, tree.state.q, way, tree.state.q);
+  articulated::move_carried(tree.model, tree.data, tree.state, way, kFew, state.momenta);
 }
 
 }  // namespace breve::island

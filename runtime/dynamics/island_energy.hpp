@@ -15,6 +15,8 @@ double spring_energy(const State& state, const Clustered& one);
 double stored_energy(State& state, const Clustered& one, double& kinetic);
 /// Kinetic, potential and in springs, of all.
 double stored_energy(State& state);
+/// Kinetic, of all trees.
+double motion_of_trees(State& state);
 /// What it takes to lift all links by their own size: of that, what lies still may err by round-off of its solution.
 double weight(const State& state);
 /// The same of bodies without joints.

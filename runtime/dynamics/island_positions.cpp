@@ -193,12 +193,12 @@ void Positions::end_moves(double h, Rates rates) {
     const Vector3 rotation = h * Vector3(one.push[3], one.push[4], one.push[5]);
     if (rotation != Vector3::Zero()) one.now.orientation = (rotation_by(rotation) * one.now.orientation).normalized();
   }
-  const bool carried = rates == Rates::Carried && momentum_.touched_from_outside();
+  const bool touched = momentum_.touched_from_outside();
   for (Tree* tree : state_.trees) {
     tree->push = tree->state.v;
     tree->way = h * tree->push;
     tree->state.v = tree->free_v;
-    if (carried)
+    if (rates == Rates::Carried && (touched || !tree->loose))
       move_without_gain(state_, *tree, tree->way);
     else
       articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);
@@ -259,12 +259,12 @@ bool Positions::hold_off(double h) {
     const Vector3 rotation = 0.5 * h * (body.spin - spin);
     if (rotation != Vector3::Zero()) body.orientation = (rotation_by(rotation) * body.orientation).normalized();
   }
-  const bool carried = state_.accuracy.locate_impacts && momentum_.touched_from_outside();
+  const bool touched = momentum_.touched_from_outside();
   for (const Clustered& one : state_.clusters)
     for (Tree* tree : one.entry->system->trees()) {
       if (one.semi || !struck_[static_cast<std::size_t>(state_.mover_of(*tree))]) continue;
       tree->way = 0.5 * h * (tree->state.v - tree->sub_state.v);
-      if (carried) {
+      if ((touched || !tree->loose) && (state_.accuracy.locate_impacts || !tree->loops.empty())) {
         move_without_gain(state_, *tree, tree->way);
       } else {
         tree->way *= share_without_gain(*tree, tree->way);

@@ -8,6 +8,7 @@
 #include "runtime/articulated/impulse.hpp"
 #include "runtime/articulated/joints.hpp"
 #include "runtime/articulated/kinematics.hpp"
+#include "runtime/dynamics/island_energy.hpp"
 #include "runtime/dynamics/jacobians.hpp"
 
 namespace breve::island {
@@ -168,7 +169,6 @@ bool Prediction::misled(double h) {
 bool Prediction::threw() const {
   constexpr double kThrown = 0.02, kDriven = 0.25;  // of the energy that the prediction gives by itself
   if (!books_.kept() || !(books_.predicted() > books_.kinetic())) return false;
-  double moved = 0;
   bool faster = false, driven = false;
   for (Tree* tree : state_.trees) {
     const double now = tree->state.v.squaredNorm();
@@ -176,7 +176,7 @@ bool Prediction::threw() const {
     faster = faster || now > std::max(tree->sub_state.v.squaredNorm(), tree->smooth_v.squaredNorm());
   }
   if (!faster) return false;
-  for (Tree* tree : state_.trees) moved += state_.core.energy_of(*tree).kinetic;
+  double moved = motion_of_trees(state_);
   for (std::size_t i = 0; i < rows_.motors(); ++i) {
     const auto& [motor, row] = rows_.motor(i);
     moved -= std::abs(row.impulse) * (std::abs(rows_.rate_of(row)) + std::abs(motor.tree->sub_state.v[motor.velocity]));

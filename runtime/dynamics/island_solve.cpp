@@ -152,15 +152,16 @@ bool Solver::shorten_couples(double h) {
 
 /// An impulse changes velocities where the sub-step ends, and by half of that the way to there, as if it had acted all
 /// along. Links that a blow throws would rotate far by that, with rates that belong to where they were, and gain
-/// energy: it acts the later the more they would gain, or, where impacts are located and something outside touches,
-/// links keep their momenta all the way. Motors alone push all along.
+/// energy: it acts the later the more they would gain. Or, where impacts are located or rows hold loops, and something
+/// outside holds or touches the tree, links keep their momenta all the way. Motors alone push all along.
 void Solver::limit_moves(double moved_h) {
-  const bool struck = rows_.contacts() > 0;
-  carried_ = struck && state_.accuracy.locate_impacts && momentum_.touched_from_outside();
+  const bool struck = rows_.contacts() > 0, touched = momentum_.touched_from_outside();
   for (const Clustered& one : state_.clusters)
     for (Tree* tree : one.entry->system->trees()) {
       tree->way = (one.semi ? 2 : 1) * moved_h * (tree->state.v - tree->smooth_v);
-      tree->row_share = struck && !carried_ ? share_without_gain(*tree, tree->way) : 1;
+      const bool by_loops = rows_.loops() > 0 && !tree->loops.empty();
+      tree->carried = (touched || !tree->loose) && (by_loops || (struck && state_.accuracy.locate_impacts));
+      tree->row_share = struck && !tree->carried ? share_without_gain(*tree, tree->way) : 1;
     }
 }
 
@@ -177,7 +178,7 @@ void Solver::move_by_impulses(double moved_h) {
   for (const Clustered& one : state_.clusters)
     for (Tree* tree : one.entry->system->trees()) {
       tree->way = (one.semi ? 2 : 1) * tree->row_share * moved_h * (tree->state.v - tree->smooth_v);
-      if (carried_)
+      if (tree->carried)
         move_without_gain(state_, *tree, tree->way);
       else
         articulated::move(tree->model, tree->state.q, tree->way, tree->state.q);

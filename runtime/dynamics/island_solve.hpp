@@ -36,7 +36,6 @@ class Solver {
   Contacts& contacts_;
   Rows& rows_;
   Momentum& momentum_;
-  bool carried_ = false;  // links keep their momenta where impulses move them
   Prediction& prediction_;
   Rebounds rebounds_;
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "runtime/base/error.hpp"
+#include "runtime/dynamics/island_energy.hpp"
 
 namespace breve::island {
 
@@ -92,12 +93,7 @@ void SubStep::advance(double time, double h) {
   const bool held = move(time, h);
   if (!catch_bounds(time, h) && alone && held) return;
   solve_moved(time, h);
-  const bool loops = by_rows_ && prediction_.loops_swing(h);
-  if (loops || prediction_.limits_swing()) {
-    state_.restore();
-    prediction_.learn(h, loops);
-    solve(time, h);
-  }
+  solve_as_learned(time, h);
   move_by_rows(h);
   // What the rows stop may come down, or meet a limit, elsewhere.
   if (missed(h)) {
@@ -126,6 +122,24 @@ void SubStep::solve_moved(double time, double h) {
     check_prediction(time, h);
     solver_.solve_after(h);
   }
+}
+
+/// Where joints or loops swing too far before the rows stop them, a solution with the forces that these rows gave; the
+/// first one again if that throws links.
+void SubStep::solve_as_learned(double time, double h) {
+  constexpr double kThrown = 2, kLifted = 0.01;  // times the motion of the first solution; of weight()
+  const bool loops = by_rows_ && prediction_.loops_swing(h);
+  if (!loops && !prediction_.limits_swing()) return;
+  const double most = kThrown * motion_of_trees(state_) + kLifted * weight(state_);
+  state_.restore();
+  prediction_.learn(h, loops);
+  solve(time, h);
+  if (motion_of_trees(state_) <= most) return;
+  state_.restore();
+  state_.placed = false;
+  state_.place_links();
+  prediction_.make(h);
+  solve(time, h);
 }
 
 /// What the rows gave in h seconds moves the island. A force that is constant over the step moves by half of what its

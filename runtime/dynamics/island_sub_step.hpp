@@ -43,6 +43,7 @@ class SubStep {
   bool move(double time, double h);
   void solve(double time, double h);
   void solve_moved(double time, double h);
+  void solve_as_learned(double time, double h);
   void check_prediction(double time, double h);
   bool catch_bounds(double time, double h);
   void move_by_rows(double h);

@@ -108,6 +108,7 @@ struct Tree : InMemory {
   articulated::Vector reacted;               // (nv) what Loads::reaction gives in a second
   articulated::Vector free_v, way, kick;     // v without the rows' impulses; the way they make
   double row_share = 1;                      // of that way: the part that is gone
+  bool carried = false;                      // links keep their momenta along it
   articulated::Vector push;                  // v by which overlap is moved apart, for a sub-step
   articulated::Vector smooth_v;              // v after smooth motion, to which reactions belong
   Vector3 outer_force = Vector3::Zero();     // N, of these reactions from outside

@@ -2,6 +2,6 @@
 set(not_yet
   physics.adversary_long.balanced
     physics.adversary_long.conserving physics.adversary_long.fast physics.adversary_long.precise
-    physics.adversary_long.reference physics.bridge_holds_crate.fast
+    physics.adversary_long.reference
     physics.overlap_long.balanced physics.overlap_long.conserving
     physics.overlap_long.precise physics.overlap_long.reference)
