@@ -151,7 +151,7 @@ std::size_t row_of(const Workspace& work, const PackedScalar& row) {
 
 void pack(std::span<const Mover> movers, std::span<const Row> rows, std::span<const ScalarRow> scalars,
           Workspace& work) {
-  work.condensed = false;
+  work.condensed = work.by_normals = false;  // a solve for which there was no memory left them
   work.movers.clear();
   work.movers.push_back(world());
   work.began.clear();
