@@ -5,7 +5,6 @@
 
 #include "runtime/articulated/energy.hpp"
 #include "runtime/articulated/forward_dynamics.hpp"
-#include "runtime/articulated/joints.hpp"
 #include "runtime/articulated/kinematics.hpp"
 
 namespace breve::articulated {
@@ -16,9 +15,8 @@ bool move_carried(const Model& model, Data& data, State& state, const Vector& wa
   const double before = kinetic_energy(model, data);
   momenta.clear();
   for (int i = 0; i < model.size(); ++i) {
-    const Matrix3& rotation = data.of(i).rotation;
-    const Vector3 own = rotation * (model.body(i).inertia_com * Vector3(rotation.transpose() * data.of(i).spin));
-    momenta.push_back({i, Vector3::Zero(), model.body(i).mass * com_velocity(model, data, i), own});
+    const Vector3 linear = model.body(i).mass * com_velocity(model, data, i);
+    momenta.push_back({i, Vector3::Zero(), linear, own_momentum(model, data, i)});
   }
   move(model, state.q, way, state.q);
   forward_kinematics(model, data, state);

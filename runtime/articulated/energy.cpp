@@ -5,15 +5,10 @@
 
 namespace breve::articulated {
 
-namespace {
-
-/// Angular momentum about the link's own centre of mass, world axes.
 Vector3 own_momentum(const Model& model, const Data& data, int link) {
   const Work& w = data.of(link);
   return w.rotation * (model.body(link).inertia_com * Vector3(w.rotation.transpose() * w.spin));
 }
-
-}  // namespace
 
 double kinetic_energy_of_link(const Model& model, const Data& data, int link) {
   return 0.5 * (model.body(link).mass * com_velocity(model, data, link).squaredNorm() +

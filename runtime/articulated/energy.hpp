@@ -15,6 +15,8 @@ double kinetic_energy(const Model& model, const Data& data);
 double potential_energy(const Model& model, const Data& data, const Vector3& gravity);
 /// kg*m/s, world axes.
 Vector3 linear_momentum(const Model& model, const Data& data);
+/// kg*m^2/s, world axes, of one link about its own centre of mass.
+Vector3 own_momentum(const Model& model, const Data& data, int link);
 /// kg*m^2/s, world axes, about a point that does not move.
 Vector3 angular_momentum(const Model& model, const Data& data, const Vector3& about);
 /// m, of the whole.

@@ -31,7 +31,7 @@ double solve_direct(Workspace& work, double tolerance, LinearSolves& solves, boo
 /// islands take more.
 bool enough_from_far(const Workspace& work, const LinearSolves& solves);
 
-/// Whether Newton's method may converge from the island's impulses, whose violation is `left`.
+/// Whether Newton's method may converge from the island's impulses, whose violation is `left`, m/s.
 bool within_reach(const Workspace& work, double left);
 
 /// By how much the worst row violates its law, m/s: the distance to the projected point of a step of the row alone.

@@ -118,8 +118,8 @@ struct State {
   /// The bodies that are free.
   std::span<Free> loose_bodies() { return {free_bodies.data(), free_bodies.size() - drivers}; }
   std::span<const Free> loose_bodies() const { return {free_bodies.data(), free_bodies.size() - drivers}; }
-  double mass() const;  // kg, of all that impulses move
-  std::size_t bodies() const;
+  double mass() const;         // kg, of all that impulses move
+  std::size_t bodies() const;  // links, and bodies without joints
   /// The tree of a mover; null if the mover is a free body or nothing.
   Tree* tree_of(int mover) const {
     const int first = static_cast<int>(free_bodies.size());

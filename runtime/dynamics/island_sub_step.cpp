@@ -112,15 +112,17 @@ void SubStep::solve(double time, double h) {
 
 /// The rows' solution after smooth motion of h seconds; without what was predicted if that threw something.
 void SubStep::solve_moved(double time, double h) {
-  check_prediction(time, h);
-  solver_.solve_after(h);
+  const auto solve_rows = [&] {
+    check_prediction(time, h);
+    solver_.solve_after(h);
+  };
+  solve_rows();
   for (const bool all : {false, true}) {
     if (!prediction_.threw()) return;
     all ? prediction_.forget() : prediction_.forget_contacts();
     state_.restore();
     move(time, h);
-    check_prediction(time, h);
-    solver_.solve_after(h);
+    solve_rows();
   }
 }
 
