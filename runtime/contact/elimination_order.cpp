@@ -74,6 +74,9 @@ void find_order(Workspace& work, const Neighbors& neighbors) {
   std::reverse(order.begin(), order.end());
 }
 
+// The whole matrix is cleared, and each column looked down: a line of the cache for each number.
+constexpr double kLook = 10;
+
 double row_operations(const Workspace& work) {
   double sum = 0;
   const auto size = [&](int mover) { return static_cast<double>(work.movers[static_cast<std::size_t>(mover)].size); };
@@ -88,13 +91,26 @@ double row_operations(const Workspace& work) {
   return sum;
 }
 
+/// What they are at least, whatever the order: rows, the matrix, and the velocities of each mover among one another.
+double least_operations(const Workspace& work) {
+  double velocities = 0, sum = row_operations(work);
+  for (std::size_t i = 1; i < work.movers.size(); ++i) {
+    const double size = work.movers[i].size;
+    velocities += size;
+    sum += size * size * size / 1.5;
+  }
+  return sum + kLook * velocities * velocities;
+}
+
 }  // namespace
 
-double order_elimination(Workspace& work) {
+double order_elimination(Workspace& work, double most) {
   if (work.condensed) {
     const double n = static_cast<double>(work.rates.size());
     return n * n * (n / 1.5 + 3);
   }
+  const double least = least_operations(work);
+  if (least > most) return least;
   const Neighbors neighbors(work);
   find_order(work, neighbors);
   int at = 0;
@@ -103,8 +119,6 @@ double order_elimination(Workspace& work) {
     at += work.movers[static_cast<std::size_t>(mover)].size;
   }
   work.indices.front() = 0;
-  // The whole matrix is cleared, and each column looked down: a line of the cache for each number.
-  constexpr double kLook = 10;
   double sum = row_operations(work) + kLook * static_cast<double>(at) * static_cast<double>(at);
   int reach = 0;  // of the velocities eliminated so far: the last one that one of them is coupled with
   for (const int mover : work.order) {

@@ -180,12 +180,14 @@ struct Reached {
   b2Contact* contact;
   b2Body *a, *b;
   b2Vec2 point, normal;
-  double slowest;  // m/s, that bounces
+  double slowest;       // m/s, that bounces
+  double approach = 0;  // m/s
 
-  double approach(double unit) const {
+  void look(double unit) {
     const b2Vec2 v = b->GetLinearVelocityFromWorldPoint(point) - a->GetLinearVelocityFromWorldPoint(point);
-    return -double{b2Dot(v, normal)} * unit;
+    approach = -double{b2Dot(v, normal)} * unit;
   }
+  bool touches(const b2Body* x, const b2Body* y) const { return a == x || a == y || b == x || b == y; }
 };
 
 }  // namespace
@@ -206,6 +208,7 @@ void Planar::Core::spread(FlatBody& a, FlatBody& b) {
       contact->GetWorldManifold(&where);
       b2Body *const x = contact->GetFixtureA()->GetBody(), *const y = contact->GetFixtureB()->GetBody();
       reached.push_back({contact, x, y, where.points[0], where.normal, slowest_bounce(law_of(of(x), of(y)))});
+      reached.back().look(settings.unit);
     }
   };
   strike(a.b2);
@@ -215,9 +218,8 @@ void Planar::Core::spread(FlatBody& a, FlatBody& b) {
     const Reached* fastest = nullptr;
     double speed = 0;
     for (const Reached& one : reached) {
-      const double approach = one.approach(settings.unit);
-      if (!(approach > std::max(speed, one.slowest)) || squeezed(of(one.a), of(one.b))) continue;
-      speed = approach;
+      if (!(one.approach > std::max(speed, one.slowest)) || squeezed(of(one.a), of(one.b))) continue;
+      speed = one.approach;
       fastest = &one;
     }
     if (!fastest) return;
@@ -225,6 +227,9 @@ void Planar::Core::spread(FlatBody& a, FlatBody& b) {
     b2WorldManifold where;
     fastest->contact->GetWorldManifold(&where);
     if (!collide(of(x), of(y), where, fastest->contact->GetManifold()->pointCount)) return;
+    const bool others = of(x).jointed || of(y).jointed;
+    for (Reached& one : reached)
+      if (others || one.touches(x, y)) one.look(settings.unit);
     strike(x);
     strike(y);
   }
