@@ -79,10 +79,10 @@ void Books::open() {
   for (Clustered& one : state_.clusters) {
     double kinetic = 0;
     const Tree& first = *state_.core.trees[one.entry->trees.front()];
-    one.sub_start = {stored_energy(state_, one, kinetic), 0, 0, 0, first.ledger, 0};
+    one.sub_start = {stored_energy(state_, one, kinetic), 0, 0, 0, 0, first.ledger, 0};
     moving += kinetic;
   }
-  sub_start_ = {stored_energy(state_), moving, 0, 0, state_.result.ledger, 0};
+  sub_start_ = {stored_energy(state_), moving, 0, 0, 0, state_.result.ledger, 0};
 }
 
 /// After smooth motion: what it gained that nothing explains is its error, not the rows'.
@@ -99,35 +99,49 @@ void Books::note_smooth() {
   state_.placed = true;
 }
 
+bool Books::only_motors() const { return rows_.contacts() == 0 && rows_.limits() == 0; }
+
+/// After the rows' solution, which has not moved anything yet.
+void Books::note_solved() {
+  if (!kept_ || !only_motors()) return;
+  sub_start_.solved_kinetic = 0;
+  for (Clustered& one : state_.clusters) {
+    one.sub_start.solved_kinetic = 0;
+    for (const std::uint32_t index : one.entry->trees)
+      one.sub_start.solved_kinetic += state_.core.energy_of(*state_.core.trees[index]).kinetic;
+    sub_start_.solved_kinetic += one.sub_start.solved_kinetic;
+  }
+}
+
 /// After the works of smooth motion and of the rows went to the ledger.
 void Books::close() {
   momentum_.note_touched();
   if (!kept_ || rows_.empty()) return;
-  const bool only_motors = rows_.contacts() == 0 && rows_.limits() == 0;
   double erred = 0;  // J, by the motion that motors changed
-  const auto close = [&](const SubStepEnergy& start, double stored, const Tree* tree, Energy& ledger) {
+  const auto close = [&](const SubStepEnergy& start, double stored, double kinetic, Energy& ledger) {
     const double more = missing(stored - start.stored - start.unexplained, start.ledger, ledger);
-    if (only_motors) {
-      const double doubt = rows_.motor_doubt(tree), left = uncancelled(more, start.unexplained);
-      const double by_motors = std::clamp(left, -doubt, doubt);
+    if (only_motors()) {
+      // The same rates are another motion where their impulses moved the links to.
+      const double moved = kinetic - start.solved_kinetic;
+      const double by_motors = uncancelled(more - moved, start.unexplained);
       ledger.motor_work += by_motors;
-      erred = left - by_motors;
+      erred = uncancelled(more, start.unexplained) - by_motors;
     } else {
       ledger.contact_loss -= more;
     }
     settle_exchange(start.ledger, ledger);
     settle_rows(start.ledger, -start.unexplained, ledger);
   };
-  double kinetic = 0;
   for (Clustered& one : state_.clusters) {
     // An implicit step and its rows are one: what it lost on the way to them is not the motion's error.
-    if (one.semi && !only_motors) one.sub_start.unexplained = std::max(0.0, one.sub_start.unexplained);
+    if (one.semi && !only_motors()) one.sub_start.unexplained = std::max(0.0, one.sub_start.unexplained);
     sub_start_.unexplained += one.sub_start.unexplained;
     if (!one.alone()) continue;
-    Tree& tree = *state_.core.trees[one.entry->trees.front()];
-    close(one.sub_start, stored_energy(state_, one, kinetic), &tree, tree.ledger);
+    double kinetic = 0;
+    const double stored = stored_energy(state_, one, kinetic);
+    close(one.sub_start, stored, kinetic, state_.core.trees[one.entry->trees.front()]->ledger);
   }
-  close(sub_start_, stored_energy(state_), nullptr, state_.result.ledger);
+  close(sub_start_, stored_energy(state_), only_motors() ? motion_of_trees(state_) : 0, state_.result.ledger);
   const double gained = rows_took(sub_start_.ledger) - rows_took(state_.result.ledger);
   const double tiny = kTiny * std::abs(sub_start_.stored), links = momentum_.moving(Payers::Trees);
   constexpr double kErred = 0.1;  // of the energy in motion: what is taken back at once

@@ -18,6 +18,7 @@ class Books {
   void open();
   bool kept() const { return kept_; }  // open() found rows to come
   void note_smooth();
+  void note_solved();
   void close();
   void settle_motors(double h);
   /// J, that contacts of free bodies did because the bodies rotated: of order 1 of the sub-step. It is in the ledger,
@@ -40,6 +41,8 @@ class Books {
   void set_predicted(double energy) { sub_start_.predicted = energy; }
 
  private:
+  bool only_motors() const;  // of rows that do work
+
   State& state_;
   Contacts& contacts_;
   ContactSprings& springs_;

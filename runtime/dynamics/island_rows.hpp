@@ -105,9 +105,6 @@ class Rows {
   /// J, in this try of a step, by which the work of impulses is another along the velocities before(): bodies rotate
   /// meanwhile, by an angle that finer sub-steps make smaller.
   double rotated() const { return rotated_; }
-  /// J, by which the work of motors on a tree (null: on all) may differ from what was booked: they pushed, in smooth
-  /// motion and as rows, while the rate went from before() to what it is.
-  double motor_doubt(const Tree* tree) const;
   void note_contact_forces(double h);
   void note_limit_forces(double h);
   /// The next solution begins with these impulses.

@@ -47,6 +47,7 @@ struct SubStepEnergy {
   double stored = 0;          // J
   double kinetic = 0;         // J, of all trees
   double smooth_kinetic = 0;  // J, likewise, after smooth motion
+  double solved_kinetic = 0;  // J, likewise, after the rows' solution if motors are the only rows
   double predicted = 0;       // J, that predicted forces give from rest
   Energy ledger;              // works and losses
   double unexplained = 0;     // J, that smooth motion gained

@@ -150,6 +150,7 @@ void SubStep::move_by_rows(double h) {
   solver_.limit_moves(0.5 * h);
   smooth_.correct_works(h);
   state_.store_velocities();
+  books_.note_solved();
   solver_.move_by_impulses(0.5 * h);
   positions_.put_back(h, positions_.hold_off(h));
 }
