@@ -74,8 +74,10 @@ void find_order(Workspace& work, const Neighbors& neighbors) {
   std::reverse(order.begin(), order.end());
 }
 
-// The whole matrix is cleared, and each column looked down: a line of the cache for each number.
+// What is stored of the matrix is cleared, and each column looked down: a line of the cache for each number.
 constexpr double kLook = 10;
+constexpr double kStored = 3;               // times the band of a row
+constexpr double kNarrowest = 6 * kStored;  // numbers of a row: those of one body
 
 double row_operations(const Workspace& work) {
   double sum = 0;
@@ -99,7 +101,7 @@ double least_operations(const Workspace& work) {
     velocities += size;
     sum += size * size * size / 1.5;
   }
-  return sum + kLook * velocities * velocities;
+  return sum + kLook * velocities * std::min(velocities, kNarrowest);
 }
 
 }  // namespace
@@ -119,7 +121,7 @@ double order_elimination(Workspace& work, double most) {
     at += work.movers[static_cast<std::size_t>(mover)].size;
   }
   work.indices.front() = 0;
-  double sum = row_operations(work) + kLook * static_cast<double>(at) * static_cast<double>(at);
+  double sum = row_operations(work), widest = 0;
   int reach = 0;  // of the velocities eliminated so far: the last one that one of them is coupled with
   for (const int mover : work.order) {
     const int first = work.indices[static_cast<std::size_t>(mover)];
@@ -132,9 +134,11 @@ double order_elimination(Workspace& work, double most) {
     for (int k = first; k < first + size; ++k) {
       const double width = reach - k;
       sum += 2 * width * width;
+      widest = std::max(widest, width);
     }
   }
-  return sum;
+  const auto velocities = static_cast<double>(at);
+  return sum + kLook * velocities * std::min(velocities, kStored * widest);
 }
 
 double sweep_operations(const Workspace& work) {

@@ -81,7 +81,8 @@ void solve_once(Workspace& work, const SolveSettings& settings, SolveReport& rep
     if (found.solved || found.contradictory) return;
   }
   constexpr double kSolves = 5;  // of a direct solution that begins near the last step's
-  const double most = settings.direct ? settings.direct_share * settings.iterations * sweep_operations(work) : 0;
+  const double swept = settings.iterations * sweep_operations(work);
+  const double most = settings.direct ? std::max(settings.direct_share * swept, settings.direct_most) : 0;
   const double each = settings.direct ? order_elimination(work, most / kSolves) : 1;
   if (kSolves * each <= most)
     solve_directly(work, settings, most, each, report);

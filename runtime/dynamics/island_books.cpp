@@ -118,14 +118,14 @@ void Books::close() {
   momentum_.note_touched();
   if (!kept_ || rows_.empty()) return;
   double erred = 0;  // J, by the motion that motors changed
-  const auto close = [&](const SubStepEnergy& start, double stored, double kinetic, Energy& ledger) {
+  const auto close = [&](const SubStepEnergy& start, double stored, double kinetic, const Tree* tree, Energy& ledger) {
     const double more = missing(stored - start.stored - start.unexplained, start.ledger, ledger);
     if (only_motors()) {
       // The same rates are another motion where their impulses moved the links to.
       const double moved = kinetic - start.solved_kinetic;
       const double by_motors = uncancelled(more - moved, start.unexplained);
       ledger.motor_work += by_motors;
-      erred = uncancelled(more, start.unexplained) - by_motors;
+      erred = uncancelled(more, start.unexplained) - by_motors - rows_.motor_doubt(tree);
     } else {
       ledger.contact_loss -= more;
     }
@@ -139,9 +139,10 @@ void Books::close() {
     if (!one.alone()) continue;
     double kinetic = 0;
     const double stored = stored_energy(state_, one, kinetic);
-    close(one.sub_start, stored, kinetic, state_.core.trees[one.entry->trees.front()]->ledger);
+    Tree& tree = *state_.core.trees[one.entry->trees.front()];
+    close(one.sub_start, stored, kinetic, &tree, tree.ledger);
   }
-  close(sub_start_, stored_energy(state_), only_motors() ? motion_of_trees(state_) : 0, state_.result.ledger);
+  close(sub_start_, stored_energy(state_), only_motors() ? motion_of_trees(state_) : 0, nullptr, state_.result.ledger);
   const double gained = rows_took(sub_start_.ledger) - rows_took(state_.result.ledger);
   const double tiny = kTiny * std::abs(sub_start_.stored), links = momentum_.moving(Payers::Trees);
   constexpr double kErred = 0.1;  // of the energy in motion: what is taken back at once

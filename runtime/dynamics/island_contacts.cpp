@@ -56,16 +56,6 @@ Touch touch_at(std::size_t pair, const Pose& a, const Pose& b, const Manifold& m
 
 }  // namespace
 
-bool is_round(const Shape& shape) { return shape.kind() == ShapeKind::Sphere || shape.round().is_round(); }
-
-Vector3 carried_by(const Shape& shape, const Vector3& point, const Pose& from, const Pose& to) {
-  const Vector3 arm = point - from.location;
-  if (!is_round(shape)) return to.location + to.orientation * (from.orientation.conjugate() * arm);
-  if (shape.kind() == ShapeKind::Sphere) return point + to.location - from.location;
-  const Vector3 axis = Vector3::Unit(shape.round().axis);
-  return to.location + Quaternion::FromTwoVectors(from.orientation * axis, to.orientation * axis) * arm;
-}
-
 void Contacts::find_touches(double h, bool speculative) {
   spent_ = speculative;
   touches_.clear();
@@ -185,8 +175,8 @@ bool Contacts::add_missed(std::size_t pair, const Manifold& manifold, const Cont
     if (std::prev(other)->feature == point.feature) return false;
   const auto& [a, b] = seen_[pair];
   ContactPoint before = point;
-  before.on_a = carried_by(state_.shape(is.a), point.on_a, state_.pose_of(is.a), a.pose);
-  before.on_b = carried_by(state_.shape(is.b), point.on_b, state_.pose_of(is.b), b.pose);
+  before.on_a = carried_by(state_.shape(is.a), point.on_a, manifold.normal, state_.pose_of(is.a), a.pose);
+  before.on_b = carried_by(state_.shape(is.b), point.on_b, manifold.normal, state_.pose_of(is.b), b.pose);
   before.distance = manifold.normal.dot(before.on_a - before.on_b);
   if (before.distance < -least) return false;
   Touch touch = touch_at(pair, a.pose, b.pose, manifold, before);

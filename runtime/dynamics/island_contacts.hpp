@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "runtime/dynamics/carried_point.hpp"
 #include "runtime/dynamics/island_state.hpp"
 
 namespace breve::island {
@@ -28,11 +29,6 @@ struct Touch {
   bool far = false;     // touches only if the bodies rotate toward it, and says nothing of whether the pair rests
   Vector3 predicted = Vector3::Zero();  // N, world axes: a force that is taken to go on and acts inside the stages
 };
-
-bool is_round(const Shape& shape);
-/// The point of a body that stood at `from`, once it is at `to`. A body that is round about an axis rotates about it
-/// without taking its point along, so that only the shortest rotation of the axis counts; a ball has no axis to rotate.
-Vector3 carried_by(const Shape& shape, const Vector3& point, const Pose& from, const Pose& to);
 
 /// A joint's limit that is near, or was passed.
 struct Bound {
@@ -108,6 +104,11 @@ class Contacts {
   const Rebound& rebound_of(const Touch& touch) const { return pair_rebounds_[touch.pair]; }
   /// m/s: slower than this is at rest, in a sub-step of this length.
   double resting() const { return resting_; }
+  /// rad/s, by which the spin of a body that is rotated by hand may be wrong: what rests is not to be disturbed, and a
+  /// blow did not act along the way.
+  double unseen_spin(const Free& one) const {
+    return one.struck ? JointDrive::kNoLimit : resting_ / state_.shape(one.body).bounding_radius();
+  }
   /// No impact is located any more: the last look was speculative.
   bool spent() const { return spent_; }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "runtime/articulated/kinematics.hpp"
-#include "runtime/base/rotation_vector.hpp"
 #include "runtime/dynamics/island_energy.hpp"
 
 namespace breve::island {
@@ -190,8 +189,7 @@ void Positions::end_moves(double h, Rates rates) {
     const Vector3 way = h * Vector3(one.push[0], one.push[1], one.push[2]);
     one.now.center += way;
     book_way(one.now.force.dot(way), nullptr);
-    const Vector3 rotation = h * Vector3(one.push[3], one.push[4], one.push[5]);
-    if (rotation != Vector3::Zero()) one.now.orientation = (rotation_by(rotation) * one.now.orientation).normalized();
+    one.now.rotate(h * Vector3(one.push[3], one.push[4], one.push[5]), contacts_.unseen_spin(one));
   }
   const bool touched = momentum_.touched_from_outside();
   for (Tree* tree : state_.trees) {
@@ -256,8 +254,7 @@ bool Positions::hold_off(double h) {
     const Vector3 way = 0.5 * h * (body.velocity - from);
     body.center += way;
     book_way(one.now.force.dot(way), nullptr);
-    const Vector3 rotation = 0.5 * h * (body.spin - spin);
-    if (rotation != Vector3::Zero()) body.orientation = (rotation_by(rotation) * body.orientation).normalized();
+    body.rotate(0.5 * h * (body.spin - spin), contacts_.unseen_spin(one));
   }
   const bool touched = momentum_.touched_from_outside();
   for (const Clustered& one : state_.clusters)
@@ -282,7 +279,7 @@ bool Positions::hold_off(double h) {
 void Positions::book_moves(double sign) {
   double sum = 0;
   for (const Free& one : state_.loose_bodies())
-    sum -= one.now.solid->mass * state_.core.settings.gravity.dot(one.now.center);
+    sum += one.now.kinetic() - one.now.solid->mass * state_.core.settings.gravity.dot(one.now.center);
   sum += network_energy(state_);
   for (const Clustered& one : state_.clusters) {
     for (const std::uint32_t index : one.entry->trees) {

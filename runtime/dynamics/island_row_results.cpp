@@ -169,6 +169,18 @@ void Rows::book() {
   }
 }
 
+double Rows::motor_doubt(const Tree* tree) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < motors(); ++i) {
+    const contact::ScalarRow& row = scalars_[limits() + i];
+    const MotorRow& motor = motors_[i];
+    if (tree && motor.tree != tree) continue;
+    const double impulse = std::abs(row.impulse) + std::abs(motor.tree->motor_impulse[motor.velocity]);
+    sum += 0.5 * impulse * std::abs(rate_of(row) - scalars_before_[limits() + i]);
+  }
+  return sum;
+}
+
 /// Notes the impulses of contacts and limits on trees as forces that last the h seconds of a sub-step: the reaction of
 /// a joint is made of them.
 void Rows::note_contact_forces(double h) {

@@ -101,10 +101,15 @@ class Rows {
   /// all have neither impulses nor changed velocities: they are to be solved again.
   bool squeezed(double stopped);
   double length() const { return solved_h_; }  // s, of the sub-step that was solved last
+  /// J, that rows gave beside the work of their impulses. After they were solved.
+  void note_given(double given) { given_ += given; }
   void book();
   /// J, in this try of a step, by which the work of impulses is another along the velocities before(): bodies rotate
   /// meanwhile, by an angle that finer sub-steps make smaller.
   double rotated() const { return rotated_; }
+  /// J, by which the work of motors on a tree (null: on all) may differ along the sub-step: they pushed, in smooth motion
+  /// and as rows, while the rate went from before() to what it is.
+  double motor_doubt(const Tree* tree) const;
   void note_contact_forces(double h);
   void note_limit_forces(double h);
   /// The next solution begins with these impulses.
@@ -133,7 +138,7 @@ class Rows {
   std::pmr::vector<std::array<Vector3, 2>> before_;   // of rows_, once rates were read
   std::pmr::vector<std::array<Vector3, 2>> started_;  // likewise, at the points that impulses push
   double yield_ = 0;                                  // 1/kg, softness of rows of what a script moves
-  double given_ = 0;                                  // J, by couples that rows gave before they were solved
+  double given_ = 0;                                  // J, that rows gave beside the work of their impulses
   double rotated_ = 0;                                // J, what rotated() gives
   std::pmr::vector<std::size_t> limits_;              // bounds that have a row
   std::pmr::vector<MotorRow> motors_;

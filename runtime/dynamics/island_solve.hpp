@@ -28,6 +28,8 @@ class Solver {
   double follow_arms(double h);
   void bound_motors(double h);
   bool shorten_couples(double h);
+  bool stands() const;
+  void find_struck();
   void solve_rows();
   void solve_once();
   void solve_rebounding(double h);

@@ -35,6 +35,7 @@ struct Free {
   double next = 0, next_before = 0;
   double v[6], free_v[6];  // velocity and spin: as the solver has them, and without its impulses
   double plain_v[6];       // as the solver had them without rebounds
+  bool struck = false;     // by a contact whose force did not act before
   double push[6];          // likewise, those along which positions were last put right
   bool driver = false;     // a script moves it, whatever pushes it; each pair and island has its own of it
 

@@ -16,6 +16,10 @@ struct FreeBody {
     const Matrix3 r = orientation.toRotationMatrix();
     return r * solid->inertia * r.transpose();
   }
+  /// Rotates it by hand: it keeps its angular momentum, and what does not look alike from all sides spins otherwise.
+  /// @param unseen  rad/s, a change of its spin that need not be made
+  /// @return        J, that it gained by that
+  double rotate(const Vector3& rotation, double unseen);
   double kinetic() const {
     const Vector3 own = orientation.conjugate() * spin;
     return 0.5 * (solid->mass * velocity.squaredNorm() + own.dot(solid->inertia * own));

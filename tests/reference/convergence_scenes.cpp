@@ -455,7 +455,7 @@ Scene paddle() {
     drive(world, joint, 1, 200);
     world.set_joint(joint, 0, 1);
     const breve_object block = world.body(box(Vector3(0.4, 0.4, 0.4), 1), Vector3(0.25, 0.2, 0));
-    world.set_velocity(block, Vector3(0.8, 0, 0));
+    world.set_velocity(block, Vector3(0.9, 0, 0));
     world.set_material(arm, 0.2, 0);
     world.set_material(block, 0.2, 0);
     return place_of(block);

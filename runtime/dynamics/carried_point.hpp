@@ -1,0 +1,17 @@
+// Where a point of contact is once its body has moved.
+#pragma once
+
+#include "runtime/solid/contact.hpp"
+#include "runtime/solid/shape.hpp"
+
+namespace breve::island {
+
+bool is_round(const Shape& shape);
+
+/// The point of a body that stood at `from`, once it is at `to`. A body that is round about an axis rotates about it
+/// without taking its point along: that stays where the body reaches farthest along the normal, however the axis
+/// rotates. A ball has no axis.
+/// @param normal  of the contact, world, a unit vector of either direction
+Vector3 carried_by(const Shape& shape, const Vector3& point, const Vector3& normal, const Pose& from, const Pose& to);
+
+}  // namespace breve::island
