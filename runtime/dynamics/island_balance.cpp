@@ -66,6 +66,7 @@ double largest_loss(const Energy& now, const Energy& then) {
 
 double Balance::open() {
   handled_ = 0;
+  state_.swung = 0;
   state_.booked = false;
   state_.read_springs();
   opened_ = measure(true);
@@ -87,7 +88,9 @@ double Balance::close(double& turnover) {
   // No more moves and is lost than there was: a step that claims so has gone astray, and is measured by what there was.
   const double fallen = std::max(0.0, opened_.height - after.height);
   const double most = 3 * (supplied() + opened_.springs + fallen + std::abs(handled_));
-  turnover = std::min(after.kinetic + std::abs(in) + std::abs(out), most);
+  // What swings on springs may stand still as the step ends: its energy errs by a part of what moved before that.
+  const double moved = std::max(after.kinetic, state_.swung);
+  turnover = std::min(moved + std::abs(in) + std::abs(out), most);
   absurd_ = goes_astray(largest_loss(state_.result.ledger, start_.ledger), most);
   for (const Clustered& one : state_.clusters) {
     if (!one.alone()) continue;

@@ -1,6 +1,8 @@
 // The motion of bodies that springs connect, as points.
 #include "runtime/dynamics/island_networks.hpp"
 
+#include <algorithm>
+
 #include "runtime/dynamics/island_energy.hpp"
 #include "runtime/dynamics/network_motion.hpp"
 
@@ -8,6 +10,7 @@ namespace breve::island {
 
 void Networks::move(double time, double h, double& work) {
   loss_ = 0;
+  double swung = 0;
   for (const NetworkCluster& one : state_.networks) {
     NetworkMotion& points = *one.entry->points;
     take_points(state_, one);
@@ -17,6 +20,7 @@ void Networks::move(double time, double h, double& work) {
     }
     state_.result.counters.evaluations += static_cast<std::uint64_t>(points.step(h, state_.finished, state_.meter));
     loss_ += points.loss();
+    swung += points.swung();
     for (std::size_t i = 0; i < points.trees().size(); ++i) {
       Free& free = state_.free_bodies[one.first + i];
       FreeBody& body = free.now;
@@ -28,6 +32,7 @@ void Networks::move(double time, double h, double& work) {
       work += 0.5 * h * body.torque.dot(spin + body.spin);
     }
   }
+  state_.swung = std::max(state_.swung, swung);
 }
 
 /// Dampers also pulled along the motion that the rows' impulses added: half of the change of velocity, for the step.

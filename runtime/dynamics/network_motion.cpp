@@ -13,6 +13,8 @@ namespace {
 // 0.05.
 constexpr double kPartPhase = 1, kPartPhaseFast = 1.75, kSlowPhase = 0.05, kStablePhase = 2;
 constexpr double kMostNetworkParts = 32;  // finer steps are left to step control
+// So few springs have hardly any slower oscillations that hold the energy, and shorter parts of them cost nothing.
+constexpr std::size_t kFewSprings = 16;
 
 bool acts_alone(const Dynamics::Core& core, const Tree& tree) {
   return !core.find(tree.links.front().body)->force_method;
@@ -80,12 +82,13 @@ bool NetworkMotion::read(const Dynamics::Core& core) {
 }
 
 bool NetworkMotion::begin(const Dynamics::Core& core, Rung rung, double h) {
-  most_phase_ = rung == Rung::Fast ? kPartPhaseFast : kPartPhase;
+  const double longest = rung == Rung::Fast ? kPartPhaseFast : kPartPhase;
+  most_phase_ = edges_.size() > kFewSprings ? longest : kPartPhase;
   if (version_ != core.springs_version) {
     version_ = core.springs_version;
     plain_ = read(core);
   }
-  if (!plain_ || !(fastest_ * h <= kMostNetworkParts * most_phase_)) return false;
+  if (!plain_ || !(fastest_ * h <= kMostNetworkParts * longest)) return false;
   for (std::size_t i = 0; i < still_.size(); ++i) {
     const auto& [body, at] = still_[i];
     if (core.bodies->velocity(body) != Vector3::Zero() || core.bodies->rotational_velocity(body) != Vector3::Zero())
@@ -152,9 +155,17 @@ void NetworkMotion::damp(double part) {
   }
 }
 
+double NetworkMotion::kinetic() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < trees_.size(); ++i)
+    sum += 0.5 * points_[i].velocity.squaredNorm() / points_[i].inverse_mass;
+  return sum;
+}
+
 int NetworkMotion::step(double h, bool in_one, Meter& meter) {
   constexpr double kXi = 0.1786178958448091, kLambda = -0.2123418310626054, kChi = -0.06626458266981849;
   loss_ = 0;
+  swung_ = kinetic();
   std::fill(drags_.begin(), drags_.end(), Vector3(Vector3::Zero()));
   const double phase = fastest_ * h;
   const bool slow = phase <= kSlowPhase || in_one;
@@ -163,6 +174,7 @@ int NetworkMotion::step(double h, bool in_one, Meter& meter) {
   const int evaluations = parts * (!slow ? 4 : damped_ ? 2 : 1);
   meter.add(static_cast<std::uint64_t>(evaluations) * (1 + (edges_.size() + points_.size()) / 4));
   for (int i = 0; i < parts; ++i) {
+    if (i > 0) swung_ = std::max(swung_, kinetic());
     if (slow) {
       drift(0.5 * part);
       kick(damped_ ? 0.5 * part : part, scale);

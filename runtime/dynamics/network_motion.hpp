@@ -28,7 +28,7 @@ class NetworkMotion : public InMemory {
   void add(const Dynamics::Core& core, SpringIndex spring, int a, int b);
 
   /// Reads what the springs are set to. Call before each step, and after scripts ran.
-  /// @param rung  `fast` takes longer parts
+  /// @param rung  `fast` takes longer parts where there are many springs
   /// @param h     s, that the step lasts
   /// @return      whether the points can follow: the springs act between centres of mass, pull and push without bound,
   ///              and are not too fast for the step; no body has a force method; ends outside the cluster stand still
@@ -47,7 +47,8 @@ class NetworkMotion : public InMemory {
   /// Moves the points by h seconds. Springs that are too stiff for one part count as softer if `in_one`.
   /// @return  evaluations of the forces
   int step(double h, bool in_one, Meter& meter);
-  double loss() const { return loss_; }  // J, in the dampers, in the last step
+  double loss() const { return loss_; }    // J, in the dampers, in the last step
+  double swung() const { return swung_; }  // J, the most that the points moved with as a part of the last step ended
   /// N*s, of the dampers on a body, in the last step.
   const Vector3& drag(std::size_t body) const { return drags_[body]; }
   /// J, of the springs where the points are.
@@ -71,6 +72,7 @@ class NetworkMotion : public InMemory {
   void drift(double time);
   void kick(double time, double scale);
   void damp(double part);
+  double kinetic() const;
 
   std::pmr::vector<Tree*> trees_;
   std::pmr::vector<Point> points_;  // of the trees' bodies, then ends that do not move
@@ -82,7 +84,7 @@ class NetworkMotion : public InMemory {
   double fastest_ = 0;     // rad/s: no oscillation is faster
   double most_phase_ = 1;  // rad, of that, in a part
   double part_ = 0;        // s, that shares were made for
-  double loss_ = 0;
+  double loss_ = 0, swung_ = 0;
 };
 
 }  // namespace breve
