@@ -27,6 +27,7 @@ struct Touch {
   double gap = 0;                                                      // m, at the start of the sub-step
   double approach = 0;  // m/s, v_n when the sub-step began; unknown where a look takes the point at any speed
   bool far = false;     // touches only if the bodies rotate toward it, and says nothing of whether the pair rests
+  bool turned = false;  // other forces turn the bodies back before they touch
   Vector3 predicted = Vector3::Zero();  // N, world axes: a force that is taken to go on and acts inside the stages
 };
 

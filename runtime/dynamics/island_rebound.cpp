@@ -28,7 +28,7 @@ bool Rebounds::find(double h) {
   for (std::size_t i = 0; i < rows_.contacts(); ++i) {
     const auto& [touch, pair, row, law] = rows_.contact(i);
     const double rate = rows_.before(i, true)[0] - rows_.before(i, false)[0];
-    const bool hits = touch.gap + h * rate < 0;
+    const bool hits = !touch.turned && touch.gap + h * rate < 0;
     if (hits && rate < -std::max(law.restitution_threshold, fall)) speeds_[i] = -law.restitution * rate;
     any = any || speeds_[i] > 0;
   }

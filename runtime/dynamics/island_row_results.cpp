@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "runtime/dynamics/gap_path.hpp"
 #include "runtime/dynamics/island_rows.hpp"
 
 namespace breve::island {
@@ -87,8 +88,46 @@ bool Rows::squeezed(double stopped) {
   return true;
 }
 
+/// m/s along the normal, by which smooth motion changed the velocity of one side: of a free body that of its centre of
+/// mass, since its rotation is no force.
+double Rows::swerve(std::size_t contact, bool first) const {
+  const contact::Row& row = rows_[contact];
+  const int index = first ? row.a : row.b;
+  if (index < 0 || state_.is_driver(index)) return 0;
+  if (first ? row.ja : row.jb) return rate_of(row, first)[0] - before(contact, first)[0];
+  const Free& one = state_.free_bodies[static_cast<std::size_t>(index)];
+  return row.axes.row(0) * (Vector3(one.free_v[0], one.free_v[1], one.free_v[2]) - one.before.velocity);
+}
+
+/// After smooth motion of h seconds, whose velocities the movers have: whether bodies that were apart are apart all the
+/// way since something stronger than gravity, such as a spring, turns them. The rate at which they approach at one end
+/// then says nothing of whether they touch. What was predicted acts in smooth motion and not in the velocities: there
+/// the path does not tell.
+bool Rows::turns_back(std::size_t contact, double h) {
+  constexpr double kStrong = 2;  // times what gravity adds
+  const auto& [touch, pair, row, law] = this->contact(contact);
+  if (touch.gap <= kTouchSkin * state_.size_of_pair(pair)) return false;
+  for (const int mover : {row.a, row.b})
+    if (const Tree* tree = mover < 0 ? nullptr : state_.tree_of(mover); tree && tree->loads.reacts) return false;
+  const double turned = swerve(contact, true) - swerve(contact, false);
+  if (!(std::abs(turned) > kStrong * h * state_.core.settings.gravity.norm())) return false;
+  const double start = before(contact, true)[0] - before(contact, false)[0];
+  const double end = rate_of(row, true)[0] - rate_of(row, false)[0];
+  return GapPath{touch.gap, gap_now(touch), h * start, h * end}.stays_open();
+}
+
+/// Velocities that rows ask for after smooth motion of h seconds, whose velocities the movers have. Rows move positions
+/// by half of what they change velocities for h: bodies that turned back on their own may come as near as they are.
 void Rows::set_biases(double h) {
-  for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i].bias = std::min(0.0, -contacts_.touches()[i].gap / h);
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    Touch& touch = contacts_.touches()[i];
+    contact::Row& row = rows_[i];
+    row.bias = std::min(0.0, -touch.gap / h);
+    touch.turned = turns_back(i, h);
+    if (!touch.turned) continue;
+    const double end = rate_of(row, true)[0] - rate_of(row, false)[0];
+    row.bias = std::min(row.bias, end - 2 * gap_now(touch) / h);
+  }
   for (std::size_t i = 0; i < limits(); ++i) limit(i).row.bias = std::min(0.0, -limit(i).bound.gap / h);
 }
 

@@ -128,6 +128,8 @@ class Rows {
   void add_motors(Tree& tree);
   void add_loops(Tree& tree);
   double yield_of_drivers() const;
+  double swerve(std::size_t contact, bool first) const;
+  bool turns_back(std::size_t contact, double h);
 
   State& state_;
   Contacts& contacts_;
