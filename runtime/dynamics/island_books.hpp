@@ -24,6 +24,7 @@ class Books {
   /// J, that contacts of free bodies did because the bodies rotated: of order 1 of the sub-step. It is in the ledger,
   /// and finer sub-steps make it smaller.
   double rotated() const { return state_.trees.empty() ? rows_.rotated() : 0; }
+  double pressed() const { return rows_.pressed(); }
   /// J, that contacts and limits gave and no motion has repaid yet.
   double owed() const { return debt() + unpaid_; }
   double debt() const;  // of that, from earlier steps

@@ -190,10 +190,11 @@ Trouble Guard::take(MechanicsClient* client, double start, double h) {
   if (balance_.absurd() && !off) return {true, GuardReason::NoSolution, 0, state_.any_body()};
   unexplained_ = std::abs(residual + books_.rotated()) + books_.gained();
   residual_ = residual;
-  allowed_ = watch_.tolerated(turnover, h) + kTiny * std::abs(before) + kStill * weight(state_);
+  const double sums = std::abs(before) + books_.pressed();
+  allowed_ = watch_.tolerated(turnover, h) + kTiny * sums + kStill * weight(state_);
   if (off) return {};
   if (const Trouble deeper = overlaps_.measure(); deeper.found && !state_.squeezed) return deeper;
-  return watch_.judge(residual, turnover, before);
+  return watch_.judge(residual, turnover, sums);
 }
 
 /// Unexplained energy ends with the speeds; positions, corrected meanwhile, are as good as any.

@@ -168,7 +168,19 @@ double Rows::response(const contact::ScalarRow& row) const {
   return Eigen::Map<const articulated::Vector>(row.ja, size).dot(Eigen::Map<const articulated::Vector>(row.ra, size));
 }
 
+/// J, that the impulses of the last solution would give alone, to bodies that were free.
+double Rows::pressure() const {
+  double sum = 0;
+  for (const contact::Row& row : rows_) {
+    const NearPair& pair = pair_of(row);
+    sum += 0.5 * row.impulse.squaredNorm() * (state_.natural_response(pair.a) + state_.natural_response(pair.b));
+  }
+  for (const contact::ScalarRow& row : scalars_) sum += 0.5 * row.impulse * row.impulse * response(row);
+  return sum;
+}
+
 void Rows::book() {
+  pressed_ += pressure();
   state_.result.ledger.contact_loss -= given_;
   rotated_ += std::exchange(given_, 0.0);
   // A contact force that is constant over the sub-step works along the mean of the velocities before and after. Each

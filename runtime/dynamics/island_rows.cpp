@@ -30,7 +30,7 @@ Rows::Rows(State& state, Contacts& contacts)
       workspace_(state.memory) {}
 
 void Rows::begin() {
-  rotated_ = 0;
+  rotated_ = pressed_ = 0;
   movers_.clear();
   for (Free& one : state_.free_bodies) {
     contact::Mover mover;

@@ -107,6 +107,9 @@ class Rows {
   /// J, in this try of a step, by which the work of impulses is another along the velocities before(): bodies rotate
   /// meanwhile, by an angle that finer sub-steps make smaller.
   double rotated() const { return rotated_; }
+  /// J, in this try of a step, that the impulses would give if each acted alone. What rests under opposite impulses has
+  /// round-off of them.
+  double pressed() const { return pressed_; }
   /// J, by which the work of motors on a tree (null: on all) may differ along the sub-step: they pushed, in smooth motion
   /// and as rows, while the rate went from before() to what it is.
   double motor_doubt(const Tree* tree) const;
@@ -128,6 +131,7 @@ class Rows {
   void add_motors(Tree& tree);
   void add_loops(Tree& tree);
   double yield_of_drivers() const;
+  double pressure() const;
   double swerve(std::size_t contact, bool first) const;
   bool turns_back(std::size_t contact, double h);
 
@@ -141,7 +145,7 @@ class Rows {
   std::pmr::vector<std::array<Vector3, 2>> started_;  // likewise, at the points that impulses push
   double yield_ = 0;                                  // 1/kg, softness of rows of what a script moves
   double given_ = 0;                                  // J, that rows gave beside the work of their impulses
-  double rotated_ = 0;                                // J, what rotated() gives
+  double rotated_ = 0, pressed_ = 0;                  // J, what rotated() and pressed() give
   std::pmr::vector<std::size_t> limits_;              // bounds that have a row
   std::pmr::vector<MotorRow> motors_;
   std::pmr::vector<LoopError> loop_errors_;

@@ -44,11 +44,11 @@ BodyIndex Watch::not_finite() const {
   return kNoBody;
 }
 
-Trouble Watch::judge(double residual, double turnover, double before) const {
+Trouble Watch::judge(double residual, double turnover, double sums) const {
   const double most = state_.accuracy.rung == Rung::Fast ? kResidualFast : kResidual;
   // What lies still is put right by round-off of its solution, and no other energy is converted.
   const double still = weight(state_) + free_weight(state_);
-  if (!(residual > most * turnover + kTiny * std::abs(before) + kLying * still)) return {};
+  if (!(residual > most * turnover + kTiny * sums + kLying * still)) return {};
   return {true, GuardReason::Residual, residual, state_.any_body()};
 }
 

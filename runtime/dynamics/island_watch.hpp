@@ -13,8 +13,8 @@ class Watch {
   BodyIndex not_finite() const;  // the first that shows it
   /// @param residual  J, that a step left unexplained
   /// @param turnover  J, of which it may be a small part
-  /// @param before    J, that was stored as the step began
-  Trouble judge(double residual, double turnover, double before) const;
+  /// @param sums      J, of which the residual has the round-off: stored as the step began, and pressed by rows
+  Trouble judge(double residual, double turnover, double sums) const;
   /// The energy that a step of h seconds may leave unexplained, J.
   double tolerated(double turnover, double h) const;
   Trouble foresee(double h);
