@@ -88,9 +88,7 @@ double Balance::close(double& turnover) {
   // No more moves and is lost than there was: a step that claims so has gone astray, and is measured by what there was.
   const double fallen = std::max(0.0, opened_.height - after.height);
   const double most = 3 * (supplied() + opened_.springs + fallen + std::abs(handled_));
-  // What swings on springs may stand still as the step ends: its energy errs by a part of what moved before that.
-  const double moved = std::max(after.kinetic, state_.swung);
-  turnover = std::min(moved + std::abs(in) + std::abs(out), most);
+  turnover = std::min(after.kinetic + std::abs(in) + std::abs(out), most);
   absurd_ = goes_astray(largest_loss(state_.result.ledger, start_.ledger), most);
   for (const Clustered& one : state_.clusters) {
     if (!one.alone()) continue;

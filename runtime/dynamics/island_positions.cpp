@@ -219,7 +219,9 @@ bool Positions::find_struck(double h) {
     if (row.impulse == Vector3::Zero() || !(all || touch.far)) continue;
     const double gap = touch.gap, before = rows_.before(i, true)[0] - rows_.before(i, false)[0];
     const double after = rows_.rate_of(row, true)[0] - rows_.rate_of(row, false)[0];
-    const double reached = gap + 0.5 * h * (before + after);
+    // The mean says nothing of the way of what a spring turns meanwhile.
+    const bool turned = !row.ja && !row.jb && rows_.unsteady(i, h);
+    const double reached = turned ? rows_.gap_now(touch) : gap + 0.5 * h * (before + after);
     if (reached >= std::min(gap, 0.0) - kTouchSkin * state_.size_of_pair(pair)) continue;
     any = true;
     if (row.a >= 0) struck_[static_cast<std::size_t>(row.a)] = 1;
@@ -249,7 +251,9 @@ bool Positions::hold_off(double h) {
     if (!struck_[i]) continue;
     const Free& one = state_.free_bodies[i];
     FreeBody& body = state_.free_bodies[i].now;
-    const Vector3 from = semi ? Vector3(one.free_v[0], one.free_v[1], one.free_v[2]) : one.before.velocity;
+    const Vector3 smooth(one.free_v[0], one.free_v[1], one.free_v[2]);
+    const bool turned = (smooth - one.before.velocity).norm() > kStrong * h * state_.core.settings.gravity.norm();
+    const Vector3 from = semi || turned ? smooth : one.before.velocity;
     const Vector3 spin = semi ? Vector3(one.free_v[3], one.free_v[4], one.free_v[5]) : one.before.spin;
     const Vector3 way = 0.5 * h * (body.velocity - from);
     body.center += way;

@@ -99,18 +99,35 @@ double Rows::swerve(std::size_t contact, bool first) const {
   return row.axes.row(0) * (Vector3(one.free_v[0], one.free_v[1], one.free_v[2]) - one.before.velocity);
 }
 
+double Rows::normal_change(std::size_t contact) const {
+  const contact::Row& row = rows_[contact];
+  double sum = 0;
+  for (const bool first : {true, false}) {
+    const int index = first ? row.a : row.b;
+    if (index < 0) continue;
+    const Free& one = state_.free_bodies[static_cast<std::size_t>(index)];
+    const Vector3 change(one.v[0] - one.free_v[0], one.v[1] - one.free_v[1], one.v[2] - one.free_v[2]);
+    const Vector3 rotation(one.v[3] - one.free_v[3], one.v[4] - one.free_v[4], one.v[5] - one.free_v[5]);
+    sum += (first ? 1 : -1) * row.axes.row(0).dot(change + rotation.cross(first ? row.arm_a : row.arm_b));
+  }
+  return sum;
+}
+
+bool Rows::unsteady(std::size_t contact, double h) const {
+  const double turned = swerve(contact, true) - swerve(contact, false);
+  return std::abs(turned) > kStrong * h * state_.core.settings.gravity.norm();
+}
+
 /// After smooth motion of h seconds, whose velocities the movers have: whether bodies that were apart are apart all the
 /// way since something stronger than gravity, such as a spring, turns them. The rate at which they approach at one end
 /// then says nothing of whether they touch. What was predicted acts in smooth motion and not in the velocities: there
 /// the path does not tell.
 bool Rows::turns_back(std::size_t contact, double h) {
-  constexpr double kStrong = 2;  // times what gravity adds
   const auto& [touch, pair, row, law] = this->contact(contact);
   if (touch.gap <= kTouchSkin * state_.size_of_pair(pair)) return false;
   for (const int mover : {row.a, row.b})
     if (const Tree* tree = mover < 0 ? nullptr : state_.tree_of(mover); tree && tree->loads.reacts) return false;
-  const double turned = swerve(contact, true) - swerve(contact, false);
-  if (!(std::abs(turned) > kStrong * h * state_.core.settings.gravity.norm())) return false;
+  if (!unsteady(contact, h)) return false;
   const double start = before(contact, true)[0] - before(contact, false)[0];
   const double end = rate_of(row, true)[0] - rate_of(row, false)[0];
   return GapPath{touch.gap, gap_now(touch), h * start, h * end}.stays_open();

@@ -9,6 +9,8 @@
 
 namespace breve::island {
 
+inline constexpr double kStrong = 2;  // times the speed that gravity adds: a force that is stronger bends paths
+
 /// A motor as a scalar row: one number of its tree's velocity, and the most that it may push with.
 struct MotorRow {
   Tree* tree;
@@ -78,6 +80,11 @@ class Rows {
 
   Vector3 arm_change(const Touch& touch, bool first, const Free& body, double h) const;
   double gap_now(const Touch& touch) const;
+  /// m/s, by which the solution parts bodies without joints.
+  double normal_change(std::size_t contact) const;
+  /// Something stronger than gravity, such as a spring, changed the approach of bodies in h seconds of smooth motion.
+  /// Of links it is known until the rows are solved.
+  bool unsteady(std::size_t contact, double h) const;
 
   // --- velocities at the rows
   void recall_rates();

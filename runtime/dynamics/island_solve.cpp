@@ -191,7 +191,58 @@ void Solver::find_struck() {
   }
 }
 
+namespace {
+
+/// Of bodies without joints and their springs, J.
+double energy_of_free(State& state) {
+  double sum = network_energy(state);
+  for (const Free& one : state.loose_bodies())
+    sum += one.now.kinetic() - one.now.solid->mass * state.core.settings.gravity.dot(one.now.center);
+  return sum;
+}
+
+/// Likewise where smooth motion has led to: what the rows took of motion, J.
+double taken_by_rows(const State& state) {
+  double sum = 0;
+  for (const Free& one : state.loose_bodies()) {
+    FreeBody smooth = one.now;
+    smooth.velocity = Vector3(one.free_v[0], one.free_v[1], one.free_v[2]);
+    smooth.spin = Vector3(one.free_v[3], one.free_v[4], one.free_v[5]);
+    sum += smooth.kinetic() - one.now.kinetic();
+  }
+  return sum;
+}
+
+}  // namespace
+
+/// The part of the way that moved_h seconds of what rows changed give, after which all that they pushed is apart.
+double Solver::share_to_part(double moved_h) const {
+  double share = 0;
+  for (std::size_t i = 0; i < rows_.contacts(); ++i) {
+    const auto& [touch, pair, row, law] = rows_.contact(i);
+    if (!(row.impulse[0] > 0)) continue;
+    const double way = moved_h * rows_.normal_change(i);
+    const double left = rows_.gap_now(touch) - std::min(0.0, touch.gap);
+    if (way > 0) share = std::max(share, 1 - left / way);
+  }
+  return std::clamp(share, 0.0, 1.0);
+}
+
+/// After the rows moved positions: a force that is constant over a sub-step moves bodies on stiff springs as far as if
+/// nothing pulled them back meanwhile, and winds the springs up. Where that gives more than the rows took, these bodies
+/// go only as far as they have to be apart.
+void Solver::move_networks_back(double moved_h) {
+  const double share = share_to_part(moved_h);
+  for (std::size_t i = state_.networks_begin(); i < state_.networks_end(); ++i) {
+    Free& one = state_.free_bodies[i];
+    const Vector3 change(one.v[0] - one.free_v[0], one.v[1] - one.free_v[1], one.v[2] - one.free_v[2]);
+    one.now.center -= (1 - share) * moved_h * change;
+  }
+}
+
 void Solver::move_by_impulses(double moved_h) {
+  const bool springs = !state_.networks.empty() && rows_.contacts() > 0 && state_.trees.empty() && state_.drivers == 0;
+  const double taken = springs ? taken_by_rows(state_) : 0, before = springs ? energy_of_free(state_) + taken : 0;
   find_struck();
   double gained = 0;
   for (Free& one : state_.free_bodies) {
@@ -201,6 +252,7 @@ void Solver::move_by_impulses(double moved_h) {
     gained += one.now.rotate(moved_h * rotation, contacts_.unseen_spin(one));
   }
   rows_.note_given(gained);
+  if (springs && energy_of_free(state_) - before > kFew * (state_.swung + std::abs(taken))) move_networks_back(moved_h);
   momentum_.note(&Tree::smooth_v, false);
   // Semi-implicit Euler moves with the velocity after.
   for (const Clustered& one : state_.clusters)

@@ -33,6 +33,8 @@ class Solver {
   void solve_rows();
   void solve_once();
   void solve_rebounding(double h);
+  void move_networks_back(double moved_h);
+  double share_to_part(double moved_h) const;
 
   State& state_;
   Contacts& contacts_;
