@@ -121,9 +121,18 @@ void Guard::undo_rise_of_free_bodies(Rung rung) {
   if (!state_.networks.empty() && !momentum_.touched_from_outside()) return;
   const Common common = momentum_.common_of_free_bodies();
   if (!(common.inner > 0) || !std::isfinite(common.inner)) return;
-  const double taken = common.inner > kFlies * risen ? risen : std::min(risen, kFew * common.inner);
+  // What was pushed out of an overlap against a spring may gain more than moves in the end.
+  const bool wound = !state_.networks.empty() && risen > kFew * state_.swung;
+  const double most = wound ? common.inner : kFew * common.inner;
+  const double taken = common.inner > kFlies * risen ? risen : std::min(risen, most);
   momentum_.slow_free_bodies(common, taken);
-  state_.result.ledger.residual -= taken;
+  // What contacts are booked to have given, they get back.
+  Energy& ledger = state_.result.ledger;
+  const Energy& start = balance_.start_ledger();
+  const double gave = losses(start, ledger) + ledger.drag_loss - start.drag_loss;
+  const double repaid = state_.networks.empty() ? 0 : std::clamp(gave, 0.0, taken);
+  ledger.contact_loss += repaid;
+  ledger.residual -= taken - repaid;
 }
 
 /// A step of articulated bodies whose energy does not add up is taken again in 2, 4, 8, ... parts: what rotates far in

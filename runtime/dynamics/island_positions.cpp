@@ -16,6 +16,8 @@ namespace {
 // overlap.
 constexpr double kYield = 1e-4;
 
+constexpr double kLift = 0.04;  // 1/s, of their size, that bodies may be lifted for nothing
+
 }  // namespace
 
 Positions::Positions(State& state, Contacts& contacts, Rows& rows, Momentum& momentum)
@@ -59,7 +61,9 @@ void Positions::push_apart(double h) {
   scalar_pushes_.resize(rows_.scalars().size(), 0.0);
   if (!any) return;
   const double before = state_.result.ledger.contact_loss;
+  const double stored = state_.networks.empty() ? 0 : network_energy(state_);
   move_by_pushes(fastest, h, Rates::Stay);
+  if (!state_.networks.empty()) shorten_winding(network_energy(state_) - stored, h);
   shorten_pushes(before, h);
   pay_for_moves(before - state_.result.ledger.contact_loss, true);
 }
@@ -89,11 +93,17 @@ void Positions::move_by_pushes(double fastest, double h, Rates rates) {
 /// that has. What falls freely need not be lifted: its centre of mass goes on as it did. Springs that press bodies into
 /// one another, or beyond limits, are not to be wound up for nothing, nor is a body that spins to be drawn out.
 double Positions::payable(double h) const {
-  constexpr double kLift = 0.04;  // of their size, 1/s
   if (state_.trees.empty()) return JointDrive::kNoLimit;
   const bool falls = !momentum_.touched_from_outside() && std::all_of(state_.clusters.begin(), state_.clusters.end(),
                                                                       [](const Clustered& one) { return one.loose; });
   return payable_by_motion() + (falls ? 0 : kLift * h * weight(state_));
+}
+
+/// Takes back what winds up springs between bodies without joints by more than is payable.
+/// @param wound  J
+void Positions::shorten_winding(double wound, double h) {
+  const double most = kFew * state_.swung + kLift * h * free_weight(state_);
+  if (wound > most) take_back_pushes(1 - most / wound, h);
 }
 
 double Positions::payable_by_motion() const { return kFew * momentum_.moving(Payers::Trees); }

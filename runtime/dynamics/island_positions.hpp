@@ -33,6 +33,7 @@ class Positions {
   double put_back_once(double h, bool struck);
   void move_by_pushes(double fastest, double h, Rates rates);
   double payable(double h) const;
+  void shorten_winding(double wound, double h);
   void shorten_pushes(double before, double h);
   void take_back_pushes(double part, double h);
   bool find_struck(double h);
