@@ -13,14 +13,6 @@ namespace {
 
 using articulated::JointType;
 
-Quaternion about(const Vector3& axis, double angle) { return Quaternion(Eigen::AngleAxisd(angle, axis)); }
-
-/// Angle of the part of a rotation that is about `axis`, -pi to pi.
-double angle_about(const Quaternion& rotation, const Vector3& axis) {
-  const double along = rotation.vec().dot(axis);
-  return 2 * std::atan2(rotation.w() < 0 ? -along : along, std::abs(rotation.w()));
-}
-
 double near(double angle, double last) {
   constexpr double kRevolution = 2 * 3.14159265358979323846;
   return angle + kRevolution * std::round((last - angle) / kRevolution);
@@ -29,15 +21,8 @@ double near(double angle, double last) {
 /// E with R_child = R_parent E relative_rotation, of a joint at these positions.
 Quaternion excursion(const JointDescription& is, const JointVector& position) {
   const JointAxes axes = axes_of(is);
-  return about(axes.first, -position[0]) * about(axes.second, -position[1]) * about(axes.third, -position[2]);
-}
-
-/// Euler's angles of E, with signs of joint positions.
-JointVector euler(const JointAxes& axes, const Quaternion& excursion) {
-  Eigen::Matrix3d basis;
-  basis << axes.first, axes.second, axes.third;
-  const Eigen::Matrix3d e = basis.transpose() * excursion.toRotationMatrix() * basis;
-  return {std::atan2(e(1, 2), e(2, 2)), -std::asin(std::clamp(e(0, 2), -1.0, 1.0)), std::atan2(e(0, 1), e(0, 0))};
+  return rotation_about(axes.first, -position[0]) * rotation_about(axes.second, -position[1]) *
+         rotation_about(axes.third, -position[2]);
 }
 
 Quaternion ball_excursion(const JointDescription& is, bool flipped, const double* q) {
@@ -47,8 +32,8 @@ Quaternion ball_excursion(const JointDescription& is, bool flipped, const double
 
 /// Columns: rate of the child's spin relative to the parent, parent's frame, by each position's rate.
 Eigen::Matrix3d ball_rates(const JointAxes& axes, const JointVector& position) {
-  const Quaternion first = about(axes.first, -position[0]);
-  const Quaternion second = first * about(axes.second, -position[1]);
+  const Quaternion first = rotation_about(axes.first, -position[0]);
+  const Quaternion second = first * rotation_about(axes.second, -position[1]);
   Eigen::Matrix3d rates;
   rates << -axes.first, -(first * axes.second), -(second * axes.third);
   return rates;
@@ -63,26 +48,6 @@ Eigen::Matrix3d to_model(const JointDescription& is, bool flipped, const double*
 }
 
 }  // namespace
-
-JointAxes axes_of(const JointDescription& is) {
-  JointAxes axes;
-  axes.first = is.normal;
-  const bool given = is.other_axis != Vector3::Zero();
-  const Vector3 from = given ? is.other_axis : is.parent_point;
-  // The direction across the normal nearest to it; any, if there is none.
-  Vector3 across = from - from.dot(is.normal) * is.normal;
-  constexpr double kNone = 1e-9;
-  if (!(across.norm() > kNone * from.norm()) || !(across.norm() > 0)) across = is.normal.unitOrthogonal();
-  across.stableNormalize();
-  if (is.kind == JointKind::Universal && given) {
-    axes.second = across;
-    axes.third = is.normal.cross(across);
-  } else {
-    axes.third = across;
-    axes.second = across.cross(is.normal);
-  }
-  return axes;
-}
 
 void describe_joint(const JointDescription& is, bool flipped, const Quaternion& outer, articulated::Link& link) {
   static constexpr JointType kTypes[] = {JointType::Revolute, JointType::Prismatic, JointType::Fixed,
@@ -123,10 +88,10 @@ JointVector joint_position_between(const JointDescription& is, const Quaternion&
       const Vector3 carried = excursion * axes.second;
       const Vector3 third = axes.first.cross(axes.second);
       const double first = -std::atan2(carried.dot(third), carried.dot(axes.second));
-      const double second = -angle_about(about(axes.first, first) * excursion, axes.second);
+      const double second = -angle_about(rotation_about(axes.first, first) * excursion, axes.second);
       return {near(first, last[0]), near(second, last[1]), 0};
     }
-    case JointKind::Ball: return euler(axes, excursion);
+    case JointKind::Ball: return euler_angles(axes, excursion);
     case JointKind::Fixed: break;
   }
   return JointVector::Zero();
@@ -137,7 +102,7 @@ JointVector joint_position(const JointDescription& is, bool flipped, const doubl
     case JointKind::Revolute:
     case JointKind::Prismatic: return {q[0], 0, 0};
     case JointKind::Universal: return flipped ? JointVector{q[1], q[0], 0} : JointVector{q[0], q[1], 0};
-    case JointKind::Ball: return euler(axes_of(is), ball_excursion(is, flipped, q));
+    case JointKind::Ball: return euler_angles(axes_of(is), ball_excursion(is, flipped, q));
     case JointKind::Fixed: break;
   }
   return JointVector::Zero();

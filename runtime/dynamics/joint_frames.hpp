@@ -4,15 +4,9 @@
 
 #include "runtime/articulated/model.hpp"
 #include "runtime/articulated/state.hpp"
-#include "runtime/mechanics/joint.hpp"
+#include "runtime/mechanics/joint_axes.hpp"
 
 namespace breve {
-
-/// The axes of a joint in the parent's frame; unit length. For a ball they are those of Euler's angles at zero.
-struct JointAxes {
-  Vector3 first, second, third;
-};
-JointAxes axes_of(const JointDescription& is);
 
 /// Type, axes and rotation of the model's joint. `outer` is the orientation of the frame that the tree comes from, if
 /// that is not a link: the orientation of a body that holds the tree, or the identity.

@@ -72,6 +72,7 @@ void Dynamics::Core::place_child(JointEntry& joint) {
   JointDescription& is = joint.is;
   const Pose parent = is.parent == kNoBody ? Pose{} : pose(is.parent);
   const Pose now = pose(is.child);
+  if (is.keep_rotation) is.relative_rotation = relative_rotation_that_keeps(is, between(is).first);
   Pose wanted = pose_at_zero(is, parent);
   if (is.keep_rotation) {
     wanted.location += wanted.orientation * is.child_point - now.orientation * is.child_point;

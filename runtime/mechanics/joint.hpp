@@ -45,7 +45,9 @@ struct JointDescription {
   // universal joint, the third of a ball's angles. Zero: from parent_point. What of it is along the normal is taken
   // off.
   Vector3 other_axis = Vector3::Zero();
-  bool keep_rotation = false;  // use-current-relative-rotation: the child is moved, but not rotated
+  // use-current-relative-rotation: the child is moved, but not rotated. The part of its rotation that the joint cannot
+  // make is added to relative_rotation when it is linked.
+  bool keep_rotation = false;
 };
 
 /// One number for each axis of a joint; those that the joint has not are 0.

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "runtime/base/error.hpp"
+#include "runtime/mechanics/joint_axes.hpp"
 #include "runtime/mechanics/members.hpp"
 #include "runtime/planar/core.hpp"
 
@@ -67,9 +68,11 @@ JointDescription flattened(JointDescription is) {
 }  // namespace
 
 void Planar::Core::place_child(FlatJoint& joint) {
-  const JointDescription& is = joint.is;
+  JointDescription& is = joint.is;
   const Pose parent = is.parent == kNoBody ? Pose{} : pose(is.parent);
   const Pose now_at = pose(is.child);
+  if (is.keep_rotation)
+    is.relative_rotation = relative_rotation_that_keeps(is, parent.orientation.conjugate() * now_at.orientation);
   Pose wanted = pose_at_zero(is, parent);
   if (is.keep_rotation) {
     wanted.location += wanted.orientation * is.child_point - now_at.orientation * is.child_point;

@@ -102,6 +102,14 @@ void change_description(Machine& machine, Instance& self, Change change) {
   resource(machine, self).is = dynamics_of(machine).joint(joint);
 }
 
+/// The child of a linked joint is rotated there, even if it kept its rotation when it was linked.
+void rest_at(Machine& machine, Instance& self, const Quaternion& rotation) {
+  change_description(machine, self, [&](JointDescription& is) {
+    is.relative_rotation = rotation;
+    is.keep_rotation = false;
+  });
+}
+
 void set_relative_rotation_matrix(Machine& machine, Instance& self, Matrix3 rotation) {
   if (!rotation.allFinite() || std::abs(rotation.determinant()) < 1e-6)
     throw Error(ErrorCode::Argument, "set-relative-rotation-matrix: this matrix is not a rotation");
@@ -109,7 +117,7 @@ void set_relative_rotation_matrix(Machine& machine, Instance& self, Matrix3 rota
   const Matrix3 nearest = svd.matrixU() * svd.matrixV().transpose();
   if (nearest.determinant() < 0)
     throw Error(ErrorCode::Argument, "set-relative-rotation-matrix: this matrix is a reflection, not a rotation");
-  change_description(machine, self, [&](JointDescription& is) { is.relative_rotation = Quaternion(nearest); });
+  rest_at(machine, self, Quaternion(nearest));
 }
 
 void set_relative_rotation(Machine& machine, Instance& self, Vector3 axis, double radians) {
@@ -117,8 +125,7 @@ void set_relative_rotation(Machine& machine, Instance& self, Vector3 axis, doubl
   finite(radians, "set-relative-rotation: the angle");
   const double length = axis.stableNorm();
   if (length == 0) return;
-  const Quaternion rotation(Eigen::AngleAxisd(radians, axis / length));
-  change_description(machine, self, [&](JointDescription& is) { is.relative_rotation = rotation; });
+  rest_at(machine, self, Quaternion(Eigen::AngleAxisd(radians, axis / length)));
 }
 
 template <Vector3 JointDescription::*Member>

@@ -90,13 +90,6 @@ void link_joint(Machine& machine, Instance& joint, JointDescription description,
   description.kind = row.kind;
   description.child = end_of(machine, child, "link: the child");
   description.parent = end_of(machine, parent, "link: the parent");
-  if (row.kind == JointKind::Fixed && description.keep_rotation) {
-    // It has no position to start from: the child's current relative rotation is its zero.
-    const Bodies& bodies = machine.world().bodies();
-    const Quaternion from =
-        description.parent == kNoBody ? Quaternion(1, 0, 0, 0) : bodies.orientation(description.parent);
-    description.relative_rotation = (from.conjugate() * bodies.orientation(description.child)).normalized();
-  }
   JointResource& resource = resource_made<JointResource>(machine, joint);
   Mechanics& dynamics = machine.world().mechanics();
   // The whole assembly is looked through.
@@ -143,7 +136,16 @@ void relink_joint(Machine& machine, Instance& joint) {
   Mechanics& dynamics = machine.world().mechanics();
   const JointIndex index = joint_of(machine, joint);
   dynamics.set_drive(index, saved.drive);
-  if (dynamics.closes_loop(index)) return;
+  if (dynamics.closes_loop(index)) {
+    // A loop that is open stays open: its joint rests where it did, not where its child stands.
+    if (dynamics.joint(index).relative_rotation.coeffs() != saved.is.relative_rotation.coeffs()) {
+      description = dynamics.joint(index);
+      description.relative_rotation = saved.is.relative_rotation;
+      description.keep_rotation = false;
+      dynamics.relink(index, description);
+    }
+    return;
+  }
   // Bodies do not know how many revolutions a joint has made.
   dynamics.set_position(index, saved.position);
   dynamics.set_velocity(index, saved.velocity);
