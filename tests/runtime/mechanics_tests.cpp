@@ -135,6 +135,38 @@ TEST_P(MechanicsTest, AJointIsLinkedNearbyAndGoesWhereverItsChildIsMoved) {
   }
 }
 
+// What of its rotation the joint cannot make is added to the relative rotation that was asked for; the angle is counted
+// from that.
+TEST_P(MechanicsTest, AChildThatKeepsItsRotationRestsThere) {
+  const bool flat = GetParam() == 2;
+  const Quaternion tilt(Eigen::AngleAxisd(flat ? 0 : 1, Vector3::UnitX()));
+  const Quaternion about_z(Eigen::AngleAxisd(0.75, Vector3::UnitZ())),
+      rotation(Eigen::AngleAxisd(0.25, Vector3::UnitZ()));
+  mechanics().set_gravity(Vector3::Zero());
+  for (const JointKind kind : {JointKind::Revolute, JointKind::Prismatic, JointKind::Fixed}) {
+    const BodyIndex parent = cube(100 * static_cast<int>(kind)), child = cube(100 * static_cast<int>(kind) + 10);
+    scene.world.bodies().set_orientation(child, about_z * tilt);
+    JointDescription is;
+    is.kind = kind;
+    is.parent = parent;
+    is.child = child;
+    is.parent_point = {5, 0, 0};
+    is.normal = kind == JointKind::Revolute ? Vector3::UnitZ() : Vector3::UnitX();
+    is.relative_rotation = rotation;
+    is.keep_rotation = true;
+    const JointIndex joint = mechanics().link(is, ObjectId{});
+    for (int i = 0; i < 10; ++i) scene.world.step();
+    const double tolerance = flat ? 1e-6 : 1e-12;  // Box2D has single precision
+    EXPECT_NEAR(scene.world.bodies().orientation(child).angularDistance(about_z * tilt), 0, 10 * tolerance);
+    EXPECT_NEAR(mechanics().position(joint)[0], kind == JointKind::Revolute ? -0.5 : 0, tolerance);
+    const Quaternion rest = mechanics().joint(joint).relative_rotation;
+    EXPECT_NEAR(rest.angularDistance(kind == JointKind::Revolute ? rotation * tilt : about_z * tilt), 0, 1e-7);
+    // Linked anew it changes nothing.
+    mechanics().relink(joint, mechanics().joint(joint));
+    EXPECT_EQ(mechanics().joint(joint).relative_rotation.coeffs(), rest.coeffs());
+  }
+}
+
 TEST_P(MechanicsTest, AWorldWhoseNumbersOverflowCanBeRestored) {
   for (const GuardMode guard : {GuardMode::Off, GuardMode::Report, GuardMode::Refine, GuardMode::Rest}) {
     for (const double force : {1e35, 1e300}) {
