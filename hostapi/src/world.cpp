@@ -1,5 +1,6 @@
 // Worlds: making, stepping, ending; the clock; what the machine knows about its host.
 #include <cmath>
+#include <optional>
 
 #include "functions.hpp"
 #include "internal.hpp"
@@ -95,16 +96,34 @@ steve::MachineHost machine_host(breve_world& world) {
   return host;
 }
 
+/// The rung that the host asked for holds whatever rung the controller's init chose. Single settings that init made
+/// stay, unless it made them of another rung.
+void keep_rung(breve_world& world, Rung asked) {
+  Mechanics& mechanics = world.world->mechanics();
+  const Accuracy chosen = mechanics.accuracy();
+  if (chosen.rung == asked) return;
+  mechanics.set_accuracy(asked);
+  if (!chosen.custom) return;
+  world.machine->warn_once("accuracy:settings-dropped", [&] {
+    return "the accuracy '" + std::string(name_of(asked)) + "' that the host asked for replaces '" +
+           std::string(name_of(chosen.rung)) +
+           "' and the settings of it that the program made in init (settings stay if init does not call set-accuracy)";
+  });
+}
+
 void start(breve_world& world) {
   const ScriptScope script(world);
   if (world.config.dimension == 2) world.world->flatten();
+  std::optional<Rung> rung;
+  if (world.config.accuracy) rung = rung_named(world.config.accuracy);
+  if (rung) world.world->mechanics().set_accuracy(*rung);
   world.machine->start();
   if (world.config.dimension == 3 && world.world->dimension() != 3)
     fail(BREVE_ERROR_ARGUMENT, "dimension is 3, but the program's controller makes the world flat");
   if (world.config.length_unit > 0) world.world->mechanics().set_length_unit(world.config.length_unit);
   if (world.config.integration_step > 0) world.world->set_integration_step(world.config.integration_step);
   if (world.config.iteration_step > 0) world.world->set_iteration_step(world.config.iteration_step);
-  if (world.config.accuracy) world.world->mechanics().set_accuracy(rung_named(world.config.accuracy));
+  if (rung) keep_rung(world, *rung);
   world.config.accuracy = nullptr;  // the host's text may go
 }
 

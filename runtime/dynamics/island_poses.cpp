@@ -46,7 +46,7 @@ void State::place(double h) {
   const articulated::Loads none;
   const bool stand = std::exchange(placed, false);
   for (const Clustered& one : clusters) {
-    const bool implicit = h > 0 && one.semi && accuracy.implicit_joints;
+    const bool implicit = h > 0 && one.semi && (accuracy.implicit_joints || one.fast_springs);
     for (Tree* tree : one.entry->system->trees()) {
       if (implicit)
         articulated::factorize(tree->model, tree->data, tree->state, tree->springs, h);

@@ -81,7 +81,7 @@ void SmoothMotion::move(double time, double h) {
 
 void SmoothMotion::move_cluster(Clustered& one, double time, double h) {
   one.forget_parts();
-  one.semi = semi_implicit(state_.accuracy);
+  one.semi = semi_implicit(state_.accuracy) || one.fast_springs;
   if (one.entry->system->can_be_finer())
     move_fast(one, time, h);
   else

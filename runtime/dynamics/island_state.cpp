@@ -145,7 +145,7 @@ void State::read_drives(double h) {
 
 void State::add_cluster(ClusterEntry& cluster) {
   if (is_network(cluster)) return;
-  clusters.push_back({&cluster, cluster.system->accuracy(), std::nullopt, 0, false, false, {}, 0, {}});
+  clusters.push_back({&cluster, cluster.system->accuracy(), false, std::nullopt, 0, false, false, {}, 0, {}});
   for (const std::uint32_t index : cluster.trees) {
     Tree* tree = core.trees[index].get();
     tree->slot = static_cast<int>(trees.size());
@@ -183,7 +183,7 @@ void State::begin(MechanicsClient* client, double h) {
   for (Clustered& one : clusters) {
     for (const std::uint32_t index : one.entry->trees) {
       Tree& tree = *core.trees[index];
-      core.set_loads(tree, accuracy, h);
+      core.set_loads(tree, one.accuracy_in(accuracy), h);
       for (TreeLink& link : tree.links) link.contact = {};
       tree.outer_force = tree.outer_couple = Vector3::Zero();
       tree.limit_force.setZero();
@@ -205,12 +205,20 @@ contact::SolveSettings State::solve_settings() {
 
 void State::use_accuracy(const Accuracy& other) {
   accuracy = other;
-  for (Clustered& one : clusters) one.entry->system->set_accuracy(other);
+  for (Clustered& one : clusters) one.entry->system->set_accuracy(one.accuracy_in(other));
 }
 
 void State::end_use(const Accuracy& asked) {
   accuracy = asked;
   for (Clustered& one : clusters) one.entry->system->set_accuracy(one.own);
+}
+
+Accuracy Clustered::accuracy_in(const Accuracy& island) const {
+  if (!fast_springs) return island;
+  Accuracy implicit = island;
+  implicit.scheme = articulated::Scheme::SemiImplicitEuler;
+  implicit.implicit_joints = true;
+  return implicit;
 }
 
 void Clustered::forget_parts() {

@@ -58,6 +58,9 @@ struct SubStepEnergy {
 struct Clustered {
   ClusterEntry* entry;
   Accuracy own;  // of its integrator, where the island's step sets no other
+  // Some spring in its joints is faster than the shortest sub-steps: semi-implicit Euler moves it, and its springs and
+  // dampers are implicit.
+  bool fast_springs = false;
   std::optional<Stage> stage;
   double next_before = 0;
   bool semi = false;        // its last smooth motion was semi-implicit Euler's
@@ -69,6 +72,8 @@ struct Clustered {
   bool alone() const { return entry->trees.size() == 1 && entry->springs.empty(); }
   /// What the last smooth motion did: nothing so far.
   void forget_parts();
+  /// The island's accuracy, as it is for this cluster.
+  Accuracy accuracy_in(const Accuracy& island) const;
 };
 
 /// Bodies that springs connect and that move as points: they are in free_bodies, from that position on.

@@ -77,24 +77,65 @@ Trouble Watch::foresee(double h) {
 /// is the one that was set.
 void Watch::shorten_sub_steps(double h) {
   if (state_.accuracy.scheme == articulated::Scheme::ExplicitEuler) return;
-  constexpr double kMostParts = 16;  // of a sub-step
+  constexpr double kMostParts = 16;     // of a sub-step
+  constexpr double kImplicitParts = 4;  // likewise, of order 1
   const double part = state_.accuracy.step > 0 ? std::min(state_.accuracy.step, h) : h;
+  const bool fast_springs = find_fast_springs(kMostRotation * kMostParts / part);
   const double rotation = std::max(fastest_rotation(part).value, driven_swing(part));
-  if (!(rotation > kMostRotation)) return;
-  Accuracy shorter = state_.accuracy;
-  shorter.step = part / std::min(std::ceil(rotation / kMostRotation), kMostParts);
-  state_.use_accuracy(shorter);
+  const double wanted = std::min(std::ceil(rotation / kMostRotation), kMostParts);
+  const double parts = std::max(wanted, fast_springs ? kImplicitParts : 1);
+  if (parts > 1) {
+    Accuracy shorter = state_.accuracy;
+    shorter.step = part / parts;
+    state_.use_accuracy(shorter);
+  }
 }
 
-/// rad, the largest part of its swing that a joint's spring makes in h seconds while a motor drives the joint. The
-/// motor's row moves the joint as if nothing pulled it back within a sub-step.
+/// The rows of a sub-step push joints as if no spring pulled them back meanwhile, and no sub-step is short enough for
+/// the springs that are faster than this: they have to be implicit, and the rows to know of them.
+/// @param fastest  rad/s
+/// @return  whether there is one
+bool Watch::find_fast_springs(double fastest) {
+  if (state_.accuracy.implicit_joints) return false;
+  bool any = false;
+  for (Clustered& one : state_.clusters) {
+    if (!one.entry->springs.empty() || !has_rows(one)) continue;
+    for (const Tree* tree : one.entry->system->trees())
+      for (const TreeLink& link : tree->links)
+        if (link.joint != kNoJoint && link.gain_unit > 0 &&
+            state_.core.joints[link.joint].drive.stiffness > fastest * fastest * link.gain_unit)
+          one.fast_springs = any = true;
+  }
+  return any;
+}
+
+/// Motors, limits, loops or contacts may push the cluster's links in this step.
+bool Watch::has_rows(const Clustered& one) const {
+  if (!state_.pairs.empty()) return true;
+  for (const Tree* tree : one.entry->system->trees()) {
+    if (!tree->loops.empty()) return true;
+    for (const TreeLink& link : tree->links)
+      if (link.motor || (link.joint != kNoJoint && Dynamics::Core::has_limits(state_.core.joints[link.joint])))
+        return true;
+  }
+  return false;
+}
+
+/// rad, the largest part of its swing that a joint's spring makes in h seconds while motors drive the assembly. Their
+/// rows move the joints as if nothing pulled them back within a sub-step.
 double Watch::driven_swing(double h) const {
   if (state_.accuracy.implicit_joints) return 0;
   double most = 0;
-  for (const Tree* tree : state_.trees)
-    for (const TreeLink& link : tree->links)
-      if (link.motor && link.gain_unit > 0)
-        most = std::max(most, h * std::sqrt(state_.core.joints[link.joint].drive.stiffness / link.gain_unit));
+  for (const Clustered& one : state_.clusters) {
+    if (one.fast_springs) continue;
+    for (const Tree* tree : one.entry->system->trees()) {
+      if (std::none_of(tree->links.begin(), tree->links.end(), [](const TreeLink& link) { return link.motor; }))
+        continue;
+      for (const TreeLink& link : tree->links)
+        if (link.joint != kNoJoint && link.gain_unit > 0)
+          most = std::max(most, h * std::sqrt(state_.core.joints[link.joint].drive.stiffness / link.gain_unit));
+    }
+  }
   return most;
 }
 

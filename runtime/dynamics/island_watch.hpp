@@ -23,6 +23,8 @@ class Watch {
  private:
   Trouble fastest_rotation(double h) const;
   double driven_swing(double h) const;
+  bool find_fast_springs(double h);
+  bool has_rows(const Clustered& one) const;
   Trouble strongest_damper(double h) const;
 
   State& state_;

@@ -187,6 +187,28 @@ END
   expect 0 run a.tz --iterations 1 --seed 1 --quiet && same "$(cat out)" balanced
   expect 0 run a.tz --iterations 1 --seed 1 --quiet --accuracy precise && same "$(cat out)" precise
   expect 2 run a.tz --iterations 1 --accuracy sloppy && has err "balanced"
+  # The rung holds from the start of init, and settings that init makes stay.
+  cat >b.tz <<END
+@use PhysicalControl.
+Controller Main.
+PhysicalControl : Main {
+  + to init:
+    print (self get-accuracy).
+    self set-accuracy-setting named "impacts" to 7.
+  + to iterate:
+    super iterate.
+    print (self get-accuracy), (self get-accuracy-setting named "impacts").
+}
+END
+  expect 0 run b.tz --iterations 1 --seed 1 --accuracy precise
+  same "$(cat out)" "$(printf 'precise\nprecise 7.000000')" && same "$(cat err)" ""
+  # If init chooses another rung, the one that was asked for holds, and the loss of settings is said once.
+  sed 's/    self set-accuracy-setting/    self set-accuracy to "fast".\n&/' b.tz >c.tz
+  expect 0 run c.tz --iterations 1 --seed 1 --accuracy precise
+  same "$(cat out)" "$(printf 'precise\nprecise 100.000000')"
+  has err "precise.*replaces 'fast'" && same "$(grep -c replaces err)" 1
+  sed '/set-accuracy-setting/d' c.tz >d.tz
+  expect 0 run d.tz --iterations 1 --seed 1 --accuracy precise && same "$(cat err)" ""
   ;;
 coarse-random)
   program a.tz 'print ((random[1.0] * 32767.0 + 0.0000005) % 1.0 < 0.000001).' ''

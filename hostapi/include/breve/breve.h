@@ -594,8 +594,10 @@ typedef struct breve_world_config {
                                    it is not, and a PlanarControl is an error; 0: the controller decides. Default 0 */
   breve_trace_fn trace;         /* for `profile`; NULL: no events. Default NULL */
   void* trace_user;             /* Default NULL */
-  const char* accuracy;         /* rung of the accuracy ladder, a name for breve_rung_find, set after the controller's
-                                   init; copied; NULL: as the script sets it. Default NULL */
+  const char* accuracy;         /* rung of the accuracy ladder, a name for breve_rung_find; copied. It is set before the
+                                   controller's init, and single settings that init makes stay. If init chooses another
+                                   rung, this one is set again after it, and a warning says so if init made settings of
+                                   the other one. NULL: as the script sets it. Default NULL */
   double length_unit;           /* m, about the size of the bodies, set after the controller's init: thresholds of lengths
                                    and speeds are multiples of it, and in a flat world sizes of 0.1 to 10 units are best;
                                    from 1e-9 to 1e9; 0: as the script sets it. Default 0 */
