@@ -143,6 +143,7 @@ void relink_joint(Machine& machine, Instance& joint) {
       description.relative_rotation = saved.is.relative_rotation;
       description.keep_rotation = false;
       dynamics.relink(index, description);
+      resource_made<JointResource>(machine, joint).is = dynamics.joint(index);
     }
     return;
   }
