@@ -940,9 +940,9 @@ typedef enum breve_joint_kind {
 typedef struct breve_joint_description {
   size_t struct_size;     /* set by breve_joint_description_default */
   uint32_t kind;          /* breve_joint_kind */
-  bool keep_rotation;     /* the child is moved, but not rotated. The part of its rotation that the joint can make is the
-                             position where the joint starts, counted from `rotation`; the part that it cannot make is
-                             added to `rotation`. Default false */
+  bool keep_rotation;     /* the child is moved, but not rotated. The part of its rotation that the joint can make is
+                             the position where the joint starts, counted from `rotation`; the part that it cannot make
+                             is added to `rotation`. Default false */
   bool reserved[3];       /* must be false */
   breve_object parent;    /* null: the world. Default null */
   breve_object child;     /* a body that can move */
