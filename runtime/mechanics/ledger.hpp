@@ -42,7 +42,8 @@ enum class GuardReason : std::uint8_t {
   Impacts,
   NoSolution,
   Work,
-  FastMotion
+  FastMotion,
+  OpenJoint
 };
 /// In words: "a number is not finite".
 std::string_view words_for(GuardReason reason);

@@ -19,7 +19,7 @@ constexpr std::array<Words, 5> kKinds{"revolute", "prismatic", "fixed", "univers
 constexpr std::array<Words, 5> kRungs{"fast", "balanced", "precise", "reference", "conserving"};
 constexpr std::array<Words, 4> kModes{"off", "report", "refine", "rest"};
 constexpr std::array<Words, 4> kActions{"reported", "refined", "put to rest", "finished coarsely"};
-constexpr std::array<Words, 9> kReasons{"a number is not finite",
+constexpr std::array<Words, 10> kReasons{"a number is not finite",
                                         "unexplained energy gain",
                                         "an overlap grows",
                                         "a body rotates too far in one sub-step",
@@ -27,7 +27,8 @@ constexpr std::array<Words, 9> kReasons{"a number is not finite",
                                         "more impacts in one sub-step than can be located",
                                         "no solution was found for an equation of the step",
                                         "the work budget of the step is used up",
-                                        "a link moves too fast for step control"};
+                                        "a link moves too fast for step control",
+                                        "a joint opens"};
 
 template <class Enum, std::size_t N>
 Enum named(const std::array<Words, N>& names, Words name, Words what) {

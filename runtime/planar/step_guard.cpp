@@ -174,7 +174,7 @@ void Planar::Core::watch(double moment, bool wrong) {
     const double open = gap(joint);
     if (!(open > std::max(kGap * 2 * width, 2.0 * b2_linearSlop) * settings.unit)) continue;
     wrong = true;
-    intervene(joint.is.child, GuardReason::NoSolution, open, moment, action);
+    intervene(joint.is.child, GuardReason::OpenJoint, open, moment, action);
   }
   constexpr std::uint64_t kSeldom = 4;  // steps: looking at every contact costs as much as a part of solving it
   if (iteration % kSeldom == 0 && tell_overlaps(moment, action)) wrong = true;

@@ -50,6 +50,8 @@ void Planar::Core::strike(std::span<const Strike> some) {
   const Response response(*this, nullptr, find(some.front().body));
   using Vector = Response::Vector;
   const double before = response.kinetic(), u = settings.unit;
+  // Bodies that were linked since the last step still have velocities of their own, which their joints do not allow.
+  response.give(response.allowed(response.velocities()));
   const Vector had = response.velocities();
   constexpr std::size_t kMostSolved = 8;
   if (some.size() > kMostSolved) {

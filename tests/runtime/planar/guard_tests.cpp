@@ -77,6 +77,17 @@ TEST(PlanarGuard, WhatGainsEvenSoIsPutToRest) {
   }
 }
 
+TEST(PlanarGuard, AJointThatOpensIsReportedAsSuch) {
+  Guarded flat(GuardMode::Report, Rung::Fast);
+  const ObjectId rod = flat.box(1, 0.1, 0.5, 0);
+  flat.hinge({}, rod, {0, 0, 0}, {-0.5, 0, 0});
+  flat.bodies().set_force(flat.index(rod), {0, -1e6, 0});
+  flat.watch(10);
+  EXPECT_GT(flat.count(GuardReason::OpenJoint, GuardAction::Reported), 0);
+  EXPECT_EQ(flat.count(GuardReason::NoSolution, GuardAction::Reported), 0);
+  EXPECT_EQ(words_for(GuardReason::OpenJoint), "a joint opens");
+}
+
 TEST(PlanarGuard, ABodyWhoseNumbersAreNoneRestsWhereItWas) {
   for (const GuardMode mode : {GuardMode::Report, GuardMode::Refine, GuardMode::Rest}) {
     Guarded flat(mode);

@@ -318,6 +318,22 @@ TEST(PlanarStrikes, AJointAllowsWhatItAllows) {
   EXPECT_NEAR(flat.spin(rod), 4, 4 * kSingle);
 }
 
+TEST(PlanarStrikes, ALinkThatWasJustLinkedToAMovingOneIsStruckAsTheJointLetsItMove) {
+  Limited flat;
+  flat.physics().set_gravity(Vector3::Zero());
+  const Vector3 v(1, 0.5, 0);
+  const ObjectId a = flat.box(1, 0.2, 0, 0), b = flat.box(1, 0.2, 1, 0);
+  flat.set_velocity(a, v);
+  flat.hinge(a, b, {0.5, 0, 0}, {-0.5, 0, 0});
+  flat.set_velocity(b, v);
+  flat.physics().take_changes();
+  // What the hinge left of a's motion, and the blow that brings b to its velocity, add up to one translation.
+  for (const ObjectId link : {a, b}) {
+    EXPECT_NEAR((flat.velocity(link) - v).norm(), 0, 10 * kSingle);
+    EXPECT_NEAR(flat.spin(link), 0, 10 * kSingle);
+  }
+}
+
 TEST(PlanarStrikes, WhatWasSetIsTakenOnceWhetherOrNotAnImageWasTaken) {
   Rods live;
   live.run(0.1);
